@@ -1,0 +1,322 @@
+/* Velour: measured materials. The only public header; pure C99.
+ *
+ * Every call that can fail returns vlr_status; vlr_last_error() then holds one sentence for the user (file, field, value,
+ * remedy), kept for the calling thread until its next failing call. Nothing here prints, exits or aborts.
+ *
+ * Handles are opaque. A handle keeps alive what it needs, so they may be freed in any order; freeing NULL is fine. A
+ * handle may be used by one thread at a time, except that a vlr_job may be polled, cancelled and read from any thread.
+ * Models and measurements are immutable and may be shared freely.
+ *
+ * Options structs begin with their size: call the matching vlr_*_options_init() first, then change fields. Defaults live
+ * in the library only. Arrays are borrowed for the call: float32, row-major, contiguous. Strings are UTF-8. A `const
+ * char**` that a call fills belongs to the handle and is valid until the handle is freed or the same call is repeated.
+ *
+ * Directions are unit, point away from the surface, in the local shading frame: +z normal, +x tangent. wl points to the
+ * light, wv to the viewer. f is the BRDF in 1/sr without the cosine, linear Rec. 709. Angles in radians, lengths in
+ * metres unless a name says otherwise.
+ */
+#ifndef VELOUR_H
+#define VELOUR_H
+
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define VLR_API __declspec(dllexport)
+#else
+#define VLR_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Rises whenever a struct or the meaning of a call changes. */
+#define VLR_ABI_VERSION 1
+
+typedef int32_t vlr_status;
+enum {
+  VLR_OK = 0,
+  VLR_UNKNOWN = 1,
+  VLR_INVALID_ARGUMENT = 2,
+  VLR_INVALID_STATE = 3,
+  VLR_OUT_OF_MEMORY = 4,
+  VLR_UNSUPPORTED = 5,
+  VLR_IO = 6,
+  VLR_BAD_DATA = 7,
+  VLR_CANCELLED = 8,
+  VLR_VERSION_MISMATCH = 9
+};
+
+typedef struct vlr_measurement vlr_measurement;
+typedef struct vlr_model vlr_model;
+typedef struct vlr_scene vlr_scene;
+typedef struct vlr_job vlr_job;
+
+/* ---- library ------------------------------------------------------------------------------------------------- */
+
+/* Sentence of this thread's last failing call; "" before the first. */
+VLR_API const char* vlr_last_error(void);
+/* major * 10000 + minor * 100 + patch. */
+VLR_API uint32_t vlr_version(void);
+VLR_API uint32_t vlr_abi_version(void);
+/* Checks that the ray tracer bound to this library is the one it was built for (version, one known ray hits). Every
+ * scene and capture call does this first; call it at load time to learn of trouble early. */
+VLR_API vlr_status vlr_self_test(void);
+/* JSON: version, embree {version, path}, simd, simd_targets, threads, build_type. The text belongs to the library. */
+VLR_API vlr_status vlr_system_json(const char** json);
+/* Pins the instruction set of all kernels: "auto", or a name of simd_targets. Not while a job runs. */
+VLR_API vlr_status vlr_select_simd(const char* target);
+
+/* ---- measurements -------------------------------------------------------------------------------------------- */
+
+/* Reads a measurement file; the format is recognised from its content. */
+VLR_API vlr_status vlr_measurement_load(const char* path, vlr_measurement** out);
+VLR_API void vlr_measurement_free(vlr_measurement* measurement);
+/* JSON: kind "measurement", format, name, path, sha256, bytes, isotropic, entries {total, valid, negative, not_finite,
+ * below_horizon, out_of_gamut}, details {...}. */
+VLR_API vlr_status vlr_measurement_info_json(vlr_measurement* measurement, const char** json);
+/* f [count x 3] of one view wv [3] and `count` light directions wl [count x 3]; valid [count] is 1 where covered. */
+VLR_API vlr_status vlr_measurement_eval(const vlr_measurement* measurement, const float* wv, uint64_t count,
+                                        const float* wl, float* f, uint8_t* valid);
+
+/* ---- models -------------------------------------------------------------------------------------------------- */
+
+VLR_API vlr_status vlr_model_load(const char* path, vlr_model** out);
+/* The bytes of a model file in memory (a packed image); `name` appears in error sentences. */
+VLR_API vlr_status vlr_model_load_memory(const void* bytes, uint64_t size, const char* name, vlr_model** out);
+VLR_API void vlr_model_free(vlr_model* model);
+/* Writes atomically: the old file or the new one, never a part. */
+VLR_API vlr_status vlr_model_save(const vlr_model* model, const char* path);
+/* The bytes that vlr_model_save would write; they belong to the handle. */
+VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_t* size);
+/* JSON: kind "model", model "scattered", kernel, isotropic, views, lobes, max_lobes_per_view, bytes, parameter_bytes,
+ * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, tolerance, seconds, seed, all_data, warnings,
+ * source {name, format, sha256}. */
+VLR_API vlr_status vlr_model_info_json(vlr_model* model, const char** json);
+/* As vlr_measurement_eval; also the density of the model's own sampler when `pdf` [count] is not NULL. */
+VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t count, const float* wl, float* f,
+                                  float* pdf);
+/* `count` directions wl [count x 3] drawn for view wv from random numbers u [count x 2] in [0, 1), and their density.
+ * A direction may lie below the horizon. */
+VLR_API vlr_status vlr_model_sample(const vlr_model* model, const float* wv, uint64_t count, const float* u, float* wl,
+                                    float* pdf);
+
+/* JSON of vlr_measurement_info_json or vlr_model_info_json, whichever the file is; the text belongs to the thread until
+ * its next call of this function. */
+VLR_API vlr_status vlr_file_info_json(const char* path, const char** json);
+
+/* ---- jobs ---------------------------------------------------------------------------------------------------- */
+
+enum { VLR_JOB_READY = 0, VLR_JOB_RUNNING = 1, VLR_JOB_DONE = 2, VLR_JOB_FAILED = 3, VLR_JOB_CANCELLED = 4 };
+
+typedef struct vlr_job_state {
+  uint32_t struct_size;
+  int32_t state;          /* VLR_JOB_* */
+  double fraction;        /* 0..1, never falls, 1 only when done */
+  double seconds;         /* since the start */
+  double seconds_left;    /* estimate; negative while unknown */
+  uint64_t bytes_in_use;  /* of the whole process */
+  const char* stage;      /* a literal, valid for ever */
+} vlr_job_state;
+
+/* For C callers: called on the thread that called vlr_job_wait, about ten times a second, fraction non-decreasing, the
+ * last one 1 when the job ends well. Non-zero goes on, 0 cancels. */
+typedef int32_t (*vlr_progress_fn)(void* user, double fraction, const char* stage);
+
+/* Starts the job on a thread of its own. A cancelled or failed job may be started again. */
+VLR_API vlr_status vlr_job_start(vlr_job* job);
+VLR_API vlr_status vlr_job_poll(const vlr_job* job, vlr_job_state* state);
+/* Asks for the end; the job stops within 0.1 s. */
+VLR_API vlr_status vlr_job_cancel(vlr_job* job);
+/* Waits at most `timeout_seconds` (negative: for ever) for the end. *finished is 0 when time ran out (and the status
+ * VLR_OK). When the job failed or was cancelled its status and sentence are returned here. `progress` may be NULL. */
+VLR_API vlr_status vlr_job_wait(vlr_job* job, double timeout_seconds, vlr_progress_fn progress, void* user,
+                                int32_t* finished);
+/* What a finished job reports, as JSON: the keys of the command line's verb. */
+VLR_API vlr_status vlr_job_report_json(vlr_job* job, const char** json);
+/* The model of a finished fit; a new handle. */
+VLR_API vlr_status vlr_job_result_model(const vlr_job* job, vlr_model** out);
+/* Cancels if running, waits, frees. */
+VLR_API void vlr_job_free(vlr_job* job);
+
+/* ---- fit, compare, capture ----------------------------------------------------------------------------------- */
+
+enum { VLR_KERNEL_GAUSSIAN = 0, VLR_KERNEL_ABEL_POISSON = 1 };
+
+typedef struct vlr_fit_options {
+  uint32_t struct_size;
+  int32_t kernel;        /* VLR_KERNEL_* */
+  double tolerance;      /* relative L2 asked for at every view up to 75 degrees, twice that beyond; 0.02 */
+  uint32_t max_lobes;    /* a view; 16 */
+  uint32_t threads;      /* 0: all */
+  uint64_t max_bytes;    /* of the model file; 0: no bound */
+  uint64_t seed;
+  int32_t all_data;      /* 1: hold nothing out (production); the model says so */
+  int32_t align_views;   /* 1: turn neighbouring slices onto the query's mirror direction before mixing */
+} vlr_fit_options;
+VLR_API void vlr_fit_options_init(vlr_fit_options* options);
+/* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, warnings. */
+VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options,
+                                      vlr_job** out);
+
+/* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples. */
+VLR_API vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_model* model, vlr_job** out);
+
+typedef struct vlr_microsurface_options {
+  uint32_t struct_size;
+  uint32_t threads;          /* 0: all */
+  double roughness;          /* Beckmann alpha = sqrt(2) x RMS slope along x; 0.01..1 */
+  double anisotropy;         /* alpha_x / alpha_y >= 1; 1: isotropic, MERL layout */
+  const char* metal;         /* "nickel", "gold", "copper", "aluminium", "silver", "iron", "chromium", "titanium" */
+  float base_albedo[3];      /* diffuse base under the metal flakes; 0 0 0: bare metal */
+  double base_share;         /* share of the surface that is diffuse base; 0..1 */
+  uint64_t rays;             /* camera-side rays in all; more is finer and slower */
+  uint64_t seed;
+} vlr_microsurface_options;
+VLR_API void vlr_microsurface_options_init(vlr_microsurface_options* options);
+/* Ray-traces a random micro-surface and writes its BRDF: MERL layout when isotropic, else a Velour EXR table.
+ * JSON: seconds, rays, rays_per_second, bytes, resolution_degrees, relative_standard_error, albedo. */
+VLR_API vlr_status vlr_microsurface_create_job(const vlr_microsurface_options* options, const char* path,
+                                               vlr_job** out);
+
+/* ---- scene --------------------------------------------------------------------------------------------------- */
+
+VLR_API vlr_status vlr_scene_create(vlr_scene** out);
+VLR_API void vlr_scene_free(vlr_scene* scene);
+
+/* Colours of measurements, models and presets are Rec. 709; `rec709_to_working` [9, row-major] takes them to the space
+ * of all other colours and images of the scene and of the film. Default: identity. */
+VLR_API vlr_status vlr_scene_set_working_space(vlr_scene* scene, const float* rec709_to_working);
+
+typedef struct vlr_mesh_desc {
+  uint32_t struct_size;
+  uint32_t vertex_count;
+  uint32_t triangle_count;
+  uint32_t pad;
+  const float* positions;             /* [vertex_count x 3] */
+  const uint32_t* triangles;          /* [triangle_count x 3] */
+  const float* corner_normals;        /* [triangle_count x 3 x 3] shading normals; NULL: smooth vertex normals */
+  const float* corner_uvs;            /* [triangle_count x 3 x 2]; NULL: none */
+  const uint32_t* material_slots;     /* [triangle_count]; NULL: all 0 */
+  const uint8_t* smooth;              /* [triangle_count] 1: smooth; used when corner_normals is NULL; NULL: all smooth */
+} vlr_mesh_desc;
+/* Degenerate triangles and non-finite vertices are left out; *dropped (may be NULL) says how many triangles. */
+VLR_API vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint32_t* mesh, uint32_t* dropped);
+/* Reads a Wavefront OBJ file. */
+VLR_API vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint32_t* mesh);
+
+/* Materials are numbered in the order of adding. */
+VLR_API vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model, uint32_t neighbors,
+                                                uint32_t* material);
+/* Reference mode: f comes from the raw measurement. `proposal` (may be NULL) is the model whose lobes draw samples;
+ * without one a coarse model is fitted here when a strategy needs it. */
+VLR_API vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,
+                                                      const vlr_model* proposal, uint32_t neighbors,
+                                                      uint32_t* material);
+typedef struct vlr_principled_desc {
+  uint32_t struct_size;
+  float base_color[3];   /* working space */
+  float metallic;        /* 0..1 */
+  float roughness;       /* 0..1, Principled's: alpha = roughness^2 */
+  float specular;        /* Principled's 0..1, 0.5 = index 1.5 */
+  float emission[3];     /* radiance, working space */
+} vlr_principled_desc;
+VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
+VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,
+                                                     uint32_t* material);
+
+/* object_to_world [12]: 3 x 4 row-major. materials [count]: material of each slot of the mesh. */
+VLR_API vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
+                                          const uint32_t* materials, uint32_t count);
+
+enum { VLR_LIGHT_SUN = 0, VLR_LIGHT_POINT = 1, VLR_LIGHT_RECTANGLE = 2, VLR_LIGHT_DISK = 3 };
+typedef struct vlr_light_desc {
+  uint32_t struct_size;
+  int32_t type;                 /* VLR_LIGHT_* */
+  float color[3];               /* working space. Sun: irradiance on a facing plane, W/m^2. Others: power, W */
+  float light_to_world[12];     /* 3 x 4 row-major; the light shines along its -z */
+  float size[2];                /* point: radius, -; rectangle: sides; disk: diameters (an ellipse if they differ) */
+  float angle;                  /* sun: angular diameter, radians */
+  int32_t casts_shadow;
+} vlr_light_desc;
+VLR_API void vlr_light_desc_init(vlr_light_desc* desc);
+VLR_API vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc);
+
+/* The world is +z up. Image: equirectangular, row 0 at the top (+z), column centre width/2 looks along -y ... the
+ * convention of Blender: u = atan2(y, -x) / (2 pi) + 1/2, v = asin(z) / pi + 1/2 from the bottom.
+ * world_to_image [9, row-major] turns a world direction before that look-up (NULL: identity). */
+VLR_API vlr_status vlr_scene_set_world_color(vlr_scene* scene, const float* color);
+VLR_API vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, uint32_t height, uint32_t channels,
+                                              const float* pixels, float strength, const float* world_to_image);
+VLR_API vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, float strength,
+                                        const float* world_to_image);
+
+enum { VLR_CAMERA_PERSPECTIVE = 0, VLR_CAMERA_ORTHOGRAPHIC = 1 };
+typedef struct vlr_camera_desc {
+  uint32_t struct_size;
+  int32_t type;                /* VLR_CAMERA_* */
+  float camera_to_world[12];   /* 3 x 4 row-major; looks along its -z, +y up */
+  float window[4];             /* left, right, bottom, top of the picture: at distance 1 (perspective) or in metres */
+  float clip_start, clip_end;
+} vlr_camera_desc;
+VLR_API void vlr_camera_desc_init(vlr_camera_desc* desc);
+VLR_API vlr_status vlr_scene_set_camera(vlr_scene* scene, const vlr_camera_desc* desc);
+/* Perspective camera from a point to a point; fov is the vertical angle of view. Up is +z. */
+VLR_API vlr_status vlr_scene_look_at(vlr_scene* scene, const float* eye, const float* target, float fov, float aspect);
+/* The default camera: frames the bounding box of all instances to the picture's height. `up_axis` 1 or 2 (y or z). */
+VLR_API vlr_status vlr_scene_frame_camera(vlr_scene* scene, float aspect, uint32_t up_axis);
+
+/* Builds the acceleration structure and checks the scene. Needed before a render job is made, after every change. */
+VLR_API vlr_status vlr_scene_commit(vlr_scene* scene);
+/* JSON: triangles, instances, lights, materials, bytes, bvh_seconds, warnings. */
+VLR_API vlr_status vlr_scene_info_json(vlr_scene* scene, const char** json);
+
+/* ---- render -------------------------------------------------------------------------------------------------- */
+
+enum {
+  VLR_STRATEGY_UNIFORM = 0,
+  VLR_STRATEGY_COSINE = 1,
+  VLR_STRATEGY_TABLE = 2,
+  VLR_STRATEGY_SRBF = 3,
+  VLR_STRATEGY_LIGHT = 4,
+  VLR_STRATEGY_MIS = 5
+};
+
+typedef struct vlr_render_options {
+  uint32_t struct_size;
+  uint32_t width, height;
+  uint32_t spp;            /* light directions a pixel */
+  uint32_t split;          /* of them, how many share one camera ray; 8 */
+  uint32_t bounces;        /* indirect bounces; 0: direct illumination only */
+  int32_t strategy;        /* VLR_STRATEGY_* */
+  uint32_t threads;        /* 0: all */
+  uint64_t seed;
+  double time_limit;       /* seconds, 0: none; stops at a whole pass */
+  int32_t transparent;     /* 1: rays that meet nothing leave alpha 0 */
+  int32_t measure_ray_share; /* 1: record 1 tile in 16 and replay its rays */
+} vlr_render_options;
+VLR_API void vlr_render_options_init(vlr_render_options* options);
+/* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise. */
+VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
+
+/* The film so far, row 0 at the bottom. Passes and channels: "Combined" 4 (RGBA, premultiplied), "Depth" 1,
+ * "Normal" 3 (world), "Sample Count" 1. `pixels` holds width x height x channels. May be called while the job runs. */
+VLR_API vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels, uint64_t count);
+
+/* ---- images -------------------------------------------------------------------------------------------------- */
+
+/* Writes linear pixels [height x width x channels], row 0 at the bottom, atomically. The extension picks the format:
+ * .exr keeps floats, .png gets the sRGB curve and 8 bits. */
+VLR_API vlr_status vlr_image_write(const char* path, uint32_t width, uint32_t height, uint32_t channels,
+                                   const float* pixels);
+/* First reads the size (pixels NULL), then the pixels, row 0 at the bottom, linear. */
+VLR_API vlr_status vlr_image_read(const char* path, uint32_t* width, uint32_t* height, uint32_t* channels,
+                                  float* pixels, uint64_t count);
+/* rmse and relmse of linear RGB: relmse = mean((x - r)^2 / (r^2 + 0.01 mean(r)^2)). Pixel counts must agree. */
+VLR_API vlr_status vlr_image_compare(uint64_t pixel_count, uint32_t channels, const float* pixels,
+                                     const float* reference, double* rmse, double* relmse);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

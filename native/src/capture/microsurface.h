@@ -1,0 +1,41 @@
+// A virtual goniometer for random micro-surfaces: measurements with known ground truth, from nothing but a seed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "job/progress.h"
+#include "sphere/vec.h"
+
+namespace velour {
+
+struct MicrosurfaceOptions {
+  double roughness = 0.2;     // Beckmann alpha along x = sqrt(2) x RMS slope
+  double anisotropy = 1.0;    // alpha_x / alpha_y
+  std::string metal = "nickel";
+  Rgb base_albedo{0, 0, 0};   // diffuse base
+  double base_share = 0.0;    // share of the surface that is diffuse base
+  uint64_t rays = 0;          // 0: the default
+  uint64_t seed = 0;
+  int threads = 0;
+};
+
+struct MicrosurfaceReport {
+  double seconds = 0;
+  uint64_t rays = 0;                   // traced, all orders of scattering
+  double rays_per_second = 0;
+  uint64_t bytes = 0;                  // of the file
+  double resolution_degrees = 0;       // of the bins that the rays were collected in, near the highlight
+  double relative_standard_error = 0;  // median over the bins that hold 90 % of the energy
+  double albedo[3] = {0, 0, 0};        // at normal incidence
+};
+
+/// Traces, tabulates and writes `path`: MERL layout when isotropic, Velour's EXR table otherwise.
+MicrosurfaceReport capture_microsurface(const MicrosurfaceOptions& options, const std::string& path,
+                                        Progress& progress);
+
+/// Names that `metal` may have.
+std::vector<std::string> metal_names();
+
+}  // namespace velour

@@ -1,0 +1,34 @@
+// Named tensors in the bytes of a multi-part OpenEXR file: the container of models and of Velour's own tables.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace velour {
+
+/// float32, row-major. In the file a tensor is one part with one channel "Y": its last dimension is the width, the others
+/// flattened are the height, and the attribute "velour.shape" holds the shape. Three-component last dimensions are
+/// stored as channels R, G, B instead, so that a viewer shows them in colour.
+struct Tensor {
+  std::vector<uint64_t> shape;
+  std::vector<float> data;
+};
+
+struct TensorFile {
+  std::map<std::string, std::string> attributes;  // "velour.kind", "velour.format_version", ...: strings
+  std::map<std::string, Tensor> tensors;          // part name -> tensor
+};
+
+/// The bytes of the file; deterministic: the same content gives the same bytes.
+std::vector<uint8_t> encode_tensors(const TensorFile& file);
+
+/// Checks every shape against the part's data window and the byte count before allocating. `name` appears in errors.
+TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& name);
+
+/// True for bytes that begin like an OpenEXR file.
+bool looks_like_exr(std::span<const uint8_t> head);
+
+}  // namespace velour

@@ -1,0 +1,35 @@
+// Pictures: linear float pixels, read and written through OpenImageIO.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace velour {
+
+/// Row 0 is at the bottom; channels interleaved. Linear values.
+struct Picture {
+  int width = 0, height = 0, channels = 0;
+  std::vector<float> pixels;
+  const float* pixel(int x, int y) const {
+    return pixels.data() + (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) *
+                               static_cast<size_t>(channels);
+  }
+};
+
+/// Any format OpenImageIO knows; integer formats are taken as sRGB and made linear. Throws Error with the file's name.
+/// Dimensions are checked against the file's size before anything is allocated.
+Picture read_picture(const std::string& path);
+/// Width, height, channels without the pixels.
+Picture read_picture_header(const std::string& path);
+
+/// By extension: .exr keeps float32, .png gets the sRGB curve and 8 bits. Atomic.
+void write_picture(const std::string& path, const Picture& picture);
+
+struct PictureDifference {
+  double rmse = 0, relmse = 0;
+};
+/// Of the first three channels: relmse = mean((x - r)^2 / (r^2 + 0.01 mean(r)^2)).
+PictureDifference compare_pictures(const float* pixels, const float* reference, size_t pixel_count, int channels);
+
+}  // namespace velour

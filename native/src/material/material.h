@@ -1,0 +1,38 @@
+// The run-time evaluator. Three operations on a prepared point: eval, sample, pdf. One virtual call a batch.
+#pragma once
+
+#include <memory>
+
+#include "sphere/direction_batch.h"
+#include "srbf/lobe_mixture.h"
+
+namespace velour {
+
+/// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it
+/// needs; the struct is scratch memory of the thread, reused from hit to hit.
+struct PreparedBrdf {
+  Vec3 wv;                // local, unit, wv.z > 0
+  LobeMixture lobes;      // SRBF materials: value and density. Raw measurements: density only
+  float parameter[8];     // analytic materials: what they derive from wv
+};
+
+/// Directions are in the local shading frame. Thread-safe; no allocation, no lock.
+class Material {
+ public:
+  virtual ~Material() = default;
+
+  /// Must be called before the others with this `point`; `wv.z > 0`.
+  virtual void prepare(const Vec3& wv, PreparedBrdf& point) const = 0;
+
+  /// f in 1/sr without cosine (0 at and below the horizon, never negative, never NaN) and the density of `sample`, per
+  /// solid angle, of each direction of the batch. The batch is padded.
+  virtual void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const = 0;
+
+  /// Draws wl with the density that `eval` reports as pdf. May lie below the horizon: a zero contribution.
+  virtual Vec3 sample(const PreparedBrdf& point, const Vec2& u) const = 0;
+
+  /// True when f depends on the azimuth difference alone (tables of it need one meridian of views).
+  virtual bool isotropic() const = 0;
+};
+
+}  // namespace velour

@@ -1,0 +1,47 @@
+// The fitted, immutable asset: parameters, error against its source, and where it came from.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "brdf/scattered_brdf.h"
+
+namespace velour {
+
+/// Relative L2 error by view angle; keys "5", "30", "60", "75", "85" (degrees), nullopt where not covered.
+using ErrorByViewAngle = std::map<std::string, std::optional<double>>;
+
+/// What the fit found out; stored in the model file and shown beside the material.
+struct FitRecord {
+  double relative_l2 = 0;  // mean over views weighted by cos(theta_v)
+  ErrorByViewAngle by_view_angle;
+  ErrorByViewAngle albedo_by_view_angle;  // directional albedo (largest channel) at those views
+  double albedo_max = 0;                  // over all fitted views, largest channel
+  double tolerance = 0;
+  double seconds = 0;                     // wall clock of the fit
+  uint64_t seed = 0;
+  bool all_data = false;                  // fitted without holding anything out
+  std::vector<std::string> warnings;      // sentences
+};
+
+/// What the model was fitted from.
+struct SourceRecord {
+  std::string name, format, sha256;
+};
+
+/// Kinds of model; a new kind is appended.
+using ModelBody = std::variant<ScatteredBrdf>;
+
+struct Model {
+  ModelBody body;
+  FitRecord fit;
+  SourceRecord source;
+};
+
+/// "scattered", ...
+const char* model_kind(const Model& model);
+
+}  // namespace velour

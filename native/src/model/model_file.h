@@ -1,0 +1,27 @@
+// The model file: named tensors in an OpenEXR file, docs/formats.md.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "material/material.h"
+#include "model/model.h"
+
+namespace velour {
+
+std::vector<uint8_t> encode_model(const Model& model);
+/// Checks every shape and range and names the field at fault. `name` is the file's name for sentences.
+Model decode_model(std::span<const uint8_t> bytes, const std::string& name);
+
+void save_model(const Model& model, const std::string& path);
+Model load_model(const std::string& path);
+/// True for a model file (an OpenEXR file with Velour's kind attribute).
+bool is_model_file(const std::string& path);
+
+/// The run-time evaluator of a model; `neighbors` 0 takes the model's default.
+std::shared_ptr<const Material> make_material(std::shared_ptr<const Model> model, int neighbors);
+
+}  // namespace velour

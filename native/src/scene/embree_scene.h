@@ -1,0 +1,79 @@
+// Rays. The only header over Embree; embree_scene.cpp is the only file that includes it and hides the difference between
+// Embree 3 and 4. Embree is opened privately (dlopen + dlsym), so that another Embree already in the process - Blender's -
+// cannot be bound by accident.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "sphere/vec.h"
+
+namespace velour {
+
+struct Ray {
+  Vec3 origin;
+  float near = 0.0f;
+  Vec3 direction;  // unit where distances matter
+  float far = std::numeric_limits<float>::infinity();
+};
+
+inline constexpr uint32_t kNoHit = 0xffffffffu;
+
+struct Hit {
+  float distance;
+  Vec3 geometric_normal;  // world, not normalised, towards the front face (counter-clockwise)
+  float u, v;             // barycentric weights of vertices 1 and 2
+  uint32_t triangle;      // of the mesh
+  uint32_t instance = kNoHit;  // kNoHit: the ray met nothing
+};
+
+/// 3 x 4 affine map, row-major.
+struct Affine {
+  float m[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+};
+
+/// Meshes and instances of them. Build once, then trace from any number of threads.
+class EmbreeScene {
+ public:
+  EmbreeScene();
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  /// Copies the geometry. Returns the mesh's number.
+  uint32_t add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
+  /// Returns the instance's number, counted from 0.
+  uint32_t add_instance(uint32_t mesh, const Affine& object_to_world);
+  /// Builds; uses at most `threads` threads (0: all). A scene whose only instance has the identity map is traced without
+  /// an instance level.
+  void commit(int threads);
+
+  void intersect(const Ray& ray, Hit& hit) const;
+  bool occluded(const Ray& ray) const;
+  /// A batch; blocked[i] is 1 where ray i meets anything. Rays of one batch should start near each other.
+  void occluded(std::span<const Ray> rays, uint8_t* blocked) const;
+  void intersect(std::span<const Ray> rays, Hit* hits) const;
+
+  /// Bytes that Embree holds for this scene.
+  uint64_t bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Version and path of the Embree in use.
+struct EmbreeInfo {
+  std::string version;
+  std::string path;
+};
+EmbreeInfo embree_info();
+
+/// Throws Error(version_mismatch) when Embree is not the version that this library was compiled for, or when a known ray
+/// does not hit a known triangle. Cheap; the result is not cached across failures.
+void embree_self_test();
+
+}  // namespace velour

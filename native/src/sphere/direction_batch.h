@@ -1,0 +1,45 @@
+// A few directions side by side: the unit of work of every evaluation kernel. SIMD lanes run over directions, so that
+// one lobe is broadcast and no horizontal sum is needed.
+#pragma once
+
+#include "sphere/vec.h"
+
+namespace velour {
+
+/// Up to kCapacity unit directions, structure of arrays. Lanes past `count` hold +z, so kernels never branch on a tail.
+struct alignas(64) DirectionBatch {
+  static constexpr int kCapacity = 64;
+  float x[kCapacity], y[kCapacity], z[kCapacity];
+  int count = 0;
+
+  Vec3 get(int i) const { return {x[i], y[i], z[i]}; }
+  void set(int i, const Vec3& d) {
+    x[i] = d.x;
+    y[i] = d.y;
+    z[i] = d.z;
+  }
+  void push(const Vec3& d) { set(count++, d); }
+  /// Fills the lanes from `count` up to a multiple of 16. Call once after the last push.
+  void pad() {
+    for (int i = count; i % 16 != 0; ++i) set(i, {0, 0, 1});
+  }
+};
+
+/// One RGB value a direction of a batch.
+struct alignas(64) RgbBatch {
+  float r[DirectionBatch::kCapacity], g[DirectionBatch::kCapacity], b[DirectionBatch::kCapacity];
+
+  Rgb get(int i) const { return {r[i], g[i], b[i]}; }
+  void set(int i, const Rgb& c) {
+    r[i] = c.r;
+    g[i] = c.g;
+    b[i] = c.b;
+  }
+};
+
+/// One scalar a direction of a batch.
+struct alignas(64) ScalarBatch {
+  float v[DirectionBatch::kCapacity];
+};
+
+}  // namespace velour

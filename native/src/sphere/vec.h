@@ -1,0 +1,38 @@
+// Small vectors, and the names that the whole library uses for them.
+//
+// Directions are unit vectors that point away from the surface. Unless a name ends in `_world` they live in the local
+// shading frame: +z is the normal, +x the tangent, +y = cross(+z, +x). `wl` points to the light, `wv` to the viewer.
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace velour {
+
+using Vec2 = glm::vec2;
+using Vec3 = glm::vec3;
+using Vec3d = glm::dvec3;
+using Mat3 = glm::mat3;  // column-major, as GLM
+using Rgb = glm::vec3;   // linear Rec. 709 unless stated
+
+inline constexpr float kPi = 3.14159265358979323846f;
+inline constexpr double kPiD = 3.14159265358979323846;
+
+/// Rec. 709 luminance of linear `c`.
+inline float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
+
+inline float radians_from(float degrees) { return degrees * (kPi / 180.0f); }
+inline double radians_from(double degrees) { return degrees * (kPiD / 180.0); }
+
+/// Unit direction of polar angle `theta` and azimuth `phi` (radians) in the local frame.
+inline Vec3 direction(float theta, float phi) {
+  const float s = std::sin(theta);
+  return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
+}
+
+/// The two directions of a BRDF look-up, by name, so that they cannot be swapped unnoticed.
+struct DirectionPair {
+  Vec3 wl;
+  Vec3 wv;
+};
+
+}  // namespace velour
