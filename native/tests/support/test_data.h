@@ -17,7 +17,8 @@ inline std::filesystem::path data_folder() {
   return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
 }
 
-/// A fresh folder for one test's files, named after it, below the build folder; kept for a look after a failure.
+/// A fresh folder for one test's files, named after it, below the build folder; kept for a look after a
+/// failure.
 inline std::filesystem::path scratch_folder() {
   const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
   const auto folder = std::filesystem::path(VELOUR_SCRATCH_DIR) / info->test_suite_name() / info->name();
@@ -29,6 +30,6 @@ inline std::filesystem::path scratch_folder() {
 }  // namespace velour::test
 
 /// Skips the test, saying so, where the real input `file` (below the data folder) is absent.
-#define VELOUR_NEED_DATA(path_variable, file)                                            \
-  const std::filesystem::path path_variable = ::velour::test::data_folder() / (file);    \
+#define VELOUR_NEED_DATA(path_variable, file)                                         \
+  const std::filesystem::path path_variable = ::velour::test::data_folder() / (file); \
   if (!std::filesystem::exists(path_variable)) GTEST_SKIP() << "no test data: " << (file)

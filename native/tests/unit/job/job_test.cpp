@@ -1,0 +1,86 @@
+#include "job/job.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+namespace velour {
+namespace {
+
+using namespace std::chrono_literals;
+
+void work_until_cancelled(Progress& progress) {
+  progress.stage("working", 0.0, 1.0);
+  for (;;) {
+    progress.check();
+    std::this_thread::sleep_for(1ms);
+  }
+}
+
+TEST(Job, RunsToTheEndAndReportsOne) {
+  Job job([](Progress& p) {
+    p.stage("half", 0.0, 0.5);
+    p.update(1.0);
+    p.stage("rest", 0.5, 1.0);
+  });
+  EXPECT_EQ(job.poll().state, Job::State::ready);
+  EXPECT_THROW(job.rethrow(), Error);
+  job.start();
+  EXPECT_TRUE(job.wait_for(-1));
+  EXPECT_EQ(job.poll().state, Job::State::done);
+  EXPECT_EQ(job.poll().fraction, 1.0);
+  EXPECT_STREQ(job.poll().stage, "rest");
+  EXPECT_NO_THROW(job.rethrow());
+}
+
+TEST(Job, CancelEndsItSoonAndItRunsAgain) {
+  Job job(work_until_cancelled);
+  for (int run = 0; run < 3; ++run) {
+    job.start();
+    EXPECT_FALSE(job.wait_for(0.005));
+    EXPECT_THROW(job.start(), Error);
+    const auto before = std::chrono::steady_clock::now();
+    job.cancel();
+    EXPECT_TRUE(job.wait_for(-1));
+    EXPECT_LT(std::chrono::steady_clock::now() - before, 100ms);
+    EXPECT_EQ(job.poll().state, Job::State::cancelled);
+    EXPECT_THROW(job.rethrow(), Error);
+  }
+  EXPECT_EQ(Job::running_count(), 0);
+}
+
+TEST(Job, KeepsTheSentenceOfAFailure) {
+  Job job([](Progress&) { throw Error(Status::bad_data, "file.binary: too short."); });
+  job.start();
+  job.wait_for(-1);
+  EXPECT_EQ(job.poll().state, Job::State::failed);
+  try {
+    job.rethrow();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::bad_data);
+    EXPECT_STREQ(error.what(), "file.binary: too short.");
+  }
+}
+
+TEST(Job, DestructionCancels) {
+  {
+    Job job(work_until_cancelled);
+    job.start();
+  }
+  EXPECT_EQ(Job::running_count(), 0);
+}
+
+TEST(Progress, NeverFalls) {
+  Progress p;
+  p.stage("a", 0.0, 0.5);
+  p.update(0.8);
+  const double before = p.fraction();
+  p.update(0.2);
+  EXPECT_EQ(p.fraction(), before);
+  p.stage("b", 0.5, 1.0);
+  EXPECT_EQ(p.fraction(), 0.5);
+}
+
+}  // namespace
+}  // namespace velour
