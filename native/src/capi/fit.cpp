@@ -1,0 +1,104 @@
+// Fit, compare and capture jobs.
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "capi/reports.h"
+#include "capture/microsurface.h"
+#include "fit/compare.h"
+#include "fit/scattered_fit.h"
+#include "model/model_file.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+void vlr_fit_options_init(vlr_fit_options* options) {
+  const FitOptions defaults;
+  *options = {};
+  options->struct_size = sizeof(vlr_fit_options);
+  options->kernel = static_cast<int32_t>(defaults.kernel);
+  options->tolerance = defaults.tolerance;
+  options->max_lobes = static_cast<uint32_t>(defaults.max_lobes);
+  options->align_views = defaults.align_views ? 1 : 0;
+}
+
+namespace {
+
+FitOptions converted(const vlr_fit_options& given) {
+  if (given.kernel != VLR_KERNEL_GAUSSIAN && given.kernel != VLR_KERNEL_ABEL_POISSON) {
+    throw Error(Status::invalid_argument, "vlr_fit_options.kernel is " + std::to_string(given.kernel) +
+                                              ", not a VLR_KERNEL value.");
+  }
+  FitOptions options;
+  options.kernel = static_cast<Kernel>(given.kernel);
+  options.tolerance = given.tolerance;
+  options.max_lobes = static_cast<int>(given.max_lobes);
+  options.max_bytes = given.max_bytes;
+  options.seed = given.seed;
+  options.threads = static_cast<int>(given.threads);
+  options.all_data = given.all_data != 0;
+  options.align_views = given.align_views != 0;
+  return options;
+}
+
+MicrosurfaceOptions converted(const vlr_microsurface_options& given) {
+  MicrosurfaceOptions options;
+  options.roughness = given.roughness;
+  options.anisotropy = given.anisotropy;
+  if (given.metal) options.metal = given.metal;
+  options.base_albedo = {given.base_albedo[0], given.base_albedo[1], given.base_albedo[2]};
+  options.base_share = given.base_share;
+  options.rays = given.rays;
+  options.seed = given.seed;
+  options.threads = static_cast<int>(given.threads);
+  return options;
+}
+
+}  // namespace
+
+vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options, vlr_job** out) {
+  return guard([&] {
+    require(measurement, "measurement");
+    require(out, "out");
+    const FitOptions fit = converted(read_options(options, vlr_fit_options_init, "vlr_fit_options"));
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, fit, source = measurement->measurement](Progress& progress) {
+      auto model = std::make_shared<const Model>(fit_scattered(*source, fit, progress));
+      output->set(fit_json(*model, encode_model(*model).size()), model);
+    });
+  });
+}
+
+vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_model* model, vlr_job** out) {
+  return guard([&] {
+    require(measurement, "measurement");
+    require(model, "model");
+    require(out, "out");
+    auto output = std::make_shared<JobOutput>();
+    const auto task = [output, source = measurement->measurement, fitted = model->model](Progress& progress) {
+      output->set(comparison_json(compare(*source, *make_material(fitted, 0), progress)));
+    };
+    *out = new vlr_job(output, task);
+  });
+}
+
+void vlr_microsurface_options_init(vlr_microsurface_options* options) {
+  const MicrosurfaceOptions defaults;
+  *options = {};
+  options->struct_size = sizeof(vlr_microsurface_options);
+  options->roughness = defaults.roughness;
+  options->anisotropy = defaults.anisotropy;
+  for (int i = 0; i < 3; ++i) options->base_albedo[i] = defaults.base_albedo[i];
+  options->base_share = defaults.base_share;
+  options->rays = defaults.rays;
+}
+
+vlr_status vlr_microsurface_create_job(const vlr_microsurface_options* options, const char* path, vlr_job** out) {
+  return guard([&] {
+    require(path, "path");
+    require(out, "out");
+    const auto given = read_options(options, vlr_microsurface_options_init, "vlr_microsurface_options");
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, capture = converted(given), target = std::string(path)](Progress& progress) {
+      output->set(microsurface_json(capture_microsurface(capture, target, progress)));
+    });
+  });
+}

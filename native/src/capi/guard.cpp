@@ -1,0 +1,42 @@
+#include "capi/guard.h"
+
+#include <new>
+
+namespace velour::capi {
+
+namespace {
+
+thread_local std::string last_error;
+
+vlr_status remember(Status status, const char* sentence) noexcept {
+  try {
+    last_error = sentence;
+  } catch (...) {
+    last_error.clear();  // no memory for the sentence: the status still tells
+  }
+  return static_cast<vlr_status>(status);
+}
+
+}  // namespace
+
+vlr_status status_of_current_exception() {
+  try {
+    throw;
+  } catch (const Error& error) {
+    return remember(error.status(), error.what());
+  } catch (const std::bad_alloc&) {
+    return remember(Status::out_of_memory, "Not enough memory.");
+  } catch (const std::exception& error) {
+    return remember(Status::unknown, error.what());
+  } catch (...) {
+    return remember(Status::unknown, "An unknown exception reached the C boundary.");
+  }
+}
+
+void require(const void* pointer, const char* argument) {
+  if (!pointer) throw Error(Status::invalid_argument, std::string(argument) + " is NULL.");
+}
+
+}  // namespace velour::capi
+
+const char* vlr_last_error() { return velour::capi::last_error.c_str(); }

@@ -1,0 +1,46 @@
+// The one place where exceptions become a status and a sentence.
+#pragma once
+
+#include <cstring>
+#include <string>
+
+#include "job/error.h"
+#include "velour/velour.h"
+
+namespace velour::capi {
+
+/// Remembers the sentence for this thread and returns the status of the exception that is being handled.
+vlr_status status_of_current_exception();
+
+/// Runs `body`; nothing is thrown out of it.
+template <typename Body>
+vlr_status guard(const Body& body) {
+  try {
+    body();
+    return VLR_OK;
+  } catch (...) {
+    return status_of_current_exception();
+  }
+}
+
+/// Throws Error(invalid_argument) when `pointer` is null.
+void require(const void* pointer, const char* argument);
+
+/// Reads an options struct of any earlier size: fields that the caller does not know keep their defaults. `initialize`
+/// is the public vlr_*_init of the struct. NULL gives the defaults. A larger struct comes from a newer header: refused.
+template <typename Options>
+Options read_options(const Options* given, void (*initialize)(Options*), const char* name) {
+  Options options;
+  initialize(&options);
+  if (!given) return options;
+  if (given->struct_size < sizeof(uint32_t) || given->struct_size > sizeof(Options)) {
+    throw Error(Status::version_mismatch, std::string(name) + ".struct_size is " + std::to_string(given->struct_size) +
+                                              ", this library knows " + std::to_string(sizeof(Options)) +
+                                              "; initialise the struct with its _init function, or update the library.");
+  }
+  std::memcpy(&options, given, given->struct_size);
+  options.struct_size = sizeof(Options);
+  return options;
+}
+
+}  // namespace velour::capi

@@ -1,0 +1,57 @@
+// What the opaque handles hold.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "brdf/measurement.h"
+#include "job/job.h"
+#include "model/model.h"
+#include "render/film.h"
+#include "scene/scene.h"
+
+struct vlr_measurement {
+  std::shared_ptr<const velour::Measurement> measurement;
+  std::string info;
+};
+
+struct vlr_model {
+  std::shared_ptr<const velour::Model> model;
+  std::string info;
+  std::vector<uint8_t> bytes;
+};
+
+struct vlr_scene {
+  std::shared_ptr<velour::Scene> scene;
+  std::string info;
+};
+
+namespace velour::capi {
+
+/// What a task leaves for its reader. Written by the task before it ends, read after; `film` is thread-safe by itself.
+struct JobOutput {
+  std::mutex mutex;
+  std::string report;
+  std::shared_ptr<const Model> model;
+  std::shared_ptr<const Film> film;  // set when the job is made
+
+  void set(std::string json, std::shared_ptr<const Model> result = nullptr) {
+    const std::lock_guard lock(mutex);
+    report = std::move(json);
+    model = std::move(result);
+  }
+};
+
+}  // namespace velour::capi
+
+struct vlr_job {
+  std::shared_ptr<velour::capi::JobOutput> output;
+  std::string report;  // what vlr_job_report_json returned last
+  velour::Job job;
+
+  vlr_job(std::shared_ptr<velour::capi::JobOutput> task_output, std::function<void(velour::Progress&)> task)
+      : output(std::move(task_output)), job(std::move(task)) {}
+};

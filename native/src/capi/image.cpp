@@ -1,0 +1,67 @@
+#include <algorithm>
+
+#include "capi/guard.h"
+#include "image/picture.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+namespace {
+
+Picture checked_picture(uint32_t width, uint32_t height, uint32_t channels) {
+  constexpr uint32_t kLargest = 65536;
+  if (width == 0 || height == 0 || channels == 0 || width > kLargest || height > kLargest || channels > 64) {
+    throw Error(Status::invalid_argument, "A picture of " + std::to_string(width) + " x " + std::to_string(height) +
+                                              " pixels and " + std::to_string(channels) + " channels cannot be made.");
+  }
+  return {static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), {}};
+}
+
+}  // namespace
+
+vlr_status vlr_image_write(const char* path, uint32_t width, uint32_t height, uint32_t channels, const float* pixels) {
+  return guard([&] {
+    require(path, "path");
+    require(pixels, "pixels");
+    Picture picture = checked_picture(width, height, channels);
+    picture.pixels.assign(pixels, pixels + static_cast<size_t>(width) * height * channels);
+    write_picture(path, picture);
+  });
+}
+
+vlr_status vlr_image_read(const char* path, uint32_t* width, uint32_t* height, uint32_t* channels, float* pixels,
+                          uint64_t count) {
+  return guard([&] {
+    require(path, "path");
+    require(width, "width");
+    require(height, "height");
+    require(channels, "channels");
+    const Picture picture = pixels ? read_picture(path) : read_picture_header(path);
+    *width = static_cast<uint32_t>(picture.width);
+    *height = static_cast<uint32_t>(picture.height);
+    *channels = static_cast<uint32_t>(picture.channels);
+    if (!pixels) return;
+    if (count != picture.pixels.size()) {
+      throw Error(Status::invalid_argument, "count is " + std::to_string(count) + ", the picture has " +
+                                                std::to_string(picture.pixels.size()) + " values.");
+    }
+    std::copy(picture.pixels.begin(), picture.pixels.end(), pixels);
+  });
+}
+
+vlr_status vlr_image_compare(uint64_t pixel_count, uint32_t channels, const float* pixels, const float* reference,
+                             double* rmse, double* relmse) {
+  return guard([&] {
+    require(pixels, "pixels");
+    require(reference, "reference");
+    require(rmse, "rmse");
+    require(relmse, "relmse");
+    if (pixel_count == 0 || channels < 3) {
+      throw Error(Status::invalid_argument, "Pictures need at least one pixel and three channels to be compared.");
+    }
+    const PictureDifference d =
+        compare_pictures(pixels, reference, static_cast<size_t>(pixel_count), static_cast<int>(channels));
+    *rmse = d.rmse;
+    *relmse = d.relmse;
+  });
+}

@@ -1,0 +1,39 @@
+#include "capi/guard.h"
+#include "capi/reports.h"
+#include "job/job.h"
+#include "scene/embree_scene.h"
+#include "srbf/lobe_mixture.h"
+#include "velour/version.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+uint32_t vlr_version() { return VELOUR_VERSION_NUMBER; }
+
+uint32_t vlr_abi_version() { return VLR_ABI_VERSION; }
+
+vlr_status vlr_self_test() {
+  return guard([] { embree_self_test(); });
+}
+
+vlr_status vlr_system_json(const char** json) {
+  return guard([&] {
+    require(json, "json");
+    thread_local std::string text;
+    text = system_json();
+    *json = text.c_str();
+  });
+}
+
+vlr_status vlr_select_simd(const char* target) {
+  return guard([&] {
+    require(target, "target");
+    if (Job::running_count() > 0) {
+      throw Error(Status::invalid_state, "The instruction set cannot change while a job runs.");
+    }
+    if (!select_simd_target(target)) {
+      throw Error(Status::invalid_argument, "This processor or build has no instruction set '" + std::string(target) +
+                                                "'; vlr_system_json lists the choices.");
+    }
+  });
+}

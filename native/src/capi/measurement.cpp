@@ -1,0 +1,58 @@
+#include "brdf/measurement.h"
+
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "capi/reports.h"
+#include "model/model_file.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+vlr_status vlr_measurement_load(const char* path, vlr_measurement** out) {
+  return guard([&] {
+    require(path, "path");
+    require(out, "out");
+    *out = new vlr_measurement{load_measurement(path), {}};
+  });
+}
+
+void vlr_measurement_free(vlr_measurement* measurement) { delete measurement; }
+
+vlr_status vlr_measurement_info_json(vlr_measurement* measurement, const char** json) {
+  return guard([&] {
+    require(measurement, "measurement");
+    require(json, "json");
+    measurement->info = measurement_json(*measurement->measurement);
+    *json = measurement->info.c_str();
+  });
+}
+
+vlr_status vlr_measurement_eval(const vlr_measurement* measurement, const float* wv, uint64_t count, const float* wl,
+                                float* f, uint8_t* valid) {
+  return guard([&] {
+    require(measurement, "measurement");
+    require(wv, "wv");
+    require(wl, "wl");
+    require(f, "f");
+    require(valid, "valid");
+    static_assert(sizeof(Vec3) == 3 * sizeof(float));
+    const auto n = static_cast<size_t>(count);
+    measurement->measurement->eval({wv[0], wv[1], wv[2]}, {reinterpret_cast<const Vec3*>(wl), n},
+                                   {reinterpret_cast<Rgb*>(f), n}, {valid, n});
+  });
+}
+
+vlr_status vlr_file_info_json(const char* path, const char** json) {
+  return guard([&] {
+    require(path, "path");
+    require(json, "json");
+    thread_local std::string text;
+    if (is_model_file(path)) {
+      const Model model = load_model(path);
+      text = model_json(model, encode_model(model).size());
+    } else {
+      text = measurement_json(*load_measurement(path));
+    }
+    *json = text.c_str();
+  });
+}

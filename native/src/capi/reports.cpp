@@ -1,0 +1,122 @@
+#include "capi/reports.h"
+
+#include <tbb/info.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scene/embree_scene.h"
+#include "srbf/lobe_mixture.h"
+#include "velour/version.h"
+
+namespace velour::capi {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// nlohmann writes NaN as null by itself; bytes that are not UTF-8 (file names) are replaced instead of thrown on.
+std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json by_view_angle(const ErrorByViewAngle& errors) {
+  // In the order of the angles, not of their texts.
+  Json json = Json::object();
+  for (const char* angle : {"5", "30", "60", "75", "85"}) {
+    const auto found = errors.find(angle);
+    json[angle] = found != errors.end() && found->second ? Json(*found->second) : Json(nullptr);
+  }
+  return json;
+}
+
+Json lobe_counts(const Model& model, uint64_t file_bytes) {
+  const auto& brdf = std::get<ScatteredBrdf>(model.body);
+  return {{"lobes", brdf.lobe_count()}, {"bytes", file_bytes}, {"parameter_bytes", brdf.parameter_bytes()}};
+}
+
+}  // namespace
+
+std::string system_json() {
+  const EmbreeInfo embree = embree_info();
+  return text({{"version", VELOUR_VERSION_TEXT},
+               {"embree", {{"version", embree.version}, {"path", embree.path}}},
+               {"simd", simd_target()},
+               {"simd_targets", simd_targets()},
+               {"threads", tbb::info::default_concurrency()},
+               {"build_type", VELOUR_BUILD_TYPE}});
+}
+
+std::string measurement_json(const Measurement& measurement) {
+  const Provenance& p = measurement.provenance();
+  const EntryCounts& n = measurement.counts();
+  Json details = Json::object();
+  for (const auto& [key, value] : measurement.details()) details[key] = value;
+  return text({{"kind", "measurement"},
+               {"format", p.format},
+               {"name", p.name},
+               {"path", p.path},
+               {"description", p.description},
+               {"sha256", p.sha256},
+               {"bytes", p.file_bytes},
+               {"isotropic", measurement.isotropic()},
+               {"entries",
+                {{"total", n.total},
+                 {"valid", n.valid},
+                 {"negative", n.negative},
+                 {"not_finite", n.not_finite},
+                 {"below_horizon", n.below_horizon},
+                 {"out_of_gamut", n.out_of_gamut}}},
+               {"details", details}});
+}
+
+std::string model_json(const Model& model, uint64_t file_bytes) {
+  const auto& brdf = std::get<ScatteredBrdf>(model.body);
+  const FitRecord& fit = model.fit;
+  Json json = {{"kind", "model"},
+               {"model", model_kind(model)},
+               {"kernel", kernel_name(brdf.kernel)},
+               {"isotropic", brdf.isotropic},
+               {"views", brdf.views.size()},
+               {"max_lobes_per_view", brdf.max_lobes_per_view()}};
+  json.update(lobe_counts(model, file_bytes));
+  json.update(Json{{"relative_l2", fit.relative_l2},
+                   {"by_view_angle", by_view_angle(fit.by_view_angle)},
+                   {"albedo_by_view_angle", by_view_angle(fit.albedo_by_view_angle)},
+                   {"albedo_max", fit.albedo_max},
+                   {"tolerance", fit.tolerance},
+                   {"seconds", fit.seconds},
+                   {"seed", fit.seed},
+                   {"all_data", fit.all_data},
+                   {"warnings", fit.warnings},
+                   {"source",
+                    {{"name", model.source.name}, {"format", model.source.format}, {"sha256", model.source.sha256}}}});
+  return text(json);
+}
+
+std::string fit_json(const Model& model, uint64_t file_bytes) {
+  Json json = lobe_counts(model, file_bytes);
+  json.update(Json{{"seconds", model.fit.seconds},
+                   {"relative_l2", model.fit.relative_l2},
+                   {"by_view_angle", by_view_angle(model.fit.by_view_angle)},
+                   {"albedo_max", model.fit.albedo_max},
+                   {"warnings", model.fit.warnings}});
+  return text(json);
+}
+
+std::string comparison_json(const Comparison& comparison) {
+  return text({{"relative_l2", comparison.relative_l2},
+               {"by_view_angle", by_view_angle(comparison.by_view_angle)},
+               {"log_rms", comparison.log_rms},
+               {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
+               {"samples", comparison.samples}});
+}
+
+std::string microsurface_json(const MicrosurfaceReport& report) {
+  return text({{"seconds", report.seconds},
+               {"rays", report.rays},
+               {"rays_per_second", report.rays_per_second},
+               {"bytes", report.bytes},
+               {"resolution_degrees", report.resolution_degrees},
+               {"relative_standard_error", report.relative_standard_error},
+               {"albedo", report.albedo}});
+}
+
+}  // namespace velour::capi

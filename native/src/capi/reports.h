@@ -1,0 +1,24 @@
+// JSON texts of the library's records: the keys of the command line's verbs (docs/command_line.md).
+#pragma once
+
+#include <string>
+
+#include "brdf/measurement.h"
+#include "capture/microsurface.h"
+#include "fit/compare.h"
+#include "model/model.h"
+#include "render/report.h"
+#include "scene/scene.h"
+
+namespace velour::capi {
+
+std::string system_json();
+std::string measurement_json(const Measurement& measurement);
+std::string model_json(const Model& model, uint64_t file_bytes);
+std::string fit_json(const Model& model, uint64_t file_bytes);
+std::string comparison_json(const Comparison& comparison);
+std::string microsurface_json(const MicrosurfaceReport& report);
+std::string scene_json(const Scene& scene);
+std::string render_json(const RenderReport& report);
+
+}  // namespace velour::capi
