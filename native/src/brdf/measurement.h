@@ -61,6 +61,10 @@ class Measurement {
   /// The irregular samples themselves for scattered measurements; empty for tables.
   virtual std::span<const ScatteredSample> samples() const { return {}; }
 
+  /// Scattered measurements: the same measurement without the samples i for which held_out_sample(i) (brdf/held_out.h),
+  /// so that its interpolation has never seen them. Tables return nullptr: a fit leaves out their views and lights.
+  virtual std::shared_ptr<const Measurement> without_held_out() const { return nullptr; }
+
   /// Sizes, units, scales and whatever else the format knows, as (key, value) pairs for `info`.
   virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
 
