@@ -1,0 +1,25 @@
+"""The shared library as Python sees it. Importing this opens nothing; the first call does."""
+
+from . import images, library
+from .errors import LibraryError, Status, VelourError
+from .job import Job, JobState, compare_job, fit_job, microsurface_job, render_job
+from .measurement import Measurement
+from .model import Model
+from .scene import Scene
+
+__all__ = [
+    "Job",
+    "JobState",
+    "LibraryError",
+    "Measurement",
+    "Model",
+    "Scene",
+    "Status",
+    "VelourError",
+    "compare_job",
+    "fit_job",
+    "images",
+    "library",
+    "microsurface_job",
+    "render_job",
+]

@@ -1,0 +1,70 @@
+"""Arrays that cross the boundary: checked, never silently copied.
+
+Large arrays must already be float32 (or uint32, uint8), C-contiguous and of the right shape. Small ones (a colour, a
+matrix) may be any sequence of numbers.
+"""
+
+from __future__ import annotations
+
+import ctypes
+
+import numpy as np
+
+from .errors import refuse
+
+_POINTERS = {
+    np.dtype(np.float32): ctypes.POINTER(ctypes.c_float),
+    np.dtype(np.uint32): ctypes.POINTER(ctypes.c_uint32),
+    np.dtype(np.uint8): ctypes.POINTER(ctypes.c_uint8),
+}
+
+
+def checked(name: str, array, shape: tuple, dtype=np.float32) -> np.ndarray:
+    """`array` itself if it has `dtype` and `shape` (None: any length) and lies contiguous; else a sentence."""
+    if not isinstance(array, np.ndarray):
+        raise refuse(f"{name} is a {type(array).__name__}; a numpy array of {np.dtype(dtype).name} is needed.")
+    if array.dtype != dtype:
+        raise refuse(f"{name} is {array.dtype}; {np.dtype(dtype).name} is needed (array.astype).")
+    fits = array.ndim == len(shape) and all(w is None or w == n for n, w in zip(array.shape, shape, strict=True))
+    if not fits:
+        wanted = " x ".join("n" if w is None else str(w) for w in shape)
+        raise refuse(f"{name} has shape {array.shape}; {wanted} is needed.")
+    if not array.flags.c_contiguous:
+        raise refuse(f"{name} is not contiguous in memory; pass numpy.ascontiguousarray of it.")
+    return array
+
+
+def pointer(array: np.ndarray | None):
+    """The array's memory for ctypes; None for NULL. The caller keeps the array alive during the call."""
+    return None if array is None else array.ctypes.data_as(_POINTERS[array.dtype])
+
+
+def small(name: str, values, count: int) -> ctypes.Array:
+    """`count` finite numbers from any (nested) sequence, as a C float array."""
+    try:
+        flat = np.asarray(values, dtype=np.float32).ravel()
+    except (TypeError, ValueError) as error:
+        raise refuse(f"{name} is not {count} numbers ({error}).") from error
+    if flat.size != count:
+        raise refuse(f"{name} has {flat.size} numbers; {count} are needed.")
+    if not np.isfinite(flat).all():
+        raise refuse(f"{name} holds a number that is not finite: {flat.tolist()}.")
+    return (ctypes.c_float * count)(*flat.tolist())
+
+
+def affine(name: str, matrix) -> ctypes.Array:
+    """3 x 4 row-major from a 3 x 4 or an affine 4 x 4 matrix."""
+    try:
+        rows = np.asarray(matrix, dtype=np.float32)
+    except (TypeError, ValueError) as error:
+        raise refuse(f"{name} is not a matrix of numbers ({error}).") from error
+    if rows.shape == (4, 4):
+        if not np.allclose(rows[3], (0, 0, 0, 1)):
+            raise refuse(f"{name} has the last row {rows[3].tolist()}; an affine matrix ends in 0 0 0 1.")
+        rows = rows[:3]
+    return small(name, rows, 12)
+
+
+def directions(name: str, array) -> np.ndarray:
+    """[n x 3] float32."""
+    return checked(name, array, (None, 3))

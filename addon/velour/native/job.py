@@ -1,0 +1,176 @@
+"""Anything long: fit, compare, capture, render. One mechanism for progress, cancel and errors."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from . import library, table
+from .arrays import pointer, small
+from .errors import VelourError, refuse
+from .handle import Handle, choice, path_bytes, set_fields
+from .library import json_of
+from .measurement import Measurement
+from .model import Model
+
+PASS_CHANNELS = {"Combined": 4, "Depth": 1, "Normal": 3, "Sample Count": 1}
+_SLICE_SECONDS = 0.1  # how long a signal (Ctrl-C) may have to wait for the interpreter
+
+
+class JobState(NamedTuple):
+    state: str  # one of table.JOB_STATES
+    fraction: float  # 0..1, never falls, 1 only when done
+    stage: str
+    seconds: float  # since the start
+    seconds_left: float | None  # estimate
+    bytes_in_use: int  # of the whole process
+
+    @property
+    def running(self) -> bool:
+        return self.state == "running"
+
+
+class Job(Handle):
+    """poll(), cancel() and read_pass() may be called from any thread."""
+
+    _free_name = "vlr_job_free"
+
+    def __init__(self, lib, pointer, size: tuple[int, int] | None = None):
+        super().__init__(lib, pointer)
+        self.size = size  # width, height of the picture of a render job
+
+    def start(self) -> Job:
+        """Starts on a thread of the library. A cancelled or failed job may be started again."""
+        self._lib.vlr_job_start(self.pointer)
+        return self
+
+    def poll(self) -> JobState:
+        raw = table.JobStateStruct()
+        self._lib.vlr_job_poll(self.pointer, ctypes.byref(raw))
+        return JobState(
+            table.JOB_STATES[raw.state],
+            raw.fraction,
+            (raw.stage or b"").decode(),
+            raw.seconds,
+            raw.seconds_left if raw.seconds_left >= 0 else None,
+            raw.bytes_in_use,
+        )
+
+    def cancel(self) -> None:
+        """Asks for the end; the job stops within 0.1 s."""
+        self._lib.vlr_job_cancel(self.pointer)
+
+    def wait(self, progress: Callable[[JobState], object] | None = None, timeout: float | None = None) -> bool:
+        """Waits for the end; False when `timeout` seconds ran out first. A failed job's error is raised here.
+
+        `progress` is called on this thread about ten times a second and once at the end. Whatever it raises, and
+        Ctrl-C, cancels the job, waits until it has stopped and goes on upwards.
+        """
+        end = None if timeout is None else time.monotonic() + timeout
+        try:
+            while True:
+                left = _SLICE_SECONDS if end is None else min(_SLICE_SECONDS, max(0.0, end - time.monotonic()))
+                finished = self._wait_once(left)
+                if progress:
+                    progress(self.poll())
+                if finished:
+                    return True
+                if end is not None and time.monotonic() >= end:
+                    return False
+        except VelourError:
+            raise
+        except BaseException:
+            self._stop()
+            raise
+
+    def run(self, progress: Callable[[JobState], object] | None = None) -> dict:
+        """start(), wait() and report() in one."""
+        self.start().wait(progress)
+        return self.report()
+
+    def report(self) -> dict:
+        """What a finished job reports: the JSON keys of the command line's verb."""
+        return json_of(self._lib.vlr_job_report_json, self.pointer)
+
+    def result_model(self) -> Model:
+        """The model of a finished fit."""
+        return Model._create("vlr_job_result_model", self.pointer)
+
+    def read_pass(self, name: str, out: np.ndarray | None = None) -> np.ndarray:
+        """The film so far as [height x width x channels] float32, row 0 at the bottom; also while the job runs.
+
+        "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1.
+        """
+        if self.size is None:
+            raise refuse("This job renders nothing, so it has no passes.")
+        if name not in PASS_CHANNELS:
+            raise refuse(f"There is no pass {name!r}; the passes are {', '.join(PASS_CHANNELS)}.")
+        shape = (self.size[1], self.size[0], PASS_CHANNELS[name])
+        if out is None:
+            out = np.empty(shape, np.float32)
+        elif out.size != np.prod(shape) or out.dtype != np.float32 or not out.flags.c_contiguous:
+            raise refuse(f"The buffer for {name} must be contiguous float32 of {np.prod(shape)} numbers.")
+        self._lib.vlr_job_read_pass(self.pointer, name.encode(), pointer(out), out.size)
+        return out
+
+    def _wait_once(self, seconds: float) -> bool:
+        finished = ctypes.c_int32()
+        no_callback = table.ProgressFunction()
+        self._lib.vlr_job_wait(self.pointer, seconds, no_callback, None, ctypes.byref(finished))
+        return bool(finished.value)
+
+    def _stop(self) -> None:
+        self.cancel()
+        try:
+            self._wait_once(-1.0)
+        except VelourError:
+            pass  # "cancelled": the reason for stopping is already on its way up
+
+
+def fit_job(measurement: Measurement, **options) -> Job:
+    """Options: kernel ("gaussian", "abel-poisson"), tolerance, max_lobes, threads, max_bytes, seed, all_data,
+    align_views. What is not given has the library's default. Result: result_model()."""
+    raw = _defaults(table.FitOptions, "vlr_fit_options_init")
+    if "kernel" in options:
+        options["kernel"] = choice("kernel", options["kernel"], table.KERNELS)
+    set_fields(raw, options)
+    return Job._create("vlr_fit_create_job", measurement.pointer, ctypes.byref(raw))
+
+
+def compare_job(measurement: Measurement, model: Model) -> Job:
+    """Errors of the model at the held-out directions."""
+    return Job._create("vlr_compare_create_job", measurement.pointer, model.pointer)
+
+
+def microsurface_job(path: str | os.PathLike, **options) -> Job:
+    """Writes a virtual measurement to `path`. Options: roughness, anisotropy, metal, base_albedo, base_share, rays,
+    seed, threads."""
+    raw = _defaults(table.MicrosurfaceOptions, "vlr_microsurface_options_init")
+    if "metal" in options:
+        options["metal"] = options["metal"].encode()
+    if "base_albedo" in options:
+        options["base_albedo"] = small("base_albedo", options["base_albedo"], 3)
+    set_fields(raw, options)
+    return Job._create("vlr_microsurface_create_job", ctypes.byref(raw), path_bytes(path))
+
+
+def render_job(scene, **options) -> Job:
+    """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit (seconds),
+    transparent, measure_ray_share. `scene` is a committed Scene."""
+    raw = _defaults(table.RenderOptions, "vlr_render_options_init")
+    if "strategy" in options:
+        options["strategy"] = choice("strategy", options["strategy"], table.STRATEGIES)
+    set_fields(raw, options)
+    size = (raw.width, raw.height)
+    return Job._create("vlr_render_create_job", scene.pointer, ctypes.byref(raw), size=size)
+
+
+def _defaults(struct_type, init_name: str):
+    raw = struct_type()
+    getattr(library.load(), init_name)(ctypes.byref(raw))
+    return raw

@@ -1,0 +1,59 @@
+"""A fitted model of a material."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+
+import numpy as np
+
+from .arrays import checked, directions, pointer, small
+from .handle import Handle, path_bytes
+from .library import json_of
+
+
+class Model(Handle):
+    """Immutable. f in 1/sr without cosine, linear Rec. 709; directions unit, local frame, +z normal, +x tangent."""
+
+    _free_name = "vlr_model_free"
+
+    @classmethod
+    def load(cls, path: str | os.PathLike) -> Model:
+        return cls._create("vlr_model_load", path_bytes(path))
+
+    @classmethod
+    def from_bytes(cls, data: bytes, name: str) -> Model:
+        """The model whose file has the content `data`; `name` appears in error sentences."""
+        data = bytes(data)
+        return cls._create("vlr_model_load_memory", data, len(data), os.fsencode(name))
+
+    def bytes(self) -> bytes:
+        """The content of the file that save() would write."""
+        data, size = ctypes.c_void_p(), ctypes.c_uint64()
+        self._lib.vlr_model_bytes(self.pointer, ctypes.byref(data), ctypes.byref(size))
+        return ctypes.string_at(data, size.value)
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Writes the old file or the new one, never a part."""
+        self._lib.vlr_model_save(self.pointer, path_bytes(path))
+
+    def info(self) -> dict:
+        """kind, model, kernel, isotropic, views, lobes, bytes, relative_l2, by_view_angle, warnings, source, ..."""
+        return json_of(self._lib.vlr_model_info_json, self.pointer)
+
+    def eval(self, wv, wl: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """f [n x 3] and the density pdf [n] of the model's own sampler, per solid angle of wl, for `wl` [n x 3]."""
+        wl = directions("wl", wl)
+        f, pdf = np.empty_like(wl), np.empty(len(wl), np.float32)
+        self._lib.vlr_model_eval(self.pointer, small("wv", wv, 3), len(wl), pointer(wl), pointer(f), pointer(pdf))
+        return f, pdf
+
+    def sample(self, wv, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Directions wl [n x 3] drawn for `wv` [3] from `u` [n x 2] in [0, 1), and their density pdf [n].
+
+        A direction may lie below the horizon.
+        """
+        u = checked("u", u, (None, 2))
+        wl, pdf = np.empty((len(u), 3), np.float32), np.empty(len(u), np.float32)
+        self._lib.vlr_model_sample(self.pointer, small("wv", wv, 3), len(u), pointer(u), pointer(wl), pointer(pdf))
+        return wl, pdf

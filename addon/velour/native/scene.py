@@ -1,0 +1,181 @@
+"""What is rendered: meshes, materials, instances, lights, world, camera. Metres, +z up, matrices 3 x 4 row-major."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import byref, c_uint32
+
+import numpy as np
+
+from . import library, table
+from .arrays import affine, checked, pointer, small
+from .errors import refuse
+from .handle import Handle, choice, path_bytes, set_fields
+from .library import json_of
+from .measurement import Measurement
+from .model import Model
+
+_COLORS = {"base_color": 3, "emission": 3, "color": 3, "size": 2, "window": 4}
+
+
+class Scene(Handle):
+    """Colours are linear, in the working space (Rec. 709 unless set_working_space says otherwise)."""
+
+    _free_name = "vlr_scene_free"
+
+    def __init__(self, lib=None, handle=None):
+        if lib is None:
+            lib = library.load()
+            handle = ctypes.c_void_p()
+            lib.vlr_scene_create(byref(handle))
+        super().__init__(lib, handle)
+
+    def set_working_space(self, rec709_to_working) -> None:
+        """3 x 3 row-major; takes colours of measurements and models to the space of all other colours."""
+        self._lib.vlr_scene_set_working_space(self.pointer, small("rec709_to_working", rec709_to_working, 9))
+
+    # ---- geometry
+
+    def add_mesh(
+        self,
+        positions: np.ndarray,
+        triangles: np.ndarray,
+        corner_normals: np.ndarray | None = None,
+        corner_uvs: np.ndarray | None = None,
+        material_slots: np.ndarray | None = None,
+        smooth: np.ndarray | None = None,
+    ) -> tuple[int, int]:
+        """The mesh's number, and how many degenerate or non-finite triangles were left out.
+
+        positions [v x 3] float32 in metres; triangles [t x 3] uint32; corner_normals [t x 3 x 3] float32 (None: smooth
+        vertex normals); corner_uvs [t x 3 x 2] float32; material_slots [t] uint32 (None: all 0); smooth [t] uint8, used
+        without corner_normals (None: all smooth). The library copies; nothing need stay alive.
+        """
+        positions = checked("positions", positions, (None, 3))
+        triangles = checked("triangles", triangles, (None, 3), np.uint32)
+        count = len(triangles)
+
+        def optional(name, array, shape, dtype=np.float32):
+            return None if array is None else checked(name, array, (count, *shape), dtype)
+
+        desc = table.MeshDesc(
+            vertex_count=len(positions),
+            triangle_count=count,
+            positions=pointer(positions),
+            triangles=pointer(triangles),
+            corner_normals=pointer(optional("corner_normals", corner_normals, (3, 3))),
+            corner_uvs=pointer(optional("corner_uvs", corner_uvs, (3, 2))),
+            material_slots=pointer(optional("material_slots", material_slots, (), np.uint32)),
+            smooth=pointer(optional("smooth", smooth, (), np.uint8)),
+        )
+        mesh, dropped = c_uint32(), c_uint32()
+        self._lib.vlr_scene_add_mesh(self.pointer, byref(desc), byref(mesh), byref(dropped))
+        return mesh.value, dropped.value
+
+    def load_mesh(self, path: str | os.PathLike) -> int:
+        """Reads a Wavefront OBJ file; the mesh's number."""
+        return self._numbered("vlr_scene_load_mesh", path_bytes(path))
+
+    def add_instance(self, mesh: int, object_to_world, materials) -> None:
+        """`materials`: the material's number of each slot of the mesh."""
+        numbers = (c_uint32 * len(materials))(*materials)
+        matrix = affine("object_to_world", object_to_world)
+        self._lib.vlr_scene_add_instance(self.pointer, mesh, matrix, numbers, len(numbers))
+
+    # ---- materials: each returns its number
+
+    def add_model_material(self, model: Model, neighbors: int = 0) -> int:
+        """`neighbors`: view directions mixed at run time; 0: the model's default."""
+        return self._numbered("vlr_scene_add_model_material", model.pointer, neighbors)
+
+    def add_measurement_material(
+        self, measurement: Measurement, proposal: Model | None = None, neighbors: int = 0
+    ) -> int:
+        """Reference mode: f of the raw measurement; samples drawn from `proposal` (None: a coarse model made here)."""
+        proposal_pointer = proposal.pointer if proposal else None
+        return self._numbered(
+            "vlr_scene_add_measurement_material", measurement.pointer, proposal_pointer, neighbors
+        )
+
+    def add_principled_material(self, **values) -> int:
+        """base_color [3], metallic 0..1, roughness 0..1 (alpha = roughness^2), specular 0..1, emission [3] (radiance)."""
+        desc = self._desc(table.PrincipledDesc, "vlr_principled_desc_init", values)
+        return self._numbered("vlr_scene_add_principled_material", byref(desc))
+
+    # ---- light
+
+    def add_light(self, kind: str, color, light_to_world, **values) -> None:
+        """`kind`: sun, point, rectangle, disk; shines along its -z.
+
+        color [3]: a sun's irradiance on a facing plane, W/m^2; the others' power, W. size [2]: a point's radius, a
+        rectangle's sides, a disk's diameters, metres. angle: a sun's angular diameter, radians. casts_shadow.
+        """
+        values = {"type": choice("light", kind, table.LIGHTS), "color": color, **values}
+        desc = self._desc(table.LightDesc, "vlr_light_desc_init", values)
+        desc.light_to_world = affine("light_to_world", light_to_world)
+        self._lib.vlr_scene_add_light(self.pointer, byref(desc))
+
+    def set_world_color(self, color) -> None:
+        """Radiance [3] from every direction."""
+        self._lib.vlr_scene_set_world_color(self.pointer, small("color", color, 3))
+
+    def set_world_pixels(self, pixels: np.ndarray, strength: float = 1.0, world_to_image=None) -> None:
+        """Equirectangular [height x width x channels] float32, row 0 at the top (+z); Blender's convention.
+
+        `world_to_image` [3 x 3] turns a world direction before the look-up.
+        """
+        pixels = checked("pixels", pixels, (None, None, None))
+        height, width, channels = pixels.shape
+        self._lib.vlr_scene_set_world_pixels(
+            self.pointer, width, height, channels, pointer(pixels), strength, _rotation(world_to_image)
+        )
+
+    def set_world_file(self, path: str | os.PathLike, strength: float = 1.0, world_to_image=None) -> None:
+        """As set_world_pixels, from an image file (HDR, EXR)."""
+        self._lib.vlr_scene_load_world(self.pointer, path_bytes(path), strength, _rotation(world_to_image))
+
+    # ---- camera
+
+    def set_camera(self, kind: str, camera_to_world, window, **values) -> None:
+        """`kind`: perspective, orthographic; looks along its -z, +y up. window: left, right, bottom, top of the
+        picture at distance 1 (perspective) or in metres (orthographic). clip_start, clip_end in metres."""
+        values = {"type": choice("camera", kind, table.CAMERAS), "window": window, **values}
+        desc = self._desc(table.CameraDesc, "vlr_camera_desc_init", values)
+        desc.camera_to_world = affine("camera_to_world", camera_to_world)
+        self._lib.vlr_scene_set_camera(self.pointer, byref(desc))
+
+    def look_at(self, eye, target, fov: float, aspect: float) -> None:
+        """From a point to a point, +z up. `fov`: vertical angle of view, radians; `aspect`: width / height."""
+        self._lib.vlr_scene_look_at(self.pointer, small("eye", eye, 3), small("target", target, 3), fov, aspect)
+
+    def frame_camera(self, aspect: float, up_axis: int = 2) -> None:
+        """Frames the bounding box of all instances to the picture's height. `up_axis` 1 (y) or 2 (z)."""
+        if up_axis not in (1, 2):
+            raise refuse(f"up_axis is {up_axis}; it is 1 (y) or 2 (z).")
+        self._lib.vlr_scene_frame_camera(self.pointer, aspect, up_axis)
+
+    # ---- end
+
+    def commit(self) -> None:
+        """Builds the acceleration structure; needed before a render job is made, after every change."""
+        self._lib.vlr_scene_commit(self.pointer)
+
+    def info(self) -> dict:
+        """triangles, instances, lights, materials, bytes, bvh_seconds, warnings."""
+        return json_of(self._lib.vlr_scene_info_json, self.pointer)
+
+    def _numbered(self, function_name: str, *arguments) -> int:
+        number = c_uint32()
+        getattr(self._lib, function_name)(self.pointer, *arguments, byref(number))
+        return number.value
+
+    def _desc(self, struct_type, init_name: str, values: dict):
+        desc = struct_type()
+        getattr(self._lib, init_name)(byref(desc))
+        set_fields(desc, {n: small(n, v, _COLORS[n]) if n in _COLORS else v for n, v in values.items()})
+        return desc
+
+
+def _rotation(matrix):
+    return None if matrix is None else small("world_to_image", matrix, 9)

@@ -1,0 +1,233 @@
+"""The C header as ctypes: structs, and the result and argument types of every function.
+
+native/include/velour/velour.h is the law; a test compares names, argument counts, sizes and offsets with this file.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_uint8, c_uint32, c_uint64, c_void_p
+
+from .errors import VelourError
+
+JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
+KERNELS = ("gaussian", "abel-poisson")
+LIGHTS = ("sun", "point", "rectangle", "disk")
+CAMERAS = ("perspective", "orthographic")
+STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis")
+
+
+class Struct(ctypes.Structure):
+    """A struct that begins with its own size."""
+
+    def __init__(self, **values):
+        super().__init__(struct_size=ctypes.sizeof(type(self)), **values)
+
+
+class JobStateStruct(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("state", c_int32),
+        ("fraction", c_double),
+        ("seconds", c_double),
+        ("seconds_left", c_double),
+        ("bytes_in_use", c_uint64),
+        ("stage", c_char_p),
+    ]
+
+
+class FitOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kernel", c_int32),
+        ("tolerance", c_double),
+        ("max_lobes", c_uint32),
+        ("threads", c_uint32),
+        ("max_bytes", c_uint64),
+        ("seed", c_uint64),
+        ("all_data", c_int32),
+        ("align_views", c_int32),
+    ]
+
+
+class MicrosurfaceOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("threads", c_uint32),
+        ("roughness", c_double),
+        ("anisotropy", c_double),
+        ("metal", c_char_p),
+        ("base_albedo", c_float * 3),
+        ("base_share", c_double),
+        ("rays", c_uint64),
+        ("seed", c_uint64),
+    ]
+
+
+class MeshDesc(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("vertex_count", c_uint32),
+        ("triangle_count", c_uint32),
+        ("pad", c_uint32),
+        ("positions", POINTER(c_float)),
+        ("triangles", POINTER(c_uint32)),
+        ("corner_normals", POINTER(c_float)),
+        ("corner_uvs", POINTER(c_float)),
+        ("material_slots", POINTER(c_uint32)),
+        ("smooth", POINTER(c_uint8)),
+    ]
+
+
+class PrincipledDesc(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("base_color", c_float * 3),
+        ("metallic", c_float),
+        ("roughness", c_float),
+        ("specular", c_float),
+        ("emission", c_float * 3),
+    ]
+
+
+class LightDesc(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("type", c_int32),
+        ("color", c_float * 3),
+        ("light_to_world", c_float * 12),
+        ("size", c_float * 2),
+        ("angle", c_float),
+        ("casts_shadow", c_int32),
+    ]
+
+
+class CameraDesc(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("type", c_int32),
+        ("camera_to_world", c_float * 12),
+        ("window", c_float * 4),
+        ("clip_start", c_float),
+        ("clip_end", c_float),
+    ]
+
+
+class RenderOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("spp", c_uint32),
+        ("split", c_uint32),
+        ("bounces", c_uint32),
+        ("strategy", c_int32),
+        ("threads", c_uint32),
+        ("seed", c_uint64),
+        ("time_limit", c_double),
+        ("transparent", c_int32),
+        ("measure_ray_share", c_int32),
+    ]
+
+
+STRUCTS = {
+    "vlr_job_state": JobStateStruct,
+    "vlr_fit_options": FitOptions,
+    "vlr_microsurface_options": MicrosurfaceOptions,
+    "vlr_mesh_desc": MeshDesc,
+    "vlr_principled_desc": PrincipledDesc,
+    "vlr_light_desc": LightDesc,
+    "vlr_camera_desc": CameraDesc,
+    "vlr_render_options": RenderOptions,
+}
+
+_handle = c_void_p
+_out_handle = POINTER(c_void_p)
+_json = POINTER(c_char_p)
+_floats = POINTER(c_float)
+_number = POINTER(c_uint32)
+ProgressFunction = ctypes.CFUNCTYPE(c_int32, c_void_p, c_double, c_char_p)
+
+# Calls that return vlr_status: argument types.
+STATUS_CALLS = {
+    "vlr_self_test": [],
+    "vlr_system_json": [_json],
+    "vlr_select_simd": [c_char_p],
+    "vlr_measurement_load": [c_char_p, _out_handle],
+    "vlr_measurement_info_json": [_handle, _json],
+    "vlr_measurement_eval": [_handle, _floats, c_uint64, _floats, _floats, POINTER(c_uint8)],
+    "vlr_model_load": [c_char_p, _out_handle],
+    "vlr_model_load_memory": [c_void_p, c_uint64, c_char_p, _out_handle],
+    "vlr_model_save": [_handle, c_char_p],
+    "vlr_model_bytes": [_handle, POINTER(c_void_p), POINTER(c_uint64)],
+    "vlr_model_info_json": [_handle, _json],
+    "vlr_model_eval": [_handle, _floats, c_uint64, _floats, _floats, _floats],
+    "vlr_model_sample": [_handle, _floats, c_uint64, _floats, _floats, _floats],
+    "vlr_file_info_json": [c_char_p, _json],
+    "vlr_job_start": [_handle],
+    "vlr_job_poll": [_handle, POINTER(JobStateStruct)],
+    "vlr_job_cancel": [_handle],
+    "vlr_job_wait": [_handle, c_double, ProgressFunction, c_void_p, POINTER(c_int32)],
+    "vlr_job_report_json": [_handle, _json],
+    "vlr_job_result_model": [_handle, _out_handle],
+    "vlr_fit_create_job": [_handle, POINTER(FitOptions), _out_handle],
+    "vlr_compare_create_job": [_handle, _handle, _out_handle],
+    "vlr_microsurface_create_job": [POINTER(MicrosurfaceOptions), c_char_p, _out_handle],
+    "vlr_scene_create": [_out_handle],
+    "vlr_scene_set_working_space": [_handle, _floats],
+    "vlr_scene_add_mesh": [_handle, POINTER(MeshDesc), _number, _number],
+    "vlr_scene_load_mesh": [_handle, c_char_p, _number],
+    "vlr_scene_add_model_material": [_handle, _handle, c_uint32, _number],
+    "vlr_scene_add_measurement_material": [_handle, _handle, _handle, c_uint32, _number],
+    "vlr_scene_add_principled_material": [_handle, POINTER(PrincipledDesc), _number],
+    "vlr_scene_add_instance": [_handle, c_uint32, _floats, _number, c_uint32],
+    "vlr_scene_add_light": [_handle, POINTER(LightDesc)],
+    "vlr_scene_set_world_color": [_handle, _floats],
+    "vlr_scene_set_world_pixels": [_handle, c_uint32, c_uint32, c_uint32, _floats, c_float, _floats],
+    "vlr_scene_load_world": [_handle, c_char_p, c_float, _floats],
+    "vlr_scene_set_camera": [_handle, POINTER(CameraDesc)],
+    "vlr_scene_look_at": [_handle, _floats, _floats, c_float, c_float],
+    "vlr_scene_frame_camera": [_handle, c_float, c_uint32],
+    "vlr_scene_commit": [_handle],
+    "vlr_scene_info_json": [_handle, _json],
+    "vlr_render_create_job": [_handle, POINTER(RenderOptions), _out_handle],
+    "vlr_job_read_pass": [_handle, c_char_p, _floats, c_uint64],
+    "vlr_image_write": [c_char_p, c_uint32, c_uint32, c_uint32, _floats],
+    "vlr_image_read": [c_char_p, _number, _number, _number, _floats, c_uint64],
+    "vlr_image_compare": [c_uint64, c_uint32, _floats, _floats, POINTER(c_double), POINTER(c_double)],
+}
+
+# Calls that cannot fail: result type and argument types.
+PLAIN_CALLS = {
+    "vlr_last_error": (c_char_p, []),
+    "vlr_version": (c_uint32, []),
+    "vlr_abi_version": (c_uint32, []),
+    "vlr_measurement_free": (None, [_handle]),
+    "vlr_model_free": (None, [_handle]),
+    "vlr_job_free": (None, [_handle]),
+    "vlr_scene_free": (None, [_handle]),
+    "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
+    "vlr_microsurface_options_init": (None, [POINTER(MicrosurfaceOptions)]),
+    "vlr_principled_desc_init": (None, [POINTER(PrincipledDesc)]),
+    "vlr_light_desc_init": (None, [POINTER(LightDesc)]),
+    "vlr_camera_desc_init": (None, [POINTER(CameraDesc)]),
+    "vlr_render_options_init": (None, [POINTER(RenderOptions)]),
+}
+
+
+def bind(library: ctypes.CDLL) -> None:
+    """Gives every function of `library` its types; AttributeError names the first one that is not there."""
+
+    def check(status, function, _arguments):
+        if status:
+            text = library.vlr_last_error()
+            sentence = text.decode("utf-8", "replace") if text else f"{function.__name__} failed without a word"
+            raise VelourError(status, sentence)
+        return status
+
+    for name, (result, arguments) in PLAIN_CALLS.items():
+        function = getattr(library, name)
+        function.restype, function.argtypes = result, arguments
+    for name, arguments in STATUS_CALLS.items():
+        function = getattr(library, name)
+        function.restype, function.argtypes, function.errcheck = c_int32, arguments, check

@@ -1,0 +1,11 @@
+"""The version that this package belongs to. A test holds it to CMakeLists.txt, bl_info and the manifest."""
+
+VERSION = (0, 1, 0)
+ABI_VERSION = 1
+
+
+def version_text(packed: int | None = None) -> str:
+    """"0.1.0" of VERSION, or of a number packed as vlr_version() packs it."""
+    if packed is None:
+        return ".".join(str(part) for part in VERSION)
+    return f"{packed // 10000}.{packed // 100 % 100}.{packed % 100}"
