@@ -1,0 +1,102 @@
+// Rays against known geometry.
+#include "scene/embree_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "job/error.h"
+#include "sphere/random.h"
+#include "sphere/warp.h"
+
+namespace velour {
+namespace {
+
+const std::vector<Vec3> kCorners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+const std::vector<glm::uvec3> kTriangle = {{0, 1, 2}};
+
+Affine scaled(const Vec3& scale, const Vec3& shift) {
+  Affine a;
+  for (int i = 0; i < 3; ++i) {
+    a.m[5 * i] = scale[i];
+    a.m[4 * i + 3] = shift[i];
+  }
+  return a;
+}
+
+TEST(EmbreeScene, SelfTestPassesAndInfoNamesAFile) {
+  EXPECT_NO_THROW(embree_self_test());
+  EXPECT_NE(embree_info().path.find("embree"), std::string::npos);
+}
+
+TEST(EmbreeScene, HitReportsDistanceBarycentricsAndFrontNormal) {
+  EmbreeScene scene;
+  scene.add_instance(scene.add_mesh(kCorners, kTriangle), {});
+  scene.commit(1);
+  Hit hit;
+  scene.intersect({{0.5f, 0.25f, -3}, 0, {0, 0, 1}}, hit);
+  ASSERT_EQ(hit.instance, 0u);
+  EXPECT_FLOAT_EQ(hit.distance, 3);
+  EXPECT_NEAR(hit.u, 0.5f, 1e-6f);
+  EXPECT_NEAR(hit.v, 0.25f, 1e-6f);
+  EXPECT_GT(hit.geometric_normal.z, 0);  // front side, although seen from the back
+  scene.intersect({{0.5f, 0.25f, -3}, 0, {0, 0, 1}, 2.5f}, hit);
+  EXPECT_EQ(hit.instance, kNoHit);
+}
+
+TEST(EmbreeScene, MirroredInstanceKeepsItsOutside) {
+  EmbreeScene scene;
+  const uint32_t mesh = scene.add_mesh(kCorners, kTriangle);
+  scene.add_instance(mesh, {});
+  const uint32_t mirrored = scene.add_instance(mesh, scaled({-2, 2, 2}, {0, 0, 5}));
+  scene.commit(1);
+  Hit hit;
+  scene.intersect({{-0.5f, 0.5f, 9}, 0, {0, 0, -1}}, hit);
+  ASSERT_EQ(hit.instance, mirrored);
+  EXPECT_FLOAT_EQ(hit.distance, 4);
+  EXPECT_GT(hit.geometric_normal.z, 0);
+}
+
+TEST(EmbreeScene, BatchesAgreeWithSingleRays) {
+  EmbreeScene scene;
+  std::vector<Vec3> positions;
+  std::vector<glm::uvec3> triangles;
+  RandomStream random(1, 2, 3);
+  for (uint32_t i = 0; i < 300; ++i) {
+    for (int k = 0; k < 3; ++k) positions.push_back({random.next(), random.next(), random.next()});
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  scene.add_instance(scene.add_mesh(positions, triangles), {});
+  scene.commit(2);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 1003; ++i)
+    rays.push_back({{0.5f, 0.5f, 0.5f}, 0, sample_uniform_sphere(random.next2()), 0.1f});
+  std::vector<uint8_t> blocked(rays.size());
+  std::vector<Hit> hits(rays.size());
+  scene.occluded(rays, blocked.data());
+  scene.intersect(rays, hits.data());
+  int blocked_count = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(blocked[i] != 0, scene.occluded(rays[i]));
+    EXPECT_EQ(blocked[i] != 0, hits[i].instance != kNoHit);
+    blocked_count += blocked[i];
+  }
+  EXPECT_GT(blocked_count, 100);
+  EXPECT_LT(blocked_count, 1000);
+  EXPECT_GT(scene.bytes(), 300u * 36u);
+}
+
+TEST(EmbreeScene, RefusesIndicesOutsideTheMesh) {
+  EmbreeScene scene;
+  EXPECT_THROW(scene.add_mesh(kCorners, std::vector<glm::uvec3>{{0, 1, 3}}), Error);
+  EXPECT_THROW(scene.add_instance(0, {}), Error);
+}
+
+TEST(EmbreeScene, EmptySceneMissesEverything) {
+  EmbreeScene scene;
+  scene.commit(1);
+  EXPECT_FALSE(scene.occluded({{0, 0, 0}, 0, {0, 0, 1}}));
+}
+
+}  // namespace
+}  // namespace velour
