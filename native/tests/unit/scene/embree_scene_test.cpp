@@ -62,7 +62,7 @@ TEST(EmbreeScene, BatchesAgreeWithSingleRays) {
   std::vector<Vec3> positions;
   std::vector<glm::uvec3> triangles;
   RandomStream random(1, 2, 3);
-  for (uint32_t i = 0; i < 300; ++i) {
+  for (uint32_t i = 0; i < 30; ++i) {
     for (int k = 0; k < 3; ++k) positions.push_back({random.next(), random.next(), random.next()});
     triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
@@ -70,7 +70,7 @@ TEST(EmbreeScene, BatchesAgreeWithSingleRays) {
   scene.commit(2);
   std::vector<Ray> rays;
   for (int i = 0; i < 1003; ++i)
-    rays.push_back({{0.5f, 0.5f, 0.5f}, 0, sample_uniform_sphere(random.next2()), 0.1f});
+    rays.push_back({{0.5f, 0.5f, 0.5f}, 0, sample_uniform_sphere(random.next2()), 0.3f});
   std::vector<uint8_t> blocked(rays.size());
   std::vector<Hit> hits(rays.size());
   scene.occluded(rays, blocked.data());
@@ -83,7 +83,7 @@ TEST(EmbreeScene, BatchesAgreeWithSingleRays) {
   }
   EXPECT_GT(blocked_count, 100);
   EXPECT_LT(blocked_count, 1000);
-  EXPECT_GT(scene.bytes(), 300u * 36u);
+  EXPECT_GT(scene.bytes(), 30u * 36u);
 }
 
 TEST(EmbreeScene, RefusesIndicesOutsideTheMesh) {
