@@ -1,0 +1,185 @@
+#include "image/exr_scan.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "file/byte_reader.h"
+
+namespace velour {
+namespace {
+
+constexpr int32_t kMagic = 20000630;
+constexpr uint32_t kTiled = 0x200, kDeep = 0x800, kMultiPart = 0x1000;
+constexpr size_t kMaxParts = 4096;
+/// DEFLATE cannot expand a byte to more than this.
+constexpr uint64_t kMaxDeflateRatio = 1032;
+constexpr int32_t kFloatPixels = 2;
+
+/// What the scan needs of a part beside its ExrPart.
+struct PartLayout {
+  bool has_window = false;
+  uint8_t compression = 255;
+  int64_t chunk_count_claimed = -1;
+  std::string type = "scanlineimage";
+
+  uint64_t lines_per_chunk() const { return compression == 3 ? 16 : 1; }
+};
+
+[[noreturn]] void fail(const ByteReader& in, const ExrPart& part, const std::string& what) {
+  throw Error(Status::bad_data, in.name() + ": part '" + part.name + "': " + what);
+}
+
+/// Attribute types of a fixed size; with strings and channel lists the only ones let through, because the
+/// readers of the others take counts from their values.
+constexpr std::pair<std::string_view, int32_t> kFixedTypes[] = {{"int", 4},         {"float", 4},
+                                                                {"double", 8},      {"v2i", 8},
+                                                                {"v2f", 8},         {"v3i", 12},
+                                                                {"v3f", 12},        {"v2d", 16},
+                                                                {"v3d", 24},        {"box2i", 16},
+                                                                {"box2f", 16},      {"m33f", 36},
+                                                                {"m44f", 64},       {"chromaticities", 32},
+                                                                {"compression", 1}, {"lineOrder", 1},
+                                                                {"rational", 8},    {"timecode", 8},
+                                                                {"keycode", 28},    {"envmap", 1}};
+
+void check_type(const ByteReader& in, const ExrPart& part, const std::string& field, const std::string& type,
+                int32_t size) {
+  if (size < 0)
+    fail(in, part, "attribute " + field + " has size " + std::to_string(size) + "; the file is damaged.");
+  if (type == "string" || type == "chlist") return;
+  for (const auto& [known, bytes] : kFixedTypes) {
+    if (type != known) continue;
+    if (size == bytes) return;
+    fail(in, part,
+         "attribute " + field + " of type " + type + " has size " + std::to_string(size) + ", not " +
+             std::to_string(bytes) + "; the file is damaged.");
+  }
+  throw Error(Status::unsupported, in.name() + ": part '" + part.name + "': attribute " + field +
+                                       " has type '" + type + "', which Velour's files do not use.");
+}
+
+void read_channels(ByteReader value, ExrPart& part) {
+  while (true) {
+    const std::string channel = value.text(255, "channel name");
+    if (channel.empty()) break;
+    const auto pixel_type = value.number<int32_t>("channel type");
+    value.take(4, "channel flags");
+    const auto x_step = value.number<int32_t>("channel sampling");
+    const auto y_step = value.number<int32_t>("channel sampling");
+    if (pixel_type != kFloatPixels || x_step != 1 || y_step != 1)
+      fail(value, part, "channel " + channel + " is not 32-bit float at full resolution; write floats.");
+    if (part.channels.size() == 16) fail(value, part, "has more than 16 channels.");
+    part.channels.push_back(channel);
+  }
+}
+
+void read_window(ByteReader value, ExrPart& part, PartLayout& layout) {
+  std::array<int32_t, 4> box;  // min x, min y, max x, max y
+  for (int32_t& edge : box) edge = value.number<int32_t>("dataWindow");
+  if (box[0] != 0 || box[1] != 0 || box[2] < 0 || box[3] < 0)
+    fail(value, part,
+         "dataWindow is (" + std::to_string(box[0]) + " " + std::to_string(box[1]) + ") to (" +
+             std::to_string(box[2]) + " " + std::to_string(box[3]) + "); it must begin at (0 0).");
+  part.width = static_cast<uint64_t>(box[2]) + 1;
+  part.height = static_cast<uint64_t>(box[3]) + 1;
+  layout.has_window = true;
+}
+
+std::string as_text(std::span<const uint8_t> value) { return {value.begin(), value.end()}; }
+
+void read_attribute(ByteReader& in, const std::string& field, ExrPart& part, PartLayout& layout) {
+  const std::string type = in.text(255, "type of attribute " + field);
+  const auto size = in.number<int32_t>("size of attribute " + field);
+  check_type(in, part, field, type, size);
+  const auto value = in.take(static_cast<uint64_t>(size), "attribute " + field);
+  const ByteReader sub(value, in.name());
+  if (field == "channels" && type == "chlist")
+    read_channels(sub, part);
+  else if (field == "dataWindow" && type == "box2i")
+    read_window(sub, part, layout);
+  else if (field == "compression" && type == "compression")
+    layout.compression = value[0];
+  else if (field == "chunkCount" && type == "int")
+    layout.chunk_count_claimed = ByteReader(sub).number<int32_t>(field);
+  else if (field == "name" && type == "string")
+    part.name = as_text(value);
+  else if (field == "type" && type == "string")
+    layout.type = as_text(value);
+  else if (field == "velour.shape" && type == "string")
+    part.shape = as_text(value);
+}
+
+void check_part(const ByteReader& in, const ExrPart& part, const PartLayout& layout) {
+  if (!layout.has_window) fail(in, part, "attribute dataWindow is missing.");
+  if (part.channels.empty()) fail(in, part, "attribute channels is missing or empty.");
+  if (layout.type != "scanlineimage") fail(in, part, "type is '" + layout.type + "', not scanlineimage.");
+  if (layout.compression != 0 && layout.compression != 2 && layout.compression != 3)
+    fail(in, part,
+         "compression is " + std::to_string(layout.compression) + "; only none, zips and zip are read.");
+  const uint64_t line_bytes = part.width * part.channels.size() * 4;
+  if (line_bytes * layout.lines_per_chunk() > INT32_MAX)
+    fail(in, part, "dataWindow has " + std::to_string(part.width) + " columns, more than a chunk can hold.");
+}
+
+/// Each chunk lies in the file and is large enough for the pixels that it claims to hold.
+void check_chunks(ByteReader& in, const ExrPart& part, const PartLayout& layout, bool multi_part) {
+  const uint64_t lines = layout.lines_per_chunk();
+  const uint64_t chunk_count = (part.height + lines - 1) / lines;
+  if (layout.chunk_count_claimed >= 0 && static_cast<uint64_t>(layout.chunk_count_claimed) != chunk_count)
+    fail(in, part,
+         "chunkCount is " + std::to_string(layout.chunk_count_claimed) + " where the dataWindow has " +
+             std::to_string(chunk_count) + ".");
+  if (chunk_count > in.remaining() / 8)
+    fail(in, part,
+         "dataWindow has " + std::to_string(part.height) +
+             " rows, more than the file can hold; it is truncated or damaged.");
+  ByteReader chunk = in;
+  for (uint64_t i = 0; i < chunk_count; ++i) {
+    chunk.seek(in.number<uint64_t>("chunk table of part '" + part.name + "'"),
+               "chunk table of part '" + part.name + "'");
+    if (multi_part) chunk.take(4, "part number of a chunk");
+    chunk.take(4, "first row of a chunk");
+    const auto stored = chunk.number<uint32_t>("size of a chunk");
+    chunk.take(stored, "chunk " + std::to_string(i) + " of part '" + part.name + "'");
+    const uint64_t rows = std::min(lines, part.height - i * lines);
+    if (rows * part.width * part.channels.size() * 4 > uint64_t{stored} * kMaxDeflateRatio)
+      fail(in, part,
+           "chunk " + std::to_string(i) + " holds " + std::to_string(stored) +
+               " bytes, too few for its pixels; the file is damaged.");
+  }
+}
+
+bool read_version(ByteReader& in) {
+  if (in.number<int32_t>("magic number") != kMagic)
+    throw Error(Status::bad_data, in.name() + ": is not an OpenEXR file.");
+  const auto version = in.number<uint32_t>("version");
+  if ((version & 0xff) != 2 || (version & (kTiled | kDeep)) != 0)
+    throw Error(Status::unsupported, in.name() + ": OpenEXR version field is " + std::to_string(version) +
+                                         "; only flat scan line files of version 2 are read.");
+  return (version & kMultiPart) != 0;
+}
+
+}  // namespace
+
+std::vector<ExrPart> scan_exr(std::span<const uint8_t> bytes, const std::string& name) {
+  ByteReader in(bytes, name);
+  const bool multi_part = read_version(in);
+  std::vector<ExrPart> parts;
+  std::vector<PartLayout> layouts;
+  while (true) {
+    std::string field = in.text(255, "attribute name");
+    if (field.empty()) break;  // an empty header ends the list of a multi-part file
+    if (parts.size() == kMaxParts) throw Error(Status::bad_data, name + ": has more than 4096 parts.");
+    ExrPart& part = parts.emplace_back();
+    PartLayout& layout = layouts.emplace_back();
+    for (; !field.empty(); field = in.text(255, "attribute name")) read_attribute(in, field, part, layout);
+    check_part(in, part, layout);
+    if (!multi_part) break;
+  }
+  for (size_t i = 0; i < parts.size(); ++i) check_chunks(in, parts[i], layouts[i], multi_part);
+  return parts;
+}
+
+}  // namespace velour

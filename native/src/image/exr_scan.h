@@ -1,0 +1,28 @@
+// The structure of an OpenEXR file, checked byte by byte before OpenEXR itself sees it.
+//
+// OpenEXR allocates what a header claims, and its only limits (Header::setMaxImageSize) are global to the
+// process, which may be Blender's. So the claims are compared with the bytes here: afterwards OpenEXR opens
+// nothing but scan line parts of floats, lossless, whose chunks lie inside the file and are large enough for
+// their pixels.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace velour {
+
+struct ExrPart {
+  std::string name;   // empty in a single-part file without a name
+  std::string shape;  // text of "velour.shape"; empty: not a tensor
+  uint64_t width = 0, height = 0;
+  std::vector<std::string> channels;  // float, full resolution, in file order
+
+  uint64_t value_count() const { return width * height * channels.size(); }
+};
+
+/// Throws Error(bad_data, unsupported) with `name`, the part and the field at fault.
+std::vector<ExrPart> scan_exr(std::span<const uint8_t> bytes, const std::string& name);
+
+}  // namespace velour
