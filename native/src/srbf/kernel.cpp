@@ -1,0 +1,109 @@
+#include "srbf/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace velour {
+
+namespace {
+
+/// D = 1 - 2 b t + b^2 with t = 1 - d: a sum of two terms that are never negative.
+double abel_poisson_denominator(double b, double d) { return (1 - b) * (1 - b) + 2 * b * d; }
+
+double abel_poisson_value(double b, double d) {
+  const double denominator = abel_poisson_denominator(b, d);
+  return (1 - b) * (1 + b) / (denominator * std::sqrt(denominator));
+}
+
+double abel_poisson_slope(double b, double d) {
+  const double denominator = abel_poisson_denominator(b, d);
+  return 3 * b * (1 - b) * (1 + b) / (denominator * denominator * std::sqrt(denominator));
+}
+
+double abel_poisson_bandwidth_slope(double b, double d) {
+  const double denominator = abel_poisson_denominator(b, d);
+  const double t_minus_b = (1 - b) - d;
+  return (3 * (1 - b) * (1 + b) * t_minus_b / denominator - 2 * b) / (denominator * std::sqrt(denominator));
+}
+
+/// d = -log(1 - (1 - u) (1 - e^-2l)) / l, method 6.2. Beyond l = 20, e^-2l is below half an ulp of 1.
+double gaussian_sample(double l, double u) {
+  if (l == 0) return 2 * (1 - u);
+  const double minus_mass = l > 20 ? -1.0 : std::expm1(-2 * l);
+  return -std::log1p((1 - u) * minus_mass) / l;
+}
+
+/// Method 6.2 with S - (1 - b) written out, so that d keeps its digits near the centre.
+double abel_poisson_sample(double b, double u) {
+  const double split = (1 - b) + 2 * b * u;
+  const double s = (1 - b) * (1 + b) / split;
+  return (1 - b) * (1 - u) / split * (s + (1 - b));
+}
+
+/// |la a + lb b| as a sum of squares: exact for opposed as for equal centres.
+double product_bandwidth(const Vec3d& a, double la, const Vec3d& b, double lb) {
+  const Vec3d sum = a + b;
+  return std::sqrt((la - lb) * (la - lb) + la * lb * glm::dot(sum, sum));
+}
+
+/// exp(R - la - lb), method 2.3.
+double product_scale(const Vec3d& a, double la, const Vec3d& b, double lb, double r) {
+  const double total = r + la + lb;
+  return total > 0 ? std::exp(-2 * la * lb * one_minus_dot(a, b) / total) : 1.0;
+}
+
+}  // namespace
+
+const char* kernel_name(Kernel kernel) { return kernel == Kernel::gaussian ? "gaussian" : "abel-poisson"; }
+
+double kernel_value(Kernel kernel, double bandwidth, double d) {
+  return kernel == Kernel::gaussian ? std::exp(-bandwidth * d) : abel_poisson_value(bandwidth, d);
+}
+
+double kernel_slope(Kernel kernel, double bandwidth, double d) {
+  return kernel == Kernel::gaussian ? bandwidth * std::exp(-bandwidth * d) : abel_poisson_slope(bandwidth, d);
+}
+
+double kernel_bandwidth_slope(Kernel kernel, double bandwidth, double d) {
+  return kernel == Kernel::gaussian ? -d * std::exp(-bandwidth * d)
+                                    : abel_poisson_bandwidth_slope(bandwidth, d);
+}
+
+double kernel_integral(Kernel kernel, double bandwidth) {
+  if (kernel == Kernel::abel_poisson || bandwidth == 0) return 4 * kPiD;
+  return -2 * kPiD * std::expm1(-2 * bandwidth) / bandwidth;
+}
+
+double kernel_sample(Kernel kernel, double bandwidth, double u) {
+  const double d =
+      kernel == Kernel::gaussian ? gaussian_sample(bandwidth, u) : abel_poisson_sample(bandwidth, u);
+  return std::clamp(d, 0.0, 2.0);
+}
+
+double kernel_bandwidth_of_half_width(Kernel kernel, double half_width) {
+  const double sine = std::sin(0.5 * half_width);
+  const double d = 2 * sine * sine;
+  if (kernel == Kernel::gaussian) return std::log(2.0) / d;
+  // (1 - b)^2 + 2 b d = 2^(2/3) (1 - b)^2, that is b^2 - (2 + k) b + 1 = 0; the root below one, without
+  // cancellation.
+  const double k = 2 * d / (std::cbrt(4.0) - 1);
+  return 2 / (2 + k + std::sqrt(k * (k + 4)));
+}
+
+double kernel_convolution(Kernel kernel, const Vec3d& a, double bandwidth_a, const Vec3d& b,
+                          double bandwidth_b) {
+  if (kernel == Kernel::abel_poisson) {
+    return 4 * kPiD * abel_poisson_value(bandwidth_a * bandwidth_b, one_minus_dot(a, b));
+  }
+  const double r = product_bandwidth(a, bandwidth_a, b, bandwidth_b);
+  return product_scale(a, bandwidth_a, b, bandwidth_b, r) * kernel_integral(Kernel::gaussian, r);
+}
+
+GaussianProduct gaussian_product(const Vec3d& a, double bandwidth_a, const Vec3d& b, double bandwidth_b) {
+  const Vec3d sum = bandwidth_a * a + bandwidth_b * b;
+  const double length = glm::length(sum);
+  const double r = product_bandwidth(a, bandwidth_a, b, bandwidth_b);
+  return {length > 0 ? sum / length : a, r, product_scale(a, bandwidth_a, b, bandwidth_b, r)};
+}
+
+}  // namespace velour
