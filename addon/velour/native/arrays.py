@@ -1,7 +1,7 @@
 """Arrays that cross the boundary: checked, never silently copied.
 
-Large arrays must already be float32 (or uint32, uint8), C-contiguous and of the right shape. Small ones (a colour, a
-matrix) may be any sequence of numbers.
+Large arrays must already be float32 (or uint32, uint8), C-contiguous and of the right shape. Small ones (a
+colour, a matrix) may be any sequence of numbers.
 """
 
 from __future__ import annotations
@@ -20,12 +20,16 @@ _POINTERS = {
 
 
 def checked(name: str, array, shape: tuple, dtype=np.float32) -> np.ndarray:
-    """`array` itself if it has `dtype` and `shape` (None: any length) and lies contiguous; else a sentence."""
+    """`array` itself if it has `dtype`, has `shape` (None: any length) and is contiguous; else a sentence."""
     if not isinstance(array, np.ndarray):
-        raise refuse(f"{name} is a {type(array).__name__}; a numpy array of {np.dtype(dtype).name} is needed.")
+        raise refuse(
+            f"{name} is a {type(array).__name__}; a numpy array of {np.dtype(dtype).name} is needed."
+        )
     if array.dtype != dtype:
         raise refuse(f"{name} is {array.dtype}; {np.dtype(dtype).name} is needed (array.astype).")
-    fits = array.ndim == len(shape) and all(w is None or w == n for n, w in zip(array.shape, shape, strict=True))
+    fits = array.ndim == len(shape) and all(
+        w is None or w == n for n, w in zip(array.shape, shape, strict=True)
+    )
     if not fits:
         wanted = " x ".join("n" if w is None else str(w) for w in shape)
         raise refuse(f"{name} has shape {array.shape}; {wanted} is needed.")

@@ -21,7 +21,7 @@ class Status(IntEnum):
 
 
 class VelourError(RuntimeError):
-    """A call was refused or failed. `status` is a Status (or its number, for one that is newer than this table)."""
+    """A call was refused or failed. `status` is a Status, or its number if it is newer than this table."""
 
     def __init__(self, status: int, sentence: str):
         super().__init__(sentence)

@@ -17,7 +17,9 @@ class Handle:
 
     def __init__(self, lib: ctypes.CDLL, pointer: ctypes.c_void_p):
         self._lib = lib
-        self._free = getattr(lib, self._free_name)  # looked up now: __del__ may run while the interpreter ends
+        self._free = getattr(
+            lib, self._free_name
+        )  # looked up now: __del__ may run while the interpreter ends
         self._pointer = pointer
 
     @classmethod
@@ -62,15 +64,16 @@ def path_bytes(path: str | os.PathLike) -> bytes:
 
 
 def set_fields(struct, values: dict) -> None:
-    """Sets fields of an options struct by name; an unknown name or a value out of the type's range is refused."""
+    """Sets fields of an options struct by name; unknown names and values out of range are refused."""
     names = {name: kind for name, kind in struct._fields_ if name != "struct_size"}
     for name, value in values.items():
         if name not in names:
             known = ", ".join(names)
             raise TypeError(f"{type(struct).__name__} has no option {name!r}; it has {known}")
         kind = names[name]
-        if kind in (ctypes.c_uint32, ctypes.c_uint64) and not 0 <= int(value) < 2 ** (8 * ctypes.sizeof(kind)):
-            raise refuse(f"{name} is {value}; a whole number from 0 to {2 ** (8 * ctypes.sizeof(kind)) - 1} is needed.")
+        largest = 2 ** (8 * ctypes.sizeof(kind)) - 1
+        if kind in (ctypes.c_uint32, ctypes.c_uint64) and not 0 <= int(value) <= largest:
+            raise refuse(f"{name} is {value}; a whole number from 0 to {largest} is needed.")
         setattr(struct, name, value)
 
 

@@ -33,13 +33,20 @@ def read(path: str | os.PathLike) -> np.ndarray:
 
 def compare(pixels: np.ndarray, reference: np.ndarray) -> tuple[float, float]:
     """rmse and relmse of linear RGB; relmse = mean((x - r)^2 / (r^2 + 0.01 mean(r)^2)). Sizes must agree."""
-    pixels, reference = (checked(n, a, (None, None, None)) for n, a in (("pixels", pixels), ("reference", reference)))
+    pixels, reference = (
+        checked(n, a, (None, None, None)) for n, a in (("pixels", pixels), ("reference", reference))
+    )
     if pixels.shape != reference.shape:
         raise refuse(f"The picture is {_size(pixels)}, the reference {_size(reference)}; they must agree.")
     rmse, relmse = c_double(), c_double()
     height, width, channels = pixels.shape
     load().vlr_image_compare(
-        ctypes.c_uint64(height * width), channels, pointer(pixels), pointer(reference), byref(rmse), byref(relmse)
+        ctypes.c_uint64(height * width),
+        channels,
+        pointer(pixels),
+        pointer(reference),
+        byref(rmse),
+        byref(relmse),
     )
     return rmse.value, relmse.value
 

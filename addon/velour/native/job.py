@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
+import math
 import os
 import time
 from collections.abc import Callable
@@ -35,6 +37,9 @@ class JobState(NamedTuple):
         return self.state == "running"
 
 
+ProgressCallback = Callable[[JobState], object]
+
+
 class Job(Handle):
     """poll(), cancel() and read_pass() may be called from any thread."""
 
@@ -65,30 +70,25 @@ class Job(Handle):
         """Asks for the end; the job stops within 0.1 s."""
         self._lib.vlr_job_cancel(self.pointer)
 
-    def wait(self, progress: Callable[[JobState], object] | None = None, timeout: float | None = None) -> bool:
-        """Waits for the end; False when `timeout` seconds ran out first. A failed job's error is raised here.
+    def wait(self, progress: ProgressCallback | None = None, timeout: float | None = None) -> bool:
+        """Waits for the end; False when `timeout` seconds ran out first. Raises the error of a failed job.
 
-        `progress` is called on this thread about ten times a second and once at the end. Whatever it raises, and
-        Ctrl-C, cancels the job, waits until it has stopped and goes on upwards.
+        `progress` is called on this thread about ten times a second and once at the end. Whatever it raises,
+        and Ctrl-C, cancels the job, waits until it has stopped and goes on upwards.
         """
-        end = None if timeout is None else time.monotonic() + timeout
+        end = math.inf if timeout is None else time.monotonic() + timeout
         try:
             while True:
-                left = _SLICE_SECONDS if end is None else min(_SLICE_SECONDS, max(0.0, end - time.monotonic()))
-                finished = self._wait_once(left)
+                finished = self._wait_once(max(0.0, min(_SLICE_SECONDS, end - time.monotonic())))
                 if progress:
                     progress(self.poll())
-                if finished:
-                    return True
-                if end is not None and time.monotonic() >= end:
-                    return False
-        except VelourError:
-            raise
+                if finished or time.monotonic() >= end:
+                    return finished
         except BaseException:
             self._stop()
             raise
 
-    def run(self, progress: Callable[[JobState], object] | None = None) -> dict:
+    def run(self, progress: ProgressCallback | None = None) -> dict:
         """start(), wait() and report() in one."""
         self.start().wait(progress)
         return self.report()
@@ -102,7 +102,7 @@ class Job(Handle):
         return Model._create("vlr_job_result_model", self.pointer)
 
     def read_pass(self, name: str, out: np.ndarray | None = None) -> np.ndarray:
-        """The film so far as [height x width x channels] float32, row 0 at the bottom; also while the job runs.
+        """The film so far, also while the job runs: [height x width x channels] float32, row 0 at the bottom.
 
         "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1.
         """
@@ -125,11 +125,11 @@ class Job(Handle):
         return bool(finished.value)
 
     def _stop(self) -> None:
+        if not self.poll().running:
+            return
         self.cancel()
-        try:
+        with contextlib.suppress(VelourError):  # "cancelled": the reason is already on its way up
             self._wait_once(-1.0)
-        except VelourError:
-            pass  # "cancelled": the reason for stopping is already on its way up
 
 
 def fit_job(measurement: Measurement, **options) -> Job:
@@ -148,8 +148,8 @@ def compare_job(measurement: Measurement, model: Model) -> Job:
 
 
 def microsurface_job(path: str | os.PathLike, **options) -> Job:
-    """Writes a virtual measurement to `path`. Options: roughness, anisotropy, metal, base_albedo, base_share, rays,
-    seed, threads."""
+    """Writes a virtual measurement to `path`. Options: roughness, anisotropy, metal, base_albedo, base_share,
+    rays, seed, threads."""
     raw = _defaults(table.MicrosurfaceOptions, "vlr_microsurface_options_init")
     if "metal" in options:
         options["metal"] = options["metal"].encode()
@@ -160,8 +160,8 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
 
 
 def render_job(scene, **options) -> Job:
-    """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit (seconds),
-    transparent, measure_ray_share. `scene` is a committed Scene."""
+    """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit
+    (seconds), transparent, measure_ray_share. `scene` is a committed Scene."""
     raw = _defaults(table.RenderOptions, "vlr_render_options_init")
     if "strategy" in options:
         options["strategy"] = choice("strategy", options["strategy"], table.STRATEGIES)

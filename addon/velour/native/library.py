@@ -1,7 +1,7 @@
 """Finds, opens and checks libvelour.
 
-The library lies in `lib/` of this package; VELOUR_LIBRARY names another file. Whatever goes wrong is one LibraryError
-sentence with the file, the cause and the remedy. Nothing is opened before the first load().
+The library lies in `lib/` of this package; VELOUR_LIBRARY names another file. Whatever goes wrong is one
+LibraryError sentence with the file, the cause and the remedy. Nothing is opened before the first load().
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def load() -> ctypes.CDLL:
 
 
 def release() -> None:
-    """Forgets the library: the next load() looks for the file anew. Handles that still live keep theirs open."""
+    """Forgets the library: the next load() looks for the file anew. Living handles keep theirs open."""
     global _loaded
     _loaded = None
 
@@ -96,6 +96,6 @@ def _check_version(library: ctypes.CDLL, where: str, remedy: str) -> None:
     expected = VERSION[0] * 10000 + VERSION[1] * 100 + VERSION[2]
     if (version(), abi()) != (expected, ABI_VERSION):
         raise LibraryError(
-            f"The Velour library {where} is version {version_text(version())} (interface {abi()}), but this package"
-            f" needs {version_text()} (interface {ABI_VERSION}); {remedy}."
+            f"The Velour library {where} is version {version_text(version())} (interface {abi()}), but this"
+            f" package needs {version_text()} (interface {ABI_VERSION}); {remedy}."
         )

@@ -26,7 +26,7 @@ class Measurement(Handle):
         return json_of(self._lib.vlr_measurement_info_json, self.pointer)
 
     def eval(self, wv, wl: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """f [n x 3] in 1/sr, without cosine, linear Rec. 709, and valid [n] (bool: the measurement covers the pair).
+        """f [n x 3] in 1/sr, without cosine, linear Rec. 709, and valid [n] (the pair is covered).
 
         `wv` [3] towards the viewer, `wl` [n x 3] float32 towards the light: unit, local frame, +z normal.
         """

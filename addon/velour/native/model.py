@@ -13,7 +13,7 @@ from .library import json_of
 
 
 class Model(Handle):
-    """Immutable. f in 1/sr without cosine, linear Rec. 709; directions unit, local frame, +z normal, +x tangent."""
+    """Immutable. f in 1/sr without cosine, linear Rec. 709; unit directions, local frame, +z normal."""
 
     _free_name = "vlr_model_free"
 
@@ -38,14 +38,16 @@ class Model(Handle):
         self._lib.vlr_model_save(self.pointer, path_bytes(path))
 
     def info(self) -> dict:
-        """kind, model, kernel, isotropic, views, lobes, bytes, relative_l2, by_view_angle, warnings, source, ..."""
+        """kind, model, kernel, views, lobes, bytes, relative_l2, by_view_angle, warnings, source, ..."""
         return json_of(self._lib.vlr_model_info_json, self.pointer)
 
     def eval(self, wv, wl: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """f [n x 3] and the density pdf [n] of the model's own sampler, per solid angle of wl, for `wl` [n x 3]."""
+        """f [n x 3] and the density pdf [n] of the model's own sampler, per solid angle, for `wl` [n x 3]."""
         wl = directions("wl", wl)
         f, pdf = np.empty_like(wl), np.empty(len(wl), np.float32)
-        self._lib.vlr_model_eval(self.pointer, small("wv", wv, 3), len(wl), pointer(wl), pointer(f), pointer(pdf))
+        self._lib.vlr_model_eval(
+            self.pointer, small("wv", wv, 3), len(wl), pointer(wl), pointer(f), pointer(pdf)
+        )
         return f, pdf
 
     def sample(self, wv, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -55,5 +57,7 @@ class Model(Handle):
         """
         u = checked("u", u, (None, 2))
         wl, pdf = np.empty((len(u), 3), np.float32), np.empty(len(u), np.float32)
-        self._lib.vlr_model_sample(self.pointer, small("wv", wv, 3), len(u), pointer(u), pointer(wl), pointer(pdf))
+        self._lib.vlr_model_sample(
+            self.pointer, small("wv", wv, 3), len(u), pointer(u), pointer(wl), pointer(pdf)
+        )
         return wl, pdf

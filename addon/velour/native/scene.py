@@ -1,4 +1,7 @@
-"""What is rendered: meshes, materials, instances, lights, world, camera. Metres, +z up, matrices 3 x 4 row-major."""
+"""What is rendered: meshes, materials, instances, lights, world, camera.
+
+Metres, +z up, matrices 3 x 4 row-major.
+"""
 
 from __future__ import annotations
 
@@ -48,9 +51,9 @@ class Scene(Handle):
     ) -> tuple[int, int]:
         """The mesh's number, and how many degenerate or non-finite triangles were left out.
 
-        positions [v x 3] float32 in metres; triangles [t x 3] uint32; corner_normals [t x 3 x 3] float32 (None: smooth
-        vertex normals); corner_uvs [t x 3 x 2] float32; material_slots [t] uint32 (None: all 0); smooth [t] uint8, used
-        without corner_normals (None: all smooth). The library copies; nothing need stay alive.
+        float32: positions [v x 3] in metres, corner_normals [t x 3 x 3] (None: smooth vertex normals),
+        corner_uvs [t x 3 x 2]. uint32: triangles [t x 3], material_slots [t] (None: all 0). uint8: smooth [t],
+        used without corner_normals (None: all smooth). The library copies; nothing need stay alive.
         """
         positions = checked("positions", positions, (None, 3))
         triangles = checked("triangles", triangles, (None, 3), np.uint32)
@@ -92,14 +95,14 @@ class Scene(Handle):
     def add_measurement_material(
         self, measurement: Measurement, proposal: Model | None = None, neighbors: int = 0
     ) -> int:
-        """Reference mode: f of the raw measurement; samples drawn from `proposal` (None: a coarse model made here)."""
+        """Reference mode: f of the raw data; `proposal` draws samples (None: a coarse model made here)."""
         proposal_pointer = proposal.pointer if proposal else None
         return self._numbered(
             "vlr_scene_add_measurement_material", measurement.pointer, proposal_pointer, neighbors
         )
 
     def add_principled_material(self, **values) -> int:
-        """base_color [3], metallic 0..1, roughness 0..1 (alpha = roughness^2), specular 0..1, emission [3] (radiance)."""
+        """base_color [3], metallic, roughness (alpha = its square), specular: 0..1; emission [3]: radiance."""
         desc = self._desc(table.PrincipledDesc, "vlr_principled_desc_init", values)
         return self._numbered("vlr_scene_add_principled_material", byref(desc))
 
@@ -108,8 +111,8 @@ class Scene(Handle):
     def add_light(self, kind: str, color, light_to_world, **values) -> None:
         """`kind`: sun, point, rectangle, disk; shines along its -z.
 
-        color [3]: a sun's irradiance on a facing plane, W/m^2; the others' power, W. size [2]: a point's radius, a
-        rectangle's sides, a disk's diameters, metres. angle: a sun's angular diameter, radians. casts_shadow.
+        color [3]: a sun's irradiance on a facing plane, W/m^2; the others' power, W. angle: a sun's angular
+        diameter, radians. size [2]: a point's radius, a rectangle's sides, a disk's diameters, metres.
         """
         values = {"type": choice("light", kind, table.LIGHTS), "color": color, **values}
         desc = self._desc(table.LightDesc, "vlr_light_desc_init", values)
@@ -138,16 +141,21 @@ class Scene(Handle):
     # ---- camera
 
     def set_camera(self, kind: str, camera_to_world, window, **values) -> None:
-        """`kind`: perspective, orthographic; looks along its -z, +y up. window: left, right, bottom, top of the
-        picture at distance 1 (perspective) or in metres (orthographic). clip_start, clip_end in metres."""
+        """`kind`: perspective, orthographic; looks along its -z, +y up.
+
+        window: left, right, bottom, top of the picture at distance 1 (perspective) or in metres
+        (orthographic). clip_start, clip_end in metres.
+        """
         values = {"type": choice("camera", kind, table.CAMERAS), "window": window, **values}
         desc = self._desc(table.CameraDesc, "vlr_camera_desc_init", values)
         desc.camera_to_world = affine("camera_to_world", camera_to_world)
         self._lib.vlr_scene_set_camera(self.pointer, byref(desc))
 
     def look_at(self, eye, target, fov: float, aspect: float) -> None:
-        """From a point to a point, +z up. `fov`: vertical angle of view, radians; `aspect`: width / height."""
-        self._lib.vlr_scene_look_at(self.pointer, small("eye", eye, 3), small("target", target, 3), fov, aspect)
+        """From a point to a point, +z up. `fov`: vertical, radians; `aspect`: width / height."""
+        self._lib.vlr_scene_look_at(
+            self.pointer, small("eye", eye, 3), small("target", target, 3), fov, aspect
+        )
 
     def frame_camera(self, aspect: float, up_axis: int = 2) -> None:
         """Frames the bounding box of all instances to the picture's height. `up_axis` 1 (y) or 2 (z)."""

@@ -1,6 +1,6 @@
 """The C header as ctypes: structs, and the result and argument types of every function.
 
-native/include/velour/velour.h is the law; a test compares names, argument counts, sizes and offsets with this file.
+native/include/velour/velour.h is the law; a test compares names, argument counts, sizes and offsets.
 """
 
 from __future__ import annotations
@@ -221,7 +221,9 @@ def bind(library: ctypes.CDLL) -> None:
     def check(status, function, _arguments):
         if status:
             text = library.vlr_last_error()
-            sentence = text.decode("utf-8", "replace") if text else f"{function.__name__} failed without a word"
+            sentence = (
+                text.decode("utf-8", "replace") if text else f"{function.__name__} failed without a word"
+            )
             raise VelourError(status, sentence)
         return status
 

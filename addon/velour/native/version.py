@@ -5,7 +5,7 @@ ABI_VERSION = 1
 
 
 def version_text(packed: int | None = None) -> str:
-    """"0.1.0" of VERSION, or of a number packed as vlr_version() packs it."""
+    """ "0.1.0" of VERSION, or of a number packed as vlr_version() packs it."""
     if packed is None:
         return ".".join(str(part) for part in VERSION)
     return f"{packed // 10000}.{packed // 100 % 100}.{packed % 100}"

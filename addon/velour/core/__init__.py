@@ -1,0 +1,1 @@
+"""Work on plain files and numpy arrays; never imports bpy."""

@@ -1,0 +1,1 @@
+"""The command line: scripts/velour VERB ... (docs/command_line.md). One module a verb."""

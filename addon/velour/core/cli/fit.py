@@ -1,0 +1,63 @@
+"""velour fit INPUT -o MODEL"""
+
+from __future__ import annotations
+
+import argparse
+
+from ...native import Measurement, fit_job, table
+from . import later, numbers, output
+
+KEYS = (
+    "lobes",
+    "bytes",
+    "parameter_bytes",
+    "seconds",
+    "relative_l2",
+    "by_view_angle",
+    "albedo_max",
+    "warnings",
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("input", metavar="INPUT", help="a measurement")
+    parser.add_argument(
+        "-o", "--output", metavar="MODEL", required=True, help="the model file to write (.velour)"
+    )
+    parser.add_argument("--model", choices=("scattered", "parametric"), default="scattered")
+    parser.add_argument("--kernel", choices=table.KERNELS)
+    parser.add_argument(
+        "--tolerance", type=numbers.real(1e-6, 1), metavar="T",
+        help="relative L2 asked for at every view up to 75 degrees, 2 T beyond (0.02)",
+    )  # fmt: skip
+    parser.add_argument("--max-lobes", type=numbers.whole(1, 64), metavar="N", help="lobes a view (16)")
+    parser.add_argument(
+        "--bytes", type=numbers.whole(1, 2**63), metavar="N", help="bound on the model's size"
+    )
+    parser.add_argument("--all-data", action="store_true", help="hold nothing out: for production")
+    parser.add_argument("--seed", type=numbers.seed, metavar="K")
+    parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
+    later.add_later(parser, "--for-scene", "fit for all views instead", "SCENE.json")
+
+
+def run(args: argparse.Namespace) -> dict:
+    later.only("--model", args.model, ("scattered",))
+    output.check_writable(args.output)
+    with Measurement.load(args.input) as measurement, fit_job(measurement, **_options(args)) as job:
+        report = job.run(output.progress_of(args))
+        with job.result_model() as model:
+            model.save(args.output)
+    return {key: report[key] for key in KEYS}
+
+
+def _options(args: argparse.Namespace) -> dict:
+    given = {
+        "kernel": args.kernel,
+        "tolerance": args.tolerance,
+        "max_lobes": args.max_lobes,
+        "max_bytes": args.bytes,
+        "seed": args.seed,
+        "threads": args.threads,
+        "all_data": int(args.all_data),
+    }
+    return {name: value for name, value in given.items() if value is not None}

@@ -1,0 +1,15 @@
+"""velour info FILE"""
+
+from __future__ import annotations
+
+import argparse
+
+from ...native import library
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="a measurement or a model")
+
+
+def run(args: argparse.Namespace) -> dict:
+    return library.file_info(args.file)

@@ -1,0 +1,72 @@
+"""What a verb says: one JSON object or a summary on stdout, messages and progress on stderr."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import sys
+from pathlib import Path
+
+from .. import files
+from .progress import ProgressBar
+
+log = logging.getLogger("velour")
+
+
+def set_up_log(level: str) -> None:
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(logging.Formatter("velour: %(message)s"))
+    log.handlers[:] = [handler]
+    log.propagate = False
+    log.setLevel(level.upper())
+
+
+def progress_of(args: argparse.Namespace) -> ProgressBar | None:
+    """A bar where someone can see it."""
+    return ProgressBar(sys.stderr) if sys.stderr.isatty() and not args.quiet else None
+
+
+def deliver(args: argparse.Namespace, report: dict) -> None:
+    """Hands the verb's report over in all forms asked for."""
+    for warning in report.get("warnings") or []:
+        log.warning("%s", warning)
+    if args.json_file:
+        files.write_json(args.json_file, report)
+    if args.json:
+        print(files.json_text(report))
+    elif not args.quiet:
+        print(summary(report))
+
+
+def summary(report: dict) -> str:
+    return "\n".join(_lines(report, ""))
+
+
+def _lines(report: dict, indent: str):
+    for key, value in report.items():
+        if isinstance(value, dict):
+            yield f"{indent}{key}:"
+            yield from _lines(value, indent + "  ")
+        elif key != "warnings":
+            yield f"{indent}{key}: {_shown(value)}"
+
+
+def _shown(value) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.5g}"
+    if isinstance(value, list):
+        return ", ".join(map(_shown, value))
+    return str(value)
+
+
+def check_writable(path: str) -> None:
+    """Says before the long work, not after it, that the result cannot be written."""
+    folder = Path(path).absolute().parent
+    if not folder.is_dir():
+        raise OSError(f"The folder {folder} of the output {path} does not exist; make it first.")
+    if Path(path).is_dir():
+        raise OSError(f"The output {path} is a folder; name a file.")
