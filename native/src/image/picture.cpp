@@ -50,7 +50,10 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec) {
 
 std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path) {
   read_file_head(path, 1);  // says plainly what is wrong with the path
-  auto input = OIIO::ImageInput::open(path);
+  OIIO::ImageSpec request;
+  request.attribute("oiio:UnassociatedAlpha",
+                    1);  // channels as stored: no product with alpha before the sRGB curve
+  auto input = OIIO::ImageInput::open(path, &request);
   if (!input) throw Error(Status::bad_data, input_error(path, OIIO::geterror()));
   check_size(path, input->spec());
   return input;
@@ -101,6 +104,7 @@ void write_png(const std::string& path, const Picture& picture) {
   }
   OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("oiio:UnassociatedAlpha", 1);
   encode(path, spec, OIIO::TypeDesc::UINT8, bytes.data());
 }
 

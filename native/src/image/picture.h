@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// Row 0 is at the bottom; channels interleaved. Linear values.
+/// Row 0 is at the bottom; channels interleaved. Linear values; alpha as the file holds it.
 struct Picture {
   int width = 0, height = 0, channels = 0;
   std::vector<float> pixels;

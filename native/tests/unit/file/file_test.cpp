@@ -1,0 +1,101 @@
+#include "file/file.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "file/byte_reader.h"
+#include "job/error.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+std::vector<uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+Status status_of(const auto& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.status();
+  }
+  return Status::ok;
+}
+
+TEST(File, WritesAndReadsBack) {
+  const std::string path = test::scratch_folder() / "a.bin";
+  write_file(path, bytes_of("velour"));
+  EXPECT_EQ(read_file(path), bytes_of("velour"));
+  EXPECT_EQ(read_file_head(path, 3), bytes_of("vel"));
+  EXPECT_EQ(read_file_head(path, 300), bytes_of("velour"));
+  write_file(path, {});
+  EXPECT_TRUE(read_file(path).empty());
+}
+
+TEST(File, LeavesNothingBesideTheFile) {
+  const auto folder = test::scratch_folder();
+  write_file(folder / "a.bin", bytes_of("one"));
+  write_file(folder / "a.bin", bytes_of("two"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST(File, KeepsALinkAndWritesItsTarget) {
+  const auto folder = test::scratch_folder();
+  write_file(folder / "target", bytes_of("old"));
+  std::filesystem::create_symlink(folder / "target", folder / "link");
+  write_file(folder / "link", bytes_of("new"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(read_file(folder / "target"), bytes_of("new"));
+}
+
+TEST(File, SaysWhichFileAndWhy) {
+  const auto folder = test::scratch_folder();
+  const std::string missing = folder / "missing.bin";
+  try {
+    read_file(missing);
+    FAIL() << "a missing file was read";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::io);
+    EXPECT_NE(std::string(error.what()).find("missing.bin"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("No such file"), std::string::npos);
+  }
+}
+
+TEST(File, RefusesWhatIsNoRegularFile) {
+  const auto folder = test::scratch_folder();
+  EXPECT_EQ(status_of([&] { read_file(folder); }), Status::io);
+  EXPECT_EQ(status_of([&] { read_file("/dev/zero"); }), Status::io);
+  EXPECT_EQ(status_of([&] { write_file("/dev/null", {}); }), Status::io);
+  EXPECT_EQ(status_of([&] { write_file(folder, {}); }), Status::io);
+  EXPECT_EQ(status_of([&] { write_file(folder / "no" / "such" / "folder", {}); }), Status::io);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(File, HoldsTheLimit) {
+  const std::string path = test::scratch_folder() / "a.bin";
+  write_file(path, bytes_of("123456"));
+  EXPECT_EQ(status_of([&] { read_file(path, 5); }), Status::bad_data);
+  EXPECT_EQ(status_of([&] { read_file(path, 6); }), Status::ok);
+}
+
+TEST(Sha256, KnownAnswers) {  // FIPS 180-4 examples
+  EXPECT_EQ(sha256_hex({}), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_hex(bytes_of("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(ByteReader, NeverLeavesTheBytes) {
+  const std::vector<uint8_t> bytes{1, 0, 0, 0, 'a', 'b', 0, 9};
+  ByteReader in(bytes, "file");
+  EXPECT_EQ(in.number<uint32_t>("n"), 1u);
+  EXPECT_EQ(in.text(2, "t"), "ab");
+  EXPECT_EQ(in.remaining(), 1u);
+  EXPECT_EQ(status_of([&] { in.number<uint32_t>("n"); }), Status::bad_data);
+  EXPECT_EQ(status_of([&] { in.take(~uint64_t{0}, "n"); }), Status::bad_data);
+  EXPECT_EQ(status_of([&] { in.seek(9, "n"); }), Status::bad_data);
+  EXPECT_EQ(status_of([&] { in.text(255, "t"); }), Status::bad_data);
+  in.seek(4, "t");
+  EXPECT_EQ(status_of([&] { in.text(1, "t"); }), Status::bad_data);
+}
+
+}  // namespace
+}  // namespace velour

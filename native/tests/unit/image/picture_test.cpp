@@ -1,0 +1,122 @@
+#include "image/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "file/file.h"
+#include "job/error.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+Picture gradient(int width, int height, int channels) {
+  Picture picture{width, height, channels, {}};
+  const int count = width * height * channels;
+  for (int i = 0; i < count; ++i)
+    picture.pixels.push_back(static_cast<float>(i) / static_cast<float>(count - 1));
+  return picture;
+}
+
+std::string refusal(const auto& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Picture, ExrKeepsFloats) {
+  const std::string path = test::scratch_folder() / "a.exr";
+  Picture picture = gradient(7, 5, 3);
+  picture.pixels[4] = 1e20f;
+  picture.pixels[5] = -2.5f;
+  write_picture(path, picture);
+  const Picture back = read_picture(path);
+  EXPECT_EQ(back.width, 7);
+  EXPECT_EQ(back.height, 5);
+  EXPECT_EQ(back.channels, 3);
+  EXPECT_EQ(back.pixels, picture.pixels);
+  EXPECT_TRUE(read_picture_header(path).pixels.empty());
+  EXPECT_EQ(read_picture_header(path).width, 7);
+}
+
+TEST(Picture, SamePictureSameBytes) {
+  const auto folder = test::scratch_folder();
+  write_picture(folder / "a.exr", gradient(16, 16, 4));
+  write_picture(folder / "b.exr", gradient(16, 16, 4));
+  EXPECT_EQ(read_file(folder / "a.exr"), read_file(folder / "b.exr"));
+}
+
+TEST(Picture, PngIsSrgbAndRowZeroIsAtTheBottom) {
+  const std::string path = test::scratch_folder() / "a.png";
+  Picture picture{1, 2, 3, {0.5f, 0.0f, 1.0f, 0.2140411f, NAN, 7.0f}};
+  write_picture(path, picture);
+  const auto bytes = read_file(path);
+  const Picture back = read_picture(path);
+  EXPECT_NEAR(back.pixel(0, 0)[0], 0.5f, 0.004f);
+  EXPECT_NEAR(back.pixel(0, 1)[0], 0.2140411f, 0.003f);
+  EXPECT_EQ(back.pixel(0, 1)[1], 0.0f);  // not a number
+  EXPECT_EQ(back.pixel(0, 1)[2], 1.0f);  // above white
+}
+
+TEST(Picture, AlphaStaysLinear) {
+  const std::string path = test::scratch_folder() / "a.png";
+  write_picture(path, {1, 1, 4, {0.5f, 0.5f, 0.5f, 0.5f}});
+  const Picture back = read_picture(path);
+  EXPECT_NEAR(back.pixels[0], 0.5f, 0.004f);
+  EXPECT_NEAR(back.pixels[3], 0.5f, 0.002f);
+}
+
+TEST(Picture, WritesOnlyExrAndPng) {
+  const auto folder = test::scratch_folder();
+  EXPECT_NE(refusal([&] { write_picture(folder / "a.gif", gradient(2, 2, 3)); }).find("a.gif"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { write_picture(folder / "a.exr", Picture{2, 2, 3, {1.0f}}); }), "");
+}
+
+TEST(Picture, RefusesDamage) {
+  const auto folder = test::scratch_folder();
+  for (const char* name : {"a.exr", "a.png"}) {
+    write_picture(folder / name, gradient(20, 20, 3));
+    const auto bytes = read_file(folder / name);
+    for (size_t size = 0; size < bytes.size() * 3 / 4; size += 7) {
+      write_file(folder / name, std::span(bytes).first(size));
+      EXPECT_NE(refusal([&] { read_picture(folder / name); }).find(name), std::string::npos) << size;
+    }
+  }
+  EXPECT_NE(refusal([&] { read_picture(folder / "missing.exr"); }).find("missing.exr"), std::string::npos);
+}
+
+TEST(Picture, LyingSizeIsNotAllocated) {
+  const std::string path = test::scratch_folder() / "a.hdr";
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n";
+  write_file(path, std::vector<uint8_t>(header.begin(), header.end()));
+  EXPECT_NE(refusal([&] { read_picture(path); }).find("60000 x 60000"), std::string::npos);
+}
+
+TEST(Picture, ReadsRadianceHdr) {
+  VELOUR_NEED_DATA(path, "hdr/studio_small_03_1k.hdr");
+  const Picture picture = read_picture(path);
+  EXPECT_EQ(picture.width, 1024);
+  EXPECT_EQ(picture.height, 512);
+  EXPECT_EQ(picture.channels, 3);
+  const float brightest = *std::max_element(picture.pixels.begin(), picture.pixels.end());
+  EXPECT_GT(brightest, 10.0f);
+}
+
+TEST(PictureDifference, KnownValues) {
+  const float a[] = {1.0f, 2.0f, 3.0f, 0.0f}, b[] = {1.0f, 1.0f, 1.0f, 9.0f};
+  const auto difference = compare_pictures(a, b, 1, 4);  // the fourth channel does not count
+  EXPECT_NEAR(difference.rmse, std::sqrt(5.0 / 3.0), 1e-12);
+  EXPECT_NEAR(difference.relmse, 5.0 / 3.0 / 1.01, 1e-12);
+  const auto same = compare_pictures(a, a, 1, 4);
+  EXPECT_EQ(same.rmse, 0.0);
+  EXPECT_EQ(same.relmse, 0.0);
+}
+
+}  // namespace
+}  // namespace velour
