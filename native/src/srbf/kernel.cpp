@@ -26,11 +26,12 @@ double abel_poisson_bandwidth_slope(double b, double d) {
   return (3 * (1 - b) * (1 + b) * t_minus_b / denominator - 2 * b) / (denominator * std::sqrt(denominator));
 }
 
-/// d = -log(1 - (1 - u) (1 - e^-2l)) / l, method 6.2. Beyond l = 20, e^-2l is below half an ulp of 1.
+/// d = -log(u + (1 - u) e^-2l) / l, method 6.2. Broad lobes need the form that keeps its digits where the
+/// logarithm is near 0; the others do not, and plain exp and log cost a third of expm1 and log1p.
 double gaussian_sample(double l, double u) {
   if (l == 0) return 2 * (1 - u);
-  const double minus_mass = l > 20 ? -1.0 : std::expm1(-2 * l);
-  return -std::log1p((1 - u) * minus_mass) / l;
+  if (l < 1) return -std::log1p((1 - u) * std::expm1(-2 * l)) / l;
+  return -std::log(u + (1 - u) * std::exp(-2 * l)) / l;
 }
 
 /// Method 6.2 with S - (1 - b) written out, so that d keeps its digits near the centre.

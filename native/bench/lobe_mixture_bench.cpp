@@ -1,0 +1,83 @@
+// The inner loop of the product: value and density of a batch of directions under a mixture, and one sample
+// of it.
+#include <benchmark/benchmark.h>
+
+#include "sphere/directions.h"
+#include "sphere/random.h"
+#include "srbf/lobe_mixture.h"
+#include "srbf/simd_target.h"
+
+namespace velour {
+namespace {
+
+LobeMixture make_mixture(Kernel kernel, int lobes) {
+  LobeMixture mixture;
+  mixture.clear(kernel);
+  const auto centers = hemisphere_fibonacci(lobes);
+  RandomStream random(1, 2, 3);
+  for (int j = 0; j < lobes; ++j) {
+    const float bandwidth =
+        kernel == Kernel::gaussian ? std::exp2(12 * random.next()) : 0.98f * random.next();
+    mixture.add(centers[static_cast<size_t>(j)], bandwidth, {0.5f, 0.4f, random.next()});
+  }
+  mixture.finish(0.05f);
+  return mixture;
+}
+
+DirectionBatch make_batch(int count) {
+  DirectionBatch batch;
+  for (const Vec3& w : hemisphere_fibonacci(count)) batch.push(w);
+  batch.pad();
+  return batch;
+}
+
+// Arguments: kernel, lobes, directions.
+void eval_lobe_mixture(benchmark::State& state) {
+  const int lobes = static_cast<int>(state.range(1)), directions = static_cast<int>(state.range(2));
+  const LobeMixture mixture = make_mixture(static_cast<Kernel>(state.range(0)), lobes);
+  const DirectionBatch batch = make_batch(directions);
+  RgbBatch value;
+  ScalarBatch pdf;
+  for (auto _ : state) {
+    eval_mixture(mixture, batch, value, pdf);
+    benchmark::DoNotOptimize(value);
+    benchmark::DoNotOptimize(pdf);
+  }
+  state.counters["ns_per_lobe_direction"] =
+      benchmark::Counter(static_cast<double>(lobes) * directions * 1e-9,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.SetLabel(std::string(simd_target()) + " " + kernel_name(mixture.kernel));
+}
+BENCHMARK(eval_lobe_mixture)
+    ->ArgsProduct({{0}, {4, 8, 16, 32}, {8, 16, 64}})
+    ->ArgsProduct({{1}, {16}, {8, 16, 64}});
+
+void eval_on_target(benchmark::State& state, const std::string& target) {
+  select_simd_target(target.c_str());
+  eval_lobe_mixture(state);
+  select_simd_target("auto");
+}
+
+void sample_lobe_mixture(benchmark::State& state) {
+  const LobeMixture mixture =
+      make_mixture(static_cast<Kernel>(state.range(0)), static_cast<int>(state.range(1)));
+  RandomStream random(1, 2, 3);
+  for (auto _ : state) benchmark::DoNotOptimize(sample_mixture(mixture, random.next2()));
+}
+// What the random numbers of the benchmark above cost.
+void random_numbers(benchmark::State& state) {
+  RandomStream random(1, 2, 3);
+  for (auto _ : state) benchmark::DoNotOptimize(random.next2());
+}
+BENCHMARK(random_numbers);
+BENCHMARK(sample_lobe_mixture)->ArgsProduct({{0, 1}, {4, 32}});
+
+const bool registered = [] {
+  for (const std::string& target : simd_targets()) {
+    benchmark::RegisterBenchmark(("eval_on/" + target).c_str(), eval_on_target, target)->Args({0, 16, 16});
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace velour
