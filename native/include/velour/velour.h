@@ -242,8 +242,8 @@ typedef struct vlr_light_desc {
 VLR_API void vlr_light_desc_init(vlr_light_desc* desc);
 VLR_API vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc);
 
-/* The world is +z up. Image: equirectangular, row 0 at the top (+z), column centre width/2 looks along -y ... the
- * convention of Blender: u = atan2(y, -x) / (2 pi) + 1/2, v = asin(z) / pi + 1/2 from the bottom.
+/* The world is +z up. Image: equirectangular, row 0 at the top (+z), in the convention of Blender: the middle column
+ * looks along +x; u = 1/2 - atan2(y, x) / (2 pi) from the left, v = 1/2 + asin(z) / pi from the bottom.
  * world_to_image [9, row-major] turns a world direction before that look-up (NULL: identity). */
 VLR_API vlr_status vlr_scene_set_world_color(vlr_scene* scene, const float* color);
 VLR_API vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, uint32_t height, uint32_t channels,
@@ -286,7 +286,7 @@ typedef struct vlr_render_options {
   uint32_t struct_size;
   uint32_t width, height;
   uint32_t spp;            /* light directions a pixel */
-  uint32_t split;          /* of them, how many share one camera ray; 8 */
+  uint32_t split;          /* of them, how many share one camera ray; 1..48; 8 */
   uint32_t bounces;        /* indirect bounces; 0: direct illumination only */
   int32_t strategy;        /* VLR_STRATEGY_* */
   uint32_t threads;        /* 0: all */

@@ -37,17 +37,6 @@ RTCRay to_embree(const Ray& ray) {
   return r;
 }
 
-bool is_identity(const Affine& a) { return std::memcmp(a.m, Affine{}.m, sizeof a.m) == 0; }
-
-/// Takes normals of the object to normals of the world: the inverse transpose up to a positive factor, so
-/// that the outside of a mirrored object stays its outside.
-Mat3 normal_map(const Affine& a) {
-  const Vec3 x(a.m[0], a.m[4], a.m[8]), y(a.m[1], a.m[5], a.m[9]), z(a.m[2], a.m[6], a.m[10]);
-  const Vec3 yz = glm::cross(y, z);
-  const float sign = glm::dot(x, yz) < 0.0f ? -1.0f : 1.0f;
-  return sign * Mat3(yz, glm::cross(z, x), glm::cross(x, y));
-}
-
 }  // namespace
 
 struct EmbreeScene::Impl {
@@ -161,7 +150,7 @@ uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world)
   if (mesh >= impl_->meshes.size()) {
     throw Error(Status::invalid_argument, "There is no mesh " + std::to_string(mesh) + " to instance.");
   }
-  impl_->instances.push_back({mesh, object_to_world, normal_map(object_to_world)});
+  impl_->instances.push_back({mesh, object_to_world, object_to_world.normal_map()});
   return static_cast<uint32_t>(impl_->instances.size() - 1);
 }
 
@@ -172,7 +161,7 @@ void EmbreeScene::commit(int threads) {
   arena.execute([&s] {
     for (RTCScene mesh : s.meshes) s.api.rtcJoinCommitScene(mesh);
   });
-  const bool direct = s.instances.size() == 1 && is_identity(s.instances[0].object_to_world);
+  const bool direct = s.instances.size() == 1 && s.instances[0].object_to_world == Affine{};
   if (!direct) {
     s.top = s.build_top();
     arena.execute([&s] { s.api.rtcJoinCommitScene(s.top); });

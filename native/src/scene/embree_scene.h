@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "scene/affine.h"
 #include "sphere/vec.h"
 
 namespace velour {
@@ -30,11 +31,6 @@ struct Hit {
   float u, v;                  // barycentric weights of vertices 1 and 2
   uint32_t triangle;           // of the mesh
   uint32_t instance = kNoHit;  // kNoHit: the ray met nothing
-};
-
-/// 3 x 4 affine map, row-major.
-struct Affine {
-  float m[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 };
 
 /// Meshes and instances of them. Build once, then trace from any number of threads.

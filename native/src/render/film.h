@@ -1,0 +1,71 @@
+// The picture being made.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "sphere/vec.h"
+
+namespace velour {
+
+/// What one camera ray brings.
+struct CameraSample {
+  Rgb radiance{0.0f};
+  float alpha = 0;     // 1: the pixel is covered
+  Vec3 normal{0.0f};   // shading normal, world; zero where nothing was hit
+  float depth = 0;     // along the line of sight
+  int directions = 0;  // light directions that the ray stands for
+};
+
+/// Sums a pixel. Samples of a pixel must be added in the order of their camera rays: then the bits do not
+/// depend on how the rays are dealt out to passes and threads.
+struct PixelSum {
+  Rgb radiance{0.0f};
+  float alpha = 0;
+  Vec3 normal{0.0f};
+  float depth = 0;  // of the first camera ray, as Cycles does: a mean of depths lies on no surface
+  float luminance = 0, luminance_sq = 0;
+  uint32_t camera_rays = 0, directions = 0;
+
+  void add(const CameraSample& sample);
+};
+
+struct PixelRect {
+  int x0, y0, x1, y1;  // [x0, x1) x [y0, y1)
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+};
+
+/// Thread-safe: workers publish whole tiles, anyone may read a pass at any time. Row 0 is at the bottom.
+class Film {
+ public:
+  Film(int width, int height);
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// Sets all pixels to nothing.
+  void clear();
+  /// Copies the sums of `rect`, row by row, to and from `pixels`.
+  void load(const PixelRect& rect, std::span<PixelSum> pixels) const;
+  void store(const PixelRect& rect, std::span<const PixelSum> pixels);
+
+  /// Channels of a pass: "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1
+  /// (light directions). Throws Error(invalid_argument) on another name.
+  static int channels(std::string_view pass);
+  /// `pixels` holds width x height x channels(pass). Pixels without samples are 0; depth is 1e10 where
+  /// nothing was hit.
+  void read_pass(std::string_view pass, std::span<float> pixels) const;
+
+  /// RMS over the pixels of the standard error of luminance, divided by the mean luminance. 0 while unknown.
+  double noise() const;
+
+ private:
+  const int width_, height_;
+  mutable std::mutex mutex_;
+  std::vector<PixelSum> pixels_;
+};
+
+}  // namespace velour

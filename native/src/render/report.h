@@ -1,0 +1,28 @@
+// What a render reports: the keys of the command line's verb.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace velour {
+
+struct RenderStage {
+  std::string name;
+  double seconds;
+};
+
+struct RenderReport {
+  double seconds = 0;               // tracing and shading alone
+  uint64_t rays = 0;                // camera, shadow and continuing rays
+  double samples_per_second = 0;    // pixels x spp / seconds
+  std::optional<double> ray_share;  // seconds of the recorded rays alone / seconds of their tiles
+  std::vector<RenderStage> stages;  // in order; "render" is `seconds`
+  uint64_t nan_samples = 0;         // light directions left out because they were not finite
+  uint64_t spp = 0;                 // light directions a pixel that were done
+  uint64_t passes = 0;
+  double noise = 0;  // estimated RMS error of a pixel's luminance / mean luminance; 0 while unknown
+};
+
+}  // namespace velour

@@ -1,0 +1,47 @@
+// Cameras.
+#pragma once
+
+#include "scene/affine.h"
+#include "scene/embree_scene.h"
+
+namespace velour {
+
+/// Axis-aligned box; empty while low > high.
+struct Bounds {
+  Vec3 low{std::numeric_limits<float>::infinity()};
+  Vec3 high{-std::numeric_limits<float>::infinity()};
+
+  bool empty() const { return !(low.x <= high.x); }
+  void add(const Vec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  Vec3 center() const { return 0.5f * (low + high); }
+  /// Radius of the sphere around center() that holds the box; 0 when empty.
+  float radius() const { return empty() ? 0.0f : 0.5f * glm::length(high - low); }
+};
+
+/// Looks along its -z with +y up.
+struct Camera {
+  enum class Type : int { perspective = 0, orthographic = 1 };  // values of velour.h
+  Type type = Type::perspective;
+  Affine camera_to_world;                        // rigid
+  float window[4] = {-0.5f, 0.5f, -0.5f, 0.5f};  // left, right, bottom, top; at distance 1, or in metres
+  float clip_start = 0.0f, clip_end = std::numeric_limits<float>::infinity();  // along -z
+
+  /// Ray through `picture`, (0, 0) the lower left corner of the picture and (1, 1) the upper right. World,
+  /// unit.
+  Ray ray(const Vec2& picture) const;
+  /// Distance of `world` from the camera along its line of sight: what a depth pass holds.
+  float depth(const Vec3& world) const;
+
+  /// Perspective camera at `eye`; `fov` is the vertical angle of view, `aspect` width / height. Up is world
+  /// `up`.
+  static Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov, float aspect);
+  /// Frames `bounds` to the picture (its height, unless the box is wider than the picture), with a vertical
+  /// angle of view of 40 degrees. `up_axis` 2: up is +z, seen along +y (Blender's front view); 1: up is +y,
+  /// seen along -z.
+  static Camera framing(const Bounds& bounds, float aspect, int up_axis);
+};
+
+}  // namespace velour

@@ -1,0 +1,56 @@
+// What surrounds the scene: one colour, or an equirectangular image. Look-up, sampling and density belong
+// together.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "sphere/direction_batch.h"
+
+namespace velour {
+
+/// Borrowed pixels, row 0 at the top (+z), 3 or 4 channels interleaved (the 4th is not used) or 1 (grey).
+struct EquirectangularPixels {
+  int width = 0, height = 0, channels = 0;
+  std::span<const float> values;
+};
+
+/// Radiance from every direction of the world (+z up). Immutable; copies share the image.
+///
+/// Image coordinates are Blender's: u = 1/2 - atan2(y, x) / (2 pi) from the left, v = 1/2 + asin(z) / pi from
+/// the bottom. Radiance is bilinear between texel centres (u wraps, v ends at the first and last row). The
+/// density of `sample` is the bilinear function whose nodes are luminance(L) sin(theta) at the texel centres,
+/// and 0 at the poles.
+class Environment {
+ public:
+  /// Black.
+  Environment() = default;
+  /// Negative and non-finite channels count as 0.
+  static Environment constant(const Rgb& radiance);
+  /// Radiance is `strength` times the image. `world_to_image` turns a world direction before the look-up.
+  /// Throws Error(bad_data) on an empty image. Negative and non-finite pixels count as 0.
+  static Environment image(const EquirectangularPixels& pixels, float strength, const Mat3& world_to_image);
+  /// The same from a file that `image/` reads.
+  static Environment load(const std::string& path, float strength, const Mat3& world_to_image);
+
+  /// Radiance and density (per solid angle, of `sample`) of each direction of `world`. The batch is padded.
+  void look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const;
+  Rgb radiance(const Vec3& world) const;
+  /// World direction with the density of `look_up`; not to be called when black().
+  Vec3 sample(const Vec2& u) const;
+  float pdf(const Vec3& world) const;
+
+  bool black() const { return !(mean_luminance_ > 0.0f); }
+  /// Over the sphere.
+  float mean_luminance() const { return mean_luminance_; }
+  uint64_t bytes() const;
+
+ private:
+  struct Image;
+  std::shared_ptr<const Image> image_;
+  Rgb constant_{0.0f};
+  float mean_luminance_ = 0.0f;
+};
+
+}  // namespace velour

@@ -1,0 +1,56 @@
+// A triangle mesh in its own (object) space.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sphere/vec.h"
+
+namespace velour {
+
+/// Borrowed arrays that a Mesh is built from. Empty means: not given.
+struct MeshArrays {
+  std::span<const Vec3> positions;
+  std::span<const glm::uvec3> triangles;
+  std::span<const Vec3> corner_normals;      // 3 a triangle; any length but zero
+  std::span<const Vec2> corner_uvs;          // 3 a triangle
+  std::span<const uint32_t> material_slots;  // 1 a triangle; none: slot 0
+  std::span<const uint8_t> smooth;           // 1 a triangle; used without corner_normals; none: all smooth
+};
+
+/// Immutable. Triangles that a ray cannot hit reliably - a corner that is not finite or out of reach, no area
+/// - are left out. Zero or non-finite shading normals are replaced by the triangle's own.
+class Mesh {
+ public:
+  /// Copies. Throws Error(invalid_argument) when lengths disagree or a triangle names a vertex that is not
+  /// there.
+  explicit Mesh(const MeshArrays& arrays);
+
+  std::span<const Vec3> positions() const { return positions_; }
+  std::span<const glm::uvec3> triangles() const { return triangles_; }
+  /// How many triangles of the input were left out.
+  uint32_t dropped() const { return dropped_; }
+  bool has_uvs() const { return !uvs_.empty(); }
+
+  /// At barycentric weights (u, v) of corners 1 and 2. Object space; not normalised.
+  Vec3 position(uint32_t triangle, const Vec2& uv) const;
+  Vec3 shading_normal(uint32_t triangle, const Vec2& uv) const;
+  /// d position / d (first texture coordinate); zero without uvs or where they are degenerate.
+  Vec3 tangent(uint32_t triangle) const;
+  uint32_t material_slot(uint32_t triangle) const { return slots_.empty() ? 0 : slots_[triangle]; }
+  uint64_t bytes() const;
+
+ private:
+  void keep_good_triangles(const MeshArrays& arrays);
+  void compute_normals(std::span<const uint8_t> smooth);
+
+  std::vector<Vec3> positions_;
+  std::vector<glm::uvec3> triangles_;
+  std::vector<Vec3> normals_;  // 3 a triangle
+  std::vector<Vec2> uvs_;      // 3 a triangle, or none
+  std::vector<uint32_t> slots_;
+  uint32_t dropped_ = 0;
+};
+
+}  // namespace velour

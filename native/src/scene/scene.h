@@ -1,0 +1,103 @@
+// Everything that a picture is made of, as plain arrays.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/camera.h"
+#include "scene/embree_scene.h"
+#include "scene/environment.h"
+#include "scene/light.h"
+#include "scene/mesh.h"
+
+namespace velour {
+
+class Material;
+
+/// What a material slot points to.
+struct SurfaceMaterial {
+  std::shared_ptr<const Material> material;
+  Rgb emission{0.0f};  // radiance of both sides, working space
+  bool rec709_colors =
+      true;  // f is Rec. 709 (measured) and is taken to the working space; false: already there
+};
+
+/// A hit, resolved to what shading needs. World space.
+struct SurfacePoint {
+  Vec3 position;
+  Vec3 geometric_normal;  // unit, towards the mesh's front
+  Vec3 shading_normal;    // unit, interpolated, towards the mesh's front
+  Vec3 tangent;           // along the first texture coordinate, not normalised; zero when there is none
+  float error;            // bound of |position - exact|, per coordinate
+  uint32_t material;
+};
+
+struct SceneInfo {
+  uint64_t triangles = 0;  // over all instances
+  uint64_t instances = 0, meshes = 0, lights = 0, materials = 0;
+  uint64_t bytes = 0;  // hierarchy, meshes, environment
+  double bvh_seconds = 0;
+  std::vector<std::string> warnings;
+};
+
+/// Fill, commit, render. Every change after commit() needs another commit(). Reading a committed scene is
+/// thread-safe.
+class Scene {
+ public:
+  /// These return the number of what was added, counted from 0. Arguments that name missing things throw
+  /// Error(invalid_argument).
+  uint32_t add_mesh(Mesh mesh);
+  uint32_t add_material(SurfaceMaterial material);
+  /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry.
+  uint32_t add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials);
+  uint32_t add_light(const Light& light);
+  void set_environment(Environment environment);
+  void set_camera(const Camera& camera);
+  /// Camera::framing of all instances.
+  void frame_camera(float aspect, int up_axis);
+  /// Takes Rec. 709 colours to the space of all other colours of the scene and of the film.
+  void set_working_space(const Mat3& rec709_to_working);
+
+  /// Checks the scene and builds the hierarchy with at most `threads` threads (0: all).
+  void commit(int threads = 0);
+  bool committed() const { return rays_ != nullptr; }
+
+  const EmbreeScene& rays() const { return *rays_; }
+  SurfacePoint surface(const Hit& hit) const;
+
+  const Camera& camera() const { return camera_; }
+  const Environment& environment() const { return environment_; }
+  const std::vector<Light>& lights() const { return lights_; }
+  const std::vector<SurfaceMaterial>& materials() const { return materials_; }
+  /// Nothing when Rec. 709 is the working space.
+  const std::optional<Mat3>& rec709_to_working() const { return rec709_to_working_; }
+  /// Of all instances, as committed.
+  const Bounds& bounds() const { return bounds_; }
+  const SceneInfo& info() const { return info_; }
+
+ private:
+  struct Instance {
+    uint32_t mesh;
+    Affine object_to_world;
+    Mat3 normal_to_world;
+    std::vector<uint32_t> materials;
+  };
+  void changed();
+  Bounds bounds_of_instances() const;
+  SceneInfo count() const;
+
+  std::vector<Mesh> meshes_;
+  std::vector<Instance> instances_;
+  std::vector<SurfaceMaterial> materials_;
+  std::vector<Light> lights_;
+  Environment environment_;
+  Camera camera_;
+  std::optional<Mat3> rec709_to_working_;
+  std::unique_ptr<EmbreeScene> rays_;
+  Bounds bounds_;
+  SceneInfo info_;
+};
+
+}  // namespace velour
