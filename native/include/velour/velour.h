@@ -209,7 +209,7 @@ VLR_API vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint3
 VLR_API vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model, uint32_t neighbors,
                                                 uint32_t* material);
 /* Reference mode: f comes from the raw measurement. `proposal` (may be NULL) is the model whose lobes draw samples;
- * without one a coarse model is fitted here when a strategy needs it. */
+ * without one a coarse model is fitted here, which takes about a second. */
 VLR_API vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,
                                                       const vlr_model* proposal, uint32_t neighbors,
                                                       uint32_t* material);

@@ -24,8 +24,8 @@ namespace {
 
 FitOptions converted(const vlr_fit_options& given) {
   if (given.kernel != VLR_KERNEL_GAUSSIAN && given.kernel != VLR_KERNEL_ABEL_POISSON) {
-    throw Error(Status::invalid_argument, "vlr_fit_options.kernel is " + std::to_string(given.kernel) +
-                                              ", not a VLR_KERNEL value.");
+    throw Error(Status::invalid_argument,
+                "vlr_fit_options.kernel is " + std::to_string(given.kernel) + ", not a VLR_KERNEL value.");
   }
   FitOptions options;
   options.kernel = static_cast<Kernel>(given.kernel);

@@ -26,17 +26,19 @@ vlr_status guard(const Body& body) {
 /// Throws Error(invalid_argument) when `pointer` is null.
 void require(const void* pointer, const char* argument);
 
-/// Reads an options struct of any earlier size: fields that the caller does not know keep their defaults. `initialize`
-/// is the public vlr_*_init of the struct. NULL gives the defaults. A larger struct comes from a newer header: refused.
+/// Reads an options struct of any earlier size: fields that the caller does not know keep their defaults.
+/// `initialize` is the public vlr_*_init of the struct. NULL gives the defaults. A larger struct comes from a
+/// newer header: refused.
 template <typename Options>
 Options read_options(const Options* given, void (*initialize)(Options*), const char* name) {
   Options options;
   initialize(&options);
   if (!given) return options;
   if (given->struct_size < sizeof(uint32_t) || given->struct_size > sizeof(Options)) {
-    throw Error(Status::version_mismatch, std::string(name) + ".struct_size is " + std::to_string(given->struct_size) +
-                                              ", this library knows " + std::to_string(sizeof(Options)) +
-                                              "; initialise the struct with its _init function, or update the library.");
+    throw Error(Status::version_mismatch,
+                std::string(name) + ".struct_size is " + std::to_string(given->struct_size) + ", this library knows " +
+                    std::to_string(sizeof(Options)) +
+                    "; initialise the struct with its _init function, or update the library.");
   }
   std::memcpy(&options, given, given->struct_size);
   options.struct_size = sizeof(Options);

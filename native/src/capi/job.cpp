@@ -63,12 +63,11 @@ vlr_status vlr_job_cancel(vlr_job* job) {
   });
 }
 
-vlr_status vlr_job_wait(vlr_job* job, double timeout_seconds, vlr_progress_fn progress, void* user,
-                        int32_t* finished) {
+vlr_status vlr_job_wait(vlr_job* job, double timeout_seconds, vlr_progress_fn progress, void* user, int32_t* finished) {
   return guard([&] {
     require(job, "job");
-    const bool ended = progress ? wait_with_callback(*job, timeout_seconds, progress, user)
-                                : job->job.wait_for(timeout_seconds);
+    const bool ended =
+        progress ? wait_with_callback(*job, timeout_seconds, progress, user) : job->job.wait_for(timeout_seconds);
     if (finished) *finished = ended ? 1 : 0;
     if (ended) job->job.rethrow();
   });

@@ -2,7 +2,7 @@
 #include "capi/reports.h"
 #include "job/job.h"
 #include "scene/embree_scene.h"
-#include "srbf/lobe_mixture.h"
+#include "srbf/simd_target.h"
 #include "velour/version.h"
 
 using namespace velour;

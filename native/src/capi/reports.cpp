@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/embree_scene.h"
-#include "srbf/lobe_mixture.h"
+#include "srbf/simd_target.h"
 #include "velour/version.h"
 
 namespace velour::capi {
@@ -14,7 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// nlohmann writes NaN as null by itself; bytes that are not UTF-8 (file names) are replaced instead of thrown on.
+/// nlohmann writes NaN as null by itself; bytes that are not UTF-8 (file names) are replaced instead of
+/// thrown on.
 std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json by_view_angle(const ErrorByViewAngle& errors) {
@@ -77,17 +78,17 @@ std::string model_json(const Model& model, uint64_t file_bytes) {
                {"views", brdf.views.size()},
                {"max_lobes_per_view", brdf.max_lobes_per_view()}};
   json.update(lobe_counts(model, file_bytes));
-  json.update(Json{{"relative_l2", fit.relative_l2},
-                   {"by_view_angle", by_view_angle(fit.by_view_angle)},
-                   {"albedo_by_view_angle", by_view_angle(fit.albedo_by_view_angle)},
-                   {"albedo_max", fit.albedo_max},
-                   {"tolerance", fit.tolerance},
-                   {"seconds", fit.seconds},
-                   {"seed", fit.seed},
-                   {"all_data", fit.all_data},
-                   {"warnings", fit.warnings},
-                   {"source",
-                    {{"name", model.source.name}, {"format", model.source.format}, {"sha256", model.source.sha256}}}});
+  json.update(Json{
+      {"relative_l2", fit.relative_l2},
+      {"by_view_angle", by_view_angle(fit.by_view_angle)},
+      {"albedo_by_view_angle", by_view_angle(fit.albedo_by_view_angle)},
+      {"albedo_max", fit.albedo_max},
+      {"tolerance", fit.tolerance},
+      {"seconds", fit.seconds},
+      {"seed", fit.seed},
+      {"all_data", fit.all_data},
+      {"warnings", fit.warnings},
+      {"source", {{"name", model.source.name}, {"format", model.source.format}, {"sha256", model.source.sha256}}}});
   return text(json);
 }
 
@@ -117,6 +118,32 @@ std::string microsurface_json(const MicrosurfaceReport& report) {
                {"resolution_degrees", report.resolution_degrees},
                {"relative_standard_error", report.relative_standard_error},
                {"albedo", report.albedo}});
+}
+
+std::string scene_json(const Scene& scene) {
+  const SceneInfo& info = scene.info();
+  return text({{"triangles", info.triangles},
+               {"instances", info.instances},
+               {"meshes", info.meshes},
+               {"lights", info.lights},
+               {"materials", info.materials},
+               {"bytes", info.bytes},
+               {"bvh_seconds", info.bvh_seconds},
+               {"warnings", info.warnings}});
+}
+
+std::string render_json(const RenderReport& report) {
+  Json stages = Json::object();
+  for (const RenderStage& stage : report.stages) stages[stage.name] = stage.seconds;
+  return text({{"seconds", report.seconds},
+               {"rays", report.rays},
+               {"samples_per_second", report.samples_per_second},
+               {"ray_share", report.ray_share ? Json(*report.ray_share) : Json(nullptr)},
+               {"stages", stages},
+               {"nan_samples", report.nan_samples},
+               {"spp", report.spp},
+               {"passes", report.passes},
+               {"noise", report.noise}});
 }
 
 }  // namespace velour::capi

@@ -1,0 +1,87 @@
+#include "render/render.h"
+
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "capi/reports.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+void vlr_render_options_init(vlr_render_options* options) {
+  const RenderOptions defaults;
+  *options = {};
+  options->struct_size = sizeof(vlr_render_options);
+  options->width = static_cast<uint32_t>(defaults.width);
+  options->height = static_cast<uint32_t>(defaults.height);
+  options->spp = static_cast<uint32_t>(defaults.spp);
+  options->split = static_cast<uint32_t>(defaults.split);
+  options->bounces = static_cast<uint32_t>(defaults.bounces);
+  options->strategy = static_cast<int32_t>(defaults.strategy);
+}
+
+namespace {
+
+RenderOptions converted(const vlr_render_options& given) {
+  if (given.strategy < VLR_STRATEGY_UNIFORM || given.strategy > VLR_STRATEGY_MIS) {
+    throw Error(Status::invalid_argument,
+                "vlr_render_options.strategy is " + std::to_string(given.strategy) + ", not a VLR_STRATEGY value.");
+  }
+  constexpr uint32_t kLargest = 65536;
+  if (given.width == 0 || given.height == 0 || given.width > kLargest || given.height > kLargest) {
+    throw Error(Status::invalid_argument,
+                "A film of " + std::to_string(given.width) + " x " + std::to_string(given.height) +
+                    " pixels cannot be made; sides go from 1 to " + std::to_string(kLargest) + ".");
+  }
+  RenderOptions options;
+  options.width = static_cast<int>(given.width);
+  options.height = static_cast<int>(given.height);
+  options.spp = static_cast<int>(given.spp);
+  options.split = static_cast<int>(given.split);
+  options.bounces = static_cast<int>(given.bounces);
+  options.strategy = static_cast<Strategy>(given.strategy);
+  options.threads = static_cast<int>(given.threads);
+  options.seed = given.seed;
+  options.time_limit = given.time_limit;
+  options.transparent = given.transparent != 0;
+  options.measure_ray_share = given.measure_ray_share != 0;
+  return options;
+}
+
+}  // namespace
+
+vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out) {
+  return guard([&] {
+    require(scene, "scene");
+    require(out, "out");
+    if (!scene->scene->committed()) {
+      throw Error(Status::invalid_state, "The scene is not committed; call vlr_scene_commit first.");
+    }
+    const RenderOptions render_options =
+        converted(read_options(options, vlr_render_options_init, "vlr_render_options"));
+    auto film = std::make_shared<Film>(render_options.width, render_options.height);
+    auto output = std::make_shared<JobOutput>();
+    output->film = film;
+    const auto task = [output, film, render_options,
+                       source = std::shared_ptr<const Scene>(scene->scene)](Progress& progress) {
+      output->set(render_json(render(*source, render_options, *film, progress)));
+    };
+    *out = new vlr_job(output, task);
+  });
+}
+
+vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels, uint64_t count) {
+  return guard([&] {
+    require(job, "job");
+    require(pass, "pass");
+    require(pixels, "pixels");
+    const auto film = job->output->film;
+    if (!film) throw Error(Status::invalid_state, "This job makes no picture.");
+    const uint64_t expected = static_cast<uint64_t>(film->width()) * static_cast<uint64_t>(film->height()) *
+                              static_cast<uint64_t>(Film::channels(pass));
+    if (count != expected) {
+      throw Error(Status::invalid_argument, std::string("Pass '") + pass + "' holds " + std::to_string(expected) +
+                                                " values, not " + std::to_string(count) + ".");
+    }
+    film->read_pass(pass, {pixels, static_cast<size_t>(count)});
+  });
+}

@@ -1,0 +1,299 @@
+#include "scene/scene.h"
+
+#include <span>
+
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "capi/reports.h"
+#include "fit/scattered_fit.h"
+#include "material/principled_material.h"
+#include "material/scattered_material.h"
+#include "model/model_file.h"
+#include "scene/obj_file.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+namespace {
+
+Rgb color_from(const float* c) { return {c[0], c[1], c[2]}; }
+
+Mat3 matrix_from_rows(const float* m) {
+  if (!m) return Mat3(1.0f);
+  return {m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]};
+}
+
+Affine affine_from(const float* m) {
+  Affine map;
+  std::copy(m, m + 12, map.m);
+  return map;
+}
+
+template <typename T>
+std::span<const T> array_of(const void* first, size_t count) {
+  return first ? std::span<const T>(static_cast<const T*>(first), count) : std::span<const T>();
+}
+
+MeshArrays arrays_of(const vlr_mesh_desc& desc) {
+  require(desc.positions, "vlr_mesh_desc.positions");
+  require(desc.triangles, "vlr_mesh_desc.triangles");
+  const size_t triangles = desc.triangle_count;
+  return {.positions = array_of<Vec3>(desc.positions, desc.vertex_count),
+          .triangles = array_of<glm::uvec3>(desc.triangles, triangles),
+          .corner_normals = array_of<Vec3>(desc.corner_normals, 3 * triangles),
+          .corner_uvs = array_of<Vec2>(desc.corner_uvs, 3 * triangles),
+          .material_slots = array_of<uint32_t>(desc.material_slots, triangles),
+          .smooth = array_of<uint8_t>(desc.smooth, triangles)};
+}
+
+void initialize(vlr_mesh_desc* desc) {
+  *desc = {};
+  desc->struct_size = sizeof(vlr_mesh_desc);
+}
+
+/// Lobes that draw samples for a raw measurement: speed depends on how well they fit, the picture does not, so a coarse
+/// fit of all data serves.
+std::shared_ptr<const ScatteredBrdf> coarse_proposal(const Measurement& measurement) {
+  FitOptions options;
+  options.max_lobes = 8;
+  options.tolerance = 0.05;
+  options.all_data = true;
+  Progress unwatched;
+  return std::make_shared<const ScatteredBrdf>(
+      std::get<ScatteredBrdf>(fit_scattered(measurement, options, unwatched).body));
+}
+
+std::shared_ptr<const ScatteredBrdf> proposal_of(const Measurement& measurement, const vlr_model* model) {
+  if (!model) return coarse_proposal(measurement);
+  // Shares ownership of the whole model.
+  return {model->model, &std::get<ScatteredBrdf>(model->model->body)};
+}
+
+Light converted(const vlr_light_desc& desc) {
+  if (desc.type < VLR_LIGHT_SUN || desc.type > VLR_LIGHT_DISK) {
+    throw Error(Status::invalid_argument,
+                "vlr_light_desc.type is " + std::to_string(desc.type) + ", not a VLR_LIGHT value.");
+  }
+  return {.type = static_cast<Light::Type>(desc.type),
+          .color = color_from(desc.color),
+          .light_to_world = affine_from(desc.light_to_world),
+          .size = {desc.size[0], desc.size[1]},
+          .angle = desc.angle,
+          .casts_shadow = desc.casts_shadow != 0};
+}
+
+}  // namespace
+
+vlr_status vlr_scene_create(vlr_scene** out) {
+  return guard([&] {
+    require(out, "out");
+    embree_self_test();
+    *out = new vlr_scene{std::make_shared<Scene>(), {}};
+  });
+}
+
+void vlr_scene_free(vlr_scene* scene) { delete scene; }
+
+vlr_status vlr_scene_set_working_space(vlr_scene* scene, const float* rec709_to_working) {
+  return guard([&] {
+    require(scene, "scene");
+    require(rec709_to_working, "rec709_to_working");
+    scene->scene->set_working_space(matrix_from_rows(rec709_to_working));
+  });
+}
+
+vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint32_t* mesh, uint32_t* dropped) {
+  return guard([&] {
+    require(scene, "scene");
+    require(desc, "desc");
+    require(mesh, "mesh");
+    Mesh added(arrays_of(read_options(desc, initialize, "vlr_mesh_desc")));
+    if (dropped) *dropped = added.dropped();
+    *mesh = scene->scene->add_mesh(std::move(added));
+  });
+}
+
+vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint32_t* mesh) {
+  return guard([&] {
+    require(scene, "scene");
+    require(path, "path");
+    require(mesh, "mesh");
+    *mesh = scene->scene->add_mesh(read_obj(path));
+  });
+}
+
+vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model, uint32_t neighbors,
+                                        uint32_t* material) {
+  return guard([&] {
+    require(scene, "scene");
+    require(model, "model");
+    require(material, "material");
+    *material = scene->scene->add_material({.material = make_material(model->model, static_cast<int>(neighbors))});
+  });
+}
+
+vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,
+                                              const vlr_model* proposal, uint32_t neighbors, uint32_t* material) {
+  return guard([&] {
+    require(scene, "scene");
+    require(measurement, "measurement");
+    require(material, "material");
+    const auto lobes = proposal_of(*measurement->measurement, proposal);
+    *material = scene->scene->add_material(
+        {.material = make_measured_material(measurement->measurement, lobes, static_cast<int>(neighbors))});
+  });
+}
+
+void vlr_principled_desc_init(vlr_principled_desc* desc) {
+  const PrincipledParameters defaults;
+  *desc = {};
+  desc->struct_size = sizeof(vlr_principled_desc);
+  for (int i = 0; i < 3; ++i) desc->base_color[i] = defaults.base_color[i];
+  desc->metallic = defaults.metallic;
+  desc->roughness = defaults.roughness;
+  desc->specular = defaults.specular;
+}
+
+vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc, uint32_t* material) {
+  return guard([&] {
+    require(scene, "scene");
+    require(material, "material");
+    const auto given = read_options(desc, vlr_principled_desc_init, "vlr_principled_desc");
+    const PrincipledParameters parameters{.base_color = color_from(given.base_color),
+                                          .metallic = given.metallic,
+                                          .roughness = given.roughness,
+                                          .specular = given.specular};
+    *material = scene->scene->add_material({.material = make_principled_material(parameters),
+                                            .emission = color_from(given.emission),
+                                            .rec709_colors = false});
+  });
+}
+
+vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
+                                  const uint32_t* materials, uint32_t count) {
+  return guard([&] {
+    require(scene, "scene");
+    require(object_to_world, "object_to_world");
+    require(materials, "materials");
+    scene->scene->add_instance(mesh, affine_from(object_to_world), {materials, materials + count});
+  });
+}
+
+void vlr_light_desc_init(vlr_light_desc* desc) {
+  const Light defaults;
+  *desc = {};
+  desc->struct_size = sizeof(vlr_light_desc);
+  desc->type = static_cast<int32_t>(defaults.type);
+  for (int i = 0; i < 3; ++i) desc->color[i] = defaults.color[i];
+  std::copy(std::begin(defaults.light_to_world.m), std::end(defaults.light_to_world.m), desc->light_to_world);
+  desc->size[0] = defaults.size.x;
+  desc->size[1] = defaults.size.y;
+  desc->angle = defaults.angle;
+  desc->casts_shadow = defaults.casts_shadow ? 1 : 0;
+}
+
+vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc) {
+  return guard([&] {
+    require(scene, "scene");
+    require(desc, "desc");
+    scene->scene->add_light(converted(read_options(desc, vlr_light_desc_init, "vlr_light_desc")));
+  });
+}
+
+vlr_status vlr_scene_set_world_color(vlr_scene* scene, const float* color) {
+  return guard([&] {
+    require(scene, "scene");
+    require(color, "color");
+    scene->scene->set_environment(Environment::constant(color_from(color)));
+  });
+}
+
+vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, uint32_t height, uint32_t channels,
+                                      const float* pixels, float strength, const float* world_to_image) {
+  return guard([&] {
+    require(scene, "scene");
+    require(pixels, "pixels");
+    constexpr uint32_t kLargest = 65536;
+    if (width > kLargest || height > kLargest || channels > 4) {
+      throw Error(Status::invalid_argument, "A world image of " + std::to_string(width) + " x " +
+                                                std::to_string(height) + " pixels and " + std::to_string(channels) +
+                                                " channels cannot be used; sides go to 65536, channels to 4.");
+    }
+    const size_t values = size_t{width} * height * channels;
+    scene->scene->set_environment(
+        Environment::image({static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels),
+                            std::span<const float>(pixels, values)},
+                           strength, matrix_from_rows(world_to_image)));
+  });
+}
+
+vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, float strength, const float* world_to_image) {
+  return guard([&] {
+    require(scene, "scene");
+    require(path, "path");
+    scene->scene->set_environment(Environment::load(path, strength, matrix_from_rows(world_to_image)));
+  });
+}
+
+void vlr_camera_desc_init(vlr_camera_desc* desc) {
+  const Camera defaults;
+  *desc = {};
+  desc->struct_size = sizeof(vlr_camera_desc);
+  desc->type = static_cast<int32_t>(defaults.type);
+  std::copy(std::begin(defaults.camera_to_world.m), std::end(defaults.camera_to_world.m), desc->camera_to_world);
+  std::copy(std::begin(defaults.window), std::end(defaults.window), desc->window);
+  desc->clip_start = defaults.clip_start;
+  desc->clip_end = defaults.clip_end;
+}
+
+vlr_status vlr_scene_set_camera(vlr_scene* scene, const vlr_camera_desc* desc) {
+  return guard([&] {
+    require(scene, "scene");
+    require(desc, "desc");
+    const auto given = read_options(desc, vlr_camera_desc_init, "vlr_camera_desc");
+    if (given.type != VLR_CAMERA_PERSPECTIVE && given.type != VLR_CAMERA_ORTHOGRAPHIC) {
+      throw Error(Status::invalid_argument,
+                  "vlr_camera_desc.type is " + std::to_string(given.type) + ", not a VLR_CAMERA value.");
+    }
+    Camera camera{.type = static_cast<Camera::Type>(given.type),
+                  .camera_to_world = affine_from(given.camera_to_world),
+                  .clip_start = given.clip_start,
+                  .clip_end = given.clip_end};
+    std::copy(std::begin(given.window), std::end(given.window), camera.window);
+    scene->scene->set_camera(camera);
+  });
+}
+
+vlr_status vlr_scene_look_at(vlr_scene* scene, const float* eye, const float* target, float fov, float aspect) {
+  return guard([&] {
+    require(scene, "scene");
+    require(eye, "eye");
+    require(target, "target");
+    const Vec3 up(0, 0, 1);
+    scene->scene->set_camera(
+        Camera::look_at({eye[0], eye[1], eye[2]}, {target[0], target[1], target[2]}, up, fov, aspect));
+  });
+}
+
+vlr_status vlr_scene_frame_camera(vlr_scene* scene, float aspect, uint32_t up_axis) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->frame_camera(aspect, static_cast<int>(up_axis));
+  });
+}
+
+vlr_status vlr_scene_commit(vlr_scene* scene) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->commit();
+  });
+}
+
+vlr_status vlr_scene_info_json(vlr_scene* scene, const char** json) {
+  return guard([&] {
+    require(scene, "scene");
+    require(json, "json");
+    scene->info = scene_json(*scene->scene);
+    *json = scene->info.c_str();
+  });
+}

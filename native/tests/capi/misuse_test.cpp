@@ -1,0 +1,92 @@
+// Every wrong call answers with the right status and a sentence, and changes nothing.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <thread>
+
+#include "velour/velour.h"
+
+namespace {
+
+#define EXPECT_STATUS(expected, call)                    \
+  do {                                                   \
+    EXPECT_EQ(expected, (call)) << vlr_last_error();     \
+    EXPECT_GT(std::string(vlr_last_error()).size(), 5u); \
+  } while (false)
+
+TEST(Misuse, NullArgumentsAreNamed) {
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_measurement_load(nullptr, nullptr));
+  EXPECT_NE(std::string(vlr_last_error()).find("path"), std::string::npos);
+  vlr_measurement* measurement = nullptr;
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_measurement_load("x", nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_measurement_info_json(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_measurement_eval(measurement, nullptr, 1, nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_load(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_load_memory(nullptr, 0, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_save(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_start(nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_wait(nullptr, 0, nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_create(nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_commit(nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_render_create_job(nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_fit_create_job(nullptr, nullptr, nullptr));
+}
+
+TEST(Misuse, FreeingNothingIsFine) {
+  vlr_measurement_free(nullptr);
+  vlr_model_free(nullptr);
+  vlr_scene_free(nullptr);
+  vlr_job_free(nullptr);
+}
+
+TEST(Misuse, MissingFilesAreNamed) {
+  vlr_measurement* measurement = nullptr;
+  EXPECT_STATUS(VLR_IO, vlr_measurement_load("/nowhere/at all.binary", &measurement));
+  EXPECT_NE(std::string(vlr_last_error()).find("/nowhere/at all.binary"), std::string::npos);
+  EXPECT_EQ(measurement, nullptr);
+  vlr_model* model = nullptr;
+  EXPECT_STATUS(VLR_IO, vlr_model_load("/nowhere/x.velour", &model));
+  const char* json = nullptr;
+  EXPECT_STATUS(VLR_IO, vlr_file_info_json("/nowhere/x", &json));
+}
+
+TEST(Misuse, RubbishInMemoryIsNotAModel) {
+  vlr_model* model = nullptr;
+  const std::string rubbish(1000, 'x');
+  EXPECT_STATUS(VLR_BAD_DATA, vlr_model_load_memory(rubbish.data(), rubbish.size(), "packed.velour", &model));
+  EXPECT_NE(std::string(vlr_last_error()).find("packed.velour"), std::string::npos);
+  EXPECT_EQ(model, nullptr);
+}
+
+TEST(Misuse, ErrorsBelongToTheirThread) {
+  vlr_model* model = nullptr;
+  EXPECT_STATUS(VLR_IO, vlr_model_load("/nowhere/mine.velour", &model));
+  std::thread([] { EXPECT_STREQ(vlr_last_error(), ""); }).join();
+  EXPECT_NE(std::string(vlr_last_error()).find("mine"), std::string::npos);
+}
+
+TEST(Misuse, StructsOfOtherSizesAreRefused) {
+  vlr_scene* scene = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_scene_create(&scene));
+  vlr_light_desc light;
+  vlr_light_desc_init(&light);
+  light.struct_size += 4;
+  EXPECT_STATUS(VLR_VERSION_MISMATCH, vlr_scene_add_light(scene, &light));
+  light.struct_size = 0;
+  EXPECT_STATUS(VLR_VERSION_MISMATCH, vlr_scene_add_light(scene, &light));
+  vlr_scene_free(scene);
+}
+
+TEST(Misuse, AnUnknownInstructionSetIsRefused) {
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_select_simd("ENIAC"));
+  EXPECT_EQ(VLR_OK, vlr_select_simd("auto"));
+}
+
+TEST(Misuse, PicturesAreChecked) {
+  const float pixel[4] = {0, 0, 0, 1};
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_image_write("x.png", 0, 1, 4, pixel));
+  double rmse = 0, relmse = 0;
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_image_compare(0, 4, pixel, pixel, &rmse, &relmse));
+}
+
+}  // namespace

@@ -1,0 +1,122 @@
+// Measurement -> fit -> model file -> model, through the C API alone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "support/test_data.h"
+#include "velour/velour.h"
+
+namespace velour::test {
+namespace {
+
+/// A MERL file of f = (0.1, 0.2, 0.3) + a cosine-power highlight about the normal in theta_h.
+std::string write_merl_file(const std::filesystem::path& folder) {
+  constexpr int kThetaH = 90, kThetaD = 90, kPhiD = 180;
+  const double scale[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};
+  std::vector<double> plane(size_t{kThetaH} * kThetaD * kPhiD);
+  const std::string path = folder / "synthetic.binary";
+  std::ofstream file(path, std::ios::binary);
+  const int32_t header[3] = {kThetaH, kThetaD, kPhiD};
+  file.write(reinterpret_cast<const char*>(header), sizeof header);
+  for (int c = 0; c < 3; ++c) {
+    size_t at = 0;
+    for (int i = 0; i < kThetaH; ++i) {
+      const double theta_h = i * i / 90.0 * 3.14159265358979 / 180;
+      const double f = 0.1 * (c + 1) + 2.0 * std::pow(std::cos(theta_h), 60.0);
+      for (int k = 0; k < kThetaD * kPhiD; ++k) plane[at++] = f / scale[c];
+    }
+    file.write(reinterpret_cast<const char*>(plane.data()),
+               static_cast<std::streamsize>(plane.size() * sizeof(double)));
+  }
+  return path;
+}
+
+vlr_model* fitted(const vlr_measurement* measurement) {
+  vlr_fit_options options;
+  vlr_fit_options_init(&options);
+  options.max_lobes = 6;
+  options.tolerance = 0.05;
+  vlr_job* job = nullptr;
+  EXPECT_EQ(VLR_OK, vlr_fit_create_job(measurement, &options, &job)) << vlr_last_error();
+  EXPECT_EQ(VLR_OK, vlr_job_start(job));
+  EXPECT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
+  vlr_model* model = nullptr;
+  EXPECT_EQ(VLR_OK, vlr_job_result_model(job, &model)) << vlr_last_error();
+  vlr_job_free(job);
+  return model;
+}
+
+class RoundTrip : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = scratch_folder();
+    ASSERT_EQ(VLR_OK, vlr_measurement_load(write_merl_file(folder_).c_str(), &measurement_)) << vlr_last_error();
+    model_ = fitted(measurement_);
+    ASSERT_NE(model_, nullptr);
+  }
+  void TearDown() override {
+    vlr_model_free(model_);
+    vlr_measurement_free(measurement_);
+  }
+  std::filesystem::path folder_;
+  vlr_measurement* measurement_ = nullptr;
+  vlr_model* model_ = nullptr;
+};
+
+TEST_F(RoundTrip, TheModelIsCloseToTheMeasurement) {
+  const float wv[3] = {0.5f, 0, std::sqrt(0.75f)}, wl[3] = {-0.4f, 0.1f, std::sqrt(1 - 0.17f)};
+  float raw[3], model[3];
+  uint8_t valid = 0;
+  ASSERT_EQ(VLR_OK, vlr_measurement_eval(measurement_, wv, 1, wl, raw, &valid));
+  ASSERT_EQ(VLR_OK, vlr_model_eval(model_, wv, 1, wl, model, nullptr));
+  EXPECT_EQ(valid, 1);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(model[c], raw[c], 0.15f * raw[c]);
+}
+
+TEST_F(RoundTrip, FileAndMemoryGiveTheSameModel) {
+  const std::string path = folder_ / "model.velour";
+  ASSERT_EQ(VLR_OK, vlr_model_save(model_, path.c_str())) << vlr_last_error();
+  const void* bytes = nullptr;
+  uint64_t size = 0;
+  ASSERT_EQ(VLR_OK, vlr_model_bytes(model_, &bytes, &size));
+  EXPECT_EQ(size, std::filesystem::file_size(path));
+  vlr_model *from_file = nullptr, *from_memory = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_model_load(path.c_str(), &from_file)) << vlr_last_error();
+  ASSERT_EQ(VLR_OK, vlr_model_load_memory(bytes, size, "memory", &from_memory)) << vlr_last_error();
+  const float wv[3] = {0.6f, 0, 0.8f}, wl[3] = {-0.6f, 0, 0.8f};
+  float a[3], b[3], c[3];
+  vlr_model_eval(model_, wv, 1, wl, a, nullptr);
+  vlr_model_eval(from_file, wv, 1, wl, b, nullptr);
+  vlr_model_eval(from_memory, wv, 1, wl, c, nullptr);
+  EXPECT_EQ(0, std::memcmp(a, b, sizeof a));
+  EXPECT_EQ(0, std::memcmp(a, c, sizeof a));
+  vlr_model_free(from_file);
+  vlr_model_free(from_memory);
+}
+
+TEST_F(RoundTrip, SamplesCarryTheDensityThatEvalReports) {
+  const float wv[3] = {0.6f, 0, 0.8f}, u[4] = {0.3f, 0.1f, 0.99f, 0.7f};
+  float wl[6], pdf[2], f[6], again[2];
+  ASSERT_EQ(VLR_OK, vlr_model_sample(model_, wv, 2, u, wl, pdf)) << vlr_last_error();
+  ASSERT_EQ(VLR_OK, vlr_model_eval(model_, wv, 2, wl, f, again));
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_GT(pdf[i], 0.0f);
+    EXPECT_EQ(pdf[i], again[i]);
+  }
+  const float below[3] = {0, 0, -1};
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_model_sample(model_, below, 2, u, wl, pdf));
+}
+
+TEST_F(RoundTrip, InfoNamesTheSource) {
+  const char* json = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_model_info_json(model_, &json));
+  EXPECT_NE(std::strstr(json, "\"name\":\"synthetic\""), nullptr) << json;
+  EXPECT_NE(std::strstr(json, "\"85\""), nullptr) << json;
+}
+
+}  // namespace
+}  // namespace velour::test
