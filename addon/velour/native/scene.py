@@ -52,8 +52,8 @@ class Scene(Handle):
         """The mesh's number, and how many degenerate or non-finite triangles were left out.
 
         float32: positions [v x 3] in metres, corner_normals [t x 3 x 3] (None: smooth vertex normals),
-        corner_uvs [t x 3 x 2]. uint32: triangles [t x 3], material_slots [t] (None: all 0). uint8: smooth [t],
-        used without corner_normals (None: all smooth). The library copies; nothing need stay alive.
+        corner_uvs [t x 3 x 2]. uint32: triangles [t x 3], material_slots [t] (None: all 0). uint8: smooth
+        [t], used without corner_normals (None: all smooth). The library copies; nothing need stay alive.
         """
         positions = checked("positions", positions, (None, 3))
         triangles = checked("triangles", triangles, (None, 3), np.uint32)
@@ -102,7 +102,7 @@ class Scene(Handle):
         )
 
     def add_principled_material(self, **values) -> int:
-        """base_color [3], metallic, roughness (alpha = its square), specular: 0..1; emission [3]: radiance."""
+        """base_color [3], metallic, roughness (alpha: its square), specular: 0..1; emission [3]: radiance."""
         desc = self._desc(table.PrincipledDesc, "vlr_principled_desc_init", values)
         return self._numbered("vlr_scene_add_principled_material", byref(desc))
 

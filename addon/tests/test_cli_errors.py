@@ -1,0 +1,205 @@
+"""Exit codes, sentences, hostile files, interruption."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+
+import inputs
+import numpy as np
+import pytest
+from command_line import command, environment, refused, velour
+
+RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-o", "o.exr"]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["paint"],
+        ["info"],
+        ["fit", "x"],
+        ["fit", "x", "-o", "y", "--tolerance", "nan"],
+        ["fit", "x", "-o", "y", "--max-lobes", "0"],
+        ["fit", "x", "-o", "y", "--kernel", "box"],
+        ["fit", "x", "-o", "y", "--tol", "0.1"],
+        [*RENDER, "--size", "640"],
+        [*RENDER, "--spp", "-1"],
+        [*RENDER, "--strategy", "luck"],
+        [*RENDER, "--camera", "1,2,3"],
+        [*RENDER, "--camera", "0,0,1,0,0,0,180"],
+    ],
+)
+def test_wrong_usage_is_2(arguments):
+    status, out, err = velour(*arguments)
+    assert (status, out) == (2, "")
+    assert "usage: velour" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["fit", "x", "-o", "y", "--model", "parametric"], "parametric"),
+        (["fit", "x", "-o", "y", "--for-scene", "s.json"], "--for-scene"),
+        ([*RENDER, "--heuristic", "power"], "power"),
+        ([*RENDER, "--sequence", "sobol"], "sobol"),
+        ([*RENDER, "--strategy", "product"], "product"),
+        ([*RENDER, "--share", "0.3"], "--share"),
+        ([*RENDER, "--noise", "0.1"], "--noise"),
+        ([*RENDER, "--texture-scale", "2"], "--texture-scale"),
+        (["capture", "weave", "-o", "f"], "weave"),
+        (["capture", "weave", "-o", "f", "--texels", "8"], "--texels"),
+        (["compress", "b", "-o", "f", "--method", "kcta"], "compress"),
+    ],
+)
+def test_what_later_versions_have_is_refused_with_a_sentence(arguments, word, tmp_path):
+    sentence = refused(*arguments)
+    assert word in sentence
+    assert "yet" in sentence
+
+
+def test_help_and_version():
+    assert velour("--version").out.startswith("velour 0.")
+    for verb in ("info", "fit", "compare", "render", "capture"):
+        assert "--json-file" in velour(verb, "--help").out
+
+
+def test_missing_library(tmp_path):
+    assert "libvelour" in refused("info", "x", VELOUR_LIBRARY=str(tmp_path / "libvelour.so"))
+
+
+def test_a_missing_file_is_named():
+    assert "/nowhere/wool.binary" in refused("info", "/nowhere/wool.binary")
+
+
+def _merl_header(*sizes) -> bytes:
+    return np.array(sizes, "<i4").tobytes()
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"\0",
+        os.urandom(4096),
+        b"\x76\x2f\x31\x01",
+        b"\x76\x2f\x31\x01" + b"\xff" * 4096,
+        b"tensor_file\0" + b"\xff" * 64,
+        _merl_header(90, 90, 180),
+        _merl_header(90, 90, 180) + b"\0" * 1000,
+        _merl_header(-1, 90, 180) + b"\0" * 1000,
+        _merl_header(2**30, 2**30, 2**30) + b"\0" * 1000,
+    ],
+    ids=lambda content: f"{len(content)} bytes {content[:4].hex()}",
+)
+@pytest.mark.parametrize("verb", ["info", "fit", "compare", "render"])
+def test_hostile_files_end_in_a_sentence_with_the_name(content, verb, tmp_path, mesh_file, world_file):
+    path = tmp_path / "hostile.dat"
+    path.write_bytes(content)
+    out = tmp_path / "out.exr"
+    arguments = {
+        "info": [path],
+        "fit": [path, "-o", out],
+        "compare": [path, path],
+        "render": ["--mesh", mesh_file, "--world", world_file, "--material", path, "-o", out],
+    }[verb]
+    assert "hostile.dat" in refused(verb, *arguments)
+    assert [p.name for p in tmp_path.iterdir()] == ["hostile.dat"]
+
+
+@pytest.mark.parametrize("option", ["--mesh", "--world", "--reference"])
+def test_hostile_scene_files(option, tmp_path, mesh_file, world_file, model_file):
+    path = tmp_path / "hostile.dat"
+    path.write_bytes(b"v nan nan\nf 1 2 99999999999\n" + os.urandom(999))
+    arguments = [
+        "--mesh",
+        mesh_file,
+        "--world",
+        world_file,
+        "--material",
+        model_file,
+        "-o",
+        tmp_path / "o.exr",
+    ]
+    assert "hostile.dat" in refused("render", *arguments, option, path)
+
+
+def test_a_model_that_was_cut_off(model_file, tmp_path):
+    whole = model_file.read_bytes()
+    path = tmp_path / "cut.velour"
+    for part in (0.1, 0.5, 0.9):
+        path.write_bytes(whole[: int(part * len(whole))])
+        assert "cut.velour" in refused("info", path)
+
+
+def test_reference_of_another_size(tmp_path, mesh_file, world_file, model_file):
+    arguments = [
+        "--mesh",
+        mesh_file,
+        "--world",
+        world_file,
+        "--material",
+        model_file,
+        "-o",
+        tmp_path / "o.exr",
+    ]
+    assert "32x16" in refused("render", *arguments, "--reference", world_file)
+
+
+def test_output_that_cannot_be_written_is_said_before_the_work(measurement_file, tmp_path):
+    start = time.monotonic()
+    assert "does not exist" in refused("fit", measurement_file, "-o", tmp_path / "no/such/folder/m.velour")
+    assert "is a folder" in refused("fit", measurement_file, "-o", tmp_path)
+    assert time.monotonic() - start < 5
+
+
+def test_a_failed_fit_leaves_the_old_model(tmp_path):
+    model = tmp_path / "m.velour"
+    model.write_text("old")
+    bad = tmp_path / "bad.binary"
+    bad.write_bytes(b"bad")
+    refused("fit", bad, "-o", model)
+    assert model.read_text() == "old"
+
+
+def _interrupted(arguments) -> tuple[int, str]:
+    process = subprocess.Popen(
+        command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment()
+    )
+    try:
+        time.sleep(2.5)
+        assert process.poll() is None, process.communicate()[1]
+        process.send_signal(signal.SIGINT)
+        start = time.monotonic()
+        _, err = process.communicate(timeout=30)
+        assert time.monotonic() - start < 3
+        return process.returncode, err
+    finally:
+        process.kill()
+
+
+def test_interrupted_render(tmp_path, mesh_file, world_file, model_file):
+    out = tmp_path / "o.exr"
+    arguments = ["render", "--mesh", mesh_file, "--world", world_file, "--material", model_file, "-o", out]
+    status, err = _interrupted([*arguments, "--size", "1024x1024", "--spp", 100000])
+    assert (status, err) == (130, "velour: Interrupted.\n")
+    assert not list(tmp_path.iterdir())
+
+
+def test_interrupted_fit(tmp_path):
+    sharp = inputs.write_merl(tmp_path / "sharp.binary", sharpness=5000.0, gloss=500.0)
+    out = tmp_path / "m.velour"
+    out.write_text("old")
+    status, _ = _interrupted(["fit", sharp, "-o", out, "--max-lobes", 64, "--tolerance", 1e-6])
+    assert status == 130
+    assert out.read_text() == "old"
+    assert {p.name for p in tmp_path.iterdir()} == {"m.velour", "sharp.binary"}
+
+
+def test_interrupted_capture(tmp_path):
+    status, _ = _interrupted(["capture", "--microsurface", "--rays", 10**12, "-o", tmp_path / "c.binary"])
+    assert status == 130
+    assert not list(tmp_path.iterdir())

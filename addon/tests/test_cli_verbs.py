@@ -1,0 +1,157 @@
+"""Every verb end to end: keys, files, forms of the report."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from command_line import velour
+from velour.native import Model, images
+
+FIT_KEYS = "lobes bytes parameter_bytes seconds relative_l2 by_view_angle albedo_max warnings".split()
+COMPARE_KEYS = "relative_l2 by_view_angle log_rms noise_by_view_angle samples".split()
+RENDER_KEYS = "seconds rays samples_per_second ray_share stages rmse relmse nan_samples noise".split()
+ANGLES = ["5", "30", "60", "75", "85"]
+
+
+@pytest.fixture
+def render_arguments(mesh_file, world_file, model_file, tmp_path):
+    return [
+        "render", "--mesh", mesh_file, "--material", model_file, "--world", world_file, "--size", "32x24",
+        "--spp", "8", "--threads", "2", "-o", tmp_path / "out.exr", "--json",
+    ]  # fmt: skip
+
+
+def test_info_of_a_measurement(measurement_file):
+    report = velour("info", measurement_file, "--json").json
+    assert report["kind"] == "measurement"
+    assert report["format"] == "merl"
+    assert report["isotropic"] is True
+    entries = report["entries"]
+    assert set(entries) == {"total", "valid", "negative", "not_finite", "below_horizon", "out_of_gamut"}
+    assert entries["total"] == sum(entries[k] for k in ("valid", "negative", "not_finite", "below_horizon"))
+
+
+def test_info_of_a_model(model_file):
+    report = velour("info", model_file, "--json").json
+    assert report["kind"] == "model"
+    assert report["bytes"] == model_file.stat().st_size
+    assert report["source"]["name"] == "paint"
+
+
+def test_info_for_people(model_file):
+    status, out, err = velour("info", model_file)
+    assert (status, err) == (0, "")
+    assert "by_view_angle:\n  5: 0." in out
+
+
+def test_fit_and_compare(measurement_file, tmp_path):
+    path = tmp_path / "paint.velour"
+    result = velour("fit", measurement_file, "-o", path, "--max-lobes", 3, "--seed", 7, "--json", "--quiet")
+    assert (result.status, result.err) == (0, "")
+    assert list(result.json) == FIT_KEYS
+    assert list(result.json["by_view_angle"]) == ANGLES
+    assert result.json["bytes"] == path.stat().st_size
+    report = velour("compare", measurement_file, path, "--json").json
+    assert list(report) == COMPARE_KEYS
+    assert list(report["by_view_angle"]) == list(report["noise_by_view_angle"]) == ANGLES
+    assert report["relative_l2"] == pytest.approx(result.json["relative_l2"], rel=0.05)
+
+
+def test_fit_options_reach_the_model(measurement_file, tmp_path):
+    path = tmp_path / "m.velour"
+    options = ["--kernel", "abel-poisson", "--max-lobes", 1, "--tolerance", 0.5, "--all-data", "--seed", 9]
+    assert velour("fit", measurement_file, "-o", path, *options).status == 0
+    with Model.load(path) as model:
+        info = model.info()
+    assert info["kernel"] == "abel-poisson"
+    assert info["max_lobes_per_view"] == 1
+    assert (info["tolerance"], info["all_data"], info["seed"]) == (0.5, True, 9)
+
+
+def test_views_that_miss_the_tolerance_are_warned_of_on_stderr(measurement_file, tmp_path):
+    result = velour(
+        "fit", measurement_file, "-o", tmp_path / "m.velour", "--max-lobes", 1, "--tolerance", 1e-4, "--json"
+    )
+    assert result.json["warnings"]
+    assert all(warning in result.err for warning in result.json["warnings"])
+
+
+def test_render(render_arguments, tmp_path):
+    result = velour(*render_arguments, "--quiet")
+    assert (result.status, result.err) == (0, "")
+    assert list(result.json) == RENDER_KEYS
+    assert result.json["rmse"] is None
+    assert result.json["nan_samples"] == 0
+    assert result.json["samples_per_second"] == pytest.approx(32 * 24 * 8 / result.json["seconds"], rel=0.01)
+    picture = images.read(tmp_path / "out.exr")
+    assert picture.shape == (24, 32, 4)
+    assert picture[12, 16, :3].min() > 0
+
+
+def test_render_against_a_reference(render_arguments, tmp_path):
+    assert velour(*render_arguments).status == 0
+    (tmp_path / "out.exr").rename(tmp_path / "reference.exr")
+    report = velour(*render_arguments, "--reference", tmp_path / "reference.exr").json
+    assert report["rmse"] == report["relmse"] == 0  # the same seed, the same bits
+    report = velour(*render_arguments, "--reference", tmp_path / "reference.exr", "--seed", 1).json
+    assert report["rmse"] > 0
+
+
+def test_pictures_do_not_depend_on_threads(render_arguments, tmp_path):
+    pictures = []
+    for threads in (1, 2):
+        assert velour(*render_arguments, "--threads", threads).status == 0
+        pictures.append(images.read(tmp_path / "out.exr"))
+    np.testing.assert_array_equal(*pictures)
+
+
+@pytest.mark.parametrize("strategy", ["uniform", "cosine", "table", "srbf", "light", "mis"])
+def test_every_strategy_gives_the_same_picture_within_noise(render_arguments, tmp_path, strategy):
+    assert velour(*render_arguments, "--strategy", strategy, "--spp", 64).status == 0
+    mean = images.read(tmp_path / "out.exr")[..., :3].mean()
+    assert velour(*render_arguments, "--strategy", "mis", "--spp", 256).status == 0
+    assert mean == pytest.approx(images.read(tmp_path / "out.exr")[..., :3].mean(), rel=0.1)
+
+
+def test_a_measurement_renders_by_itself(render_arguments, measurement_file, model_file):
+    arguments = [measurement_file if a == model_file else a for a in render_arguments]
+    assert velour(*arguments, "--proposal", model_file).status == 0
+    assert velour(*arguments, "--strategy", "cosine").status == 0
+
+
+def test_camera_and_world_rotation(render_arguments, tmp_path):
+    assert velour(*render_arguments, "--camera", "0,-9,0,0,0,0,12").status == 0
+    before = images.read(tmp_path / "out.exr")
+    assert velour(*render_arguments, "--camera", "0,-9,0,0,0,0,12", "--world-rotation", 120).status == 0
+    assert not np.array_equal(before, images.read(tmp_path / "out.exr"))
+
+
+def test_capture(tmp_path):
+    path = tmp_path / "rough.binary"
+    result = velour("capture", "--microsurface", "--rays", 200000, "--roughness", 0.4, "-o", path, "--json")
+    assert result.status == 0, result.err
+    assert {"seconds", "rays", "rays_per_second", "bytes"} <= set(result.json)
+    assert result.json["bytes"] == path.stat().st_size
+    assert velour("info", path, "--json").json["format"] == "merl"
+
+
+def test_reports_in_a_file(model_file, tmp_path):
+    path = tmp_path / "report.json"
+    result = velour("info", model_file, "--json", "--json-file", path)
+    assert json.loads(path.read_text()) == result.json
+
+
+def test_quiet_says_nothing(model_file):
+    assert velour("info", model_file, "--quiet") == (0, "", "")
+
+
+def test_log_levels(render_arguments):
+    assert "light directions a pixel" not in velour(*render_arguments).err
+    assert "light directions a pixel" in velour(*render_arguments, "--log-level", "info").err
+    assert "light directions a pixel" in velour(*render_arguments, VELOUR_LOG="info").err
+
+
+def test_simd_can_be_pinned(render_arguments):
+    assert velour(*render_arguments, "--simd", "auto").status == 0

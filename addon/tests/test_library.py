@@ -1,0 +1,94 @@
+"""Every way in which the library can be the wrong one is a LibraryError of one sentence."""
+
+from __future__ import annotations
+
+import subprocess
+
+import pytest
+from velour.native import LibraryError, library
+
+
+@pytest.fixture(autouse=True)
+def _fresh_library():
+    library.release()
+    yield
+    library.release()
+
+
+def _compile(compiler, folder, source: str):
+    code, built = folder / "fake.c", folder / "libfake.so"
+    code.write_text(source)
+    subprocess.run([compiler, "-shared", "-fPIC", code, "-o", built], check=True)
+    return built
+
+
+def _refusal(monkeypatch, path) -> str:
+    monkeypatch.setenv("VELOUR_LIBRARY", str(path))
+    with pytest.raises(LibraryError) as caught:
+        library.load()
+    assert "\n" not in str(caught.value)
+    assert str(path) in str(caught.value)
+    return str(caught.value)
+
+
+def test_the_staged_library_loads_and_knows_itself():
+    system = library.system()
+    assert {"version", "embree", "simd", "simd_targets", "threads", "build_type"} <= set(system)
+    assert system["simd"] in system["simd_targets"]
+
+
+def test_loading_twice_gives_the_same_library():
+    assert library.load() is library.load()
+
+
+def test_absent(monkeypatch, tmp_path):
+    assert "is not there" in _refusal(monkeypatch, tmp_path / "libvelour.so")
+
+
+def test_not_a_library(monkeypatch, tmp_path):
+    path = tmp_path / "libvelour.so"
+    path.write_bytes(b"no ELF at all")
+    assert "cannot be loaded" in _refusal(monkeypatch, path)
+
+
+def test_a_missing_dependency_is_named(monkeypatch, tmp_path, compiler):
+    needed = _compile(compiler, tmp_path, "int velour_needed(void) { return 1; }")
+    code, built = tmp_path / "user.c", tmp_path / "libvelour.so"
+    code.write_text("int velour_needed(void); int user(void) { return velour_needed(); }")
+    subprocess.run(
+        [compiler, "-shared", "-fPIC", "-Wl,--no-as-needed", code, "-o", built, f"-L{tmp_path}", "-lfake"],
+        check=True,
+    )
+    needed.unlink()
+    assert "libfake.so" in _refusal(monkeypatch, built)
+
+
+def test_foreign(monkeypatch, tmp_path, compiler):
+    path = _compile(compiler, tmp_path, "int other(void) { return 1; }")
+    assert "is not a Velour library" in _refusal(monkeypatch, path)
+
+
+def test_old(monkeypatch, tmp_path, compiler):
+    path = _compile(
+        compiler,
+        tmp_path,
+        "unsigned vlr_version(void) { return 7; } unsigned vlr_abi_version(void) { return 1; }",
+    )
+    sentence = _refusal(monkeypatch, path)
+    assert "0.0.7" in sentence
+    assert "0.1.0" in sentence
+
+
+def test_a_failed_load_is_tried_again(monkeypatch, tmp_path):
+    _refusal(monkeypatch, tmp_path / "absent.so")
+    monkeypatch.delenv("VELOUR_LIBRARY")
+    assert library.load()
+
+
+def test_instruction_sets_can_be_pinned_and_unknown_ones_are_refused():
+    for name in library.system()["simd_targets"]:
+        library.select_simd(name)
+        assert library.system()["simd"] == name
+    library.select_simd("auto")
+    with pytest.raises(library.VelourError, match="no instruction set"):
+        library.select_simd("ENIAC")

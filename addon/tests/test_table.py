@@ -1,0 +1,70 @@
+"""The ctypes table says what the C header says."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import re
+import subprocess
+
+import header
+import pytest
+from velour.native import errors, table, version
+
+
+def test_every_function_is_in_the_table_with_its_arguments():
+    in_table = {name: len(arguments) for name, arguments in table.STATUS_CALLS.items()}
+    in_table |= {name: len(arguments) for name, (_, arguments) in table.PLAIN_CALLS.items()}
+    assert in_table == {name: count for name, (_, count) in header.functions().items()}
+
+
+def test_exactly_the_calls_that_return_a_status_are_checked():
+    returning = {name for name, (result, _) in header.functions().items() if result == "vlr_status"}
+    assert returning == set(table.STATUS_CALLS)
+
+
+def test_struct_fields_have_the_names_and_order_of_the_header():
+    assert {n: [f for f, _ in s._fields_] for n, s in table.STRUCTS.items()} == header.structs()
+
+
+def test_sizes_and_offsets_agree_with_the_compiler(compiler, tmp_path):
+    lines = []
+    for name, fields in header.structs().items():
+        offsets = [f'printf("\\"{f}\\": %zu, ", offsetof({name}, {f}));' for f in fields]
+        lines += [f'printf("\\"{name}\\": {{");', *offsets, f'printf("\\"\\": %zu}},", sizeof({name}));']
+    body = "\n".join(lines)
+    source = tmp_path / "layout.c"
+    source.write_text(
+        '#include <stddef.h>\n#include <stdio.h>\n#include "velour/velour.h"\n'
+        f'int main(void) {{ printf("{{"); {body} printf("\\"\\": 0}}"); return 0; }}\n'
+    )
+    include = header.HEADER.parents[1]
+    subprocess.run([compiler, "-std=c99", f"-I{include}", source, "-o", tmp_path / "layout"], check=True)
+    measured = json.loads(subprocess.check_output([tmp_path / "layout"]))
+    for name, struct in table.STRUCTS.items():
+        ours = {field: getattr(struct, field).offset for field, _ in struct._fields_}
+        assert {**ours, "": ctypes.sizeof(struct)} == measured[name], name
+
+
+@pytest.mark.parametrize(
+    ("prefix", "names"),
+    [
+        ("VLR_KERNEL_", table.KERNELS),
+        ("VLR_LIGHT_", table.LIGHTS),
+        ("VLR_CAMERA_", table.CAMERAS),
+        ("VLR_STRATEGY_", table.STRATEGIES),
+        ("VLR_JOB_", table.JOB_STATES),
+    ],
+)
+def test_names_of_choices_stand_at_their_numbers(prefix, names):
+    expected = {prefix + name.upper().replace("-", "_"): number for number, name in enumerate(names)}
+    assert header.constants(prefix) == expected
+
+
+def test_status_codes():
+    for status in errors.Status:
+        assert re.search(rf"\bVLR_{status.name} = {status.value}\b", header.text())
+
+
+def test_interface_number():
+    assert re.search(rf"#define VLR_ABI_VERSION {version.ABI_VERSION}\b", header.text())
