@@ -12,6 +12,9 @@ namespace velour::test {
 /// Level of each of `tests` tests so that the whole list has level `level` (Sidak).
 double sidak_level(double level, int tests);
 
+/// Probability that chi-square with `degrees_of_freedom` exceeds `statistic`: the regularised upper gamma function.
+double chi_square_tail(double statistic, int degrees_of_freedom);
+
 struct ChiSquareOptions {
   int cos_theta_cells = 51;  // odd: no cell edge lies on the horizon
   int phi_cells = 40;
@@ -29,11 +32,12 @@ struct ChiSquareResult {
   double statistic = 0;
   int degrees_of_freedom = 0;
   double density_mass = 0;  // integral of the claimed density: must be 1 (or the stated mass)
-  std::string problem;      // non-empty: negative density, density mass above 1, not a number, sample off the sphere
+  /// Not empty: density negative, not a number or of mass above 1; samples off the sphere or where the density is 0.
+  std::string problem;
 };
 
 /// `sample(u)` returns a unit direction; `pdf(w)` its density per solid angle over the whole sphere.
-ChiSquareResult chi_square(const std::function<Vec3(const Vec2&)>& sample, const std::function<double(const Vec3&)>& pdf,
-                           const ChiSquareOptions& options = {});
+ChiSquareResult chi_square(const std::function<Vec3(const Vec2&)>& sample,
+                           const std::function<double(const Vec3&)>& pdf, const ChiSquareOptions& options = {});
 
 }  // namespace velour::test

@@ -1,0 +1,122 @@
+// The harness that judges every sampler is itself judged here: it must accept what is right and reject what is not.
+#include "support/chi_square.h"
+
+#include <gtest/gtest.h>
+
+#include "sphere/frame.h"
+#include "sphere/warp.h"
+#include "srbf/kernel.h"
+#include "support/statistics.h"
+
+namespace velour::test {
+namespace {
+
+ChiSquareOptions options(int64_t samples = 200'000) {
+  ChiSquareOptions o;
+  o.samples = samples;
+  return o;
+}
+
+Vec3 sample_lobe(const Vec3& center, double bandwidth, const Vec2& u) {
+  const auto d = static_cast<float>(kernel_sample(Kernel::gaussian, bandwidth, u.x));
+  const float sine = std::sqrt(d * (2 - d)), phi = 2 * kPi * u.y;
+  return Frame::about(center).to_world({sine * std::cos(phi), sine * std::sin(phi), 1 - d});
+}
+
+double pdf_lobe(const Vec3& center, double bandwidth, const Vec3& w) {
+  return kernel_value(Kernel::gaussian, bandwidth, one_minus_dot(Vec3d(w), Vec3d(center))) /
+         kernel_integral(Kernel::gaussian, bandwidth);
+}
+
+TEST(ChiSquareTail, AgreesWithTables) {
+  EXPECT_NEAR(chi_square_tail(3.841458820694124, 1), 0.05, 1e-12);
+  EXPECT_NEAR(chi_square_tail(23.209251158954356, 10), 0.01, 1e-12);
+  EXPECT_NEAR(chi_square_tail(2.0, 2), std::exp(-1.0), 1e-14);
+  EXPECT_NEAR(chi_square_tail(30.0, 2) / std::exp(-15.0), 1, 1e-12);
+  EXPECT_NEAR(chi_square_tail(4.0, 4), 3 * std::exp(-2.0), 1e-14);
+  EXPECT_EQ(chi_square_tail(0, 5), 1);
+  EXPECT_NEAR(chi_square_tail(2000, 2000), 0.4957947, 1e-6);  // just below one half: the median is below the mean
+}
+
+TEST(Sidak, GivesTheWholeListItsLevel) {
+  EXPECT_NEAR(1 - std::pow(1 - sidak_level(0.01, 50), 50), 0.01, 1e-14);
+  EXPECT_DOUBLE_EQ(sidak_level(0.01, 1), 0.01);
+}
+
+TEST(ChiSquare, AcceptsCorrectSamplers) {
+  const auto uniform = chi_square(
+      sample_uniform_sphere, [](const Vec3&) { return 0.25 / kPiD; }, options());
+  EXPECT_EQ(uniform.problem, "");
+  EXPECT_GT(uniform.p_value, 0.001);
+  EXPECT_NEAR(uniform.density_mass, 1, 1e-9);
+  const auto cosine = chi_square(sample_cosine_hemisphere, pdf_cosine_hemisphere, options());
+  EXPECT_EQ(cosine.problem, "");
+  EXPECT_GT(cosine.p_value, 0.001);
+  EXPECT_NEAR(cosine.density_mass, 1, 1e-4);
+}
+
+TEST(ChiSquare, ResolvesASharpLobeAboutItsAxis) {
+  ChiSquareOptions o = options();
+  o.axis = glm::normalize(Vec3(1, -2, 0.3f));
+  o.concentration = 1e6;
+  const auto result = chi_square([&](const Vec2& u) { return sample_lobe(o.axis, 1e6, u); },
+                                 [&](const Vec3& w) { return pdf_lobe(o.axis, 1e6, w); }, o);
+  EXPECT_EQ(result.problem, "");
+  EXPECT_GT(result.p_value, 0.001);
+  EXPECT_NEAR(result.density_mass, 1, 1e-5);
+  EXPECT_GT(result.degrees_of_freedom, 300);
+}
+
+TEST(ChiSquare, RejectsABandwidthOffByFivePercent) {
+  for (const double bandwidth : {3.0, 200.0, 1e6}) {
+    ChiSquareOptions o = options();
+    o.concentration = bandwidth;
+    const auto result = chi_square([&](const Vec2& u) { return sample_lobe(o.axis, bandwidth, u); },
+                                   [&](const Vec3& w) { return pdf_lobe(o.axis, 1.05 * bandwidth, w); }, o);
+    EXPECT_EQ(result.problem, "");
+    EXPECT_LT(result.p_value, 1e-6) << bandwidth;
+  }
+}
+
+TEST(ChiSquare, ReportsMassOtherThanOne) {
+  const auto half = chi_square(
+      sample_uniform_hemisphere, [](const Vec3& w) { return w.z > 0 ? 0.25 / kPiD : 0; }, options(50'000));
+  EXPECT_NEAR(half.density_mass, 0.5, 1e-3);
+  EXPECT_LT(half.p_value, 1e-6);
+  const auto twice = chi_square(
+      sample_uniform_sphere, [](const Vec3&) { return 0.5 / kPiD; }, options(50'000));
+  EXPECT_NE(twice.problem, "");
+}
+
+TEST(ChiSquare, NamesBrokenDensitiesAndSamples) {
+  const ChiSquareOptions o = options(10'000);
+  const auto fair = [](const Vec3&) { return 0.25 / kPiD; };
+  EXPECT_NE(chi_square(
+                sample_uniform_sphere, [](const Vec3& w) { return double(w.z); }, o)
+                .problem,
+            "");
+  EXPECT_NE(chi_square(
+                sample_uniform_sphere, [](const Vec3&) { return std::nan(""); }, o)
+                .problem,
+            "");
+  EXPECT_NE(chi_square([](const Vec2&) { return Vec3(0, 0, 2); }, fair, o).problem, "");
+  EXPECT_NE(chi_square([](const Vec2&) { return Vec3(std::nanf("")); }, fair, o).problem, "");
+  EXPECT_NE(chi_square(sample_uniform_sphere, pdf_uniform_hemisphere, o).problem, "");
+}
+
+// Over many seeds the p-values of a correct sampler are uniform: their mean is 1/2.
+TEST(ChiSquare, PValuesAreUniformForACorrectSampler) {
+  RunningMean mean;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    ChiSquareOptions o = options(20'000);
+    o.cos_theta_cells = 11;
+    o.phi_cells = 8;
+    o.seed = seed;
+    mean.add(chi_square(sample_cosine_hemisphere, pdf_cosine_hemisphere, o).p_value);
+  }
+  EXPECT_GT(z_test(mean.mean(), std::sqrt(1 / 12.0 / 60), 0.5, 0), 0.001);
+  EXPECT_NEAR(mean.variance(), 1 / 12.0, 0.04);
+}
+
+}  // namespace
+}  // namespace velour::test
