@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import random
 import signal
 import subprocess
 import time
@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from command_line import command, environment, refused, velour
 
+NOISE = random.Random(1).randbytes(4096)
 RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-o", "o.exr"]
 
 
@@ -84,7 +85,7 @@ def _merl_header(*sizes) -> bytes:
     [
         b"",
         b"\0",
-        os.urandom(4096),
+        NOISE,
         b"\x76\x2f\x31\x01",
         b"\x76\x2f\x31\x01" + b"\xff" * 4096,
         b"tensor_file\0" + b"\xff" * 64,
@@ -113,7 +114,7 @@ def test_hostile_files_end_in_a_sentence_with_the_name(content, verb, tmp_path, 
 @pytest.mark.parametrize("option", ["--mesh", "--world", "--reference"])
 def test_hostile_scene_files(option, tmp_path, mesh_file, world_file, model_file):
     path = tmp_path / "hostile.dat"
-    path.write_bytes(b"v nan nan\nf 1 2 99999999999\n" + os.urandom(999))
+    path.write_bytes(b"v nan nan\nf 1 2 99999999999\n" + NOISE)
     arguments = [
         "--mesh",
         mesh_file,

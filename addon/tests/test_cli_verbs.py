@@ -9,9 +9,28 @@ import pytest
 from command_line import velour
 from velour.native import Model, images
 
-FIT_KEYS = "lobes bytes parameter_bytes seconds relative_l2 by_view_angle albedo_max warnings".split()
-COMPARE_KEYS = "relative_l2 by_view_angle log_rms noise_by_view_angle samples".split()
-RENDER_KEYS = "seconds rays samples_per_second ray_share stages rmse relmse nan_samples noise".split()
+FIT_KEYS = [
+    "lobes",
+    "bytes",
+    "parameter_bytes",
+    "seconds",
+    "relative_l2",
+    "by_view_angle",
+    "albedo_max",
+    "warnings",
+]
+COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples"]
+RENDER_KEYS = [
+    "seconds",
+    "rays",
+    "samples_per_second",
+    "ray_share",
+    "stages",
+    "rmse",
+    "relmse",
+    "nan_samples",
+    "noise",
+]
 ANGLES = ["5", "30", "60", "75", "85"]
 
 

@@ -1,7 +1,7 @@
 """count_tests.py FILE|FOLDER...: prints "PASSED FAILED SKIPPED" of JUnit reports.
 
-A GoogleTest program is one test to ctest. Where its own report (test_NAME.xml) lies in a FOLDER, the cases in it are
-counted instead; a program that died before it could report stays one test, failed as ctest saw it.
+A GoogleTest program is one test to ctest. Where its own report (test_NAME.xml) lies in a FOLDER, the cases in
+it are counted instead; a program that died before it could report stays one test, failed as ctest saw it.
 """
 
 from __future__ import annotations
