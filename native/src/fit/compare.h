@@ -11,7 +11,7 @@ namespace velour {
 struct Comparison {
   double relative_l2 = 0;  // mean over the covered views weighted by cos(theta_v)
   ErrorByViewAngle by_view_angle;
-  double log_rms = 0;      // RMS of log(1 + f cos / 0.01) differences
+  double log_rms = 0;                    // RMS of log(1 + f cos / 0.01) differences
   ErrorByViewAngle noise_by_view_angle;  // the measurement's own noise from mirror and reciprocal pairs
   uint64_t samples = 0;
 };

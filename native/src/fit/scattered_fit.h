@@ -13,13 +13,13 @@ struct FitOptions {
   int max_lobes = 16;       // a view
   uint64_t max_bytes = 0;   // of the parameters; 0: no bound
   uint64_t seed = 0;
-  int threads = 0;          // 0: all
-  bool all_data = false;    // hold nothing out
+  int threads = 0;        // 0: all
+  bool all_data = false;  // hold nothing out
   bool align_views = true;
 };
 
-/// Each view's slice of f cos(theta_l) is fitted by greedy insertion and joint refinement with non-negative coefficients
-/// until the tolerance or the bound is met. Deterministic for any thread count.
+/// Each view's slice of f cos(theta_l) is fitted by greedy insertion and joint refinement with non-negative
+/// coefficients until the tolerance or the bound is met. Deterministic for any thread count.
 Model fit_scattered(const Measurement& measurement, const FitOptions& options, Progress& progress);
 
 }  // namespace velour

@@ -1,0 +1,42 @@
+#include "fit/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "brdf/held_out.h"
+
+namespace velour {
+
+void evaluate(const Material& material, const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f) {
+  const auto point = std::make_unique<PreparedBrdf>();
+  material.prepare(wv, *point);
+  DirectionBatch batch;
+  RgbBatch values;
+  ScalarBatch pdf;
+  for (size_t begin = 0; begin < wl.size(); begin += DirectionBatch::kCapacity) {
+    const size_t end = std::min(begin + DirectionBatch::kCapacity, wl.size());
+    batch.count = 0;
+    for (size_t i = begin; i < end; ++i) batch.push(wl[i]);
+    batch.pad();
+    material.eval(*point, batch, values, pdf);
+    for (size_t i = begin; i < end; ++i) f[i] = values.get(static_cast<int>(i - begin));
+  }
+}
+
+std::vector<Vec3> reported_views(int degrees, bool isotropic) {
+  std::vector<Vec3> views;
+  for (int azimuth = 0; azimuth < (isotropic ? 1 : 8); ++azimuth) {
+    views.push_back(direction(radians_from(static_cast<float>(degrees)), kPi / 4 * static_cast<float>(azimuth)));
+  }
+  return views;
+}
+
+int reported_view_of(const Vec3& wv) {
+  const double theta = std::acos(std::clamp(static_cast<double>(wv.z), -1.0, 1.0)) * 180 / kPiD;
+  const auto nearest = std::min_element(kHeldOutViews.begin(), kHeldOutViews.end(),
+                                        [theta](int a, int b) { return std::abs(theta - a) < std::abs(theta - b); });
+  return std::abs(theta - *nearest) <= kHeldOutGroup ? *nearest : -1;
+}
+
+}  // namespace velour

@@ -1,0 +1,112 @@
+#include "fit/fit_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "brdf/held_out.h"
+#include "fit/compare.h"
+#include "fit/evaluate.h"
+#include "fit/view_grid.h"
+
+namespace velour {
+namespace {
+
+std::string number(double x, const char* format = "%.3g") {
+  char text[32];
+  std::snprintf(text, sizeof text, format, x);
+  return text;
+}
+
+double polar_degrees(const Vec3& w) { return std::acos(std::clamp(static_cast<double>(w.z), -1.0, 1.0)) * 180 / kPiD; }
+
+std::string view_name(const Vec3& wv, bool isotropic) {
+  std::string name = number(polar_degrees(wv), "%.1f");
+  return isotropic ? name : name.append("/").append(number(std::atan2(wv.y, wv.x) * 180 / kPiD, "%.0f"));
+}
+
+double largest(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
+
+void warn_of_errors(const FitRecord& record, std::vector<std::string>& warnings) {
+  for (const int degrees : kHeldOutViews) {
+    const auto error = record.by_view_angle.at(std::to_string(degrees));
+    const double limit = tolerance_at(record.tolerance, radians_from(static_cast<double>(degrees)));
+    if (error && *error > limit) {
+      warnings.push_back("view " + std::to_string(degrees) + " degrees: relative L2 " + number(*error) + " exceeds " +
+                         number(limit));
+    }
+    if (!error) warnings.push_back("view " + std::to_string(degrees) + " degrees: the measurement does not cover it");
+  }
+}
+
+/// One sentence for all fitted views beyond the tolerance, so that a hard material does not bury the rest.
+void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOptions& options, bool isotropic,
+                          std::vector<std::string>& warnings) {
+  std::string names;
+  const FittedView* worst = nullptr;
+  for (const FittedView& v : fitted) {
+    if (v.relative_l2 <= tolerance_at(options.tolerance, std::acos(std::min(v.wv.z, 1.0f)))) continue;
+    names += (names.empty() ? "" : ", ") + view_name(v.wv, isotropic);
+    if (!worst || v.relative_l2 > worst->relative_l2) worst = &v;
+  }
+  if (!worst) return;
+  warnings.push_back("fitted views that miss the tolerance with at most " + std::to_string(options.max_lobes) +
+                     " lobes (degrees): " + names + "; the worst is " + view_name(worst->wv, isotropic) +
+                     " with relative L2 " + number(worst->relative_l2));
+}
+
+void add_albedos(const Measurement& measurement, const Material& material, const std::vector<FittedView>& fitted,
+                 FitRecord& record, Progress& progress) {
+  for (const int degrees : kHeldOutViews) {
+    std::optional<double>& entry = record.albedo_by_view_angle[std::to_string(degrees)];
+    if (!record.by_view_angle.at(std::to_string(degrees))) continue;
+    double most = 0;
+    for (const Vec3& wv : reported_views(degrees, measurement.isotropic())) {
+      most = std::max(most, largest(directional_albedo(material, wv)));
+    }
+    entry = most;
+  }
+  Vec3 brightest(0, 0, 1);
+  for (const FittedView& v : fitted) {
+    progress.check();
+    const double albedo = largest(directional_albedo(material, v.wv));
+    if (albedo > record.albedo_max) record.albedo_max = albedo, brightest = v.wv;
+  }
+  if (record.albedo_max > 1) {
+    record.warnings.push_back("albedo " + number(record.albedo_max) + " at view " +
+                              view_name(brightest, measurement.isotropic()) +
+                              " degrees: the measurement reflects more light there than arrives");
+  }
+}
+
+}  // namespace
+
+double tolerance_at(double tolerance, double theta_v) {
+  return theta_v <= radians_from(75.0) + 1e-6 ? tolerance : 2 * tolerance;
+}
+
+Vec3d directional_albedo(const Material& material, const Vec3& wv) {
+  const LightGrid grid = light_grid(wv);
+  std::vector<Rgb> f(grid.wl.size());
+  evaluate(material, wv, grid.wl, f);
+  Vec3d albedo(0);
+  for (size_t i = 0; i < f.size(); ++i) albedo += Vec3d(f[i]) * static_cast<double>(grid.weight[i] * grid.wl[i].z);
+  return albedo;
+}
+
+FitRecord report_fit(const Measurement& measurement, const Material& material, const FitOptions& options,
+                     const std::vector<FittedView>& fitted, Progress& progress) {
+  FitRecord record;
+  record.tolerance = options.tolerance;
+  record.seed = options.seed;
+  record.all_data = options.all_data;
+  const Comparison errors = compare(measurement, material, progress);
+  record.relative_l2 = errors.relative_l2;
+  record.by_view_angle = errors.by_view_angle;
+  warn_of_errors(record, record.warnings);
+  warn_of_fitted_views(fitted, options, measurement.isotropic(), record.warnings);
+  add_albedos(measurement, material, fitted, record, progress);
+  return record;
+}
+
+}  // namespace velour

@@ -1,0 +1,29 @@
+// What a fit says of itself: errors, albedo, warnings.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "brdf/measurement.h"
+#include "fit/scattered_fit.h"
+#include "material/material.h"
+
+namespace velour {
+
+/// Error of one view that was fitted.
+struct FittedView {
+  Vec3 wv;
+  double relative_l2;
+};
+
+/// The tolerance that holds at polar angle `theta_v` (radians): twice as much beyond 75 degrees.
+double tolerance_at(double tolerance, double theta_v);
+
+/// Directional albedo, the integral of f cos over the lights, of each channel.
+Vec3d directional_albedo(const Material& material, const Vec3& wv);
+
+/// Errors by compare(), albedos, and a sentence for each thing a user should know. `fitted` are the views of the model.
+FitRecord report_fit(const Measurement& measurement, const Material& material, const FitOptions& options,
+                     const std::vector<FittedView>& fitted, Progress& progress);
+
+}  // namespace velour

@@ -1,0 +1,26 @@
+// Greedy fit of one slice: a lobe at a time until the goal or the bound is met.
+#pragma once
+
+#include <vector>
+
+#include "fit/slice_solver.h"
+
+namespace velour {
+
+struct SliceFitOptions {
+  Kernel kernel = Kernel::gaussian;
+  int max_lobes = 16;
+  double goal = 0.02;  // relative L2 of the luminance at which no more lobes are added
+};
+
+/// The lobes of a slice, and their luminance error over the fitted samples.
+struct SliceFit {
+  std::vector<SliceLobe> lobes;
+  double relative_l2 = 1;
+};
+
+/// The path of the greedy fit: entry J is the best fit found with at most J lobes (entry 0 has none), and the errors
+/// never rise along it. The last entry is the fit.
+std::vector<SliceFit> fit_slice(const SliceSamples& samples, const SliceFitOptions& options, const Progress& progress);
+
+}  // namespace velour

@@ -1,0 +1,28 @@
+// From a measurement to the slices that are fitted.
+#pragma once
+
+#include <vector>
+
+#include "brdf/measurement.h"
+#include "fit/slice_samples.h"
+#include "job/progress.h"
+
+namespace velour {
+
+/// The slice of one view, and what was met on the way.
+struct MeasuredSlice {
+  Vec3 wv;
+  std::vector<SliceSample> samples;
+  size_t out_of_gamut = 0;  // samples with a negative channel: kept, though no model of ours can follow them
+};
+
+struct MeasuredSlices {
+  std::vector<MeasuredSlice> slices;  // views with samples only
+  std::vector<Vec3> uncovered;        // views left out because the measurement holds nothing there
+};
+
+/// Samples every view that `source` covers at its light grid. `hold_out` leaves out the held-out views and one light in
+/// eight. Pairs that the measurement does not cover are left out, never taken for black. `threads` 0: all.
+MeasuredSlices sample_slices(const Measurement& source, bool hold_out, int threads, Progress& progress);
+
+}  // namespace velour

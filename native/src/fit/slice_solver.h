@@ -1,0 +1,85 @@
+// Fits one slice with J lobes: centres, bandwidths and non-negative RGB coefficients together (docs/equations.md,
+// "Fit").
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fit/slice_columns.h"
+#include "job/progress.h"
+
+namespace velour {
+
+/// A lobe in the solver: `peak` (RGB, >= 0) times the unit-peak shape.
+struct SliceLobe {
+  LobeShape shape;
+  Vec3d peak{0, 0, 0};
+};
+
+/// E = sum_c w_c sum_i q_i (F_ic - sum_j peak_jc S_ij)^2 with w_c the luminance weights. Because they sum to 1, E is
+/// never below the squared error of the luminance (Jensen), which is what the tolerance is about.
+///
+/// The peaks are the non-negative least-squares solution for the present shapes at all times (variable projection); the
+/// shapes move by Levenberg-Marquardt steps. J^T J of an RGB fit factorises,
+///   (d lobe_j / d a) . (d lobe_k / d b) summed over channels = (sum_c w_c peak_jc peak_kc) (D_ja . D_kb),
+/// so one Gram matrix of the J values and 3 J derivatives serves all channels.
+class SliceSolver {
+ public:
+  static constexpr std::array<double, 3> kChannelWeight{0.2126, 0.7152, 0.0722};
+
+  SliceSolver(Kernel kernel, const SliceSamples& samples, const Progress& progress);
+
+  /// Replaces the lobes; peaks are solved anew.
+  void set_lobes(std::vector<LobeShape> shapes);
+  void add_lobe(const LobeShape& shape);
+  /// Removes lobes without any peak. Their number.
+  int prune();
+
+  /// At most `steps` accepted or refused Levenberg-Marquardt steps. Ends early when the luminance error is at most
+  /// `goal` (relative L2) or when a step gains less than `least_gain` of E. E never rises.
+  void refine(int steps, double goal, double least_gain);
+
+  /// The lobe whose removal would raise E least; -1 when there are none.
+  int least_important() const;
+
+  double objective() const { return state_.objective; }
+  /// Relative L2 of the luminance over the samples; 0 for a black slice that is fitted as black.
+  double relative_l2() const;
+  int count() const { return static_cast<int>(state_.shapes.size()); }
+  const std::vector<LobeShape>& shapes() const { return state_.shapes; }
+  std::vector<SliceLobe> lobes() const;
+  const float* residual(int c) const { return state_.residual[static_cast<size_t>(c)]; }
+
+  /// Largest sharpness at `center`: the half-width of a lobe is never below half the spacing of the samples there, so
+  /// no lobe hides between samples.
+  double max_sharpness(const Vec3d& center) const;
+
+ private:
+  /// Everything that follows from the shapes.
+  struct State {
+    explicit State(size_t padded) : values(padded), residual(padded) { residual.resize(3); }
+    std::vector<LobeShape> shapes;
+    Eigen::MatrixXd peaks;  // J x 3
+    ColumnSet values, residual;
+    Eigen::Matrix3d residual_products;  // of the channels
+    double objective = 0;
+  };
+  /// The normal equations of the shapes with the peaks eliminated; rows 3 j + {x, y, log sharpness}.
+  struct Step {
+    Eigen::MatrixXd normal;
+    Eigen::VectorXd slope, scale;
+  };
+
+  void solve(State& state) const;
+  Step linearize();
+  void eliminate_peaks(const Eigen::MatrixXd& products, int channel, Step& step) const;
+  std::vector<LobeShape> moved(const Eigen::VectorXd& by) const;
+
+  Kernel kernel_;
+  const SliceSamples& samples_;
+  const Progress& progress_;
+  State state_, trial_;
+  ColumnSet derivatives_;
+};
+
+}  // namespace velour

@@ -1,0 +1,99 @@
+#include "fit/view_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brdf/held_out.h"
+#include "sphere/directions.h"
+#include "sphere/frame.h"
+
+namespace velour {
+namespace {
+
+constexpr int kRings = 72, kSpokes = 48;
+constexpr double kMeridianStep = 2.0, kMeridianEnd = 89.0;  // degrees
+constexpr int kHemisphereViews = 400;                       // a spacing of about 7 degrees
+// A little more than the margin, so that no rounding brings a view inside.
+constexpr double kSafeMargin = kHeldOutMargin + 0.05;
+
+/// `theta` moved to the nearer edge of the margin when a held-out view is too near.
+double outside_margins(double theta) {
+  for (const int held_out : kHeldOutViews) {
+    const double away = theta - held_out;
+    if (std::abs(away) < kSafeMargin) return held_out + (away < 0 ? -kSafeMargin : kSafeMargin);
+  }
+  return theta;
+}
+
+}  // namespace
+
+std::vector<Vec3> meridian_views(bool all_data) {
+  std::vector<double> theta{0};
+  // Between one held-out view and the next: equal steps, with a view just outside each margin.
+  std::vector<double> stops{0};
+  for (const int held_out : kHeldOutViews) {
+    if (all_data) {
+      stops.push_back(held_out);
+    } else {
+      stops.push_back(held_out - kSafeMargin);
+      stops.push_back(held_out + kSafeMargin);
+    }
+  }
+  stops.push_back(kMeridianEnd);
+  for (size_t i = 0; i + 1 < stops.size(); ++i) {
+    const double span = stops[i + 1] - stops[i];
+    const int steps = std::max(1, static_cast<int>(std::ceil(span / (kMeridianStep + 2 * (kSafeMargin - 1)))));
+    for (int k = 1; k <= steps; ++k) theta.push_back(stops[i] + span * k / steps);
+  }
+  std::vector<Vec3> views;
+  for (const double t : theta) views.push_back(direction(static_cast<float>(radians_from(t)), 0.0f));
+  return views;
+}
+
+std::vector<Vec3> hemisphere_views(bool all_data) {
+  std::vector<Vec3> views = hemisphere_fibonacci(kHemisphereViews);
+  if (all_data) return views;
+  for (Vec3& v : views) {
+    const double theta = std::acos(std::clamp(static_cast<double>(v.z), -1.0, 1.0)) * 180 / kPiD;
+    v = direction(static_cast<float>(radians_from(outside_margins(theta))), std::atan2(v.y, v.x));
+  }
+  return views;
+}
+
+LightGrid light_grid(const Vec3& wv) {
+  LightGrid grid;
+  const double azimuth = std::atan2(static_cast<double>(wv.y), static_cast<double>(wv.x));
+  for (int i = 0; i < kRings; ++i) {
+    const double begin = 0.5 * kPiD * i * i / (kRings * kRings),
+                 end = 0.5 * kPiD * (i + 1) * (i + 1) / (kRings * kRings);
+    const double cell = 2 * std::sin(0.5 * (begin + end)) * std::sin(0.5 * (end - begin)) * 2 * kPiD / kSpokes;
+    const double theta = 0.5 * (begin + end);
+    const double turn = i * 0.6180339887498949;  // golden ratio: neighbouring rings do not line up
+    for (int k = 0; k < kSpokes; ++k) {
+      const double phi = azimuth + 2 * kPiD * (k + turn - std::floor(turn)) / kSpokes;
+      const Vec3d h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+      const double cosine = glm::dot(Vec3d(wv), h);
+      if (cosine <= 0) continue;
+      const Vec3 wl(glm::normalize(2 * cosine * h - Vec3d(wv)));
+      if (wl.z <= 0) continue;
+      grid.wl.push_back(wl);
+      grid.weight.push_back(static_cast<float>(4 * cosine * cell));
+      grid.ring.push_back(static_cast<uint32_t>(i));
+    }
+  }
+  return grid;
+}
+
+void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept) {
+  std::vector<double> all(kRings, 0.0), left(kRings, 0.0);
+  for (size_t i = 0; i < grid.wl.size(); ++i) {
+    all[grid.ring[i]] += grid.weight[i];
+    if (kept[i]) left[grid.ring[i]] += grid.weight[i];
+  }
+  for (size_t i = 0; i < grid.wl.size(); ++i) {
+    const uint32_t r = grid.ring[i];
+    if (left[r] > 0) grid.weight[i] = static_cast<float>(grid.weight[i] * all[r] / left[r]);
+  }
+}
+
+}  // namespace velour

@@ -1,0 +1,31 @@
+// Which views a fit samples, and at which light directions.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fit/slice_samples.h"
+
+namespace velour {
+
+/// Views of a fit, unit. Isotropic: on the meridian phi_v = 0, sorted by theta_v, in steps of about two degrees.
+/// Otherwise an equal-area lattice over the hemisphere. None lies within kHeldOutMargin of a held-out view's polar
+/// angle unless `all_data`.
+std::vector<Vec3> meridian_views(bool all_data);
+std::vector<Vec3> hemisphere_views(bool all_data);
+
+/// Light directions of the view `wv` with their solid angles, as a product grid of half vectors: theta_h in quadratic
+/// steps, so that the highlight is sampled as finely as MERL tabulates it, phi_h uniform, each ring turned against the
+/// one before. d wl = 4 (wv . h) d h. Lights at or below the horizon are left out.
+struct LightGrid {
+  std::vector<Vec3> wl;
+  std::vector<float> weight;   // sr
+  std::vector<uint32_t> ring;  // of equal theta_h
+};
+LightGrid light_grid(const Vec3& wv);
+
+/// Hands the solid angle of the lights that are not `kept` to the kept ones of their ring.
+void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept);
+
+}  // namespace velour
