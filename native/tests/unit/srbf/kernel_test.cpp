@@ -101,15 +101,13 @@ TEST(Kernel, SlopesAgreeWithFiniteDifferences) {
 // Mass of the kernel between its centre and d; the complement of u.
 double mass_within(Kernel kernel, double l, double d) {
   if (kernel == kGaussian) return l == 0 ? d / 2 : std::expm1(-l * d) / std::expm1(-2 * l);
-  return l == 0 ? d / 2
-                : (1 - l * l) / (2 * l) * (1 / (1 - l) - 1 / std::sqrt((1 - l) * (1 - l) + 2 * l * d));
+  return l == 0 ? d / 2 : (1 - l * l) / (2 * l) * (1 / (1 - l) - 1 / std::sqrt((1 - l) * (1 - l) + 2 * l * d));
 }
 
 TEST(Kernel, SampleInvertsTheDistribution) {
   for (const Kernel kernel : {kGaussian, kAbelPoisson}) {
     for (const double l : bandwidths(kernel)) {
-      if (kernel == kAbelPoisson && l > 0.9999)
-        continue;  // the forward formula above cancels there, not the inverse
+      if (kernel == kAbelPoisson && l > 0.9999) continue;  // the forward formula above cancels there, not the inverse
       for (const double u : {1e-6, 0.01, 0.3, 0.5, 0.9, 0.999}) {
         EXPECT_NEAR(mass_within(kernel, l, kernel_sample(kernel, l, u)), 1 - u, 1e-8) << l << ' ' << u;
       }
@@ -161,8 +159,7 @@ TEST(Kernel, ConvolutionAgreesWithQuadrature) {
   for (const Case& c : {Case{kGaussian, 3, 11}, {kGaussian, 0.2, 0.1}, {kAbelPoisson, 0.6, 0.3}}) {
     for (const Vec3d& b : {kB, kA, -kA}) {
       const double numeric = integrate_sphere([&](const Vec3d& w) {
-        return kernel_value(c.kernel, c.la, one_minus_dot(w, kA)) *
-               kernel_value(c.kernel, c.lb, one_minus_dot(w, b));
+        return kernel_value(c.kernel, c.la, one_minus_dot(w, kA)) * kernel_value(c.kernel, c.lb, one_minus_dot(w, b));
       });
       expect_close(kernel_convolution(c.kernel, kA, c.la, b, c.lb), numeric, 1e-9);
     }
@@ -184,12 +181,10 @@ TEST(Kernel, ProductOfGaussiansIsOneGaussian) {
     const Vec3d b = la > 1e3 ? glm::normalize(kA + 0.01 * kB) : kB;
     const GaussianProduct product = gaussian_product(kA, la, b, lb);
     for (const Vec3& direction : sphere_fibonacci(50)) {
-      const Vec3d w =
-          la > 1e3 ? glm::normalize(kA + 0.01 * Vec3d(direction)) : glm::normalize(Vec3d(direction));
-      const double separate = kernel_value(kGaussian, la, one_minus_dot(w, kA)) *
-                              kernel_value(kGaussian, lb, one_minus_dot(w, b));
-      const double joint =
-          product.scale * kernel_value(kGaussian, product.bandwidth, one_minus_dot(w, product.center));
+      const Vec3d w = la > 1e3 ? glm::normalize(kA + 0.01 * Vec3d(direction)) : glm::normalize(Vec3d(direction));
+      const double separate =
+          kernel_value(kGaussian, la, one_minus_dot(w, kA)) * kernel_value(kGaussian, lb, one_minus_dot(w, b));
+      const double joint = product.scale * kernel_value(kGaussian, product.bandwidth, one_minus_dot(w, product.center));
       EXPECT_NEAR(joint, separate, 1e-9 * separate + 1e-300);
     }
   }

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "mixture_support.h"
 #include "sphere/frame.h"
 #include "srbf/simd_target.h"
+#include "support/mixtures.h"
 
 namespace velour {
 namespace {
@@ -31,8 +31,7 @@ std::vector<Vec3> directions_about(const Vec3& center) {
   return set;
 }
 
-void expect_matches_reference(const LobeMixture& mixture, const std::vector<Vec3>& directions,
-                              float bandwidth) {
+void expect_matches_reference(const LobeMixture& mixture, const std::vector<Vec3>& directions, float bandwidth) {
   const DirectionBatch batch = batch_of(directions);
   RgbBatch value;
   ScalarBatch pdf;
@@ -46,10 +45,8 @@ void expect_matches_reference(const LobeMixture& mixture, const std::vector<Vec3
       exponent = bandwidth * one_minus_dot(Vec3d(w), Vec3d(mixture.x[0], mixture.y[0], mixture.z[0]));
     }
     const double tolerance = (exponent > 87 ? 1 : 6e-7 + 4e-7 * exponent);
-    EXPECT_NEAR(value.r[i], expected.value[0], tolerance * expected.value[0] + 1e-37)
-        << bandwidth << ' ' << i;
-    EXPECT_NEAR(pdf.v[i], expected.pdf, tolerance * expected.pdf + 1e-37 * bandwidth)
-        << bandwidth << ' ' << i;
+    EXPECT_NEAR(value.r[i], expected.value[0], tolerance * expected.value[0] + 1e-37) << bandwidth << ' ' << i;
+    EXPECT_NEAR(pdf.v[i], expected.pdf, tolerance * expected.pdf + 1e-37 * bandwidth) << bandwidth << ' ' << i;
     if (exponent > 88) {
       EXPECT_EQ(value.r[i], 0) << bandwidth << ' ' << i;
     }
@@ -145,8 +142,7 @@ TEST(LobeMixture, AppendTurnsAndScalesLikeAdd) {
     const Rgb coefficient(source.r[j], source.g[j], source.b[j]);
     shine.push_back(luminance(coefficient));
     mass.push_back(shine.back() * static_cast<float>(kernel_integral(Kernel::gaussian, source.bandwidth[j])));
-    expected.add(rotation * Vec3(source.x[j], source.y[j], source.z[j]), source.bandwidth[j],
-                 0.3f * coefficient);
+    expected.add(rotation * Vec3(source.x[j], source.y[j], source.z[j]), source.bandwidth[j], 0.3f * coefficient);
   }
   expected.finish(0.05f);
   appended.clear(Kernel::gaussian);

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mixture_support.h"
+#include "support/mixtures.h"
 
 namespace velour {
 namespace {
@@ -10,8 +10,7 @@ constexpr float kLast = 1 - 0x1p-24f;
 TEST(SampleMixture, IsUnitAndFiniteAtTheEndsOfTheUnitSquare) {
   for (const Kernel kernel : {Kernel::gaussian, Kernel::abel_poisson}) {
     for (const float bandwidth : test::bandwidth_grid(kernel)) {
-      for (const Vec3& center :
-           {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), glm::normalize(Vec3(1, -2, 1e-3f))}) {
+      for (const Vec3& center : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), glm::normalize(Vec3(1, -2, 1e-3f))}) {
         for (const float share : {0.0f, 0.05f}) {
           LobeMixture mixture;
           mixture.clear(kernel);
@@ -20,8 +19,7 @@ TEST(SampleMixture, IsUnitAndFiniteAtTheEndsOfTheUnitSquare) {
           mixture.finish(share);
           for (const float u : {0.0f, 0x1p-24f, 0.049999997f, 0.05f, 0.5f, kLast}) {
             for (const float v : {0.0f, 0.25f, kLast}) {
-              EXPECT_NEAR(glm::length(sample_mixture(mixture, {u, v})), 1, 5e-7f)
-                  << bandwidth << ' ' << u << ' ' << v;
+              EXPECT_NEAR(glm::length(sample_mixture(mixture, {u, v})), 1, 5e-7f) << bandwidth << ' ' << u << ' ' << v;
             }
           }
         }

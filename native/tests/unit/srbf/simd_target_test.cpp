@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mixture_support.h"
+#include "support/mixtures.h"
 
 namespace velour {
 namespace {
