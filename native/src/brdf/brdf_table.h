@@ -1,5 +1,5 @@
-// Velour's own table of an anisotropic BRDF ("velour-table"): what a virtual goniometer writes where MERL's layout would
-// lose the azimuth. An OpenEXR file of named tensors; docs/formats.md.
+// Velour's own table of an anisotropic BRDF ("velour-table"): what a virtual goniometer writes where MERL's layout
+// would lose the azimuth. An OpenEXR file of named tensors; docs/formats.md.
 #pragma once
 
 #include <cmath>
@@ -35,8 +35,8 @@ struct BrdfTableLayout {
   DirectionPair pair(int i, int j, int k, int l) const;
 };
 
-/// All that the writer needs: `f[layout.index(i, j, k, l)]` in 1/sr, linear Rec. 709, without cosine; NaN in any channel
-/// where nothing was measured. Nodes below the horizon are ignored.
+/// All that the writer needs: `f[layout.index(i, j, k, l)]` in 1/sr, linear Rec. 709, without cosine; NaN in any
+/// channel where nothing was measured. Nodes below the horizon are ignored.
 struct BrdfTable {
   BrdfTableLayout layout;
   std::vector<Rgb> f;

@@ -25,10 +25,10 @@ struct Provenance {
 struct EntryCounts {
   uint64_t total = 0;
   uint64_t valid = 0;
-  uint64_t negative = 0;         // MERL: any channel negative; elsewhere: negative luminance
-  uint64_t not_finite = 0;       // NaN or infinite
-  uint64_t below_horizon = 0;    // directions that no measurement can have
-  uint64_t out_of_gamut = 0;     // of the valid ones: a negative channel with positive luminance; kept as it is
+  uint64_t negative = 0;       // MERL: any channel negative; elsewhere: negative luminance
+  uint64_t not_finite = 0;     // NaN or infinite
+  uint64_t below_horizon = 0;  // directions that no measurement can have
+  uint64_t out_of_gamut = 0;   // of the valid ones: a negative channel with positive luminance; kept as it is
   uint64_t invalid() const { return negative + not_finite; }
 };
 

@@ -25,8 +25,8 @@ struct MerlGrid {
 };
 
 /// Writes a `.binary` file of 34,992,012 bytes. `planes`: 3 x MerlGrid::size values of f in 1/sr, linear Rec. 709,
-/// without cosine: all of red, then green, then blue. A node where any channel is negative or not finite, or a direction
-/// below the horizon, is stored as -1, the format's mark of an invalid entry. Atomic.
+/// without cosine: all of red, then green, then blue. A node where any channel is negative or not finite, or a
+/// direction below the horizon, is stored as -1, the format's mark of an invalid entry. Atomic.
 void write_merl(const std::string& path, std::span<const double> planes);
 
 /// True for bytes that begin like a MERL file.

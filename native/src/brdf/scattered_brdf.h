@@ -25,7 +25,7 @@ struct ScatteredBrdf {
   std::vector<uint32_t> first_lobe;  // views.size() + 1 offsets into the arrays below
   std::vector<Vec3> center;          // unit
   std::vector<float> bandwidth;
-  std::vector<Rgb> coefficient;      // of f cos, non-negative, 1/sr
+  std::vector<Rgb> coefficient;  // of f cos, non-negative, 1/sr
 
   int lobe_count() const { return static_cast<int>(center.size()); }
   int max_lobes_per_view() const {

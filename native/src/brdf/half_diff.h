@@ -1,0 +1,33 @@
+// Half and difference angles of a direction pair (Rusinkiewicz 1998).
+#pragma once
+
+#include "brdf/fast_atan2.h"
+#include "sphere/vec.h"
+
+namespace velour {
+
+/// Radians. theta_h, theta_d in [0, pi/2]; phi_h in (-pi, pi]; phi_d in [0, pi], because exchanging wl and wv adds pi
+/// to it and the tables that use it are reciprocal.
+struct HalfDiff {
+  float theta_h, phi_h, theta_d, phi_d;
+};
+
+/// Both directions above the horizon. Defined everywhere there: with the half vector on the normal phi_h is 0, with
+/// wl = wv phi_d is 0. No arc cosine: angles come from lengths, so small ones keep their digits.
+inline HalfDiff half_diff(const Vec3& wl, const Vec3& wv) {
+  const Vec3 sum = wl + wv, diff = wl - wv;
+  const float sum_xy_sq = sum.x * sum.x + sum.y * sum.y;
+  const float sum_xy = std::sqrt(sum_xy_sq), sum_length = std::sqrt(sum_xy_sq + sum.z * sum.z);
+  // diff along the tangents of growing theta_h and phi_h, both times |sum_xy| |sum|.
+  const bool on_normal = sum_xy_sq == 0.0f;
+  const float across = on_normal ? diff.y : (diff.y * sum.x - diff.x * sum.y) * sum_length;
+  const float along = on_normal ? diff.x : (diff.x * sum.x + diff.y * sum.y) * sum.z - sum_xy_sq * diff.z;
+  const float phi_d = fast_atan2(across, along);
+  return {fast_atan2(sum_xy, sum.z), fast_atan2(sum.y, sum.x), fast_atan2(glm::length(diff), sum_length),
+          phi_d < 0.0f ? phi_d + kPi : phi_d};
+}
+
+/// The pair of given angles (radians); either direction may lie below the horizon.
+DirectionPair pair_of_half_diff(double theta_h, double phi_h, double theta_d, double phi_d);
+
+}  // namespace velour
