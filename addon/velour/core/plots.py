@@ -1,0 +1,66 @@
+"""Plots with matplotlib, drawn without a display."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from . import files
+
+# One colour a strategy in all plots, distinguishable for the colour-blind (Okabe and Ito's palette).
+COLORS = {
+    "uniform": "#999999",
+    "cosine": "#56b4e9",
+    "table": "#cc79a7",
+    "srbf": "#d55e00",
+    "light": "#e69f00",
+    "mis": "#009e73",
+}
+
+
+def error_against_time(
+    path: str | os.PathLike, curves: Mapping[str, Sequence[tuple[float, float]]], title: str
+) -> None:
+    """One curve a strategy: (seconds of tracing and shading, relmse), both axes logarithmic."""
+    figure, axes = _figure()
+    for name, points in curves.items():
+        seconds, errors = zip(*points, strict=True)
+        axes.loglog(seconds, errors, "o-", color=COLORS.get(name), label=name)
+    axes.set(xlabel="seconds", ylabel="relmse against the reference", title=title)
+    axes.legend()
+    _save(figure, path)
+
+
+def error_by_view_angle(
+    path: str | os.PathLike, curves: Mapping[str, Mapping[str, float | None]], tolerance: float
+) -> None:
+    """One curve a material: relative L2 at the held-out views; views that are not covered are left out."""
+    figure, axes = _figure()
+    for name, errors in curves.items():
+        points = [(int(angle), error) for angle, error in errors.items() if error is not None]
+        angles, values = zip(*points, strict=True)
+        axes.semilogy(angles, values, "o-", label=name)
+    axes.axhline(tolerance, color="black", linewidth=0.8, linestyle=":", label=f"tolerance {tolerance:g}")
+    axes.set(xlabel="view angle, degrees", ylabel="relative L2")
+    axes.legend()
+    _save(figure, path)
+
+
+def _figure():
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(6.4, 4.0), layout="constrained")
+    axes.grid(which="both", alpha=0.25)
+    return figure, axes
+
+
+def _save(figure, path: str | os.PathLike) -> None:
+    from matplotlib import pyplot
+
+    # Without the date the same data gives the same file.
+    files.write_atomic(Path(path), lambda name: figure.savefig(name, dpi=120, metadata={"Software": None}))
+    pyplot.close(figure)
