@@ -1,7 +1,8 @@
 // 3 x 4 affine maps between the spaces of a scene.
 #pragma once
 
-#include <span>
+#include <algorithm>
+#include <cmath>
 
 #include "sphere/vec.h"
 
@@ -17,9 +18,17 @@ struct Affine {
   /// Takes normals to normals: the inverse transpose up to a positive factor, so that the outside of a
   /// mirrored object stays its outside.
   Mat3 normal_map() const {
-    const Vec3 yz = glm::cross(column(1), column(2));
-    const float sign = glm::dot(column(0), yz) < 0.0f ? -1.0f : 1.0f;
-    return sign * Mat3(yz, glm::cross(column(2), column(0)), glm::cross(column(0), column(1)));
+    float largest = 1e-37f;  // scaled by it, products of tiny or huge columns neither vanish nor overflow
+    for (int i = 0; i < 3; ++i) largest = std::max(largest, glm::length(column(i)));
+    const Vec3 x = column(0) / largest, y = column(1) / largest, z = column(2) / largest;
+    const Vec3 yz = glm::cross(y, z);
+    const float sign = glm::dot(x, yz) < 0.0f ? -1.0f : 1.0f;
+    return sign * Mat3(yz, glm::cross(z, x), glm::cross(x, y));
+  }
+  /// False for a map that flattens: a zero scale, say.
+  bool invertible() const {
+    const double d = glm::determinant(glm::dmat3(Vec3d(column(0)), Vec3d(column(1)), Vec3d(column(2))));
+    return std::abs(d) > 1e-36;
   }
   bool finite() const {
     for (float x : m) {

@@ -125,18 +125,17 @@ EmbreeScene::~EmbreeScene() = default;
 uint32_t EmbreeScene::add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
   for (const glm::uvec3& t : triangles) {
     if (std::max({t.x, t.y, t.z}) >= positions.size()) {
-      throw Error(Status::invalid_argument, "A triangle names vertex " +
-                                                std::to_string(std::max({t.x, t.y, t.z})) +
+      throw Error(Status::invalid_argument, "A triangle names vertex " + std::to_string(std::max({t.x, t.y, t.z})) +
                                                 " of a mesh with " + std::to_string(positions.size()) + ".");
     }
   }
   const EmbreeApi& api = impl_->api;
   RTCGeometry geometry = api.rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (!triangles.empty()) {
-    void* vertex = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                               sizeof(Vec3), positions.size());
-    void* index = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                              sizeof(glm::uvec3), triangles.size());
+    void* vertex = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3),
+                                               positions.size());
+    void* index = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
+                                              triangles.size());
     impl_->check();
     std::memcpy(vertex, positions.data(), positions.size_bytes());
     std::memcpy(index, triangles.data(), triangles.size_bytes());
@@ -202,9 +201,9 @@ EmbreeInfo embree_info() {
   if (device == nullptr) throw Error(Status::unsupported, "Embree cannot run on this processor.");
   const auto version = api.rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
   api.rtcReleaseDevice(device);
-  return {std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
-              std::to_string(version % 100),
-          api.library.path()};
+  return {
+      std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." + std::to_string(version % 100),
+      api.library.path()};
 }
 
 void embree_self_test() {

@@ -31,8 +31,7 @@ std::vector<std::string> candidates(const std::string& file_name) {
 
 std::string path_of(void* handle, const std::string& otherwise) {
   link_map* map = nullptr;
-  const bool known =
-      dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 && map->l_name != nullptr && *map->l_name != '\0';
+  const bool known = dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 && map->l_name != nullptr && *map->l_name != '\0';
   return known ? map->l_name : otherwise;
 }
 

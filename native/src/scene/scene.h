@@ -19,9 +19,8 @@ class Material;
 /// What a material slot points to.
 struct SurfaceMaterial {
   std::shared_ptr<const Material> material;
-  Rgb emission{0.0f};  // radiance of both sides, working space
-  bool rec709_colors =
-      true;  // f is Rec. 709 (measured) and is taken to the working space; false: already there
+  Rgb emission{0.0f};         // radiance of both sides, working space
+  bool rec709_colors = true;  // f is Rec. 709 (measured) and is taken to the working space; false: already there
 };
 
 /// A hit, resolved to what shading needs. World space.
@@ -50,8 +49,9 @@ class Scene {
   /// Error(invalid_argument).
   uint32_t add_mesh(Mesh mesh);
   uint32_t add_material(SurfaceMaterial material);
-  /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry.
-  uint32_t add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials);
+  /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a
+  /// zero scale) is left out and counted in the warnings.
+  void add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials);
   uint32_t add_light(const Light& light);
   void set_environment(Environment environment);
   void set_camera(const Camera& camera);
@@ -92,6 +92,7 @@ class Scene {
   std::vector<Instance> instances_;
   std::vector<SurfaceMaterial> materials_;
   std::vector<Light> lights_;
+  uint64_t flat_instances_ = 0;
   Environment environment_;
   Camera camera_;
   std::optional<Mat3> rec709_to_working_;

@@ -69,8 +69,7 @@ TEST(EmbreeScene, BatchesAgreeWithSingleRays) {
   scene.add_instance(scene.add_mesh(positions, triangles), {});
   scene.commit(2);
   std::vector<Ray> rays;
-  for (int i = 0; i < 1003; ++i)
-    rays.push_back({{0.5f, 0.5f, 0.5f}, 0, sample_uniform_sphere(random.next2()), 0.3f});
+  for (int i = 0; i < 1003; ++i) rays.push_back({{0.5f, 0.5f, 0.5f}, 0, sample_uniform_sphere(random.next2()), 0.3f});
   std::vector<uint8_t> blocked(rays.size());
   std::vector<Hit> hits(rays.size());
   scene.occluded(rays, blocked.data());

@@ -1,0 +1,73 @@
+// The image of an Environment as a sampled density. Internal to scene/.
+//
+// Rows run from the top (theta = 0). Texel (x, y) has its centre at u = (x + 1/2) / W, theta = pi (y + 1/2) / H. Every
+// texel holds radiance and the density's node g = luminance sin(theta), so that one fetch serves both.
+#pragma once
+
+#include <vector>
+
+#include "scene/environment.h"
+
+namespace velour {
+
+struct alignas(16) EnvironmentTexel {
+  float r, g, b;
+  float node;  // luminance(rgb) sin(theta of the row's centre)
+};
+
+/// Piecewise-linear density over equal cells, sampled by inversion: monotone in u, so a stratified u stays stratified.
+/// `cdf` has a value at each of the `cells` + 1 edges; `guide[k]` is the first cell whose upper edge exceeds
+/// k / cells, so that the search takes O(1) steps on average (Chen and Asau 1974).
+int find_cell(const float* cdf, const uint32_t* guide, int cells, float u);
+/// Fills cdf [cells + 1] and guide [cells] from the masses of the cells; returns their sum. All zero: uniform.
+double build_cells(const std::vector<double>& mass, float* cdf, uint32_t* guide);
+/// Where in [0, 1] the density that runs linearly from `a` to `b` reaches the share `u` of its mass.
+float invert_linear(float a, float b, float u);
+
+class EquirectangularImage {
+ public:
+  EquirectangularImage(const EquirectangularPixels& pixels, float strength, const Mat3& world_to_image);
+
+  void look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const;
+  Vec3 sample(const Vec2& u) const;
+  float mean_luminance() const { return mean_luminance_; }
+  uint64_t bytes() const;
+
+  // What the SIMD kernel reads.
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const Mat3& world_to_image() const { return world_to_image_; }
+
+ private:
+  void store_texels(const EquirectangularPixels& pixels, float strength);
+  void build_tables();
+  const EnvironmentTexel* row(int y) const { return &texels_[static_cast<size_t>(y) * stride_]; }
+  Vec3 direction(float x, float y) const;
+
+  int width_, height_;
+  size_t stride_;  // texels a stored row: W + 2, the last and the first column repeated on the other side
+  Mat3 world_to_image_;
+  std::vector<EnvironmentTexel> texels_;
+  float mean_luminance_ = 0;
+  float density_scale_ = 0;  // pdf = node * density_scale_ / sin(theta)
+
+  // Cell j of a row lies between the centres of texels j - 1 and j (wrapped); cell i of the marginal between the
+  // centres of rows i - 1 and i, the first and the last ending at a pole.
+  std::vector<float> row_node_;  // mean node of each row
+  std::vector<float> marginal_cdf_, row_cdf_;
+  std::vector<uint32_t> marginal_guide_, row_guide_;
+};
+
+/// Texel coordinates of a batch of world directions: column cell and the place in it, likewise rows, 1 / sin(theta).
+struct alignas(64) EquirectangularCoordinates {
+  int32_t x[DirectionBatch::kCapacity], y[DirectionBatch::kCapacity];  // cell 0..W-1, 0..H
+  float fx[DirectionBatch::kCapacity], fy[DirectionBatch::kCapacity];  // in [0, 1]
+  float pole[DirectionBatch::kCapacity];  // 1, falling to 0 over the half row beside a pole
+  float inverse_sin[DirectionBatch::kCapacity];
+};
+
+/// Run-time dispatched SIMD. Angles are within 4e-7 radians (a polynomial of our own, exact to 1.6e-8, in float32).
+void equirectangular_coordinates(const EquirectangularImage& image, const DirectionBatch& world,
+                                 EquirectangularCoordinates& out);
+
+}  // namespace velour

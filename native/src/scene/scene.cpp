@@ -1,0 +1,153 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+[[noreturn]] void refuse(const std::string& sentence) { throw Error(Status::invalid_argument, sentence); }
+
+void require_finite(const Affine& map, const char* what) {
+  if (!map.finite()) refuse(std::string("The transform of ") + what + " holds a number that is not finite.");
+}
+
+}  // namespace
+
+void Scene::changed() { rays_.reset(); }
+
+uint32_t Scene::add_mesh(Mesh mesh) {
+  changed();
+  meshes_.push_back(std::move(mesh));
+  return static_cast<uint32_t>(meshes_.size() - 1);
+}
+
+uint32_t Scene::add_material(SurfaceMaterial material) {
+  changed();
+  materials_.push_back(std::move(material));
+  return static_cast<uint32_t>(materials_.size() - 1);
+}
+
+void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials) {
+  if (mesh >= meshes_.size()) refuse("There is no mesh " + std::to_string(mesh) + " to instance.");
+  require_finite(object_to_world, "an instance");
+  if (materials.empty()) refuse("An instance needs at least one material.");
+  for (uint32_t m : materials) {
+    if (m >= materials_.size()) refuse("There is no material " + std::to_string(m) + " for an instance.");
+  }
+  changed();
+  if (!object_to_world.invertible()) {
+    ++flat_instances_;
+    return;
+  }
+  instances_.push_back({mesh, object_to_world, object_to_world.normal_map(), std::move(materials)});
+}
+
+uint32_t Scene::add_light(const Light& light) {
+  require_finite(light.light_to_world, "a light");
+  const float numbers[] = {light.color.r, light.color.g, light.color.b, light.size.x, light.size.y, light.angle};
+  for (float x : numbers) {
+    if (!std::isfinite(x)) refuse("A light's colour, size or angle is not finite.");
+  }
+  changed();
+  lights_.push_back(light);
+  return static_cast<uint32_t>(lights_.size() - 1);
+}
+
+void Scene::set_environment(Environment environment) {
+  changed();
+  environment_ = std::move(environment);
+}
+
+void Scene::set_camera(const Camera& camera) {
+  require_finite(camera.camera_to_world, "the camera");
+  changed();
+  camera_ = camera;
+}
+
+void Scene::frame_camera(float aspect, int up_axis) {
+  set_camera(Camera::framing(bounds_of_instances(), aspect, up_axis));
+}
+
+void Scene::set_working_space(const Mat3& rec709_to_working) {
+  changed();
+  rec709_to_working_ = rec709_to_working;
+  if (rec709_to_working == Mat3(1.0f)) rec709_to_working_.reset();
+}
+
+void Scene::commit(int threads) {
+  changed();
+  const auto start = std::chrono::steady_clock::now();
+  auto rays = std::make_unique<EmbreeScene>();
+  for (const Mesh& mesh : meshes_) rays->add_mesh(mesh.positions(), mesh.triangles());
+  for (const Instance& i : instances_) rays->add_instance(i.mesh, i.object_to_world);
+  rays->commit(threads);
+  bounds_ = bounds_of_instances();
+  info_ = count();
+  info_.bytes += rays->bytes();
+  info_.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  rays_ = std::move(rays);
+}
+
+Bounds Scene::bounds_of_instances() const {
+  Bounds bounds;
+  for (const Instance& i : instances_) {
+    for (const glm::uvec3& t : meshes_[i.mesh].triangles()) {
+      for (int k = 0; k < 3; ++k) bounds.add(i.object_to_world.point(meshes_[i.mesh].positions()[t[k]]));
+    }
+  }
+  return bounds;
+}
+
+SceneInfo Scene::count() const {
+  SceneInfo info;
+  info.instances = instances_.size();
+  info.meshes = meshes_.size();
+  info.lights = lights_.size();
+  info.materials = materials_.size();
+  info.bytes = environment_.bytes();
+  for (const Instance& i : instances_) info.triangles += meshes_[i.mesh].triangles().size();
+  for (size_t m = 0; m < meshes_.size(); ++m) {
+    info.bytes += meshes_[m].bytes();
+    if (meshes_[m].dropped() == 0) continue;
+    info.warnings.push_back("Mesh " + std::to_string(m) + ": " + std::to_string(meshes_[m].dropped()) +
+                            " triangles without area or with coordinates that are not finite are left out.");
+  }
+  if (flat_instances_ > 0) {
+    info.warnings.push_back(std::to_string(flat_instances_) + " instances have a zero scale and are left out.");
+  }
+  if (environment_.black() && lights_.empty()) info.warnings.push_back("The scene has no light.");
+  return info;
+}
+
+SurfacePoint Scene::surface(const Hit& hit) const {
+  const Instance& instance = instances_[hit.instance];
+  const Mesh& mesh = meshes_[instance.mesh];
+  const Vec2 uv(hit.u, hit.v);
+  const Vec3 local = mesh.position(hit.triangle, uv);
+  const Affine& map = instance.object_to_world;
+  SurfacePoint point;
+  point.position = map.point(local);
+  const Vec3& front = hit.geometric_normal;
+  point.geometric_normal =
+      glm::normalize(front / std::max({std::abs(front.x), std::abs(front.y), std::abs(front.z), 1e-37f}));
+  point.shading_normal = glm::normalize(instance.normal_to_world * mesh.shading_normal(hit.triangle, uv));
+  point.tangent = map.vector(mesh.tangent(hit.triangle));
+  // Every coordinate is a sum of a few products: 8 roundings of their absolute values bound it.
+  float magnitude = 0.0f;
+  for (int row = 0; row < 3; ++row) {
+    const float* m = map.m + 4 * row;
+    magnitude = std::max(
+        magnitude, std::abs(m[0] * local.x) + std::abs(m[1] * local.y) + std::abs(m[2] * local.z) + std::abs(m[3]));
+  }
+  point.error = 8.0f * 0x1p-24f * magnitude;
+  const uint32_t slot =
+      std::min<uint32_t>(mesh.material_slot(hit.triangle), static_cast<uint32_t>(instance.materials.size() - 1));
+  point.material = instance.materials[slot];
+  return point;
+}
+
+}  // namespace velour

@@ -1,0 +1,206 @@
+// The environment: where its pixels lie, that its density is what it samples and what it looks up.
+#include "scene/environment.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "job/error.h"
+#include "scene/equirectangular.h"
+#include "sphere/random.h"
+#include "sphere/warp.h"
+#include "support/chi_square.h"
+
+namespace velour {
+namespace {
+
+struct TestImage {
+  int width, height;
+  std::vector<float> rgb;
+  TestImage(int w, int h) : width(w), height(h), rgb(3 * static_cast<size_t>(w) * static_cast<size_t>(h)) {}
+  void set(int x, int y, const Rgb& c) {
+    for (int k = 0; k < 3; ++k) rgb[3 * static_cast<size_t>(y * width + x) + static_cast<size_t>(k)] = c[k];
+  }
+  Environment environment(float strength = 1, const Mat3& turn = Mat3(1.0f)) const {
+    return Environment::image({width, height, 3, rgb}, strength, turn);
+  }
+};
+
+TestImage noise(int width, int height) {
+  TestImage image(width, height);
+  RandomStream random(4, 5, 6);
+  for (float& v : image.rgb) v = std::pow(random.next(), 8.0f);
+  return image;
+}
+
+double mass(const Environment& e, int n = 400000) {
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    const float v = (static_cast<float>(i) + 0.5f) / static_cast<float>(n);
+    const float u = std::fmod(static_cast<float>(i) * 0.618033988f, 1.0f);
+    sum += e.pdf(sample_uniform_sphere({v, u}));
+  }
+  return sum * 4 * kPiD / n;
+}
+
+TEST(Environment, FollowsBlendersConvention) {
+  TestImage image(8, 4);  // red rises with u, green with v from the bottom
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      image.set(x, y, {(static_cast<float>(x) + 0.5f) / 8, 1 - (static_cast<float>(y) + 0.5f) / 4, 0});
+    }
+  }
+  const Environment e = image.environment();
+  // Rendered by Blender 3.4 (Cycles, Raw view): the middle column is +x, -y lies at u = 3/4, +z at the top.
+  EXPECT_NEAR(e.radiance({1, 0, 0}).r, 0.5f, 1e-5f);
+  EXPECT_NEAR(e.radiance({0, -1, 0}).r, 0.75f, 1e-5f);
+  EXPECT_NEAR(e.radiance({0, 1, 0}).r, 0.25f, 1e-5f);
+  EXPECT_NEAR(e.radiance({1, 0, 0}).g, 0.5f, 1e-5f);
+  EXPECT_NEAR(e.radiance(direction(kPi / 4, 0.0f)).g, 0.75f, 1e-5f);
+  EXPECT_NEAR(e.radiance({0, 0, 1}).g, 0.875f, 1e-5f);  // clamped at the pole
+  EXPECT_NEAR(e.radiance({-1, 0, 0}).r, 0.5f, 1e-4f);   // wraps: halfway between 15/16 and 1/16
+}
+
+TEST(Environment, TurnAndStrength) {
+  TestImage image(64, 32);
+  for (int y = 0; y < 32; ++y) image.set(32, y, {1, 1, 1});          // a meridian just left of -y from +x
+  const Mat3 quarter(Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1));  // +x to +y, +y to -x
+  const Environment e = image.environment(3, quarter);
+  EXPECT_NEAR(e.radiance({0, -1, 0}).r, 1.5f, 1e-3f);
+  EXPECT_NEAR(e.radiance({1, 0, 0}).r, 0.0f, 1e-5f);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 w = e.sample({static_cast<float>(i) * 0.01f, 0.5f});
+    EXPECT_LT(w.y, -0.9f);
+  }
+}
+
+TEST(Environment, CoordinatesMatchTheLibrary) {
+  const Environment unused;
+  const TestImage image(1024, 512);
+  const EquirectangularImage table({1024, 512, 3, image.rgb}, 1, Mat3(1.0f));
+  RandomStream random(1, 1, 1);
+  double worst_u = 0, worst_v = 0;
+  for (int round = 0; round < 400; ++round) {
+    DirectionBatch batch;
+    while (batch.count < 64) batch.push(sample_uniform_sphere(random.next2()));
+    EquirectangularCoordinates at;
+    equirectangular_coordinates(table, batch, at);
+    for (int i = 0; i < 64; ++i) {
+      const Vec3d d(batch.get(i));
+      const double u = 0.5 - std::atan2(d.y, d.x) / (2 * kPiD), theta = std::acos(d.z / glm::length(d)) / kPiD;
+      const double found_u = (at.x[i] + static_cast<double>(at.fx[i]) - 0.5) / 1024;
+      const double gap = std::abs(found_u - u);
+      worst_u = std::max(worst_u, std::min(gap, 1 - gap));
+      worst_v = std::max(worst_v, std::abs((at.y[i] + static_cast<double>(at.fy[i]) - 0.5) / 512 - theta));
+      EXPECT_TRUE(at.x[i] >= 0 && at.x[i] < 1024 && at.y[i] >= 0 && at.y[i] <= 512);
+    }
+  }
+  EXPECT_LT(worst_u * 2 * kPiD, 8e-7);
+  EXPECT_LT(worst_v * kPiD, 8e-7);
+}
+
+TEST(Environment, AxesAndPolesAreFinite) {
+  const Environment e = noise(16, 8).environment();
+  for (const Vec3& d : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(-1, 0, 0), Vec3(-1, -0.0f, 0), Vec3(0, 1, 0)}) {
+    EXPECT_TRUE(std::isfinite(e.pdf(d)) && std::isfinite(e.radiance(d).g));
+    EXPECT_GE(e.pdf(d), 0);
+  }
+}
+
+TEST(Environment, DensityIntegratesToOne) {
+  EXPECT_NEAR(mass(noise(32, 16).environment()), 1, 2e-3);
+  EXPECT_NEAR(mass(Environment::constant({1, 2, 3})), 1, 1e-6);
+  TestImage flat(16, 8);
+  std::fill(flat.rgb.begin(), flat.rgb.end(), 2.0f);
+  EXPECT_NEAR(mass(flat.environment()), 1, 1e-3);
+  EXPECT_NEAR(flat.environment().mean_luminance(), 2, 0.05);
+}
+
+TEST(Environment, SamplesFollowTheDensity) {
+  for (const Environment& e : {noise(16, 8).environment(), noise(7, 3).environment(), noise(1, 1).environment()}) {
+    test::ChiSquareOptions options;
+    options.samples = 400'000;
+    const auto result =
+        test::chi_square([&](const Vec2& u) { return e.sample(u); }, [&](const Vec3& w) { return e.pdf(w); }, options);
+    EXPECT_EQ(result.problem, "");
+    EXPECT_GT(result.p_value, test::sidak_level(0.01, 3));
+    EXPECT_NEAR(result.density_mass, 1, 2e-3);
+  }
+}
+
+TEST(Environment, ChiSquareRejectsAnotherImage) {
+  // Negative control: the density of an image that differs in one texel.
+  TestImage other = noise(16, 8);
+  other.set(5, 3, {0.7f, 0.7f, 0.7f});
+  const Environment e = noise(16, 8).environment(), wrong = other.environment();
+  test::ChiSquareOptions options;
+  options.samples = 400'000;
+  const auto result = test::chi_square([&](const Vec2& u) { return e.sample(u); },
+                                       [&](const Vec3& w) { return wrong.pdf(w); }, options);
+  EXPECT_LT(result.p_value, 1e-6);
+}
+
+TEST(Environment, DensityFollowsRadianceWithinTheSecondOrderBound) {
+  // For a grey image the nodes differ from L sin(theta) only by the bilinear interpolation of sin(theta): away from the
+  // poles by at most (pi / H)^2 / 8 relative to 1.
+  TestImage image = noise(64, 32);
+  for (size_t i = 0; i < image.rgb.size(); i += 3) {
+    image.rgb[i] += 0.01f;
+    image.rgb[i + 1] = image.rgb[i + 2] = image.rgb[i];
+  }
+  const Environment e = image.environment();
+  double low = 1e30, high = 0;
+  RandomStream random(3, 1, 4);
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 d = sample_uniform_sphere(random.next2());
+    if (std::abs(d.z) > 0.5f) continue;
+    const double ratio = e.pdf(d) / luminance(e.radiance(d));
+    low = std::min(low, ratio);
+    high = std::max(high, ratio);
+  }
+  // Rows of unlike brightness tilt the weights: half a row's change of sin(theta) bounds that.
+  EXPECT_LT(high / low - 1, 2 * kPiD / 32);
+}
+
+TEST(Environment, OneTexelSunIsAlwaysHit) {
+  TestImage image(1024, 512);
+  image.set(700, 100, {50000, 40000, 30000});
+  const Environment e = image.environment();
+  RandomStream random(9, 9, 9);
+  double total = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 w = e.sample(random.next2());
+    const float pdf = e.pdf(w);
+    ASSERT_GT(pdf, 0);
+    total += luminance(e.radiance(w)) / pdf;
+  }
+  EXPECT_NEAR(total / 20000 / (4 * kPiD * e.mean_luminance()), 1, 0.01);
+}
+
+TEST(Environment, SampleIsMonotoneInItsNumbers) {
+  const Environment e = noise(32, 16).environment();
+  float before = 2;
+  for (int i = 0; i < 1000; ++i) {
+    const float z = e.sample({0.25f, static_cast<float>(i) * 0.001f}).z;
+    EXPECT_LE(z, before + 1e-5f);
+    before = z;
+  }
+}
+
+TEST(Environment, BlackConstantAndHostileImages) {
+  EXPECT_TRUE(Environment().black());
+  EXPECT_TRUE(TestImage(8, 4).environment().black());
+  EXPECT_FALSE(Environment::constant({0, 1, 0}).black());
+  TestImage bad(2, 2);
+  bad.rgb = {NAN, 1, 1, -5, 1, 1, INFINITY, 1, 1, 1, 1, 1};
+  const Environment e = bad.environment();
+  EXPECT_TRUE(std::isfinite(e.mean_luminance()));
+  EXPECT_TRUE(std::isfinite(e.radiance({1, 0, 0}).r));
+  EXPECT_THROW(Environment::image({2, 2, 2, bad.rgb}, 1, Mat3(1.0f)), Error);
+  EXPECT_THROW(Environment::image({4, 2, 3, bad.rgb}, 1, Mat3(1.0f)), Error);
+  EXPECT_THROW(bad.environment(NAN), Error);
+  EXPECT_THROW(bad.environment(1, Mat3(2.0f)), Error);
+}
+
+}  // namespace
+}  // namespace velour
