@@ -1,0 +1,148 @@
+"""Takes the numbers of docs/measurements.md through the command line, as a user would."""
+
+from __future__ import annotations
+
+import csv
+import datetime
+import io
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import measure_text
+from velour.core import files
+from velour.core.machine import machine
+
+ROOT = Path(__file__).resolve().parents[2]
+WORK = ROOT / "build/measure"
+SEED = 1
+THREADS = 2
+MATERIAL = "blue-metallic-paint"
+TOLERANCE = 0.02
+LOBES = (2, 4, 8, 16)
+STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis")
+
+
+def main() -> int:
+    data = Path(os.environ.get("VELOUR_DATA", ROOT.parent / "shared/data"))
+    if not data.is_dir():
+        print(f"measure: skipped, there is no test data in {data}; set VELOUR_DATA to its folder.")
+        return 0
+    materials = _materials(data)
+    scene = ["--mesh", data / "mesh/bunny.obj", "--world", data / "hdr/venice_sunset_1k.hdr"]
+    results = {
+        "conditions": _conditions(),
+        "fits": {name: _fit(path) for name, path in materials.items()},
+        "render": _main_render(scene),
+        "lobes": _image_error_by_lobes(scene, materials[MATERIAL]),
+        "strategies": _strategies(scene),
+    }
+    files.write_text(ROOT / "docs/measurements.md", measure_text.page(results))
+    files.write_text(ROOT / "docs/measurements.csv", _csv(results))
+    print(ROOT / "docs/measurements.md")
+    return 0
+
+
+def velour(*arguments) -> dict:
+    """The report of one call; its message goes through to the terminal, its failure ends the run."""
+    command = [ROOT / "scripts/velour", *map(str, arguments), "--json", "--log-level", "error"]
+    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+
+
+def render(scene: list, material: Path, out: str, *options) -> dict:
+    common = ["--seed", SEED, "--threads", THREADS, "-o", WORK / out]
+    print(f"rendering {out} ...", flush=True)
+    return velour("render", *scene, "--material", material, *common, *options)
+
+
+def _conditions() -> dict:
+    def git(*arguments) -> str:
+        return subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True).stdout.strip()
+
+    commit = git("rev-parse", "--short=12", "HEAD") or "unknown"
+    if git("status", "--porcelain", "--", "native", "addon"):
+        commit += " with changes"
+    today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
+    return {"machine": machine(), "date": today, "commit": commit, "seed": SEED, "threads": THREADS}
+
+
+def _materials(data: Path) -> dict[str, Path]:
+    """The MERL-layout files, expanded once."""
+    folder = WORK / "merl"
+    names = sorted(path.name.removesuffix(".nbrdf.npz") for path in (data / "brdf").glob("*.nbrdf.npz"))
+    if not all((folder / f"{name}.binary").is_file() for name in names):
+        expand = [sys.executable, data / "brdf/expand_merl.py", folder]
+        subprocess.run(expand, check=True, stdout=subprocess.DEVNULL)
+    return {name: folder / f"{name}.binary" for name in names}
+
+
+def _model(name: str, lobes: int) -> Path:
+    return WORK / f"{name}-{lobes}.velour"
+
+
+def _fit(path: Path, lobes: int = LOBES[-1]) -> dict:
+    print(f"fitting {path.stem}, {lobes} lobes ...", flush=True)
+    options = ["--tolerance", TOLERANCE, "--max-lobes", lobes, "--seed", SEED, "--threads", THREADS]
+    return velour("fit", path, "-o", _model(path.stem, lobes), *options)
+
+
+def _main_render(scene: list) -> dict:
+    return render(scene, _model(MATERIAL, LOBES[-1]), "main.exr", "--size", "640x480", "--spp", 800)
+
+
+def _image_error_by_lobes(scene: list, measurement: Path) -> dict[int, dict]:
+    """Model against reference mode with the same random numbers: what is left is mostly the model's error."""
+    small = ["--size", "320x240", "--spp", 512]
+    best = _model(MATERIAL, LOBES[-1])
+    reference = render(scene, measurement, "reference.exr", *small, "--proposal", best)
+    rows = {}
+    for lobes in LOBES:
+        fit = _fit(measurement, lobes)
+        against = ["--reference", WORK / "reference.exr"]
+        report = render(scene, _model(MATERIAL, lobes), f"{lobes}-lobes.exr", *small, *against)
+        rows[lobes] = {**report, "fit": fit, "reference_seconds": reference["seconds"]}
+    return rows
+
+
+def _strategies(scene: list) -> dict[str, dict]:
+    model, small = _model(MATERIAL, LOBES[-1]), ["--size", "320x240"]
+    render(scene, model, "converged.exr", *small, "--spp", 8192, "--seed", SEED + 1)
+    against = ["--reference", WORK / "converged.exr"]
+    return {
+        name: render(scene, model, f"{name}.exr", *small, "--spp", 64, "--strategy", name, *against)
+        for name in STRATEGIES
+    }
+
+
+def _csv(results: dict) -> str:
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(["what", "case", "quantity", "value"])
+    for name, value in results["conditions"].items():
+        rows.writerow(["conditions", "", name, value])
+    for what in ("fits", "lobes", "strategies"):
+        for case, report in results[what].items():
+            rows.writerows([what, case, *pair] for pair in _flat(report))
+    rows.writerows(["render", MATERIAL, *pair] for pair in _flat(results["render"]))
+    return text.getvalue()
+
+
+def _flat(report: dict, prefix: str = ""):
+    for key, value in report.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        elif not isinstance(value, list):
+            yield f"{prefix}{key}", "" if value is None else value
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)
+    except subprocess.CalledProcessError as error:
+        sys.exit(error.returncode)
