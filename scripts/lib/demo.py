@@ -68,7 +68,7 @@ def demonstrate(source: Path | None, folder: Path, fresh: bool) -> None:
     )
     rmse, relmse = images.compare(model, reference)
     _write_difference(folder, model, reference)
-    _plot(folder, model_file, measurement_file)
+    _plot(folder, model_file)
     report = {
         "relative_l2": fit["relative_l2"],
         "by_view_angle": fit["by_view_angle"],
@@ -102,17 +102,16 @@ def _write_difference(folder: Path, model: np.ndarray, reference: np.ndarray) ->
         images.write(folder / name, difference)
 
 
-def _plot(folder: Path, model_file: Path, measurement_file: Path) -> None:
-    curves = demo_convergence.measure(folder / "scene.npz", model_file, measurement_file)
+def _plot(folder: Path, model_file: Path) -> None:
+    curves = demo_convergence.measure(folder / "scene.npz", model_file)
     title = "one material, the demo's scene at a quarter of its width"
     plots.error_against_time(folder / "error_against_time.png", curves, title)
 
 
 def _tell(folder: Path, report: dict, warnings: list[str]) -> None:
     errors = ", ".join(f"{a} deg {e:.3f}" for a, e in report["by_view_angle"].items() if e is not None)
-    print(
-        f"fitted  {report['lobes']} lobes, {report['bytes']} bytes in {report['fit_seconds']:.1f} s; error {errors}"
-    )
+    print(f"fit     {report['lobes']} lobes, {report['bytes']} bytes, {report['fit_seconds']:.1f} s")
+    print(f"        error {errors}")
     for warning in warnings:
         print(f"        {warning}")
     speed = report["samples_per_second"] / 1e6

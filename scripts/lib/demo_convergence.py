@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from velour.native import Measurement, Model, Scene, images, render_job
+from velour.native import Model, Scene, images, render_job
 
 SIZE = (160, 120)
 REFERENCE_SPP = 2048

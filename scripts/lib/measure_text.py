@@ -14,11 +14,13 @@ def page(results: dict) -> str:
 def _head(c: dict) -> str:
     return f"""# Measurements
 
-Written by `scripts/measure`; the rows behind the tables are in [measurements.csv](measurements.csv). All numbers come
-from one run: {c["date"]}, commit {c["commit"]}, {c["machine"]}; {c["threads"]} threads used, seed {c["seed"]}.
+Written by `scripts/measure`; the rows behind the tables are in [measurements.csv](measurements.csv).
+All numbers come from one run: {c["date"]}, commit {c["commit"]},
+{c["machine"]}; {c["threads"]} threads used, seed {c["seed"]}.
 
-The materials are decoded from neural fits of MERL materials (Sztrajman et al. 2021): stand-ins of the right layout and
-character, not the measurements themselves. What each number means is defined in [conventions.md](conventions.md).
+The materials are decoded from neural fits of MERL materials (Sztrajman et al. 2021): stand-ins of the
+right layout and character, not the measurements themselves. What each number means is defined in
+[conventions.md](conventions.md).
 """
 
 
@@ -32,8 +34,8 @@ def _fits(fits: dict[str, dict]) -> str:
     named = "\n".join(missed) if missed else "No view misses the tolerance."
     return f"""## Fit of MERL-layout materials
 
-Tolerance 0.02 (0.04 beyond 75 degrees), at most 16 lobes a view, Gaussian kernel. Relative L2 error by view angle at
-directions that the fit never read. Target: under 10 s.
+Tolerance 0.02 (0.04 beyond 75 degrees), at most 16 lobes a view, Gaussian kernel. Relative L2 error by
+view angle at directions that the fit never read. Target: under 10 s.
 
 {_table(header, rows)}
 {named}
@@ -77,8 +79,9 @@ def _lobes(lobes: dict[int, dict]) -> str:
     seconds = next(iter(lobes.values()))["reference_seconds"]
     return f"""## Picture of the model against the picture of the measurement, by lobes
 
-The same scene at 320x240, 512 light directions a pixel, `mis`, the same random numbers in both; lobes a view at most.
-The reference evaluates the raw measurement and draws its samples from the 16-lobe model; it took {seconds:.1f} s.
+The same scene at 320x240, 512 light directions a pixel, `mis`, the same random numbers in both; lobes a
+view at most. The reference evaluates the raw measurement and draws its samples from the 16-lobe model; it
+took {seconds:.1f} s.
 
 {_table(header, rows)}"""
 
@@ -90,8 +93,8 @@ def _strategies(strategies: dict[str, dict]) -> str:
     ]
     return f"""## Strategies
 
-The same scene at 320x240, 64 light directions a pixel, against a `mis` render of the same model with 8192. The last
-column is error times time: lower is better, whatever the number of samples.
+The same scene at 320x240, 64 light directions a pixel, against a `mis` render of the same model with
+8192. The last column is error times time: lower is better, whatever the number of samples.
 
 {_table(["strategy", "seconds", "relmse", "relmse x seconds"], rows)}"""
 
