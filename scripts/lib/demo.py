@@ -1,4 +1,4 @@
-"""The demonstration: measurement, fit, two pictures through Blender, difference, error against time, report."""
+"""The demonstration: measurement, fit, two pictures through Blender, difference, plot, report."""
 
 from __future__ import annotations
 

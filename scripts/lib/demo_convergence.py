@@ -15,9 +15,7 @@ SPP = (8, 32, 128)
 STRATEGIES = ("uniform", "cosine", "srbf", "light", "mis")
 
 
-def measure(
-    scene_file: Path, model_file: Path, measurement_file: Path
-) -> dict[str, list[tuple[float, float]]]:
+def measure(scene_file: Path, model_file: Path) -> dict[str, list[tuple[float, float]]]:
     """Strategy -> (seconds, relmse), against a long render of the same model: sampling error alone."""
     with _scene(scene_file, model_file) as scene:
         reference, _ = _render(scene, strategy="mis", spp=REFERENCE_SPP, seed=1)

@@ -72,10 +72,17 @@ def _lobes(lobes: dict[int, dict]) -> str:
         "seconds",
     ]
     rows = [
-        [n, f"{r['fit']['seconds']:.1f}", r["fit"]["bytes"], _error(r["fit"]["relative_l2"]), _small(r["relmse"]),
-         _small(r["rmse"]), f"{r['seconds']:.1f}"]
+        [
+            n,
+            f"{r['fit']['seconds']:.1f}",
+            r["fit"]["bytes"],
+            _error(r["fit"]["relative_l2"]),
+            _small(r["relmse"]),
+            _small(r["rmse"]),
+            f"{r['seconds']:.1f}",
+        ]
         for n, r in lobes.items()
-    ]  # fmt: skip
+    ]
     seconds = next(iter(lobes.values()))["reference_seconds"]
     return f"""## Picture of the model against the picture of the measurement, by lobes
 
