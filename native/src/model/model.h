@@ -21,10 +21,10 @@ struct FitRecord {
   ErrorByViewAngle albedo_by_view_angle;  // directional albedo (largest channel) at those views
   double albedo_max = 0;                  // over all fitted views, largest channel
   double tolerance = 0;
-  double seconds = 0;                     // wall clock of the fit
+  double seconds = 0;  // wall clock of the fit
   uint64_t seed = 0;
-  bool all_data = false;                  // fitted without holding anything out
-  std::vector<std::string> warnings;      // sentences
+  bool all_data = false;              // fitted without holding anything out
+  std::vector<std::string> warnings;  // sentences
 };
 
 /// What the model was fitted from.

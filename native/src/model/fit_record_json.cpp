@@ -1,0 +1,104 @@
+#include "model/fit_record_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json errors_json(const ErrorByViewAngle& errors) {
+  Json json = Json::object();
+  for (const auto& [angle, error] : errors) json[angle] = error ? Json(*error) : Json(nullptr);
+  return json;
+}
+
+/// Reads keys of one object and names what is wrong with them.
+class Reader {
+ public:
+  Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}
+
+  void number(const char* key, double& out) const {
+    if (const Json* v = find(key)) out = number_of(*v, key);
+  }
+  void integer(const char* key, uint64_t& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_number_unsigned()) fail(key, "a whole number");
+    if (v) out = v->get<uint64_t>();
+  }
+  void boolean(const char* key, bool& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_boolean()) fail(key, "true or false");
+    if (v) out = v->get<bool>();
+  }
+  void errors(const char* key, ErrorByViewAngle& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_object()) fail(key, "an object");
+    if (!v) return;
+    for (const auto& [angle, error] : v->items()) {
+      out[angle] = error.is_null() ? std::nullopt : std::optional(number_of(error, key));
+    }
+  }
+  void sentences(const char* key, std::vector<std::string>& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_array()) fail(key, "a list of sentences");
+    if (!v) return;
+    for (const Json& sentence : *v) {
+      if (!sentence.is_string()) fail(key, "a list of sentences");
+      out.push_back(sentence.get<std::string>());
+    }
+  }
+
+ private:
+  const Json* find(const char* key) const {
+    const auto found = json_.find(key);
+    return found == json_.end() ? nullptr : &*found;
+  }
+  double number_of(const Json& v, const char* key) const {
+    if (!v.is_number() || !std::isfinite(v.get<double>()) || v.get<double>() < 0) fail(key, "a number of at least 0");
+    return v.get<double>();
+  }
+  [[noreturn]] void fail(const char* key, const char* wanted) const {
+    throw Error(Status::bad_data, where_ + ": '" + key + "' is not " + wanted + ".");
+  }
+
+  const Json& json_;
+  std::string where_;
+};
+
+}  // namespace
+
+std::string fit_record_json(const FitRecord& record) {
+  const Json json = {{"relative_l2", record.relative_l2},
+                     {"by_view_angle", errors_json(record.by_view_angle)},
+                     {"albedo_by_view_angle", errors_json(record.albedo_by_view_angle)},
+                     {"albedo_max", record.albedo_max},
+                     {"tolerance", record.tolerance},
+                     {"seconds", record.seconds},
+                     {"seed", record.seed},
+                     {"all_data", record.all_data},
+                     {"warnings", record.warnings}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+FitRecord parse_fit_record(const std::string& text, const std::string& where) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object.");
+  const Reader reader(json, where);
+  FitRecord record;
+  reader.number("relative_l2", record.relative_l2);
+  reader.errors("by_view_angle", record.by_view_angle);
+  reader.errors("albedo_by_view_angle", record.albedo_by_view_angle);
+  reader.number("albedo_max", record.albedo_max);
+  reader.number("tolerance", record.tolerance);
+  reader.number("seconds", record.seconds);
+  reader.integer("seed", record.seed);
+  reader.boolean("all_data", record.all_data);
+  reader.sentences("warnings", record.warnings);
+  return record;
+}
+
+}  // namespace velour
