@@ -3,6 +3,7 @@
 #include "brdf/brdf_table.h"
 #include "brdf/measurement.h"
 #include "brdf/merl.h"
+#include "brdf/rgl.h"
 #include "file/file.h"
 #include "image/exr_tensors.h"
 #include "job/error.h"
@@ -18,7 +19,8 @@ struct Format {
 };
 
 /// Asked in order; each recognises its own first bytes.
-constexpr Format kFormats[] = {{looks_like_merl, read_merl}, {looks_like_exr, read_brdf_table}};
+constexpr Format kFormats[] = {
+    {looks_like_merl, read_merl}, {looks_like_rgl, read_rgl}, {looks_like_exr, read_brdf_table}};
 
 /// Enough for the comments that open a Cornell file.
 constexpr size_t kHeadBytes = 4096;

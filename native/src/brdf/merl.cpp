@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "brdf/entries.h"
 #include "brdf/table_measurement.h"

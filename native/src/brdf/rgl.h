@@ -1,0 +1,18 @@
+// The adaptive parameterisation of the RGL material database [Dupuy & Jakob 2018].
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "brdf/measurement.h"
+
+namespace velour {
+
+/// True for bytes that begin like the tensor container of .bsdf files.
+bool looks_like_rgl(std::span<const uint8_t> head);
+
+/// `provenance` has path, name, sha256 and size already. Colours come from "rgb", else from "spectra" and
+/// "wavelengths".
+std::shared_ptr<const Measurement> read_rgl(std::span<const uint8_t> bytes, Provenance provenance);
+
+}  // namespace velour

@@ -1,0 +1,163 @@
+#include "brdf/rgl_measurement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brdf/entries.h"
+#include "brdf/fast_atan2.h"
+
+namespace velour {
+namespace {
+
+/// The paper's units of angles: half vectors near the normal get the most nodes.
+float u_of_theta(float theta) { return std::sqrt(std::clamp(theta * (2.0f / kPi), 0.0f, 1.0f)); }
+float u_of_phi(float phi) {
+  const float u = (phi + kPi) * (0.5f / kPi);
+  return u - std::floor(u);
+}
+float theta_of_u(float u) { return u * u * (kPi / 2); }
+float phi_of_u(float u) { return (2.0f * u - 1.0f) * kPi; }
+
+/// f = (f cos) / cos; a light nearer to the horizon than this is treated as at it, so that f stays finite.
+constexpr float kMinCosine = 1e-6f;
+
+/// Node below `value` on an increasing axis and the weight of the next; clamped at the ends.
+std::pair<uint32_t, float> locate(const std::vector<float>& axis, float value) {
+  if (axis.size() < 2 || value <= axis.front()) return {0, 0.0f};
+  if (value >= axis.back()) return {static_cast<uint32_t>(axis.size() - 2), 1.0f};
+  const auto above = std::upper_bound(axis.begin(), axis.end(), value);
+  const auto low = static_cast<size_t>(above - axis.begin()) - 1;
+  return {static_cast<uint32_t>(low), (value - axis[low]) / (axis[low + 1] - axis[low])};
+}
+
+float theta_of(const Vec3& w) { return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z); }
+
+}  // namespace
+
+float AngleGrid::at(const Vec2& u) const {
+  const AxisCell x = axis_cell(u.x, width), y = axis_cell(u.y, height);
+  const float* low = values.data() + static_cast<size_t>(y.low) * width + x.low;
+  const float* high = low + width;
+  const float bottom = low[0] + x.t * (low[1] - low[0]), top = high[0] + x.t * (high[1] - high[0]);
+  return bottom + y.t * (top - bottom);
+}
+
+RglMeasurement::RglMeasurement(RglTables tables, Provenance provenance)
+    : tables_(std::move(tables)), warp_(tables_.visible_normals, tables_.warp_width, tables_.warp_height) {
+  provenance_ = std::move(provenance);
+  if (!isotropic())
+    sectors_ = static_cast<int>(std::lround(2.0f * kPi / (tables_.phi_v.back() - tables_.phi_v.front())));
+  build_nodes();
+  tables_.visible_normals = {};  // the warp has its own form of them
+  tables_.colour = {};
+  coverage_ = ViewCoverage(*this);
+}
+
+void RglMeasurement::build_nodes() {
+  nodes_.resize(tables_.colour.size());
+  const size_t slice_size = static_cast<size_t>(tables_.width) * tables_.height;
+  for (size_t i = 0; i < nodes_.size(); ++i) {
+    const auto slice = static_cast<uint32_t>(i / slice_size);
+    const auto y = static_cast<uint32_t>(i % slice_size / tables_.width), x = static_cast<uint32_t>(i % tables_.width);
+    const Rgb& c = tables_.colour[i];
+    if (!texel_above_horizon(slice, y, x)) {
+      // The published interpolation runs to f cos = 0 at and below the horizon; the texel stays part of it.
+      count_below_horizon(counts_);
+      if (std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b)) nodes_[i] = {{c.r, c.g, c.b, 1.0f}};
+    } else if (count_entry(c, NegativeRule::luminance, counts_)) {
+      nodes_[i] = {{c.r, c.g, c.b, 1.0f}};
+    }
+  }
+}
+
+bool RglMeasurement::texel_above_horizon(uint32_t slice, uint32_t y, uint32_t x) const {
+  SliceMix mix;
+  mix.add(slice, 1.0f);
+  const Vec2 u(static_cast<float>(x) / static_cast<float>(tables_.width - 1),
+               static_cast<float>(y) / static_cast<float>(tables_.height - 1));
+  const Vec2 position = warp_.warp(mix, u);
+  const auto phi_index = slice / static_cast<uint32_t>(tables_.theta_v.size());
+  const Vec3 wv =
+      direction(tables_.theta_v[slice % tables_.theta_v.size()], isotropic() ? 0.0f : tables_.phi_v[phi_index]);
+  const Vec3 half = direction(theta_of_u(position.x), phi_of_u(position.y));
+  return 2.0f * glm::dot(wv, half) * half.z - wv.z > 0.0f;
+}
+
+SliceMix RglMeasurement::mix_of(float phi, float theta) const {
+  const auto stride = static_cast<uint32_t>(tables_.theta_v.size());
+  const auto [row, t_row] = isotropic() ? std::pair<uint32_t, float>{0, 0.0f} : locate(tables_.phi_v, phi);
+  const auto [column, t_column] = locate(tables_.theta_v, theta);
+  const uint32_t first = row * stride + column;
+  SliceMix mix;
+  mix.add(first, (1.0f - t_row) * (1.0f - t_column));
+  mix.add(first + 1, (1.0f - t_row) * t_column);
+  mix.add(first + stride, t_row * (1.0f - t_column));
+  mix.add(first + stride + 1, t_row * t_column);
+  return mix;
+}
+
+RglMeasurement::View RglMeasurement::prepare(const Vec3& wv) const {
+  View view;
+  if (!isotropic() && sectors_ >= 2) {
+    // Measured sectors lie at phi <= 0: two by half a turn, four by mirrors in x and y.
+    const float by_y = wv.y > 0.0f ? -1.0f : 1.0f, by_x = wv.x > 0.0f ? -1.0f : 1.0f;
+    view.flip = {sectors_ == 4 ? by_x : by_y, by_y};
+  }
+  view.wv = {wv.x * view.flip.x, wv.y * view.flip.y, wv.z};
+  const float theta = theta_of(wv), phi = fast_atan2(view.wv.y, view.wv.x);
+  const float side = std::sqrt(wv.x * wv.x + wv.y * wv.y);
+  if (isotropic() && side > 0.0f) {
+    view.cos_phi = wv.x / side;
+    view.sin_phi = wv.y / side;
+  }
+  view.mix = mix_of(phi, theta);
+  const float area = tables_.projected_area.at({u_of_theta(theta), isotropic() ? 0.5f : u_of_phi(phi)});
+  view.scale = tables_.microfacet_scale ? 0.25f / area : 1.0f;
+  view.covered = wv.z > 0.0f && theta <= tables_.theta_v.back() + 1e-5f && area > 0.0f;
+  return view;
+}
+
+bool RglMeasurement::lookup(const View& view, Vec3 wl, Rgb& f) const {
+  wl.x *= view.flip.x;
+  wl.y *= view.flip.y;
+  const Vec3 sum = wl + view.wv;
+  const float x = sum.x * view.cos_phi + sum.y * view.sin_phi, y = sum.y * view.cos_phi - sum.x * view.sin_phi;
+  const Vec2 position(u_of_theta(theta_of(sum)), u_of_phi(fast_atan2(y, x)));
+  Vec2 u;
+  if (!warp_.invert(view.mix, position, u)) return false;
+  const AxisCell cx = axis_cell(u.x, tables_.width), cy = axis_cell(u.y, tables_.height);
+  alignas(16) float total[4] = {0, 0, 0, 0};
+  for (size_t s = 0; s < static_cast<size_t>(view.mix.count); ++s) {
+    const TableNode* low =
+        nodes_.data() + (static_cast<size_t>(view.mix.slice[s]) * tables_.height + cy.low) * tables_.width + cx.low;
+    const TableNode* high = low + tables_.width;
+    const float w = view.mix.weight[s], w_high = w * cy.t, w_low = w - w_high;
+    const float w01 = w_low * cx.t, w00 = w_low - w01, w11 = w_high * cx.t, w10 = w_high - w11;
+    for (int c = 0; c < 4; ++c)
+      total[c] += w00 * low[0].value[c] + w01 * low[1].value[c] + w10 * high[0].value[c] + w11 * high[1].value[c];
+  }
+  if (!(total[3] > 0.0f)) return false;
+  const float normals = tables_.microfacet_scale ? tables_.normals.at(position) : 1.0f;
+  f = Rgb(total[0], total[1], total[2]) * (normals * view.scale / (total[3] * std::max(wl.z, kMinCosine)));
+  return true;
+}
+
+void RglMeasurement::eval(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> valid) const {
+  const View view = prepare(wv);
+  for (size_t i = 0; i < wl.size(); ++i) {
+    valid[i] = view.covered && wl[i].z > 0.0f && lookup(view, wl[i], f[i]);
+    if (!valid[i]) f[i] = Rgb(0.0f);
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> RglMeasurement::details() const {
+  const auto size = [](size_t n) { return std::to_string(n); };
+  return {{"table", size(tables_.phi_v.size()) + " phi_v x " + size(tables_.theta_v.size()) + " theta_v x " +
+                        size(tables_.height) + " x " + size(tables_.width) + " of float32"},
+          {"holds", tables_.microfacet_scale ? "f cos = value x D / (4 sigma); f is given without cosine, 1/sr"
+                                             : "f cos; f is given without cosine, 1/sr"},
+          {"invalid", "an entry that is not finite or of negative luminance"},
+          {"interpolation", "bilinear in warped half vectors, linear between views; the file's own"}};
+}
+
+}  // namespace velour
