@@ -29,22 +29,16 @@ double outside_margins(double theta) {
 
 std::vector<Vec3> meridian_views(bool all_data) {
   std::vector<double> theta{0};
-  // Between one held-out view and the next: equal steps, with a view just outside each margin.
-  std::vector<double> stops{0};
+  const auto go_to = [&theta](double end) {
+    const double begin = theta.back();
+    const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / kMeridianStep)));
+    for (int k = 1; k <= steps; ++k) theta.push_back(begin + (end - begin) * k / steps);
+  };
   for (const int held_out : kHeldOutViews) {
-    if (all_data) {
-      stops.push_back(held_out);
-    } else {
-      stops.push_back(held_out - kSafeMargin);
-      stops.push_back(held_out + kSafeMargin);
-    }
+    go_to(all_data ? held_out : held_out - kSafeMargin);
+    if (!all_data) theta.push_back(held_out + kSafeMargin);  // one step over the gap
   }
-  stops.push_back(kMeridianEnd);
-  for (size_t i = 0; i + 1 < stops.size(); ++i) {
-    const double span = stops[i + 1] - stops[i];
-    const int steps = std::max(1, static_cast<int>(std::ceil(span / (kMeridianStep + 2 * (kSafeMargin - 1)))));
-    for (int k = 1; k <= steps; ++k) theta.push_back(stops[i] + span * k / steps);
-  }
+  go_to(kMeridianEnd);
   std::vector<Vec3> views;
   for (const double t : theta) views.push_back(direction(static_cast<float>(radians_from(t)), 0.0f));
   return views;

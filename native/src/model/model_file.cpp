@@ -8,6 +8,7 @@
 #include "image/exr_tensors.h"
 #include "job/error.h"
 #include "material/scattered_material.h"
+#include "material/view_neighbors.h"
 #include "model/fit_record_json.h"
 #include "srbf/lobe_mixture.h"
 
@@ -20,7 +21,6 @@ constexpr char kKind[] = "model", kLightSpace[] = "light";
 constexpr uint64_t kMaxFileBytes = uint64_t{1} << 30;
 constexpr double kUnitTolerance = 1e-3;  // of a stored direction's length
 constexpr float kMaxBandwidth = 1e9f, kMaxCoefficient = 1e12f;
-constexpr int kMaxNeighbors = 16;
 
 // ---- writing ----
 
