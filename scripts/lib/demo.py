@@ -13,7 +13,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import demo_blender
 import demo_capture
-import demo_convergence
 from velour.core import files, plots
 from velour.core.machine import machine
 from velour.native import Measurement, VelourError, fit_job, images, library
@@ -68,7 +67,8 @@ def demonstrate(source: Path | None, folder: Path, fresh: bool) -> None:
     )
     rmse, relmse = images.compare(model, reference)
     _write_difference(folder, model, reference)
-    _plot(folder, model_file)
+    title = "sampling error of the demo's scene at a quarter of its size"
+    plots.error_against_time(folder / "error_against_time.png", picture["curves"], title)
     report = {
         "relative_l2": fit["relative_l2"],
         "by_view_angle": fit["by_view_angle"],
@@ -100,12 +100,6 @@ def _write_difference(folder: Path, model: np.ndarray, reference: np.ndarray) ->
     difference = np.ascontiguousarray(np.abs(model - reference))
     for name in ("difference.exr", "difference.png"):
         images.write(folder / name, difference)
-
-
-def _plot(folder: Path, model_file: Path) -> None:
-    curves = demo_convergence.measure(folder / "scene.npz", model_file)
-    title = "one material, the demo's scene at a quarter of its width"
-    plots.error_against_time(folder / "error_against_time.png", curves, title)
 
 
 def _tell(folder: Path, report: dict, warnings: list[str]) -> None:

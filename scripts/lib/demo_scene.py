@@ -1,0 +1,185 @@
+"""Runs inside Blender: builds the demo's scene, renders it with the model and with the measurement itself, and takes
+the points of the error-against-time plot. The task is the JSON text after "--"."""
+
+from __future__ import annotations
+
+import json
+import logging
+import math
+import os
+import sys
+
+import addon_utils
+import bpy
+import numpy as np
+from mathutils import Vector
+from velour.native import images, render_job
+
+SIZE = (640, 480)
+SAMPLES = 128
+WORLD, WORLD_ROTATION, WORLD_STRENGTH = "forest.exr", 100.0, 1.0
+
+PLOT_REDUCTION = 4  # of the picture's sides
+PLOT_REFERENCE_SAMPLES = 2048
+PLOT_SAMPLES = (8, 32, 128)
+PLOT_STRATEGIES = ("uniform", "cosine", "srbf", "light", "mis")
+
+
+def main(task: dict) -> None:
+    scene = _empty_scene()
+    subject = _add_subject()
+    _add_ground()
+    _add_camera(scene)
+    _add_world(scene)
+    node = _add_materials(subject, task["model"], task["measurement"])
+    report = _render_pictures(scene, node, task["folder"])
+    report["curves"] = _curves(scene)
+    with open(task["report"], "w") as file:
+        json.dump(report, file)
+
+
+def _raise(error):
+    raise error
+
+
+def _empty_scene() -> bpy.types.Scene:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    addon_utils.enable("velour", default_set=False, handle_error=_raise)
+    scene = bpy.context.scene
+    scene.render.engine = "VELOUR"
+    scene.render.resolution_x, scene.render.resolution_y = SIZE
+    scene.view_settings.view_transform = "Standard"
+    scene.velour.samples, scene.velour.seed = SAMPLES, 1
+    return scene
+
+
+def _add_subject() -> bpy.types.Object:
+    bpy.ops.mesh.primitive_monkey_add(
+        size=2.0, location=(0, 0, 0.98), rotation=(math.radians(-35), 0, math.radians(20))
+    )
+    subject = bpy.context.object
+    smooth = subject.modifiers.new("Smooth", "SUBSURF")
+    smooth.levels = smooth.render_levels = 3
+    bpy.ops.object.shade_smooth()
+    return subject
+
+
+def _add_ground() -> None:
+    bpy.ops.mesh.primitive_circle_add(vertices=128, radius=9.0, fill_type="NGON")
+    material = bpy.data.materials.new("Ground")
+    material.use_nodes = True
+    shader = material.node_tree.nodes["Principled BSDF"]
+    shader.inputs["Base Color"].default_value = (0.18, 0.17, 0.16, 1)
+    shader.inputs["Roughness"].default_value = 0.6
+    bpy.context.object.data.materials.append(material)
+
+
+def _add_camera(scene: bpy.types.Scene) -> None:
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location = (1.1, -5.2, 2.0)
+    camera.rotation_euler = (Vector((0, 0, 0.95)) - camera.location).to_track_quat("-Z", "Y").to_euler()
+    camera.data.lens = 60
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+
+
+def _add_world(scene: bpy.types.Scene) -> None:
+    """One of the worlds that come with Blender."""
+    world = scene.world = bpy.data.worlds.new("World")
+    world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    background = next(node for node in nodes if node.bl_idname == "ShaderNodeBackground")
+    background.inputs["Strength"].default_value = WORLD_STRENGTH
+    picture, mapping, place = (
+        nodes.new(f"ShaderNode{name}") for name in ("TexEnvironment", "Mapping", "TexCoord")
+    )
+    path = os.path.join(bpy.utils.system_resource("DATAFILES"), "studiolights", "world", WORLD)
+    picture.image = bpy.data.images.load(path)
+    mapping.inputs["Rotation"].default_value[2] = math.radians(WORLD_ROTATION)
+    links.new(place.outputs["Generated"], mapping.inputs["Vector"])
+    links.new(mapping.outputs["Vector"], picture.inputs["Vector"])
+    links.new(picture.outputs["Color"], background.inputs["Color"])
+
+
+def _add_materials(subject: bpy.types.Object, model: str, measurement: str) -> bpy.types.ShaderNodeTexImage:
+    """The subject's measured node, with the model and the measurement that it was fitted to."""
+    bpy.context.view_layer.objects.active = subject
+    bpy.ops.velour.load_material(filepath=measurement, fit=False)
+    raw = _measured_node(subject)
+    bpy.ops.velour.load_material(filepath=model)
+    node = _measured_node(subject)
+    node.velour.measurement = raw.velour.measurement
+    return node
+
+
+def _measured_node(subject: bpy.types.Object) -> bpy.types.ShaderNodeTexImage:
+    nodes = subject.active_material.node_tree.nodes
+    return next(node for node in nodes if node.bl_idname == "ShaderNodeTexImage" and node.velour.enabled)
+
+
+def _render_pictures(scene: bpy.types.Scene, node: bpy.types.ShaderNodeTexImage, folder: str) -> dict:
+    """model.{exr,png} and reference.{exr,png}; what the render of the model took."""
+    node.velour.use_reference = True
+    _render_picture(scene, folder, "reference")
+    node.velour.use_reference = False
+    return _render_picture(scene, folder, "model")
+
+
+def _render_picture(scene: bpy.types.Scene, folder: str, name: str) -> dict:
+    """Writes the picture; returns the engine's report."""
+    reports = _ReportHandler()
+    bpy.ops.render.render()
+    reports.close()
+    picture, settings = bpy.data.images["Render Result"], scene.render.image_settings
+    for suffix, file_format, depth in ((".exr", "OPEN_EXR", "32"), (".png", "PNG", "8")):
+        settings.file_format, settings.color_depth = file_format, depth
+        picture.save_render(os.path.join(folder, name + suffix), scene=scene)
+    return reports.last
+
+
+class _ReportHandler(logging.Handler):
+    """Picks the report of each render out of the engine's log."""
+
+    def __init__(self):
+        super().__init__()
+        self.last = {}
+        self._log = logging.getLogger("velour.engine")
+        self._log.setLevel(logging.INFO)
+        self._log.addHandler(self)
+
+    def emit(self, record):
+        if isinstance(record.args, dict):
+            self.last = dict(record.args)
+
+    def close(self):
+        self._log.removeHandler(self)
+        super().close()
+
+
+def _curves(scene: bpy.types.Scene) -> dict[str, list[tuple[float, float]]]:
+    """Strategy -> (seconds, relmse) against a long render of the same model, smaller: sampling error alone."""
+    from velour.export import Notes, export_scene
+    from velour.export.camera import final_view
+
+    width, height = (side // PLOT_REDUCTION for side in SIZE)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    with export_scene(depsgraph, final_view(depsgraph, width, height, Notes()), Notes()) as exported:
+
+        def picture(strategy: str, samples: int, seed: int) -> tuple[np.ndarray, float]:
+            options = {"width": width, "height": height, "strategy": strategy, "spp": samples, "seed": seed}
+            with render_job(exported, **options) as job:
+                seconds = job.run()["seconds"]
+                return job.read_pass("Combined")[..., :3].copy(), seconds
+
+        reference, _ = picture("mis", PLOT_REFERENCE_SAMPLES, seed=1)
+
+        def point(strategy: str, samples: int) -> tuple[float, float]:
+            pixels, seconds = picture(strategy, samples, seed=2)
+            return seconds, images.compare(pixels, reference)[1]
+
+        return {name: [point(name, samples) for samples in PLOT_SAMPLES] for name in PLOT_STRATEGIES}
+
+
+if __name__ == "__main__":
+    main(json.loads(sys.argv[sys.argv.index("--") + 1]))
