@@ -29,7 +29,7 @@ def main() -> int:
             demonstrate(source, folder, args.fresh)
     except KeyboardInterrupt:
         return 130
-    except (VelourError, OSError, demo_blender.BlenderFailure) as error:
+    except (VelourError, OSError, demo_blender.BlenderError) as error:
         print(f"demo: {error}", file=sys.stderr)
         return 1
     return 0

@@ -13,14 +13,14 @@ HERE = Path(__file__).resolve().parent
 STAGE = HERE.parents[1] / "build/release/blender"
 
 
-class BlenderFailure(RuntimeError):
+class BlenderError(RuntimeError):
     pass
 
 
 def render(model_file: Path, measurement_file: Path, folder: Path) -> dict:
     """Writes model and reference pictures and the error-against-time points; returns demo_scene.py's report."""
     if not shutil.which("blender"):
-        raise BlenderFailure("blender is not installed; run scripts/setup")
+        raise BlenderError("blender is not installed; run scripts/setup")
     with tempfile.TemporaryDirectory(prefix="velour-demo-") as temporary:
         report = Path(temporary) / "report.json"
         task = {
@@ -43,6 +43,6 @@ def _run(arguments: list[str], log: Path) -> None:
         )
     if done.returncode:
         lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
-        raise BlenderFailure(
+        raise BlenderError(
             f"Blender failed with status {done.returncode}; {log} ends: {' / '.join(lines[-3:])}"
         )

@@ -1,5 +1,5 @@
-"""Runs inside Blender: builds the demo's scene, renders it with the model and with the measurement itself, and takes
-the points of the error-against-time plot. The task is the JSON text after "--"."""
+"""Runs inside Blender: builds the demo's scene, renders it with the model and with the measurement itself, and
+takes the points of the error-against-time plot. The task is the JSON text after "--"."""
 
 from __future__ import annotations
 
@@ -54,9 +54,8 @@ def _empty_scene() -> bpy.types.Scene:
 
 
 def _add_subject() -> bpy.types.Object:
-    bpy.ops.mesh.primitive_monkey_add(
-        size=2.0, location=(0, 0, 0.98), rotation=(math.radians(-35), 0, math.radians(20))
-    )
+    rotation = (math.radians(-35), 0, math.radians(20))
+    bpy.ops.mesh.primitive_monkey_add(size=2.0, location=(0, 0, 0.98), rotation=rotation)
     subject = bpy.context.object
     smooth = subject.modifiers.new("Smooth", "SUBSURF")
     smooth.levels = smooth.render_levels = 3
@@ -167,8 +166,8 @@ def _curves(scene: bpy.types.Scene) -> dict[str, list[tuple[float, float]]]:
     with export_scene(depsgraph, final_view(depsgraph, width, height, Notes()), Notes()) as exported:
 
         def picture(strategy: str, samples: int, seed: int) -> tuple[np.ndarray, float]:
-            options = {"width": width, "height": height, "strategy": strategy, "spp": samples, "seed": seed}
-            with render_job(exported, **options) as job:
+            options = {"strategy": strategy, "spp": samples, "seed": seed}
+            with render_job(exported, width=width, height=height, **options) as job:
                 seconds = job.run()["seconds"]
                 return job.read_pass("Combined")[..., :3].copy(), seconds
 
