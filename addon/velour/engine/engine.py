@@ -1,0 +1,49 @@
+"""The engine as Blender knows it."""
+
+import logging
+
+import bpy
+
+from ..export import ExportError
+from ..native import VelourError
+from .final import RenderCancelledError, render_final
+from .passes import register_passes
+
+log = logging.getLogger(__package__)
+
+
+class VelourRenderEngine(bpy.types.RenderEngine):
+    bl_idname = "VELOUR"
+    bl_label = "Velour"
+    bl_use_preview = True
+    bl_use_shading_nodes_custom = False  # the stock shader editor stays as it is for Cycles
+    bl_use_eevee_viewport = True  # Material Preview shows the Principled approximation
+    bl_use_spherical_stereo = False
+
+    def __init__(self, *args, **kwargs):
+        super().__init__(*args, **kwargs)  # Blender 4.4 and newer pass arguments and need this call
+
+    def __del__(self):
+        parent = getattr(super(), "__del__", None)  # missing up to and including 5.2
+        if parent:
+            parent()
+
+    def render(self, depsgraph):
+        try:
+            render_final(self, depsgraph)
+        except RenderCancelledError:
+            pass  # Blender knows: it asked
+        except (ExportError, VelourError) as error:
+            self._fail(str(error))
+        except Exception as error:  # an exception alone would leave a black picture and exit status 0
+            log.exception("render failed")
+            self._fail(f"Velour failed unexpectedly: {type(error).__name__}: {error}")
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        register_passes(self, scene, renderlayer)
+
+    def _fail(self, sentence):
+        if self.is_preview:
+            self.error_set(sentence)  # a preview is no job of anyone: say it in its corner
+        else:
+            self.report({"ERROR"}, sentence)

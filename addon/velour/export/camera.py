@@ -1,0 +1,98 @@
+"""Blender's camera as a window: left, right, bottom, top of the picture."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .axes import rigid
+from .notes import ExportError
+
+
+class View(NamedTuple):
+    """The keywords of Scene.set_camera, and the size of the picture."""
+
+    kind: str
+    camera_to_world: np.ndarray
+    window: tuple
+    clip_start: float
+    clip_end: float
+    width: int
+    height: int
+
+    def add_to(self, scene):
+        scene.set_camera(
+            self.kind, self.camera_to_world, self.window, clip_start=self.clip_start, clip_end=self.clip_end
+        )
+
+
+def final_view(depsgraph, width, height, notes):
+    """The view of a final render; width and height are those of the part inside the render border."""
+    scene = depsgraph.scene_eval
+    if scene.camera is None:
+        raise ExportError(
+            f"Scene '{scene.name}' has no camera; add one, or choose one in its Scene properties."
+        )
+    camera = scene.camera.evaluated_get(depsgraph)
+    if camera.type != "CAMERA":
+        raise ExportError(
+            f"Camera '{camera.name}' is not a camera object; choose one in the Scene properties."
+        )
+    lens = camera.data
+    if lens.type not in _WINDOWS:
+        raise ExportError(f"Camera '{camera.name}': {lens.type.lower()} cameras are not supported.")
+    if lens.dof.use_dof:
+        notes.add(f"Camera '{camera.name}': depth of field is not supported yet; all is sharp.")
+    full = _full_size(scene.render)
+    window = _WINDOWS[lens.type](_projection(camera, depsgraph, scene.render, full))
+    window = _inside_border(window, scene.render, full)
+    kind = "perspective" if lens.type == "PERSP" else "orthographic"
+    return View(kind, rigid(camera.matrix_world), window, lens.clip_start, lens.clip_end, width, height)
+
+
+def _full_size(render):
+    scale = render.resolution_percentage / 100
+    return max(1, int(render.resolution_x * scale)), max(1, int(render.resolution_y * scale))
+
+
+def _projection(camera, depsgraph, render, size):
+    return camera.calc_matrix_camera(
+        depsgraph, x=size[0], y=size[1], scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y
+    )
+
+
+def perspective_window(projection):
+    """At distance 1: inverts x_ndc = (P00 x + P02 z) / -z at z = -1 for x_ndc = -1 and 1, likewise for y."""
+    x, y = projection[0], projection[1]
+    return (x[2] - 1) / x[0], (x[2] + 1) / x[0], (y[2] - 1) / y[1], (y[2] + 1) / y[1]
+
+
+def orthographic_window(projection):
+    """In metres: inverts x_ndc = P00 x + P03."""
+    x, y = projection[0], projection[1]
+    return (-1 - x[3]) / x[0], (1 - x[3]) / x[0], (-1 - y[3]) / y[1], (1 - y[3]) / y[1]
+
+
+_WINDOWS = {"PERSP": perspective_window, "ORTHO": orthographic_window}
+
+
+def _inside_border(window, render, size):
+    """The part of the window that a render border leaves, cut at whole pixels as Blender cuts."""
+    if not render.use_border:
+        return window
+    left, right, bottom, top = window
+    x0, x1 = (int(b * size[0]) / size[0] for b in (render.border_min_x, render.border_max_x))
+    y0, y1 = (int(b * size[1]) / size[1] for b in (render.border_min_y, render.border_max_y))
+    width, height = right - left, top - bottom
+    return left + x0 * width, left + x1 * width, bottom + y0 * height, bottom + y1 * height
+
+
+def planar_depth(distance, view):
+    """Blender's Depth pass is measured along the viewing axis, ours along the ray. `distance` [h x w x 1]."""
+    if view.kind == "orthographic":
+        return distance
+    left, right, bottom, top = view.window
+    x = left + (np.arange(view.width) + 0.5) * ((right - left) / view.width)
+    y = bottom + (np.arange(view.height) + 0.5) * ((top - bottom) / view.height)
+    along_axis = 1 / np.sqrt(1 + x[None, :] ** 2 + y[:, None] ** 2)
+    hit = distance < 1e9  # what meets nothing keeps the mark of Blender, 1e10
+    return np.where(hit, distance * along_axis[:, :, None], distance).astype(np.float32)

@@ -1,0 +1,38 @@
+"""Colour spaces between Blender's scene-linear and the library's Rec. 709."""
+
+import numpy as np
+from mathutils import Color
+
+_LINEAR_REC709 = {"Linear", "Linear Rec.709", "linear", "scene_linear", "Utility - Linear - sRGB"}
+_DATA = {"Non-Color", "Raw", "Generic Data"}
+
+
+def rec709_to_working():
+    """3 x 3 numpy matrix from linear Rec. 709 to Blender's scene-linear working space."""
+    columns = [_to_scene_linear(primary) for primary in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    return np.array(columns, np.float64).T
+
+
+def is_linear_rec709(space_name):
+    """True where a file in this colour space holds linear Rec. 709, and that is also the working space."""
+    return space_name in _LINEAR_REC709 and np.allclose(rec709_to_working(), np.eye(3), atol=1e-4)
+
+
+def bytes_to_working(pixels, space_name):
+    """Working-space values of an 8-bit image's [... x channels] pixels, which Blender hands out undecoded.
+
+    The second value is False where the colour space is not known here and sRGB was assumed.
+    """
+    if space_name in _DATA:
+        return pixels, True
+    rgb = pixels[..., :3]
+    if space_name not in _LINEAR_REC709:
+        rgb = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1
+    pixels[..., :3] = rgb @ rec709_to_working().T.astype(np.float32)
+    return pixels, space_name in _LINEAR_REC709 or "sRGB" in space_name
+
+
+def _to_scene_linear(primary):
+    color = Color(primary)
+    convert = getattr(color, "from_rec709_linear_to_scene_linear", None)
+    return tuple(convert() if convert else color)

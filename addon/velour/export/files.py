@@ -1,0 +1,93 @@
+"""Image datablocks that stand for files: models and measurements.
+
+Packed bytes come from memory; linked paths are resolved against the library they are linked from.
+"""
+
+import contextlib
+import hashlib
+import os
+import tempfile
+
+import bpy
+
+from ..native import Measurement, Model, VelourError
+from .notes import ExportError
+
+_FIND = "put it back, or use File > External Data > Find Missing Files"
+
+
+def absolute_path(image):
+    """The file that an image datablock names, in the reader's file system; "" where it names none."""
+    path = image.filepath
+    return os.path.normpath(bpy.path.abspath(path, library=image.library)) if path else ""
+
+
+def packed_bytes(image):
+    """The bytes packed into the .blend, or None."""
+    packed = image.packed_file
+    return packed.data if packed is not None else None
+
+
+def content(image, owner):
+    """The bytes of the file that `image` stands for. `owner` begins the sentence when they cannot be had."""
+    data = packed_bytes(image)
+    if data is not None:
+        return data
+    path = absolute_path(image)
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError as error:
+        raise ExportError(
+            f"{owner}: the file {path or image.name!r} cannot be read ({error.strerror}); {_FIND}."
+        ) from error
+
+
+def sha256(data):
+    return hashlib.sha256(data).hexdigest()
+
+
+def read_model(image, owner):
+    """The model in `image`; refuses one that is not the file it was when it was loaded or fitted."""
+    data = content(image, owner)
+    _refuse_change(image, sha256(data), owner)
+    try:
+        return Model.from_bytes(data, image.name)
+    except VelourError as error:
+        raise ExportError(f"{owner}: {error}") from error
+
+
+def read_measurement(image, owner):
+    """As read_model, for raw measurements."""
+    try:
+        with measurement_path(image, owner) as path:
+            measurement = Measurement.load(path)
+        _refuse_change(image, measurement.info()["sha256"], owner)
+    except VelourError as error:
+        raise ExportError(f"{owner}: {error}") from error
+    return measurement
+
+
+@contextlib.contextmanager
+def measurement_path(image, owner):
+    """A readable path of a measurement; packed bytes are written to a temporary file first."""
+    path = absolute_path(image)
+    if packed_bytes(image) is None:
+        if not os.path.isfile(path):
+            raise ExportError(f"{owner}: the measurement {path or image.name!r} is missing; {_FIND}.")
+        yield path
+        return
+    with tempfile.TemporaryDirectory(prefix="velour-") as folder:
+        path = os.path.join(folder, os.path.basename(path) or "measurement")
+        with open(path, "wb") as file:
+            file.write(packed_bytes(image))
+        yield path
+
+
+def _refuse_change(image, digest, owner):
+    expected = image.velour.sha256
+    if expected and digest != expected:
+        raise ExportError(
+            f"{owner}: the file {absolute_path(image) or image.name!r} has changed since it was chosen;"
+            " restore it, or accept it with 'Accept Changed File' in the material's Model panel."
+        )

@@ -1,0 +1,63 @@
+"""Blender's lamps in the library's units."""
+
+import math
+
+from .axes import column_lengths, rigid
+
+# Blender's area lamps emit pi/4 of their nominal power: their radiance is P / (4 A), where a Lambert emitter's
+# is P / (pi A).
+_AREA_POWER = math.pi / 4
+
+
+def add_light(scene, obj, matrix, notes):
+    """`obj`: an evaluated lamp object, `matrix`: where this instance of it stands."""
+    lamp = obj.data
+    owner = f"Light '{obj.name}'"
+    if (
+        lamp.use_nodes
+        and lamp.node_tree
+        and any(n.bl_idname != "ShaderNodeOutputLight" for n in lamp.node_tree.nodes)
+    ):
+        notes.add(f"{owner}: shader nodes of lights are ignored; its colour and power are used.")
+    if lamp.type == "SPOT":
+        notes.add(f"{owner}: spot lights are not supported yet; left out.")
+        return
+    kind, factor, values = _DESCRIBE[lamp.type](lamp, matrix)
+    color = [lamp.energy * factor * c for c in lamp.color]
+    scene.add_light(kind, color, rigid(matrix), casts_shadow=_casts_shadow(lamp), **values)
+
+
+def _sun(lamp, _matrix):
+    return "sun", _sun_factor(lamp.angle), {"angle": lamp.angle}
+
+
+def _sun_factor(angle):
+    """Irradiance of a facing plane over Blender's strength; 1 for a small sun.
+
+    It is the mean cosine over a disk seen under `angle`, uniform on the plane at distance 1.
+    """
+    if angle < 1e-3:
+        return 1.0
+    tangent_sq = math.tan(min(angle, math.pi - 1e-3) / 2) ** 2
+    return 2 * (math.sqrt(1 + tangent_sq) - 1) / tangent_sq
+
+
+def _point(lamp, _matrix):
+    return "point", 1.0, {"size": (lamp.shadow_soft_size, 0.0)}
+
+
+def _area(lamp, matrix):
+    x, y, _z = column_lengths(matrix)
+    height = lamp.size if lamp.shape in ("SQUARE", "DISK") else lamp.size_y
+    kind = "rectangle" if lamp.shape in ("SQUARE", "RECTANGLE") else "disk"
+    return kind, _AREA_POWER, {"size": (lamp.size * x, height * y)}
+
+
+_DESCRIBE = {"SUN": _sun, "POINT": _point, "AREA": _area}
+
+
+def _casts_shadow(lamp):
+    cycles = getattr(
+        lamp, "cycles", None
+    )  # the one stock switch that a ray tracer reads, while Cycles is enabled
+    return int(getattr(lamp, "use_shadow", True) and getattr(cycles, "cast_shadow", True))

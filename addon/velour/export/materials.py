@@ -1,0 +1,58 @@
+"""Blender materials as numbers in the library's scene."""
+
+from ..native import VelourError
+from . import files
+from .nodes import velour_node
+from .notes import ExportError
+from .principled import principled_values
+
+
+class MaterialTable:
+    """Adds each material once.
+
+    `strict` refuses a measured material that cannot be had; else it renders as its Principled approximation with
+    a note (previews, the viewport).
+    """
+
+    def __init__(self, scene, notes, strict=True):
+        self._scene = scene
+        self._notes = notes
+        self._strict = strict
+        self._numbers = {}
+
+    def number(self, material):
+        """`material` may be None: Blender's default grey."""
+        key = material.original.as_pointer() if material else None
+        if key not in self._numbers:
+            self._numbers[key] = self._add(material)
+        return self._numbers[key]
+
+    def _add(self, material):
+        node = velour_node(material)
+        if node is not None:
+            try:
+                return self._add_measured(material, node)
+            except (ExportError, VelourError) as error:
+                if self._strict:
+                    raise
+                self._notes.add(str(error))
+        return self._scene.add_principled_material(**principled_values(material, self._notes))
+
+    def _add_measured(self, material, node):
+        settings = node.velour
+        owner = f"Material '{material.name}'"
+        if settings.use_reference:
+            return self._add_reference(node, owner)
+        if node.image is None:
+            raise ExportError(
+                f"{owner}: node '{node.name}' has no model; press Fit, or choose a model as its image."
+            )
+        with files.read_model(node.image, owner) as model:
+            return self._scene.add_model_material(model, settings.neighbors)
+
+    def _add_reference(self, node, owner):
+        if node.velour.measurement is None:
+            raise ExportError(f"{owner}: 'Render from Measurement' is on, but no measurement is chosen.")
+        proposal = files.read_model(node.image, owner) if node.image else None
+        with files.read_measurement(node.velour.measurement, owner) as measurement:
+            return self._scene.add_measurement_material(measurement, proposal, node.velour.neighbors)

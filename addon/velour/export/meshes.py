@@ -1,0 +1,59 @@
+"""Evaluated geometry as numpy arrays."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class MeshArrays(NamedTuple):
+    """The keywords of Scene.add_mesh."""
+
+    positions: np.ndarray
+    triangles: np.ndarray
+    corner_normals: np.ndarray
+    corner_uvs: np.ndarray | None
+    material_slots: np.ndarray
+
+
+def mesh_arrays(mesh):
+    """`mesh` in its local space, split into Blender's own triangles; None where it has no face."""
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    if count == 0:
+        return None
+    corners = _read(mesh.loop_triangles, "loops", count * 3, np.int32).reshape(count, 3)
+    return MeshArrays(
+        positions=_read(mesh.vertices, "co", len(mesh.vertices) * 3).reshape(-1, 3),
+        triangles=_read(mesh.loop_triangles, "vertices", count * 3, np.int32)
+        .astype(np.uint32)
+        .reshape(count, 3),
+        corner_normals=_corner_normals(mesh)[corners],
+        corner_uvs=_corner_uvs(mesh, corners),
+        material_slots=_read(mesh.loop_triangles, "material_index", count, np.int32).astype(np.uint32),
+    )
+
+
+def _read(collection, attribute, size, dtype=np.float32):
+    values = np.empty(size, dtype)
+    collection.foreach_get(attribute, values)
+    return values
+
+
+def _corner_normals(mesh):
+    """[loops x 3]: custom, sharp and auto-smooth normals as Blender shades them."""
+    size = len(mesh.loops) * 3
+    if hasattr(mesh, "corner_normals"):  # 4.1 and newer
+        return _read(mesh.corner_normals, "vector", size).reshape(-1, 3)
+    mesh.calc_normals_split()
+    normals = _read(mesh.loops, "normal", size).reshape(-1, 3)
+    mesh.free_normals_split()
+    return normals
+
+
+def _corner_uvs(mesh, corners):
+    """[triangles x 3 x 2] of the UV map that renders, or None."""
+    layer = next((uv for uv in mesh.uv_layers if uv.active_render), None)
+    if layer is None:
+        return None
+    uvs = _read(layer.data, "uv", len(mesh.loops) * 2).reshape(-1, 2)
+    return uvs[corners]

@@ -1,0 +1,33 @@
+"""Finding things in Blender's node trees."""
+
+
+def velour_node(material):
+    """The Image Texture node that makes this a measured material, or None. Of several the active one."""
+    tree = material.node_tree if material else None
+    if tree is None:
+        return None
+    found = [node for node in tree.nodes if node.bl_idname == "ShaderNodeTexImage" and node.velour.enabled]
+    if tree.nodes.active in found:
+        return tree.nodes.active
+    return found[0] if found else None
+
+
+def active_output(tree, idname):
+    """The output node that Blender renders, or None."""
+    outputs = [node for node in tree.nodes if node.bl_idname == idname]
+    return next((node for node in outputs if node.is_active_output), outputs[0] if outputs else None)
+
+
+def source(socket):
+    """The node at the other end of an input socket, past reroutes; None where it is free or muted."""
+    while socket.is_linked and socket.links and not socket.links[0].is_muted:
+        node = socket.links[0].from_node
+        if node.bl_idname != "NodeReroute":
+            return node
+        socket = node.inputs[0]
+    return None
+
+
+def first_input(node, *names):
+    """The first input socket by one of these names (Blender renames them between versions), or None."""
+    return next((node.inputs[name] for name in names if name in node.inputs), None)

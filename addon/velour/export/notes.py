@@ -1,0 +1,21 @@
+"""What an export has to say to the artist."""
+
+
+class ExportError(RuntimeError):
+    """The scene cannot be rendered as it is. One sentence: owner, file, remedy."""
+
+
+class Notes:
+    """Sentences on what is ignored or approximated, in the order found, each once."""
+
+    def __init__(self):
+        self._sentences = {}
+
+    def add(self, sentence):
+        self._sentences[sentence] = None
+
+    def __iter__(self):
+        return iter(self._sentences)
+
+    def __len__(self):
+        return len(self._sentences)

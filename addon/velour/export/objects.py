@@ -1,0 +1,91 @@
+"""The objects and instances of an evaluated depsgraph."""
+
+import numpy as np
+
+from .axes import affine
+from .lights import add_light
+from .meshes import mesh_arrays
+
+_GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+_UNSUPPORTED = {
+    "CURVES": "hair curves",
+    "POINTCLOUD": "point clouds",
+    "VOLUME": "volumes",
+    "GPENCIL": "Grease Pencil",
+    "GREASEPENCIL": "Grease Pencil",
+    "LIGHT_PROBE": None,  # a helper of EEVEE's: nothing to say
+}
+
+
+class ObjectExport:
+    """Adds all visible objects to `scene`; instances share the geometry of their evaluated datablock."""
+
+    def __init__(self, scene, materials, notes, check_break):
+        self._scene = scene
+        self._materials = materials
+        self._notes = notes
+        self._check_break = check_break  # called once an instance; raises to stop
+        self._meshes = {}
+
+    def add_all(self, depsgraph):
+        override = depsgraph.view_layer_eval.material_override
+        for instance in depsgraph.object_instances:
+            self._check_break()
+            # The instance is only valid within this turn of the loop.
+            if not instance.show_self:
+                continue
+            if instance.object.type in _GEOMETRY:
+                self._add_geometry(instance, override)
+            elif instance.object.type == "LIGHT":
+                add_light(self._scene, instance.object, instance.matrix_world, self._notes)
+            else:
+                self._note_unsupported(instance.object)
+
+    def _add_geometry(self, instance, override):
+        mesh, slots = self._mesh(instance.object)
+        if mesh is None:
+            return
+        slots = [override] * len(slots) if override else slots
+        numbers = [self._materials.number(material) for material in slots]
+        self._scene.add_instance(mesh, affine(instance.matrix_world), numbers)
+
+    def _mesh(self, obj):
+        """The mesh's number in the scene (None: there is nothing to see) and the materials of its slots."""
+        key = (obj.type, obj.data.as_pointer()) if obj.data else (obj.type, obj.as_pointer())
+        if key not in self._meshes:
+            self._meshes[key] = self._add_mesh(obj)
+        number, slots = self._meshes[key]
+        return number, _slot_materials(obj, slots)
+
+    def _add_mesh(self, obj):
+        # Only what is not a mesh yet, or is being edited, needs a converted copy.
+        convert = obj.type != "MESH" or obj.mode == "EDIT"
+        mesh = obj.to_mesh() if convert else obj.data
+        try:
+            arrays = mesh_arrays(mesh) if mesh else None
+        finally:
+            if convert:
+                obj.to_mesh_clear()
+        if arrays is None:
+            return None, 0
+        number, dropped = self._scene.add_mesh(**arrays._asdict())
+        if dropped:
+            self._notes.add(
+                f"Object '{obj.name}': {dropped} triangles without area or with NaN are left out."
+            )
+        return number, int(np.max(arrays.material_slots)) + 1
+
+    def _note_unsupported(self, obj):
+        kind = _UNSUPPORTED.get(obj.type)
+        if kind:
+            self._notes.add(f"Object '{obj.name}': {kind} are not supported; left out.")
+
+
+def _slot_materials(obj, count):
+    """The materials of slots 0..count-1; a face beyond the last slot shows the last one, as in Blender."""
+    own = [slot.material for slot in obj.material_slots]
+    of_data = list(obj.data.materials) if hasattr(obj.data, "materials") else []
+    # Instanced geometry of geometry nodes carries its own materials under an object with fewer slots.
+    materials = own if len(own) >= len(of_data) else own + of_data[len(own) :]
+    materials = materials or [None]
+    return [materials[min(slot, len(materials) - 1)] for slot in range(count)]

@@ -1,0 +1,116 @@
+"""The analytic stand-in of materials that are not measured."""
+
+from .nodes import active_output, first_input, source
+
+DEFAULT = {"base_color": (0.8, 0.8, 0.8), "metallic": 0.0, "roughness": 0.5, "specular": 0.5}
+
+# Our parameter: the names of Blender's input socket over the versions.
+_PRINCIPLED = {
+    "base_color": ("Base Color",),
+    "metallic": ("Metallic",),
+    "roughness": ("Roughness",),
+    "specular": ("Specular IOR Level", "Specular"),
+}
+# Inputs that Velour does not render, and the value at which that makes no difference.
+_IGNORED = {
+    "Subsurface": 0.0,
+    "Subsurface Weight": 0.0,
+    "Specular Tint": 0.0,
+    "Anisotropic": 0.0,
+    "Sheen": 0.0,
+    "Sheen Weight": 0.0,
+    "Clearcoat": 0.0,
+    "Coat Weight": 0.0,
+    "Transmission": 0.0,
+    "Transmission Weight": 0.0,
+    "Alpha": 1.0,
+}
+_LINK_ONLY = ("Normal", "Clearcoat Normal", "Coat Normal", "Tangent")
+
+
+def principled_values(material, notes):
+    """Keywords of Scene.add_principled_material; says in `notes` what it leaves out."""
+    if material is None:
+        return dict(DEFAULT)
+    if not material.use_nodes or material.node_tree is None:
+        return _without_nodes(material)
+    owner = f"Material '{material.name}'"
+    output = active_output(material.node_tree, "ShaderNodeOutputMaterial")
+    node = source(output.inputs["Surface"]) if output else None
+    if node is None:
+        notes.add(f"{owner}: it has no surface shader; rendered black.")
+        return {**DEFAULT, "base_color": (0, 0, 0), "specular": 0.0}
+    for name in ("Volume", "Displacement"):
+        if source(output.inputs[name]):
+            notes.add(f"{owner}: {name.lower()} is not supported; ignored.")
+    reader = _READERS.get(node.bl_idname)
+    if reader is None:
+        notes.add(f"{owner}: node '{node.name}' ({node.bl_label}) is not supported; rendered grey.")
+        return dict(DEFAULT)
+    return reader(node, owner, notes)
+
+
+def _without_nodes(material):
+    return {
+        "base_color": tuple(material.diffuse_color[:3]),
+        "metallic": material.metallic,
+        "roughness": material.roughness,
+        "specular": material.specular_intensity,
+    }
+
+
+def _read_principled(node, owner, notes):
+    values = {
+        name: _value(first_input(node, *sockets), node, owner, notes) for name, sockets in _PRINCIPLED.items()
+    }
+    emission = first_input(node, "Emission Color", "Emission")
+    strength = first_input(node, "Emission Strength")
+    color, factor = _value(emission, node, owner, notes), _value(strength, node, owner, notes)
+    values["emission"] = tuple(factor * c for c in color)
+    _note_ignored(node, owner, notes)
+    return values
+
+
+def _read_diffuse(node, owner, notes):
+    color = _value(node.inputs["Color"], node, owner, notes)
+    if node.inputs["Roughness"].default_value > 0:
+        notes.add(f"{owner}: node '{node.name}': roughness of a diffuse shader is ignored.")
+    return {"base_color": color, "metallic": 0.0, "roughness": 1.0, "specular": 0.0}
+
+
+def _read_emission(node, owner, notes):
+    color = _value(node.inputs["Color"], node, owner, notes)
+    strength = _value(node.inputs["Strength"], node, owner, notes)
+    emission = tuple(strength * c for c in color)
+    return {"base_color": (0, 0, 0), "metallic": 0.0, "roughness": 1.0, "specular": 0.0, "emission": emission}
+
+
+_READERS = {
+    "ShaderNodeBsdfPrincipled": _read_principled,
+    "ShaderNodeBsdfDiffuse": _read_diffuse,
+    "ShaderNodeEmission": _read_emission,
+}
+
+
+def _value(socket, node, owner, notes):
+    """The socket's own value: a number, or three of a colour. What is linked to it is noted."""
+    if socket is None:
+        return 0.0
+    if source(socket):
+        notes.add(
+            f"{owner}: node '{node.name}': the link to '{socket.name}' is not supported; its own value is used."
+        )
+    value = socket.default_value
+    return value if isinstance(value, float) else tuple(value[:3])
+
+
+def _note_ignored(node, owner, notes):
+    for name, harmless in _IGNORED.items():
+        socket = node.inputs.get(name)
+        if socket is None or not isinstance(socket.default_value, float):
+            continue
+        if source(socket) or abs(socket.default_value - harmless) > 1e-6:
+            notes.add(f"{owner}: node '{node.name}': '{name}' is not supported; ignored.")
+    for name in _LINK_ONLY:
+        if name in node.inputs and source(node.inputs[name]):
+            notes.add(f"{owner}: node '{node.name}': '{name}' is not supported; ignored.")

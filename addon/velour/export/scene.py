@@ -1,0 +1,39 @@
+"""The whole export, in order."""
+
+import numpy as np
+
+from ..native import Scene
+from .color import rec709_to_working
+from .materials import MaterialTable
+from .objects import ObjectExport
+from .world import add_world
+
+
+def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
+    """A committed library scene of what the depsgraph shows, seen through `view`.
+
+    `check_break` is called often and raises to stop; `strict` refuses measured materials whose files cannot be had.
+    """
+    scene = Scene()
+    try:
+        working = rec709_to_working()
+        if not np.allclose(working, np.eye(3), atol=1e-6):
+            scene.set_working_space(working.astype(np.float32))
+        materials = MaterialTable(scene, notes, strict)
+        ObjectExport(scene, materials, notes, check_break).add_all(depsgraph)
+        add_world(scene, depsgraph.scene_eval.world, notes)
+        view.add_to(scene)
+        _note_scene(depsgraph.scene_eval, notes)
+        check_break()
+        scene.commit()
+        for warning in scene.info()["warnings"]:
+            notes.add(warning)
+        return scene
+    except BaseException:
+        scene.close()
+        raise
+
+
+def _note_scene(scene, notes):
+    if scene.render.use_motion_blur:
+        notes.add(f"Scene '{scene.name}': motion blur is not supported; ignored.")

@@ -1,0 +1,125 @@
+"""Blender's world: a colour, or an environment picture with strength and rotation."""
+
+import math
+import os
+
+import numpy as np
+from mathutils import Matrix
+
+from .color import bytes_to_working, is_linear_rec709
+from .files import absolute_path, packed_bytes
+from .nodes import active_output, source
+from .notes import ExportError
+
+
+def add_world(scene, world, notes):
+    if world is None:
+        scene.set_world_color((0, 0, 0))
+    elif not world.use_nodes or world.node_tree is None:
+        scene.set_world_color(tuple(world.color))
+    else:
+        _add_nodes(scene, world, notes)
+
+
+def _add_nodes(scene, world, notes):
+    owner = f"World '{world.name}'"
+    output = active_output(world.node_tree, "ShaderNodeOutputWorld")
+    background = source(output.inputs["Surface"]) if output else None
+    if output and source(output.inputs["Volume"]):
+        notes.add(f"{owner}: volumes are not supported; ignored.")
+    if background is None or background.bl_idname != "ShaderNodeBackground":
+        if background is not None:
+            notes.add(f"{owner}: node '{background.name}' is not a Background; rendered black.")
+        scene.set_world_color((0, 0, 0))
+        return
+    if source(background.inputs["Strength"]):
+        notes.add(f"{owner}: what is linked to the strength is not supported; its own value is used.")
+    strength = background.inputs["Strength"].default_value
+    color = source(background.inputs["Color"])
+    if color is not None and color.bl_idname == "ShaderNodeTexEnvironment":
+        _add_environment(scene, owner, color, strength, notes)
+        return
+    if color is not None:
+        notes.add(
+            f"{owner}: node '{color.name}' is not an Environment Texture; the Background's own colour is used."
+        )
+    scene.set_world_color(tuple(strength * c for c in background.inputs["Color"].default_value[:3]))
+
+
+def _add_environment(scene, owner, node, strength, notes):
+    image = node.image
+    if image is None:
+        raise ExportError(f"{owner}: node '{node.name}' has no image; choose one, or unlink it.")
+    if node.projection != "EQUIRECTANGULAR":
+        raise ExportError(
+            f"{owner}: node '{node.name}' is a mirror ball; only equirectangular images are supported."
+        )
+    rotation = _rotation(owner, node, notes)
+    path = absolute_path(image)
+    if _can_read_file(image, path):
+        scene.set_world_file(path, strength, rotation)
+    else:
+        scene.set_world_pixels(_pixels(owner, image, path, notes), strength, rotation)
+
+
+def _can_read_file(image, path):
+    """The library reads the file itself where its numbers are the working space's: no copy here."""
+    plain = image.source == "FILE" and packed_bytes(image) is None and os.path.isfile(path)
+    linear_file = path.lower().endswith((".exr", ".hdr"))
+    return plain and linear_file and is_linear_rec709(image.colorspace_settings.name)
+
+
+def _pixels(owner, image, path, notes):
+    """[height x width x 3] in the working space, row 0 at the top."""
+    width, height = image.size
+    if width == 0 or height == 0:
+        raise ExportError(
+            f"{owner}: the image '{image.name}' ({path or 'no file'}) cannot be read; choose another file."
+        )
+    values = np.empty(width * height * image.channels, np.float32)
+    image.pixels.foreach_get(values)
+    values = values.reshape(height, width, image.channels)
+    if image.channels < 3:
+        values = np.repeat(values[:, :, :1], 3, axis=2)
+    if not image.is_float:
+        space = image.colorspace_settings.name
+        values, known = bytes_to_working(values, space)
+        if not known:
+            notes.add(f"{owner}: the colour space '{space}' of '{image.name}' is read as sRGB.")
+    return np.ascontiguousarray(values[::-1, :, :3])
+
+
+def _rotation(owner, node, notes):
+    """3 x 3 from world directions to the picture's, or None."""
+    mapping = source(node.inputs["Vector"])
+    if mapping is None or mapping.bl_idname == "ShaderNodeTexCoord":
+        return None
+    if mapping.bl_idname != "ShaderNodeMapping":
+        notes.add(f"{owner}: node '{mapping.name}' is not a Mapping; ignored.")
+        return None
+    _note_mapping(owner, mapping, notes)
+    rotation = _euler_matrix(mapping.inputs["Rotation"].default_value)
+    inverse = mapping.vector_type == "TEXTURE"
+    return np.array(rotation.transposed() if inverse else rotation, np.float32)
+
+
+def _euler_matrix(euler):
+    return (
+        Matrix.Rotation(euler[2], 3, "Z")
+        @ Matrix.Rotation(euler[1], 3, "Y")
+        @ Matrix.Rotation(euler[0], 3, "X")
+    )
+
+
+def _note_mapping(owner, mapping, notes):
+    scale = mapping.inputs["Scale"].default_value
+    moved = any(abs(c) > 1e-6 for c in mapping.inputs["Location"].default_value)
+    uneven = not all(math.isclose(s, scale[0], rel_tol=1e-5) and s > 0 for s in scale)
+    if (moved and mapping.vector_type in ("POINT", "TEXTURE")) or uneven:
+        notes.add(
+            f"{owner}: node '{mapping.name}': only the rotation is supported; location and scale are ignored."
+        )
+    if any(source(mapping.inputs[name]) for name in ("Location", "Rotation", "Scale")):
+        notes.add(
+            f"{owner}: node '{mapping.name}': what is linked to it is not supported; its own values are used."
+        )

@@ -1,0 +1,23 @@
+"""A new, empty measured material on the active object."""
+
+import bpy
+from bpy.props import StringProperty
+
+from . import measured
+
+
+class VELOUR_OT_add_material(bpy.types.Operator):
+    bl_idname = "velour.add_material"
+    bl_label = "Use Measured Material"
+    bl_description = "Make the active material a measured one; adds a material where there is none"
+    bl_options = {"REGISTER", "UNDO"}
+
+    name: StringProperty(name="Name", default="Measured", description="Of the material, where one is added")
+
+    def execute(self, context):
+        material = measured.find_material(context, "")
+        if material is None:
+            material = measured.new_material(self.name)
+            measured.assign(context, material)
+        measured.ensure_node(material)
+        return {"FINISHED"}

@@ -1,0 +1,176 @@
+"""Fit a model to the measurement of a material: in the background of a window, or at once without one."""
+
+import time
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from ..export import ExportError
+from ..export.files import measurement_path
+from ..export.nodes import velour_node
+from ..native import Measurement, VelourError, fit_job
+from . import measured
+
+_SETTINGS = ("tolerance", "max_lobes", "kernel", "seed")
+
+
+class VELOUR_OT_fit(bpy.types.Operator):
+    bl_idname = "velour.fit"
+    bl_label = "Fit"
+    bl_description = "Fit a model to the material's measurement. The model before it is not touched"
+    bl_options = {"REGISTER", "UNDO"}
+
+    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    # Where given these replace the settings of the material; what is not given stays as it is.
+    tolerance: FloatProperty(name="Tolerance", min=0.0005, max=1.0, default=0.02, options={"SKIP_SAVE"})
+    max_lobes: IntProperty(name="Max Lobes", min=1, max=64, default=16, options={"SKIP_SAVE"})
+    kernel: EnumProperty(
+        name="Kernel",
+        items=(("GAUSSIAN", "Gaussian", "", 0), ("ABEL_POISSON", "Abel-Poisson", "", 1)),
+        options={"SKIP_SAVE"},
+    )
+    seed: IntProperty(name="Seed", min=0, options={"SKIP_SAVE"})
+
+    _timer = None
+
+    def execute(self, context):
+        """Waits for the model."""
+        try:
+            self._begin(context)
+            self._job.wait(_console_progress() if bpy.app.background else None)
+            return self._finish()
+        except (ExportError, VelourError) as error:
+            return self._fail(error)
+
+    def invoke(self, context, _event):
+        """Starts the fit and lets the artist go on working; Esc cancels."""
+        if context.window_manager.velour.running:
+            self.report({"ERROR"}, "A fit is running already; wait for it, or cancel it.")
+            return {"CANCELLED"}
+        try:
+            self._begin(context)
+        except (ExportError, VelourError) as error:
+            return self._fail(error)
+        state = context.window_manager.velour
+        state.running, state.cancel_requested, state.material_name = True, False, self._material_name
+        self._timer = context.window_manager.event_timer_add(0.1, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        state = context.window_manager.velour
+        if event.type == "ESC" or state.cancel_requested:
+            self._job.cancel()
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        try:
+            if not self._job.wait(timeout=0.0):
+                self._show(context, self._job.poll())
+                return {"PASS_THROUGH"}
+            self._leave(context)
+            return self._finish()
+        except (ExportError, VelourError) as error:
+            self._leave(context)
+            return self._fail(error)
+
+    def cancel(self, context):
+        """Blender closes the window or loads another file."""
+        self._leave(context)
+        self._job.close()
+
+    def _begin(self, context):
+        material = measured.find_material(context, self.material)
+        if material is None:
+            raise ExportError(
+                f"There is no material {self.material!r} to fit." if self.material else "No active material."
+            )
+        node = velour_node(material)
+        owner = f"Material '{material.name}'"
+        if node is None or node.velour.measurement is None:
+            raise ExportError(f"{owner}: no measurement is chosen; use File > Import > Measured Material.")
+        # Names, not pointers: undo may replace any datablock before the job is done.
+        self._material_name, self._node_name = material.name, node.name
+        settings = self._settings(node)
+        with measurement_path(node.velour.measurement, owner) as path, Measurement.load(path) as measurement:
+            self._digest = measurement.info()["sha256"]
+            self._job = fit_job(
+                measurement,
+                tolerance=settings.tolerance,
+                max_lobes=settings.max_lobes,
+                kernel=settings.kernel.lower().replace("_", "-"),
+                seed=settings.seed,
+                all_data=int(settings.use_all_data),
+                threads=context.scene.render.threads,
+            ).start()
+
+    def _settings(self, node):
+        for name in _SETTINGS:
+            if self.properties.is_property_set(name):
+                setattr(node.velour, name, getattr(self, name))
+        return node.velour
+
+    def _finish(self):
+        """Puts the model into a new image: the one before it is untouched, so undo brings it back."""
+        with self._job, self._job.result_model() as model:
+            data, info = model.bytes(), model.info()
+        material = bpy.data.materials.get(self._material_name)
+        image = measured.packed_model(data, self._material_name)
+        node = material.node_tree.nodes.get(self._node_name) if material and material.node_tree else None
+        if node is None:
+            image.use_fake_user = True
+            self.report({"WARNING"}, f"The material is gone; its model is kept as image '{image.name}'.")
+            return {"FINISHED"}
+        node.image = image
+        node.velour.measurement.velour.sha256 = self._digest
+        for warning in info["warnings"]:
+            self.report({"WARNING"}, f"Material '{material.name}': {warning}")
+        self.report({"INFO"}, f"Fitted '{material.name}': {info['lobes']} lobes, {len(data)} bytes.")
+        return {"FINISHED"}
+
+    def _fail(self, error):
+        cancelled = isinstance(error, VelourError) and error.cancelled
+        self.report(
+            {"WARNING" if cancelled else "ERROR"}, "The fit was cancelled." if cancelled else str(error)
+        )
+        return {"CANCELLED"}
+
+    def _show(self, context, job):
+        state = context.window_manager.velour
+        state.fraction, state.stage = job.fraction, job.stage
+        if context.workspace:
+            context.workspace.status_text_set(f"Velour: {job.stage} {job.fraction:.0%}   Esc: Cancel")
+        for window in context.window_manager.windows:
+            for area in window.screen.areas:
+                if area.type == "PROPERTIES":
+                    area.tag_redraw()
+
+    def _leave(self, context):
+        context.window_manager.velour.running = False
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+        if context.workspace:
+            context.workspace.status_text_set(None)
+
+
+class VELOUR_OT_cancel_fit(bpy.types.Operator):
+    bl_idname = "velour.cancel_fit"
+    bl_label = "Cancel Fit"
+    bl_description = "Stop the fit that is running"
+
+    def execute(self, context):
+        context.window_manager.velour.cancel_requested = True
+        return {"FINISHED"}
+
+
+def _console_progress():
+    """Prints a line when the stage changes and about once a second."""
+    last = {"stage": None, "time": 0.0}
+
+    def show(job):
+        now = time.monotonic()
+        if job.stage != last["stage"] or now - last["time"] > 1.0:
+            last.update(stage=job.stage, time=now)
+            print(f"Velour: {job.stage} {job.fraction:.0%}", flush=True)
+
+    return show

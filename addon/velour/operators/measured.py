@@ -1,0 +1,95 @@
+"""What the operators share: making measured materials and the image datablocks that stand for their files."""
+
+import os
+
+import bpy
+
+from ..export.files import absolute_path, sha256
+from ..export.nodes import active_output, velour_node
+
+NODE_NAME = "Velour"
+
+
+def find_material(context, name):
+    """The material called `name`, or the active one when `name` is empty; None where there is none."""
+    if name:
+        return bpy.data.materials.get(name)
+    obj = context.object
+    return obj.active_material if obj else None
+
+
+def new_material(name):
+    """A material with a measured node beside a Principled approximation, ready for a model."""
+    material = bpy.data.materials.new(name)
+    ensure_node(material)
+    return material
+
+
+def ensure_node(material):
+    """The material's measured node; made, switched on and placed where there is none."""
+    if material.node_tree is None:
+        material.use_nodes = True
+    node = velour_node(material)
+    if node is None:
+        node = material.node_tree.nodes.new("ShaderNodeTexImage")
+        node.name = node.label = NODE_NAME
+        node.location = _free_place(material.node_tree)
+        node.velour.enabled = True
+    return node
+
+
+def assign(context, material):
+    """Puts `material` into the active slot of the active object, where there is one that takes materials."""
+    obj = context.object
+    if obj is None or not hasattr(obj.data, "materials"):
+        material.use_fake_user = True  # or it would be gone after saving
+        return False
+    obj.active_material = material
+    return True
+
+
+def file_image(path, name=None):
+    """An image datablock that names the file `path`, blend-relative where the .blend has a place."""
+    image = bpy.data.images.new(name or os.path.basename(path), 1, 1)
+    image.source = "FILE"
+    image.colorspace_settings.name = _data_space(image)
+    image.filepath_raw = bpy.path.relpath(path) if bpy.data.filepath else os.path.abspath(path)
+    return image
+
+
+def packed_model(data, name):
+    """A new image datablock with the bytes of a model packed into it, as if read from //NAME.velour."""
+    image = file_image(f"//{bpy.path.clean_name(name)}.velour", name=f"{name}.velour")
+    image.filepath_raw = f"//{bpy.path.clean_name(name)}.velour"
+    image.pack(data=data, data_len=len(data))
+    image.velour.sha256 = sha256(data)
+    return image
+
+
+def linked_model(path, data):
+    """A new image datablock that names a model file on disk, whose content is `data`."""
+    image = file_image(path)
+    image.velour.sha256 = sha256(data)
+    return image
+
+
+def measurement_image(path, digest):
+    """The image datablock of a measurement file: the one that is there already, or a new one."""
+    for image in bpy.data.images:
+        if image.velour.sha256 == digest and absolute_path(image) == os.path.normpath(os.path.abspath(path)):
+            return image
+    image = file_image(path)
+    image.velour.sha256 = digest
+    return image
+
+
+def _data_space(image):
+    """The colour space of this configuration that leaves values alone."""
+    names = image.colorspace_settings.bl_rna.properties["name"].enum_items.keys()
+    return next((name for name in ("Non-Color", "Raw") if name in names), image.colorspace_settings.name)
+
+
+def _free_place(tree):
+    output = active_output(tree, "ShaderNodeOutputMaterial")
+    x, y = output.location if output else (0, 0)
+    return x, y + 280

@@ -1,0 +1,35 @@
+"""A model out of the .blend."""
+
+import bpy
+from bpy.props import StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from ..core.files import write_atomic
+from ..export import ExportError
+from ..export.files import content
+from ..export.nodes import velour_node
+from . import measured
+
+
+class VELOUR_OT_save_model(bpy.types.Operator, ExportHelper):
+    bl_idname = "velour.save_model"
+    bl_label = "Save Model"
+    bl_description = "Write the material's model to a file. The material keeps its own copy"
+
+    filename_ext = ".velour"
+    filter_glob: StringProperty(default="*.velour", options={"HIDDEN"})
+    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+
+    def execute(self, context):
+        material = measured.find_material(context, self.material)
+        node = velour_node(material)
+        if node is None or node.image is None:
+            self.report({"ERROR"}, "There is no model to save; fit or import one first.")
+            return {"CANCELLED"}
+        try:
+            data = content(node.image, f"Material '{material.name}'")
+            write_atomic(bpy.path.abspath(self.filepath), lambda path: path.write_bytes(data))
+        except (ExportError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}

@@ -1,0 +1,28 @@
+"""What a .blend keeps of Velour."""
+
+import bpy
+
+from .file_settings import VelourFileSettings
+from .job_state import VelourJobState
+from .layer_settings import VelourLayerSettings
+from .material_settings import VelourMaterialSettings
+from .render_settings import VelourRenderSettings
+
+_POINTERS = (
+    (bpy.types.Scene, VelourRenderSettings, {"LIBRARY_OVERRIDABLE"}),
+    (bpy.types.ViewLayer, VelourLayerSettings, {"LIBRARY_OVERRIDABLE"}),
+    (bpy.types.ShaderNodeTexImage, VelourMaterialSettings, {"LIBRARY_OVERRIDABLE"}),
+    (bpy.types.Image, VelourFileSettings, {"LIBRARY_OVERRIDABLE"}),
+    (bpy.types.WindowManager, VelourJobState, set()),
+)
+CLASSES = tuple(group for _owner, group, _override in _POINTERS)
+
+
+def attach():
+    for owner, group, override in _POINTERS:
+        owner.velour = bpy.props.PointerProperty(type=group, name="Velour", override=override)
+
+
+def detach():
+    for owner, _group, _override in reversed(_POINTERS):
+        del owner.velour

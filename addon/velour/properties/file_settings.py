@@ -1,0 +1,15 @@
+"""What is remembered of a model or measurement file."""
+
+import bpy
+from bpy.props import StringProperty
+
+
+class VelourFileSettings(bpy.types.PropertyGroup):
+    """`image.velour`."""
+
+    sha256: StringProperty(
+        name="SHA-256",
+        description="Of the file when it was chosen or fitted; empty: not checked."
+        " A final render refuses a file that has changed since",
+        override={"LIBRARY_OVERRIDABLE"},
+    )

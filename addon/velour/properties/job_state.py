@@ -1,0 +1,14 @@
+"""The fit that runs in the background, for the panels to show. Never saved."""
+
+import bpy
+from bpy.props import BoolProperty, FloatProperty, StringProperty
+
+
+class VelourJobState(bpy.types.PropertyGroup):
+    """`window_manager.velour`. Names, not pointers: undo may replace any datablock while the job runs."""
+
+    running: BoolProperty(options={"SKIP_SAVE"})
+    cancel_requested: BoolProperty(options={"SKIP_SAVE"})
+    material_name: StringProperty(options={"SKIP_SAVE"})
+    stage: StringProperty(options={"SKIP_SAVE"})
+    fraction: FloatProperty(name="Progress", subtype="FACTOR", min=0.0, max=1.0, options={"SKIP_SAVE"})

@@ -1,0 +1,74 @@
+"""A measured material: settings of the Image Texture node whose image is the model."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+_OVERRIDE = {"LIBRARY_OVERRIDABLE"}
+
+
+class VelourMaterialSettings(bpy.types.PropertyGroup):
+    """`node.velour`; the model itself is `node.image`."""
+
+    enabled: BoolProperty(
+        name="Measured Material",
+        description="Render the material of this node from the measured model in its image",
+        default=False,
+        override=_OVERRIDE,
+    )
+    measurement: PointerProperty(
+        name="Measurement",
+        description="The measurement file that the model is fitted to. Only its path is used",
+        type=bpy.types.Image,
+        override=_OVERRIDE,
+    )
+    kernel: EnumProperty(
+        name="Kernel",
+        description="The shape of a lobe",
+        items=(
+            ("GAUSSIAN", "Gaussian", "exp(bandwidth (cos - 1)), the von Mises-Fisher shape", 0),
+            ("ABEL_POISSON", "Abel-Poisson", "A sharp peak with a long tail", 1),
+        ),
+        default="GAUSSIAN",
+        override=_OVERRIDE,
+    )
+    tolerance: FloatProperty(
+        name="Tolerance",
+        description="Largest relative error asked for at every view up to 75 degrees, twice that beyond."
+        " 0.02: hardly to be seen beside the measurement",
+        default=0.02,
+        min=0.0005,
+        max=1.0,
+        soft_max=0.2,
+        precision=4,
+        step=0.1,
+        override=_OVERRIDE,
+    )
+    max_lobes: IntProperty(
+        name="Max Lobes",
+        description="Most lobes a view direction; the fit stops earlier where the tolerance is met",
+        default=16,
+        min=1,
+        max=64,
+        override=_OVERRIDE,
+    )
+    neighbors: IntProperty(
+        name="Neighbours",
+        description="View directions that are mixed at run time. 0: the model's default",
+        default=0,
+        min=0,
+        max=16,
+        override=_OVERRIDE,
+    )
+    use_all_data: BoolProperty(
+        name="All Data",
+        description="Hold nothing out for the error estimate: for production, once the fit is trusted",
+        default=False,
+        override=_OVERRIDE,
+    )
+    use_reference: BoolProperty(
+        name="Render from Measurement",
+        description="Evaluate the raw measurement instead of the model: slower, for comparison",
+        default=False,
+        override=_OVERRIDE,
+    )
+    seed: IntProperty(name="Seed", description="Of the fit", default=0, min=0, override=_OVERRIDE)

@@ -1,0 +1,52 @@
+"""Registers everything in rank order and takes it back in exact reverse."""
+
+import bpy
+
+from . import engine, operators, properties, ui
+from .native import VelourError, library
+
+# Each rank has CLASSES, and attach() / detach() for what is not a class: properties, menu entries, panel lists.
+_RANKS = (properties, operators, engine, ui)
+_cli_command = None
+
+
+def register():
+    for rank in _RANKS:
+        for cls in rank.CLASSES:
+            bpy.utils.register_class(cls)
+        rank.attach()
+    _register_cli_command()
+    _say_what_is_wrong()
+
+
+def unregister():
+    _unregister_cli_command()
+    for rank in reversed(_RANKS):
+        rank.detach()
+        for cls in reversed(rank.CLASSES):
+            bpy.utils.unregister_class(cls)
+    library.release()
+
+
+def _say_what_is_wrong():
+    """A library that cannot be used is one sentence on the console; the preferences show the same one."""
+    try:
+        library.load()
+    except VelourError as error:
+        print(f"Velour: {error}", flush=True)
+
+
+def _register_cli_command():
+    """`blender --command velour VERB ...`, from Blender 4.2 on."""
+    global _cli_command
+    if hasattr(bpy.utils, "register_cli_command"):
+        from .core.cli.main import main
+
+        _cli_command = bpy.utils.register_cli_command("velour", main)
+
+
+def _unregister_cli_command():
+    global _cli_command
+    if _cli_command is not None:
+        bpy.utils.unregister_cli_command(_cli_command)
+        _cli_command = None

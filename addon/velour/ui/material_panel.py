@@ -1,0 +1,142 @@
+"""Material properties."""
+
+import bpy
+
+from ..engine.engine import VelourRenderEngine
+from ..export.nodes import velour_node
+from ..export.notes import Notes
+from ..export.principled import principled_values
+from ..operators.accept_file import VELOUR_OT_accept_file
+from ..operators.add_material import VELOUR_OT_add_material
+from ..operators.fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
+from ..operators.load_material import VELOUR_OT_load_material
+from ..operators.save_model import VELOUR_OT_save_model
+from .summaries import model_summary
+from .text import draw_sentence
+
+
+class _MaterialPanel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "material"
+    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES and context.object is not None
+
+
+class VELOUR_MATERIAL_PT_measured(_MaterialPanel, bpy.types.Panel):
+    bl_label = "Measured Material"
+    bl_order = -1
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        node = velour_node(context.material)
+        if node is None:
+            row = layout.row()
+            row.operator(VELOUR_OT_add_material.bl_idname)
+            row.operator(VELOUR_OT_load_material.bl_idname, text="Import...")
+            return
+        settings = node.velour
+        layout.template_ID(settings, "measurement", open="image.open", text="Measurement")
+        layout.template_ID(node, "image", open="image.open", text="Model")
+        column = layout.column(align=True)
+        column.prop(settings, "tolerance")
+        column.prop(settings, "max_lobes")
+        column.prop(settings, "kernel")
+        column.prop(settings, "use_all_data")
+        _draw_fit(context, layout)
+        column = layout.column()
+        column.prop(settings, "neighbors")
+        column.prop(settings, "use_reference")
+
+
+def _draw_fit(context, layout):
+    job = context.window_manager.velour
+    if not job.running:
+        layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
+        return
+    row = layout.row(align=True)
+    text = f"{job.material_name}: {job.stage} {job.fraction:.0%}"
+    if hasattr(row, "progress"):  # 4.0 and newer
+        row.progress(factor=job.fraction, text=text)
+    else:
+        row.label(text=text, icon="TIME")
+        row.prop(job, "fraction", text="", slider=True)
+    row.operator(VELOUR_OT_cancel_fit.bl_idname, text="", icon="CANCEL")
+
+
+class VELOUR_MATERIAL_PT_model(_MaterialPanel, bpy.types.Panel):
+    bl_label = "Model"
+    bl_parent_id = "VELOUR_MATERIAL_PT_measured"
+
+    @classmethod
+    def poll(cls, context):
+        node = velour_node(context.material)
+        return node is not None and node.image is not None
+
+    def draw(self, context):
+        info = model_summary(velour_node(context.material).image)
+        if isinstance(info, str):
+            draw_sentence(context, self.layout, info, icon="ERROR")
+            self.layout.operator(VELOUR_OT_accept_file.bl_idname)
+            return
+        _draw_numbers(self.layout, info)
+        for warning in info["warnings"]:
+            draw_sentence(context, self.layout, warning, icon="INFO")
+        self.layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT")
+
+
+def _draw_numbers(layout, info):
+    rows = (
+        ("Source", info["source"]["name"]),
+        ("Lobes", f"{info['lobes']} over {info['views']} views"),
+        ("Size", f"{info['bytes'] / 1024:.0f} KiB"),
+        ("Relative error", _number(info["relative_l2"])),
+        ("Largest albedo", _number(info["albedo_max"])),
+    )
+    split = layout.split(factor=0.4)
+    names, values = split.column(align=True), split.column(align=True)
+    names.alignment = "RIGHT"
+    for name, value in rows:
+        names.label(text=name)
+        values.label(text=value)
+    _draw_error_by_angle(layout.box(), info["by_view_angle"])
+
+
+def _draw_error_by_angle(box, errors):
+    box.label(text="Error by view angle")
+    row = box.row(align=True)
+    for angle, error in errors.items():
+        column = row.column(align=True)
+        column.alignment = "CENTER"
+        column.label(text=f"{angle}\N{DEGREE SIGN}")
+        column.label(text=_number(error))
+
+
+def _number(value):
+    return "not covered" if value is None else f"{value:.3g}"
+
+
+class VELOUR_MATERIAL_PT_notes(_MaterialPanel, bpy.types.Panel):
+    """What a material that is not measured loses in Velour: said before the render."""
+
+    bl_label = "Not Supported by Velour"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and len(_notes(context.material)) > 0
+
+    def draw(self, context):
+        for note in _notes(context.material):
+            draw_sentence(context, self.layout, note, icon="INFO")
+
+
+def _notes(material):
+    notes = Notes()
+    if material is not None and velour_node(material) is None:
+        principled_values(material, notes)
+    return notes

@@ -1,0 +1,49 @@
+"""Render properties."""
+
+import bpy
+
+from ..engine.engine import VelourRenderEngine
+from . import library_state
+from .text import draw_sentence
+
+
+class _RenderPanel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES
+
+
+class VELOUR_RENDER_PT_library(_RenderPanel, bpy.types.Panel):
+    """Only there when something is wrong: said before the render, not by it."""
+
+    bl_label = "Velour Cannot Render"
+    bl_order = -1
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and library_state.problem() != ""
+
+    def draw(self, context):
+        draw_sentence(context, self.layout, library_state.problem(), icon="ERROR")
+
+
+class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.velour
+        layout.use_property_split = True
+        layout.use_property_decorate = True
+        layout.prop(settings, "strategy")
+        column = layout.column(align=True)
+        column.prop(settings, "samples")
+        column.prop(settings, "preview_samples", text="Preview")
+        column.prop(settings, "split")
+        layout.prop(settings, "bounces")
+        layout.prop(settings, "seed")
+        layout.prop(settings, "time_limit")

@@ -1,0 +1,54 @@
+"""Blender's own panels that also make sense for Velour."""
+
+import bpy
+
+from ..engine.engine import VelourRenderEngine
+
+_ENGINE = VelourRenderEngine.bl_idname
+
+# Panels that list BLENDER_RENDER but whose settings Velour does not read.
+_EXCLUDED = {
+    "RENDER_PT_freestyle",
+    "RENDER_PT_simplify_greasepencil",
+    "RENDER_PT_stereoscopy",
+    "VIEWLAYER_PT_filter",
+    "VIEWLAYER_PT_freestyle",
+    "VIEWLAYER_PT_freestyle_edge_detection",
+    "VIEWLAYER_PT_freestyle_linesets",
+    "VIEWLAYER_PT_freestyle_lineset_collection",
+    "VIEWLAYER_PT_freestyle_lineset_edgetype",
+    "VIEWLAYER_PT_freestyle_lineset_facemarks",
+    "VIEWLAYER_PT_freestyle_lineset_visibilty",
+    "VIEWLAYER_PT_freestyle_linestyle",
+    "VIEWLAYER_PT_layer_passes",
+    "MATERIAL_PT_freestyle",
+    "DATA_PT_camera_dof",
+    "DATA_PT_camera_dof_aperture",
+}
+# Panels of other engines that suit Velour as they are.
+_BORROWED = {
+    "EEVEE_MATERIAL_PT_context_material",
+    "EEVEE_MATERIAL_PT_surface",
+    "EEVEE_WORLD_PT_surface",
+    "DATA_PT_EEVEE_light",
+    "DATA_PT_light",
+    "WORLD_PT_context_world",
+}
+
+
+def open_to_engine():
+    for panel in _panels():
+        panel.COMPAT_ENGINES.add(_ENGINE)
+
+
+def close_to_engine():
+    for panel in bpy.types.Panel.__subclasses__():
+        getattr(panel, "COMPAT_ENGINES", set()).discard(_ENGINE)
+
+
+def _panels():
+    for panel in bpy.types.Panel.__subclasses__():
+        engines = getattr(panel, "COMPAT_ENGINES", ())
+        name = panel.__name__
+        if name in _BORROWED or ("BLENDER_RENDER" in engines and name not in _EXCLUDED):
+            yield panel
