@@ -11,9 +11,9 @@ namespace velour {
 /// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it
 /// needs; the struct is scratch memory of the thread, reused from hit to hit.
 struct PreparedBrdf {
-  Vec3 wv;                // local, unit, wv.z > 0
-  LobeMixture lobes;      // SRBF materials: value and density. Raw measurements: density only
-  float parameter[8];     // analytic materials: what they derive from wv
+  Vec3 wv;             // local, unit, wv.z > 0
+  LobeMixture lobes;   // SRBF materials: value and density. Raw measurements: density only
+  float parameter[8];  // analytic materials: what they derive from wv
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.

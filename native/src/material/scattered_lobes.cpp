@@ -1,0 +1,114 @@
+#include "material/scattered_lobes.h"
+
+#include <algorithm>
+
+#include "job/error.h"
+#include "sphere/frame.h"
+
+namespace velour {
+
+namespace {
+
+constexpr float kDefensiveShare = 0.05f;  // method 6.2
+
+Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
+
+/// wv as a view of the meridian phi = 0, and the azimuth by which the slices turn. At the pole the azimuth is 0.
+struct Meridian {
+  float sin_theta, cos_theta, sin_phi, cos_phi;
+
+  explicit Meridian(const Vec3& w)
+      : sin_theta(std::sqrt(w.x * w.x + w.y * w.y)),
+        cos_theta(w.z),
+        sin_phi(sin_theta > 0 ? w.y / sin_theta : 0),
+        cos_phi(sin_theta > 0 ? w.x / sin_theta : 1) {}
+
+  float theta() const { return std::atan2(sin_theta, cos_theta); }
+  Vec3 view() const { return {sin_theta, 0, cos_theta}; }
+
+  /// Turns a slice of a view of this meridian: about y, so that the view's mirror direction falls on ours, then by phi.
+  Mat3 rotation_from(const Vec3& view, bool align) const {
+    const float c = align ? cos_theta * view.z + sin_theta * view.x : 1;
+    const float s = align ? sin_theta * view.z - cos_theta * view.x : 0;
+    return {{cos_phi * c, sin_phi * c, s}, {-sin_phi, cos_phi, 0}, {-cos_phi * s, -sin_phi * s, c}};
+  }
+};
+
+int checked_neighbors(const ScatteredBrdf& brdf, int neighbors) {
+  const int count = neighbors == 0 ? brdf.default_neighbors : neighbors;
+  if (count < 1 || count > kMaxNeighbors) {
+    throw Error(Status::invalid_argument, "neighbors is " + std::to_string(count) + "; choose 1 to " +
+                                              std::to_string(kMaxNeighbors) + " neighbouring views");
+  }
+  if (count * brdf.max_lobes_per_view() > LobeMixture::kCapacity) {
+    throw Error(Status::invalid_argument,
+                std::to_string(count) + " neighbors of " + std::to_string(brdf.max_lobes_per_view()) +
+                    " lobes a view exceed the " + std::to_string(LobeMixture::kCapacity) +
+                    " lobes that can be mixed; choose fewer neighbors or fit with fewer lobes");
+  }
+  return count;
+}
+
+}  // namespace
+
+ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
+    : kernel_(brdf.kernel),
+      isotropic_(brdf.isotropic),
+      align_views_(brdf.align_views),
+      neighbors_(checked_neighbors(brdf, neighbors)),
+      views_(brdf.views),
+      first_lobe_(brdf.first_lobe),
+      bandwidth_(brdf.bandwidth) {
+  for (const Vec3& view : views_) theta_.push_back(Meridian(view).theta());
+  for (size_t j = 0; j < brdf.center.size(); ++j) {
+    x_.push_back(brdf.center[j].x);
+    y_.push_back(brdf.center[j].y);
+    z_.push_back(brdf.center[j].z);
+    r_.push_back(brdf.coefficient[j].r);
+    g_.push_back(brdf.coefficient[j].g);
+    b_.push_back(brdf.coefficient[j].b);
+    luminance_.push_back(std::max(luminance(brdf.coefficient[j]), 0.0f));
+    mass_.push_back(luminance_.back() * static_cast<float>(kernel_integral(kernel_, bandwidth_[j])));
+  }
+}
+
+void ScatteredLobes::gather(const Vec3& wv, LobeMixture& mixture) const {
+  mixture.clear(kernel_);
+  if (isotropic_) {
+    gather_on_meridian(wv, mixture);
+  } else {
+    gather_on_hemisphere(wv, mixture);
+  }
+  mixture.finish(kDefensiveShare);
+}
+
+void ScatteredLobes::gather_on_meridian(const Vec3& wv, LobeMixture& mixture) const {
+  const Meridian meridian(wv);
+  const ViewNeighbors set =
+      neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : nearest_views(views_, meridian.view(), neighbors_);
+  for (int i = 0; i < set.count; ++i) {
+    const Vec3& view = views_[static_cast<size_t>(set.index[i])];
+    mixture.append(slice(set.index[i]), meridian.rotation_from(view, align_views_), set.weight[i]);
+  }
+}
+
+void ScatteredLobes::gather_on_hemisphere(const Vec3& wv, LobeMixture& mixture) const {
+  const ViewNeighbors set = nearest_views(views_, wv, neighbors_);
+  for (int i = 0; i < set.count; ++i) {
+    const Vec3& view = views_[static_cast<size_t>(set.index[i])];
+    const Mat3 rotation = align_views_ ? rotation_between(mirror(view), mirror(wv)) : Mat3(1);
+    mixture.append(slice(set.index[i]), rotation, set.weight[i]);
+  }
+}
+
+LobeSpan ScatteredLobes::slice(int view) const {
+  const uint32_t first = first_lobe_[static_cast<size_t>(view)];
+  const auto from = [&](const std::vector<float>& values) { return values.data() + first; };
+  return {from(x_),    from(y_),
+          from(z_),    from(bandwidth_),
+          from(r_),    from(g_),
+          from(b_),    from(luminance_),
+          from(mass_), static_cast<int>(first_lobe_[static_cast<size_t>(view) + 1] - first)};
+}
+
+}  // namespace velour

@@ -1,0 +1,81 @@
+#include "material/scattered_material.h"
+
+#include <algorithm>
+
+#include "material/scattered_lobes.h"
+
+namespace velour {
+
+namespace {
+
+/// What the two materials share: the model's lobes as sampling density.
+class LobeSampledMaterial : public Material {
+ public:
+  LobeSampledMaterial(const ScatteredBrdf& brdf, int neighbors) : lobes_(brdf, neighbors) {}
+
+  void prepare(const Vec3& wv, PreparedBrdf& point) const override {
+    point.wv = wv;
+    lobes_.gather(wv, point.lobes);
+  }
+
+  Vec3 sample(const PreparedBrdf& point, const Vec2& u) const override { return sample_mixture(point.lobes, u); }
+
+ protected:
+  ScatteredLobes lobes_;
+};
+
+class ScatteredMaterial final : public LobeSampledMaterial {
+ public:
+  using LobeSampledMaterial::LobeSampledMaterial;
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    eval_mixture(point.lobes, wl, f, pdf);
+    for (int i = 0; i < wl.count; ++i) {
+      // The lobes hold f cos, which stays finite at the horizon where f does not: the floor keeps the quotient finite,
+      // and f times the cosine is the lobes' value down to cosines far below what a float direction can hold.
+      const float scale = wl.z[i] > 0 ? 1 / std::max(wl.z[i], 1e-20f) : 0;
+      f.r[i] = std::max(f.r[i], 0.0f) * scale;
+      f.g[i] = std::max(f.g[i], 0.0f) * scale;
+      f.b[i] = std::max(f.b[i], 0.0f) * scale;
+    }
+  }
+
+  bool isotropic() const override { return lobes_.isotropic(); }
+};
+
+class MeasuredMaterial final : public LobeSampledMaterial {
+ public:
+  MeasuredMaterial(std::shared_ptr<const Measurement> measurement, const ScatteredBrdf& proposal, int neighbors)
+      : LobeSampledMaterial(proposal, neighbors), measurement_(std::move(measurement)) {}
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    eval_mixture(point.lobes, wl, f, pdf);  // its value, the model's, is overwritten
+    Vec3 directions[DirectionBatch::kCapacity];
+    Rgb measured[DirectionBatch::kCapacity];
+    uint8_t covered[DirectionBatch::kCapacity];
+    const auto count = static_cast<size_t>(wl.count);
+    for (int i = 0; i < wl.count; ++i) directions[i] = wl.get(i);
+    measurement_->eval(point.wv, {directions, count}, {measured, count}, {covered, count});
+    for (int i = 0; i < wl.count; ++i) {
+      f.set(i, covered[i] && wl.z[i] > 0 ? glm::max(measured[i], Rgb(0)) : Rgb(0));
+    }
+  }
+
+  bool isotropic() const override { return measurement_->isotropic(); }
+
+ private:
+  std::shared_ptr<const Measurement> measurement_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> make_scattered_material(std::shared_ptr<const ScatteredBrdf> brdf, int neighbors) {
+  return std::make_shared<ScatteredMaterial>(*brdf, neighbors);
+}
+
+std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
+                                                       std::shared_ptr<const ScatteredBrdf> proposal, int neighbors) {
+  return std::make_shared<MeasuredMaterial>(std::move(measurement), *proposal, neighbors);
+}
+
+}  // namespace velour
