@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include "material/scattered_material.h"
+#include "support/materials.h"
+
+namespace velour {
+namespace {
+
+/// f = (1, -0.5, 2) where wl.x >= 0, not covered elsewhere.
+class HalfCovered final : public Measurement {
+ public:
+  void eval(const Vec3&, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> valid) const override {
+    for (size_t i = 0; i < wl.size(); ++i) {
+      valid[i] = wl[i].x >= 0 && wl[i].z > 0;
+      f[i] = valid[i] ? Rgb(1, -0.5f, 2) : Rgb(7);  // must not be read
+    }
+  }
+  bool isotropic() const override { return false; }
+  bool covers_view(float) const override { return true; }
+};
+
+TEST(MeasuredMaterial, ClampsChannelsAndIsBlackWhereNothingWasMeasured) {
+  const auto proposal = std::make_shared<ScatteredBrdf>(test::isotropic_model());
+  const auto material = make_measured_material(std::make_shared<HalfCovered>(), proposal, 0);
+  const auto model = make_scattered_material(proposal, 0);
+  EXPECT_FALSE(material->isotropic());
+  for (const Vec3& wl : sphere_fibonacci(200)) {
+    const DirectionPair w{wl, direction(0.6f, 1)};
+    const auto e = test::eval_one(*material, w);
+    EXPECT_EQ(e.f, wl.x >= 0 && wl.z > 0 ? Rgb(1, 0, 2) : Rgb(0));
+    EXPECT_EQ(e.pdf, test::eval_one(*model, w).pdf);
+  }
+}
+
+TEST(MeasuredMaterial, SamplesLikeItsProposal) {
+  const auto proposal = std::make_shared<ScatteredBrdf>(test::isotropic_model());
+  const auto material = make_measured_material(std::make_shared<HalfCovered>(), proposal, 0);
+  const auto model = make_scattered_material(proposal, 0);
+  PreparedBrdf a, b;
+  material->prepare(direction(1, 2), a);
+  model->prepare(direction(1, 2), b);
+  for (const Vec2& u : {Vec2(0, 0), Vec2(0.3f, 0.9f), Vec2(0.99f, 0.5f)}) {
+    EXPECT_EQ(material->sample(a, u), model->sample(b, u));
+  }
+}
+
+}  // namespace
+}  // namespace velour
