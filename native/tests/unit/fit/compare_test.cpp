@@ -1,0 +1,127 @@
+#include "fit/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analytic_measurement.h"
+#include "brdf/held_out.h"
+#include "fit/view_error.h"
+
+namespace velour {
+namespace {
+
+/// A material that is a formula; only eval matters to compare().
+class FormulaMaterial : public Material {
+ public:
+  explicit FormulaMaterial(test::AnalyticMeasurement::Formula f) : f_(std::move(f)) {}
+  void prepare(const Vec3& wv, PreparedBrdf& point) const override { point.wv = wv; }
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    for (int i = 0; i < wl.count; ++i) f.set(i, f_({wl.get(i), point.wv})), pdf.v[i] = 0;
+  }
+  Vec3 sample(const PreparedBrdf&, const Vec2&) const override { return {0, 0, 1}; }
+  bool isotropic() const override { return true; }
+
+ private:
+  test::AnalyticMeasurement::Formula f_;
+};
+
+/// A scattered measurement whose samples are given.
+class Samples : public test::AnalyticMeasurement {
+ public:
+  explicit Samples(std::vector<ScatteredSample> samples)
+      : AnalyticMeasurement(test::lambert), samples_(std::move(samples)) {}
+  std::span<const ScatteredSample> samples() const override { return samples_; }
+
+ private:
+  std::vector<ScatteredSample> samples_;
+};
+
+test::AnalyticMeasurement::Formula scaled(float by) {
+  return [by](const DirectionPair& p) { return by * test::lambert(p); };
+}
+
+TEST(Compare, AModelThatIsTheMeasurementHasNoError) {
+  Progress progress;
+  const Comparison c = compare(test::AnalyticMeasurement(test::lambert), FormulaMaterial(test::lambert), progress);
+  EXPECT_EQ(c.relative_l2, 0);
+  EXPECT_EQ(c.log_rms, 0);
+  EXPECT_EQ(c.samples, 5u * 4096u);
+  for (const auto& [view, error] : c.by_view_angle) EXPECT_EQ(error, 0.0) << view;
+  for (const auto& [view, noise] : c.noise_by_view_angle) EXPECT_NEAR(noise.value_or(1), 0, 1e-6) << view;
+}
+
+TEST(Compare, AModelTenPercentTooBrightIsTenPercentOff) {
+  Progress progress;
+  const Comparison c = compare(test::AnalyticMeasurement(test::lambert), FormulaMaterial(scaled(1.1f)), progress);
+  EXPECT_NEAR(c.relative_l2, 0.1, 1e-5);
+  EXPECT_EQ(c.by_view_angle.size(), kHeldOutViews.size());
+  EXPECT_GT(c.log_rms, 0.05);
+}
+
+TEST(Compare, UncoveredViewsAreNullAndDoNotCount) {
+  test::AnalyticMeasurement half(test::lambert);
+  half.set_coverage([](const DirectionPair& p) { return p.wv.z > std::cos(radians_from(70.0f)); });
+  Progress progress;
+  const Comparison c = compare(half, FormulaMaterial(scaled(1.1f)), progress);
+  EXPECT_TRUE(c.by_view_angle.at("60").has_value());
+  EXPECT_FALSE(c.by_view_angle.at("75").has_value());
+  EXPECT_FALSE(c.noise_by_view_angle.at("75").has_value());
+  EXPECT_EQ(c.samples, 3u * 4096u);
+}
+
+TEST(Compare, UncoveredLightsAreLeftOutNotTakenForBlack) {
+  test::AnalyticMeasurement part(test::lambert);
+  part.set_coverage([](const DirectionPair& p) { return p.wl.x > 0; });
+  Progress progress;
+  EXPECT_EQ(compare(part, FormulaMaterial(test::lambert), progress).relative_l2, 0);
+}
+
+TEST(Compare, BlackIsExactOrWrong) {
+  const auto black = [](const DirectionPair&) { return Rgb(0); };
+  Progress progress;
+  EXPECT_EQ(compare(test::AnalyticMeasurement(black), FormulaMaterial(black), progress).relative_l2, 0);
+  EXPECT_EQ(compare(test::AnalyticMeasurement(black), FormulaMaterial(test::lambert), progress).relative_l2, 1);
+}
+
+TEST(Compare, NoiseOfASkewedMeasurementIsSeen) {
+  // 10 % more on one side of the plane of incidence: paired values 1.1 and 0.9 lie 0.2 apart.
+  const auto skewed = [](const DirectionPair& p) { return test::lambert(p) * (p.wl.y > 0 ? 1.1f : 0.9f); };
+  Progress progress;
+  const Comparison c = compare(test::AnalyticMeasurement(skewed), FormulaMaterial(test::lambert), progress);
+  const double expected = 0.2 / std::sqrt(2.0) / std::sqrt(0.5 * (1.1 * 1.1 + 0.9 * 0.9));
+  EXPECT_NEAR(c.noise_by_view_angle.at("30").value(), expected, 0.01);
+}
+
+TEST(Compare, ScatteredSamplesCountOnlyWhenHeldOut) {
+  std::vector<ScatteredSample> samples;
+  const Vec3 wv = direction(radians_from(32.0f), 0);
+  for (uint64_t i = 0; i < 800; ++i) {
+    // The others are wrong on purpose: they must not be looked at.
+    const float value = held_out_sample(i) ? 1.0f : 100.0f;
+    samples.push_back(
+        {direction(0.01f * static_cast<float>(i % 100), static_cast<float>(i)), wv, value * test::lambert({})});
+  }
+  Progress progress;
+  const Comparison c = compare(Samples(samples), FormulaMaterial(scaled(0.9f)), progress);
+  EXPECT_NEAR(c.by_view_angle.at("30").value(), 0.1, 1e-5);
+  EXPECT_FALSE(c.by_view_angle.at("5").has_value());
+  EXPECT_NEAR(c.relative_l2, 0.1, 1e-5);
+  EXPECT_LT(c.samples, 150u);
+}
+
+TEST(Compare, CancelStopsIt) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(compare(test::AnalyticMeasurement(test::lambert), FormulaMaterial(test::lambert), progress), Error);
+}
+
+TEST(ViewError, IsTheWeightedRatioOfNorms) {
+  ViewError e;
+  e.add(2, Rgb(1), Rgb(1.5f), 1);
+  e.add(1, Rgb(2), Rgb(2), 0.5);
+  EXPECT_NEAR(e.relative_l2(), std::sqrt(2 * 0.25 / (2 + 1)), 1e-6);
+}
+
+}  // namespace
+}  // namespace velour
