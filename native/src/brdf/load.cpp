@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "brdf/brdf_table.h"
+#include "brdf/cornell.h"
 #include "brdf/measurement.h"
 #include "brdf/merl.h"
 #include "brdf/rgl.h"
@@ -19,8 +20,10 @@ struct Format {
 };
 
 /// Asked in order; each recognises its own first bytes.
-constexpr Format kFormats[] = {
-    {looks_like_merl, read_merl}, {looks_like_rgl, read_rgl}, {looks_like_exr, read_brdf_table}};
+constexpr Format kFormats[] = {{looks_like_merl, read_merl},
+                               {looks_like_rgl, read_rgl},
+                               {looks_like_exr, read_brdf_table},
+                               {looks_like_cornell, read_cornell}};
 
 /// Enough for the comments that open a Cornell file.
 constexpr size_t kHeadBytes = 4096;

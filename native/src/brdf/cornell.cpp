@@ -1,0 +1,212 @@
+#include "brdf/cornell.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "brdf/entries.h"
+#include "brdf/scattered_interpolant.h"
+#include "brdf/spectrum.h"
+#include "brdf/table_measurement.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+/// Fine enough that the table adds less than the interpolation's own error; docs/formats.md has the numbers.
+constexpr BrdfTableLayout kLayout{.theta_h = 90, .phi_h = 1, .theta_d = 60, .phi_d = 60};
+constexpr double kMaxWavelengths = 10000;
+
+/// The numbers of a text, one after the other; comments are skipped.
+class NumberReader {
+ public:
+  explicit NumberReader(std::span<const uint8_t> text)
+      : at_(reinterpret_cast<const char*>(text.data())), end_(at_ + text.size()) {}
+
+  enum class Result { number, end, not_a_number };
+
+  Result next(double& value) {
+    skip_to_token();
+    if (at_ == end_) return Result::end;
+    const auto [stop, error] = std::from_chars(at_, end_, value);
+    if (stop == at_ || (stop != end_ && !is_space(*stop) && *stop != '#')) return Result::not_a_number;
+    if (error == std::errc::result_out_of_range) value = NAN;
+    at_ = stop;
+    return Result::number;
+  }
+
+  /// The word at the cursor, shortened for a sentence.
+  std::string word() const {
+    const char* stop = std::find_if(at_, std::min(end_, at_ + std::min<std::ptrdiff_t>(end_ - at_, 20)), is_space);
+    return {at_, stop};
+  }
+
+ private:
+  static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+  void skip_to_token() {
+    while (at_ != end_ && (is_space(*at_) || *at_ == '#')) {
+      if (*at_ == '#')
+        at_ = std::find(at_, end_, '\n');
+      else
+        ++at_;
+    }
+  }
+  const char* at_;
+  const char* end_;
+};
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+  throw Error(Status::bad_data, path + ": " + what);
+}
+
+std::vector<double> read_numbers(std::span<const uint8_t> bytes, const std::string& path) {
+  NumberReader in(bytes);
+  std::vector<double> numbers;
+  for (double value = 0;;) {
+    const auto result = in.next(value);
+    if (result == NumberReader::Result::end) return numbers;
+    if (result == NumberReader::Result::not_a_number)
+      fail(path, "number " + std::to_string(numbers.size() + 1) + " is '" + in.word() + "', which is no number.");
+    numbers.push_back(value);
+  }
+}
+
+bool is_count(double value) { return value >= 1 && value <= kMaxWavelengths && value == std::floor(value); }
+
+struct CornellText {
+  std::span<const double> wavelengths;  // nm
+  std::span<const double> rows;         // theta_i, phi_i, theta_s, phi_s, then one value a wavelength
+  size_t row_size = 0;
+};
+
+CornellText split(std::span<const double> numbers, const std::string& path) {
+  if (numbers.empty() || !is_count(numbers[0]))
+    fail(path, "number of wavelengths is " + (numbers.empty() ? "missing" : std::to_string(numbers[0])) +
+                   "; it must be 1 to 10000.");
+  const auto count = static_cast<size_t>(numbers[0]);
+  if (numbers.size() < 1 + count)
+    fail(path, "has " + std::to_string(numbers.size() - 1) + " of " + std::to_string(count) +
+                   " wavelengths; it is truncated.");
+  const CornellText text{numbers.subspan(1, count), numbers.subspan(1 + count), 4 + count};
+  check_wavelengths(text.wavelengths, path + ": wavelengths");
+  if (text.rows.size() % text.row_size != 0)
+    fail(path, "sample " + std::to_string(text.rows.size() / text.row_size + 1) + " has " +
+                   std::to_string(text.rows.size() % text.row_size) + " numbers of " + std::to_string(text.row_size) +
+                   "; the file is truncated.");
+  return text;
+}
+
+/// False where the angles are no numbers. Throws where they cannot be radians.
+bool read_directions(std::span<const double> row, size_t index, const std::string& path, ScatteredSample& sample) {
+  for (const size_t i : {0u, 2u}) {
+    if (row[i] < 0.0 || row[i] > kPiD)
+      fail(path, "theta of sample " + std::to_string(index + 1) + " is " + std::to_string(row[i]) +
+                     "; it must be 0 to pi radians.");
+  }
+  if (!std::all_of(row.begin(), row.begin() + 4, [](double angle) { return std::isfinite(angle); })) return false;
+  sample.wl = direction(static_cast<float>(row[0]), static_cast<float>(row[1]));
+  sample.wv = direction(static_cast<float>(row[2]), static_cast<float>(row[3]));
+  return true;
+}
+
+std::vector<ScatteredSample> read_samples(const CornellText& text, const std::string& path, EntryCounts& counts) {
+  const auto weights = rec709_weights(text.wavelengths);
+  std::vector<ScatteredSample> samples;
+  std::vector<float> spectrum(text.wavelengths.size());
+  for (size_t i = 0; i * text.row_size < text.rows.size(); ++i) {
+    const auto row = text.rows.subspan(i * text.row_size, text.row_size);
+    ScatteredSample sample;
+    if (!read_directions(row, i, path, sample)) {
+      count_entry(Rgb(NAN), NegativeRule::luminance, counts);
+      continue;
+    }
+    if (sample.wl.z <= 0.0f || sample.wv.z <= 0.0f) {
+      count_below_horizon(counts);
+      continue;
+    }
+    std::transform(row.begin() + 4, row.end(), spectrum.begin(), [](double v) { return static_cast<float>(v); });
+    sample.f = rec709_of(weights, spectrum);
+    if (count_entry(sample.f, NegativeRule::luminance, counts)) samples.push_back(sample);
+  }
+  return samples;
+}
+
+/// A table for eval, the samples themselves for the fit.
+class ScatteredMeasurement : public TableMeasurement {
+ public:
+  ScatteredMeasurement(HalfDiffTable table, std::vector<ScatteredSample> samples, Provenance provenance,
+                       const EntryCounts& counts, Details details)
+      : TableMeasurement(std::move(table), std::move(provenance), counts, std::move(details)),
+        samples_(std::move(samples)) {
+    for (const ScatteredSample& sample : samples_) lowest_ = std::min({lowest_, sample.wl.z, sample.wv.z});
+  }
+
+  std::span<const ScatteredSample> samples() const override { return samples_; }
+
+  /// Beyond the lowest direction of any sample the interpolation only continues, so a view there is not covered.
+  bool covers_view(float theta_v) const override {
+    constexpr float kTolerance = 1e-3f;  // of the cosine
+    return std::cos(theta_v) >= lowest_ - kTolerance && TableMeasurement::covers_view(theta_v);
+  }
+
+ private:
+  std::vector<ScatteredSample> samples_;
+  float lowest_ = 1.0f;
+};
+
+TableMeasurement::Details describe(const CornellText& text) {
+  const auto whole = [](double v) { return std::to_string(std::lround(v)); };
+  return {{"table", std::to_string(text.rows.size() / text.row_size) + " irregular samples of " +
+                        std::to_string(text.wavelengths.size()) + " wavelengths, " + whole(text.wavelengths.front()) +
+                        " to " + whole(text.wavelengths.back()) + " nm"},
+          {"holds", "f without cosine, 1/sr, spectral; seen by the CIE 1931 observer as linear Rec. 709"},
+          {"invalid", "a sample that is not finite or of negative luminance"},
+          {"interpolation", "local linear regression over 16 samples in half and difference angles, tabulated at " +
+                                std::to_string(kLayout.theta_h) + " x " + std::to_string(kLayout.theta_d) + " x " +
+                                std::to_string(kLayout.phi_d) + " nodes"}};
+}
+
+/// The file's own words: the lines of comment before the first number.
+std::string opening_comment(std::span<const uint8_t> bytes) {
+  constexpr size_t kLimit = 1000;
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::string comment;
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+    if (text.empty() || text[0] != '#' || comment.size() > kLimit) return comment;
+    const auto line = text.substr(0, text.find_first_of("\r\n"));
+    const auto words = line.substr(std::min(line.find_first_not_of("# \t"), line.size()));
+    comment.append(comment.empty() ? "" : " ").append(words.substr(0, kLimit));
+    text.remove_prefix(line.size());
+  }
+}
+
+}  // namespace
+
+bool looks_like_cornell(std::span<const uint8_t> head) {
+  if (std::any_of(head.begin(), head.end(), [](uint8_t c) { return c < ' ' && !(c >= '\t' && c <= '\r'); }))
+    return false;
+  NumberReader in(head);
+  double count = 0, wavelength = 0;
+  return in.next(count) == NumberReader::Result::number && is_count(count) &&
+         in.next(wavelength) == NumberReader::Result::number && wavelength >= 100 && wavelength <= 5000;
+}
+
+std::shared_ptr<const Measurement> read_cornell(std::span<const uint8_t> bytes, Provenance provenance) {
+  const std::string path = provenance.path;
+  const auto numbers = read_numbers(bytes, path);
+  const CornellText text = split(numbers, path);
+  EntryCounts counts;
+  auto samples = read_samples(text, path, counts);
+  if (samples.size() < ScatteredInterpolant::kNeighbours)
+    fail(path, "has " + std::to_string(samples.size()) + " valid samples; at least " +
+                   std::to_string(ScatteredInterpolant::kNeighbours) + " are needed to interpolate.");
+  HalfDiffTable table(kLayout, resample_scattered(ScatteredInterpolant(samples), kLayout));
+  provenance.format = "cornell";
+  provenance.description = opening_comment(bytes);
+  return std::make_shared<ScatteredMeasurement>(std::move(table), std::move(samples), std::move(provenance), counts,
+                                                describe(text));
+}
+
+}  // namespace velour

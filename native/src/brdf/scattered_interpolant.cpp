@@ -1,0 +1,134 @@
+#include "brdf/scattered_interpolant.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <Eigen/Dense>
+#include <nanoflann.hpp>
+
+#include "brdf/half_diff.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+constexpr int kCount = ScatteredInterpolant::kNeighbours;
+constexpr double kHalfPower = 0.7;  // of theta_h
+constexpr double kAzimuthWeight = 0.3;
+constexpr double kLinearBelow = 0.01;  // 1/sr: asinh turns from linear to logarithmic here
+constexpr double kFalloff = 3.0;       // weight of the furthest neighbour: exp(-3)
+constexpr double kRidge = 1e-3;        // on the slopes, relative to the data's own weight
+
+using Point = std::array<double, 3>;
+
+/// The coordinates of the regression and those of the reach test.
+struct Place {
+  Point regression, reach;
+};
+
+Place place_of(const Vec3& wl, const Vec3& wv) {
+  const HalfDiff angle = half_diff(wl, wv);
+  const double theta_h = angle.theta_h, theta_d = angle.theta_d, cos_phi = std::cos(double{angle.phi_d});
+  const double tilt = std::sin(theta_h) * std::sin(theta_d);
+  return {{std::pow(theta_h, kHalfPower), theta_d, kAzimuthWeight * tilt * (2.0 * cos_phi * cos_phi - 1.0)},
+          {theta_h, theta_d, tilt * std::abs(cos_phi)}};
+}
+
+double distance_sq(const Point& a, const Point& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+double compress(float f) { return std::asinh(double{f} / kLinearBelow); }
+float expand(double g) { return static_cast<float>(kLinearBelow * std::sinh(g)); }
+
+}  // namespace
+
+/// The samples in the form that nanoflann asks for, and its tree over them.
+struct ScatteredInterpolant::Index {
+  explicit Index(std::span<const ScatteredSample> samples);
+
+  size_t kdtree_get_point_count() const { return places.size(); }
+  double kdtree_get_pt(size_t i, size_t axis) const { return places[i].regression[axis]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+
+  std::vector<Place> places;
+  std::vector<std::array<double, 3>> values;  // compressed
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Index>, Index, 3>;
+  std::unique_ptr<Tree> tree;
+};
+
+ScatteredInterpolant::Index::Index(std::span<const ScatteredSample> samples) {
+  for (const ScatteredSample& sample : samples) {
+    places.push_back(place_of(sample.wl, sample.wv));
+    values.push_back({compress(sample.f.r), compress(sample.f.g), compress(sample.f.b)});
+  }
+  tree = std::make_unique<Tree>(3, *this);
+  tree->buildIndex();
+}
+
+ScatteredInterpolant::ScatteredInterpolant(std::span<const ScatteredSample> samples) {
+  if (samples.size() < kNeighbours)
+    throw Error(Status::invalid_argument, std::to_string(samples.size()) +
+                                              " valid samples are too few to interpolate; " +
+                                              std::to_string(kNeighbours) + " are needed.");
+  index_ = std::make_unique<const Index>(samples);
+}
+
+ScatteredInterpolant::~ScatteredInterpolant() = default;
+
+std::optional<Rgb> ScatteredInterpolant::f(const Vec3& wl, const Vec3& wv) const {
+  const Place here = place_of(wl, wv);
+  std::array<uint32_t, kCount> nearest{};
+  std::array<double, kCount> distance{};
+  index_->tree->knnSearch(here.regression.data(), kCount, nearest.data(), distance.data());
+
+  double reach = INFINITY;
+  const double width = std::max(distance.back(), 1e-12);
+  Eigen::Matrix<double, kCount, 4> terms;
+  Eigen::Matrix<double, kCount, 3> values;
+  Eigen::Matrix<double, kCount, 1> weights;
+  for (int i = 0; i < kCount; ++i) {
+    const size_t n = nearest[static_cast<size_t>(i)];
+    const Point& there = index_->places[n].regression;
+    reach = std::min(reach, distance_sq(here.reach, index_->places[n].reach));
+    terms.row(i) << 1.0, there[0] - here.regression[0], there[1] - here.regression[1], there[2] - here.regression[2];
+    values.row(i) << index_->values[n][0], index_->values[n][1], index_->values[n][2];
+    weights(i) = std::exp(-kFalloff * distance[static_cast<size_t>(i)] / width);
+  }
+  if (reach > kReach * kReach) return std::nullopt;
+  Eigen::Matrix4d normal = terms.transpose() * weights.asDiagonal() * terms;
+  normal.diagonal().tail<3>().array() += kRidge * weights.sum() * width;
+  const Eigen::Matrix<double, 4, 3> moment = terms.transpose() * weights.asDiagonal() * values;
+  const Eigen::Matrix<double, 4, 3> solution = normal.ldlt().solve(moment);
+  Rgb result;
+  for (int c = 0; c < 3; ++c)
+    result[c] = expand(std::clamp(solution(0, c), values.col(c).minCoeff(), values.col(c).maxCoeff()));
+  return result;
+}
+
+std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout) {
+  const HorizonTest horizon(layout);
+  std::vector<TableNode> nodes(layout.size());
+  tbb::parallel_for(0, layout.theta_h, [&](int i) {
+    for (int k = 0; k < layout.theta_d; ++k)
+      for (int l = 0; l <= layout.phi_d / 2; ++l) {
+        if (!horizon.above(i, k, l)) continue;
+        const DirectionPair pair = layout.pair(i, 0, k, l);
+        const auto f = interpolant.f(pair.wl, pair.wv);
+        if (!f) continue;
+        // f is the same at phi_d and pi - phi_d: mirrored in the plane of incidence, then exchanged.
+        const int mirror = (layout.phi_d - l) % layout.phi_d;
+        nodes[layout.index(i, 0, k, l)] = nodes[layout.index(i, 0, k, mirror)] = {{f->r, f->g, f->b, 1.0f}};
+      }
+  });
+  return nodes;
+}
+
+}  // namespace velour

@@ -1,0 +1,44 @@
+// Isotropic BRDF samples at irregular directions made into a function.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "brdf/half_diff_table.h"
+#include "brdf/measurement.h"
+
+namespace velour {
+
+/// Local linear regression over the nearest samples. f is taken as isotropic, reciprocal and mirror-symmetric, so a
+/// pair is a point (theta_h^0.7, theta_d, 0.3 sin theta_h sin theta_d cos 2 phi_d): half angles first, because f varies
+/// fastest with them and their power spreads a highlight over several samples. Each channel is fitted as
+/// asinh(f / 0.01 sr^-1), near to a logarithm for highlights and linear about 0, with Gaussian weights over the 16
+/// nearest samples and a light ridge on the slopes; the result stays within the values of those samples. What that is
+/// worth beside the alternatives is in docs/formats.md.
+class ScatteredInterpolant {
+ public:
+  /// Keeps a copy of what it needs. Throws Error(invalid_argument) for fewer than kNeighbours samples.
+  explicit ScatteredInterpolant(std::span<const ScatteredSample> samples);
+  ~ScatteredInterpolant();
+  ScatteredInterpolant(const ScatteredInterpolant&) = delete;
+  ScatteredInterpolant& operator=(const ScatteredInterpolant&) = delete;
+
+  /// Nothing where the nearest sample is further than kReach. Both directions above the horizon. Thread-safe.
+  std::optional<Rgb> f(const Vec3& wl, const Vec3& wv) const;
+
+  static constexpr int kNeighbours = 16;
+  /// In (theta_h, theta_d, sin theta_h sin theta_d |cos phi_d|), radians: the gaps of Cornell's sets are below 8
+  /// degrees.
+  static constexpr double kReach = 10.0 * kPiD / 180.0;
+
+ private:
+  struct Index;
+  std::unique_ptr<const Index> index_;
+};
+
+/// The interpolant at the nodes of `layout` (phi_h 1, phi_d even), so that a look-up costs as little as MERL's.
+std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout);
+
+}  // namespace velour
