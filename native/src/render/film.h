@@ -14,10 +14,10 @@ namespace velour {
 /// What one camera ray brings.
 struct CameraSample {
   Rgb radiance{0.0f};
-  float alpha = 0;     // 1: the pixel is covered
-  Vec3 normal{0.0f};   // shading normal, world; zero where nothing was hit
-  float depth = 0;     // along the line of sight
-  int directions = 0;  // light directions that the ray stands for
+  float alpha = 0;      // 1: the pixel is covered
+  Vec3 normal{0.0f};    // shading normal, world; zero where nothing was hit
+  float depth = 1e10f;  // along the line of sight; as is: nothing was hit (Cycles writes the same)
+  int directions = 0;   // light directions that the ray stands for
 };
 
 /// Sums a pixel. Samples of a pixel must be added in the order of their camera rays: then the bits do not

@@ -33,25 +33,39 @@ struct EmbreeApi {
   VELOUR_EMBREE(rtcSetNewGeometryBuffer);
   VELOUR_EMBREE(rtcSetGeometryInstancedScene);
   VELOUR_EMBREE(rtcSetGeometryTransform);
+#if VELOUR_EMBREE_MAJOR >= 4
   VELOUR_EMBREE(rtcIntersect1);
   VELOUR_EMBREE(rtcOccluded1);
+#else
+  VELOUR_EMBREE(rtcIntersect1M);
+  VELOUR_EMBREE(rtcOccluded1M);
+#endif
 #undef VELOUR_EMBREE
 
   // Embree 3 takes a context, Embree 4 optional arguments at the end: the whole difference is here.
+  //
+  // Batches: every ray takes the single-ray path through the hierarchy, so what it meets does not depend on its
+  // neighbours. Embree 3's stream call does just that for incoherent rays, without the cost of a call a ray: 10.7
+  // million hemisphere shadow rays a second on a bunny of 69 thousand triangles, against 7.0 for rtcOccluded1, 8.5
+  // and 8.9 for packets of 8 and 16, 5.2 for the coherent stream (3.13.5, AVX-512, one thread).
 #if VELOUR_EMBREE_MAJOR >= 4
-  void intersect(RTCScene scene, RTCRayHit& ray) const { rtcIntersect1(scene, &ray, nullptr); }
-  void occluded(RTCScene scene, RTCRay& ray) const { rtcOccluded1(scene, &ray, nullptr); }
+  void intersect(RTCScene scene, RTCRayHit* rays, unsigned count) const {
+    for (unsigned i = 0; i < count; ++i) rtcIntersect1(scene, rays + i, nullptr);
+  }
+  void occluded(RTCScene scene, RTCRay* rays, unsigned count) const {
+    for (unsigned i = 0; i < count; ++i) rtcOccluded1(scene, rays + i, nullptr);
+  }
 #else
   struct Context : RTCIntersectContext {
     Context() { rtcInitIntersectContext(this); }
   };
-  void intersect(RTCScene scene, RTCRayHit& ray) const {
+  void intersect(RTCScene scene, RTCRayHit* rays, unsigned count) const {
     Context context;
-    rtcIntersect1(scene, &context, &ray);
+    rtcIntersect1M(scene, &context, rays, count, sizeof(RTCRayHit));
   }
-  void occluded(RTCScene scene, RTCRay& ray) const {
+  void occluded(RTCScene scene, RTCRay* rays, unsigned count) const {
     Context context;
-    rtcOccluded1(scene, &context, &ray);
+    rtcOccluded1M(scene, &context, rays, count, sizeof(RTCRay));
   }
 #endif
 };

@@ -20,8 +20,10 @@ bool count_bytes(void* counter, ssize_t bytes, bool /*post*/) {
   return true;
 }
 
-RTCRay to_embree(const Ray& ray) {
-  RTCRay r;
+/// Rays handed to Embree at once: their copies stay in the first-level cache.
+constexpr size_t kBatch = 64;
+
+void to_embree(const Ray& ray, RTCRay& r) {
   r.org_x = ray.origin.x;
   r.org_y = ray.origin.y;
   r.org_z = ray.origin.z;
@@ -34,7 +36,6 @@ RTCRay to_embree(const Ray& ray) {
   r.mask = ~0u;
   r.id = 0;
   r.flags = 0;
-  return r;
 }
 
 }  // namespace
@@ -169,26 +170,35 @@ void EmbreeScene::commit(int threads) {
   s.traced = direct ? s.meshes[s.instances[0].mesh] : s.top;
 }
 
-void EmbreeScene::intersect(const Ray& ray, Hit& hit) const {
-  RTCRayHit query;
-  query.ray = to_embree(ray);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  impl_->api.intersect(impl_->traced, query);
-  impl_->read_hit(query, hit);
-}
+void EmbreeScene::intersect(const Ray& ray, Hit& hit) const { intersect({&ray, 1}, &hit); }
 
 bool EmbreeScene::occluded(const Ray& ray) const {
-  RTCRay query = to_embree(ray);
-  impl_->api.occluded(impl_->traced, query);
-  return query.tfar < 0.0f;
+  uint8_t blocked;
+  occluded({&ray, 1}, &blocked);
+  return blocked != 0;
 }
 
 void EmbreeScene::occluded(std::span<const Ray> rays, uint8_t* blocked) const {
-  for (size_t i = 0; i < rays.size(); ++i) blocked[i] = occluded(rays[i]);
+  RTCRay query[kBatch];
+  for (size_t done = 0; done < rays.size(); done += kBatch) {
+    const size_t count = std::min(kBatch, rays.size() - done);
+    for (size_t i = 0; i < count; ++i) to_embree(rays[done + i], query[i]);
+    impl_->api.occluded(impl_->traced, query, static_cast<unsigned>(count));
+    for (size_t i = 0; i < count; ++i) blocked[done + i] = query[i].tfar < 0.0f;
+  }
 }
 
 void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits) const {
-  for (size_t i = 0; i < rays.size(); ++i) intersect(rays[i], hits[i]);
+  RTCRayHit query[kBatch];
+  for (size_t done = 0; done < rays.size(); done += kBatch) {
+    const size_t count = std::min(kBatch, rays.size() - done);
+    for (size_t i = 0; i < count; ++i) {
+      to_embree(rays[done + i], query[i].ray);
+      query[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    }
+    impl_->api.intersect(impl_->traced, query, static_cast<unsigned>(count));
+    for (size_t i = 0; i < count; ++i) impl_->read_hit(query[i], hits[done + i]);
+  }
 }
 
 uint64_t EmbreeScene::bytes() const {

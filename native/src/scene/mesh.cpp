@@ -112,6 +112,11 @@ Vec3 Mesh::position(uint32_t triangle, const Vec2& uv) const {
   return interpolate(positions_[t.x], positions_[t.y], positions_[t.z], uv);
 }
 
+Vec3 Mesh::position_magnitude(uint32_t triangle, const Vec2& uv) const {
+  const glm::uvec3& t = triangles_[triangle];
+  return interpolate(glm::abs(positions_[t.x]), glm::abs(positions_[t.y]), glm::abs(positions_[t.z]), uv);
+}
+
 Vec3 Mesh::shading_normal(uint32_t triangle, const Vec2& uv) const {
   const Vec3* n = &normals_[3 * static_cast<size_t>(triangle)];
   const Vec3 mean = interpolate(n[0], n[1], n[2], uv);

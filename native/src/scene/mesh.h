@@ -35,6 +35,8 @@ class Mesh {
 
   /// At barycentric weights (u, v) of corners 1 and 2. Object space; not normalised.
   Vec3 position(uint32_t triangle, const Vec2& uv) const;
+  /// The same sum over absolute coordinates: what the rounding error of position() is proportional to.
+  Vec3 position_magnitude(uint32_t triangle, const Vec2& uv) const;
   Vec3 shading_normal(uint32_t triangle, const Vec2& uv) const;
   /// d position / d (first texture coordinate); zero without uvs or where they are degenerate.
   Vec3 tangent(uint32_t triangle) const;

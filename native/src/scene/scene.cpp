@@ -11,6 +11,17 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& sentence) { throw Error(Status::invalid_argument, sentence); }
 
+/// Bound of the rounding error of a world coordinate made from terms of `magnitude`: a sum of three products in the
+/// object, then of three products and a shift in the world, is 8 roundings of their absolute values.
+float position_error(const Affine& map, const Vec3& magnitude) {
+  float largest = 0.0f;
+  for (const float* m = map.m; m < map.m + 12; m += 4) {
+    const float sum = std::abs(m[0]) * magnitude.x + std::abs(m[1]) * magnitude.y + std::abs(m[2]) * magnitude.z;
+    largest = std::max(largest, sum + std::abs(m[3]));
+  }
+  return 8.0f * 0x1p-24f * largest;
+}
+
 void require_finite(const Affine& map, const char* what) {
   if (!map.finite()) refuse(std::string("The transform of ") + what + " holds a number that is not finite.");
 }
@@ -136,14 +147,7 @@ SurfacePoint Scene::surface(const Hit& hit) const {
       glm::normalize(front / std::max({std::abs(front.x), std::abs(front.y), std::abs(front.z), 1e-37f}));
   point.shading_normal = glm::normalize(instance.normal_to_world * mesh.shading_normal(hit.triangle, uv));
   point.tangent = map.vector(mesh.tangent(hit.triangle));
-  // Every coordinate is a sum of a few products: 8 roundings of their absolute values bound it.
-  float magnitude = 0.0f;
-  for (int row = 0; row < 3; ++row) {
-    const float* m = map.m + 4 * row;
-    magnitude = std::max(
-        magnitude, std::abs(m[0] * local.x) + std::abs(m[1] * local.y) + std::abs(m[2] * local.z) + std::abs(m[3]));
-  }
-  point.error = 8.0f * 0x1p-24f * magnitude;
+  point.error = position_error(map, mesh.position_magnitude(hit.triangle, uv));
   const uint32_t slot =
       std::min<uint32_t>(mesh.material_slot(hit.triangle), static_cast<uint32_t>(instance.materials.size() - 1));
   point.material = instance.materials[slot];

@@ -1,0 +1,86 @@
+// Light that reaches a vertex straight from lamps and environment: the estimator of every strategy.
+#pragma once
+
+#include <optional>
+
+#include "render/direction_sampling.h"
+#include "render/lighting.h"
+#include "render/shadow_queue.h"
+#include "sphere/random.h"
+
+namespace velour {
+
+/// What is gathered for.
+struct Receiver {
+  uint32_t sample;  // number of the camera sample
+  Rgb throughput;
+};
+
+/// One a thread: owns the scratch batches of the vertex in work. Call prepare(), then the others for that vertex.
+class DirectLight {
+ public:
+  DirectLight(const Scene& scene, const Lighting& lighting, Strategy strategy)
+      : working_space_(scene.rec709_to_working()),
+        lighting_(lighting),
+        strategy_(strategy),
+        sampling_(surface_sampling(strategy)) {}
+
+  void prepare(const Vertex& vertex) { vertex.surface->material->prepare(vertex.wv, prepared_); }
+
+  /// Draws `directions` light directions, estimates
+  ///   throughput / n  sum_i f(wl_i) L(wl_i) cos(wl_i) / p(wl_i)
+  /// with p the density of the strategy, and queues every term that is not zero. `mis`: half of the directions from the
+  /// material, half from the lights, p = (p_material + p_light) / 2 for all, which is the balance heuristic [Veach
+  /// 1995]; an odd one goes to either side by a coin.
+  ///
+  /// Sharp lamps, which no drawn direction can meet, are added under every strategy: each once when there are at most
+  /// kSharpLamps, else that many drawn in proportion to power.
+  void gather(const Vertex& vertex, int directions, RandomStream& random, const Receiver& receiver,
+              ShadowQueue& shadows, std::vector<CameraSample>& samples);
+
+  struct Continuation {
+    Ray ray;
+    Rgb throughput;
+  };
+  /// One more ray, drawn from the surface side alone: what it meets on surfaces was in no term of gather(), and what it
+  /// meets beyond them (lamps, environment) was in all, so only surfaces may be counted at its end.
+  std::optional<Continuation> extend(const Vertex& vertex, RandomStream& random, const Rgb& throughput);
+
+  /// Directions left out so far because their term was not finite.
+  uint64_t nan_samples() const { return nan_samples_; }
+
+  static constexpr int kSharpLamps = 4;
+
+ private:
+  void draw(const Vertex& vertex, int directions, RandomStream& random);
+  void draw_from_lights(const Vertex& vertex, int count, RandomStream& random);
+  void draw_from_surface(const Vertex& vertex, int count, RandomStream& random);
+  void add_sharp(const Vertex& vertex, RandomStream& random);
+  void evaluate(const Vertex& vertex, int directions);
+  void queue(const Vertex& vertex, const Receiver& receiver, int direction, Rgb light, float far, bool casts_shadow,
+             ShadowQueue& shadows, std::vector<CameraSample>& samples);
+  Rgb reflectance(const Vertex& vertex, int direction) const;
+
+  const std::optional<Mat3>& working_space_;
+  const Lighting& lighting_;
+  const Strategy strategy_;
+  const SurfaceSampling sampling_;
+
+  struct Sharp {
+    const Lamp* lamp;
+    float distance;
+    Rgb irradiance;  // perpendicular, over the probability of having been chosen
+  };
+
+  PreparedBrdf prepared_;
+  DirectionBatch local_, world_;  // local_ goes on with the directions of sharp lamps
+  RgbBatch f_, environment_;
+  ScalarBatch material_pdf_, light_pdf_, surface_pdf_;
+  float weight_[DirectionBatch::kCapacity];  // cos / (n p); 0: the direction is not used
+  std::vector<LampHit> lamp_hits_;
+  Sharp sharp_[kSharpLamps];
+  int sharp_count_ = 0;
+  uint64_t nan_samples_ = 0;
+};
+
+}  // namespace velour

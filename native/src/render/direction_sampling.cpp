@@ -1,0 +1,56 @@
+#include "render/direction_sampling.h"
+
+#include "material/table_sampler.h"
+#include "sphere/warp.h"
+
+namespace velour {
+
+SurfaceSampling surface_sampling(Strategy strategy) {
+  switch (strategy) {
+    case Strategy::uniform:
+      return SurfaceSampling::uniform;
+    case Strategy::cosine:
+      return SurfaceSampling::cosine;
+    case Strategy::table:
+      return SurfaceSampling::table;
+    case Strategy::srbf:
+    case Strategy::light:
+    case Strategy::mis:
+      break;
+  }
+  return SurfaceSampling::material;
+}
+
+Vec3 sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const Vec2& u) {
+  switch (sampling) {
+    case SurfaceSampling::uniform:
+      return sample_uniform_hemisphere(u);
+    case SurfaceSampling::cosine:
+      return sample_cosine_hemisphere(u);
+    case SurfaceSampling::table:
+      return vertex.table->sample(vertex.wv, u);
+    case SurfaceSampling::material:
+      break;
+  }
+  return vertex.surface->material->sample(prepared, u);
+}
+
+void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const DirectionBatch& wl,
+                 const ScalarBatch& material_pdf, ScalarBatch& pdf) {
+  switch (sampling) {
+    case SurfaceSampling::uniform:
+      for (int i = 0; i < wl.count; ++i) pdf.v[i] = pdf_uniform_hemisphere(wl.get(i));
+      return;
+    case SurfaceSampling::cosine:
+      for (int i = 0; i < wl.count; ++i) pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
+      return;
+    case SurfaceSampling::table:
+      vertex.table->pdf(vertex.wv, wl, pdf);
+      return;
+    case SurfaceSampling::material:
+      pdf = material_pdf;
+      return;
+  }
+}
+
+}  // namespace velour

@@ -1,0 +1,132 @@
+#include "render/film.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+void write_combined(const PixelSum& p, float* out) {
+  const float scale = p.camera_rays > 0 ? 1.0f / static_cast<float>(p.camera_rays) : 0.0f;
+  out[0] = p.radiance.r * scale;
+  out[1] = p.radiance.g * scale;
+  out[2] = p.radiance.b * scale;
+  out[3] = p.alpha * scale;
+}
+
+void write_depth(const PixelSum& p, float* out) { out[0] = p.depth; }
+
+void write_normal(const PixelSum& p, float* out) {
+  const float scale = p.camera_rays > 0 ? 1.0f / static_cast<float>(p.camera_rays) : 0.0f;
+  for (int c = 0; c < 3; ++c) out[c] = p.normal[c] * scale;
+}
+
+void write_count(const PixelSum& p, float* out) { out[0] = static_cast<float>(p.directions); }
+
+struct Pass {
+  std::string_view name;
+  int channels;
+  void (*write)(const PixelSum&, float*);
+};
+
+constexpr Pass kPasses[] = {{"Combined", 4, write_combined},
+                            {"Depth", 1, write_depth},
+                            {"Normal", 3, write_normal},
+                            {"Sample Count", 1, write_count}};
+
+const Pass& find_pass(std::string_view name) {
+  for (const Pass& pass : kPasses) {
+    if (pass.name == name) return pass;
+  }
+  throw Error(Status::invalid_argument,
+              "There is no pass \"" + std::string(name) + "\": Combined, Depth, Normal and Sample Count are.");
+}
+
+}  // namespace
+
+void PixelSum::add(const CameraSample& sample) {
+  if (camera_rays == 0) depth = sample.depth;
+  radiance += sample.radiance;
+  alpha += sample.alpha;
+  normal += sample.normal;
+  const float y = velour::luminance(sample.radiance);
+  luminance += y;
+  luminance_sq += y * y;
+  ++camera_rays;
+  directions += static_cast<uint32_t>(sample.directions);
+}
+
+Film::Film(int width, int height) : width_(width), height_(height) {
+  if (width <= 0 || height <= 0) {
+    throw Error(Status::invalid_argument,
+                "A picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels is empty.");
+  }
+  pixels_.resize(static_cast<size_t>(width) * static_cast<size_t>(height));
+}
+
+void Film::clear() {
+  const std::lock_guard lock(mutex_);
+  std::fill(pixels_.begin(), pixels_.end(), PixelSum{});
+}
+
+namespace {
+
+/// Calls copy(offset of the row in the film, offset in the tile) for every row of `rect`.
+template <typename Copy>
+void for_rows(const PixelRect& rect, int film_width, Copy&& copy) {
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    copy(static_cast<std::ptrdiff_t>(y) * film_width + rect.x0,
+         static_cast<std::ptrdiff_t>(y - rect.y0) * rect.width());
+  }
+}
+
+}  // namespace
+
+void Film::load(const PixelRect& rect, std::span<PixelSum> pixels) const {
+  const std::lock_guard lock(mutex_);
+  for_rows(rect, width_, [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+    std::copy_n(pixels_.begin() + from, rect.width(), pixels.begin() + to);
+  });
+}
+
+void Film::store(const PixelRect& rect, std::span<const PixelSum> pixels) {
+  const std::lock_guard lock(mutex_);
+  for_rows(rect, width_, [&](std::ptrdiff_t to, std::ptrdiff_t from) {
+    std::copy_n(pixels.begin() + from, rect.width(), pixels_.begin() + to);
+  });
+}
+
+int Film::channels(std::string_view pass) { return find_pass(pass).channels; }
+
+void Film::read_pass(std::string_view name, std::span<float> pixels) const {
+  const Pass& pass = find_pass(name);
+  const std::lock_guard lock(mutex_);
+  if (pixels.size() != pixels_.size() * static_cast<size_t>(pass.channels)) {
+    throw Error(Status::invalid_argument, "Pass \"" + std::string(name) + "\" has " +
+                                              std::to_string(pixels_.size() * static_cast<size_t>(pass.channels)) +
+                                              " numbers, not " + std::to_string(pixels.size()) + ".");
+  }
+  float* out = pixels.data();
+  for (const PixelSum& pixel : pixels_) {
+    pass.write(pixel, out);
+    out += pass.channels;
+  }
+}
+
+double Film::noise() const {
+  const std::lock_guard lock(mutex_);
+  double variance = 0.0, mean = 0.0;
+  for (const PixelSum& p : pixels_) {
+    if (p.camera_rays < 2) return 0.0;
+    const double n = p.camera_rays, m = p.luminance / n;
+    mean += m;
+    variance += std::max(0.0, p.luminance_sq / n - m * m) / (n - 1.0);
+  }
+  const double count = static_cast<double>(pixels_.size());
+  return mean > 0.0 ? std::sqrt(variance / count) / (mean / count) : 0.0;
+}
+
+}  // namespace velour

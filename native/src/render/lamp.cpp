@@ -1,0 +1,147 @@
+#include "render/lamp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sphere/frame.h"
+#include "sphere/warp.h"
+
+namespace velour {
+namespace {
+
+/// 1 - cos of an angle from its squared sine, without cancellation.
+float one_minus_cos(float sin_sq) { return sin_sq / (1.0f + std::sqrt(std::max(0.0f, 1.0f - sin_sq))); }
+
+Vec3 sample_cone(const Vec3& axis, float extent, const Vec2& u) {
+  const float drop = u.x * extent;  // 1 - cos
+  const float r = std::sqrt(drop * (2.0f - drop));
+  const float phi = 2.0f * kPi * u.y;
+  return Frame::about(axis).to_world({r * std::cos(phi), r * std::sin(phi), 1.0f - drop});
+}
+
+float pdf_cone(float extent) { return 1.0f / (2.0f * kPi * extent); }
+
+/// 1 - cos between unit vectors, without cancellation.
+float drop_between(const Vec3& a, const Vec3& b) {
+  const Vec3 d = a - b;
+  return 0.5f * glm::dot(d, d);
+}
+
+}  // namespace
+
+Lamp::Lamp(const Light& light, float scene_radius) : type_(light.type), casts_shadow_(light.casts_shadow) {
+  switch (type_) {
+    case Light::Type::sun:
+      set_sun(light, scene_radius);
+      break;
+    case Light::Type::point:
+      set_point(light);
+      break;
+    case Light::Type::rectangle:
+    case Light::Type::disk:
+      set_area(light);
+      break;
+  }
+}
+
+void Lamp::set_sun(const Light& light, float scene_radius) {
+  axis_ = glm::normalize(light.light_to_world.column(2));
+  power_ = luminance(light.color) * kPi * scene_radius * scene_radius;
+  const float sine = std::sin(0.5f * std::clamp(light.angle, 0.0f, kPi));
+  sharp_ = !(sine > 1e-5f);  // two arc seconds: below what float32 directions resolve
+  if (sharp_) {
+    intensity_ = light.color;
+    return;
+  }
+  one_minus_cos_ = one_minus_cos(sine * sine);
+  // A facing plane gathers L pi sin^2 from a cone of constant radiance L.
+  radiance_ = light.color / (kPi * sine * sine);
+}
+
+void Lamp::set_point(const Light& light) {
+  center_ = light.light_to_world.column(3);
+  radius_ = std::max(light.size.x, 0.0f);
+  power_ = luminance(light.color);
+  sharp_ = radius_ == 0.0f;
+  if (sharp_) {
+    intensity_ = light.color / (4.0f * kPi);
+  } else {
+    radiance_ = light.color / (4.0f * kPi * kPi * radius_ * radius_);
+  }
+}
+
+void Lamp::set_area(const Light& light) {
+  const Affine& map = light.light_to_world;
+  center_ = map.column(3);
+  half_x_ = 0.5f * light.size.x * map.column(0);
+  half_y_ = 0.5f * light.size.y * map.column(1);
+  const Vec3 normal = glm::cross(half_x_, half_y_);
+  const float quarter = glm::length(normal);
+  area_ = quarter * (type_ == Light::Type::disk ? kPi : 4.0f);
+  if (!(area_ > 0.0f)) return;  // without extent it emits nothing: power stays 0
+  axis_ = normal / quarter;
+  if (glm::dot(axis_, map.column(2)) > 0.0f) axis_ = -axis_;
+  power_ = luminance(light.color);
+  radiance_ = light.color / (kPi * area_);
+}
+
+float Lamp::cone(const Vec3& position, Vec3& axis) const {
+  if (type_ == Light::Type::sun) {
+    axis = axis_;
+    return one_minus_cos_;
+  }
+  const Vec3 to_center = center_ - position;
+  const float distance_sq = glm::dot(to_center, to_center);
+  if (!(distance_sq > radius_ * radius_)) return 0.0f;  // inside: the lamp shines outwards
+  axis = to_center / std::sqrt(distance_sq);
+  return one_minus_cos(radius_ * radius_ / distance_sq);
+}
+
+Vec3 Lamp::sample(const Vec3& position, const Vec2& u) const {
+  if (type_ == Light::Type::sun || type_ == Light::Type::point) {
+    Vec3 axis;
+    const float extent = cone(position, axis);
+    return extent > 0.0f ? sample_cone(axis, extent, u) : Vec3(0.0f);
+  }
+  const Vec2 place = type_ == Light::Type::disk ? sample_uniform_disk(u) : 2.0f * u - 1.0f;
+  const Vec3 to_lamp = center_ + place.x * half_x_ + place.y * half_y_ - position;
+  return glm::dot(to_lamp, axis_) < 0.0f ? glm::normalize(to_lamp) : Vec3(0.0f);
+}
+
+Lamp::Sight Lamp::hit(const Vec3& position, const Vec3& direction) const {
+  if (type_ == Light::Type::sun || type_ == Light::Type::point) {
+    Vec3 axis;
+    const float extent = cone(position, axis);
+    const float drop = drop_between(direction, axis);
+    if (!(extent > 0.0f) || drop > extent) return {};
+    if (type_ == Light::Type::sun) return {std::numeric_limits<float>::infinity(), pdf_cone(extent)};
+    const float distance = glm::length(center_ - position);
+    const float across_sq = distance * distance * drop * (2.0f - drop);
+    const float near_side = std::sqrt(std::max(0.0f, radius_ * radius_ - across_sq));
+    return {distance * (1.0f - drop) - near_side, pdf_cone(extent)};
+  }
+  const float facing = -glm::dot(direction, axis_);
+  const float height = glm::dot(position - center_, axis_);
+  if (!(facing > 0.0f) || !(height > 0.0f)) return {};
+  const float distance = height / facing;
+  const Vec3 place = position + distance * direction - center_;
+  // Coordinates along the half axes, which a sheared lamp does not keep perpendicular.
+  const Vec3 normal = glm::cross(half_x_, half_y_);
+  const float scale = 1.0f / glm::dot(normal, normal);
+  const float x = glm::dot(glm::cross(place, half_y_), normal) * scale;
+  const float y = glm::dot(glm::cross(half_x_, place), normal) * scale;
+  const bool inside = type_ == Light::Type::disk ? x * x + y * y <= 1.0f : std::max(std::abs(x), std::abs(y)) <= 1.0f;
+  if (!inside) return {};
+  return {distance, distance * distance / (facing * area_)};
+}
+
+Lamp::Irradiance Lamp::irradiance(const Vec3& position) const {
+  if (type_ == Light::Type::sun) return {axis_, std::numeric_limits<float>::infinity(), intensity_};
+  const Vec3 to_lamp = center_ - position;
+  const float distance_sq = std::max(glm::dot(to_lamp, to_lamp), 1e-30f);
+  const float distance = std::sqrt(distance_sq);
+  return {to_lamp / distance, distance, intensity_ / distance_sq};
+}
+
+}  // namespace velour

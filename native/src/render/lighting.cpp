@@ -1,0 +1,69 @@
+#include "render/lighting.h"
+
+#include <algorithm>
+
+namespace velour {
+namespace {
+
+constexpr float kBelowOne = 0x1.fffffep-1f;
+
+}  // namespace
+
+Lighting::Lighting(const Scene& scene) : environment_(scene.environment()) {
+  // A scene of nothing or of one point still needs distant and near lights to compare.
+  const float radius = std::max(scene.bounds().radius(), 1e-6f);
+  for (const Light& light : scene.lights()) {
+    const Lamp lamp(light, radius);
+    if (!lamp.black()) (lamp.sharp() ? sharp_ : lamps_).push_back(lamp);
+  }
+  // Flux of radiance L from everywhere through a sphere of this radius.
+  set_probabilities(4.0f * kPi * kPi * radius * radius * environment_.mean_luminance());
+}
+
+void Lighting::set_probabilities(float environment_power) {
+  float total = environment_power;
+  for (const Lamp& lamp : lamps_) total += lamp.power();
+  environment_probability_ = total > 0.0f ? environment_power / total : 0.0f;
+  for (const Lamp& lamp : lamps_) probability_.push_back(lamp.power() / total);
+
+  float sharp_total = 0.0f, sum = 0.0f;
+  for (const Lamp& lamp : sharp_) sharp_total += lamp.power();
+  for (const Lamp& lamp : sharp_) sharp_cdf_.push_back(sum += lamp.power() / sharp_total);
+}
+
+Vec3 Lighting::sample(const Vec3& position, const Vec2& u) const {
+  if (lamps_.empty()) return environment_.sample(u);
+  float left = u.x;
+  if (left < environment_probability_) {
+    return environment_.sample({std::min(left / environment_probability_, kBelowOne), u.y});
+  }
+  left -= environment_probability_;
+  size_t chosen = 0;
+  while (chosen + 1 < lamps_.size() && left >= probability_[chosen]) left -= probability_[chosen++];
+  return lamps_[chosen].sample(position, {std::min(left / probability_[chosen], kBelowOne), u.y});
+}
+
+void Lighting::look_up(const Vec3& position, const DirectionBatch& world, RgbBatch& environment, ScalarBatch& pdf,
+                       std::vector<LampHit>& hits) const {
+  environment_.look_up(world, environment, pdf);
+  if (lamps_.empty()) return;
+  for (int i = 0; i < world.count; ++i) {
+    float density = environment_probability_ * pdf.v[i];
+    for (size_t k = 0; k < lamps_.size(); ++k) {
+      const Lamp::Sight sight = lamps_[k].hit(position, world.get(i));
+      if (sight.pdf == 0.0f) continue;
+      density += probability_[k] * sight.pdf;
+      hits.push_back({i, &lamps_[k], sight.distance});
+    }
+    pdf.v[i] = density;
+  }
+}
+
+size_t Lighting::choose_sharp(float u, float& probability) const {
+  size_t chosen = 0;
+  while (chosen + 1 < sharp_.size() && u >= sharp_cdf_[chosen]) ++chosen;
+  probability = sharp_cdf_[chosen] - (chosen > 0 ? sharp_cdf_[chosen - 1] : 0.0f);
+  return chosen;
+}
+
+}  // namespace velour

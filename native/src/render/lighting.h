@@ -1,0 +1,49 @@
+// All light of a scene: the environment and lamps with extent as one density over directions, sharp lamps by name.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/lamp.h"
+#include "scene/scene.h"
+
+namespace velour {
+
+/// A direction of a batch that meets a lamp.
+struct LampHit {
+  int direction;  // its place in the batch
+  const Lamp* lamp;
+  float distance;
+};
+
+class Lighting {
+ public:
+  explicit Lighting(const Scene& scene);
+
+  const Environment& environment() const { return environment_; }
+  /// True when there is anything that a sampled direction can meet.
+  bool has_extended() const { return !lamps_.empty() || !environment_.black(); }
+
+  /// Direction from `position` towards light: first a light with probability proportional to its power, then a
+  /// direction of it. A zero vector where the chosen lamp shows its dark side. Needs has_extended().
+  Vec3 sample(const Vec3& position, const Vec2& u) const;
+  /// For each direction of `world` from `position`: radiance of the environment, density of `sample`, lamps met
+  /// (appended to `hits`). The batch is padded.
+  void look_up(const Vec3& position, const DirectionBatch& world, RgbBatch& environment, ScalarBatch& pdf,
+               std::vector<LampHit>& hits) const;
+
+  std::span<const Lamp> sharp() const { return sharp_; }
+  /// Index of a sharp lamp with probability proportional to its power, which goes to `probability`.
+  size_t choose_sharp(float u, float& probability) const;
+
+ private:
+  void set_probabilities(float environment_power);
+
+  const Environment& environment_;
+  std::vector<Lamp> lamps_, sharp_;
+  std::vector<float> probability_;  // of lamps_
+  float environment_probability_ = 0;
+  std::vector<float> sharp_cdf_;
+};
+
+}  // namespace velour

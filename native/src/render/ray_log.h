@@ -1,0 +1,30 @@
+// The rays of a few tiles, to learn what share of the time is the bare tracing of rays.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scene/embree_scene.h"
+
+namespace velour {
+
+class RayLog {
+ public:
+  enum class Kind { nearest, occlusion };
+
+  void reserve(size_t rays) { rays_.reserve(rays); }
+  void add(std::span<const Ray> rays, Kind kind);
+  size_t size() const { return rays_.size(); }
+  /// Traces the very same rays, in the same order and batches. Seconds.
+  double replay(const EmbreeScene& scene) const;
+
+ private:
+  struct Batch {
+    size_t count;
+    Kind kind;
+  };
+  std::vector<Ray> rays_;
+  std::vector<Batch> batches_;
+};
+
+}  // namespace velour

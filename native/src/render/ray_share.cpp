@@ -1,0 +1,48 @@
+#include "render/ray_share.h"
+
+#include <tbb/parallel_for.h>
+
+namespace velour {
+namespace {
+
+constexpr size_t kMostRays = 6'000'000;  // 190 MB
+
+/// The top four bits of a golden-ratio hash: one tile in sixteen, in no column or row of the picture.
+bool one_in_sixteen(size_t tile) { return tile * 0x9e3779b97f4a7c15ULL >> 60 == 0; }
+
+}  // namespace
+
+bool RayShare::chosen(size_t tile) const {
+  if (!enabled_ || !one_in_sixteen(tile)) return false;
+  const std::lock_guard lock(mutex_);
+  return rays_ < kMostRays;
+}
+
+RayShare::Record RayShare::new_record(const PixelRect& rect, int count) const {
+  Record record;
+  const int camera_rays = rect.width() * rect.height() * count;
+  record.log.reserve(static_cast<size_t>(camera_rays) * static_cast<size_t>(1 + split_));
+  return record;
+}
+
+void RayShare::keep(Record record) {
+  const std::lock_guard lock(mutex_);
+  rays_ += record.log.size();
+  records_.push_back(std::move(record));
+}
+
+std::optional<double> RayShare::measure(const EmbreeScene& scene, const Progress& progress) const {
+  std::vector<double> alone(records_.size());
+  tbb::parallel_for(size_t{0}, records_.size(), [&](size_t i) {
+    progress.check();
+    alone[i] = records_[i].log.replay(scene);
+  });
+  double rays = 0.0, tiles = 0.0;
+  for (size_t i = 0; i < records_.size(); ++i) {
+    rays += alone[i];
+    tiles += records_[i].seconds;
+  }
+  return tiles > 0.0 ? std::optional<double>(rays / tiles) : std::nullopt;
+}
+
+}  // namespace velour

@@ -1,0 +1,55 @@
+// What share of the render time is the bare tracing of rays: 1 would be a renderer that shades for nothing.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "job/progress.h"
+#include "render/film.h"
+#include "render/ray_log.h"
+
+namespace velour {
+
+/// Records the rays of one tile in 16 until kMostRays are kept, with the seconds that these tiles took; later traces
+/// the very same rays alone, with as many threads, and divides.
+class RayShare {
+ public:
+  RayShare(bool enabled, int split) : enabled_(enabled), split_(split) {}
+
+  /// Calls work(log), log null unless tile number `tile` is recorded in this pass of `count` camera rays a pixel.
+  template <typename Work>
+  void record(size_t tile, const PixelRect& rect, int count, Work&& work) {
+    if (!chosen(tile)) {
+      work(nullptr);
+      return;
+    }
+    Record record = new_record(rect, count);
+    const auto start = std::chrono::steady_clock::now();
+    work(&record.log);
+    record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    keep(std::move(record));
+  }
+
+  /// Seconds of the rays alone / seconds of their tiles; nothing when no ray was recorded. Call it in the arena of the
+  /// render.
+  std::optional<double> measure(const EmbreeScene& scene, const Progress& progress) const;
+
+ private:
+  struct Record {
+    RayLog log;
+    double seconds = 0;
+  };
+  bool chosen(size_t tile) const;
+  Record new_record(const PixelRect& rect, int count) const;
+  void keep(Record record);
+
+  const bool enabled_;
+  const int split_;
+  mutable std::mutex mutex_;
+  std::vector<Record> records_;
+  size_t rays_ = 0;
+};
+
+}  // namespace velour

@@ -1,0 +1,177 @@
+#include "render/render.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+
+#include "render/ray_share.h"
+#include "render/tile_renderer.h"
+
+namespace velour {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kTileSize = 16;
+/// Camera rays a pixel of a whole-grown pass: a tile stays below 10 ms, so a cancel is seen soon.
+constexpr int kLargestPass = 8;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+void require_range(const char* name, int value, int low, int high) {
+  if (value >= low && value <= high) return;
+  throw Error(Status::invalid_argument, "Render option " + std::string(name) + " is " + std::to_string(value) +
+                                            "; it must lie between " + std::to_string(low) + " and " +
+                                            std::to_string(high) + ".");
+}
+
+RenderOptions checked(const Scene& scene, RenderOptions options, const Film& film) {
+  constexpr int kMost = 1 << 30;
+  require_range("width", options.width, 1, 65536);
+  require_range("height", options.height, 1, 65536);
+  require_range("spp", options.spp, 1, kMost);
+  require_range("split", options.split, 1, RenderOptions::kMaxSplit);
+  require_range("bounces", options.bounces, 0, 1024);
+  require_range("threads", options.threads, 0, 4096);
+  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::mis));
+  require_range("camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
+  if (!(options.time_limit >= 0.0)) throw Error(Status::invalid_argument, "Render option time_limit is negative.");
+  if (film.width() != options.width || film.height() != options.height) {
+    throw Error(Status::invalid_argument, "The film has another size than the render options ask for.");
+  }
+  if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is rendered.");
+  options.split = std::min(options.split, options.spp);
+  return options;
+}
+
+std::vector<PixelRect> tiles_of(const RenderOptions& options) {
+  std::vector<PixelRect> tiles;
+  for (int y = 0; y < options.height; y += kTileSize) {
+    for (int x = 0; x < options.width; x += kTileSize) {
+      tiles.push_back({x, y, std::min(x + kTileSize, options.width), std::min(y + kTileSize, options.height)});
+    }
+  }
+  return tiles;
+}
+
+/// Camera rays a pixel of the next pass: doubling, so that a first picture appears at once.
+int pass_size(const RenderOptions& options, int done, int total) {
+  const int asked = options.camera_rays_per_pass;
+  const int grown = std::clamp(done, 1, kLargestPass);
+  return std::min(asked > 0 ? asked : grown, total - done);
+}
+
+/// One render, from its start to its report.
+class Renderer {
+ public:
+  Renderer(const Scene& scene, const RenderOptions& options, Film& film, Progress& progress)
+      : options_(checked(scene, options, film)),
+        film_(film),
+        progress_(progress),
+        arena_(options_.threads > 0 ? options_.threads : tbb::task_arena::automatic),
+        context_{scene, options_, Lighting(scene), {}},
+        tiles_(tiles_of(options_)) {}
+
+  RenderReport run() {
+    film_.clear();
+    prepare_tables();
+    render_passes();
+    if (options_.measure_ray_share) measure_ray_share();
+    return report();
+  }
+
+ private:
+  template <typename Work>
+  void stage(const char* name, double begin, double end, Work&& work) {
+    progress_.stage(name, begin, end);
+    const auto start = Clock::now();
+    work();
+    report_.stages.push_back({name, seconds_since(start)});
+  }
+
+  void prepare_tables() {
+    if (options_.strategy != Strategy::table) return;
+    const auto& materials = context_.scene.materials();
+    context_.tables.resize(materials.size());
+    stage("tables", 0.0, 0.05, [&] {
+      for (size_t m = 0; m < materials.size(); ++m) {
+        progress_.check();
+        arena_.execute([&] { context_.tables[m] = std::make_unique<const TableSampler>(*materials[m].material); });
+      }
+    });
+  }
+
+  void render_passes() {
+    const int total = context_.camera_rays();
+    stage("render", options_.strategy == Strategy::table ? 0.05 : 0.0, 1.0, [&] {
+      const auto start = Clock::now();
+      while (done_ < total) {
+        const int count = pass_size(options_, done_, total);
+        if (report_.passes > 0 && out_of_time(seconds_since(start), count)) break;
+        render_pass(count, total);
+      }
+    });
+    report_.seconds = report_.stages.back().seconds;
+  }
+
+  /// Whether a pass of `count` camera rays would end after the limit, at the speed so far.
+  bool out_of_time(double seconds, int count) const {
+    return options_.time_limit > 0.0 && seconds * (1.0 + static_cast<double>(count) / done_) > options_.time_limit;
+  }
+
+  void render_pass(int count, int total) {
+    std::atomic<size_t> finished{0};
+    arena_.execute([&] {
+      tbb::parallel_for(size_t{0}, tiles_.size(), [&](size_t tile) {
+        TileRenderer& renderer = renderers_.local();
+        share_.record(tile, tiles_[tile], count,
+                      [&](RayLog* log) { renderer.render(tiles_[tile], done_, count, film_, log, progress_); });
+        const double part = static_cast<double>(++finished) / static_cast<double>(tiles_.size());
+        progress_.update((done_ + part * count) / total);
+      });
+    });
+    done_ += count;
+    ++report_.passes;
+  }
+
+  void measure_ray_share() {
+    stage("replay", 1.0, 1.0,
+          [&] { arena_.execute([&] { report_.ray_share = share_.measure(context_.scene.rays(), progress_); }); });
+  }
+
+  RenderReport report() {
+    for (const TileRenderer& renderer : renderers_) {
+      report_.rays += renderer.rays();
+      report_.nan_samples += renderer.nan_samples();
+    }
+    report_.spp = static_cast<uint64_t>(
+        std::min(static_cast<int64_t>(done_) * options_.split, static_cast<int64_t>(options_.spp)));
+    const double samples = static_cast<double>(options_.width) * options_.height * static_cast<double>(report_.spp);
+    report_.samples_per_second = report_.seconds > 0.0 ? samples / report_.seconds : 0.0;
+    report_.noise = film_.noise();
+    return report_;
+  }
+
+  const RenderOptions options_;
+  Film& film_;
+  Progress& progress_;
+  tbb::task_arena arena_;
+  RenderContext context_;
+  const std::vector<PixelRect> tiles_;
+  tbb::enumerable_thread_specific<TileRenderer> renderers_{[this] { return TileRenderer(context_); }};
+  RayShare share_{options_.measure_ray_share, options_.split};
+  RenderReport report_;
+  int done_ = 0;  // camera rays a pixel
+};
+
+}  // namespace
+
+RenderReport render(const Scene& scene, const RenderOptions& options, Film& film, Progress& progress) {
+  return Renderer(scene, options, film, progress).run();
+}
+
+}  // namespace velour

@@ -1,0 +1,21 @@
+#include "render/shadow_queue.h"
+
+#include "render/ray_log.h"
+
+namespace velour {
+
+size_t ShadowQueue::resolve(const EmbreeScene& scene, std::vector<CameraSample>& samples, RayLog* log) {
+  const size_t count = rays_.size();
+  blocked_.resize(count);
+  if (log != nullptr) log->add(rays_, RayLog::Kind::occlusion);
+  scene.occluded(rays_, blocked_.data());
+  for (size_t i = 0; i < count; ++i) {
+    if (blocked_[i] == 0) samples[sample_[i]].radiance += light_[i];
+  }
+  rays_.clear();
+  light_.clear();
+  sample_.clear();
+  return count;
+}
+
+}  // namespace velour

@@ -1,0 +1,32 @@
+// Light that waits for its shadow ray. Rays of many vertices are traced together.
+#pragma once
+
+#include <vector>
+
+#include "render/film.h"
+#include "scene/embree_scene.h"
+
+namespace velour {
+
+class RayLog;
+
+class ShadowQueue {
+ public:
+  /// `light` goes to sample number `sample` unless something blocks `ray`.
+  void add(const Ray& ray, const Rgb& light, uint32_t sample) {
+    rays_.push_back(ray);
+    light_.push_back(light);
+    sample_.push_back(sample);
+  }
+  /// Traces all and adds what arrives to `samples`, in the order of add(); then forgets them. Returns how many.
+  /// `log` may be null.
+  size_t resolve(const EmbreeScene& scene, std::vector<CameraSample>& samples, RayLog* log);
+
+ private:
+  std::vector<Ray> rays_;
+  std::vector<Rgb> light_;
+  std::vector<uint32_t> sample_;
+  std::vector<uint8_t> blocked_;
+};
+
+}  // namespace velour

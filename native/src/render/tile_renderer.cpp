@@ -1,0 +1,123 @@
+#include "render/tile_renderer.h"
+
+#include <algorithm>
+
+namespace velour {
+namespace {
+
+/// Camera rays in flight at once: enough that shadow rays leave in long batches, few enough to stay in the cache.
+constexpr int kRaysInFlight = 128;
+
+/// Light directions of a vertex beyond the first: one from each side suffices for `mis`, and the many camera rays of a
+/// pixel average them.
+constexpr int kIndirectDirections = 2;
+
+}  // namespace
+
+TileRenderer::TileRenderer(const RenderContext& context)
+    : context_(context), light_(context.scene, context.lighting, context.options.strategy) {}
+
+void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
+                          const Progress& progress) {
+  pixels_.resize(static_cast<size_t>(tile.width()) * static_cast<size_t>(tile.height()));
+  film.load(tile, pixels_);
+  const int pixels_a_run = std::clamp(kRaysInFlight / count, 1, tile.width());
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    PixelSum* row = pixels_.data() + static_cast<size_t>(y - tile.y0) * static_cast<size_t>(tile.width());
+    for (int x = tile.x0; x < tile.x1; x += pixels_a_run) {
+      progress.check();
+      const PixelRect run{x, y, std::min(x + pixels_a_run, tile.x1), y + 1};
+      for (int done = 0; done < count; done += kRaysInFlight) {
+        render_run(run, first + done, std::min(kRaysInFlight, count - done), row + (x - tile.x0), log);
+      }
+    }
+  }
+  film.store(tile, pixels_);
+}
+
+void TileRenderer::render_run(const PixelRect& run, int first, int count, PixelSum* sums, RayLog* log) {
+  start_paths(run, first, count);
+  for (int depth = 0; depth <= context_.options.bounces && !paths_.empty(); ++depth) {
+    trace(log);
+    next_.clear();
+    for (size_t i = 0; i < paths_.size(); ++i) follow(paths_[i], hits_[i], depth);
+    rays_ += shadows_.resolve(context_.scene.rays(), samples_, log);
+    paths_.swap(next_);
+  }
+  add_background();
+  for (size_t i = 0; i < samples_.size(); ++i) sums[i / static_cast<size_t>(count)].add(samples_[i]);
+}
+
+void TileRenderer::start_paths(const PixelRect& run, int first, int count) {
+  const RenderOptions& o = context_.options;
+  paths_.clear();
+  samples_.clear();
+  for (int x = run.x0; x < run.x1; ++x) {
+    const uint64_t pixel = static_cast<uint64_t>(run.y0) * static_cast<uint64_t>(o.width) + static_cast<uint64_t>(x);
+    for (int index = first; index < first + count; ++index) {
+      RandomStream random(o.seed, pixel, static_cast<uint64_t>(index));
+      const Vec2 place = Vec2(x, run.y0) + random.next2();
+      const Ray ray =
+          context_.scene.camera().ray(place / Vec2(static_cast<float>(o.width), static_cast<float>(o.height)));
+      paths_.push_back({random, ray, Rgb(1.0f), static_cast<uint32_t>(samples_.size())});
+      samples_.push_back({});
+      samples_.back().directions = context_.directions(index);
+    }
+  }
+}
+
+void TileRenderer::trace(RayLog* log) {
+  path_rays_.clear();
+  for (const Path& path : paths_) path_rays_.push_back(path.ray);
+  hits_.resize(path_rays_.size());
+  if (log != nullptr) log->add(path_rays_, RayLog::Kind::nearest);
+  context_.scene.rays().intersect(path_rays_, hits_.data());
+  rays_ += path_rays_.size();
+}
+
+void TileRenderer::follow(Path& path, const Hit& hit, int depth) {
+  CameraSample& sample = samples_[path.sample];
+  if (hit.instance == kNoHit) {
+    if (depth == 0) missed_.push_back({path.sample, path.ray.direction});
+    return;
+  }
+  const SurfacePoint point = context_.scene.surface(hit);
+  Vertex vertex(point, -path.ray.direction);
+  vertex.surface = &context_.scene.materials()[point.material];
+  if (!context_.tables.empty()) vertex.table = context_.tables[point.material].get();
+  if (depth == 0) {
+    sample.alpha = 1.0f;
+    sample.normal = vertex.frame.z;
+    sample.depth = context_.scene.camera().depth(vertex.position);
+  }
+  sample.radiance += path.throughput * vertex.surface->emission;
+  light_.prepare(vertex);
+  const int directions = depth == 0 ? sample.directions : std::min(sample.directions, kIndirectDirections);
+  light_.gather(vertex, directions, path.random, {path.sample, path.throughput}, shadows_, samples_);
+  if (depth == context_.options.bounces) return;
+  if (const auto onward = light_.extend(vertex, path.random, path.throughput)) {
+    next_.push_back({path.random, onward->ray, onward->throughput, path.sample});
+  }
+}
+
+void TileRenderer::add_background() {
+  DirectionBatch batch;
+  RgbBatch radiance;
+  ScalarBatch unused;
+  const bool visible = !context_.options.transparent;
+  for (size_t start = 0; start < missed_.size() && visible; start += DirectionBatch::kCapacity) {
+    const size_t end = std::min(missed_.size(), start + DirectionBatch::kCapacity);
+    batch.count = 0;
+    for (size_t i = start; i < end; ++i) batch.push(missed_[i].direction);
+    batch.pad();
+    context_.scene.environment().look_up(batch, radiance, unused);
+    for (size_t i = start; i < end; ++i) {
+      CameraSample& sample = samples_[missed_[i].sample];
+      sample.radiance = radiance.get(static_cast<int>(i - start));
+      sample.alpha = 1.0f;
+    }
+  }
+  missed_.clear();
+}
+
+}  // namespace velour

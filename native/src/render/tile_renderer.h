@@ -1,0 +1,67 @@
+// The work of one thread: camera rays of a tile, taken from bounce to bounce together.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "job/progress.h"
+#include "material/table_sampler.h"
+#include "render/direct_light.h"
+#include "render/film.h"
+#include "render/ray_log.h"
+
+namespace velour {
+
+/// What all threads share during a render. Immutable.
+struct RenderContext {
+  const Scene& scene;
+  const RenderOptions& options;  // split <= spp
+  Lighting lighting;
+  std::vector<std::unique_ptr<const TableSampler>> tables;  // by material; empty unless the strategy needs them
+
+  int camera_rays() const { return (options.spp + options.split - 1) / options.split; }
+  /// Light directions of camera ray `index`: the last one takes what is left of spp.
+  int directions(int index) const { return std::min(options.split, options.spp - index * options.split); }
+};
+
+class TileRenderer {
+ public:
+  explicit TileRenderer(const RenderContext& context);
+
+  /// Adds camera rays [first, first + count) of every pixel of `tile` to `film`. `log` (may be null) receives the rays.
+  /// Throws Error(cancelled) soon after a cancel.
+  void render(const PixelRect& tile, int first, int count, Film& film, RayLog* log, const Progress& progress);
+
+  uint64_t rays() const { return rays_; }
+  uint64_t nan_samples() const { return light_.nan_samples(); }
+
+ private:
+  struct Path {
+    RandomStream random;
+    Ray ray;
+    Rgb throughput;
+    uint32_t sample;
+  };
+  void start_paths(const PixelRect& run, int first, int count);
+  void trace(RayLog* log);
+  void follow(Path& path, const Hit& hit, int depth);
+  void add_background();
+  void render_run(const PixelRect& run, int first, int count, PixelSum* sums, RayLog* log);
+
+  const RenderContext& context_;
+  DirectLight light_;
+  ShadowQueue shadows_;
+  std::vector<Path> paths_, next_;
+  std::vector<Ray> path_rays_;
+  std::vector<Hit> hits_;
+  std::vector<CameraSample> samples_;
+  struct Miss {
+    uint32_t sample;
+    Vec3 direction;
+  };
+  std::vector<Miss> missed_;  // camera rays that met nothing
+  std::vector<PixelSum> pixels_;
+  uint64_t rays_ = 0;
+};
+
+}  // namespace velour
