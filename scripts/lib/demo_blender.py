@@ -18,7 +18,7 @@ class BlenderError(RuntimeError):
 
 
 def render(model_file: Path, measurement_file: Path, folder: Path) -> dict:
-    """Writes model and reference pictures and the error-against-time points; returns demo_scene.py's report."""
+    """Writes model and reference pictures; returns the report of demo_scene.py."""
     if not shutil.which("blender"):
         raise BlenderError("blender is not installed; run scripts/setup")
     with tempfile.TemporaryDirectory(prefix="velour-demo-") as temporary:

@@ -1,5 +1,5 @@
-"""Runs inside Blender: builds the demo's scene, renders it with the model and with the measurement itself, and
-takes the points of the error-against-time plot. The task is the JSON text after "--"."""
+"""Runs inside Blender: builds the demo's scene, renders it with the model and with the measurement itself,
+and takes the points of the error-against-time plot. The task is the JSON text after "--"."""
 
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ class _ReportHandler(logging.Handler):
 
 
 def _curves(scene: bpy.types.Scene) -> dict[str, list[tuple[float, float]]]:
-    """Strategy -> (seconds, relmse) against a long render of the same model, smaller: sampling error alone."""
+    """Strategy -> (seconds, relmse) against a long render of the same model: sampling error alone."""
     from velour.export import Notes, export_scene
     from velour.export.camera import final_view
 
