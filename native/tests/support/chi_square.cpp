@@ -60,8 +60,12 @@ class Cells {
 /// Integrals of a density over cells by Gauss-Legendre quadrature, halved where one level disagrees with the next.
 class CellIntegrator {
  public:
-  CellIntegrator(const Cells& cells, const Density& density, double samples)
-      : cells_(cells), density_(density), samples_(samples), rule_(gauss_legendre(4, 0, 1)) {}
+  CellIntegrator(const Cells& cells, const Density& density, const ChiSquareOptions& options)
+      : cells_(cells),
+        density_(density),
+        samples_(static_cast<double>(options.samples)),
+        refinements_(options.refinements),
+        rule_(gauss_legendre(4, 0, 1)) {}
 
   double integrate(size_t row, int column) {
     const Box box{cells_.edge(row), cells_.edge(row + 1), cells_.phi_edge(column), cells_.phi_edge(column + 1)};
@@ -71,7 +75,6 @@ class CellIntegrator {
   const std::string& problem() const { return problem_; }
 
  private:
-  static constexpr int kMaxDepth = 6;
   struct Box {
     double d0, d1, phi0, phi1;
   };
@@ -98,7 +101,7 @@ class CellIntegrator {
     for (int i = 0; i < 4; ++i) fine += estimates[i] = estimate(parts[i]);
     // A small part of the count's own standard deviation.
     const double tolerance = 0.002 * std::sqrt(std::max(fine, 1 / samples_) / samples_);
-    if (depth == kMaxDepth || std::abs(fine - coarse) <= tolerance || !problem_.empty()) return fine;
+    if (depth == refinements_ || std::abs(fine - coarse) <= tolerance || !problem_.empty()) return fine;
     double sum = 0;
     for (int i = 0; i < 4; ++i) sum += refine(parts[i], estimates[i], depth + 1);
     return sum;
@@ -107,6 +110,7 @@ class CellIntegrator {
   const Cells& cells_;
   const Density& density_;
   double samples_;
+  int refinements_;
   Quadrature rule_;
   std::string problem_;
 };
@@ -185,7 +189,7 @@ ChiSquareResult chi_square(const std::function<Vec3(const Vec2&)>& sample,
   const auto samples = static_cast<double>(options.samples);
   const std::vector<double> observed = count_samples(cells, sample, options, result.problem);
   std::vector<double> expected;
-  CellIntegrator integrator(cells, pdf, samples);
+  CellIntegrator integrator(cells, pdf, options);
   for (size_t row = 0; row < cells.rows(); ++row) {
     for (int column = 0; column < cells.phi_cells(); ++column) {
       const double mass = integrator.integrate(row, column);
@@ -197,7 +201,7 @@ ChiSquareResult chi_square(const std::function<Vec3(const Vec2&)>& sample,
     result.problem = integrator.problem();
     return result;
   }
-  if (result.density_mass > 1 + 1e-3) result.problem = "the density integrates to more than 1";
+  if (result.density_mass > 1.005) result.problem = "the density integrates to more than 1";
   check_empty_cells(observed, expected, samples, result.problem);
   add_terms(observed, expected, options.minimum_expected, result);
   result.p_value = result.degrees_of_freedom > 0 ? chi_square_tail(result.statistic, result.degrees_of_freedom) : 1.0;

@@ -21,6 +21,7 @@ struct ChiSquareOptions {
   int64_t samples = 1'000'000;
   uint64_t seed = 1;
   double minimum_expected = 5;  // cells that expect less are pooled
+  int refinements = 6;          // halvings of a cell at most, where its integral is not settled
   /// Axis of the cells' poles; put it on a sharp lobe so that the lobe is resolved: cells are uniform in
   /// log(1 - cos) about it when `concentration` > 0 (the lobe's bandwidth).
   Vec3 axis{0, 0, 1};
@@ -32,7 +33,8 @@ struct ChiSquareResult {
   double statistic = 0;
   int degrees_of_freedom = 0;
   double density_mass = 0;  // integral of the claimed density: must be 1 (or the stated mass)
-  /// Not empty: density negative, not a number or of mass above 1; samples off the sphere or where the density is 0.
+  /// Not empty: density negative, not a number or of mass above 1.005; samples off the sphere or where the density is
+  /// 0.
   std::string problem;
 };
 
