@@ -11,19 +11,19 @@
 namespace velour {
 
 struct MicrosurfaceOptions {
-  double roughness = 0.2;     // Beckmann alpha along x = sqrt(2) x RMS slope
-  double anisotropy = 1.0;    // alpha_x / alpha_y
-  std::string metal = "nickel";
-  Rgb base_albedo{0, 0, 0};   // diffuse base
-  double base_share = 0.0;    // share of the surface that is diffuse base
-  uint64_t rays = 0;          // 0: the default
+  double roughness = 0.2;   // Beckmann alpha along x = sqrt(2) x RMS slope
+  double anisotropy = 1.0;  // alpha_x / alpha_y
+  std::string metal = "copper";
+  Rgb base_albedo{0, 0, 0};  // diffuse base
+  double base_share = 0.0;   // share of the surface that is diffuse base
+  uint64_t rays = 0;         // 0: the default
   uint64_t seed = 0;
   int threads = 0;
 };
 
 struct MicrosurfaceReport {
   double seconds = 0;
-  uint64_t rays = 0;                   // traced, all orders of scattering
+  uint64_t rays = 0;  // traced, all orders of scattering
   double rays_per_second = 0;
   uint64_t bytes = 0;                  // of the file
   double resolution_degrees = 0;       // of the bins that the rays were collected in, near the highlight

@@ -1,0 +1,55 @@
+// One period of a surface, traced as if it went on for ever.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "capture/height_field.h"
+#include "scene/embree_scene.h"
+
+namespace velour {
+
+/// A point just above the surface: rays that leave it upwards of its facet cannot meet the facet again.
+struct SurfacePoint {
+  Vec3 position{0, 0, 0};
+  Vec3 normal{0, 0, 1};  // of the flat facet, unit, z > 0
+  bool base = false;     // diffuse base instead of metal
+};
+
+enum class Fate { hit, escaped, lost };
+
+/// Rays that leave the tile sideways come in again at the other side. Immutable after construction, thread-safe.
+class PeriodicTile {
+ public:
+  /// `base_cells` [cells^2] marks the cells of diffuse base; empty: none.
+  PeriodicTile(HeightField field, std::vector<uint8_t> base_cells);
+
+  int facets() const { return 2 * field_.cells * field_.cells; }
+  /// dz/dx and dz/dy of facet `facet`, which covers 1 / facets() of the mean plane.
+  Vec2 slope(int facet) const;
+  bool is_base(int facet) const { return !base_cells_.empty() && base_cells_[static_cast<size_t>(facet / 2)] != 0; }
+
+  /// The surface above a point of the mean plane; u uniform in [0, 1)^2 makes it uniform over that plane's area.
+  SurfacePoint point_above(const Vec2& u) const;
+
+  /// First meeting with the surface. `lost` are rays that run below it through rounding, or so flat that they cross
+  /// kMaxPeriods periods without a meeting.
+  Fate trace(const Vec3& origin, const Vec3& direction, SurfacePoint& hit) const;
+  /// True when the ray meets nothing (and is not lost).
+  bool escapes(const Vec3& origin, const Vec3& direction) const;
+
+  static constexpr int kMaxPeriods = 256;
+
+ private:
+  bool enter_next_period(Ray& ray) const;
+  SurfacePoint surface_point(int facet, const Vec3& position) const;
+
+  HeightField field_;
+  std::vector<uint8_t> base_cells_;
+  EmbreeScene scene_;
+  Vec2 period_;
+  float top_ = 0;   // nothing of the surface is higher
+  float lift_ = 0;  // of surface points along their normal, against rounding
+};
+
+}  // namespace velour
