@@ -19,7 +19,7 @@ struct Saving {
 
 Saving best_saving(const ViewPath& view, size_t from) {
   Saving best;
-  for (size_t to = 1; to < from; ++to) {
+  for (size_t to = 0; to < from; ++to) {
     const double rise = (cost(view, to) - cost(view, from)) / static_cast<double>(from - to);
     if (rise < best.rise_per_lobe) best = {to, rise};
   }
@@ -42,7 +42,7 @@ std::vector<size_t> share_lobes(const std::vector<ViewPath>& views, uint64_t lob
       const Saving saving = best_saving(views[i], share[i]);
       if (saving.rise_per_lobe < best.rise_per_lobe) best = saving, cheapest = i;
     }
-    if (cheapest == views.size()) break;  // one lobe each: thin the views instead
+    if (cheapest == views.size()) break;  // no lobes are left
     used -= share[cheapest] - best.to;
     share[cheapest] = best.to;
   }

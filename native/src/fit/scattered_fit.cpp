@@ -19,7 +19,7 @@ namespace {
 constexpr double kGoalShare = 0.8;
 // With a bound in bytes a view keeps this many lobes if it has them, and there are fewer views rather than poorer ones.
 constexpr double kLobesWorthAView = 4;
-constexpr uint64_t kLobeBytes = 28, kViewBytes = 12;
+constexpr uint64_t kLobeBytes = ScatteredBrdf::kLobeBytes, kViewBytes = ScatteredBrdf::kViewBytes;
 constexpr int kMeridianNeighbors = 2, kHemisphereNeighbors = 4;
 
 int neighbors_of(bool isotropic) { return isotropic ? kMeridianNeighbors : kHemisphereNeighbors; }
@@ -35,9 +35,9 @@ void check_options(const FitOptions& o, bool isotropic) {
            " for this measurement.");
   }
   if (o.threads < 0) refuse("The fit's threads is " + std::to_string(o.threads) + "; it must be 0 (all) or more.");
-  if (o.max_bytes != 0 && o.max_bytes < kLobeBytes + kViewBytes) {
-    refuse("The fit's max_bytes is " + std::to_string(o.max_bytes) + "; one view with one lobe takes " +
-           std::to_string(kLobeBytes + kViewBytes) + ".");
+  if (o.max_bytes != 0 && o.max_bytes < kViewBytes) {
+    refuse("The fit's max_bytes is " + std::to_string(o.max_bytes) + "; one view takes " + std::to_string(kViewBytes) +
+           ".");
   }
 }
 
@@ -60,7 +60,7 @@ bool fit_into(uint64_t max_bytes, std::vector<MeasuredSlice>& slices, std::vecto
   if (max_bytes == 0 || lobes * kLobeBytes + paths.size() * kViewBytes <= max_bytes) return false;
 
   const double mean_lobes = static_cast<double>(lobes) / static_cast<double>(paths.size());
-  const double view_bytes = kViewBytes + kLobeBytes * std::clamp(mean_lobes, 1.0, kLobesWorthAView);
+  const double view_bytes = kViewBytes + kLobeBytes * std::min(mean_lobes, kLobesWorthAView);
   const auto keep = std::max<size_t>(1, static_cast<size_t>(static_cast<double>(max_bytes) / view_bytes));
   std::vector<MeasuredSlice> kept_slices;
   std::vector<ViewPath> kept_paths;
@@ -85,6 +85,7 @@ std::shared_ptr<ScatteredBrdf> assemble(const std::vector<MeasuredSlice>& slices
   brdf->first_lobe.push_back(0);
   for (size_t i = 0; i < slices.size(); ++i) {
     brdf->views.push_back(slices[i].wv);
+    brdf->diffuse.emplace_back(paths[i].path.back().diffuse);
     for (const SliceLobe& lobe : paths[i].path.back().lobes) {
       const StoredLobe stored = stored_lobe(options.kernel, lobe);
       brdf->center.push_back(stored.center);

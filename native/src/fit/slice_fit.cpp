@@ -72,7 +72,7 @@ LobeShape best_candidate(const SliceSolver& solver, Kernel kernel, const CoarseR
   return best;
 }
 
-SliceFit snapshot(const SliceSolver& solver) { return {solver.lobes(), solver.relative_l2()}; }
+SliceFit snapshot(const SliceSolver& solver) { return {solver.lobes(), solver.diffuse(), solver.relative_l2()}; }
 
 std::vector<LobeShape> without(const std::vector<LobeShape>& shapes, int removed) {
   std::vector<LobeShape> out = shapes;

@@ -13,9 +13,10 @@ struct SliceFitOptions {
   double goal = 0.02;  // relative L2 of the luminance at which no more lobes are added
 };
 
-/// The lobes of a slice, and their luminance error over the fitted samples.
+/// The lobes and the cosine term of a slice, and their luminance error over the fitted samples.
 struct SliceFit {
   std::vector<SliceLobe> lobes;
+  Vec3d diffuse{0, 0, 0};
   double relative_l2 = 1;
 };
 

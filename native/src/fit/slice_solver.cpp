@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "fit/nnls.h"
 
@@ -32,7 +33,9 @@ SliceSolver::SliceSolver(Kernel kernel, const SliceSamples& samples, const Progr
       progress_(progress),
       state_(samples.padded()),
       trial_(samples.padded()),
-      derivatives_(samples.padded()) {
+      derivatives_(samples.padded()),
+      cosine_(samples.padded()) {
+  for (size_t i = 0; i < samples.count(); ++i) cosine_[i] = samples.sqrt_weight()[i] * std::max(samples.z()[i], 0.0f);
   solve(state_);
 }
 
@@ -72,6 +75,11 @@ std::vector<SliceLobe> SliceSolver::lobes() const {
   return out;
 }
 
+Vec3d SliceSolver::diffuse() const {
+  const auto peak = state_.peaks.row(count());
+  return {peak[0], peak[1], peak[2]};
+}
+
 double SliceSolver::max_sharpness(const Vec3d& center) const {
   const auto cx = static_cast<float>(center.x), cy = static_cast<float>(center.y), cz = static_cast<float>(center.z);
   float nearest = -2, spacing = 1;
@@ -84,22 +92,30 @@ double SliceSolver::max_sharpness(const Vec3d& center) const {
   return std::log(2.0) / (2 * s * s);
 }
 
+/// The lobes' values, then the cosine term's.
+std::vector<const float*> SliceSolver::columns(const State& state) const {
+  auto out = state.values.first(state.shapes.size());
+  out.push_back(cosine_.data());
+  return out;
+}
+
 /// Peaks, residual and objective of the shapes.
 void SliceSolver::solve(State& state) const {
   const size_t n = state.shapes.size(), padded = samples_.padded();
   state.values.resize(n);
   for (size_t j = 0; j < n; ++j) fill_value(kernel_, state.shapes[j], samples_, state.values[j]);
-  const auto columns = state.values.first(n);
+  const auto all = columns(state);
   Eigen::MatrixXd products, moments;
-  gram(columns, padded, products);
+  gram(all, padded, products);
   const float* const targets[3] = {samples_.target(0), samples_.target(1), samples_.target(2)};
-  cross_gram(columns, targets, padded, moments);
-  state.peaks.conservativeResizeLike(Eigen::MatrixXd::Zero(static_cast<Index>(n), 3));
+  cross_gram(all, targets, padded, moments);
+  if (state.peaks.rows() != static_cast<Index>(n + 1))
+    state.peaks = Eigen::MatrixXd::Zero(static_cast<Index>(n + 1), 3);
   for (int c = 0; c < 3; ++c) {
     Eigen::VectorXd x = state.peaks.col(c);
-    if (n > 0) solve_nnls(products, moments.col(c), kRidge, x);
+    solve_nnls(products, moments.col(c), kRidge, x);
     state.peaks.col(c) = x;
-    subtract_columns(columns, {x.data(), n}, targets[c], padded, state.residual[static_cast<size_t>(c)]);
+    subtract_columns(all, {x.data(), n + 1}, targets[c], padded, state.residual[static_cast<size_t>(c)]);
   }
   Eigen::MatrixXd residual_products;
   gram(state.residual.first(3), padded, residual_products);
@@ -111,18 +127,18 @@ void SliceSolver::solve(State& state) const {
 /// Adds channel `c` to the normal equations: its peaks are free only where they are positive.
 void SliceSolver::eliminate_peaks(const Eigen::MatrixXd& products, int channel, Step& step) const {
   const Index n = count();
-  std::vector<Index> lobe, row;
-  for (Index j = 0; j < n; ++j) {
+  std::vector<Index> term, row;
+  for (Index j = 0; j <= n; ++j) {
     if (!(state_.peaks(j, channel) > 0)) continue;
-    lobe.push_back(j);
-    for (Index a = 0; a < 3; ++a) row.push_back(3 * j + a);
+    term.push_back(j);
+    for (Index a = 0; a < 3 && j < n; ++a) row.push_back(3 * j + a);
   }
-  if (lobe.empty()) return;
+  if (row.empty()) return;
   std::vector<Index> derivative;
-  for (const Index r : row) derivative.push_back(n + r);
-  Eigen::MatrixXd values = products(lobe, lobe);
+  for (const Index r : row) derivative.push_back(n + 1 + r);
+  Eigen::MatrixXd values = products(term, term);
   values.diagonal() *= 1 + kRidge;
-  const Eigen::MatrixXd mixed = products(lobe, derivative);
+  const Eigen::MatrixXd mixed = products(term, derivative);
   const Eigen::MatrixXd own = products(derivative, derivative);
   const Eigen::MatrixXd reduced = own - mixed.transpose() * values.ldlt().solve(mixed);
   const double weight = kChannelWeight[static_cast<size_t>(channel)];
@@ -144,11 +160,11 @@ SliceSolver::Step SliceSolver::linearize() {
     fill_derivatives(kernel_, state_.shapes[j], samples_, derivatives_[3 * j], derivatives_[3 * j + 1],
                      derivatives_[3 * j + 2]);
   }
-  auto columns = state_.values.first(n);
+  auto all = columns(state_);
   const auto derivatives = derivatives_.first(3 * n);
-  columns.insert(columns.end(), derivatives.begin(), derivatives.end());
+  all.insert(all.end(), derivatives.begin(), derivatives.end());
   Eigen::MatrixXd products, slopes;
-  gram(columns, samples_.padded(), products);
+  gram(all, samples_.padded(), products);
   cross_gram(derivatives, state_.residual.first(3), samples_.padded(), slopes);
 
   const auto unknowns = static_cast<Index>(3 * n);
@@ -219,9 +235,9 @@ void SliceSolver::refine(int steps, double goal, double least_gain) {
 int SliceSolver::least_important() const {
   if (count() == 0) return -1;
   Eigen::MatrixXd products;
-  gram(state_.values.first(state_.shapes.size()), samples_.padded(), products);
+  gram(columns(state_), samples_.padded(), products);
   products.diagonal() *= 1 + kRidge;
-  const Eigen::MatrixXd inverse = products.ldlt().solve(Eigen::MatrixXd::Identity(count(), count()));
+  const Eigen::MatrixXd inverse = products.inverse();
   int least = 0;
   double least_cost = std::numeric_limits<double>::infinity();
   for (int j = 0; j < count(); ++j) {

@@ -16,7 +16,8 @@ struct SliceLobe {
   Vec3d peak{0, 0, 0};
 };
 
-/// E = sum_c w_c sum_i q_i (F_ic - sum_j peak_jc S_ij)^2 with w_c the luminance weights. Because they sum to 1, E is
+/// The model of a slice: F_c(wl) = diffuse_c max(wl.z, 0) + sum_j peak_jc S_j(wl).
+/// E = sum_c w_c sum_i q_i (F_ic - model_ic)^2 with w_c the luminance weights. Because they sum to 1, E is
 /// never below the squared error of the luminance (Jensen), which is what the tolerance is about.
 ///
 /// The peaks are the non-negative least-squares solution for the present shapes at all times (variable projection); the
@@ -48,6 +49,8 @@ class SliceSolver {
   int count() const { return static_cast<int>(state_.shapes.size()); }
   const std::vector<LobeShape>& shapes() const { return state_.shapes; }
   std::vector<SliceLobe> lobes() const;
+  /// Coefficient of the cosine term, the diffuse part (RGB, >= 0, 1/sr).
+  Vec3d diffuse() const;
   const float* residual(int c) const { return state_.residual[static_cast<size_t>(c)]; }
 
   /// Largest sharpness at `center`: the half-width of a lobe is never below half the spacing of the samples there, so
@@ -59,7 +62,7 @@ class SliceSolver {
   struct State {
     explicit State(size_t padded) : values(padded), residual(padded) { residual.resize(3); }
     std::vector<LobeShape> shapes;
-    Eigen::MatrixXd peaks;  // J x 3
+    Eigen::MatrixXd peaks;  // J + 1 rows of 3: the lobes', then the cosine term's
     ColumnSet values, residual;
     Eigen::Matrix3d residual_products;  // of the channels
     double objective = 0;
@@ -70,6 +73,7 @@ class SliceSolver {
     Eigen::VectorXd slope, scale;
   };
 
+  std::vector<const float*> columns(const State& state) const;
   void solve(State& state) const;
   Step linearize();
   void eliminate_peaks(const Eigen::MatrixXd& products, int channel, Step& step) const;
@@ -80,6 +84,7 @@ class SliceSolver {
   const Progress& progress_;
   State state_, trial_;
   ColumnSet derivatives_;
+  AlignedFloats cosine_;  // column of the cosine term
 };
 
 }  // namespace velour

@@ -57,8 +57,10 @@ ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
       align_views_(brdf.align_views),
       neighbors_(checked_neighbors(brdf, neighbors)),
       views_(brdf.views),
+      diffuse_(brdf.diffuse),
       first_lobe_(brdf.first_lobe),
       bandwidth_(brdf.bandwidth) {
+  diffuse_.resize(views_.size(), Rgb(0));
   for (const Vec3& view : views_) theta_.push_back(Meridian(view).theta());
   for (size_t j = 0; j < brdf.center.size(); ++j) {
     x_.push_back(brdf.center[j].x);
@@ -88,7 +90,7 @@ void ScatteredLobes::gather_on_meridian(const Vec3& wv, LobeMixture& mixture) co
       neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : nearest_views(views_, meridian.view(), neighbors_);
   for (int i = 0; i < set.count; ++i) {
     const Vec3& view = views_[static_cast<size_t>(set.index[i])];
-    mixture.append(slice(set.index[i]), meridian.rotation_from(view, align_views_), set.weight[i]);
+    add_slice(set.index[i], meridian.rotation_from(view, align_views_), set.weight[i], mixture);
   }
 }
 
@@ -97,18 +99,19 @@ void ScatteredLobes::gather_on_hemisphere(const Vec3& wv, LobeMixture& mixture) 
   for (int i = 0; i < set.count; ++i) {
     const Vec3& view = views_[static_cast<size_t>(set.index[i])];
     const Mat3 rotation = align_views_ ? rotation_between(mirror(view), mirror(wv)) : Mat3(1);
-    mixture.append(slice(set.index[i]), rotation, set.weight[i]);
+    add_slice(set.index[i], rotation, set.weight[i], mixture);
   }
 }
 
-LobeSpan ScatteredLobes::slice(int view) const {
-  const uint32_t first = first_lobe_[static_cast<size_t>(view)];
-  const auto from = [&](const std::vector<float>& values) { return values.data() + first; };
-  return {from(x_),    from(y_),
-          from(z_),    from(bandwidth_),
-          from(r_),    from(g_),
-          from(b_),    from(luminance_),
-          from(mass_), static_cast<int>(first_lobe_[static_cast<size_t>(view) + 1] - first)};
+void ScatteredLobes::add_slice(int view, const Mat3& rotation, float weight, LobeMixture& mixture) const {
+  const auto at = static_cast<size_t>(view);
+  const uint32_t first = first_lobe_[at];
+  const auto from = [first](const std::vector<float>& values) { return values.data() + first; };
+  const LobeSpan lobes{
+      from(x_), from(y_), from(z_),         from(bandwidth_), from(r_),
+      from(g_), from(b_), from(luminance_), from(mass_),      static_cast<int>(first_lobe_[at + 1] - first)};
+  mixture.append(lobes, rotation, weight);
+  mixture.add_diffuse(weight * diffuse_[at]);  // belongs to the normal: it does not turn with the highlight
 }
 
 }  // namespace velour

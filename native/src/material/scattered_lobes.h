@@ -23,12 +23,13 @@ class ScatteredLobes {
  private:
   void gather_on_meridian(const Vec3& wv, LobeMixture& mixture) const;
   void gather_on_hemisphere(const Vec3& wv, LobeMixture& mixture) const;
-  LobeSpan slice(int view) const;
+  void add_slice(int view, const Mat3& rotation, float weight, LobeMixture& mixture) const;
 
   Kernel kernel_;
   bool isotropic_, align_views_;
   int neighbors_;
   std::vector<Vec3> views_;
+  std::vector<Rgb> diffuse_;
   std::vector<float> theta_;  // of the views, radians
   std::vector<uint32_t> first_lobe_;
   std::vector<float> x_, y_, z_, bandwidth_, r_, g_, b_, luminance_, mass_;

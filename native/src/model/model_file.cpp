@@ -49,6 +49,7 @@ void add_scattered(const ScatteredBrdf& brdf, TensorFile& file) {
   }
   file.tensors["views.direction"] = vectors(brdf.views);
   file.tensors["views.lobe_count"] = scalars(std::move(counts));
+  if (!brdf.diffuse.empty()) file.tensors["views.diffuse"] = vectors(brdf.diffuse);
   if (brdf.center.empty()) return;  // a black model has no lobes, and OpenEXR no empty parts
   file.tensors["lobes.center"] = vectors(brdf.center);
   file.tensors["lobes.bandwidth"] = scalars(brdf.bandwidth);
@@ -138,13 +139,14 @@ std::vector<float> read_bandwidths(const Fields& fields, Kernel kernel, size_t c
   return t.data;
 }
 
-std::vector<Rgb> read_coefficients(const Fields& fields, size_t count) {
-  const Tensor& t = fields.tensor("lobes.coefficient", 3);
-  if (t.data.size() != 3 * count) fields.fail("lobes.coefficient and lobes.center disagree in length.");
+/// Non-negative colours of `part`, `count` of them, as many as there are of `whose`.
+std::vector<Rgb> read_coefficients(const Fields& fields, const std::string& part, size_t count, const char* whose) {
+  const Tensor& t = fields.tensor(part, 3);
+  if (t.data.size() != 3 * count) fields.fail(part + " and " + whose + " disagree in length.");
   std::vector<Rgb> out;
   for (size_t i = 0; i < t.data.size(); ++i) {
     if (!(t.data[i] >= 0 && t.data[i] <= kMaxCoefficient)) {
-      fail_at(fields, "lobes.coefficient", i / 3, t.data[i], "a finite number of at least 0");
+      fail_at(fields, part, i / 3, t.data[i], "a finite number of at least 0");
     }
     if (i % 3 == 2) out.emplace_back(t.data[i - 2], t.data[i - 1], t.data[i]);
   }
@@ -204,10 +206,13 @@ ScatteredBrdf read_scattered(const Fields& fields) {
   brdf.default_neighbors = fields.integer("velour.neighbors", 1, kMaxNeighbors);
   brdf.views = read_directions(fields, "views.direction");
   check_views(fields, brdf);
+  if (fields.has("views.diffuse")) {
+    brdf.diffuse = read_coefficients(fields, "views.diffuse", brdf.views.size(), "views.direction");
+  }
   if (fields.has("lobes.center") || fields.has("lobes.bandwidth") || fields.has("lobes.coefficient")) {
     brdf.center = read_directions(fields, "lobes.center");
     brdf.bandwidth = read_bandwidths(fields, brdf.kernel, brdf.center.size());
-    brdf.coefficient = read_coefficients(fields, brdf.center.size());
+    brdf.coefficient = read_coefficients(fields, "lobes.coefficient", brdf.center.size(), "lobes.center");
   }
   brdf.first_lobe = read_first_lobes(fields, brdf.views.size(), brdf.center.size(), brdf.default_neighbors);
   return brdf;

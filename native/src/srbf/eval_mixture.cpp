@@ -65,8 +65,11 @@ HWY_INLINE void eval_vector(D d, const LobeMixture& m, const DirectionBatch& w, 
                             ScalarBatch& pdf) {
   using V = hn::Vec<D>;
   const V wx = hn::Load(d, w.x + at), wy = hn::Load(d, w.y + at), wz = hn::Load(d, w.z + at);
-  V r = hn::Zero(d), g = hn::Zero(d), b = hn::Zero(d);
-  V density = hn::Mul(hn::Set(d, m.cosine_share / kPi), hn::Max(wz, hn::Zero(d)));
+  const V cosine = hn::Max(wz, hn::Zero(d));
+  V r = hn::Mul(hn::Set(d, m.diffuse_r), cosine);
+  V g = hn::Mul(hn::Set(d, m.diffuse_g), cosine);
+  V b = hn::Mul(hn::Set(d, m.diffuse_b), cosine);
+  V density = hn::Mul(hn::Set(d, m.cosine_share / kPi), cosine);
   for (int j = 0; j < m.count; ++j) {
     const V dx = hn::Sub(wx, hn::Set(d, m.x[j]));
     const V dy = hn::Sub(wy, hn::Set(d, m.y[j]));
@@ -91,8 +94,7 @@ HWY_INLINE void eval_lobes(const LobeMixture& m, const DirectionBatch& w, RgbBat
   int at = 0;
   // The last eight or fewer directions do not pay for sixteen lanes.
   for (; w.count - at > 8; at += lanes) eval_vector<Lobe>(wide, m, w, at, value, pdf);
-  for (; at < w.count; at += static_cast<int>(hn::Lanes(narrow)))
-    eval_vector<Lobe>(narrow, m, w, at, value, pdf);
+  for (; at < w.count; at += static_cast<int>(hn::Lanes(narrow))) eval_vector<Lobe>(narrow, m, w, at, value, pdf);
 }
 
 void eval_mixture_simd(const LobeMixture& m, const DirectionBatch& w, RgbBatch& value, ScalarBatch& pdf) {

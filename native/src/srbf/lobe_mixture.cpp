@@ -41,15 +41,16 @@ void LobeMixture::append(const LobeSpan& lobes, const Mat3& rotation, float weig
 void LobeMixture::finish(float defensive_share) {
   float total = 0;
   for (int j = 0; j < count; ++j) cdf[j] = total += cdf[j];
-  cosine_share = total > 0 ? defensive_share : 1;
+  const float diffuse = kPi * std::max(luminance({diffuse_r, diffuse_g, diffuse_b}), 0.0f);
   if (total <= 0) {
+    cosine_share = 1;
     std::fill_n(density, count, 0.0f);
     return;
   }
+  cosine_share = defensive_share + (1 - defensive_share) * (diffuse / (diffuse + total));
   const float scale = (1 - cosine_share) / total;
   for (int j = 0; j < count; ++j) density[j] *= scale;
-  for (int j = 0; j < count; ++j)
-    cdf[j] /= total;  // a quotient, not a product: the last one is then exactly 1
+  for (int j = 0; j < count; ++j) cdf[j] /= total;  // a quotient, not a product: the last one is then exactly 1
 }
 
 namespace {

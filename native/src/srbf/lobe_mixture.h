@@ -26,7 +26,9 @@ struct alignas(64) LobeMixture {
 
   Kernel kernel = Kernel::gaussian;
   int count = 0;
-  float cosine_share = 1;  // probability of the defensive cosine component; 1 when no lobe has mass
+  float cosine_share =
+      1;  // probability of the cosine component, the diffuse term and the defence; 1 when no lobe has mass
+  float diffuse_r = 0, diffuse_g = 0, diffuse_b = 0;  // coefficients of max(w.z, 0) in the value
 
   float x[kCapacity], y[kCapacity], z[kCapacity];  // centres, unit
   float bandwidth[kCapacity];
@@ -34,24 +36,31 @@ struct alignas(64) LobeMixture {
   float density[kCapacity];  // probability of the lobe, cosine component counted in, / integral of its kernel
   float cdf[kCapacity];      // running sum of the lobes' probabilities among the lobes, last = 1
 
-  /// Empty, and so a plain cosine density.
+  /// Empty: the value 0, and a plain cosine density.
   void clear(Kernel k) {
     kernel = k;
     count = 0;
     cosine_share = 1;
+    diffuse_r = diffuse_g = diffuse_b = 0;
   }
   /// Adds a lobe of unit `center`. Callers bound their lobes by kCapacity (asserted).
   void add(const Vec3& center, float lobe_bandwidth, const Rgb& coefficient);
   /// Adds `lobes`, centres turned by `rotation`, coefficients times `weight` >= 0. The fast way: no kernel
   /// integral.
   void append(const LobeSpan& lobes, const Mat3& rotation, float weight);
-  /// Turns what was added into `density` and `cdf`: a lobe's probability is proportional to
-  /// luminance(coefficient) x integral, times 1 - defensive_share. Call once after the last lobe and before
-  /// the functions below.
+  /// Adds `coefficient` >= 0 times the clipped cosine to the value: the diffuse part.
+  void add_diffuse(const Rgb& coefficient) {
+    diffuse_r += coefficient.r;
+    diffuse_g += coefficient.g;
+    diffuse_b += coefficient.b;
+  }
+  /// Turns what was added into `density`, `cdf` and `cosine_share`: the probability of a lobe, and of the diffuse term,
+  /// is proportional to luminance(coefficient) x integral, times 1 - defensive_share; the rest is cosine too. Call once
+  /// after the last lobe and before the functions below.
   void finish(float defensive_share);
 };
 
-/// value[i] = sum_j coefficient_j G_j(w_i)  (f cos, 1/sr; not clamped at the horizon)
+/// value[i] = diffuse max(w_i.z, 0) + sum_j coefficient_j G_j(w_i)  (f cos, 1/sr; lobes are not clamped at the horizon)
 /// pdf[i]   = density of sample_mixture at w_i, per solid angle over the whole sphere.
 /// The batch is padded. Run-time dispatched SIMD; lanes past the batch's count are computed and meaningless.
 /// Relative error of a kernel: 3e-7 plus 2e-7 times its exponent, for float directions; exactly 0 below

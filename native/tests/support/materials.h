@@ -27,6 +27,7 @@ inline ScatteredBrdf glossy_model(Kernel kernel, const std::vector<Vec3>& views,
     add({-v.x, -v.y, v.z + 0.02f}, gaussian ? sharp : 0.92f, to_peak * Rgb(5, 4, 2));
     add({0.1f * v.y, -0.1f * v.x, 1}, gaussian ? 2 : 0.5f, {0.1f, 0.05f, 0.2f});
     add({v.x, v.y, v.z + 0.2f}, gaussian ? 10 : 0.7f, to_peak * Rgb(0.2f));
+    brdf.diffuse.emplace_back(0.03f, 0.02f, 0.01f);
     brdf.first_lobe.push_back(static_cast<uint32_t>(brdf.center.size()));
   }
   return brdf;

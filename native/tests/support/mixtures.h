@@ -38,7 +38,9 @@ struct MixtureValue {
 /// What eval_mixture computes, in double and one lobe after the other.
 inline MixtureValue reference_mixture(const LobeMixture& m, const Vec3& w) {
   MixtureValue sum;
-  sum.pdf = m.cosine_share * std::max(0.0, double(w.z)) / kPiD;
+  const double cosine = std::max(0.0, double(w.z));
+  sum.value = {m.diffuse_r * cosine, m.diffuse_g * cosine, m.diffuse_b * cosine};
+  sum.pdf = m.cosine_share * cosine / kPiD;
   for (int j = 0; j < m.count; ++j) {
     const double d = one_minus_dot(Vec3d(w), Vec3d(m.x[j], m.y[j], m.z[j]));
     const double kernel = kernel_value(m.kernel, m.bandwidth[j], d);

@@ -183,7 +183,7 @@ TEST(ScatteredFitRules, ViewsThatMissTheToleranceAreNamed) {
 
 TEST(ScatteredFitRules, TheBoundInBytesHolds) {
   const AnalyticMeasurement glossy(test::ggx(0.2f, 0.2f));
-  for (const uint64_t bytes : {40u, 500u, 4000u}) {
+  for (const uint64_t bytes : {24u, 500u, 4000u}) {
     FitOptions options;
     options.max_lobes = 8;
     options.max_bytes = bytes;
@@ -224,7 +224,7 @@ TEST(ScatteredFitRules, OptionsOutOfRangeAreRefused) {
   EXPECT_EQ(status_of([](FitOptions& o) { o.max_lobes = 0; }), Status::invalid_argument);
   EXPECT_EQ(status_of([](FitOptions& o) { o.max_lobes = 129; }), Status::invalid_argument);
   EXPECT_EQ(status_of([](FitOptions& o) { o.threads = -1; }), Status::invalid_argument);
-  EXPECT_EQ(status_of([](FitOptions& o) { o.max_bytes = 39; }), Status::invalid_argument);
+  EXPECT_EQ(status_of([](FitOptions& o) { o.max_bytes = 23; }), Status::invalid_argument);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ float largest_difference(const Rgb& a, const Rgb& b) {
 
 /// f cos of one slice of the model, in double and without any neighbours.
 Rgb slice_value(const ScatteredBrdf& brdf, size_t view, const Vec3& wl) {
-  Vec3d sum(0);
+  Vec3d sum = Vec3d(brdf.diffuse[view]) * static_cast<double>(std::max(wl.z, 0.0f));
   for (uint32_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {
     sum += kernel_value(brdf.kernel, brdf.bandwidth[j], one_minus_dot(Vec3d(wl), Vec3d(brdf.center[j]))) *
            Vec3d(brdf.coefficient[j]);

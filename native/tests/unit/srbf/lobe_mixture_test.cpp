@@ -116,6 +116,32 @@ TEST(LobeMixture, WithoutMassIsTheCosine) {
   }
 }
 
+TEST(LobeMixture, DiffuseTermHasItsShareOfValueAndSamples) {
+  LobeMixture mixture = one_lobe(Kernel::gaussian, glm::normalize(Vec3(0.3f, 0, 1)), 40);
+  mixture.add_diffuse({0.2f, 0.1f, 0.3f});
+  const DirectionBatch batch = batch_of(sphere_fibonacci(63));
+  const float share = 0.05f;
+  LobeMixture plain = one_lobe(Kernel::gaussian, glm::normalize(Vec3(0.3f, 0, 1)), 40);
+  mixture.clear(Kernel::gaussian);
+  EXPECT_EQ(mixture.diffuse_r, 0);  // cleared with the lobes
+  mixture.add(glm::normalize(Vec3(0.3f, 0, 1)), 40, {1, 1, 1});
+  mixture.add_diffuse({0.2f, 0.1f, 0.3f});
+  mixture.add_diffuse({0.1f, 0.1f, 0.0f});
+  mixture.finish(share);
+  RgbBatch value, lobe_value;
+  ScalarBatch pdf, lobe_pdf;
+  eval_mixture(mixture, batch, value, pdf);
+  eval_mixture(plain, batch, lobe_value, lobe_pdf);
+  const double lobe_mass = kernel_integral(Kernel::gaussian, 40), diffuse_mass = luminance({0.3f, 0.2f, 0.3f}) * kPiD;
+  const double expected = share + (1 - share) * diffuse_mass / (diffuse_mass + lobe_mass);
+  EXPECT_NEAR(mixture.cosine_share, expected, 1e-6);
+  for (int i = 0; i < batch.count; ++i) {
+    const float cosine = std::max(batch.z[i], 0.0f);
+    EXPECT_NEAR(value.g[i], lobe_value.g[i] + 0.2f * cosine, 1e-6f);
+    EXPECT_NEAR(pdf.v[i], expected * cosine / kPiD + (1 - expected) * lobe_pdf.v[i], 1e-5);
+  }
+}
+
 TEST(LobeMixture, DensityIsProbabilityOverIntegral) {
   const float share = 0.1f;
   for (const Kernel kernel : {Kernel::gaussian, Kernel::abel_poisson}) {
