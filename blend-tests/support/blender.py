@@ -1,0 +1,98 @@
+"""Blender as the tests use it: the add-on, folders, child processes."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+from pathlib import Path
+
+import addon_utils
+import bpy
+
+ADDON = "velour"
+_folder = Path("/nowhere")
+_CHILD_SECONDS = 120
+
+
+def set_folder(folder):
+    global _folder
+    _folder = folder
+
+
+def folder():
+    return _folder
+
+
+def enable_addon():
+    if addon_utils.enable(ADDON, default_set=True) is None:
+        raise RuntimeError(f"the add-on {ADDON} cannot be enabled")
+
+
+def library_file():
+    return Path(os.environ["VELOUR_STAGE"]) / "addons" / ADDON / "lib/libvelour.so"
+
+
+def child_command(*arguments, addons=True):
+    command = [bpy.app.binary_path, "-b", "--factory-startup"]
+    if addons:
+        command += ["--addons", ADDON]
+    return [*command, *map(str, arguments)]
+
+
+def run_blender(*arguments, addons=True, environment=None):
+    """A headless Blender of its own: CompletedProcess with both outputs as one text."""
+    return subprocess.run(
+        child_command(*arguments, addons=addons),
+        env={**os.environ, **(environment or {})},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        timeout=_CHILD_SECONDS,
+        check=False,
+    )
+
+
+def interrupt_blender(*arguments, after):
+    """As run_blender, but sends Ctrl-C once the output holds `after`. Also says how long the end took."""
+    process = subprocess.Popen(
+        child_command(*arguments),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+    )
+    lines, sent = [], None
+    for line in process.stdout:
+        lines.append(line)
+        if sent is None and after in line:
+            sent = time.monotonic()
+            process.send_signal(signal.SIGINT)
+    return process.wait(), "".join(lines), time.monotonic() - sent if sent else None
+
+
+class BlenderTest(unittest.TestCase):
+    """Starts from an empty file. `self.folder` is kept when the test fails."""
+
+    def setUp(self):
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        if not hasattr(bpy.types.Scene, "velour"):
+            enable_addon()
+        self.folder = folder() / self.id().rpartition(".")[2]
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self._failures_before = self._failures()
+
+    def tearDown(self):
+        if self._failures() == self._failures_before:
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _failures(self):
+        result = self._outcome.result
+        return len(result.failures) + len(result.errors)
+
+    def assert_close(self, value, expected, tolerance, message=""):
+        self.assertLessEqual(
+            abs(value - expected), tolerance, f"{message} {value} is not {expected} +- {tolerance}"
+        )

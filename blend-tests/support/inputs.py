@@ -1,0 +1,75 @@
+"""Measurements and models made for the tests, kept in build/blend-tests/inputs."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from .blender import ADDON, folder, library_file
+
+MERL_SCALES = (1 / 1500, 1.15 / 1500, 1.66 / 1500)
+MERL_SIZE = (90, 90, 180)  # theta_h, theta_d, phi_d
+
+
+def native():
+    """The add-on's `native` package: tests call it by the add-on's own name, as users do."""
+    import importlib
+
+    return importlib.import_module(f"{ADDON}.native")
+
+
+def lambert_measurement(albedo=(0.8, 0.5, 0.2)):
+    """A MERL file of a diffuse material: the picture under a constant world is its albedo."""
+    name = "lambert-" + "-".join(f"{a:g}" for a in albedo) + ".binary"
+    return _made(
+        name, lambda path: write_merl(path, lambda *_angles: [np.full(1, a / np.pi) for a in albedo])
+    )
+
+
+def glossy_measurement():
+    """A MERL file of a broad Phong-like highlight over a diffuse base."""
+
+    def f(theta_h, _theta_d, _phi_d):
+        lobe = np.cos(theta_h) ** 40
+        return [base / np.pi + 0.8 * lobe for base in (0.1, 0.2, 0.4)]
+
+    return _made("glossy.binary", lambda path: write_merl(path, f))
+
+
+def write_merl(path, f):
+    """`f(theta_h, theta_d, phi_d)` gives three channels in 1/sr, broadcast over the table."""
+    theta_h = (np.arange(90) / 90) ** 2 * (np.pi / 2)  # the table is square-root spaced in theta_h
+    theta_d = np.arange(90) / 90 * (np.pi / 2)
+    phi_d = np.arange(180) / 180 * np.pi
+    channels = f(theta_h[:, None, None], theta_d[None, :, None], phi_d[None, None, :])
+    with open(path, "wb") as file:
+        np.array(MERL_SIZE, np.int32).tofile(file)
+        for channel, scale in zip(channels, MERL_SCALES, strict=True):
+            (np.broadcast_to(channel, MERL_SIZE) / scale).astype(np.float64).tofile(file)
+
+
+def model_bytes(measurement):
+    """A coarse, quick fit of a measurement file. Kept for the library that made it."""
+    name = f"{measurement.stem}-{library_file().stat().st_mtime_ns}.velour"
+    return _made(name, lambda path: _fit(measurement, path)).read_bytes()
+
+
+def _fit(measurement, path):
+    velour = native()
+    with (
+        velour.Measurement.load(measurement) as loaded,
+        velour.fit_job(loaded, tolerance=0.1, max_lobes=4) as job,
+    ):
+        job.run()
+        with job.result_model() as model:
+            path.write_bytes(model.bytes())
+
+
+def _made(name, make):
+    path = folder().parent / "inputs" / name
+    if not path.is_file():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(f"{path}.{os.getpid()}")
+        make(temporary)
+        os.replace(temporary, path)
+    return path

@@ -1,0 +1,118 @@
+"""Small scenes, and their pictures as numpy arrays."""
+
+import bpy
+import numpy as np
+
+SIZE = 32
+
+
+def use_engine(samples=64, bounces=0, size=SIZE):
+    scene = bpy.context.scene
+    scene.render.engine = "VELOUR"
+    scene.render.resolution_x = scene.render.resolution_y = size
+    scene.render.resolution_percentage = 100
+    scene.velour.samples = samples
+    scene.velour.bounces = bounces
+    scene.view_settings.view_transform = "Standard"
+    return scene
+
+
+def add_camera(distance=5.0, ortho_scale=None):
+    """Looks along -y... from +z down at the origin: picture x is world x, picture y is world y."""
+    data = bpy.data.cameras.new("Camera")
+    if ortho_scale:
+        data.type, data.ortho_scale = "ORTHO", ortho_scale
+    camera = bpy.data.objects.new("Camera", data)
+    camera.location = (0, 0, distance)
+    bpy.context.scene.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    return camera
+
+
+def add_sphere(material=None, radius=1.0):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=radius)
+    return _finish(material, smooth=True)
+
+
+def add_plane(material=None, size=2.0):
+    bpy.ops.mesh.primitive_plane_add(size=size)
+    return _finish(material, smooth=False)
+
+
+def _finish(material, smooth):
+    obj = bpy.context.object
+    for polygon in obj.data.polygons:
+        polygon.use_smooth = smooth
+    if material:
+        obj.data.materials.append(material)
+    return obj
+
+
+def set_world(color=(1, 1, 1), strength=1.0):
+    world = bpy.data.worlds.new("World")
+    world.use_nodes = True
+    background = world.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = (*color, 1)
+    background.inputs["Strength"].default_value = strength
+    bpy.context.scene.world = world
+    return world
+
+
+def diffuse_material(color=(1, 1, 1), name="Diffuse"):
+    """A Diffuse BSDF: its picture under a constant world is its colour."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.remove(tree.nodes["Principled BSDF"])
+    shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
+    shader.inputs["Color"].default_value = (*color, 1)
+    tree.links.new(shader.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    return material
+
+
+def measured_material(data, name="Paint"):
+    """A material whose node holds the packed model `data`, made as the import operator makes it."""
+    from .inputs import ADDON
+
+    measured = __import__(f"{ADDON}.operators.measured", fromlist=["measured"])
+    material = measured.new_material(name)
+    measured.ensure_node(material).image = measured.packed_model(data, name)
+    return material
+
+
+def velour_node(material):
+    return next(
+        n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeTexImage" and n.velour.enabled
+    )
+
+
+def render(folder, name="picture", layer="Combined"):
+    """Renders the scene through a 32-bit EXR file; [height x width x 4], row 0 at the bottom."""
+    path = folder / f"{name}.exr"
+    settings = bpy.context.scene.render
+    settings.image_settings.file_format = "OPEN_EXR"
+    settings.image_settings.color_mode = "RGBA"
+    settings.image_settings.color_depth = "32"
+    settings.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    return read(path)
+
+
+def read(path):
+    image = bpy.data.images.load(str(path), check_existing=False)
+    try:
+        width, height = image.size
+        pixels = np.empty(width * height * image.channels, np.float32)
+        image.pixels.foreach_get(pixels)
+        return pixels.reshape(height, width, image.channels)
+    finally:
+        bpy.data.images.remove(image)
+
+
+def middle(pixels, share=0.25):
+    """Mean RGB of the middle of a picture."""
+    height, width = pixels.shape[:2]
+    dy, dx = max(1, int(height * share / 2)), max(1, int(width * share / 2))
+    return pixels[height // 2 - dy : height // 2 + dy, width // 2 - dx : width // 2 + dx, :3].mean(
+        axis=(0, 1)
+    )

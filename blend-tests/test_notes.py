@@ -1,0 +1,102 @@
+"""What Velour ignores is said, by owner's name."""
+
+import bpy
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+
+class Notes(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        scenes.use_engine(samples=8, size=8)
+        scenes.add_camera()
+        scenes.set_world()
+
+    def _notes(self):
+        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
+        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
+        notes = export.Notes()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        view = camera.final_view(depsgraph, 8, 8, notes)
+        export.export_scene(depsgraph, view, notes).close()
+        return list(notes)
+
+    def _said(self, *words):
+        notes = self._notes()
+        self.assertTrue(any(all(word in note for word in words) for note in notes), notes)
+
+    def _material(self, shader):
+        material = bpy.data.materials.new("Glass")
+        material.use_nodes = True
+        tree = material.node_tree
+        node = tree.nodes.new(shader)
+        tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        scenes.add_sphere(material)
+        return material
+
+    def test_plain_scene_is_silent(self):
+        material = bpy.data.materials.new("Plain")
+        material.use_nodes = True
+        scenes.add_sphere(material)
+        self.assertEqual(self._notes(), [])
+
+    def test_unsupported_shader(self):
+        self._material("ShaderNodeBsdfGlass")
+        self._said("Material 'Glass'", "Glass BSDF", "rendered grey")
+
+    def test_linked_texture(self):
+        material = self._material("ShaderNodeBsdfPrincipled")
+        tree = material.node_tree
+        node = next(
+            n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled" and n.outputs[0].is_linked
+        )
+        checker = tree.nodes.new("ShaderNodeTexChecker")
+        tree.links.new(checker.outputs["Color"], node.inputs["Base Color"])
+        self._said("Material 'Glass'", node.name, "Base Color")
+
+    def test_ignored_input(self):
+        material = self._material("ShaderNodeBsdfPrincipled")
+        for node in material.node_tree.nodes:
+            if "Alpha" in node.inputs:
+                node.inputs["Alpha"].default_value = 0.5
+        self._said("Material 'Glass'", "'Alpha'")
+
+    def test_spot(self):
+        lamp = bpy.data.objects.new("Spot", bpy.data.lights.new("Spot", "SPOT"))
+        bpy.context.scene.collection.objects.link(lamp)
+        self._said("Light 'Spot'", "left out")
+
+    def test_depth_of_field_and_motion_blur(self):
+        bpy.context.scene.camera.data.dof.use_dof = True
+        bpy.context.scene.render.use_motion_blur = True
+        self._said("Camera 'Camera'", "depth of field")
+        self._said("motion blur")
+
+    def test_volume(self):
+        obj = bpy.data.objects.new("Fog", bpy.data.volumes.new("Fog"))
+        bpy.context.scene.collection.objects.link(obj)
+        self._said("Object 'Fog'", "volumes")
+
+    def test_world_mapping(self):
+        tree = bpy.context.scene.world.node_tree
+        node, mapping = tree.nodes.new("ShaderNodeTexEnvironment"), tree.nodes.new("ShaderNodeMapping")
+        node.image = bpy.data.images.new("sky", 8, 4, float_buffer=True)
+        mapping.inputs["Location"].default_value = (1, 0, 0)
+        tree.links.new(mapping.outputs[0], node.inputs["Vector"])
+        tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
+        self._said("World 'World'", "only the rotation")
+
+    def test_missing_model_in_a_preview(self):
+        """Previews render the approximation and say why."""
+        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
+        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
+        scenes.add_sphere()
+        bpy.ops.velour.add_material()
+        notes = export.Notes()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        view = camera.final_view(depsgraph, 8, 8, notes)
+        export.export_scene(depsgraph, view, notes, strict=False).close()
+        self.assertIn("has no model", "".join(notes))
+        with self.assertRaisesRegex(export.ExportError, "has no model"):
+            export.export_scene(depsgraph, view, notes)

@@ -1,0 +1,159 @@
+"""Every operator, without a window."""
+
+import bpy
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+
+class Operators(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.obj = scenes.add_plane()
+        scenes.use_engine()
+
+    @property
+    def material(self):
+        return self.obj.active_material
+
+    def test_add_material(self):
+        self.assertEqual(bpy.ops.velour.add_material(), {"FINISHED"})
+        node = scenes.velour_node(self.material)
+        self.assertIsNone(node.image)
+        bpy.ops.velour.add_material()
+        self.assertEqual(len(self.material.node_tree.nodes), 3, "a second call must not add a second node")
+
+    def test_add_material_to_an_existing_one(self):
+        self.obj.active_material = bpy.data.materials.new("Plain")
+        bpy.ops.velour.add_material()
+        self.assertEqual(self.material.name, "Plain")
+        self.assertTrue(scenes.velour_node(self.material).velour.enabled)
+
+    def test_load_measurement_and_fit(self):
+        path = inputs.glossy_measurement()
+        bpy.ops.velour.load_material(filepath=str(path), fit=False)
+        node = scenes.velour_node(self.material)
+        self.assertEqual(bpy.path.abspath(node.velour.measurement.filepath), str(path))
+        self.assertEqual(len(node.velour.measurement.velour.sha256), 64)
+        self.assertIsNone(node.velour.measurement.packed_file)
+        self.assertEqual(bpy.ops.velour.fit(tolerance=0.1, max_lobes=3, kernel="GAUSSIAN"), {"FINISHED"})
+        node = scenes.velour_node(self.material)
+        self.assert_close(node.velour.tolerance, 0.1, 1e-6)
+        self.assertEqual(node.velour.max_lobes, 3)
+        self._check_model(node.image)
+
+    def test_fit_keeps_the_model_before(self):
+        bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)
+        bpy.ops.velour.fit(tolerance=0.1, max_lobes=3)
+        first = scenes.velour_node(self.material).image
+        data, name = bytes(first.packed_file.data), first.name
+        bpy.ops.velour.fit(tolerance=0.1, max_lobes=4)
+        second = scenes.velour_node(self.material).image
+        self.assertNotEqual(second.name, name)
+        self.assertEqual(bytes(bpy.data.images[name].packed_file.data), data)
+
+    def test_fit_by_name(self):
+        bpy.ops.velour.load_material(filepath=str(inputs.glossy_measurement()), fit=False)
+        name = self.material.name
+        self.obj.active_material = None
+        bpy.ops.velour.fit(material=name, tolerance=0.1, max_lobes=3)
+        self._check_model(scenes.velour_node(bpy.data.materials[name]).image)
+
+    def test_load_model_packed_and_linked(self):
+        data = inputs.model_bytes(inputs.lambert_measurement())
+        path = self.folder / "paint.velour"
+        path.write_bytes(data)
+        bpy.ops.velour.load_material(filepath=str(path))
+        image = scenes.velour_node(self.material).image
+        self.assertEqual(bytes(image.packed_file.data), data)
+        bpy.ops.velour.load_material(filepath=str(path), pack=False)
+        image = scenes.velour_node(self.material).image
+        self.assertIsNone(image.packed_file)
+        self.assertEqual(bpy.path.abspath(image.filepath), str(path))
+
+    def test_load_several(self):
+        names = [inputs.lambert_measurement().name, inputs.glossy_measurement().name]
+        folder = str(inputs.glossy_measurement().parent)
+        bpy.ops.velour.load_material(directory=folder, files=[{"name": name} for name in names], fit=False)
+        stems = {name.removesuffix(".binary") for name in names}
+        self.assertTrue(stems <= {material.name for material in bpy.data.materials})
+        self.assertIn(self.material.name, stems)
+
+    def test_save_model(self):
+        bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)
+        bpy.ops.velour.fit(tolerance=0.1, max_lobes=3)
+        path = self.folder / "saved.velour"
+        bpy.ops.velour.save_model(filepath=str(path))
+        self.assertEqual(path.read_bytes(), bytes(scenes.velour_node(self.material).image.packed_file.data))
+
+    def test_accept_file(self):
+        data = inputs.model_bytes(inputs.lambert_measurement())
+        path = self.folder / "paint.velour"
+        path.write_bytes(data)
+        bpy.ops.velour.load_material(filepath=str(path), pack=False)
+        image = scenes.velour_node(self.material).image
+        before = image.velour.sha256
+        path.write_bytes(inputs.model_bytes(inputs.glossy_measurement()))
+        self.assertEqual(bpy.ops.velour.accept_file(), {"FINISHED"})
+        self.assertNotEqual(image.velour.sha256, before)
+
+    def test_cancel_without_a_fit(self):
+        self.assertEqual(bpy.ops.velour.cancel_fit(), {"FINISHED"})
+
+    def _check_model(self, image):
+        self.assertEqual(image.source, "FILE")
+        with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
+            self.assertGreater(model.info()["lobes"], 0)
+
+
+class Refusals(BlenderTest):
+    """A sentence that names the file or the material, and nothing half done."""
+
+    def _refused(self, words, operator, **arguments):
+        with self.assertRaises(RuntimeError) as caught:
+            operator(**arguments)
+        for word in words:
+            self.assertIn(word, str(caught.exception))
+        self.assertNotIn("Traceback", str(caught.exception))
+
+    def test_load_missing(self):
+        scenes.add_plane()
+        self._refused(
+            ["nothing.binary"], bpy.ops.velour.load_material, filepath=str(self.folder / "nothing.binary")
+        )
+        self.assertEqual(len(bpy.data.materials), 0)
+
+    def test_load_foreign(self):
+        path = self.folder / "noise.bsdf"
+        path.write_bytes(bytes(range(256)) * 40)
+        self._refused(["noise.bsdf"], bpy.ops.velour.load_material, filepath=str(path))
+
+    def test_load_truncated(self):
+        path = self.folder / "cut.binary"
+        path.write_bytes(inputs.lambert_measurement().read_bytes()[:100000])
+        self._refused(["cut.binary"], bpy.ops.velour.load_material, filepath=str(path))
+
+    def test_fit_without_material(self):
+        self._refused(["No active material"], bpy.ops.velour.fit)
+
+    def test_fit_unknown_material(self):
+        self._refused(["Nobody"], bpy.ops.velour.fit, material="Nobody")
+
+    def test_fit_without_measurement(self):
+        scenes.add_plane()
+        bpy.ops.velour.add_material()
+        self._refused(["no measurement"], bpy.ops.velour.fit)
+
+    def test_fit_missing_measurement(self):
+        scenes.add_plane()
+        bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)
+        node = scenes.velour_node(bpy.context.object.active_material)
+        node.velour.measurement.filepath = str(self.folder / "gone.binary")
+        self._refused(["gone.binary", "missing"], bpy.ops.velour.fit)
+
+    def test_save_without_model(self):
+        self._refused(["no model"], bpy.ops.velour.save_model, filepath=str(self.folder / "x.velour"))
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_accept_without_material(self):
+        self._refused(["no measured material"], bpy.ops.velour.accept_file)
