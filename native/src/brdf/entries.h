@@ -12,10 +12,14 @@ namespace velour {
 /// a channel may be negative because the colour is outside Rec. 709, and only a negative luminance is no measurement.
 enum class NegativeRule { any_channel, luminance };
 
+/// Values beyond this count as not finite: sums over them would overflow.
+inline constexpr float kLargestEntry = 1e30f;
+
 /// Counts an entry above the horizon and says whether it is valid.
 inline bool count_entry(const Rgb& f, NegativeRule rule, EntryCounts& counts) {
   ++counts.total;
-  if (!std::isfinite(f.r) || !std::isfinite(f.g) || !std::isfinite(f.b)) return ++counts.not_finite, false;
+  const bool finite = std::abs(f.r) < kLargestEntry && std::abs(f.g) < kLargestEntry && std::abs(f.b) < kLargestEntry;
+  if (!finite) return ++counts.not_finite, false;
   const bool negative_channel = std::min({f.r, f.g, f.b}) < 0.0f;
   if (rule == NegativeRule::any_channel ? negative_channel : luminance(f) < 0.0f) return ++counts.negative, false;
   ++counts.valid;

@@ -46,11 +46,10 @@ HalfDiffTable::Step HalfDiffTable::clamped(float position, int count) {
 }
 
 HalfDiffTable::Step HalfDiffTable::periodic(float position, int count) {
-  int low = static_cast<int>(position);
-  const float weight = position - static_cast<float>(low);
-  if (low >= count) low -= count;
+  const int floor = static_cast<int>(position);
+  const int low = std::clamp(floor >= count ? floor - count : floor, 0, count - 1);
   const int high = low + 1 == count ? 0 : low + 1;
-  return {static_cast<size_t>(low), static_cast<size_t>(high), weight};
+  return {static_cast<size_t>(low), static_cast<size_t>(high), position - static_cast<float>(floor)};
 }
 
 HalfDiffTable::Step HalfDiffTable::theta_h_step(float theta_h) const {

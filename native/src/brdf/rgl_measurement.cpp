@@ -5,6 +5,7 @@
 
 #include "brdf/entries.h"
 #include "brdf/fast_atan2.h"
+#include "job/error.h"
 
 namespace velour {
 namespace {
@@ -30,6 +31,15 @@ std::pair<uint32_t, float> locate(const std::vector<float>& axis, float value) {
   return {static_cast<uint32_t>(low), (value - axis[low]) / (axis[low + 1] - axis[low])};
 }
 
+/// Into how many sectors of equal look the surface's symmetry divides the views: only one of them is in the file.
+int sectors_of(const std::vector<float>& phi_v, const std::string& path) {
+  const float sectors = std::round(2.0f * kPi / (phi_v.back() - phi_v.front()));
+  if (sectors != 1.0f && sectors != 2.0f && sectors != 4.0f)
+    throw Error(Status::unsupported, path + ": field phi_i spans " + std::to_string(phi_v.back() - phi_v.front()) +
+                                         " radians; it must span a whole turn, a half or a quarter.");
+  return static_cast<int>(sectors);
+}
+
 float theta_of(const Vec3& w) { return fast_atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z); }
 
 }  // namespace
@@ -45,8 +55,7 @@ float AngleGrid::at(const Vec2& u) const {
 RglMeasurement::RglMeasurement(RglTables tables, Provenance provenance)
     : tables_(std::move(tables)), warp_(tables_.visible_normals, tables_.warp_width, tables_.warp_height) {
   provenance_ = std::move(provenance);
-  if (!isotropic())
-    sectors_ = static_cast<int>(std::lround(2.0f * kPi / (tables_.phi_v.back() - tables_.phi_v.front())));
+  if (!isotropic()) sectors_ = sectors_of(tables_.phi_v, provenance_.path);
   build_nodes();
   tables_.visible_normals = {};  // the warp has its own form of them
   tables_.colour = {};
@@ -139,7 +148,7 @@ bool RglMeasurement::lookup(const View& view, Vec3 wl, Rgb& f) const {
   if (!(total[3] > 0.0f)) return false;
   const float normals = tables_.microfacet_scale ? tables_.normals.at(position) : 1.0f;
   f = Rgb(total[0], total[1], total[2]) * (normals * view.scale / (total[3] * std::max(wl.z, kMinCosine)));
-  return true;
+  return std::isfinite(f.r + f.g + f.b);
 }
 
 void RglMeasurement::eval(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> valid) const {

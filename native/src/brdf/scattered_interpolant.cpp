@@ -36,6 +36,11 @@ Place place_of(const Vec3& wl, const Vec3& wv) {
           {theta_h, theta_d, tilt * std::abs(cos_phi)}};
 }
 
+struct Nearest {
+  std::array<uint32_t, kCount> sample{};
+  std::array<double, kCount> distance_sq{};  // increasing
+};
+
 double distance_sq(const Point& a, const Point& b) {
   double sum = 0.0;
   for (size_t i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -57,6 +62,8 @@ struct ScatteredInterpolant::Index {
   bool kdtree_get_bbox(Box&) const {
     return false;
   }
+
+  Rgb regress(const Point& here, const Nearest& nearest) const;
 
   std::vector<Place> places;
   std::vector<std::array<double, 3>> values;  // compressed
@@ -85,32 +92,35 @@ ScatteredInterpolant::~ScatteredInterpolant() = default;
 
 std::optional<Rgb> ScatteredInterpolant::f(const Vec3& wl, const Vec3& wv) const {
   const Place here = place_of(wl, wv);
-  std::array<uint32_t, kCount> nearest{};
-  std::array<double, kCount> distance{};
-  index_->tree->knnSearch(here.regression.data(), kCount, nearest.data(), distance.data());
+  Nearest nearest;
+  index_->tree->knnSearch(here.regression.data(), kCount, nearest.sample.data(), nearest.distance_sq.data());
+  const bool in_reach = std::any_of(nearest.sample.begin(), nearest.sample.end(), [&](uint32_t n) {
+    return distance_sq(here.reach, index_->places[n].reach) <= kReach * kReach;
+  });
+  if (!in_reach) return std::nullopt;
+  return index_->regress(here.regression, nearest);
+}
 
-  double reach = INFINITY;
-  const double width = std::max(distance.back(), 1e-12);
+Rgb ScatteredInterpolant::Index::regress(const Point& here, const Nearest& nearest) const {
+  const double width = std::max(nearest.distance_sq.back(), 1e-12);
   Eigen::Matrix<double, kCount, 4> terms;
-  Eigen::Matrix<double, kCount, 3> values;
+  Eigen::Matrix<double, kCount, 3> data;
   Eigen::Matrix<double, kCount, 1> weights;
   for (int i = 0; i < kCount; ++i) {
-    const size_t n = nearest[static_cast<size_t>(i)];
-    const Point& there = index_->places[n].regression;
-    reach = std::min(reach, distance_sq(here.reach, index_->places[n].reach));
-    terms.row(i) << 1.0, there[0] - here.regression[0], there[1] - here.regression[1], there[2] - here.regression[2];
-    values.row(i) << index_->values[n][0], index_->values[n][1], index_->values[n][2];
-    weights(i) = std::exp(-kFalloff * distance[static_cast<size_t>(i)] / width);
+    const auto n = static_cast<size_t>(i);
+    const Point& there = places[nearest.sample[n]].regression;
+    const auto& value = values[nearest.sample[n]];
+    terms.row(i) << 1.0, there[0] - here[0], there[1] - here[1], there[2] - here[2];
+    data.row(i) << value[0], value[1], value[2];
+    weights(i) = std::exp(-kFalloff * nearest.distance_sq[n] / width);
   }
-  if (reach > kReach * kReach) return std::nullopt;
   Eigen::Matrix4d normal = terms.transpose() * weights.asDiagonal() * terms;
   normal.diagonal().tail<3>().array() += kRidge * weights.sum() * width;
-  const Eigen::Matrix<double, 4, 3> moment = terms.transpose() * weights.asDiagonal() * values;
+  const Eigen::Matrix<double, 4, 3> moment = terms.transpose() * weights.asDiagonal() * data;
   const Eigen::Matrix<double, 4, 3> solution = normal.ldlt().solve(moment);
-  Rgb result;
-  for (int c = 0; c < 3; ++c)
-    result[c] = expand(std::clamp(solution(0, c), values.col(c).minCoeff(), values.col(c).maxCoeff()));
-  return result;
+  Rgb f;
+  for (int c = 0; c < 3; ++c) f[c] = expand(std::clamp(solution(0, c), data.col(c).minCoeff(), data.col(c).maxCoeff()));
+  return f;
 }
 
 std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout) {

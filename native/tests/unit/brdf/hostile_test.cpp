@@ -1,0 +1,131 @@
+// Damaged files of every format, by the thousand: each is read or refused with a sentence, and nothing else happens.
+// The seed is fixed; run it under the sanitize preset to see reads outside the file.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "brdf/brdf_table.h"
+#include "brdf/cornell.h"
+#include "brdf/merl.h"
+#include "brdf/rgl.h"
+#include "file/file.h"
+#include "measurement_support.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+using Read = std::shared_ptr<const Measurement> (*)(std::span<const uint8_t>, Provenance);
+
+/// One small change of the kinds that break parsers: flipped bits, sizes at the edge of their type, cuts, repeats.
+void mutate(Bytes& bytes, RandomStream& random) {
+  if (bytes.empty()) return;
+  const auto below = [&](size_t n) { return static_cast<size_t>(random.next_bits() % n); };
+  const size_t at = below(bytes.size());
+  constexpr uint64_t kEdges[] = {0,
+                                 1,
+                                 2,
+                                 0x7f,
+                                 0xff,
+                                 0x7fff,
+                                 0xffff,
+                                 0x7fffffff,
+                                 0x80000000,
+                                 0xffffffff,
+                                 uint64_t{1} << 40,
+                                 uint64_t{1} << 62,
+                                 uint64_t{1} << 63,
+                                 ~uint64_t{0},
+                                 0x7fc00000,
+                                 0x7f800000};
+  switch (below(6)) {
+    case 0:
+      bytes[at] = static_cast<uint8_t>(bytes[at] ^ (1u << below(8)));
+      break;
+    case 1:
+      bytes[at] = static_cast<uint8_t>(random.next_bits());
+      break;
+    case 2:
+      bytes.resize(at);
+      break;
+    case 3: {
+      const uint64_t edge = kEdges[below(std::size(kEdges))];
+      const size_t size = size_t{1} << below(4);
+      for (size_t i = 0; i < size && at + i < bytes.size(); ++i) bytes[at + i] = static_cast<uint8_t>(edge >> (8 * i));
+      break;
+    }
+    case 4: {
+      const size_t from = below(bytes.size()), count = below(std::min<size_t>(64, bytes.size() - std::max(from, at)));
+      std::copy_n(Bytes(bytes).begin() + static_cast<std::ptrdiff_t>(from), count,
+                  bytes.begin() + static_cast<std::ptrdiff_t>(at));
+      break;
+    }
+    default:
+      bytes[at] = static_cast<uint8_t>("0123456789.-#enai \n"[below(19)]);
+      break;
+  }
+}
+
+void expect_sane(const Measurement& measurement) {
+  const EntryCounts& counts = measurement.counts();
+  EXPECT_EQ(counts.total, counts.valid + counts.invalid() + counts.below_horizon);
+  for (const auto& [wl, wv] : test::random_pairs(8, 21)) {
+    const auto [f, valid] = test::eval_one(measurement, wl, wv);
+    EXPECT_TRUE(std::isfinite(f.r) && std::isfinite(f.g) && std::isfinite(f.b));
+    EXPECT_TRUE(valid || f == Rgb(0.0f));
+  }
+}
+
+void attack(const char* name, const Bytes& good, Read read, uint64_t trials) {
+  ASSERT_EQ(test::refusal([&] { expect_sane(*read(good, test::provenance_named(name))); }), "");
+  int refused = 0, accepted = 0;
+  for (uint64_t trial = 0; trial < trials; ++trial) {
+    RandomStream random(99, 0, trial);
+    Bytes bytes = good;
+    for (uint64_t changes = 1 + random.next_bits() % 4; changes > 0; --changes) mutate(bytes, random);
+    try {
+      expect_sane(*read(bytes, test::provenance_named(name)));
+      ++accepted;
+    } catch (const Error& error) {
+      ++refused;
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
+  }
+  ::testing::Test::RecordProperty("refused", refused);
+  ::testing::Test::RecordProperty("accepted", accepted);
+  EXPECT_GT(refused, 20);
+}
+
+TEST(Hostile, Rgl) {
+  const auto colour = [](size_t, size_t t, size_t, size_t x) { return Rgb(static_cast<float>(t + x)); };
+  attack("x.bsdf", test::small_rgl({-kPi, -1.5f, 0.0f}, colour).bytes(), read_rgl, 400);
+}
+
+TEST(Hostile, Cornell) {
+  const std::string text =
+      test::small_cornell(20, [](const Vec3& wl, const Vec3& wv) { return test::glossy(wl, wv).g; });
+  attack("x.brdf", Bytes(text.begin(), text.end()), read_cornell, 60);
+}
+
+TEST(Hostile, BrdfTable) {
+  const std::string path = test::scratch_folder() / "a.exr";
+  const BrdfTableLayout layout{.theta_h = 5, .phi_h = 4, .theta_d = 3, .phi_d = 4};
+  write_brdf_table(path, {layout, std::vector<Rgb>(layout.size(), Rgb(0.5f)), "flat"});
+  attack("x.exr", read_file(path), read_brdf_table, 2000);
+}
+
+TEST(Hostile, MerlHeader) {
+  Bytes head(4096);
+  head[0] = head[4] = 90;
+  head[8] = 180;
+  for (uint64_t trial = 0; trial < 2000; ++trial) {
+    RandomStream random(98, 0, trial);
+    Bytes bytes = head;
+    mutate(bytes, random);
+    EXPECT_NE(test::refusal([&] { read_merl(bytes, test::provenance_named("x.binary")); }), "");
+  }
+}
+
+}  // namespace
+}  // namespace velour
