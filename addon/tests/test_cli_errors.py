@@ -201,6 +201,6 @@ def test_interrupted_fit(tmp_path):
 
 
 def test_interrupted_capture(tmp_path):
-    status, _ = _interrupted(["capture", "--microsurface", "--rays", 10**12, "-o", tmp_path / "c.binary"])
+    status, _ = _interrupted(["capture", "--microsurface", "--rays", 10**11, "-o", tmp_path / "c.binary"])
     assert status == 130
     assert not list(tmp_path.iterdir())

@@ -47,6 +47,9 @@ def run(args: argparse.Namespace) -> dict:
         report = job.run(output.progress_of(args))
         with job.result_model() as model:
             model.save(args.output)
+    if args.json:  # else the summary says them
+        for warning in report["warnings"]:
+            output.log.warning("%s", warning)
     return {key: report[key] for key in KEYS}
 
 

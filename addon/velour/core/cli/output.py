@@ -28,8 +28,6 @@ def progress_of(args: argparse.Namespace) -> ProgressBar | None:
 
 def deliver(args: argparse.Namespace, report: dict) -> None:
     """Hands the verb's report over in all forms asked for."""
-    for warning in report.get("warnings") or []:
-        log.warning("%s", warning)
     if args.json_file:
         files.write_json(args.json_file, report)
     if args.json:
@@ -47,7 +45,9 @@ def _lines(report: dict, indent: str):
         if isinstance(value, dict):
             yield f"{indent}{key}:"
             yield from _lines(value, indent + "  ")
-        elif key != "warnings":
+        elif key == "warnings":
+            yield from (f"warning: {warning}" for warning in value)
+        else:
             yield f"{indent}{key}: {_shown(value)}"
 
 
