@@ -11,12 +11,12 @@ namespace velour {
 
 /// Borrowed arrays that a Mesh is built from. Empty means: not given.
 struct MeshArrays {
-  std::span<const Vec3> positions;
-  std::span<const glm::uvec3> triangles;
-  std::span<const Vec3> corner_normals;      // 3 a triangle; any length but zero
-  std::span<const Vec2> corner_uvs;          // 3 a triangle
-  std::span<const uint32_t> material_slots;  // 1 a triangle; none: slot 0
-  std::span<const uint8_t> smooth;           // 1 a triangle; used without corner_normals; none: all smooth
+  std::span<const Vec3> positions{};
+  std::span<const glm::uvec3> triangles{};
+  std::span<const Vec3> corner_normals{};      // 3 a triangle; any length but zero
+  std::span<const Vec2> corner_uvs{};          // 3 a triangle
+  std::span<const uint32_t> material_slots{};  // 1 a triangle; none: slot 0
+  std::span<const uint8_t> smooth{};           // 1 a triangle; used without corner_normals; none: all smooth
 };
 
 /// Immutable. Triangles that a ray cannot hit reliably - a corner that is not finite or out of reach, no area

@@ -1,0 +1,193 @@
+// Lamps: what they sample is what they measure, and their light is what physics says.
+#include "render/lamp.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "render/lighting.h"
+#include "sphere/random.h"
+#include "sphere/warp.h"
+#include "support/chi_square.h"
+#include "support/test_scene.h"
+
+namespace velour {
+namespace {
+
+/// Shines down from `height`.
+Light lamp_above(Light::Type type, const Vec2& size, float height = 2) {
+  Light light;
+  light.type = type;
+  light.size = size;
+  light.light_to_world = test::shift({0.3f, -0.2f, height});
+  light.angle = 0.6f;
+  return light;
+}
+
+std::vector<Light> extended_lamps() {
+  Light sheared = lamp_above(Light::Type::rectangle, {1, 2});
+  sheared.light_to_world.m[1] = 0.7f;  // x axis and y axis not perpendicular
+  sheared.light_to_world.m[9] = 0.4f;
+  return {lamp_above(Light::Type::sun, {}), lamp_above(Light::Type::point, {0.7f, 0}),
+          lamp_above(Light::Type::rectangle, {2, 1}), lamp_above(Light::Type::disk, {2, 1}), sheared};
+}
+
+/// Integrals over the lamp, seen from the origin, of functions that tell its parts apart; the first is the irradiance
+/// of the plane z = 0 for radiance 1.
+constexpr int kMoments = 5;
+using Moments = std::array<double, kMoments>;
+
+void add_moments(const Vec3& w, double weight, Moments& sum) {
+  const double values[kMoments] = {w.z, w.z * w.x, w.z * w.y, w.z * w.x * w.x, w.z * w.x * w.y};
+  for (size_t k = 0; k < kMoments; ++k) sum[k] += weight * values[k];
+}
+
+/// By uniform directions through hit() alone.
+Moments moments_by_hits(const Lamp& lamp) {
+  Moments sum{};
+  const int n = 1000000;
+  for (int i = 0; i < n; ++i) {
+    const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(n);
+    const double golden = i * 0.6180339887498949;
+    const Vec3 w = sample_uniform_hemisphere({u, static_cast<float>(golden - std::floor(golden))});
+    if (lamp.hit(Vec3(0.0f), w).pdf > 0) add_moments(w, 2 * kPiD / n, sum);
+  }
+  return sum;
+}
+
+/// By sample(), weighted by its density. Every sample but one in a thousand (rims, rounding) must hit.
+Moments moments_by_samples(const Lamp& lamp) {
+  Moments sum{};
+  RandomStream random(1, 2, 3);
+  const int n = 200000;
+  int missed = 0;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 w = lamp.sample(Vec3(0.0f), random.next2());
+    const float pdf = lamp.hit(Vec3(0.0f), w).pdf;
+    if (!(pdf > 0)) {
+      ++missed;
+    } else if (w.z > 0) {
+      add_moments(w, 1.0 / (n * static_cast<double>(pdf)), sum);
+    }
+  }
+  EXPECT_LT(missed, n / 1000);
+  return sum;
+}
+
+double irradiance_by_samples(const Lamp& lamp) {
+  return moments_by_samples(lamp)[0] * static_cast<double>(lamp.radiance().g);
+}
+
+TEST(Lamp, SamplesFollowTheDensityOfHits) {
+  for (const Light& light : extended_lamps()) {
+    const Lamp lamp(light, 1);
+    const Moments samples = moments_by_samples(lamp), hits = moments_by_hits(lamp);
+    for (size_t k = 0; k < kMoments; ++k) {
+      EXPECT_NEAR(samples[k], hits[k], 0.005 * hits[0]) << static_cast<int>(light.type) << " moment " << k;
+    }
+  }
+}
+
+TEST(Lamp, SunGivesItsIrradianceWhateverItsSize) {
+  Light sun;
+  for (float angle : {0.0f, 1e-3f, 0.01f, 0.5f}) {
+    sun.angle = angle;
+    const Lamp lamp(sun, 1);
+    if (lamp.sharp()) {
+      EXPECT_EQ(angle, 0.0f);
+      EXPECT_FLOAT_EQ(lamp.irradiance(Vec3(0.0f)).perpendicular.r, 1);
+      EXPECT_FLOAT_EQ(lamp.irradiance(Vec3(0.0f)).direction.z, 1);
+    } else {
+      EXPECT_NEAR(irradiance_by_samples(lamp), 1, 2e-3) << angle;
+    }
+  }
+}
+
+TEST(Lamp, SphereLightsLikeAPointFromOutside) {
+  Light light;
+  light.type = Light::Type::point;
+  light.light_to_world = test::shift({0, 0, 3});
+  const Lamp point(light, 1);
+  ASSERT_TRUE(point.sharp());
+  const float expected = 1 / (4 * kPi * 9);
+  EXPECT_NEAR(point.irradiance(Vec3(0.0f)).perpendicular.r / expected, 1, 1e-5f);
+  light.size.x = 1;
+  EXPECT_NEAR(irradiance_by_samples(Lamp(light, 1)) / static_cast<double>(expected), 1, 5e-3);
+}
+
+TEST(Lamp, PowerOfAreaLampsIsWhatTheyEmit) {
+  // One side, Lambertian: pi A L.
+  const Lamp rectangle(lamp_above(Light::Type::rectangle, {2, 3}), 1);
+  EXPECT_NEAR(rectangle.radiance().r * kPi * 6, 1, 1e-5f);
+  const Lamp disk(lamp_above(Light::Type::disk, {2, 2}), 1);
+  EXPECT_NEAR(disk.radiance().r * kPi * kPi, 1, 1e-5f);
+}
+
+TEST(Lamp, DarkSideInsideAndDegenerate) {
+  const Lamp rectangle(lamp_above(Light::Type::rectangle, {2, 3}), 1);
+  EXPECT_EQ(rectangle.sample({0, 0, 4}, {0.5f, 0.5f}), Vec3(0.0f));
+  EXPECT_EQ(rectangle.hit({0.3f, -0.2f, 4}, {0, 0, -1}).pdf, 0);
+  const Lamp sphere(lamp_above(Light::Type::point, {1, 0}), 1);
+  EXPECT_EQ(sphere.sample({0.3f, -0.2f, 2.5f}, {0.5f, 0.5f}), Vec3(0.0f));
+  EXPECT_TRUE(Lamp(lamp_above(Light::Type::rectangle, {0, 3}), 1).black());
+  Light off = lamp_above(Light::Type::point, {1, 0});
+  off.color = Rgb(0.0f);
+  EXPECT_TRUE(Lamp(off, 1).black());
+}
+
+TEST(Lighting, MixtureOfAllLightsFollowsItsDensity) {
+  Scene scene;
+  scene.add_mesh(test::square(1));
+  scene.add_material({std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), false});
+  scene.add_instance(0, {}, {0});
+  for (const Light& light : extended_lamps()) scene.add_light(light);
+  std::vector<float> pixels(3 * 16 * 8);
+  RandomStream random(7, 7, 7);
+  for (float& p : pixels) p = random.next() * random.next();
+  scene.set_environment(Environment::image({16, 8, 3, pixels}, 1, Mat3(1.0f)));
+  scene.commit(1);
+  const Lighting lighting(scene);
+  const auto pdf = [&](const Vec3& w) {
+    DirectionBatch batch;
+    batch.push(w);
+    batch.pad();
+    RgbBatch radiance;
+    ScalarBatch density;
+    std::vector<LampHit> hits;
+    lighting.look_up(Vec3(0.0f), batch, radiance, density, hits);
+    return static_cast<double>(density.v[0]);
+  };
+  test::ChiSquareOptions options;
+  options.samples = 300'000;
+  const auto sample = [&](const Vec2& u) { return lighting.sample(Vec3(0.0f), u); };
+  const auto result = test::chi_square(sample, pdf, options);
+  EXPECT_EQ(result.problem, "");
+  EXPECT_GT(result.p_value, 0.01);
+  // Negative control: a density 5 % too large on one side.
+  const auto wrong = test::chi_square(
+      sample, [&](const Vec3& w) { return pdf(w) * (w.x > 0 ? 1.05 : 0.95); }, options);
+  EXPECT_LT(wrong.p_value, 1e-6);
+}
+
+TEST(Lighting, SharpLampsAreChosenByPower) {
+  Scene scene;
+  Light light;
+  light.type = Light::Type::point;
+  for (float power : {1.0f, 0.0f, 3.0f, 6.0f}) {
+    light.color = Rgb(power);
+    scene.add_light(light);
+  }
+  scene.commit(1);
+  const Lighting lighting(scene);
+  ASSERT_EQ(lighting.sharp().size(), 3u);  // the dark one is gone
+  EXPECT_FALSE(lighting.has_extended());
+  float probability;
+  EXPECT_EQ(lighting.choose_sharp(0.05f, probability), 0u);
+  EXPECT_NEAR(probability, 0.1f, 1e-6f);
+  EXPECT_EQ(lighting.choose_sharp(0.39f, probability), 1u);
+  EXPECT_EQ(lighting.choose_sharp(0.999999f, probability), 2u);
+  EXPECT_NEAR(probability, 0.6f, 1e-6f);
+}
+
+}  // namespace
+}  // namespace velour
