@@ -31,8 +31,7 @@ class MaterialLife(BlenderTest):
         self.assertEqual(len(node.image.velour.sha256), 64)
         self.assert_close(node.velour.tolerance, 0.07, 1e-6)
         self.assertEqual(node.velour.kernel, "ABEL_POISSON")
-        path = bpy.path.abspath(node.velour.measurement.filepath, library=node.velour.measurement.library)
-        self.assertEqual(path, str(self.measurement))
+        self.assertEqual(self._files().absolute_path(node.velour.measurement), str(self.measurement))
 
     def _save(self, path=None):
         bpy.ops.wm.save_as_mainfile(filepath=str(path or self.blend), relative_remap=True)

@@ -18,7 +18,7 @@ class Notes(BlenderTest):
         camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        view = camera.final_view(depsgraph, 8, 8, notes)
+        view = camera.final_view(depsgraph, notes)
         export.export_scene(depsgraph, view, notes).close()
         return list(notes)
 
@@ -95,7 +95,7 @@ class Notes(BlenderTest):
         bpy.ops.velour.add_material()
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        view = camera.final_view(depsgraph, 8, 8, notes)
+        view = camera.final_view(depsgraph, notes)
         export.export_scene(depsgraph, view, notes, strict=False).close()
         self.assertIn("has no model", "".join(notes))
         with self.assertRaisesRegex(export.ExportError, "has no model"):

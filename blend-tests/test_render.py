@@ -241,6 +241,7 @@ class World(BlenderTest):
         scene.render.engine = engine
         if engine == "CYCLES":
             scene.cycles.samples, scene.cycles.use_denoising = 16, False
+            scene.world.cycles.sampling_method = "NONE"  # its importance map alone would take seconds
         camera = scenes.add_camera()
         camera.location, camera.data.lens_unit, camera.data.angle = (0, 0, 0), "FOV", math.radians(100)
         best = None
@@ -358,11 +359,11 @@ class Objects(BlenderTest):
         obj = bpy.data.objects.new("Faces", mesh)
         bpy.context.scene.collection.objects.link(obj)
         pixels = scenes.render(self.folder)
-        np.testing.assert_allclose(self._pixel(pixels, -1, 0), (1, 0, 0), atol=0.01)
-        np.testing.assert_allclose(self._pixel(pixels, 1, 0), (0, 1, 0), atol=0.01)
+        np.testing.assert_allclose(self._pixel(pixels, -1, 0), (1, 0, 0), atol=0.05)
+        np.testing.assert_allclose(self._pixel(pixels, 1, 0), (0, 1, 0), atol=0.05)
         obj.material_slots[1].link = "OBJECT"
         obj.material_slots[1].material = scenes.diffuse_material((0, 0, 1))
-        np.testing.assert_allclose(self._pixel(scenes.render(self.folder), 1, 0), (0, 0, 1), atol=0.01)
+        np.testing.assert_allclose(self._pixel(scenes.render(self.folder), 1, 0), (0, 0, 1), atol=0.05)
 
     def test_instances_and_modifiers(self):
         """A collection instance of an object with an Array modifier."""
@@ -380,7 +381,7 @@ class Objects(BlenderTest):
         scenes.set_world((1, 1, 1))
         pixels = scenes.render(self.folder)
         for x, y, color in ((-1, 1, (0, 1, 0)), (0, 1, (0, 1, 0)), (1, 1, (1, 1, 1)), (-1, -1, (1, 1, 1))):
-            np.testing.assert_allclose(self._pixel(pixels, x, y), color, atol=0.01)
+            np.testing.assert_allclose(self._pixel(pixels, x, y), color, atol=0.05)
 
     def test_other_geometry(self):
         """Text, curves, surfaces and metaballs are meshes to a renderer."""
@@ -397,7 +398,7 @@ class Objects(BlenderTest):
                     obj.data.dimensions, obj.data.fill_mode = "2D", "BOTH"
                 obj.data.materials.append(scenes.diffuse_material((0, 1, 0)))
                 np.testing.assert_allclose(
-                    self._pixel(scenes.render(self.folder), 0, 0), (0, 1, 0), atol=0.01
+                    self._pixel(scenes.render(self.folder), 0, 0), (0, 1, 0), atol=0.05
                 )
             bpy.data.objects.remove(obj)
 
@@ -416,7 +417,7 @@ class Objects(BlenderTest):
     def test_material_override(self):
         scenes.add_sphere(scenes.diffuse_material((0, 1, 0)))
         bpy.context.view_layer.material_override = scenes.diffuse_material((1, 0, 0))
-        np.testing.assert_allclose(self._pixel(scenes.render(self.folder), 0, 0), (1, 0, 0), atol=0.01)
+        np.testing.assert_allclose(self._pixel(scenes.render(self.folder), 0, 0), (1, 0, 0), atol=0.05)
 
     def test_shading_normals(self):
         """A flat-shaded coarse sphere differs from a smooth one; both see the same silhouette."""

@@ -5,7 +5,7 @@ import bpy
 from . import engine, operators, properties, ui
 from .native import VelourError, library
 
-# Each rank has CLASSES, and attach() / detach() for what is not a class: properties, menu entries, panel lists.
+# Each rank has CLASSES, and attach() / detach() for what is not a class: properties, menu entries, panels.
 _RANKS = (properties, operators, engine, ui)
 _cli_command = None
 

@@ -24,7 +24,7 @@ def render_final(engine, depsgraph):
         raise ExportError("Stereoscopy is not supported; switch it off in Output > Stereoscopy.")
     notes = Notes()
     engine.update_stats("Velour", "Exporting the scene")
-    view = final_view(depsgraph, engine.resolution_x, engine.resolution_y, notes)
+    view = final_view(depsgraph, notes)
 
     def check_break():
         if engine.test_break():
@@ -59,15 +59,15 @@ def _render_layer(engine, layer, job, view):
     complete = False
     try:
         job.start()
-        _follow(engine, job, result, view)
-        write_passes(job, result, view)
+        _follow(engine, job, result)
+        write_passes(job, result)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)
     _say_report(engine, job)
 
 
-def _follow(engine, job, result, view):
+def _follow(engine, job, result):
     """Until the job ends: progress, statistics, pictures in between, and Esc."""
     next_update, interval = time.monotonic() + _FIRST_UPDATE_SECONDS, _FIRST_UPDATE_SECONDS
     while not job.wait(timeout=_POLL_SECONDS):
@@ -78,7 +78,7 @@ def _follow(engine, job, result, view):
         engine.update_stats("Velour", _statistics(state))
         engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20, memory_peak=0)
         if not bpy.app.background and time.monotonic() >= next_update:
-            write_passes(job, result, view, names=("Combined",))
+            write_passes(job, result, names=("Combined",))
             engine.update_result(result)
             interval *= _UPDATE_GROWTH
             next_update = time.monotonic() + interval

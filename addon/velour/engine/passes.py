@@ -1,6 +1,6 @@
 """From the film's passes to Blender's render result."""
 
-from ..export.camera import planar_depth
+from ..native.job import PASS_CHANNELS
 
 SAMPLE_COUNT = "Sample Count"
 
@@ -22,23 +22,8 @@ def add_passes(engine, layer):
         engine.add_pass(SAMPLE_COUNT, 1, "X", layer=layer.name)
 
 
-def write_passes(job, result, view, names=None):
+def write_passes(job, result, names=None):
     """Copies the film into `result`: the passes in `names`, or all that both sides know."""
     for target in result.layers[0].passes:
-        reader = _READERS.get(target.name)
-        if reader is None or (names and target.name not in names):
-            continue
-        pixels = reader(job, view)
-        target.rect.foreach_set(pixels.reshape(-1, target.channels))
-
-
-def _depth(job, view):
-    return planar_depth(job.read_pass("Depth"), view)
-
-
-_READERS = {
-    "Combined": lambda job, _view: job.read_pass("Combined"),
-    "Depth": _depth,
-    "Normal": lambda job, _view: job.read_pass("Normal"),
-    SAMPLE_COUNT: lambda job, _view: job.read_pass(SAMPLE_COUNT),
-}
+        if target.name in PASS_CHANNELS and (names is None or target.name in names):
+            target.rect.foreach_set(job.read_pass(target.name).reshape(-1, target.channels))

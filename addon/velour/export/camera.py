@@ -25,8 +25,8 @@ class View(NamedTuple):
         )
 
 
-def final_view(depsgraph, width, height, notes):
-    """The view of a final render; width and height are those of the part inside the render border."""
+def final_view(depsgraph, notes):
+    """The view of a final render: the scene's camera, film size and render border."""
     scene = depsgraph.scene_eval
     if scene.camera is None:
         raise ExportError(
@@ -42,11 +42,11 @@ def final_view(depsgraph, width, height, notes):
         raise ExportError(f"Camera '{camera.name}': {lens.type.lower()} cameras are not supported.")
     if lens.dof.use_dof:
         notes.add(f"Camera '{camera.name}': depth of field is not supported yet; all is sharp.")
-    full = _full_size(scene.render)
-    window = _WINDOWS[lens.type](_projection(camera, depsgraph, scene.render, full))
-    window = _inside_border(window, scene.render, full)
+    size = _full_size(scene.render)
+    window = _WINDOWS[lens.type](_projection(camera, depsgraph, scene.render, size))
+    window, size = _inside_border(window, size, scene.render)
     kind = "perspective" if lens.type == "PERSP" else "orthographic"
-    return View(kind, rigid(camera.matrix_world), window, lens.clip_start, lens.clip_end, width, height)
+    return View(kind, rigid(camera.matrix_world), window, lens.clip_start, lens.clip_end, *size)
 
 
 def _full_size(render):
@@ -75,24 +75,14 @@ def orthographic_window(projection):
 _WINDOWS = {"PERSP": perspective_window, "ORTHO": orthographic_window}
 
 
-def _inside_border(window, render, size):
-    """The part of the window that a render border leaves, cut at whole pixels as Blender cuts."""
+def _inside_border(window, size, render):
+    """The part of window and film that a render border leaves, cut at whole pixels as Blender cuts."""
     if not render.use_border:
-        return window
+        return window, size
+    x0, x1 = (int(b * size[0]) for b in (render.border_min_x, render.border_max_x))
+    y0, y1 = (int(b * size[1]) for b in (render.border_min_y, render.border_max_y))
+    if x1 <= x0 or y1 <= y0:
+        raise ExportError("The render border holds no pixel; draw a larger one, or switch Render Region off.")
     left, right, bottom, top = window
-    x0, x1 = (int(b * size[0]) / size[0] for b in (render.border_min_x, render.border_max_x))
-    y0, y1 = (int(b * size[1]) / size[1] for b in (render.border_min_y, render.border_max_y))
-    width, height = right - left, top - bottom
-    return left + x0 * width, left + x1 * width, bottom + y0 * height, bottom + y1 * height
-
-
-def planar_depth(distance, view):
-    """Blender's Depth pass is measured along the viewing axis, ours along the ray. `distance` [h x w x 1]."""
-    if view.kind == "orthographic":
-        return distance
-    left, right, bottom, top = view.window
-    x = left + (np.arange(view.width) + 0.5) * ((right - left) / view.width)
-    y = bottom + (np.arange(view.height) + 0.5) * ((top - bottom) / view.height)
-    along_axis = 1 / np.sqrt(1 + x[None, :] ** 2 + y[:, None] ** 2)
-    hit = distance < 1e9  # what meets nothing keeps the mark of Blender, 1e10
-    return np.where(hit, distance * along_axis[:, :, None], distance).astype(np.float32)
+    dx, dy = (right - left) / size[0], (top - bottom) / size[1]
+    return (left + x0 * dx, left + x1 * dx, bottom + y0 * dy, bottom + y1 * dy), (x1 - x0, y1 - y0)

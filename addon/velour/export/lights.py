@@ -4,8 +4,8 @@ import math
 
 from .axes import column_lengths, rigid
 
-# Blender's area lamps emit pi/4 of their nominal power: their radiance is P / (4 A), where a Lambert emitter's
-# is P / (pi A).
+# Blender's area lamps emit pi/4 of their nominal power: their radiance is P / (4 A), a Lambert emitter's
+# would be P / (pi A).
 _AREA_POWER = math.pi / 4
 
 

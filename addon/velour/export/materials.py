@@ -10,8 +10,8 @@ from .principled import principled_values
 class MaterialTable:
     """Adds each material once.
 
-    `strict` refuses a measured material that cannot be had; else it renders as its Principled approximation with
-    a note (previews, the viewport).
+    `strict` refuses a measured material that cannot be had; else (previews, the viewport) it renders as its
+    Principled approximation, with a note.
     """
 
     def __init__(self, scene, notes, strict=True):

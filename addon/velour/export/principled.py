@@ -98,7 +98,7 @@ def _value(socket, node, owner, notes):
         return 0.0
     if source(socket):
         notes.add(
-            f"{owner}: node '{node.name}': the link to '{socket.name}' is not supported; its own value is used."
+            f"{owner}: node '{node.name}': the link to '{socket.name}' is ignored; its own value is used."
         )
     value = socket.default_value
     return value if isinstance(value, float) else tuple(value[:3])

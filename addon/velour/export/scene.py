@@ -12,7 +12,7 @@ from .world import add_world
 def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
     """A committed library scene of what the depsgraph shows, seen through `view`.
 
-    `check_break` is called often and raises to stop; `strict` refuses measured materials whose files cannot be had.
+    `check_break` is called often and raises to stop; `strict` refuses measured materials that cannot be had.
     """
     scene = Scene()
     try:

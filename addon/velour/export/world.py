@@ -41,7 +41,7 @@ def _add_nodes(scene, world, notes):
         return
     if color is not None:
         notes.add(
-            f"{owner}: node '{color.name}' is not an Environment Texture; the Background's own colour is used."
+            f"{owner}: node '{color.name}' is not an Environment Texture; the Background's colour is used."
         )
     scene.set_world_color(tuple(strength * c for c in background.inputs["Color"].default_value[:3]))
 
