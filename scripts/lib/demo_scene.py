@@ -16,7 +16,7 @@ from mathutils import Vector
 from velour.native import images, render_job
 
 SIZE = (640, 480)
-SAMPLES = 128
+SAMPLES, BOUNCES = 64, 1
 WORLD, WORLD_ROTATION, WORLD_STRENGTH = "forest.exr", 100.0, 1.0
 
 PLOT_REDUCTION = 4  # of the picture's sides
@@ -49,7 +49,7 @@ def _empty_scene() -> bpy.types.Scene:
     scene.render.engine = "VELOUR"
     scene.render.resolution_x, scene.render.resolution_y = SIZE
     scene.view_settings.view_transform = "Standard"
-    scene.velour.samples, scene.velour.seed = SAMPLES, 1
+    scene.velour.samples, scene.velour.bounces, scene.velour.seed = SAMPLES, BOUNCES, 1
     return scene
 
 

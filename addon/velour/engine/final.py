@@ -1,5 +1,6 @@
 """Final renders and material previews: export, render, deliver."""
 
+import logging
 import time
 
 import bpy
@@ -8,6 +9,8 @@ from ..export import ExportError, Notes, export_scene
 from ..export.camera import final_view
 from ..native import render_job
 from .passes import add_passes, write_passes
+
+log = logging.getLogger(__package__)
 
 _POLL_SECONDS = 0.05
 _FIRST_UPDATE_SECONDS = 0.3
@@ -101,3 +104,5 @@ def _say_report(engine, job):
     if report["nan_samples"]:
         line += f" | {report['nan_samples']} samples without a finite value left out"
     engine.update_stats("Velour", line)
+    # A handler on this logger gets the whole report as the record's args.
+    log.info("%(seconds).2f s of tracing and shading, %(rays)d rays", report)
