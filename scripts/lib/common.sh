@@ -28,7 +28,7 @@ quietly() {
   shift 2
   mkdir -p "$(dirname "$log")"
   if ! "$@" >"$log" 2>&1; then
-    grep -E -m 20 -A 5 '(error|Error|FAILED|^E:)' "$log" >&2 || tail -n 40 "$log" >&2
+    { grep -E -A 5 '(error|Error|FAILED|^E:)' "$log" || tail -n 40 "$log"; } | sed -n 1,40p >&2
     die "$what failed; everything it said is in $log"
   fi
 }
