@@ -15,6 +15,7 @@ bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 }  // namespace
 
 void DirectLight::draw_from_surface(const Vertex& vertex, int count, RandomStream& random) {
+  if (count == 0) return;
   const Vec2 shift = random.next2();
   for (int i = 0; i < count; ++i) {
     const Vec3 wl = sample_surface(sampling_, vertex, prepared_, lattice_point(i, count, shift));
@@ -24,9 +25,13 @@ void DirectLight::draw_from_surface(const Vertex& vertex, int count, RandomStrea
 }
 
 void DirectLight::draw_from_lights(const Vertex& vertex, int count, RandomStream& random) {
+  if (count == 0) return;
   const Vec2 shift = random.next2();
+  Vec2 u[DirectionBatch::kCapacity];
+  for (int i = 0; i < count; ++i) u[i] = lattice_point(i, count, shift);
+  lighting_.sample(vertex.position, {u, static_cast<size_t>(count)}, towards_light_);
   for (int i = 0; i < count; ++i) {
-    Vec3 wl_world = lighting_.sample(vertex.position, lattice_point(i, count, shift));
+    Vec3 wl_world = towards_light_.get(i);
     if (wl_world == Vec3(0.0f)) wl_world = -vertex.frame.z;  // stands for no light: below the horizon
     world_.push(wl_world);
     local_.push(vertex.frame.to_local(wl_world));

@@ -74,6 +74,7 @@ class DirectLight {
 
   PreparedBrdf prepared_;
   DirectionBatch local_, world_;  // local_ goes on with the directions of sharp lamps
+  DirectionBatch towards_light_;
   RgbBatch f_, environment_;
   ScalarBatch material_pdf_, light_pdf_, surface_pdf_;
   float weight_[DirectionBatch::kCapacity];  // cos / (n p); 0: the direction is not used

@@ -31,16 +31,40 @@ void Lighting::set_probabilities(float environment_power) {
   for (const Lamp& lamp : sharp_) sharp_cdf_.push_back(sum += lamp.power() / sharp_total);
 }
 
-Vec3 Lighting::sample(const Vec3& position, const Vec2& u) const {
-  if (lamps_.empty()) return environment_.sample(u);
-  float left = u.x;
-  if (left < environment_probability_) {
-    return environment_.sample({std::min(left / environment_probability_, kBelowOne), u.y});
-  }
-  left -= environment_probability_;
+/// Whether `u` chooses the environment; what is left of it then chooses the direction.
+bool Lighting::choose_environment(Vec2& u) const {
+  if (u.x >= environment_probability_) return false;
+  u.x = std::min(u.x / environment_probability_, kBelowOne);
+  return true;
+}
+
+Vec3 Lighting::sample_lamp(const Vec3& position, const Vec2& u) const {
+  float left = u.x - environment_probability_;
   size_t chosen = 0;
   while (chosen + 1 < lamps_.size() && left >= probability_[chosen]) left -= probability_[chosen++];
   return lamps_[chosen].sample(position, {std::min(left / probability_[chosen], kBelowOne), u.y});
+}
+
+void Lighting::sample(const Vec3& position, std::span<const Vec2> u, DirectionBatch& world) const {
+  if (lamps_.empty()) return environment_.sample(u, world);
+  Vec2 of_environment[DirectionBatch::kCapacity];
+  int place[DirectionBatch::kCapacity];
+  size_t count = 0;
+  for (size_t i = 0; i < u.size(); ++i) {
+    Vec2 left = u[i];
+    if (choose_environment(left)) {
+      place[count] = static_cast<int>(i);
+      of_environment[count++] = left;
+    } else {
+      world.set(static_cast<int>(i), sample_lamp(position, u[i]));
+    }
+  }
+  if (count > 0) {
+    DirectionBatch sky;
+    environment_.sample({of_environment, count}, sky);
+    for (size_t k = 0; k < count; ++k) world.set(place[k], sky.get(static_cast<int>(k)));
+  }
+  world.count = static_cast<int>(u.size());
 }
 
 void Lighting::look_up(const Vec3& position, const DirectionBatch& world, RgbBatch& environment, ScalarBatch& pdf,

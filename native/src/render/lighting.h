@@ -24,9 +24,9 @@ class Lighting {
   /// True when there is anything that a sampled direction can meet.
   bool has_extended() const { return !lamps_.empty() || !environment_.black(); }
 
-  /// Direction from `position` towards light: first a light with probability proportional to its power, then a
-  /// direction of it. A zero vector where the chosen lamp shows its dark side. Needs has_extended().
-  Vec3 sample(const Vec3& position, const Vec2& u) const;
+  /// Directions from `position` towards light, one for each of `u`: first a light with probability proportional to its
+  /// power, then a direction of it. A zero vector where the chosen lamp shows its dark side. Needs has_extended().
+  void sample(const Vec3& position, std::span<const Vec2> u, DirectionBatch& world) const;
   /// For each direction of `world` from `position`: radiance of the environment, density of `sample`, lamps met
   /// (appended to `hits`). The batch is padded.
   void look_up(const Vec3& position, const DirectionBatch& world, RgbBatch& environment, ScalarBatch& pdf,
@@ -37,6 +37,8 @@ class Lighting {
   size_t choose_sharp(float u, float& probability) const;
 
  private:
+  bool choose_environment(Vec2& u) const;
+  Vec3 sample_lamp(const Vec3& position, const Vec2& u) const;
   void set_probabilities(float environment_power);
 
   const Environment& environment_;

@@ -1,9 +1,16 @@
 #include "render/ray_log.h"
 
+#include <time.h>
+
 #include <algorithm>
-#include <chrono>
 
 namespace velour {
+
+double thread_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 void RayLog::add(std::span<const Ray> rays, Kind kind) {
   rays_.insert(rays_.end(), rays.begin(), rays.end());
@@ -15,7 +22,7 @@ double RayLog::replay(const EmbreeScene& scene) const {
   for (const Batch& batch : batches_) largest = std::max(largest, batch.count);
   std::vector<Hit> hits(largest);
   std::vector<uint8_t> blocked(largest);
-  const auto start = std::chrono::steady_clock::now();
+  const double start = thread_seconds();
   const Ray* next = rays_.data();
   for (const Batch& batch : batches_) {
     const std::span<const Ray> rays(next, batch.count);
@@ -26,7 +33,7 @@ double RayLog::replay(const EmbreeScene& scene) const {
     }
     next += batch.count;
   }
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return thread_seconds() - start;
 }
 
 }  // namespace velour

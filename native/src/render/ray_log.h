@@ -8,6 +8,9 @@
 
 namespace velour {
 
+/// Seconds of processor time of the calling thread: a share of two of them does not feel other programs.
+double thread_seconds();
+
 class RayLog {
  public:
   enum class Kind { nearest, occlusion };
@@ -15,7 +18,7 @@ class RayLog {
   void reserve(size_t rays) { rays_.reserve(rays); }
   void add(std::span<const Ray> rays, Kind kind);
   size_t size() const { return rays_.size(); }
-  /// Traces the very same rays, in the same order and batches. Seconds.
+  /// Traces the very same rays, in the same order and batches. Seconds of thread_seconds().
   double replay(const EmbreeScene& scene) const;
 
  private:

@@ -1,7 +1,6 @@
 // What share of the render time is the bare tracing of rays: 1 would be a renderer that shades for nothing.
 #pragma once
 
-#include <chrono>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -12,8 +11,8 @@
 
 namespace velour {
 
-/// Records the rays of one tile in 16 until kMostRays are kept, with the seconds that these tiles took; later traces
-/// the very same rays alone, with as many threads, and divides.
+/// Records the rays of one tile in 16 until kMostRays are kept, with the processor time that these tiles took; later
+/// traces the very same rays alone, with as many threads, and divides.
 class RayShare {
  public:
   RayShare(bool enabled, int split) : enabled_(enabled), split_(split) {}
@@ -26,9 +25,9 @@ class RayShare {
       return;
     }
     Record record = new_record(rect, count);
-    const auto start = std::chrono::steady_clock::now();
+    const double start = thread_seconds();
     work(&record.log);
-    record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    record.seconds = thread_seconds() - start;
     keep(std::move(record));
   }
 

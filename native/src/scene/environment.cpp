@@ -90,7 +90,18 @@ float Environment::pdf(const Vec3& world) const {
   return pdf.v[0];
 }
 
-Vec3 Environment::sample(const Vec2& u) const { return image_ ? image_->sample(u) : sample_uniform_sphere(u); }
+void Environment::sample(std::span<const Vec2> u, DirectionBatch& world) const {
+  if (image_) return image_->sample(u, world);
+  world.count = 0;
+  for (const Vec2& v : u) world.push(sample_uniform_sphere(v));
+  world.pad();
+}
+
+Vec3 Environment::sample(const Vec2& u) const {
+  DirectionBatch world;
+  sample({&u, 1}, world);
+  return world.get(0);
+}
 
 uint64_t Environment::bytes() const { return image_ ? image_->bytes() : 0; }
 

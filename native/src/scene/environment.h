@@ -37,7 +37,8 @@ class Environment {
   /// Radiance and density (per solid angle, of `sample`) of each direction of `world`. The batch is padded.
   void look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const;
   Rgb radiance(const Vec3& world) const;
-  /// World direction with the density of `look_up`; not to be called when black().
+  /// World directions, one for each of up to 64 `u`, with the density of `look_up`; not to be called when black().
+  void sample(std::span<const Vec2> u, DirectionBatch& world) const;
   Vec3 sample(const Vec2& u) const;
   float pdf(const Vec3& world) const;
 

@@ -69,23 +69,17 @@ void EquirectangularImage::build_tables() {
 }
 
 void EquirectangularImage::look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const {
-  EquirectangularCoordinates at;
-  equirectangular_coordinates(*this, world, at);
-  for (int i = 0; i < world.count; ++i) {
-    const EnvironmentTexel* above = row(std::max(at.y[i] - 1, 0)) + at.x[i];
-    const EnvironmentTexel* below = row(std::min(at.y[i], height_ - 1)) + at.x[i];
-    const float w11 = at.fx[i] * at.fy[i], w01 = at.fx[i] - w11, w10 = at.fy[i] - w11, w00 = 1.0f - at.fx[i] - w10;
-    const auto blend = [&](float EnvironmentTexel::*c) {
-      return w00 * (above[0].*c) + w01 * (above[1].*c) + w10 * (below[0].*c) + w11 * (below[1].*c);
-    };
-    radiance.r[i] = blend(&EnvironmentTexel::r);
-    radiance.g[i] = blend(&EnvironmentTexel::g);
-    radiance.b[i] = blend(&EnvironmentTexel::b);
-    pdf.v[i] = blend(&EnvironmentTexel::node) * at.pole[i] * at.inverse_sin[i] * density_scale_;
-  }
+  equirectangular_look_up(*this, world, radiance, pdf);
 }
 
-Vec3 EquirectangularImage::sample(const Vec2& u) const {
+/// A row, the place between it and its neighbour, and what is left of the random number for its columns.
+struct EquirectangularImage::RowDraw {
+  size_t row;
+  float v;
+  float u;
+};
+
+EquirectangularImage::RowDraw EquirectangularImage::draw_row(const Vec2& u) const {
   // A band between two rows, the place in it, then one of the two rows in proportion to its share there: together the
   // bilinear density, each part inverted in closed form.
   const int band = find_cell(marginal_cdf_.data(), marginal_guide_.data(), height_ + 1, u.y);
@@ -95,29 +89,44 @@ Vec3 EquirectangularImage::sample(const Vec2& u) const {
   const float below = band < height_ ? row_node_[static_cast<size_t>(band)] : 0.0f;
   const float t = invert_linear(above, below, in_band);
 
-  float ux = u.x;
-  const float share_above = (1.0f - t) * above, share_below = t * below;
-  const bool lower = choose_second(share_above / std::max(share_above + share_below, 1e-30f), ux);
-  const size_t y = static_cast<size_t>(std::clamp(lower ? band : band - 1, 0, height_ - 1));
-  const size_t w = static_cast<size_t>(width_);
-  const float* cdf = &row_cdf_[y * (w + 1)];
-  const int cell = find_cell(cdf, &row_guide_[y * w], width_, ux);
-  const float in_cell = std::clamp((ux - cdf[cell]) / std::max(cdf[cell + 1] - cdf[cell], 1e-30f), 0.0f, 1.0f);
-  const EnvironmentTexel* texel = row(static_cast<int>(y)) + cell;
-  const float x = static_cast<float>(cell) - 0.5f + invert_linear(texel[0].node, texel[1].node, in_cell);
-
+  RowDraw draw{0, static_cast<float>(band) - 0.5f + t, u.x};
   // The bands at the poles are half as high.
-  float v = static_cast<float>(band) - 0.5f + t;
-  if (band == 0) v = 0.5f * t;
-  if (band == height_) v = static_cast<float>(height_) - 0.5f + 0.5f * t;
-  return direction(x, v);
+  if (band == 0) draw.v = 0.5f * t;
+  if (band == height_) draw.v = static_cast<float>(height_) - 0.5f + 0.5f * t;
+  const float share_above = (1.0f - t) * above, share_below = t * below;
+  const bool lower = choose_second(share_above / std::max(share_above + share_below, 1e-30f), draw.u);
+  draw.row = static_cast<size_t>(std::clamp(lower ? band : band - 1, 0, height_ - 1));
+  return draw;
 }
 
-Vec3 EquirectangularImage::direction(float x, float y) const {
-  const float phi = 2.0f * kPi * (0.5f - x / static_cast<float>(width_));
-  const float theta = kPi * y / static_cast<float>(height_);
-  const float sin_theta = std::sin(theta);
-  return glm::transpose(world_to_image_) * Vec3(sin_theta * std::cos(phi), sin_theta * std::sin(phi), std::cos(theta));
+float EquirectangularImage::draw_column(const RowDraw& draw) const {
+  const size_t w = static_cast<size_t>(width_);
+  const float* cdf = &row_cdf_[draw.row * (w + 1)];
+  const int cell = find_cell(cdf, &row_guide_[draw.row * w], width_, draw.u);
+  const float in_cell = std::clamp((draw.u - cdf[cell]) / std::max(cdf[cell + 1] - cdf[cell], 1e-30f), 0.0f, 1.0f);
+  const EnvironmentTexel* texel = row(static_cast<int>(draw.row)) + cell;
+  return static_cast<float>(cell) - 0.5f + invert_linear(texel[0].node, texel[1].node, in_cell);
+}
+
+void EquirectangularImage::sample(std::span<const Vec2> u, DirectionBatch& world) const {
+  const int count = static_cast<int>(u.size());
+  RowDraw draws[DirectionBatch::kCapacity];
+  // Rows first, so that the memory of all columns is on its way before the first is needed.
+  for (int i = 0; i < count; ++i) {
+    draws[i] = draw_row(u[static_cast<size_t>(i)]);
+    const size_t w = static_cast<size_t>(width_), near = static_cast<size_t>(draws[i].u * static_cast<float>(width_));
+    __builtin_prefetch(&row_guide_[draws[i].row * w + near]);
+    __builtin_prefetch(&row_cdf_[draws[i].row * (w + 1) + near]);
+  }
+  ScalarBatch column, line;
+  for (int i = 0; i < count; ++i) {
+    column.v[i] = draw_column(draws[i]) / static_cast<float>(width_);
+    line.v[i] = draws[i].v / static_cast<float>(height_);
+  }
+  for (int i = count; i % 16 != 0; ++i) column.v[i] = line.v[i] = 0.5f;
+  equirectangular_directions(*this, column, line, count, world);
+  world.count = count;
+  world.pad();
 }
 
 uint64_t EquirectangularImage::bytes() const {

@@ -29,20 +29,24 @@ class EquirectangularImage {
   EquirectangularImage(const EquirectangularPixels& pixels, float strength, const Mat3& world_to_image);
 
   void look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const;
-  Vec3 sample(const Vec2& u) const;
+  /// One direction for each of `u`.
+  void sample(std::span<const Vec2> u, DirectionBatch& world) const;
   float mean_luminance() const { return mean_luminance_; }
   uint64_t bytes() const;
 
-  // What the SIMD kernel reads.
+  // What the SIMD kernels read.
   int width() const { return width_; }
   int height() const { return height_; }
   const Mat3& world_to_image() const { return world_to_image_; }
+  const EnvironmentTexel* row(int y) const { return &texels_[static_cast<size_t>(y) * stride_]; }
+  float density_scale() const { return density_scale_; }
 
  private:
   void store_texels(const EquirectangularPixels& pixels, float strength);
   void build_tables();
-  const EnvironmentTexel* row(int y) const { return &texels_[static_cast<size_t>(y) * stride_]; }
-  Vec3 direction(float x, float y) const;
+  struct RowDraw;
+  RowDraw draw_row(const Vec2& u) const;
+  float draw_column(const RowDraw& draw) const;
 
   int width_, height_;
   size_t stride_;  // texels a stored row: W + 2, the last and the first column repeated on the other side
@@ -58,16 +62,23 @@ class EquirectangularImage {
   std::vector<uint32_t> marginal_guide_, row_guide_;
 };
 
-/// Texel coordinates of a batch of world directions: column cell and the place in it, likewise rows, 1 / sin(theta).
+/// Texel coordinates of a batch of world directions: column cell and the place in it, likewise rows.
 struct alignas(64) EquirectangularCoordinates {
   int32_t x[DirectionBatch::kCapacity], y[DirectionBatch::kCapacity];  // cell 0..W-1, 0..H
   float fx[DirectionBatch::kCapacity], fy[DirectionBatch::kCapacity];  // in [0, 1]
-  float pole[DirectionBatch::kCapacity];  // 1, falling to 0 over the half row beside a pole
-  float inverse_sin[DirectionBatch::kCapacity];
+  float inverse_sin[DirectionBatch::kCapacity];  // of theta; falls to 0 over the half row beside a pole
 };
 
-/// Run-time dispatched SIMD. Angles are within 4e-7 radians (a polynomial of our own, exact to 1.6e-8, in float32).
+// Kernels, run-time dispatched SIMD. Angles are within 8e-7 radians: a polynomial of our own, exact to 1.6e-8, in
+// float32.
+
 void equirectangular_coordinates(const EquirectangularImage& image, const DirectionBatch& world,
                                  EquirectangularCoordinates& out);
+/// Bilinear radiance and density.
+void equirectangular_look_up(const EquirectangularImage& image, const DirectionBatch& world, RgbBatch& radiance,
+                             ScalarBatch& pdf);
+/// World directions of `count` places: columns `u`, rows `v` from the top, both as shares of the image's sides.
+void equirectangular_directions(const EquirectangularImage& image, const ScalarBatch& u, const ScalarBatch& v,
+                                int count, DirectionBatch& world);
 
 }  // namespace velour

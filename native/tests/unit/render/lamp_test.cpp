@@ -159,7 +159,11 @@ TEST(Lighting, MixtureOfAllLightsFollowsItsDensity) {
   };
   test::ChiSquareOptions options;
   options.samples = 300'000;
-  const auto sample = [&](const Vec2& u) { return lighting.sample(Vec3(0.0f), u); };
+  const auto sample = [&](const Vec2& u) {
+    DirectionBatch world;
+    lighting.sample(Vec3(0.0f), {&u, 1}, world);
+    return world.get(0);
+  };
   const auto result = test::chi_square(sample, pdf, options);
   EXPECT_EQ(result.problem, "");
   EXPECT_GT(result.p_value, 0.01);

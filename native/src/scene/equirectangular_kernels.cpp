@@ -1,9 +1,14 @@
 // Highway compiles this file once for each instruction set.
+#include <algorithm>
+
 #include "scene/equirectangular.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "scene/equirectangular_coordinates.cpp"
+#define HWY_TARGET_INCLUDE "scene/equirectangular_kernels.cpp"
 #include <hwy/foreach_target.h>
+
+// Only after that one:
+#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 #include "srbf/simd_dispatch.h"
@@ -72,8 +77,46 @@ void coordinates_simd(const EquirectangularImage& image, const DirectionBatch& w
     hn::Store(hn::Sub(px, cx), d, out.fx + at);
     hn::Store(hn::Sub(hn::Add(py, half), cy), d, out.fy + at);
     const auto from_pole = hn::Min(py, hn::Sub(height, py));
-    hn::Store(hn::Min(one, hn::Add(from_pole, from_pole)), d, out.pole + at);
-    hn::Store(hn::Div(one, hn::Max(r, hn::Set(d, 1e-20f))), d, out.inverse_sin + at);
+    const auto pole = hn::Min(one, hn::Add(from_pole, from_pole));
+    hn::Store(hn::Div(pole, hn::Max(r, hn::Set(d, 1e-20f))), d, out.inverse_sin + at);
+  }
+}
+
+void look_up_simd(const EquirectangularImage& image, const DirectionBatch& world, RgbBatch& radiance,
+                  ScalarBatch& pdf) {
+  EquirectangularCoordinates at;
+  coordinates_simd(image, world, at);
+  const hn::CappedTag<float, 4> d;  // the four numbers of a texel at once, where there are four lanes
+  for (int i = 0; i < world.count; ++i) {
+    const float* above = &image.row(std::max(at.y[i] - 1, 0))[at.x[i]].r;
+    const float* below = &image.row(std::min(at.y[i], image.height() - 1))[at.x[i]].r;
+    const auto fx = hn::Set(d, at.fx[i]), fy = hn::Set(d, at.fy[i]);
+    alignas(16) float texel[4];
+    for (size_t c = 0; c < 4; c += hn::Lanes(d)) {
+      const auto a0 = hn::Load(d, above + c), a1 = hn::Load(d, above + 4 + c);
+      const auto b0 = hn::Load(d, below + c), b1 = hn::Load(d, below + 4 + c);
+      const auto a = hn::MulAdd(fx, hn::Sub(a1, a0), a0), b = hn::MulAdd(fx, hn::Sub(b1, b0), b0);
+      hn::Store(hn::MulAdd(fy, hn::Sub(b, a), a), d, texel + c);
+    }
+    radiance.r[i] = texel[0];
+    radiance.g[i] = texel[1];
+    radiance.b[i] = texel[2];
+    pdf.v[i] = texel[3] * at.inverse_sin[i] * image.density_scale();
+  }
+}
+
+void directions_simd(const EquirectangularImage& image, const ScalarBatch& u, const ScalarBatch& v, int count,
+                     DirectionBatch& world) {
+  const hn::CappedTag<float, 8> d;
+  const Mat3 image_to_world = glm::transpose(image.world_to_image());
+  for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
+    const auto theta = hn::Mul(hn::Load(d, v.v + at), hn::Set(d, kPi));
+    const auto phi = hn::Mul(hn::Sub(hn::Set(d, 0.5f), hn::Load(d, u.v + at)), hn::Set(d, 2.0f * kPi));
+    const auto r = hn::Sin(d, theta);
+    const auto x = hn::Mul(r, hn::Cos(d, phi)), y = hn::Mul(r, hn::Sin(d, phi)), z = hn::Cos(d, theta);
+    hn::Store(row_dot(d, image_to_world, 0, x, y, z), d, world.x + at);
+    hn::Store(row_dot(d, image_to_world, 1, x, y, z), d, world.y + at);
+    hn::Store(row_dot(d, image_to_world, 2, x, y, z), d, world.z + at);
   }
 }
 
@@ -85,10 +128,22 @@ HWY_AFTER_NAMESPACE();
 namespace velour {
 
 HWY_EXPORT(coordinates_simd);
+HWY_EXPORT(look_up_simd);
+HWY_EXPORT(directions_simd);
 
 void equirectangular_coordinates(const EquirectangularImage& image, const DirectionBatch& world,
                                  EquirectangularCoordinates& out) {
   VELOUR_SIMD_DISPATCH(coordinates_simd)(image, world, out);
+}
+
+void equirectangular_look_up(const EquirectangularImage& image, const DirectionBatch& world, RgbBatch& radiance,
+                             ScalarBatch& pdf) {
+  VELOUR_SIMD_DISPATCH(look_up_simd)(image, world, radiance, pdf);
+}
+
+void equirectangular_directions(const EquirectangularImage& image, const ScalarBatch& u, const ScalarBatch& v,
+                                int count, DirectionBatch& world) {
+  VELOUR_SIMD_DISPATCH(directions_simd)(image, u, v, count, world);
 }
 
 }  // namespace velour
