@@ -98,12 +98,12 @@ TEST(Cornell, TruncationIsSeenUnlessASampleEndsThere) {
   const std::string good = small_cornell(30, glossy_grey);
   const size_t first_row = good.find("700\n") + 4;
   int accepted = 0;
-  for (size_t size = 0; size < good.size(); size += 3) {
+  for (size_t size = 0; size < good.size(); size += 31) {
     const std::string sentence = refusal(good.substr(0, size));
     accepted += sentence.empty();
     EXPECT_TRUE(size >= first_row || !sentence.empty()) << size;
   }
-  EXPECT_LT(accepted, 200);  // cuts within the last number of a sample
+  EXPECT_LT(accepted, 15);  // cuts within the last number of a sample
 }
 
 TEST(Cornell, IsToldFromOtherText) {
@@ -120,23 +120,21 @@ TEST(Cornell, IsToldFromOtherText) {
 
 class Krylon : public ::testing::Test {
  protected:
-  /// Samples predicted from the other seven eighths; the share of the error in f cos that is left, and its logarithm.
-  static std::pair<double, double> cross_validate(const std::vector<ScatteredSample>& samples) {
+  struct LeftOut {
+    double relative_l2, log_rms;  // of f cos, luminance; log(1 + f cos / 0.01)
+  };
+  /// Every sample predicted from all others.
+  static LeftOut leave_one_out(const std::vector<ScatteredSample>& samples) {
     std::vector<double> got, truth;
     double log_error = 0;
-    for (size_t fold = 0; fold < 8; ++fold) {
-      std::vector<ScatteredSample> kept;
-      for (size_t i = 0; i < samples.size(); ++i)
-        if (mix64(i) % 8 != fold) kept.push_back(samples[i]);
-      const ScatteredInterpolant interpolant(kept);
-      for (size_t i = 0; i < samples.size(); ++i) {
-        if (mix64(i) % 8 != fold) continue;
-        const auto f = interpolant.f(samples[i].wl, samples[i].wv);
-        EXPECT_TRUE(f.has_value());
-        got.push_back(double{luminance(f.value_or(Rgb(0.0f))) * samples[i].wl.z});
-        truth.push_back(double{luminance(samples[i].f) * samples[i].wl.z});
-        log_error += std::pow(std::log1p(got.back() / 0.01) - std::log1p(truth.back() / 0.01), 2);
-      }
+    for (size_t i = 0; i < samples.size(); ++i) {
+      auto others = samples;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      const auto f = ScatteredInterpolant(others).f(samples[i].wl, samples[i].wv);
+      EXPECT_TRUE(f.has_value());
+      got.push_back(double{luminance(f.value_or(Rgb(0.0f))) * samples[i].wv.z});
+      truth.push_back(double{luminance(samples[i].f) * samples[i].wv.z});
+      log_error += std::pow(std::log1p(got.back() / 0.01) - std::log1p(truth.back() / 0.01), 2);
     }
     return {relative_l2(got, truth), std::sqrt(log_error / static_cast<double>(got.size()))};
   }
@@ -147,15 +145,15 @@ TEST_F(Krylon, InterpolationPredictsHeldOutSamples) {
   const auto measurement = load_measurement(path);
   ASSERT_EQ(measurement->samples().size(), 1439u);
   const std::vector<ScatteredSample> samples(measurement->samples().begin(), measurement->samples().end());
-  const auto [l2, log_rms] = cross_validate(samples);
+  const auto [l2, log_rms] = leave_one_out(samples);
   RecordProperty("relative_l2", std::to_string(l2));
   RecordProperty("log_rms", std::to_string(log_rms));
-  EXPECT_LT(l2, 0.15);
-  EXPECT_LT(log_rms, 0.12);
+  EXPECT_LT(l2, 0.06);
+  EXPECT_LT(log_rms, 0.09);
   // Control: the same samples with their values dealt out anew must not be predictable.
   auto shuffled = samples;
   for (size_t i = 0; i < samples.size(); ++i) shuffled[i].f = samples[(i * 577) % samples.size()].f;
-  EXPECT_GT(cross_validate(shuffled).first, 0.5);
+  EXPECT_GT(leave_one_out(shuffled).log_rms, 0.5);
 }
 
 TEST_F(Krylon, TheTableAddsLittle) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "brdf/half_diff.h"
 #include "file/file.h"
 #include "measurement_support.h"
 #include "support/test_data.h"
@@ -128,7 +129,7 @@ TEST_F(Merl, AnyNegativeChannelIsInvalid) {
   EXPECT_EQ(read_back->counts().not_finite, 2u);
   EXPECT_EQ(read_back->counts().out_of_gamut, 0u);
   // The hole is closed by its neighbours, not by the bad value.
-  const DirectionPair pair = MerlGrid::pair(5, 10, 0);
+  const DirectionPair pair = pair_of_half_diff(radians_from(25.2 / 90), 0.0, radians_from(10.1), radians_from(0.1));
   const Rgb there = test::eval_one(*read_back, pair.wl, pair.wv).f, truth = test::glossy(pair.wl, pair.wv);
   EXPECT_LT(glm::length(there - truth), 0.2f * glm::length(truth));
 }
