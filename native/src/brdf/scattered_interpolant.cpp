@@ -119,7 +119,10 @@ Rgb ScatteredInterpolant::Index::regress(const Point& here, const Nearest& neare
   const Eigen::Matrix<double, 4, 3> moment = terms.transpose() * weights.asDiagonal() * data;
   const Eigen::Matrix<double, 4, 3> solution = normal.ldlt().solve(moment);
   Rgb f;
-  for (int c = 0; c < 3; ++c) f[c] = expand(std::clamp(solution(0, c), data.col(c).minCoeff(), data.col(c).maxCoeff()));
+  for (int c = 0; c < 3; ++c) {
+    const double low = data.col(c).minCoeff(), high = data.col(c).maxCoeff();
+    f[c] = expand(std::clamp(solution(0, c), low, high + (high - low)));
+  }
   return f;
 }
 

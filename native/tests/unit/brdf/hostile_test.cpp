@@ -105,7 +105,7 @@ TEST(Hostile, Rgl) {
 TEST(Hostile, Cornell) {
   const std::string text =
       test::small_cornell(20, [](const Vec3& wl, const Vec3& wv) { return test::glossy(wl, wv).g; });
-  attack("x.brdf", Bytes(text.begin(), text.end()), read_cornell, 1000);
+  attack("x.brdf", Bytes(text.begin(), text.end()), read_cornell, 200);
 }
 
 TEST(Hostile, BrdfTable) {
