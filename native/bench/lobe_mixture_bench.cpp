@@ -16,8 +16,7 @@ LobeMixture make_mixture(Kernel kernel, int lobes) {
   const auto centers = hemisphere_fibonacci(lobes);
   RandomStream random(1, 2, 3);
   for (int j = 0; j < lobes; ++j) {
-    const float bandwidth =
-        kernel == Kernel::gaussian ? std::exp2(12 * random.next()) : 0.98f * random.next();
+    const float bandwidth = kernel == Kernel::gaussian ? std::exp2(12 * random.next()) : 0.98f * random.next();
     mixture.add(centers[static_cast<size_t>(j)], bandwidth, {0.5f, 0.4f, random.next()});
   }
   mixture.finish(0.05f);
@@ -48,9 +47,7 @@ void eval_lobe_mixture(benchmark::State& state) {
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.SetLabel(std::string(simd_target()) + " " + kernel_name(mixture.kernel));
 }
-BENCHMARK(eval_lobe_mixture)
-    ->ArgsProduct({{0}, {4, 8, 16, 32}, {8, 16, 64}})
-    ->ArgsProduct({{1}, {16}, {8, 16, 64}});
+BENCHMARK(eval_lobe_mixture)->ArgsProduct({{0}, {4, 8, 16, 32}, {8, 16, 64}})->ArgsProduct({{1}, {16}, {8, 16, 64}});
 
 void eval_on_target(benchmark::State& state, const std::string& target) {
   select_simd_target(target.c_str());
@@ -59,8 +56,7 @@ void eval_on_target(benchmark::State& state, const std::string& target) {
 }
 
 void sample_lobe_mixture(benchmark::State& state) {
-  const LobeMixture mixture =
-      make_mixture(static_cast<Kernel>(state.range(0)), static_cast<int>(state.range(1)));
+  const LobeMixture mixture = make_mixture(static_cast<Kernel>(state.range(0)), static_cast<int>(state.range(1)));
   RandomStream random(1, 2, 3);
   for (auto _ : state) benchmark::DoNotOptimize(sample_mixture(mixture, random.next2()));
 }

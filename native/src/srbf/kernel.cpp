@@ -66,8 +66,7 @@ double kernel_slope(Kernel kernel, double bandwidth, double d) {
 }
 
 double kernel_bandwidth_slope(Kernel kernel, double bandwidth, double d) {
-  return kernel == Kernel::gaussian ? -d * std::exp(-bandwidth * d)
-                                    : abel_poisson_bandwidth_slope(bandwidth, d);
+  return kernel == Kernel::gaussian ? -d * std::exp(-bandwidth * d) : abel_poisson_bandwidth_slope(bandwidth, d);
 }
 
 double kernel_integral(Kernel kernel, double bandwidth) {
@@ -76,8 +75,7 @@ double kernel_integral(Kernel kernel, double bandwidth) {
 }
 
 double kernel_sample(Kernel kernel, double bandwidth, double u) {
-  const double d =
-      kernel == Kernel::gaussian ? gaussian_sample(bandwidth, u) : abel_poisson_sample(bandwidth, u);
+  const double d = kernel == Kernel::gaussian ? gaussian_sample(bandwidth, u) : abel_poisson_sample(bandwidth, u);
   return std::clamp(d, 0.0, 2.0);
 }
 
@@ -91,8 +89,7 @@ double kernel_bandwidth_of_half_width(Kernel kernel, double half_width) {
   return 2 / (2 + k + std::sqrt(k * (k + 4)));
 }
 
-double kernel_convolution(Kernel kernel, const Vec3d& a, double bandwidth_a, const Vec3d& b,
-                          double bandwidth_b) {
+double kernel_convolution(Kernel kernel, const Vec3d& a, double bandwidth_a, const Vec3d& b, double bandwidth_b) {
   if (kernel == Kernel::abel_poisson) {
     return 4 * kPiD * abel_poisson_value(bandwidth_a * bandwidth_b, one_minus_dot(a, b));
   }

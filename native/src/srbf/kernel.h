@@ -40,8 +40,7 @@ double kernel_bandwidth_of_half_width(Kernel kernel, double half_width);
 
 /// Integral over the sphere of the product of two kernels about unit `a` and `b`. Closed forms for two
 /// Gaussians (4 pi e^(-la-lb) sinh(R)/R) and two Abel-Poisson kernels.
-double kernel_convolution(Kernel kernel, const Vec3d& a, double bandwidth_a, const Vec3d& b,
-                          double bandwidth_b);
+double kernel_convolution(Kernel kernel, const Vec3d& a, double bandwidth_a, const Vec3d& b, double bandwidth_b);
 
 /// Pointwise product of two Gaussians = `scale` times one Gaussian. Opposed equal lobes give bandwidth 0, any
 /// centre.

@@ -26,8 +26,8 @@ struct alignas(64) LobeMixture {
 
   Kernel kernel = Kernel::gaussian;
   int count = 0;
-  float cosine_share =
-      1;  // probability of the cosine component, the diffuse term and the defence; 1 when no lobe has mass
+  /// Probability of the cosine component: that of the diffuse term and the defence; 1 when no lobe has mass.
+  float cosine_share = 1;
   float diffuse_r = 0, diffuse_g = 0, diffuse_b = 0;  // coefficients of max(w.z, 0) in the value
 
   float x[kCapacity], y[kCapacity], z[kCapacity];  // centres, unit

@@ -1,0 +1,122 @@
+// What a camera ray and a light direction cost in each material and in the tabulated sampler.
+#include <benchmark/benchmark.h>
+
+#include "material/principled_material.h"
+#include "material/scattered_material.h"
+#include "material/table_sampler.h"
+#include "sphere/directions.h"
+#include "sphere/random.h"
+
+namespace velour {
+namespace {
+
+constexpr int kLobesPerView = 16;
+
+ScatteredBrdf make_brdf(bool isotropic) {
+  ScatteredBrdf brdf;
+  brdf.isotropic = isotropic;
+  brdf.default_neighbors = isotropic ? 2 : 4;
+  if (isotropic) {
+    for (int i = 0; i < 45; ++i) brdf.views.push_back(direction(radians_from(2.0f * static_cast<float>(i)), 0));
+  } else {
+    brdf.views = hemisphere_fibonacci(400);
+  }
+  RandomStream random(1, 2, 3);
+  brdf.first_lobe = {0};
+  for (size_t i = 0; i < brdf.views.size(); ++i) {
+    for (const Vec3& center : hemisphere_fibonacci(kLobesPerView)) {
+      brdf.center.push_back(center);
+      brdf.bandwidth.push_back(std::exp2(12 * random.next()));
+      brdf.coefficient.push_back({random.next(), random.next(), random.next()});
+    }
+    brdf.first_lobe.push_back(static_cast<uint32_t>(brdf.center.size()));
+  }
+  return brdf;
+}
+
+enum Choice { kMeridian, kHemisphere, kPrincipled };
+
+std::shared_ptr<const Material> make(int64_t choice) {
+  if (choice == kPrincipled) return make_principled_material({.metallic = 0.5f, .roughness = 0.4f});
+  return make_scattered_material(std::make_shared<ScatteredBrdf>(make_brdf(choice == kMeridian)), 0);
+}
+
+void label(benchmark::State& state) {
+  const char* const names[] = {"meridian 2 x 16 lobes", "hemisphere 4 x 16 lobes of 400 views", "principled"};
+  state.SetLabel(names[state.range(0)]);
+}
+
+const std::vector<Vec3>& views() {
+  static const std::vector<Vec3> set = hemisphere_fibonacci(1024);
+  return set;
+}
+
+void prepare_material(benchmark::State& state) {
+  const auto material = make(state.range(0));
+  PreparedBrdf point;
+  size_t i = 0;
+  for (auto _ : state) {
+    material->prepare(views()[++i % 1024], point);
+    benchmark::DoNotOptimize(point);
+  }
+  label(state);
+}
+BENCHMARK(prepare_material)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled);
+
+void eval_material_16(benchmark::State& state) {
+  const auto material = make(state.range(0));
+  PreparedBrdf point;
+  material->prepare(direction(0.7f, 1), point);
+  DirectionBatch wl;
+  for (const Vec3& w : hemisphere_fibonacci(16)) wl.push(w);
+  RgbBatch f;
+  ScalarBatch pdf;
+  for (auto _ : state) {
+    material->eval(point, wl, f, pdf);
+    benchmark::DoNotOptimize(f);
+    benchmark::DoNotOptimize(pdf);
+  }
+  label(state);
+}
+BENCHMARK(eval_material_16)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled);
+
+void sample_material(benchmark::State& state) {
+  const auto material = make(state.range(0));
+  PreparedBrdf point;
+  material->prepare(direction(0.7f, 1), point);
+  RandomStream random(1, 2, 3);
+  for (auto _ : state) benchmark::DoNotOptimize(material->sample(point, random.next2()));
+  label(state);
+}
+BENCHMARK(sample_material)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled);
+
+void table_build(benchmark::State& state) {
+  const auto material = make(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(TableSampler(*material).bytes());
+  label(state);
+}
+BENCHMARK(table_build)->Arg(kMeridian)->Arg(kHemisphere)->Unit(benchmark::kMillisecond);
+
+void table_sample(benchmark::State& state) {
+  const TableSampler table(*make(state.range(0)));
+  RandomStream random(1, 2, 3);
+  for (auto _ : state) benchmark::DoNotOptimize(table.sample(direction(0.7f, 1), random.next2()));
+  label(state);
+}
+BENCHMARK(table_sample)->Arg(kMeridian)->Arg(kHemisphere);
+
+void table_pdf_16(benchmark::State& state) {
+  const TableSampler table(*make(state.range(0)));
+  DirectionBatch wl;
+  for (const Vec3& w : hemisphere_fibonacci(16)) wl.push(w);
+  ScalarBatch pdf;
+  for (auto _ : state) {
+    table.pdf(direction(0.7f, 1), wl, pdf);
+    benchmark::DoNotOptimize(pdf);
+  }
+  label(state);
+}
+BENCHMARK(table_pdf_16)->Arg(kMeridian)->Arg(kHemisphere);
+
+}  // namespace
+}  // namespace velour
