@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "capture/periodic_tile.h"
+#include "capture/threads.h"
 #include "sphere/frame.h"
 #include "sphere/random.h"
 #include "sphere/warp.h"
@@ -235,7 +236,7 @@ std::vector<GoniometerSums> run_goniometer(const GoniometerOptions& options, Pro
       run.sample(i);
     }
   };
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(arena_concurrency(options.threads));
   arena.execute([&] {
     tbb::parallel_for(size_t{0}, batches.size(), [&](size_t b) {
       for (uint64_t t = 0; t < tiles; ++t) run_tile(b * tiles + t, batches[b]);

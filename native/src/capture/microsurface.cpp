@@ -13,6 +13,7 @@
 #include "brdf/brdf_table.h"
 #include "brdf/merl.h"
 #include "capture/microsurface_brdf.h"
+#include "capture/threads.h"
 
 namespace velour {
 namespace {
@@ -20,7 +21,8 @@ namespace {
 constexpr uint64_t kDefaultRays = 24'000'000;
 constexpr uint64_t kMaxRays = 100'000'000'000;
 constexpr uint64_t kSamplesPerTile = 187'500;
-constexpr int kBatches = 32;
+constexpr uint64_t kMinBatches = 8, kMaxBatches = 32;  // few batches estimate errors badly
+constexpr uint64_t kSamplesPerBatch = 100'000;         // below kMaxBatches of them
 
 std::string number(double x) {
   std::string text = std::to_string(x);
@@ -51,10 +53,12 @@ GoniometerOptions goniometer_options(const MicrosurfaceOptions& options) {
   goniometer.base_albedo = options.base_albedo;
   goniometer.base_share = options.base_share;
   goniometer.seed = options.seed;
-  goniometer.batches = kBatches;
   goniometer.threads = options.threads;
-  const uint64_t per_batch = std::max<uint64_t>(1, (options.rays != 0 ? options.rays : kDefaultRays) / kBatches);
+  const uint64_t rays = options.rays != 0 ? options.rays : kDefaultRays;
+  const uint64_t batches = std::clamp(rays / kSamplesPerBatch, kMinBatches, kMaxBatches);
+  const uint64_t per_batch = std::max<uint64_t>(1, rays / batches);
   const uint64_t tiles = std::max<uint64_t>(1, (per_batch + kSamplesPerTile / 2) / kSamplesPerTile);
+  goniometer.batches = static_cast<int>(batches);
   goniometer.tiles_per_batch = static_cast<int>(tiles);
   goniometer.samples_per_tile = std::max<uint64_t>(1, per_batch / tiles);
   return goniometer;
@@ -62,7 +66,7 @@ GoniometerOptions goniometer_options(const MicrosurfaceOptions& options) {
 
 /// Calls `row` for 0 <= i < rows from the threads asked for, checking for a cancel before each.
 void for_each_row(int rows, int threads, const Progress& progress, const std::function<void(int)>& row) {
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(arena_concurrency(threads));
   arena.execute([&] {
     tbb::parallel_for(0, rows, [&](int i) {
       progress.check();
@@ -99,7 +103,9 @@ void write_anisotropic(const MicrosurfaceBrdf& brdf, const MicrosurfaceOptions& 
                        const Progress& progress) {
   BrdfTable table;
   table.layout.folds = 2;  // the bins were pooled over both mirror planes
-  table.layout.phi_h /= 2;
+  // Across the long axis of a stretched highlight its width is 1 / anisotropy of the radius.
+  table.layout.phi_h = std::clamp(static_cast<int>(9.0 * options.anisotropy), 18, 72);
+  table.layout.theta_d = 45;
   table.f.assign(table.layout.size(), Rgb(std::numeric_limits<float>::quiet_NaN()));
   table.description = describe(options);
   const BrdfTableLayout& layout = table.layout;

@@ -94,7 +94,7 @@ bool PeriodicTile::enter_next_period(Ray& ray) const {
   const float to_x = distance_to_side(ray.origin.x, d.x, period_.x);
   const float to_y = distance_to_side(ray.origin.y, d.y, period_.y);
   const float distance = std::min(to_x, to_y);
-  if (std::isinf(distance) || ray.origin.z + distance * d.z >= top_) return false;
+  if (std::isinf(distance) || (d.z > 0.0f && ray.origin.z + distance * d.z >= top_)) return false;
   ray.origin += distance * d;
   if (to_x <= to_y) ray.origin.x = d.x > 0.0f ? 0.0f : period_.x;
   if (to_y <= to_x) ray.origin.y = d.y > 0.0f ? 0.0f : period_.y;
