@@ -130,10 +130,10 @@ class ExitCodes(BlenderTest):
             with self.subTest(format=kind):
                 output = self.folder / kind / "picture_####"
                 arguments = (blend, "-E", "VELOUR", "-o", output, "-F", kind, "-f", 1)
-                status, text, seconds = interrupt_blender(*arguments, after="Remaining")
+                status, text, seconds = interrupt_blender(*arguments, after="Sample ")
                 self.assertEqual(status, 1, text)
                 self.assertEqual(self._written(kind), [])
-                self.assertLess(seconds, 5.0)
+                self.assertLess(seconds, 3.0)
 
     def test_bounds_of_a_picture(self):
         """What a farm checks: all parts are there and every scanline reads."""

@@ -42,8 +42,7 @@ class SymbolClash(BlenderTest):
         return path
 
     def _scene(self):
-        scene = scenes.use_engine(samples=64)
-        scene.render.image_settings.color_depth = "32"
+        scenes.use_engine(samples=64)
         scenes.add_camera(ortho_scale=1.2)
         scenes.set_world()
         scenes.add_sphere(scenes.measured_material(inputs.model_bytes(inputs.lambert_measurement())))

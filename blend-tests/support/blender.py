@@ -4,6 +4,7 @@ import os
 import shutil
 import signal
 import subprocess
+import threading
 import time
 import unittest
 from pathlib import Path
@@ -13,7 +14,7 @@ import bpy
 
 ADDON = "velour"
 _folder = Path("/nowhere")
-_CHILD_SECONDS = 120
+_CHILD_SECONDS = 60
 
 
 def set_folder(folder):
@@ -64,13 +65,18 @@ def interrupt_blender(*arguments, after):
         text=True,
         errors="replace",
     )
+    watchdog = threading.Timer(_CHILD_SECONDS, process.kill)
+    watchdog.start()
     lines, sent = [], None
-    for line in process.stdout:
-        lines.append(line)
-        if sent is None and after in line:
-            sent = time.monotonic()
-            process.send_signal(signal.SIGINT)
-    return process.wait(), "".join(lines), time.monotonic() - sent if sent else None
+    try:
+        for line in process.stdout:
+            lines.append(line)
+            if sent is None and after in line:
+                sent = time.monotonic()
+                process.send_signal(signal.SIGINT)
+        return process.wait(), "".join(lines), time.monotonic() - sent if sent else None
+    finally:
+        watchdog.cancel()
 
 
 class BlenderTest(unittest.TestCase):

@@ -13,8 +13,9 @@ from .passes import add_passes, write_passes
 log = logging.getLogger(__package__)
 
 _POLL_SECONDS = 0.05
-_FIRST_UPDATE_SECONDS = 0.3
-_UPDATE_GROWTH = 1.5  # pictures in between grow rarer: each copies the whole film
+_STATISTICS_SECONDS = 0.5  # a line of a farm's log each
+_FIRST_PICTURE_SECONDS = 0.3
+_PICTURE_GROWTH = 1.5  # pictures in between grow rarer: each copies the whole film
 
 
 class RenderCancelledError(Exception):
@@ -36,8 +37,9 @@ def render_final(engine, depsgraph):
     with export_scene(depsgraph, view, notes, check_break, strict=not engine.is_preview) as native_scene:
         if not engine.is_preview:
             _say(notes)
-        with render_job(native_scene, **_options(scene, view, engine.is_preview)) as job:
-            _render_layer(engine, depsgraph.view_layer_eval, job, view)
+        options = _options(scene, view, engine.is_preview)
+        with render_job(native_scene, **options) as job:
+            _render_layer(engine, depsgraph.view_layer_eval, job, view, options["spp"])
 
 
 def _options(scene, view, is_preview):
@@ -56,13 +58,13 @@ def _options(scene, view, is_preview):
     }
 
 
-def _render_layer(engine, layer, job, view):
+def _render_layer(engine, layer, job, view, spp):
     add_passes(engine, layer)
     result = engine.begin_result(0, 0, view.width, view.height, layer=layer.name)
     complete = False
     try:
         job.start()
-        _follow(engine, job, result)
+        _follow(engine, job, result, spp)
         write_passes(job, result)
         complete = True
     finally:
@@ -70,27 +72,42 @@ def _render_layer(engine, layer, job, view):
     _say_report(engine, job)
 
 
-def _follow(engine, job, result):
-    """Until the job ends: progress, statistics, pictures in between, and Esc."""
-    next_update, interval = time.monotonic() + _FIRST_UPDATE_SECONDS, _FIRST_UPDATE_SECONDS
+def _follow(engine, job, result, spp):
+    """Until the job ends: Esc, progress, statistics, and with a window pictures in between."""
+    statistics = _Clock(_STATISTICS_SECONDS)
+    pictures = _Clock(_FIRST_PICTURE_SECONDS, growth=_PICTURE_GROWTH)
     while not job.wait(timeout=_POLL_SECONDS):
         if engine.test_break():
             raise RenderCancelledError  # closing the job cancels it and waits
         state = job.poll()
         engine.update_progress(state.fraction)
-        engine.update_stats("Velour", _statistics(state))
-        engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20, memory_peak=0)
-        if not bpy.app.background and time.monotonic() >= next_update:
+        if statistics.rings():
+            engine.update_stats("Velour", _statistics(state, spp))
+            engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20)
+        if not bpy.app.background and pictures.rings():
             write_passes(job, result, names=("Combined",))
             engine.update_result(result)
-            interval *= _UPDATE_GROWTH
-            next_update = time.monotonic() + interval
 
 
-def _statistics(state):
+class _Clock:
+    """Rings every `interval` seconds; each time `growth` times later."""
+
+    def __init__(self, interval, growth=1.0):
+        self._interval, self._growth = interval, growth
+        self._next = time.monotonic() + interval
+
+    def rings(self):
+        if time.monotonic() < self._next:
+            return False
+        self._interval *= self._growth
+        self._next = time.monotonic() + self._interval
+        return True
+
+
+def _statistics(state, spp):
     left = state.seconds_left
     remaining = "" if left is None else f" | Remaining {int(left) // 60:02d}:{int(left) % 60:02d}"
-    return f"{state.stage} {state.fraction:.0%}{remaining}"
+    return f"Sample {int(state.fraction * spp)}/{spp}{remaining}"
 
 
 def _say(notes):
