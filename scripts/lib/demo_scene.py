@@ -17,7 +17,7 @@ from velour.native import images, render_job
 
 SIZE = (640, 480)
 SAMPLES, BOUNCES = 64, 1
-WORLD, WORLD_ROTATION, WORLD_STRENGTH = "forest.exr", 100.0, 1.0
+WORLD, WORLD_ROTATION, WORLD_STRENGTH = "courtyard.exr", 250.0, 0.7
 
 PLOT_REDUCTION = 4  # of the picture's sides
 PLOT_REFERENCE_SAMPLES = 2048
@@ -54,13 +54,19 @@ def _empty_scene() -> bpy.types.Scene:
 
 
 def _add_subject() -> bpy.types.Object:
-    rotation = (math.radians(-35), 0, math.radians(20))
-    bpy.ops.mesh.primitive_monkey_add(size=2.0, location=(0, 0, 0.98), rotation=rotation)
+    rotation = (math.radians(-25), 0, math.radians(30))
+    bpy.ops.mesh.primitive_monkey_add(size=2.0, rotation=rotation)
     subject = bpy.context.object
     smooth = subject.modifiers.new("Smooth", "SUBSURF")
     smooth.levels = smooth.render_levels = 3
     bpy.ops.object.shade_smooth()
+    subject.location.z = -_lowest_point(subject)
     return subject
+
+
+def _lowest_point(subject: bpy.types.Object) -> float:
+    evaluated = subject.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return min((evaluated.matrix_world @ vertex.co).z for vertex in evaluated.data.vertices)
 
 
 def _add_ground() -> None:
@@ -75,9 +81,9 @@ def _add_ground() -> None:
 
 def _add_camera(scene: bpy.types.Scene) -> None:
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.location = (1.1, -5.2, 2.0)
-    camera.rotation_euler = (Vector((0, 0, 0.95)) - camera.location).to_track_quat("-Z", "Y").to_euler()
-    camera.data.lens = 60
+    camera.location = (0.6, -6.4, 1.2)
+    camera.rotation_euler = (Vector((0, 0, 0.8)) - camera.location).to_track_quat("-Z", "Y").to_euler()
+    camera.data.lens = 72
     scene.collection.objects.link(camera)
     scene.camera = camera
 
