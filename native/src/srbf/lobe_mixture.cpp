@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "sphere/discrete_choice.h"
 #include "sphere/frame.h"
 #include "sphere/warp.h"
 
@@ -55,18 +56,6 @@ void LobeMixture::finish(float defensive_share) {
 
 namespace {
 
-/// Index of the first of `n` increasing numbers above `u`, the last one if none. Bisection without a branch
-/// to predict.
-int first_above(const float* cdf, int n, double u) {
-  int first = 0;
-  while (n > 1) {
-    const int half = n / 2;
-    first = cdf[first + half - 1] <= u ? first + half : first;
-    n -= half;
-  }
-  return first;
-}
-
 Vec3 sample_lobe(const LobeMixture& mixture, int j, double u_zenith, float u_azimuth) {
   const auto d = static_cast<float>(kernel_sample(mixture.kernel, mixture.bandwidth[j], u_zenith));
   const float sine = std::sqrt(d * (2 - d));
@@ -78,19 +67,15 @@ Vec3 sample_lobe(const LobeMixture& mixture, int j, double u_zenith, float u_azi
 }  // namespace
 
 Vec3 sample_mixture(const LobeMixture& mixture, const Vec2& u) {
-  // Middle of the 24-bit step: what is left of the number after two choices is then never 0, which would be a
-  // lobe's antipode. In double, because each choice stretches the steps by the inverse of its probability.
-  double rest = u.x + 0x1p-25;
+  double rest = middle_of_step(u.x);
   const double share = mixture.cosine_share;
   if (rest < share) {
     const float u_cosine = std::min(static_cast<float>(rest / share), 1 - 0x1p-24f);
     return sample_cosine_hemisphere({u_cosine, u.y});
   }
   rest = (rest - share) / (1 - share);
-  const int j = first_above(mixture.cdf, mixture.count, rest);
-  const double below = j > 0 ? mixture.cdf[j - 1] : 0.0;
-  const double u_zenith = (rest - below) / (mixture.cdf[j] - below);
-  return sample_lobe(mixture, j, std::clamp(u_zenith, 0.0, 1 - 0x1p-53), u.y);
+  const int lobe = choose_index(mixture.cdf, mixture.count, rest);
+  return sample_lobe(mixture, lobe, rest, u.y);
 }
 
 }  // namespace velour
