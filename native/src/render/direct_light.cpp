@@ -14,13 +14,20 @@ bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 
 }  // namespace
 
+/// A direction that brings nothing costs nothing further: n counts it, the batch does not hold it.
+void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl_world) {
+  const Vec3 wl = vertex.frame.to_local(wl_world);
+  if (!(wl.z > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return;
+  local_.push(wl);
+  world_.push(wl_world);
+}
+
 void DirectLight::draw_from_surface(const Vertex& vertex, int count, RandomStream& random) {
   if (count == 0) return;
   const Vec2 shift = random.next2();
   for (int i = 0; i < count; ++i) {
     const Vec3 wl = sample_surface(sampling_, vertex, prepared_, lattice_point(i, count, shift));
-    local_.push(wl);
-    world_.push(vertex.frame.to_world(wl));
+    keep_if_lit(vertex, vertex.frame.to_world(wl));
   }
 }
 
@@ -30,12 +37,8 @@ void DirectLight::draw_from_lights(const Vertex& vertex, int count, RandomStream
   Vec2 u[DirectionBatch::kCapacity];
   for (int i = 0; i < count; ++i) u[i] = lattice_point(i, count, shift);
   lighting_.sample(vertex.position, {u, static_cast<size_t>(count)}, towards_light_);
-  for (int i = 0; i < count; ++i) {
-    Vec3 wl_world = towards_light_.get(i);
-    if (wl_world == Vec3(0.0f)) wl_world = -vertex.frame.z;  // stands for no light: below the horizon
-    world_.push(wl_world);
-    local_.push(vertex.frame.to_local(wl_world));
-  }
+  // A zero vector (a lamp's dark side) is not above the horizon.
+  for (int i = 0; i < count; ++i) keep_if_lit(vertex, towards_light_.get(i));
 }
 
 void DirectLight::draw(const Vertex& vertex, int directions, RandomStream& random) {
@@ -50,37 +53,34 @@ void DirectLight::draw(const Vertex& vertex, int directions, RandomStream& rando
   world_.pad();
 }
 
-void DirectLight::add_sharp(const Vertex& vertex, RandomStream& random) {
+void DirectLight::draw_sharp(const Vertex& vertex, RandomStream& random) {
   const auto lamps = lighting_.sharp();
-  sharp_count_ = static_cast<int>(std::min<size_t>(lamps.size(), kSharpLamps));
   const bool all = lamps.size() <= kSharpLamps;
-  for (int i = 0; i < sharp_count_; ++i) {
+  const int count = all ? static_cast<int>(lamps.size()) : kSharpLamps;
+  sharp_count_ = 0;
+  for (int i = 0; i < count; ++i) {
     float probability = 1.0f;
     const size_t chosen = all ? static_cast<size_t>(i) : lighting_.choose_sharp(random.next(), probability);
     const Lamp::Irradiance light = lamps[chosen].irradiance(vertex.position);
+    const Vec3 wl = vertex.frame.to_local(light.direction);
+    if (!(wl.z > 0.0f) || !(glm::dot(light.direction, vertex.geometric_normal) > 0.0f)) continue;
     const float share = all ? 1.0f : 1.0f / (kSharpLamps * probability);
-    sharp_[i] = {&lamps[chosen], light.distance, share * light.perpendicular};
-    local_.push(vertex.frame.to_local(light.direction));
+    sharp_[sharp_count_++] = {&lamps[chosen], light.distance, share * light.perpendicular};
+    local_.push(wl);
   }
 }
 
-void DirectLight::evaluate(const Vertex& vertex, int directions) {
-  local_.pad();
-  vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
-  if (directions == 0) return;
+/// Density of every drawn direction under the strategy, and from it what its light counts.
+void DirectLight::weigh(const Vertex& vertex, int directions) {
   lamp_hits_.clear();
+  if (world_.count == 0) return;
   lighting_.look_up(vertex.position, world_, environment_, light_pdf_, lamp_hits_);
-  if (strategy_ != Strategy::light) {
-    const int all = local_.count;
-    local_.count = directions;
-    surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
-    local_.count = all;
-  }
-  for (int i = 0; i < directions; ++i) {
+  if (strategy_ != Strategy::light) surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
+  for (int i = 0; i < world_.count; ++i) {
     float density = strategy_ == Strategy::light ? light_pdf_.v[i] : surface_pdf_.v[i];
     if (strategy_ == Strategy::mis) density = 0.5f * (density + light_pdf_.v[i]);
-    weight_[i] =
-        density > 0.0f || std::isnan(density) ? local_.z[i] / (static_cast<float>(directions) * density) : 0.0f;
+    // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
+    weight_[i] = density == 0.0f ? 0.0f : local_.z[i] / (static_cast<float>(directions) * density);
   }
 }
 
@@ -106,28 +106,23 @@ void DirectLight::queue(const Vertex& vertex, const Receiver& receiver, int dire
 
 void DirectLight::gather(const Vertex& vertex, int directions, RandomStream& random, const Receiver& receiver,
                          ShadowQueue& shadows, std::vector<CameraSample>& samples) {
-  if (!lighting_.has_extended()) directions = 0;
-  draw(vertex, directions, random);
-  add_sharp(vertex, random);
+  draw(vertex, lighting_.has_extended() ? directions : 0, random);
+  draw_sharp(vertex, random);
   if (local_.count == 0) return;
-  evaluate(vertex, directions);
+  local_.pad();
+  vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
+  weigh(vertex, directions);
 
-  const Vec3 up = vertex.frame.to_local(vertex.geometric_normal);
-  // Above both the shading horizon and the surface itself.
-  const auto lit = [&](int i) { return local_.z[i] > 0.0f && glm::dot(local_.get(i), up) > 0.0f; };
-  for (int i = 0; i < directions; ++i) {
-    if (weight_[i] == 0.0f || !lit(i)) continue;
+  for (int i = 0; i < world_.count; ++i) {
     queue(vertex, receiver, i, weight_[i] * environment_.get(i), std::numeric_limits<float>::infinity(), true, shadows,
           samples);
   }
   for (const LampHit& hit : lamp_hits_) {
-    if (directions == 0 || weight_[hit.direction] == 0.0f || !lit(hit.direction)) continue;
     queue(vertex, receiver, hit.direction, weight_[hit.direction] * hit.lamp->radiance(), hit.distance,
           hit.lamp->casts_shadow(), shadows, samples);
   }
   for (int k = 0; k < sharp_count_; ++k) {
-    const int i = directions + k;
-    if (!lit(i)) continue;
+    const int i = world_.count + k;
     queue(vertex, receiver, i, local_.z[i] * sharp_[k].irradiance, sharp_[k].distance, sharp_[k].lamp->casts_shadow(),
           shadows, samples);
   }

@@ -53,10 +53,11 @@ class DirectLight {
 
  private:
   void draw(const Vertex& vertex, int directions, RandomStream& random);
+  void keep_if_lit(const Vertex& vertex, const Vec3& wl_world);
   void draw_from_lights(const Vertex& vertex, int count, RandomStream& random);
   void draw_from_surface(const Vertex& vertex, int count, RandomStream& random);
-  void add_sharp(const Vertex& vertex, RandomStream& random);
-  void evaluate(const Vertex& vertex, int directions);
+  void draw_sharp(const Vertex& vertex, RandomStream& random);
+  void weigh(const Vertex& vertex, int directions);
   void queue(const Vertex& vertex, const Receiver& receiver, int direction, Rgb light, float far, bool casts_shadow,
              ShadowQueue& shadows, std::vector<CameraSample>& samples);
   Rgb reflectance(const Vertex& vertex, int direction) const;
@@ -73,11 +74,13 @@ class DirectLight {
   };
 
   PreparedBrdf prepared_;
-  DirectionBatch local_, world_;  // local_ goes on with the directions of sharp lamps
+  // Those drawn directions that can bring light: above both the shading horizon and the surface itself. local_ goes on
+  // with the directions of sharp lamps.
+  DirectionBatch local_, world_;
   DirectionBatch towards_light_;
   RgbBatch f_, environment_;
   ScalarBatch material_pdf_, light_pdf_, surface_pdf_;
-  float weight_[DirectionBatch::kCapacity];  // cos / (n p); 0: the direction is not used
+  float weight_[DirectionBatch::kCapacity];  // cos / (n p)
   std::vector<LampHit> lamp_hits_;
   Sharp sharp_[kSharpLamps];
   int sharp_count_ = 0;

@@ -15,6 +15,7 @@ constexpr float kUniformPdf = 0.25f / kPi;
 void check(const EquirectangularPixels& p, float strength, const Mat3& world_to_image) {
   const auto fail = [](const char* sentence) { throw Error(Status::bad_data, sentence); };
   if (p.width <= 0 || p.height <= 0) fail("The world's image has no pixels.");
+  if (p.width > 65535 || p.height > 65535) fail("The world's image is more than 65535 pixels wide or high.");
   if (p.channels != 1 && p.channels != 3 && p.channels != 4) fail("The world's image needs 1, 3 or 4 channels.");
   const size_t count = static_cast<size_t>(p.width) * static_cast<size_t>(p.height) * static_cast<size_t>(p.channels);
   if (p.values.size() != count) fail("The world's image has another number of pixels than its size says.");

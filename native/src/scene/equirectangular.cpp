@@ -132,7 +132,7 @@ void EquirectangularImage::sample(std::span<const Vec2> u, DirectionBatch& world
 uint64_t EquirectangularImage::bytes() const {
   return texels_.size() * sizeof(EnvironmentTexel) +
          (row_node_.size() + marginal_cdf_.size() + row_cdf_.size()) * sizeof(float) +
-         (marginal_guide_.size() + row_guide_.size()) * sizeof(uint32_t);
+         (marginal_guide_.size() + row_guide_.size()) * sizeof(uint16_t);
 }
 
 }  // namespace velour

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/environment.h"
+#include "scene/piecewise_linear.h"
 
 namespace velour {
 
@@ -14,15 +15,6 @@ struct alignas(16) EnvironmentTexel {
   float r, g, b;
   float node;  // luminance(rgb) sin(theta of the row's centre)
 };
-
-/// Piecewise-linear density over equal cells, sampled by inversion: monotone in u, so a stratified u stays stratified.
-/// `cdf` has a value at each of the `cells` + 1 edges; `guide[k]` is the first cell whose upper edge exceeds
-/// k / cells, so that the search takes O(1) steps on average (Chen and Asau 1974).
-int find_cell(const float* cdf, const uint32_t* guide, int cells, float u);
-/// Fills cdf [cells + 1] and guide [cells] from the masses of the cells; returns their sum. All zero: uniform.
-double build_cells(const std::vector<double>& mass, float* cdf, uint32_t* guide);
-/// Where in [0, 1] the density that runs linearly from `a` to `b` reaches the share `u` of its mass.
-float invert_linear(float a, float b, float u);
 
 class EquirectangularImage {
  public:
@@ -59,7 +51,7 @@ class EquirectangularImage {
   // centres of rows i - 1 and i, the first and the last ending at a pole.
   std::vector<float> row_node_;  // mean node of each row
   std::vector<float> marginal_cdf_, row_cdf_;
-  std::vector<uint32_t> marginal_guide_, row_guide_;
+  std::vector<uint16_t> marginal_guide_, row_guide_;
 };
 
 /// Texel coordinates of a batch of world directions: column cell and the place in it, likewise rows.
