@@ -166,14 +166,14 @@ def _curves(scene: bpy.types.Scene) -> dict[str, list[tuple[float, float]]]:
     from velour.export import Notes, export_scene
     from velour.export.camera import final_view
 
-    width, height = (side // PLOT_REDUCTION for side in SIZE)
+    scene.render.resolution_x, scene.render.resolution_y = (side // PLOT_REDUCTION for side in SIZE)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    scene.render.resolution_x, scene.render.resolution_y = width, height
-    with export_scene(depsgraph, final_view(depsgraph, width, height, Notes()), Notes()) as exported:
+    view = final_view(depsgraph, Notes())
+    with export_scene(depsgraph, view, Notes()) as exported:
 
         def picture(strategy: str, samples: int, seed: int) -> tuple[np.ndarray, float]:
             options = {"strategy": strategy, "spp": samples, "seed": seed}
-            with render_job(exported, width=width, height=height, **options) as job:
+            with render_job(exported, width=view.width, height=view.height, **options) as job:
                 seconds = job.run()["seconds"]
                 return job.read_pass("Combined")[..., :3].copy(), seconds
 
