@@ -1,5 +1,5 @@
 // Densities on the unit square, bilinear between the nodes of a grid, and the warp that each defines
-// [Dupuy & Jakob 2018, section 5 and supplement].
+// [RGL].
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@
 
 namespace velour {
 
-/// Nodes over half and difference angles (Rusinkiewicz 1998), all in radians:
+/// Nodes over half and difference angles [R98], all in radians:
 ///   theta_h(i) = pi/2 (i / theta_h)^theta_h_power   dense about the mirror direction, where highlights are sharp
 ///   phi_h(j)   = 2 pi / folds * j / phi_h           period 2 pi / folds
 ///   theta_d(k) = pi/2 k / theta_d

@@ -1,4 +1,4 @@
-// Half and difference angles of a direction pair (Rusinkiewicz 1998).
+// Half and difference angles of a direction pair [R98].
 #pragma once
 
 #include "brdf/fast_atan2.h"

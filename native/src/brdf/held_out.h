@@ -23,8 +23,7 @@ inline bool one_in_eight(uint64_t stream, uint64_t index) { return mix64(mix64(s
 /// Light direction `index` of a fit's own set of lights.
 inline bool held_out_light(uint64_t index) { return detail::one_in_eight(1, index); }
 
-/// Sample `index` of a scattered measurement, in the order of its file. Copies of a sample that a measurement makes by
-/// symmetry share the index.
+/// Sample `index` of Measurement::samples(). Copies of a sample that a measurement makes by symmetry share the index.
 inline bool held_out_sample(uint64_t index) { return detail::one_in_eight(2, index); }
 
 }  // namespace velour

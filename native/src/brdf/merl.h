@@ -1,4 +1,4 @@
-// The MERL table: isotropic, 90 x 90 x 180 nodes over half and difference angles (Matusik et al. 2003).
+// The MERL table: isotropic, 90 x 90 x 180 nodes over half and difference angles [MERL].
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace velour {
 
-/// Node (i, j, k): theta_h = i^2 / 90 degrees, theta_d = j degrees, phi_d = k degrees (Rusinkiewicz 1998), so that both
+/// Node (i, j, k): theta_h = i^2 / 90 degrees, theta_d = j degrees, phi_d = k degrees [R98], so that both
 /// the mirror peak and grazing angles have nodes. k has period 180 by reciprocity.
 struct MerlGrid {
   static constexpr int theta_h = 90, theta_d = 90, phi_d = 180;

@@ -1,4 +1,4 @@
-// The adaptive parameterisation of the RGL material database [Dupuy & Jakob 2018].
+// The adaptive parameterisation of the RGL material database [RGL].
 #pragma once
 
 #include <memory>

@@ -38,30 +38,33 @@ TensorContainer::TensorContainer(std::span<const uint8_t> bytes, std::string nam
     : name_(std::move(name)), file_(bytes) {
   ByteReader in(bytes, name_);
   const uint32_t count = read_header(in);
-  for (uint32_t i = 0; i < count; ++i) {
-    const auto letters = in.take(in.number<uint16_t>("length of a field name"), "field name");
-    const std::string field(letters.begin(), letters.end());
-    const auto rank = in.number<uint16_t>("rank of field " + field);
-    const auto code = in.number<uint8_t>("type of field " + field);
-    const auto offset = in.number<uint64_t>("offset of field " + field);
-    if (type_size(code) == 0) fail(field, "has type " + std::to_string(code) + ", which does not exist.");
-    if (rank > kMaxRank) fail(field, "has " + std::to_string(rank) + " dimensions, more than 16.");
-    TensorField& entry = fields_[field];
-    if (entry.bytes.data() != nullptr) fail(field, "occurs twice.");
-    entry.type = static_cast<TensorType>(code);
-    uint64_t size = type_size(code);
-    for (uint16_t d = 0; d < rank; ++d) {
-      const auto extent = entry.shape.emplace_back(in.number<uint64_t>("shape of field " + field));
-      if (extent == 0 || size > bytes.size() / extent)
-        fail(field, "has an extent of " + std::to_string(extent) + " in dimension " + std::to_string(d) +
-                        ", but the file has " + std::to_string(bytes.size()) + " bytes; it is truncated or damaged.");
-      size *= extent;
-    }
-    ByteReader values = in;
-    values.seek(offset, "offset of field " + field);
-    entry.bytes = values.take(size, "field " + field);
-  }
+  for (uint32_t i = 0; i < count; ++i) read_entry(in);
   check_layout(in.position());
+}
+
+void TensorContainer::read_entry(ByteReader& in) {
+  const auto letters = in.take(in.number<uint16_t>("length of a field name"), "field name");
+  const std::string field(letters.begin(), letters.end());
+  const auto rank = in.number<uint16_t>("rank of field " + field);
+  const auto code = in.number<uint8_t>("type of field " + field);
+  const auto offset = in.number<uint64_t>("offset of field " + field);
+  if (type_size(code) == 0) fail(field, "has type " + std::to_string(code) + ", which does not exist.");
+  if (rank > kMaxRank) fail(field, "has " + std::to_string(rank) + " dimensions, more than 16.");
+  const auto [place, is_new] = fields_.try_emplace(field);
+  if (!is_new) fail(field, "occurs twice.");
+  TensorField& entry = place->second;
+  entry.type = static_cast<TensorType>(code);
+  uint64_t size = type_size(code);
+  for (uint16_t d = 0; d < rank; ++d) {
+    const auto extent = entry.shape.emplace_back(in.number<uint64_t>("shape of field " + field));
+    if (extent == 0 || size > file_.size() / extent)
+      fail(field, "has an extent of " + std::to_string(extent) + " in dimension " + std::to_string(d) +
+                      ", but the file has " + std::to_string(file_.size()) + " bytes; it is truncated or damaged.");
+    size *= extent;
+  }
+  ByteReader values = in;
+  values.seek(offset, "offset of field " + field);
+  entry.bytes = values.take(size, "field " + field);
 }
 
 /// A field that lies over another or over the header is a lie, even if it can be read.

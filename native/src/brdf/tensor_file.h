@@ -9,6 +9,8 @@
 
 namespace velour {
 
+class ByteReader;
+
 /// Codes of the file.
 enum class TensorType : uint8_t {
   uint8 = 1,
@@ -46,6 +48,7 @@ class TensorContainer {
   [[noreturn]] void fail(const std::string& field, const std::string& what) const;
 
  private:
+  void read_entry(ByteReader& in);
   void check_layout(uint64_t header_end) const;
 
   std::string name_;
