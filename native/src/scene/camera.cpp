@@ -51,7 +51,9 @@ Camera Camera::framing(const Bounds& bounds, float aspect, int up_axis) {
   const Vec3 half = 0.5f * (bounds.high - bounds.low);
   const float tall = up_axis == 1 ? half.y : half.z;
   const float deep = up_axis == 1 ? half.z : half.y;
-  const float fit = std::max({tall, half.x / aspect, 1e-6f * bounds.radius(), 1e-20f});
+  // A box without extent still needs a distance that float32 can tell from none.
+  const float least = 1e-3f * std::max(glm::length(bounds.center()), 1.0f);
+  const float fit = bounds.radius() > 0.0f ? std::max({tall, half.x / aspect, 1e-6f * bounds.radius()}) : least;
   const float distance = deep + kMargin * fit / std::tan(0.5f * kFov);
   return look_at(bounds.center() + distance * towards_viewer, bounds.center(), up, kFov, aspect);
 }
