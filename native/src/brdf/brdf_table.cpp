@@ -29,7 +29,7 @@ std::string number_text(double value) {
 
 double number_attribute(const TensorFile& file, const std::string& key, double low, double high,
                         const std::string& path) {
-  const std::string& text = attribute(file, key, path);
+  const std::string text = attribute(file, key, path);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
@@ -42,7 +42,7 @@ void check_kind(const TensorFile& file, const std::string& path) {
   if (attribute(file, "velour.kind", path) != kKind)
     throw Error(Status::bad_data,
                 path + ": velour.kind is '" + file.attributes.at("velour.kind") + "', not a BRDF table.");
-  const std::string& version = attribute(file, "velour.format_version", path);
+  const std::string version = attribute(file, "velour.format_version", path);
   if (version != kVersion)
     throw Error(Status::unsupported,
                 path + ": velour.format_version is '" + version + "'; this Velour reads version 1, use a newer one.");

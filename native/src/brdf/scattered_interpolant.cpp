@@ -93,7 +93,7 @@ ScatteredInterpolant::~ScatteredInterpolant() = default;
 std::optional<Rgb> ScatteredInterpolant::f(const Vec3& wl, const Vec3& wv) const {
   const Place here = place_of(wl, wv);
   Nearest nearest;
-  index_->tree->knnSearch(here.regression.data(), kCount, nearest.sample.data(), nearest.distance_sq.data());
+  (void)index_->tree->knnSearch(here.regression.data(), kCount, nearest.sample.data(), nearest.distance_sq.data());
   const bool in_reach = std::any_of(nearest.sample.begin(), nearest.sample.end(), [&](uint32_t n) {
     return distance_sq(here.reach, index_->places[n].reach) <= kReach * kReach;
   });
