@@ -1,9 +1,11 @@
 // Independent pieces of work over threads.
 #pragma once
 
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 
@@ -17,7 +19,9 @@ namespace velour {
 template <class Work>
 void parallel_for_each(size_t count, int threads, Progress& progress, const Work& work) {
   std::atomic<size_t> done{0};
-  oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
+  // More threads than processors gain nothing, and make oneTBB print a warning.
+  const int processors = oneapi::tbb::info::default_concurrency();
+  oneapi::tbb::task_arena arena(threads > 0 ? std::min(threads, processors) : processors);
   arena.execute([&] {
     const auto piece = [&](size_t i) {
       progress.check();

@@ -46,9 +46,9 @@ std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const
   std::vector<ViewPath> paths(slices.size());
   parallel_for_each(slices.size(), options.threads, progress, [&](size_t i) {
     const double theta_v = std::acos(std::min(slices[i].wv.z, 1.0f));
-    const SliceFitOptions slice_options{options.kernel, options.max_lobes,
-                                        kGoalShare * tolerance_at(options.tolerance, theta_v)};
-    paths[i] = {fit_slice(SliceSamples(slices[i].samples), slice_options, progress), slices[i].wv.z};
+    const SliceSamples samples(slices[i].samples);
+    const double goal = std::hypot(kGoalShare * tolerance_at(options.tolerance, theta_v), samples.gamut_error());
+    paths[i] = {fit_slice(samples, {options.kernel, options.max_lobes, goal}, progress), slices[i].wv.z};
   });
   return paths;
 }
@@ -99,11 +99,17 @@ std::shared_ptr<ScatteredBrdf> assemble(const std::vector<MeasuredSlice>& slices
 
 void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<std::string>& warnings) {
   size_t total = 0, outside = 0;
-  for (const MeasuredSlice& s : slices) total += s.samples.size(), outside += s.out_of_gamut;
+  double cost = 0;
+  for (const MeasuredSlice& s : slices) {
+    total += s.samples.size();
+    outside += s.out_of_gamut;
+    cost = std::max(cost, SliceSamples(s.samples).gamut_error());
+  }
   if (outside == 0) return;
   warnings.push_back(std::to_string(outside) + " of " + std::to_string(total) +
                      " fitted values have a negative channel (a colour outside Rec. 709), which non-negative "
-                     "coefficients cannot follow");
+                     "coefficients cannot follow; alone they cost a relative L2 of up to " +
+                     std::to_string(cost));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-constexpr size_t kCoarseStride = 4;  // candidates and their scores use one sample in four
+constexpr size_t kCoarseStride = 8;  // candidates and their scores use one sample in eight
 constexpr double kFirstSharpness = 0.5, kSharpnessRatio = 2.5;
 constexpr int kStepsPerLobe = 8, kFinalSteps = 40, kSwapRounds = 6;
 

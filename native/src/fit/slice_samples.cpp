@@ -18,7 +18,13 @@ SliceSamples::SliceSamples(std::span<const SliceSample> samples) : count_(sample
     }
     const double y = luminance(s.value);
     luminance_energy_ += s.weight * y * y;
+    const double clamped = luminance(glm::max(s.value, Rgb(0))) - y;
+    gamut_error_sq_ += s.weight * clamped * clamped;
   }
+}
+
+double SliceSamples::gamut_error() const {
+  return luminance_energy_ > 0 ? std::sqrt(gamut_error_sq_ / luminance_energy_) : 0.0;
 }
 
 }  // namespace velour

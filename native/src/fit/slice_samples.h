@@ -41,13 +41,16 @@ class SliceSamples {
 
   /// Sum of weight x luminance(f cos)^2.
   double luminance_energy() const { return luminance_energy_; }
+  /// Relative L2 of the luminance that is left when every channel is fitted exactly but for its negative values, which
+  /// non-negative coefficients cannot follow: no fit gets below it, and lobes spent on it are wasted.
+  double gamut_error() const;
   /// Sum of weight x f cos^2 of one channel.
   double energy(int c) const { return energy_[c]; }
 
  private:
   size_t count_;
   AlignedFloats x_, y_, z_, sqrt_weight_, target_[3];
-  double luminance_energy_ = 0, energy_[3] = {0, 0, 0};
+  double luminance_energy_ = 0, gamut_error_sq_ = 0, energy_[3] = {0, 0, 0};
 };
 
 }  // namespace velour

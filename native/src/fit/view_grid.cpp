@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr int kRings = 72, kSpokes = 48;
+constexpr int kRings = 96, kSpokes = 64;
 constexpr double kMeridianStep = 2.0, kMeridianEnd = 89.0;  // degrees
 constexpr int kHemisphereViews = 400;                       // a spacing of about 7 degrees
 // A little more than the margin, so that no rounding brings a view inside.

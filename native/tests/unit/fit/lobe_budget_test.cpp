@@ -7,7 +7,7 @@ namespace {
 
 ViewPath path_of(std::vector<double> errors, double importance) {
   ViewPath view{{}, importance};
-  for (const double e : errors) view.path.push_back({{}, e});
+  for (const double e : errors) view.path.push_back({{}, Vec3d(0), e});
   return view;
 }
 

@@ -141,11 +141,10 @@ TEST(SliceSolver, TurnsWithItsData) {
   a.set_lobes(start);
   for (LobeShape& s : start) s.center = glm::normalize(glm::dmat3(turn) * s.center);
   b.set_lobes(start);
-  a.refine(5, 0, 0);
-  b.refine(5, 0, 0);
-  EXPECT_NEAR(a.objective(), b.objective(), 1e-3 * a.objective());
-  for (size_t j = 0; j < start.size(); ++j) {
-    EXPECT_NEAR(glm::distance(glm::dmat3(turn) * a.shapes()[j].center, b.shapes()[j].center), 0, 1e-3);
+  a.refine(60, 0, 0);
+  b.refine(60, 0, 0);
+  for (size_t j = 0; j < 2; ++j) {  // the third is so broad that its centre hardly matters
+    EXPECT_NEAR(glm::distance(glm::dmat3(turn) * a.shapes()[j].center, b.shapes()[j].center), 0, 1e-4);
     EXPECT_NEAR(a.shapes()[j].sharpness / b.shapes()[j].sharpness, 1, 1e-3);
   }
 }
@@ -162,7 +161,22 @@ TEST(SliceSolver, NoLobeHidesBetweenSamples) {
   EXPECT_LE(solver.shapes()[0].sharpness, solver.max_sharpness(solver.shapes()[0].center) * (1 + 1e-9));
 }
 
-TEST(SliceSolver, RemovesWhatContributesNothing) {
+TEST(SliceSolver, TheCosineTermTakesWhatIsDiffuse) {
+  std::vector<SliceSample> samples;
+  for (const Vec3& w : hemisphere_fibonacci(1000)) {
+    const double lobe = shape_value(Kernel::gaussian, {unit(0.5, 0, 0.8), 60}, Vec3d(w));
+    samples.push_back({w, 2 * kPi / 1000, Rgb(0.3f, 0.2f, 0.1f) * w.z + Rgb(static_cast<float>(lobe))});
+  }
+  const SliceSamples slice(samples);
+  const Progress progress;
+  SliceSolver solver(Kernel::gaussian, slice, progress);
+  solver.set_lobes({{unit(0.5, 0.05, 0.8), 40}});
+  solver.refine(100, 0, 0);
+  EXPECT_LT(glm::distance(solver.diffuse(), Vec3d(0.3, 0.2, 0.1)), 1e-4);
+  EXPECT_NEAR(solver.lobes()[0].peak.x, 1, 1e-3);
+}
+
+TEST(SliceSolver, KnowsTheLobeThatMattersLeast) {
   const SliceSamples samples = samples_of(Kernel::gaussian, {three_lobes()[0]}, 1000);
   const Progress progress;
   SliceSolver solver(Kernel::gaussian, samples, progress);
