@@ -13,8 +13,10 @@ double thread_seconds() {
 }
 
 void RayLog::add(std::span<const Ray> rays, Kind kind) {
+  const double start = thread_seconds();
   rays_.insert(rays_.end(), rays.begin(), rays.end());
   batches_.push_back({rays.size(), kind});
+  seconds_ += thread_seconds() - start;
 }
 
 double RayLog::replay(const EmbreeScene& scene) const {

@@ -18,6 +18,8 @@ class RayLog {
   void reserve(size_t rays) { rays_.reserve(rays); }
   void add(std::span<const Ray> rays, Kind kind);
   size_t size() const { return rays_.size(); }
+  /// Time spent in add(), which is no part of a render.
+  double seconds() const { return seconds_; }
   /// Traces the very same rays, in the same order and batches. Seconds of thread_seconds().
   double replay(const EmbreeScene& scene) const;
 
@@ -28,6 +30,7 @@ class RayLog {
   };
   std::vector<Ray> rays_;
   std::vector<Batch> batches_;
+  double seconds_ = 0;
 };
 
 }  // namespace velour

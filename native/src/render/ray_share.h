@@ -27,7 +27,7 @@ class RayShare {
     Record record = new_record(rect, count);
     const double start = thread_seconds();
     work(&record.log);
-    record.seconds = thread_seconds() - start;
+    record.seconds = thread_seconds() - start - record.log.seconds();
     keep(std::move(record));
   }
 

@@ -52,10 +52,10 @@ using Regions = std::array<test::RunningMean, kRegions>;
 /// Means over the four quarters of the picture, by independent renders.
 Regions measure(const Scene& scene, Strategy strategy, int bounces) {
   Regions regions;
-  RenderOptions options = test::small_options(strategy, 64);
+  RenderOptions options = test::small_options(strategy, 128);
   options.bounces = bounces;
-  for (uint64_t seed = 0; seed < 40; ++seed) {
-    options.seed = seed * 16 + static_cast<uint64_t>(strategy);
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    options.seed = seed * 6 + static_cast<uint64_t>(strategy);
     const auto pixels = test::rendered(scene, options);
     std::array<double, kRegions> sums{};
     for (size_t i = 0; i < 64; ++i) sums[2 * (i / 32) + i % 8 / 4] += pixels[4 * i + 1] / 16;
