@@ -18,7 +18,7 @@
 namespace velour {
 namespace {
 
-constexpr uint64_t kDefaultRays = 24'000'000;
+constexpr uint64_t kDefaultRays = 12'000'000;
 constexpr uint64_t kMaxRays = 100'000'000'000;
 constexpr uint64_t kSamplesPerTile = 187'500;
 constexpr uint64_t kMinBatches = 8, kMaxBatches = 32;  // few batches estimate errors badly

@@ -47,7 +47,7 @@ struct Measured {
   MicrosurfaceBrdf brdf;
 };
 
-/// Smith's Lambda of a Beckmann surface [Walter et al. 2007, Eq. 26 in the form of Heitz 2014, Eq. 66].
+/// Smith's Lambda of a Beckmann surface (Heitz 2014, JCGT 3(2)).
 double smith_lambda(double alpha, double cos_theta) {
   const double tan_theta = std::sqrt(1 - cos_theta * cos_theta) / cos_theta;
   if (tan_theta < 1e-9) return 0;
