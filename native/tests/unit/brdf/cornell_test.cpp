@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brdf/held_out.h"
 #include "brdf/scattered_interpolant.h"
 #include "measurement_support.h"
 #include "support/test_data.h"
@@ -53,6 +54,24 @@ TEST(Cornell, InterpolatesASmoothBrdf) {
   }
   EXPECT_GT(got.size(), 2900u);
   EXPECT_LT(relative_l2(got, truth), 0.1);
+}
+
+TEST(Cornell, HeldOutSamplesAreNotInterpolated) {
+  const auto measurement = read(small_cornell(400, glossy_grey));
+  const auto unseen = measurement->without_held_out();
+  size_t kept = 0;
+  for (size_t i = 0; i < measurement->samples().size(); ++i) kept += !held_out_sample(i);
+  ASSERT_EQ(unseen->samples().size(), kept);
+  EXPECT_LT(kept, 400u);
+  EXPECT_EQ(unseen->provenance().sha256, measurement->provenance().sha256);
+  // Somewhere the samples that are gone must be missed.
+  float largest = 0;
+  for (const auto& sample : measurement->samples()) {
+    const auto with = test::eval_one(*measurement, sample.wl, sample.wv);
+    const auto without = test::eval_one(*unseen, sample.wl, sample.wv);
+    if (with.second && without.second) largest = std::max(largest, std::abs(with.first.g - without.first.g));
+  }
+  EXPECT_GT(largest, 1e-3f);
 }
 
 TEST(Cornell, InvalidSamplesAreCountedNotUsed) {

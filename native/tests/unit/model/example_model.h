@@ -1,0 +1,43 @@
+// A small model with every field set to something that is not its default.
+#pragma once
+
+#include "model/model.h"
+#include "sphere/directions.h"
+
+namespace velour::test {
+
+inline Model example_model(Kernel kernel = Kernel::gaussian, bool isotropic = true) {
+  ScatteredBrdf brdf;
+  brdf.kernel = kernel;
+  brdf.isotropic = isotropic;
+  brdf.align_views = false;
+  brdf.default_neighbors = isotropic ? 2 : 4;
+  brdf.first_lobe.push_back(0);
+  for (int i = 0; i < 5; ++i) {
+    const float theta = 0.3f * static_cast<float>(i);
+    brdf.views.push_back(direction(theta, isotropic ? 0.0f : static_cast<float>(i)));
+    brdf.diffuse.emplace_back(0.1f, 0.01f * static_cast<float>(i), 0.0f);
+    for (int j = 0; j < i; ++j) {  // the first view has no lobe
+      brdf.center.push_back(direction(0.2f * static_cast<float>(j), theta));
+      brdf.bandwidth.push_back(kernel == Kernel::gaussian ? 3.0f * static_cast<float>(j + 1)
+                                                          : 0.2f + 0.1f * static_cast<float>(j));
+      brdf.coefficient.emplace_back(0.5f, static_cast<float>(j), 1.0f / 3.0f);
+    }
+    brdf.first_lobe.push_back(static_cast<uint32_t>(brdf.center.size()));
+  }
+  Model model;
+  model.body = brdf;
+  model.fit = {.relative_l2 = 1.0 / 3.0,
+               .by_view_angle = {{"5", 0.01}, {"30", 0.02}, {"60", 0.03}, {"75", std::nullopt}, {"85", std::nullopt}},
+               .albedo_by_view_angle = {{"5", 0.4}, {"30", std::nullopt}},
+               .albedo_max = 0.7,
+               .tolerance = 0.02,
+               .seconds = 1.25,
+               .seed = 12345678901234567ull,
+               .all_data = true,
+               .warnings = {"view 60 degrees: relative L2 0.03 exceeds 0.02", "\"quoted\" and accented: \xc3\xa9"}};
+  model.source = {"metal", "merl", std::string(64, 'a')};
+  return model;
+}
+
+}  // namespace velour::test
