@@ -3,7 +3,7 @@
 import bpy
 
 from . import engine, operators, properties, ui
-from .native import VelourError, library
+from .native import library
 
 # Each rank has CLASSES, and attach() / detach() for what is not a class: properties, menu entries, panels.
 _RANKS = (properties, operators, engine, ui)
@@ -30,10 +30,9 @@ def unregister():
 
 def _say_what_is_wrong():
     """A library that cannot be used is one sentence on the console; the preferences show the same one."""
-    try:
-        library.load()
-    except VelourError as error:
-        print(f"Velour: {error}", flush=True)
+    problem = ui.library_state.problem()
+    if problem:
+        print(f"Velour: {problem}", flush=True)
 
 
 def _register_cli_command():

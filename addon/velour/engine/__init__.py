@@ -1,13 +1,14 @@
 """The render engine."""
 
+from . import write_lock
 from .engine import VelourRenderEngine
 
 CLASSES = (VelourRenderEngine,)
 
 
 def attach():
-    """Nothing beside the class."""
+    write_lock.attach()
 
 
 def detach():
-    """Nothing beside the class."""
+    write_lock.detach()

@@ -72,7 +72,7 @@ def read_measurement(image, owner):
 def measurement_path(image, owner):
     """A readable path of a measurement; packed bytes are written to a temporary file first."""
     path = absolute_path(image)
-    if packed_bytes(image) is None:
+    if image.packed_file is None:
         if not os.path.isfile(path):
             raise ExportError(f"{owner}: the measurement {path or image.name!r} is missing; {_FIND}.")
         yield path

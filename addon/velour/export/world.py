@@ -7,7 +7,7 @@ import numpy as np
 from mathutils import Matrix
 
 from .color import bytes_to_working, is_linear_rec709
-from .files import absolute_path, packed_bytes
+from .files import absolute_path
 from .nodes import active_output, source
 from .notes import ExportError
 
@@ -64,7 +64,7 @@ def _add_environment(scene, owner, node, strength, notes):
 
 def _can_read_file(image, path):
     """The library reads the file itself where its numbers are the working space's: no copy here."""
-    plain = image.source == "FILE" and packed_bytes(image) is None and os.path.isfile(path)
+    plain = image.source == "FILE" and image.packed_file is None and os.path.isfile(path)
     linear_file = path.lower().endswith((".exr", ".hdr"))
     return plain and linear_file and is_linear_rec709(image.colorspace_settings.name)
 

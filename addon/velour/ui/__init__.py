@@ -1,15 +1,16 @@
 """Panels and preferences."""
 
-from . import stock_panels
+from . import library_state, stock_panels, summaries
 from .layer_panel import VELOUR_VIEWLAYER_PT_passes
 from .material_panel import VELOUR_MATERIAL_PT_measured, VELOUR_MATERIAL_PT_model, VELOUR_MATERIAL_PT_notes
 from .preferences import VelourPreferences
-from .render_panel import VELOUR_RENDER_PT_library, VELOUR_RENDER_PT_sampling
+from .render_panel import VELOUR_RENDER_PT_film, VELOUR_RENDER_PT_library, VELOUR_RENDER_PT_sampling
 
 CLASSES = (
     VelourPreferences,
     VELOUR_RENDER_PT_library,
     VELOUR_RENDER_PT_sampling,
+    VELOUR_RENDER_PT_film,
     VELOUR_VIEWLAYER_PT_passes,
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_model,
@@ -18,8 +19,10 @@ CLASSES = (
 
 
 def attach():
+    library_state.refresh()
     stock_panels.open_to_engine()
 
 
 def detach():
     stock_panels.close_to_engine()
+    summaries.forget()

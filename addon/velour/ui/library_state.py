@@ -1,20 +1,32 @@
-"""The library's state in words."""
+"""The library's state in words, found out once at registration: drawing must neither wait nor call out."""
 
 from ..native import VelourError, library
+
+_problem = ""
+_lines = ()
+
+
+def refresh():
+    """Opens the library, or learns why that fails."""
+    global _problem, _lines
+    try:
+        library.load()
+        _problem, _lines = "", _describe(library.system())
+    except VelourError as error:
+        _problem, _lines = str(error), ()
 
 
 def problem():
     """One sentence on what is wrong with the library, or "" when it works."""
-    try:
-        library.load()
-        return ""
-    except VelourError as error:
-        return str(error)
+    return _problem
 
 
 def lines():
     """What the preferences show of a library that works."""
-    system = library.system()
+    return _lines
+
+
+def _describe(system):
     embree = system["embree"]
     return (
         f"Library: {library.library_path()}",

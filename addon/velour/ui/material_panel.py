@@ -80,6 +80,9 @@ class VELOUR_MATERIAL_PT_model(_MaterialPanel, bpy.types.Panel):
 
     def draw(self, context):
         info = model_summary(velour_node(context.material).image)
+        if info is None:
+            self.layout.label(text="Reading the model...", icon="TIME")
+            return
         if isinstance(info, str):
             draw_sentence(context, self.layout, info, icon="ERROR")
             self.layout.operator(VELOUR_OT_accept_file.bl_idname)

@@ -1,0 +1,197 @@
+"""The window: panels drawn without an error, a fit in the background with cancel, a render as it grows.
+
+Runs in turns of Blender's event loop: a test is a generator that yields the seconds until its next turn.
+"""
+
+import json
+import sys
+import traceback
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+
+_TURNS_SECONDS = 60
+
+
+def start(folder):
+    """Called by the harness once the window is there."""
+    runner = _Runner(folder, (panels, stock_panels, preferences, fit_and_cancel, fit_and_undo, render))
+    bpy.app.timers.register(runner.turn, first_interval=0.2, persistent=True)  # over file loads
+
+
+class _Runner:
+    def __init__(self, folder, tests):
+        self.folder, self.tests = folder, list(tests)
+        self.report = {"passed": 0, "failed": 0, "skipped": 0, "reasons": []}
+        self.current = None
+
+    def turn(self):
+        """Blender calls this again after the seconds that it returns."""
+        try:
+            if self.current is None:
+                if not self.tests:
+                    self._leave()
+                    return None
+                self.name = self.tests[0].__name__
+                _fresh_file()
+                self.current = self.tests.pop(0)(self.folder)
+            return next(self.current)
+        except StopIteration:
+            self._count("passed")
+        except Exception:
+            traceback.print_exc(file=sys.stdout)
+            self._count("failed")
+        return 0.1
+
+    def _count(self, outcome):
+        print(f"{self.name} ... {outcome}", flush=True)
+        self.report[outcome] += 1
+        self.current = None
+
+    def _leave(self):
+        (self.folder / "report.json").write_text(json.dumps(self.report))
+        bpy.ops.wm.quit_blender()
+
+
+def _fresh_file():
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+
+
+def _window():
+    return bpy.context.window_manager.windows[0]
+
+
+def _override():
+    window = _window()
+    return bpy.context.temp_override(window=window, screen=window.screen)
+
+
+def _show_properties(tab):
+    """A large Properties editor in place of the 3D viewport."""
+    scenes.use_engine()
+    area = max(_window().screen.areas, key=lambda a: a.width * a.height)
+    area.type = "PROPERTIES"
+    yield 0.3  # the tabs exist once the editor has been drawn
+    area.spaces.active.context = tab
+    yield 0.7
+
+
+def _screenshot(folder, name):
+    """[height x width x 3] of what the window shows; a picture of nothing fails."""
+    path = folder / f"{name}.png"
+    with _override():
+        bpy.ops.screen.screenshot(filepath=str(path))
+    pixels = scenes.read(path)[..., :3]
+    assert pixels.std() > 0.02, "the screenshot is uniform"
+    return pixels
+
+
+def _measured_cube():
+    data = inputs.model_bytes(inputs.glossy_measurement())
+    material = scenes.measured_material(data)
+    image = inputs_image()
+    scenes.velour_node(material).velour.measurement = image
+    bpy.context.view_layer.objects["Cube"].active_material = material
+    bpy.context.view_layer.objects.active = bpy.context.view_layer.objects["Cube"]
+    return material
+
+
+def inputs_image():
+    image = bpy.data.images.new("glossy.binary", 1, 1)
+    image.source, image.filepath_raw = "FILE", str(inputs.glossy_measurement())
+    return image
+
+
+def panels(folder):
+    """The material, render and view layer tabs; another tab must give another picture."""
+    _measured_cube()
+    pictures = []
+    for tab in ("RENDER", "VIEW_LAYER", "MATERIAL"):
+        yield from _show_properties(tab)
+        pictures.append(_screenshot(folder, f"tab-{tab.lower()}"))
+    assert np.abs(pictures[0] - pictures[2]).max() > 0.2
+    assert np.abs(pictures[0] - pictures[1]).max() > 0.2
+
+
+def stock_panels(folder):
+    """Blender's own panels for light, camera, world and output, with our engine."""
+    for name, tab in (("Light", "DATA"), ("Camera", "DATA"), ("Cube", "WORLD"), ("Cube", "OUTPUT")):
+        bpy.context.view_layer.objects.active = bpy.context.view_layer.objects[name]
+        yield from _show_properties(tab)
+        _screenshot(folder, f"stock-{name.lower()}-{tab.lower()}")
+
+
+def preferences(folder):
+    area = max(_window().screen.areas, key=lambda a: a.width * a.height)
+    area.type = "PREFERENCES"
+    bpy.context.preferences.active_section = "ADDONS"
+    bpy.context.window_manager.addon_search = "Velour"
+    with _override():
+        bpy.ops.preferences.addon_expand(module=inputs.ADDON)
+    yield 1.0
+    _screenshot(folder, "preferences")
+
+
+def _start_fit(**settings):
+    with _override():
+        assert bpy.ops.velour.fit("INVOKE_DEFAULT", material="Paint", **settings) == {"RUNNING_MODAL"}
+
+
+def fit_and_cancel(folder):
+    """Progress is shown, cancel ends it, and the model stays."""
+    material = _measured_cube()
+    before = scenes.velour_node(material).image.name
+    yield from _show_properties("MATERIAL")
+    _start_fit(tolerance=0.0005, max_lobes=64)
+    yield 0.8
+    assert bpy.context.window_manager.velour.running
+    _screenshot(folder, "fit-running")
+    bpy.ops.velour.cancel_fit()
+    for _ in range(20):
+        yield 0.1
+        if not bpy.context.window_manager.velour.running:
+            break
+    assert not bpy.context.window_manager.velour.running, "the fit goes on"
+    assert scenes.velour_node(material).image.name == before
+
+
+def fit_and_undo(folder):
+    material = _measured_cube()
+    before = scenes.velour_node(material).image.name
+    with _override():
+        bpy.ops.ed.undo_push(message="before")
+    _start_fit(tolerance=0.2, max_lobes=2)
+    for _ in range(10 * _TURNS_SECONDS):
+        yield 0.1
+        if not bpy.context.window_manager.velour.running:
+            break
+    node = scenes.velour_node(bpy.data.materials["Paint"])
+    assert node.image.name != before, "no new model"
+    yield from _show_properties("MATERIAL")
+    _screenshot(folder, "fit-done")
+    with _override():
+        bpy.ops.ed.undo()
+    yield 0.2
+    assert scenes.velour_node(bpy.data.materials["Paint"]).image.name == before
+
+
+def render(folder):
+    """F12 in the window: pictures in between, and the last one is whole."""
+    _measured_cube()
+    scene = scenes.use_engine(samples=1 << 12, size=64)
+    with _override():
+        bpy.ops.render.render("INVOKE_DEFAULT")
+    for _ in range(10 * _TURNS_SECONDS):
+        yield 0.1
+        if not bpy.app.is_job_running("RENDER"):
+            break
+    yield 0.5
+    result = bpy.data.images["Render Result"]
+    path = folder / "result.exr"
+    scene.render.image_settings.file_format = "OPEN_EXR"
+    result.save_render(str(path))
+    pixels = scenes.read(path)
+    assert pixels.shape[:2] == (64, 64)
+    assert pixels[..., :3].std() > 0.01, "the picture is uniform"
