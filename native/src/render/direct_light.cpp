@@ -15,8 +15,7 @@ bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 }  // namespace
 
 /// A direction that brings nothing costs nothing further: n counts it, the batch does not hold it.
-void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl_world) {
-  const Vec3 wl = vertex.frame.to_local(wl_world);
+void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world) {
   if (!(wl.z > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return;
   local_.push(wl);
   world_.push(wl_world);
@@ -27,7 +26,7 @@ void DirectLight::draw_from_surface(const Vertex& vertex, int count, RandomStrea
   const Vec2 shift = random.next2();
   for (int i = 0; i < count; ++i) {
     const Vec3 wl = sample_surface(sampling_, vertex, prepared_, lattice_point(i, count, shift));
-    keep_if_lit(vertex, vertex.frame.to_world(wl));
+    keep_if_lit(vertex, wl, vertex.frame.to_world(wl));
   }
 }
 
@@ -37,8 +36,10 @@ void DirectLight::draw_from_lights(const Vertex& vertex, int count, RandomStream
   Vec2 u[DirectionBatch::kCapacity];
   for (int i = 0; i < count; ++i) u[i] = lattice_point(i, count, shift);
   lighting_.sample(vertex.position, {u, static_cast<size_t>(count)}, towards_light_);
-  // A zero vector (a lamp's dark side) is not above the horizon.
-  for (int i = 0; i < count; ++i) keep_if_lit(vertex, towards_light_.get(i));
+  for (int i = 0; i < count; ++i) {
+    const Vec3 wl_world = towards_light_.get(i);  // zero for a lamp's dark side: then not above the horizon
+    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world);
+  }
 }
 
 void DirectLight::draw(const Vertex& vertex, int directions, RandomStream& random) {

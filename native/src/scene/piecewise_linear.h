@@ -11,7 +11,7 @@ namespace velour {
 
 /// Fills `cdf` [cells + 1], the running share of the mass at each cell's edge, and `guide` [cells] from the masses of
 /// at most 65536 cells; returns their sum. All zero: uniform. guide[k] is the cell that holds u = k / cells, so that
-/// the search of find_cell takes O(1) steps on average [Chen and Asau 1974].
+/// the search of find_cell takes O(1) steps on average [CA74].
 double build_cells(const std::vector<double>& mass, float* cdf, uint16_t* guide);
 
 inline int find_cell(const float* cdf, const uint16_t* guide, int cells, float u) {
