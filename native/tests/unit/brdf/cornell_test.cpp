@@ -69,7 +69,7 @@ TEST(Cornell, HeldOutSamplesAreNotInterpolated) {
   for (const auto& sample : measurement->samples()) {
     const auto with = test::eval_one(*measurement, sample.wl, sample.wv);
     const auto without = test::eval_one(*unseen, sample.wl, sample.wv);
-    if (with.second && without.second) largest = std::max(largest, std::abs(with.first.g - without.first.g));
+    if (with.valid && without.valid) largest = std::max(largest, std::abs(with.f.g - without.f.g));
   }
   EXPECT_GT(largest, 1e-3f);
 }
