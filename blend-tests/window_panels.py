@@ -17,7 +17,9 @@ _TURNS_SECONDS = 60
 
 def start(folder):
     """Called by the harness once the window is there."""
-    runner = _Runner(folder, (panels, stock_panels, preferences, fit_and_cancel, fit_and_undo, render))
+    runner = _Runner(
+        folder, (panels, stock_panels, preferences, viewport, fit_and_cancel, fit_and_undo, render)
+    )
     bpy.app.timers.register(runner.turn, first_interval=0.2, persistent=True)  # over file loads
 
 
@@ -128,10 +130,23 @@ def preferences(folder):
     area.type = "PREFERENCES"
     bpy.context.preferences.active_section = "ADDONS"
     bpy.context.window_manager.addon_search = "Velour"
+    yield 0.5  # the first draw looks for add-ons
     with _override():
         bpy.ops.preferences.addon_expand(module=inputs.ADDON)
-    yield 1.0
+    yield 0.5
     _screenshot(folder, "preferences")
+
+
+def viewport(folder):
+    """Every shading mode that Blender offers for the engine draws, and leaves the interface working."""
+    _measured_cube()
+    scenes.use_engine()
+    area = next(area for area in _window().screen.areas if area.type == "VIEW_3D")
+    shading = area.spaces.active.shading
+    for mode in ("MATERIAL", "SOLID", "WIREFRAME"):
+        shading.type = mode
+        yield 1.0
+        _screenshot(folder, f"viewport-{mode.lower()}")
 
 
 def _start_fit(**settings):

@@ -1,11 +1,13 @@
 """A guard against a race in Blender between panels and render threads.
 
-While a panel draws, Blender forbids Python to write data; each call of a Python class saves that state and puts it
-back at its end. If a preview or render thread enters Python in the middle of a drawing panel, it saves "no writes"
-and puts that back when the render ends: from then on no timer and no handler of any add-on can write (seen in 3.4.1
-with a window, within seconds, whenever previews render while panels redraw). The interpreter hands over to a waiting
-thread after a switch interval, by default 5 ms, which is less than a slow panel takes. With a longer one the hand-over
-falls between two panels, where Blender releases the interpreter anyway.
+While a panel draws, Blender forbids Python to write data; each call of a Python class saves that state and
+puts it back at its end. If a render thread enters Python in the middle of a drawing panel, it saves "no
+writes" and puts that back when the render ends: from then on no timer and no handler of any add-on can
+write. Seen in 3.4.1 within seconds while previews render and panels redraw.
+
+The interpreter hands over to a waiting thread after a switch interval, by default 5 ms, less than a slow
+panel takes. With a longer one the hand-over falls between two panels, where Blender releases the
+interpreter anyway.
 """
 
 import sys

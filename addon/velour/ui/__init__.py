@@ -2,7 +2,12 @@
 
 from . import library_state, stock_panels, summaries
 from .layer_panel import VELOUR_VIEWLAYER_PT_passes
-from .material_panel import VELOUR_MATERIAL_PT_measured, VELOUR_MATERIAL_PT_model, VELOUR_MATERIAL_PT_notes
+from .material_panel import (
+    VELOUR_MATERIAL_PT_measured,
+    VELOUR_MATERIAL_PT_model,
+    VELOUR_MATERIAL_PT_notes,
+    VELOUR_MATERIAL_PT_surface,
+)
 from .preferences import VelourPreferences
 from .render_panel import VELOUR_RENDER_PT_film, VELOUR_RENDER_PT_library, VELOUR_RENDER_PT_sampling
 
@@ -15,6 +20,7 @@ CLASSES = (
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_notes,
+    VELOUR_MATERIAL_PT_surface,
 )
 
 

@@ -3,7 +3,7 @@
 import bpy
 
 from ..engine.engine import VelourRenderEngine
-from ..export.nodes import velour_node
+from ..export.nodes import active_output, velour_node
 from ..export.notes import Notes
 from ..export.principled import principled_values
 from ..operators.accept_file import VELOUR_OT_accept_file
@@ -28,7 +28,6 @@ class _MaterialPanel:
 
 class VELOUR_MATERIAL_PT_measured(_MaterialPanel, bpy.types.Panel):
     bl_label = "Measured Material"
-    bl_order = -1
 
     def draw(self, context):
         layout = self.layout
@@ -122,6 +121,27 @@ def _draw_error_by_angle(box, errors):
 
 def _number(value):
     return "not covered" if value is None else f"{value:.3g}"
+
+
+class VELOUR_MATERIAL_PT_surface(_MaterialPanel, bpy.types.Panel):
+    """Blender's own panel would stand above ours. For a measured material it edits the approximation."""
+
+    bl_label = "Surface"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.material is not None
+
+    def draw(self, context):
+        layout, material = self.layout, context.material
+        if velour_node(material) is not None:
+            layout.label(text="Approximation for Material Preview and other engines", icon="INFO")
+        output = active_output(material.node_tree, "ShaderNodeOutputMaterial") if material.use_nodes else None
+        if output is None:
+            layout.prop(material, "use_nodes", icon="NODETREE")
+            return
+        layout.use_property_split = True
+        layout.template_node_view(material.node_tree, output, output.inputs["Surface"])
 
 
 class VELOUR_MATERIAL_PT_notes(_MaterialPanel, bpy.types.Panel):

@@ -22,7 +22,6 @@ class VELOUR_RENDER_PT_library(_RenderPanel, bpy.types.Panel):
     """Only there when something is wrong: said before the render, not by it."""
 
     bl_label = "Velour Cannot Render"
-    bl_order = -2
 
     @classmethod
     def poll(cls, context):
@@ -34,7 +33,6 @@ class VELOUR_RENDER_PT_library(_RenderPanel, bpy.types.Panel):
 
 class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
-    bl_order = -1
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.velour
@@ -52,7 +50,6 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
 
 class VELOUR_RENDER_PT_film(_RenderPanel, bpy.types.Panel):
     bl_label = "Film"
-    bl_order = -1
 
     def draw(self, context):
         layout = self.layout

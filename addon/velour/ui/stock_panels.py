@@ -9,6 +9,7 @@ _ENGINE = VelourRenderEngine.bl_idname
 # Panels that list BLENDER_RENDER but whose settings Velour does not read.
 _EXCLUDED = {
     "RENDER_PT_freestyle",
+    "RENDER_PT_gpencil",
     "RENDER_PT_simplify_greasepencil",
     "RENDER_PT_stereoscopy",
     "VIEWLAYER_PT_filter",
@@ -28,7 +29,6 @@ _EXCLUDED = {
 # Panels of other engines that suit Velour as they are.
 _BORROWED = {
     "EEVEE_MATERIAL_PT_context_material",
-    "EEVEE_MATERIAL_PT_surface",
     "EEVEE_WORLD_PT_surface",
     "DATA_PT_EEVEE_light",
     "DATA_PT_light",
