@@ -1,14 +1,13 @@
 #include "capture/goniometer.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
 #include "capture/periodic_tile.h"
-#include "capture/threads.h"
+#include "job/threads.h"
 #include "sphere/frame.h"
 #include "sphere/random.h"
 #include "sphere/warp.h"

@@ -1,7 +1,6 @@
 #include "capture/microsurface.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -13,7 +12,7 @@
 #include "brdf/brdf_table.h"
 #include "brdf/merl.h"
 #include "capture/microsurface_brdf.h"
-#include "capture/threads.h"
+#include "job/threads.h"
 
 namespace velour {
 namespace {

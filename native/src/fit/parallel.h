@@ -1,15 +1,14 @@
 // Independent pieces of work over threads.
 #pragma once
 
-#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cstddef>
 
 #include "job/progress.h"
+#include "job/threads.h"
 
 namespace velour {
 
@@ -19,9 +18,7 @@ namespace velour {
 template <class Work>
 void parallel_for_each(size_t count, int threads, Progress& progress, const Work& work) {
   std::atomic<size_t> done{0};
-  // More threads than processors gain nothing, and make oneTBB print a warning.
-  const int processors = oneapi::tbb::info::default_concurrency();
-  oneapi::tbb::task_arena arena(threads > 0 ? std::min(threads, processors) : processors);
+  oneapi::tbb::task_arena arena(arena_concurrency(threads));
   arena.execute([&] {
     const auto piece = [&](size_t i) {
       progress.check();

@@ -1,16 +1,14 @@
 #include "render/render.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <string>
 
+#include "job/threads.h"
 #include "render/ray_share.h"
 #include "render/tile_renderer.h"
 
@@ -75,9 +73,7 @@ class Renderer {
       : options_(checked(scene, options, film)),
         film_(film),
         progress_(progress),
-        threads_(tbb::global_control::max_allowed_parallelism,
-                 static_cast<size_t>(std::max(options_.threads, tbb::info::default_concurrency()))),
-        arena_(options_.threads > 0 ? options_.threads : tbb::task_arena::automatic),
+        arena_(arena_concurrency(options_.threads)),
         context_{scene, options_, Lighting(scene), {}},
         tiles_(tiles_of(options_)) {}
 
@@ -164,7 +160,6 @@ class Renderer {
   const RenderOptions options_;
   Film& film_;
   Progress& progress_;
-  tbb::global_control threads_;  // lets an arena be wider than the processor, when that is asked for
   tbb::task_arena arena_;
   RenderContext context_;
   const std::vector<PixelRect> tiles_;

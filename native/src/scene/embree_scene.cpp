@@ -1,13 +1,12 @@
 #include "scene/embree_scene.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <vector>
 
 #include "job/error.h"
+#include "job/threads.h"
 #include "scene/embree_api.h"
 
 namespace velour {
@@ -157,7 +156,7 @@ uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world)
 void EmbreeScene::commit(int threads) {
   Impl& s = *impl_;
   s.release_top();
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(arena_concurrency(threads));
   arena.execute([&s] {
     for (RTCScene mesh : s.meshes) s.api.rtcJoinCommitScene(mesh);
   });

@@ -1,3 +1,4 @@
+// How many threads a task takes.
 #pragma once
 
 #include <tbb/info.h>
@@ -7,8 +8,8 @@
 
 namespace velour {
 
-/// Concurrency of a task arena for `threads` threads (0: all). Never more than the machine's: Embree lowers TBB's
-/// global limit to that when it opens, and TBB then prints a warning for every arena that asks for more.
+/// Concurrency of a task arena for `threads` threads (0: all). Never more than the machine's: more gain nothing, and
+/// Embree lowers TBB's global limit to that when it opens, after which TBB prints a warning for every wider arena.
 inline int arena_concurrency(int threads) {
   return threads > 0 ? std::min(threads, tbb::info::default_concurrency()) : tbb::task_arena::automatic;
 }
