@@ -7,6 +7,7 @@ import json
 import sys
 import traceback
 
+import addon_utils
 import bpy
 import numpy as np
 
@@ -131,10 +132,12 @@ def preferences(folder):
     bpy.context.preferences.active_section = "ADDONS"
     bpy.context.window_manager.addon_search = "Velour"
     yield 0.5  # the first draw looks for add-ons
-    with _override():
-        bpy.ops.preferences.addon_expand(module=inputs.ADDON)
+    folded = _screenshot(folder, "preferences-folded")
+    addon = next(module for module in addon_utils.modules() if module.__name__ == inputs.ADDON)
+    addon_utils.module_bl_info(addon)["show_expanded"] = True
+    area.tag_redraw()
     yield 0.5
-    _screenshot(folder, "preferences")
+    assert np.abs(_screenshot(folder, "preferences") - folded).max() > 0.2
 
 
 def viewport(folder):
