@@ -67,6 +67,13 @@ class Notes(BlenderTest):
         bpy.context.scene.collection.objects.link(lamp)
         self._said("Light 'Spot'", "left out")
 
+    def test_light_factors(self):
+        lamp = bpy.data.objects.new("Fill", bpy.data.lights.new("Fill", "POINT"))
+        bpy.context.scene.collection.objects.link(lamp)
+        self.assertEqual(self._notes(), [])
+        lamp.data.specular_factor = 0.0
+        self._said("Light 'Fill'", "specular")
+
     def test_depth_of_field_and_motion_blur(self):
         bpy.context.scene.camera.data.dof.use_dof = True
         bpy.context.scene.render.use_motion_blur = True

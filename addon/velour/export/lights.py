@@ -8,6 +8,8 @@ from .axes import column_lengths, rigid
 # would be P / (pi A).
 _AREA_POWER = math.pi / 4
 
+_FACTORS = ("diffuse_factor", "specular_factor", "volume_factor")
+
 
 def add_light(scene, obj, matrix, notes):
     """`obj`: an evaluated lamp object, `matrix`: where this instance of it stands."""
@@ -19,6 +21,8 @@ def add_light(scene, obj, matrix, notes):
         and any(n.bl_idname != "ShaderNodeOutputLight" for n in lamp.node_tree.nodes)
     ):
         notes.add(f"{owner}: shader nodes of lights are ignored; its colour and power are used.")
+    if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):
+        notes.add(f"{owner}: its diffuse, specular and volume factors are ignored.")
     if lamp.type == "SPOT":
         notes.add(f"{owner}: spot lights are not supported yet; left out.")
         return

@@ -23,6 +23,7 @@ _EXCLUDED = {
     "VIEWLAYER_PT_freestyle_linestyle",
     "VIEWLAYER_PT_layer_passes",
     "MATERIAL_PT_freestyle",
+    "DATA_PT_light",  # the one of EEVEE, borrowed below, shows the same and more
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
 }
@@ -31,7 +32,6 @@ _BORROWED = {
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_WORLD_PT_surface",
     "DATA_PT_EEVEE_light",
-    "DATA_PT_light",
     "WORLD_PT_context_world",
 }
 
