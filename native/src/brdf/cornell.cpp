@@ -134,31 +134,31 @@ std::vector<ScatteredSample> read_samples(const CornellText& text, const std::st
 }
 
 /// The interpolation of `samples` as a table. Throws Error(bad_data) for too few of them.
-HalfDiffTable tabulated(std::span<const ScatteredSample> samples, const std::string& path) {
+HalfDiffTable tabulated(std::span<const ScatteredSample> samples, const std::string& path, const Progress& progress) {
   if (samples.size() < ScatteredInterpolant::kNeighbours)
     fail(path, "has " + std::to_string(samples.size()) + " valid samples; at least " +
                    std::to_string(ScatteredInterpolant::kNeighbours) + " are needed to interpolate.");
-  return {kLayout, resample_scattered(ScatteredInterpolant(samples), kLayout)};
+  return {kLayout, resample_scattered(ScatteredInterpolant(samples), kLayout, progress)};
 }
 
 /// A table for eval, the samples themselves for the error of a fit.
 class ScatteredMeasurement : public TableMeasurement {
  public:
   ScatteredMeasurement(std::vector<ScatteredSample> samples, Provenance provenance, const EntryCounts& counts,
-                       Details details)
-      : TableMeasurement(tabulated(samples, provenance.path), provenance, counts, std::move(details)),
+                       Details details, const Progress& progress)
+      : TableMeasurement(tabulated(samples, provenance.path, progress), provenance, counts, std::move(details)),
         samples_(std::move(samples)) {
     for (const ScatteredSample& sample : samples_) lowest_ = std::min({lowest_, sample.wl.z, sample.wv.z});
   }
 
   std::span<const ScatteredSample> samples() const override { return samples_; }
 
-  std::shared_ptr<const Measurement> without_held_out() const override {
+  std::shared_ptr<const Measurement> without_held_out(const Progress& progress) const override {
     std::vector<ScatteredSample> kept;
     for (size_t i = 0; i < samples_.size(); ++i) {
       if (!held_out_sample(i)) kept.push_back(samples_[i]);
     }
-    return std::make_shared<ScatteredMeasurement>(std::move(kept), provenance(), counts(), details());
+    return std::make_shared<ScatteredMeasurement>(std::move(kept), provenance(), counts(), details(), progress);
   }
 
   /// Beyond the lowest direction of any sample the interpolation only continues, so a view there is not covered.
@@ -218,7 +218,8 @@ std::shared_ptr<const Measurement> read_cornell(std::span<const uint8_t> bytes, 
   auto samples = read_samples(text, path, counts);
   provenance.format = "cornell";
   provenance.description = opening_comment(bytes);
-  return std::make_shared<ScatteredMeasurement>(std::move(samples), std::move(provenance), counts, describe(text));
+  return std::make_shared<ScatteredMeasurement>(std::move(samples), std::move(provenance), counts, describe(text),
+                                                Progress());
 }
 
 }  // namespace velour

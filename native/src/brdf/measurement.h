@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "job/progress.h"
 #include "sphere/vec.h"
 
 namespace velour {
@@ -63,7 +64,7 @@ class Measurement {
 
   /// Scattered measurements: the same measurement without the samples i for which held_out_sample(i) (brdf/held_out.h),
   /// so that its interpolation has never seen them. Tables return nullptr: a fit leaves out their views and lights.
-  virtual std::shared_ptr<const Measurement> without_held_out() const { return nullptr; }
+  virtual std::shared_ptr<const Measurement> without_held_out(const Progress& /*progress*/) const { return nullptr; }
 
   /// Sizes, units, scales and whatever else the format knows, as (key, value) pairs for `info`.
   virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }

@@ -126,10 +126,12 @@ Rgb ScatteredInterpolant::Index::regress(const Point& here, const Nearest& neare
   return f;
 }
 
-std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout) {
+std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout,
+                                          const Progress& progress) {
   const HorizonTest horizon(layout);
   std::vector<TableNode> nodes(layout.size());
   tbb::parallel_for(0, layout.theta_h, [&](int i) {
+    progress.check();
     for (int k = 0; k < layout.theta_d; ++k)
       for (int l = 0; l <= layout.phi_d / 2; ++l) {
         if (!horizon.above(i, k, l)) continue;

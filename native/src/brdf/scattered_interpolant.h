@@ -40,6 +40,7 @@ class ScatteredInterpolant {
 };
 
 /// The interpolant at the nodes of `layout` (phi_h 1, phi_d even), so that a look-up costs as little as MERL's.
-std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout);
+std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout,
+                                          const Progress& progress);
 
 }  // namespace velour

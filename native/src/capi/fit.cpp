@@ -32,6 +32,7 @@ FitOptions converted(const vlr_fit_options& given) {
   options.tolerance = given.tolerance;
   options.max_lobes = static_cast<int>(given.max_lobes);
   options.max_bytes = given.max_bytes;
+  options.size_of = [](const Model& model) { return encode_model(model).size(); };
   options.seed = given.seed;
   options.threads = static_cast<int>(given.threads);
   options.all_data = given.all_data != 0;
@@ -81,9 +82,10 @@ vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_
 }
 
 void vlr_microsurface_options_init(vlr_microsurface_options* options) {
-  const MicrosurfaceOptions defaults;
+  static const MicrosurfaceOptions defaults;  // immutable; lends its metal's name to every caller
   *options = {};
   options->struct_size = sizeof(vlr_microsurface_options);
+  options->metal = defaults.metal.c_str();
   options->roughness = defaults.roughness;
   options->anisotropy = defaults.anisotropy;
   for (int i = 0; i < 3; ++i) options->base_albedo[i] = defaults.base_albedo[i];

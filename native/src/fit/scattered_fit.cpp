@@ -35,10 +35,6 @@ void check_options(const FitOptions& o, bool isotropic) {
            " for this measurement.");
   }
   if (o.threads < 0) refuse("The fit's threads is " + std::to_string(o.threads) + "; it must be 0 (all) or more.");
-  if (o.max_bytes != 0 && o.max_bytes < kViewBytes) {
-    refuse("The fit's max_bytes is " + std::to_string(o.max_bytes) + "; one view takes " + std::to_string(kViewBytes) +
-           ".");
-  }
 }
 
 std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const FitOptions& options,
@@ -53,30 +49,41 @@ std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const
   return paths;
 }
 
-/// Leaves out views, then lobes, until the parameters take at most `max_bytes`. True when it had to.
-bool fit_into(uint64_t max_bytes, std::vector<MeasuredSlice>& slices, std::vector<ViewPath>& paths) {
-  uint64_t lobes = 0;
-  for (const ViewPath& p : paths) lobes += p.path.size() - 1;
-  if (max_bytes == 0 || lobes * kLobeBytes + paths.size() * kViewBytes <= max_bytes) return false;
+/// All views that could be fitted, and how many could not.
+struct FittedSlices {
+  std::vector<MeasuredSlice> slices;
+  std::vector<ViewPath> paths;
+  size_t uncovered;
+};
 
-  const double mean_lobes = static_cast<double>(lobes) / static_cast<double>(paths.size());
+uint64_t parameter_bytes(const FittedSlices& fitted) {
+  uint64_t lobes = 0;
+  for (const ViewPath& p : fitted.paths) lobes += p.path.size() - 1;
+  return lobes * kLobeBytes + fitted.paths.size() * kViewBytes;
+}
+
+/// Leaves out views, then lobes, until the parameters take at most `max_bytes` >= kViewBytes. True when it had to.
+bool fit_into(uint64_t max_bytes, FittedSlices& fitted) {
+  const uint64_t bytes = parameter_bytes(fitted);
+  if (bytes <= max_bytes) return false;
+
+  const auto views = static_cast<double>(fitted.paths.size());
+  const double mean_lobes = (static_cast<double>(bytes) / views - kViewBytes) / kLobeBytes;
   const double view_bytes = kViewBytes + kLobeBytes * std::min(mean_lobes, kLobesWorthAView);
   const auto keep = std::max<size_t>(1, static_cast<size_t>(static_cast<double>(max_bytes) / view_bytes));
-  std::vector<MeasuredSlice> kept_slices;
-  std::vector<ViewPath> kept_paths;
-  for (const size_t i : thinned(paths.size(), keep)) {
-    kept_slices.push_back(std::move(slices[i]));
-    kept_paths.push_back(std::move(paths[i]));
+  FittedSlices kept{{}, {}, fitted.uncovered};
+  for (const size_t i : thinned(fitted.paths.size(), std::min(keep, fitted.paths.size()))) {
+    kept.slices.push_back(std::move(fitted.slices[i]));
+    kept.paths.push_back(std::move(fitted.paths[i]));
   }
-  slices = std::move(kept_slices);
-  paths = std::move(kept_paths);
-  const auto share = share_lobes(paths, (max_bytes - kViewBytes * paths.size()) / kLobeBytes);
-  for (size_t i = 0; i < paths.size(); ++i) paths[i].path.resize(share[i] + 1);
+  fitted = std::move(kept);
+  const auto share = share_lobes(fitted.paths, (max_bytes - kViewBytes * fitted.paths.size()) / kLobeBytes);
+  for (size_t i = 0; i < fitted.paths.size(); ++i) fitted.paths[i].path.resize(share[i] + 1);
   return true;
 }
 
-std::shared_ptr<ScatteredBrdf> assemble(const std::vector<MeasuredSlice>& slices, const std::vector<ViewPath>& paths,
-                                        bool isotropic, const FitOptions& options) {
+std::shared_ptr<ScatteredBrdf> assemble(const FittedSlices& fitted, bool isotropic, const FitOptions& options) {
+  const auto& [slices, paths, uncovered] = fitted;
   auto brdf = std::make_shared<ScatteredBrdf>();
   brdf->kernel = options.kernel;
   brdf->isotropic = isotropic;
@@ -97,6 +104,13 @@ std::shared_ptr<ScatteredBrdf> assemble(const std::vector<MeasuredSlice>& slices
   return brdf;
 }
 
+void warn_of_uncovered(const FittedSlices& fitted, std::vector<std::string>& warnings) {
+  if (fitted.uncovered == 0) return;
+  warnings.push_back(std::to_string(fitted.uncovered) + " of " +
+                     std::to_string(fitted.uncovered + fitted.slices.size()) +
+                     " sampled views are outside the measurement and were left out");
+}
+
 void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<std::string>& warnings) {
   size_t total = 0, outside = 0;
   double cost = 0;
@@ -112,6 +126,53 @@ void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<std::st
                      std::to_string(cost));
 }
 
+/// The model of `fitted`, with its record: errors, albedo, warnings.
+Model reported(const Measurement& measurement, const FittedSlices& fitted, const FitOptions& options,
+               Progress& progress) {
+  const auto brdf = assemble(fitted, measurement.isotropic(), options);
+  std::vector<FittedView> views;
+  for (size_t i = 0; i < fitted.slices.size(); ++i) {
+    views.push_back({fitted.slices[i].wv, fitted.paths[i].path.back().relative_l2});
+  }
+  Model model;
+  model.fit = report_fit(measurement, *make_scattered_material(brdf, 0), options, views, progress);
+  warn_of_uncovered(fitted, model.fit.warnings);
+  warn_of_gamut(fitted.slices, model.fit.warnings);
+  model.body = *brdf;
+  model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
+  return model;
+}
+
+uint64_t size_of(const Model& model, const FitOptions& options) {
+  return options.size_of ? options.size_of(model) : std::get<ScatteredBrdf>(model.body).parameter_bytes();
+}
+
+/// The largest model of `all` within options.max_bytes that a few tries find: a file's size is known only when it is
+/// made.
+Model bounded_model(const Measurement& measurement, const FittedSlices& all, const FitOptions& options,
+                    Progress& progress) {
+  for (uint64_t budget = std::max(kViewBytes, std::min(options.max_bytes, parameter_bytes(all)));;) {
+    FittedSlices fitted = all;
+    const bool bounded = fit_into(budget, fitted);
+    Model model = reported(measurement, fitted, options, progress);
+    if (bounded) {
+      model.fit.warnings.push_back("the bound of " + std::to_string(options.max_bytes) + " bytes leaves " +
+                                   std::to_string(fitted.slices.size()) + " views and " +
+                                   std::to_string(std::get<ScatteredBrdf>(model.body).lobe_count()) + " lobes");
+    }
+    const uint64_t size = size_of(model, options);
+    if (size <= options.max_bytes) return model;
+    const uint64_t excess = size - options.max_bytes + kLobeBytes;
+    if (budget < excess + kViewBytes) {
+      throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
+                                                "; no model of this measurement is that small, one of " +
+                                                std::to_string(fitted.slices.size()) + " views takes " +
+                                                std::to_string(size) + ".");
+    }
+    budget -= excess;
+  }
+}
+
 }  // namespace
 
 Model fit_scattered(const Measurement& measurement, const FitOptions& options, Progress& progress) {
@@ -119,7 +180,7 @@ Model fit_scattered(const Measurement& measurement, const FitOptions& options, P
   check_options(options, measurement.isotropic());
   progress.stage("sampling", 0.0, 0.1);
   // Scattered samples are held out one by one, inside the measurement; tables by view and light.
-  const auto unseen = options.all_data ? nullptr : measurement.without_held_out();
+  const auto unseen = options.all_data ? nullptr : measurement.without_held_out(progress);
   const Measurement& source = unseen ? *unseen : measurement;
   auto [slices, uncovered] = sample_slices(source, !options.all_data && !unseen, options.threads, progress);
   if (slices.empty()) {
@@ -128,27 +189,11 @@ Model fit_scattered(const Measurement& measurement, const FitOptions& options, P
   }
   progress.stage("fitting", 0.1, 0.95);
   auto paths = fit_slices(slices, options, progress);
-  const bool bounded = fit_into(options.max_bytes, slices, paths);
-  const auto brdf = assemble(slices, paths, measurement.isotropic(), options);
+  const FittedSlices fitted{std::move(slices), std::move(paths), uncovered.size()};
 
   progress.stage("checking", 0.95, 1.0);
-  std::vector<FittedView> fitted;
-  for (size_t i = 0; i < slices.size(); ++i) fitted.push_back({slices[i].wv, paths[i].path.back().relative_l2});
-  Model model;
-  model.fit = report_fit(measurement, *make_scattered_material(brdf, 0), options, fitted, progress);
-  if (bounded) {
-    model.fit.warnings.push_back("the bound of " + std::to_string(options.max_bytes) + " bytes leaves " +
-                                 std::to_string(slices.size()) + " views and " + std::to_string(brdf->lobe_count()) +
-                                 " lobes");
-  }
-  if (!uncovered.empty()) {
-    model.fit.warnings.push_back(std::to_string(uncovered.size()) + " of " +
-                                 std::to_string(uncovered.size() + slices.size()) +
-                                 " sampled views are outside the measurement and were left out");
-  }
-  warn_of_gamut(slices, model.fit.warnings);
-  model.body = *brdf;
-  model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
+  Model model = options.max_bytes > 0 ? bounded_model(measurement, fitted, options, progress)
+                                      : reported(measurement, fitted, options, progress);
   progress.check();
   progress.update(1.0);
   model.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -58,7 +58,7 @@ TEST(Cornell, InterpolatesASmoothBrdf) {
 
 TEST(Cornell, HeldOutSamplesAreNotInterpolated) {
   const auto measurement = read(small_cornell(400, glossy_grey));
-  const auto unseen = measurement->without_held_out();
+  const auto unseen = measurement->without_held_out(Progress());
   size_t kept = 0;
   for (size_t i = 0; i < measurement->samples().size(); ++i) kept += !held_out_sample(i);
   ASSERT_EQ(unseen->samples().size(), kept);

@@ -197,6 +197,17 @@ TEST(ScatteredFitRules, TheBoundInBytesHolds) {
   }
 }
 
+TEST(ScatteredFitRules, TheBoundIsOfWhateverTheCallerCounts) {
+  FitOptions options;
+  options.max_lobes = 5;
+  options.max_bytes = 2000;
+  options.size_of = [](const Model& model) { return lobes_of(model).parameter_bytes() + 1500; };
+  Progress progress;
+  const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.2f, 0.2f)), options, progress);
+  EXPECT_LE(options.size_of(model), 2000u);
+  EXPECT_GE(options.size_of(model), 1700u) << "most of the bound is used";
+}
+
 TEST(ScatteredFitRules, AnisotropicMaterialsHaveViewsOverTheHemisphere) {
   FitOptions options;
   options.max_lobes = 3;
