@@ -1,5 +1,4 @@
-// The inner loop of the product: value and density of a batch of directions under a mixture, and one sample
-// of it.
+// The inner loop of the product: value and density of a batch of directions under a mixture, and one sample of it.
 #include <benchmark/benchmark.h>
 
 #include "sphere/directions.h"

@@ -1,15 +1,16 @@
 /* Velour: measured materials. The only public header; pure C99.
  *
- * Every call that can fail returns vlr_status; vlr_last_error() then holds one sentence for the user (file, field, value,
- * remedy), kept for the calling thread until its next failing call. Nothing here prints, exits or aborts.
+ * Every call that can fail returns vlr_status; vlr_last_error() then holds one sentence for the user (file, field,
+ * value, remedy), kept for the calling thread until its next failing call. Nothing here prints, exits or aborts.
  *
  * Handles are opaque. A handle keeps alive what it needs, so they may be freed in any order; freeing NULL is fine. A
  * handle may be used by one thread at a time, except that a vlr_job may be polled, cancelled and read from any thread.
  * Models and measurements are immutable and may be shared freely.
  *
- * Options structs begin with their size: call the matching vlr_*_options_init() first, then change fields. Defaults live
- * in the library only. Arrays are borrowed for the call: float32, row-major, contiguous. Strings are UTF-8. A `const
- * char**` that a call fills belongs to the handle and is valid until the handle is freed or the same call is repeated.
+ * Options structs begin with their size: call the matching vlr_*_options_init() first, then change fields. Defaults
+ * live in the library only. Arrays are borrowed for the call: float32, row-major, contiguous. Strings are UTF-8. A
+ * `const char**` that a call fills belongs to the handle and is valid until the handle is freed or the same call is
+ * repeated.
  *
  * Directions are unit, point away from the surface, in the local shading frame: +z normal, +x tangent. wl points to the
  * light, wv to the viewer. f is the BRDF in 1/sr without the cosine, linear Rec. 709. Angles in radians, lengths in
@@ -111,12 +112,12 @@ enum { VLR_JOB_READY = 0, VLR_JOB_RUNNING = 1, VLR_JOB_DONE = 2, VLR_JOB_FAILED 
 
 typedef struct vlr_job_state {
   uint32_t struct_size;
-  int32_t state;          /* VLR_JOB_* */
-  double fraction;        /* 0..1, never falls, 1 only when done */
-  double seconds;         /* since the start */
-  double seconds_left;    /* estimate; negative while unknown */
-  uint64_t bytes_in_use;  /* of the whole process */
-  const char* stage;      /* a literal, valid for ever */
+  int32_t state;         /* VLR_JOB_* */
+  double fraction;       /* 0..1, never falls, 1 only when done */
+  double seconds;        /* since the start */
+  double seconds_left;   /* estimate; negative while unknown */
+  uint64_t bytes_in_use; /* of the whole process */
+  const char* stage;     /* a literal, valid for ever */
 } vlr_job_state;
 
 /* For C callers: called on the thread that called vlr_job_wait, about ten times a second, fraction non-decreasing, the
@@ -145,14 +146,14 @@ enum { VLR_KERNEL_GAUSSIAN = 0, VLR_KERNEL_ABEL_POISSON = 1 };
 
 typedef struct vlr_fit_options {
   uint32_t struct_size;
-  int32_t kernel;        /* VLR_KERNEL_* */
-  double tolerance;      /* relative L2 asked for at every view up to 75 degrees, twice that beyond; 0.02 */
-  uint32_t max_lobes;    /* a view; 16 */
-  uint32_t threads;      /* 0: all */
-  uint64_t max_bytes;    /* of the model file; 0: no bound */
+  int32_t kernel;     /* VLR_KERNEL_* */
+  double tolerance;   /* relative L2 asked for at every view up to 75 degrees, twice that beyond; 0.02 */
+  uint32_t max_lobes; /* a view; 16 */
+  uint32_t threads;   /* 0: all */
+  uint64_t max_bytes; /* of the model file; 0: no bound */
   uint64_t seed;
-  int32_t all_data;      /* 1: hold nothing out (production); the model says so */
-  int32_t align_views;   /* 1: turn neighbouring slices onto the query's mirror direction before mixing */
+  int32_t all_data;    /* 1: hold nothing out (production); the model says so */
+  int32_t align_views; /* 1: turn neighbouring slices onto the query's mirror direction before mixing */
 } vlr_fit_options;
 VLR_API void vlr_fit_options_init(vlr_fit_options* options);
 /* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, warnings. */
@@ -164,13 +165,13 @@ VLR_API vlr_status vlr_compare_create_job(const vlr_measurement* measurement, co
 
 typedef struct vlr_microsurface_options {
   uint32_t struct_size;
-  uint32_t threads;          /* 0: all */
-  double roughness;          /* Beckmann alpha = sqrt(2) x RMS slope along x; 0.01..1 */
-  double anisotropy;         /* alpha_x / alpha_y >= 1; 1: isotropic, MERL layout */
-  const char* metal;         /* "nickel", "gold", "copper", "aluminium", "silver", "iron", "chromium", "titanium" */
-  float base_albedo[3];      /* diffuse base under the metal flakes; 0 0 0: bare metal */
-  double base_share;         /* share of the surface that is diffuse base; 0..1 */
-  uint64_t rays;             /* camera-side rays in all; more is finer and slower */
+  uint32_t threads;     /* 0: all */
+  double roughness;     /* Beckmann alpha = sqrt(2) x RMS slope along x; 0.01..1 */
+  double anisotropy;    /* alpha_x / alpha_y >= 1; 1: isotropic, MERL layout */
+  const char* metal;    /* "nickel", "gold", "copper", "aluminium", "silver", "iron", "chromium", "titanium" */
+  float base_albedo[3]; /* diffuse base under the metal flakes; 0 0 0: bare metal */
+  double base_share;    /* share of the surface that is diffuse base; 0..1 */
+  uint64_t rays;        /* camera-side rays in all; more is finer and slower */
   uint64_t seed;
 } vlr_microsurface_options;
 VLR_API void vlr_microsurface_options_init(vlr_microsurface_options* options);
@@ -193,12 +194,12 @@ typedef struct vlr_mesh_desc {
   uint32_t vertex_count;
   uint32_t triangle_count;
   uint32_t pad;
-  const float* positions;             /* [vertex_count x 3] */
-  const uint32_t* triangles;          /* [triangle_count x 3] */
-  const float* corner_normals;        /* [triangle_count x 3 x 3] shading normals; NULL: smooth vertex normals */
-  const float* corner_uvs;            /* [triangle_count x 3 x 2]; NULL: none */
-  const uint32_t* material_slots;     /* [triangle_count]; NULL: all 0 */
-  const uint8_t* smooth;              /* [triangle_count] 1: smooth; used when corner_normals is NULL; NULL: all smooth */
+  const float* positions;         /* [vertex_count x 3] */
+  const uint32_t* triangles;      /* [triangle_count x 3] */
+  const float* corner_normals;    /* [triangle_count x 3 x 3] shading normals; NULL: smooth vertex normals */
+  const float* corner_uvs;        /* [triangle_count x 3 x 2]; NULL: none */
+  const uint32_t* material_slots; /* [triangle_count]; NULL: all 0 */
+  const uint8_t* smooth;          /* [triangle_count] 1: smooth; used when corner_normals is NULL; NULL: all smooth */
 } vlr_mesh_desc;
 /* Degenerate triangles and non-finite vertices are left out; *dropped (may be NULL) says how many triangles. */
 VLR_API vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint32_t* mesh, uint32_t* dropped);
@@ -215,11 +216,11 @@ VLR_API vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vl
                                                       uint32_t* material);
 typedef struct vlr_principled_desc {
   uint32_t struct_size;
-  float base_color[3];   /* working space */
-  float metallic;        /* 0..1 */
-  float roughness;       /* 0..1, Principled's: alpha = roughness^2 */
-  float specular;        /* Principled's 0..1, 0.5 = index 1.5 */
-  float emission[3];     /* radiance, working space */
+  float base_color[3]; /* working space */
+  float metallic;      /* 0..1 */
+  float roughness;     /* 0..1, Principled's: alpha = roughness^2 */
+  float specular;      /* Principled's 0..1, 0.5 = index 1.5 */
+  float emission[3];   /* radiance, working space */
 } vlr_principled_desc;
 VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
 VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,
@@ -232,11 +233,11 @@ VLR_API vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const
 enum { VLR_LIGHT_SUN = 0, VLR_LIGHT_POINT = 1, VLR_LIGHT_RECTANGLE = 2, VLR_LIGHT_DISK = 3 };
 typedef struct vlr_light_desc {
   uint32_t struct_size;
-  int32_t type;                 /* VLR_LIGHT_* */
-  float color[3];               /* working space. Sun: irradiance on a facing plane, W/m^2. Others: power, W */
-  float light_to_world[12];     /* 3 x 4 row-major; the light shines along its -z */
-  float size[2];                /* point: radius, -; rectangle: sides; disk: diameters (an ellipse if they differ) */
-  float angle;                  /* sun: angular diameter, radians */
+  int32_t type;             /* VLR_LIGHT_* */
+  float color[3];           /* working space. Sun: irradiance on a facing plane, W/m^2. Others: power, W */
+  float light_to_world[12]; /* 3 x 4 row-major; the light shines along its -z */
+  float size[2];            /* point: radius, -; rectangle: sides; disk: diameters (an ellipse if they differ) */
+  float angle;              /* sun: angular diameter, radians */
   int32_t casts_shadow;
 } vlr_light_desc;
 VLR_API void vlr_light_desc_init(vlr_light_desc* desc);
@@ -254,9 +255,9 @@ VLR_API vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, floa
 enum { VLR_CAMERA_PERSPECTIVE = 0, VLR_CAMERA_ORTHOGRAPHIC = 1 };
 typedef struct vlr_camera_desc {
   uint32_t struct_size;
-  int32_t type;                /* VLR_CAMERA_* */
-  float camera_to_world[12];   /* 3 x 4 row-major; looks along its -z, +y up */
-  float window[4];             /* left, right, bottom, top of the picture: at distance 1 (perspective) or in metres */
+  int32_t type;              /* VLR_CAMERA_* */
+  float camera_to_world[12]; /* 3 x 4 row-major; looks along its -z, +y up */
+  float window[4];           /* left, right, bottom, top of the picture: at distance 1 (perspective) or in metres */
   float clip_start, clip_end;
 } vlr_camera_desc;
 VLR_API void vlr_camera_desc_init(vlr_camera_desc* desc);
@@ -285,14 +286,14 @@ enum {
 typedef struct vlr_render_options {
   uint32_t struct_size;
   uint32_t width, height;
-  uint32_t spp;            /* light directions a pixel */
-  uint32_t split;          /* of them, how many share one camera ray; 1..48; 8 */
-  uint32_t bounces;        /* indirect bounces; 0: direct illumination only */
-  int32_t strategy;        /* VLR_STRATEGY_* */
-  uint32_t threads;        /* 0: all */
+  uint32_t spp;     /* light directions a pixel */
+  uint32_t split;   /* of them, how many share one camera ray; 1..48; 8 */
+  uint32_t bounces; /* indirect bounces; 0: direct illumination only */
+  int32_t strategy; /* VLR_STRATEGY_* */
+  uint32_t threads; /* 0: all */
   uint64_t seed;
-  double time_limit;       /* seconds, 0: none; stops at a whole pass */
-  int32_t transparent;     /* 1: rays that meet nothing leave alpha 0 */
+  double time_limit;         /* seconds, 0: none; stops at a whole pass */
+  int32_t transparent;       /* 1: rays that meet nothing leave alpha 0 */
   int32_t measure_ray_share; /* 1: record 1 tile in 16 and replay its rays */
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);

@@ -1,5 +1,4 @@
-// Densities on the unit square, bilinear between the nodes of a grid, and the warp that each defines
-// [RGL].
+// Densities on the unit square, bilinear between the nodes of a grid, and the warp that each defines [RGL].
 #pragma once
 
 #include <array>

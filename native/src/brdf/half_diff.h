@@ -12,8 +12,8 @@ struct HalfDiff {
   float theta_h, phi_h, theta_d, phi_d;
 };
 
-/// Both directions above the horizon. Defined everywhere there: with the half vector on the normal phi_h is 0, with
-/// wl = wv phi_d is 0. No arc cosine: angles come from lengths, so small ones keep their digits.
+/// Both directions above the horizon. Defined everywhere there: with the half vector on the normal phi_h is 0, with wl
+/// = wv phi_d is 0. No arc cosine: angles come from lengths, so small ones keep their digits.
 inline HalfDiff half_diff(const Vec3& wl, const Vec3& wv) {
   const Vec3 sum = wl + wv, diff = wl - wv;
   const float sum_xy_sq = sum.x * sum.x + sum.y * sum.y;

@@ -11,8 +11,8 @@
 
 namespace velour {
 
-/// Node (i, j, k): theta_h = i^2 / 90 degrees, theta_d = j degrees, phi_d = k degrees [R98], so that both
-/// the mirror peak and grazing angles have nodes. k has period 180 by reciprocity.
+/// Node (i, j, k): theta_h = i^2 / 90 degrees, theta_d = j degrees, phi_d = k degrees [R98], so that both the mirror
+/// peak and grazing angles have nodes. k has period 180 by reciprocity.
 struct MerlGrid {
   static constexpr int theta_h = 90, theta_d = 90, phi_d = 180;
   static constexpr size_t size = size_t{90} * 90 * 180;

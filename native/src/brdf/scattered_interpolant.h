@@ -13,11 +13,11 @@ namespace velour {
 
 /// Local linear regression over the nearest samples. f is taken as isotropic, reciprocal and mirror-symmetric, so a
 /// pair is a point (theta_h^0.7, theta_d, 0.3 sin theta_h sin theta_d cos 2 phi_d): half angles first, because f varies
-/// fastest with them and their power spreads a highlight over several samples. Each channel is fitted as
-/// asinh(f / 0.01 sr^-1), near to a logarithm for highlights and linear about 0, with Gaussian weights over the 16
-/// nearest samples and a light ridge on the slopes. The result never falls below those samples; it may rise above them
-/// by their range, because a highlight's top mostly lies between samples. What that is worth beside the alternatives is
-/// in docs/formats.md.
+/// fastest with them and their power spreads a highlight over several samples. Each channel is fitted as asinh(f / 0.01
+/// sr^-1), near to a logarithm for highlights and linear about 0, with Gaussian weights over the 16 nearest samples and
+/// a light ridge on the slopes. The result never falls below those samples; it may rise above them by their range,
+/// because a highlight's top mostly lies between samples. What that is worth beside the alternatives is in
+/// docs/formats.md.
 class ScatteredInterpolant {
  public:
   /// Keeps a copy of what it needs. Throws Error(invalid_argument) for fewer than kNeighbours samples.

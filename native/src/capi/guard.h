@@ -26,9 +26,8 @@ vlr_status guard(const Body& body) {
 /// Throws Error(invalid_argument) when `pointer` is null.
 void require(const void* pointer, const char* argument);
 
-/// Reads an options struct of any earlier size: fields that the caller does not know keep their defaults.
-/// `initialize` is the public vlr_*_init of the struct. NULL gives the defaults. A larger struct comes from a
-/// newer header: refused.
+/// Reads an options struct of any earlier size: fields that the caller does not know keep their defaults. `initialize`
+/// is the public vlr_*_init of the struct. NULL gives the defaults. A larger struct comes from a newer header: refused.
 template <typename Options>
 Options read_options(const Options* given, void (*initialize)(Options*), const char* name) {
   Options options;

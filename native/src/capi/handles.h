@@ -31,8 +31,7 @@ struct vlr_scene {
 
 namespace velour::capi {
 
-/// What a task leaves for its reader. Written by the task before it ends, read after; `film` is thread-safe
-/// by itself.
+/// What a task leaves for its reader. Written by the task before it ends, read after; `film` is thread-safe by itself.
 struct JobOutput {
   std::mutex mutex;
   std::string report;

@@ -14,8 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// nlohmann writes NaN as null by itself; bytes that are not UTF-8 (file names) are replaced instead of
-/// thrown on.
+/// nlohmann writes NaN as null by itself; bytes that are not UTF-8 (file names) are replaced instead of thrown on.
 std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json by_view_angle(const ErrorByViewAngle& errors) {

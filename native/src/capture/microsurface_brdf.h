@@ -7,9 +7,9 @@
 
 namespace velour {
 
-/// f of any pair of directions above the horizon, from what was collected: single reflection off metal as
-/// F(theta_d) x facets a solid angle x share of clear pairs / (4 cos theta_l cos theta_v), plus the flux bins.
-/// Reciprocal to rounding. Thread-safe.
+/// f of any pair of directions above the horizon, from what was collected: single reflection off metal as F(theta_d) x
+/// facets a solid angle x share of clear pairs / (4 cos theta_l cos theta_v), plus the flux bins. Reciprocal to
+/// rounding. Thread-safe.
 class MicrosurfaceBrdf {
  public:
   /// `options` and `bins` are those of the run.

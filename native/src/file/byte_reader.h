@@ -1,5 +1,4 @@
-// A cursor over bytes in memory that cannot leave them: every read is checked and fails with the field's
-// name.
+// A cursor over bytes in memory that cannot leave them: every read is checked and fails with the field's name.
 #pragma once
 
 #include <bit>
@@ -59,8 +58,8 @@ class ByteReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(Status::bad_data, name_ + ": " + what + ", but the file holds " +
-                                      std::to_string(bytes_.size()) + "; it is truncated or damaged.");
+    throw Error(Status::bad_data, name_ + ": " + what + ", but the file holds " + std::to_string(bytes_.size()) +
+                                      "; it is truncated or damaged.");
   }
 
   std::span<const uint8_t> bytes_;

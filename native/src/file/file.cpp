@@ -67,13 +67,12 @@ void write_all(int fd, const std::string& path, std::span<const uint8_t> bytes) 
   }
 }
 
-/// Where the bytes go: a link's target, so that the link survives. Devices and folders are refused, because
-/// the rename below would replace a device by a file.
+/// Where the bytes go: a link's target, so that the link survives. Devices and folders are refused, because the rename
+/// below would replace a device by a file.
 std::filesystem::path write_target(const std::string& path) {
   std::error_code ignored;
-  const auto target = std::filesystem::is_symlink(path, ignored)
-                          ? std::filesystem::weakly_canonical(path, ignored)
-                          : std::filesystem::path(path);
+  const auto target = std::filesystem::is_symlink(path, ignored) ? std::filesystem::weakly_canonical(path, ignored)
+                                                                 : std::filesystem::path(path);
   if (std::filesystem::exists(target, ignored) && !std::filesystem::is_regular_file(target, ignored))
     throw Error(Status::io, path + ": is not a regular file; choose another name.");
   return target;
@@ -82,8 +81,7 @@ std::filesystem::path write_target(const std::string& path) {
 /// A name beside the target that no other process or thread uses: renames are atomic within one folder only.
 std::string temporary_name(const std::filesystem::path& target) {
   static std::atomic<uint64_t> counter{0};
-  return target.string() + ".velour-" + std::to_string(::getpid()) + "-" +
-         std::to_string(counter.fetch_add(1));
+  return target.string() + ".velour-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
 }
 
 /// Makes the rename itself survive a power cut; a file system that cannot is no reason to fail.
@@ -107,9 +105,8 @@ std::vector<uint8_t> read_file(const std::string& path, uint64_t limit) {
   if (fd.get() < 0) fail(path, "read", errno);
   const uint64_t size = regular_size(fd.get(), path);
   if (size > limit)
-    throw Error(Status::bad_data, path + ": holds " + std::to_string(size) +
-                                      " bytes, more than the limit of " + std::to_string(limit) +
-                                      "; is it the right file?");
+    throw Error(Status::bad_data, path + ": holds " + std::to_string(size) + " bytes, more than the limit of " +
+                                      std::to_string(limit) + "; is it the right file?");
   std::vector<uint8_t> bytes(size);
   read_all(fd.get(), path, bytes);
   return bytes;

@@ -8,15 +8,14 @@
 
 namespace velour {
 
-/// All bytes of `path`. Throws Error(io) when it cannot be read, Error(bad_data) when it is larger than
-/// `limit`.
+/// All bytes of `path`. Throws Error(io) when it cannot be read, Error(bad_data) when it is larger than `limit`.
 std::vector<uint8_t> read_file(const std::string& path, uint64_t limit = uint64_t{8} << 30);
 
 /// The first `count` bytes (fewer when the file is shorter).
 std::vector<uint8_t> read_file_head(const std::string& path, size_t count);
 
-/// Writes beside `path` under a temporary name, flushes and renames: a killed process leaves the old file or
-/// the new one.
+/// Writes beside `path` under a temporary name, flushes and renames: a killed process leaves the old file or the new
+/// one.
 void write_file(const std::string& path, std::span<const uint8_t> bytes);
 
 /// Lower-case hex SHA-256.

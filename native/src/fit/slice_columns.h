@@ -42,8 +42,8 @@ class ColumnSet {
 /// out_i = sqrt(weight_i) S(wl_i).
 void fill_value(Kernel kernel, const LobeShape& shape, const SliceSamples& samples, float* out);
 
-/// Derivatives of fill_value's column: along `tangent_x` and `tangent_y` (unit, normal to the centre) for a turn of
-/// 1 / sqrt(sharpness) radians, and by log sharpness.
+/// Derivatives of fill_value's column: along `tangent_x` and `tangent_y` (unit, normal to the centre) for a turn of 1 /
+/// sqrt(sharpness) radians, and by log sharpness.
 struct LobeTangents {
   Vec3d x, y;
 };

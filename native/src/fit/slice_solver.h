@@ -16,9 +16,9 @@ struct SliceLobe {
   Vec3d peak{0, 0, 0};
 };
 
-/// The model of a slice: F_c(wl) = diffuse_c max(wl.z, 0) + sum_j peak_jc S_j(wl).
-/// E = sum_c w_c sum_i q_i (F_ic - model_ic)^2 with w_c the luminance weights. Because they sum to 1, E is
-/// never below the squared error of the luminance (Jensen), which is what the tolerance is about.
+/// The model of a slice: F_c(wl) = diffuse_c max(wl.z, 0) + sum_j peak_jc S_j(wl). E = sum_c w_c sum_i q_i (F_ic -
+/// model_ic)^2 with w_c the luminance weights. Because they sum to 1, E is never below the squared error of the
+/// luminance (Jensen), which is what the tolerance is about.
 ///
 /// The peaks are the non-negative least-squares solution for the present shapes at all times (variable projection); the
 /// shapes move by Levenberg-Marquardt steps. J^T J of an RGB fit factorises,

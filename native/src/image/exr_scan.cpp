@@ -31,8 +31,8 @@ struct PartLayout {
   throw Error(Status::bad_data, in.name() + ": part '" + part.name + "': " + what);
 }
 
-/// Attribute types of a fixed size; with strings and channel lists the only ones let through, because the
-/// readers of the others take counts from their values.
+/// Attribute types of a fixed size; with strings and channel lists the only ones let through, because the readers of
+/// the others take counts from their values.
 constexpr std::pair<std::string_view, int32_t> kFixedTypes[] = {{"int", 4},         {"float", 4},
                                                                 {"double", 8},      {"v2i", 8},
                                                                 {"v2f", 8},         {"v3i", 12},
@@ -46,8 +46,7 @@ constexpr std::pair<std::string_view, int32_t> kFixedTypes[] = {{"int", 4},     
 
 void check_type(const ByteReader& in, const ExrPart& part, const std::string& field, const std::string& type,
                 int32_t size) {
-  if (size < 0)
-    fail(in, part, "attribute " + field + " has size " + std::to_string(size) + "; the file is damaged.");
+  if (size < 0) fail(in, part, "attribute " + field + " has size " + std::to_string(size) + "; the file is damaged.");
   if (type == "string" || type == "chlist") return;
   for (const auto& [known, bytes] : kFixedTypes) {
     if (type != known) continue;
@@ -56,8 +55,8 @@ void check_type(const ByteReader& in, const ExrPart& part, const std::string& fi
          "attribute " + field + " of type " + type + " has size " + std::to_string(size) + ", not " +
              std::to_string(bytes) + "; the file is damaged.");
   }
-  throw Error(Status::unsupported, in.name() + ": part '" + part.name + "': attribute " + field +
-                                       " has type '" + type + "', which Velour's files do not use.");
+  throw Error(Status::unsupported, in.name() + ": part '" + part.name + "': attribute " + field + " has type '" + type +
+                                       "', which Velour's files do not use.");
 }
 
 void read_channels(ByteReader value, ExrPart& part) {
@@ -80,8 +79,8 @@ void read_window(ByteReader value, ExrPart& part, PartLayout& layout) {
   for (int32_t& edge : box) edge = value.number<int32_t>("dataWindow");
   if (box[0] != 0 || box[1] != 0 || box[2] < 0 || box[3] < 0)
     fail(value, part,
-         "dataWindow is (" + std::to_string(box[0]) + " " + std::to_string(box[1]) + ") to (" +
-             std::to_string(box[2]) + " " + std::to_string(box[3]) + "); it must begin at (0 0).");
+         "dataWindow is (" + std::to_string(box[0]) + " " + std::to_string(box[1]) + ") to (" + std::to_string(box[2]) +
+             " " + std::to_string(box[3]) + "); it must begin at (0 0).");
   part.width = static_cast<uint64_t>(box[2]) + 1;
   part.height = static_cast<uint64_t>(box[3]) + 1;
   layout.has_window = true;
@@ -116,8 +115,7 @@ void check_part(const ByteReader& in, const ExrPart& part, const PartLayout& lay
   if (part.channels.empty()) fail(in, part, "attribute channels is missing or empty.");
   if (layout.type != "scanlineimage") fail(in, part, "type is '" + layout.type + "', not scanlineimage.");
   if (layout.compression != 0 && layout.compression != 2 && layout.compression != 3)
-    fail(in, part,
-         "compression is " + std::to_string(layout.compression) + "; only none, zips and zip are read.");
+    fail(in, part, "compression is " + std::to_string(layout.compression) + "; only none, zips and zip are read.");
   const uint64_t line_bytes = part.width * part.channels.size() * 4;
   if (line_bytes * layout.lines_per_chunk() > INT32_MAX)
     fail(in, part, "dataWindow has " + std::to_string(part.width) + " columns, more than a chunk can hold.");

@@ -1,9 +1,8 @@
 // The structure of an OpenEXR file, checked byte by byte before OpenEXR itself sees it.
 //
-// OpenEXR allocates what a header claims, and its only limits (Header::setMaxImageSize) are global to the
-// process, which may be Blender's. So the claims are compared with the bytes here: afterwards OpenEXR opens
-// nothing but scan line parts of floats, lossless, whose chunks lie inside the file and are large enough for
-// their pixels.
+// OpenEXR allocates what a header claims, and its only limits (Header::setMaxImageSize) are global to the process,
+// which may be Blender's. So the claims are compared with the bytes here: afterwards OpenEXR opens nothing but scan
+// line parts of floats, lossless, whose chunks lie inside the file and are large enough for their pixels.
 #pragma once
 
 #include <cstdint>

@@ -28,14 +28,12 @@ constexpr int kZipLevel = 6;  // written out, because the library's default may 
 
 class MemoryInput : public Imf::IStream {
  public:
-  MemoryInput(std::span<const uint8_t> bytes, const std::string& name)
-      : IStream(name.c_str()), bytes_(bytes) {}
+  MemoryInput(std::span<const uint8_t> bytes, const std::string& name) : IStream(name.c_str()), bytes_(bytes) {}
 
   bool read(char target[], int count) override {
     const auto wanted = static_cast<uint64_t>(std::max(count, 0));
     if (position_ > bytes_.size() || wanted > bytes_.size() - position_)
-      throw Error(Status::bad_data, std::string(fileName()) + ": ends at byte " +
-                                        std::to_string(bytes_.size()) +
+      throw Error(Status::bad_data, std::string(fileName()) + ": ends at byte " + std::to_string(bytes_.size()) +
                                         " inside its pixels; it is truncated or damaged.");
     std::memcpy(target, bytes_.data() + position_, wanted);
     position_ += wanted;
@@ -126,8 +124,8 @@ std::vector<uint64_t> parse_shape(const std::string& text, const std::string& wh
 void check_tensor(const std::string& name, const Tensor& tensor) {
   const uint64_t count = element_count(tensor.shape);
   if (count == 0 || count != tensor.data.size() || tensor.shape.size() > kMaxRank)
-    throw Error(Status::invalid_argument, "Tensor '" + name + "' of shape '" + shape_text(tensor.shape) +
-                                              "' has " + std::to_string(tensor.data.size()) + " values.");
+    throw Error(Status::invalid_argument, "Tensor '" + name + "' of shape '" + shape_text(tensor.shape) + "' has " +
+                                              std::to_string(tensor.data.size()) + " values.");
   const PartSize size = part_size(tensor.shape);
   constexpr uint64_t kMaxLine = INT32_MAX / (4 * 16 * 3);  // a chunk's bytes are an int in OpenEXR
   if (size.width > kMaxLine || size.height > INT32_MAX / 2)
@@ -145,8 +143,7 @@ Imf::Header make_header(const std::string& name, const Tensor& tensor, const Ima
   header.zipCompressionLevel() = kZipLevel;
   Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
   header.insert(kShapeAttribute, Imf::StringAttribute(shape_text(tensor.shape)));
-  for (const auto& channel : channel_names(size.channels))
-    header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+  for (const auto& channel : channel_names(size.channels)) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
   return header;
 }
 
@@ -155,8 +152,7 @@ std::vector<Imf::Header> make_headers(const TensorFile& file) {
   std::vector<Imf::Header> headers;
   for (const auto& [name, tensor] : file.tensors) {
     check_tensor(name, tensor);
-    headers.push_back(
-        make_header(name, tensor, headers.empty() ? Imath::Box2i() : headers[0].displayWindow()));
+    headers.push_back(make_header(name, tensor, headers.empty() ? Imath::Box2i() : headers[0].displayWindow()));
   }
   for (const auto& [key, value] : file.attributes) headers.at(0).insert(key, Imf::StringAttribute(value));
   return headers;
@@ -168,8 +164,7 @@ Imf::FrameBuffer frame_buffer(float* data, const PartSize& size) {
   const size_t x_stride = sizeof(float) * size.channels;
   const auto names = channel_names(size.channels);
   for (size_t c = 0; c < names.size(); ++c)
-    buffer.insert(names[c],
-                  Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(data + c), x_stride, x_stride * size.width));
+    buffer.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(data + c), x_stride, x_stride * size.width));
   return buffer;
 }
 
@@ -190,11 +185,10 @@ std::vector<uint64_t> checked_shape(const ExrPart& part, const std::string& name
   auto shape = parse_shape(part.shape, where);
   const uint64_t count = element_count(shape);
   const PartSize size = count == 0 ? PartSize{0, 0, 0} : part_size(shape);
-  if (count == 0 || size.width != part.width || size.height != part.height ||
-      size.channels != part.channels.size())
+  if (count == 0 || size.width != part.width || size.height != part.height || size.channels != part.channels.size())
     throw Error(Status::bad_data, where + "velour.shape '" + part.shape + "' does not match " +
-                                      std::to_string(part.width) + " x " + std::to_string(part.height) +
-                                      " pixels of " + std::to_string(part.channels.size()) + " channels.");
+                                      std::to_string(part.width) + " x " + std::to_string(part.height) + " pixels of " +
+                                      std::to_string(part.channels.size()) + " channels.");
   return shape;
 }
 
@@ -211,8 +205,7 @@ Tensor read_part(Imf::MultiPartInputFile& in, int index, const ExrPart& scanned,
   const PartSize size = part_size(tensor.shape);
   for (const auto& channel : channel_names(size.channels))
     if (!in.header(index).channels().findChannel(channel))
-      throw Error(Status::bad_data,
-                  name + ": part '" + scanned.name + "': channel " + channel + " is missing.");
+      throw Error(Status::bad_data, name + ": part '" + scanned.name + "': channel " + channel + " is missing.");
   tensor.data.resize(scanned.value_count());
   Imf::InputPart part(in, index);
   part.setFrameBuffer(frame_buffer(tensor.data.data(), size));
@@ -220,11 +213,10 @@ Tensor read_part(Imf::MultiPartInputFile& in, int index, const ExrPart& scanned,
   return tensor;
 }
 
-TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrPart>& parts,
-                          const std::string& name) {
+TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrPart>& parts, const std::string& name) {
   MemoryInput stream(bytes, name);
-  // No threads of OpenEXR's own: its pool is global to the process. No repair of chunk tables: a damaged file
-  // is refused.
+  // No threads of OpenEXR's own: its pool is global to the process. No repair of chunk tables: a damaged file is
+  // refused.
   Imf::MultiPartInputFile in(stream, 0, false);
   TensorFile file;
   for (int i = 0; i < in.parts() && static_cast<size_t>(i) < parts.size(); ++i) {
@@ -238,8 +230,7 @@ TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrP
 }  // namespace
 
 std::vector<uint8_t> encode_tensors(const TensorFile& file) {
-  if (file.tensors.empty())
-    throw Error(Status::invalid_argument, "A file of tensors needs at least one tensor.");
+  if (file.tensors.empty()) throw Error(Status::invalid_argument, "A file of tensors needs at least one tensor.");
   const auto headers = make_headers(file);
   MemoryOutput stream;
   try {

@@ -1,5 +1,4 @@
-// Named tensors in the bytes of a multi-part OpenEXR file: the container of models and of Velour's own
-// tables.
+// Named tensors in the bytes of a multi-part OpenEXR file: the container of models and of Velour's own tables.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +9,9 @@
 
 namespace velour {
 
-/// float32, row-major. In the file a tensor is one part with one channel "Y": its last dimension is the
-/// width, the others flattened are the height, and the attribute "velour.shape" holds the shape.
-/// Three-component last dimensions are stored as channels R, G, B instead, so that a viewer shows them in
-/// colour.
+/// float32, row-major. In the file a tensor is one part with one channel "Y": its last dimension is the width, the
+/// others flattened are the height, and the attribute "velour.shape" holds the shape. Three-component last dimensions
+/// are stored as channels R, G, B instead, so that a viewer shows them in colour.
 struct Tensor {
   std::vector<uint64_t> shape;
   std::vector<float> data;
@@ -27,8 +25,7 @@ struct TensorFile {
 /// The bytes of the file; deterministic: the same content gives the same bytes.
 std::vector<uint8_t> encode_tensors(const TensorFile& file);
 
-/// Checks every shape against the part's data window and the byte count before allocating. `name` appears in
-/// errors.
+/// Checks every shape against the part's data window and the byte count before allocating. `name` appears in errors.
 TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& name);
 
 /// True for bytes that begin like an OpenEXR file.

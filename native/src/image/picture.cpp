@@ -21,9 +21,7 @@ constexpr int kMaxChannels = 64;
 
 /// IEC 61966-2-1.
 float linear_from_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
-float srgb_from_linear(float v) {
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
-}
+float srgb_from_linear(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f; }
 
 /// Nearest 8-bit code; not a number and negative values give 0.
 uint8_t srgb_byte(float linear) {
@@ -39,8 +37,7 @@ std::string input_error(const std::string& path, const std::string& detail) {
 void check_size(const std::string& path, const OIIO::ImageSpec& spec) {
   const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height) + " x " +
                            std::to_string(spec.nchannels) + " channels";
-  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.nchannels <= 0 ||
-      spec.nchannels > kMaxChannels)
+  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.nchannels <= 0 || spec.nchannels > kMaxChannels)
     throw Error(Status::bad_data, path + ": the header says " + size + ", which is no flat picture.");
   const uint64_t pixels = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height);
   const uint64_t bound = std::min(kMaxValues, kMaxValuesPerByte * std::filesystem::file_size(path));
@@ -97,8 +94,7 @@ void write_png(const std::string& path, const Picture& picture) {
   std::vector<uint8_t> bytes(picture.pixels.size());
   const bool has_alpha = picture.channels == 2 || picture.channels == 4;
   for (size_t i = 0; i < bytes.size(); ++i) {
-    const bool alpha =
-        has_alpha && static_cast<int>(i % static_cast<size_t>(picture.channels)) == picture.channels - 1;
+    const bool alpha = has_alpha && static_cast<int>(i % static_cast<size_t>(picture.channels)) == picture.channels - 1;
     bytes[i] = alpha ? static_cast<uint8_t>(std::lround(std::clamp(picture.pixels[i], 0.0f, 1.0f) * 255.0f))
                      : srgb_byte(picture.pixels[i]);
   }
@@ -129,8 +125,7 @@ void write_picture(const std::string& path, const Picture& picture) {
   const uint64_t count = static_cast<uint64_t>(picture.width) * static_cast<uint64_t>(picture.height) *
                          static_cast<uint64_t>(picture.channels);
   if (picture.width <= 0 || picture.height <= 0 || picture.channels <= 0 || count != picture.pixels.size())
-    throw Error(Status::invalid_argument, path + ": the picture has " +
-                                              std::to_string(picture.pixels.size()) +
+    throw Error(Status::invalid_argument, path + ": the picture has " + std::to_string(picture.pixels.size()) +
                                               " values, not width x height x channels.");
   Picture top_first = picture;
   flip_rows(top_first);
@@ -140,8 +135,7 @@ void write_picture(const std::string& path, const Picture& picture) {
   throw Error(Status::unsupported, path + ": pictures are written as .exr or .png.");
 }
 
-PictureDifference compare_pictures(const float* pixels, const float* reference, size_t pixel_count,
-                                   int channels) {
+PictureDifference compare_pictures(const float* pixels, const float* reference, size_t pixel_count, int channels) {
   const int used = std::min(channels, 3);
   const double count = static_cast<double>(pixel_count) * used;
   double mean = 0;

@@ -17,8 +17,8 @@ struct Picture {
   }
 };
 
-/// Any format OpenImageIO knows; integer formats are taken as sRGB and made linear. Throws Error with the
-/// file's name. Dimensions are checked against the file's size before anything is allocated.
+/// Any format OpenImageIO knows; integer formats are taken as sRGB and made linear. Throws Error with the file's name.
+/// Dimensions are checked against the file's size before anything is allocated.
 Picture read_picture(const std::string& path);
 /// Width, height, channels without the pixels.
 Picture read_picture_header(const std::string& path);
@@ -30,7 +30,6 @@ struct PictureDifference {
   double rmse = 0, relmse = 0;
 };
 /// Of the first three channels: relmse = mean((x - r)^2 / (r^2 + 0.01 mean(r)^2)).
-PictureDifference compare_pictures(const float* pixels, const float* reference, size_t pixel_count,
-                                   int channels);
+PictureDifference compare_pictures(const float* pixels, const float* reference, size_t pixel_count, int channels);
 
 }  // namespace velour

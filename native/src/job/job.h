@@ -39,8 +39,7 @@ class Job {
 
   /// True when the task has ended within `seconds` (negative: waits for ever).
   bool wait_for(double seconds) const;
-  /// Rethrows what a failed or cancelled task ended with; Error(invalid_state) when it never ran or still
-  /// runs.
+  /// Rethrows what a failed or cancelled task ended with; Error(invalid_state) when it never ran or still runs.
   void rethrow() const;
 
   /// Jobs of the whole process whose task runs now.

@@ -1,5 +1,4 @@
-// Progress and cancel of a long task. One writer side (the task, any of its threads), one reader side (a
-// poller).
+// Progress and cancel of a long task. One writer side (the task, any of its threads), one reader side (a poller).
 #pragma once
 
 #include <atomic>
@@ -11,8 +10,8 @@ namespace velour {
 
 class Progress {
  public:
-  /// Starts a named part of the task that covers [begin, end] of the whole, 0 <= begin <= end <= 1. `stage`
-  /// must be a string literal: the poller reads the pointer from another thread.
+  /// Starts a named part of the task that covers [begin, end] of the whole, 0 <= begin <= end <= 1. `stage` must be a
+  /// string literal: the poller reads the pointer from another thread.
   void stage(const char* name, double begin, double end) {
     stage_.store(name, std::memory_order_relaxed);
     begin_.store(begin, std::memory_order_relaxed);

@@ -8,8 +8,8 @@
 
 namespace velour {
 
-/// Density D of microfacet normals per solid angle of h, so that the integral of D h.z is 1. In sines, not in
-/// 1 - cosine squared, which loses a sharp peak.
+/// Density D of microfacet normals per solid angle of h, so that the integral of D h.z is 1. In sines, not in 1 -
+/// cosine squared, which loses a sharp peak.
 inline float ggx_distribution(const Vec3& h, float alpha) {
   const float alpha_sq = alpha * alpha;
   const float spread = h.x * h.x + h.y * h.y + alpha_sq * h.z * h.z;

@@ -20,8 +20,8 @@ struct CameraSample {
   int directions = 0;   // light directions that the ray stands for
 };
 
-/// Sums a pixel. Samples of a pixel must be added in the order of their camera rays: then the bits do not
-/// depend on how the rays are dealt out to passes and threads.
+/// Sums a pixel. Samples of a pixel must be added in the order of their camera rays: then the bits do not depend on how
+/// the rays are dealt out to passes and threads.
 struct PixelSum {
   Rgb radiance{0.0f};
   float alpha = 0;
@@ -52,11 +52,10 @@ class Film {
   void load(const PixelRect& rect, std::span<PixelSum> pixels) const;
   void store(const PixelRect& rect, std::span<const PixelSum> pixels);
 
-  /// Channels of a pass: "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1
-  /// (light directions). Throws Error(invalid_argument) on another name.
+  /// Channels of a pass: "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1 (light
+  /// directions). Throws Error(invalid_argument) on another name.
   static int channels(std::string_view pass);
-  /// `pixels` holds width x height x channels(pass). Pixels without samples are 0; depth is 1e10 where
-  /// nothing was hit.
+  /// `pixels` holds width x height x channels(pass). Pixels without samples are 0; depth is 1e10 where nothing was hit.
   void read_pass(std::string_view pass, std::span<float> pixels) const;
 
   /// RMS over the pixels of the standard error of luminance, divided by the mean luminance. 0 while unknown.

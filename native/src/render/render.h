@@ -10,8 +10,8 @@
 namespace velour {
 
 /// Renders a committed scene into `film` (cleared first), whose size is that of `options`. Throws
-/// Error(invalid_argument) with the option at fault, Error(invalid_state) when the scene is not committed,
-/// and Error(cancelled): then the film holds what was done.
+/// Error(invalid_argument) with the option at fault, Error(invalid_state) when the scene is not committed, and
+/// Error(cancelled): then the film holds what was done.
 ///
 /// The picture is a function of scene, options (less threads and camera_rays_per_pass) and seed, bit for bit.
 RenderReport render(const Scene& scene, const RenderOptions& options, Film& film, Progress& progress);

@@ -15,8 +15,8 @@ struct Affine {
   Vec3 column(int i) const { return {m[i], m[4 + i], m[8 + i]}; }
   Vec3 vector(const Vec3& v) const { return v.x * column(0) + v.y * column(1) + v.z * column(2); }
   Vec3 point(const Vec3& p) const { return vector(p) + column(3); }
-  /// Takes normals to normals: the inverse transpose up to a positive factor, so that the outside of a
-  /// mirrored object stays its outside.
+  /// Takes normals to normals: the inverse transpose up to a positive factor, so that the outside of a mirrored object
+  /// stays its outside.
   Mat3 normal_map() const {
     float largest = 1e-37f;  // scaled by it, products of tiny or huge columns neither vanish nor overflow
     for (int i = 0; i < 3; ++i) largest = std::max(largest, glm::length(column(i)));

@@ -29,18 +29,15 @@ struct Camera {
   float window[4] = {-0.5f, 0.5f, -0.5f, 0.5f};  // left, right, bottom, top; at distance 1, or in metres
   float clip_start = 0.0f, clip_end = std::numeric_limits<float>::infinity();  // along -z
 
-  /// Ray through `picture`, (0, 0) the lower left corner of the picture and (1, 1) the upper right. World,
-  /// unit.
+  /// Ray through `picture`, (0, 0) the lower left corner of the picture and (1, 1) the upper right. World, unit.
   Ray ray(const Vec2& picture) const;
   /// Distance of `world` from the camera along its line of sight: what a depth pass holds.
   float depth(const Vec3& world) const;
 
-  /// Perspective camera at `eye`; `fov` is the vertical angle of view, `aspect` width / height. Up is world
-  /// `up`.
+  /// Perspective camera at `eye`; `fov` is the vertical angle of view, `aspect` width / height. Up is world `up`.
   static Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov, float aspect);
-  /// Frames `bounds` to the picture (its height, unless the box is wider than the picture), with a vertical
-  /// angle of view of 40 degrees. `up_axis` 2: up is +z, seen along +y (Blender's front view); 1: up is +y,
-  /// seen along -z.
+  /// Frames `bounds` to the picture (its height, unless the box is wider than the picture), with a vertical angle of
+  /// view of 40 degrees. `up_axis` 2: up is +z, seen along +y (Blender's front view); 1: up is +y, seen along -z.
   static Camera framing(const Bounds& bounds, float aspect, int up_axis);
 };
 

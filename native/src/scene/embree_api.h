@@ -46,8 +46,8 @@ struct EmbreeApi {
   //
   // Batches: every ray takes the single-ray path through the hierarchy, so what it meets does not depend on its
   // neighbours. Embree 3's stream call does just that for incoherent rays, without the cost of a call a ray: 10.7
-  // million hemisphere shadow rays a second on a bunny of 69 thousand triangles, against 7.0 for rtcOccluded1, 8.5
-  // and 8.9 for packets of 8 and 16, 5.2 for the coherent stream (3.13.5, AVX-512, one thread).
+  // million hemisphere shadow rays a second on a bunny of 69 thousand triangles, against 7.0 for rtcOccluded1, 8.5 and
+  // 8.9 for packets of 8 and 16, 5.2 for the coherent stream (3.13.5, AVX-512, one thread).
 #if VELOUR_EMBREE_MAJOR >= 4
   void intersect(RTCScene scene, RTCRayHit* rays, unsigned count) const {
     for (unsigned i = 0; i < count; ++i) rtcIntersect1(scene, rays + i, nullptr);

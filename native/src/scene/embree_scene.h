@@ -1,6 +1,6 @@
-// Rays. The only header over Embree; embree_scene.cpp alone (with its embree_api.h) sees Embree's own headers
-// and hides the difference between Embree 3 and 4. Embree is opened privately (dlopen + dlsym), so that
-// another Embree already in the process - Blender's - cannot be bound by accident.
+// Rays. The only header over Embree; embree_scene.cpp alone (with its embree_api.h) sees Embree's own headers and hides
+// the difference between Embree 3 and 4. Embree is opened privately (dlopen + dlsym), so that another Embree already in
+// the process - Blender's - cannot be bound by accident.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ inline constexpr uint32_t kNoHit = 0xffffffffu;
 
 struct Hit {
   float distance;
-  // World, not normalised, towards the front: the side that sees the mesh's corners counter-clockwise in
-  // object space, so that the outside of a mirrored instance stays outside.
+  // World, not normalised, towards the front: the side that sees the mesh's corners counter-clockwise in object space,
+  // so that the outside of a mirrored instance stays outside.
   Vec3 geometric_normal;
   float u, v;                  // barycentric weights of vertices 1 and 2
   uint32_t triangle;           // of the mesh
@@ -45,8 +45,8 @@ class EmbreeScene {
   uint32_t add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
   /// Returns the instance's number, counted from 0.
   uint32_t add_instance(uint32_t mesh, const Affine& object_to_world);
-  /// Builds; uses at most `threads` threads (0: all). A scene whose only instance has the identity map is
-  /// traced without an instance level.
+  /// Builds; uses at most `threads` threads (0: all). A scene whose only instance has the identity map is traced
+  /// without an instance level.
   void commit(int threads);
 
   void intersect(const Ray& ray, Hit& hit) const;
@@ -70,8 +70,8 @@ struct EmbreeInfo {
 };
 EmbreeInfo embree_info();
 
-/// Throws Error(version_mismatch) when Embree is not the version that this library was compiled for, or when
-/// a known ray does not hit a known triangle. Cheap; the result is not cached across failures.
+/// Throws Error(version_mismatch) when Embree is not the version that this library was compiled for, or when a known
+/// ray does not hit a known triangle. Cheap; the result is not cached across failures.
 void embree_self_test();
 
 }  // namespace velour

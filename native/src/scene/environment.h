@@ -1,5 +1,4 @@
-// What surrounds the scene: one colour, or an equirectangular image. Look-up, sampling and density belong
-// together.
+// What surrounds the scene: one colour, or an equirectangular image. Look-up, sampling and density belong together.
 #pragma once
 
 #include <memory>
@@ -18,10 +17,9 @@ struct EquirectangularPixels {
 
 /// Radiance from every direction of the world (+z up). Immutable; copies share the image.
 ///
-/// Image coordinates are Blender's: u = 1/2 - atan2(y, x) / (2 pi) from the left, v = 1/2 + asin(z) / pi from
-/// the bottom. Radiance is bilinear between texel centres (u wraps, v ends at the first and last row). The
-/// density of `sample` is the bilinear function whose nodes are luminance(L) sin(theta) at the texel centres,
-/// and 0 at the poles.
+/// Image coordinates are Blender's: u = 1/2 - atan2(y, x) / (2 pi) from the left, v = 1/2 + asin(z) / pi from the
+/// bottom. Radiance is bilinear between texel centres (u wraps, v ends at the first and last row). The density of
+/// `sample` is the bilinear function whose nodes are luminance(L) sin(theta) at the texel centres, and 0 at the poles.
 class Environment {
  public:
   /// Black.

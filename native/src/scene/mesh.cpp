@@ -16,8 +16,7 @@ bool usable(const Vec3& p) {
   return std::abs(p.x) < kReach && std::abs(p.y) < kReach && std::abs(p.z) < kReach;  // false for NaN
 }
 
-/// Twice the area times the unit normal, in float64: edges of tiny and huge meshes neither vanish nor
-/// overflow.
+/// Twice the area times the unit normal, in float64: edges of tiny and huge meshes neither vanish nor overflow.
 Vec3d area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   return glm::cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
 }

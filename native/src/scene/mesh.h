@@ -23,8 +23,7 @@ struct MeshArrays {
 /// - are left out. Zero or non-finite shading normals are replaced by the triangle's own.
 class Mesh {
  public:
-  /// Copies. Throws Error(invalid_argument) when lengths disagree or a triangle names a vertex that is not
-  /// there.
+  /// Copies. Throws Error(invalid_argument) when lengths disagree or a triangle names a vertex that is not there.
   explicit Mesh(const MeshArrays& arrays);
 
   std::span<const Vec3> positions() const { return positions_; }

@@ -1,5 +1,5 @@
-// A shared library bound for our own use: its entry points are looked up on its own handle, so an equally
-// named symbol that is already in the process (Blender links its own Embree) is never called by accident.
+// A shared library bound for our own use: its entry points are looked up on its own handle, so an equally named symbol
+// that is already in the process (Blender links its own Embree) is never called by accident.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace velour {
 
-/// Open for the life of the object. Loaded with RTLD_LOCAL and never with RTLD_DEEPBIND, which breaks the
-/// allocator and `environ` of the host.
+/// Open for the life of the object. Loaded with RTLD_LOCAL and never with RTLD_DEEPBIND, which breaks the allocator and
+/// `environ` of the host.
 class PrivateLibrary {
  public:
   /// Looks beside our own shared object, in its `lib` neighbours, then on the system's library path. Throws

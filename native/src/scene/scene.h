@@ -41,8 +41,7 @@ struct SceneInfo {
   std::vector<std::string> warnings;
 };
 
-/// Fill, commit, render. Every change after commit() needs another commit(). Reading a committed scene is
-/// thread-safe.
+/// Fill, commit, render. Every change after commit() needs another commit(). Reading a committed scene is thread-safe.
 class Scene {
  public:
   /// These return the number of what was added, counted from 0. Arguments that name missing things throw

@@ -1,13 +1,12 @@
-// A few directions side by side: the unit of work of every evaluation kernel. SIMD lanes run over directions,
-// so that one lobe is broadcast and no horizontal sum is needed.
+// A few directions side by side: the unit of work of every evaluation kernel. SIMD lanes run over directions, so that
+// one lobe is broadcast and no horizontal sum is needed.
 #pragma once
 
 #include "sphere/vec.h"
 
 namespace velour {
 
-/// Up to kCapacity unit directions, structure of arrays. Lanes past `count` hold +z, so kernels never branch
-/// on a tail.
+/// Up to kCapacity unit directions, structure of arrays. Lanes past `count` hold +z, so kernels never branch on a tail.
 struct alignas(64) DirectionBatch {
   static constexpr int kCapacity = 64;
   float x[kCapacity], y[kCapacity], z[kCapacity];

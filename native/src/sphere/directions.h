@@ -8,15 +8,14 @@
 
 namespace velour {
 
-/// `n` directions of equal solid angle 2 pi / n on the upper hemisphere (spherical Fibonacci lattice, cell
-/// centres).
+/// `n` directions of equal solid angle 2 pi / n on the upper hemisphere (spherical Fibonacci lattice, cell centres).
 std::vector<Vec3> hemisphere_fibonacci(int n);
 
 /// The same over the whole sphere, 4 pi / n each.
 std::vector<Vec3> sphere_fibonacci(int n);
 
-/// Indices of the `k` directions of `set` with the largest dot product with `d`, nearest first; ties by lower
-/// index. Writes min(k, set.size()) indices and returns how many.
+/// Indices of the `k` directions of `set` with the largest dot product with `d`, nearest first; ties by lower index.
+/// Writes min(k, set.size()) indices and returns how many.
 int nearest_directions(std::span<const Vec3> set, const Vec3& d, int k, int* indices);
 
 }  // namespace velour

@@ -3,8 +3,8 @@
 namespace velour {
 
 Mat3 rotation_between(const Vec3& from_float, const Vec3& to_float) {
-  // Rodrigues' formula with axis v = from x to (length sin) and c = from . to (cos): R = c I + [v] + v v^T /
-  // (1 + c). In double, because 1 + c cancels for nearly opposed directions.
+  // Rodrigues' formula with axis v = from x to (length sin) and c = from . to (cos): R = c I + [v] + v v^T / (1 + c).
+  // In double, because 1 + c cancels for nearly opposed directions.
   const Vec3d from = glm::normalize(Vec3d(from_float)), to = glm::normalize(Vec3d(to_float));
   const double c = glm::dot(from, to);
   if (c < -1.0 + 1e-10) {

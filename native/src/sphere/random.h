@@ -1,5 +1,5 @@
-// Counter-based random numbers: every number is a pure function of (seed, stream, sample, dimension), so
-// results do not depend on threads or on the order of tiles.
+// Counter-based random numbers: every number is a pure function of (seed, stream, sample, dimension), so results do not
+// depend on threads or on the order of tiles.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ inline uint64_t mix64(uint64_t x) {
 /// Upper 24 bits of `bits` as a float in [0, 1); the largest value is 1 - 2^-24.
 inline float unit_float(uint64_t bits) { return static_cast<float>(bits >> 40) * 0x1p-24f; }
 
-/// Numbers of one sample of one stream (a pixel, a texel, a facet ray). Cheap to make; holds no generator
-/// state but a dimension counter.
+/// Numbers of one sample of one stream (a pixel, a texel, a facet ray). Cheap to make; holds no generator state but a
+/// dimension counter.
 class RandomStream {
  public:
   RandomStream(uint64_t seed, uint64_t stream, uint64_t sample)

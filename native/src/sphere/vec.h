@@ -1,8 +1,7 @@
 // Small vectors, and the names that the whole library uses for them.
 //
-// Directions are unit vectors that point away from the surface. Unless a name ends in `_world` they live in
-// the local shading frame: +z is the normal, +x the tangent, +y = cross(+z, +x). `wl` points to the light,
-// `wv` to the viewer.
+// Directions are unit vectors that point away from the surface. Unless a name ends in `_world` they live in the local
+// shading frame: +z is the normal, +x the tangent, +y = cross(+z, +x). `wl` points to the light, `wv` to the viewer.
 #pragma once
 
 #include <glm/glm.hpp>

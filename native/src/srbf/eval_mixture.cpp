@@ -14,13 +14,12 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// 2^y for y <= 0, exactly 0 below 2^-126.5. Relative error 1.7e-7, of which 9.2e-8 is the polynomial: the
-/// minimax of degree 5 on [-1/2, 1/2] with p(0) = 1 (coefficients by our own exchange iteration).
+/// 2^y for y <= 0, exactly 0 below 2^-126.5. Relative error 1.7e-7, of which 9.2e-8 is the polynomial: the minimax of
+/// degree 5 on [-1/2, 1/2] with p(0) = 1 (coefficients by our own exchange iteration).
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V exp2_nonpositive(D d, V y) {
   const hn::RebindToSigned<D> di;
-  // Adding 1.5 2^23 rounds to an integer, held in the low bits; the further 127 makes it the exponent field
-  // of 2^n.
+  // Adding 1.5 2^23 rounds to an integer, held in the low bits; the further 127 makes it the exponent field of 2^n.
   const V magic = hn::Set(d, 12582912.0f + 127.0f);
   const V clamped = hn::Max(y, hn::Set(d, -127.0f));  // exponent field 0: the number 0
   const V shifted = hn::Add(clamped, magic);
@@ -35,8 +34,7 @@ HWY_INLINE V exp2_nonpositive(D d, V y) {
   return hn::Mul(p, power);
 }
 
-/// One lobe's kernel as a function of |w - xi|^2 = 2 d; what depends on the bandwidth alone is computed once
-/// a batch.
+/// One lobe's kernel as a function of |w - xi|^2 = 2 d; what depends on the bandwidth alone is computed once a batch.
 struct GaussianLobe {
   explicit GaussianLobe(float bandwidth) : slope(bandwidth * -0.72134752f) {}  // -log2(e) / 2
 

@@ -26,8 +26,8 @@ double abel_poisson_bandwidth_slope(double b, double d) {
   return (3 * (1 - b) * (1 + b) * t_minus_b / denominator - 2 * b) / (denominator * std::sqrt(denominator));
 }
 
-/// d = -log(u + (1 - u) e^-2l) / l, method 6.2. Broad lobes need the form that keeps its digits where the
-/// logarithm is near 0; the others do not, and plain exp and log cost a third of expm1 and log1p.
+/// d = -log(u + (1 - u) e^-2l) / l, method 6.2. Broad lobes need the form that keeps its digits where the logarithm is
+/// near 0; the others do not, and plain exp and log cost a third of expm1 and log1p.
 double gaussian_sample(double l, double u) {
   if (l == 0) return 2 * (1 - u);
   if (l < 1) return -std::log1p((1 - u) * std::expm1(-2 * l)) / l;
@@ -83,8 +83,7 @@ double kernel_bandwidth_of_half_width(Kernel kernel, double half_width) {
   const double sine = std::sin(0.5 * half_width);
   const double d = 2 * sine * sine;
   if (kernel == Kernel::gaussian) return std::log(2.0) / d;
-  // (1 - b)^2 + 2 b d = 2^(2/3) (1 - b)^2, that is b^2 - (2 + k) b + 1 = 0; the root below one, without
-  // cancellation.
+  // (1 - b)^2 + 2 b d = 2^(2/3) (1 - b)^2, that is b^2 - (2 + k) b + 1 = 0; the root below one, without cancellation.
   const double k = 2 * d / (std::cbrt(4.0) - 1);
   return 2 / (2 + k + std::sqrt(k * (k + 4)));
 }

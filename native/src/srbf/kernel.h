@@ -2,8 +2,8 @@
 // docs/equations.md).
 //
 // A kernel depends on d = 1 - eta . xi alone, 0 <= d <= 2. `d` must come from |eta - xi|^2 / 2, never from a
-// subtraction of two numbers near one. Everything here is double; the float SIMD forms live in
-// eval_mixture.cpp and are tested against these.
+// subtraction of two numbers near one. Everything here is double; the float SIMD forms live in eval_mixture.cpp and are
+// tested against these.
 #pragma once
 
 #include "sphere/vec.h"
@@ -29,21 +29,19 @@ double kernel_value(Kernel kernel, double bandwidth, double d);
 double kernel_slope(Kernel kernel, double bandwidth, double d);
 /// dG / dbandwidth.
 double kernel_bandwidth_slope(Kernel kernel, double bandwidth, double d);
-/// Integral of G over the sphere: (2 pi / l) (1 - exp(-2 l)) for the Gaussian (4 pi at l = 0), 4 pi for
-/// Abel-Poisson.
+/// Integral of G over the sphere: (2 pi / l) (1 - exp(-2 l)) for the Gaussian (4 pi at l = 0), 4 pi for Abel-Poisson.
 double kernel_integral(Kernel kernel, double bandwidth);
-/// Inverse of the distribution of d for `u` in [0, 1): u = 0 gives d = 2 and u -> 1 gives d -> 0 for the
-/// Gaussian, the same sense for Abel-Poisson. Exact closed forms; stays in [0, 2].
+/// Inverse of the distribution of d for `u` in [0, 1): u = 0 gives d = 2 and u -> 1 gives d -> 0 for the Gaussian, the
+/// same sense for Abel-Poisson. Exact closed forms; stays in [0, 2].
 double kernel_sample(Kernel kernel, double bandwidth, double u);
 /// Bandwidth at which G falls to half its peak at angle `half_width` (radians).
 double kernel_bandwidth_of_half_width(Kernel kernel, double half_width);
 
-/// Integral over the sphere of the product of two kernels about unit `a` and `b`. Closed forms for two
-/// Gaussians (4 pi e^(-la-lb) sinh(R)/R) and two Abel-Poisson kernels.
+/// Integral over the sphere of the product of two kernels about unit `a` and `b`. Closed forms for two Gaussians (4 pi
+/// e^(-la-lb) sinh(R)/R) and two Abel-Poisson kernels.
 double kernel_convolution(Kernel kernel, const Vec3d& a, double bandwidth_a, const Vec3d& b, double bandwidth_b);
 
-/// Pointwise product of two Gaussians = `scale` times one Gaussian. Opposed equal lobes give bandwidth 0, any
-/// centre.
+/// Pointwise product of two Gaussians = `scale` times one Gaussian. Opposed equal lobes give bandwidth 0, any centre.
 struct GaussianProduct {
   Vec3d center;
   double bandwidth;

@@ -1,8 +1,7 @@
-// A flat mixture of SRBF lobes for one shading point: value and density of many directions in one pass, and
-// sampling.
+// A flat mixture of SRBF lobes for one shading point: value and density of many directions in one pass, and sampling.
 //
-// It is filled once a camera ray (the neighbouring views' lobes, already rotated into the local frame and
-// weighted) and asked for a batch of directions. Value and density share every kernel evaluation.
+// It is filled once a camera ray (the neighbouring views' lobes, already rotated into the local frame and weighted) and
+// asked for a batch of directions. Value and density share every kernel evaluation.
 #pragma once
 
 #include "sphere/direction_batch.h"
@@ -10,8 +9,7 @@
 
 namespace velour {
 
-/// Lobes kept for many mixtures, structure of arrays of `count` elements, with what depends on the lobe
-/// alone.
+/// Lobes kept for many mixtures, structure of arrays of `count` elements, with what depends on the lobe alone.
 struct LobeSpan {
   const float *x, *y, *z;  // centres, unit
   const float* bandwidth;
@@ -45,8 +43,7 @@ struct alignas(64) LobeMixture {
   }
   /// Adds a lobe of unit `center`. Callers bound their lobes by kCapacity (asserted).
   void add(const Vec3& center, float lobe_bandwidth, const Rgb& coefficient);
-  /// Adds `lobes`, centres turned by `rotation`, coefficients times `weight` >= 0. The fast way: no kernel
-  /// integral.
+  /// Adds `lobes`, centres turned by `rotation`, coefficients times `weight` >= 0. The fast way: no kernel integral.
   void append(const LobeSpan& lobes, const Mat3& rotation, float weight);
   /// Adds `coefficient` >= 0 times the clipped cosine to the value: the diffuse part.
   void add_diffuse(const Rgb& coefficient) {
@@ -62,13 +59,11 @@ struct alignas(64) LobeMixture {
 
 /// value[i] = diffuse max(w_i.z, 0) + sum_j coefficient_j G_j(w_i)  (f cos, 1/sr; lobes are not clamped at the horizon)
 /// pdf[i]   = density of sample_mixture at w_i, per solid angle over the whole sphere.
-/// The batch is padded. Run-time dispatched SIMD; lanes past the batch's count are computed and meaningless.
-/// Relative error of a kernel: 3e-7 plus 2e-7 times its exponent, for float directions; exactly 0 below
-/// e^-88.
+/// The batch is padded. Run-time dispatched SIMD; lanes past the batch's count are computed and meaningless. Relative
+/// error of a kernel: 3e-7 plus 2e-7 times its exponent, for float directions; exactly 0 below e^-88.
 void eval_mixture(const LobeMixture& mixture, const DirectionBatch& w, RgbBatch& value, ScalarBatch& pdf);
 
-/// Draws a direction; `u.x` picks component and zenith about the lobe, `u.y` the azimuth. May lie below the
-/// horizon.
+/// Draws a direction; `u.x` picks component and zenith about the lobe, `u.y` the azimuth. May lie below the horizon.
 Vec3 sample_mixture(const LobeMixture& mixture, const Vec2& u);
 
 }  // namespace velour

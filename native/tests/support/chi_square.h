@@ -22,8 +22,8 @@ struct ChiSquareOptions {
   uint64_t seed = 1;
   double minimum_expected = 5;  // cells that expect less are pooled
   int refinements = 6;          // halvings of a cell at most, where its integral is not settled
-  /// Axis of the cells' poles; put it on a sharp lobe so that the lobe is resolved: cells are uniform in
-  /// log(1 - cos) about it when `concentration` > 0 (the lobe's bandwidth).
+  /// Axis of the cells' poles; put it on a sharp lobe so that the lobe is resolved: cells are uniform in log(1 - cos)
+  /// about it when `concentration` > 0 (the lobe's bandwidth).
   Vec3 axis{0, 0, 1};
   double concentration = 0;
 };

@@ -17,8 +17,7 @@ inline std::filesystem::path data_folder() {
   return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
 }
 
-/// A fresh folder for one test's files, named after it, below the build folder; kept for a look after a
-/// failure.
+/// A fresh folder for one test's files, named after it, below the build folder; kept for a look after a failure.
 inline std::filesystem::path scratch_folder() {
   const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
   const auto folder = std::filesystem::path(VELOUR_SCRATCH_DIR) / info->test_suite_name() / info->name();

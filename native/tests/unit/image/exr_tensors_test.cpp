@@ -67,8 +67,7 @@ TEST(ExrTensors, RoundTrip) {
 }
 
 TEST(ExrTensors, KeepsEveryBit) {
-  const float nan = std::numeric_limits<float>::quiet_NaN(),
-              infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   TensorFile file;
   file.tensors["x"] = {{6}, {nan, infinity, -infinity, -0.0f, 1e-45f, std::numeric_limits<float>::max()}};
   expect_equal(file, decode_tensors(encode_tensors(file), "test"));
@@ -81,9 +80,7 @@ TEST(ExrTensors, SinglePartFile) {
   expect_equal(file, decode_tensors(encode_tensors(file), "test"));
 }
 
-TEST(ExrTensors, SameContentSameBytes) {
-  EXPECT_EQ(encode_tensors(sample_file()), encode_tensors(sample_file()));
-}
+TEST(ExrTensors, SameContentSameBytes) { EXPECT_EQ(encode_tensors(sample_file()), encode_tensors(sample_file())); }
 
 TEST(ExrTensors, SmoothDataGetsSmaller) {
   TensorFile file;

@@ -1,5 +1,5 @@
-// Velour's rays must hit although another library already offers every rtc* symbol to the whole process, as
-// Blender's own Embree does.
+// Velour's rays must hit although another library already offers every rtc* symbol to the whole process, as Blender's
+// own Embree does.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 

@@ -23,8 +23,7 @@ std::vector<double> bandwidths(Kernel kernel) {
   return {0, 1e-4, 0.1, 0.5, 0.9, 0.999, 1 - 0x1p-24};
 }
 
-// Integrates g(d) over the sphere on panels that shrink by half towards the centre, so that no lobe is too
-// sharp.
+// Integrates g(d) over the sphere on panels that shrink by half towards the centre, so that no lobe is too sharp.
 template <class G>
 double integrate_zonal(const G& g) {
   double sum = 0;
