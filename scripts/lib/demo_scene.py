@@ -20,8 +20,8 @@ SAMPLES, BOUNCES = 256, 1
 WORLD, WORLD_ROTATION, WORLD_STRENGTH = "courtyard.exr", 250.0, 0.7
 
 PLOT_REDUCTION = 4  # of the picture's sides
-PLOT_REFERENCE_SAMPLES = 2048
-PLOT_SAMPLES = (8, 32, 128)
+PLOT_REFERENCE_SAMPLES = 4096
+PLOT_SAMPLES = (16, 64, 256)
 PLOT_STRATEGIES = ("uniform", "cosine", "srbf", "light", "mis")
 
 
