@@ -14,11 +14,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import measure_text
-from velour.core import files
+from velour.core import files, plots
 from velour.core.machine import machine
 
 ROOT = Path(__file__).resolve().parents[2]
-WORK = ROOT / "build/measure"
+WORK = ROOT / "build/measurements"
 SEED = 1
 THREADS = 2
 MATERIAL = "blue-metallic-paint"
@@ -43,6 +43,8 @@ def main() -> int:
     }
     files.write_text(ROOT / "docs/measurements.md", measure_text.page(results))
     files.write_text(ROOT / "docs/measurements.csv", _csv(results))
+    errors = {name: fit["by_view_angle"] for name, fit in results["fits"].items()}
+    plots.error_by_view_angle(ROOT / "docs/images/error_by_view_angle.png", errors, TOLERANCE)
     print(ROOT / "docs/measurements.md")
     return 0
 
@@ -95,15 +97,14 @@ def _main_render(scene: list) -> dict:
 
 
 def _image_error_by_lobes(scene: list, measurement: Path) -> dict[int, dict]:
-    """Model against reference mode with the same random numbers: what is left is mostly the model's error."""
+    """Model against reference mode with the very same light directions: what is left is the model's error."""
     small = ["--size", "320x240", "--spp", 512]
-    best = _model(MATERIAL, LOBES[-1])
-    reference = render(scene, measurement, "reference.exr", *small, "--proposal", best)
     rows = {}
     for lobes in LOBES:
-        fit = _fit(measurement, lobes)
-        against = ["--reference", WORK / "reference.exr"]
-        report = render(scene, _model(MATERIAL, lobes), f"{lobes}-lobes.exr", *small, *against)
+        fit, model = _fit(measurement, lobes), _model(MATERIAL, lobes)
+        reference = render(scene, measurement, f"{lobes}-raw.exr", *small, "--proposal", model)
+        against = ["--reference", WORK / f"{lobes}-raw.exr"]
+        report = render(scene, model, f"{lobes}-lobes.exr", *small, *against)
         rows[lobes] = {**report, "fit": fit, "reference_seconds": reference["seconds"]}
     return rows
 
