@@ -26,4 +26,12 @@ def write_passes(job, result, names=None):
     """Copies the film into `result`: the passes in `names`, or all that both sides know."""
     for target in result.layers[0].passes:
         if target.name in PASS_CHANNELS and (names is None or target.name in names):
-            target.rect.foreach_set(job.read_pass(target.name).reshape(-1, target.channels))
+            _fill(target.rect, job.read_pass(target.name).reshape(-1, target.channels))
+
+
+def _fill(rect, pixels):
+    """Blender 3.4 to 4.x take [pixels x channels], 5.x the same values flat; neither takes the other."""
+    try:
+        rect.foreach_set(pixels)
+    except TypeError:
+        rect.foreach_set(pixels.reshape(-1))
