@@ -13,6 +13,7 @@ namespace {
 using Index = Eigen::Index;
 
 // Broader than this a lobe is a constant over the hemisphere, whatever its centre.
+constexpr double kMaxPeakToHorizon = 100;  // of a lobe below the horizon
 constexpr double kMinSharpness = 0.02;
 // Column products are sums in float: below this share of its length a column is rounding.
 constexpr double kRidge = 1e-7;
@@ -89,7 +90,11 @@ double SliceSolver::max_sharpness(const Vec3d& center) const {
   }
   const double half_width = 0.5 * std::clamp(static_cast<double>(spacing), 1e-4, 1.0);
   const double s = std::sin(0.5 * half_width);
-  return std::log(2.0) / (2 * s * s);
+  const double limit = std::log(2.0) / (2 * s * s);
+  if (center.z >= 0) return limit;
+  // Of a lobe below the horizon only the tail is seen: a sharp one would need a peak without bound.
+  const double cos_depth = std::sqrt(std::max(0.0, 1 - center.z * center.z));
+  return std::min(limit, std::log(kMaxPeakToHorizon) / (1 - cos_depth));
 }
 
 /// The lobes' values, then the cosine term's.

@@ -46,6 +46,19 @@ TEST(SliceFit, OneBrightSampleGivesSoundLobes) {
   }
 }
 
+TEST(SliceFit, ATailAtTheHorizonIsNotTheFootOfATower) {
+  // Falls off the horizon like the tail of a lobe far below it; such a lobe would have a peak of e^20.
+  auto samples = lattice(2000, Rgb(0));
+  for (SliceSample& s : samples) {
+    const float x = s.wl.x, z = s.wl.z;
+    s.value = Rgb(std::exp(-40.0f * (x * -0.6f + z * 0.8f + 0.5f) - 20.0f));
+  }
+  float brightest = 0;
+  for (const SliceSample& s : samples) brightest = std::max(brightest, s.value.g);
+  const SliceFit tail = fit(samples, 8, 0.001);
+  for (const SliceLobe& l : tail.lobes) EXPECT_LT(l.peak.g, 1000 * brightest);
+}
+
 TEST(SliceFit, FewSamplesGiveSoundLobes) {
   for (int n = 1; n < 8; ++n) expect_sound(fit(lattice(n, Rgb(1)), 16, 1e-6));
 }
