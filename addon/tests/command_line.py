@@ -18,7 +18,8 @@ class Result(NamedTuple):
 
     @property
     def json(self) -> dict:
-        """The one object on stdout."""
+        """The one object on stdout of a call that went well."""
+        assert self.status == 0, self.err
         return json.loads(self.out)
 
 

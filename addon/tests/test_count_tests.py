@@ -34,7 +34,12 @@ def test_counts(tmp_path, capsys, ctest_child, inner, expected):
     if inner:
         _report(tmp_path / "native/test_sphere.xml", *inner)
     (tmp_path / "native").mkdir(exist_ok=True)
-    assert _counted(capsys, ctest, tmp_path / "native") == expected
+    assert _counted(capsys, ctest, tmp_path / "native").splitlines()[0] == expected
+
+
+def test_reasons_are_told(tmp_path, capsys):
+    report = _report(tmp_path / "python.xml", ("a", "run", '<skipped message="no test data: nickel"/>'))
+    assert _counted(capsys, report).splitlines() == ["0 0 1", "skipped: 1 x no test data: nickel"]
 
 
 def test_missing_reports_count_nothing(tmp_path, capsys):

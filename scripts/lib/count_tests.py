@@ -1,4 +1,4 @@
-"""count_tests.py FILE|FOLDER...: prints "PASSED FAILED SKIPPED" of JUnit reports.
+"""count_tests.py FILE|FOLDER...: prints "PASSED FAILED SKIPPED" of JUnit reports, then why some were skipped.
 
 A GoogleTest program is one test to ctest. Where its own report (test_NAME.xml) lies in a FOLDER, the cases in
 it are counted instead; a program that died before it could report stays one test, failed as ctest saw it.
@@ -36,6 +36,17 @@ def count(report: Path, details: dict[str, Path]) -> Counter:
     return total
 
 
+def reasons(paths: list[Path]) -> Counter:
+    """What skipped tests say, and how many say it."""
+    found: Counter = Counter()
+    for path in paths:
+        for report in path.glob("*.xml") if path.is_dir() else [path] if path.is_file() else []:
+            for skipped in ElementTree.parse(report).iter("skipped"):
+                text = skipped.get("message") or skipped.text or ""
+                found[" ".join(text.split()[-12:]) or "without a reason"] += 1
+    return found
+
+
 def main(arguments: list[str]) -> None:
     paths = [Path(a) for a in arguments]
     details = {file.stem: file for folder in paths if folder.is_dir() for file in folder.glob("*.xml")}
@@ -44,6 +55,8 @@ def main(arguments: list[str]) -> None:
         if path.is_file():
             total += count(path, details)
     print(total["passed"], total["failed"], total["skipped"])
+    for reason, number in sorted(reasons(paths).items()):
+        print(f"skipped: {number} x {reason}")
 
 
 if __name__ == "__main__":
