@@ -98,6 +98,21 @@ def render(folder, name="picture", layer="Combined"):
     return read(path)
 
 
+def composite(scene):
+    """Makes a compositor that shows one pass; returns the function that says which."""
+    if hasattr(scene, "compositing_node_group"):  # 5.0 and newer
+        tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
+        tree.interface.new_socket(name="Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+        sink = tree.nodes.new("NodeGroupOutput")
+    else:
+        scene.use_nodes = True
+        tree = scene.node_tree
+        tree.nodes.clear()
+        sink = tree.nodes.new("CompositorNodeComposite")
+    source = tree.nodes.new("CompositorNodeRLayers")
+    return lambda name: tree.links.new(source.outputs[name], sink.inputs["Image"])
+
+
 def read(path):
     image = bpy.data.images.load(str(path), check_existing=False)
     try:

@@ -11,15 +11,23 @@ _AREA_POWER = math.pi / 4
 _FACTORS = ("diffuse_factor", "specular_factor", "volume_factor")
 
 
+def _is_plain(tree):
+    """Whether the nodes say no more than the lamp: white Emission of strength 1, as every lamp of 5.x has."""
+    for node in tree.nodes:
+        if node.bl_idname == "ShaderNodeEmission":
+            values = (*node.inputs["Color"].default_value[:3], node.inputs["Strength"].default_value)
+            if any(socket.is_linked for socket in node.inputs) or any(value != 1.0 for value in values):
+                return False
+        elif node.bl_idname != "ShaderNodeOutputLight":
+            return False
+    return True
+
+
 def add_light(scene, obj, matrix, notes):
     """`obj`: an evaluated lamp object, `matrix`: where this instance of it stands."""
     lamp = obj.data
     owner = f"Light '{obj.name}'"
-    if (
-        lamp.use_nodes
-        and lamp.node_tree
-        and any(n.bl_idname != "ShaderNodeOutputLight" for n in lamp.node_tree.nodes)
-    ):
+    if lamp.use_nodes and lamp.node_tree and not _is_plain(lamp.node_tree):
         notes.add(f"{owner}: shader nodes of lights are ignored; its colour and power are used.")
     if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):
         notes.add(f"{owner}: its diffuse, specular and volume factors are ignored.")
