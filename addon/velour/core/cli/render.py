@@ -170,6 +170,11 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
         output.log.warning("%s", warning)
     if report["nan_samples"]:
         output.log.warning("%d samples were not finite and were left out.", report["nan_samples"])
+    if report["blocks_unfinished"]:
+        output.log.warning(
+            "%d blocks of pixels are above the noise target of %g; the worst has %.3g.",
+            report["blocks_unfinished"], args.noise, report["block_noise"],
+        )  # fmt: skip
     level = (
         output.log.warning if args.time_limit and args.spp and report["spp"] < args.spp else output.log.info
     )
