@@ -30,6 +30,9 @@ RENDER_KEYS = [
     "relmse",
     "nan_samples",
     "noise",
+    "spp_mean",
+    "block_noise",
+    "blocks_unfinished",
 ]
 ANGLES = ["5", "30", "60", "75", "85"]
 
@@ -133,6 +136,31 @@ def test_every_strategy_gives_the_same_picture_within_noise(render_arguments, tm
     mean = images.read(tmp_path / "out.exr")[..., :3].mean()
     assert velour(*render_arguments, "--strategy", "mis", "--spp", 256).status == 0
     assert mean == pytest.approx(images.read(tmp_path / "out.exr")[..., :3].mean(), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [("--sequence", "random"), ("--heuristic", "power"), ("--share", 0.2), ("--share", 0.9, "--split", 3)],
+)
+def test_sequence_share_and_heuristic_change_the_noise_alone(render_arguments, tmp_path, options):
+    pictures = []
+    for more in ((), options):
+        assert velour(*render_arguments, "--spp", 256, *more).status == 0
+        pictures.append(images.read(tmp_path / "out.exr")[..., :3])
+    assert not np.array_equal(*pictures)
+    assert pictures[0].mean() == pytest.approx(pictures[1].mean(), rel=0.02)
+
+
+def test_a_noise_target_ends_the_render(render_arguments):
+    at = render_arguments.index("--spp")
+    arguments = render_arguments[:at] + render_arguments[at + 2 :]
+    report = velour(*arguments, "--noise", 0.05).json
+    assert report["blocks_unfinished"] == 0
+    assert 0 < report["block_noise"] <= 0.05
+    assert 128 <= report["spp_mean"] < 65536
+    result = velour(*arguments, "--noise", 0.0001, "--spp", 128)
+    assert result.json["blocks_unfinished"] > 0
+    assert "above the noise target" in result.err
 
 
 def test_a_measurement_renders_by_itself(render_arguments, measurement_file, model_file):

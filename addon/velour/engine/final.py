@@ -53,6 +53,10 @@ def _options(scene, view, is_preview):
         "strategy": settings.strategy.lower(),
         "threads": scene.render.threads,
         "seed": settings.seed,
+        "share": settings.share,
+        "heuristic": settings.heuristic.lower(),
+        "sequence": settings.sequence.lower(),
+        "noise": 0.0 if is_preview or not settings.use_noise_target else settings.noise_target,
         "time_limit": settings.time_limit,
         "transparent": int(scene.render.film_transparent),
     }
@@ -117,7 +121,9 @@ def _say(notes):
 
 def _say_report(engine, job):
     report = job.report()
-    line = f"{report['spp']} samples | {report['samples_per_second'] / 1e6:.1f} M samples/s"
+    line = f"{report['spp_mean']:.0f} samples | {report['samples_per_second'] / 1e6:.1f} M samples/s"
+    if report["blocks_unfinished"] is not None:
+        line += f" | {report['blocks_unfinished']} blocks above the noise threshold"
     if report["nan_samples"]:
         line += f" | {report['nan_samples']} samples without a finite value left out"
     engine.update_stats("Velour", line)

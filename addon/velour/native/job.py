@@ -161,10 +161,12 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
 
 def render_job(scene, **options) -> Job:
     """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit
-    (seconds), transparent, measure_ray_share. `scene` is a committed Scene."""
+    (seconds), transparent, measure_ray_share, heuristic (table.HEURISTICS), sequence (table.SEQUENCES), share,
+    noise. `scene` is a committed Scene."""
     raw = _defaults(table.RenderOptions, "vlr_render_options_init")
-    if "strategy" in options:
-        options["strategy"] = choice("strategy", options["strategy"], table.STRATEGIES)
+    enums = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence": table.SEQUENCES}
+    for name in enums.keys() & options.keys():
+        options[name] = choice(name, options[name], enums[name])
     set_fields(raw, options)
     size = (raw.width, raw.height)
     return Job._create("vlr_render_create_job", scene.pointer, ctypes.byref(raw), size=size)

@@ -14,6 +14,8 @@ JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
 LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
+HEURISTICS = ("balance", "power")
+SEQUENCES = ("random", "sobol")
 STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis")
 
 
@@ -127,6 +129,10 @@ class RenderOptions(Struct):
         ("time_limit", c_double),
         ("transparent", c_int32),
         ("measure_ray_share", c_int32),
+        ("heuristic", c_int32),
+        ("sequence", c_int32),
+        ("share", c_double),
+        ("noise", c_double),
     ]
 
 

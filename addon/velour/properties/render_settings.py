@@ -1,7 +1,7 @@
 """How a scene is rendered."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
@@ -21,11 +21,56 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
             (
                 "MIS",
                 "Lobes and Lights",
-                "Half from the material, half from the lights, weighted by the balance heuristic",
+                "Some from the material, some from the lights, weighted by multiple importance sampling",
                 5,
             ),
         ),
         default="MIS",
+        override=_OVERRIDE,
+    )
+    share: FloatProperty(
+        name="Light Share",
+        description="Share of the directions that the lights draw; the material draws the rest",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+        override=_OVERRIDE,
+    )
+    heuristic: EnumProperty(
+        name="Heuristic",
+        description="How directions of material and lights are weighted against each other",
+        items=(
+            ("BALANCE", "Balance", "In proportion to the density", 0),
+            ("POWER", "Power", "In proportion to the square of the density", 1),
+        ),
+        default="BALANCE",
+        override=_OVERRIDE,
+    )
+    sequence: EnumProperty(
+        name="Sequence",
+        description="Where random numbers come from",
+        items=(
+            ("RANDOM", "Random", "Independent numbers", 0),
+            ("SOBOL", "Sobol", "A scrambled Sobol sequence a pixel: less noise for the same samples", 1),
+        ),
+        default="SOBOL",
+        override=_OVERRIDE,
+    )
+    use_noise_target: BoolProperty(
+        name="Noise Threshold",
+        description="Stop where the picture is good enough; Samples is then the most that a pixel gets",
+        default=False,
+        override=_OVERRIDE,
+    )
+    noise_target: FloatProperty(
+        name="Noise Threshold",
+        description="Relative error at which a block of 16 x 16 pixels gets no more samples",
+        default=0.02,
+        min=0.0001,
+        soft_max=0.2,
+        max=1.0,
+        precision=4,
         override=_OVERRIDE,
     )
     samples: IntProperty(

@@ -39,6 +39,16 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = True
         layout.prop(settings, "strategy")
+        if settings.strategy == "MIS":
+            column = layout.column(align=True)
+            column.prop(settings, "share")
+            column.prop(settings, "heuristic")
+        layout.prop(settings, "sequence")
+        row = layout.row(heading="Noise Threshold")
+        row.prop(settings, "use_noise_target", text="")
+        value = row.row()
+        value.active = settings.use_noise_target
+        value.prop(settings, "noise_target", text="")
         column = layout.column(align=True)
         column.prop(settings, "samples")
         column.prop(settings, "preview_samples", text="Preview")

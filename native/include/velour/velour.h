@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 1
+#define VLR_ABI_VERSION 2
 
 typedef int32_t vlr_status;
 enum {
@@ -283,6 +283,9 @@ enum {
   VLR_STRATEGY_MIS = 5
 };
 
+enum { VLR_HEURISTIC_BALANCE = 0, VLR_HEURISTIC_POWER = 1 };
+enum { VLR_SEQUENCE_RANDOM = 0, VLR_SEQUENCE_SOBOL = 1 };
+
 typedef struct vlr_render_options {
   uint32_t struct_size;
   uint32_t width, height;
@@ -295,9 +298,14 @@ typedef struct vlr_render_options {
   double time_limit;         /* seconds, 0: none; stops at a whole pass */
   int32_t transparent;       /* 1: rays that meet nothing leave alpha 0 */
   int32_t measure_ray_share; /* 1: record 1 tile in 16 and replay its rays */
+  int32_t heuristic;         /* of VLR_STRATEGY_MIS: VLR_HEURISTIC_* */
+  int32_t sequence;          /* VLR_SEQUENCE_* */
+  double share;              /* of VLR_STRATEGY_MIS: share of the directions that the lights draw; 0..1; 0.5 */
+  double noise;              /* relative error of each block of 16 x 16 pixels at which it gets no more samples; 0: off */
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);
-/* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise. */
+/* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise, spp_mean,
+ * block_noise, blocks_unfinished (null without a noise target). */
 VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
 
 /* The film so far, row 0 at the bottom. Passes and channels: "Combined" 4 (RGBA, premultiplied), "Depth" 1,

@@ -17,6 +17,9 @@ void vlr_render_options_init(vlr_render_options* options) {
   options->split = static_cast<uint32_t>(defaults.split);
   options->bounces = static_cast<uint32_t>(defaults.bounces);
   options->strategy = static_cast<int32_t>(defaults.strategy);
+  options->heuristic = static_cast<int32_t>(defaults.heuristic);
+  options->sequence = static_cast<int32_t>(defaults.sequence);
+  options->share = static_cast<double>(defaults.light_share);
 }
 
 namespace {
@@ -44,6 +47,10 @@ RenderOptions converted(const vlr_render_options& given) {
   options.time_limit = given.time_limit;
   options.transparent = given.transparent != 0;
   options.measure_ray_share = given.measure_ray_share != 0;
+  options.heuristic = static_cast<Heuristic>(given.heuristic);
+  options.sequence = static_cast<Sequence>(given.sequence);
+  options.light_share = static_cast<float>(given.share);
+  options.noise = given.noise;
   return options;
 }
 

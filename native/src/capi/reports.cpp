@@ -142,7 +142,10 @@ std::string render_json(const RenderReport& report) {
                {"nan_samples", report.nan_samples},
                {"spp", report.spp},
                {"passes", report.passes},
-               {"noise", report.noise}});
+               {"noise", report.noise},
+               {"spp_mean", report.spp_mean},
+               {"block_noise", report.block_noise},
+               {"blocks_unfinished", report.blocks_unfinished ? Json(*report.blocks_unfinished) : Json(nullptr)}});
 }
 
 }  // namespace velour::capi

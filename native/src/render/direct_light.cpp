@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "render/lattice.h"
+#include <span>
 
 namespace velour {
 namespace {
@@ -21,47 +20,45 @@ void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& 
   world_.push(wl_world);
 }
 
-void DirectLight::draw_from_surface(const Vertex& vertex, int count, RandomStream& random) {
-  if (count == 0) return;
-  const Vec2 shift = random.next2();
-  for (int i = 0; i < count; ++i) {
-    const Vec3 wl = sample_surface(sampling_, vertex, prepared_, lattice_point(i, count, shift));
+void DirectLight::draw_from_surface(const Vertex& vertex, PathNumbers::Side side, PathNumbers& numbers) {
+  Vec2 u[DirectionBatch::kCapacity];
+  numbers.points(Purpose::surface, side.first, {u, static_cast<size_t>(side.count)});
+  for (int i = 0; i < side.count; ++i) {
+    const Vec3 wl = sample_surface(sampling_, vertex, prepared_, u[i]);
     keep_if_lit(vertex, wl, vertex.frame.to_world(wl));
   }
 }
 
-void DirectLight::draw_from_lights(const Vertex& vertex, int count, RandomStream& random) {
-  if (count == 0) return;
-  const Vec2 shift = random.next2();
+void DirectLight::draw_from_lights(const Vertex& vertex, PathNumbers::Side side, PathNumbers& numbers) {
+  if (side.count == 0) return;
   Vec2 u[DirectionBatch::kCapacity];
-  for (int i = 0; i < count; ++i) u[i] = lattice_point(i, count, shift);
-  lighting_.sample(vertex.position, {u, static_cast<size_t>(count)}, towards_light_);
-  for (int i = 0; i < count; ++i) {
+  const std::span<Vec2> points(u, static_cast<size_t>(side.count));
+  numbers.points(Purpose::light, side.first, points);
+  lighting_.sample(vertex.position, points, towards_light_);
+  for (int i = 0; i < side.count; ++i) {
     const Vec3 wl_world = towards_light_.get(i);  // zero for a lamp's dark side: then not above the horizon
     keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world);
   }
 }
 
-void DirectLight::draw(const Vertex& vertex, int directions, RandomStream& random) {
-  local_.count = world_.count = 0;
-  int from_lights = strategy_ == Strategy::light ? directions : 0;
-  if (strategy_ == Strategy::mis) {
-    from_lights = directions / 2;
-    if (directions % 2 != 0 && random.next() < 0.5f) ++from_lights;
-  }
-  draw_from_surface(vertex, directions - from_lights, random);
-  draw_from_lights(vertex, from_lights, random);
+void DirectLight::draw(const Vertex& vertex, Draws draws, PathNumbers& numbers) {
+  const auto sides = numbers.deal(draws.count, draws.full, combination_.light_share);
+  draw_from_surface(vertex, sides.surface, numbers);
+  from_surface_ = world_.count;
+  draw_from_lights(vertex, sides.light, numbers);
   world_.pad();
 }
 
-void DirectLight::draw_sharp(const Vertex& vertex, RandomStream& random) {
+void DirectLight::draw_sharp(const Vertex& vertex, PathNumbers& numbers) {
   const auto lamps = lighting_.sharp();
   const bool all = lamps.size() <= kSharpLamps;
   const int count = all ? static_cast<int>(lamps.size()) : kSharpLamps;
   sharp_count_ = 0;
+  Vec2 u[kSharpLamps];
+  if (!all) numbers.points(Purpose::sharp, numbers.ray() * kSharpLamps, u);
   for (int i = 0; i < count; ++i) {
     float probability = 1.0f;
-    const size_t chosen = all ? static_cast<size_t>(i) : lighting_.choose_sharp(random.next(), probability);
+    const size_t chosen = all ? static_cast<size_t>(i) : lighting_.choose_sharp(u[i].x, probability);
     const Lamp::Irradiance light = lamps[chosen].irradiance(vertex.position);
     const Vec3 wl = vertex.frame.to_local(light.direction);
     if (!(wl.z > 0.0f) || !(glm::dot(light.direction, vertex.geometric_normal) > 0.0f)) continue;
@@ -71,15 +68,16 @@ void DirectLight::draw_sharp(const Vertex& vertex, RandomStream& random) {
   }
 }
 
-/// Density of every drawn direction under the strategy, and from it what its light counts.
+/// Density of every drawn direction under the combination, and from it what its light counts.
 void DirectLight::weigh(const Vertex& vertex, int directions) {
   lamp_hits_.clear();
   if (world_.count == 0) return;
   lighting_.look_up(vertex.position, world_, environment_, light_pdf_, lamp_hits_);
-  if (strategy_ != Strategy::light) surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
+  surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
   for (int i = 0; i < world_.count; ++i) {
-    float density = strategy_ == Strategy::light ? light_pdf_.v[i] : surface_pdf_.v[i];
-    if (strategy_ == Strategy::mis) density = 0.5f * (density + light_pdf_.v[i]);
+    const float surface = surface_pdf_.v[i], light = light_pdf_.v[i];
+    const float density =
+        i < from_surface_ ? combination_.surface_drew(surface, light) : combination_.light_drew(surface, light);
     // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
     weight_[i] = density == 0.0f ? 0.0f : local_.z[i] / (static_cast<float>(directions) * density);
   }
@@ -105,14 +103,15 @@ void DirectLight::queue(const Vertex& vertex, const Receiver& receiver, int dire
   shadows.add(vertex.ray(vertex.frame.to_world(local_.get(direction)), far), light, receiver.sample);
 }
 
-void DirectLight::gather(const Vertex& vertex, int directions, RandomStream& random, const Receiver& receiver,
+void DirectLight::gather(const Vertex& vertex, Draws draws, PathNumbers& numbers, const Receiver& receiver,
                          ShadowQueue& shadows, std::vector<CameraSample>& samples) {
-  draw(vertex, lighting_.has_extended() ? directions : 0, random);
-  draw_sharp(vertex, random);
+  local_.count = world_.count = 0;
+  if (lighting_.has_extended()) draw(vertex, draws, numbers);
+  draw_sharp(vertex, numbers);
   if (local_.count == 0) return;
   local_.pad();
   vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
-  weigh(vertex, directions);
+  weigh(vertex, draws.count);
 
   for (int i = 0; i < world_.count; ++i) {
     queue(vertex, receiver, i, weight_[i] * environment_.get(i), std::numeric_limits<float>::infinity(), true, shadows,
@@ -129,10 +128,10 @@ void DirectLight::gather(const Vertex& vertex, int directions, RandomStream& ran
   }
 }
 
-std::optional<DirectLight::Continuation> DirectLight::extend(const Vertex& vertex, RandomStream& random,
+std::optional<DirectLight::Continuation> DirectLight::extend(const Vertex& vertex, PathNumbers& numbers,
                                                              const Rgb& throughput) {
   local_.count = 0;
-  local_.push(sample_surface(sampling_, vertex, prepared_, random.next2()));
+  local_.push(sample_surface(sampling_, vertex, prepared_, numbers.point(Purpose::onward)));
   local_.pad();
   const Vec3 wl_world = vertex.frame.to_world(local_.get(0));
   if (!(local_.z[0] > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return std::nullopt;

@@ -3,10 +3,11 @@
 
 #include <optional>
 
+#include "render/combination.h"
 #include "render/direction_sampling.h"
 #include "render/lighting.h"
+#include "render/path_numbers.h"
 #include "render/shadow_queue.h"
-#include "sphere/random.h"
 
 namespace velour {
 
@@ -19,24 +20,26 @@ struct Receiver {
 /// One a thread: owns the scratch batches of the vertex in work. Call prepare(), then the others for that vertex.
 class DirectLight {
  public:
-  DirectLight(const Scene& scene, const Lighting& lighting, Strategy strategy)
+  DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options)
       : working_space_(scene.rec709_to_working()),
         lighting_(lighting),
-        strategy_(strategy),
-        sampling_(surface_sampling(strategy)) {}
+        combination_(combination(options)),
+        sampling_(surface_sampling(options.strategy)) {}
 
   void prepare(const Vertex& vertex) { vertex.surface->material->prepare(vertex.wv, prepared_); }
 
   /// Draws `directions` light directions, estimates
-  ///   throughput / n  sum_i f(wl_i) L(wl_i) cos(wl_i) / p(wl_i)
-  /// with p the density of the strategy, and queues every term that is not zero. `mis`: half of the directions from the
-  /// material, half from the lights, p = (p_material + p_light) / 2 for all, which is the balance heuristic [VG95]; an
-  /// odd one goes to either side by a coin.
+  ///   throughput / n  sum_i f(wl_i) L(wl_i) cos(wl_i) / d(wl_i)
+  /// with d the density of the strategy (combination.h), and queues every term that is not zero. `full`: directions of
+  /// a camera ray that is not the last of its pixel.
   ///
   /// Sharp lamps, which no drawn direction can meet, are added under every strategy: each once when there are at most
   /// kSharpLamps, else that many drawn in proportion to power.
-  void gather(const Vertex& vertex, int directions, RandomStream& random, const Receiver& receiver,
-              ShadowQueue& shadows, std::vector<CameraSample>& samples);
+  struct Draws {
+    int count, full;
+  };
+  void gather(const Vertex& vertex, Draws draws, PathNumbers& numbers, const Receiver& receiver, ShadowQueue& shadows,
+              std::vector<CameraSample>& samples);
 
   struct Continuation {
     Ray ray;
@@ -44,7 +47,7 @@ class DirectLight {
   };
   /// One more ray, drawn from the surface side alone: what it meets on surfaces was in no term of gather(), and what it
   /// meets beyond them (lamps, environment) was in all, so only surfaces may be counted at its end.
-  std::optional<Continuation> extend(const Vertex& vertex, RandomStream& random, const Rgb& throughput);
+  std::optional<Continuation> extend(const Vertex& vertex, PathNumbers& numbers, const Rgb& throughput);
 
   /// Directions left out so far because their term was not finite.
   uint64_t nan_samples() const { return nan_samples_; }
@@ -52,11 +55,11 @@ class DirectLight {
   static constexpr int kSharpLamps = 4;
 
  private:
-  void draw(const Vertex& vertex, int directions, RandomStream& random);
+  void draw(const Vertex& vertex, Draws draws, PathNumbers& numbers);
   void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world);
-  void draw_from_lights(const Vertex& vertex, int count, RandomStream& random);
-  void draw_from_surface(const Vertex& vertex, int count, RandomStream& random);
-  void draw_sharp(const Vertex& vertex, RandomStream& random);
+  void draw_from_lights(const Vertex& vertex, PathNumbers::Side side, PathNumbers& numbers);
+  void draw_from_surface(const Vertex& vertex, PathNumbers::Side side, PathNumbers& numbers);
+  void draw_sharp(const Vertex& vertex, PathNumbers& numbers);
   void weigh(const Vertex& vertex, int directions);
   void queue(const Vertex& vertex, const Receiver& receiver, int direction, Rgb light, float far, bool casts_shadow,
              ShadowQueue& shadows, std::vector<CameraSample>& samples);
@@ -64,7 +67,7 @@ class DirectLight {
 
   const std::optional<Mat3>& working_space_;
   const Lighting& lighting_;
-  const Strategy strategy_;
+  const Combination combination_;
   const SurfaceSampling sampling_;
 
   struct Sharp {
@@ -77,10 +80,11 @@ class DirectLight {
   // Those drawn directions that can bring light: above both the shading horizon and the surface itself. local_ goes on
   // with the directions of sharp lamps.
   DirectionBatch local_, world_;
+  int from_surface_ = 0;  // how many of them, first, the surface drew
   DirectionBatch towards_light_;
   RgbBatch f_, environment_;
   ScalarBatch material_pdf_, light_pdf_, surface_pdf_;
-  float weight_[DirectionBatch::kCapacity];  // cos / (n p)
+  float weight_[DirectionBatch::kCapacity];  // cos / (n d)
   std::vector<LampHit> lamp_hits_;
   Sharp sharp_[kSharpLamps];
   int sharp_count_ = 0;

@@ -52,11 +52,20 @@ void PixelSum::add(const CameraSample& sample) {
   radiance += sample.radiance;
   alpha += sample.alpha;
   normal += sample.normal;
-  const float y = velour::luminance(sample.radiance);
-  luminance += y;
-  luminance_sq += y * y;
+  luminance[camera_rays % 2] += velour::luminance(sample.radiance);
   ++camera_rays;
   directions += static_cast<uint32_t>(sample.directions);
+}
+
+double PixelSum::mean_luminance() const {
+  return (static_cast<double>(luminance[0]) + static_cast<double>(luminance[1])) / camera_rays;
+}
+
+double PixelSum::variance() const {
+  const double odd = camera_rays / 2, even = camera_rays - camera_rays / 2, n = camera_rays;
+  const double difference = static_cast<double>(luminance[0]) / even - static_cast<double>(luminance[1]) / odd;
+  // E difference^2 = v (1/even + 1/odd) where a half of k rays has variance v / k, and the mean has v / n.
+  return difference * difference * even * odd / (n * n);
 }
 
 Film::Film(int width, int height) : width_(width), height_(height) {
@@ -116,14 +125,20 @@ void Film::read_pass(std::string_view name, std::span<float> pixels) const {
   }
 }
 
+uint64_t Film::directions() const {
+  const std::lock_guard lock(mutex_);
+  uint64_t sum = 0;
+  for (const PixelSum& p : pixels_) sum += p.directions;
+  return sum;
+}
+
 double Film::noise() const {
   const std::lock_guard lock(mutex_);
   double variance = 0.0, mean = 0.0;
   for (const PixelSum& p : pixels_) {
     if (p.camera_rays < 2) return 0.0;
-    const double n = p.camera_rays, m = p.luminance / n;
-    mean += m;
-    variance += std::max(0.0, p.luminance_sq / n - m * m) / (n - 1.0);
+    mean += p.mean_luminance();
+    variance += p.variance();
   }
   const double count = static_cast<double>(pixels_.size());
   return mean > 0.0 ? std::sqrt(variance / count) / (mean / count) : 0.0;

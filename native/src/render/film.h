@@ -26,11 +26,17 @@ struct PixelSum {
   Rgb radiance{0.0f};
   float alpha = 0;
   Vec3 normal{0.0f};
-  float depth = 0;  // of the first camera ray, as Cycles does: a mean of depths lies on no surface
-  float luminance = 0, luminance_sq = 0;
+  float depth = 0;              // of the first camera ray, as Cycles does: a mean of depths lies on no surface
+  float luminance[2] = {0, 0};  // of the even and of the odd camera rays: two independent halves (path_numbers.h)
   uint32_t camera_rays = 0, directions = 0;
 
   void add(const CameraSample& sample);
+
+  double mean_luminance() const;
+  /// Unbiased estimate of the variance of mean_luminance(), from the difference of the halves: what holds inside a half
+  /// (a Sobol sequence errs far less than independent samples) is in it. One degree of freedom: to be averaged over
+  /// pixels. Needs two camera rays.
+  double variance() const;
 };
 
 struct PixelRect {
@@ -57,6 +63,9 @@ class Film {
   static int channels(std::string_view pass);
   /// `pixels` holds width x height x channels(pass). Pixels without samples are 0; depth is 1e10 where nothing was hit.
   void read_pass(std::string_view pass, std::span<float> pixels) const;
+
+  /// Light directions of all pixels.
+  uint64_t directions() const;
 
   /// RMS over the pixels of the standard error of luminance, divided by the mean luminance. 0 while unknown.
   double noise() const;

@@ -12,8 +12,14 @@ enum class Strategy : int {  // values of velour.h
   table = 2,                 // tabulated f cos of the material
   srbf = 3,                  // the material's own sampler
   light = 4,                 // environment and lamps
-  mis = 5,                   // half from the material, half from the lights, balance heuristic
+  mis = 5,                   // some from the material, some from the lights: light_share, heuristic
 };
+
+/// Weights of `mis` (combination.h).
+enum class Heuristic : int { balance = 0, power = 1 };  // values of velour.h
+
+/// Where random numbers come from (path_numbers.h).
+enum class Sequence : int { random = 0, sobol = 1 };  // values of velour.h
 
 struct RenderOptions {
   int width = 640, height = 480;
@@ -27,6 +33,10 @@ struct RenderOptions {
   bool transparent = false;
   bool measure_ray_share = false;
   int camera_rays_per_pass = 0;  // 0: chosen; the picture does not depend on it
+  float light_share = 0.5f;      // of the directions of `mis`, how many the lights draw; 0..1
+  Heuristic heuristic = Heuristic::balance;
+  Sequence sequence = Sequence::sobol;
+  double noise = 0;  // relative error of a block of pixels at which it is done (noise_target.h); 0: all of spp
 
   static constexpr int kMaxSplit = 48;  // a batch of 64 directions also holds those of up to 4 sharp lamps
 };

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "job/threads.h"
+#include "render/noise_target.h"
 #include "render/ray_share.h"
 #include "render/tile_renderer.h"
 
@@ -17,7 +18,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kTileSize = 16;
 /// Camera rays a pixel of a whole-grown pass: a tile stays below 10 ms, so a cancel is seen soon.
 constexpr int kLargestPass = 8;
 
@@ -40,6 +40,13 @@ RenderOptions checked(const Scene& scene, RenderOptions options, const Film& fil
   require_range("threads", options.threads, 0, 4096);
   require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::mis));
   require_range("camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
+  require_range("heuristic", static_cast<int>(options.heuristic), 0, static_cast<int>(Heuristic::power));
+  require_range("sequence", static_cast<int>(options.sequence), 0, static_cast<int>(Sequence::sobol));
+  if (!(options.light_share >= 0.0f && options.light_share <= 1.0f)) {
+    throw Error(Status::invalid_argument,
+                "Render option share is " + std::to_string(options.light_share) + "; it must lie between 0 and 1.");
+  }
+  if (!(options.noise >= 0.0)) throw Error(Status::invalid_argument, "Render option noise is negative.");
   if (!(options.time_limit >= 0.0)) throw Error(Status::invalid_argument, "Render option time_limit is negative.");
   if (film.width() != options.width || film.height() != options.height) {
     throw Error(Status::invalid_argument, "The film has another size than the render options ask for.");
@@ -47,16 +54,6 @@ RenderOptions checked(const Scene& scene, RenderOptions options, const Film& fil
   if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is rendered.");
   options.split = std::min(options.split, options.spp);
   return options;
-}
-
-std::vector<PixelRect> tiles_of(const RenderOptions& options) {
-  std::vector<PixelRect> tiles;
-  for (int y = 0; y < options.height; y += kTileSize) {
-    for (int x = 0; x < options.width; x += kTileSize) {
-      tiles.push_back({x, y, std::min(x + kTileSize, options.width), std::min(y + kTileSize, options.height)});
-    }
-  }
-  return tiles;
 }
 
 /// Camera rays a pixel of the next pass: doubling, so that a first picture appears at once.
@@ -75,7 +72,7 @@ class Renderer {
         progress_(progress),
         arena_(arena_concurrency(options_.threads)),
         context_{scene, options_, Lighting(scene), {}},
-        tiles_(tiles_of(options_)) {}
+        target_(options_.noise, blocks_of(options_.width, options_.height)) {}
 
   RenderReport run() {
     film_.clear();
@@ -110,10 +107,11 @@ class Renderer {
     const int total = context_.camera_rays();
     stage("render", options_.strategy == Strategy::table ? 0.05 : 0.0, 1.0, [&] {
       const auto start = Clock::now();
-      while (done_ < total) {
-        const int count = pass_size(options_, done_, total);
+      while (done_ < total && !target_.active().empty()) {
+        const int count = std::min(pass_size(options_, done_, total), target_.next_decision() - done_);
         if (report_.passes > 0 && out_of_time(seconds_since(start), count)) break;
         render_pass(count, total);
+        if (done_ == target_.next_decision()) target_.decide(film_);
       }
     });
     report_.seconds = report_.stages.back().seconds;
@@ -121,21 +119,26 @@ class Renderer {
 
   /// Whether a pass of `count` camera rays would end after the limit, at the speed so far.
   bool out_of_time(double seconds, int count) const {
-    return options_.time_limit > 0.0 && seconds * (1.0 + static_cast<double>(count) / done_) > options_.time_limit;
+    const double pass = static_cast<double>(count) * static_cast<double>(target_.active().size());
+    return options_.time_limit > 0.0 && seconds * (1.0 + pass / work_) > options_.time_limit;
   }
 
   void render_pass(int count, int total) {
     std::atomic<size_t> finished{0};
+    const std::vector<size_t>& active = target_.active();
+    const double done_tiles = 1.0 - static_cast<double>(active.size()) / static_cast<double>(target_.blocks().size());
     arena_.execute([&] {
-      tbb::parallel_for(size_t{0}, tiles_.size(), [&](size_t tile) {
+      tbb::parallel_for(size_t{0}, active.size(), [&](size_t i) {
         TileRenderer& renderer = renderers_.local();
-        share_.record(tile, tiles_[tile], count,
-                      [&](RayLog* log) { renderer.render(tiles_[tile], done_, count, film_, log, progress_); });
-        const double part = static_cast<double>(++finished) / static_cast<double>(tiles_.size());
-        progress_.update((done_ + part * count) / total);
+        const PixelRect& tile = target_.blocks()[active[i]];
+        share_.record(active[i], tile, count,
+                      [&](RayLog* log) { renderer.render(tile, done_, count, film_, log, progress_); });
+        const double part = static_cast<double>(++finished) / static_cast<double>(active.size());
+        progress_.update(std::max(done_tiles, (done_ + part * count) / total));
       });
     });
     done_ += count;
+    work_ += static_cast<double>(count) * static_cast<double>(active.size());
     ++report_.passes;
   }
 
@@ -151,9 +154,12 @@ class Renderer {
     }
     report_.spp = static_cast<uint64_t>(
         std::min(static_cast<int64_t>(done_) * options_.split, static_cast<int64_t>(options_.spp)));
-    const double samples = static_cast<double>(options_.width) * options_.height * static_cast<double>(report_.spp);
+    const double samples = static_cast<double>(film_.directions());
+    report_.spp_mean = samples / (static_cast<double>(options_.width) * options_.height);
     report_.samples_per_second = report_.seconds > 0.0 ? samples / report_.seconds : 0.0;
     report_.noise = film_.noise();
+    report_.block_noise = target_.worst(film_);
+    if (target_.enabled()) report_.blocks_unfinished = target_.active().size();
     return report_;
   }
 
@@ -162,11 +168,12 @@ class Renderer {
   Progress& progress_;
   tbb::task_arena arena_;
   RenderContext context_;
-  const std::vector<PixelRect> tiles_;
+  NoiseTarget target_;
   tbb::enumerable_thread_specific<TileRenderer> renderers_{[this] { return TileRenderer(context_); }};
   RayShare share_{options_.measure_ray_share, options_.split};
   RenderReport report_;
-  int done_ = 0;  // camera rays a pixel
+  int done_ = 0;     // camera rays a pixel of the active tiles
+  double work_ = 0;  // camera rays a pixel, summed over tiles
 };
 
 }  // namespace

@@ -20,9 +20,12 @@ struct RenderReport {
   std::optional<double> ray_share;  // seconds of the recorded rays alone / seconds of their tiles
   std::vector<RenderStage> stages;  // in order; "render" is `seconds`
   uint64_t nan_samples = 0;         // light directions left out because they were not finite
-  uint64_t spp = 0;                 // light directions a pixel that were done
+  uint64_t spp = 0;                 // light directions that the pixels with most of them have
   uint64_t passes = 0;
-  double noise = 0;  // estimated RMS error of a pixel's luminance / mean luminance; 0 while unknown
+  double noise = 0;        // estimated RMS error of a pixel's luminance / mean luminance; 0 while unknown
+  double spp_mean = 0;     // light directions, mean over the pixels
+  double block_noise = 0;  // largest relative error of a block (noise_target.h); 0 while unknown
+  std::optional<uint64_t> blocks_unfinished;  // above the target when the render ended; nothing without a target
 };
 
 }  // namespace velour

@@ -15,7 +15,7 @@ constexpr int kIndirectDirections = 2;
 }  // namespace
 
 TileRenderer::TileRenderer(const RenderContext& context)
-    : context_(context), light_(context.scene, context.lighting, context.options.strategy) {}
+    : context_(context), light_(context.scene, context.lighting, context.options) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
                           const Progress& progress) {
@@ -55,11 +55,11 @@ void TileRenderer::start_paths(const PixelRect& run, int first, int count) {
   for (int x = run.x0; x < run.x1; ++x) {
     const uint64_t pixel = static_cast<uint64_t>(run.y0) * static_cast<uint64_t>(o.width) + static_cast<uint64_t>(x);
     for (int index = first; index < first + count; ++index) {
-      RandomStream random(o.seed, pixel, static_cast<uint64_t>(index));
-      const Vec2 place = Vec2(x, run.y0) + random.next2();
+      PathNumbers numbers(o.sequence, o.seed, pixel, static_cast<uint32_t>(index));
+      const Vec2 place = Vec2(x, run.y0) + numbers.point(Purpose::camera);
       const Ray ray =
           context_.scene.camera().ray(place / Vec2(static_cast<float>(o.width), static_cast<float>(o.height)));
-      paths_.push_back({random, ray, Rgb(1.0f), static_cast<uint32_t>(samples_.size())});
+      paths_.push_back({numbers, ray, Rgb(1.0f), static_cast<uint32_t>(samples_.size())});
       samples_.push_back({});
       samples_.back().directions = context_.directions(index);
     }
@@ -92,11 +92,13 @@ void TileRenderer::follow(Path& path, const Hit& hit, int depth) {
   }
   sample.radiance += path.throughput * vertex.surface->emission;
   light_.prepare(vertex);
-  const int directions = depth == 0 ? sample.directions : std::min(sample.directions, kIndirectDirections);
-  light_.gather(vertex, directions, path.random, {path.sample, path.throughput}, shadows_, samples_);
+  const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);
+  light_.gather(vertex, {std::min(sample.directions, most), most}, path.numbers, {path.sample, path.throughput},
+                shadows_, samples_);
   if (depth == context_.options.bounces) return;
-  if (const auto onward = light_.extend(vertex, path.random, path.throughput)) {
-    next_.push_back({path.random, onward->ray, onward->throughput, path.sample});
+  if (const auto onward = light_.extend(vertex, path.numbers, path.throughput)) {
+    path.numbers.next_vertex();
+    next_.push_back({path.numbers, onward->ray, onward->throughput, path.sample});
   }
 }
 

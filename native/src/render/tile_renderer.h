@@ -37,7 +37,7 @@ class TileRenderer {
 
  private:
   struct Path {
-    RandomStream random;
+    PathNumbers numbers;
     Ray ray;
     Rgb throughput;
     uint32_t sample;

@@ -23,7 +23,11 @@ KEYS = (
     "relmse",
     "nan_samples",
     "noise",
+    "spp_mean",
+    "block_noise",
+    "blocks_unfinished",
 )
+_MOST_SPP = 1 << 16  # of a render that a noise target ends
 # A y-up model stands upright in the z-up world: (x, y, z) -> (x, -z, y), as Blender's OBJ import does it.
 _UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
 
@@ -43,18 +47,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--strategy", choices=(*table.STRATEGIES, "ggx", "product"), default="mis", help="mis"
     )
     parser.add_argument(
-        "--share", type=numbers.real(0, 1), default=0.5, metavar="S", help="of mis's BRDF samples"
+        "--share", type=numbers.real(0, 1), metavar="S", help="of mis's directions drawn from the lights (0.5)"
     )
-    parser.add_argument("--heuristic", choices=("balance", "power"), default="balance")
-    parser.add_argument("--sequence", choices=("random", "sobol"), default="random")
+    parser.add_argument("--heuristic", choices=table.HEURISTICS, help="weights of mis (balance)")
+    parser.add_argument("--sequence", choices=table.SEQUENCES, help="of random numbers (sobol)")
     parser.add_argument(
         "--neighbors", type=numbers.whole(0, 16), default=0, metavar="K", help="views mixed; 0: auto"
     )
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
     parser.add_argument("--time-limit", type=numbers.real(0, 1e9), metavar="SECONDS")
+    parser.add_argument(
+        "--noise", type=numbers.real(1e-6, 1e6), metavar="E", help="relative error at which a block of pixels is done"
+    )
     parser.add_argument("--reference", metavar="REF.exr", help="picture to compare with: rmse, relmse")
-    later.add_later(parser, "--noise", "set --spp or --time-limit instead", "E")
     later.add_later(parser, "--texture-scale", "it is for materials with texture", "S")
 
 
@@ -109,10 +115,6 @@ def run(args: argparse.Namespace) -> dict:
 
 def _refuse_unsupported(args: argparse.Namespace) -> None:
     later.only("--strategy", args.strategy, table.STRATEGIES)
-    later.only("--heuristic", args.heuristic, ("balance",))
-    later.only("--sequence", args.sequence, ("random",))
-    if args.share != 0.5:
-        raise later.refusal(f"--share {args.share:g}", "mis draws half of its directions from the BRDF")
 
 
 def _fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> None:
@@ -155,8 +157,11 @@ def _read_reference(args: argparse.Namespace) -> np.ndarray | None:
 
 
 def _options(args: argparse.Namespace) -> dict:
-    names = ("spp", "split", "bounces", "strategy", "threads", "seed", "time_limit")
+    names = ("spp", "split", "bounces", "strategy", "share", "heuristic", "sequence", "threads", "seed", "noise")
+    names += ("time_limit",)
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
+    if args.noise is not None:
+        options.setdefault("spp", _MOST_SPP)
     return {"width": args.size[0], "height": args.size[1], "measure_ray_share": 1, **options}
 
 
@@ -165,6 +170,11 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
         output.log.warning("%s", warning)
     if report["nan_samples"]:
         output.log.warning("%d samples were not finite and were left out.", report["nan_samples"])
+    if report["blocks_unfinished"]:
+        output.log.warning(
+            "%d blocks of pixels are above the noise target of %g; the worst has %.3g.",
+            report["blocks_unfinished"], args.noise, report["block_noise"],
+        )  # fmt: skip
     level = (
         output.log.warning if args.time_limit and args.spp and report["spp"] < args.spp else output.log.info
     )

@@ -45,13 +45,13 @@ TEST(Film, RefusesUnknownPassesAndWrongSizes) {
   EXPECT_THROW(Film(0, 2), Error);
 }
 
-TEST(Film, NoiseIsTheStandardErrorOverTheMean) {
+TEST(Film, NoiseIsTheErrorThatTheHalvesTellOverTheMean) {
   Film film(1, 1);
   std::vector<PixelSum> sums(1);
   EXPECT_EQ(film.noise(), 0);
   for (float y : {1.0f, 3.0f, 1.0f, 3.0f}) sums[0].add({.radiance = Rgb(y)});
   film.store({0, 0, 1, 1}, sums);
-  EXPECT_NEAR(film.noise(), std::sqrt(1.0 / 3.0) / 2, 1e-6);
+  EXPECT_NEAR(film.noise(), 0.5, 1e-6);
 }
 
 SurfacePoint tilted_point(const Vec3& shading_normal) {

@@ -1,0 +1,65 @@
+// The random numbers of one path, from independent numbers or from a sequence that covers the unit square evenly.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "render/options.h"
+#include "sphere/random.h"
+
+namespace velour {
+
+/// What numbers at a vertex are for. Each has its own sequence.
+enum class Purpose : uint64_t { camera, side, surface, light, sharp, onward };
+
+/// `Sequence::sobol`: for every (seed, pixel, half, vertex of the path, purpose) one scrambled sequence. The camera
+/// rays of a pixel, and the directions of each, take successive points of it. Even and odd camera rays are the two
+/// halves: independent of each other, so that their difference tells the error (PixelSum).
+///
+/// `Sequence::random`: independent numbers, with a lattice for the directions of one vertex; kept as the judge.
+class PathNumbers {
+ public:
+  static constexpr uint32_t kHalves = 2;
+
+  PathNumbers(Sequence sequence, uint64_t seed, uint64_t pixel, uint32_t camera_ray)
+      : sequence_(sequence),
+        random_(seed, pixel, sequence == Sequence::sobol ? camera_ray % kHalves : camera_ray),
+        ray_(camera_ray / kHalves) {
+    if (sequence_ == Sequence::sobol) key_ = random_.next_bits();
+  }
+
+  /// From here on numbers are for the next vertex of the path.
+  void next_vertex() { ++vertex_; }
+
+  /// `u.size()` points in [0, 1)^2. `first`: how many points earlier camera rays of the half used for this purpose.
+  void points(Purpose purpose, uint32_t first, std::span<Vec2> u);
+  /// One point, where every camera ray uses one.
+  Vec2 point(Purpose purpose);
+
+  /// A run of directions, and which of the points of its side they take.
+  struct Side {
+    uint32_t first;
+    int count;
+  };
+  struct Sides {
+    Side surface, light;
+  };
+  /// Deals `directions` out: on average `light_share` of them go to the lights, each time one of the two nearest whole
+  /// numbers. `full`: directions of a camera ray that is not the last of its pixel.
+  Sides deal(int directions, int full, float light_share);
+
+  /// How many camera rays of the half came before this one.
+  uint32_t ray() const { return ray_; }
+
+ private:
+  uint64_t key(Purpose purpose) const {
+    return mix64(key_ + (vertex_ * 8 + static_cast<uint64_t>(purpose)) * 0x9e3779b97f4a7c15ULL);
+  }
+
+  Sequence sequence_;
+  RandomStream random_;
+  uint32_t ray_;
+  uint64_t key_ = 0, vertex_ = 0;
+};
+
+}  // namespace velour
