@@ -127,7 +127,7 @@ def test_pictures_do_not_depend_on_threads(render_arguments, tmp_path):
     np.testing.assert_array_equal(*pictures)
 
 
-@pytest.mark.parametrize("strategy", ["uniform", "cosine", "table", "srbf", "light", "mis"])
+@pytest.mark.parametrize("strategy", table.STRATEGIES)
 def test_every_strategy_gives_the_same_picture_within_noise(render_arguments, tmp_path, strategy):
     assert velour(*render_arguments, "--strategy", strategy, "--spp", 64).status == 0
     mean = images.read(tmp_path / "out.exr")[..., :3].mean()

@@ -14,7 +14,7 @@ JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
 LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
-STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis")
+STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx")
 
 
 class Struct(ctypes.Structure):

@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 1
+#define VLR_ABI_VERSION 2
 
 typedef int32_t vlr_status;
 enum {
@@ -280,7 +280,9 @@ enum {
   VLR_STRATEGY_TABLE = 2,
   VLR_STRATEGY_SRBF = 3,
   VLR_STRATEGY_LIGHT = 4,
-  VLR_STRATEGY_MIS = 5
+  VLR_STRATEGY_MIS = 5,
+  VLR_STRATEGY_GGX = 6,    /* a GGX lobe over a diffuse base, fitted to each material when the render starts */
+  VLR_STRATEGY_MIS_GGX = 7 /* half from that lobe, half from the lights */
 };
 
 typedef struct vlr_render_options {

@@ -45,7 +45,7 @@ void DirectLight::draw_from_lights(const Vertex& vertex, int count, RandomStream
 void DirectLight::draw(const Vertex& vertex, int directions, RandomStream& random) {
   local_.count = world_.count = 0;
   int from_lights = strategy_ == Strategy::light ? directions : 0;
-  if (strategy_ == Strategy::mis) {
+  if (is_mixed(strategy_)) {
     from_lights = directions / 2;
     if (directions % 2 != 0 && random.next() < 0.5f) ++from_lights;
   }
@@ -76,10 +76,10 @@ void DirectLight::weigh(const Vertex& vertex, int directions) {
   lamp_hits_.clear();
   if (world_.count == 0) return;
   lighting_.look_up(vertex.position, world_, environment_, light_pdf_, lamp_hits_);
-  if (strategy_ != Strategy::light) surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
+  if (strategy_ != Strategy::light) surface_pdf(sampling_, vertex, prepared_, local_, material_pdf_, surface_pdf_);
   for (int i = 0; i < world_.count; ++i) {
     float density = strategy_ == Strategy::light ? light_pdf_.v[i] : surface_pdf_.v[i];
-    if (strategy_ == Strategy::mis) density = 0.5f * (density + light_pdf_.v[i]);
+    if (is_mixed(strategy_)) density = 0.5f * (density + light_pdf_.v[i]);
     // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
     weight_[i] = density == 0.0f ? 0.0f : local_.z[i] / (static_cast<float>(directions) * density);
   }
@@ -137,7 +137,7 @@ std::optional<DirectLight::Continuation> DirectLight::extend(const Vertex& verte
   const Vec3 wl_world = vertex.frame.to_world(local_.get(0));
   if (!(local_.z[0] > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return std::nullopt;
   vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
-  surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
+  surface_pdf(sampling_, vertex, prepared_, local_, material_pdf_, surface_pdf_);
   const Rgb f = reflectance(vertex, 0);
   if (zero(f)) return std::nullopt;
   const Rgb onward = throughput * f * (local_.z[0] / surface_pdf_.v[0]);

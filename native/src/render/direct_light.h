@@ -25,13 +25,16 @@ class DirectLight {
         strategy_(strategy),
         sampling_(surface_sampling(strategy)) {}
 
-  void prepare(const Vertex& vertex) { vertex.surface->material->prepare(vertex.wv, prepared_); }
+  void prepare(const Vertex& vertex) {
+    vertex.surface->material->prepare(vertex.wv, prepared_);
+    prepare_surface(sampling_, vertex, prepared_);
+  }
 
   /// Draws `directions` light directions, estimates
   ///   throughput / n  sum_i f(wl_i) L(wl_i) cos(wl_i) / p(wl_i)
-  /// with p the density of the strategy, and queues every term that is not zero. `mis`: half of the directions from the
-  /// material, half from the lights, p = (p_material + p_light) / 2 for all, which is the balance heuristic [VG95]; an
-  /// odd one goes to either side by a coin.
+  /// with p the density of the strategy, and queues every term that is not zero. `mis`, `mis-ggx`: half of the
+  /// directions from the surface, half from the lights, p = (p_surface + p_light) / 2 for all, which is the balance
+  /// heuristic [VG95]; an odd one goes to either side by a coin.
   ///
   /// Sharp lamps, which no drawn direction can meet, are added under every strategy: each once when there are at most
   /// kSharpLamps, else that many drawn in proportion to power.

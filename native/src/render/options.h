@@ -13,7 +13,12 @@ enum class Strategy : int {  // values of velour.h
   srbf = 3,                  // the material's own sampler
   light = 4,                 // environment and lamps
   mis = 5,                   // half from the material, half from the lights, balance heuristic
+  ggx = 6,                   // a GGX lobe over a diffuse base fitted to the material
+  mis_ggx = 7,               // half from that lobe, half from the lights, balance heuristic
 };
+
+/// Half of the directions from the surface side, half from the lights.
+constexpr bool is_mixed(Strategy strategy) { return strategy == Strategy::mis || strategy == Strategy::mis_ggx; }
 
 struct RenderOptions {
   int width = 640, height = 480;
