@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 from command_line import velour
-from velour.native import Model, images
+from velour.native import Model, images, table
 
 FIT_KEYS = [
     "lobes",
@@ -79,6 +79,14 @@ def test_fit_and_compare(measurement_file, tmp_path):
     assert report["relative_l2"] == pytest.approx(result.json["relative_l2"], rel=0.05)
 
 
+def test_compare_with_the_best_ggx_lobe(measurement_file):
+    report = velour("compare", measurement_file, "--ggx", "--json").json
+    assert list(report) == [*COMPARE_KEYS, "ggx"]
+    assert list(report["ggx"]) == ["alpha", "f0", "f90", "diffuse"]
+    assert 0 < report["ggx"]["alpha"][0] == report["ggx"]["alpha"][1] < 2
+    assert 0 < report["relative_l2"] < 1
+
+
 def test_fit_options_reach_the_model(measurement_file, tmp_path):
     path = tmp_path / "m.velour"
     options = ["--kernel", "abel-poisson", "--max-lobes", 1, "--tolerance", 0.5, "--all-data", "--seed", 9]
@@ -133,6 +141,11 @@ def test_every_strategy_gives_the_same_picture_within_noise(render_arguments, tm
     mean = images.read(tmp_path / "out.exr")[..., :3].mean()
     assert velour(*render_arguments, "--strategy", "mis", "--spp", 256).status == 0
     assert mean == pytest.approx(images.read(tmp_path / "out.exr")[..., :3].mean(), rel=0.1)
+
+
+def test_the_fitted_lobe_is_made_when_the_render_starts(render_arguments):
+    assert "ggx fit" in velour(*render_arguments, "--strategy", "mis-ggx").json["stages"]
+    assert "ggx fit" not in velour(*render_arguments).json["stages"]
 
 
 def test_a_measurement_renders_by_itself(render_arguments, measurement_file, model_file):
