@@ -27,6 +27,8 @@ RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-
         ["fit", "x", "-o", "y", "--max-lobes", "0"],
         ["fit", "x", "-o", "y", "--kernel", "box"],
         ["fit", "x", "-o", "y", "--tol", "0.1"],
+        ["compare", "x"],
+        ["compare", "x", "y", "--ggx"],
         [*RENDER, "--size", "640"],
         [*RENDER, "--spp", "-1"],
         [*RENDER, "--strategy", "luck"],

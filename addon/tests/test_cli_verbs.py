@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 from command_line import velour
-from velour.native import Model, images
+from velour.native import Model, images, table
 
 FIT_KEYS = [
     "lobes",
@@ -82,6 +82,14 @@ def test_fit_and_compare(measurement_file, tmp_path):
     assert report["relative_l2"] == pytest.approx(result.json["relative_l2"], rel=0.05)
 
 
+def test_compare_with_the_best_ggx_lobe(measurement_file):
+    report = velour("compare", measurement_file, "--ggx", "--json").json
+    assert list(report) == [*COMPARE_KEYS, "ggx"]
+    assert list(report["ggx"]) == ["alpha", "f0", "f90", "diffuse"]
+    assert 0 < report["ggx"]["alpha"][0] == report["ggx"]["alpha"][1] < 2
+    assert 0 < report["relative_l2"] < 1
+
+
 def test_fit_options_reach_the_model(measurement_file, tmp_path):
     path = tmp_path / "m.velour"
     options = ["--kernel", "abel-poisson", "--max-lobes", 1, "--tolerance", 0.5, "--all-data", "--seed", 9]
@@ -130,7 +138,7 @@ def test_pictures_do_not_depend_on_threads(render_arguments, tmp_path):
     np.testing.assert_array_equal(*pictures)
 
 
-@pytest.mark.parametrize("strategy", ["uniform", "cosine", "table", "srbf", "light", "mis"])
+@pytest.mark.parametrize("strategy", table.STRATEGIES)
 def test_every_strategy_gives_the_same_picture_within_noise(render_arguments, tmp_path, strategy):
     assert velour(*render_arguments, "--strategy", strategy, "--spp", 64).status == 0
     mean = images.read(tmp_path / "out.exr")[..., :3].mean()
@@ -161,6 +169,11 @@ def test_a_noise_target_ends_the_render(render_arguments):
     result = velour(*arguments, "--noise", 0.0001, "--spp", 128)
     assert result.json["blocks_unfinished"] > 0
     assert "above the noise target" in result.err
+
+
+def test_the_fitted_lobe_is_made_when_the_render_starts(render_arguments):
+    assert "ggx fit" in velour(*render_arguments, "--strategy", "mis-ggx").json["stages"]
+    assert "ggx fit" not in velour(*render_arguments).json["stages"]
 
 
 def test_a_measurement_renders_by_itself(render_arguments, measurement_file, model_file):

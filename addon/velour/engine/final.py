@@ -50,7 +50,7 @@ def _options(scene, view, is_preview):
         "spp": settings.preview_samples if is_preview else settings.samples,
         "split": settings.split,
         "bounces": settings.bounces,
-        "strategy": settings.strategy.lower(),
+        "strategy": settings.strategy.lower().replace("_", "-"),
         "threads": scene.render.threads,
         "seed": settings.seed,
         "share": settings.share,

@@ -147,6 +147,11 @@ def compare_job(measurement: Measurement, model: Model) -> Job:
     return Job._create("vlr_compare_create_job", measurement.pointer, model.pointer)
 
 
+def compare_ggx_job(measurement: Measurement) -> Job:
+    """The same errors for the GGX lobe over a diffuse base that suits the measurement best, and its parameters."""
+    return Job._create("vlr_compare_ggx_create_job", measurement.pointer)
+
+
 def microsurface_job(path: str | os.PathLike, **options) -> Job:
     """Writes a virtual measurement to `path`. Options: roughness, anisotropy, metal, base_albedo, base_share,
     rays, seed, threads."""

@@ -16,7 +16,7 @@ LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
 SEQUENCES = ("random", "sobol")
-STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis")
+STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx")
 
 
 class Struct(ctypes.Structure):
@@ -178,6 +178,7 @@ STATUS_CALLS = {
     "vlr_job_result_model": [_handle, _out_handle],
     "vlr_fit_create_job": [_handle, POINTER(FitOptions), _out_handle],
     "vlr_compare_create_job": [_handle, _handle, _out_handle],
+    "vlr_compare_ggx_create_job": [_handle, _out_handle],
     "vlr_microsurface_create_job": [POINTER(MicrosurfaceOptions), c_char_p, _out_handle],
     "vlr_scene_create": [_out_handle],
     "vlr_scene_set_working_space": [_handle, _floats],

@@ -24,6 +24,13 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
                 "Some from the material, some from the lights, weighted by multiple importance sampling",
                 5,
             ),
+            ("GGX", "Fitted GGX", "From a GGX lobe over a diffuse base that is fitted to the material", 6),
+            (
+                "MIS_GGX",
+                "Fitted GGX and Lights",
+                "Half from the fitted GGX lobe, half from the lights, weighted by the balance heuristic",
+                7,
+            ),
         ),
         default="MIS",
         override=_OVERRIDE,

@@ -162,6 +162,9 @@ VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const 
 
 /* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples. */
 VLR_API vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_model* model, vlr_job** out);
+/* The same of the GGX lobe over a diffuse base that suits the measurement best: what the strategies `ggx` and `mis-ggx`
+ * draw from. JSON: also ggx {alpha [x, y], f0, f90, diffuse}, colours linear Rec. 709. */
+VLR_API vlr_status vlr_compare_ggx_create_job(const vlr_measurement* measurement, vlr_job** out);
 
 typedef struct vlr_microsurface_options {
   uint32_t struct_size;
@@ -280,7 +283,9 @@ enum {
   VLR_STRATEGY_TABLE = 2,
   VLR_STRATEGY_SRBF = 3,
   VLR_STRATEGY_LIGHT = 4,
-  VLR_STRATEGY_MIS = 5
+  VLR_STRATEGY_MIS = 5,
+  VLR_STRATEGY_GGX = 6,    /* a GGX lobe over a diffuse base, fitted to each material when the render starts */
+  VLR_STRATEGY_MIS_GGX = 7 /* half from that lobe, half from the lights */
 };
 
 enum { VLR_HEURISTIC_BALANCE = 0, VLR_HEURISTIC_POWER = 1 };

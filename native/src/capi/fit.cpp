@@ -4,6 +4,7 @@
 #include "capi/reports.h"
 #include "capture/microsurface.h"
 #include "fit/compare.h"
+#include "fit/ggx_fit.h"
 #include "fit/scattered_fit.h"
 #include "model/model_file.h"
 
@@ -78,6 +79,17 @@ vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_
       output->set(comparison_json(compare(*source, *make_material(fitted, 0), progress)));
     };
     *out = new vlr_job(output, task);
+  });
+}
+
+vlr_status vlr_compare_ggx_create_job(const vlr_measurement* measurement, vlr_job** out) {
+  return guard([&] {
+    require(measurement, "measurement");
+    require(out, "out");
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, source = measurement->measurement](Progress& progress) {
+      output->set(ggx_json(judge_ggx(*source, 0, progress)));
+    });
   });
 }
 

@@ -25,7 +25,7 @@ void vlr_render_options_init(vlr_render_options* options) {
 namespace {
 
 RenderOptions converted(const vlr_render_options& given) {
-  if (given.strategy < VLR_STRATEGY_UNIFORM || given.strategy > VLR_STRATEGY_MIS) {
+  if (given.strategy < VLR_STRATEGY_UNIFORM || given.strategy > VLR_STRATEGY_MIS_GGX) {
     throw Error(Status::invalid_argument,
                 "vlr_render_options.strategy is " + std::to_string(given.strategy) + ", not a VLR_STRATEGY value.");
   }

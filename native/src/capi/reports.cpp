@@ -27,6 +27,16 @@ Json by_view_angle(const ErrorByViewAngle& errors) {
   return json;
 }
 
+Json errors_of(const Comparison& comparison) {
+  return {{"relative_l2", comparison.relative_l2},
+          {"by_view_angle", by_view_angle(comparison.by_view_angle)},
+          {"log_rms", comparison.log_rms},
+          {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
+          {"samples", comparison.samples}};
+}
+
+Json colour(const Rgb& c) { return {c.r, c.g, c.b}; }
+
 Json lobe_counts(const Model& model, uint64_t file_bytes) {
   const auto& brdf = std::get<ScatteredBrdf>(model.body);
   return {{"lobes", brdf.lobe_count()}, {"bytes", file_bytes}, {"parameter_bytes", brdf.parameter_bytes()}};
@@ -101,12 +111,14 @@ std::string fit_json(const Model& model, uint64_t file_bytes) {
   return text(json);
 }
 
-std::string comparison_json(const Comparison& comparison) {
-  return text({{"relative_l2", comparison.relative_l2},
-               {"by_view_angle", by_view_angle(comparison.by_view_angle)},
-               {"log_rms", comparison.log_rms},
-               {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
-               {"samples", comparison.samples}});
+std::string comparison_json(const Comparison& comparison) { return text(errors_of(comparison)); }
+
+std::string ggx_json(const GgxFit& fit) {
+  const GgxParameters& p = fit.parameters;
+  Json json = errors_of(fit.error);
+  json["ggx"] = {
+      {"alpha", {p.alpha.x, p.alpha.y}}, {"f0", colour(p.f0)}, {"f90", colour(p.f90)}, {"diffuse", colour(p.diffuse)}};
+  return text(json);
 }
 
 std::string microsurface_json(const MicrosurfaceReport& report) {

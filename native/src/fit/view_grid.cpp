@@ -10,7 +10,6 @@
 namespace velour {
 namespace {
 
-constexpr int kRings = 96, kSpokes = 64;
 constexpr double kMeridianStep = 2.0, kMeridianEnd = 89.0;  // degrees
 constexpr int kHemisphereViews = 400;                       // a spacing of about 7 degrees
 // A little more than the margin, so that no rounding brings a view inside.
@@ -54,17 +53,16 @@ std::vector<Vec3> hemisphere_views(bool all_data) {
   return views;
 }
 
-LightGrid light_grid(const Vec3& wv) {
+LightGrid light_grid(const Vec3& wv, int rings, int spokes) {
   LightGrid grid;
   const double azimuth = std::atan2(static_cast<double>(wv.y), static_cast<double>(wv.x));
-  for (int i = 0; i < kRings; ++i) {
-    const double begin = 0.5 * kPiD * i * i / (kRings * kRings),
-                 end = 0.5 * kPiD * (i + 1) * (i + 1) / (kRings * kRings);
-    const double cell = 2 * std::sin(0.5 * (begin + end)) * std::sin(0.5 * (end - begin)) * 2 * kPiD / kSpokes;
+  for (int i = 0; i < rings; ++i) {
+    const double begin = 0.5 * kPiD * i * i / (rings * rings), end = 0.5 * kPiD * (i + 1) * (i + 1) / (rings * rings);
+    const double cell = 2 * std::sin(0.5 * (begin + end)) * std::sin(0.5 * (end - begin)) * 2 * kPiD / spokes;
     const double theta = 0.5 * (begin + end);
     const double turn = i * 0.6180339887498949;  // golden ratio: neighbouring rings do not line up
-    for (int k = 0; k < kSpokes; ++k) {
-      const double phi = azimuth + 2 * kPiD * (k + turn - std::floor(turn)) / kSpokes;
+    for (int k = 0; k < spokes; ++k) {
+      const double phi = azimuth + 2 * kPiD * (k + turn - std::floor(turn)) / spokes;
       const Vec3d h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
       const double cosine = glm::dot(Vec3d(wv), h);
       if (cosine <= 0) continue;
@@ -79,7 +77,8 @@ LightGrid light_grid(const Vec3& wv) {
 }
 
 void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept) {
-  std::vector<double> all(kRings, 0.0), left(kRings, 0.0);
+  const size_t rings = grid.ring.empty() ? 0 : grid.ring.back() + size_t{1};  // in order
+  std::vector<double> all(rings, 0.0), left(rings, 0.0);
   for (size_t i = 0; i < grid.wl.size(); ++i) {
     all[grid.ring[i]] += grid.weight[i];
     if (kept[i]) left[grid.ring[i]] += grid.weight[i];

@@ -23,7 +23,7 @@ struct LightGrid {
   std::vector<float> weight;   // sr
   std::vector<uint32_t> ring;  // of equal theta_h
 };
-LightGrid light_grid(const Vec3& wv);
+LightGrid light_grid(const Vec3& wv, int rings = 96, int spokes = 64);
 
 /// Hands the solid angle of the lights that are not `kept` to the kept ones of their ring.
 void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept);

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "material/ggx_sampler.h"
 #include "sphere/direction_batch.h"
 #include "srbf/lobe_mixture.h"
 
@@ -14,6 +15,7 @@ struct PreparedBrdf {
   Vec3 wv;             // local, unit, wv.z > 0
   LobeMixture lobes;   // SRBF materials: value and density. Raw measurements: density only
   float parameter[8];  // analytic materials: what they derive from wv
+  GgxPoint ggx;        // of the fitted GGX lobe, where one is the material or draws its samples
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.

@@ -20,7 +20,7 @@ class PrincipledMaterial final : public Material {
   explicit PrincipledMaterial(const PrincipledParameters& p)
       : base_color_(glm::clamp(p.base_color, Rgb(0), Rgb(1))),
         metallic_(std::clamp(p.metallic, 0.0f, 1.0f)),
-        alpha_(std::clamp(p.roughness * p.roughness, kMinAlpha, 1.0f)),
+        alpha_(std::clamp(p.roughness * p.roughness, kMinGgxAlpha, 1.0f)),
         eta_(index_of(p.specular)),
         coat_(alpha_, [this](float cosine) { return dielectric_fresnel(cosine, eta_); }),
         specular_(alpha_, [this](float cosine) { return luminance(fresnel(cosine)); }) {}
@@ -56,8 +56,6 @@ class PrincipledMaterial final : public Material {
   bool isotropic() const override { return true; }
 
  private:
-  // A mirror's density is no function; below this a lobe is as sharp as any light we have.
-  static constexpr float kMinAlpha = 1e-3f;
   enum Parameter { kDiffuseScale, kDiffuseProbability };
 
   /// Blender's scale: specular 0.5 is 4 % at normal incidence, an index of 1.5.
@@ -80,7 +78,9 @@ class PrincipledMaterial final : public Material {
   }
 
   Rgb base_color_;
-  float metallic_, alpha_, eta_;
+  float metallic_;
+  Vec2 alpha_;
+  float eta_;
   SpecularAlbedo coat_, specular_;
 };
 

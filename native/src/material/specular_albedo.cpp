@@ -10,7 +10,7 @@ namespace velour {
 namespace {
 
 /// Mean of F G2 / G1 over visible normals: the integrand is smooth whatever the roughness.
-float integrate_albedo(const Vec3& wv, float alpha, const Fresnel& fresnel) {
+float integrate_albedo(const Vec3& wv, const Vec2& alpha, const Fresnel& fresnel) {
   const Quadrature radius = gauss_legendre(24, 0, 1);
   constexpr int kTurns = 48;
   double sum = 0;
@@ -31,7 +31,7 @@ float integrate_albedo(const Vec3& wv, float alpha, const Fresnel& fresnel) {
 
 }  // namespace
 
-SpecularAlbedo::SpecularAlbedo(float alpha, const Fresnel& fresnel) {
+SpecularAlbedo::SpecularAlbedo(const Vec2& alpha, const Fresnel& fresnel) {
   for (size_t i = 0; i < kEntries; ++i) {
     const float root = static_cast<float>(i) / (kEntries - 1);
     const float cosine = root * root;

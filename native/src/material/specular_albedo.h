@@ -15,8 +15,8 @@ using Fresnel = std::function<float(float cosine)>;
 class SpecularAlbedo {
  public:
   SpecularAlbedo() = default;
-  /// Albedo of the GGX lobe of roughness `alpha` by quadrature.
-  SpecularAlbedo(float alpha, const Fresnel& fresnel);
+  /// Albedo of the GGX lobe of roughness `alpha` by quadrature, for views along x.
+  SpecularAlbedo(const Vec2& alpha, const Fresnel& fresnel);
 
   float at(float cosine) const;
   /// 2 int albedo(mu) mu dmu of this interpolant.

@@ -30,10 +30,9 @@ struct Combination {
   }
 };
 
-/// The combination of a strategy: `mis` has both sides, the others one.
+/// The combination of a strategy: mixed ones have both sides, the others one.
 inline Combination combination(const RenderOptions& options) {
-  const bool both = options.strategy == Strategy::mis;
-  return {both ? options.light_share : (options.strategy == Strategy::light ? 1.0f : 0.0f), options.heuristic};
+  return {is_mixed(options.strategy) ? options.light_share : (options.strategy == Strategy::light ? 1.0f : 0.0f), options.heuristic};
 }
 
 }  // namespace velour

@@ -73,7 +73,7 @@ void DirectLight::weigh(const Vertex& vertex, int directions) {
   lamp_hits_.clear();
   if (world_.count == 0) return;
   lighting_.look_up(vertex.position, world_, environment_, light_pdf_, lamp_hits_);
-  surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
+  surface_pdf(sampling_, vertex, prepared_, local_, material_pdf_, surface_pdf_);
   for (int i = 0; i < world_.count; ++i) {
     const float surface = surface_pdf_.v[i], light = light_pdf_.v[i];
     const float density =
@@ -136,7 +136,7 @@ std::optional<DirectLight::Continuation> DirectLight::extend(const Vertex& verte
   const Vec3 wl_world = vertex.frame.to_world(local_.get(0));
   if (!(local_.z[0] > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return std::nullopt;
   vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
-  surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
+  surface_pdf(sampling_, vertex, prepared_, local_, material_pdf_, surface_pdf_);
   const Rgb f = reflectance(vertex, 0);
   if (zero(f)) return std::nullopt;
   const Rgb onward = throughput * f * (local_.z[0] / surface_pdf_.v[0]);

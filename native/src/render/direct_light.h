@@ -26,7 +26,10 @@ class DirectLight {
         combination_(combination(options)),
         sampling_(surface_sampling(options.strategy)) {}
 
-  void prepare(const Vertex& vertex) { vertex.surface->material->prepare(vertex.wv, prepared_); }
+  void prepare(const Vertex& vertex) {
+    vertex.surface->material->prepare(vertex.wv, prepared_);
+    prepare_surface(sampling_, vertex, prepared_);
+  }
 
   /// Draws `directions` light directions, estimates
   ///   throughput / n  sum_i f(wl_i) L(wl_i) cos(wl_i) / d(wl_i)

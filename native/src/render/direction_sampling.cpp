@@ -1,5 +1,6 @@
 #include "render/direction_sampling.h"
 
+#include "material/ggx_sampler.h"
 #include "material/table_sampler.h"
 #include "sphere/warp.h"
 
@@ -13,12 +14,19 @@ SurfaceSampling surface_sampling(Strategy strategy) {
       return SurfaceSampling::cosine;
     case Strategy::table:
       return SurfaceSampling::table;
+    case Strategy::ggx:
+    case Strategy::mis_ggx:
+      return SurfaceSampling::ggx;
     case Strategy::srbf:
     case Strategy::light:
     case Strategy::mis:
       break;
   }
   return SurfaceSampling::material;
+}
+
+void prepare_surface(SurfaceSampling sampling, const Vertex& vertex, PreparedBrdf& prepared) {
+  if (sampling == SurfaceSampling::ggx) vertex.ggx->prepare(vertex.wv, prepared.ggx);
 }
 
 Vec3 sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const Vec2& u) {
@@ -29,13 +37,15 @@ Vec3 sample_surface(SurfaceSampling sampling, const Vertex& vertex, const Prepar
       return sample_cosine_hemisphere(u);
     case SurfaceSampling::table:
       return vertex.table->sample(vertex.wv, u);
+    case SurfaceSampling::ggx:
+      return vertex.ggx->sample(prepared.ggx, u);
     case SurfaceSampling::material:
       break;
   }
   return vertex.surface->material->sample(prepared, u);
 }
 
-void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const DirectionBatch& wl,
+void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const DirectionBatch& wl,
                  const ScalarBatch& material_pdf, ScalarBatch& pdf) {
   switch (sampling) {
     case SurfaceSampling::uniform:
@@ -46,6 +56,9 @@ void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const Direction
       return;
     case SurfaceSampling::table:
       vertex.table->pdf(vertex.wv, wl, pdf);
+      return;
+    case SurfaceSampling::ggx:
+      vertex.ggx->pdf(prepared.ggx, wl, pdf);
       return;
     case SurfaceSampling::material:
       pdf = material_pdf;

@@ -8,17 +8,20 @@
 namespace velour {
 
 /// What a surface draws directions with.
-enum class SurfaceSampling { uniform, cosine, table, material };
+enum class SurfaceSampling { uniform, cosine, table, ggx, material };
 
 /// For `light` (which draws none for direct light) it serves the continuing ray: light reflected by other surfaces
 /// comes from directions that light sampling would never choose.
 SurfaceSampling surface_sampling(Strategy strategy);
 
+/// What `sampling` derives from the view, once a vertex; Material::prepare has its own.
+void prepare_surface(SurfaceSampling sampling, const Vertex& vertex, PreparedBrdf& prepared);
+
 /// Local direction; may lie below the horizon.
 Vec3 sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const Vec2& u);
 
 /// Density per solid angle of sample_surface at each direction of `wl`. `material_pdf` is what Material::eval gave.
-void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const DirectionBatch& wl,
+void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const DirectionBatch& wl,
                  const ScalarBatch& material_pdf, ScalarBatch& pdf);
 
 }  // namespace velour

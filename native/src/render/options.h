@@ -13,9 +13,14 @@ enum class Strategy : int {  // values of velour.h
   srbf = 3,                  // the material's own sampler
   light = 4,                 // environment and lamps
   mis = 5,                   // some from the material, some from the lights: light_share, heuristic
+  ggx = 6,                   // a GGX lobe over a diffuse base fitted to the material
+  mis_ggx = 7,               // as mis, with that lobe in the material's place
 };
 
-/// Weights of `mis` (combination.h).
+/// Some directions from the surface side, some from the lights.
+constexpr bool is_mixed(Strategy strategy) { return strategy == Strategy::mis || strategy == Strategy::mis_ggx; }
+
+/// Weights of mixed strategies (combination.h).
 enum class Heuristic : int { balance = 0, power = 1 };  // values of velour.h
 
 /// Where random numbers come from (path_numbers.h).

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <string>
 
+#include "fit/ggx_fit.h"
 #include "job/threads.h"
 #include "render/noise_target.h"
 #include "render/ray_share.h"
@@ -20,6 +21,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Camera rays a pixel of a whole-grown pass: a tile stays below 10 ms, so a cancel is seen soon.
 constexpr int kLargestPass = 8;
+/// What tables or fits before the first pass take of the whole, roughly.
+constexpr double kPreparation = 0.05;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -38,7 +41,7 @@ RenderOptions checked(const Scene& scene, RenderOptions options, const Film& fil
   require_range("split", options.split, 1, RenderOptions::kMaxSplit);
   require_range("bounces", options.bounces, 0, 1024);
   require_range("threads", options.threads, 0, 4096);
-  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::mis));
+  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::mis_ggx));
   require_range("camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
   require_range("heuristic", static_cast<int>(options.heuristic), 0, static_cast<int>(Heuristic::power));
   require_range("sequence", static_cast<int>(options.sequence), 0, static_cast<int>(Sequence::sobol));
@@ -71,12 +74,13 @@ class Renderer {
         film_(film),
         progress_(progress),
         arena_(arena_concurrency(options_.threads)),
-        context_{scene, options_, Lighting(scene), {}},
+        context_{scene, options_, Lighting(scene), {}, {}},
         target_(options_.noise, blocks_of(options_.width, options_.height)) {}
 
   RenderReport run() {
     film_.clear();
     prepare_tables();
+    fit_ggx_lobes();
     render_passes();
     if (options_.measure_ray_share) measure_ray_share();
     return report();
@@ -95,7 +99,7 @@ class Renderer {
     if (options_.strategy != Strategy::table) return;
     const auto& materials = context_.scene.materials();
     context_.tables.resize(materials.size());
-    stage("tables", 0.0, 0.05, [&] {
+    stage("tables", 0.0, kPreparation, [&] {
       for (size_t m = 0; m < materials.size(); ++m) {
         progress_.check();
         arena_.execute([&] { context_.tables[m] = std::make_unique<const TableSampler>(*materials[m].material); });
@@ -103,9 +107,19 @@ class Renderer {
     });
   }
 
+  void fit_ggx_lobes() {
+    if (surface_sampling(options_.strategy) != SurfaceSampling::ggx) return;
+    const auto& materials = context_.scene.materials();
+    stage("ggx fit", 0.0, kPreparation, [&] {
+      for (const SurfaceMaterial& m : materials) {
+        context_.ggx.push_back(std::make_unique<const GgxSampler>(fit_ggx(*m.material, options_.threads, progress_)));
+      }
+    });
+  }
+
   void render_passes() {
     const int total = context_.camera_rays();
-    stage("render", options_.strategy == Strategy::table ? 0.05 : 0.0, 1.0, [&] {
+    stage("render", report_.stages.empty() ? 0.0 : kPreparation, 1.0, [&] {
       const auto start = Clock::now();
       while (done_ < total && !target_.active().empty()) {
         const int count = std::min(pass_size(options_, done_, total), target_.next_decision() - done_);

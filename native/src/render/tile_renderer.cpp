@@ -85,6 +85,7 @@ void TileRenderer::follow(Path& path, const Hit& hit, int depth) {
   Vertex vertex(point, -path.ray.direction);
   vertex.surface = &context_.scene.materials()[point.material];
   if (!context_.tables.empty()) vertex.table = context_.tables[point.material].get();
+  if (!context_.ggx.empty()) vertex.ggx = context_.ggx[point.material].get();
   if (depth == 0) {
     sample.alpha = 1.0f;
     sample.normal = vertex.frame.z;

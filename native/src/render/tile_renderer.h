@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "job/progress.h"
+#include "material/ggx_sampler.h"
 #include "material/table_sampler.h"
 #include "render/direct_light.h"
 #include "render/film.h"
@@ -17,7 +18,9 @@ struct RenderContext {
   const Scene& scene;
   const RenderOptions& options;  // split <= spp
   Lighting lighting;
-  std::vector<std::unique_ptr<const TableSampler>> tables;  // by material; empty unless the strategy needs them
+  // By material; empty unless the strategy needs them.
+  std::vector<std::unique_ptr<const TableSampler>> tables;
+  std::vector<std::unique_ptr<const GgxSampler>> ggx;
 
   int camera_rays() const { return (options.spp + options.split - 1) / options.split; }
   /// Light directions of camera ray `index`: the last one takes what is left of spp.

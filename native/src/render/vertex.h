@@ -6,6 +6,7 @@
 
 namespace velour {
 
+class GgxSampler;
 class TableSampler;
 
 /// Surfaces are two-sided: both normals are turned to the viewer's side of the geometric surface. Where interpolation
@@ -22,6 +23,7 @@ struct Vertex {
   float offset;           // a ray starts this far off the surface, along the geometric normal
   const SurfaceMaterial* surface;
   const TableSampler* table;  // null unless the strategy needs it
+  const GgxSampler* ggx;      // the same
 
   /// `wv_world`: unit, towards the viewer.
   Vertex(const SurfacePoint& point, const Vec3& wv_world);

@@ -111,6 +111,20 @@ TEST_F(RoundTrip, SamplesCarryTheDensityThatEvalReports) {
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_model_sample(model_, below, 2, u, wl, pdf));
 }
 
+TEST_F(RoundTrip, TheBestGgxLobeIsJudgedToo) {
+  vlr_job* job = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_compare_ggx_create_job(measurement_, &job)) << vlr_last_error();
+  ASSERT_EQ(VLR_OK, vlr_job_start(job));
+  ASSERT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
+  const char* text = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_job_report_json(job, &text)) << vlr_last_error();
+  const std::string json = text;
+  vlr_job_free(job);
+  EXPECT_NE(json.find("\"by_view_angle\""), std::string::npos) << json;
+  EXPECT_NE(json.find("\"alpha\""), std::string::npos) << json;
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_compare_ggx_create_job(nullptr, &job));
+}
+
 TEST_F(RoundTrip, InfoNamesTheSource) {
   const char* json = nullptr;
   ASSERT_EQ(VLR_OK, vlr_model_info_json(model_, &json));

@@ -12,8 +12,8 @@ using test::mean_of;
 using test::rendered;
 using test::small_options;
 
-constexpr Strategy kAll[] = {Strategy::uniform, Strategy::cosine, Strategy::table,
-                             Strategy::srbf,    Strategy::light,  Strategy::mis};
+constexpr Strategy kAll[] = {Strategy::uniform, Strategy::cosine, Strategy::table, Strategy::srbf,
+                             Strategy::light,   Strategy::mis,    Strategy::ggx,   Strategy::mis_ggx};
 
 /// A large Lambertian square of albedo 0.6 seen from above; the picture lies well inside it.
 Scene plane() {

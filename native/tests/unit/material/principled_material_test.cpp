@@ -35,15 +35,15 @@ double albedo(const Material& material, const Vec3& wv, int channel) {
 }
 
 TEST(Ggx, DistributionProjectsToOne) {
-  for (const float alpha : {0.1f, 0.4f, 1.0f}) {
+  for (const Vec2& alpha : {Vec2(0.1f), Vec2(0.4f), Vec2(1), Vec2(0.2f, 0.6f)}) {
     EXPECT_NEAR(integrate_hemisphere([&](const Vec3& h) { return ggx_distribution(h, alpha) * h.z; }), 1, 1e-4);
   }
-  EXPECT_NEAR(ggx_distribution({0, 0, 1}, 1e-3f), 1 / (kPi * 1e-6f), 1);
-  EXPECT_EQ(ggx_distribution({0, 0, -1}, 0.5f), 0);
+  EXPECT_NEAR(ggx_distribution({0, 0, 1}, Vec2(1e-3f)), 1 / (kPi * 1e-6f), 1);
+  EXPECT_EQ(ggx_distribution({0, 0, -1}, Vec2(0.5f)), 0);
 }
 
 TEST(Ggx, VisibleNormalsProjectToTheView) {
-  for (const float alpha : {0.2f, 0.7f}) {
+  for (const Vec2& alpha : {Vec2(0.2f), Vec2(0.7f), Vec2(0.6f, 0.2f)}) {
     for (const Vec3& wv : {direction(0.2f, 0), direction(1.2f, 1)}) {
       const double mass = integrate_hemisphere([&](const Vec3& h) {
         const float cosine = glm::dot(wv, h);
@@ -66,7 +66,7 @@ TEST(Fresnel, Limits) {
 }
 
 TEST(SpecularAlbedo, OfASmoothSurfaceIsItsFresnelTerm) {
-  const SpecularAlbedo table(1e-3f, [](float cosine) { return dielectric_fresnel(cosine, 1.5f); });
+  const SpecularAlbedo table(Vec2(1e-3f), [](float cosine) { return dielectric_fresnel(cosine, 1.5f); });
   for (const float cosine : {0.05f, 0.3f, 0.7f, 1.0f}) {
     EXPECT_NEAR(table.at(cosine), dielectric_fresnel(cosine, 1.5f), 4e-3f) << cosine;
   }

@@ -235,7 +235,7 @@ TEST(Render, EmptyScenesAndNoLightAreBlackNotBroken) {
   scene.add_instance(mesh, {}, {0});
   scene.set_camera(test::camera_above(0.5f));
   scene.commit(1);
-  for (int s = 0; s <= 5; ++s) {
+  for (int s = 0; s <= 7; ++s) {
     EXPECT_EQ(test::mean_of(rendered(scene, small_options(static_cast<Strategy>(s)), "Combined", &report)), 0);
     EXPECT_EQ(report.nan_samples, 0u);
   }
@@ -261,7 +261,7 @@ TEST(Render, RefusesWrongOptionsByName) {
   refused([](RenderOptions& o) { o.bounces = -1; }, "bounces");
   refused([](RenderOptions& o) { o.width = 9; }, "size");
   refused([](RenderOptions& o) { o.time_limit = -1; }, "time_limit");
-  refused([](RenderOptions& o) { o.strategy = static_cast<Strategy>(6); }, "strategy");
+  refused([](RenderOptions& o) { o.strategy = static_cast<Strategy>(8); }, "strategy");
   Scene uncommitted;
   EXPECT_THROW(render(uncommitted, small_options(Strategy::mis), film, progress), Error);
 }

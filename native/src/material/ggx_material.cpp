@@ -1,0 +1,36 @@
+#include "material/ggx_sampler.h"
+#include "material/material.h"
+
+namespace velour {
+
+namespace {
+
+class GgxMaterial final : public Material {
+ public:
+  explicit GgxMaterial(const GgxParameters& parameters) : parameters_(parameters), sampler_(parameters) {}
+
+  void prepare(const Vec3& wv, PreparedBrdf& point) const override { sampler_.prepare(point.wv = wv, point.ggx); }
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    for (int i = 0; i < wl.count; ++i) {
+      f.set(i, wl.z[i] > 0 ? ggx_model(parameters_, {.wl = wl.get(i), .wv = point.wv}) : Rgb(0));
+    }
+    sampler_.pdf(point.ggx, wl, pdf);
+  }
+
+  Vec3 sample(const PreparedBrdf& point, const Vec2& u) const override { return sampler_.sample(point.ggx, u); }
+
+  bool isotropic() const override { return parameters_.alpha.x == parameters_.alpha.y; }
+
+ private:
+  GgxParameters parameters_;
+  GgxSampler sampler_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> make_ggx_material(const GgxParameters& parameters) {
+  return std::make_shared<GgxMaterial>(parameters);
+}
+
+}  // namespace velour
