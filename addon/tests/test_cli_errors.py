@@ -47,7 +47,6 @@ def test_wrong_usage_is_2(arguments):
         (["fit", "x", "-o", "y", "--for-scene", "s.json"], "--for-scene"),
         ([*RENDER, "--heuristic", "power"], "power"),
         ([*RENDER, "--sequence", "sobol"], "sobol"),
-        ([*RENDER, "--strategy", "product"], "product"),
         ([*RENDER, "--share", "0.3"], "--share"),
         ([*RENDER, "--noise", "0.1"], "--noise"),
         ([*RENDER, "--texture-scale", "2"], "--texture-scale"),

@@ -30,6 +30,7 @@ RENDER_KEYS = [
     "relmse",
     "nan_samples",
     "noise",
+    "sky",
 ]
 ANGLES = ["5", "30", "60", "75", "85"]
 
@@ -127,7 +128,7 @@ def test_pictures_do_not_depend_on_threads(render_arguments, tmp_path):
     np.testing.assert_array_equal(*pictures)
 
 
-@pytest.mark.parametrize("strategy", ["uniform", "cosine", "table", "srbf", "light", "mis"])
+@pytest.mark.parametrize("strategy", ["uniform", "cosine", "table", "srbf", "light", "mis", "product"])
 def test_every_strategy_gives_the_same_picture_within_noise(render_arguments, tmp_path, strategy):
     assert velour(*render_arguments, "--strategy", strategy, "--spp", 64).status == 0
     mean = images.read(tmp_path / "out.exr")[..., :3].mean()

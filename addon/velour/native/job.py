@@ -161,10 +161,13 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
 
 def render_job(scene, **options) -> Job:
     """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit
-    (seconds), transparent, measure_ray_share. `scene` is a committed Scene."""
+    (seconds), transparent, measure_ray_share, cache_folder (keeps fits of the environment; none: nowhere).
+    `scene` is a committed Scene."""
     raw = _defaults(table.RenderOptions, "vlr_render_options_init")
     if "strategy" in options:
         options["strategy"] = choice("strategy", options["strategy"], table.STRATEGIES)
+    if options.get("cache_folder") is not None:
+        options["cache_folder"] = path_bytes(options["cache_folder"])
     set_fields(raw, options)
     size = (raw.width, raw.height)
     return Job._create("vlr_render_create_job", scene.pointer, ctypes.byref(raw), size=size)

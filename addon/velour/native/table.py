@@ -14,7 +14,7 @@ JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
 LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
-STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis")
+STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "product")
 
 
 class Struct(ctypes.Structure):
@@ -127,6 +127,7 @@ class RenderOptions(Struct):
         ("time_limit", c_double),
         ("transparent", c_int32),
         ("measure_ray_share", c_int32),
+        ("cache_folder", c_char_p),
     ]
 
 

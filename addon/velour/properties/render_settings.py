@@ -1,7 +1,7 @@
 """How a scene is rendered."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
@@ -23,6 +23,13 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
                 "Lobes and Lights",
                 "Half from the material, half from the lights, weighted by the balance heuristic",
                 5,
+            ),
+            (
+                "PRODUCT",
+                "Products",
+                "Half from the products of the material's lobes with lobes of the environment, the rest as "
+                "Lobes and Lights. The least noise a sample",
+                6,
             ),
         ),
         default="MIS",
@@ -68,6 +75,12 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
         description="The same seed gives the same picture, bit by bit. Animate it to vary the noise",
         default=0,
         min=0,
+        override=_OVERRIDE,
+    )
+    use_cache: BoolProperty(
+        name="Cache World",
+        description="Keep what Products fits to an environment image for the next render, in the user's cache",
+        default=True,
         override=_OVERRIDE,
     )
     time_limit: FloatProperty(

@@ -39,6 +39,8 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = True
         layout.prop(settings, "strategy")
+        if settings.strategy == "PRODUCT":
+            layout.prop(settings, "use_cache")
         column = layout.column(align=True)
         column.prop(settings, "samples")
         column.prop(settings, "preview_samples", text="Preview")

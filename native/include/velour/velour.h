@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 1
+#define VLR_ABI_VERSION 2
 
 typedef int32_t vlr_status;
 enum {
@@ -280,7 +280,8 @@ enum {
   VLR_STRATEGY_TABLE = 2,
   VLR_STRATEGY_SRBF = 3,
   VLR_STRATEGY_LIGHT = 4,
-  VLR_STRATEGY_MIS = 5
+  VLR_STRATEGY_MIS = 5,
+  VLR_STRATEGY_PRODUCT = 6 /* lobes of the material times lobes of the environment, beside both */
 };
 
 typedef struct vlr_render_options {
@@ -295,9 +296,12 @@ typedef struct vlr_render_options {
   double time_limit;         /* seconds, 0: none; stops at a whole pass */
   int32_t transparent;       /* 1: rays that meet nothing leave alpha 0 */
   int32_t measure_ray_share; /* 1: record 1 tile in 16 and replay its rays */
+  const char* cache_folder;  /* for fits of the environment (product), made when missing; null or "": none. Borrowed
+                                for the call */
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);
-/* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise. */
+/* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise, sky (null, or
+   of product: lobes, relative_l2, seconds, cached). */
 VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
 
 /* The film so far, row 0 at the bottom. Passes and channels: "Combined" 4 (RGBA, premultiplied), "Depth" 1,

@@ -22,7 +22,7 @@ void vlr_render_options_init(vlr_render_options* options) {
 namespace {
 
 RenderOptions converted(const vlr_render_options& given) {
-  if (given.strategy < VLR_STRATEGY_UNIFORM || given.strategy > VLR_STRATEGY_MIS) {
+  if (given.strategy < VLR_STRATEGY_UNIFORM || given.strategy > VLR_STRATEGY_PRODUCT) {
     throw Error(Status::invalid_argument,
                 "vlr_render_options.strategy is " + std::to_string(given.strategy) + ", not a VLR_STRATEGY value.");
   }
@@ -44,6 +44,7 @@ RenderOptions converted(const vlr_render_options& given) {
   options.time_limit = given.time_limit;
   options.transparent = given.transparent != 0;
   options.measure_ray_share = given.measure_ray_share != 0;
+  if (given.cache_folder) options.cache_folder = given.cache_folder;
   return options;
 }
 

@@ -131,6 +131,14 @@ std::string scene_json(const Scene& scene) {
                {"warnings", info.warnings}});
 }
 
+namespace {
+
+Json sky_json(const RenderReport::Sky& sky) {
+  return {{"lobes", sky.lobes}, {"relative_l2", sky.relative_l2}, {"seconds", sky.seconds}, {"cached", sky.cached}};
+}
+
+}  // namespace
+
 std::string render_json(const RenderReport& report) {
   Json stages = Json::object();
   for (const RenderStage& stage : report.stages) stages[stage.name] = stage.seconds;
@@ -142,7 +150,8 @@ std::string render_json(const RenderReport& report) {
                {"nan_samples", report.nan_samples},
                {"spp", report.spp},
                {"passes", report.passes},
-               {"noise", report.noise}});
+               {"noise", report.noise},
+               {"sky", report.sky ? sky_json(*report.sky) : Json(nullptr)}});
 }
 
 }  // namespace velour::capi

@@ -10,6 +10,10 @@ namespace velour {
 namespace {
 
 bool zero(const Rgb& c) { return c.r == 0.0f && c.g == 0.0f && c.b == 0.0f; }
+
+/// Of `product`, where the sky gives all light: lamps take from it.
+constexpr float kProductShare = 0.5f;
+
 bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 
 }  // namespace
@@ -42,15 +46,37 @@ void DirectLight::draw_from_lights(const Vertex& vertex, int count, RandomStream
   }
 }
 
+void DirectLight::draw_from_product(const Vertex& vertex, int count, RandomStream& random) {
+  if (count == 0) return;
+  const Vec2 shift = random.next2();
+  for (int i = 0; i < count; ++i) {
+    const Vec3 wl_world = sample_mixture(product_, lattice_point(i, count, shift));
+    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world);
+  }
+}
+
+DirectLight::Shares DirectLight::shares(const Vertex& vertex) {
+  if (strategy_ == Strategy::mis) return {0.5f, 0.5f, 0};
+  if (strategy_ == Strategy::light) return {0, 1, 0};
+  if (strategy_ != Strategy::product) return {1, 0, 0};
+  const LobeMixture* lobes = vertex.surface->material->gaussian_lobes(prepared_);
+  const bool proposed = lobes != nullptr && sky_ != nullptr && sky_->propose(*lobes, vertex.frame, products_, product_);
+  const float product = proposed ? kProductShare * lighting_.environment_share() : 0;
+  return {0.5f * (1 - product), 0.5f * (1 - product), product};
+}
+
 void DirectLight::draw(const Vertex& vertex, int directions, RandomStream& random) {
   local_.count = world_.count = 0;
-  int from_lights = strategy_ == Strategy::light ? directions : 0;
-  if (strategy_ == Strategy::mis) {
-    from_lights = directions / 2;
-    if (directions % 2 != 0 && random.next() < 0.5f) ++from_lights;
-  }
-  draw_from_surface(vertex, directions - from_lights, random);
-  draw_from_lights(vertex, from_lights, random);
+  if (directions == 0) return;
+  shares_ = shares(vertex);
+  const auto n = static_cast<float>(directions);
+  // Two cuts of the n directions, moved by one random number: each part is its share times n, rounded up or down.
+  const float move = shares_.surface * n == std::floor(shares_.surface * n) && shares_.product == 0 ? 0 : random.next();
+  const int first = static_cast<int>(shares_.product * n + move);
+  const int second = std::min(static_cast<int>((shares_.product + shares_.surface) * n + move), directions);
+  draw_from_product(vertex, first, random);
+  draw_from_surface(vertex, second - first, random);
+  draw_from_lights(vertex, directions - second, random);
   world_.pad();
 }
 
@@ -76,10 +102,13 @@ void DirectLight::weigh(const Vertex& vertex, int directions) {
   lamp_hits_.clear();
   if (world_.count == 0) return;
   lighting_.look_up(vertex.position, world_, environment_, light_pdf_, lamp_hits_);
-  if (strategy_ != Strategy::light) surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
+  if (shares_.surface > 0) surface_pdf(sampling_, vertex, local_, material_pdf_, surface_pdf_);
+  if (shares_.product > 0) eval_density(product_, world_, product_pdf_);
   for (int i = 0; i < world_.count; ++i) {
-    float density = strategy_ == Strategy::light ? light_pdf_.v[i] : surface_pdf_.v[i];
-    if (strategy_ == Strategy::mis) density = 0.5f * (density + light_pdf_.v[i]);
+    float density = 0;
+    if (shares_.surface > 0) density += shares_.surface * surface_pdf_.v[i];
+    if (shares_.lights > 0) density += shares_.lights * light_pdf_.v[i];
+    if (shares_.product > 0) density += shares_.product * product_pdf_.v[i];
     // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
     weight_[i] = density == 0.0f ? 0.0f : local_.z[i] / (static_cast<float>(directions) * density);
   }

@@ -6,6 +6,7 @@
 #include "render/direction_sampling.h"
 #include "render/lighting.h"
 #include "render/shadow_queue.h"
+#include "render/sky_proposals.h"
 #include "sphere/random.h"
 
 namespace velour {
@@ -19,11 +20,13 @@ struct Receiver {
 /// One a thread: owns the scratch batches of the vertex in work. Call prepare(), then the others for that vertex.
 class DirectLight {
  public:
-  DirectLight(const Scene& scene, const Lighting& lighting, Strategy strategy)
+  /// `sky` serves `product` and is null for the others.
+  DirectLight(const Scene& scene, const Lighting& lighting, Strategy strategy, const SkyProposals* sky)
       : working_space_(scene.rec709_to_working()),
         lighting_(lighting),
         strategy_(strategy),
-        sampling_(surface_sampling(strategy)) {}
+        sampling_(surface_sampling(strategy)),
+        sky_(sky) {}
 
   void prepare(const Vertex& vertex) { vertex.surface->material->prepare(vertex.wv, prepared_); }
 
@@ -31,7 +34,9 @@ class DirectLight {
   ///   throughput / n  sum_i f(wl_i) L(wl_i) cos(wl_i) / p(wl_i)
   /// with p the density of the strategy, and queues every term that is not zero. `mis`: half of the directions from the
   /// material, half from the lights, p = (p_material + p_light) / 2 for all, which is the balance heuristic [VG95]; an
-  /// odd one goes to either side by a coin.
+  /// odd one goes to either side by a coin. `product`: a third density beside these two, the products of the material's
+  /// lobes with those of the sky; the numbers of directions are rounded at random, their means are the shares of p. A
+  /// vertex without products is lit as by `mis`.
   ///
   /// Sharp lamps, which no drawn direction can meet, are added under every strategy: each once when there are at most
   /// kSharpLamps, else that many drawn in proportion to power.
@@ -52,10 +57,16 @@ class DirectLight {
   static constexpr int kSharpLamps = 4;
 
  private:
+  /// Shares of the three densities; they sum to 1.
+  struct Shares {
+    float surface, lights, product;
+  };
+  Shares shares(const Vertex& vertex);
   void draw(const Vertex& vertex, int directions, RandomStream& random);
   void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world);
   void draw_from_lights(const Vertex& vertex, int count, RandomStream& random);
   void draw_from_surface(const Vertex& vertex, int count, RandomStream& random);
+  void draw_from_product(const Vertex& vertex, int count, RandomStream& random);
   void draw_sharp(const Vertex& vertex, RandomStream& random);
   void weigh(const Vertex& vertex, int directions);
   void queue(const Vertex& vertex, const Receiver& receiver, int direction, Rgb light, float far, bool casts_shadow,
@@ -66,6 +77,7 @@ class DirectLight {
   const Lighting& lighting_;
   const Strategy strategy_;
   const SurfaceSampling sampling_;
+  const SkyProposals* sky_;
 
   struct Sharp {
     const Lamp* lamp;
@@ -78,8 +90,11 @@ class DirectLight {
   // with the directions of sharp lamps.
   DirectionBatch local_, world_;
   DirectionBatch towards_light_;
+  LobeProducts products_;
+  LobeMixture product_;  // world frame
+  Shares shares_{};      // of the vertex in work
   RgbBatch f_, environment_;
-  ScalarBatch material_pdf_, light_pdf_, surface_pdf_;
+  ScalarBatch material_pdf_, light_pdf_, surface_pdf_, product_pdf_;
   float weight_[DirectionBatch::kCapacity];  // cos / (n p)
   std::vector<LampHit> lamp_hits_;
   Sharp sharp_[kSharpLamps];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace velour {
 
@@ -13,6 +14,7 @@ enum class Strategy : int {  // values of velour.h
   srbf = 3,                  // the material's own sampler
   light = 4,                 // environment and lamps
   mis = 5,                   // half from the material, half from the lights, balance heuristic
+  product = 6,               // half from BRDF times sky, the rest as mis, balance heuristic
 };
 
 struct RenderOptions {
@@ -26,6 +28,8 @@ struct RenderOptions {
   double time_limit = 0;  // seconds of tracing and shading; 0: none; a render stops at a whole pass
   bool transparent = false;
   bool measure_ray_share = false;
+  /// Where `product` keeps its fits of skies; empty: nowhere. The picture does not depend on it.
+  std::string cache_folder;
   int camera_rays_per_pass = 0;  // 0: chosen; the picture does not depend on it
 
   static constexpr int kMaxSplit = 48;  // a batch of 64 directions also holds those of up to 4 sharp lamps

@@ -38,7 +38,7 @@ RenderOptions checked(const Scene& scene, RenderOptions options, const Film& fil
   require_range("split", options.split, 1, RenderOptions::kMaxSplit);
   require_range("bounces", options.bounces, 0, 1024);
   require_range("threads", options.threads, 0, 4096);
-  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::mis));
+  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::product));
   require_range("camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
   if (!(options.time_limit >= 0.0)) throw Error(Status::invalid_argument, "Render option time_limit is negative.");
   if (film.width() != options.width || film.height() != options.height) {
@@ -74,12 +74,13 @@ class Renderer {
         film_(film),
         progress_(progress),
         arena_(arena_concurrency(options_.threads)),
-        context_{scene, options_, Lighting(scene), {}},
+        context_{scene, options_, Lighting(scene), {}, nullptr},
         tiles_(tiles_of(options_)) {}
 
   RenderReport run() {
     film_.clear();
     prepare_tables();
+    prepare_sky();
     render_passes();
     if (options_.measure_ray_share) measure_ray_share();
     return report();
@@ -106,9 +107,22 @@ class Renderer {
     });
   }
 
+  void prepare_sky() {
+    const Environment& environment = context_.scene.environment();
+    if (options_.strategy != Strategy::product || environment.black()) return;
+    stage("sky", 0.0, 0.05, [&] {
+      arena_.execute([&] {
+        const SkyMixture sky = sky_mixture(environment, options_.cache_folder, progress_);
+        context_.sky = std::make_unique<const SkyProposals>(sky);
+        report_.sky = RenderReport::Sky{sky.size(), sky.relative_l2, sky.seconds, sky.cached};
+      });
+    });
+  }
+
   void render_passes() {
     const int total = context_.camera_rays();
-    stage("render", options_.strategy == Strategy::table ? 0.05 : 0.0, 1.0, [&] {
+    const bool prepared = options_.strategy == Strategy::table || options_.strategy == Strategy::product;
+    stage("render", prepared ? 0.05 : 0.0, 1.0, [&] {
       const auto start = Clock::now();
       while (done_ < total) {
         const int count = pass_size(options_, done_, total);

@@ -22,6 +22,13 @@ struct RenderReport {
   uint64_t nan_samples = 0;         // light directions left out because they were not finite
   uint64_t spp = 0;                 // light directions a pixel that were done
   uint64_t passes = 0;
+  /// The mixture that `product` took for the environment (SkyMixture).
+  struct Sky {
+    uint64_t lobes;
+    double relative_l2, seconds;
+    bool cached;
+  };
+  std::optional<Sky> sky;
   double noise = 0;  // estimated RMS error of a pixel's luminance / mean luminance; 0 while unknown
 };
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...native import Measurement, Model, Scene, images, library, render_job, table
 from ...native.errors import refuse
+from ..cache import user_cache_folder
 from . import later, numbers, output
 
 KEYS = (
@@ -23,6 +24,7 @@ KEYS = (
     "relmse",
     "nan_samples",
     "noise",
+    "sky",
 )
 # A y-up model stands upright in the z-up world: (x, y, z) -> (x, -z, y), as Blender's OBJ import does it.
 _UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
@@ -40,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--bounces", type=numbers.whole(0, 1024), metavar="B", help="0: direct light only")
     parser.add_argument(
-        "--strategy", choices=(*table.STRATEGIES, "ggx", "product"), default="mis", help="mis"
+        "--strategy", choices=(*table.STRATEGIES, "ggx"), default="mis", help="mis"
     )
     parser.add_argument(
         "--share", type=numbers.real(0, 1), default=0.5, metavar="S", help="of mis's BRDF samples"
@@ -53,6 +55,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
     parser.add_argument("--time-limit", type=numbers.real(0, 1e9), metavar="SECONDS")
+    parser.add_argument(
+        "--cache", metavar="FOLDER", help="keeps fits of worlds (product); ${XDG_CACHE_HOME:-~/.cache}/velour"
+    )
+    parser.add_argument(
+        "--no-cache", dest="cache", action="store_const", const="", help="neither reads nor keeps them"
+    )
     parser.add_argument("--reference", metavar="REF.exr", help="picture to compare with: rmse, relmse")
     later.add_later(parser, "--noise", "set --spp or --time-limit instead", "E")
     later.add_later(parser, "--texture-scale", "it is for materials with texture", "S")
@@ -157,7 +165,14 @@ def _read_reference(args: argparse.Namespace) -> np.ndarray | None:
 def _options(args: argparse.Namespace) -> dict:
     names = ("spp", "split", "bounces", "strategy", "threads", "seed", "time_limit")
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
-    return {"width": args.size[0], "height": args.size[1], "measure_ray_share": 1, **options}
+    cache_folder = user_cache_folder() if args.cache is None else args.cache
+    return {
+        "width": args.size[0],
+        "height": args.size[1],
+        "measure_ray_share": 1,
+        "cache_folder": cache_folder,
+        **options,
+    }
 
 
 def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
@@ -165,6 +180,8 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
         output.log.warning("%s", warning)
     if report["nan_samples"]:
         output.log.warning("%d samples were not finite and were left out.", report["nan_samples"])
+    if report["sky"]:
+        output.log.info("%(lobes)d lobes for the world, relative L2 %(relative_l2).3f.", report["sky"])
     level = (
         output.log.warning if args.time_limit and args.spp and report["spp"] < args.spp else output.log.info
     )
