@@ -9,7 +9,7 @@ from mathutils import Euler
 from support import inputs, scenes
 from support.blender import BlenderTest
 
-STRATEGIES = ("UNIFORM", "COSINE", "TABLE", "SRBF", "LIGHT", "MIS", "GGX", "MIS_GGX")
+STRATEGIES = ("UNIFORM", "COSINE", "TABLE", "SRBF", "LIGHT", "MIS", "GGX", "MIS_GGX", "PRODUCT")
 ALBEDO = (0.8, 0.5, 0.2)
 
 

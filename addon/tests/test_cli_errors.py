@@ -47,7 +47,6 @@ def test_wrong_usage_is_2(arguments):
     [
         (["fit", "x", "-o", "y", "--model", "parametric"], "parametric"),
         (["fit", "x", "-o", "y", "--for-scene", "s.json"], "--for-scene"),
-        ([*RENDER, "--strategy", "product"], "product"),
         ([*RENDER, "--texture-scale", "2"], "--texture-scale"),
         (["capture", "weave", "-o", "f"], "weave"),
         (["capture", "weave", "-o", "f", "--texels", "8"], "--texels"),

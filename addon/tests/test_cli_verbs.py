@@ -33,6 +33,7 @@ RENDER_KEYS = [
     "spp_mean",
     "block_noise",
     "blocks_unfinished",
+    "sky",
 ]
 ANGLES = ["5", "30", "60", "75", "85"]
 

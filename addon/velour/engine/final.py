@@ -5,6 +5,7 @@ import time
 
 import bpy
 
+from ..core.cache import user_cache_folder
 from ..export import ExportError, Notes, export_scene
 from ..export.camera import final_view
 from ..native import render_job
@@ -58,8 +59,18 @@ def _options(scene, view, is_preview):
         "sequence": settings.sequence.lower(),
         "noise": 0.0 if is_preview or not settings.use_noise_target else settings.noise_target,
         "time_limit": settings.time_limit,
+        "cache_folder": _cache_folder() if settings.use_cache else "",
         "transparent": int(scene.render.film_transparent),
     }
+
+
+def _cache_folder():
+    """An extension's own folder where there are extensions, else the user's cache."""
+    package = __package__.rpartition(".")[0]
+    try:
+        return bpy.utils.extension_path_user(package, path="cache")
+    except (AttributeError, ValueError):  # Blender before 4.2; installed as a plain add-on
+        return user_cache_folder()
 
 
 def _render_layer(engine, layer, job, view, spp):

@@ -16,7 +16,7 @@ LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
 SEQUENCES = ("random", "sobol")
-STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx")
+STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product")
 
 
 class Struct(ctypes.Structure):
@@ -133,6 +133,7 @@ class RenderOptions(Struct):
         ("sequence", c_int32),
         ("share", c_double),
         ("noise", c_double),
+        ("cache_folder", c_char_p),
     ]
 
 

@@ -31,6 +31,13 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
                 "Half from the fitted GGX lobe, half from the lights, weighted by the balance heuristic",
                 7,
             ),
+            (
+                "PRODUCT",
+                "Products",
+                "Half from the products of the material's lobes with lobes of the environment, the rest as "
+                "Lobes and Lights. The least noise a sample",
+                8,
+            ),
         ),
         default="MIS",
         override=_OVERRIDE,
@@ -120,6 +127,12 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
         description="The same seed gives the same picture, bit by bit. Animate it to vary the noise",
         default=0,
         min=0,
+        override=_OVERRIDE,
+    )
+    use_cache: BoolProperty(
+        name="Cache World",
+        description="Keep what Products fits to an environment image for the next render, in the user's cache",
+        default=True,
         override=_OVERRIDE,
     )
     time_limit: FloatProperty(

@@ -49,6 +49,8 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         value = row.row()
         value.active = settings.use_noise_target
         value.prop(settings, "noise_target", text="")
+        if settings.strategy == "PRODUCT":
+            layout.prop(settings, "use_cache")
         column = layout.column(align=True)
         column.prop(settings, "samples")
         column.prop(settings, "preview_samples", text="Preview")

@@ -284,8 +284,9 @@ enum {
   VLR_STRATEGY_SRBF = 3,
   VLR_STRATEGY_LIGHT = 4,
   VLR_STRATEGY_MIS = 5,
-  VLR_STRATEGY_GGX = 6,    /* a GGX lobe over a diffuse base, fitted to each material when the render starts */
-  VLR_STRATEGY_MIS_GGX = 7 /* half from that lobe, half from the lights */
+  VLR_STRATEGY_GGX = 6,     /* a GGX lobe over a diffuse base, fitted to each material when the render starts */
+  VLR_STRATEGY_MIS_GGX = 7, /* half from that lobe, half from the lights */
+  VLR_STRATEGY_PRODUCT = 8  /* lobes of the material times lobes of the environment, beside both */
 };
 
 enum { VLR_HEURISTIC_BALANCE = 0, VLR_HEURISTIC_POWER = 1 };
@@ -306,11 +307,13 @@ typedef struct vlr_render_options {
   int32_t heuristic;         /* of VLR_STRATEGY_MIS: VLR_HEURISTIC_* */
   int32_t sequence;          /* VLR_SEQUENCE_* */
   double share;              /* of VLR_STRATEGY_MIS: share of the directions that the lights draw; 0..1; 0.5 */
-  double noise;              /* relative error of each block of 16 x 16 pixels at which it gets no more samples; 0: off */
+  double noise; /* relative error of each block of 16 x 16 pixels at which it gets no more samples; 0: off */
+  const char* cache_folder; /* for fits of the environment (product), made when missing; NULL or "": none */
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);
 /* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise, spp_mean,
- * block_noise, blocks_unfinished (null without a noise target). */
+ * block_noise, blocks_unfinished (null without a noise target), sky (null, or of VLR_STRATEGY_PRODUCT: lobes,
+ * relative_l2, seconds, cached). */
 VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
 
 /* The film so far, row 0 at the bottom. Passes and channels: "Combined" 4 (RGBA, premultiplied), "Depth" 1,

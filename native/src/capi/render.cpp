@@ -25,7 +25,7 @@ void vlr_render_options_init(vlr_render_options* options) {
 namespace {
 
 RenderOptions converted(const vlr_render_options& given) {
-  if (given.strategy < VLR_STRATEGY_UNIFORM || given.strategy > VLR_STRATEGY_MIS_GGX) {
+  if (given.strategy < VLR_STRATEGY_UNIFORM || given.strategy > VLR_STRATEGY_PRODUCT) {
     throw Error(Status::invalid_argument,
                 "vlr_render_options.strategy is " + std::to_string(given.strategy) + ", not a VLR_STRATEGY value.");
   }
@@ -51,6 +51,7 @@ RenderOptions converted(const vlr_render_options& given) {
   options.sequence = static_cast<Sequence>(given.sequence);
   options.light_share = static_cast<float>(given.share);
   options.noise = given.noise;
+  if (given.cache_folder) options.cache_folder = given.cache_folder;
   return options;
 }
 

@@ -143,6 +143,14 @@ std::string scene_json(const Scene& scene) {
                {"warnings", info.warnings}});
 }
 
+namespace {
+
+Json sky_json(const RenderReport::Sky& sky) {
+  return {{"lobes", sky.lobes}, {"relative_l2", sky.relative_l2}, {"seconds", sky.seconds}, {"cached", sky.cached}};
+}
+
+}  // namespace
+
 std::string render_json(const RenderReport& report) {
   Json stages = Json::object();
   for (const RenderStage& stage : report.stages) stages[stage.name] = stage.seconds;
@@ -157,7 +165,8 @@ std::string render_json(const RenderReport& report) {
                {"noise", report.noise},
                {"spp_mean", report.spp_mean},
                {"block_noise", report.block_noise},
-               {"blocks_unfinished", report.blocks_unfinished ? Json(*report.blocks_unfinished) : Json(nullptr)}});
+               {"blocks_unfinished", report.blocks_unfinished ? Json(*report.blocks_unfinished) : Json(nullptr)},
+               {"sky", report.sky ? sky_json(*report.sky) : Json(nullptr)}});
 }
 
 }  // namespace velour::capi

@@ -20,6 +20,10 @@ class LobeSampledMaterial : public Material {
 
   Vec3 sample(const PreparedBrdf& point, const Vec2& u) const override { return sample_mixture(point.lobes, u); }
 
+  const LobeMixture* gaussian_lobes(const PreparedBrdf& point) const override {
+    return point.lobes.kernel == Kernel::gaussian ? &point.lobes : nullptr;
+  }
+
  protected:
   ScatteredLobes lobes_;
 };

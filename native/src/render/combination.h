@@ -1,38 +1,43 @@
-// How directions drawn from two densities are put together to one estimate.
+// How directions drawn from several densities are put together to one estimate.
 #pragma once
 
 #include "render/options.h"
 
 namespace velour {
 
-/// Multi-sample combination [VG95]: of n directions the share c_l is drawn from the lights with density p_l, the rest
-/// c_s = 1 - c_l from the surface with p_s. With q = c p a direction counts f / (n d):
-///   balance  d = q_l + q_s                    w = q / (q_l + q_s)
-///   power    d = (q_l^2 + q_s^2) / q_own      w = q^2 / (q_l^2 + q_s^2), exponent 2
-/// where "own" is the side that drew it. A share of 0 or 1 leaves one density alone.
+/// Who drew a direction, in the order in which a batch holds them.
+enum class Drawer : int { product = 0, surface = 1, lights = 2 };
+
+/// Multi-sample combination [VG95]: of n directions the share c_k comes from density p_k; the shares sum to 1. With
+/// q_k = c_k p_k a direction counts f / (n d):
+///   balance  d = sum_k q_k               weight q_own / sum_k q_k
+///   power    d = sum_k q_k^2 / q_own     weight q_own^2 / sum_k q_k^2, exponent 2
+/// where "own" is the density that drew it. A share of 0 leaves a density out.
 struct Combination {
-  float light_share;
-  Heuristic heuristic;
+  float share[3] = {0, 0, 0};  // by Drawer
+  Heuristic heuristic = Heuristic::balance;
 
-  /// d of a direction that the surface (or the lights) drew.
-  float surface_drew(float surface_pdf, float light_pdf) const {
-    return effective((1.0f - light_share) * surface_pdf, light_share * light_pdf);
-  }
-  float light_drew(float surface_pdf, float light_pdf) const {
-    return effective(light_share * light_pdf, (1.0f - light_share) * surface_pdf);
-  }
+  float of(Drawer drawer) const { return share[static_cast<int>(drawer)]; }
 
- private:
-  float effective(float own, float other) const {
-    // A quotient, not squares: densities of sharp lobes and suns squared leave float32.
-    if (heuristic == Heuristic::power && other > 0.0f) return own + other * (other / own);
-    return own + other;
+  /// d of a direction whose densities are `pdf`, by Drawer.
+  float effective(const float (&pdf)[3], Drawer own) const {
+    const float q[3] = {share[0] * pdf[0], share[1] * pdf[1], share[2] * pdf[2]};
+    if (heuristic == Heuristic::balance) return q[0] + q[1] + q[2];
+    const float q_own = q[static_cast<int>(own)];
+    float d = 0.0f;
+    // Quotients, not squares: densities of sharp lobes and suns squared leave float32. (A NaN density stays one.)
+    for (const float other : q) d += other == 0.0f ? 0.0f : other * (other / q_own);
+    return d;
   }
 };
 
-/// The combination of a strategy: mixed ones have both sides, the others one.
-inline Combination combination(const RenderOptions& options) {
-  return {is_mixed(options.strategy) ? options.light_share : (options.strategy == Strategy::light ? 1.0f : 0.0f), options.heuristic};
+/// The combination of a strategy at a vertex where `product_share` of the directions come from products (0 for all
+/// strategies but `product`): mixed strategies share the rest between surface and lights, the others have one density.
+inline Combination combination(const RenderOptions& options, float product_share) {
+  const float lights =
+      is_mixed(options.strategy) ? options.light_share : (options.strategy == Strategy::light ? 1.0f : 0.0f);
+  const float rest = 1.0f - product_share;
+  return {{product_share, rest * (1.0f - lights), rest * lights}, options.heuristic};
 }
 
 }  // namespace velour

@@ -8,6 +8,9 @@
 namespace velour {
 namespace {
 
+/// Of `product`, where the sky gives all light: lamps take from it.
+constexpr float kProductShare = 0.5f;
+
 bool zero(const Rgb& c) { return c.r == 0.0f && c.g == 0.0f && c.b == 0.0f; }
 bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 
@@ -20,32 +23,53 @@ void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& 
   world_.push(wl_world);
 }
 
-void DirectLight::draw_from_surface(const Vertex& vertex, PathNumbers::Side side, PathNumbers& numbers) {
+void DirectLight::draw_from_product(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers) {
   Vec2 u[DirectionBatch::kCapacity];
-  numbers.points(Purpose::surface, side.first, {u, static_cast<size_t>(side.count)});
-  for (int i = 0; i < side.count; ++i) {
+  numbers.points(Purpose::product, run.first, {u, static_cast<size_t>(run.count)});
+  for (int i = 0; i < run.count; ++i) {
+    const Vec3 wl_world = sample_mixture(product_, u[i]);
+    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world);
+  }
+}
+
+void DirectLight::draw_from_surface(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers) {
+  Vec2 u[DirectionBatch::kCapacity];
+  numbers.points(Purpose::surface, run.first, {u, static_cast<size_t>(run.count)});
+  for (int i = 0; i < run.count; ++i) {
     const Vec3 wl = sample_surface(sampling_, vertex, prepared_, u[i]);
     keep_if_lit(vertex, wl, vertex.frame.to_world(wl));
   }
 }
 
-void DirectLight::draw_from_lights(const Vertex& vertex, PathNumbers::Side side, PathNumbers& numbers) {
-  if (side.count == 0) return;
+void DirectLight::draw_from_lights(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers) {
+  if (run.count == 0) return;
   Vec2 u[DirectionBatch::kCapacity];
-  const std::span<Vec2> points(u, static_cast<size_t>(side.count));
-  numbers.points(Purpose::light, side.first, points);
+  const std::span<Vec2> points(u, static_cast<size_t>(run.count));
+  numbers.points(Purpose::light, run.first, points);
   lighting_.sample(vertex.position, points, towards_light_);
-  for (int i = 0; i < side.count; ++i) {
+  for (int i = 0; i < run.count; ++i) {
     const Vec3 wl_world = towards_light_.get(i);  // zero for a lamp's dark side: then not above the horizon
     keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world);
   }
 }
 
+float DirectLight::product_share(const Vertex& vertex) {
+  if (options_.strategy != Strategy::product || sky_ == nullptr) return 0.0f;
+  const LobeMixture* lobes = vertex.surface->material->gaussian_lobes(prepared_);
+  const bool proposed = lobes != nullptr && sky_->propose(*lobes, vertex.frame, products_, product_);
+  return proposed ? kProductShare * lighting_.environment_share() : 0.0f;
+}
+
 void DirectLight::draw(const Vertex& vertex, Draws draws, PathNumbers& numbers) {
-  const auto sides = numbers.deal(draws.count, draws.full, combination_.light_share);
-  draw_from_surface(vertex, sides.surface, numbers);
-  from_surface_ = world_.count;
-  draw_from_lights(vertex, sides.light, numbers);
+  combination_ = combination(options_, product_share(vertex));
+  const float product = combination_.of(Drawer::product), lights = combination_.of(Drawer::lights);
+  const auto [rest, from_product] = numbers.deal(numbers.all(draws.count, draws.full), product, Purpose::product_side);
+  const auto [from_surface, from_lights] = numbers.deal(rest, lights / (1.0f - product), Purpose::side);
+  draw_from_product(vertex, from_product, numbers);
+  end_[0] = world_.count;
+  draw_from_surface(vertex, from_surface, numbers);
+  end_[1] = world_.count;
+  draw_from_lights(vertex, from_lights, numbers);
   world_.pad();
 }
 
@@ -72,12 +96,14 @@ void DirectLight::draw_sharp(const Vertex& vertex, PathNumbers& numbers) {
 void DirectLight::weigh(const Vertex& vertex, int directions) {
   lamp_hits_.clear();
   if (world_.count == 0) return;
+  const bool has_product = combination_.of(Drawer::product) > 0.0f;
   lighting_.look_up(vertex.position, world_, environment_, light_pdf_, lamp_hits_);
   surface_pdf(sampling_, vertex, prepared_, local_, material_pdf_, surface_pdf_);
+  if (has_product) eval_density(product_, world_, product_pdf_);
   for (int i = 0; i < world_.count; ++i) {
-    const float surface = surface_pdf_.v[i], light = light_pdf_.v[i];
-    const float density =
-        i < from_surface_ ? combination_.surface_drew(surface, light) : combination_.light_drew(surface, light);
+    const Drawer own = i < end_[0] ? Drawer::product : (i < end_[1] ? Drawer::surface : Drawer::lights);
+    const float pdf[3] = {has_product ? product_pdf_.v[i] : 0.0f, surface_pdf_.v[i], light_pdf_.v[i]};
+    const float density = combination_.effective(pdf, own);
     // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
     weight_[i] = density == 0.0f ? 0.0f : local_.z[i] / (static_cast<float>(directions) * density);
   }

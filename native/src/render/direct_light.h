@@ -8,6 +8,7 @@
 #include "render/lighting.h"
 #include "render/path_numbers.h"
 #include "render/shadow_queue.h"
+#include "render/sky_proposals.h"
 
 namespace velour {
 
@@ -20,11 +21,13 @@ struct Receiver {
 /// One a thread: owns the scratch batches of the vertex in work. Call prepare(), then the others for that vertex.
 class DirectLight {
  public:
-  DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options)
+  /// `sky` serves `product` and is null for the others.
+  DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkyProposals* sky)
       : working_space_(scene.rec709_to_working()),
         lighting_(lighting),
-        combination_(combination(options)),
-        sampling_(surface_sampling(options.strategy)) {}
+        options_(options),
+        sampling_(surface_sampling(options.strategy)),
+        sky_(sky) {}
 
   void prepare(const Vertex& vertex) {
     vertex.surface->material->prepare(vertex.wv, prepared_);
@@ -34,7 +37,8 @@ class DirectLight {
   /// Draws `directions` light directions, estimates
   ///   throughput / n  sum_i f(wl_i) L(wl_i) cos(wl_i) / d(wl_i)
   /// with d the density of the strategy (combination.h), and queues every term that is not zero. `full`: directions of
-  /// a camera ray that is not the last of its pixel.
+  /// a camera ray that is not the last of its pixel. `product` has a third density beside surface and lights: the
+  /// products of the material's lobes with those of the sky; a vertex without products is lit as by `mis`.
   ///
   /// Sharp lamps, which no drawn direction can meet, are added under every strategy: each once when there are at most
   /// kSharpLamps, else that many drawn in proportion to power.
@@ -60,8 +64,11 @@ class DirectLight {
  private:
   void draw(const Vertex& vertex, Draws draws, PathNumbers& numbers);
   void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world);
-  void draw_from_lights(const Vertex& vertex, PathNumbers::Side side, PathNumbers& numbers);
-  void draw_from_surface(const Vertex& vertex, PathNumbers::Side side, PathNumbers& numbers);
+  void draw_from_product(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers);
+  void draw_from_surface(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers);
+  void draw_from_lights(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers);
+  /// Makes the products of the vertex, if it has any; the share of directions that they draw.
+  float product_share(const Vertex& vertex);
   void draw_sharp(const Vertex& vertex, PathNumbers& numbers);
   void weigh(const Vertex& vertex, int directions);
   void queue(const Vertex& vertex, const Receiver& receiver, int direction, Rgb light, float far, bool casts_shadow,
@@ -70,8 +77,9 @@ class DirectLight {
 
   const std::optional<Mat3>& working_space_;
   const Lighting& lighting_;
-  const Combination combination_;
+  const RenderOptions& options_;
   const SurfaceSampling sampling_;
+  const SkyProposals* sky_;
 
   struct Sharp {
     const Lamp* lamp;
@@ -83,10 +91,13 @@ class DirectLight {
   // Those drawn directions that can bring light: above both the shading horizon and the surface itself. local_ goes on
   // with the directions of sharp lamps.
   DirectionBatch local_, world_;
-  int from_surface_ = 0;  // how many of them, first, the surface drew
+  int end_[2] = {0, 0};  // where those drawn from products end, and those from the surface; the lights drew the rest
   DirectionBatch towards_light_;
+  LobeProducts products_;
+  LobeMixture product_;      // world frame
+  Combination combination_;  // of the vertex in work
   RgbBatch f_, environment_;
-  ScalarBatch material_pdf_, light_pdf_, surface_pdf_;
+  ScalarBatch material_pdf_, light_pdf_, surface_pdf_, product_pdf_;
   float weight_[DirectionBatch::kCapacity];  // cos / (n d)
   std::vector<LampHit> lamp_hits_;
   Sharp sharp_[kSharpLamps];

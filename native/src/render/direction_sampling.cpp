@@ -20,6 +20,7 @@ SurfaceSampling surface_sampling(Strategy strategy) {
     case Strategy::srbf:
     case Strategy::light:
     case Strategy::mis:
+    case Strategy::product:
       break;
   }
   return SurfaceSampling::material;

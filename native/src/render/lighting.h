@@ -21,6 +21,8 @@ class Lighting {
   explicit Lighting(const Scene& scene);
 
   const Environment& environment() const { return environment_; }
+  /// Of the power of all that a sampled direction can meet, the environment's; the probability of `sample` choosing it.
+  float environment_share() const { return environment_probability_; }
   /// True when there is anything that a sampled direction can meet.
   bool has_extended() const { return !lamps_.empty() || !environment_.black(); }
 

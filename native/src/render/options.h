@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace velour {
 
@@ -15,10 +16,11 @@ enum class Strategy : int {  // values of velour.h
   mis = 5,                   // some from the material, some from the lights: light_share, heuristic
   ggx = 6,                   // a GGX lobe over a diffuse base fitted to the material
   mis_ggx = 7,               // as mis, with that lobe in the material's place
+  product = 8,               // half from BRDF times sky, the rest as mis
 };
 
 /// Some directions from the surface side, some from the lights.
-constexpr bool is_mixed(Strategy strategy) { return strategy == Strategy::mis || strategy == Strategy::mis_ggx; }
+constexpr bool is_mixed(Strategy strategy) { return strategy == Strategy::mis || strategy >= Strategy::mis_ggx; }
 
 /// Weights of mixed strategies (combination.h).
 enum class Heuristic : int { balance = 0, power = 1 };  // values of velour.h
@@ -37,8 +39,10 @@ struct RenderOptions {
   double time_limit = 0;  // seconds of tracing and shading; 0: none; a render stops at a whole pass
   bool transparent = false;
   bool measure_ray_share = false;
+  /// Where `product` keeps its fits of skies; empty: nowhere. The picture does not depend on it.
+  std::string cache_folder;
   int camera_rays_per_pass = 0;  // 0: chosen; the picture does not depend on it
-  float light_share = 0.5f;      // of the directions of `mis`, how many the lights draw; 0..1
+  float light_share = 0.5f;  // of the directions of mixed strategies (less products), how many the lights draw; 0..1
   Heuristic heuristic = Heuristic::balance;
   Sequence sequence = Sequence::sobol;
   double noise = 0;  // relative error of a block of pixels at which it is done (noise_target.h); 0: all of spp

@@ -21,22 +21,21 @@ Vec2 PathNumbers::point(Purpose purpose) {
   return u;
 }
 
-PathNumbers::Sides PathNumbers::deal(int directions, int full, float light_share) {
-  const double share = static_cast<double>(light_share);
+PathNumbers::Deal PathNumbers::deal(Run run, float share, Purpose purpose) {
+  const double part = static_cast<double>(share);
   if (sequence_ == Sequence::random) {
-    const double exact = directions * share, whole = std::floor(exact);
+    const double exact = run.count * part, whole = std::floor(exact);
     const bool one_more = whole < exact && static_cast<double>(random_.next()) < exact - whole;
-    const int light = static_cast<int>(whole) + (one_more ? 1 : 0);
-    return {{0, directions - light}, {0, light}};
+    const int dealt = static_cast<int>(whole) + (one_more ? 1 : 0);
+    return {{0, run.count - dealt}, {0, dealt}};
   }
-  // Systematic sampling: direction number d goes to the lights where floor(d share + offset) takes a step. Whatever the
-  // share, a side's directions are successive points of its sequence.
-  const double offset = static_cast<double>(unit_float(key(Purpose::side)));
-  const uint32_t first = ray_ * static_cast<uint32_t>(full);
-  const auto lights_before = [&](double d) { return static_cast<uint32_t>(std::floor(d * share + offset)); };
-  const uint32_t before = lights_before(first), after = lights_before(static_cast<double>(first) + directions);
-  const int light = static_cast<int>(after - before);
-  return {{first - before, directions - light}, {before, light}};
+  // Systematic sampling: direction number d is dealt out where floor(d share + offset) takes a step. Whatever the
+  // share, the directions of each part are successive points of its sequence.
+  const double offset = static_cast<double>(unit_float(key(purpose)));
+  const auto dealt_before = [&](double d) { return static_cast<uint32_t>(std::floor(d * part + offset)); };
+  const uint32_t before = dealt_before(run.first), after = dealt_before(static_cast<double>(run.first) + run.count);
+  const int dealt = static_cast<int>(after - before);
+  return {{run.first - before, run.count - dealt}, {before, dealt}};
 }
 
 }  // namespace velour

@@ -10,7 +10,7 @@
 namespace velour {
 
 /// What numbers at a vertex are for. Each has its own sequence.
-enum class Purpose : uint64_t { camera, side, surface, light, sharp, onward };
+enum class Purpose : uint64_t { camera, side, surface, light, sharp, onward, product_side, product };
 
 /// `Sequence::sobol`: for every (seed, pixel, half, vertex of the path, purpose) one scrambled sequence. The camera
 /// rays of a pixel, and the directions of each, take successive points of it. Even and odd camera rays are the two
@@ -36,17 +36,19 @@ class PathNumbers {
   /// One point, where every camera ray uses one.
   Vec2 point(Purpose purpose);
 
-  /// A run of directions, and which of the points of its side they take.
-  struct Side {
+  /// Directions in a row, and which of the points of their purpose they take.
+  struct Run {
     uint32_t first;
     int count;
   };
-  struct Sides {
-    Side surface, light;
+  /// The directions of this camera ray; `full` is how many one has that is not the last of its pixel.
+  Run all(int directions, int full) const { return {ray_ * static_cast<uint32_t>(full), directions}; }
+
+  struct Deal {
+    Run rest, dealt;
   };
-  /// Deals `directions` out: on average `light_share` of them go to the lights, each time one of the two nearest whole
-  /// numbers. `full`: directions of a camera ray that is not the last of its pixel.
-  Sides deal(int directions, int full, float light_share);
+  /// Deals `share` of the directions out, on average: each time one of the two nearest whole numbers of them.
+  Deal deal(Run run, float share, Purpose purpose);
 
   /// How many camera rays of the half came before this one.
   uint32_t ray() const { return ray_; }

@@ -41,7 +41,7 @@ RenderOptions checked(const Scene& scene, RenderOptions options, const Film& fil
   require_range("split", options.split, 1, RenderOptions::kMaxSplit);
   require_range("bounces", options.bounces, 0, 1024);
   require_range("threads", options.threads, 0, 4096);
-  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::mis_ggx));
+  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::product));
   require_range("camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
   require_range("heuristic", static_cast<int>(options.heuristic), 0, static_cast<int>(Heuristic::power));
   require_range("sequence", static_cast<int>(options.sequence), 0, static_cast<int>(Sequence::sobol));
@@ -74,13 +74,14 @@ class Renderer {
         film_(film),
         progress_(progress),
         arena_(arena_concurrency(options_.threads)),
-        context_{scene, options_, Lighting(scene), {}, {}},
+        context_{scene, options_, Lighting(scene), {}, {}, nullptr},
         target_(options_.noise, blocks_of(options_.width, options_.height)) {}
 
   RenderReport run() {
     film_.clear();
     prepare_tables();
     fit_ggx_lobes();
+    prepare_sky();
     render_passes();
     if (options_.measure_ray_share) measure_ray_share();
     return report();
@@ -114,6 +115,18 @@ class Renderer {
       for (const SurfaceMaterial& m : materials) {
         context_.ggx.push_back(std::make_unique<const GgxSampler>(fit_ggx(*m.material, options_.threads, progress_)));
       }
+    });
+  }
+
+  void prepare_sky() {
+    const Environment& environment = context_.scene.environment();
+    if (options_.strategy != Strategy::product || environment.black()) return;
+    stage("sky", 0.0, kPreparation, [&] {
+      arena_.execute([&] {
+        const SkyMixture sky = sky_mixture(environment, options_.cache_folder, progress_);
+        context_.sky = std::make_unique<const SkyProposals>(sky);
+        report_.sky = RenderReport::Sky{sky.size(), sky.relative_l2, sky.seconds, sky.cached};
+      });
     });
   }
 

@@ -26,6 +26,13 @@ struct RenderReport {
   double spp_mean = 0;     // light directions, mean over the pixels
   double block_noise = 0;  // largest relative error of a block (noise_target.h); 0 while unknown
   std::optional<uint64_t> blocks_unfinished;  // above the target when the render ended; nothing without a target
+  /// The mixture that `product` took for the environment (SkyMixture).
+  struct Sky {
+    uint64_t lobes;
+    double relative_l2, seconds;
+    bool cached;
+  };
+  std::optional<Sky> sky;
 };
 
 }  // namespace velour

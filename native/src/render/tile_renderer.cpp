@@ -15,7 +15,7 @@ constexpr int kIndirectDirections = 2;
 }  // namespace
 
 TileRenderer::TileRenderer(const RenderContext& context)
-    : context_(context), light_(context.scene, context.lighting, context.options) {}
+    : context_(context), light_(context.scene, context.lighting, context.options, context.sky.get()) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
                           const Progress& progress) {

@@ -104,6 +104,8 @@ Vec3 Environment::sample(const Vec2& u) const {
   return world.get(0);
 }
 
+const EquirectangularImage* Environment::equirectangular() const { return image_.get(); }
+
 uint64_t Environment::bytes() const { return image_ ? image_->bytes() : 0; }
 
 }  // namespace velour

@@ -9,6 +9,8 @@
 
 namespace velour {
 
+class EquirectangularImage;
+
 /// Borrowed pixels, row 0 at the top (+z), 3 or 4 channels interleaved (the 4th is not used) or 1 (grey).
 struct EquirectangularPixels {
   int width = 0, height = 0, channels = 0;
@@ -44,6 +46,8 @@ class Environment {
   /// Over the sphere.
   float mean_luminance() const { return mean_luminance_; }
   uint64_t bytes() const;
+  /// Null for a constant.
+  const EquirectangularImage* equirectangular() const;
 
  private:
   struct Image;

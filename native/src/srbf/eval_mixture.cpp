@@ -7,32 +7,13 @@
 #include <hwy/highway.h>
 
 #include "srbf/simd_dispatch.h"
+#include "srbf/simd_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// 2^y for y <= 0, exactly 0 below 2^-126.5. Relative error 1.7e-7, of which 9.2e-8 is the polynomial: the minimax of
-/// degree 5 on [-1/2, 1/2] with p(0) = 1 (coefficients by our own exchange iteration).
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V exp2_nonpositive(D d, V y) {
-  const hn::RebindToSigned<D> di;
-  // Adding 1.5 2^23 rounds to an integer, held in the low bits; the further 127 makes it the exponent field of 2^n.
-  const V magic = hn::Set(d, 12582912.0f + 127.0f);
-  const V clamped = hn::Max(y, hn::Set(d, -127.0f));  // exponent field 0: the number 0
-  const V shifted = hn::Add(clamped, magic);
-  const V f = hn::Sub(clamped, hn::Sub(shifted, magic));
-  const V power = hn::BitCast(d, hn::ShiftLeft<23>(hn::BitCast(di, shifted)));
-  V p = hn::Set(d, 0x1.5bba14p-10f);
-  p = hn::MulAdd(p, f, hn::Set(d, 0x1.3cea88p-7f));
-  p = hn::MulAdd(p, f, hn::Set(d, 0x1.c6b752p-5f));
-  p = hn::MulAdd(p, f, hn::Set(d, 0x1.ebf9bcp-3f));
-  p = hn::MulAdd(p, f, hn::Set(d, 0x1.62e42ap-1f));
-  p = hn::MulAdd(p, f, hn::Set(d, 1.0f));
-  return hn::Mul(p, power);
-}
 
 /// One lobe's kernel as a function of |w - xi|^2 = 2 d; what depends on the bandwidth alone is computed once a batch.
 struct GaussianLobe {
@@ -95,6 +76,28 @@ HWY_INLINE void eval_lobes(const LobeMixture& m, const DirectionBatch& w, RgbBat
   for (; at < w.count; at += static_cast<int>(hn::Lanes(narrow))) eval_vector<Lobe>(narrow, m, w, at, value, pdf);
 }
 
+template <class Lobe>
+void eval_density_of(const LobeMixture& m, const DirectionBatch& w, ScalarBatch& pdf) {
+  const hn::CappedTag<float, 8> d;
+  for (int at = 0; at < w.count; at += static_cast<int>(hn::Lanes(d))) {
+    const auto wx = hn::Load(d, w.x + at), wy = hn::Load(d, w.y + at), wz = hn::Load(d, w.z + at);
+    auto density = hn::Mul(hn::Set(d, m.cosine_share / kPi), hn::Max(wz, hn::Zero(d)));
+    for (int j = 0; j < m.count; ++j) {
+      const auto dx = hn::Sub(wx, hn::Set(d, m.x[j]));
+      const auto dy = hn::Sub(wy, hn::Set(d, m.y[j]));
+      const auto dz = hn::Sub(wz, hn::Set(d, m.z[j]));
+      const auto distance_sq = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+      density = hn::MulAdd(hn::Set(d, m.density[j]), Lobe(m.bandwidth[j])(d, distance_sq), density);
+    }
+    hn::Store(density, d, pdf.v + at);
+  }
+}
+
+void eval_density_simd(const LobeMixture& m, const DirectionBatch& w, ScalarBatch& pdf) {
+  if (m.kernel == Kernel::gaussian) return eval_density_of<GaussianLobe>(m, w, pdf);
+  return eval_density_of<AbelPoissonLobe>(m, w, pdf);
+}
+
 void eval_mixture_simd(const LobeMixture& m, const DirectionBatch& w, RgbBatch& value, ScalarBatch& pdf) {
   if (m.kernel == Kernel::gaussian) return eval_lobes<GaussianLobe>(m, w, value, pdf);
   return eval_lobes<AbelPoissonLobe>(m, w, value, pdf);
@@ -108,9 +111,14 @@ HWY_AFTER_NAMESPACE();
 namespace velour {
 
 HWY_EXPORT(eval_mixture_simd);
+HWY_EXPORT(eval_density_simd);
 
 void eval_mixture(const LobeMixture& mixture, const DirectionBatch& w, RgbBatch& value, ScalarBatch& pdf) {
   VELOUR_SIMD_DISPATCH(eval_mixture_simd)(mixture, w, value, pdf);
+}
+
+void eval_density(const LobeMixture& mixture, const DirectionBatch& w, ScalarBatch& pdf) {
+  VELOUR_SIMD_DISPATCH(eval_density_simd)(mixture, w, pdf);
 }
 
 }  // namespace velour

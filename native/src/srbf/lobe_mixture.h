@@ -63,6 +63,9 @@ struct alignas(64) LobeMixture {
 /// error of a kernel: 3e-7 plus 2e-7 times its exponent, for float directions; exactly 0 below e^-88.
 void eval_mixture(const LobeMixture& mixture, const DirectionBatch& w, RgbBatch& value, ScalarBatch& pdf);
 
+/// The density alone.
+void eval_density(const LobeMixture& mixture, const DirectionBatch& w, ScalarBatch& pdf);
+
 /// Draws a direction; `u.x` picks component and zenith about the lobe, `u.y` the azimuth. May lie below the horizon.
 Vec3 sample_mixture(const LobeMixture& mixture, const Vec2& u);
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...native import Measurement, Model, Scene, images, library, render_job, table
 from ...native.errors import refuse
+from ..cache import user_cache_folder
 from . import later, numbers, output
 
 KEYS = (
@@ -26,6 +27,7 @@ KEYS = (
     "spp_mean",
     "block_noise",
     "blocks_unfinished",
+    "sky",
 )
 _MOST_SPP = 1 << 16  # of a render that a noise target ends
 # A y-up model stands upright in the z-up world: (x, y, z) -> (x, -z, y), as Blender's OBJ import does it.
@@ -44,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--bounces", type=numbers.whole(0, 1024), metavar="B", help="0: direct light only")
     parser.add_argument(
-        "--strategy", choices=(*table.STRATEGIES, "product"), default="mis", help="mis"
+        "--strategy", choices=table.STRATEGIES, default="mis", help="mis"
     )
     parser.add_argument(
         "--share", type=numbers.real(0, 1), metavar="S", help="of mis's directions drawn from the lights (0.5)"
@@ -59,6 +61,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--time-limit", type=numbers.real(0, 1e9), metavar="SECONDS")
     parser.add_argument(
         "--noise", type=numbers.real(1e-6, 1e6), metavar="E", help="relative error at which a block of pixels is done"
+    )
+    parser.add_argument(
+        "--cache", metavar="FOLDER", help="keeps fits of worlds (product); ${XDG_CACHE_HOME:-~/.cache}/velour"
+    )
+    parser.add_argument(
+        "--no-cache", dest="cache", action="store_const", const="", help="neither reads nor keeps them"
     )
     parser.add_argument("--reference", metavar="REF.exr", help="picture to compare with: rmse, relmse")
     later.add_later(parser, "--texture-scale", "it is for materials with texture", "S")
@@ -162,7 +170,14 @@ def _options(args: argparse.Namespace) -> dict:
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
     if args.noise is not None:
         options.setdefault("spp", _MOST_SPP)
-    return {"width": args.size[0], "height": args.size[1], "measure_ray_share": 1, **options}
+    cache_folder = user_cache_folder() if args.cache is None else args.cache
+    return {
+        "width": args.size[0],
+        "height": args.size[1],
+        "measure_ray_share": 1,
+        "cache_folder": cache_folder,
+        **options,
+    }
 
 
 def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
@@ -175,6 +190,8 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
             "%d blocks of pixels are above the noise target of %g; the worst has %.3g.",
             report["blocks_unfinished"], args.noise, report["block_noise"],
         )  # fmt: skip
+    if report["sky"]:
+        output.log.info("%(lobes)d lobes for the world, relative L2 %(relative_l2).3f.", report["sky"])
     level = (
         output.log.warning if args.time_limit and args.spp and report["spp"] < args.spp else output.log.info
     )

@@ -117,16 +117,16 @@ TEST(PathNumbers, DealsTheShareOnAverageAndWithoutGaps) {
           uint32_t next_surface = 0, next_light = 0;
           for (uint32_t ray = 0; ray < 16; ray += 2) {
             PathNumbers numbers(sequence, 1, pixel, ray);
-            const auto sides = numbers.deal(split, split, share);
-            EXPECT_EQ(sides.surface.count + sides.light.count, split);
-            EXPECT_LE(std::abs(static_cast<float>(sides.light.count) - static_cast<float>(split) * share), 1.0f);
+            const auto [surface, light] = numbers.deal(numbers.all(split, split), share, Purpose::side);
+            EXPECT_EQ(surface.count + light.count, split);
+            EXPECT_LE(std::abs(static_cast<float>(light.count) - static_cast<float>(split) * share), 1.0f);
             if (sequence == Sequence::sobol) {
-              EXPECT_EQ(sides.surface.first, next_surface);
-              EXPECT_EQ(sides.light.first, next_light);
-              next_surface += static_cast<uint32_t>(sides.surface.count);
-              next_light += static_cast<uint32_t>(sides.light.count);
+              EXPECT_EQ(surface.first, next_surface);
+              EXPECT_EQ(light.first, next_light);
+              next_surface += static_cast<uint32_t>(surface.count);
+              next_light += static_cast<uint32_t>(light.count);
             }
-            lights += sides.light.count;
+            lights += light.count;
             directions += split;
           }
         }

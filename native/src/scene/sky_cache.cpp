@@ -1,0 +1,105 @@
+#include "scene/sky_cache.h"
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "file/file.h"
+#include "image/exr_tensors.h"
+#include "scene/equirectangular.h"
+
+namespace velour {
+namespace {
+
+constexpr char kKind[] = "sky";
+constexpr char kVersion[] = "1";  // of the fit too: another method must not read the mixtures of this one
+constexpr uint64_t kMostBytes = uint64_t{1} << 24;
+constexpr size_t kMostLobes = 4096;
+
+template <typename T>
+void append(std::vector<uint8_t>& bytes, const T* first, size_t count) {
+  const size_t at = bytes.size();
+  bytes.resize(at + count * sizeof(T));
+  std::memcpy(bytes.data() + at, first, count * sizeof(T));
+}
+
+const Tensor* part(const TensorFile& file, const char* name, size_t rows, size_t columns) {
+  const auto found = file.tensors.find(name);
+  return found != file.tensors.end() && found->second.data.size() == rows * columns ? &found->second : nullptr;
+}
+
+bool sound(const SkyMixture& sky) {
+  for (size_t k = 0; k < sky.size(); ++k) {
+    const Rgb& c = sky.coefficient[k];
+    if (!(std::abs(glm::length(sky.center[k]) - 1) < 1e-3f)) return false;
+    if (!(sky.bandwidth[k] >= 0 && sky.bandwidth[k] < 1e9f)) return false;
+    if (!(c.r >= 0 && c.g >= 0 && c.b >= 0 && std::isfinite(c.r + c.g + c.b))) return false;
+  }
+  return std::isfinite(sky.relative_l2) && sky.relative_l2 >= 0;
+}
+
+std::optional<SkyMixture> mixture_of(const TensorFile& file) {
+  const auto kind = file.attributes.find("velour.kind"), version = file.attributes.find("velour.format_version");
+  if (kind == file.attributes.end() || kind->second != kKind) return std::nullopt;
+  if (version == file.attributes.end() || version->second != kVersion) return std::nullopt;
+  const auto widths = file.tensors.find("lobes.bandwidth");
+  if (widths == file.tensors.end()) return std::nullopt;
+  const size_t n = widths->second.data.size();
+  const Tensor* centers = part(file, "lobes.center", n, 3);
+  const Tensor* colors = part(file, "lobes.coefficient", n, 3);
+  const Tensor* error = part(file, "fit.relative_l2", 1, 1);
+  if (n == 0 || n > kMostLobes || centers == nullptr || colors == nullptr || error == nullptr) return std::nullopt;
+  SkyMixture sky;
+  sky.bandwidth = widths->second.data;
+  for (size_t k = 0; k < n; ++k) {
+    const float *c = &centers->data[3 * k], *v = &colors->data[3 * k];
+    sky.center.emplace_back(c[0], c[1], c[2]);
+    sky.coefficient.emplace_back(v[0], v[1], v[2]);
+  }
+  sky.relative_l2 = error->data[0];
+  sky.cached = true;
+  return sound(sky) ? std::optional(sky) : std::nullopt;
+}
+
+}  // namespace
+
+std::string sky_cache_path(const std::string& folder, const EquirectangularImage& image, const SkyFitOptions& options) {
+  std::vector<uint8_t> key;
+  const int32_t numbers[] = {image.width(), image.height(), options.max_lobes};
+  append(key, numbers, 3);
+  append(key, &options.tolerance, 1);
+  for (int y = 0; y < image.height(); ++y) append(key, image.row(y) + 1, static_cast<size_t>(image.width()));
+  return (std::filesystem::path(folder) / ("sky-" + sha256_hex(key) + ".exr")).string();
+}
+
+std::optional<SkyMixture> read_sky(const std::string& path) {
+  try {
+    return mixture_of(decode_tensors(read_file(path, kMostBytes), path));
+  } catch (const Error&) {  // missing, truncated, another format: all the same to a cache
+    return std::nullopt;
+  }
+}
+
+bool write_sky(const std::string& path, const SkyMixture& sky) {
+  TensorFile file;
+  file.attributes.emplace("velour.kind", kKind);
+  file.attributes.emplace("velour.format_version", kVersion);
+  Tensor centers{{sky.size(), 3}, {}}, colors{{sky.size(), 3}, {}};
+  for (const Vec3& c : sky.center) centers.data.insert(centers.data.end(), {c.x, c.y, c.z});
+  for (const Rgb& c : sky.coefficient) colors.data.insert(colors.data.end(), {c.r, c.g, c.b});
+  file.tensors["lobes.center"] = std::move(centers);
+  file.tensors["lobes.coefficient"] = std::move(colors);
+  file.tensors["lobes.bandwidth"] = {{sky.size()}, sky.bandwidth};
+  file.tensors["fit.relative_l2"] = {{1}, {sky.relative_l2}};
+  try {
+    std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+    write_file(path, encode_tensors(file));
+  } catch (const Error&) {
+    return false;
+  } catch (const std::filesystem::filesystem_error&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace velour

@@ -1,0 +1,142 @@
+// Highway compiles this file once for each instruction set.
+#include "srbf/lobe_products.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "srbf/lobe_products.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "srbf/simd_dispatch.h"
+#include "srbf/simd_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace velour {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Share of a lobe above a horizon whose normal it meets under cosine `c`: the normal distribution of c sqrt(bandwidth)
+/// (a narrow lobe is a Gaussian of that deviation), as the logistic function nearest to it.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V share_above(D d, V c, V bandwidth) {
+  const V x = hn::Mul(hn::Mul(hn::Set(d, 1.702f), c), hn::Sqrt(bandwidth));
+  const V e = exp_nonpositive(d, hn::Neg(hn::Abs(x)));
+  const V top = hn::IfThenElse(hn::Lt(x, hn::Zero(d)), e, hn::Set(d, 1.0f));
+  return hn::Div(top, hn::Add(hn::Set(d, 1.0f), e));
+}
+
+void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, const int32_t* chosen, int count,
+                   const Vec3* normal, LobeProducts& out) {
+  const hn::CappedTag<float, LobeProducts::kLanes> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  using V = hn::Vec<decltype(d)>;
+  const V ax = hn::Set(d, a.center.x), ay = hn::Set(d, a.center.y), az = hn::Set(d, a.center.z);
+  const V la = hn::Set(d, a.bandwidth), tiny = hn::Set(d, 1e-4f);
+  for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
+    const auto index = hn::LoadU(di, chosen + at);
+    const auto gather = [&](const std::vector<float>& from) { return hn::GatherIndex(d, from.data(), index); };
+    const V bx = gather(others.x), by = gather(others.y), bz = gather(others.z), lb = gather(others.bandwidth);
+    const V dx = hn::Sub(ax, bx), dy = hn::Sub(ay, by), dz = hn::Sub(az, bz);
+    const V distance_sq = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    // R^2 = (la - lb)^2 + la lb |a + b|^2 and R - la - lb = -la lb |a - b|^2 / (R + la + lb): no cancellation.
+    const V product = hn::Mul(la, lb), difference = hn::Sub(la, lb);
+    const V sum_sq = hn::Max(hn::Sub(hn::Set(d, 4.0f), distance_sq), hn::Zero(d));
+    const V r = hn::Max(hn::Sqrt(hn::MulAdd(product, sum_sq, hn::Mul(difference, difference))), tiny);
+    const V exponent = hn::Div(hn::Mul(product, distance_sq), hn::Add(r, hn::Add(la, lb)));
+    const V inverse = hn::Div(hn::Set(d, 1.0f), r);
+    const V cx = hn::Mul(inverse, hn::MulAdd(la, ax, hn::Mul(lb, bx)));
+    const V cy = hn::Mul(inverse, hn::MulAdd(la, ay, hn::Mul(lb, by)));
+    const V cz = hn::Mul(inverse, hn::MulAdd(la, az, hn::Mul(lb, bz)));
+    const V opposite = exp_nonpositive(d, hn::Mul(hn::Set(d, -2.0f), r));
+    const V integral = hn::Mul(hn::Set(d, 2 * kPi), hn::Mul(inverse, hn::Sub(hn::Set(d, 1.0f), opposite)));
+    V mass = hn::Mul(hn::Mul(hn::Set(d, a.amplitude), gather(others.amplitude)),
+                     hn::Mul(integral, exp_nonpositive(d, hn::Neg(exponent))));
+    if (normal != nullptr) {
+      const V c = hn::MulAdd(hn::Set(d, normal->x), cx,
+                             hn::MulAdd(hn::Set(d, normal->y), cy, hn::Mul(hn::Set(d, normal->z), cz)));
+      mass = hn::Mul(mass, share_above(d, c, r));
+    }
+    const int to = out.count + at;
+    hn::StoreU(mass, d, out.mass + to);
+    hn::StoreU(cx, d, out.x + to);
+    hn::StoreU(cy, d, out.y + to);
+    hn::StoreU(cz, d, out.z + to);
+    hn::StoreU(r, d, out.bandwidth + to);
+  }
+  out.count += count;
+}
+
+/// Indices of the products of at least `least`, in order; returns how many.
+int select_simd(const LobeProducts& products, float least, int32_t* chosen) {
+  const hn::CappedTag<float, LobeProducts::kLanes> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const auto bound = hn::Set(d, least);
+  int count = 0;
+  for (int at = 0; at < products.count; at += static_cast<int>(hn::Lanes(d))) {
+    const auto kept = hn::RebindMask(di, hn::Ge(hn::LoadU(d, products.mass + at), bound));
+    count += static_cast<int>(hn::CompressStore(hn::Iota(di, at), kept, di, chosen + count));
+  }
+  return count;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace velour
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace velour {
+
+HWY_EXPORT(multiply_simd);
+HWY_EXPORT(select_simd);
+
+void GaussianLobes::add(const GaussianLobe& lobe) {
+  x.push_back(lobe.center.x);
+  y.push_back(lobe.center.y);
+  z.push_back(lobe.center.z);
+  bandwidth.push_back(lobe.bandwidth);
+  amplitude.push_back(lobe.amplitude);
+}
+
+void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, const int32_t* chosen, int count,
+                    const Vec3* normal, LobeProducts& products) {
+  assert(count % LobeProducts::kLanes == 0 && products.count + count <= LobeProducts::kCapacity);
+  VELOUR_SIMD_DISPATCH(multiply_simd)(lobe, others, chosen, count, normal, products);
+}
+
+bool keep_products(const LobeProducts& products, float least, LobeMixture& mixture) {
+  float total = 0;
+  for (int i = 0; i < products.count; ++i) total += products.mass[i];
+  if (!(total > 0) || !std::isfinite(total)) return false;
+  int32_t chosen[LobeProducts::kCapacity + LobeProducts::kLanes];  // a compressed store writes whole vectors
+  const float bound = std::max(least, 1.0f / LobeMixture::kCapacity) * total;
+  int count = VELOUR_SIMD_DISPATCH(select_simd)(products, bound, chosen);
+  if (count == 0) {  // evenly spread over more products than fit: the best one stands for all
+    chosen[0] = static_cast<int32_t>(std::max_element(products.mass, products.mass + products.count) - products.mass);
+    count = 1;
+  }
+  mixture.clear(Kernel::gaussian);
+  mixture.cosine_share = 0;
+  mixture.count = count;
+  float sum = 0;
+  for (int k = 0; k < count; ++k) mixture.cdf[k] = sum += products.mass[chosen[k]];
+  for (int k = 0; k < count; ++k) {
+    const auto i = chosen[k];
+    const float r = products.bandwidth[i];
+    mixture.x[k] = products.x[i];
+    mixture.y[k] = products.y[i];
+    mixture.z[k] = products.z[i];
+    mixture.bandwidth[k] = r;
+    // 1 / integral of the kernel. Where e^-2R is below a float's rounding it need not be asked for.
+    const float inverse_integral = r > 9 ? r / (2 * kPi) : r / (-2 * kPi * std::expm1(-2 * r));
+    mixture.density[k] = products.mass[i] / sum * inverse_integral;
+    mixture.cdf[k] /= sum;
+  }
+  return true;
+}
+
+}  // namespace velour
+#endif

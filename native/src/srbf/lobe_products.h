@@ -1,0 +1,50 @@
+// Products of Gaussian lobes: one lobe with many, their masses first, the best of them as a sampling density.
+//
+// The pointwise product of two Gaussians is a Gaussian (method 2.2, [T06]; kernel.h gaussian_product is the scalar
+// reference in double). So BRDF lobes times light lobes are lobes again, which are drawn from in closed form [T08].
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "srbf/lobe_mixture.h"
+
+namespace velour {
+
+/// One Gaussian: amplitude exp(-bandwidth |w - center|^2 / 2).
+struct GaussianLobe {
+  Vec3 center;  // unit
+  float bandwidth;
+  float amplitude;
+};
+
+/// Many Gaussians, structure of arrays, for the SIMD kernels to gather from.
+struct GaussianLobes {
+  std::vector<float> x, y, z, bandwidth, amplitude;
+  size_t size() const { return x.size(); }
+  void add(const GaussianLobe& lobe);
+};
+
+/// The products of the lobes of a shading point, before the best are chosen. Scratch memory of a thread.
+struct alignas(64) LobeProducts {
+  static constexpr int kLanes = 16;
+  static constexpr int kCapacity = 768;
+  int count = 0;  // a multiple of kLanes; what fills up has mass 0
+  /// Integral of the product over the sphere, times an estimate of its share above the horizon.
+  float mass[kCapacity];
+  float x[kCapacity], y[kCapacity], z[kCapacity];  // centres, unit
+  float bandwidth[kCapacity];
+};
+
+/// Appends the products of `lobe` with those of `others` that `chosen` lists; `count` of them, a multiple of
+/// LobeProducts::kLanes (an index may be one past the last lobe: an empty product). With a `normal`, masses count what
+/// lies above its horizon, a logistic estimate: it steers the choice and normalises nothing. Callers keep to kCapacity.
+void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, const int32_t* chosen, int count,
+                    const Vec3* normal, LobeProducts& products);
+
+/// Makes `mixture` the density over all products that hold at least `least` of the whole mass and of 1 /
+/// LobeMixture::kCapacity of it, each in proportion to its mass. False when no product has mass: `mixture` then is
+/// not to be used.
+bool keep_products(const LobeProducts& products, float least, LobeMixture& mixture);
+
+}  // namespace velour
