@@ -24,7 +24,7 @@ THREADS = 2
 MATERIAL = "blue-metallic-paint"
 TOLERANCE = 0.02
 LOBES = (2, 4, 8, 16)
-STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis")
+STRATEGIES = ("uniform", "cosine", "table", "srbf", "ggx", "light", "mis", "mis-ggx")
 
 
 def main() -> int:

@@ -16,6 +16,8 @@ COLORS = {
     "srbf": "#d55e00",
     "light": "#e69f00",
     "mis": "#009e73",
+    "ggx": "#f0e442",
+    "mis-ggx": "#0072b2",
 }
 
 

@@ -148,7 +148,7 @@ def compare_job(measurement: Measurement, model: Model) -> Job:
 
 
 def compare_ggx_job(measurement: Measurement) -> Job:
-    """The same errors for the GGX lobe over a diffuse base that suits the measurement best, and its parameters."""
+    """The same errors of the GGX lobe over a diffuse base that suits it best, and the lobe."""
     return Job._create("vlr_compare_ggx_create_job", measurement.pointer)
 
 

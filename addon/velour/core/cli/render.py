@@ -45,9 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--split", type=numbers.whole(1, 1024), metavar="N", help="of them share a camera ray (8)"
     )
     parser.add_argument("--bounces", type=numbers.whole(0, 1024), metavar="B", help="0: direct light only")
-    parser.add_argument(
-        "--strategy", choices=table.STRATEGIES, default="mis", help="mis"
-    )
+    parser.add_argument("--strategy", choices=table.STRATEGIES, default="mis", help="mis")
     parser.add_argument(
         "--share", type=numbers.real(0, 1), metavar="S", help="of mis's directions drawn from the lights (0.5)"
     )
