@@ -77,8 +77,9 @@ class Strategies : public ::testing::TestWithParam<int> {};
 TEST_P(Strategies, AgreeWithinTheirErrors) {
   const Scene scene = gallery();
   const Regions reference = measure(scene, Strategy::mis, GetParam());
-  const double level = test::sidak_level(0.01, 5 * kRegions);
-  for (Strategy s : {Strategy::uniform, Strategy::cosine, Strategy::table, Strategy::srbf, Strategy::light}) {
+  const double level = test::sidak_level(0.01, 6 * kRegions);
+  for (Strategy s :
+       {Strategy::uniform, Strategy::cosine, Strategy::table, Strategy::srbf, Strategy::light, Strategy::product}) {
     EXPECT_GT(least_p(measure(scene, s, GetParam()), reference), level) << static_cast<int>(s);
   }
 }
