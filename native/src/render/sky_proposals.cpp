@@ -13,9 +13,9 @@ namespace {
 
 /// A clipped cosine is about 1.17 exp(2.13 (t - 1)): the Gaussian of the same first two moments.
 constexpr float kCosineBandwidth = 2.13f, kCosineAmplitude = 1.17f;
-constexpr float kLeastBrdfShare = 0.005f;  // of a BRDF lobe's probability; the other strategies have the rest
-constexpr float kLeastProduct = 0.003f;    // of a product's mass
-constexpr float kListedMass = 0.98f;       // of a list
+constexpr float kLeastBrdfShare = 0.01f;  // of a BRDF lobe's probability; the other strategies have the rest
+constexpr float kLeastProduct = 0.004f;   // of a product's mass
+constexpr float kListedMass = 0.98f;      // of a list
 
 int level_of(float bandwidth, int levels) {
   const int level = static_cast<int>(std::lround(0.5f * std::log2(std::max(bandwidth, 1.0f))));
@@ -24,10 +24,16 @@ int level_of(float bandwidth, int levels) {
 
 }  // namespace
 
-SkyProposals::SkyProposals(const SkyMixture& sky) {
-  for (size_t k = 0; k < std::min(sky.size(), kMostSky); ++k) {
+void SkyProposals::add(const SkyMixture& sky, size_t most) {
+  for (size_t k = 0; k < std::min(sky.size(), most); ++k) {
     sky_.add({sky.center[k], sky.bandwidth[k], luminance(sky.coefficient[k])});
   }
+}
+
+SkyProposals::SkyProposals(const SkyMixture& fine, const SkyMixture& coarse) {
+  add(coarse, kListed);
+  coarse_ = static_cast<int>(sky_.size());
+  add(fine, kMostFine);
   sky_.add({{0, 0, 1}, 1, 0});
   constexpr size_t kCells = static_cast<size_t>(kSide) * kSide;
   lists_.assign(kCells * kLevels * kListed, static_cast<int32_t>(sky_.size()) - 1);
@@ -43,14 +49,17 @@ void SkyProposals::fill_list(int cell, int level, LobeProducts& scratch) {
   constexpr float kCellVariance = 4 / (3.0f * kSide * kSide);
   const float bandwidth = 1 / (std::exp2(-2.0f * static_cast<float>(level)) + kCellVariance);
   int32_t all[LobeProducts::kCapacity];
-  const int count = static_cast<int>(sky_.size()), padded = (count + LobeProducts::kLanes - 1) / LobeProducts::kLanes;
-  for (int i = 0; i < padded * LobeProducts::kLanes; ++i) all[i] = std::min(i, count - 1);
+  const int empty = static_cast<int>(sky_.size()) - 1;
+  const int first = level < kFirstFine ? 0 : coarse_, count = (level < kFirstFine ? coarse_ : empty) - first;
+  const int padded = (count + LobeProducts::kLanes - 1) / LobeProducts::kLanes;
+  for (int i = 0; i < padded * LobeProducts::kLanes; ++i) all[i] = i < count ? first + i : empty;
   scratch.count = 0;
   multiply_lobes({octahedral_cell_center(cell, kSide), bandwidth, 1}, sky_, all, padded * LobeProducts::kLanes, nullptr,
                  scratch);
   const auto heavier = [&](int32_t a, int32_t b) {
     return scratch.mass[a] != scratch.mass[b] ? scratch.mass[a] > scratch.mass[b] : a < b;
   };
+  std::iota(all, all + count, 0);  // places in the scratch from here on
   const int most = std::min(kListed, count);
   std::partial_sort(all, all + most, all + count, heavier);
   const float total = std::accumulate(scratch.mass, scratch.mass + count, 0.0f);
@@ -59,7 +68,7 @@ void SkyProposals::fill_list(int cell, int level, LobeProducts& scratch) {
   int listed = 0;
   while (listed < most && covered < kListedMass * total) {
     covered += scratch.mass[all[listed]];
-    lists_[at * kListed + static_cast<size_t>(listed)] = all[listed];
+    lists_[at * kListed + static_cast<size_t>(listed)] = first + all[listed];
     ++listed;
   }
   listed_[at] = static_cast<uint8_t>((listed + LobeProducts::kLanes - 1) / LobeProducts::kLanes * LobeProducts::kLanes);

@@ -15,7 +15,10 @@ namespace velour {
 /// and other strategies always stand beside it.
 class SkyProposals {
  public:
-  explicit SkyProposals(const SkyMixture& sky);
+  /// Broad lobes of the BRDF (below kFirstFine) meet most of the sky: their products are taken with `coarse`, which
+  /// covers all of it in no more than kListed lobes, those of the others with `fine`.
+  SkyProposals(const SkyMixture& fine, const SkyMixture& coarse);
+  static constexpr int kListed = 32;  // sky lobes of a list
 
   /// The density, in the world frame, of the products of `brdf` (Gaussian lobes of f cos in `frame`, light space; its
   /// cosine part as the Gaussian that resembles it) with the sky. False when there is none: below the horizon, or
@@ -29,12 +32,15 @@ class SkyProposals {
     return &lists_[static_cast<size_t>(cell * kLevels + level) * kListed];
   }
 
-  static constexpr int kSide = 32;    // cells of five degrees or so
-  static constexpr int kLevels = 9;   // bandwidths 1, 4, ... 4^8
-  static constexpr int kListed = 32;  // sky lobes of a list
-  static constexpr size_t kMostSky = 512;
+  static constexpr int kSide = 32;      // cells of five degrees or so
+  static constexpr int kLevels = 9;     // bandwidths 1, 4, ... 4^8
+  static constexpr int kFirstFine = 2;  // level
+  static constexpr size_t kMostFine = 512;
 
-  GaussianLobes sky_;            // the last one is empty: what fills lists up
+  void add(const SkyMixture& sky, size_t most);
+
+  GaussianLobes sky_;            // coarse, then fine; the last one is empty: what fills lists up
+  int coarse_ = 0;               // how many of them are coarse
   std::vector<int32_t> lists_;   // by cell, then level
   std::vector<uint8_t> listed_;  // of each list, a multiple of LobeProducts::kLanes
 };

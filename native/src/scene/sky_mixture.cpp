@@ -9,8 +9,8 @@
 namespace velour {
 namespace {
 
-SkyMixture image_mixture(const EquirectangularImage& image, const std::string& folder, const Progress& progress) {
-  const SkyFitOptions options;
+SkyMixture image_mixture(const EquirectangularImage& image, const SkyFitOptions& options, const std::string& folder,
+                         const Progress& progress) {
   if (folder.empty()) return fit_sky(image, options, progress);
   const std::string path = sky_cache_path(folder, image, options);
   if (auto kept = read_sky(path)) return *std::move(kept);
@@ -21,7 +21,8 @@ SkyMixture image_mixture(const EquirectangularImage& image, const std::string& f
 
 }  // namespace
 
-SkyMixture sky_mixture(const Environment& environment, const std::string& cache_folder, const Progress& progress) {
+SkyMixture sky_mixture(const Environment& environment, const SkyFitOptions& options, const std::string& cache_folder,
+                       const Progress& progress) {
   if (environment.black()) return {};
   const EquirectangularImage* image = environment.equirectangular();
   if (image == nullptr) {
@@ -32,7 +33,7 @@ SkyMixture sky_mixture(const Environment& environment, const std::string& cache_
     return sky;
   }
   const auto start = std::chrono::steady_clock::now();
-  SkyMixture sky = image_mixture(*image, cache_folder, progress);
+  SkyMixture sky = image_mixture(*image, options, cache_folder, progress);
   const Mat3 image_to_world = glm::transpose(image->world_to_image());
   for (Vec3& c : sky.center) c = glm::normalize(image_to_world * c);
   sky.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

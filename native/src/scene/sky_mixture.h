@@ -44,6 +44,7 @@ SkyMixture fit_sky(const EquirectangularImage& image, const SkyFitOptions& optio
 /// Of an environment, in the world frame; one lobe of bandwidth 0 for a constant one, none for a black one. With a
 /// `cache_folder` (created when missing) fits are kept by the image's content; a file there that is not what it should
 /// be is replaced, and a folder that cannot be written costs only the speed.
-SkyMixture sky_mixture(const Environment& environment, const std::string& cache_folder, const Progress& progress);
+SkyMixture sky_mixture(const Environment& environment, const SkyFitOptions& options, const std::string& cache_folder,
+                       const Progress& progress);
 
 }  // namespace velour

@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// Octahedral map [MKF10]: unit direction -> [0, 1]^2. Cells of equal side differ in solid angle by less than 3.4
+/// Octahedral map [ED08]: unit direction -> [0, 1]^2. Cells of equal side differ in solid angle by less than 3.4
 /// times.
 inline Vec2 octahedral_from(const Vec3& w) {
   const float scale = 1.0f / (std::abs(w.x) + std::abs(w.y) + std::abs(w.z));

@@ -41,9 +41,9 @@ class Strategies : public ::testing::TestWithParam<int> {};
 TEST_P(Strategies, AgreeWithinTheirErrors) {
   const Scene scene = gallery();
   const Regions reference = measure(scene, Strategy::mis, GetParam());
-  const double level = test::sidak_level(0.01, 7 * kRegions);
+  const double level = test::sidak_level(0.01, 8 * kRegions);
   for (Strategy s : {Strategy::uniform, Strategy::cosine, Strategy::table, Strategy::srbf, Strategy::light,
-                     Strategy::ggx, Strategy::mis_ggx}) {
+                     Strategy::ggx, Strategy::mis_ggx, Strategy::product}) {
     EXPECT_GT(least_p(measure(scene, s, GetParam()), reference), level) << static_cast<int>(s);
   }
 }
