@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <algorithm>
 
 #include "render/combination.h"
@@ -94,18 +96,37 @@ TEST(NoiseTarget, DecisionsGrowRarer) {
   for (int n : at) EXPECT_EQ(n % NoiseTarget::kRaysAtLeast, 0);
 }
 
-TEST(Combination, WeightsOfBothSidesAddUpToOne) {
+TEST(Combination, WeightsOfAllDensitiesAddUpToOne) {
+  const Drawer drawers[] = {Drawer::product, Drawer::surface, Drawer::lights};
   for (Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
-    for (float share : {0.0f, 0.2f, 0.5f, 1.0f}) {
-      const Combination c{share, heuristic};
-      for (const auto& [surface, light] : {std::pair{1.0f, 1.0f}, {3.0f, 0.1f}, {1e25f, 2.0f}, {0.7f, 0.0f}}) {
-        if (share == 1.0f && light == 0.0f) continue;
-        const float sum = (1 - share) * surface / c.surface_drew(surface, light) +
-                          (light > 0 ? share * light / c.light_drew(surface, light) : 0.0f);
-        EXPECT_NEAR(share == 1.0f ? light / c.light_drew(surface, light) : sum, 1, 1e-5) << share << " " << light;
+    for (const auto& [p, s, l] : {std::array{0.0f, 0.5f, 0.5f}, {0.5f, 0.4f, 0.1f}, {0.0f, 1.0f, 0.0f}}) {
+      const Combination c{{p, s, l}, heuristic};
+      for (const auto& pdf :
+           {std::array{1.0f, 1.0f, 1.0f}, {0.0f, 3.0f, 0.1f}, {5.0f, 1e25f, 2.0f}, {2.0f, 0.7f, 0.0f}}) {
+        const float densities[3] = {pdf[0], pdf[1], pdf[2]};
+        float sum = 0;
+        for (Drawer own : drawers) {
+          // f / (n d) times the expected number of such directions, n c p: weights of one f add up to 1.
+          const float q = c.of(own) * densities[static_cast<int>(own)];
+          if (q > 0) sum += q / c.effective(densities, own);
+        }
+        EXPECT_NEAR(sum, 1, 1e-5) << pdf[0] << ' ' << pdf[1] << ' ' << pdf[2];
       }
     }
   }
+}
+
+TEST(Combination, IsThatOfItsStrategy) {
+  RenderOptions options;
+  options.light_share = 0.3f;
+  options.strategy = Strategy::product;
+  const Combination product = combination(options, 0.5f);
+  EXPECT_FLOAT_EQ(product.of(Drawer::lights), 0.15f);
+  EXPECT_FLOAT_EQ(product.of(Drawer::surface), 0.35f);
+  options.strategy = Strategy::light;
+  EXPECT_EQ(combination(options, 0).of(Drawer::lights), 1.0f);
+  options.strategy = Strategy::ggx;
+  EXPECT_EQ(combination(options, 0).of(Drawer::surface), 1.0f);
 }
 
 TEST(PathNumbers, DealsTheShareOnAverageAndWithoutGaps) {
