@@ -301,6 +301,31 @@ class Film(BlenderTest):
         bpy.context.scene.velour.seed = 1
         self.assertTrue((scenes.render(self.folder, "seed") != pictures[0]).any())
 
+    def test_sequence_share_and_heuristic_reach_the_library(self):
+        settings = bpy.context.scene.velour
+        before = scenes.render(self.folder)
+        for name, value in (("sequence", "RANDOM"), ("share", 0.3), ("heuristic", "POWER")):
+            with self.subTest(name):
+                setattr(settings, name, value)
+                after = scenes.render(self.folder, name)
+                self.assertTrue((after != before).any())
+                self.assert_close(after.mean(), before.mean(), 0.01)
+                before = after
+
+    def test_noise_threshold(self):
+        """The empty corner is left alone after the fewest samples, whatever else takes."""
+        scene, layer = bpy.context.scene, bpy.context.view_layer
+        scene.render.resolution_x = scene.render.resolution_y = 64
+        scene.velour.samples = 1024
+        scene.velour.use_noise_target, scene.velour.noise_target = True, 0.0005
+        layer.velour.use_pass_sample_count = True
+        show = scenes.composite(scene)
+        layer.update_render_passes()
+        show("Sample Count")
+        counts = scenes.render(self.folder, "counts")[..., 0]
+        self.assertEqual(counts[0, 0], 128)
+        self.assertGreater(counts.max(), 128)
+
     def test_passes(self):
         """Through the compositor, as artists use them."""
         scene, layer = bpy.context.scene, bpy.context.view_layer

@@ -307,7 +307,7 @@ typedef struct vlr_render_options {
   int32_t heuristic;         /* of VLR_STRATEGY_MIS: VLR_HEURISTIC_* */
   int32_t sequence;          /* VLR_SEQUENCE_* */
   double share;              /* of VLR_STRATEGY_MIS: share of the directions that the lights draw; 0..1; 0.5 */
-  double noise; /* relative error of each block of 16 x 16 pixels at which it gets no more samples; 0: off */
+  double noise;              /* relative error at which a block of 16 x 16 pixels gets no more samples; 0: off */
   const char* cache_folder; /* for fits of the environment (product), made when missing; NULL or "": none */
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);

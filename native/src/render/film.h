@@ -27,15 +27,16 @@ struct PixelSum {
   float alpha = 0;
   Vec3 normal{0.0f};
   float depth = 0;              // of the first camera ray, as Cycles does: a mean of depths lies on no surface
-  float luminance[2] = {0, 0};  // of the even and of the odd camera rays: two independent halves (path_numbers.h)
+  float luminance[2] = {0, 0};  // of the even and of the odd camera rays: the halves (path_numbers.h)
   uint32_t camera_rays = 0, directions = 0;
 
   void add(const CameraSample& sample);
 
   double mean_luminance() const;
-  /// Unbiased estimate of the variance of mean_luminance(), from the difference of the halves: what holds inside a half
-  /// (a Sobol sequence errs far less than independent samples) is in it. One degree of freedom: to be averaged over
-  /// pixels. Needs two camera rays.
+  /// Estimate of the variance of mean_luminance(), from the difference of the halves; unbiased where these are
+  /// independent, too high where they are parts of one Sobol sequence, which is more even than its parts: what holds
+  /// inside a half (a Sobol sequence errs far less than independent samples) is in it. One degree of freedom: to be
+  /// averaged over pixels. Needs two camera rays.
   double variance() const;
 };
 

@@ -55,7 +55,7 @@ void TileRenderer::start_paths(const PixelRect& run, int first, int count) {
   for (int x = run.x0; x < run.x1; ++x) {
     const uint64_t pixel = static_cast<uint64_t>(run.y0) * static_cast<uint64_t>(o.width) + static_cast<uint64_t>(x);
     for (int index = first; index < first + count; ++index) {
-      PathNumbers numbers(o.sequence, o.seed, pixel, static_cast<uint32_t>(index));
+      PathNumbers numbers(o, pixel, static_cast<uint32_t>(index));
       const Vec2 place = Vec2(x, run.y0) + numbers.point(Purpose::camera);
       const Ray ray =
           context_.scene.camera().ray(place / Vec2(static_cast<float>(o.width), static_cast<float>(o.height)));

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "capi/test_scene.h"
@@ -80,6 +81,25 @@ TEST(CScene, ZeroSizedFilmsAreRefused) {
   options.width = 16;
   options.strategy = 99;
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_render_create_job(scene.scene, &options, &job));
+}
+
+TEST(CScene, SamplingOptionsOutOfRangeFailWithASentence) {
+  const TestScene scene;
+  for (int wrong = 0; wrong < 4; ++wrong) {
+    vlr_render_options options;
+    vlr_render_options_init(&options);
+    options.width = options.height = 4;
+    if (wrong == 0) options.share = 1.5;
+    if (wrong == 1) options.noise = -1;
+    if (wrong == 2) options.heuristic = 7;
+    if (wrong == 3) options.sequence = -1;
+    vlr_job* job = nullptr;
+    ASSERT_EQ(VLR_OK, vlr_render_create_job(scene.scene, &options, &job));
+    ASSERT_EQ(VLR_OK, vlr_job_start(job));
+    EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << wrong;
+    EXPECT_NE(std::string(vlr_last_error()), "");
+    vlr_job_free(job);
+  }
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--bounces", type=numbers.whole(0, 1024), metavar="B", help="0: direct light only")
     parser.add_argument("--strategy", choices=table.STRATEGIES, default="mis", help="mis")
     parser.add_argument(
-        "--share", type=numbers.real(0, 1), metavar="S", help="of mis's directions drawn from the lights (0.5)"
+        "--share", type=numbers.real(0, 1), metavar="S", help="what the lights draw of mis (0.5)"
     )
     parser.add_argument("--heuristic", choices=table.HEURISTICS, help="weights of mis (balance)")
     parser.add_argument("--sequence", choices=table.SEQUENCES, help="of random numbers (sobol)")
@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
     parser.add_argument("--time-limit", type=numbers.real(0, 1e9), metavar="SECONDS")
     parser.add_argument(
-        "--noise", type=numbers.real(1e-6, 1e6), metavar="E", help="relative error at which a block of pixels is done"
+        "--noise", type=numbers.real(1e-6, 1e6), metavar="E", help="relative error of each block of pixels"
     )
     parser.add_argument(
         "--cache", metavar="FOLDER", help="keeps fits of worlds (product); ${XDG_CACHE_HOME:-~/.cache}/velour"
@@ -163,8 +163,8 @@ def _read_reference(args: argparse.Namespace) -> np.ndarray | None:
 
 
 def _options(args: argparse.Namespace) -> dict:
-    names = ("spp", "split", "bounces", "strategy", "share", "heuristic", "sequence", "threads", "seed", "noise")
-    names += ("time_limit",)
+    names = ("spp", "split", "bounces", "strategy", "share", "heuristic", "sequence")
+    names += ("threads", "seed", "noise", "time_limit")
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
     if args.noise is not None:
         options.setdefault("spp", _MOST_SPP)

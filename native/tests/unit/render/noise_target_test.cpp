@@ -129,6 +129,13 @@ TEST(Combination, IsThatOfItsStrategy) {
   EXPECT_EQ(combination(options, 0).of(Drawer::surface), 1.0f);
 }
 
+RenderOptions two_halves(Sequence sequence) {
+  RenderOptions options;
+  options.sequence = sequence;
+  options.noise = 0.1;
+  return options;
+}
+
 TEST(PathNumbers, DealsTheShareOnAverageAndWithoutGaps) {
   for (Sequence sequence : {Sequence::random, Sequence::sobol}) {
     for (float share : {0.0f, 0.3f, 0.5f, 1.0f}) {
@@ -137,7 +144,7 @@ TEST(PathNumbers, DealsTheShareOnAverageAndWithoutGaps) {
         for (uint64_t pixel = 0; pixel < 500; ++pixel) {
           uint32_t next_surface = 0, next_light = 0;
           for (uint32_t ray = 0; ray < 16; ray += 2) {
-            PathNumbers numbers(sequence, 1, pixel, ray);
+            PathNumbers numbers(two_halves(sequence), pixel, ray);
             const auto [surface, light] = numbers.deal(numbers.all(split, split), share, Purpose::side);
             EXPECT_EQ(surface.count + light.count, split);
             EXPECT_LE(std::abs(static_cast<float>(light.count) - static_cast<float>(split) * share), 1.0f);
@@ -159,12 +166,18 @@ TEST(PathNumbers, DealsTheShareOnAverageAndWithoutGaps) {
 
 TEST(PathNumbers, CameraRaysOfAHalfContinueOneSequence) {
   Vec2 all[8], parts[8];
-  PathNumbers(Sequence::sobol, 3, 5, 0).points(Purpose::light, 0, all);
-  PathNumbers(Sequence::sobol, 3, 5, 0).points(Purpose::light, 0, {parts, 4});
-  PathNumbers(Sequence::sobol, 3, 5, 2).points(Purpose::light, 4, {parts + 4, 4});
+  PathNumbers(two_halves(Sequence::sobol), 5, 0).points(Purpose::light, 0, all);
+  PathNumbers(two_halves(Sequence::sobol), 5, 0).points(Purpose::light, 0, {parts, 4});
+  PathNumbers(two_halves(Sequence::sobol), 5, 2).points(Purpose::light, 4, {parts + 4, 4});
   for (int i = 0; i < 8; ++i) EXPECT_EQ(all[i], parts[i]);
-  PathNumbers(Sequence::sobol, 3, 5, 1).points(Purpose::light, 0, parts);
+  PathNumbers(two_halves(Sequence::sobol), 5, 1).points(Purpose::light, 0, parts);
   EXPECT_NE(all[0], parts[0]);
+  // Without a noise target there is one half.
+  RenderOptions whole = two_halves(Sequence::sobol);
+  whole.noise = 0;
+  PathNumbers(whole, 5, 0).points(Purpose::light, 0, all);
+  PathNumbers(whole, 5, 1).points(Purpose::light, 4, parts);
+  EXPECT_EQ(all[4], parts[0]);
 }
 
 /// Half of the picture has a glossy sky's noise, half sees nothing.
