@@ -43,6 +43,7 @@ def render_arguments(mesh_file, world_file, model_file, tmp_path):
     return [
         "render", "--mesh", mesh_file, "--material", model_file, "--world", world_file, "--size", "32x24",
         "--spp", "8", "--threads", "2", "-o", tmp_path / "out.exr", "--json",
+        "--cache", tmp_path / "cache",
     ]  # fmt: skip
 
 
@@ -137,6 +138,18 @@ def test_pictures_do_not_depend_on_threads(render_arguments, tmp_path):
         assert velour(*render_arguments, "--threads", threads).status == 0
         pictures.append(images.read(tmp_path / "out.exr"))
     np.testing.assert_array_equal(*pictures)
+
+
+def test_product_reports_the_mixture_of_the_world_and_keeps_it(render_arguments, tmp_path):
+    arguments = [*render_arguments, "--strategy", "product"]
+    first, second = velour(*arguments).json["sky"], velour(*arguments).json["sky"]
+    assert first["lobes"] > 0
+    assert (first["cached"], second["cached"]) == (False, True)
+    assert first["relative_l2"] == second["relative_l2"]
+    for kept in (tmp_path / "cache").iterdir():
+        kept.write_bytes(b"not a mixture")
+    assert not velour(*arguments).json["sky"]["cached"]
+    assert not velour(*arguments, "--no-cache").json["sky"]["cached"]
 
 
 @pytest.mark.parametrize("strategy", table.STRATEGIES)

@@ -131,7 +131,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     use_cache: BoolProperty(
         name="Cache World",
-        description="Keep what Products fits to an environment image for the next render, in the user's cache",
+        description="Keep what Products fits to an environment image, for the next render",
         default=True,
         override=_OVERRIDE,
     )

@@ -24,61 +24,69 @@ int level_of(float bandwidth, int levels) {
 
 }  // namespace
 
-void SkyProposals::add(const SkyMixture& sky, size_t most) {
+namespace {
+
+GaussianLobes lobes_of(const SkyMixture& sky, size_t most) {
+  GaussianLobes lobes;
   for (size_t k = 0; k < std::min(sky.size(), most); ++k) {
-    sky_.add({sky.center[k], sky.bandwidth[k], luminance(sky.coefficient[k])});
+    lobes.add({sky.center[k], sky.bandwidth[k], luminance(sky.coefficient[k])});
   }
+  while (lobes.size() % LobeProducts::kLanes != 0) lobes.add({{0, 0, 1}, 1, 0});
+  return lobes;
 }
 
+}  // namespace
+
 SkyProposals::SkyProposals(const SkyMixture& fine, const SkyMixture& coarse) {
-  add(coarse, kListed);
-  coarse_ = static_cast<int>(sky_.size());
-  add(fine, kMostFine);
-  sky_.add({{0, 0, 1}, 1, 0});
-  constexpr size_t kCells = static_cast<size_t>(kSide) * kSide;
-  lists_.assign(kCells * kLevels * kListed, static_cast<int32_t>(sky_.size()) - 1);
-  listed_.assign(kCells * kLevels, 0);
-  tbb::parallel_for(size_t{0}, kCells, [&](size_t cell) {
+  const GaussianLobes fine_lobes = lobes_of(fine, kMostFine), coarse_lobes = lobes_of(coarse, kListed);
+  constexpr size_t kLists = static_cast<size_t>(kSide) * kSide * kLevels;
+  for (auto* values : {&lists_.x, &lists_.y, &lists_.z, &lists_.bandwidth, &lists_.amplitude}) {
+    values->assign(kLists * kListed, values == &lists_.z || values == &lists_.bandwidth ? 1.0f : 0.0f);
+  }
+  listed_.assign(kLists, 0);
+  tbb::parallel_for(size_t{0}, kLists, [&](size_t list) {
     LobeProducts scratch;
-    for (int level = 0; level < kLevels; ++level) fill_list(static_cast<int>(cell), level, scratch);
+    fill_list(list, static_cast<int>(list % kLevels) < kFirstFine ? coarse_lobes : fine_lobes, scratch);
   });
 }
 
-void SkyProposals::fill_list(int cell, int level, LobeProducts& scratch) {
+void SkyProposals::fill_list(size_t list, const GaussianLobes& sky, LobeProducts& scratch) {
   // A lobe anywhere in the cell and of any bandwidth of the level, blurred into one.
   constexpr float kCellVariance = 4 / (3.0f * kSide * kSide);
+  const int cell = static_cast<int>(list / kLevels), level = static_cast<int>(list % kLevels);
   const float bandwidth = 1 / (std::exp2(-2.0f * static_cast<float>(level)) + kCellVariance);
-  int32_t all[LobeProducts::kCapacity];
-  const int empty = static_cast<int>(sky_.size()) - 1;
-  const int first = level < kFirstFine ? 0 : coarse_, count = (level < kFirstFine ? coarse_ : empty) - first;
-  const int padded = (count + LobeProducts::kLanes - 1) / LobeProducts::kLanes;
-  for (int i = 0; i < padded * LobeProducts::kLanes; ++i) all[i] = i < count ? first + i : empty;
-  scratch.count = 0;
-  multiply_lobes({octahedral_cell_center(cell, kSide), bandwidth, 1}, sky_, all, padded * LobeProducts::kLanes, nullptr,
-                 scratch);
-  const auto heavier = [&](int32_t a, int32_t b) {
+  const int count = static_cast<int>(sky.size());
+  multiply_lobes({octahedral_cell_center(cell, kSide), bandwidth, 1}, sky, 0, count, nullptr, scratch);
+  int order[LobeProducts::kCapacity];
+  std::iota(order, order + count, 0);
+  const auto heavier = [&](int a, int b) {
     return scratch.mass[a] != scratch.mass[b] ? scratch.mass[a] > scratch.mass[b] : a < b;
   };
-  std::iota(all, all + count, 0);  // places in the scratch from here on
   const int most = std::min(kListed, count);
-  std::partial_sort(all, all + most, all + count, heavier);
+  std::partial_sort(order, order + most, order + count, heavier);
   const float total = std::accumulate(scratch.mass, scratch.mass + count, 0.0f);
-  const size_t at = static_cast<size_t>(cell * kLevels + level);
   float covered = 0;
   int listed = 0;
   while (listed < most && covered < kListedMass * total) {
-    covered += scratch.mass[all[listed]];
-    lists_[at * kListed + static_cast<size_t>(listed)] = first + all[listed];
+    const auto from = static_cast<size_t>(order[listed]), to = list * kListed + static_cast<size_t>(listed);
+    covered += scratch.mass[from];
+    lists_.x[to] = sky.x[from];
+    lists_.y[to] = sky.y[from];
+    lists_.z[to] = sky.z[from];
+    lists_.bandwidth[to] = sky.bandwidth[from];
+    lists_.amplitude[to] = sky.amplitude[from];
     ++listed;
   }
-  listed_[at] = static_cast<uint8_t>((listed + LobeProducts::kLanes - 1) / LobeProducts::kLanes * LobeProducts::kLanes);
+  listed_[list] =
+      static_cast<uint8_t>((listed + LobeProducts::kLanes - 1) / LobeProducts::kLanes * LobeProducts::kLanes);
 }
 
 void SkyProposals::multiply(const GaussianLobe& world, const Frame& frame, LobeProducts& products) const {
   const int cell = octahedral_cell(world.center, kSide), level = level_of(world.bandwidth, kLevels);
-  const int count = listed_[static_cast<size_t>(cell * kLevels + level)];
+  const auto list = static_cast<size_t>(cell * kLevels + level);
+  const int count = listed_[list];
   if (products.count + count > LobeProducts::kCapacity) return;
-  multiply_lobes(world, sky_, list(cell, level), count, &frame.z, products);
+  multiply_lobes(world, lists_, list * kListed, count, &frame.z, products);
 }
 
 bool SkyProposals::propose(const LobeMixture& brdf, const Frame& frame, LobeProducts& scratch,

@@ -26,22 +26,14 @@ class SkyProposals {
   bool propose(const LobeMixture& brdf, const Frame& frame, LobeProducts& scratch, LobeMixture& density) const;
 
  private:
-  void fill_list(int cell, int level, LobeProducts& scratch);
+  void fill_list(size_t list, const GaussianLobes& sky, LobeProducts& scratch);
   void multiply(const GaussianLobe& world, const Frame& frame, LobeProducts& products) const;
-  const int32_t* list(int cell, int level) const {
-    return &lists_[static_cast<size_t>(cell * kLevels + level) * kListed];
-  }
-
   static constexpr int kSide = 32;      // cells of five degrees or so
   static constexpr int kLevels = 9;     // bandwidths 1, 4, ... 4^8
   static constexpr int kFirstFine = 2;  // level
   static constexpr size_t kMostFine = 512;
 
-  void add(const SkyMixture& sky, size_t most);
-
-  GaussianLobes sky_;            // coarse, then fine; the last one is empty: what fills lists up
-  int coarse_ = 0;               // how many of them are coarse
-  std::vector<int32_t> lists_;   // by cell, then level
+  GaussianLobes lists_;          // kListed places a list, by cell, then level; of amplitude 0 where a list is shorter
   std::vector<uint8_t> listed_;  // of each list, a multiple of LobeProducts::kLanes
 };
 

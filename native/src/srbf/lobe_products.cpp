@@ -29,17 +29,16 @@ HWY_INLINE V share_above(D d, V c, V bandwidth) {
   return hn::Div(top, hn::Add(hn::Set(d, 1.0f), e));
 }
 
-void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, const int32_t* chosen, int count,
-                   const Vec3* normal, LobeProducts& out) {
+void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, size_t first, int count, const Vec3* normal,
+                   LobeProducts& out) {
   const hn::CappedTag<float, LobeProducts::kLanes> d;
-  const hn::RebindToSigned<decltype(d)> di;
   using V = hn::Vec<decltype(d)>;
   const V ax = hn::Set(d, a.center.x), ay = hn::Set(d, a.center.y), az = hn::Set(d, a.center.z);
   const V la = hn::Set(d, a.bandwidth), tiny = hn::Set(d, 1e-4f);
   for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
-    const auto index = hn::LoadU(di, chosen + at);
-    const auto gather = [&](const std::vector<float>& from) { return hn::GatherIndex(d, from.data(), index); };
-    const V bx = gather(others.x), by = gather(others.y), bz = gather(others.z), lb = gather(others.bandwidth);
+    const size_t from = first + static_cast<size_t>(at);
+    const auto load = [&](const std::vector<float>& values) { return hn::LoadU(d, values.data() + from); };
+    const V bx = load(others.x), by = load(others.y), bz = load(others.z), lb = load(others.bandwidth);
     const V dx = hn::Sub(ax, bx), dy = hn::Sub(ay, by), dz = hn::Sub(az, bz);
     const V distance_sq = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
     // R^2 = (la - lb)^2 + la lb |a + b|^2 and R - la - lb = -la lb |a - b|^2 / (R + la + lb): no cancellation.
@@ -53,7 +52,7 @@ void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, const int
     const V cz = hn::Mul(inverse, hn::MulAdd(la, az, hn::Mul(lb, bz)));
     const V opposite = exp_nonpositive(d, hn::Mul(hn::Set(d, -2.0f), r));
     const V integral = hn::Mul(hn::Set(d, 2 * kPi), hn::Mul(inverse, hn::Sub(hn::Set(d, 1.0f), opposite)));
-    V mass = hn::Mul(hn::Mul(hn::Set(d, a.amplitude), gather(others.amplitude)),
+    V mass = hn::Mul(hn::Mul(hn::Set(d, a.amplitude), load(others.amplitude)),
                      hn::Mul(integral, exp_nonpositive(d, hn::Neg(exponent))));
     if (normal != nullptr) {
       const V c = hn::MulAdd(hn::Set(d, normal->x), cx,
@@ -101,10 +100,10 @@ void GaussianLobes::add(const GaussianLobe& lobe) {
   amplitude.push_back(lobe.amplitude);
 }
 
-void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, const int32_t* chosen, int count,
-                    const Vec3* normal, LobeProducts& products) {
+void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, size_t first, int count, const Vec3* normal,
+                    LobeProducts& products) {
   assert(count % LobeProducts::kLanes == 0 && products.count + count <= LobeProducts::kCapacity);
-  VELOUR_SIMD_DISPATCH(multiply_simd)(lobe, others, chosen, count, normal, products);
+  VELOUR_SIMD_DISPATCH(multiply_simd)(lobe, others, first, count, normal, products);
 }
 
 bool keep_products(const LobeProducts& products, float least, LobeMixture& mixture) {

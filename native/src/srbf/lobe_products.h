@@ -18,7 +18,7 @@ struct GaussianLobe {
   float amplitude;
 };
 
-/// Many Gaussians, structure of arrays, for the SIMD kernels to gather from.
+/// Many Gaussians, structure of arrays, for the SIMD kernels.
 struct GaussianLobes {
   std::vector<float> x, y, z, bandwidth, amplitude;
   size_t size() const { return x.size(); }
@@ -36,11 +36,11 @@ struct alignas(64) LobeProducts {
   float bandwidth[kCapacity];
 };
 
-/// Appends the products of `lobe` with those of `others` that `chosen` lists; `count` of them, a multiple of
-/// LobeProducts::kLanes (an index may be one past the last lobe: an empty product). With a `normal`, masses count what
-/// lies above its horizon, a logistic estimate: it steers the choice and normalises nothing. Callers keep to kCapacity.
-void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, const int32_t* chosen, int count,
-                    const Vec3* normal, LobeProducts& products);
+/// Appends the products of `lobe` with `count` of `others` from `first` on; count is a multiple of
+/// LobeProducts::kLanes (lobes of amplitude 0 fill up). With a `normal`, masses count what lies above its horizon, a
+/// logistic estimate: it steers the choice and normalises nothing. Callers keep to kCapacity.
+void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, size_t first, int count, const Vec3* normal,
+                    LobeProducts& products);
 
 /// Makes `mixture` the density over all products that hold at least `least` of the whole mass and of 1 /
 /// LobeMixture::kCapacity of it, each in proportion to its mass. False when no product has mass: `mixture` then is

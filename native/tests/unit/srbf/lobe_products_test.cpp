@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "sphere/directions.h"
 #include "srbf/simd_target.h"
 
@@ -21,16 +19,9 @@ GaussianLobes sky() {
   return lobes;
 }
 
-std::vector<int32_t> all_of(const GaussianLobes& lobes) {
-  std::vector<int32_t> chosen(lobes.size());
-  std::iota(chosen.begin(), chosen.end(), 0);
-  return chosen;
-}
-
 LobeProducts multiplied(const GaussianLobe& lobe, const GaussianLobes& others, const Vec3* normal = nullptr) {
   LobeProducts products;
-  const auto chosen = all_of(others);
-  multiply_lobes(lobe, others, chosen.data(), static_cast<int>(chosen.size()), normal, products);
+  multiply_lobes(lobe, others, 0, static_cast<int>(others.size()), normal, products);
   return products;
 }
 
