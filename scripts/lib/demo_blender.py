@@ -19,7 +19,8 @@ class BlenderError(RuntimeError):
 
 def render(model_file: Path, measurement_file: Path, folder: Path) -> dict:
     """Writes model and reference pictures; returns the report of demo_scene.py."""
-    if not shutil.which("blender"):
+    blender = shutil.which("blender")
+    if not blender:
         raise BlenderError("blender is not installed; run scripts/setup")
     with tempfile.TemporaryDirectory(prefix="velour-demo-") as temporary:
         report = Path(temporary) / "report.json"
@@ -29,14 +30,18 @@ def render(model_file: Path, measurement_file: Path, folder: Path) -> dict:
             "folder": str(folder.resolve()),
             "report": str(report),
         }
-        _run(["--python", str(HERE / "demo_scene.py"), "--", json.dumps(task)], folder / "blender.log")
+        _run(
+            blender, ["--python", str(HERE / "demo_scene.py"), "--", json.dumps(task)], folder / "blender.log"
+        )
         return json.loads(report.read_text())
 
 
-def _run(arguments: list[str], log: Path) -> None:
+def _run(blender: str, arguments: list[str], log: Path) -> None:
     # The order matters: what stands before --python-exit-code does not know of it.
-    command = ["blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "7", *arguments]
-    environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(STAGE)}
+    command = [blender, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "7", *arguments]
+    # A distribution's Blender looks for its Python along PATH: not a version manager's, please.
+    path = os.pathsep.join((str(Path(blender).resolve().parent), os.environ["PATH"]))
+    environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(STAGE), "PATH": path}
     with open(log, "w") as file:
         done = subprocess.run(
             command, stdout=file, stderr=subprocess.STDOUT, env=environment, stdin=subprocess.DEVNULL

@@ -16,11 +16,11 @@ from mathutils import Vector
 from velour.native import images, render_job
 
 SIZE = (640, 480)
-SAMPLES, BOUNCES = 256, 1
+SAMPLES, BOUNCES = 128, 1
 WORLD, WORLD_ROTATION, WORLD_STRENGTH = "courtyard.exr", 250.0, 0.7
 
 PLOT_REDUCTION = 4  # of the picture's sides
-PLOT_REFERENCE_SAMPLES = 4096
+PLOT_REFERENCE_SAMPLES = 2048
 PLOT_SAMPLES = (16, 64, 256)
 PLOT_STRATEGIES = ("uniform", "cosine", "srbf", "light", "mis")
 

@@ -20,7 +20,7 @@ struct ScatteredBrdf {
   /// Slices of neighbouring views are turned so that their mirror directions coincide with the query's before they are
   /// mixed; false mixes them as they are (a sharp highlight then doubles between views).
   bool align_views = true;
-  int default_neighbors = 2;  // K of the interpolation: 2 on the meridian, 4 on the hemisphere
+  int default_neighbors = usual_neighbors(true);  // K of the interpolation
 
   std::vector<Vec3> views;   // unit, sorted by theta_v when isotropic
   std::vector<Rgb> diffuse;  // one a view: coefficient of max(wl.z, 0) in f cos; non-negative, 1/sr. Empty: none
@@ -28,6 +28,9 @@ struct ScatteredBrdf {
   std::vector<Vec3> center;          // unit
   std::vector<float> bandwidth;
   std::vector<Rgb> coefficient;  // of f cos, non-negative, 1/sr
+
+  /// K of the interpolation unless asked otherwise: 2 on the meridian, 4 on the hemisphere as in [T09].
+  static constexpr int usual_neighbors(bool on_meridian) { return on_meridian ? 2 : 4; }
 
   int lobe_count() const { return static_cast<int>(center.size()); }
   int max_lobes_per_view() const {

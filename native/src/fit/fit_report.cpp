@@ -12,7 +12,7 @@
 namespace velour {
 namespace {
 
-std::string number(double x, const char* format = "%.3g") {
+std::string number(double x, const char* format = "%.4g") {
   char text[32];
   std::snprintf(text, sizeof text, format, x);
   return text;

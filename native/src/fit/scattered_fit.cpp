@@ -5,10 +5,8 @@
 #include <cmath>
 
 #include "fit/fit_report.h"
-#include "fit/lobe_budget.h"
+#include "fit/fitted_slices.h"
 #include "fit/parallel.h"
-#include "fit/slice_sampling.h"
-#include "fit/stored_lobe.h"
 #include "material/scattered_material.h"
 #include "srbf/lobe_mixture.h"
 
@@ -17,19 +15,13 @@ namespace {
 
 // A slice is fitted a little tighter than asked, for what the interpolation between slices adds at the views between.
 constexpr double kGoalShare = 0.8;
-// With a bound in bytes a view keeps this many lobes if it has them, and there are fewer views rather than poorer ones.
-constexpr double kLobesWorthAView = 4;
-constexpr uint64_t kLobeBytes = ScatteredBrdf::kLobeBytes, kViewBytes = ScatteredBrdf::kViewBytes;
-constexpr int kMeridianNeighbors = 2, kHemisphereNeighbors = 4;
-
-int neighbors_of(bool isotropic) { return isotropic ? kMeridianNeighbors : kHemisphereNeighbors; }
 
 void check_options(const FitOptions& o, bool isotropic) {
   const auto refuse = [](const std::string& sentence) { throw Error(Status::invalid_argument, sentence); };
   if (!(o.tolerance > 0 && o.tolerance <= 1)) {
     refuse("The fit's tolerance is " + std::to_string(o.tolerance) + "; it must be above 0 and at most 1.");
   }
-  const int most = LobeMixture::kCapacity / neighbors_of(isotropic);
+  const int most = LobeMixture::kCapacity / ScatteredBrdf::usual_neighbors(isotropic);
   if (o.max_lobes < 1 || o.max_lobes > most) {
     refuse("The fit's max_lobes is " + std::to_string(o.max_lobes) + "; it must be 1 to " + std::to_string(most) +
            " for this measurement.");
@@ -49,65 +41,9 @@ std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const
   return paths;
 }
 
-/// All views that could be fitted, and how many could not.
-struct FittedSlices {
-  std::vector<MeasuredSlice> slices;
-  std::vector<ViewPath> paths;
-  size_t uncovered;
-};
-
-uint64_t parameter_bytes(const FittedSlices& fitted) {
-  uint64_t lobes = 0;
-  for (const ViewPath& p : fitted.paths) lobes += p.path.size() - 1;
-  return lobes * kLobeBytes + fitted.paths.size() * kViewBytes;
-}
-
-/// Leaves out views, then lobes, until the parameters take at most `max_bytes` >= kViewBytes. True when it had to.
-bool fit_into(uint64_t max_bytes, FittedSlices& fitted) {
-  const uint64_t bytes = parameter_bytes(fitted);
-  if (bytes <= max_bytes) return false;
-
-  const auto views = static_cast<double>(fitted.paths.size());
-  const double mean_lobes = (static_cast<double>(bytes) / views - kViewBytes) / kLobeBytes;
-  const double view_bytes = kViewBytes + kLobeBytes * std::min(mean_lobes, kLobesWorthAView);
-  const auto keep = std::max<size_t>(1, static_cast<size_t>(static_cast<double>(max_bytes) / view_bytes));
-  FittedSlices kept{{}, {}, fitted.uncovered};
-  for (const size_t i : thinned(fitted.paths.size(), std::min(keep, fitted.paths.size()))) {
-    kept.slices.push_back(std::move(fitted.slices[i]));
-    kept.paths.push_back(std::move(fitted.paths[i]));
-  }
-  fitted = std::move(kept);
-  const auto share = share_lobes(fitted.paths, (max_bytes - kViewBytes * fitted.paths.size()) / kLobeBytes);
-  for (size_t i = 0; i < fitted.paths.size(); ++i) fitted.paths[i].path.resize(share[i] + 1);
-  return true;
-}
-
-std::shared_ptr<ScatteredBrdf> assemble(const FittedSlices& fitted, bool isotropic, const FitOptions& options) {
-  const auto& [slices, paths, uncovered] = fitted;
-  auto brdf = std::make_shared<ScatteredBrdf>();
-  brdf->kernel = options.kernel;
-  brdf->isotropic = isotropic;
-  brdf->align_views = options.align_views;
-  brdf->default_neighbors = neighbors_of(isotropic);
-  brdf->first_lobe.push_back(0);
-  for (size_t i = 0; i < slices.size(); ++i) {
-    brdf->views.push_back(slices[i].wv);
-    brdf->diffuse.emplace_back(paths[i].path.back().diffuse);
-    for (const SliceLobe& lobe : paths[i].path.back().lobes) {
-      const StoredLobe stored = stored_lobe(options.kernel, lobe);
-      brdf->center.push_back(stored.center);
-      brdf->bandwidth.push_back(stored.bandwidth);
-      brdf->coefficient.push_back(stored.coefficient);
-    }
-    brdf->first_lobe.push_back(static_cast<uint32_t>(brdf->center.size()));
-  }
-  return brdf;
-}
-
-void warn_of_uncovered(const FittedSlices& fitted, std::vector<std::string>& warnings) {
-  if (fitted.uncovered == 0) return;
-  warnings.push_back(std::to_string(fitted.uncovered) + " of " +
-                     std::to_string(fitted.uncovered + fitted.slices.size()) +
+void warn_of_uncovered(size_t uncovered, size_t fitted, std::vector<std::string>& warnings) {
+  if (uncovered == 0) return;
+  warnings.push_back(std::to_string(uncovered) + " of " + std::to_string(uncovered + fitted) +
                      " sampled views are outside the measurement and were left out");
 }
 
@@ -136,7 +72,6 @@ Model reported(const Measurement& measurement, const FittedSlices& fitted, const
   }
   Model model;
   model.fit = report_fit(measurement, *make_scattered_material(brdf, 0), options, views, progress);
-  warn_of_uncovered(fitted, model.fit.warnings);
   warn_of_gamut(fitted.slices, model.fit.warnings);
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
@@ -147,29 +82,29 @@ uint64_t size_of(const Model& model, const FitOptions& options) {
   return options.size_of ? options.size_of(model) : std::get<ScatteredBrdf>(model.body).parameter_bytes();
 }
 
-/// The largest model of `all` within options.max_bytes that a few tries find: a file's size is known only when it is
-/// made.
+/// The best model of `all` within options.max_bytes that a few tries find: a file's size is known only when it is made.
 Model bounded_model(const Measurement& measurement, const FittedSlices& all, const FitOptions& options,
                     Progress& progress) {
-  for (uint64_t budget = std::max(kViewBytes, std::min(options.max_bytes, parameter_bytes(all)));;) {
-    FittedSlices fitted = all;
-    const bool bounded = fit_into(budget, fitted);
+  constexpr uint64_t kLobeBytes = ScatteredBrdf::kLobeBytes, kViewBytes = ScatteredBrdf::kViewBytes;
+  const uint64_t whole = parameter_bytes(all);
+  for (uint64_t budget = std::max(kViewBytes, std::min(options.max_bytes, whole));;) {
+    progress.check();
+    const FittedSlices fitted = within(budget, all, measurement.isotropic(), options);
     Model model = reported(measurement, fitted, options, progress);
-    if (bounded) {
+    if (budget < whole) {
       model.fit.warnings.push_back("the bound of " + std::to_string(options.max_bytes) + " bytes leaves " +
                                    std::to_string(fitted.slices.size()) + " views and " +
                                    std::to_string(std::get<ScatteredBrdf>(model.body).lobe_count()) + " lobes");
     }
     const uint64_t size = size_of(model, options);
     if (size <= options.max_bytes) return model;
-    const uint64_t excess = size - options.max_bytes + kLobeBytes;
-    if (budget < excess + kViewBytes) {
+    if (budget == kViewBytes) {
       throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
-                                                "; no model of this measurement is that small, one of " +
-                                                std::to_string(fitted.slices.size()) + " views takes " +
+                                                "; the smallest model of this measurement takes " +
                                                 std::to_string(size) + ".");
     }
-    budget -= excess;
+    const uint64_t excess = size - options.max_bytes + kLobeBytes;
+    budget = budget > excess + kViewBytes ? budget - excess : kViewBytes;
   }
 }
 
@@ -189,11 +124,12 @@ Model fit_scattered(const Measurement& measurement, const FitOptions& options, P
   }
   progress.stage("fitting", 0.1, 0.95);
   auto paths = fit_slices(slices, options, progress);
-  const FittedSlices fitted{std::move(slices), std::move(paths), uncovered.size()};
+  const FittedSlices fitted{std::move(slices), std::move(paths)};
 
   progress.stage("checking", 0.95, 1.0);
   Model model = options.max_bytes > 0 ? bounded_model(measurement, fitted, options, progress)
                                       : reported(measurement, fitted, options, progress);
+  warn_of_uncovered(uncovered.size(), fitted.slices.size(), model.fit.warnings);
   progress.check();
   progress.update(1.0);
   model.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -13,8 +13,8 @@ namespace {
 using Index = Eigen::Index;
 
 // Broader than this a lobe is a constant over the hemisphere, whatever its centre.
-constexpr double kMaxPeakToHorizon = 100;  // of a lobe below the horizon
 constexpr double kMinSharpness = 0.02;
+constexpr double kMaxPeakToHorizon = 100;  // of a lobe below the horizon
 // Column products are sums in float: below this share of its length a column is rounding.
 constexpr double kRidge = 1e-7;
 // Longest step of one refinement: this many lobe widths, and a factor e of sharpness.
