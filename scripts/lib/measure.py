@@ -24,7 +24,9 @@ THREADS = 2
 MATERIAL = "blue-metallic-paint"
 TOLERANCE = 0.02
 LOBES = (2, 4, 8, 16)
-STRATEGIES = ("uniform", "cosine", "table", "srbf", "ggx", "light", "mis", "mis-ggx")
+STRATEGIES = ("uniform", "cosine", "table", "srbf", "ggx", "light", "mis", "mis-ggx", "product")
+CHARTED = (MATERIAL, "nickel")
+WORLDS = ("venice_sunset", "studio_small_03")
 
 
 def main() -> int:
@@ -33,13 +35,14 @@ def main() -> int:
         print(f"measure: skipped, there is no test data in {data}; set VELOUR_DATA to its folder.")
         return 0
     materials = _materials(data)
-    scene = ["--mesh", data / "mesh/bunny.obj", "--world", data / "hdr/venice_sunset_1k.hdr"]
+    worlds = {name: _scene(data, name) for name in WORLDS}
+    scene = worlds[WORLDS[0]]
     results = {
         "conditions": _conditions(),
         "fits": {name: _fit(path) for name, path in materials.items()},
         "render": _main_render(scene),
         "lobes": _image_error_by_lobes(scene, materials[MATERIAL]),
-        "strategies": _strategies(scene),
+        "strategies": {f"{m}, {w}": _strategies(worlds[w], m) for m in CHARTED for w in WORLDS},
     }
     files.write_text(ROOT / "docs/measurements.md", measure_text.page(results))
     files.write_text(ROOT / "docs/measurements.csv", _csv(results))
@@ -82,6 +85,10 @@ def _materials(data: Path) -> dict[str, Path]:
     return {name: folder / f"{name}.binary" for name in names}
 
 
+def _scene(data: Path, world: str) -> list:
+    return ["--mesh", data / "mesh/bunny.obj", "--world", data / f"hdr/{world}_1k.hdr"]
+
+
 def _model(name: str, lobes: int) -> Path:
     return WORK / f"{name}-{lobes}.velour"
 
@@ -109,14 +116,15 @@ def _image_error_by_lobes(scene: list, measurement: Path) -> dict[int, dict]:
     return rows
 
 
-def _strategies(scene: list) -> dict[str, dict]:
-    model, small = _model(MATERIAL, LOBES[-1]), ["--size", "320x240"]
+def _strategies(scene: list, material: str) -> dict[str, dict]:
+    model, small = _model(material, LOBES[-1]), ["--size", "320x240"]
     render(scene, model, "converged.exr", *small, "--spp", 8192, "--seed", SEED + 1)
     against = ["--reference", WORK / "converged.exr"]
-    return {
-        name: render(scene, model, f"{name}.exr", *small, "--spp", 64, "--strategy", name, *against)
-        for name in STRATEGIES
-    }
+    rows = {}
+    for name in STRATEGIES:
+        options = ["--spp", 64, "--strategy", name, "--cache", WORK, *against]
+        rows[name] = render(scene, model, f"{name}.exr", *small, *options)
+    return rows
 
 
 def _csv(results: dict) -> str:

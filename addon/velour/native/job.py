@@ -166,8 +166,8 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
 
 def render_job(scene, **options) -> Job:
     """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit
-    (seconds), transparent, measure_ray_share, heuristic (table.HEURISTICS), sequence (table.SEQUENCES), share,
-    noise, cache_folder (keeps fits of the environment; none: nowhere). `scene` is a committed Scene."""
+    (seconds), transparent, measure_ray_share, heuristic (table.HEURISTICS), sequence (table.SEQUENCES),
+    share, noise, cache_folder (keeps fits of the environment; none: nowhere). `scene` is committed."""
     raw = _defaults(table.RenderOptions, "vlr_render_options_init")
     enums = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence": table.SEQUENCES}
     for name in enums.keys() & options.keys():

@@ -34,8 +34,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
             (
                 "PRODUCT",
                 "Products",
-                "Half from the products of the material's lobes with lobes of the environment, the rest as "
-                "Lobes and Lights. The least noise a sample",
+                "Half from the products of the material's lobes and the environment's, the rest as before",
                 8,
             ),
         ),

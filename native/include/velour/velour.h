@@ -308,7 +308,7 @@ typedef struct vlr_render_options {
   int32_t sequence;          /* VLR_SEQUENCE_* */
   double share;              /* of VLR_STRATEGY_MIS: share of the directions that the lights draw; 0..1; 0.5 */
   double noise;              /* relative error at which a block of 16 x 16 pixels gets no more samples; 0: off */
-  const char* cache_folder; /* for fits of the environment (product), made when missing; NULL or "": none */
+  const char* cache_folder;  /* for fits of the environment (product), made when missing; NULL or "": none */
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);
 /* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise, spp_mean,

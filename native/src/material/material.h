@@ -34,8 +34,8 @@ class Material {
   virtual Vec3 sample(const PreparedBrdf& point, const Vec2& u) const = 0;
 
   /// Gaussian lobes in light space that resemble f cos at the prepared `point`, with their sampling density: what
-  /// `product` multiplies with the sky. They steer sampling alone, so lobes of another space may be given as the nearest
-  /// Gaussians here. Null: the material has none.
+  /// `product` multiplies with the sky. They steer sampling alone, so lobes of another space may be given as the
+  /// nearest Gaussians here. Null: the material has none.
   virtual const LobeMixture* gaussian_lobes(const PreparedBrdf& /*point*/) const { return nullptr; }
 
   /// True when f depends on the azimuth difference alone (tables of it need one meridian of views).
