@@ -16,7 +16,7 @@ from mathutils import Vector
 from velour.native import images, render_job
 
 SIZE = (640, 480)
-SAMPLES, BOUNCES = 128, 1
+SAMPLES, BOUNCES = 384, 1
 WORLD, WORLD_ROTATION, WORLD_STRENGTH = "courtyard.exr", 250.0, 0.7
 
 PLOT_REDUCTION = 4  # of the picture's sides
