@@ -6,26 +6,11 @@
 #include <cstdlib>
 
 #include "capture/microsurface_brdf.h"
+#include "support/beckmann.h"
 
 namespace {
 
 using namespace velour;
-
-double smith_lambda(double alpha, double cos_theta) {
-  const double tan_theta = std::sqrt(1 - cos_theta * cos_theta) / cos_theta;
-  if (tan_theta < 1e-9) return 0;
-  const double a = 1 / (alpha * tan_theta);
-  return 0.5 * (std::erf(a) - 1) + std::exp(-a * a) / (2 * a * std::sqrt(kPiD));
-}
-
-/// Single reflection of a lossless Beckmann surface with height-correlated Smith masking.
-double beckmann(double alpha, const DirectionPair& pair) {
-  const Vec3 h = glm::normalize(pair.wl + pair.wv);
-  const double cos_sq = static_cast<double>(h.z * h.z), tan_sq = (1 - cos_sq) / cos_sq;
-  const double d = std::exp(-tan_sq / (alpha * alpha)) / (kPiD * alpha * alpha * cos_sq * cos_sq);
-  const auto l = static_cast<double>(pair.wl.z), v = static_cast<double>(pair.wv.z);
-  return d / (1 + smith_lambda(alpha, l) + smith_lambda(alpha, v)) / (4 * l * v);
-}
 
 /// Root mean square of measured / closed form - 1 over lights within one roughness of the mirror direction's slope.
 double distance_from_beckmann(const MicrosurfaceBrdf& brdf, double alpha, const Vec3& wv) {
@@ -37,7 +22,7 @@ double distance_from_beckmann(const MicrosurfaceBrdf& brdf, double alpha, const 
       const Vec3 h = glm::normalize(Vec3(slope * std::cos(angle), slope * std::sin(angle), 1));
       const Vec3 wl = 2 * glm::dot(wv, h) * h - wv;
       if (wl.z <= 0.05f) continue;
-      sum += std::pow(static_cast<double>(brdf.single({wl, wv}).g) / beckmann(alpha, {wl, wv}) - 1, 2);
+      sum += std::pow(static_cast<double>(brdf.single({wl, wv}).g) / test::beckmann(alpha, {wl, wv}) - 1, 2);
       ++count;
     }
   }

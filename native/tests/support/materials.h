@@ -3,6 +3,7 @@
 
 #include "brdf/scattered_brdf.h"
 #include "material/material.h"
+#include "material/table_sampler.h"
 #include "sphere/directions.h"
 
 namespace velour::test {
@@ -65,6 +66,15 @@ inline Evaluated eval_one(const Material& material, const DirectionPair& w) {
   PreparedBrdf point;
   material.prepare(w.wv, point);
   return eval_one(material, point, w.wl);
+}
+
+inline float pdf_one(const TableSampler& table, const DirectionPair& w) {
+  DirectionBatch batch;
+  batch.push(w.wl);
+  batch.pad();
+  ScalarBatch pdf;
+  table.pdf(w.wv, batch, pdf);
+  return pdf.v[0];
 }
 
 inline Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "capture/microsurface_brdf.h"
+#include "support/beckmann.h"
 #include "support/statistics.h"
 
 namespace velour {
@@ -47,23 +48,6 @@ struct Measured {
   MicrosurfaceBrdf brdf;
 };
 
-/// Smith's Lambda of a Beckmann surface (Heitz 2014, JCGT 3(2)).
-double smith_lambda(double alpha, double cos_theta) {
-  const double tan_theta = std::sqrt(1 - cos_theta * cos_theta) / cos_theta;
-  if (tan_theta < 1e-9) return 0;
-  const double a = 1 / (alpha * tan_theta);
-  return 0.5 * (std::erf(a) - 1) + std::exp(-a * a) / (2 * a * std::sqrt(kPiD));
-}
-
-/// D G2 / (4 cos cos): single reflection of a lossless Beckmann surface with height-correlated Smith masking.
-double beckmann(double alpha, const DirectionPair& pair) {
-  const Vec3 h = glm::normalize(pair.wl + pair.wv);
-  const double cos_sq = static_cast<double>(h.z * h.z), tan_sq = (1 - cos_sq) / cos_sq;
-  const double d = std::exp(-tan_sq / (alpha * alpha)) / (kPiD * alpha * alpha * cos_sq * cos_sq);
-  const auto l = static_cast<double>(pair.wl.z), v = static_cast<double>(pair.wv.z);
-  return d / (1 + smith_lambda(alpha, l) + smith_lambda(alpha, v)) / (4 * l * v);
-}
-
 /// Relative L2 distance of the measured single reflection from Beckmann's of `alpha`, over the highlights of views up
 /// to 60 degrees: lights up to 12 degrees off the mirror direction.
 double distance_from_beckmann(const MicrosurfaceBrdf& brdf, double alpha) {
@@ -74,7 +58,7 @@ double distance_from_beckmann(const MicrosurfaceBrdf& brdf, double alpha) {
       for (const float aside : {0.0f, 0.08f, 0.16f}) {
         const float theta = radians_from(static_cast<float>(view + tilt));
         const Vec3 wl = glm::normalize(Vec3(-std::sin(theta), aside, std::cos(theta)));
-        const double expected = beckmann(alpha, {wl, wv});
+        const double expected = test::beckmann(alpha, {wl, wv});
         difference += std::pow(static_cast<double>(brdf.single({wl, wv}).g) / expected - 1, 2);
         norm += 1;
       }

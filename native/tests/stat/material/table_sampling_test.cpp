@@ -4,26 +4,18 @@
 #include "material/table_sampler.h"
 #include "sphere/random.h"
 #include "sphere/warp.h"
+#include "support/materials.h"
 #include "support/statistics.h"
 
 namespace velour {
 namespace {
-
-double pdf_one(const TableSampler& table, const DirectionPair& w) {
-  DirectionBatch batch;
-  batch.push(w.wl);
-  batch.pad();
-  ScalarBatch pdf;
-  table.pdf(w.wv, batch, pdf);
-  return pdf.v[0];
-}
 
 test::ChiSquareResult judge_table(const TableSampler& sampled, const TableSampler& claimed, const Vec3& wv,
                                   uint64_t seed) {
   test::ChiSquareOptions options = test::quick_options(seed);
   options.refinements = 3;  // the density jumps at every edge of the table
   return test::chi_square([&](const Vec2& u) { return sampled.sample(wv, u); },
-                          [&](const Vec3& wl) { return pdf_one(claimed, {.wl = wl, .wv = wv}); }, options);
+                          [&](const Vec3& wl) { return test::pdf_one(claimed, {.wl = wl, .wv = wv}); }, options);
 }
 
 std::shared_ptr<const Material> scattered(const ScatteredBrdf& brdf) {
@@ -63,7 +55,8 @@ TEST(TableSampling, BeatsTheCosineOnAHighlight) {
   for (uint64_t i = 0; i < 20'000; ++i) {
     const Vec2 u = RandomStream(3, 0, i).next2();
     const Vec3 a = table.sample(wv, u), b = sample_cosine_hemisphere(u);
-    by_table.add(a.z > 0 ? test::eval_one(*material, point, a).f.g * a.z / pdf_one(table, {.wl = a, .wv = wv}) : 0);
+    by_table.add(a.z > 0 ? test::eval_one(*material, point, a).f.g * a.z / test::pdf_one(table, {.wl = a, .wv = wv})
+                         : 0);
     by_cosine.add(test::eval_one(*material, point, b).f.g * kPiD);
   }
   EXPECT_GT(test::z_test(by_table.mean(), by_table.standard_error(), by_cosine.mean(), by_cosine.standard_error()),

@@ -9,29 +9,20 @@
 namespace velour {
 namespace {
 
-float pdf_one(const TableSampler& table, const DirectionPair& w) {
-  DirectionBatch batch;
-  batch.push(w.wl);
-  batch.pad();
-  ScalarBatch pdf;
-  table.pdf(w.wv, batch, pdf);
-  return pdf.v[0];
-}
-
 TEST(TableSampler, IsPositiveAboveTheHorizonAndFinite) {
   const auto material = make_principled_material({Rgb(0.5f), 1, 0.2f, 0.5f});
   const TableSampler table(*material);
   for (const Vec3& wv : {Vec3(0, 0, 1), direction(0.7f, 2), direction(1.5707f, -1)}) {
     for (const Vec3& wl : sphere_fibonacci(300)) {
-      const float pdf = pdf_one(table, {wl, wv});
+      const float pdf = test::pdf_one(table, {wl, wv});
       EXPECT_TRUE(std::isfinite(pdf));
       EXPECT_GE(pdf, 0);
       if (wl.z > 0) {
         EXPECT_GT(pdf, 0);
       }
     }
-    EXPECT_TRUE(std::isfinite(pdf_one(table, {-wv, wv})));
-    EXPECT_TRUE(std::isfinite(pdf_one(table, {wv, wv})));
+    EXPECT_TRUE(std::isfinite(test::pdf_one(table, {-wv, wv})));
+    EXPECT_TRUE(std::isfinite(test::pdf_one(table, {wv, wv})));
   }
 }
 
@@ -40,7 +31,7 @@ TEST(TableSampler, SurvivesABlackMaterial) {
   for (const Vec2& u : {Vec2(0, 0), Vec2(0.5f), Vec2(1 - 0x1p-24f)}) {
     const Vec3 wl = table.sample(direction(1, 1), u);
     EXPECT_NEAR(glm::length(wl), 1, 1e-5f);
-    EXPECT_GE(pdf_one(table, {wl, direction(1, 1)}), 0);
+    EXPECT_GE(test::pdf_one(table, {wl, direction(1, 1)}), 0);
   }
 }
 
@@ -50,7 +41,7 @@ TEST(TableSampler, ResolvesASharpHighlight) {
   const TableSampler table(*material);
   const Vec3 wv = direction(0.7f, 0.3f), wl = test::mirror(wv);
   const float f_cos = test::eval_one(*material, {wl, wv}).f.g * wl.z;
-  EXPECT_NEAR(pdf_one(table, {wl, wv}) / f_cos, 0.95, 0.06);
+  EXPECT_NEAR(test::pdf_one(table, {wl, wv}) / f_cos, 0.95, 0.06);
 }
 
 TEST(TableSampler, AnisotropicTablesFollowTheView) {
@@ -58,7 +49,7 @@ TEST(TableSampler, AnisotropicTablesFollowTheView) {
   const TableSampler table(*material);
   for (const float phi : {-3.1f, -0.2f, 0.0f, 1.0f, 3.1f}) {
     const Vec3 wv = direction(0.8f, phi);
-    EXPECT_GT(pdf_one(table, {test::mirror(wv), wv}), 10 * pdf_one(table, {wv, wv}));
+    EXPECT_GT(test::pdf_one(table, {test::mirror(wv), wv}), 10 * test::pdf_one(table, {wv, wv}));
   }
   EXPECT_GT(table.bytes(), 1'000'000u);
 }
