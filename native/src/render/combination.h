@@ -5,39 +5,35 @@
 
 namespace velour {
 
-/// Who drew a direction, in the order in which a batch holds them.
-enum class Drawer : int { product = 0, surface = 1, lights = 2 };
+/// Who drew a direction.
+enum class Drawer : uint8_t { product = 0, surface = 1, lights = 2 };
 
 /// Multi-sample combination [VG95]: of n directions the share c_k comes from density p_k; the shares sum to 1. With
 /// q_k = c_k p_k a direction counts f / (n d):
 ///   balance  d = sum_k q_k               weight q_own / sum_k q_k
 ///   power    d = sum_k q_k^2 / q_own     weight q_own^2 / sum_k q_k^2, exponent 2
-/// where "own" is the density that drew it. A share of 0 leaves a density out.
-struct Combination {
-  float share[3] = {0, 0, 0};  // by Drawer
-  Heuristic heuristic = Heuristic::balance;
+/// where "own" is the density that drew it. A share of 0 leaves a density out. This is d of `q`, by Drawer.
+inline float effective_density(Heuristic heuristic, const float (&q)[3], Drawer own) {
+  if (heuristic == Heuristic::balance) return q[0] + q[1] + q[2];
+  const float q_own = q[static_cast<int>(own)];
+  float d = 0.0f;
+  // Quotients, not squares: densities of sharp lobes and suns squared leave float32. (A NaN density stays one.)
+  for (const float other : q) d += other == 0.0f ? 0.0f : other * (other / q_own);
+  return d;
+}
 
-  float of(Drawer drawer) const { return share[static_cast<int>(drawer)]; }
-
-  /// d of a direction whose densities are `pdf`, by Drawer.
-  float effective(const float (&pdf)[3], Drawer own) const {
-    const float q[3] = {share[0] * pdf[0], share[1] * pdf[1], share[2] * pdf[2]};
-    if (heuristic == Heuristic::balance) return q[0] + q[1] + q[2];
-    const float q_own = q[static_cast<int>(own)];
-    float d = 0.0f;
-    // Quotients, not squares: densities of sharp lobes and suns squared leave float32. (A NaN density stays one.)
-    for (const float other : q) d += other == 0.0f ? 0.0f : other * (other / q_own);
-    return d;
-  }
+/// Shares of a strategy, by Drawer.
+struct Shares {
+  float product = 0, surface = 0, lights = 0;
 };
 
-/// The combination of a strategy at a vertex where `product_share` of the directions come from products (0 for all
-/// strategies but `product`): mixed strategies share the rest between surface and lights, the others have one density.
-inline Combination combination(const RenderOptions& options, float product_share) {
+/// The shares at a vertex where `product` of the directions come from products (0 for all strategies but `product`):
+/// mixed strategies share the rest between surface and lights, the others have one density.
+inline Shares shares(const RenderOptions& options, float product) {
   const float lights =
       is_mixed(options.strategy) ? options.light_share : (options.strategy == Strategy::light ? 1.0f : 0.0f);
-  const float rest = 1.0f - product_share;
-  return {{product_share, rest * (1.0f - lights), rest * lights}, options.heuristic};
+  const float rest = 1.0f - product;
+  return {product, rest * (1.0f - lights), rest * lights};
 }
 
 }  // namespace velour

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace velour {
 namespace {
@@ -16,70 +15,91 @@ bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 
 }  // namespace
 
+void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shadows,
+                         std::vector<CameraSample>& samples) {
+  const Output output{shadows, samples};
+  for (size_t k = 0; k < receivers.size(); ++k) prepare(receivers[k], work_[k]);
+  draw_from_lights(receivers);
+  terms_.clear();
+  int towards_light = 0;
+  for (size_t k = 0; k < receivers.size(); ++k) {
+    shade(receivers[k], static_cast<uint8_t>(k), towards_light, output);
+    towards_light += work_[k].from_lights.count;
+  }
+  settle(receivers, output);
+}
+
+void DirectLight::prepare(const Receiver& receiver, Work& work) {
+  const Vertex& vertex = receiver.vertex;
+  vertex.surface->material->prepare(vertex.wv, work.prepared);
+  prepare_surface(sampling_, vertex, work.prepared);
+  work.shares = shares(options_, product_share(vertex, work));
+  PathNumbers& numbers = *receiver.numbers;
+  const auto all = numbers.all(lighting_.has_extended() ? receiver.directions : 0, receiver.full);
+  const auto [rest, product] = numbers.deal(all, work.shares.product, Purpose::product_side);
+  const auto [surface, lights] = numbers.deal(rest, work.shares.lights / (1.0f - work.shares.product), Purpose::side);
+  work.from_product = product;
+  work.from_surface = surface;
+  work.from_lights = lights;
+}
+
+float DirectLight::product_share(const Vertex& vertex, Work& work) {
+  if (options_.strategy != Strategy::product || sky_ == nullptr) return 0.0f;
+  const LobeMixture* lobes = vertex.surface->material->gaussian_lobes(work.prepared);
+  const bool proposed = lobes != nullptr && sky_->propose(*lobes, vertex.frame, products_, work.product);
+  return proposed ? kProductShare * lighting_.environment_share() : 0.0f;
+}
+
+void DirectLight::draw_from_lights(std::span<const Receiver> receivers) {
+  Vec2 u[DirectionBatch::kCapacity];
+  Vec3 position[DirectionBatch::kCapacity];
+  size_t count = 0;
+  for (size_t k = 0; k < receivers.size(); ++k) {
+    const PathNumbers::Run run = work_[k].from_lights;
+    const auto more = static_cast<size_t>(run.count);
+    receivers[k].numbers->points(Purpose::light, run.first, {u + count, more});
+    std::fill_n(position + count, more, receivers[k].vertex.position);
+    count += more;
+  }
+  if (count > 0) lighting_.sample({position, count}, {u, count}, towards_light_);
+}
+
 /// A direction that brings nothing costs nothing further: n counts it, the batch does not hold it.
-void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world) {
+void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer) {
   if (!(wl.z > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return;
+  drawer_[world_.count] = drawer;
   local_.push(wl);
   world_.push(wl_world);
 }
 
-void DirectLight::draw_from_product(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers) {
+void DirectLight::draw_from_product(const Receiver& receiver, const Work& work) {
   Vec2 u[DirectionBatch::kCapacity];
-  numbers.points(Purpose::product, run.first, {u, static_cast<size_t>(run.count)});
+  const PathNumbers::Run run = work.from_product;
+  receiver.numbers->points(Purpose::product, run.first, {u, static_cast<size_t>(run.count)});
   for (int i = 0; i < run.count; ++i) {
-    const Vec3 wl_world = sample_mixture(product_, u[i]);
-    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world);
+    const Vec3 wl_world = sample_mixture(work.product, u[i]);
+    keep_if_lit(receiver.vertex, receiver.vertex.frame.to_local(wl_world), wl_world, Drawer::product);
   }
 }
 
-void DirectLight::draw_from_surface(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers) {
+void DirectLight::draw_from_surface(const Receiver& receiver, const Work& work) {
   Vec2 u[DirectionBatch::kCapacity];
-  numbers.points(Purpose::surface, run.first, {u, static_cast<size_t>(run.count)});
+  const PathNumbers::Run run = work.from_surface;
+  receiver.numbers->points(Purpose::surface, run.first, {u, static_cast<size_t>(run.count)});
   for (int i = 0; i < run.count; ++i) {
-    const Vec3 wl = sample_surface(sampling_, vertex, prepared_, u[i]);
-    keep_if_lit(vertex, wl, vertex.frame.to_world(wl));
+    const Vec3 wl = sample_surface(sampling_, receiver.vertex, work.prepared, u[i]);
+    keep_if_lit(receiver.vertex, wl, receiver.vertex.frame.to_world(wl), Drawer::surface);
   }
 }
 
-void DirectLight::draw_from_lights(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers) {
-  if (run.count == 0) return;
-  Vec2 u[DirectionBatch::kCapacity];
-  const std::span<Vec2> points(u, static_cast<size_t>(run.count));
-  numbers.points(Purpose::light, run.first, points);
-  lighting_.sample(vertex.position, points, towards_light_);
-  for (int i = 0; i < run.count; ++i) {
-    const Vec3 wl_world = towards_light_.get(i);  // zero for a lamp's dark side: then not above the horizon
-    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world);
-  }
-}
-
-float DirectLight::product_share(const Vertex& vertex) {
-  if (options_.strategy != Strategy::product || sky_ == nullptr) return 0.0f;
-  const LobeMixture* lobes = vertex.surface->material->gaussian_lobes(prepared_);
-  const bool proposed = lobes != nullptr && sky_->propose(*lobes, vertex.frame, products_, product_);
-  return proposed ? kProductShare * lighting_.environment_share() : 0.0f;
-}
-
-void DirectLight::draw(const Vertex& vertex, Draws draws, PathNumbers& numbers) {
-  combination_ = combination(options_, product_share(vertex));
-  const float product = combination_.of(Drawer::product), lights = combination_.of(Drawer::lights);
-  const auto [rest, from_product] = numbers.deal(numbers.all(draws.count, draws.full), product, Purpose::product_side);
-  const auto [from_surface, from_lights] = numbers.deal(rest, lights / (1.0f - product), Purpose::side);
-  draw_from_product(vertex, from_product, numbers);
-  end_[0] = world_.count;
-  draw_from_surface(vertex, from_surface, numbers);
-  end_[1] = world_.count;
-  draw_from_lights(vertex, from_lights, numbers);
-  world_.pad();
-}
-
-void DirectLight::draw_sharp(const Vertex& vertex, PathNumbers& numbers) {
+void DirectLight::draw_sharp(const Receiver& receiver) {
+  const Vertex& vertex = receiver.vertex;
   const auto lamps = lighting_.sharp();
   const bool all = lamps.size() <= kSharpLamps;
   const int count = all ? static_cast<int>(lamps.size()) : kSharpLamps;
   sharp_count_ = 0;
   Vec2 u[kSharpLamps];
-  if (!all) numbers.points(Purpose::sharp, numbers.ray() * kSharpLamps, u);
+  if (!all) receiver.numbers->points(Purpose::sharp, receiver.numbers->ray() * kSharpLamps, u);
   for (int i = 0; i < count; ++i) {
     float probability = 1.0f;
     const size_t chosen = all ? static_cast<size_t>(i) : lighting_.choose_sharp(u[i].x, probability);
@@ -87,25 +107,65 @@ void DirectLight::draw_sharp(const Vertex& vertex, PathNumbers& numbers) {
     const Vec3 wl = vertex.frame.to_local(light.direction);
     if (!(wl.z > 0.0f) || !(glm::dot(light.direction, vertex.geometric_normal) > 0.0f)) continue;
     const float share = all ? 1.0f : 1.0f / (kSharpLamps * probability);
-    sharp_[sharp_count_++] = {&lamps[chosen], light.distance, share * light.perpendicular};
+    sharp_[sharp_count_++] = {&lamps[chosen], light.distance, light.direction, share * light.perpendicular};
     local_.push(wl);
   }
 }
 
-/// Density of every drawn direction under the combination, and from it what its light counts.
-void DirectLight::weigh(const Vertex& vertex, int directions) {
-  lamp_hits_.clear();
-  if (world_.count == 0) return;
-  const bool has_product = combination_.of(Drawer::product) > 0.0f;
-  lighting_.look_up(vertex.position, world_, environment_, light_pdf_, lamp_hits_);
-  surface_pdf(sampling_, vertex, prepared_, local_, material_pdf_, surface_pdf_);
-  if (has_product) eval_density(product_, world_, product_pdf_);
+void DirectLight::shade(const Receiver& receiver, uint8_t place, int towards_light, Output output) {
+  const Vertex& vertex = receiver.vertex;
+  const Work& work = work_[place];
+  local_.count = world_.count = 0;
+  draw_from_product(receiver, work);
+  draw_from_surface(receiver, work);
+  for (int i = towards_light; i < towards_light + work.from_lights.count; ++i) {
+    const Vec3 wl_world = towards_light_.get(i);  // zero for a lamp's dark side: then not above the horizon
+    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world, Drawer::lights);
+  }
+  draw_sharp(receiver);
+  if (local_.count == 0) return;
+  local_.pad();
+  world_.pad();
+  vertex.surface->material->eval(work.prepared, local_, f_, material_pdf_);
+  add_terms(receiver, place);
+  for (int k = 0; k < sharp_count_; ++k) {
+    const int i = world_.count + k;
+    const Rgb reflected = receiver.throughput * reflectance(vertex, i) * local_.z[i];
+    const Sharp& sharp = sharp_[k];
+    queue(receiver, sharp.wl_world, reflected * sharp.irradiance, sharp.distance, sharp.lamp->casts_shadow(), output);
+  }
+}
+
+void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
+  const Work& work = work_[place];
+  const bool has_product = work.shares.product > 0.0f;
+  surface_pdf(sampling_, receiver.vertex, work.prepared, local_, material_pdf_, surface_pdf_);
+  if (has_product) eval_density(work.product, world_, product_pdf_);
+  const Rgb share = receiver.throughput / static_cast<float>(receiver.directions);
   for (int i = 0; i < world_.count; ++i) {
-    const Drawer own = i < end_[0] ? Drawer::product : (i < end_[1] ? Drawer::surface : Drawer::lights);
-    const float pdf[3] = {has_product ? product_pdf_.v[i] : 0.0f, surface_pdf_.v[i], light_pdf_.v[i]};
-    const float density = combination_.effective(pdf, own);
-    // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
-    weight_[i] = density == 0.0f ? 0.0f : local_.z[i] / (static_cast<float>(directions) * density);
+    const int to = terms_.world.count;
+    terms_.world.push(world_.get(i));
+    terms_.reflected.set(to, share * reflectance(receiver.vertex, i) * local_.z[i]);
+    terms_.product.v[to] = has_product ? work.shares.product * product_pdf_.v[i] : 0.0f;
+    terms_.surface.v[to] = work.shares.surface * surface_pdf_.v[i];
+    terms_.light_share.v[to] = work.shares.lights;
+    terms_.position[to] = receiver.vertex.position;
+    terms_.drawer[to] = drawer_[i];
+    terms_.receiver[to] = place;
+  }
+}
+
+void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
+  terms_.look_up(lighting_, options_.heuristic);
+  const auto add = [&](int i, const Rgb& radiance, float far, bool casts_shadow) {
+    queue(receivers[terms_.receiver[i]], terms_.world.get(i), terms_.weight.v[i] * radiance * terms_.reflected.get(i),
+          far, casts_shadow, output);
+  };
+  for (int i = 0; i < terms_.world.count; ++i) {
+    add(i, terms_.environment.get(i), std::numeric_limits<float>::infinity(), true);
+  }
+  for (const LampHit& hit : terms_.lamp_hits) {
+    add(hit.direction, hit.lamp->radiance(), hit.distance, hit.lamp->casts_shadow());
   }
 }
 
@@ -114,58 +174,33 @@ Rgb DirectLight::reflectance(const Vertex& vertex, int direction) const {
   return working_space_ && vertex.surface->rec709_colors ? *working_space_ * f : f;
 }
 
-void DirectLight::queue(const Vertex& vertex, const Receiver& receiver, int direction, Rgb light, float far,
-                        bool casts_shadow, ShadowQueue& shadows, std::vector<CameraSample>& samples) {
-  light *= receiver.throughput * reflectance(vertex, direction);
+void DirectLight::queue(const Receiver& receiver, const Vec3& wl_world, const Rgb& light, float far, bool casts_shadow,
+                        Output output) {
   if (zero(light)) return;
   if (!finite(light)) {
     ++nan_samples_;
     return;
   }
   if (!casts_shadow) {
-    samples[receiver.sample].radiance += light;
+    output.samples[receiver.sample].radiance += light;
     return;
   }
-  shadows.add(vertex.ray(vertex.frame.to_world(local_.get(direction)), far), light, receiver.sample);
+  output.shadows.add(receiver.vertex.ray(wl_world, far), light, receiver.sample);
 }
 
-void DirectLight::gather(const Vertex& vertex, Draws draws, PathNumbers& numbers, const Receiver& receiver,
-                         ShadowQueue& shadows, std::vector<CameraSample>& samples) {
-  local_.count = world_.count = 0;
-  if (lighting_.has_extended()) draw(vertex, draws, numbers);
-  draw_sharp(vertex, numbers);
-  if (local_.count == 0) return;
-  local_.pad();
-  vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
-  weigh(vertex, draws.count);
-
-  for (int i = 0; i < world_.count; ++i) {
-    queue(vertex, receiver, i, weight_[i] * environment_.get(i), std::numeric_limits<float>::infinity(), true, shadows,
-          samples);
-  }
-  for (const LampHit& hit : lamp_hits_) {
-    queue(vertex, receiver, hit.direction, weight_[hit.direction] * hit.lamp->radiance(), hit.distance,
-          hit.lamp->casts_shadow(), shadows, samples);
-  }
-  for (int k = 0; k < sharp_count_; ++k) {
-    const int i = world_.count + k;
-    queue(vertex, receiver, i, local_.z[i] * sharp_[k].irradiance, sharp_[k].distance, sharp_[k].lamp->casts_shadow(),
-          shadows, samples);
-  }
-}
-
-std::optional<DirectLight::Continuation> DirectLight::extend(const Vertex& vertex, PathNumbers& numbers,
-                                                             const Rgb& throughput) {
+std::optional<DirectLight::Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
+  const Vertex& vertex = receiver.vertex;
+  const PreparedBrdf& prepared = work_[place].prepared;
   local_.count = 0;
-  local_.push(sample_surface(sampling_, vertex, prepared_, numbers.point(Purpose::onward)));
+  local_.push(sample_surface(sampling_, vertex, prepared, receiver.numbers->point(Purpose::onward)));
   local_.pad();
   const Vec3 wl_world = vertex.frame.to_world(local_.get(0));
   if (!(local_.z[0] > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return std::nullopt;
-  vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
-  surface_pdf(sampling_, vertex, prepared_, local_, material_pdf_, surface_pdf_);
+  vertex.surface->material->eval(prepared, local_, f_, material_pdf_);
+  surface_pdf(sampling_, vertex, prepared, local_, material_pdf_, surface_pdf_);
   const Rgb f = reflectance(vertex, 0);
   if (zero(f)) return std::nullopt;
-  const Rgb onward = throughput * f * (local_.z[0] / surface_pdf_.v[0]);
+  const Rgb onward = receiver.throughput * f * (local_.z[0] / surface_pdf_.v[0]);
   if (!finite(onward)) {
     ++nan_samples_;
     return std::nullopt;

@@ -1,24 +1,29 @@
-// Light that reaches a vertex straight from lamps and environment: the estimator of every strategy.
+// Light that reaches vertices straight from lamps and environment: the estimator of every strategy.
 #pragma once
 
 #include <optional>
+#include <span>
 
-#include "render/combination.h"
 #include "render/direction_sampling.h"
-#include "render/lighting.h"
+#include "render/light_terms.h"
 #include "render/path_numbers.h"
 #include "render/shadow_queue.h"
 #include "render/sky_proposals.h"
 
 namespace velour {
 
-/// What is gathered for.
+/// A vertex that gathers light.
 struct Receiver {
-  uint32_t sample;  // number of the camera sample
+  Vertex vertex;
+  PathNumbers* numbers;
   Rgb throughput;
+  uint32_t sample;  // number of the camera sample
+  int directions;   // how many to draw
+  int full;         // how many a camera ray draws that is not the last of its pixel
 };
 
-/// One a thread: owns the scratch batches of the vertex in work. Call prepare(), then the others for that vertex.
+/// One a thread: owns the scratch memory of the vertices in work. They go through together, in as many as fit a batch
+/// of directions: memory and vectors serve all of them, while their lobes stay in the cache.
 class DirectLight {
  public:
   /// `sky` serves `product` and is null for the others.
@@ -29,32 +34,29 @@ class DirectLight {
         sampling_(surface_sampling(options.strategy)),
         sky_(sky) {}
 
-  void prepare(const Vertex& vertex) {
-    vertex.surface->material->prepare(vertex.wv, prepared_);
-    prepare_surface(sampling_, vertex, prepared_);
+  /// How many vertices of up to `directions` each gather() takes.
+  static size_t receivers_of(int directions) {
+    return static_cast<size_t>(std::clamp(DirectionBatch::kCapacity / directions, 1, kReceivers));
   }
 
-  /// Draws `directions` light directions, estimates
+  /// For each receiver draws its light directions, estimates
   ///   throughput / n  sum_i f(wl_i) L(wl_i) cos(wl_i) / d(wl_i)
-  /// with d the density of the strategy (combination.h), and queues every term that is not zero. `full`: directions of
-  /// a camera ray that is not the last of its pixel. `product` has a third density beside surface and lights: the
-  /// products of the material's lobes with those of the sky; a vertex without products is lit as by `mis`.
+  /// with d the density of the strategy (combination.h), and queues every term that is not zero. `product` has a third
+  /// density beside surface and lights: the products of the material's lobes with those of the sky; a vertex without
+  /// products is lit as by `mis`.
   ///
   /// Sharp lamps, which no drawn direction can meet, are added under every strategy: each once when there are at most
   /// kSharpLamps, else that many drawn in proportion to power.
-  struct Draws {
-    int count, full;
-  };
-  void gather(const Vertex& vertex, Draws draws, PathNumbers& numbers, const Receiver& receiver, ShadowQueue& shadows,
-              std::vector<CameraSample>& samples);
+  void gather(std::span<const Receiver> receivers, ShadowQueue& shadows, std::vector<CameraSample>& samples);
 
   struct Continuation {
     Ray ray;
     Rgb throughput;
   };
-  /// One more ray, drawn from the surface side alone: what it meets on surfaces was in no term of gather(), and what it
-  /// meets beyond them (lamps, environment) was in all, so only surfaces may be counted at its end.
-  std::optional<Continuation> extend(const Vertex& vertex, PathNumbers& numbers, const Rgb& throughput);
+  /// One more ray from the vertex that was number `place` of the last gather(), drawn from the surface side alone: what
+  /// it meets on surfaces was in no term of gather(), and what it meets beyond them (lamps, environment) was in all, so
+  /// only surfaces may be counted at its end.
+  std::optional<Continuation> extend(const Receiver& receiver, size_t place);
 
   /// Directions left out so far because their term was not finite.
   uint64_t nan_samples() const { return nan_samples_; }
@@ -62,17 +64,34 @@ class DirectLight {
   static constexpr int kSharpLamps = 4;
 
  private:
-  void draw(const Vertex& vertex, Draws draws, PathNumbers& numbers);
-  void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world);
-  void draw_from_product(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers);
-  void draw_from_surface(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers);
-  void draw_from_lights(const Vertex& vertex, PathNumbers::Run run, PathNumbers& numbers);
+  static constexpr int kReceivers = 8;
+
+  /// What is kept of a vertex until its batch is done.
+  struct Work {
+    PreparedBrdf prepared;
+    LobeMixture product;  // world frame
+    Shares shares;
+    PathNumbers::Run from_product, from_surface, from_lights;
+  };
+  struct Output {
+    ShadowQueue& shadows;
+    std::vector<CameraSample>& samples;
+  };
+
+  void prepare(const Receiver& receiver, Work& work);
   /// Makes the products of the vertex, if it has any; the share of directions that they draw.
-  float product_share(const Vertex& vertex);
-  void draw_sharp(const Vertex& vertex, PathNumbers& numbers);
-  void weigh(const Vertex& vertex, int directions);
-  void queue(const Vertex& vertex, const Receiver& receiver, int direction, Rgb light, float far, bool casts_shadow,
-             ShadowQueue& shadows, std::vector<CameraSample>& samples);
+  float product_share(const Vertex& vertex, Work& work);
+  void draw_from_lights(std::span<const Receiver> receivers);
+  void draw_from_product(const Receiver& receiver, const Work& work);
+  void draw_from_surface(const Receiver& receiver, const Work& work);
+  void draw_sharp(const Receiver& receiver);
+  void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer);
+  /// Draws and reflects at one vertex. `towards_light`: its first direction among those drawn from lights.
+  void shade(const Receiver& receiver, uint8_t place, int towards_light, Output output);
+  void add_terms(const Receiver& receiver, uint8_t place);
+  void settle(std::span<const Receiver> receivers, Output output);
+  void queue(const Receiver& receiver, const Vec3& wl_world, const Rgb& light, float far, bool casts_shadow,
+             Output output);
   Rgb reflectance(const Vertex& vertex, int direction) const;
 
   const std::optional<Mat3>& working_space_;
@@ -84,22 +103,21 @@ class DirectLight {
   struct Sharp {
     const Lamp* lamp;
     float distance;
+    Vec3 wl_world;
     Rgb irradiance;  // perpendicular, over the probability of having been chosen
   };
 
-  PreparedBrdf prepared_;
-  // Those drawn directions that can bring light: above both the shading horizon and the surface itself. local_ goes on
-  // with the directions of sharp lamps.
+  Work work_[kReceivers];
+  DirectionBatch towards_light_;  // of all vertices
+  LightTerms terms_;              // of all vertices
+
+  // Of one vertex: those drawn directions that can bring light, above both the shading horizon and the surface itself.
+  // local_ goes on with the directions of sharp lamps.
   DirectionBatch local_, world_;
-  int end_[2] = {0, 0};  // where those drawn from products end, and those from the surface; the lights drew the rest
-  DirectionBatch towards_light_;
+  Drawer drawer_[DirectionBatch::kCapacity];
+  RgbBatch f_;
+  ScalarBatch material_pdf_, surface_pdf_, product_pdf_;
   LobeProducts products_;
-  LobeMixture product_;      // world frame
-  Combination combination_;  // of the vertex in work
-  RgbBatch f_, environment_;
-  ScalarBatch material_pdf_, light_pdf_, surface_pdf_, product_pdf_;
-  float weight_[DirectionBatch::kCapacity];  // cos / (n d)
-  std::vector<LampHit> lamp_hits_;
   Sharp sharp_[kSharpLamps];
   int sharp_count_ = 0;
   uint64_t nan_samples_ = 0;

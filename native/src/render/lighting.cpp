@@ -45,7 +45,7 @@ Vec3 Lighting::sample_lamp(const Vec3& position, const Vec2& u) const {
   return lamps_[chosen].sample(position, {std::min(left / probability_[chosen], kBelowOne), u.y});
 }
 
-void Lighting::sample(const Vec3& position, std::span<const Vec2> u, DirectionBatch& world) const {
+void Lighting::sample(std::span<const Vec3> position, std::span<const Vec2> u, DirectionBatch& world) const {
   if (lamps_.empty()) return environment_.sample(u, world);
   Vec2 of_environment[DirectionBatch::kCapacity];
   int place[DirectionBatch::kCapacity];
@@ -56,7 +56,7 @@ void Lighting::sample(const Vec3& position, std::span<const Vec2> u, DirectionBa
       place[count] = static_cast<int>(i);
       of_environment[count++] = left;
     } else {
-      world.set(static_cast<int>(i), sample_lamp(position, u[i]));
+      world.set(static_cast<int>(i), sample_lamp(position[i], u[i]));
     }
   }
   if (count > 0) {
@@ -67,14 +67,14 @@ void Lighting::sample(const Vec3& position, std::span<const Vec2> u, DirectionBa
   world.count = static_cast<int>(u.size());
 }
 
-void Lighting::look_up(const Vec3& position, const DirectionBatch& world, RgbBatch& environment, ScalarBatch& pdf,
-                       std::vector<LampHit>& hits) const {
+void Lighting::look_up(std::span<const Vec3> position, const DirectionBatch& world, RgbBatch& environment,
+                       ScalarBatch& pdf, std::vector<LampHit>& hits) const {
   environment_.look_up(world, environment, pdf);
   if (lamps_.empty()) return;
   for (int i = 0; i < world.count; ++i) {
     float density = environment_probability_ * pdf.v[i];
     for (size_t k = 0; k < lamps_.size(); ++k) {
-      const Lamp::Sight sight = lamps_[k].hit(position, world.get(i));
+      const Lamp::Sight sight = lamps_[k].hit(position[static_cast<size_t>(i)], world.get(i));
       if (sight.pdf == 0.0f) continue;
       density += probability_[k] * sight.pdf;
       hits.push_back({i, &lamps_[k], sight.distance});

@@ -26,12 +26,12 @@ class Lighting {
   /// True when there is anything that a sampled direction can meet.
   bool has_extended() const { return !lamps_.empty() || !environment_.black(); }
 
-  /// Directions from `position` towards light, one for each of `u`: first a light with probability proportional to its
+  /// Directions towards light, one for each `u` from its `position`: first a light with probability proportional to its
   /// power, then a direction of it. A zero vector where the chosen lamp shows its dark side. Needs has_extended().
-  void sample(const Vec3& position, std::span<const Vec2> u, DirectionBatch& world) const;
-  /// For each direction of `world` from `position`: radiance of the environment, density of `sample`, lamps met
+  void sample(std::span<const Vec3> position, std::span<const Vec2> u, DirectionBatch& world) const;
+  /// For each direction of `world` from its `position`: radiance of the environment, density of `sample`, lamps met
   /// (appended to `hits`). The batch is padded.
-  void look_up(const Vec3& position, const DirectionBatch& world, RgbBatch& environment, ScalarBatch& pdf,
+  void look_up(std::span<const Vec3> position, const DirectionBatch& world, RgbBatch& environment, ScalarBatch& pdf,
                std::vector<LampHit>& hits) const;
 
   std::span<const Lamp> sharp() const { return sharp_; }

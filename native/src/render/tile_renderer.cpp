@@ -39,8 +39,9 @@ void TileRenderer::render_run(const PixelRect& run, int first, int count, PixelS
   start_paths(run, first, count);
   for (int depth = 0; depth <= context_.options.bounces && !paths_.empty(); ++depth) {
     trace(log);
-    next_.clear();
+    receivers_.clear();
     for (size_t i = 0; i < paths_.size(); ++i) follow(paths_[i], hits_[i], depth);
+    gather(depth);
     rays_ += shadows_.resolve(context_.scene.rays(), samples_, log);
     paths_.swap(next_);
   }
@@ -92,15 +93,26 @@ void TileRenderer::follow(Path& path, const Hit& hit, int depth) {
     sample.depth = context_.scene.camera().depth(vertex.position);
   }
   sample.radiance += path.throughput * vertex.surface->emission;
-  light_.prepare(vertex);
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);
-  light_.gather(vertex, {std::min(sample.directions, most), most}, path.numbers, {path.sample, path.throughput},
-                shadows_, samples_);
-  if (depth == context_.options.bounces) return;
-  if (const auto onward = light_.extend(vertex, path.numbers, path.throughput)) {
-    path.numbers.next_vertex();
-    next_.push_back({path.numbers, onward->ray, onward->throughput, path.sample});
+  receivers_.push_back({vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most), most});
+}
+
+void TileRenderer::gather(int depth) {
+  next_.clear();
+  const std::span<const Receiver> all(receivers_);
+  const size_t most = all.empty() ? 1 : DirectLight::receivers_of(all[0].full);
+  for (size_t first = 0; first < all.size(); first += most) {
+    const auto batch = all.subspan(first, std::min(most, all.size() - first));
+    light_.gather(batch, shadows_, samples_);
+    for (size_t k = 0; k < batch.size() && depth < context_.options.bounces; ++k) extend(batch[k], k);
   }
+}
+
+void TileRenderer::extend(const Receiver& receiver, size_t place) {
+  const auto onward = light_.extend(receiver, place);
+  if (!onward) return;
+  receiver.numbers->next_vertex();
+  next_.push_back({*receiver.numbers, onward->ray, onward->throughput, receiver.sample});
 }
 
 void TileRenderer::add_background() {

@@ -49,6 +49,8 @@ class TileRenderer {
   void start_paths(const PixelRect& run, int first, int count);
   void trace(RayLog* log);
   void follow(Path& path, const Hit& hit, int depth);
+  void gather(int depth);
+  void extend(const Receiver& receiver, size_t place);
   void add_background();
   void render_run(const PixelRect& run, int first, int count, PixelSum* sums, RayLog* log);
 
@@ -58,6 +60,7 @@ class TileRenderer {
   std::vector<Path> paths_, next_;
   std::vector<Ray> path_rays_;
   std::vector<Hit> hits_;
+  std::vector<Receiver> receivers_;
   std::vector<CameraSample> samples_;
   struct Miss {
     uint32_t sample;

@@ -154,14 +154,16 @@ TEST(Lighting, MixtureOfAllLightsFollowsItsDensity) {
     RgbBatch radiance;
     ScalarBatch density;
     std::vector<LampHit> hits;
-    lighting.look_up(Vec3(0.0f), batch, radiance, density, hits);
+    const Vec3 origin(0.0f);
+    lighting.look_up({&origin, 1}, batch, radiance, density, hits);
     return static_cast<double>(density.v[0]);
   };
   test::ChiSquareOptions options;
   options.samples = 300'000;
   const auto sample = [&](const Vec2& u) {
     DirectionBatch world;
-    lighting.sample(Vec3(0.0f), {&u, 1}, world);
+    const Vec3 origin(0.0f);
+    lighting.sample({&origin, 1}, {&u, 1}, world);
     return world.get(0);
   };
   const auto result = test::chi_square(sample, pdf, options);
