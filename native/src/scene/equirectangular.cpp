@@ -82,7 +82,7 @@ struct EquirectangularImage::RowDraw {
 EquirectangularImage::RowDraw EquirectangularImage::draw_row(const Vec2& u) const {
   // A band between two rows, the place in it, then one of the two rows in proportion to its share there: together the
   // bilinear density, each part inverted in closed form.
-  const int band = find_cell(marginal_cdf_.data(), marginal_guide_.data(), height_ + 1, u.y);
+  const int band = find_cell(marginal_cdf_.data(), marginal_guide_[guide_place(u.y, height_ + 1)], height_ + 1, u.y);
   const float* edge = &marginal_cdf_[static_cast<size_t>(band)];
   const float in_band = std::clamp((u.y - edge[0]) / std::max(edge[1] - edge[0], 1e-30f), 0.0f, 1.0f);
   const float above = band > 0 ? row_node_[static_cast<size_t>(band) - 1] : 0.0f;
@@ -99,28 +99,34 @@ EquirectangularImage::RowDraw EquirectangularImage::draw_row(const Vec2& u) cons
   return draw;
 }
 
-float EquirectangularImage::draw_column(const RowDraw& draw) const {
-  const size_t w = static_cast<size_t>(width_);
-  const float* cdf = &row_cdf_[draw.row * (w + 1)];
-  const int cell = find_cell(cdf, &row_guide_[draw.row * w], width_, draw.u);
+float EquirectangularImage::draw_column(const RowDraw& draw, int first) const {
+  const float* cdf = &row_cdf_[draw.row * (static_cast<size_t>(width_) + 1)];
+  const int cell = find_cell(cdf, first, width_, draw.u);
   const float in_cell = std::clamp((draw.u - cdf[cell]) / std::max(cdf[cell + 1] - cdf[cell], 1e-30f), 0.0f, 1.0f);
   const EnvironmentTexel* texel = row(static_cast<int>(draw.row)) + cell;
   return static_cast<float>(cell) - 0.5f + invert_linear(texel[0].node, texel[1].node, in_cell);
 }
 
+// Three passes, each of which calls for the memory of the next: tables and texels of a large image are in no near
+// cache, and their latency is paid once instead of once a direction.
 void EquirectangularImage::sample(std::span<const Vec2> u, DirectionBatch& world) const {
   const int count = static_cast<int>(u.size());
   RowDraw draws[DirectionBatch::kCapacity];
-  // Rows first, so that the memory of all columns is on its way before the first is needed.
+  int first_cell[DirectionBatch::kCapacity];
+  const size_t w = static_cast<size_t>(width_);
   for (int i = 0; i < count; ++i) {
     draws[i] = draw_row(u[static_cast<size_t>(i)]);
-    const size_t w = static_cast<size_t>(width_), near = static_cast<size_t>(draws[i].u * static_cast<float>(width_));
-    __builtin_prefetch(&row_guide_[draws[i].row * w + near]);
-    __builtin_prefetch(&row_cdf_[draws[i].row * (w + 1) + near]);
+    __builtin_prefetch(&row_guide_[draws[i].row * w + guide_place(draws[i].u, width_)]);
+  }
+  for (int i = 0; i < count; ++i) {
+    const RowDraw& draw = draws[i];
+    const int cell = first_cell[i] = row_guide_[draw.row * w + guide_place(draw.u, width_)];
+    __builtin_prefetch(&row_cdf_[draw.row * (w + 1) + static_cast<size_t>(cell)]);
+    __builtin_prefetch(row(static_cast<int>(draw.row)) + cell);
   }
   ScalarBatch column, line;
   for (int i = 0; i < count; ++i) {
-    column.v[i] = draw_column(draws[i]) / static_cast<float>(width_);
+    column.v[i] = draw_column(draws[i], first_cell[i]) / static_cast<float>(width_);
     line.v[i] = draws[i].v / static_cast<float>(height_);
   }
   for (int i = count; i % 16 != 0; ++i) column.v[i] = line.v[i] = 0.5f;

@@ -38,7 +38,7 @@ class EquirectangularImage {
   void build_tables();
   struct RowDraw;
   RowDraw draw_row(const Vec2& u) const;
-  float draw_column(const RowDraw& draw) const;
+  float draw_column(const RowDraw& draw, int first) const;
 
   int width_, height_;
   size_t stride_;  // texels a stored row: W + 2, the last and the first column repeated on the other side

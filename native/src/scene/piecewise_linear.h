@@ -14,8 +14,12 @@ namespace velour {
 /// the search of find_cell takes O(1) steps on average [CA74].
 double build_cells(const std::vector<double>& mass, float* cdf, uint16_t* guide);
 
-inline int find_cell(const float* cdf, const uint16_t* guide, int cells, float u) {
-  int cell = guide[std::min(static_cast<int>(u * static_cast<float>(cells)), cells - 1)];
+inline size_t guide_place(float u, int cells) {
+  return static_cast<size_t>(std::min(static_cast<int>(u * static_cast<float>(cells)), cells - 1));
+}
+
+/// The cell that holds `u`; `cell` is guide[guide_place(u, cells)].
+inline int find_cell(const float* cdf, int cell, int cells, float u) {
   while (cell > 0 && cdf[cell] > u) --cell;  // u * cells may have been rounded up
   while (cell + 1 < cells && cdf[cell + 1] <= u) ++cell;
   return cell;
