@@ -18,7 +18,9 @@ class GgxMaterial final : public Material {
     sampler_.pdf(point.ggx, wl, pdf);
   }
 
-  Vec3 sample(const PreparedBrdf& point, const Vec2& u) const override { return sampler_.sample(point.ggx, u); }
+  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    wl.fill(u, [&](const Vec2& v) { return sampler_.sample(point.ggx, v); });
+  }
 
   bool isotropic() const override { return parameters_.alpha.x == parameters_.alpha.y; }
 

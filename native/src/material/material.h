@@ -1,7 +1,8 @@
-// The run-time evaluator. Three operations on a prepared point: eval, sample, pdf. One virtual call a batch.
+// The run-time evaluator. On a prepared point: eval and sample, one virtual call a batch of directions.
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "material/ggx_sampler.h"
 #include "sphere/direction_batch.h"
@@ -30,8 +31,14 @@ class Material {
   /// solid angle, of each direction of the batch. The batch is padded.
   virtual void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const = 0;
 
-  /// Draws wl with the density that `eval` reports as pdf. May lie below the horizon: a zero contribution.
-  virtual Vec3 sample(const PreparedBrdf& point, const Vec2& u) const = 0;
+  /// Draws a wl for each of up to 64 `u` with the density that `eval` reports as pdf. It may lie below the horizon: a
+  /// zero contribution. The batch is not padded.
+  virtual void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const = 0;
+  Vec3 sample(const PreparedBrdf& point, const Vec2& u) const {
+    DirectionBatch wl;
+    sample(point, {&u, 1}, wl);
+    return wl.get(0);
+  }
 
   /// Gaussian lobes in light space that resemble f cos at the prepared `point`, with their sampling density: what
   /// `product` multiplies with the sky. They steer sampling alone, so lobes of another space may be given as the

@@ -45,7 +45,14 @@ class PrincipledMaterial final : public Material {
     }
   }
 
-  Vec3 sample(const PreparedBrdf& point, const Vec2& u) const override {
+  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    wl.fill(u, [&](const Vec2& v) { return sample_one(point, v); });
+  }
+
+  bool isotropic() const override { return true; }
+
+ private:
+  Vec3 sample_one(const PreparedBrdf& point, const Vec2& u) const {
     const float share = point.parameter[kDiffuseProbability];
     if (u.x < share) return sample_cosine_hemisphere({u.x / share, u.y});
     const float rest = std::min((u.x - share) / (1 - share), 1 - 0x1p-24f);
@@ -53,9 +60,6 @@ class PrincipledMaterial final : public Material {
     return 2 * glm::dot(point.wv, h) * h - point.wv;
   }
 
-  bool isotropic() const override { return true; }
-
- private:
   enum Parameter { kDiffuseScale, kDiffuseProbability };
 
   /// Blender's scale: specular 0.5 is 4 % at normal incidence, an index of 1.5.

@@ -18,7 +18,9 @@ class LobeSampledMaterial : public Material {
     lobes_.gather(wv, point.lobes);
   }
 
-  Vec3 sample(const PreparedBrdf& point, const Vec2& u) const override { return sample_mixture(point.lobes, u); }
+  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    sample_mixture(point.lobes, u, wl);
+  }
 
   const LobeMixture* gaussian_lobes(const PreparedBrdf& point) const override {
     return point.lobes.kernel == Kernel::gaussian ? &point.lobes : nullptr;

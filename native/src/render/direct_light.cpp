@@ -19,13 +19,10 @@ void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shado
                          std::vector<CameraSample>& samples) {
   const Output output{shadows, samples};
   for (size_t k = 0; k < receivers.size(); ++k) prepare(receivers[k], work_[k]);
-  draw_from_lights(receivers);
+  make_points(receivers);
+  draw_towards_lights(receivers);
   terms_.clear();
-  int towards_light = 0;
-  for (size_t k = 0; k < receivers.size(); ++k) {
-    shade(receivers[k], static_cast<uint8_t>(k), towards_light, output);
-    towards_light += work_[k].from_lights.count;
-  }
+  for (size_t k = 0; k < receivers.size(); ++k) shade(receivers[k], static_cast<uint8_t>(k), output);
   settle(receivers, output);
 }
 
@@ -50,18 +47,32 @@ float DirectLight::product_share(const Vertex& vertex, Work& work) {
   return proposed ? kProductShare * lighting_.environment_share() : 0.0f;
 }
 
-void DirectLight::draw_from_lights(std::span<const Receiver> receivers) {
-  Vec2 u[DirectionBatch::kCapacity];
-  Vec3 position[DirectionBatch::kCapacity];
-  size_t count = 0;
+void DirectLight::make_points(std::span<const Receiver> receivers) {
+  points_.clear();
+  const auto ask = [&](size_t k, Purpose purpose, PathNumbers::Run run) {
+    const int first = points_.count();
+    receivers[k].numbers->points(purpose, run.first, run.count, points_);
+    return first;
+  };
   for (size_t k = 0; k < receivers.size(); ++k) {
-    const PathNumbers::Run run = work_[k].from_lights;
-    const auto more = static_cast<size_t>(run.count);
-    receivers[k].numbers->points(Purpose::light, run.first, {u + count, more});
-    std::fill_n(position + count, more, receivers[k].vertex.position);
-    count += more;
+    work_[k].light_point = ask(k, Purpose::light, work_[k].from_lights);
   }
-  if (count > 0) lighting_.sample({position, count}, {u, count}, towards_light_);
+  for (size_t k = 0; k < receivers.size(); ++k) {
+    work_[k].product_point = ask(k, Purpose::product, work_[k].from_product);
+    work_[k].surface_point = ask(k, Purpose::surface, work_[k].from_surface);
+  }
+  points_.resolve();
+}
+
+void DirectLight::draw_towards_lights(std::span<const Receiver> receivers) {
+  Vec3 position[DirectionBatch::kCapacity];
+  int count = 0;
+  for (size_t k = 0; k < receivers.size(); ++k) {
+    std::fill_n(position + count, work_[k].from_lights.count, receivers[k].vertex.position);
+    count += work_[k].from_lights.count;
+  }
+  if (count == 0) return;
+  lighting_.sample({position, static_cast<size_t>(count)}, points_.points(0, count), towards_light_);
 }
 
 /// A direction that brings nothing costs nothing further: n counts it, the batch does not hold it.
@@ -73,21 +84,20 @@ void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& 
 }
 
 void DirectLight::draw_from_product(const Receiver& receiver, const Work& work) {
-  Vec2 u[DirectionBatch::kCapacity];
-  const PathNumbers::Run run = work.from_product;
-  receiver.numbers->points(Purpose::product, run.first, {u, static_cast<size_t>(run.count)});
-  for (int i = 0; i < run.count; ++i) {
-    const Vec3 wl_world = sample_mixture(work.product, u[i]);
+  if (work.from_product.count == 0) return;
+  sample_mixture(work.product, points_.points(work.product_point, work.from_product.count), drawn_);
+  for (int i = 0; i < drawn_.count; ++i) {
+    const Vec3 wl_world = drawn_.get(i);
     keep_if_lit(receiver.vertex, receiver.vertex.frame.to_local(wl_world), wl_world, Drawer::product);
   }
 }
 
 void DirectLight::draw_from_surface(const Receiver& receiver, const Work& work) {
-  Vec2 u[DirectionBatch::kCapacity];
-  const PathNumbers::Run run = work.from_surface;
-  receiver.numbers->points(Purpose::surface, run.first, {u, static_cast<size_t>(run.count)});
-  for (int i = 0; i < run.count; ++i) {
-    const Vec3 wl = sample_surface(sampling_, receiver.vertex, work.prepared, u[i]);
+  if (work.from_surface.count == 0) return;
+  const auto u = points_.points(work.surface_point, work.from_surface.count);
+  sample_surface(sampling_, receiver.vertex, work.prepared, u, drawn_);
+  for (int i = 0; i < drawn_.count; ++i) {
+    const Vec3 wl = drawn_.get(i);
     keep_if_lit(receiver.vertex, wl, receiver.vertex.frame.to_world(wl), Drawer::surface);
   }
 }
@@ -112,14 +122,15 @@ void DirectLight::draw_sharp(const Receiver& receiver) {
   }
 }
 
-void DirectLight::shade(const Receiver& receiver, uint8_t place, int towards_light, Output output) {
+void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) {
   const Vertex& vertex = receiver.vertex;
   const Work& work = work_[place];
   local_.count = world_.count = 0;
   draw_from_product(receiver, work);
   draw_from_surface(receiver, work);
-  for (int i = towards_light; i < towards_light + work.from_lights.count; ++i) {
-    const Vec3 wl_world = towards_light_.get(i);  // zero for a lamp's dark side: then not above the horizon
+  for (int i = 0; i < work.from_lights.count; ++i) {
+    const Vec3 wl_world =
+        towards_light_.get(work.light_point + i);  // zero for a lamp's dark side: then not above the horizon
     keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world, Drawer::lights);
   }
   draw_sharp(receiver);
@@ -191,8 +202,8 @@ void DirectLight::queue(const Receiver& receiver, const Vec3& wl_world, const Rg
 std::optional<DirectLight::Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
   const Vertex& vertex = receiver.vertex;
   const PreparedBrdf& prepared = work_[place].prepared;
-  local_.count = 0;
-  local_.push(sample_surface(sampling_, vertex, prepared, receiver.numbers->point(Purpose::onward)));
+  const Vec2 u = receiver.numbers->point(Purpose::onward);
+  sample_surface(sampling_, vertex, prepared, {&u, 1}, local_);
   local_.pad();
   const Vec3 wl_world = vertex.frame.to_world(local_.get(0));
   if (!(local_.z[0] > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return std::nullopt;

@@ -72,6 +72,7 @@ class DirectLight {
     LobeMixture product;  // world frame
     Shares shares;
     PathNumbers::Run from_product, from_surface, from_lights;
+    int product_point, surface_point, light_point;  // the first of each in points_
   };
   struct Output {
     ShadowQueue& shadows;
@@ -79,15 +80,17 @@ class DirectLight {
   };
 
   void prepare(const Receiver& receiver, Work& work);
+  /// Asks for the points of all vertices, those of the lights in a row at the front.
+  void make_points(std::span<const Receiver> receivers);
   /// Makes the products of the vertex, if it has any; the share of directions that they draw.
   float product_share(const Vertex& vertex, Work& work);
-  void draw_from_lights(std::span<const Receiver> receivers);
+  void draw_towards_lights(std::span<const Receiver> receivers);
   void draw_from_product(const Receiver& receiver, const Work& work);
   void draw_from_surface(const Receiver& receiver, const Work& work);
   void draw_sharp(const Receiver& receiver);
   void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer);
-  /// Draws and reflects at one vertex. `towards_light`: its first direction among those drawn from lights.
-  void shade(const Receiver& receiver, uint8_t place, int towards_light, Output output);
+  /// Draws and reflects at one vertex.
+  void shade(const Receiver& receiver, uint8_t place, Output output);
   void add_terms(const Receiver& receiver, uint8_t place);
   void settle(std::span<const Receiver> receivers, Output output);
   void queue(const Receiver& receiver, const Vec3& wl_world, const Rgb& light, float far, bool casts_shadow,
@@ -108,12 +111,14 @@ class DirectLight {
   };
 
   Work work_[kReceivers];
-  DirectionBatch towards_light_;  // of all vertices
-  LightTerms terms_;              // of all vertices
+  // Of all vertices.
+  PointBatch points_;
+  DirectionBatch towards_light_;
+  LightTerms terms_;
 
   // Of one vertex: those drawn directions that can bring light, above both the shading horizon and the surface itself.
   // local_ goes on with the directions of sharp lamps.
-  DirectionBatch local_, world_;
+  DirectionBatch drawn_, local_, world_;
   Drawer drawer_[DirectionBatch::kCapacity];
   RgbBatch f_;
   ScalarBatch material_pdf_, surface_pdf_, product_pdf_;

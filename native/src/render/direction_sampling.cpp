@@ -30,20 +30,20 @@ void prepare_surface(SurfaceSampling sampling, const Vertex& vertex, PreparedBrd
   if (sampling == SurfaceSampling::ggx) vertex.ggx->prepare(vertex.wv, prepared.ggx);
 }
 
-Vec3 sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const Vec2& u) {
+void sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
+                    std::span<const Vec2> u, DirectionBatch& wl) {
   switch (sampling) {
     case SurfaceSampling::uniform:
-      return sample_uniform_hemisphere(u);
+      return wl.fill(u, sample_uniform_hemisphere);
     case SurfaceSampling::cosine:
-      return sample_cosine_hemisphere(u);
+      return wl.fill(u, sample_cosine_hemisphere);
     case SurfaceSampling::table:
-      return vertex.table->sample(vertex.wv, u);
+      return wl.fill(u, [&](const Vec2& v) { return vertex.table->sample(vertex.wv, v); });
     case SurfaceSampling::ggx:
-      return vertex.ggx->sample(prepared.ggx, u);
+      return wl.fill(u, [&](const Vec2& v) { return vertex.ggx->sample(prepared.ggx, v); });
     case SurfaceSampling::material:
-      break;
+      return vertex.surface->material->sample(prepared, u, wl);
   }
-  return vertex.surface->material->sample(prepared, u);
 }
 
 void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const DirectionBatch& wl,

@@ -17,8 +17,9 @@ SurfaceSampling surface_sampling(Strategy strategy);
 /// What `sampling` derives from the view, once a vertex; Material::prepare has its own.
 void prepare_surface(SurfaceSampling sampling, const Vertex& vertex, PreparedBrdf& prepared);
 
-/// Local direction; may lie below the horizon.
-Vec3 sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const Vec2& u);
+/// Local directions, one for each of up to 64 `u`; they may lie below the horizon. The batch is not padded.
+void sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
+                    std::span<const Vec2> u, DirectionBatch& wl);
 
 /// Density per solid angle of sample_surface at each direction of `wl`. `material_pdf` is what Material::eval gave.
 void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const DirectionBatch& wl,

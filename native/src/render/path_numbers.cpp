@@ -15,6 +15,11 @@ void PathNumbers::points(Purpose purpose, uint32_t first, std::span<Vec2> u) {
   for (int i = 0; i < n; ++i) u[static_cast<size_t>(i)] = lattice_point(i, n, shift);
 }
 
+void PathNumbers::points(Purpose purpose, uint32_t first, int count, PointBatch& batch) {
+  if (sequence_ == Sequence::sobol) return batch.add(SobolSeeds(key(purpose)), first, count);
+  points(purpose, first, batch.add(count));
+}
+
 Vec2 PathNumbers::point(Purpose purpose) {
   Vec2 u;
   points(purpose, ray_, {&u, 1});

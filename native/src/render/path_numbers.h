@@ -5,6 +5,7 @@
 #include <span>
 
 #include "render/options.h"
+#include "render/point_batch.h"
 #include "sphere/random.h"
 
 namespace velour {
@@ -33,6 +34,8 @@ class PathNumbers {
 
   /// `u.size()` points in [0, 1)^2. `first`: how many points earlier camera rays of the half used for this purpose.
   void points(Purpose purpose, uint32_t first, std::span<Vec2> u);
+  /// The same points, made together with those of other paths.
+  void points(Purpose purpose, uint32_t first, int count, PointBatch& batch);
   /// One point, where every camera ray uses one.
   Vec2 point(Purpose purpose);
 

@@ -2,6 +2,8 @@
 // one lobe is broadcast and no horizontal sum is needed.
 #pragma once
 
+#include <span>
+
 #include "sphere/vec.h"
 
 namespace velour {
@@ -19,6 +21,12 @@ struct alignas(64) DirectionBatch {
     z[i] = d.z;
   }
   void push(const Vec3& d) { set(count++, d); }
+  /// Holds draw(u) for each of `numbers`, not padded.
+  template <typename Draw>
+  void fill(std::span<const Vec2> numbers, Draw&& draw) {
+    count = 0;
+    for (const Vec2& u : numbers) push(draw(u));
+  }
   /// Fills the lanes from `count` up to a multiple of 16. Call once after the last push.
   void pad() {
     for (int i = count; i % 16 != 0; ++i) set(i, {0, 0, 1});

@@ -1,7 +1,5 @@
 #include "sphere/sobol.h"
 
-#include "sphere/random.h"
-
 namespace velour {
 namespace {
 
@@ -16,10 +14,7 @@ uint32_t reversed(uint32_t x) {
 /// Each output bit depends on the input bits at and below it: products with even numbers carry upwards only [LK11].
 uint32_t carry_upwards(uint32_t x, uint32_t seed) {
   x += seed;
-  x ^= x * 0x6c50b47cu;
-  x ^= x * 0xb82f1e52u;
-  x ^= x * 0xc7afe638u;
-  x ^= x * 0x8d22f6e6u;
+  for (const uint32_t factor : kOwenFactors) x ^= x * factor;
   return x;
 }
 
@@ -42,13 +37,12 @@ uint32_t sobol_second(uint32_t index) { return reversed(pascal(index)); }
 uint32_t owen_scramble(uint32_t bits, uint32_t seed) { return reversed(carry_upwards(reversed(bits), seed)); }
 
 void sobol_points(uint64_t key, uint32_t first, std::span<Vec2> points) {
-  const auto upper = [](uint64_t x) { return static_cast<uint32_t>(x >> 32); };
-  const uint32_t order = upper(key), seed_x = upper(mix64(key + 1)), seed_y = upper(mix64(key + 2));
+  const SobolSeeds seeds(key);
   const auto unit = [](uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
   for (uint32_t i = 0; i < points.size(); ++i) {
-    const uint32_t index = owen_scramble(first + i, order);
+    const uint32_t index = owen_scramble(first + i, seeds.order);
     // owen_scramble(sobol_first(index)), less two reversals that undo each other; the second alike.
-    points[i] = {unit(reversed(carry_upwards(index, seed_x))), unit(reversed(carry_upwards(pascal(index), seed_y)))};
+    points[i] = {unit(reversed(carry_upwards(index, seeds.x))), unit(reversed(carry_upwards(pascal(index), seeds.y)))};
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "sphere/random.h"
 #include "sphere/vec.h"
 
 namespace velour {
@@ -18,6 +19,18 @@ uint32_t sobol_second(uint32_t index);
 /// bits above it ([LK11] with the constants of [Bur20]). For each `bits` a bijection of `seed`, so a scrambled point is
 /// exactly uniform over the seeds.
 uint32_t owen_scramble(uint32_t bits, uint32_t seed);
+
+/// Multipliers of the hash [Bur20]; even, so that carries run upwards only [LK11].
+inline constexpr uint32_t kOwenFactors[] = {0x6c50b47cu, 0xb82f1e52u, 0xc7afe638u, 0x8d22f6e6u};
+
+/// What scrambles the sequence of a key: its order and its coordinates.
+struct SobolSeeds {
+  uint32_t order, x, y;
+  explicit SobolSeeds(uint64_t key) : order(upper(key)), x(upper(mix64(key + 1))), y(upper(mix64(key + 2))) {}
+
+ private:
+  static uint32_t upper(uint64_t bits) { return static_cast<uint32_t>(bits >> 32); }
+};
 
 /// Points `first`, `first` + 1, ... of the sequence, in [0, 1)^2: shuffled, which keeps aligned runs of 2^m together
 /// [Bur20 section 5], then each coordinate scrambled, all by `key`. Sequences of different keys are independent, so

@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "sphere/discrete_choice.h"
-#include "sphere/frame.h"
-#include "sphere/warp.h"
-
 namespace velour {
 
 void LobeMixture::add(const Vec3& center, float lobe_bandwidth, const Rgb& coefficient) {
@@ -52,30 +48,6 @@ void LobeMixture::finish(float defensive_share) {
   const float scale = (1 - cosine_share) / total;
   for (int j = 0; j < count; ++j) density[j] *= scale;
   for (int j = 0; j < count; ++j) cdf[j] /= total;  // a quotient, not a product: the last one is then exactly 1
-}
-
-namespace {
-
-Vec3 sample_lobe(const LobeMixture& mixture, int j, double u_zenith, float u_azimuth) {
-  const auto d = static_cast<float>(kernel_sample(mixture.kernel, mixture.bandwidth[j], u_zenith));
-  const float sine = std::sqrt(d * (2 - d));
-  const float phi = 2 * kPi * u_azimuth;
-  const Frame frame = Frame::about({mixture.x[j], mixture.y[j], mixture.z[j]});
-  return frame.to_world({sine * std::cos(phi), sine * std::sin(phi), 1 - d});
-}
-
-}  // namespace
-
-Vec3 sample_mixture(const LobeMixture& mixture, const Vec2& u) {
-  double rest = middle_of_step(u.x);
-  const double share = mixture.cosine_share;
-  if (rest < share) {
-    const float u_cosine = std::min(static_cast<float>(rest / share), 1 - 0x1p-24f);
-    return sample_cosine_hemisphere({u_cosine, u.y});
-  }
-  rest = (rest - share) / (1 - share);
-  const int lobe = choose_index(mixture.cdf, mixture.count, rest);
-  return sample_lobe(mixture, lobe, rest, u.y);
 }
 
 }  // namespace velour

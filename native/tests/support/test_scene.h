@@ -24,7 +24,9 @@ class Lambert : public Material {
       pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
     }
   }
-  Vec3 sample(const PreparedBrdf&, const Vec2& u) const override { return sample_cosine_hemisphere(u); }
+  void sample(const PreparedBrdf&, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    wl.fill(u, sample_cosine_hemisphere);
+  }
   bool isotropic() const override { return true; }
 
  private:

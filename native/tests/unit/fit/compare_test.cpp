@@ -19,7 +19,9 @@ class FormulaMaterial : public Material {
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     for (int i = 0; i < wl.count; ++i) f.set(i, f_({wl.get(i), point.wv})), pdf.v[i] = 0;
   }
-  Vec3 sample(const PreparedBrdf&, const Vec2&) const override { return {0, 0, 1}; }
+  void sample(const PreparedBrdf&, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    wl.fill(u, [](const Vec2&) { return Vec3(0, 0, 1); });
+  }
   bool isotropic() const override { return true; }
 
  private:

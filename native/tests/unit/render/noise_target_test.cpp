@@ -99,16 +99,15 @@ TEST(NoiseTarget, DecisionsGrowRarer) {
 TEST(Combination, WeightsOfAllDensitiesAddUpToOne) {
   const Drawer drawers[] = {Drawer::product, Drawer::surface, Drawer::lights};
   for (Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
-    for (const auto& [p, s, l] : {std::array{0.0f, 0.5f, 0.5f}, {0.5f, 0.4f, 0.1f}, {0.0f, 1.0f, 0.0f}}) {
-      const Combination c{{p, s, l}, heuristic};
+    for (const auto& share : {std::array{0.0f, 0.5f, 0.5f}, {0.5f, 0.4f, 0.1f}, {0.0f, 1.0f, 0.0f}}) {
       for (const auto& pdf :
            {std::array{1.0f, 1.0f, 1.0f}, {0.0f, 3.0f, 0.1f}, {5.0f, 1e25f, 2.0f}, {2.0f, 0.7f, 0.0f}}) {
-        const float densities[3] = {pdf[0], pdf[1], pdf[2]};
+        const float q[3] = {share[0] * pdf[0], share[1] * pdf[1], share[2] * pdf[2]};
         float sum = 0;
         for (Drawer own : drawers) {
           // f / (n d) times the expected number of such directions, n c p: weights of one f add up to 1.
-          const float q = c.of(own) * densities[static_cast<int>(own)];
-          if (q > 0) sum += q / c.effective(densities, own);
+          const float q_own = q[static_cast<int>(own)];
+          if (q_own > 0) sum += q_own / effective_density(heuristic, q, own);
         }
         EXPECT_NEAR(sum, 1, 1e-5) << pdf[0] << ' ' << pdf[1] << ' ' << pdf[2];
       }
@@ -116,17 +115,17 @@ TEST(Combination, WeightsOfAllDensitiesAddUpToOne) {
   }
 }
 
-TEST(Combination, IsThatOfItsStrategy) {
+TEST(Combination, SharesAreThoseOfTheStrategy) {
   RenderOptions options;
   options.light_share = 0.3f;
   options.strategy = Strategy::product;
-  const Combination product = combination(options, 0.5f);
-  EXPECT_FLOAT_EQ(product.of(Drawer::lights), 0.15f);
-  EXPECT_FLOAT_EQ(product.of(Drawer::surface), 0.35f);
+  const Shares product = shares(options, 0.5f);
+  EXPECT_FLOAT_EQ(product.lights, 0.15f);
+  EXPECT_FLOAT_EQ(product.surface, 0.35f);
   options.strategy = Strategy::light;
-  EXPECT_EQ(combination(options, 0).of(Drawer::lights), 1.0f);
+  EXPECT_EQ(shares(options, 0).lights, 1.0f);
   options.strategy = Strategy::ggx;
-  EXPECT_EQ(combination(options, 0).of(Drawer::surface), 1.0f);
+  EXPECT_EQ(shares(options, 0).surface, 1.0f);
 }
 
 RenderOptions two_halves(Sequence sequence) {

@@ -1,0 +1,52 @@
+// Points of many sequences, made together.
+#pragma once
+
+#include <span>
+
+#include "sphere/sobol.h"
+
+namespace velour {
+
+/// Up to kCapacity points in [0, 1)^2: add, then resolve(), then read. A sequence gives but a few points at a time;
+/// vectors run over those of all.
+class PointBatch {
+ public:
+  static constexpr int kCapacity = 64;
+
+  void clear() { count_ = 0; }
+  int count() const { return count_; }
+  /// Points `first`, `first` + 1, ... of the Sobol sequence `seeds`.
+  void add(const SobolSeeds& seeds, uint32_t first, int count) {
+    pending_ = true;
+    for (uint32_t i = 0; i < static_cast<uint32_t>(count); ++i, ++count_) {
+      index_[count_] = first + i;
+      order_[count_] = seeds.order;
+      seed_x_[count_] = seeds.x;
+      seed_y_[count_] = seeds.y;
+    }
+  }
+  /// Room for `count` points that the caller sets at once: those of no sequence. Not together with the others.
+  std::span<Vec2> add(int count) {
+    count_ += count;
+    return {points_ + count_ - count, static_cast<size_t>(count)};
+  }
+  /// Makes what was asked for. Run-time dispatched SIMD; the very bits of sobol_points.
+  void resolve();
+
+  std::span<const Vec2> points(int first, int count) const { return {points_ + first, static_cast<size_t>(count)}; }
+
+  // What the kernel sees.
+  struct Lanes {
+    const uint32_t *index, *order, *seed_x, *seed_y;
+    float* points;  // x and y by turns
+    int count;
+  };
+
+ private:
+  int count_ = 0;
+  bool pending_ = false;
+  alignas(64) uint32_t index_[kCapacity] = {}, order_[kCapacity] = {}, seed_x_[kCapacity] = {}, seed_y_[kCapacity] = {};
+  alignas(64) Vec2 points_[kCapacity];
+};
+
+}  // namespace velour

@@ -1,0 +1,153 @@
+// Highway compiles this file once for each instruction set.
+#include <algorithm>
+#include <cassert>
+
+#include "sphere/discrete_choice.h"
+#include "srbf/lobe_mixture.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "srbf/sample_mixture.cpp"
+#include <hwy/foreach_target.h>
+
+// Only after that one:
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "srbf/simd_dispatch.h"
+#include "srbf/simd_math-inl.h"
+
+#ifndef VELOUR_LOBE_DRAWS
+#define VELOUR_LOBE_DRAWS
+namespace velour {
+
+/// Directions about axes of their own: what is left of the random numbers once the components are chosen.
+struct alignas(64) LobeDraws {
+  static constexpr int kCapacity = DirectionBatch::kCapacity;
+  float x[kCapacity], y[kCapacity], z[kCapacity];  // axis, unit
+  float bandwidth[kCapacity];                      // negative: no lobe but the cosine about the axis
+  float u[kCapacity], rest[kCapacity];             // the zenith's number and 1 - u, both with all their digits
+  float azimuth[kCapacity];                        // in [0, 1)
+
+  void set(int i, const Vec3& axis, float lobe_bandwidth, double u_zenith, float u_azimuth) {
+    x[i] = axis.x;
+    y[i] = axis.y;
+    z[i] = axis.z;
+    bandwidth[i] = lobe_bandwidth;
+    u[i] = static_cast<float>(u_zenith);
+    rest[i] = static_cast<float>(1 - u_zenith);
+    azimuth[i] = u_azimuth;
+  }
+};
+
+}  // namespace velour
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace velour {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// d = 1 - cos of the zenith about the axis: kernel_sample in float. -log(u + (1 - u) e^-2l) / l where u + ... is well
+/// below 1, else -log1p(-(1 - u) (1 - e^-2l)) / l, by the quotient that mends the rounding of 1 - t.
+struct GaussianZenith {
+  template <class D, class V = hn::Vec<D>>
+  HWY_INLINE V operator()(D d, V bandwidth, V u, V rest) const {
+    const V one = hn::Set(d, 1.0f);
+    const V l = hn::Max(bandwidth, hn::Set(d, 1e-12f));
+    const V exponent = hn::Mul(hn::Set(d, -2.0f), l);
+    const V t = hn::Mul(rest, hn::Neg(hn::Expm1(d, exponent)));
+    const auto near = hn::Lt(t, hn::Set(d, 0.5f));
+    const V below_one = hn::Sub(one, t);
+    const V x = hn::IfThenElse(near, below_one, hn::MulAdd(rest, exp_nonpositive(d, exponent), u));
+    const V log = hn::Log(d, x);
+    const V gap = hn::Sub(one, below_one);
+    const V mended = hn::IfThenElse(hn::Eq(gap, hn::Zero(d)), hn::Neg(t), hn::Div(hn::Mul(log, t), gap));
+    return hn::Div(hn::Neg(hn::IfThenElse(near, mended, log)), l);
+  }
+};
+
+struct AbelPoissonZenith {
+  template <class D, class V = hn::Vec<D>>
+  HWY_INLINE V operator()(D d, V b, V u, V rest) const {
+    const V one = hn::Set(d, 1.0f);
+    const V gap = hn::Sub(one, b);
+    const V split = hn::MulAdd(hn::Add(b, b), u, gap);
+    const V s = hn::Div(hn::Mul(gap, hn::Add(one, b)), split);
+    return hn::Mul(hn::Div(hn::Mul(gap, rest), split), hn::Add(s, gap));
+  }
+};
+
+template <class Zenith>
+HWY_INLINE void directions_of(const LobeDraws& draws, int count, DirectionBatch& w) {
+  const hn::CappedTag<float, 8> tag;
+  using V = hn::Vec<decltype(tag)>;
+  const V zero = hn::Zero(tag), one = hn::Set(tag, 1.0f), two = hn::Set(tag, 2.0f);
+  for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(tag))) {
+    const V bandwidth = hn::Load(tag, draws.bandwidth + at);
+    const V u = hn::Load(tag, draws.u + at), rest = hn::Load(tag, draws.rest + at);
+    const auto cosine = hn::Lt(bandwidth, zero);
+    const V d = hn::Min(hn::Max(Zenith()(tag, hn::Abs(bandwidth), u, rest), zero), two);
+    const V sine = hn::Sqrt(hn::IfThenElse(cosine, u, hn::Mul(d, hn::Sub(two, d))));
+    const V z = hn::IfThenElse(cosine, hn::Sqrt(rest), hn::Sub(one, d));
+    const V phi = hn::Mul(hn::Load(tag, draws.azimuth + at), hn::Set(tag, 2 * kPi));
+    const V x = hn::Mul(sine, hn::Cos(tag, phi)), y = hn::Mul(sine, hn::Sin(tag, phi));
+    // Frame::about, over lanes.
+    const V ax = hn::Load(tag, draws.x + at), ay = hn::Load(tag, draws.y + at), az = hn::Load(tag, draws.z + at);
+    const V sign = hn::CopySign(one, az);
+    const V a = hn::Neg(hn::Div(one, hn::Add(sign, az))), b = hn::Mul(hn::Mul(ax, ay), a);
+    const V xx = hn::MulAdd(hn::Mul(hn::Mul(sign, ax), ax), a, one), yy = hn::MulAdd(hn::Mul(ay, ay), a, sign);
+    hn::Store(hn::MulAdd(x, xx, hn::MulAdd(y, b, hn::Mul(z, ax))), tag, w.x + at);
+    hn::Store(hn::MulAdd(hn::Mul(x, sign), b, hn::MulAdd(y, yy, hn::Mul(z, ay))), tag, w.y + at);
+    const V down = hn::MulAdd(hn::Mul(x, sign), ax, hn::Mul(y, ay));
+    hn::Store(hn::NegMulAdd(one, down, hn::Mul(z, az)), tag, w.z + at);
+  }
+}
+
+void directions_simd(Kernel kernel, const LobeDraws& draws, int count, DirectionBatch& w) {
+  if (kernel == Kernel::gaussian) return directions_of<GaussianZenith>(draws, count, w);
+  return directions_of<AbelPoissonZenith>(draws, count, w);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace velour
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace velour {
+
+HWY_EXPORT(directions_simd);
+
+namespace {
+
+constexpr float kCosine = -1;  // for a bandwidth
+
+void choose_component(const LobeMixture& mixture, const Vec2& u, int to, LobeDraws& draws) {
+  double rest = middle_of_step(u.x);
+  const double share = mixture.cosine_share;
+  if (rest < share) return draws.set(to, {0, 0, 1}, kCosine, std::min(rest / share, 1 - 0x1p-24), u.y);
+  rest = (rest - share) / (1 - share);
+  const int j = choose_index(mixture.cdf, mixture.count, rest);
+  draws.set(to, {mixture.x[j], mixture.y[j], mixture.z[j]}, mixture.bandwidth[j], rest, u.y);
+}
+
+}  // namespace
+
+void sample_mixture(const LobeMixture& mixture, std::span<const Vec2> u, DirectionBatch& w) {
+  assert(u.size() <= DirectionBatch::kCapacity);
+  LobeDraws draws;
+  const int count = static_cast<int>(u.size());
+  for (int i = 0; i < count; ++i) choose_component(mixture, u[static_cast<size_t>(i)], i, draws);
+  for (int i = count; i % 8 != 0; ++i) draws.set(i, {0, 0, 1}, kCosine, 0.5, 0.0f);
+  VELOUR_SIMD_DISPATCH(directions_simd)(mixture.kernel, draws, count, w);
+  w.count = count;
+}
+
+Vec3 sample_mixture(const LobeMixture& mixture, const Vec2& u) {
+  DirectionBatch w;
+  sample_mixture(mixture, {&u, 1}, w);
+  return w.get(0);
+}
+
+}  // namespace velour
+#endif
