@@ -38,6 +38,7 @@ class PathNumbers {
   void points(Purpose purpose, uint32_t first, int count, PointBatch& batch);
   /// One point, where every camera ray uses one.
   Vec2 point(Purpose purpose);
+  void point(Purpose purpose, PointBatch& batch) { points(purpose, ray_, 1, batch); }
 
   /// Directions in a row, and which of the points of their purpose they take.
   struct Run {

@@ -40,10 +40,11 @@ void TileRenderer::render_run(const PixelRect& run, int first, int count, PixelS
   for (int depth = 0; depth <= context_.options.bounces && !paths_.empty(); ++depth) {
     trace(log);
     receivers_.clear();
-    for (size_t i = 0; i < paths_.size(); ++i) follow(paths_[i], hits_[i], depth);
+    for (size_t i = 0; i < paths_.size(); ++i) follow(i, depth);
     gather(depth);
-    rays_ += shadows_.resolve(context_.scene.rays(), samples_, log);
+    ray_count_ += shadows_.resolve(context_.scene.rays(), samples_, log);
     paths_.swap(next_);
+    rays_.swap(next_rays_);
   }
   add_background();
   for (size_t i = 0; i < samples_.size(); ++i) sums[i / static_cast<size_t>(count)].add(samples_[i]);
@@ -56,34 +57,51 @@ void TileRenderer::start_paths(const PixelRect& run, int first, int count) {
   for (int x = run.x0; x < run.x1; ++x) {
     const uint64_t pixel = static_cast<uint64_t>(run.y0) * static_cast<uint64_t>(o.width) + static_cast<uint64_t>(x);
     for (int index = first; index < first + count; ++index) {
-      PathNumbers numbers(o, pixel, static_cast<uint32_t>(index));
-      const Vec2 place = Vec2(x, run.y0) + numbers.point(Purpose::camera);
-      const Ray ray =
-          context_.scene.camera().ray(place / Vec2(static_cast<float>(o.width), static_cast<float>(o.height)));
-      paths_.push_back({numbers, ray, Rgb(1.0f), static_cast<uint32_t>(samples_.size())});
-      samples_.push_back({});
-      samples_.back().directions = context_.directions(index);
+      paths_.push_back(
+          {PathNumbers(o, pixel, static_cast<uint32_t>(index)), Rgb(1.0f), static_cast<uint32_t>(samples_.size())});
+      samples_.emplace_back().directions = context_.directions(index);
+    }
+  }
+  aim_paths(run, count);
+}
+
+/// The camera rays of the paths, `count` a pixel.
+void TileRenderer::aim_paths(const PixelRect& run, int count) {
+  const RenderOptions& o = context_.options;
+  const Vec2 size(static_cast<float>(o.width), static_cast<float>(o.height));
+  const auto pixel_of = [&](size_t path) { return Vec2(run.x0 + static_cast<int>(path) / count, run.y0); };
+  rays_.clear();
+  PointBatch points;
+  for (size_t first = 0; first < paths_.size(); first += PointBatch::kCapacity) {
+    const size_t end = std::min(paths_.size(), first + PointBatch::kCapacity);
+    points.clear();
+    for (size_t i = first; i < end; ++i) paths_[i].numbers.point(Purpose::camera, points);
+    points.resolve();
+    const auto places = points.points(0, points.count());
+    for (size_t i = first; i < end; ++i) {
+      rays_.push_back(context_.scene.camera().ray((pixel_of(i) + places[i - first]) / size));
     }
   }
 }
 
 void TileRenderer::trace(RayLog* log) {
-  path_rays_.clear();
-  for (const Path& path : paths_) path_rays_.push_back(path.ray);
-  hits_.resize(path_rays_.size());
-  if (log != nullptr) log->add(path_rays_, RayLog::Kind::nearest);
-  context_.scene.rays().intersect(path_rays_, hits_.data());
-  rays_ += path_rays_.size();
+  hits_.resize(rays_.size());
+  if (log != nullptr) log->add(rays_, RayLog::Kind::nearest);
+  context_.scene.rays().intersect(rays_, hits_.data());
+  ray_count_ += rays_.size();
 }
 
-void TileRenderer::follow(Path& path, const Hit& hit, int depth) {
+void TileRenderer::follow(size_t index, int depth) {
+  Path& path = paths_[index];
+  const Hit& hit = hits_[index];
+  const Vec3& direction = rays_[index].direction;
   CameraSample& sample = samples_[path.sample];
   if (hit.instance == kNoHit) {
-    if (depth == 0) missed_.push_back({path.sample, path.ray.direction});
+    if (depth == 0) missed_.push_back({path.sample, direction});
     return;
   }
   const SurfacePoint point = context_.scene.surface(hit);
-  Vertex vertex(point, -path.ray.direction);
+  Vertex vertex(point, -direction);
   vertex.surface = &context_.scene.materials()[point.material];
   if (!context_.tables.empty()) vertex.table = context_.tables[point.material].get();
   if (!context_.ggx.empty()) vertex.ggx = context_.ggx[point.material].get();
@@ -99,6 +117,7 @@ void TileRenderer::follow(Path& path, const Hit& hit, int depth) {
 
 void TileRenderer::gather(int depth) {
   next_.clear();
+  next_rays_.clear();
   const std::span<const Receiver> all(receivers_);
   const size_t most = all.empty() ? 1 : DirectLight::receivers_of(all[0].full);
   for (size_t first = 0; first < all.size(); first += most) {
@@ -112,7 +131,8 @@ void TileRenderer::extend(const Receiver& receiver, size_t place) {
   const auto onward = light_.extend(receiver, place);
   if (!onward) return;
   receiver.numbers->next_vertex();
-  next_.push_back({*receiver.numbers, onward->ray, onward->throughput, receiver.sample});
+  next_.push_back({*receiver.numbers, onward->throughput, receiver.sample});
+  next_rays_.push_back(onward->ray);
 }
 
 void TileRenderer::add_background() {

@@ -36,19 +36,19 @@ class TileRenderer {
   /// Throws Error(cancelled) soon after a cancel.
   void render(const PixelRect& tile, int first, int count, Film& film, RayLog* log, const Progress& progress);
 
-  uint64_t rays() const { return rays_; }
+  uint64_t rays() const { return ray_count_; }
   uint64_t nan_samples() const { return light_.nan_samples(); }
 
  private:
   struct Path {
     PathNumbers numbers;
-    Ray ray;
     Rgb throughput;
     uint32_t sample;
   };
   void start_paths(const PixelRect& run, int first, int count);
+  void aim_paths(const PixelRect& run, int count);
   void trace(RayLog* log);
-  void follow(Path& path, const Hit& hit, int depth);
+  void follow(size_t path, int depth);
   void gather(int depth);
   void extend(const Receiver& receiver, size_t place);
   void add_background();
@@ -58,7 +58,7 @@ class TileRenderer {
   DirectLight light_;
   ShadowQueue shadows_;
   std::vector<Path> paths_, next_;
-  std::vector<Ray> path_rays_;
+  std::vector<Ray> rays_, next_rays_;  // of the paths
   std::vector<Hit> hits_;
   std::vector<Receiver> receivers_;
   std::vector<CameraSample> samples_;
@@ -68,7 +68,7 @@ class TileRenderer {
   };
   std::vector<Miss> missed_;  // camera rays that met nothing
   std::vector<PixelSum> pixels_;
-  uint64_t rays_ = 0;
+  uint64_t ray_count_ = 0;
 };
 
 }  // namespace velour
