@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/equirectangular_draws.h"
+
 namespace velour {
 namespace {
 
 float clean(float value) { return std::isfinite(value) ? std::max(value, 0.0f) : 0.0f; }
-
-/// Takes the share of u in [0, 1) that lies below `split` (or above it) back to [0, 1): one number chooses twice.
-bool choose_second(float split, float& u) {
-  const bool second = u >= split;
-  u = second ? (u - split) / (1.0f - split) : u / split;
-  u = std::min(u, 0x1.fffffep-1f);
-  return second;
-}
 
 }  // namespace
 
@@ -54,7 +48,8 @@ void EquirectangularImage::build_tables() {
     for (size_t x = 0; x < w; ++x) mass[x] = 0.5 * (static_cast<double>(t[x].node) + t[x + 1].node);
     row_mean[y] = build_cells(mass, &row_cdf_[y * (w + 1)], &row_guide_[y * w]) / static_cast<double>(w);
   }
-  row_node_.assign(row_mean.begin(), row_mean.end());
+  row_node_.assign(h + 2, 0.0f);
+  std::copy(row_mean.begin(), row_mean.end(), row_node_.begin() + 1);
 
   std::vector<double> bands(h + 1);
   bands.front() = 0.25 * row_mean.front();  // half a row, from 0 at the pole
@@ -72,65 +67,42 @@ void EquirectangularImage::look_up(const DirectionBatch& world, RgbBatch& radian
   equirectangular_look_up(*this, world, radiance, pdf);
 }
 
-/// A row, the place between it and its neighbour, and what is left of the random number for its columns.
-struct EquirectangularImage::RowDraw {
-  size_t row;
-  float v;
-  float u;
-};
-
-EquirectangularImage::RowDraw EquirectangularImage::draw_row(const Vec2& u) const {
-  // A band between two rows, the place in it, then one of the two rows in proportion to its share there: together the
-  // bilinear density, each part inverted in closed form.
-  const int band = find_cell(marginal_cdf_.data(), marginal_guide_[guide_place(u.y, height_ + 1)], height_ + 1, u.y);
-  const float* edge = &marginal_cdf_[static_cast<size_t>(band)];
-  const float in_band = std::clamp((u.y - edge[0]) / std::max(edge[1] - edge[0], 1e-30f), 0.0f, 1.0f);
-  const float above = band > 0 ? row_node_[static_cast<size_t>(band) - 1] : 0.0f;
-  const float below = band < height_ ? row_node_[static_cast<size_t>(band)] : 0.0f;
-  const float t = invert_linear(above, below, in_band);
-
-  RowDraw draw{0, static_cast<float>(band) - 0.5f + t, u.x};
-  // The bands at the poles are half as high.
-  if (band == 0) draw.v = 0.5f * t;
-  if (band == height_) draw.v = static_cast<float>(height_) - 0.5f + 0.5f * t;
-  const float share_above = (1.0f - t) * above, share_below = t * below;
-  const bool lower = choose_second(share_above / std::max(share_above + share_below, 1e-30f), draw.u);
-  draw.row = static_cast<size_t>(std::clamp(lower ? band : band - 1, 0, height_ - 1));
-  return draw;
+/// The column's cell, and what draw_columns reads of it.
+void EquirectangularImage::find_column(EquirectangularDraws& draws, int i, int first) const {
+  const auto y = static_cast<size_t>(draws.row[i]);
+  const float* cdf = &row_cdf_[y * (static_cast<size_t>(width_) + 1)];
+  const int cell = find_cell(cdf, first, width_, draws.u[i]);
+  const EnvironmentTexel* texel = row(draws.row[i]) + cell;
+  draws.cell[i] = static_cast<float>(cell);
+  draws.low[i] = cdf[cell];
+  draws.high[i] = cdf[cell + 1];
+  draws.left[i] = texel[0].node;
+  draws.right[i] = texel[1].node;
 }
 
-float EquirectangularImage::draw_column(const RowDraw& draw, int first) const {
-  const float* cdf = &row_cdf_[draw.row * (static_cast<size_t>(width_) + 1)];
-  const int cell = find_cell(cdf, first, width_, draw.u);
-  const float in_cell = std::clamp((draw.u - cdf[cell]) / std::max(cdf[cell + 1] - cdf[cell], 1e-30f), 0.0f, 1.0f);
-  const EnvironmentTexel* texel = row(static_cast<int>(draw.row)) + cell;
-  return static_cast<float>(cell) - 0.5f + invert_linear(texel[0].node, texel[1].node, in_cell);
-}
-
-// Three passes, each of which calls for the memory of the next: tables and texels of a large image are in no near
-// cache, and their latency is paid once instead of once a direction.
+// Passes, each of which calls for the memory of the next: tables and texels of a large image are in no near cache, and
+// their latency is paid once instead of once a direction.
 void EquirectangularImage::sample(std::span<const Vec2> u, DirectionBatch& world) const {
-  const int count = static_cast<int>(u.size());
-  RowDraw draws[DirectionBatch::kCapacity];
-  int first_cell[DirectionBatch::kCapacity];
-  const size_t w = static_cast<size_t>(width_);
-  for (int i = 0; i < count; ++i) {
-    draws[i] = draw_row(u[static_cast<size_t>(i)]);
-    __builtin_prefetch(&row_guide_[draws[i].row * w + guide_place(draws[i].u, width_)]);
+  const int count = static_cast<int>(u.size()), padded = (count + 15) / 16 * 16;
+  EquirectangularDraws draws;
+  for (int i = 0; i < padded; ++i) {
+    const Vec2 at = i < count ? u[static_cast<size_t>(i)] : Vec2(0.5f);
+    draws.u[i] = at.x;
+    draws.v[i] = at.y;
   }
-  for (int i = 0; i < count; ++i) {
-    const RowDraw& draw = draws[i];
-    const int cell = first_cell[i] = row_guide_[draw.row * w + guide_place(draw.u, width_)];
-    __builtin_prefetch(&row_cdf_[draw.row * (w + 1) + static_cast<size_t>(cell)]);
-    __builtin_prefetch(row(static_cast<int>(draw.row)) + cell);
+  draw_rows({height_, marginal_cdf_.data(), marginal_guide_.data(), row_node_.data()}, draws, padded);
+  const uint16_t* guide[DirectionBatch::kCapacity];
+  for (int i = 0; i < padded; ++i) {
+    guide[i] = &row_guide_[static_cast<size_t>(draws.row[i]) * static_cast<size_t>(width_)];
+    __builtin_prefetch(guide[i] += guide_place(draws.u[i], width_));
   }
-  ScalarBatch column, line;
-  for (int i = 0; i < count; ++i) {
-    column.v[i] = draw_column(draws[i], first_cell[i]) / static_cast<float>(width_);
-    line.v[i] = draws[i].v / static_cast<float>(height_);
+  for (int i = 0; i < padded; ++i) {
+    __builtin_prefetch(&row_cdf_[static_cast<size_t>(draws.row[i]) * (static_cast<size_t>(width_) + 1) + *guide[i]]);
+    __builtin_prefetch(row(draws.row[i]) + *guide[i]);
   }
-  for (int i = count; i % 16 != 0; ++i) column.v[i] = line.v[i] = 0.5f;
-  equirectangular_directions(*this, column, line, count, world);
+  for (int i = 0; i < padded; ++i) find_column(draws, i, *guide[i]);
+  draw_columns(width_, draws, padded);
+  equirectangular_directions(*this, draws.u, draws.v, count, world);
   world.count = count;
   world.pad();
 }
@@ -138,7 +110,7 @@ void EquirectangularImage::sample(std::span<const Vec2> u, DirectionBatch& world
 uint64_t EquirectangularImage::bytes() const {
   return texels_.size() * sizeof(EnvironmentTexel) +
          (row_node_.size() + marginal_cdf_.size() + row_cdf_.size()) * sizeof(float) +
-         (marginal_guide_.size() + row_guide_.size()) * sizeof(uint16_t);
+         marginal_guide_.size() * sizeof(int32_t) + row_guide_.size() * sizeof(uint16_t);
 }
 
 }  // namespace velour

@@ -11,6 +11,8 @@
 
 namespace velour {
 
+struct EquirectangularDraws;
+
 struct alignas(16) EnvironmentTexel {
   float r, g, b;
   float node;  // luminance(rgb) sin(theta of the row's centre)
@@ -36,9 +38,7 @@ class EquirectangularImage {
  private:
   void store_texels(const EquirectangularPixels& pixels, float strength);
   void build_tables();
-  struct RowDraw;
-  RowDraw draw_row(const Vec2& u) const;
-  float draw_column(const RowDraw& draw, int first) const;
+  void find_column(EquirectangularDraws& draws, int i, int first) const;
 
   int width_, height_;
   size_t stride_;  // texels a stored row: W + 2, the last and the first column repeated on the other side
@@ -47,11 +47,11 @@ class EquirectangularImage {
   float mean_luminance_ = 0;
   float density_scale_ = 0;  // pdf = node * density_scale_ / sin(theta)
 
-  // Cell j of a row lies between the centres of texels j - 1 and j (wrapped); cell i of the marginal between the
-  // centres of rows i - 1 and i, the first and the last ending at a pole.
-  std::vector<float> row_node_;  // mean node of each row
-  std::vector<float> marginal_cdf_, row_cdf_;
-  std::vector<uint16_t> marginal_guide_, row_guide_;
+  // Cell j of a row lies between the centres of texels j - 1 and j (wrapped).
+  std::vector<float> row_cdf_;
+  std::vector<uint16_t> row_guide_;
+  std::vector<float> row_node_, marginal_cdf_;  // MarginalTable
+  std::vector<int32_t> marginal_guide_;
 };
 
 /// Texel coordinates of a batch of world directions: column cell and the place in it, likewise rows.
@@ -69,8 +69,9 @@ void equirectangular_coordinates(const EquirectangularImage& image, const Direct
 /// Bilinear radiance and density.
 void equirectangular_look_up(const EquirectangularImage& image, const DirectionBatch& world, RgbBatch& radiance,
                              ScalarBatch& pdf);
-/// World directions of `count` places: columns `u`, rows `v` from the top, both as shares of the image's sides.
-void equirectangular_directions(const EquirectangularImage& image, const ScalarBatch& u, const ScalarBatch& v,
-                                int count, DirectionBatch& world);
+/// World directions of `count` places: columns `u`, rows `v` from the top, both as shares of the image's sides, padded
+/// to 16 and aligned.
+void equirectangular_directions(const EquirectangularImage& image, const float* u, const float* v, int count,
+                                DirectionBatch& world);
 
 }  // namespace velour

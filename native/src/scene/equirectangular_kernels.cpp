@@ -112,13 +112,13 @@ void look_up_simd(const EquirectangularImage& image, const DirectionBatch& world
   }
 }
 
-void directions_simd(const EquirectangularImage& image, const ScalarBatch& u, const ScalarBatch& v, int count,
+void directions_simd(const EquirectangularImage& image, const float* u, const float* v, int count,
                      DirectionBatch& world) {
   const hn::CappedTag<float, 8> d;
   const Mat3 image_to_world = glm::transpose(image.world_to_image());
   for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
-    const auto theta = hn::Mul(hn::Load(d, v.v + at), hn::Set(d, kPi));
-    const auto phi = hn::Mul(hn::Sub(hn::Set(d, 0.5f), hn::Load(d, u.v + at)), hn::Set(d, 2.0f * kPi));
+    const auto theta = hn::Mul(hn::Load(d, v + at), hn::Set(d, kPi));
+    const auto phi = hn::Mul(hn::Sub(hn::Set(d, 0.5f), hn::Load(d, u + at)), hn::Set(d, 2.0f * kPi));
     const auto r = hn::Sin(d, theta);
     const auto x = hn::Mul(r, hn::Cos(d, phi)), y = hn::Mul(r, hn::Sin(d, phi)), z = hn::Cos(d, theta);
     hn::Store(row_dot(d, image_to_world, 0, x, y, z), d, world.x + at);
@@ -148,8 +148,8 @@ void equirectangular_look_up(const EquirectangularImage& image, const DirectionB
   VELOUR_SIMD_DISPATCH(look_up_simd)(image, world, radiance, pdf);
 }
 
-void equirectangular_directions(const EquirectangularImage& image, const ScalarBatch& u, const ScalarBatch& v,
-                                int count, DirectionBatch& world) {
+void equirectangular_directions(const EquirectangularImage& image, const float* u, const float* v, int count,
+                                DirectionBatch& world) {
   VELOUR_SIMD_DISPATCH(directions_simd)(image, u, v, count, world);
 }
 
