@@ -1,6 +1,7 @@
 // The inner loop of the product: value and density of a batch of directions under a mixture, and one sample of it.
 #include <benchmark/benchmark.h>
 
+#include "bench/arithmetic_peak.h"
 #include "sphere/directions.h"
 #include "sphere/random.h"
 #include "srbf/lobe_mixture.h"
@@ -29,6 +30,33 @@ DirectionBatch make_batch(int count) {
   return batch;
 }
 
+/// Of a loop over `pairs` lobes times directions.
+void count_pairs(benchmark::State& state, double pairs) {
+  const auto rate = benchmark::Counter::kIsIterationInvariantRate;
+  state.counters["ns_per_lobe_direction"] = benchmark::Counter(pairs * 1e-9, rate | benchmark::Counter::kInvert);
+  state.counters["share_of_peak"] = benchmark::Counter(pairs * arithmetic_peak_seconds(), rate);
+}
+
+// The lobes of four neighbouring views. Arguments: lobes a view, directions.
+void eval_neighbors(benchmark::State& state) {
+  constexpr int kViews = 4;
+  const int lobes = kViews * static_cast<int>(state.range(0)), directions = static_cast<int>(state.range(1));
+  const LobeMixture mixture = make_mixture(Kernel::gaussian, lobes);
+  const DirectionBatch batch = make_batch(directions);
+  RgbBatch value;
+  ScalarBatch pdf;
+  for (auto _ : state) {
+    eval_mixture(mixture, batch, value, pdf);
+    benchmark::DoNotOptimize(value);
+    benchmark::DoNotOptimize(pdf);
+  }
+  state.counters["ns_per_lobe"] =
+      benchmark::Counter(lobes * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  count_pairs(state, static_cast<double>(lobes) * directions);
+  state.SetLabel(simd_target());
+}
+BENCHMARK(eval_neighbors)->ArgsProduct({{4, 8, 16, 32}, {8, 16, 64}});
+
 // Arguments: kernel, lobes, directions.
 void eval_lobe_mixture(benchmark::State& state) {
   const int lobes = static_cast<int>(state.range(1)), directions = static_cast<int>(state.range(2));
@@ -41,9 +69,7 @@ void eval_lobe_mixture(benchmark::State& state) {
     benchmark::DoNotOptimize(value);
     benchmark::DoNotOptimize(pdf);
   }
-  state.counters["ns_per_lobe_direction"] =
-      benchmark::Counter(static_cast<double>(lobes) * directions * 1e-9,
-                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  count_pairs(state, static_cast<double>(lobes) * directions);
   state.SetLabel(std::string(simd_target()) + " " + kernel_name(mixture.kernel));
 }
 BENCHMARK(eval_lobe_mixture)->ArgsProduct({{0}, {4, 8, 16, 32}, {8, 16, 64}})->ArgsProduct({{1}, {16}, {8, 16, 64}});
@@ -54,10 +80,20 @@ void eval_on_target(benchmark::State& state, const std::string& target) {
   select_simd_target("auto");
 }
 
+// Arguments: kernel, lobes, directions.
 void sample_lobe_mixture(benchmark::State& state) {
   const LobeMixture mixture = make_mixture(static_cast<Kernel>(state.range(0)), static_cast<int>(state.range(1)));
+  std::vector<Vec2> u(static_cast<size_t>(state.range(2)));
   RandomStream random(1, 2, 3);
-  for (auto _ : state) benchmark::DoNotOptimize(sample_mixture(mixture, random.next2()));
+  DirectionBatch w;
+  for (auto _ : state) {
+    for (Vec2& v : u) v = random.next2();
+    sample_mixture(mixture, u, w);
+    benchmark::DoNotOptimize(w);
+  }
+  state.counters["ns_per_direction"] =
+      benchmark::Counter(static_cast<double>(state.range(2)) * 1e-9,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 // What the random numbers of the benchmark above cost.
 void random_numbers(benchmark::State& state) {
@@ -65,7 +101,7 @@ void random_numbers(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(random.next2());
 }
 BENCHMARK(random_numbers);
-BENCHMARK(sample_lobe_mixture)->ArgsProduct({{0, 1}, {4, 32}});
+BENCHMARK(sample_lobe_mixture)->ArgsProduct({{0, 1}, {4, 32}, {1, 4, 64}});
 
 const bool registered = [] {
   for (const std::string& target : simd_targets()) {

@@ -10,9 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr int kLobesPerView = 16;
-
-ScatteredBrdf make_brdf(bool isotropic) {
+ScatteredBrdf make_brdf(bool isotropic, int lobes = 16) {
   ScatteredBrdf brdf;
   brdf.isotropic = isotropic;
   brdf.default_neighbors = isotropic ? 2 : 4;
@@ -24,7 +22,7 @@ ScatteredBrdf make_brdf(bool isotropic) {
   RandomStream random(1, 2, 3);
   brdf.first_lobe = {0};
   for (size_t i = 0; i < brdf.views.size(); ++i) {
-    for (const Vec3& center : hemisphere_fibonacci(kLobesPerView)) {
+    for (const Vec3& center : hemisphere_fibonacci(lobes)) {
       brdf.center.push_back(center);
       brdf.bandwidth.push_back(std::exp2(12 * random.next()));
       brdf.coefficient.push_back({random.next(), random.next(), random.next()});
@@ -61,6 +59,21 @@ void prepare_material(benchmark::State& state) {
   }
   label(state);
 }
+// Four neighbouring views found, turned and put together. Argument: lobes a view.
+void prepare_neighbors(benchmark::State& state) {
+  const int lobes = static_cast<int>(state.range(0));
+  const auto material = make_scattered_material(std::make_shared<ScatteredBrdf>(make_brdf(false, lobes)), 4);
+  PreparedBrdf point;
+  size_t i = 0;
+  for (auto _ : state) {
+    material->prepare(views()[++i % 1024], point);
+    benchmark::DoNotOptimize(point);
+  }
+  state.counters["ns_per_lobe"] =
+      benchmark::Counter(4e-9 * lobes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(prepare_neighbors)->Arg(4)->Arg(8)->Arg(16)->Arg(32);
+
 BENCHMARK(prepare_material)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled);
 
 void eval_material_16(benchmark::State& state) {
