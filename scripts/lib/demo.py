@@ -13,6 +13,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import demo_blender
 import demo_capture
+import headless_blender
 from velour.core import files, plots
 from velour.core.machine import machine
 from velour.native import Measurement, VelourError, fit_job, images, library
@@ -29,7 +30,7 @@ def main() -> int:
             demonstrate(source, folder, args.fresh)
     except KeyboardInterrupt:
         return 130
-    except (VelourError, OSError, demo_blender.BlenderError) as error:
+    except (VelourError, OSError, headless_blender.BlenderError) as error:
         print(f"demo: {error}", file=sys.stderr)
         return 1
     return 0

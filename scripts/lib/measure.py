@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import csv
-import datetime
 import io
-import json
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+import data_files
 import measure_text
+import provenance
 from velour.core import files, plots
-from velour.core.machine import machine
+from velour_cli import ROOT, velour
 
-ROOT = Path(__file__).resolve().parents[2]
 WORK = ROOT / "build/measurements"
 SEED = 1
 THREADS = 2
@@ -30,15 +28,13 @@ WORLDS = ("venice_sunset", "studio_small_03")
 
 
 def main() -> int:
-    data = Path(os.environ.get("VELOUR_DATA", ROOT.parent / "shared/data"))
-    if not data.is_dir():
-        print(f"measure: skipped, there is no test data in {data}; set VELOUR_DATA to its folder.")
-        return 0
-    materials = _materials(data)
+    data = data_files.folder()
+    WORK.mkdir(parents=True, exist_ok=True)
+    materials = {name: data_files.merl(data, name) for name in data_files.merl_names(data)}
     worlds = {name: _scene(data, name) for name in WORLDS}
     scene = worlds[WORLDS[0]]
     results = {
-        "conditions": _conditions(),
+        "conditions": provenance.conditions(SEED, THREADS),
         "fits": {name: _fit(path) for name, path in materials.items()},
         "render": _main_render(scene),
         "lobes": _image_error_by_lobes(scene, materials[MATERIAL]),
@@ -52,41 +48,14 @@ def main() -> int:
     return 0
 
 
-def velour(*arguments) -> dict:
-    """The report of one call; its message goes through to the terminal, its failure ends the run."""
-    command = [ROOT / "scripts/velour", *map(str, arguments), "--json", "--log-level", "error"]
-    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
-
-
 def render(scene: list, material: Path, out: str, *options) -> dict:
     common = ["--seed", SEED, "--threads", THREADS, "-o", WORK / out]
     print(f"rendering {out} ...", flush=True)
     return velour("render", *scene, "--material", material, *common, *options)
 
 
-def _conditions() -> dict:
-    def git(*arguments) -> str:
-        return subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True).stdout.strip()
-
-    commit = git("rev-parse", "--short=12", "HEAD") or "unknown"
-    if git("status", "--porcelain", "--", "native", "addon"):
-        commit += " with changes"
-    today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
-    return {"machine": machine(), "date": today, "commit": commit, "seed": SEED, "threads": THREADS}
-
-
-def _materials(data: Path) -> dict[str, Path]:
-    """The MERL-layout files, expanded once."""
-    folder = WORK / "merl"
-    names = sorted(path.name.removesuffix(".nbrdf.npz") for path in (data / "brdf").glob("*.nbrdf.npz"))
-    if not all((folder / f"{name}.binary").is_file() for name in names):
-        expand = [sys.executable, data / "brdf/expand_merl.py", folder]
-        subprocess.run(expand, check=True, stdout=subprocess.DEVNULL)
-    return {name: folder / f"{name}.binary" for name in names}
-
-
 def _scene(data: Path, world: str) -> list:
-    return ["--mesh", data / "mesh/bunny.obj", "--world", data / f"hdr/{world}_1k.hdr"]
+    return ["--mesh", data_files.mesh(data, "bunny"), "--world", data_files.world(data, world)]
 
 
 def _model(name: str, lobes: int) -> Path:
@@ -151,6 +120,8 @@ def _flat(report: dict, prefix: str = ""):
 if __name__ == "__main__":
     try:
         sys.exit(main())
+    except data_files.NoDataError as absent:
+        print(f"measure: {absent}")
     except KeyboardInterrupt:
         sys.exit(130)
     except subprocess.CalledProcessError as error:

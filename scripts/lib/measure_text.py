@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import provenance
+from markdown_table import error, small, table
+
 ANGLES = ("5", "30", "60", "75", "85")
 
 
@@ -15,8 +18,7 @@ def _head(c: dict) -> str:
     return f"""# Measurements
 
 Written by `scripts/measure`; the rows behind the tables are in [measurements.csv](measurements.csv).
-All numbers come from one run: {c["date"]}, commit {c["commit"]},
-{c["machine"]}; {c["threads"]} threads used, seed {c["seed"]}.
+{provenance.sentence(c)}
 
 The materials are decoded from neural fits of MERL materials (Sztrajman et al. 2021): stand-ins of the
 right layout and character, not the measurements themselves. What each number means is defined in
@@ -27,7 +29,7 @@ right layout and character, not the measurements themselves. What each number me
 def _fits(fits: dict[str, dict]) -> str:
     header = ["material", "seconds", "lobes", "bytes", "relative_l2", *(f"{a}°" for a in ANGLES)]
     rows = [
-        [name, f"{r['seconds']:.1f}", r["lobes"], r["bytes"], _error(r["relative_l2"]), *_errors(r)]
+        [name, f"{r['seconds']:.1f}", r["lobes"], r["bytes"], error(r["relative_l2"]), *_errors(r)]
         for name, r in fits.items()
     ]
     missed = [f"- {name}: {warning}" for name, r in fits.items() for warning in r["warnings"]]
@@ -37,7 +39,7 @@ def _fits(fits: dict[str, dict]) -> str:
 Tolerance 0.02 (0.04 beyond 75 degrees), at most 16 lobes a view, Gaussian kernel. Relative L2 error by
 view angle at directions that the fit never read. Target: under 10 s.
 
-{_table(header, rows)}
+{table(header, rows)}
 ![Error by view angle](images/error_by_view_angle.png)
 
 {named}
@@ -58,7 +60,7 @@ def _render(report: dict) -> str:
 
 640x480, 800 light directions a pixel, split 8, `mis`, default camera, direct light.
 
-{_table(["quantity", "measured", "target"], rows)}
+{table(["quantity", "measured", "target"], rows)}
 Stages: {stages}.
 """
 
@@ -79,9 +81,9 @@ def _lobes(lobes: dict[int, dict]) -> str:
             n,
             f"{r['fit']['seconds']:.1f}",
             r["fit"]["bytes"],
-            _error(r["fit"]["relative_l2"]),
-            _small(r["relmse"]),
-            _small(r["rmse"]),
+            error(r["fit"]["relative_l2"]),
+            small(r["relmse"]),
+            small(r["rmse"]),
             f"{r['seconds']:.1f}",
             f"{r['reference_seconds']:.1f}",
         ]
@@ -93,12 +95,12 @@ The same scene at 320x240, 512 light directions a pixel, `mis`. The reference ev
 on the very same light directions, drawn from the model, so noise cancels and what is left is the model's
 error. Lobes: a view, at most.
 
-{_table(header, rows)}"""
+{table(header, rows)}"""
 
 
 def _strategies(scenes: dict[str, dict]) -> str:
     header = ["strategy", "seconds", "relmse", "relmse of mis / its own", "relmse x seconds", "ray_share"]
-    tables = [f"{name}:\n\n{_table(header, _strategy_rows(rows))}" for name, rows in scenes.items()]
+    tables = [f"{name}:\n\n{table(header, _strategy_rows(rows))}" for name, rows in scenes.items()]
     return f"""## Strategies
 
 The bunny at 320x240, 64 light directions a pixel, split 8, models of at most 16 lobes a view, against a
@@ -114,23 +116,10 @@ def _strategy_rows(strategies: dict[str, dict]) -> list[list]:
     rows = []
     for name, r in strategies.items():
         share = "-" if r["ray_share"] is None else f"{r['ray_share']:.2f}"
-        numbers = [_small(r["relmse"]), f"{mis / r['relmse']:.2f}", _small(r["relmse"] * r["seconds"])]
+        numbers = [small(r["relmse"]), f"{mis / r['relmse']:.2f}", small(r["relmse"] * r["seconds"])]
         rows.append([name, f"{r['seconds']:.2f}", *numbers, share])
     return rows
 
 
 def _errors(report: dict) -> list[str]:
-    return [_error(report["by_view_angle"][angle]) for angle in ANGLES]
-
-
-def _error(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4f}"
-
-
-def _small(value: float) -> str:
-    return f"{value:.2e}"
-
-
-def _table(header: list, rows: list[list]) -> str:
-    lines = [header, ["---"] * len(header), *rows]
-    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+    return [error(report["by_view_angle"][angle]) for angle in ANGLES]

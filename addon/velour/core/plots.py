@@ -18,6 +18,7 @@ COLORS = {
     "mis": "#009e73",
     "ggx": "#f0e442",
     "mis-ggx": "#0072b2",
+    "product": "#000000",
 }
 
 
@@ -31,7 +32,7 @@ def error_against_time(
         axes.loglog(seconds, errors, "o-", color=COLORS.get(name), label=name)
     axes.set(xlabel="seconds", ylabel="relmse against the reference", title=title)
     axes.legend()
-    _save(figure, path)
+    save(figure, path)
 
 
 def error_by_view_angle(
@@ -46,23 +47,33 @@ def error_by_view_angle(
     axes.axhline(tolerance, color="black", linewidth=0.8, linestyle=":", label=f"tolerance {tolerance:g}")
     axes.set(xlabel="view angle, degrees", ylabel="relative L2")
     axes.legend()
-    _save(figure, path)
+    save(figure, path)
+
+
+def sheet(rows: int, columns: int, size: tuple[float, float]):
+    """A figure of `size` inches and its rows x columns of axes, for pictures: without frames and ticks."""
+    figure, axes = _pyplot().subplots(rows, columns, figsize=size, squeeze=False, layout="constrained")
+    for cell in axes.flat:
+        cell.set_axis_off()
+    return figure, axes
+
+
+def save(figure, path: str | os.PathLike, dpi: int = 120) -> None:
+    # Without the date the same data gives the same file.
+    files.write_atomic(Path(path), lambda name: figure.savefig(name, dpi=dpi, metadata={"Software": None}))
+    _pyplot().close(figure)
 
 
 def _figure():
+    figure, axes = _pyplot().subplots(figsize=(6.4, 4.0), layout="constrained")
+    axes.grid(which="both", alpha=0.25)
+    return figure, axes
+
+
+def _pyplot():
     import matplotlib
 
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(figsize=(6.4, 4.0), layout="constrained")
-    axes.grid(which="both", alpha=0.25)
-    return figure, axes
-
-
-def _save(figure, path: str | os.PathLike) -> None:
-    from matplotlib import pyplot
-
-    # Without the date the same data gives the same file.
-    files.write_atomic(Path(path), lambda name: figure.savefig(name, dpi=120, metadata={"Software": None}))
-    pyplot.close(figure)
+    return pyplot

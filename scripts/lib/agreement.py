@@ -1,0 +1,52 @@
+"""Do two estimates of the same picture agree within their error bars?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+LEVEL = 0.01  # of the whole list of tests, not of each
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+@dataclass(frozen=True)
+class Agreement:
+    tests: int  # pixels that vary, and the mean of the whole picture
+    largest_z: float
+    sidak_z: float  # what the largest |z| of so many tests stays below with probability 1 - LEVEL
+    p_value: float  # of the largest |z| among so many (Sidak)
+    ratio: float  # of the means of both pictures
+
+    @property
+    def holds(self) -> bool:
+        return self.p_value >= LEVEL
+
+
+def agreement(a: np.ndarray, b: np.ndarray) -> Agreement:
+    """a, b: independent renders of both estimates, [batch, row, column, channel].
+
+    Luminance of each pixel and its mean over the picture; Welch's t of the batches, as the z as unlikely.
+    """
+    a, b = (_with_mean(stack @ _LUMINANCE) for stack in (a, b))
+    varies = (a.var(axis=0) > 0) | (b.var(axis=0) > 0)
+    t = stats.ttest_ind(a[:, varies], b[:, varies], equal_var=False)
+    smallest, tests = float(np.min(t.pvalue)), int(varies.sum())
+    return Agreement(
+        tests=tests,
+        largest_z=_two_sided_z(smallest),
+        sidak_z=_two_sided_z(-np.expm1(np.log1p(-LEVEL) / tests)),
+        p_value=float(-np.expm1(tests * np.log1p(-smallest))),
+        ratio=float(a[:, -1].mean() / b[:, -1].mean()),
+    )
+
+
+def _two_sided_z(p: float) -> float:
+    return float(stats.norm.isf(p / 2))
+
+
+def _with_mean(luminance: np.ndarray) -> np.ndarray:
+    """[batch, pixel], the last column the picture's mean."""
+    pixels = luminance.reshape(len(luminance), -1)
+    return np.column_stack([pixels, pixels.mean(axis=1)])

@@ -1,0 +1,47 @@
+"""The test data: where they are, and what must be made of them first."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from velour_cli import ROOT
+
+_EXPANDED = ROOT / "build/merl"
+
+
+class NoDataError(RuntimeError):
+    """A sentence about inputs that are absent."""
+
+
+def folder() -> Path:
+    data = Path(os.environ.get("VELOUR_DATA", ROOT.parent / "shared/data"))
+    if not data.is_dir():
+        raise NoDataError(f"skipped, there is no test data in {data}; set VELOUR_DATA to its folder.")
+    return data
+
+
+def merl_names(data: Path) -> list[str]:
+    return sorted(path.name.removesuffix(".nbrdf.npz") for path in (data / "brdf").glob("*.nbrdf.npz"))
+
+
+def merl(data: Path, name: str) -> Path:
+    """A MERL-layout file, expanded once."""
+    path = _EXPANDED / f"{name}.binary"
+    if not path.is_file():
+        # Beside, then renamed: what is there is whole.
+        partial = _EXPANDED / "partial"
+        expand = [sys.executable, data / "brdf/expand_merl.py", partial, name]
+        subprocess.run(expand, check=True, stdout=subprocess.DEVNULL)
+        os.replace(partial / path.name, path)
+    return path
+
+
+def mesh(data: Path, name: str) -> Path:
+    return data / f"mesh/{name}.obj"
+
+
+def world(data: Path, name: str) -> Path:
+    return data / f"hdr/{name}_1k.hdr"

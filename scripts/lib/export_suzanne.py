@@ -1,0 +1,28 @@
+"""Runs inside Blender: writes Suzanne, subdivided and smooth, as OBJ, y up. Its task is JSON after "--"."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import bpy
+
+
+def main(task: dict) -> None:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.mesh.primitive_monkey_add(size=2.0)
+    smooth = bpy.context.object.modifiers.new("Smooth", "SUBSURF")
+    smooth.levels = smooth.render_levels = task["levels"]
+    bpy.ops.object.shade_smooth()
+    bpy.ops.wm.obj_export(
+        filepath=task["path"],
+        forward_axis="NEGATIVE_Z",
+        up_axis="Y",
+        export_materials=False,
+        export_uv=False,
+        export_triangulated_mesh=True,
+    )
+
+
+if __name__ == "__main__":
+    main(json.loads(sys.argv[sys.argv.index("--") + 1]))

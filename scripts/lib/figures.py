@@ -1,0 +1,140 @@
+"""The dissertation's figures 7.11 to 7.13: its strategy at its numbers of samples, against references."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import figure_scenes
+import figures_sheet
+import figures_text
+import numpy as np
+import script
+from agreement import Agreement, agreement
+from reference import FIRST_SEED, Reference
+from renders import Picture, Renders, Settings
+from scenes import Scene
+from velour_cli import ROOT
+
+WORLD = "venice_sunset"
+SEQUENCES = ("random", "sobol")  # the dissertation's and ours
+STRATEGY = {"strategy": "mis", "heuristic": "balance", "share": 0.5}
+BEST = {"strategy": "product"}
+# How far below the smallest error that is measured against it the reference's own must be.
+MARGIN = 10.0
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How much is rendered."""
+
+    size: tuple[int, int] = (640, 480)
+    spp: tuple[int, ...] = (200, 400, 600, 800, 1000)
+    batch_spp: int = 2048
+    batches: tuple[int, int] = (4, 16)  # at first, and at most
+    check_size: tuple[int, int] = (80, 60)
+    check_batches: int = 8
+    uniform_spp: int = 400_000  # in all batches together
+    check_spp: int = 4096  # in each
+
+
+QUICK = Extent((96, 72), (8, 16, 24, 32, 40), 64, (2, 3), (16, 12), 4, 4000, 64)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """What one row of the contact sheet shows."""
+
+    subject: figure_scenes.Subject
+    pictures: dict[tuple[str, int], Picture]
+    errors: dict[tuple[str, int], tuple[float, float]]  # rmse, relmse
+    reference: Reference
+    modelled: Picture  # with the very directions of the reference's first render
+    check: Agreement
+    control: Agreement
+
+    @property
+    def floor(self) -> tuple[float, float]:
+        """rmse, relmse of the fit alone: noise is the same in both and cancels."""
+        return self.modelled.errors(self.reference.batches[0].pixels)
+
+    @property
+    def smallest(self) -> float:
+        return min(rmse for rmse, _ in self.errors.values())
+
+    @property
+    def margin(self) -> float:
+        return self.smallest / self.reference.noise()[0]
+
+
+def main() -> int:
+    args = script.arguments("figures", ROOT / "docs/figures")
+    extent = QUICK if args.quick else Extent()
+    run = script.start(args, Settings(args.work, extent.size, args.threads, args.seed))
+    subjects = figure_scenes.subjects(run.data, run.renders)
+    for _ in subjects:
+        _announce(run.renders, extent)
+    figures = [_figure(subject, subject.scene(WORLD, run.data), run.renders, extent) for subject in subjects]
+    for figure in figures:
+        figure.reference.save(args.work / f"reference-{figure.subject.figure}")
+    figures_sheet.draw(args.output / "contact_sheet.png", figures, extent.spp)
+    figures_text.write(args.output, figures, run.conditions, extent)
+    print(args.output / "README.md")
+    return 0
+
+
+def _announce(renders: Renders, extent: Extent) -> None:
+    for spp in extent.spp:
+        renders.expect(spp, count=len(SEQUENCES))
+    renders.expect(extent.batch_spp, count=extent.batches[0] + 1)
+    renders.expect(extent.uniform_spp // extent.check_batches, extent.check_size, extent.check_batches)
+    renders.expect(extent.check_spp, extent.check_size, extent.check_batches)
+
+
+def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, extent: Extent) -> Figure:
+    measured = scene.measured(subject.measurement)
+    pictures = {
+        (sequence, spp): renders.render(scene, spp, **STRATEGY, sequence=sequence)
+        for sequence in SEQUENCES
+        for spp in extent.spp
+    }
+    reference = Reference(renders, measured, extent.batch_spp, **BEST).add(extent.batches[0])
+    modelled = renders.render(scene, extent.batch_spp, seed=FIRST_SEED, **BEST)
+    errors = _converge(pictures, reference, extent.batches[1])
+    return Figure(subject, pictures, errors, reference, modelled, *_check(renders, measured, extent))
+
+
+def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str, int], tuple[float, float]]:
+    """Adds to the reference until its standard error is small beside the smallest error; the errors."""
+    while True:
+        mean = reference.mean()
+        errors = {name: picture.errors(mean) for name, picture in pictures.items()}
+        margin = min(rmse for rmse, _ in errors.values()) / reference.noise()[0]
+        print(
+            f"    reference of {reference.spp} spp: the smallest error is {margin:.1f} times its own",
+            flush=True,
+        )
+        if margin >= MARGIN or len(reference.batches) >= most:
+            return errors
+        reference.add()
+
+
+def _check(renders: Renders, measured: Scene, extent: Extent) -> tuple[Agreement, Agreement]:
+    """The dissertation's own reference, uniform samples of the measurement, against the best strategy.
+
+    And the same with one of them a hundredth too bright, which must be seen.
+    """
+    batches, small = extent.check_batches, {"size": extent.check_size}
+    uniform = Reference(renders, measured, extent.uniform_spp // batches, strategy="uniform", **small).add(
+        batches
+    )
+    best = Reference(renders, measured, extent.check_spp, 2 * FIRST_SEED, **BEST, **small).add(batches)
+    a, b = uniform.stack(), best.stack()
+    return agreement(a, b), agreement(a, np.multiply(b, 1.01))
+
+
+if __name__ == "__main__":
+    sys.exit(script.guarded("figures", main))

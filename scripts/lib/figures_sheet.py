@@ -1,0 +1,63 @@
+"""The contact sheet: a row a figure, a column a number of samples, the reference last, errors below."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from markdown_table import small
+from velour.core import plots
+from velour.native import images
+
+_CELL = 3.2  # inches of a picture's width, at 100 dots an inch
+_WORST = 0.2  # relative error that is drawn brightest
+
+
+def draw(path: Path, figures: list, spp: tuple[int, ...]) -> None:
+    height = _CELL * 0.75 + 0.3
+    rows, columns = 2 * len(figures), len(spp) + 1
+    sheet, axes = plots.sheet(rows, columns, (_CELL * columns, height * rows))
+    for row, figure in enumerate(figures):
+        _draw_figure(axes[2 * row], axes[2 * row + 1], figure, spp)
+    plots.save(sheet, path, dpi=100)
+
+
+def _draw_figure(above, below, figure, spp: tuple[int, ...]) -> None:
+    mean = figure.reference.mean()
+    for column, count in enumerate(spp):
+        picture = figure.pictures["random", count]
+        relmse = {sequence: figure.errors[sequence, count][1] for sequence in ("random", "sobol")}
+        _show(above[column], picture.pixels, f"{figure.subject.name}, {count} spp")
+        caption = f"relmse {small(relmse['random'])}; sobol {small(relmse['sobol'])}"
+        _show_error(below[column], picture.pixels, mean, caption)
+    _show(above[-1], mean, f"measured, {figure.reference.spp} spp")
+    _show_error(
+        below[-1],
+        figure.modelled.pixels,
+        figure.reference.batches[0].pixels,
+        f"the fit's: {small(figure.floor[1])}",
+    )
+
+
+def _show(axes, pixels: np.ndarray, title: str) -> None:
+    axes.imshow(_display(pixels), interpolation="none")
+    axes.set_title(title, fontsize=9)
+
+
+def _show_error(axes, pixels: np.ndarray, reference: np.ndarray, title: str) -> None:
+    """Of the channels' sum, relative to the reference and a tenth of its mean, as in relmse."""
+    x, r = pixels.sum(axis=-1), reference.sum(axis=-1)
+    error = np.abs(x - r) / np.sqrt(r**2 + 0.01 * r.mean() ** 2)
+    axes.imshow(error[::-1], cmap="inferno", vmin=0, vmax=_WORST, interpolation="none")
+    axes.set_title(title, fontsize=9)
+
+
+def _display(pixels: np.ndarray) -> np.ndarray:
+    """As the library writes them for the eye: sRGB, row 0 on top."""
+    from matplotlib import image
+
+    with tempfile.TemporaryDirectory(prefix="velour-sheet-") as folder:
+        path = Path(folder) / "picture.png"
+        images.write(path, pixels)
+        return image.imread(path)

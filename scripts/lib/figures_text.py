@@ -1,0 +1,149 @@
+"""docs/figures/README.md and figures.csv from the numbers of scripts/figures."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import provenance
+from agreement import LEVEL
+from markdown_table import small, table
+from velour.core import files
+
+
+def write(folder: Path, figures: list, conditions: dict, extent) -> None:
+    files.write_text(folder / "README.md", _page(figures, conditions, extent))
+    files.write_text(folder / "figures.csv", _csv(figures, conditions))
+
+
+def _page(figures: list, conditions: dict, extent) -> str:
+    width, height = extent.size
+    columns, rows = extent.check_size
+    return f"""# The dissertation's figures
+
+Written by `scripts/figures`; the rows behind the tables are in [figures.csv](figures.csv).
+{provenance.sentence(conditions)}
+
+Figures 7.11 to 7.13 of the dissertation, {width}x{height}, default camera, `venice_sunset`, direct
+light: half of the light directions from the lobes of the fitted model, half from the environment,
+balance heuristic. Suzanne stands in for the Venus, which is not to be had. Nickel and
+blue-metallic-paint are decoded from neural fits of MERL materials: stand-ins; Krylon Blue is the
+measurement.
+
+![Contact sheet](contact_sheet.png)
+
+Upper rows: the model with independent random numbers, as in the dissertation; last, the reference: the
+measurement itself. Lower rows: the difference from the reference relative to it, black 0, brightest 20 %
+and more; last, what the fit alone is off by.
+
+## Errors
+
+Against the reference. `random`: independent numbers, the dissertation's; `sobol`: the default here. The
+pictures show the model, the reference the measurement, so errors do not fall below the fit's own: the
+last row of each figure.
+
+{_errors(figures)}
+## References
+
+The measurement itself is evaluated; the best unbiased strategy, `product`, draws the directions, by the
+model's lobes. Mean of independent renders; their spread gives each pixel's standard error (a picture
+beside the reference in `build/figures`). Its RMS is to be under a tenth of the smallest RMSE above;
+renders are added until it is, up to {extent.batches[1]}.
+
+{_references(figures)}
+## The dissertation's reference
+
+Uniform samples of the measurement, {extent.uniform_spp} a pixel at {columns}x{rows}, against `product` at
+that size: Welch's test of each pixel's luminance and of the picture's mean, both from
+{extent.check_batches} independent renders. p: of the largest |z| among so many (Sidak); they agree where
+it is at least {LEVEL}. Last column: the same with `product` a hundredth too bright, which must not agree.
+
+{_checks(figures)}"""
+
+
+def _errors(figures: list) -> str:
+    header = [
+        "figure",
+        "spp",
+        *(f"{what} {s}" for s in ("random", "sobol") for what in ("relmse", "rmse", "seconds")),
+    ]
+    rows = []
+    for figure in figures:
+        for spp in sorted({spp for _, spp in figure.pictures}):
+            cells = [_cells(figure, sequence, spp) for sequence in ("random", "sobol")]
+            rows.append([_name(figure), spp, *cells[0], *cells[1]])
+        rmse, relmse = map(small, figure.floor)
+        rows.append([f"{_name(figure)}: the fit's error", "", relmse, rmse, "", relmse, rmse, ""])
+    return table(header, rows)
+
+
+def _cells(figure, sequence: str, spp: int) -> list[str]:
+    rmse, relmse = figure.errors[sequence, spp]
+    return [small(relmse), small(rmse), f"{figure.pictures[sequence, spp].report['seconds']:.1f}"]
+
+
+def _references(figures: list) -> str:
+    header = [
+        "figure",
+        "spp",
+        "renders",
+        "seconds",
+        "RMS standard error",
+        "smallest RMSE",
+        "ratio",
+        "at least 10",
+    ]
+    rows = []
+    for figure in figures:
+        reference = figure.reference
+        numbers = [
+            reference.spp,
+            len(reference.batches),
+            f"{reference.seconds:.0f}",
+            small(reference.noise()[0]),
+        ]
+        met = "met" if figure.margin >= 10 else "missed"
+        rows.append([_name(figure), *numbers, small(figure.smallest), f"{figure.margin:.1f}", met])
+    return table(header, rows)
+
+
+def _checks(figures: list) -> str:
+    header = [
+        "figure",
+        "tests",
+        "largest z",
+        "Sidak's bound",
+        "p",
+        "ratio of means",
+        "agree",
+        "p, 1 % too bright",
+    ]
+    rows = []
+    for figure in figures:
+        a = figure.check
+        numbers = [a.tests, f"{a.largest_z:.2f}", f"{a.sidak_z:.2f}", f"{a.p_value:.3f}", f"{a.ratio:.5f}"]
+        rows.append([_name(figure), *numbers, "yes" if a.holds else "no", small(figure.control.p_value)])
+    return table(header, rows)
+
+
+def _name(figure) -> str:
+    return f"{figure.subject.figure} {figure.subject.name}"
+
+
+def _csv(figures: list, conditions: dict) -> str:
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(["figure", "what", "sequence", "spp", "rmse", "relmse", "seconds"])
+    for name, value in conditions.items():
+        rows.writerow(["", name, "", "", "", "", value])
+    for figure in figures:
+        for (sequence, spp), errors in figure.errors.items():
+            seconds = figure.pictures[sequence, spp].report["seconds"]
+            rows.writerow([figure.subject.figure, "picture", sequence, spp, *errors, seconds])
+        rows.writerow([figure.subject.figure, "fit", "", "", *figure.floor, ""])
+        noise, reference = figure.reference.noise(), figure.reference
+        rows.writerow(
+            [figure.subject.figure, "reference's noise", "", reference.spp, *noise, reference.seconds]
+        )
+    return text.getvalue()

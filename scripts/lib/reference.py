@@ -1,0 +1,54 @@
+"""A converged picture as the mean of independent renders, whose spread says how converged it is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from renders import Picture, Renders
+from scenes import Scene
+from velour.native import images
+
+# Seeds of references, far from those of the pictures that are judged by them.
+FIRST_SEED = 1000
+
+
+class Reference:
+    def __init__(self, renders: Renders, scene: Scene, spp: int, first_seed: int = FIRST_SEED, **options):
+        self._renders, self._scene, self._spp = renders, scene, spp
+        self._first_seed, self._options = first_seed, options
+        self.batches: list[Picture] = []
+
+    def add(self, count: int = 1) -> Reference:
+        for _ in range(count):
+            seed = self._first_seed + len(self.batches)
+            self.batches.append(self._renders.render(self._scene, self._spp, seed=seed, **self._options))
+        return self
+
+    @property
+    def spp(self) -> int:
+        return self._spp * len(self.batches)
+
+    @property
+    def seconds(self) -> float:
+        return sum(batch.report["seconds"] for batch in self.batches)
+
+    def stack(self) -> np.ndarray:
+        """[batch, row, column, channel], float64"""
+        return np.array([batch.pixels for batch in self.batches], np.float64)
+
+    def mean(self) -> np.ndarray:
+        return self.stack().mean(axis=0).astype(np.float32)
+
+    def standard_error(self) -> np.ndarray:
+        """Of each pixel and channel of the mean."""
+        return (self.stack().std(axis=0, ddof=1) / len(self.batches) ** 0.5).astype(np.float32)
+
+    def noise(self) -> tuple[float, float]:
+        """rmse and relmse of the mean itself: those of a picture that is one standard error off."""
+        mean = self.mean()
+        return images.compare(mean + self.standard_error(), mean)
+
+    def save(self, stem: Path) -> None:
+        images.write(stem.with_name(f"{stem.name}.exr"), self.mean())
+        images.write(stem.with_name(f"{stem.name}-standard-error.exr"), self.standard_error())

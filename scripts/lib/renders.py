@@ -1,0 +1,143 @@
+"""Renders and fits through the command line, each kept under a key of all it depends on.
+
+What is there is not made again, so a run that was stopped goes on where it was.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from progress import Progress
+from scenes import Scene
+from velour.core.machine import machine
+from velour.native import images
+from velour_cli import ROOT, velour_to_file
+
+_LIBRARY = ROOT / "build/release/blender/addons/velour/lib/libvelour.so"
+# What a process costs besides its samples, in samples: start-up, reading the mesh, building the BVH.
+_START = 10_000_000
+
+
+@dataclass(frozen=True)
+class Picture:
+    path: Path
+    report: dict
+
+    @functools.cached_property
+    def pixels(self) -> np.ndarray:
+        """Linear RGB, float32."""
+        return read_rgb(self.path)
+
+    def errors(self, reference: np.ndarray) -> tuple[float, float]:
+        """rmse, relmse"""
+        return images.compare(self.pixels, reference)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What all renders of a run share."""
+
+    folder: Path
+    size: tuple[int, int]
+    threads: int
+    seed: int
+
+
+class Renders:
+    def __init__(self, settings: Settings, progress: Progress, fresh: bool):
+        self.settings, self.progress = settings, progress
+        if fresh:
+            shutil.rmtree(settings.folder, ignore_errors=True)
+        settings.folder.mkdir(parents=True, exist_ok=True)
+
+    def expect(self, spp: int, size: tuple[int, int] | None = None, count: int = 1) -> None:
+        """Announces renders to the progress."""
+        self.progress.expect(self._cost(spp, size or self.settings.size), count)
+
+    def render(
+        self,
+        scene: Scene,
+        spp: int,
+        *,
+        seed: int | None = None,
+        size: tuple[int, int] | None = None,
+        **options,
+    ) -> Picture:
+        """`options` are those of the command line."""
+        size = size or self.settings.size
+        parameters = {**scene.options, "size": "{}x{}".format(*size), "spp": spp, **options}
+        parameters |= {"seed": self.settings.seed if seed is None else seed, "threads": self.settings.threads}
+        what = " ".join(f"{name} {value}" for name, value in options.items())
+        label = f"{scene.name}, {parameters['size']}, {spp} spp, seed {parameters['seed']} {what}"
+        stem = self._stem("render", parameters)
+        out = stem.with_suffix(".exr")
+        cache = ["--cache", self.settings.folder]
+        report = self._make(
+            label, self._cost(spp, size), stem, "render", *_flags(parameters), *cache, "-o", out
+        )
+        return Picture(out, report)
+
+    def fit(self, measurement: Path) -> tuple[Path, dict]:
+        """The model and the report of its fit."""
+        parameters = {"tolerance": 0.02, "max-lobes": 16, "seed": self.settings.seed}
+        stem = self._stem(measurement.stem, {"fit": measurement, **parameters})
+        out = stem.with_suffix(".velour")
+        return out, self._make(
+            f"fit of {measurement.stem}", _START, stem, "fit", measurement, "-o", out, *_flags(parameters)
+        )
+
+    def ggx(self, measurement: Path) -> dict:
+        """How well the best GGX lobe fits."""
+        stem = self._stem(measurement.stem, {"compare": measurement})
+        return self._make(f"GGX of {measurement.stem}", _START, stem, "compare", measurement, "--ggx")
+
+    def _make(self, label: str, cost: float, stem: Path, *arguments) -> dict:
+        report = stem.with_suffix(".json")
+        if report.is_file():  # it is written last
+            self.progress.skip(label, cost)
+            return json.loads(report.read_text(encoding="utf-8"))
+        with self.progress.work(label, cost):
+            return velour_to_file(report, *arguments)
+
+    def _stem(self, name: str, parameters: dict) -> Path:
+        return self.settings.folder / f"{name}-{key(parameters)}"
+
+    @staticmethod
+    def _cost(spp: int, size: tuple[int, int]) -> float:
+        return spp * size[0] * size[1] + _START
+
+
+def read_rgb(path: Path) -> np.ndarray:
+    return np.ascontiguousarray(images.read(path)[..., :3])
+
+
+def key(parameters: dict) -> str:
+    """Of the parameters, of what files hold rather than how they are called, of library and machine."""
+    known = {name: _identity(value) for name, value in parameters.items()}
+    text = json.dumps([known, _hash(_LIBRARY), machine()], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _flags(parameters: dict) -> list[str]:
+    return [text for name, value in parameters.items() for text in (f"--{name}", str(value))]
+
+
+def _identity(value) -> str:
+    return _hash(value) if isinstance(value, Path) else str(value)
+
+
+def _hash(path: Path) -> str:
+    status = path.stat()
+    return _hash_of_version(path, status.st_mtime_ns, status.st_size)
+
+
+@functools.cache
+def _hash_of_version(path: Path, modified: int, size: int) -> str:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

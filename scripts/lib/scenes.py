@@ -1,0 +1,28 @@
+"""The scenes of the figures and of the chart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What the command line needs to know of one."""
+
+    name: str
+    mesh: Path
+    up: str
+    world: Path
+    material: Path  # a model, or a measurement itself
+    proposal: Path | None = None  # with a measurement: the model that draws its samples
+    camera: str | None = None
+
+    @property
+    def options(self) -> dict:
+        names = ("mesh", "up", "world", "material", "proposal", "camera")
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    def measured(self, measurement: Path) -> Scene:
+        """The same with the measurement itself evaluated; the model only draws."""
+        return replace(self, name=f"{self.name} measured", material=measurement, proposal=self.material)
