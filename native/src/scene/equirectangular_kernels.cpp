@@ -112,8 +112,8 @@ void look_up_simd(const EquirectangularImage& image, const DirectionBatch& world
   }
 }
 
-void directions_simd(const EquirectangularImage& image, const float* u, const float* v, int count,
-                     DirectionBatch& world) {
+void sky_directions_simd(const EquirectangularImage& image, const float* u, const float* v, int count,
+                         DirectionBatch& world) {
   const hn::CappedTag<float, 8> d;
   const Mat3 image_to_world = glm::transpose(image.world_to_image());
   for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
@@ -136,7 +136,7 @@ namespace velour {
 
 HWY_EXPORT(coordinates_simd);
 HWY_EXPORT(look_up_simd);
-HWY_EXPORT(directions_simd);
+HWY_EXPORT(sky_directions_simd);
 
 void equirectangular_coordinates(const EquirectangularImage& image, const DirectionBatch& world,
                                  EquirectangularCoordinates& out) {
@@ -150,7 +150,7 @@ void equirectangular_look_up(const EquirectangularImage& image, const DirectionB
 
 void equirectangular_directions(const EquirectangularImage& image, const float* u, const float* v, int count,
                                 DirectionBatch& world) {
-  VELOUR_SIMD_DISPATCH(directions_simd)(image, u, v, count, world);
+  VELOUR_SIMD_DISPATCH(sky_directions_simd)(image, u, v, count, world);
 }
 
 }  // namespace velour
