@@ -1,4 +1,6 @@
 // Highway compiles this file once for each instruction set.
+#include <cstring>
+
 #include "srbf/lobe_mixture.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -15,92 +17,143 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One lobe's kernel as a function of |w - xi|^2 = 2 d; what depends on the bandwidth alone is computed once a batch.
+// A lobe's kernel as a function of its bandwidth and |w - xi|^2 = 2 d.
+
 struct GaussianLobe {
-  explicit GaussianLobe(float bandwidth) : slope(bandwidth * -0.72134752f) {}  // -log2(e) / 2
-
   template <class D, class V = hn::Vec<D>>
-  HWY_INLINE V operator()(D d, V distance_sq) const {
-    return exp2_nonpositive(d, hn::Mul(hn::Set(d, slope), distance_sq));
+  HWY_INLINE V operator()(D d, V bandwidth, V distance_sq) const {
+    const V slope = hn::Mul(bandwidth, hn::Set(d, -0.72134752f));  // -log2(e) / 2
+    return exp2_nonpositive(d, hn::Mul(slope, distance_sq));
   }
-
-  float slope;
 };
 
 struct AbelPoissonLobe {
-  explicit AbelPoissonLobe(float b) : b_(b), gap_sq((1 - b) * (1 - b)), top((1 - b) * (1 + b)) {}
-
   template <class D, class V = hn::Vec<D>>
-  HWY_INLINE V operator()(D d, V distance_sq) const {
-    const V bottom = hn::MulAdd(hn::Set(d, b_), distance_sq, hn::Set(d, gap_sq));
-    return hn::Div(hn::Set(d, top), hn::Mul(bottom, hn::Sqrt(bottom)));
+  HWY_INLINE V operator()(D d, V b, V distance_sq) const {
+    const V one = hn::Set(d, 1.0f), gap = hn::Sub(one, b);
+    const V bottom = hn::MulAdd(b, distance_sq, hn::Mul(gap, gap));
+    return hn::Div(hn::Mul(gap, hn::Add(one, b)), hn::Mul(bottom, hn::Sqrt(bottom)));
   }
-
-  float b_, gap_sq, top;
 };
 
-template <class Lobe, class D>
-HWY_INLINE void eval_vector(D d, const LobeMixture& m, const DirectionBatch& w, int at, RgbBatch& value,
-                            ScalarBatch& pdf) {
-  using V = hn::Vec<D>;
-  const V wx = hn::Load(d, w.x + at), wy = hn::Load(d, w.y + at), wz = hn::Load(d, w.z + at);
-  const V cosine = hn::Max(wz, hn::Zero(d));
-  V r = hn::Mul(hn::Set(d, m.diffuse_r), cosine);
-  V g = hn::Mul(hn::Set(d, m.diffuse_g), cosine);
-  V b = hn::Mul(hn::Set(d, m.diffuse_b), cosine);
-  V density = hn::Mul(hn::Set(d, m.cosine_share / kPi), cosine);
-  for (int j = 0; j < m.count; ++j) {
-    const V dx = hn::Sub(wx, hn::Set(d, m.x[j]));
-    const V dy = hn::Sub(wy, hn::Set(d, m.y[j]));
-    const V dz = hn::Sub(wz, hn::Set(d, m.z[j]));
-    const V kernel = Lobe(m.bandwidth[j])(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
-    r = hn::MulAdd(hn::Set(d, m.r[j]), kernel, r);
-    g = hn::MulAdd(hn::Set(d, m.g[j]), kernel, g);
-    b = hn::MulAdd(hn::Set(d, m.b[j]), kernel, b);
-    density = hn::MulAdd(hn::Set(d, m.density[j]), kernel, density);
-  }
-  hn::Store(r, d, value.r + at);
-  hn::Store(g, d, value.g + at);
-  hn::Store(b, d, value.b + at);
-  hn::Store(density, d, pdf.v + at);
+/// The sums over the lobes, of one direction a lane.
+template <class V>
+struct Sums {
+  V r, g, b, density;
+};
+
+template <class D>
+HWY_INLINE Sums<hn::Vec<D>> no_sums(D d) {
+  return {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
 }
 
-template <class Lobe>
-HWY_INLINE void eval_lobes(const LobeMixture& m, const DirectionBatch& w, RgbBatch& value, ScalarBatch& pdf) {
+/// One lobe, the same in every lane.
+struct OneLobe {
+  template <class D>
+  HWY_INLINE hn::Vec<D> operator()(D d, const float* value) const {
+    return hn::Set(d, *value);
+  }
+};
+
+/// Two lobes by turns: each direction has two lanes. Of the odd last lobe, beside zeros: a lobe of coefficient 0.
+template <size_t kLobes>
+struct TwoLobes {
+  template <class D>
+  HWY_INLINE hn::Vec<D> operator()(D d, const float* values) const {
+    const hn::Repartition<double, D> both;
+    double bits = 0;
+    std::memcpy(&bits, values, kLobes * sizeof(float));
+    return hn::BitCast(d, hn::Set(both, bits));
+  }
+};
+
+template <class Lobe, bool kColors, class Load, class D, class V = hn::Vec<D>>
+HWY_INLINE void add_lobe(D d, const Load& load, const LobeMixture& m, int j, V wx, V wy, V wz, Sums<V>& sum) {
+  const V dx = hn::Sub(wx, load(d, m.x + j)), dy = hn::Sub(wy, load(d, m.y + j)), dz = hn::Sub(wz, load(d, m.z + j));
+  const V distance_sq = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+  const V kernel = Lobe()(d, load(d, m.bandwidth + j), distance_sq);
+  if constexpr (kColors) {
+    sum.r = hn::MulAdd(load(d, m.r + j), kernel, sum.r);
+    sum.g = hn::MulAdd(load(d, m.g + j), kernel, sum.g);
+    sum.b = hn::MulAdd(load(d, m.b + j), kernel, sum.b);
+  }
+  sum.density = hn::MulAdd(load(d, m.density + j), kernel, sum.density);
+}
+
+/// Adds the cosine's part and stores.
+template <bool kColors, class D, class V = hn::Vec<D>>
+HWY_INLINE void store(D d, const LobeMixture& m, V wz, const Sums<V>& sum, int at, RgbBatch* value, ScalarBatch& pdf) {
+  const V cosine = hn::Max(wz, hn::Zero(d));
+  if constexpr (kColors) {
+    hn::Store(hn::MulAdd(hn::Set(d, m.diffuse_r), cosine, sum.r), d, value->r + at);
+    hn::Store(hn::MulAdd(hn::Set(d, m.diffuse_g), cosine, sum.g), d, value->g + at);
+    hn::Store(hn::MulAdd(hn::Set(d, m.diffuse_b), cosine, sum.b), d, value->b + at);
+  }
+  hn::Store(hn::MulAdd(hn::Set(d, m.cosine_share / kPi), cosine, sum.density), d, pdf.v + at);
+}
+
+template <class Lobe, bool kColors, class D>
+HWY_INLINE void eval_vector(D d, const LobeMixture& m, const DirectionBatch& w, int at, RgbBatch* value,
+                            ScalarBatch& pdf) {
+  const auto wx = hn::Load(d, w.x + at), wy = hn::Load(d, w.y + at), wz = hn::Load(d, w.z + at);
+  auto sum = no_sums(d);
+  for (int j = 0; j < m.count; ++j) add_lobe<Lobe, kColors>(d, OneLobe(), m, j, wx, wy, wz, sum);
+  store<kColors>(d, m, wz, sum, at, value, pdf);
+}
+
+/// Eight directions or fewer, two lobes at a time in sixteen lanes.
+template <class Lobe, bool kColors, class D>
+HWY_INLINE void eval_pairs(D d, const LobeMixture& m, const DirectionBatch& w, int at, RgbBatch* value,
+                           ScalarBatch& pdf) {
+  const hn::Half<D> half;
+  const hn::RebindToSigned<D> di;
+  const auto twice = hn::IndicesFromVec(d, hn::ShiftRight<1>(hn::Iota(di, 0)));
+  const auto doubled = [&](const float* values) { return hn::TableLookupLanes(hn::LoadU(d, values + at), twice); };
+  const auto wx = doubled(w.x), wy = doubled(w.y), wz = doubled(w.z);
+  auto sum = no_sums(d);
+  int j = 0;
+  for (; j + 1 < m.count; j += 2) add_lobe<Lobe, kColors>(d, TwoLobes<2>(), m, j, wx, wy, wz, sum);
+  if (j < m.count) add_lobe<Lobe, kColors>(d, TwoLobes<1>(), m, j, wx, wy, wz, sum);
+  const auto first = hn::And(hn::ShiftLeft<1>(hn::Iota(di, 0)), hn::Set(di, 15));
+  const auto even = hn::IndicesFromVec(d, first), odd = hn::IndicesFromVec(d, hn::Or(first, hn::Set(di, 1)));
+  const auto joined = [&](hn::Vec<D> v) {
+    return hn::LowerHalf(half, hn::Add(hn::TableLookupLanes(v, even), hn::TableLookupLanes(v, odd)));
+  };
+  const Sums<hn::Vec<decltype(half)>> joint{joined(sum.r), joined(sum.g), joined(sum.b), joined(sum.density)};
+  store<kColors>(half, m, hn::Load(half, w.z + at), joint, at, value, pdf);
+}
+
+template <class Lobe, bool kColors>
+HWY_INLINE void eval_lobes(const LobeMixture& m, const DirectionBatch& w, RgbBatch* value, ScalarBatch& pdf) {
   const hn::CappedTag<float, 16> wide;
   const hn::CappedTag<float, 8> narrow;
   const int lanes = static_cast<int>(hn::Lanes(wide));
   int at = 0;
-  // The last eight or fewer directions do not pay for sixteen lanes.
-  for (; w.count - at > 8; at += lanes) eval_vector<Lobe>(wide, m, w, at, value, pdf);
-  for (; at < w.count; at += static_cast<int>(hn::Lanes(narrow))) eval_vector<Lobe>(narrow, m, w, at, value, pdf);
-}
-
-template <class Lobe>
-void eval_density_of(const LobeMixture& m, const DirectionBatch& w, ScalarBatch& pdf) {
-  const hn::CappedTag<float, 8> d;
-  for (int at = 0; at < w.count; at += static_cast<int>(hn::Lanes(d))) {
-    const auto wx = hn::Load(d, w.x + at), wy = hn::Load(d, w.y + at), wz = hn::Load(d, w.z + at);
-    auto density = hn::Mul(hn::Set(d, m.cosine_share / kPi), hn::Max(wz, hn::Zero(d)));
-    for (int j = 0; j < m.count; ++j) {
-      const auto dx = hn::Sub(wx, hn::Set(d, m.x[j]));
-      const auto dy = hn::Sub(wy, hn::Set(d, m.y[j]));
-      const auto dz = hn::Sub(wz, hn::Set(d, m.z[j]));
-      const auto distance_sq = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-      density = hn::MulAdd(hn::Set(d, m.density[j]), Lobe(m.bandwidth[j])(d, distance_sq), density);
+  for (; w.count - at > 8; at += lanes) eval_vector<Lobe, kColors>(wide, m, w, at, value, pdf);
+  // The last eight or fewer directions would leave half of sixteen lanes empty.
+  for (; at < w.count; at += 8) {
+    if constexpr (hn::MaxLanes(wide) == 16) {
+      eval_pairs<Lobe, kColors>(wide, m, w, at, value, pdf);
+    } else {
+      for (int k = at; k < at + 8; k += static_cast<int>(hn::Lanes(narrow))) {
+        eval_vector<Lobe, kColors>(narrow, m, w, k, value, pdf);
+      }
     }
-    hn::Store(density, d, pdf.v + at);
   }
 }
 
+template <bool kColors>
+HWY_INLINE void eval_kernel(const LobeMixture& m, const DirectionBatch& w, RgbBatch* value, ScalarBatch& pdf) {
+  if (m.kernel == Kernel::gaussian) return eval_lobes<GaussianLobe, kColors>(m, w, value, pdf);
+  return eval_lobes<AbelPoissonLobe, kColors>(m, w, value, pdf);
+}
+
 void eval_density_simd(const LobeMixture& m, const DirectionBatch& w, ScalarBatch& pdf) {
-  if (m.kernel == Kernel::gaussian) return eval_density_of<GaussianLobe>(m, w, pdf);
-  return eval_density_of<AbelPoissonLobe>(m, w, pdf);
+  eval_kernel<false>(m, w, nullptr, pdf);
 }
 
 void eval_mixture_simd(const LobeMixture& m, const DirectionBatch& w, RgbBatch& value, ScalarBatch& pdf) {
-  if (m.kernel == Kernel::gaussian) return eval_lobes<GaussianLobe>(m, w, value, pdf);
-  return eval_lobes<AbelPoissonLobe>(m, w, value, pdf);
+  eval_kernel<true>(m, w, &value, pdf);
 }
 
 }  // namespace HWY_NAMESPACE
