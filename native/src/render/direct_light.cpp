@@ -21,6 +21,7 @@ void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shado
   for (size_t k = 0; k < receivers.size(); ++k) prepare(receivers[k], work_[k]);
   make_points(receivers);
   draw_towards_lights(receivers);
+  draw_towards_products(receivers);
   terms_.clear();
   for (size_t k = 0; k < receivers.size(); ++k) shade(receivers[k], static_cast<uint8_t>(k), output);
   settle(receivers, output);
@@ -72,7 +73,18 @@ void DirectLight::draw_towards_lights(std::span<const Receiver> receivers) {
     count += work_[k].from_lights.count;
   }
   if (count == 0) return;
-  lighting_.sample({position, static_cast<size_t>(count)}, points_.points(0, count), towards_light_);
+  lighting_.sample({position, static_cast<size_t>(count)}, points_.points(0, count), towards_lights_);
+}
+
+/// The products are Gaussians in the world frame, whatever the vertex.
+void DirectLight::draw_towards_products(std::span<const Receiver> receivers) {
+  product_draws_.count = 0;
+  for (size_t k = 0; k < receivers.size(); ++k) {
+    Work& work = work_[k];
+    work.product_direction = product_draws_.count;
+    product_draws_.choose(work.product, points_.points(work.product_point, work.from_product.count));
+  }
+  if (product_draws_.count > 0) product_draws_.directions(Kernel::gaussian, towards_products_);
 }
 
 /// A direction that brings nothing costs nothing further: n counts it, the batch does not hold it.
@@ -83,12 +95,10 @@ void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& 
   world_.push(wl_world);
 }
 
-void DirectLight::draw_from_product(const Receiver& receiver, const Work& work) {
-  if (work.from_product.count == 0) return;
-  sample_mixture(work.product, points_.points(work.product_point, work.from_product.count), drawn_);
-  for (int i = 0; i < drawn_.count; ++i) {
-    const Vec3 wl_world = drawn_.get(i);
-    keep_if_lit(receiver.vertex, receiver.vertex.frame.to_local(wl_world), wl_world, Drawer::product);
+void DirectLight::keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Drawer drawer) {
+  for (int i = first; i < first + count; ++i) {
+    const Vec3 wl_world = drawn.get(i);  // zero for a lamp's dark side: then not above the horizon
+    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world, drawer);
   }
 }
 
@@ -126,13 +136,9 @@ void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) 
   const Vertex& vertex = receiver.vertex;
   const Work& work = work_[place];
   local_.count = world_.count = 0;
-  draw_from_product(receiver, work);
+  keep_world(vertex, towards_products_, work.product_direction, work.from_product.count, Drawer::product);
   draw_from_surface(receiver, work);
-  for (int i = 0; i < work.from_lights.count; ++i) {
-    const Vec3 wl_world =
-        towards_light_.get(work.light_point + i);  // zero for a lamp's dark side: then not above the horizon
-    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world, Drawer::lights);
-  }
+  keep_world(vertex, towards_lights_, work.light_point, work.from_lights.count, Drawer::lights);
   draw_sharp(receiver);
   if (local_.count == 0) return;
   local_.pad();

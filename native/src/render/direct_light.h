@@ -9,6 +9,7 @@
 #include "render/path_numbers.h"
 #include "render/shadow_queue.h"
 #include "render/sky_proposals.h"
+#include "srbf/lobe_draws.h"
 
 namespace velour {
 
@@ -73,6 +74,7 @@ class DirectLight {
     Shares shares;
     PathNumbers::Run from_product, from_surface, from_lights;
     int product_point, surface_point, light_point;  // the first of each in points_
+    int product_direction;                          // the first in towards_products_
   };
   struct Output {
     ShadowQueue& shadows;
@@ -85,10 +87,11 @@ class DirectLight {
   /// Makes the products of the vertex, if it has any; the share of directions that they draw.
   float product_share(const Vertex& vertex, Work& work);
   void draw_towards_lights(std::span<const Receiver> receivers);
-  void draw_from_product(const Receiver& receiver, const Work& work);
+  void draw_towards_products(std::span<const Receiver> receivers);
   void draw_from_surface(const Receiver& receiver, const Work& work);
   void draw_sharp(const Receiver& receiver);
   void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer);
+  void keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Drawer drawer);
   /// Draws and reflects at one vertex.
   void shade(const Receiver& receiver, uint8_t place, Output output);
   void add_terms(const Receiver& receiver, uint8_t place);
@@ -113,7 +116,8 @@ class DirectLight {
   Work work_[kReceivers];
   // Of all vertices.
   PointBatch points_;
-  DirectionBatch towards_light_;
+  LobeDraws product_draws_;
+  DirectionBatch towards_lights_, towards_products_;  // world
   LightTerms terms_;
 
   // Of one vertex: those drawn directions that can bring light, above both the shading horizon and the surface itself.

@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "sphere/discrete_choice.h"
+#include "srbf/lobe_draws.h"
 #include "srbf/lobe_mixture.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -15,32 +16,6 @@
 
 #include "srbf/simd_dispatch.h"
 #include "srbf/simd_math-inl.h"
-
-#ifndef VELOUR_LOBE_DRAWS
-#define VELOUR_LOBE_DRAWS
-namespace velour {
-
-/// Directions about axes of their own: what is left of the random numbers once the components are chosen.
-struct alignas(64) LobeDraws {
-  static constexpr int kCapacity = DirectionBatch::kCapacity;
-  float x[kCapacity], y[kCapacity], z[kCapacity];  // axis, unit
-  float bandwidth[kCapacity];                      // negative: no lobe but the cosine about the axis
-  float u[kCapacity], rest[kCapacity];             // the zenith's number and 1 - u, both with all their digits
-  float azimuth[kCapacity];                        // in [0, 1)
-
-  void set(int i, const Vec3& axis, float lobe_bandwidth, double u_zenith, float u_azimuth) {
-    x[i] = axis.x;
-    y[i] = axis.y;
-    z[i] = axis.z;
-    bandwidth[i] = lobe_bandwidth;
-    u[i] = static_cast<float>(u_zenith);
-    rest[i] = static_cast<float>(1 - u_zenith);
-    azimuth[i] = u_azimuth;
-  }
-};
-
-}  // namespace velour
-#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {
@@ -79,11 +54,11 @@ struct AbelPoissonZenith {
 };
 
 template <class Zenith>
-HWY_INLINE void directions_of(const LobeDraws& draws, int count, DirectionBatch& w) {
+HWY_INLINE void directions_of(const LobeDraws& draws, DirectionBatch& w) {
   const hn::CappedTag<float, 8> tag;
   using V = hn::Vec<decltype(tag)>;
   const V zero = hn::Zero(tag), one = hn::Set(tag, 1.0f), two = hn::Set(tag, 2.0f);
-  for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(tag))) {
+  for (int at = 0; at < draws.count; at += static_cast<int>(hn::Lanes(tag))) {
     const V bandwidth = hn::Load(tag, draws.bandwidth + at);
     const V u = hn::Load(tag, draws.u + at), rest = hn::Load(tag, draws.rest + at);
     const auto cosine = hn::Lt(bandwidth, zero);
@@ -104,9 +79,9 @@ HWY_INLINE void directions_of(const LobeDraws& draws, int count, DirectionBatch&
   }
 }
 
-void directions_simd(Kernel kernel, const LobeDraws& draws, int count, DirectionBatch& w) {
-  if (kernel == Kernel::gaussian) return directions_of<GaussianZenith>(draws, count, w);
-  return directions_of<AbelPoissonZenith>(draws, count, w);
+void directions_simd(Kernel kernel, const LobeDraws& draws, DirectionBatch& w) {
+  if (kernel == Kernel::gaussian) return directions_of<GaussianZenith>(draws, w);
+  return directions_of<AbelPoissonZenith>(draws, w);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -122,25 +97,44 @@ namespace {
 
 constexpr float kCosine = -1;  // for a bandwidth
 
-void choose_component(const LobeMixture& mixture, const Vec2& u, int to, LobeDraws& draws) {
-  double rest = middle_of_step(u.x);
-  const double share = mixture.cosine_share;
-  if (rest < share) return draws.set(to, {0, 0, 1}, kCosine, std::min(rest / share, 1 - 0x1p-24), u.y);
-  rest = (rest - share) / (1 - share);
-  const int j = choose_index(mixture.cdf, mixture.count, rest);
-  draws.set(to, {mixture.x[j], mixture.y[j], mixture.z[j]}, mixture.bandwidth[j], rest, u.y);
-}
-
 }  // namespace
 
-void sample_mixture(const LobeMixture& mixture, std::span<const Vec2> u, DirectionBatch& w) {
-  assert(u.size() <= DirectionBatch::kCapacity);
-  LobeDraws draws;
-  const int count = static_cast<int>(u.size());
-  for (int i = 0; i < count; ++i) choose_component(mixture, u[static_cast<size_t>(i)], i, draws);
-  for (int i = count; i % 8 != 0; ++i) draws.set(i, {0, 0, 1}, kCosine, 0.5, 0.0f);
-  VELOUR_SIMD_DISPATCH(directions_simd)(mixture.kernel, draws, count, w);
+void LobeDraws::push(const Vec3& axis, float lobe_bandwidth, double u_zenith, float u_azimuth) {
+  x[count] = axis.x;
+  y[count] = axis.y;
+  z[count] = axis.z;
+  bandwidth[count] = lobe_bandwidth;
+  u[count] = static_cast<float>(u_zenith);
+  rest[count] = static_cast<float>(1 - u_zenith);
+  azimuth[count++] = u_azimuth;
+}
+
+void LobeDraws::choose(const LobeMixture& mixture, std::span<const Vec2> numbers) {
+  assert(static_cast<size_t>(count) + numbers.size() <= kCapacity);
+  const double share = mixture.cosine_share;
+  for (const Vec2& number : numbers) {
+    double left = middle_of_step(number.x);
+    if (left < share) {
+      push({0, 0, 1}, kCosine, std::min(left / share, 1 - 0x1p-24), number.y);
+      continue;
+    }
+    left = (left - share) / (1 - share);
+    const int j = choose_index(mixture.cdf, mixture.count, left);
+    push({mixture.x[j], mixture.y[j], mixture.z[j]}, mixture.bandwidth[j], left, number.y);
+  }
+}
+
+void LobeDraws::directions(Kernel kernel, DirectionBatch& w) {
   w.count = count;
+  while (count % 8 != 0) push({0, 0, 1}, kCosine, 0.5, 0.0f);
+  VELOUR_SIMD_DISPATCH(directions_simd)(kernel, *this, w);
+  count = w.count;
+}
+
+void sample_mixture(const LobeMixture& mixture, std::span<const Vec2> u, DirectionBatch& w) {
+  LobeDraws draws;
+  draws.choose(mixture, u);
+  draws.directions(mixture.kernel, w);
 }
 
 Vec3 sample_mixture(const LobeMixture& mixture, const Vec2& u) {
