@@ -7,6 +7,7 @@
 #include "material/ggx_sampler.h"
 #include "sphere/direction_batch.h"
 #include "srbf/lobe_mixture.h"
+#include "srbf/lobe_products.h"
 
 namespace velour {
 
@@ -40,10 +41,10 @@ class Material {
     return wl.get(0);
   }
 
-  /// Gaussian lobes in light space that resemble f cos at the prepared `point`, with their sampling density: what
-  /// `product` multiplies with the sky. They steer sampling alone, so lobes of another space may be given as the
-  /// nearest Gaussians here. Null: the material has none.
-  virtual const LobeMixture* gaussian_lobes(const PreparedBrdf& /*point*/) const { return nullptr; }
+  /// Few Gaussians in light space that resemble f cos at the prepared `point`: what `product` multiplies with the sky.
+  /// They steer sampling alone, so lobes of another space may be given as the nearest Gaussians here. False: the
+  /// material has none.
+  virtual bool proposal_lobes(const PreparedBrdf& /*point*/, ProposalLobes& /*lobes*/) const { return false; }
 
   /// True when f depends on the azimuth difference alone (tables of it need one meridian of views).
   virtual bool isotropic() const = 0;

@@ -4,6 +4,7 @@
 
 #include "job/error.h"
 #include "sphere/frame.h"
+#include "srbf/lobe_tree.h"
 
 namespace velour {
 
@@ -33,6 +34,26 @@ struct Meridian {
     return {{cos_phi * c, sin_phi * c, s}, {-sin_phi, cos_phi, 0}, {-cos_phi * s, -sin_phi * s, c}};
   }
 };
+
+/// The lobes of a view as few Gaussians. An Abel-Poisson lobe, the Henyey-Greenstein density, counts as the Gaussian of
+/// its mean cosine, which is its bandwidth.
+ProposalLobes few_lobes(const ScatteredBrdf& brdf, size_t view) {
+  GaussianLobes lobes;
+  for (size_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {
+    const auto own = static_cast<double>(brdf.bandwidth[j]);
+    const double bandwidth = brdf.kernel == Kernel::gaussian ? own : gaussian_bandwidth_of_mean(1 - own);
+    const double mass = static_cast<double>(luminance(brdf.coefficient[j])) * kernel_integral(brdf.kernel, own);
+    lobes.add({brdf.center[j], static_cast<float>(bandwidth),
+               static_cast<float>(mass / kernel_integral(Kernel::gaussian, bandwidth))});
+  }
+  ProposalLobes few;
+  if (!brdf.diffuse.empty()) few.cosine = std::max(luminance(brdf.diffuse[view]), 0.0f);
+  constexpr GaussianLobe kEverywhere{{0, 0, 1}, 0, 1};
+  for (const GaussianLobe& lobe : LobeTree(lobes).cut(kEverywhere, ProposalLobes::kCapacity)) {
+    few.lobe[few.count++] = lobe;
+  }
+  return few;
+}
 
 int checked_neighbors(const ScatteredBrdf& brdf, int neighbors) {
   const int count = neighbors == 0 ? brdf.default_neighbors : neighbors;
@@ -72,35 +93,50 @@ ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
     luminance_.push_back(std::max(luminance(brdf.coefficient[j]), 0.0f));
     mass_.push_back(luminance_.back() * static_cast<float>(kernel_integral(kernel_, bandwidth_[j])));
   }
+  for (size_t view = 0; view < views_.size(); ++view) proposals_.push_back(few_lobes(brdf, view));
 }
 
 void ScatteredLobes::gather(const Vec3& wv, LobeMixture& mixture) const {
   mixture.clear(kernel_);
-  if (isotropic_) {
-    gather_on_meridian(wv, mixture);
-  } else {
-    gather_on_hemisphere(wv, mixture);
+  const Placement placed = place(wv);
+  for (int i = 0; i < placed.views.count; ++i) {
+    add_slice(placed.views.index[i], placed.rotation[i], placed.views.weight[i], mixture);
   }
   mixture.finish(kDefensiveShare);
 }
 
-void ScatteredLobes::gather_on_meridian(const Vec3& wv, LobeMixture& mixture) const {
-  const Meridian meridian(wv);
-  const ViewNeighbors set =
-      neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : nearest_views(views_, meridian.view(), neighbors_);
-  for (int i = 0; i < set.count; ++i) {
-    const Vec3& view = views_[static_cast<size_t>(set.index[i])];
-    add_slice(set.index[i], meridian.rotation_from(view, align_views_), set.weight[i], mixture);
-  }
+void ScatteredLobes::propose(const Vec3& wv, ProposalLobes& lobes) const {
+  const Placement placed = place(wv);
+  const ViewNeighbors& views = placed.views;
+  const auto nearest = std::max_element(views.weight, views.weight + views.count) - views.weight;
+  lobes = proposals_[static_cast<size_t>(views.index[nearest])];
+  for (int j = 0; j < lobes.count; ++j) lobes.lobe[j].center = placed.rotation[nearest] * lobes.lobe[j].center;
 }
 
-void ScatteredLobes::gather_on_hemisphere(const Vec3& wv, LobeMixture& mixture) const {
-  const ViewNeighbors set = nearest_views(views_, wv, neighbors_);
-  for (int i = 0; i < set.count; ++i) {
-    const Vec3& view = views_[static_cast<size_t>(set.index[i])];
-    const Mat3 rotation = align_views_ ? rotation_between(mirror(view), mirror(wv)) : Mat3(1);
-    add_slice(set.index[i], rotation, set.weight[i], mixture);
+ScatteredLobes::Placement ScatteredLobes::place(const Vec3& wv) const {
+  return isotropic_ ? place_on_meridian(wv) : place_on_hemisphere(wv);
+}
+
+ScatteredLobes::Placement ScatteredLobes::place_on_meridian(const Vec3& wv) const {
+  const Meridian meridian(wv);
+  Placement placed;
+  placed.views =
+      neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : nearest_views(views_, meridian.view(), neighbors_);
+  for (int i = 0; i < placed.views.count; ++i) {
+    const Vec3& view = views_[static_cast<size_t>(placed.views.index[i])];
+    placed.rotation[i] = meridian.rotation_from(view, align_views_);
   }
+  return placed;
+}
+
+ScatteredLobes::Placement ScatteredLobes::place_on_hemisphere(const Vec3& wv) const {
+  Placement placed;
+  placed.views = nearest_views(views_, wv, neighbors_);
+  for (int i = 0; i < placed.views.count; ++i) {
+    const Vec3& view = views_[static_cast<size_t>(placed.views.index[i])];
+    placed.rotation[i] = align_views_ ? rotation_between(mirror(view), mirror(wv)) : Mat3(1);
+  }
+  return placed;
 }
 
 void ScatteredLobes::add_slice(int view, const Mat3& rotation, float weight, LobeMixture& mixture) const {

@@ -6,6 +6,7 @@
 #include "brdf/scattered_brdf.h"
 #include "material/view_neighbors.h"
 #include "srbf/lobe_mixture.h"
+#include "srbf/lobe_products.h"
 
 namespace velour {
 
@@ -19,10 +20,18 @@ class ScatteredLobes {
   bool isotropic() const { return isotropic_; }
   /// The mixture of f cos at `wv`, with a cosine share that keeps its density positive wherever f may be.
   void gather(const Vec3& wv, LobeMixture& mixture) const;
+  /// The nearest view's lobes of f cos at `wv`, joined to few: for proposals.
+  void propose(const Vec3& wv, ProposalLobes& lobes) const;
 
  private:
-  void gather_on_meridian(const Vec3& wv, LobeMixture& mixture) const;
-  void gather_on_hemisphere(const Vec3& wv, LobeMixture& mixture) const;
+  /// The stored views that stand for one asked for, and how their slices turn to it.
+  struct Placement {
+    ViewNeighbors views;
+    Mat3 rotation[kMaxNeighbors];
+  };
+  Placement place(const Vec3& wv) const;
+  Placement place_on_meridian(const Vec3& wv) const;
+  Placement place_on_hemisphere(const Vec3& wv) const;
   void add_slice(int view, const Mat3& rotation, float weight, LobeMixture& mixture) const;
 
   Kernel kernel_;
@@ -33,6 +42,7 @@ class ScatteredLobes {
   std::vector<float> theta_;  // of the views, radians
   std::vector<uint32_t> first_lobe_;
   std::vector<float> x_, y_, z_, bandwidth_, r_, g_, b_, luminance_, mass_;
+  std::vector<ProposalLobes> proposals_;  // of each view
 };
 
 }  // namespace velour

@@ -22,8 +22,9 @@ class LobeSampledMaterial : public Material {
     sample_mixture(point.lobes, u, wl);
   }
 
-  const LobeMixture* gaussian_lobes(const PreparedBrdf& point) const override {
-    return point.lobes.kernel == Kernel::gaussian ? &point.lobes : nullptr;
+  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
+    lobes_.propose(point.wv, lobes);
+    return true;
   }
 
  protected:

@@ -22,6 +22,10 @@ inline float effective_density(Heuristic heuristic, const float (&q)[3], Drawer 
   return d;
 }
 
+/// Of `product`, where the sky gives all light: lamps take from it. Six of eight directions; what is left defends
+/// against light and shadow that no lobe tells of.
+inline constexpr float kProductShare = 0.75f;
+
 /// Shares of a strategy, by Drawer.
 struct Shares {
   float product = 0, surface = 0, lights = 0;

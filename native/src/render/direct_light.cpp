@@ -7,9 +7,6 @@
 namespace velour {
 namespace {
 
-/// Of `product`, where the sky gives all light: lamps take from it.
-constexpr float kProductShare = 0.5f;
-
 bool zero(const Rgb& c) { return c.r == 0.0f && c.g == 0.0f && c.b == 0.0f; }
 bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 
@@ -43,8 +40,9 @@ void DirectLight::prepare(const Receiver& receiver, Work& work) {
 
 float DirectLight::product_share(const Vertex& vertex, Work& work) {
   if (options_.strategy != Strategy::product || sky_ == nullptr) return 0.0f;
-  const LobeMixture* lobes = vertex.surface->material->gaussian_lobes(work.prepared);
-  const bool proposed = lobes != nullptr && sky_->propose(*lobes, vertex.frame, products_, work.product);
+  ProposalLobes lobes;
+  const bool proposed = vertex.surface->material->proposal_lobes(work.prepared, lobes) &&
+                        sky_->propose(lobes, vertex.frame, products_, work.product);
   return proposed ? kProductShare * lighting_.environment_share() : 0.0f;
 }
 

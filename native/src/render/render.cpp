@@ -123,10 +123,8 @@ class Renderer {
     if (options_.strategy != Strategy::product || environment.black()) return;
     stage("sky", 0.0, kPreparation, [&] {
       arena_.execute([&] {
-        const SkyFitOptions coarse{.max_lobes = SkyProposals::kListed};
         const SkyMixture sky = sky_mixture(environment, {}, options_.cache_folder, progress_);
-        context_.sky = std::make_unique<const SkyProposals>(
-            sky, sky_mixture(environment, coarse, options_.cache_folder, progress_));
+        context_.sky = std::make_unique<const SkyProposals>(sky);
         report_.sky = RenderReport::Sky{sky.size(), sky.relative_l2, sky.seconds, sky.cached};
       });
     });

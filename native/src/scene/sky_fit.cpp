@@ -14,23 +14,9 @@
 namespace velour {
 namespace {
 
-constexpr double kMinBandwidth = 0.05, kMaxBandwidth = 1e7;
 constexpr int kStepsARound = 4, kLastSteps = 12;
 constexpr size_t kTestDirections = 1500;
 constexpr size_t kBlocksAPiece = 16;  // cells of one task: fixed, so that sums do not depend on the threads
-
-/// Bandwidth whose mean cosine is 1 - m: coth(l) - 1 / l = 1 - m. Start of [BDGS05, eq. 4.4], then Newton.
-double bandwidth_of_mean(double m) {
-  m = std::clamp(m, 1e-9, 1.0);
-  if (m < 0.02) return std::min(1 / m, kMaxBandwidth);  // exact up to e^-2l
-  const double mean = 1 - m;
-  double l = std::max(mean * (3 - mean * mean) / (m * (2 - m)), kMinBandwidth);
-  for (int i = 0; i < 4; ++i) {
-    const double coth = 1 / std::tanh(l), f = coth - 1 / l - mean, slope = 1 - coth * coth + 1 / (l * l);
-    if (slope > 1e-9) l = std::clamp(l - f / slope, kMinBandwidth, kMaxBandwidth);
-  }
-  return l;
-}
 
 struct Moved {
   Vec3d center;
@@ -43,7 +29,7 @@ Moved moved(const Vec3d& from, const Vec3d& d, double q) {
   const double lost = std::clamp(2 * q - glm::dot(d, d), 0.0, 1.0);
   const Vec3d mean = from + d;
   const double length = glm::length(mean);
-  return {length > 1e-9 ? mean / length : from, bandwidth_of_mean(lost / (1 + std::sqrt(1 - lost)))};
+  return {length > 1e-9 ? mean / length : from, gaussian_bandwidth_of_mean(lost / (1 + std::sqrt(1 - lost)))};
 }
 
 class SkyFit {
@@ -58,7 +44,7 @@ class SkyFit {
   }
 
   SkyMixture run() {
-    push(Vec3d(0, 0, 1), kMinBandwidth, 1.0);
+    push(Vec3d(0, 0, 1), kMinMeanBandwidth, 1.0);
     for (;;) {
       for (int i = 0; i < kStepsARound; ++i) step();
       error_ = error();

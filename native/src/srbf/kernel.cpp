@@ -88,6 +88,25 @@ double kernel_bandwidth_of_half_width(Kernel kernel, double half_width) {
   return 2 / (2 + k + std::sqrt(k * (k + 4)));
 }
 
+double gaussian_one_minus_mean(double l) {
+  if (l > 20) return 1 / l;  // exact up to e^-2l
+  if (l < 1e-3) return 1 - l / 3;
+  return 1 + 1 / l - 1 / std::tanh(l);
+}
+
+double gaussian_bandwidth_of_mean(double one_minus_mean) {
+  const double m = std::clamp(one_minus_mean, 1e-9, 1.0);
+  if (m < 0.02) return std::min(1 / m, kMaxMeanBandwidth);
+  const double mean = 1 - m;
+  double l = std::max(mean * (3 - mean * mean) / (m * (2 - m)), kMinMeanBandwidth);  // [BDGS05, eq. 4.4], then Newton
+  for (int i = 0; i < 4; ++i) {
+    const double coth = 1 / std::tanh(l), slope = 1 - coth * coth + 1 / (l * l);
+    if (slope > 1e-9)
+      l = std::clamp(l - (m - gaussian_one_minus_mean(l)) / slope, kMinMeanBandwidth, kMaxMeanBandwidth);
+  }
+  return l;
+}
+
 double kernel_convolution(Kernel kernel, const Vec3d& a, double bandwidth_a, const Vec3d& b, double bandwidth_b) {
   if (kernel == Kernel::abel_poisson) {
     return 4 * kPiD * abel_poisson_value(bandwidth_a * bandwidth_b, one_minus_dot(a, b));

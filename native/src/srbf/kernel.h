@@ -37,6 +37,12 @@ double kernel_sample(Kernel kernel, double bandwidth, double u);
 /// Bandwidth at which G falls to half its peak at angle `half_width` (radians).
 double kernel_bandwidth_of_half_width(Kernel kernel, double half_width);
 
+/// Of the Gaussian as a density: 1 - mean cosine about its centre, 1 - (coth(l) - 1 / l); and its inverse, between
+/// kMinMeanBandwidth and kMaxMeanBandwidth. [BDGS05]
+double gaussian_one_minus_mean(double bandwidth);
+double gaussian_bandwidth_of_mean(double one_minus_mean);
+inline constexpr double kMinMeanBandwidth = 0.05, kMaxMeanBandwidth = 1e7;
+
 /// Integral over the sphere of the product of two kernels about unit `a` and `b`. Closed forms for two Gaussians (4 pi
 /// e^(-la-lb) sinh(R)/R) and two Abel-Poisson kernels.
 double kernel_convolution(Kernel kernel, const Vec3d& a, double bandwidth_a, const Vec3d& b, double bandwidth_b);

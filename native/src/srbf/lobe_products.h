@@ -25,10 +25,19 @@ struct GaussianLobes {
   void add(const GaussianLobe& lobe);
 };
 
+/// What resembles f cos at a shading point closely enough to steer sampling: few Gaussians (light space, local frame)
+/// over a clipped cosine. Amplitudes are luminances.
+struct ProposalLobes {
+  static constexpr int kCapacity = 8;
+  float cosine = 0;  // coefficient of max(w.z, 0)
+  int count = 0;
+  GaussianLobe lobe[kCapacity];
+};
+
 /// The products of the lobes of a shading point, before the best are chosen. Scratch memory of a thread.
 struct alignas(64) LobeProducts {
   static constexpr int kLanes = 16;
-  static constexpr int kCapacity = 768;
+  static constexpr int kCapacity = 384;
   int count = 0;  // a multiple of kLanes; what fills up has mass 0
   /// Integral of the product over the sphere, times an estimate of its share above the horizon.
   float mass[kCapacity];

@@ -26,13 +26,11 @@ SkyMixture sky_of(int lobes, float sharpest) {
   return sky;
 }
 
-LobeMixture glossy() {
-  LobeMixture brdf;
-  brdf.clear(Kernel::gaussian);
-  brdf.add(glm::normalize(Vec3(0.6f, 0, 0.7f)), 60, Rgb(3.0f));
-  brdf.add(glm::normalize(Vec3(0.3f, 0.2f, 0.9f)), 6, Rgb(0.4f));
-  brdf.add_diffuse(Rgb(0.1f));
-  brdf.finish(0.05f);
+ProposalLobes glossy() {
+  ProposalLobes brdf;
+  brdf.cosine = 0.1f;
+  brdf.lobe[brdf.count++] = {glm::normalize(Vec3(0.6f, 0, 0.7f)), 60, 3.0f};
+  brdf.lobe[brdf.count++] = {glm::normalize(Vec3(0.3f, 0.2f, 0.9f)), 6, 0.4f};
   return brdf;
 }
 
@@ -50,7 +48,7 @@ const Frame kFrame = Frame::about(glm::normalize(Vec3(0.2f, -0.7f, 0.5f)));
 LobeMixture proposal(const SkyMixture& sky) {
   LobeMixture mixture;
   LobeProducts scratch;
-  EXPECT_TRUE(SkyProposals(sky, sky).propose(glossy(), kFrame, scratch, mixture));
+  EXPECT_TRUE(SkyProposals(sky).propose(glossy(), kFrame, scratch, mixture));
   return mixture;
 }
 
@@ -106,8 +104,8 @@ TEST(ProductSampling, NothingToProposeBelowTheHorizon) {
   sky.coefficient = {Rgb(1.0f)};
   LobeMixture mixture;
   LobeProducts scratch;
-  EXPECT_FALSE(SkyProposals(sky, sky).propose(glossy(), kFrame, scratch, mixture));
-  EXPECT_FALSE(SkyProposals({}, {}).propose(glossy(), kFrame, scratch, mixture));
+  EXPECT_FALSE(SkyProposals(sky).propose(glossy(), kFrame, scratch, mixture));
+  EXPECT_FALSE(SkyProposals({}).propose(glossy(), kFrame, scratch, mixture));
 }
 
 std::shared_ptr<const Material> lobe_material() {
