@@ -4,6 +4,7 @@
 
 #include "job/error.h"
 #include "material/scattered_lobes.h"
+#include "sphere/frame.h"
 #include "support/materials.h"
 #include "support/mixtures.h"
 
@@ -165,6 +166,58 @@ TEST(ScatteredMaterial, RefusesMoreLobesThanCanBeMixed) {
   brdf.first_lobe = {0, 200};
   EXPECT_THROW(material_of(brdf, 2), Error);
   EXPECT_NO_THROW(material_of(brdf, 1));
+}
+
+/// Luminance of f cos over the sphere, of the model's lobes and of the few that stand for them.
+TEST(ScatteredMaterial, ProposesFewLobesOfTheSameEnergyAndDirection) {
+  for (const ScatteredBrdf& brdf :
+       {test::isotropic_model(), test::isotropic_model(Kernel::abel_poisson), test::anisotropic_model()}) {
+    const auto material = material_of(brdf);
+    for (size_t i = 0; i < brdf.views.size(); i += 5) {
+      PreparedBrdf point;
+      material->prepare(brdf.views[i], point);
+      ProposalLobes few;
+      ASSERT_TRUE(material->proposal_lobes(point, few));
+      EXPECT_LE(few.count, ProposalLobes::kCapacity);
+      EXPECT_FLOAT_EQ(few.cosine, luminance(brdf.diffuse[i]));
+      Vec3d whole(0), proposed(0);
+      double energy = 0, proposed_energy = 0;
+      for (uint32_t j = brdf.first_lobe[i]; j < brdf.first_lobe[i + 1]; ++j) {
+        const auto l = static_cast<double>(brdf.bandwidth[j]);
+        const double mass = static_cast<double>(luminance(brdf.coefficient[j])) * kernel_integral(brdf.kernel, l);
+        energy += mass;
+        whole += mass * (brdf.kernel == Kernel::gaussian ? 1 - gaussian_one_minus_mean(l) : l) * Vec3d(brdf.center[j]);
+      }
+      for (int j = 0; j < few.count; ++j) {
+        const auto l = static_cast<double>(few.lobe[j].bandwidth);
+        const double mass = static_cast<double>(few.lobe[j].amplitude) * kernel_integral(Kernel::gaussian, l);
+        proposed_energy += mass;
+        proposed += mass * (1 - gaussian_one_minus_mean(l)) * Vec3d(few.lobe[j].center);
+      }
+      EXPECT_NEAR(proposed_energy, energy, 1e-5 * energy);
+      EXPECT_LT(glm::length(proposed - whole), 1e-4 * energy) << i;
+    }
+  }
+}
+
+TEST(ScatteredMaterial, ProposalsFollowTheViewsMirror) {
+  ScatteredBrdf brdf = test::isotropic_model();
+  brdf.align_views = true;
+  const auto material = material_of(brdf);
+  PreparedBrdf point;
+  ProposalLobes at_view, turned;
+  material->prepare(brdf.views[3], point);
+  ASSERT_TRUE(material->proposal_lobes(point, at_view));
+  const Vec3 wv = direction(std::acos(brdf.views[3].z) + 1e-3f, 1.0f);
+  material->prepare(wv, point);
+  ASSERT_TRUE(material->proposal_lobes(point, turned));
+  ASSERT_EQ(turned.count, at_view.count);
+  const Mat3 rotation = rotation_between(mirror(brdf.views[3]), mirror(direction(std::acos(wv.z), 0.0f)));
+  for (int j = 0; j < turned.count; ++j) {
+    const Vec3 c = rotation * at_view.lobe[j].center;
+    const Vec3 expected(std::cos(1.0f) * c.x - std::sin(1.0f) * c.y, std::sin(1.0f) * c.x + std::cos(1.0f) * c.y, c.z);
+    EXPECT_LT(glm::length(turned.lobe[j].center - expected), 1e-4f);
+  }
 }
 
 TEST(ScatteredMaterial, WithoutLobesSamplesTheCosine) {

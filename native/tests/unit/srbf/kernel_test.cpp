@@ -199,6 +199,17 @@ TEST(Kernel, HalfWidthIsWhereTheKernelHalves) {
   }
 }
 
+TEST(Kernel, MeanCosineOfAGaussianAgreesWithQuadratureAndIsInverted) {
+  for (const double l : {0.05, 0.5, 5.0, 19.9, 20.1, 1e3, 1e6}) {
+    const double moment = integrate_zonal([&](double d) { return d * kernel_value(kGaussian, l, d); });
+    expect_close(gaussian_one_minus_mean(l), moment / kernel_integral(kGaussian, l), 1e-9);
+    expect_close(gaussian_bandwidth_of_mean(gaussian_one_minus_mean(l)), l, 1e-6);
+  }
+  EXPECT_EQ(gaussian_one_minus_mean(0), 1);
+  EXPECT_EQ(gaussian_bandwidth_of_mean(1), kMinMeanBandwidth);
+  EXPECT_EQ(gaussian_bandwidth_of_mean(0), kMaxMeanBandwidth);
+}
+
 TEST(Kernel, CentreAndAntipode) {
   expect_close(kernel_value(kAbelPoisson, 0.5, 0), 1.5 / 0.25, 1e-15);
   expect_close(kernel_value(kAbelPoisson, 0.5, 2), 0.75 / (2.25 * 1.5), 1e-15);
