@@ -57,6 +57,7 @@ ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
       align_views_(brdf.align_views),
       neighbors_(checked_neighbors(brdf, neighbors)),
       views_(brdf.views),
+      search_(brdf.views, neighbors_),
       diffuse_(brdf.diffuse),
       first_lobe_(brdf.first_lobe),
       bandwidth_(brdf.bandwidth) {
@@ -87,7 +88,7 @@ void ScatteredLobes::gather(const Vec3& wv, LobeMixture& mixture) const {
 void ScatteredLobes::gather_on_meridian(const Vec3& wv, LobeMixture& mixture) const {
   const Meridian meridian(wv);
   const ViewNeighbors set =
-      neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : nearest_views(views_, meridian.view(), neighbors_);
+      neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : search_.nearest(meridian.view());
   for (int i = 0; i < set.count; ++i) {
     const Vec3& view = views_[static_cast<size_t>(set.index[i])];
     add_slice(set.index[i], meridian.rotation_from(view, align_views_), set.weight[i], mixture);
@@ -95,7 +96,7 @@ void ScatteredLobes::gather_on_meridian(const Vec3& wv, LobeMixture& mixture) co
 }
 
 void ScatteredLobes::gather_on_hemisphere(const Vec3& wv, LobeMixture& mixture) const {
-  const ViewNeighbors set = nearest_views(views_, wv, neighbors_);
+  const ViewNeighbors set = search_.nearest(wv);
   for (int i = 0; i < set.count; ++i) {
     const Vec3& view = views_[static_cast<size_t>(set.index[i])];
     const Mat3 rotation = align_views_ ? rotation_between(mirror(view), mirror(wv)) : Mat3(1);
