@@ -29,7 +29,7 @@ void ZTests::add(const std::string& name, const Estimate& found, const Estimate&
   comparisons_.push_back({name, found, expected, std::move(evidence), z_test(found, expected)});
 }
 
-double ZTests::level_of_each() const { return sidak_level(kLevel, static_cast<int>(comparisons_.size())); }
+double ZTests::level_of_each() const { return sidak_level(level_, static_cast<int>(comparisons_.size())); }
 
 ::testing::AssertionResult ZTests::agree() const {
   std::vector<const Comparison*> rejected;

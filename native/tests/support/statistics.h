@@ -47,10 +47,12 @@ Difference difference(const Estimate& a, const Estimate& b);
 /// heavier tails, so it stays a p-value for a handful of renders.
 double z_test(const Estimate& a, const Estimate& b);
 
-/// A list of comparisons of level 0.01 as a whole: each is judged at Sidak's share of it.
+/// A list of comparisons of one level as a whole: each is judged at Sidak's share of it.
 class ZTests {
  public:
-  static constexpr double kLevel = 0.01;
+  /// Lists that are one of several, in a parametrised suite, give the level that Sidak leaves to each.
+  explicit ZTests(double level = 0.01) : level_(level) {}
+
   /// What a control must fall below: nothing that chance would bring in a thousand lists.
   static constexpr double kControlLevel = 1e-5;
 
@@ -80,6 +82,7 @@ class ZTests {
     double p;
   };
   std::string write() const;
+  double level_;
   std::vector<Comparison> comparisons_;
 };
 
