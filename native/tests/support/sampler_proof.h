@@ -14,8 +14,8 @@ struct Sampler {
   CellRefinements refinements{};
 };
 
-/// 200,000 samples in 25 x 16 cells: of a list of 100, a bandwidth off by 5 % is rejected (smallest_bandwidth_error
-/// says 4.1 % in 99 of 100 cases; the tests of the harness hold that formula against experiment).
+/// 200,000 samples in 25 x 16 cells: in a list of 135, a bandwidth off by 3.2 % is rejected in 99 of 100 cases
+/// (smallest_bandwidth_error, which the tests of the harness hold against experiment).
 ChiSquareOptions proof_options(const Sampler& sampler);
 
 /// Chi-square at the level that the running suite leaves to each of its tests, seeded by the test's name; and random
