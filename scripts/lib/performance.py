@@ -31,19 +31,15 @@ REPEATS = 3
 
 @dataclass(frozen=True)
 class Sizes:
-    """Width and height of the pictures, and their light directions a pixel."""
+    """Of the pictures of the targets, by number of lobes, and under the profile: size and directions a pixel."""
 
-    picture: list
-    by_lobes: list
-    profile: list
+    picture: tuple[str, int]
+    by_lobes: tuple[str, int]
+    profile: tuple[str, int]
 
 
-WHOLE = Sizes(
-    ["--size", "640x480", "--spp", 800],
-    ["--size", "320x240", "--spp", 512],
-    ["--size", "320x240", "--spp", 1024],
-)
-QUICK = Sizes(*[["--size", "160x120", "--spp", 64]] * 3)
+WHOLE = Sizes(("640x480", 800), ("320x240", 512), ("320x240", 1024))
+QUICK = Sizes(*[("320x240", 128)] * 3)
 
 
 def main() -> int:
@@ -60,6 +56,7 @@ def main() -> int:
     main_scene = [*scene, "--material", models[DEFAULT_LOBES]]
     results = {
         "conditions": provenance.conditions(SEED, THREADS[-1]),
+        "sizes": sizes,
         "threads": {s: {t: _picture(main_scene, sizes, s, t) for t in THREADS} for s in STRATEGIES},
         "lobes": {lobes: _by_lobes([*scene, "--material", models[lobes]], sizes) for lobes in LOBES},
         "profile": {s: _profile(main_scene, sizes, s) for s in STRATEGIES}
@@ -84,12 +81,16 @@ def _fit(measurement: Path, lobes: int) -> Path:
 
 def _picture(scene: list, sizes: Sizes, strategy: str, threads: int) -> dict:
     print(f"rendering with {strategy} on {threads} threads ...", flush=True)
-    return _best([*scene, *sizes.picture, "--strategy", strategy, "--threads", threads])
+    return _best([*scene, *_asked(sizes.picture), "--strategy", strategy, "--threads", threads])
 
 
 def _by_lobes(scene: list, sizes: Sizes) -> dict:
     print("rendering by lobes ...", flush=True)
-    return _best([*scene, *sizes.by_lobes, "--threads", THREADS[-1]])
+    return _best([*scene, *_asked(sizes.by_lobes), "--threads", THREADS[-1]])
+
+
+def _asked(size: tuple[str, int]) -> list:
+    return ["--size", size[0], "--spp", size[1]]
 
 
 def _best(options: list) -> dict:
@@ -100,7 +101,7 @@ def _best(options: list) -> dict:
 
 def _profile(scene: list, sizes: Sizes, strategy: str) -> dict[str, float]:
     print(f"profiling {strategy} ...", flush=True)
-    options = [*sizes.profile, "--strategy", strategy, "--threads", 1, "--quiet"]
+    options = [*_asked(sizes.profile), "--strategy", strategy, "--threads", 1, "--quiet"]
     command = [ROOT / "scripts/velour", "render", *scene, *options]
     return call_profile.profile(command, WORK / f"{strategy}.perf")
 

@@ -10,8 +10,11 @@ _TARGETS = {"mis": 0.5, "product": 0.35}
 
 def page(results: dict) -> str:
     """The whole page."""
-    parts = (_head(results["conditions"]), _pictures(results["threads"]), _profile(results["profile"]))
-    return "\n".join([*parts, _lobes(results["lobes"]), _kernels(results), _LIMIT])
+    sizes = results["sizes"]
+    pictures = _pictures(results["threads"], sizes.picture)
+    profile = _profile(results["profile"], sizes.profile)
+    parts = (_head(results["conditions"]), pictures, profile, _lobes(results["lobes"], sizes.by_lobes))
+    return "\n".join([*parts, _kernels(results), _LIMIT])
 
 
 def _head(conditions: dict) -> str:
@@ -25,7 +28,7 @@ camera, direct light.
 """
 
 
-def _pictures(threads: dict[str, dict[int, dict]]) -> str:
+def _pictures(threads: dict[str, dict[int, dict]], size: tuple[str, int]) -> str:
     rows = []
     for strategy, runs in threads.items():
         one, two = runs[1], runs[2]
@@ -34,15 +37,15 @@ def _pictures(threads: dict[str, dict[int, dict]]) -> str:
         numbers = [f"{one['seconds']:.1f}", f"{two['seconds']:.1f}", f"{speed_up:.2f}"]
         rows.append([strategy, *numbers, f"{two['samples_per_second'] / 1e6:.1f}", share])
     header = ["strategy", "1 thread, s", "2 threads, s", "times faster", "million samples/s", "ray_share"]
-    return f"""## The picture of 640x480 and 800 light directions a pixel
+    return f"""## The picture of {size[0]} and {size[1]} light directions a pixel
 
 {table(header, rows)}
-Targets: under 40 s with two threads, at least 1.9 times faster than with one, and the `ray_share` in
+Targets: 640x480 and 800 directions in under 40 s with two threads, at least 1.9 times faster than with one, and the `ray_share` in
 brackets ([conventions.md](conventions.md)).
 """
 
 
-def _profile(profile: dict[str, dict[str, float]] | None) -> str:
+def _profile(profile: dict[str, dict[str, float]] | None, size: tuple[str, int]) -> str:
     if profile is None:
         return "## Where the time goes\n\nNot measured: `perf` is missing, or may not look at this system.\n"
     parts = next(iter(profile.values()))
@@ -50,12 +53,12 @@ def _profile(profile: dict[str, dict[str, float]] | None) -> str:
     header = ["per cent of the time of a render", *profile]
     return f"""## Where the time goes
 
-One thread, 320x240, 1024 light directions a pixel, by `perf` (cpu-clock, 2 kHz); loading is left out.
+One thread, {size[0]}, {size[1]} light directions a pixel, by `perf` (cpu-clock, 2 kHz); loading is left out.
 
 {table(header, rows)}"""
 
 
-def _lobes(lobes: dict[int, dict]) -> str:
+def _lobes(lobes: dict[int, dict], size: tuple[str, int]) -> str:
     first = next(iter(lobes.values()))["seconds"]
     rows = []
     for count, r in lobes.items():
@@ -65,7 +68,7 @@ def _lobes(lobes: dict[int, dict]) -> str:
     header = ["lobes a view", "seconds", "ns a sample", "relative to the first", "ray_share"]
     return f"""## Cost by lobes
 
-`mis`, 320x240, 512 light directions a pixel, two threads; a camera ray mixes two views, each of up to so many
+`mis`, {size[0]}, {size[1]} light directions a pixel, two threads; a camera ray mixes two views, each of up to so many
 lobes (fits to a tolerance that no view reaches before).
 
 {table(header, rows)}"""
