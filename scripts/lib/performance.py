@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -31,7 +32,7 @@ REPEATS = 3
 
 @dataclass(frozen=True)
 class Sizes:
-    """Of the pictures of the targets, by number of lobes, and under the profile: size and directions a pixel."""
+    """Of the pictures of the targets, by lobes, and under the profile: size and directions a pixel."""
 
     picture: tuple[str, int]
     by_lobes: tuple[str, int]
@@ -47,6 +48,7 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
     sizes = QUICK if quick else WHOLE
+    load = os.getloadavg()[0]
     data = data_files.folder()
     WORK.mkdir(parents=True, exist_ok=True)
     measurement = data_files.merl(data, MATERIAL)
@@ -56,6 +58,7 @@ def main() -> int:
     main_scene = [*scene, "--material", models[DEFAULT_LOBES]]
     results = {
         "conditions": provenance.conditions(SEED, THREADS[-1]),
+        "load": load,
         "sizes": sizes,
         "threads": {s: {t: _picture(main_scene, sizes, s, t) for t in THREADS} for s in STRATEGIES},
         "lobes": {lobes: _by_lobes([*scene, "--material", models[lobes]], sizes) for lobes in LOBES},

@@ -13,19 +13,28 @@ def page(results: dict) -> str:
     sizes = results["sizes"]
     pictures = _pictures(results["threads"], sizes.picture)
     profile = _profile(results["profile"], sizes.profile)
-    parts = (_head(results["conditions"]), pictures, profile, _lobes(results["lobes"], sizes.by_lobes))
-    return "\n".join([*parts, _kernels(results), _LIMIT])
+    head = _head(results["conditions"], results["load"])
+    lobes = _lobes(results["lobes"], sizes.by_lobes)
+    return "\n".join([head, pictures, profile, lobes, _kernels(results), _LIMIT])
 
 
-def _head(conditions: dict) -> str:
+def _head(conditions: dict, load: float) -> str:
     return f"""# Performance: where the time goes, and what the limit is
 
 Written by `scripts/performance`. {provenance.sentence(conditions)}
-Of three runs of each render the fastest counts. Kernels: processor time.
+Of three runs of each render the fastest counts. `ray_share`, profile and kernels count processor time.
+{_neighbors(load)}
 
 Scene: the bunny (69 thousand triangles), `venice_sunset` (1024x512), blue-metallic-paint, split 8, default
 camera, direct light.
 """
+
+
+def _neighbors(load: float) -> str:
+    if load < 0.5:
+        return "Nothing else ran."
+    return f"""**Other programs kept {load:.0f} threads busy**: seconds and speed-up by threads are not the machine's;
+take the page again when nothing else runs."""
 
 
 def _pictures(threads: dict[str, dict[int, dict]], size: tuple[str, int]) -> str:
@@ -40,8 +49,8 @@ def _pictures(threads: dict[str, dict[int, dict]], size: tuple[str, int]) -> str
     return f"""## The picture of {size[0]} and {size[1]} light directions a pixel
 
 {table(header, rows)}
-Targets: 640x480 and 800 directions in under 40 s with two threads, at least 1.9 times faster than with one, and the `ray_share` in
-brackets ([conventions.md](conventions.md)).
+Targets: 640x480 with 800 directions in under 40 s on two threads, at least 1.9 times faster than on one,
+and the `ray_share` in brackets ([conventions.md](conventions.md)).
 """
 
 
@@ -68,8 +77,8 @@ def _lobes(lobes: dict[int, dict], size: tuple[str, int]) -> str:
     header = ["lobes a view", "seconds", "ns a sample", "relative to the first", "ray_share"]
     return f"""## Cost by lobes
 
-`mis`, {size[0]}, {size[1]} light directions a pixel, two threads; a camera ray mixes two views, each of up to so many
-lobes (fits to a tolerance that no view reaches before).
+`mis`, {size[0]}, {size[1]} light directions a pixel, two threads; a camera ray mixes two views, each of
+up to so many lobes (fits to a tolerance that no view reaches before).
 
 {table(header, rows)}"""
 
@@ -144,8 +153,9 @@ How shading was made cheap:
 - A material is asked once a vertex for all its directions: no virtual call, allocation or lock a
   sample.
 
-What is left is spread thin. The mixture kernel runs near the limit of its arithmetic where a vertex has
-16 directions or more; of the 8 of the default split some fall below the horizon, and half of the lanes
-of AVX-512 stay empty. The search of neighbours, the gathering of their lobes and, for `product`, the
-products are paid once a camera ray: a larger split spreads them over more directions.
+What is left is spread thin. The mixture kernel runs near the limit of its arithmetic. Vectors hold 16
+directions under one lobe, or up to eight under two: of the eight of the default split some fall below the
+horizon, and their lanes stay empty. The search of neighbours (by a table of directions), the gathering of
+their lobes and, for `product`, the products are paid once a camera ray: a larger split spreads them over
+more directions.
 """
