@@ -31,10 +31,10 @@ camera, direct light.
 
 
 def _neighbors(load: float) -> str:
-    if load < 0.5:
+    if load < 0.2:
         return "Nothing else ran."
-    return f"""**Other programs kept {load:.0f} threads busy**: seconds and speed-up by threads are not the machine's;
-take the page again when nothing else runs."""
+    return f"""**Other programs kept {load:.1f} processors busy**: seconds and speed-up by threads are not the
+machine's; take the page again when nothing else runs."""
 
 
 def _pictures(threads: dict[str, dict[int, dict]], size: tuple[str, int]) -> str:
