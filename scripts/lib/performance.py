@@ -6,6 +6,7 @@ import argparse
 import json
 import subprocess
 import sys
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -31,19 +32,15 @@ REPEATS = 3
 
 @dataclass(frozen=True)
 class Sizes:
-    """Width and height of the pictures, and their light directions a pixel."""
+    """Of the pictures of the targets, by lobes, and under the profile: size and directions a pixel."""
 
-    picture: list
-    by_lobes: list
-    profile: list
+    picture: tuple[str, int]
+    by_lobes: tuple[str, int]
+    profile: tuple[str, int]
 
 
-WHOLE = Sizes(
-    ["--size", "640x480", "--spp", 800],
-    ["--size", "320x240", "--spp", 512],
-    ["--size", "320x240", "--spp", 1024],
-)
-QUICK = Sizes(*[["--size", "160x120", "--spp", 64]] * 3)
+WHOLE = Sizes(("640x480", 800), ("320x240", 512), ("320x240", 1024))
+QUICK = Sizes(*[("320x240", 128)] * 3)
 
 
 def main() -> int:
@@ -51,6 +48,7 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
     sizes = QUICK if quick else WHOLE
+    load = _busy_threads()
     data = data_files.folder()
     WORK.mkdir(parents=True, exist_ok=True)
     measurement = data_files.merl(data, MATERIAL)
@@ -60,6 +58,8 @@ def main() -> int:
     main_scene = [*scene, "--material", models[DEFAULT_LOBES]]
     results = {
         "conditions": provenance.conditions(SEED, THREADS[-1]),
+        "load": load,
+        "sizes": sizes,
         "threads": {s: {t: _picture(main_scene, sizes, s, t) for t in THREADS} for s in STRATEGIES},
         "lobes": {lobes: _by_lobes([*scene, "--material", models[lobes]], sizes) for lobes in LOBES},
         "profile": {s: _profile(main_scene, sizes, s) for s in STRATEGIES}
@@ -75,6 +75,21 @@ def main() -> int:
     return 0
 
 
+def _busy_threads() -> float:
+    """How many processors other programs keep busy, over two seconds."""
+
+    def spent() -> tuple[int, int, int]:
+        lines = Path("/proc/stat").read_text(encoding="ascii").splitlines()
+        ticks = [int(number) for number in lines[0].split()[1:9]]
+        processors = sum(line.startswith("cpu") for line in lines) - 1
+        return sum(ticks), ticks[3] + ticks[4], processors  # all, idle
+
+    all_before, idle_before, processors = spent()
+    time.sleep(2)
+    all_after, idle_after, _ = spent()
+    return processors * (1 - (idle_after - idle_before) / (all_after - all_before))
+
+
 def _fit(measurement: Path, lobes: int) -> Path:
     model = WORK / f"{MATERIAL}-{lobes}.velour"
     print(f"fitting {lobes} lobes ...", flush=True)
@@ -84,12 +99,16 @@ def _fit(measurement: Path, lobes: int) -> Path:
 
 def _picture(scene: list, sizes: Sizes, strategy: str, threads: int) -> dict:
     print(f"rendering with {strategy} on {threads} threads ...", flush=True)
-    return _best([*scene, *sizes.picture, "--strategy", strategy, "--threads", threads])
+    return _best([*scene, *_asked(sizes.picture), "--strategy", strategy, "--threads", threads])
 
 
 def _by_lobes(scene: list, sizes: Sizes) -> dict:
     print("rendering by lobes ...", flush=True)
-    return _best([*scene, *sizes.by_lobes, "--threads", THREADS[-1]])
+    return _best([*scene, *_asked(sizes.by_lobes), "--threads", THREADS[-1]])
+
+
+def _asked(size: tuple[str, int]) -> list:
+    return ["--size", size[0], "--spp", size[1]]
 
 
 def _best(options: list) -> dict:
@@ -100,7 +119,7 @@ def _best(options: list) -> dict:
 
 def _profile(scene: list, sizes: Sizes, strategy: str) -> dict[str, float]:
     print(f"profiling {strategy} ...", flush=True)
-    options = [*sizes.profile, "--strategy", strategy, "--threads", 1, "--quiet"]
+    options = [*_asked(sizes.profile), "--strategy", strategy, "--threads", 1, "--quiet"]
     command = [ROOT / "scripts/velour", "render", *scene, *options]
     return call_profile.profile(command, WORK / f"{strategy}.perf")
 

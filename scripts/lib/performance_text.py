@@ -10,22 +10,34 @@ _TARGETS = {"mis": 0.5, "product": 0.35}
 
 def page(results: dict) -> str:
     """The whole page."""
-    parts = (_head(results["conditions"]), _pictures(results["threads"]), _profile(results["profile"]))
-    return "\n".join([*parts, _lobes(results["lobes"]), _kernels(results), _LIMIT])
+    sizes = results["sizes"]
+    pictures = _pictures(results["threads"], sizes.picture)
+    profile = _profile(results["profile"], sizes.profile)
+    head = _head(results["conditions"], results["load"])
+    lobes = _lobes(results["lobes"], sizes.by_lobes)
+    return "\n".join([head, pictures, profile, lobes, _kernels(results), _LIMIT])
 
 
-def _head(conditions: dict) -> str:
+def _head(conditions: dict, load: float) -> str:
     return f"""# Performance: where the time goes, and what the limit is
 
 Written by `scripts/performance`. {provenance.sentence(conditions)}
-Of three runs of each render the fastest counts. Kernels: processor time.
+Of three runs of each render the fastest counts. `ray_share`, profile and kernels count processor time.
+{_neighbors(load)}
 
 Scene: the bunny (69 thousand triangles), `venice_sunset` (1024x512), blue-metallic-paint, split 8, default
 camera, direct light.
 """
 
 
-def _pictures(threads: dict[str, dict[int, dict]]) -> str:
+def _neighbors(load: float) -> str:
+    if load < 0.2:
+        return "Nothing else ran."
+    return f"""**Other programs kept {load:.1f} processors busy**: seconds and speed-up by threads are not the
+machine's; take the page again when nothing else runs."""
+
+
+def _pictures(threads: dict[str, dict[int, dict]], size: tuple[str, int]) -> str:
     rows = []
     for strategy, runs in threads.items():
         one, two = runs[1], runs[2]
@@ -34,15 +46,15 @@ def _pictures(threads: dict[str, dict[int, dict]]) -> str:
         numbers = [f"{one['seconds']:.1f}", f"{two['seconds']:.1f}", f"{speed_up:.2f}"]
         rows.append([strategy, *numbers, f"{two['samples_per_second'] / 1e6:.1f}", share])
     header = ["strategy", "1 thread, s", "2 threads, s", "times faster", "million samples/s", "ray_share"]
-    return f"""## The picture of 640x480 and 800 light directions a pixel
+    return f"""## The picture of {size[0]} and {size[1]} light directions a pixel
 
 {table(header, rows)}
-Targets: under 40 s with two threads, at least 1.9 times faster than with one, and the `ray_share` in
-brackets ([conventions.md](conventions.md)).
+Targets: 640x480 with 800 directions in under 40 s on two threads, at least 1.9 times faster than on one,
+and the `ray_share` in brackets ([conventions.md](conventions.md)).
 """
 
 
-def _profile(profile: dict[str, dict[str, float]] | None) -> str:
+def _profile(profile: dict[str, dict[str, float]] | None, size: tuple[str, int]) -> str:
     if profile is None:
         return "## Where the time goes\n\nNot measured: `perf` is missing, or may not look at this system.\n"
     parts = next(iter(profile.values()))
@@ -50,12 +62,12 @@ def _profile(profile: dict[str, dict[str, float]] | None) -> str:
     header = ["per cent of the time of a render", *profile]
     return f"""## Where the time goes
 
-One thread, 320x240, 1024 light directions a pixel, by `perf` (cpu-clock, 2 kHz); loading is left out.
+One thread, {size[0]}, {size[1]} light directions a pixel, by `perf` (cpu-clock, 2 kHz); loading is left out.
 
 {table(header, rows)}"""
 
 
-def _lobes(lobes: dict[int, dict]) -> str:
+def _lobes(lobes: dict[int, dict], size: tuple[str, int]) -> str:
     first = next(iter(lobes.values()))["seconds"]
     rows = []
     for count, r in lobes.items():
@@ -65,8 +77,8 @@ def _lobes(lobes: dict[int, dict]) -> str:
     header = ["lobes a view", "seconds", "ns a sample", "relative to the first", "ray_share"]
     return f"""## Cost by lobes
 
-`mis`, 320x240, 512 light directions a pixel, two threads; a camera ray mixes two views, each of up to so many
-lobes (fits to a tolerance that no view reaches before).
+`mis`, {size[0]}, {size[1]} light directions a pixel, two threads; a camera ray mixes two views, each of
+up to so many lobes (fits to a tolerance that no view reaches before).
 
 {table(header, rows)}"""
 
@@ -141,8 +153,9 @@ How shading was made cheap:
 - A material is asked once a vertex for all its directions: no virtual call, allocation or lock a
   sample.
 
-What is left is spread thin. The mixture kernel runs near the limit of its arithmetic where a vertex has
-16 directions or more; of the 8 of the default split some fall below the horizon, and half of the lanes
-of AVX-512 stay empty. The search of neighbours, the gathering of their lobes and, for `product`, the
-products are paid once a camera ray: a larger split spreads them over more directions.
+What is left is spread thin. The mixture kernel runs near the limit of its arithmetic. Vectors hold 16
+directions under one lobe, or up to eight under two: of the eight of the default split some fall below the
+horizon, and their lanes stay empty. The search of neighbours (by a table of directions), the gathering of
+their lobes and, for `product`, the products are paid once a camera ray: a larger split spreads them over
+more directions.
 """

@@ -78,6 +78,7 @@ ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
       align_views_(brdf.align_views),
       neighbors_(checked_neighbors(brdf, neighbors)),
       views_(brdf.views),
+      search_(brdf.views, neighbors_),
       diffuse_(brdf.diffuse),
       first_lobe_(brdf.first_lobe),
       bandwidth_(brdf.bandwidth) {
@@ -120,8 +121,7 @@ ScatteredLobes::Placement ScatteredLobes::place(const Vec3& wv) const {
 ScatteredLobes::Placement ScatteredLobes::place_on_meridian(const Vec3& wv) const {
   const Meridian meridian(wv);
   Placement placed;
-  placed.views =
-      neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : nearest_views(views_, meridian.view(), neighbors_);
+  placed.views = neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : search_.nearest(meridian.view());
   for (int i = 0; i < placed.views.count; ++i) {
     const Vec3& view = views_[static_cast<size_t>(placed.views.index[i])];
     placed.rotation[i] = meridian.rotation_from(view, align_views_);
@@ -131,7 +131,7 @@ ScatteredLobes::Placement ScatteredLobes::place_on_meridian(const Vec3& wv) cons
 
 ScatteredLobes::Placement ScatteredLobes::place_on_hemisphere(const Vec3& wv) const {
   Placement placed;
-  placed.views = nearest_views(views_, wv, neighbors_);
+  placed.views = search_.nearest(wv);
   for (int i = 0; i < placed.views.count; ++i) {
     const Vec3& view = views_[static_cast<size_t>(placed.views.index[i])];
     placed.rotation[i] = align_views_ ? rotation_between(mirror(view), mirror(wv)) : Mat3(1);

@@ -38,6 +38,7 @@ class ScatteredLobes {
   bool isotropic_, align_views_;
   int neighbors_;
   std::vector<Vec3> views_;
+  ViewSearch search_;
   std::vector<Rgb> diffuse_;
   std::vector<float> theta_;  // of the views, radians
   std::vector<uint32_t> first_lobe_;

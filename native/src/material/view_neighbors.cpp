@@ -3,16 +3,19 @@
 #include <algorithm>
 
 #include "sphere/directions.h"
+#include "sphere/octahedral.h"
 
 namespace velour {
 
 namespace {
 
-/// 1 / angle between unit directions. The floor is below the rounding of a float direction and stands for a hit; the
-/// chord keeps small angles that a dot product would lose.
+/// Of unit directions. The chord keeps small angles that a dot product would lose.
+float angle_between(const Vec3& a, const Vec3& b) { return 2 * std::asin(std::min(0.5f * glm::distance(a, b), 1.0f)); }
+
+/// The floor is below the rounding of a float direction and stands for a hit.
 float inverse_angle(const Vec3& a, const Vec3& b) {
   constexpr float kHit = 1e-8f;
-  return 1 / std::max(2 * std::asin(std::min(0.5f * glm::distance(a, b), 1.0f)), kHit);
+  return 1 / std::max(angle_between(a, b), kHit);
 }
 
 /// Drops what cannot be seen, which makes a hit exact and saves its neighbours' lobes, and scales the sum to 1.
@@ -60,15 +63,42 @@ ViewNeighbors bracketing_views(std::span<const float> theta, float theta_v) {
   return set;
 }
 
-ViewNeighbors nearest_views(std::span<const Vec3> views, const Vec3& wv, int k) {
+ViewSearch::ViewSearch(std::span<const Vec3> views, int k) : views_(views.begin(), views.end()), k_(k), first_{0} {
+  for (int cell = 0; cell < kSide * kSide; ++cell) fill_cell(cell);
+}
+
+/// Let r be the cell's radius about its centre c and v the view that is the last of the k + 1 nearest to c. From any
+/// direction of the cell, k + 1 views are within angle(c, v) + r, so the k + 1 nearest are, and those are within
+/// angle(c, v) + 2 r of c. The farthest of a cell are its corners: it is a convex polygon, or two with its corners.
+void ViewSearch::fill_cell(int cell) {
+  constexpr float kRounding = 1e-3f;
+  const Vec3 center = octahedral_cell_center(cell, kSide);
+  const Vec2 low(static_cast<float>(cell % kSide), static_cast<float>(cell / kSide));
+  float radius = 0;
+  for (const Vec2& corner : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1)}) {
+    radius = std::max(radius, angle_between(octahedral_to((low + corner) / static_cast<float>(kSide)), center));
+  }
   int found[kMaxNeighbors + 1];
-  const int count = nearest_directions(views, wv, k + 1, found);
-  const float cutoff = count > k ? inverse_angle(views[static_cast<size_t>(found[k])], wv) : 0;
+  const int count = nearest_directions(views_, center, k_ + 1, found);
+  const float last = count > 0 ? angle_between(views_[static_cast<size_t>(found[count - 1])], center) : 0;
+  for (uint32_t i = 0; i < views_.size(); ++i) {
+    if (angle_between(views_[i], center) <= last + 2 * radius + kRounding) candidates_.push_back(i);
+  }
+  first_.push_back(static_cast<uint32_t>(candidates_.size()));
+}
+
+ViewNeighbors ViewSearch::nearest(const Vec3& wv) const {
+  const auto cell = static_cast<size_t>(octahedral_cell(wv, kSide));
+  const auto among = std::span(candidates_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+  int found[kMaxNeighbors + 1];
+  const int count = nearest_directions(views_, among, wv, k_ + 1, found);
+  const auto inverse = [&](int i) { return inverse_angle(views_[static_cast<size_t>(found[i])], wv); };
+  const float cutoff = count > k_ ? inverse(k_) : 0;
   ViewNeighbors set;
-  set.count = std::min(count, k);
+  set.count = std::min(count, k_);
   for (int i = 0; i < set.count; ++i) {
     set.index[i] = found[i];
-    set.weight[i] = std::max(inverse_angle(views[static_cast<size_t>(found[i])], wv) - cutoff, 0.0f);
+    set.weight[i] = std::max(inverse(i) - cutoff, 0.0f);
   }
   if (set.count > 0) normalize(set);
   return set;

@@ -1,7 +1,9 @@
 // Which sampled views stand for a view direction, and with what weight (method 6.4).
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "sphere/vec.h"
 
@@ -19,8 +21,24 @@ struct ViewNeighbors {
 /// The two polar angles of sorted `theta` (radians) that enclose `theta_v`, with linear weights; the end alone beyond.
 ViewNeighbors bracketing_views(std::span<const float> theta, float theta_v);
 
-/// The `k` <= kMaxNeighbors nearest of `views` with weight 1/angle_i - 1/angle_(k+1), so that a view's weight has
-/// fallen to 0 when another takes its place. A hit gives that view alone.
-ViewNeighbors nearest_views(std::span<const Vec3> views, const Vec3& wv, int k);
+/// The nearest of a set of views. Which can be among them is tabulated by direction, so that a search reads a dozen
+/// views instead of all. Immutable; thread-safe.
+class ViewSearch {
+ public:
+  /// For the `k` <= kMaxNeighbors nearest of `views`.
+  ViewSearch(std::span<const Vec3> views, int k);
+
+  /// The k nearest views of unit `wv` with weight 1/angle_i - 1/angle_(k+1), so that a view's weight has fallen to 0
+  /// when another takes its place. A hit gives that view alone.
+  ViewNeighbors nearest(const Vec3& wv) const;
+
+ private:
+  void fill_cell(int cell);
+  static constexpr int kSide = 32;  // octahedral cells: even, so that no cell has a fold of the map inside
+
+  std::vector<Vec3> views_;
+  int k_;
+  std::vector<uint32_t> candidates_, first_;  // candidates of cell c: from first_[c] to first_[c + 1], rising
+};
 
 }  // namespace velour

@@ -1,6 +1,7 @@
 // Light that reaches vertices straight from lamps and environment: the estimator of every strategy.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 

@@ -24,13 +24,18 @@ std::vector<Vec3> hemisphere_fibonacci(int n) { return fibonacci(n, 0.0); }
 
 std::vector<Vec3> sphere_fibonacci(int n) { return fibonacci(n, -1.0); }
 
-int nearest_directions(std::span<const Vec3> set, const Vec3& d, int k, int* indices) {
+namespace {
+
+/// The nearest of set[place(0)], set[place(1)], ...
+template <typename Place>
+int nearest(std::span<const Vec3> set, int count, const Vec3& d, int k, int* indices, Place&& place) {
   constexpr int kMax = 16;
-  k = std::min({k, kMax, static_cast<int>(set.size())});
+  k = std::min({k, kMax, count});
   float best[kMax];
   int found = 0;
-  for (int i = 0; i < static_cast<int>(set.size()); ++i) {
-    const float t = glm::dot(set[static_cast<size_t>(i)], d);
+  for (int i = 0; i < count; ++i) {
+    const int candidate = place(i);
+    const float t = glm::dot(set[static_cast<size_t>(candidate)], d);
     if (found == k && t <= best[k - 1]) continue;
     int at = found < k ? found++ : k - 1;
     for (; at > 0 && best[at - 1] < t; --at) {
@@ -38,9 +43,20 @@ int nearest_directions(std::span<const Vec3> set, const Vec3& d, int k, int* ind
       indices[at] = indices[at - 1];
     }
     best[at] = t;
-    indices[at] = i;
+    indices[at] = candidate;
   }
   return k;
+}
+
+}  // namespace
+
+int nearest_directions(std::span<const Vec3> set, const Vec3& d, int k, int* indices) {
+  return nearest(set, static_cast<int>(set.size()), d, k, indices, [](int i) { return i; });
+}
+
+int nearest_directions(std::span<const Vec3> set, std::span<const uint32_t> among, const Vec3& d, int k, int* indices) {
+  return nearest(set, static_cast<int>(among.size()), d, k, indices,
+                 [&](int i) { return static_cast<int>(among[static_cast<size_t>(i)]); });
 }
 
 }  // namespace velour

@@ -1,6 +1,7 @@
 // Sets of directions.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,5 +18,7 @@ std::vector<Vec3> sphere_fibonacci(int n);
 /// Indices of the `k` directions of `set` with the largest dot product with `d`, nearest first; ties by lower index.
 /// Writes min(k, set.size()) indices and returns how many.
 int nearest_directions(std::span<const Vec3> set, const Vec3& d, int k, int* indices);
+/// The same of those of `set` that `among` names, in rising order.
+int nearest_directions(std::span<const Vec3> set, std::span<const uint32_t> among, const Vec3& d, int k, int* indices);
 
 }  // namespace velour

@@ -34,7 +34,7 @@ void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, size_t fi
   const hn::CappedTag<float, LobeProducts::kLanes> d;
   using V = hn::Vec<decltype(d)>;
   const V ax = hn::Set(d, a.center.x), ay = hn::Set(d, a.center.y), az = hn::Set(d, a.center.z);
-  const V la = hn::Set(d, a.bandwidth), tiny = hn::Set(d, 1e-4f);
+  const V la = hn::Set(d, a.bandwidth), flat = hn::Set(d, 1e-2f);
   for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
     const size_t from = first + static_cast<size_t>(at);
     const auto load = [&](const std::vector<float>& values) { return hn::LoadU(d, values.data() + from); };
@@ -44,12 +44,16 @@ void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, size_t fi
     // R^2 = (la - lb)^2 + la lb |a + b|^2 and R - la - lb = -la lb |a - b|^2 / (R + la + lb): no cancellation.
     const V product = hn::Mul(la, lb), difference = hn::Sub(la, lb);
     const V sum_sq = hn::Max(hn::Sub(hn::Set(d, 4.0f), distance_sq), hn::Zero(d));
-    const V r = hn::Max(hn::Sqrt(hn::MulAdd(product, sum_sq, hn::Mul(difference, difference))), tiny);
+    const V exact = hn::Sqrt(hn::MulAdd(product, sum_sq, hn::Mul(difference, difference)));
+    // Two broad lobes that oppose each other: la a + lb b is all rounding and no direction. A lobe this flat has none
+    // to keep, so it takes a's.
+    const auto no_axis = hn::Lt(exact, flat);
+    const V r = hn::Max(exact, flat);
     const V exponent = hn::Div(hn::Mul(product, distance_sq), hn::Add(r, hn::Add(la, lb)));
     const V inverse = hn::Div(hn::Set(d, 1.0f), r);
-    const V cx = hn::Mul(inverse, hn::MulAdd(la, ax, hn::Mul(lb, bx)));
-    const V cy = hn::Mul(inverse, hn::MulAdd(la, ay, hn::Mul(lb, by)));
-    const V cz = hn::Mul(inverse, hn::MulAdd(la, az, hn::Mul(lb, bz)));
+    const V cx = hn::IfThenElse(no_axis, ax, hn::Mul(inverse, hn::MulAdd(la, ax, hn::Mul(lb, bx))));
+    const V cy = hn::IfThenElse(no_axis, ay, hn::Mul(inverse, hn::MulAdd(la, ay, hn::Mul(lb, by))));
+    const V cz = hn::IfThenElse(no_axis, az, hn::Mul(inverse, hn::MulAdd(la, az, hn::Mul(lb, bz))));
     const V opposite = exp_nonpositive(d, hn::Mul(hn::Set(d, -2.0f), r));
     const V integral = hn::Mul(hn::Set(d, 2 * kPi), hn::Mul(inverse, hn::Sub(hn::Set(d, 1.0f), opposite)));
     V mass = hn::Mul(hn::Mul(hn::Set(d, a.amplitude), load(others.amplitude)),

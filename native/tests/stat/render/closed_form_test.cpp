@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "support/test_scene.h"
+#include "support/renders.h"
 
 namespace velour {
 namespace {
@@ -12,8 +12,14 @@ using test::mean_of;
 using test::rendered;
 using test::small_options;
 
-constexpr Strategy kAll[] = {Strategy::uniform, Strategy::cosine, Strategy::table, Strategy::srbf,
-                             Strategy::light,   Strategy::mis,    Strategy::ggx,   Strategy::mis_ggx};
+/// Adds the comparison of the picture's mean over eight renders with its closed form.
+void expect_mean(const Scene& scene, const RenderOptions& options, double expected, test::ZTests& tests) {
+  const std::string name = std::to_string(static_cast<int>(options.strategy));
+  tests.add(name, test::independent_renders(scene, options, 8, 1).whole(), test::closed_form(expected));
+}
+
+constexpr Strategy kAll[] = {Strategy::uniform, Strategy::cosine, Strategy::table,   Strategy::srbf,   Strategy::light,
+                             Strategy::mis,     Strategy::ggx,    Strategy::mis_ggx, Strategy::product};
 
 /// A large Lambertian square of albedo 0.6 seen from above; the picture lies well inside it.
 Scene plane() {
@@ -39,34 +45,32 @@ TEST(ClosedForm, PlaneUnderConstantSkyReflectsItsAlbedo) {
   Scene scene = plane();
   scene.set_environment(Environment::constant({1, 2, 4}));
   scene.commit(1);
-  for (Strategy strategy : kAll) {
-    const auto pixels = rendered(scene, small_options(strategy, 2048));
-    const double tolerance = strategy == Strategy::cosine || strategy == Strategy::srbf ? 1e-5 : 0.01;
-    EXPECT_NEAR(mean_of(pixels, 0), 0.6, 0.6 * tolerance) << static_cast<int>(strategy);
-    EXPECT_NEAR(mean_of(pixels, 2), 2.4, 2.4 * tolerance) << static_cast<int>(strategy);
-  }
+  const double expected = 0.6 * static_cast<double>(luminance({1, 2, 4}));
+  test::ZTests tests;
+  for (Strategy strategy : kAll) expect_mean(scene, small_options(strategy, 256), expected, tests);
+  EXPECT_TRUE(tests.agree());
+  const auto pixels = rendered(scene, small_options(Strategy::cosine, 64));
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(mean_of(pixels, c), 0.6 * std::pow(2, c), 1e-5 * std::pow(2, c));
 }
 
 TEST(ClosedForm, PlaneUnderTiltedSun) {
+  test::ZTests tests;
   for (float angle : {0.0f, 0.02f}) {
     Scene scene = plane();
     Light sun;
     sun.angle = angle;
-    sun.color = {3, 2, 1};
+    sun.color = {3, 3, 3};
     const float c = 0.5f, s = std::sqrt(0.75f);  // 60 degrees from the normal
     sun.light_to_world.m[2] = s;
     sun.light_to_world.m[10] = c;
     scene.add_light(sun);
     scene.commit(1);
-    for (Strategy strategy : {Strategy::light, Strategy::mis}) {
-      EXPECT_NEAR(mean_of(rendered(scene, small_options(strategy, 512))), 0.6 / kPiD * 3 * 0.5, 2e-3) << angle;
-    }
-    if (angle == 0) {
-      for (Strategy strategy : kAll) {
-        EXPECT_NEAR(mean_of(rendered(scene, small_options(strategy, 8))), 0.6 / kPiD * 3 * 0.5, 1e-5);
-      }
+    for (Strategy strategy : kAll) {
+      const bool finds_it = angle == 0 || strategy == Strategy::light || is_mixed(strategy);
+      if (finds_it) expect_mean(scene, small_options(strategy, 64), 0.6 / kPiD * 3 * 0.5, tests);
     }
   }
+  EXPECT_TRUE(tests.agree());
 }
 
 TEST(ClosedForm, PlaneUnderRectangleLight) {
@@ -82,10 +86,12 @@ TEST(ClosedForm, PlaneUnderRectangleLight) {
   const double expected =
       0.6 / kPiD * radiance *
       polygon_irradiance({Vec3d(-0.3, -0.3, 1.5), Vec3d(1.7, -0.3, 1.5), Vec3d(1.7, 0.7, 1.5), Vec3d(-0.3, 0.7, 1.5)});
-  for (Strategy strategy : kAll) {
-    EXPECT_NEAR(mean_of(rendered(scene, small_options(strategy, 8192))) / expected, 1, 0.01)
-        << static_cast<int>(strategy);
-  }
+  test::ZTests tests, control;
+  // The irradiance changes by a thousandth over the five millimetres to each side that the picture spans.
+  for (Strategy strategy : kAll) expect_mean(scene, small_options(strategy, 1024), expected, tests);
+  EXPECT_TRUE(tests.agree());
+  expect_mean(scene, small_options(Strategy::mis, 1024), 1.02 * expected, control);
+  EXPECT_TRUE(control.differ());
 }
 
 TEST(ClosedForm, PointLightFallsWithTheSquare) {
@@ -113,7 +119,9 @@ TEST(ClosedForm, ManySharpLampsAreChosenWithoutBias) {
     expected += 0.6 / kPiD * static_cast<double>(power) / (4 * kPiD * static_cast<double>(height * height));
   }
   scene.commit(1);
-  EXPECT_NEAR(mean_of(rendered(scene, small_options(Strategy::mis, 4096))) / expected, 1, 0.01);
+  test::ZTests tests;
+  expect_mean(scene, small_options(Strategy::mis, 512), expected, tests);
+  EXPECT_TRUE(tests.agree());
 }
 
 TEST(ClosedForm, LampWithoutShadowShinesThrough) {
@@ -156,9 +164,9 @@ TEST(ClosedForm, OpenCornerHalvesTheSky) {
   scene.set_environment(Environment::constant(Rgb(1.0f)));
   scene.set_camera(Camera::look_at({0.01f, 0, 5}, {0.01f, 0, 0}, {0, 1, 0}, 0.001f, 1));
   scene.commit(1);
-  for (Strategy strategy : kAll) {
-    EXPECT_NEAR(mean_of(rendered(scene, small_options(strategy, 4096))), 0.3, 0.006) << static_cast<int>(strategy);
-  }
+  test::ZTests tests;
+  for (Strategy strategy : kAll) expect_mean(scene, small_options(strategy, 512), 0.3, tests);
+  EXPECT_TRUE(tests.agree());
 }
 
 TEST(ClosedForm, ClosedSphereAddsUpBounces) {

@@ -1,19 +1,13 @@
 // The products of a material's lobes with a sky: samples against the density, and the whole strategy where the answer
 // is known.
-#include <gtest/gtest.h>
-
-#include "material/scattered_material.h"
 #include "render/sky_proposals.h"
-#include "sphere/random.h"
-#include "support/chi_square.h"
-#include "support/statistics.h"
-#include "support/test_scene.h"
+#include "support/lobe_cells.h"
+#include "support/proof_materials.h"
+#include "support/renders.h"
+#include "support/test_data.h"
 
 namespace velour {
 namespace {
-
-using test::ChiSquareOptions;
-using test::ChiSquareResult;
 
 SkyMixture sky_of(int lobes, float sharpest) {
   SkyMixture sky;
@@ -34,57 +28,63 @@ ProposalLobes glossy() {
   return brdf;
 }
 
-double density(const LobeMixture& mixture, const Vec3& w) {
-  DirectionBatch batch;
-  batch.push(w);
-  batch.pad();
-  ScalarBatch pdf;
-  eval_density(mixture, batch, pdf);
-  return static_cast<double>(pdf.v[0]);
-}
-
 const Frame kFrame = Frame::about(glm::normalize(Vec3(0.2f, -0.7f, 0.5f)));
 
-LobeMixture proposal(const SkyMixture& sky) {
+LobeMixture proposal(const SkyMixture& sky, const ProposalLobes& brdf = glossy(), const Frame& frame = kFrame) {
   LobeMixture mixture;
   LobeProducts scratch;
-  EXPECT_TRUE(SkyProposals(sky).propose(glossy(), kFrame, scratch, mixture));
+  EXPECT_TRUE(SkyProposals(sky).propose(brdf, frame, scratch, mixture));
   return mixture;
 }
 
-ChiSquareResult judge(const LobeMixture& sampled, const LobeMixture& claimed) {
-  ChiSquareOptions options;
-  options.samples = 400'000;
-  // Cells about the sharpest product that matters.
-  int sharpest = 0;
-  for (int k = 1; k < sampled.count; ++k) {
-    if (sampled.bandwidth[k] > sampled.bandwidth[sharpest]) sharpest = k;
-  }
-  options.axis = {sampled.x[sharpest], sampled.y[sharpest], sampled.z[sharpest]};
-  options.concentration = sampled.bandwidth[sharpest];
-  return test::chi_square([&](const Vec2& u) { return sample_mixture(sampled, u); },
-                          [&](const Vec3& w) { return density(claimed, w); }, options);
+/// A sky of `lobes`, the sharpest of which has bandwidth `sharpest`, and a material with a highlight of `bandwidth`
+/// seen at `degrees`.
+struct ProposalCase {
+  int lobes;
+  float sharpest, bandwidth, degrees;
+};
+
+void PrintTo(const ProposalCase& c, std::ostream* out) {
+  *out << c.lobes << " sky lobes up to " << c.sharpest << ", highlight " << c.bandwidth << ", view " << c.degrees
+       << " degrees";
 }
 
-TEST(ProductSampling, FollowsItsDensityWhichIntegratesToOne) {
-  const double level = test::sidak_level(0.01, 3);
-  for (const int lobes : {1, 20, 200}) {
-    const LobeMixture mixture = proposal(sky_of(lobes, 500));
-    const ChiSquareResult result = judge(mixture, mixture);
-    EXPECT_EQ(result.problem, "") << lobes;
-    EXPECT_GT(result.p_value, level) << lobes;
-    EXPECT_NEAR(result.density_mass, 1, 1e-3) << lobes;
+std::vector<ProposalCase> proposal_cases() {
+  std::vector<ProposalCase> cases;
+  for (const float degrees : test::kViewAngles) {
+    for (const float bandwidth : {1e-4f, 1.0f, 100.0f, 1e4f, 1e6f}) {
+      cases.push_back({degrees < 40 ? 200 : 20, bandwidth > 1000 ? 10.0f : 500.0f, bandwidth, degrees});
+    }
   }
+  cases.push_back({1, 1e6f, 1, 45});
+  cases.push_back({1, 1e6f, 1e6f, 45});
+  return cases;
 }
 
-TEST(ProductSampling, RejectsABandwidthOffByFivePercent) {
+class ProposalSampling : public ::testing::TestWithParam<ProposalCase> {};
+
+TEST_P(ProposalSampling, FollowsItsDensity) {
+  const auto [lobes, sharpest, bandwidth, degrees] = GetParam();
+  const auto material = test::highlight_material(bandwidth);
+  PreparedBrdf point;
+  material->prepare(test::view_at(degrees), point);
+  SkyMixture sky = sky_of(lobes, sharpest);
+  if (lobes == 1) sky.bandwidth = {sharpest}, sky.center = {kFrame.to_world(test::mirror(test::view_at(degrees)))};
+  ProposalLobes few;
+  ASSERT_TRUE(material->proposal_lobes(point, few));
+  test::expect_proven(test::mixture_sampler(proposal(sky, few)), "proposal");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ProposalSampling, ::testing::ValuesIn(proposal_cases()));
+
+TEST(ProposalSamplingControl, ABandwidthOffByFivePercentIsSeen) {
   const LobeMixture sampled = proposal(sky_of(20, 500));
   LobeMixture wrong = sampled;
   for (int k = 0; k < wrong.count; ++k) {
     wrong.bandwidth[k] *= 1.05f;
     wrong.density[k] *= 1.05f;  // stays a density: all these lobes are narrow enough
   }
-  EXPECT_LT(judge(sampled, wrong).p_value, 1e-6);
+  EXPECT_LT(test::p_value(test::mixture_sampler(sampled), test::mixture_sampler(wrong)), 1e-6);
 }
 
 TEST(ProductSampling, GoesWhereBothAre) {
@@ -94,7 +94,7 @@ TEST(ProductSampling, GoesWhereBothAre) {
   sky.bandwidth = {3000, 3000};
   sky.coefficient = {Rgb(1.0f), Rgb(1.0f)};
   const LobeMixture mixture = proposal(sky);
-  EXPECT_GT(density(mixture, sky.center[0]), 20 * density(mixture, sky.center[1]));
+  EXPECT_GT(test::mixture_density(mixture, sky.center[0]), 20 * test::mixture_density(mixture, sky.center[1]));
 }
 
 TEST(ProductSampling, NothingToProposeBelowTheHorizon) {
@@ -108,27 +108,11 @@ TEST(ProductSampling, NothingToProposeBelowTheHorizon) {
   EXPECT_FALSE(SkyProposals({}).propose(glossy(), kFrame, scratch, mixture));
 }
 
-std::shared_ptr<const Material> lobe_material() {
-  auto brdf = std::make_shared<ScatteredBrdf>();
-  for (const float theta : {0.0f, 0.5f, 1.0f, 1.5f}) {
-    brdf->first_lobe.push_back(static_cast<uint32_t>(brdf->center.size()));
-    brdf->views.push_back(direction(theta, 0.0f));
-    brdf->center.push_back(direction(-theta, 0.0f));
-    brdf->bandwidth.push_back(50);
-    brdf->coefficient.emplace_back(2.0f, 1.5f, 1.0f);
-    brdf->diffuse.emplace_back(0.1f);
-  }
-  brdf->first_lobe.push_back(static_cast<uint32_t>(brdf->center.size()));
-  brdf->isotropic = true;
-  brdf->default_neighbors = 2;
-  return make_scattered_material(brdf, 2);
-}
-
 /// Two spheres that shade each other, of a material that has lobes, under an uneven sky and a lamp.
 Scene pair(Environment environment, bool lamp) {
   Scene scene;
   scene.add_mesh(test::sphere(24));
-  scene.add_material({lobe_material(), Rgb(0.0f), true});
+  scene.add_material({test::highlight_material(50), Rgb(0.0f), true});
   scene.add_instance(0, {}, {0});
   scene.add_instance(0, test::shift({1.2f, 0.4f, 0.9f}, Vec3(0.5f)), {0});
   scene.set_environment(std::move(environment));
@@ -152,41 +136,45 @@ Environment uneven(float strength) {
   return Environment::image({32, 16, 3, pixels}, strength, Mat3(1.0f));
 }
 
-test::RunningMean brightness(const Scene& scene, Strategy strategy, int spp, int split = 8) {
-  test::RunningMean mean;
-  for (uint64_t seed = 0; seed < 40; ++seed) {
-    RenderOptions options = test::small_options(strategy, spp);
-    options.seed = seed * 7 + static_cast<uint64_t>(strategy);
+class ProductStrategy : public ::testing::Test {
+ protected:
+  void SetUp() override { skies_ = test::scratch_folder().string(); }
+
+  test::PictureMeans measure(const Scene& scene, Strategy strategy, int split = 8) const {
+    RenderOptions options = test::small_options(strategy, 64);
     options.split = split;
-    options.bounces = 0;
-    mean.add(test::mean_of(test::rendered(scene, options)));
+    options.cache_folder = skies_;
+    return test::independent_renders(scene, options, 40, 1000 * static_cast<uint64_t>(strategy));
   }
-  return mean;
-}
 
-double p_of(const test::RunningMean& a, const test::RunningMean& b) {
-  return test::z_test(a.mean(), a.standard_error(), b.mean(), b.standard_error());
-}
+  std::string skies_;
+};
 
-TEST(ProductStrategy, AgreesWithMis) {
+TEST_F(ProductStrategy, AgreesWithMisForEverySplit) {
+  test::ZTests tests;
   for (const bool lamp : {false, true}) {
     const Scene scene = pair(uneven(1), lamp);
-    const test::RunningMean mis = brightness(scene, Strategy::mis, 64);
+    const auto mis = measure(scene, Strategy::mis);
     for (const int split : {1, 3, 8}) {
-      const test::RunningMean product = brightness(scene, Strategy::product, 64, split);
-      EXPECT_GT(p_of(product, mis), test::sidak_level(0.01, 6)) << lamp << ' ' << split;
+      compare(std::string(lamp ? "lamp " : "") + std::to_string(split), measure(scene, Strategy::product, split), mis,
+              tests);
     }
   }
+  EXPECT_TRUE(tests.agree());
 }
 
-TEST(ProductStrategy, NegativeControlASkyFivePercentBrighterIsSeen) {
-  const test::RunningMean brighter = brightness(pair(uneven(1.05f), false), Strategy::product, 64);
-  EXPECT_LT(p_of(brighter, brightness(pair(uneven(1), false), Strategy::mis, 64)), 1e-4);
+TEST_F(ProductStrategy, NegativeControlASkyFivePercentBrighterIsSeen) {
+  test::ZTests tests;
+  compare("brighter", measure(pair(uneven(1.05f), false), Strategy::product),
+          measure(pair(uneven(1), false), Strategy::mis), tests);
+  EXPECT_TRUE(tests.differ());
 }
 
-TEST(ProductStrategy, UnderAConstantSkyToo) {
+TEST_F(ProductStrategy, UnderAConstantSkyToo) {
   const Scene scene = pair(Environment::constant(Rgb(1.0f)), false);
-  EXPECT_GT(p_of(brightness(scene, Strategy::product, 64), brightness(scene, Strategy::cosine, 64)), 0.005);
+  test::ZTests tests;
+  compare("constant", measure(scene, Strategy::product), measure(scene, Strategy::cosine), tests);
+  EXPECT_TRUE(tests.agree());
 }
 
 }  // namespace

@@ -1,53 +1,16 @@
 // The Sobol sequence, the combinations of `mis` and the noise estimate against independent numbers.
 #include <gtest/gtest.h>
 
-#include "support/chi_square.h"
 #include "support/gallery.h"
-#include "support/statistics.h"
+#include "support/renders.h"
 
 namespace velour {
 namespace {
 
-test::RunningMean means(const Scene& scene, RenderOptions options, uint64_t seeds, uint64_t first_seed) {
-  test::RunningMean mean;
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
-    options.seed = first_seed + seed;
-    mean.add(test::mean_of(test::rendered(scene, options), 1));
-  }
-  return mean;
-}
-
-double p_value(const test::RunningMean& a, const test::RunningMean& b) {
-  return test::z_test(a.mean(), a.standard_error(), b.mean(), b.standard_error());
-}
-
-constexpr Strategy kAll[] = {Strategy::uniform, Strategy::cosine, Strategy::table,
-                             Strategy::srbf,    Strategy::light,  Strategy::mis};
-
-TEST(Sequences, EveryStrategyHasTheSameExpectation) {
-  const Scene scene = test::gallery();
-  const double level = test::sidak_level(0.01, 12);
-  for (int bounces : {0, 2}) {
-    for (Strategy strategy : kAll) {
-      RenderOptions options = test::small_options(strategy, 100);  // the last camera ray has fewer directions
-      options.bounces = bounces;
-      options.sequence = Sequence::random;
-      const auto judge = means(scene, options, 20, 1000);
-      options.sequence = Sequence::sobol;
-      EXPECT_GT(p_value(means(scene, options, 20, 0), judge), level) << static_cast<int>(strategy);
-    }
-  }
-}
-
-TEST(Sequences, NegativeControlABrighterSkyIsSeen) {
-  const RenderOptions options = test::small_options(Strategy::mis, 100);
-  EXPECT_LT(p_value(means(test::gallery(1.2f), options, 20, 0), means(test::gallery(), options, 20, 1000)), 1e-4);
-}
-
 TEST(Combinations, EveryShareAndHeuristicHasTheSameExpectation) {
   const Scene scene = test::gallery();
-  const auto judge = means(scene, test::small_options(Strategy::mis, 512), 20, 1000);
-  const double level = test::sidak_level(0.01, 16);
+  const auto expected = test::independent_renders(scene, test::small_options(Strategy::mis, 512), 20, 1000);
+  test::ZTests tests;
   for (Sequence sequence : {Sequence::random, Sequence::sobol}) {
     for (Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
       for (float share : {0.1f, 0.37f, 0.9f, 1.0f}) {
@@ -56,11 +19,13 @@ TEST(Combinations, EveryShareAndHeuristicHasTheSameExpectation) {
         options.sequence = sequence;
         options.heuristic = heuristic;
         options.light_share = share;
-        EXPECT_GT(p_value(means(scene, options, 20, 0), judge), level)
-            << static_cast<int>(sequence) << " " << static_cast<int>(heuristic) << " " << share;
+        const std::string name = std::to_string(static_cast<int>(sequence)) + ' ' +
+                                 std::to_string(static_cast<int>(heuristic)) + ' ' + std::to_string(share);
+        compare(name, test::independent_renders(scene, options, 20, 0), expected, tests);
       }
     }
   }
+  EXPECT_TRUE(tests.agree());
 }
 
 /// A rough plane that fills the picture, under a smooth sky.
@@ -144,6 +109,42 @@ TEST(NoiseTarget, WhatIsReportedIsTheTrueError) {
     }
     EXPECT_NEAR(claimed.mean() / (std::sqrt(true_sq.mean()) / mean), 1, 0.2) << static_cast<int>(sequence);
   }
+}
+
+TEST(Mis, OddSplitsAreUnbiased) {
+  const Scene scene = test::gallery();
+  test::ZTests tests;
+  RenderOptions options = test::small_options(Strategy::mis, 63);
+  const auto even = test::independent_renders(scene, options, 40, 1000);
+  for (int split : {1, 3}) {
+    options.split = split;
+    compare(std::to_string(split), test::independent_renders(scene, options, 40, 0), even, tests);
+  }
+  EXPECT_TRUE(tests.agree());
+}
+
+TEST(Mis, NoiseEstimateIsHonest) {
+  // The spread of independent renders of one pixel against what each of them claims.
+  const Scene scene = test::gallery();
+  RenderOptions options = test::small_options(Strategy::mis, 128);
+  options.noise = 1e-9;  // never reached: the sequences have two halves
+  std::vector<test::RunningMean> pixels(64);
+  test::RunningMean claimed;
+  for (uint64_t seed = 0; seed < 60; ++seed) {
+    options.seed = seed;
+    RenderReport report;
+    const auto picture = test::rendered(scene, options, "Combined", &report);
+    claimed.add(report.noise);
+    for (size_t i = 0; i < 64; ++i) {
+      pixels[i].add(static_cast<double>(luminance({picture[4 * i], picture[4 * i + 1], picture[4 * i + 2]})));
+    }
+  }
+  double variance = 0, mean = 0;
+  for (const auto& p : pixels) {
+    variance += p.variance() / 64;
+    mean += p.mean() / 64;
+  }
+  EXPECT_NEAR(claimed.mean() / (std::sqrt(variance) / mean), 1, 0.1);
 }
 
 }  // namespace

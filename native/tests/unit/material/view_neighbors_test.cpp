@@ -42,13 +42,14 @@ TEST(BracketingViews, OneViewOrEqualViewsOrNone) {
   EXPECT_EQ(bracketing_views(std::vector{0.3f}, 1).index[0], 0);
   weights(bracketing_views(std::vector{0.3f, 0.3f, 0.3f}, 0.3f));
   EXPECT_EQ(bracketing_views({}, 1).count, 0);
-  EXPECT_EQ(nearest_views({}, {0, 0, 1}, 4).count, 0);
+  EXPECT_EQ(ViewSearch({}, 4).nearest({0, 0, 1}).count, 0);
 }
 
 TEST(NearestViews, AHitStandsAlone) {
   const auto views = hemisphere_fibonacci(100);
+  const ViewSearch search(views, 4);
   for (size_t i = 0; i < views.size(); ++i) {
-    const ViewNeighbors set = nearest_views(views, views[i], 4);
+    const ViewNeighbors set = search.nearest(views[i]);
     ASSERT_EQ(set.count, 1);
     EXPECT_EQ(set.index[0], static_cast<int>(i));
     EXPECT_EQ(set.weight[0], 1);
@@ -58,21 +59,22 @@ TEST(NearestViews, AHitStandsAlone) {
 TEST(NearestViews, EquallyFarViewsShareEqually) {
   std::vector<Vec3> ring;
   for (int i = 0; i < 6; ++i) ring.push_back(direction(0.5f, static_cast<float>(i) * kPi / 3));
-  const auto set = weights(nearest_views(ring, {0, 0, 1}, 4));
+  const auto set = weights(ViewSearch(ring, 4).nearest({0, 0, 1}));
   EXPECT_GE(set.size(), 1u);
-  EXPECT_EQ(weights(nearest_views(std::span(ring).first(1), {0, 0, 1}, 4)).size(), 1u);
-  EXPECT_EQ(weights(nearest_views(std::span(ring).first(3), {0, 0, 1}, 4)).size(), 3u);
+  EXPECT_EQ(weights(ViewSearch(std::span(ring).first(1), 4).nearest({0, 0, 1})).size(), 1u);
+  EXPECT_EQ(weights(ViewSearch(std::span(ring).first(3), 4).nearest({0, 0, 1})).size(), 3u);
 }
 
 // A small step of the view must not make the weights jump, also where one view takes another's place.
 TEST(NearestViews, WeightsAreContinuous) {
   const auto views = hemisphere_fibonacci(200);
+  const ViewSearch search(views, 4);
   constexpr int kSteps = 40000;
   std::map<int, float> before;
   float largest = 0;
   for (int i = 0; i <= kSteps; ++i) {
     const float s = static_cast<float>(i) / kSteps;
-    const auto now = weights(nearest_views(views, direction(0.1f + 1.2f * s, 5 * s), 4));
+    const auto now = weights(search.nearest(direction(0.1f + 1.2f * s, 5 * s)));
     for (const auto& [view, weight] : now) {
       const float old = before.contains(view) ? before[view] : 0;
       if (i > 0) largest = std::max(largest, std::abs(weight - old));
@@ -80,6 +82,24 @@ TEST(NearestViews, WeightsAreContinuous) {
     before = now;
   }
   EXPECT_LT(largest, 0.02f);
+}
+
+// The table must leave out no view that is among the nearest of any direction.
+TEST(ViewSearch, FindsWhatReadingAllViewsFinds) {
+  for (const int count : {1, 5, 40, 400}) {
+    for (const int k : {1, 4, kMaxNeighbors}) {
+      const auto views = hemisphere_fibonacci(count);
+      const ViewSearch search(views, k);
+      for (const Vec3& wv : sphere_fibonacci(20000)) {
+        int all[kMaxNeighbors];
+        const int nearest = nearest_directions(views, wv, k, all);
+        const ViewNeighbors set = search.nearest(wv);
+        // The weights of the last ones may be too small to keep.
+        ASSERT_LE(set.count, nearest);
+        for (int i = 0; i < set.count; ++i) ASSERT_EQ(set.index[i], all[i]) << count << ' ' << k;
+      }
+    }
+  }
 }
 
 }  // namespace

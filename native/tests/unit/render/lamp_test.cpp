@@ -8,7 +8,6 @@
 #include "render/lighting.h"
 #include "sphere/random.h"
 #include "sphere/warp.h"
-#include "support/chi_square.h"
 #include "support/test_scene.h"
 
 namespace velour {
@@ -133,46 +132,6 @@ TEST(Lamp, DarkSideInsideAndDegenerate) {
   Light off = lamp_above(Light::Type::point, {1, 0});
   off.color = Rgb(0.0f);
   EXPECT_TRUE(Lamp(off, 1).black());
-}
-
-TEST(Lighting, MixtureOfAllLightsFollowsItsDensity) {
-  Scene scene;
-  scene.add_mesh(test::square(1));
-  scene.add_material({std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), false});
-  scene.add_instance(0, {}, {0});
-  for (const Light& light : extended_lamps()) scene.add_light(light);
-  std::vector<float> pixels(3 * 16 * 8);
-  RandomStream random(7, 7, 7);
-  for (float& p : pixels) p = random.next() * random.next();
-  scene.set_environment(Environment::image({16, 8, 3, pixels}, 1, Mat3(1.0f)));
-  scene.commit(1);
-  const Lighting lighting(scene);
-  const auto pdf = [&](const Vec3& w) {
-    DirectionBatch batch;
-    batch.push(w);
-    batch.pad();
-    RgbBatch radiance;
-    ScalarBatch density;
-    std::vector<LampHit> hits;
-    const Vec3 origin(0.0f);
-    lighting.look_up({&origin, 1}, batch, radiance, density, hits);
-    return static_cast<double>(density.v[0]);
-  };
-  test::ChiSquareOptions options;
-  options.samples = 300'000;
-  const auto sample = [&](const Vec2& u) {
-    DirectionBatch world;
-    const Vec3 origin(0.0f);
-    lighting.sample({&origin, 1}, {&u, 1}, world);
-    return world.get(0);
-  };
-  const auto result = test::chi_square(sample, pdf, options);
-  EXPECT_EQ(result.problem, "");
-  EXPECT_GT(result.p_value, 0.01);
-  // Negative control: a density 5 % too large on one side.
-  const auto wrong = test::chi_square(
-      sample, [&](const Vec3& w) { return pdf(w) * (w.x > 0 ? 1.05 : 0.95); }, options);
-  EXPECT_LT(wrong.p_value, 1e-6);
 }
 
 TEST(Lighting, SharpLampsAreChosenByPower) {

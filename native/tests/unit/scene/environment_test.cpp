@@ -9,7 +9,6 @@
 #include "scene/equirectangular.h"
 #include "sphere/random.h"
 #include "sphere/warp.h"
-#include "support/chi_square.h"
 
 namespace velour {
 namespace {
@@ -114,30 +113,6 @@ TEST(Environment, DensityIntegratesToOne) {
   std::fill(flat.rgb.begin(), flat.rgb.end(), 2.0f);
   EXPECT_NEAR(mass(flat.environment()), 1, 1e-3);
   EXPECT_NEAR(flat.environment().mean_luminance(), 2, 0.05);
-}
-
-TEST(Environment, SamplesFollowTheDensity) {
-  for (const Environment& e : {noise(16, 8).environment(), noise(7, 3).environment(), noise(1, 1).environment()}) {
-    test::ChiSquareOptions options;
-    options.samples = 400'000;
-    const auto result =
-        test::chi_square([&](const Vec2& u) { return e.sample(u); }, [&](const Vec3& w) { return e.pdf(w); }, options);
-    EXPECT_EQ(result.problem, "");
-    EXPECT_GT(result.p_value, test::sidak_level(0.01, 3));
-    EXPECT_NEAR(result.density_mass, 1, 2e-3);
-  }
-}
-
-TEST(Environment, ChiSquareRejectsAnotherImage) {
-  // Negative control: the density of an image that differs in one texel.
-  TestImage other = noise(16, 8);
-  other.set(5, 3, {0.7f, 0.7f, 0.7f});
-  const Environment e = noise(16, 8).environment(), wrong = other.environment();
-  test::ChiSquareOptions options;
-  options.samples = 400'000;
-  const auto result = test::chi_square([&](const Vec2& u) { return e.sample(u); },
-                                       [&](const Vec3& w) { return wrong.pdf(w); }, options);
-  EXPECT_LT(result.p_value, 1e-6);
 }
 
 TEST(Environment, DensityFollowsRadianceWithinTheSecondOrderBound) {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "sphere/frame.h"
-#include "srbf/simd_target.h"
 #include "support/mixtures.h"
+#include "support/simd_targets.h"
 
 namespace velour {
 namespace {
@@ -34,8 +34,9 @@ std::vector<Vec3> directions_about(const Vec3& center) {
 void expect_matches_reference(const LobeMixture& mixture, const std::vector<Vec3>& directions, float bandwidth) {
   const DirectionBatch batch = batch_of(directions);
   RgbBatch value;
-  ScalarBatch pdf;
+  ScalarBatch pdf, density;
   eval_mixture(mixture, batch, value, pdf);
+  eval_density(mixture, batch, density);
   for (int i = 0; i < batch.count; ++i) {
     const Vec3 w = batch.get(i);
     const test::MixtureValue expected = test::reference_mixture(mixture, w);
@@ -47,6 +48,7 @@ void expect_matches_reference(const LobeMixture& mixture, const std::vector<Vec3
     const double tolerance = (exponent > 87 ? 1 : 6e-7 + 4e-7 * exponent);
     EXPECT_NEAR(value.r[i], expected.value[0], tolerance * expected.value[0] + 1e-37) << bandwidth << ' ' << i;
     EXPECT_NEAR(pdf.v[i], expected.pdf, tolerance * expected.pdf + 1e-37 * bandwidth) << bandwidth << ' ' << i;
+    EXPECT_NEAR(density.v[i], expected.pdf, tolerance * expected.pdf + 1e-37 * bandwidth) << bandwidth << ' ' << i;
     if (exponent > 88) {
       EXPECT_EQ(value.r[i], 0) << bandwidth << ' ' << i;
     }
@@ -54,8 +56,7 @@ void expect_matches_reference(const LobeMixture& mixture, const std::vector<Vec3
 }
 
 TEST(LobeMixture, MatchesTheScalarReferenceOnEveryTarget) {
-  for (const std::string& target : simd_targets()) {
-    ASSERT_TRUE(select_simd_target(target.c_str()));
+  test::on_every_simd_target([] {
     for (const Kernel kernel : {Kernel::gaussian, Kernel::abel_poisson}) {
       for (const float bandwidth : test::bandwidth_grid(kernel)) {
         for (const Vec3& center : sphere_fibonacci(5)) {
@@ -63,16 +64,14 @@ TEST(LobeMixture, MatchesTheScalarReferenceOnEveryTarget) {
         }
       }
     }
-  }
-  select_simd_target("auto");
+  });
 }
 
 // At the antipode |w - xi|^2 is exactly 4, so the exponent is known as the kernel rounds it and what is left is the
 // error of the exponential.
 TEST(LobeMixture, ExponentialKeepsItsAccuracyOverItsRange) {
   const DirectionBatch antipode = batch_of(std::vector<Vec3>(16, Vec3(0, 0, -1)));
-  for (const std::string& target : simd_targets()) {
-    ASSERT_TRUE(select_simd_target(target.c_str()));
+  test::on_every_simd_target([&] {
     double largest = 0;
     for (int i = 0; i <= 40000; ++i) {
       const float bandwidth = 43.6f * static_cast<float>(i) / 40000;
@@ -82,24 +81,28 @@ TEST(LobeMixture, ExponentialKeepsItsAccuracyOverItsRange) {
       const double expected = std::exp2(4.0 * static_cast<double>(bandwidth * -0.72134752f));
       largest = std::max(largest, std::abs(value.r[0] / expected - 1));
     }
-    EXPECT_LT(largest, 1.8e-7) << target;
-  }
-  select_simd_target("auto");
+    EXPECT_LT(largest, 1.8e-7);
+  });
 }
 
 TEST(LobeMixture, EveryCountOfDirectionsIsComputedAlike) {
-  const LobeMixture mixture = test::random_mixture(Kernel::gaussian, 9, 3);
-  const auto directions = sphere_fibonacci(64);
-  for (int count = 0; count <= 64; ++count) {
-    RgbBatch value;
-    ScalarBatch pdf;
-    eval_mixture(mixture, batch_of(std::span(directions).first(static_cast<size_t>(count))), value, pdf);
-    for (int i = 0; i < count; ++i) {
-      const auto expected = test::reference_mixture(mixture, directions[static_cast<size_t>(i)]);
-      EXPECT_NEAR(value.b[i], expected.value[2], 1e-5 * expected.value[2] + 1e-30);
-      EXPECT_NEAR(pdf.v[i], expected.pdf, 1e-5 * expected.pdf + 1e-30);
+  test::on_every_simd_target([] {
+    const auto directions = sphere_fibonacci(64);
+    for (int count = 0; count <= 64; ++count) {
+      const LobeMixture mixture = test::random_mixture(Kernel::gaussian, count % 13, 3);
+      const DirectionBatch batch = batch_of(std::span(directions).first(static_cast<size_t>(count)));
+      RgbBatch value;
+      ScalarBatch pdf, density;
+      eval_mixture(mixture, batch, value, pdf);
+      eval_density(mixture, batch, density);
+      for (int i = 0; i < count; ++i) {
+        const auto expected = test::reference_mixture(mixture, directions[static_cast<size_t>(i)]);
+        EXPECT_NEAR(value.b[i], expected.value[2], 1e-5 * expected.value[2] + 1e-30);
+        EXPECT_NEAR(pdf.v[i], expected.pdf, 1e-5 * expected.pdf + 1e-30);
+        EXPECT_NEAR(density.v[i], expected.pdf, 1e-5 * expected.pdf + 1e-30);
+      }
     }
-  }
+  });
 }
 
 TEST(LobeMixture, WithoutMassIsTheCosine) {

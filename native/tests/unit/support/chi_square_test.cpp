@@ -6,6 +6,7 @@
 #include "sphere/frame.h"
 #include "sphere/warp.h"
 #include "srbf/kernel.h"
+#include "support/artifacts_fixture.h"
 #include "support/statistics.h"
 
 namespace velour::test {
@@ -26,21 +27,6 @@ Vec3 sample_lobe(const Vec3& center, double bandwidth, const Vec2& u) {
 double pdf_lobe(const Vec3& center, double bandwidth, const Vec3& w) {
   return kernel_value(Kernel::gaussian, bandwidth, one_minus_dot(Vec3d(w), Vec3d(center))) /
          kernel_integral(Kernel::gaussian, bandwidth);
-}
-
-TEST(ChiSquareTail, AgreesWithTables) {
-  EXPECT_NEAR(chi_square_tail(3.841458820694124, 1), 0.05, 1e-12);
-  EXPECT_NEAR(chi_square_tail(23.209251158954356, 10), 0.01, 1e-12);
-  EXPECT_NEAR(chi_square_tail(2.0, 2), std::exp(-1.0), 1e-14);
-  EXPECT_NEAR(chi_square_tail(30.0, 2) / std::exp(-15.0), 1, 1e-12);
-  EXPECT_NEAR(chi_square_tail(4.0, 4), 3 * std::exp(-2.0), 1e-14);
-  EXPECT_EQ(chi_square_tail(0, 5), 1);
-  EXPECT_NEAR(chi_square_tail(2000, 2000), 0.4957947, 1e-6);  // just below one half: the median is below the mean
-}
-
-TEST(Sidak, GivesTheWholeListItsLevel) {
-  EXPECT_NEAR(1 - std::pow(1 - sidak_level(0.01, 50), 50), 0.01, 1e-14);
-  EXPECT_DOUBLE_EQ(sidak_level(0.01, 1), 0.01);
 }
 
 TEST(ChiSquare, AcceptsCorrectSamplers) {
@@ -67,15 +53,36 @@ TEST(ChiSquare, ResolvesASharpLobeAboutItsAxis) {
   EXPECT_GT(result.degrees_of_freedom, 300);
 }
 
+ChiSquareResult judge_lobe(double bandwidth, double claimed, const ChiSquareOptions& o) {
+  return chi_square([&](const Vec2& u) { return sample_lobe(o.axis, bandwidth, u); },
+                    [&](const Vec3& w) { return pdf_lobe(o.axis, claimed, w); }, o);
+}
+
 TEST(ChiSquare, RejectsABandwidthOffByFivePercent) {
   for (const double bandwidth : {3.0, 200.0, 1e6}) {
     ChiSquareOptions o = options();
     o.concentration = bandwidth;
-    const auto result = chi_square([&](const Vec2& u) { return sample_lobe(o.axis, bandwidth, u); },
-                                   [&](const Vec3& w) { return pdf_lobe(o.axis, 1.05 * bandwidth, w); }, o);
+    const auto result = judge_lobe(bandwidth, 1.05 * bandwidth, o);
     EXPECT_EQ(result.problem, "");
     EXPECT_LT(result.p_value, 1e-6) << bandwidth;
   }
+}
+
+// What smallest_bandwidth_error promises: 99 of 100 seeds at that error, half of them at about half of it.
+TEST(ChiSquare, HasThePowerThatItsFormulaStates) {
+  ChiSquareOptions o = options(50'000);
+  o.rows = 15;
+  o.columns = 8;
+  o.concentration = 200;
+  const double level = sidak_level(0.01, 100);
+  int rejected = 0;
+  for (o.seed = 1; o.seed <= 100; ++o.seed) {
+    const ChiSquareResult right = judge_lobe(200, 200, o);
+    const double error = smallest_bandwidth_error(o.samples, right.degrees_of_freedom + 1, level);
+    rejected += judge_lobe(200, 200 * (1 + error), o).p_value < level;
+    EXPECT_GT(right.p_value, level) << o.seed;
+  }
+  EXPECT_GE(rejected, 95);
 }
 
 TEST(ChiSquare, ReportsMassOtherThanOne) {
@@ -109,13 +116,48 @@ TEST(ChiSquare, PValuesAreUniformForACorrectSampler) {
   RunningMean mean;
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     ChiSquareOptions o = options(20'000);
-    o.cos_theta_cells = 11;
-    o.phi_cells = 8;
+    o.rows = 11;
+    o.columns = 8;
     o.seed = seed;
     mean.add(chi_square(sample_cosine_hemisphere, pdf_cosine_hemisphere, o).p_value);
   }
-  EXPECT_GT(z_test(mean.mean(), std::sqrt(1 / 12.0 / 60), 0.5, 0), 0.001);
+  EXPECT_GT(z_test({mean.mean(), std::sqrt(1 / 12.0 / 60)}, {0.5}), 0.001);
   EXPECT_NEAR(mean.variance(), 1 / 12.0, 0.04);
+}
+
+class ChiSquareEvidence : public ArtifactsFixture {};
+
+TEST_F(ChiSquareEvidence, IsWrittenByAFailureAndNamed) {
+  ChiSquareOptions o = options(20'000);
+  o.concentration = 200;
+  const auto verdict = follows_density(judge_lobe(200, 300, o), 0.01, "a lobe / of 200");
+  ASSERT_FALSE(verdict);
+  const auto path = only_file();
+  EXPECT_NE(std::string(verdict.message()).find(path.string()), std::string::npos);
+  EXPECT_EQ(path.filename(), "ChiSquareEvidence.IsWrittenByAFailureAndNamed.a_lobe___of_200.cells.csv");
+  const auto lines = lines_of(path);
+  ASSERT_EQ(lines.size(), 1 + 51u * 40u);
+  EXPECT_EQ(lines[0], "d0,d1,phi0,phi1,observed,expected,normalised_difference");
+}
+
+TEST_F(ChiSquareEvidence, IsNotWrittenBySuccess) {
+  ChiSquareOptions o = options(20'000);
+  o.concentration = 200;
+  EXPECT_TRUE(follows_density(judge_lobe(200, 200, o), 0.01, "a lobe"));
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(ChiSquareEvidence, AProblemOrAMissingMassIsAFailure) {
+  const auto fair = [](const Vec3&) { return 0.25 / kPiD; };
+  ChiSquareResult result = chi_square(sample_uniform_sphere, fair, options(20'000));
+  EXPECT_TRUE(follows_density(result, 0.01, "uniform"));
+  result.density_mass = 0.99;
+  EXPECT_FALSE(follows_density(result, 0.01, "uniform"));
+  result.density_mass = 1;
+  result.problem = "invented";
+  const auto verdict = follows_density(result, 0.01, "uniform");
+  EXPECT_FALSE(verdict);
+  EXPECT_NE(std::string(verdict.message()).find("invented"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,85 @@
+// The environment's sampler against the density that its look-up claims.
+#include "scene/environment.h"
+#include "sphere/directions.h"
+#include "sphere/random.h"
+#include "support/sampler_proof.h"
+
+namespace velour {
+namespace {
+
+using test::Sampler;
+
+struct Sky {
+  const char* name;
+  int width, height;
+  float contrast;       // exponent of the noise: 0 is flat
+  float sun = 0;        // radiance of a few texels
+  bool turned = false;  // against the world
+};
+
+void PrintTo(const Sky& sky, std::ostream* out) { *out << sky.name; }
+
+Mat3 turn() { return glm::transpose(Mat3({0.36f, 0.48f, -0.8f}, {-0.8f, 0.6f, 0}, {0.48f, 0.64f, 0.6f})); }
+
+Environment environment(const Sky& sky, float sun) {
+  const auto width = static_cast<size_t>(sky.width), height = static_cast<size_t>(sky.height);
+  std::vector<float> rgb(3 * width * height);
+  RandomStream random(4, 5, 6);
+  for (float& v : rgb) v = std::pow(random.next(), sky.contrast);
+  const size_t sun_texel = 3 * (height / 4 * width + width / 3);
+  if (sun > 0) std::fill_n(&rgb[sun_texel], 3, sun);
+  return Environment::image({sky.width, sky.height, 3, rgb}, 1, sky.turned ? turn() : Mat3(1.0f));
+}
+
+/// Cells about the sun's texel, in the world.
+Sampler sampler_of(const Sky& sky, float sun) {
+  const Environment e = environment(sky, sun);
+  Sampler sampler{[e](const Vec2& u) { return e.sample(u); },
+                  [e](const Vec3& w) { return static_cast<double>(e.pdf(w)); }};
+  sampler.refinements = {1, 5};  // the density bends at every texel
+  if (sun > 0) {
+    const float u = (static_cast<float>(sky.width / 3) + 0.5f) / static_cast<float>(sky.width);
+    const float v = (static_cast<float>(sky.height / 4) + 0.5f) / static_cast<float>(sky.height);
+    const Vec3 in_image = direction(kPi * v, 2 * kPi * (0.5f - u));
+    sampler.axis = sky.turned ? glm::transpose(turn()) * in_image : in_image;
+    sampler.concentration = std::pow(static_cast<double>(sky.height), 2) / 10;  // of a texel
+  }
+  return sampler;
+}
+
+class EnvironmentSampling : public ::testing::TestWithParam<Sky> {};
+
+TEST_P(EnvironmentSampling, FollowsItsDensity) {
+  test::expect_proven(sampler_of(GetParam(), GetParam().sun), GetParam().name);
+}
+
+constexpr Sky kSkies[] = {{"one texel", 1, 1, 8},
+                          {"odd size", 7, 3, 8},
+                          {"flat", 16, 8, 0},
+                          {"noise", 16, 8, 8},
+                          {"noise, turned", 16, 8, 8, 0, true},
+                          {"more texels than cells", 64, 32, 4},
+                          {"sun of one texel", 128, 64, 1, 3e4f},
+                          {"sun of a fraction of a degree, turned", 1024, 512, 1, 1e6f, true}};
+
+INSTANTIATE_TEST_SUITE_P(All, EnvironmentSampling, ::testing::ValuesIn(kSkies));
+
+TEST(EnvironmentSamplingControl, AnotherSunIsSeen) {
+  const Sky& sky = kSkies[6];
+  EXPECT_GT(test::p_value(sampler_of(sky, sky.sun), sampler_of(sky, sky.sun)), 1e-4);
+  EXPECT_LT(test::p_value(sampler_of(sky, sky.sun), sampler_of(sky, 1.2f * sky.sun)), 1e-6);
+}
+
+TEST(EnvironmentSamplingControl, AnotherTurnIsSeen) {
+  EXPECT_LT(test::p_value(sampler_of(kSkies[3], 0), sampler_of(kSkies[4], 0)), 1e-9);
+}
+
+TEST(EnvironmentSamplingConstant, FollowsItsDensity) {
+  const Environment e = Environment::constant({1, 2, 3});
+  test::expect_proven(
+      {[&](const Vec2& u) { return e.sample(u); }, [&](const Vec3& w) { return static_cast<double>(e.pdf(w)); }},
+      "constant");
+}
+
+}  // namespace
+}  // namespace velour
