@@ -11,9 +11,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import figure_scenes
 import figures_sheet
 import figures_text
-import numpy as np
 import script
-from agreement import Agreement, agreement
+from figure_check import Check, check
 from reference import FIRST_SEED, Reference
 from renders import Picture, Renders, Settings
 from scenes import Scene
@@ -36,9 +35,9 @@ class Extent:
     batch_spp: int = 2048
     batches: tuple[int, int] = (4, 16)  # at first, and at most
     check_size: tuple[int, int] = (80, 60)
-    check_batches: int = 8
-    uniform_spp: int = 400_000  # in all batches together
-    check_spp: int = 4096  # in each
+    check_batches: int = 16
+    uniform_spp: int = 400_000  # in all batches
+    check_spp: int = 2048  # of the others, in each batch
 
 
 QUICK = Extent((96, 72), (8, 16, 24, 32, 40), 64, (2, 3), (16, 12), 4, 4000, 64)
@@ -53,13 +52,12 @@ class Figure:
     errors: dict[tuple[str, int], tuple[float, float]]  # rmse, relmse
     reference: Reference
     modelled: Picture  # with the very directions of the reference's first render
-    check: Agreement
-    control: Agreement
+    check: Check
 
     @property
     def floor(self) -> tuple[float, float]:
         """rmse, relmse of the fit alone: noise is the same in both and cancels."""
-        return self.modelled.errors(self.reference.batches[0].pixels)
+        return self.modelled.errors(self.reference.pictures[0].pixels)
 
     @property
     def smallest(self) -> float:
@@ -73,7 +71,7 @@ class Figure:
 def main() -> int:
     args = script.arguments("figures", ROOT / "docs/figures")
     extent = QUICK if args.quick else Extent()
-    run = script.start(args, Settings(args.work, extent.size, args.threads, args.seed))
+    run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
     subjects = figure_scenes.subjects(run.data, run.renders)
     for _ in subjects:
         _announce(run.renders, extent)
@@ -91,7 +89,7 @@ def _announce(renders: Renders, extent: Extent) -> None:
         renders.expect(spp, count=len(SEQUENCES))
     renders.expect(extent.batch_spp, count=extent.batches[0] + 1)
     renders.expect(extent.uniform_spp // extent.check_batches, extent.check_size, extent.check_batches)
-    renders.expect(extent.check_spp, extent.check_size, extent.check_batches)
+    renders.expect(extent.check_spp, extent.check_size, 2 * extent.check_batches)
 
 
 def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, extent: Extent) -> Figure:
@@ -104,7 +102,7 @@ def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, exte
     reference = Reference(renders, measured, extent.batch_spp, **BEST).add(extent.batches[0])
     modelled = renders.render(scene, extent.batch_spp, seed=FIRST_SEED, **BEST)
     errors = _converge(pictures, reference, extent.batches[1])
-    return Figure(subject, pictures, errors, reference, modelled, *_check(renders, measured, extent))
+    return Figure(subject, pictures, errors, reference, modelled, check(renders, measured, extent))
 
 
 def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str, int], tuple[float, float]]:
@@ -117,23 +115,9 @@ def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str
             f"    reference of {reference.spp} spp: the smallest error is {margin:.1f} times its own",
             flush=True,
         )
-        if margin >= MARGIN or len(reference.batches) >= most:
+        if margin >= MARGIN or len(reference.pictures) >= most:
             return errors
         reference.add()
-
-
-def _check(renders: Renders, measured: Scene, extent: Extent) -> tuple[Agreement, Agreement]:
-    """The dissertation's own reference, uniform samples of the measurement, against the best strategy.
-
-    And the same with one of them a hundredth too bright, which must be seen.
-    """
-    batches, small = extent.check_batches, {"size": extent.check_size}
-    uniform = Reference(renders, measured, extent.uniform_spp // batches, strategy="uniform", **small).add(
-        batches
-    )
-    best = Reference(renders, measured, extent.check_spp, 2 * FIRST_SEED, **BEST, **small).add(batches)
-    a, b = uniform.stack(), best.stack()
-    return agreement(a, b), agreement(a, np.multiply(b, 1.01))
 
 
 if __name__ == "__main__":

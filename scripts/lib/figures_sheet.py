@@ -35,7 +35,7 @@ def _draw_figure(above, below, figure, spp: tuple[int, ...]) -> None:
     _show_error(
         below[-1],
         figure.modelled.pixels,
-        figure.reference.batches[0].pixels,
+        figure.reference.pictures[0].pixels,
         f"the fit's: {small(figure.floor[1])}",
     )
 

@@ -1,0 +1,44 @@
+"""Does the dissertation's own reference, uniform samples of the measurement, agree with ours?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from agreement import Agreement, agreement
+from reference import FIRST_SEED, Reference
+from renders import Renders
+from scenes import Scene
+
+
+@dataclass(frozen=True)
+class Check:
+    """Each of them against `product`."""
+
+    uniform: Agreement
+    mis: Agreement
+    control: Agreement  # uniform, with `product` a hundredth too bright: must not hold
+
+
+def check(renders: Renders, measured: Scene, extent) -> Check:
+    size, batches = {"size": extent.check_size}, extent.check_batches
+
+    def stack(spp: int, number: int, strategy: str) -> np.ndarray:
+        seed = number * FIRST_SEED
+        return Reference(renders, measured, spp, seed, strategy=strategy, **size).add(batches).stack()
+
+    uniform = stack(extent.uniform_spp // batches, 2, "uniform")
+    product = stack(extent.check_spp, 3, "product")
+    mis = stack(extent.check_spp, 4, "mis")
+    where = _object(renders, measured, size)
+    return Check(
+        agreement(uniform, product, where),
+        agreement(mis, product, where),
+        agreement(uniform, 1.01 * product, where),
+    )
+
+
+def _object(renders: Renders, scene: Scene, size: dict) -> np.ndarray:
+    """Pixels that show more than the world: there alone two strategies differ that share their camera rays."""
+    a, b = (renders.render(scene, 64, strategy=name, **size).pixels for name in ("uniform", "cosine"))
+    return (a != b).any(axis=-1)

@@ -1,0 +1,124 @@
+"""Mitsuba 3 and its `measured` material against ours: the same mesh, camera, environment and measurement."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from pathlib import Path
+
+import data_files
+import numpy as np
+import sphere
+from chart_result import Point, point_of
+from curve import Curve, Reading, ratio
+from mitsuba_runs import Mitsuba, MitsubaError, Wish
+from reference import FIRST_SEED, Batches, Reference
+from renders import Picture, Renders
+from scenes import BUNNY_CAMERA, Scene
+
+MATERIALS = ("satin_rosaline_rgb", "paper_white_rgb", "cc_iris_purple_gem_rgb")
+STRATEGIES = ("mis", "product")
+DIRECTIONS = 8  # light directions a camera ray, on both sides
+WORLD = "venice_sunset"
+_REFERENCES = 4
+_CAMERAS = {"bunny": BUNNY_CAMERA, "sphere": "0,-4,0,0,0,0,40"}
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Of both programs' converged pictures of the sphere."""
+
+    means: float  # quotient, Mitsuba's over ours
+    relative: float  # sum of the absolute differences over the sum
+    noise: float  # what that would be if only the noise of both differed
+
+
+@dataclass(frozen=True)
+class Comparison:
+    material: str
+    version: str
+    variant: str
+    points: dict[str, list[Point]]  # "mitsuba" and our strategies
+    sphere: Difference
+
+    @property
+    def level(self) -> float:
+        """relmse of Mitsuba's longest render."""
+        return self.points["mitsuba"][-1].relmse
+
+    @functools.cached_property
+    def curves(self) -> dict[str, Curve]:
+        return {name: Curve([(p.seconds, p.relmse) for p in own]) for name, own in self.points.items()}
+
+    def seconds(self, name: str) -> Reading | None:
+        return self.curves[name].seconds_at(self.level) if self.level > 0 else None
+
+    def speed_up(self, name: str) -> Reading | None:
+        return ratio(self.seconds("mitsuba"), self.seconds(name))
+
+
+def compare(data: Path, renders: Renders, extent) -> list[Comparison] | str:
+    """One comparison a material, or a sentence that says why there is none."""
+    mitsuba = Mitsuba(renders, extent.peer_size, DIRECTIONS)
+    if not mitsuba.installed():
+        return "Mitsuba is left out: it is not installed and could not be had from PyPI (build/peers.log)."
+    bunnies = [_scene("bunny", data, name, renders) for name in MATERIALS]
+    try:
+        mitsuba.choose_variant(bunnies[0], extent.peer_rays[-1])
+        return [_compare(data, bunny, mitsuba, renders, extent) for bunny in bunnies]
+    except MitsubaError as error:
+        return f"Mitsuba is left out: {error}."
+
+
+def _scene(name: str, data: Path, material: str, renders: Renders) -> Scene:
+    """Ours in reference mode: the raw measurement is evaluated."""
+    measurement = data / f"brdf/{material}.bsdf"
+    model, _ = renders.fit(measurement)
+    mesh, up = data_files.mesh(data, "bunny"), "y"
+    if name == "sphere":
+        mesh, up = sphere.write(renders.settings.folder / "sphere.obj"), "z"
+    world = data_files.world(data, WORLD)
+    return Scene(f"{name}, {material}", mesh, up, world, measurement, model, _CAMERAS[name])
+
+
+def _compare(data: Path, bunny: Scene, mitsuba: Mitsuba, renders: Renders, extent) -> Comparison:
+    seed = renders.settings.seed
+    pictures, report = mitsuba.render(bunny, [Wish(rays, seed, True) for rays in extent.peer_rays])
+    points = {"mitsuba": _points(pictures, _their_reference(bunny, mitsuba, extent), extent, seed)}
+    ours = _our_reference(bunny, renders, extent)
+    for strategy in STRATEGIES:
+        points[strategy] = _points(_our_pictures(bunny, renders, extent, strategy), ours, extent, seed)
+    ball = _scene("sphere", data, bunny.material.stem, renders)
+    difference = _difference(_our_reference(ball, renders, extent), _their_reference(ball, mitsuba, extent))
+    return Comparison(bunny.material.stem, report["version"], report["variant"], points, difference)
+
+
+def _points(pictures: list[Picture], reference: Batches, extent, seed: int) -> list[Point]:
+    mean, noise = reference.mean(), reference.noise()
+    return [
+        point_of(picture, DIRECTIONS * rays, seed, mean, noise)
+        for picture, rays in zip(pictures, extent.peer_rays, strict=True)
+    ]
+
+
+def _our_pictures(scene: Scene, renders: Renders, extent, strategy: str) -> list[Picture]:
+    options = {"size": extent.peer_size, "split": DIRECTIONS, "strategy": strategy}
+    return [renders.render(scene, DIRECTIONS * rays, **options) for rays in extent.peer_rays]
+
+
+def _our_reference(scene: Scene, renders: Renders, extent) -> Reference:
+    options = {"size": extent.peer_size, "split": DIRECTIONS, "strategy": "product"}
+    return Reference(renders, scene, DIRECTIONS * extent.peer_reference_rays, **options).add(_REFERENCES)
+
+
+def _their_reference(scene: Scene, mitsuba: Mitsuba, extent) -> Batches:
+    wishes = [Wish(extent.peer_reference_rays, FIRST_SEED + k, False) for k in range(_REFERENCES)]
+    return Batches(mitsuba.render(scene, wishes)[0])
+
+
+def _difference(ours: Batches, theirs: Batches) -> Difference:
+    a, b = ours.mean().astype(np.float64), theirs.mean().astype(np.float64)
+    # The mean of |x| of a normal x is sqrt(2 / pi) of its standard deviation.
+    deviation = np.hypot(ours.standard_error(), theirs.standard_error())
+    noise = np.sqrt(2 / np.pi) * deviation.sum() / a.sum()
+    return Difference(float(b.sum() / a.sum()), float(np.abs(a - b).sum() / a.sum()), float(noise))
