@@ -27,7 +27,7 @@ class Agreement:
 def agreement(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> Agreement:
     """a, b: independent renders of both estimates, [batch, row, column, channel].
 
-    Luminance of each pixel of `where` and its mean over these; Welch's t of the batches, as the z as unlikely.
+    Luminance of each pixel of `where` and their mean; Welch's t of the batches, as the z that is as unlikely.
     """
     a, b = (_with_mean(stack[:, where] @ _LUMINANCE) for stack in (a, b))
     varies = (a.var(axis=0) > 0) | (b.var(axis=0) > 0)

@@ -43,6 +43,7 @@ class Extent:
     reference_spp: int = 2048  # of each of
     reference_batches: int = 4
     bound_hits: int = 200
+    peer_materials: int = 3
     peer_size: tuple[int, int] = (160, 120)
     peer_rays: tuple[int, ...] = (8, 32, 128)  # camera rays a pixel, eight light directions each
     peer_reference_rays: int = 512
@@ -60,10 +61,11 @@ QUICK = Extent(
     reference_spp=64,
     reference_batches=2,
     bound_hits=8,
+    peer_materials=1,
     peer_size=(32, 24),
     peer_rays=(2, 4),
     peer_reference_rays=8,
-    cycles_rays=(1, 4),
+    cycles_rays=(1, 64),
 )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from chart_result import DISSERTATION, Result
-from curve import Reading, ratio
+from curve import shown
 from markdown_table import error, small, table
 from peer_mitsuba import STRATEGIES, Comparison
 
@@ -25,8 +25,8 @@ def equal_error(results: list[Result]) -> str:
     rows = []
     for result in results:
         gain = result.time_ratio("uniform", DISSERTATION)
-        seconds = [_shown(result.seconds_to_level(name)) for name in names]
-        rows.append([result.scene.scene.name, small(result.level), *seconds, _shown(gain)])
+        seconds = [shown(result.seconds_to_level(name)) for name in names]
+        rows.append([result.scene.scene.name, small(result.level), *seconds, shown(gain)])
     return f"""## Equal error
 
 Seconds to the relmse that `mis` (balance, half and half) has at {results[0].level_spp} light directions a
@@ -40,10 +40,9 @@ def equal_time(results: list[Result]) -> str:
     header = ["scene", "seconds", *names, "`uniform` / `mis`"]
     rows = []
     for result in results:
-        errors = [result.error_at_equal_time(name) for name in names]
+        errors = [shown(result.error_at_equal_time(name)) for name in names]
         gain = result.error_ratio("uniform", DISSERTATION)
-        shown = [_shown(found) for found in errors]
-        rows.append([result.scene.scene.name, f"{result.level_seconds:.2f}", *shown, _shown(gain)])
+        rows.append([result.scene.scene.name, f"{result.level_seconds:.2f}", *errors, shown(gain)])
     return f"""## Equal time
 
 relmse in the seconds that `mis` takes for {results[0].level_spp} light directions a pixel.
@@ -91,8 +90,8 @@ def ggx(results: list[Result]) -> str:
     header = ["scene", "GGX's relative L2", "`mis`", "`mis-ggx`", "`mis` / `mis-ggx`"]
     rows = []
     for result in results:
-        seconds = [_shown(result.seconds_to_level(name)) for name in (DISSERTATION, "mis-ggx")]
-        compared = _shown(result.time_ratio(DISSERTATION, "mis-ggx"))
+        seconds = [shown(result.seconds_to_level(name)) for name in (DISSERTATION, "mis-ggx")]
+        compared = shown(result.time_ratio(DISSERTATION, "mis-ggx"))
         rows.append([result.scene.scene.name, error(result.ggx["relative_l2"]), *seconds, compared])
     return f"""## Fitted lobes against a fitted GGX
 
@@ -105,7 +104,7 @@ def mitsuba(found: list[Comparison] | str, extent) -> str:
     if isinstance(found, str):
         return f"## Mitsuba\n\n{found}\n"
     width, height = extent.peer_size
-    header = ["material", "relmse", "Mitsuba", *(f"`{name}`" for name in STRATEGIES), "Mitsuba / fastest", ""]
+    header = ["material", "relmse", "Mitsuba", *(f"`{name}`" for name in STRATEGIES), "Mitsuba / fastest"]
     rows = [_mitsuba_row(comparison) for comparison in found]
     spheres = [
         [c.material, f"{c.sphere.means:.4f}", f"{c.sphere.relative:.4f}", f"{c.sphere.noise:.4f}"]
@@ -113,11 +112,12 @@ def mitsuba(found: list[Comparison] | str, extent) -> str:
     ]
     return f"""## Mitsuba
 
-Mitsuba {found[0].version} ({found[0].variant}, the fastest of its variants here), its
-`measured` material and `direct` integrator (four directions of the material and four of the light a camera
-ray, `multijitter` numbers), the second render of its kind in the process. Velour evaluates
-the measurement itself; a model of it draws (split 8). Both: bunny, {width}x{height}, venice_sunset, the same camera, each against its own converged
-picture. Seconds to the relmse of Mitsuba's render with {extent.peer_rays[-1]} camera rays a pixel:
+Mitsuba {found[0].version} ({found[0].variant}, the fastest of its variants here), its `measured` material
+and `direct` integrator (four directions of the material and four of the light a camera ray, `multijitter`
+numbers), the second render of its kind in the process. Velour evaluates the measurement itself; a model of
+it draws (split 8). Both: bunny, {width}x{height}, `venice_sunset`, the same camera,
+each against its own converged picture. Seconds to the relmse of Mitsuba's render with
+{extent.peer_rays[-1]} camera rays a pixel:
 
 {table(header, rows)}
 Converged pictures of the unit sphere, Mitsuba's against ours: quotient of the means, sum of the absolute
@@ -128,11 +128,4 @@ differences over the sum, and what the noise of both would make of that.
 
 def _mitsuba_row(c: Comparison) -> list[str]:
     seconds = [c.seconds(name) for name in ("mitsuba", *STRATEGIES)]
-    ours = min((found for found in seconds[1:] if found), key=lambda found: found.value, default=None)
-    gain = ratio(seconds[0], ours)
-    verdict = "not measured" if gain is None else "met" if gain.value > 1 else "missed"
-    return [c.material, small(c.level), *map(_shown, seconds), _shown(gain), verdict]
-
-
-def _shown(found: Reading | None) -> str:
-    return "-" if found is None else str(found)
+    return [c.material, small(c.level), *map(shown, seconds), shown(c.speed_up())]

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from chart_result import DISSERTATION, Result
 from chart_scenes import SKY, STUDIO, SUNSET
-from curve import Reading
+from curve import Reading, shown
+from peer_mitsuba import Comparison
 
 # relmse of `product` over that of the dissertation's strategy at equal samples.
 _EQUAL_SAMPLES = {
@@ -28,7 +29,7 @@ class Verdict:
     met: bool | None  # None: the numbers are not there
 
 
-def verdicts(results: list[Result], spp: int) -> list[Verdict]:
+def verdicts(results: list[Result], mitsuba: list[Comparison] | str, spp: int) -> list[Verdict]:
     """`spp`: the number of samples at which equal samples are compared."""
     figures = [result for result in results if result.scene.world != SKY]
     return [
@@ -36,6 +37,7 @@ def verdicts(results: list[Result], spp: int) -> list[Verdict]:
         *_at_equal_time(figures),
         *_against_uniform(figures),
         *_against_ggx(figures),
+        *([] if isinstance(mitsuba, str) else _against_mitsuba(mitsuba)),
     ]
 
 
@@ -74,5 +76,15 @@ def _against_ggx(figures: list[Result]) -> Iterator[Verdict]:
         yield _limit(target, result.scene.scene.name, found, most)
 
 
+def _against_mitsuba(comparisons: list[Comparison]) -> Iterator[Verdict]:
+    for c in comparisons:
+        found = c.speed_up()
+        target = "seconds of Mitsuba to equal error over ours above 1"
+        yield Verdict(target, c.material, shown(found), None if found is None else found.value > 1)
+    for c in comparisons:
+        target = "converged spheres of Mitsuba and ours differ by at most 1 %"
+        yield Verdict(target, c.material, f"{100 * c.sphere.relative:.2f} %", c.sphere.relative <= 0.01)
+
+
 def _limit(target: str, where: str, found: Reading | None, most: float) -> Verdict:
-    return Verdict(target, where, str(found), None if found is None else found.value <= most)
+    return Verdict(target, where, shown(found), None if found is None else found.value <= most)

@@ -19,7 +19,7 @@ def write(folder: Path, results: list[Result], peers: dict, sun: SunLobes, condi
     for result in results:
         chart_plot.draw(folder / f"{result.scene.file_name}.png", result)
         files.write_text(folder / f"{result.scene.file_name}.csv", csv_text(*_rows(result, conditions)))
-    verdicts = chart_targets.verdicts(results, extent.equal_spp)
+    verdicts = chart_targets.verdicts(results, peers["mitsuba"], extent.equal_spp)
     files.write_text(folder / "targets.csv", csv_text(*_target_rows(verdicts)))
     files.write_text(folder / "README.md", _page(results, peers, sun, verdicts, conditions, extent))
 
@@ -74,7 +74,7 @@ def _scene(result: Result) -> str:
     noise = result.reference.noise()[1]
     return f"""![{result.scene.scene.name}]({result.scene.file_name}.png)
 
-[{result.scene.file_name}.csv]({result.scene.file_name}.csv); relmse of the reference {noise:.1e}.
+[CSV]({result.scene.file_name}.csv); relmse of the reference, which is subtracted: {noise:.1e}.
 """
 
 
@@ -92,9 +92,9 @@ def _cycles(found: Throughput | str) -> str:
     text = found
     if not isinstance(found, str):
         text = f"""Cycles of Blender {found.version}, the bunny with the Principled material nearest to
-blue-metallic-paint, direct light, no denoiser: {found.cycles / 1e6:.2f} million camera rays a second,
-each with one direction of the material and one of the light. Velour with as much to do for each camera ray (`mis`, split 2):
-{found.ours / 1e6:.2f} million. Materials and shading differ, so this compares throughput alone."""
+blue-metallic-paint, direct light, no denoiser: {found.cycles / 1e6:.2f} million camera rays a second, each
+with one direction of the material and one of the light. Velour with as much to do for each camera ray
+(`mis`, split 2): {found.ours / 1e6:.2f} million. Materials differ, so this compares throughput alone."""
     return f"""## Cycles
 
 {text}

@@ -56,3 +56,7 @@ class Curve:
 
 def ratio(a: Reading | None, b: Reading | None) -> Reading | None:
     return Reading(a.value / b.value, a.measured and b.measured) if a and b else None
+
+
+def shown(found: Reading | None) -> str:
+    return "-" if found is None else str(found)

@@ -39,6 +39,6 @@ def check(renders: Renders, measured: Scene, extent) -> Check:
 
 
 def _object(renders: Renders, scene: Scene, size: dict) -> np.ndarray:
-    """Pixels that show more than the world: there alone two strategies differ that share their camera rays."""
+    """Pixels that show more than the world: there alone strategies that share camera rays differ."""
     a, b = (renders.render(scene, 64, strategy=name, **size).pixels for name in ("uniform", "cosine"))
     return (a != b).any(axis=-1)

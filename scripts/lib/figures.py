@@ -40,7 +40,7 @@ class Extent:
     check_spp: int = 2048  # of the others, in each batch
 
 
-QUICK = Extent((96, 72), (8, 16, 24, 32, 40), 64, (2, 3), (16, 12), 4, 4000, 64)
+QUICK = Extent((96, 72), (8, 32), 64, (2, 3), (16, 12), 3, 3000, 64)
 
 
 @dataclass(frozen=True)

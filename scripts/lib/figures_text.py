@@ -53,13 +53,13 @@ renders are added until it is, up to {extent.batches[1]}.
 {_references(figures)}
 ## The dissertation's reference
 
-Uniform samples of the measurement, {extent.uniform_spp} a pixel at {columns}x{rows}, against `product`: Welch's
-test of the luminance of each pixel that shows the object and of their mean, both from
+Uniform samples of the measurement, {extent.uniform_spp} a pixel at {columns}x{rows}, against
+`product`: Welch's test of the luminance of each pixel that shows the object and of their mean, both from
 {extent.check_batches} independent renders. p: of the largest |z| among so many (Sidak); they agree where it
-is at least {LEVEL}. Control: `product` a hundredth too bright, which must not agree. `mis` against `product`,
-{extent.check_batches} renders of {extent.check_spp} each, is the same test without rare events: what uniform samples meet
-a few times in all batches together (the brightest texels of the sun in a mirror-like pixel), some batches
-miss, and error bars from their spread are too short.
+is at least {LEVEL}. Control: `product` a hundredth too bright, which must not agree. `mis` against
+`product`, {extent.check_batches} renders of {extent.check_spp} each, is the same test without rare events:
+what uniform samples meet a few times in all renders together (the brightest texels of the sun, mirrored),
+some renders miss, and error bars from their spread are too short.
 
 {_checks(figures)}"""
 

@@ -14,7 +14,7 @@ _PROGRAM = ROOT / "build/release/native/bench/product_bound"
 
 
 def of(scene: Scene, renders: Renders, hits: int) -> dict | None:
-    """Mean normalised variances `mis`, `product` and `exact`; None where the program is not built."""
+    """Variances of one direction by `mis`, `product` and `exact`; None where the program is not built."""
     if not _PROGRAM.is_file():
         return None
     size = "{}x{}".format(*renders.settings.size)
@@ -27,6 +27,6 @@ def of(scene: Scene, renders: Renders, hits: int) -> dict | None:
         files.write_json(report, json.loads(done.stdout))
         return json.loads(done.stdout)
 
-    return renders.keep(
-        f"{scene.name}, bound at {hits} hits", "bound", {**arguments, "program": _PROGRAM}, run
-    )
+    parameters = {**arguments, "program": _PROGRAM}
+    label = f"{scene.name}, bound at {hits} hits"
+    return renders.keep(label, "bound", parameters, run)["variance"]

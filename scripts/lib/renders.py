@@ -14,13 +14,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import velour
 from progress import Progress
 from scenes import Scene
 from velour.core.machine import machine
 from velour.native import images
-from velour_cli import ROOT, velour_to_file
+from velour_cli import velour_to_file
 
-_LIBRARY = ROOT / "build/release/blender/addons/velour/lib/libvelour.so"
+_LIBRARY = Path(velour.__file__).with_name("lib") / "libvelour.so"
 # What a process costs besides its samples, in samples: start-up, reading the mesh, building the BVH.
 _START = 10_000_000
 
