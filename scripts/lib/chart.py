@@ -24,8 +24,9 @@ from velour_cli import ROOT
 CURVES = {name: Contender(name, "sobol") for name in STRATEGIES} | {
     f"{DISSERTATION}, random": Contender(DISSERTATION, "random")
 }
-# Curves that targets compare: more seeds.
+# Curves that targets compare closely: more seeds. Those that no target names end a step earlier.
 COMPARED = (DISSERTATION, "mis-ggx", "product")
+LONG = (*COMPARED, "uniform", f"{DISSERTATION}, random")
 BEST = {"strategy": "product"}
 
 
@@ -46,7 +47,7 @@ class Extent:
     peer_materials: int = 3
     peer_size: tuple[int, int] = (160, 120)
     peer_rays: tuple[int, ...] = (8, 32, 128)  # camera rays a pixel, eight light directions each
-    peer_reference_rays: int = 512
+    peer_reference_rays: int = 256
     cycles_rays: tuple[int, int] = (64, 512)
 
 
@@ -101,8 +102,8 @@ def _curves(extent: Extent) -> dict[str, Contender]:
 def _ladder(name: str, extent: Extent) -> list[tuple[int, int]]:
     """spp and seeds of a curve."""
     seeds = extent.seeds if name in COMPARED else 1
-    steps = sorted({*extent.spp, extent.level_spp}) if name == DISSERTATION else extent.spp
-    return [(spp, seeds) for spp in steps]
+    steps = {*extent.spp, extent.level_spp} if name == DISSERTATION else {*extent.spp}
+    return [(spp, seeds) for spp in sorted(steps) if name in LONG or spp < max(steps)]
 
 
 def _result(scene: chart_scenes.ChartScene, renders: Renders, extent: Extent) -> Result:

@@ -13,7 +13,7 @@ import figures_sheet
 import figures_text
 import script
 from figure_check import Check, check
-from reference import FIRST_SEED, Reference
+from reference import Reference
 from renders import Picture, Renders, Settings
 from scenes import Scene
 from velour_cli import ROOT
@@ -32,15 +32,16 @@ class Extent:
 
     size: tuple[int, int] = (640, 480)
     spp: tuple[int, ...] = (200, 400, 600, 800, 1000)
-    batch_spp: int = 2048
-    batches: tuple[int, int] = (4, 16)  # at first, and at most
+    batch_spp: int = 4096
+    batches: tuple[int, int] = (3, 8)  # at first, and at most
+    floor_spp: int = 256
     check_size: tuple[int, int] = (80, 60)
     check_batches: int = 16
     uniform_spp: int = 400_000  # in all batches
     check_spp: int = 2048  # of the others, in each batch
 
 
-QUICK = Extent((96, 72), (8, 32), 64, (2, 3), (16, 12), 3, 3000, 64)
+QUICK = Extent((96, 72), (8, 32), 64, (2, 3), 16, (16, 12), 3, 3000, 64)
 
 
 @dataclass(frozen=True)
@@ -51,13 +52,14 @@ class Figure:
     pictures: dict[tuple[str, int], Picture]
     errors: dict[tuple[str, int], tuple[float, float]]  # rmse, relmse
     reference: Reference
-    modelled: Picture  # with the very directions of the reference's first render
+    fit: tuple[Picture, Picture]  # model and measurement, with the very same directions
     check: Check
 
     @property
     def floor(self) -> tuple[float, float]:
         """rmse, relmse of the fit alone: noise is the same in both and cancels."""
-        return self.modelled.errors(self.reference.pictures[0].pixels)
+        modelled, measured = self.fit
+        return modelled.errors(measured.pixels)
 
     @property
     def smallest(self) -> float:
@@ -87,7 +89,8 @@ def main() -> int:
 def _announce(renders: Renders, extent: Extent) -> None:
     for spp in extent.spp:
         renders.expect(spp, count=len(SEQUENCES))
-    renders.expect(extent.batch_spp, count=extent.batches[0] + 1)
+    renders.expect(extent.batch_spp, count=extent.batches[0])
+    renders.expect(extent.floor_spp, count=2)
     renders.expect(extent.uniform_spp // extent.check_batches, extent.check_size, extent.check_batches)
     renders.expect(extent.check_spp, extent.check_size, 2 * extent.check_batches)
 
@@ -100,9 +103,9 @@ def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, exte
         for spp in extent.spp
     }
     reference = Reference(renders, measured, extent.batch_spp, **BEST).add(extent.batches[0])
-    modelled = renders.render(scene, extent.batch_spp, seed=FIRST_SEED, **BEST)
+    fit = tuple(renders.render(which, extent.floor_spp, **BEST) for which in (scene, measured))
     errors = _converge(pictures, reference, extent.batches[1])
-    return Figure(subject, pictures, errors, reference, modelled, check(renders, measured, extent))
+    return Figure(subject, pictures, errors, reference, fit, check(renders, measured, extent))
 
 
 def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str, int], tuple[float, float]]:

@@ -32,12 +32,8 @@ def _draw_figure(above, below, figure, spp: tuple[int, ...]) -> None:
         caption = f"relmse {small(relmse['random'])}; sobol {small(relmse['sobol'])}"
         _show_error(below[column], picture.pixels, mean, caption)
     _show(above[-1], mean, f"measured, {figure.reference.spp} spp")
-    _show_error(
-        below[-1],
-        figure.modelled.pixels,
-        figure.reference.pictures[0].pixels,
-        f"the fit's: {small(figure.floor[1])}",
-    )
+    modelled, measured = figure.fit
+    _show_error(below[-1], modelled.pixels, measured.pixels, f"the fit's: {small(figure.floor[1])}")
 
 
 def _show(axes, pixels: np.ndarray, title: str) -> None:
