@@ -120,8 +120,8 @@ each against its own converged picture. Seconds to the relmse of Mitsuba's rende
 {extent.peer_rays[-1]} camera rays a pixel:
 
 {table(header, rows)}
-Converged pictures of the unit sphere, Mitsuba's against ours: quotient of the means, sum of the absolute
-differences over the sum, and what the noise of both would make of that.
+Converged pictures of the unit sphere, Mitsuba's against ours, without the background: quotient of the means,
+sum of the absolute differences over the sum, and what the noise of both would make of that.
 
 {table(["material", "means", "difference", "of which noise"], spheres)}"""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import silhouette
 from agreement import Agreement, agreement
 from reference import FIRST_SEED, Reference
 from renders import Renders
@@ -30,15 +31,9 @@ def check(renders: Renders, measured: Scene, extent) -> Check:
     uniform = stack(extent.uniform_spp // batches, 2, "uniform")
     product = stack(extent.check_spp, 3, "product")
     mis = stack(extent.check_spp, 4, "mis")
-    where = _object(renders, measured, size)
+    where = silhouette.of(measured, renders, extent.check_size)
     return Check(
         agreement(uniform, product, where),
         agreement(mis, product, where),
         agreement(uniform, 1.01 * product, where),
     )
-
-
-def _object(renders: Renders, scene: Scene, size: dict) -> np.ndarray:
-    """Pixels that show more than the world: there alone strategies that share camera rays differ."""
-    a, b = (renders.render(scene, 64, strategy=name, **size).pixels for name in ("uniform", "cosine"))
-    return (a != b).any(axis=-1)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import data_files
 import numpy as np
+import silhouette
 import sphere
 from chart_result import Point, point_of
 from curve import Curve, Reading, ratio
@@ -26,7 +27,7 @@ _CAMERAS = {"bunny": BUNNY_CAMERA, "sphere": "0,-4,0,0,0,0,40"}
 
 @dataclass(frozen=True)
 class Difference:
-    """Of both programs' converged pictures of the sphere."""
+    """Of both programs' converged pictures of the sphere, in pixels that show it."""
 
     means: float  # quotient, Mitsuba's over ours
     relative: float  # sum of the absolute differences over the sum
@@ -91,7 +92,8 @@ def _compare(data: Path, bunny: Scene, mitsuba: Mitsuba, renders: Renders, exten
     for strategy in STRATEGIES:
         points[strategy] = _points(_our_pictures(bunny, renders, extent, strategy), ours, extent, seed)
     ball = _scene("sphere", data, bunny.material.stem, renders)
-    difference = _difference(_our_reference(ball, renders, extent), _their_reference(ball, mitsuba, extent))
+    converged = _our_reference(ball, renders, extent), _their_reference(ball, mitsuba, extent)
+    difference = _difference(*converged, silhouette.of(ball, renders, extent.peer_size))
     return Comparison(bunny.material.stem, report["version"], report["variant"], points, difference)
 
 
@@ -118,9 +120,9 @@ def _their_reference(scene: Scene, mitsuba: Mitsuba, extent) -> Batches:
     return Batches(mitsuba.render(scene, wishes)[0])
 
 
-def _difference(ours: Batches, theirs: Batches) -> Difference:
-    a, b = ours.mean().astype(np.float64), theirs.mean().astype(np.float64)
+def _difference(ours: Batches, theirs: Batches, where: np.ndarray) -> Difference:
+    a, b = (batches.mean()[where].astype(np.float64) for batches in (ours, theirs))
     # The mean of |x| of a normal x is sqrt(2 / pi) of its standard deviation.
-    deviation = np.hypot(ours.standard_error(), theirs.standard_error())
+    deviation = np.hypot(ours.standard_error(), theirs.standard_error())[where]
     noise = np.sqrt(2 / np.pi) * deviation.sum() / a.sum()
     return Difference(float(b.sum() / a.sum()), float(np.abs(a - b).sum() / a.sum()), float(noise))
