@@ -99,6 +99,42 @@ def test_share_of_the_bound():
     assert Result(None, {}, None, 2, bound, {}).share_of_bound() == pytest.approx(0.75)
 
 
+@pytest.fixture
+def renders(tmp_path):
+    from renders import Renders, Settings
+
+    return Renders(Settings(tmp_path / "kept", (8, 6), 1, 1), Progress(), fresh=False)
+
+
+def test_the_bound_is_read_from_its_program(renders, tmp_path, monkeypatch):
+    import product_bound
+
+    scene = Scene("bunny", tmp_path / "mesh", "y", tmp_path / "world", tmp_path / "model")
+    for path in (scene.mesh, scene.world, scene.material):
+        path.write_text("")
+    program = tmp_path / "product_bound"
+    program.write_text(
+        """#!/bin/sh\necho '{"hits": 200, "variance": {"mis": 3, "product": 2, "exact": 1}}'\n"""
+    )
+    monkeypatch.setattr(product_bound, "_PROGRAM", program)
+    program.chmod(0o755)
+    expected = {"mis": 3, "product": 2, "exact": 1}
+    assert product_bound.of(scene, renders, 200) == expected
+    program.chmod(0o644)  # kept: it is not run again
+    assert product_bound.of(scene, renders, 200) == expected
+    monkeypatch.setattr(product_bound, "_PROGRAM", tmp_path / "none")
+    assert product_bound.of(scene, renders, 200) is None
+
+
+def test_work_that_fails_is_not_kept(renders):
+    def fail(report):
+        raise RuntimeError
+
+    for _ in range(2):
+        with pytest.raises(RuntimeError):
+            renders.keep("it", "it", {}, fail)
+
+
 def test_progress_counts_what_was_kept_but_not_its_time(capsys):
     progress = Progress()
     progress.expect(1.0, 3)

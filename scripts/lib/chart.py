@@ -66,7 +66,7 @@ QUICK = Extent(
     peer_size=(32, 24),
     peer_rays=(2, 4),
     peer_reference_rays=8,
-    cycles_rays=(1, 64),
+    cycles_rays=(1, 512),
 )
 
 

@@ -10,6 +10,7 @@ import chart_targets
 import provenance
 from chart_result import Result
 from peer_cycles import Throughput
+from peer_mitsuba import Comparison
 from synthetic_sky import SunLobes
 from table_csv import csv_text
 from velour.core import files
@@ -21,6 +22,8 @@ def write(folder: Path, results: list[Result], peers: dict, sun: SunLobes, condi
         files.write_text(folder / f"{result.scene.file_name}.csv", csv_text(*_rows(result, conditions)))
     verdicts = chart_targets.verdicts(results, peers["mitsuba"], extent.equal_spp)
     files.write_text(folder / "targets.csv", csv_text(*_target_rows(verdicts)))
+    if not isinstance(peers["mitsuba"], str):
+        files.write_text(folder / "mitsuba.csv", csv_text(*_mitsuba_rows(peers["mitsuba"])))
     files.write_text(folder / "README.md", _page(results, peers, sun, verdicts, conditions, extent))
 
 
@@ -36,6 +39,16 @@ def _rows(result: Result, conditions: dict) -> tuple[list, list[list]]:
 
 def _target_rows(verdicts: list) -> tuple[list, list[list]]:
     return ["target", "where", "measured", "met"], [[v.target, v.where, v.measured, v.met] for v in verdicts]
+
+
+def _mitsuba_rows(comparisons: list[Comparison]) -> tuple[list, list[list]]:
+    header = ["material", "curve", "spp", "seed", "seconds", "rmse", "relmse"]
+    return header, [
+        [c.material, name, p.spp, p.seed, p.seconds, max(p.mse, 0.0) ** 0.5, p.relmse]
+        for c in comparisons
+        for name, points in c.points.items()
+        for p in points
+    ]
 
 
 def _page(results: list[Result], peers: dict, sun: SunLobes, verdicts: list, conditions: dict, extent) -> str:

@@ -33,8 +33,12 @@ def throughput(scene: ChartScene, renders: Renders, extent) -> Throughput | str:
     width, height = renders.settings.size
     # The difference of two renders leaves out what each of them does before its first sample.
     seconds = report["seconds"][1] - report["seconds"][0]
+    if seconds <= 0:
+        return (
+            "Cycles is left out: its two renders are too short to tell their samples from their preparation."
+        )
     rays = width * height * (more - fewer)
-    return Throughput(report["version"], rays / max(seconds, 1e-9), ours["samples_per_second"] / 2)
+    return Throughput(report["version"], rays / seconds, ours["samples_per_second"] / 2)
 
 
 def _render(scene: ChartScene, renders: Renders, rays: list[int]) -> dict:
@@ -56,4 +60,5 @@ def _render(scene: ChartScene, renders: Renders, rays: list[int]) -> dict:
         partial.replace(report)
         return json.loads(report.read_text())
 
-    return renders.keep("Cycles, bunny", "cycles", look | files, run)
+    program = Path(__file__).with_name("cycles_scene.py")
+    return renders.keep("Cycles, bunny", "cycles", look | files | {"program": program}, run)
