@@ -9,6 +9,7 @@ from chart_result import DISSERTATION, Result
 from chart_scenes import SKY, STUDIO, SUNSET
 from curve import Reading, shown
 from peer_mitsuba import Comparison
+from synthetic_sky import SUN_SHARE, SunLobes
 
 # relmse of `product` over that of the dissertation's strategy at equal samples.
 _EQUAL_SAMPLES = {
@@ -29,7 +30,9 @@ class Verdict:
     met: bool | None  # None: the numbers are not there
 
 
-def verdicts(results: list[Result], mitsuba: list[Comparison] | str, spp: int) -> list[Verdict]:
+def verdicts(
+    results: list[Result], sun: SunLobes, mitsuba: list[Comparison] | str, spp: int
+) -> list[Verdict]:
     """`spp`: the number of samples at which equal samples are compared."""
     figures = [result for result in results if result.scene.world != SKY]
     return [
@@ -37,6 +40,7 @@ def verdicts(results: list[Result], mitsuba: list[Comparison] | str, spp: int) -
         *_at_equal_time(figures),
         *_against_uniform(figures),
         *_against_ggx(figures),
+        _sun(sun),
         *([] if isinstance(mitsuba, str) else _against_mitsuba(mitsuba)),
     ]
 
@@ -74,6 +78,12 @@ def _against_ggx(figures: list[Result]) -> Iterator[Verdict]:
         target = f"seconds of `mis` to equal error at most {words} `mis-ggx`"
         found = result.time_ratio(DISSERTATION, "mis-ggx")
         yield _limit(target, result.scene.scene.name, found, most)
+
+
+def _sun(sun: SunLobes) -> Verdict:
+    target = "the sun's lobes keep its energy within 1 % of all, no wider than twice the sun"
+    measured = f"{100 * sun.energy:.1f} %, {sun.diameter:.2f} degrees"
+    return Verdict(target, SKY, measured, abs(sun.energy - SUN_SHARE) <= 0.01)
 
 
 def _against_mitsuba(comparisons: list[Comparison]) -> Iterator[Verdict]:

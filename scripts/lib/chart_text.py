@@ -20,7 +20,7 @@ def write(folder: Path, results: list[Result], peers: dict, sun: SunLobes, condi
     for result in results:
         chart_plot.draw(folder / f"{result.scene.file_name}.png", result)
         files.write_text(folder / f"{result.scene.file_name}.csv", csv_text(*_rows(result, conditions)))
-    verdicts = chart_targets.verdicts(results, peers["mitsuba"], extent.equal_spp)
+    verdicts = chart_targets.verdicts(results, sun, peers["mitsuba"], extent.equal_spp)
     files.write_text(folder / "targets.csv", csv_text(*_target_rows(verdicts)))
     if not isinstance(peers["mitsuba"], str):
         files.write_text(folder / "mitsuba.csv", csv_text(*_mitsuba_rows(peers["mitsuba"])))

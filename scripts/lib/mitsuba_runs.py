@@ -50,6 +50,11 @@ class Mitsuba:
             raise MitsubaError("none of its variants works here")
         self.variant = min(seconds, key=seconds.get)
 
+    def cost(self, wishes: list[Wish]) -> float:
+        """In light directions."""
+        rays = sum(wish.rays * (2 if wish.timed else 1) for wish in wishes)
+        return float(rays * self._directions * self._size[0] * self._size[1])
+
     def render(self, scene: Scene, wishes: list[Wish]) -> tuple[list[Picture], dict]:
         return self._render(self.variant, scene, wishes)
 
@@ -70,7 +75,8 @@ class Mitsuba:
         pictures = [{**wish._asdict(), "out": str(out)} for wish, out in zip(wishes, outs, strict=True)]
         task |= {name: str(path) for name, path in files.items()} | {"pictures": pictures}
         label = f"Mitsuba {variant}, {scene.name}, {', '.join(str(wish.rays) for wish in wishes)} rays"
-        report = self._renders.keep(label, "mitsuba", parameters, lambda path: self._run(task, path))
+        cost = self.cost(wishes)
+        report = self._renders.keep(label, "mitsuba", parameters, lambda path: self._run(task, path), cost)
         seconds = zip(outs, report["seconds"], strict=True)
         return [Picture(out, {"seconds": taken}) for out, taken in seconds], report
 

@@ -65,12 +65,31 @@ def compare(data: Path, renders: Renders, extent) -> list[Comparison] | str:
     mitsuba = Mitsuba(renders, extent.peer_size, DIRECTIONS)
     if not mitsuba.installed():
         return "Mitsuba is left out: it is not installed and could not be had from PyPI (build/peers.log)."
+    _announce(renders, mitsuba, extent)
     bunnies = [_scene("bunny", data, name, renders) for name in MATERIALS[: extent.peer_materials]]
     try:
         mitsuba.choose_variant(bunnies[0], extent.peer_rays[-1])
         return [_compare(data, bunny, mitsuba, renders, extent) for bunny in bunnies]
     except MitsubaError as error:
         return f"Mitsuba is left out: {error}."
+
+
+def _announce(renders: Renders, mitsuba: Mitsuba, extent) -> None:
+    spp = DIRECTIONS * extent.peer_reference_rays
+    for _ in MATERIALS[: extent.peer_materials]:
+        for wishes in (_ladder(renders, extent), _converged(extent), _converged(extent)):
+            renders.progress.expect(mitsuba.cost(wishes))
+        renders.expect(spp, extent.peer_size, 2 * _REFERENCES)
+        for rays in extent.peer_rays:
+            renders.expect(DIRECTIONS * rays, extent.peer_size, len(STRATEGIES))
+
+
+def _ladder(renders: Renders, extent) -> list[Wish]:
+    return [Wish(rays, renders.settings.seed, True) for rays in extent.peer_rays]
+
+
+def _converged(extent) -> list[Wish]:
+    return [Wish(extent.peer_reference_rays, FIRST_SEED + k, False) for k in range(_REFERENCES)]
 
 
 def _scene(name: str, data: Path, material: str, renders: Renders) -> Scene:
@@ -86,7 +105,7 @@ def _scene(name: str, data: Path, material: str, renders: Renders) -> Scene:
 
 def _compare(data: Path, bunny: Scene, mitsuba: Mitsuba, renders: Renders, extent) -> Comparison:
     seed = renders.settings.seed
-    pictures, report = mitsuba.render(bunny, [Wish(rays, seed, True) for rays in extent.peer_rays])
+    pictures, report = mitsuba.render(bunny, _ladder(renders, extent))
     points = {"mitsuba": _points(pictures, _their_reference(bunny, mitsuba, extent), extent, seed)}
     ours = _our_reference(bunny, renders, extent)
     for strategy in STRATEGIES:
@@ -116,8 +135,7 @@ def _our_reference(scene: Scene, renders: Renders, extent) -> Reference:
 
 
 def _their_reference(scene: Scene, mitsuba: Mitsuba, extent) -> Batches:
-    wishes = [Wish(extent.peer_reference_rays, FIRST_SEED + k, False) for k in range(_REFERENCES)]
-    return Batches(mitsuba.render(scene, wishes)[0])
+    return Batches(mitsuba.render(scene, _converged(extent))[0])
 
 
 def _difference(ours: Batches, theirs: Batches, where: np.ndarray) -> Difference:
