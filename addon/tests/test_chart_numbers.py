@@ -41,6 +41,17 @@ def test_one_wrong_pixel_is_seen_where_it_is_looked_for():
     assert agreement(_renders(1.0, 12, 1), wrong, elsewhere).holds
 
 
+def test_the_fits_error_is_found_under_noise():
+    from fit_error import fit_error
+
+    rng = np.random.default_rng(3)
+    reference = rng.uniform(0.5, 2.0, (60, 80, 3)).astype(np.float32)
+    bias = rng.normal(0, 0.01, reference.shape)
+    rmse, relmse = fit_error(bias + rng.normal(0, 0.02, (4, *reference.shape)), reference)
+    assert rmse == pytest.approx(0.01, rel=0.1)
+    assert relmse == pytest.approx((bias**2 / (reference**2 + 0.01 * reference.mean() ** 2)).mean(), rel=0.2)
+
+
 def test_sidak_keeps_the_level_of_the_whole_list():
     refused = sum(
         not agreement(_renders(1, 8, 2 * k + 1), _renders(1, 8, 2 * k + 2), SOMEWHERE).holds

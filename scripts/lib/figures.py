@@ -11,8 +11,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import figure_scenes
 import figures_sheet
 import figures_text
+import numpy as np
 import script
 from figure_check import Check, check
+from fit_error import fit_error
 from reference import Reference
 from renders import Picture, Renders, Settings
 from scenes import Scene
@@ -24,6 +26,7 @@ STRATEGY = {"strategy": "mis", "heuristic": "balance", "share": 0.5}
 BEST = {"strategy": "product"}
 # How far below the smallest error that is measured against it the reference's own must be.
 MARGIN = 10.0
+_FLOOR_RENDERS = 4  # of the model and of the measurement, for the fit's error
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,7 @@ class Extent:
     spp: tuple[int, ...] = (200, 400, 600, 800, 1000)
     batch_spp: int = 4096
     batches: tuple[int, int] = (3, 8)  # at first, and at most
-    floor_spp: int = 256
+    floor_spp: int = 128
     check_size: tuple[int, int] = (80, 60)
     check_batches: int = 16
     uniform_spp: int = 400_000  # in all batches
@@ -52,14 +55,13 @@ class Figure:
     pictures: dict[tuple[str, int], Picture]
     errors: dict[tuple[str, int], tuple[float, float]]  # rmse, relmse
     reference: Reference
-    fit: tuple[Picture, Picture]  # model and measurement, with the very same directions
+    differences: np.ndarray  # of some renders: model minus measurement, with the very same directions
     check: Check
 
     @property
     def floor(self) -> tuple[float, float]:
-        """rmse, relmse of the fit alone: noise is the same in both and cancels."""
-        modelled, measured = self.fit
-        return modelled.errors(measured.pixels)
+        """rmse, relmse of the fit alone."""
+        return fit_error(self.differences, self.reference.mean())
 
     @property
     def smallest(self) -> float:
@@ -90,7 +92,7 @@ def _announce(renders: Renders, extent: Extent) -> None:
     for spp in extent.spp:
         renders.expect(spp, count=len(SEQUENCES))
     renders.expect(extent.batch_spp, count=extent.batches[0])
-    renders.expect(extent.floor_spp, count=2)
+    renders.expect(extent.floor_spp, count=2 * _FLOOR_RENDERS)
     renders.expect(extent.uniform_spp // extent.check_batches, extent.check_size, extent.check_batches)
     renders.expect(extent.check_spp, extent.check_size, 2 * extent.check_batches)
 
@@ -103,9 +105,19 @@ def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, exte
         for spp in extent.spp
     }
     reference = Reference(renders, measured, extent.batch_spp, **BEST).add(extent.batches[0])
-    fit = tuple(renders.render(which, extent.floor_spp, **BEST) for which in (scene, measured))
+    differences = np.array(
+        [
+            np.subtract(
+                *(
+                    renders.render(which, extent.floor_spp, seed=seed, **BEST).pixels
+                    for which in (scene, measured)
+                )
+            )
+            for seed in range(renders.settings.seed, renders.settings.seed + _FLOOR_RENDERS)
+        ]
+    )
     errors = _converge(pictures, reference, extent.batches[1])
-    return Figure(subject, pictures, errors, reference, fit, check(renders, measured, extent))
+    return Figure(subject, pictures, errors, reference, differences, check(renders, measured, extent))
 
 
 def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str, int], tuple[float, float]]:

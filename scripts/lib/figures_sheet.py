@@ -32,8 +32,8 @@ def _draw_figure(above, below, figure, spp: tuple[int, ...]) -> None:
         caption = f"relmse {small(relmse['random'])}; sobol {small(relmse['sobol'])}"
         _show_error(below[column], picture.pixels, mean, caption)
     _show(above[-1], mean, f"measured, {figure.reference.spp} spp")
-    modelled, measured = figure.fit
-    _show_error(below[-1], modelled.pixels, measured.pixels, f"the fit's: {small(figure.floor[1])}")
+    modelled = mean + figure.differences.mean(axis=0)
+    _show_error(below[-1], modelled, mean, f"the fit's: {small(figure.floor[1])}")
 
 
 def _show(axes, pixels: np.ndarray, title: str) -> None:
