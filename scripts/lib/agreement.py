@@ -13,23 +13,23 @@ _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 @dataclass(frozen=True)
 class Agreement:
-    tests: int  # pixels that vary, and the mean of the whole picture
+    tests: int  # pixels that vary, and their mean
     largest_z: float
     sidak_z: float  # what the largest |z| of so many tests stays below with probability 1 - LEVEL
     p_value: float  # of the largest |z| among so many (Sidak)
-    ratio: float  # of the means of both pictures
+    ratio: float  # of the means of both
 
     @property
     def holds(self) -> bool:
         return self.p_value >= LEVEL
 
 
-def agreement(a: np.ndarray, b: np.ndarray) -> Agreement:
+def agreement(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> Agreement:
     """a, b: independent renders of both estimates, [batch, row, column, channel].
 
-    Luminance of each pixel and its mean over the picture; Welch's t of the batches, as the z as unlikely.
+    Luminance of each pixel of `where` and their mean; Welch's t of the batches, as the z that is as unlikely.
     """
-    a, b = (_with_mean(stack @ _LUMINANCE) for stack in (a, b))
+    a, b = (_with_mean(stack[:, where] @ _LUMINANCE) for stack in (a, b))
     varies = (a.var(axis=0) > 0) | (b.var(axis=0) > 0)
     t = stats.ttest_ind(a[:, varies], b[:, varies], equal_var=False)
     smallest, tests = float(np.min(t.pvalue)), int(varies.sum())
@@ -47,6 +47,5 @@ def _two_sided_z(p: float) -> float:
 
 
 def _with_mean(luminance: np.ndarray) -> np.ndarray:
-    """[batch, pixel], the last column the picture's mean."""
-    pixels = luminance.reshape(len(luminance), -1)
-    return np.column_stack([pixels, pixels.mean(axis=1)])
+    """[batch, pixel], the last column their mean."""
+    return np.column_stack([luminance, luminance.mean(axis=1)])

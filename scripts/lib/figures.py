@@ -13,8 +13,9 @@ import figures_sheet
 import figures_text
 import numpy as np
 import script
-from agreement import Agreement, agreement
-from reference import FIRST_SEED, Reference
+from figure_check import Check, check
+from fit_error import fit_error
+from reference import Reference
 from renders import Picture, Renders, Settings
 from scenes import Scene
 from velour_cli import ROOT
@@ -25,6 +26,7 @@ STRATEGY = {"strategy": "mis", "heuristic": "balance", "share": 0.5}
 BEST = {"strategy": "product"}
 # How far below the smallest error that is measured against it the reference's own must be.
 MARGIN = 10.0
+_FLOOR_RENDERS = 4  # of the model and of the measurement, for the fit's error
 
 
 @dataclass(frozen=True)
@@ -33,15 +35,16 @@ class Extent:
 
     size: tuple[int, int] = (640, 480)
     spp: tuple[int, ...] = (200, 400, 600, 800, 1000)
-    batch_spp: int = 2048
-    batches: tuple[int, int] = (4, 16)  # at first, and at most
+    batch_spp: int = 4096
+    batches: tuple[int, int] = (3, 8)  # at first, and at most
+    floor_spp: int = 128
     check_size: tuple[int, int] = (80, 60)
-    check_batches: int = 8
-    uniform_spp: int = 400_000  # in all batches together
-    check_spp: int = 4096  # in each
+    check_batches: int = 16
+    uniform_spp: int = 400_000  # in all batches
+    check_spp: int = 2048  # of the others, in each batch
 
 
-QUICK = Extent((96, 72), (8, 16, 24, 32, 40), 64, (2, 3), (16, 12), 4, 4000, 64)
+QUICK = Extent((96, 72), (8, 32), 64, (2, 3), 16, (16, 12), 3, 3000, 64)
 
 
 @dataclass(frozen=True)
@@ -52,14 +55,13 @@ class Figure:
     pictures: dict[tuple[str, int], Picture]
     errors: dict[tuple[str, int], tuple[float, float]]  # rmse, relmse
     reference: Reference
-    modelled: Picture  # with the very directions of the reference's first render
-    check: Agreement
-    control: Agreement
+    differences: np.ndarray  # of some renders: model minus measurement, with the very same directions
+    check: Check
 
     @property
     def floor(self) -> tuple[float, float]:
-        """rmse, relmse of the fit alone: noise is the same in both and cancels."""
-        return self.modelled.errors(self.reference.batches[0].pixels)
+        """rmse, relmse of the fit alone."""
+        return fit_error(self.differences, self.reference.mean())
 
     @property
     def smallest(self) -> float:
@@ -73,7 +75,7 @@ class Figure:
 def main() -> int:
     args = script.arguments("figures", ROOT / "docs/figures")
     extent = QUICK if args.quick else Extent()
-    run = script.start(args, Settings(args.work, extent.size, args.threads, args.seed))
+    run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
     subjects = figure_scenes.subjects(run.data, run.renders)
     for _ in subjects:
         _announce(run.renders, extent)
@@ -89,9 +91,10 @@ def main() -> int:
 def _announce(renders: Renders, extent: Extent) -> None:
     for spp in extent.spp:
         renders.expect(spp, count=len(SEQUENCES))
-    renders.expect(extent.batch_spp, count=extent.batches[0] + 1)
+    renders.expect(extent.batch_spp, count=extent.batches[0])
+    renders.expect(extent.floor_spp, count=2 * _FLOOR_RENDERS)
     renders.expect(extent.uniform_spp // extent.check_batches, extent.check_size, extent.check_batches)
-    renders.expect(extent.check_spp, extent.check_size, extent.check_batches)
+    renders.expect(extent.check_spp, extent.check_size, 2 * extent.check_batches)
 
 
 def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, extent: Extent) -> Figure:
@@ -102,9 +105,19 @@ def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, exte
         for spp in extent.spp
     }
     reference = Reference(renders, measured, extent.batch_spp, **BEST).add(extent.batches[0])
-    modelled = renders.render(scene, extent.batch_spp, seed=FIRST_SEED, **BEST)
+    differences = np.array(
+        [
+            np.subtract(
+                *(
+                    renders.render(which, extent.floor_spp, seed=seed, **BEST).pixels
+                    for which in (scene, measured)
+                )
+            )
+            for seed in range(renders.settings.seed, renders.settings.seed + _FLOOR_RENDERS)
+        ]
+    )
     errors = _converge(pictures, reference, extent.batches[1])
-    return Figure(subject, pictures, errors, reference, modelled, *_check(renders, measured, extent))
+    return Figure(subject, pictures, errors, reference, differences, check(renders, measured, extent))
 
 
 def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str, int], tuple[float, float]]:
@@ -117,23 +130,9 @@ def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str
             f"    reference of {reference.spp} spp: the smallest error is {margin:.1f} times its own",
             flush=True,
         )
-        if margin >= MARGIN or len(reference.batches) >= most:
+        if margin >= MARGIN or len(reference.pictures) >= most:
             return errors
         reference.add()
-
-
-def _check(renders: Renders, measured: Scene, extent: Extent) -> tuple[Agreement, Agreement]:
-    """The dissertation's own reference, uniform samples of the measurement, against the best strategy.
-
-    And the same with one of them a hundredth too bright, which must be seen.
-    """
-    batches, small = extent.check_batches, {"size": extent.check_size}
-    uniform = Reference(renders, measured, extent.uniform_spp // batches, strategy="uniform", **small).add(
-        batches
-    )
-    best = Reference(renders, measured, extent.check_spp, 2 * FIRST_SEED, **BEST, **small).add(batches)
-    a, b = uniform.stack(), best.stack()
-    return agreement(a, b), agreement(a, np.multiply(b, 1.01))
 
 
 if __name__ == "__main__":

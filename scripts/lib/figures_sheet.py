@@ -10,7 +10,7 @@ from markdown_table import small
 from velour.core import plots
 from velour.native import images
 
-_CELL = 3.2  # inches of a picture's width, at 100 dots an inch
+_CELL = 2.6  # inches of a picture's width, at 100 dots an inch
 _WORST = 0.2  # relative error that is drawn brightest
 
 
@@ -32,17 +32,13 @@ def _draw_figure(above, below, figure, spp: tuple[int, ...]) -> None:
         caption = f"relmse {small(relmse['random'])}; sobol {small(relmse['sobol'])}"
         _show_error(below[column], picture.pixels, mean, caption)
     _show(above[-1], mean, f"measured, {figure.reference.spp} spp")
-    _show_error(
-        below[-1],
-        figure.modelled.pixels,
-        figure.reference.batches[0].pixels,
-        f"the fit's: {small(figure.floor[1])}",
-    )
+    modelled = mean + figure.differences.mean(axis=0)
+    _show_error(below[-1], modelled, mean, f"the fit's: {small(figure.floor[1])}")
 
 
 def _show(axes, pixels: np.ndarray, title: str) -> None:
     axes.imshow(_display(pixels), interpolation="none")
-    axes.set_title(title, fontsize=9)
+    axes.set_title(title, fontsize=8)
 
 
 def _show_error(axes, pixels: np.ndarray, reference: np.ndarray, title: str) -> None:
@@ -50,7 +46,7 @@ def _show_error(axes, pixels: np.ndarray, reference: np.ndarray, title: str) -> 
     x, r = pixels.sum(axis=-1), reference.sum(axis=-1)
     error = np.abs(x - r) / np.sqrt(r**2 + 0.01 * r.mean() ** 2)
     axes.imshow(error[::-1], cmap="inferno", vmin=0, vmax=_WORST, interpolation="none")
-    axes.set_title(title, fontsize=9)
+    axes.set_title(title, fontsize=8)
 
 
 def _display(pixels: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-STAGE = HERE.parents[1] / "build/release/blender"
+STAGE = Path(os.environ.get("VELOUR_STAGE", HERE.parents[1] / "build/release/blender"))
 
 
 class BlenderError(RuntimeError):

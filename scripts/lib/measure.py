@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import data_files
 import measure_text
 import provenance
+from table_csv import csv_text
 from velour.core import files, plots
 from velour_cli import ROOT, velour
 
@@ -97,16 +96,12 @@ def _strategies(scene: list, material: str) -> dict[str, dict]:
 
 
 def _csv(results: dict) -> str:
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(["what", "case", "quantity", "value"])
-    for name, value in results["conditions"].items():
-        rows.writerow(["conditions", "", name, value])
+    rows = [["conditions", "", name, value] for name, value in results["conditions"].items()]
     for what in ("fits", "lobes", "strategies"):
         for case, report in results[what].items():
-            rows.writerows([what, case, *pair] for pair in _flat(report))
-    rows.writerows(["render", MATERIAL, *pair] for pair in _flat(results["render"]))
-    return text.getvalue()
+            rows += [[what, case, *pair] for pair in _flat(report)]
+    rows += [["render", MATERIAL, *pair] for pair in _flat(results["render"])]
+    return csv_text(["what", "case", "quantity", "value"], rows)
 
 
 def _flat(report: dict, prefix: str = ""):

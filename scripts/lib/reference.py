@@ -13,36 +13,22 @@ from velour.native import images
 FIRST_SEED = 1000
 
 
-class Reference:
-    def __init__(self, renders: Renders, scene: Scene, spp: int, first_seed: int = FIRST_SEED, **options):
-        self._renders, self._scene, self._spp = renders, scene, spp
-        self._first_seed, self._options = first_seed, options
-        self.batches: list[Picture] = []
+class Batches:
+    """Independent renders of one picture."""
 
-    def add(self, count: int = 1) -> Reference:
-        for _ in range(count):
-            seed = self._first_seed + len(self.batches)
-            self.batches.append(self._renders.render(self._scene, self._spp, seed=seed, **self._options))
-        return self
-
-    @property
-    def spp(self) -> int:
-        return self._spp * len(self.batches)
-
-    @property
-    def seconds(self) -> float:
-        return sum(batch.report["seconds"] for batch in self.batches)
+    def __init__(self, pictures: list[Picture]):
+        self.pictures = pictures
 
     def stack(self) -> np.ndarray:
         """[batch, row, column, channel], float64"""
-        return np.array([batch.pixels for batch in self.batches], np.float64)
+        return np.array([picture.pixels for picture in self.pictures], np.float64)
 
     def mean(self) -> np.ndarray:
         return self.stack().mean(axis=0).astype(np.float32)
 
     def standard_error(self) -> np.ndarray:
         """Of each pixel and channel of the mean."""
-        return (self.stack().std(axis=0, ddof=1) / len(self.batches) ** 0.5).astype(np.float32)
+        return (self.stack().std(axis=0, ddof=1) / len(self.pictures) ** 0.5).astype(np.float32)
 
     def noise(self) -> tuple[float, float]:
         """rmse and relmse of the mean itself: those of a picture that is one standard error off."""
@@ -52,3 +38,26 @@ class Reference:
     def save(self, stem: Path) -> None:
         images.write(stem.with_name(f"{stem.name}.exr"), self.mean())
         images.write(stem.with_name(f"{stem.name}-standard-error.exr"), self.standard_error())
+
+
+class Reference(Batches):
+    """Of one of our scenes; more renders can be added."""
+
+    def __init__(self, renders: Renders, scene: Scene, spp: int, first_seed: int = FIRST_SEED, **options):
+        super().__init__([])
+        self._renders, self._scene, self._spp = renders, scene, spp
+        self._first_seed, self._options = first_seed, options
+
+    def add(self, count: int = 1) -> Reference:
+        for _ in range(count):
+            seed = self._first_seed + len(self.pictures)
+            self.pictures.append(self._renders.render(self._scene, self._spp, seed=seed, **self._options))
+        return self
+
+    @property
+    def spp(self) -> int:
+        return self._spp * len(self.pictures)
+
+    @property
+    def seconds(self) -> float:
+        return sum(picture.report["seconds"] for picture in self.pictures)

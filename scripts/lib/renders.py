@@ -9,17 +9,19 @@ import functools
 import hashlib
 import json
 import shutil
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import velour
 from progress import Progress
 from scenes import Scene
 from velour.core.machine import machine
 from velour.native import images
-from velour_cli import ROOT, velour_to_file
+from velour_cli import velour_to_file
 
-_LIBRARY = ROOT / "build/release/blender/addons/velour/lib/libvelour.so"
+_LIBRARY = Path(velour.__file__).with_name("lib") / "libvelour.so"
 # What a process costs besides its samples, in samples: start-up, reading the mesh, building the BVH.
 _START = 10_000_000
 
@@ -72,40 +74,56 @@ class Renders:
         """`options` are those of the command line."""
         size = size or self.settings.size
         parameters = {**scene.options, "size": "{}x{}".format(*size), "spp": spp, **options}
-        parameters |= {"seed": self.settings.seed if seed is None else seed, "threads": self.settings.threads}
-        what = " ".join(f"{name} {value}" for name, value in options.items())
-        label = f"{scene.name}, {parameters['size']}, {spp} spp, seed {parameters['seed']} {what}"
-        stem = self._stem("render", parameters)
-        out = stem.with_suffix(".exr")
-        cache = ["--cache", self.settings.folder]
-        report = self._make(
-            label, self._cost(spp, size), stem, "render", *_flags(parameters), *cache, "-o", out
-        )
-        return Picture(out, report)
+        parameters |= {
+            "seed": self.settings.seed if seed is None else seed,
+            "threads": self.settings.threads,
+        }
+        label = " ".join([f"{scene.name}, {parameters['size']}, {spp} spp,", *map(str, options.values())])
+        out = self.stem("render", parameters).with_suffix(".exr")
+        cache = [] if "cache" in options else ["--cache", self.settings.folder]
+
+        def run(report: Path) -> dict:
+            return velour_to_file(report, "render", *flags(parameters), *cache, "-o", out)
+
+        return Picture(out, self.keep(label, "render", parameters, run, self._cost(spp, size)))
 
     def fit(self, measurement: Path) -> tuple[Path, dict]:
         """The model and the report of its fit."""
-        parameters = {"tolerance": 0.02, "max-lobes": 16, "seed": self.settings.seed}
-        stem = self._stem(measurement.stem, {"fit": measurement, **parameters})
-        out = stem.with_suffix(".velour")
-        return out, self._make(
-            f"fit of {measurement.stem}", _START, stem, "fit", measurement, "-o", out, *_flags(parameters)
-        )
+        options = {"tolerance": 0.02, "max-lobes": 16, "seed": self.settings.seed}
+        parameters = {"measurement": measurement, **options}
+        out = self.stem("fit", parameters).with_suffix(".velour")
+
+        def run(report: Path) -> dict:
+            return velour_to_file(report, "fit", measurement, "-o", out, *flags(options))
+
+        return out, self.keep(f"fit of {measurement.stem}", "fit", parameters, run)
 
     def ggx(self, measurement: Path) -> dict:
         """How well the best GGX lobe fits."""
-        stem = self._stem(measurement.stem, {"compare": measurement})
-        return self._make(f"GGX of {measurement.stem}", _START, stem, "compare", measurement, "--ggx")
 
-    def _make(self, label: str, cost: float, stem: Path, *arguments) -> dict:
-        report = stem.with_suffix(".json")
-        if report.is_file():  # it is written last
+        def run(report: Path) -> dict:
+            return velour_to_file(report, "compare", measurement, "--ggx")
+
+        return self.keep(f"GGX of {measurement.stem}", "ggx", {"measurement": measurement}, run)
+
+    def keep(
+        self,
+        label: str,
+        name: str,
+        parameters: dict,
+        run: Callable[[Path], dict],
+        cost: float = _START,
+    ) -> dict:
+        """The report that is there, or the one that `run` writes, after all else, to the path it is given."""
+        report = self.stem(name, parameters).with_suffix(".json")
+        if report.is_file():
             self.progress.skip(label, cost)
             return json.loads(report.read_text(encoding="utf-8"))
         with self.progress.work(label, cost):
-            return velour_to_file(report, *arguments)
+            return run(report)
 
-    def _stem(self, name: str, parameters: dict) -> Path:
+    def stem(self, name: str, parameters: dict) -> Path:
+        """Where what depends on the parameters is kept, without an ending."""
         return self.settings.folder / f"{name}-{key(parameters)}"
 
     @staticmethod
@@ -124,8 +142,9 @@ def key(parameters: dict) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def _flags(parameters: dict) -> list[str]:
-    return [text for name, value in parameters.items() for text in (f"--{name}", str(value))]
+def flags(parameters: dict) -> list[str]:
+    # In one word: a value may begin with a minus.
+    return [f"--{name}={value}" for name, value in parameters.items()]
 
 
 def _identity(value) -> str:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+# What the default camera sees of the bunny at 4:3, for programs that have another default.
+BUNNY_CAMERA = "-0.0168,-0.2817,0.1101,-0.0168,0.0015,0.1101,40"
+
 
 @dataclass(frozen=True)
 class Scene:

@@ -6,6 +6,8 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from . import files
 
 # One colour a strategy in all plots, distinguishable for the colour-blind (Okabe and Ito's palette).
@@ -26,12 +28,28 @@ def error_against_time(
     path: str | os.PathLike, curves: Mapping[str, Sequence[tuple[float, float]]], title: str
 ) -> None:
     """One curve a strategy: (seconds of tracing and shading, relmse), both axes logarithmic."""
-    figure, axes = _figure()
-    for name, points in curves.items():
-        seconds, errors = zip(*points, strict=True)
-        axes.loglog(seconds, errors, "o-", color=COLORS.get(name), label=name)
-    axes.set(xlabel="seconds", ylabel="relmse against the reference", title=title)
-    axes.legend()
+    errors_against_time(path, {"relmse": curves}, title)
+
+
+def errors_against_time(
+    path: str | os.PathLike,
+    curves: Mapping[str, Mapping[str, Sequence[tuple[float, float]]]],
+    title: str,
+    levels: Mapping[str, float] | None = None,
+) -> None:
+    """The same for each of some errors, side by side. `levels`: errors marked by a dotted line."""
+    figure, axes = _figure(len(curves))
+    for cell, (error, own) in zip(axes, curves.items(), strict=True):
+        for name, points in own.items():
+            usable = np.reshape([point for point in points if min(point) > 0], (-1, 2))
+            line = "o--" if name not in COLORS else "o-"
+            color = COLORS.get(name.split(",")[0])
+            cell.loglog(*usable.T, line, color=color, label=name, markersize=4)
+        if levels and error in levels:
+            cell.axhline(levels[error], color="black", linewidth=0.8, linestyle=":")
+        cell.set(xlabel="seconds", ylabel=f"{error} against the reference")
+    axes[-1].legend(fontsize="small")
+    figure.suptitle(title, fontsize="medium")
     save(figure, path)
 
 
@@ -39,7 +57,7 @@ def error_by_view_angle(
     path: str | os.PathLike, curves: Mapping[str, Mapping[str, float | None]], tolerance: float
 ) -> None:
     """One curve a material: relative L2 at the held-out views; views that are not covered are left out."""
-    figure, axes = _figure()
+    figure, (axes,) = _figure()
     for name, errors in curves.items():
         points = [(int(angle), error) for angle, error in errors.items() if error is not None]
         angles, values = zip(*points, strict=True)
@@ -64,10 +82,13 @@ def save(figure, path: str | os.PathLike, dpi: int = 120) -> None:
     _pyplot().close(figure)
 
 
-def _figure():
-    figure, axes = _pyplot().subplots(figsize=(6.4, 4.0), layout="constrained")
-    axes.grid(which="both", alpha=0.25)
-    return figure, axes
+def _figure(columns: int = 1):
+    figure, axes = _pyplot().subplots(
+        1, columns, figsize=(6.4 * columns, 4.0), squeeze=False, layout="constrained"
+    )
+    for cell in axes.flat:
+        cell.grid(which="both", alpha=0.25)
+    return figure, list(axes.flat)
 
 
 def _pyplot():

@@ -1,0 +1,210 @@
+"""The small pieces of scripts/figures and scripts/chart: each against what is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from agreement import agreement
+from chart_result import Point, Result
+from curve import Curve, ratio
+from progress import Progress
+from scenes import Scene
+
+SOMEWHERE = np.ones((30, 40), bool)
+
+
+def _renders(scale: float, count: int, seed: int) -> np.ndarray:
+    """Independent pictures around the same mean, with a fiftieth of noise."""
+    mean = np.random.default_rng(0).uniform(0.1, 2.0, (30, 40, 3))
+    noise = np.random.default_rng(seed).normal(1.0, 0.02, (count, 30, 40, 3))
+    return scale * mean * noise
+
+
+def test_independent_renders_of_one_picture_agree():
+    found = agreement(_renders(1.0, 12, 1), _renders(1.0, 8, 2), SOMEWHERE)
+    assert found.holds
+    assert found.tests == 1201
+    assert found.largest_z < found.sidak_z
+    assert found.ratio == pytest.approx(1, abs=1e-3)
+
+
+def test_one_per_cent_too_bright_is_seen():
+    assert not agreement(_renders(1.0, 12, 1), _renders(1.01, 8, 2), SOMEWHERE).holds
+
+
+def test_one_wrong_pixel_is_seen_where_it_is_looked_for():
+    wrong = _renders(1.0, 8, 2)
+    wrong[:, 3, 4] *= 1.2
+    elsewhere = SOMEWHERE.copy()
+    elsewhere[3, 4] = False
+    assert not agreement(_renders(1.0, 12, 1), wrong, SOMEWHERE).holds
+    assert agreement(_renders(1.0, 12, 1), wrong, elsewhere).holds
+
+
+def test_the_fits_error_is_found_under_noise():
+    from fit_error import fit_error
+
+    rng = np.random.default_rng(3)
+    reference = rng.uniform(0.5, 2.0, (60, 80, 3)).astype(np.float32)
+    bias = rng.normal(0, 0.01, reference.shape)
+    rmse, relmse = fit_error(bias + rng.normal(0, 0.02, (4, *reference.shape)), reference)
+    assert rmse == pytest.approx(0.01, rel=0.1)
+    assert relmse == pytest.approx((bias**2 / (reference**2 + 0.01 * reference.mean() ** 2)).mean(), rel=0.2)
+
+
+def test_sidak_keeps_the_level_of_the_whole_list():
+    refused = sum(
+        not agreement(_renders(1, 8, 2 * k + 1), _renders(1, 8, 2 * k + 2), SOMEWHERE).holds
+        for k in range(40)
+    )
+    assert refused <= 3
+
+
+def test_a_curve_is_read_between_its_points():
+    curve = Curve([(1.0, 1.0), (4.0, 0.25), (16.0, 0.0625)])
+    assert curve.seconds_at(0.5).value == pytest.approx(2)
+    assert curve.error_at(8.0).value == pytest.approx(0.125)
+    assert curve.seconds_at(0.5).measured
+
+
+@pytest.mark.parametrize(("error", "seconds"), [(2.0, 0.5), (0.01, 100.0)])
+def test_a_curve_is_continued_and_says_so(error, seconds):
+    found = Curve([(1.0, 1.0), (4.0, 0.25), (16.0, 0.0625)]).seconds_at(error)
+    assert found.value == pytest.approx(seconds)
+    assert not found.measured
+    assert str(found).startswith("~")
+    assert not ratio(found, found).measured
+
+
+def test_a_curve_that_does_not_fall_reaches_nothing():
+    assert Curve([(1.0, 1.0), (2.0, 1.5)]).seconds_at(0.5) is None
+    assert Curve([]).error_at(1.0) is None
+
+
+def test_the_last_crossing_counts():
+    assert Curve([(1.0, 1.0), (2.0, 0.1), (4.0, 1.0), (8.0, 0.1)]).seconds_at(
+        0.1**0.5
+    ).value == pytest.approx(32**0.5)
+
+
+def _result(points: dict) -> Result:
+    return Result(None, points, None, 2, None, {})
+
+
+def test_gains_and_levels():
+    points = {
+        "mis": [Point(1, s, 1.0, 0.04, e) for s, e in ((1, 0.2), (2, 0.4))] + [Point(2, 1, 2.0, 0.01, 0.1)],
+        "product": [Point(1, s, 1.5, 0.01, e) for s, e in ((1, 0.1), (2, 0.2))]
+        + [Point(2, 1, 3.0, 0.0, 0.05)],
+    }
+    result = _result(points)
+    assert result.gain("product", "mis", 1).value == pytest.approx(0.5)
+    assert result.gain("product", "mis", 1).error == pytest.approx(0.5 * (2 * (1 / 3) ** 2) ** 0.5)
+    assert (result.level, result.level_seconds) == (0.1, 2.0)
+    assert result.means("mis")[1] == pytest.approx((1.0, 0.3, 0.2))
+    assert result.seconds_to_level("product").value == pytest.approx(1.5 * 2 ** (np.log(1.5) / np.log(3)))
+
+
+def test_share_of_the_bound():
+    bound = {"mis": 1.0, "product": 0.4, "exact": 0.2}
+    assert Result(None, {}, None, 2, bound, {}).share_of_bound() == pytest.approx(0.75)
+
+
+@pytest.fixture
+def renders(tmp_path):
+    from renders import Renders, Settings
+
+    return Renders(Settings(tmp_path / "kept", (8, 6), 1, 1), Progress(), fresh=False)
+
+
+def test_the_bound_is_read_from_its_program(renders, tmp_path, monkeypatch):
+    import product_bound
+
+    scene = Scene("bunny", tmp_path / "mesh", "y", tmp_path / "world", tmp_path / "model")
+    for path in (scene.mesh, scene.world, scene.material):
+        path.write_text("")
+    program = tmp_path / "product_bound"
+    program.write_text(
+        """#!/bin/sh\necho '{"hits": 200, "variance": {"mis": 3, "product": 2, "exact": 1}}'\n"""
+    )
+    monkeypatch.setattr(product_bound, "_PROGRAM", program)
+    program.chmod(0o755)
+    expected = {"mis": 3, "product": 2, "exact": 1}
+    assert product_bound.of(scene, renders, 200) == expected
+    program.chmod(0o644)  # kept: it is not run again
+    assert product_bound.of(scene, renders, 200) == expected
+    monkeypatch.setattr(product_bound, "_PROGRAM", tmp_path / "none")
+    assert product_bound.of(scene, renders, 200) is None
+
+
+def test_work_that_fails_is_not_kept(renders):
+    def fail(report):
+        raise RuntimeError
+
+    for _ in range(2):
+        with pytest.raises(RuntimeError):
+            renders.keep("it", "it", {}, fail)
+
+
+def test_progress_counts_what_was_kept_but_not_its_time(capsys):
+    progress = Progress()
+    progress.expect(1.0, 3)
+    progress.skip("a", 1.0)
+    with progress.work("b", 1.0):
+        pass
+    first, second = capsys.readouterr().out.splitlines()
+    assert first == "[  1/3] a: kept"
+    assert second.startswith("[  2/3] b: 0.0 s, about 0 s left")
+
+
+def test_a_key_depends_on_contents_and_not_on_names(tmp_path):
+    from renders import key
+
+    a, b, c = (tmp_path / name for name in "abc")
+    for path, text in ((a, "same"), (b, "same"), (c, "other")):
+        path.write_text(text)
+    assert key({"mesh": a}) == key({"mesh": b}) != key({"mesh": c})
+    assert key({"mesh": a, "spp": 1}) != key({"mesh": a, "spp": 2})
+
+
+def test_reference_mode_is_the_same_scene_with_the_measurement(tmp_path):
+    scene = Scene("bunny", tmp_path / "m", "y", tmp_path / "w", tmp_path / "model")
+    measured = scene.measured(tmp_path / "data")
+    assert measured.options == scene.options | {"material": tmp_path / "data", "proposal": tmp_path / "model"}
+
+
+def test_the_synthetic_sun_is_small_and_has_its_share(tmp_path):
+    import synthetic_sky
+    from velour.native import images
+
+    pixels = images.read(synthetic_sky.write(tmp_path / "sky.exr")).astype(np.float64) @ [
+        0.2126,
+        0.7152,
+        0.0722,
+    ]
+    height = len(pixels)
+    elevation = np.pi * ((np.arange(height) + 0.5) / height - 0.5)
+    energy = pixels * np.cos(elevation)[:, None]
+    sun = pixels > 100
+    assert energy[sun].sum() / energy.sum() == pytest.approx(0.9, abs=1e-3)
+    # The disc's solid angle, partly covered texels by their share.
+    area = (np.cos(elevation)[:, None] * pixels / pixels.max())[sun].sum() * (np.pi / height) ** 2
+    assert area == pytest.approx(np.pi * np.radians(0.25) ** 2, rel=0.02)
+    row, column = (np.average(np.nonzero(sun)[axis], weights=energy[sun]) + 0.5 for axis in (0, 1))
+    assert np.degrees(np.pi * (row / height - 0.5)) == pytest.approx(40, abs=0.05)
+    assert np.degrees(np.pi * (1 - column / height)) == pytest.approx(-60, abs=0.05)
+
+
+def test_the_sphere_is_closed_and_its_normals_point_out(tmp_path):
+    import sphere
+
+    lines = [line.split() for line in sphere.write(tmp_path / "s.obj").read_text().splitlines()]
+    points = np.array([line[1:] for line in lines if line[0] == "v"], float)
+    faces = (
+        np.array([[part.split("//")[0] for part in line[1:]] for line in lines if line[0] == "f"], int) - 1
+    )
+    a, b, c = points[faces].transpose(1, 0, 2)
+    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(4 / 3 * np.pi, rel=2e-3)
+    edges = {(i, j) for face in faces for i, j in zip(face, np.roll(face, -1), strict=True)}
+    poles = [i for i in range(len(points)) if abs(points[i, 2]) > 1 - 1e-6]
+    assert all((j, i) in edges for i, j in edges if i not in poles and j not in poles)

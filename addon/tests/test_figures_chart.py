@@ -1,0 +1,138 @@
+"""scripts/figures and scripts/chart, small, from end to end: they live, keep what is done, and go on."""
+
+from __future__ import annotations
+
+import csv
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+from command_line import environment
+from conftest import ROOT
+
+
+def _command(name: str, folder, *more) -> list[str]:
+    program = ROOT / f"scripts/lib/{name}.py"
+    return [
+        sys.executable,
+        "-P",
+        str(program),
+        "--quick",
+        f"--work={folder}",
+        f"--output={folder}/out",
+        *more,
+    ]
+
+
+def _run(name: str, folder, **env) -> str:
+    done = subprocess.run(
+        _command(name, folder), capture_output=True, text=True, timeout=900, env=environment(**env)
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def _rows(path) -> list[dict]:
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize("name", ["figures", "chart"])
+def test_without_data_a_sentence(name, tmp_path):
+    assert "there is no test data" in _run(name, tmp_path, VELOUR_DATA=str(tmp_path / "none"))
+
+
+@pytest.fixture(scope="module")
+def figures(data_folder, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("figures")
+    _run("figures", folder, VELOUR_DATA=str(data_folder))
+    return folder
+
+
+def test_figures_are_written(figures):
+    page = (figures / "out/README.md").read_text()
+    assert "contact_sheet.png" in page
+    assert "commit" in page
+    assert (figures / "out/contact_sheet.png").stat().st_size > 10000
+    pictures = [row for row in _rows(figures / "out/figures.csv") if row["what"] == "picture"]
+    assert {row["figure"] for row in pictures} >= {"7.11", "7.12"}
+    assert all(0 < float(row["relmse"]) < 1 for row in pictures)
+    for number in ("7.11", "7.12"):
+        assert (figures / f"reference-{number}-standard-error.exr").is_file()
+
+
+def test_figures_are_not_rendered_twice(figures, data_folder):
+    before = (figures / "out/README.md").read_text()
+    start = time.monotonic()
+    said = _run("figures", figures, VELOUR_DATA=str(data_folder))
+    assert all("kept" in line for line in said.splitlines() if line.startswith("["))
+    assert time.monotonic() - start < 30
+    assert (figures / "out/README.md").read_text() == before
+
+
+def test_a_run_that_is_stopped_leaves_whole_files_and_goes_on(data_folder, tmp_path):
+    import signal
+
+    env = environment(VELOUR_DATA=str(data_folder))
+    # A group of its own: Ctrl-C reaches the script and the render.
+    process = subprocess.Popen(
+        _command("figures", tmp_path), env=env, stdout=subprocess.PIPE, text=True, start_new_session=True
+    )
+    for line in process.stdout:
+        if "32 spp" in line:
+            break
+    os.killpg(process.pid, signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == 130
+    done = {path.stem for path in (tmp_path / "kept").glob("render-*.json")}
+    assert done
+    assert all((tmp_path / f"kept/{stem}.exr").is_file() for stem in done)
+    assert not list((tmp_path / "kept").glob(".*"))
+
+
+@pytest.fixture(scope="module")
+def chart(data_folder, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("chart")
+    _run("chart", folder, VELOUR_DATA=str(data_folder))
+    return folder / "out"
+
+
+def test_every_scene_has_its_picture_and_csv(chart):
+    page = (chart / "README.md").read_text()
+    tables = [path for path in chart.glob("*.csv") if path.name not in ("targets.csv", "mitsuba.csv")]
+    assert len(tables) >= 3
+    for table in tables:
+        assert f"({table.with_suffix('.png').name})" in page
+        assert table.with_suffix(".png").stat().st_size > 5000
+        curves = {row["curve"] for row in _rows(table)}
+        assert {"uniform", "mis", "mis, random", "mis-ggx", "product"} <= curves
+
+
+def test_the_page_has_its_tables_and_the_targets(chart):
+    page = (chart / "README.md").read_text()
+    for heading in (
+        "Targets",
+        "Equal error",
+        "Equal time",
+        "Equal samples",
+        "Mitsuba",
+        "Cycles",
+        "The small sun",
+    ):
+        assert f"\n## {heading}\n" in page
+    targets = _rows(chart / "targets.csv")
+    assert {row["met"] for row in targets} <= {"True", "False", ""}
+    assert any("uniform" in row["target"] for row in targets)
+
+
+def test_the_sun_survives_the_mixture(chart):
+    import re
+
+    page = (chart / "README.md").read_text()
+    keeps = r"keeps\s+(\d+) lobe\(s\) of it, ([\d.]+) degrees across, with ([\d.]+) % of the energy"
+    count, across, share = re.search(keeps, page).groups()
+    assert int(count) >= 1
+    assert 0.4 < float(across) < 0.8
+    assert float(share) == pytest.approx(90, abs=2)

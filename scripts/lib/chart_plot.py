@@ -1,0 +1,17 @@
+"""One picture a scene: both errors against seconds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from chart_result import DISSERTATION, Result
+from velour.core import plots
+
+
+def draw(path: Path, result: Result) -> None:
+    curves = {name: list(result.means(name).values()) for name in result.points}
+    levels = {"relmse": result.level}
+    relmse = {name: [(seconds, error) for seconds, error, _ in points] for name, points in curves.items()}
+    rmse = {name: [(seconds, error) for seconds, _, error in points] for name, points in curves.items()}
+    title = f"{result.scene.scene.name}; dotted: {DISSERTATION} at {result.level_spp} samples a pixel"
+    plots.errors_against_time(path, {"relmse": relmse, "rmse": rmse}, title, levels)
