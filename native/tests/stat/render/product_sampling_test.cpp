@@ -141,10 +141,10 @@ class ProductStrategy : public ::testing::Test {
   void SetUp() override { skies_ = test::scratch_folder().string(); }
 
   test::PictureMeans measure(const Scene& scene, Strategy strategy, int split = 8) const {
-    RenderOptions options = test::small_options(strategy, 64);
+    RenderOptions options = test::small_options(strategy, 256);
     options.split = split;
     options.cache_folder = skies_;
-    return test::independent_renders(scene, options, 40, 1000 * static_cast<uint64_t>(strategy));
+    return test::independent_renders(scene, options, 24, 1000 * static_cast<uint64_t>(strategy));
   }
 
   std::string skies_;

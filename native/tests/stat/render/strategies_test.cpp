@@ -38,12 +38,12 @@ struct ProofCase {
 void PrintTo(const ProofCase& c, std::ostream* out) { *out << c.name; }
 
 constexpr ProofCase kCases[] = {
-    {"sphere under sun", ProofScene::sphere_under_sun, {0, 0, 3.2, 3.2}, true, 0},
+    {"sphere under sun", ProofScene::sphere_under_sun, {0, 0, 4, 4}, true, 0},
     {"sphere under wide sun", ProofScene::sphere_under_wide_sun, {10, 3, 2, 1.7}, true, 0},
-    {"rough metal under many lamps", ProofScene::metal_under_lamps, {3, 1.5, 1, 1}, false, 0},
+    {"rough metal under many lamps", ProofScene::metal_under_lamps, {4, 2, 1.3, 1.2}, false, 0},
     {"furnace", ProofScene::furnace, {1.5, 0.25, 4, 0.25}, true, 0},
-    {"occluded corner", ProofScene::corner, {2, 1, 4, 1}, true, 0},
-    {"two bounces", ProofScene::two_bounces, {12, 1, 1.5, 1}, true, 2},
+    {"occluded corner", ProofScene::corner, {2.5, 1.2, 5, 1}, true, 0},
+    {"two bounces", ProofScene::two_bounces, {15, 1.2, 2, 1.2}, true, 2},
 };
 
 double samples_of(const Samples& samples, Strategy strategy) {
