@@ -12,7 +12,7 @@ namespace {
 
 /// A clipped cosine is about 1.17 exp(2.13 (t - 1)): the Gaussian of the same first two moments.
 constexpr float kCosineBandwidth = 2.13f, kCosineAmplitude = 1.17f;
-constexpr float kLeastProduct = 0.003f;  // of a product's mass
+constexpr float kLeastProduct = 0.0025f;  // of a product's mass
 
 int level_of(float bandwidth, int levels) {
   const int level = static_cast<int>(std::lround(0.5f * std::log2(std::max(bandwidth, 1.0f))));
