@@ -235,7 +235,7 @@ TEST(ScatteredFitRules, OptionsOutOfRangeAreRefused) {
   EXPECT_EQ(status_of([](FitOptions& o) { o.tolerance = 0; }), Status::invalid_argument);
   EXPECT_EQ(status_of([](FitOptions& o) { o.tolerance = std::nan(""); }), Status::invalid_argument);
   EXPECT_EQ(status_of([](FitOptions& o) { o.max_lobes = 0; }), Status::invalid_argument);
-  EXPECT_EQ(status_of([](FitOptions& o) { o.max_lobes = 129; }), Status::invalid_argument);
+  EXPECT_EQ(status_of([](FitOptions& o) { o.max_lobes = LobeMixture::kCapacity / 2 + 1; }), Status::invalid_argument);
   EXPECT_EQ(status_of([](FitOptions& o) { o.threads = -1; }), Status::invalid_argument);
   EXPECT_EQ(status_of([](FitOptions& o) { o.max_bytes = 23; }), Status::invalid_argument);
 }

@@ -160,10 +160,11 @@ TEST(ScatteredMaterial, RefusesMoreLobesThanCanBeMixed) {
     EXPECT_THROW(material_of(brdf, neighbors), Error) << neighbors;
   }
   brdf.views = {{0, 0, 1}};
-  brdf.center.assign(200, {0, 0, 1});
-  brdf.bandwidth.assign(200, 5);
-  brdf.coefficient.assign(200, Rgb(1));
-  brdf.first_lobe = {0, 200};
+  constexpr uint32_t kLobes = LobeMixture::kCapacity / 2 + 1;
+  brdf.center.assign(kLobes, {0, 0, 1});
+  brdf.bandwidth.assign(kLobes, 5);
+  brdf.coefficient.assign(kLobes, Rgb(1));
+  brdf.first_lobe = {0, kLobes};
   EXPECT_THROW(material_of(brdf, 2), Error);
   EXPECT_NO_THROW(material_of(brdf, 1));
 }
