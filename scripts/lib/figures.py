@@ -24,7 +24,7 @@ WORLD = "venice_sunset"
 SEQUENCES = ("random", "sobol")  # the dissertation's and ours
 STRATEGY = {"strategy": "mis", "heuristic": "balance", "share": 0.5}
 BEST = {"strategy": "product"}
-# How far below the smallest error that is measured against it the reference's own must be.
+# How far below the smallest error of the dissertation's strategy the reference's own must be.
 MARGIN = 10.0
 _FLOOR_RENDERS = 4  # of the model and of the measurement, for the fit's error
 
@@ -63,13 +63,11 @@ class Figure:
         """rmse, relmse of the fit alone."""
         return fit_error(self.differences, self.reference.mean())
 
-    @property
-    def smallest(self) -> float:
-        return min(rmse for rmse, _ in self.errors.values())
+    def smallest(self, sequence: str) -> float:
+        return _smallest(self.errors, sequence)
 
-    @property
-    def margin(self) -> float:
-        return self.smallest / self.reference.noise()[0]
+    def margin(self, sequence: str) -> float:
+        return self.smallest(sequence) / self.reference.noise()[0]
 
 
 def main() -> int:
@@ -121,11 +119,11 @@ def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, exte
 
 
 def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str, int], tuple[float, float]]:
-    """Adds to the reference until its standard error is small beside the smallest error; the errors."""
+    """Adds to the reference until its error is small beside those of the dissertation; the errors."""
     while True:
         mean = reference.mean()
         errors = {name: picture.errors(mean) for name, picture in pictures.items()}
-        margin = min(rmse for rmse, _ in errors.values()) / reference.noise()[0]
+        margin = _smallest(errors, SEQUENCES[0]) / reference.noise()[0]
         print(
             f"    reference of {reference.spp} spp: the smallest error is {margin:.1f} times its own",
             flush=True,
@@ -133,6 +131,10 @@ def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str
         if margin >= MARGIN or len(reference.pictures) >= most:
             return errors
         reference.add()
+
+
+def _smallest(errors: dict[tuple[str, int], tuple[float, float]], sequence: str) -> float:
+    return min(rmse for (of, _), (rmse, _) in errors.items() if of == sequence)
 
 
 if __name__ == "__main__":
