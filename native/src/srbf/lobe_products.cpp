@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "srbf/lobe_products.cpp"
 #include <hwy/foreach_target.h>
+
+// Only after that one:
+#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 #include "srbf/simd_dispatch.h"
@@ -73,17 +77,48 @@ void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, size_t fi
   out.count += count;
 }
 
-/// Indices of the products of at least `least`, in order; returns how many.
-int select_simd(const LobeProducts& products, float least, int32_t* chosen) {
+float total_simd(const LobeProducts& products) {
   const hn::CappedTag<float, LobeProducts::kLanes> d;
-  const hn::RebindToSigned<decltype(d)> di;
-  const auto bound = hn::Set(d, least);
-  int count = 0;
+  auto sum = hn::Zero(d);
   for (int at = 0; at < products.count; at += static_cast<int>(hn::Lanes(d))) {
-    const auto kept = hn::RebindMask(di, hn::Ge(hn::LoadU(d, products.mass + at), bound));
-    count += static_cast<int>(hn::CompressStore(hn::Iota(di, at), kept, di, chosen + count));
+    sum = hn::Add(sum, hn::LoadU(d, products.mass + at));
   }
-  return count;
+  return hn::GetLane(hn::SumOfLanes(d, sum));
+}
+
+/// Copies the products of at least `least` to `mixture`, in order, their masses to its densities; returns how many.
+int keep_simd(const LobeProducts& products, float least, LobeMixture& mixture) {
+  // A compressed store writes whole vectors.
+  static_assert(LobeProducts::kCapacity + LobeProducts::kLanes <= LobeMixture::kCapacity);
+  const hn::CappedTag<float, LobeProducts::kLanes> d;
+  const auto bound = hn::Set(d, least);
+  size_t count = 0;
+  for (int at = 0; at < products.count; at += static_cast<int>(hn::Lanes(d))) {
+    const auto mass = hn::LoadU(d, products.mass + at);
+    const auto kept = hn::Ge(mass, bound);
+    if (hn::AllFalse(d, kept)) continue;
+    hn::CompressStore(hn::LoadU(d, products.x + at), kept, d, mixture.x + count);
+    hn::CompressStore(hn::LoadU(d, products.y + at), kept, d, mixture.y + count);
+    hn::CompressStore(hn::LoadU(d, products.z + at), kept, d, mixture.z + count);
+    hn::CompressStore(hn::LoadU(d, products.bandwidth + at), kept, d, mixture.bandwidth + count);
+    count += hn::CompressStore(mass, kept, d, mixture.density + count);
+  }
+  return static_cast<int>(count);
+}
+
+/// Masses, in `density` and summed up in `cdf`, become densities and probabilities.
+void normalize_simd(float sum, LobeMixture& mixture) {
+  const hn::CappedTag<float, LobeProducts::kLanes> d;
+  const auto total = hn::Set(d, sum);
+  for (int at = 0; at < mixture.count; at += static_cast<int>(hn::Lanes(d))) {
+    const auto r = hn::Max(hn::LoadU(d, mixture.bandwidth + at), hn::Set(d, 1e-12f));
+    // The integral of the kernel is 2 pi (1 - e^-2R) / R.
+    const auto whole = hn::Mul(hn::Set(d, -2 * kPi), hn::Expm1(d, hn::Mul(hn::Set(d, -2.0f), r)));
+    const auto mass = hn::LoadU(d, mixture.density + at);
+    hn::StoreU(hn::Div(hn::Mul(mass, r), hn::Mul(total, whole)), d, mixture.density + at);
+    // A quotient, not a product: the last one is then exactly 1.
+    hn::StoreU(hn::Div(hn::LoadU(d, mixture.cdf + at), total), d, mixture.cdf + at);
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -94,7 +129,9 @@ HWY_AFTER_NAMESPACE();
 namespace velour {
 
 HWY_EXPORT(multiply_simd);
-HWY_EXPORT(select_simd);
+HWY_EXPORT(total_simd);
+HWY_EXPORT(keep_simd);
+HWY_EXPORT(normalize_simd);
 
 void GaussianLobes::add(const GaussianLobe& lobe) {
   x.push_back(lobe.center.x);
@@ -110,34 +147,21 @@ void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, size_
   VELOUR_SIMD_DISPATCH(multiply_simd)(lobe, others, first, count, normal, products);
 }
 
+constexpr float kSmallest = std::numeric_limits<float>::min();  // lanes that fill up have no mass
+
 bool keep_products(const LobeProducts& products, float least, LobeMixture& mixture) {
-  float total = 0;
-  for (int i = 0; i < products.count; ++i) total += products.mass[i];
+  const float total = VELOUR_SIMD_DISPATCH(total_simd)(products);
   if (!(total > 0) || !std::isfinite(total)) return false;
-  int32_t chosen[LobeProducts::kCapacity + LobeProducts::kLanes];  // a compressed store writes whole vectors
-  const float bound = std::max(least, 1.0f / LobeMixture::kCapacity) * total;
-  int count = VELOUR_SIMD_DISPATCH(select_simd)(products, bound, chosen);
-  if (count == 0) {  // evenly spread over more products than fit: the best one stands for all
-    chosen[0] = static_cast<int32_t>(std::max_element(products.mass, products.mass + products.count) - products.mass);
-    count = 1;
-  }
   mixture.clear(Kernel::gaussian);
   mixture.cosine_share = 0;
-  mixture.count = count;
-  float sum = 0;
-  for (int k = 0; k < count; ++k) mixture.cdf[k] = sum += products.mass[chosen[k]];
-  for (int k = 0; k < count; ++k) {
-    const auto i = chosen[k];
-    const float r = products.bandwidth[i];
-    mixture.x[k] = products.x[i];
-    mixture.y[k] = products.y[i];
-    mixture.z[k] = products.z[i];
-    mixture.bandwidth[k] = r;
-    // 1 / integral of the kernel. Where e^-2R is below a float's rounding it need not be asked for.
-    const float inverse_integral = r > 9 ? r / (2 * kPi) : r / (-2 * kPi * std::expm1(-2 * r));
-    mixture.density[k] = products.mass[i] / sum * inverse_integral;
-    mixture.cdf[k] /= sum;
+  mixture.count = VELOUR_SIMD_DISPATCH(keep_simd)(products, std::max(least * total, kSmallest), mixture);
+  if (mixture.count == 0) {  // evenly spread: the best one stands for all
+    const float best = *std::max_element(products.mass, products.mass + products.count);
+    mixture.count = VELOUR_SIMD_DISPATCH(keep_simd)(products, best, mixture);
   }
+  float sum = 0;
+  for (int k = 0; k < mixture.count; ++k) mixture.cdf[k] = sum += mixture.density[k];
+  VELOUR_SIMD_DISPATCH(normalize_simd)(sum, mixture);
   return true;
 }
 

@@ -51,9 +51,8 @@ struct alignas(64) LobeProducts {
 void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, size_t first, int count, const Vec3* normal,
                     LobeProducts& products);
 
-/// Makes `mixture` the density over all products that hold at least `least` of the whole mass and of 1 /
-/// LobeMixture::kCapacity of it, each in proportion to its mass. False when no product has mass: `mixture` then is
-/// not to be used.
+/// Makes `mixture` the density over all products that hold at least `least` of the whole mass (over the best one where
+/// none does), each in proportion to its mass. False when no product has mass: `mixture` then is not to be used.
 bool keep_products(const LobeProducts& products, float least, LobeMixture& mixture);
 
 }  // namespace velour
