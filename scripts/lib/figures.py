@@ -35,8 +35,8 @@ class Extent:
 
     size: tuple[int, int] = (640, 480)
     spp: tuple[int, ...] = (200, 400, 600, 800, 1000)
-    batch_spp: int = 4096
-    batches: tuple[int, int] = (3, 8)  # at first, and at most
+    batch_spp: int = 2048
+    batches: tuple[int, int] = (4, 24)  # at first, and at most
     floor_spp: int = 128
     check_size: tuple[int, int] = (80, 60)
     check_batches: int = 16
