@@ -9,7 +9,8 @@ import sys
 
 
 def exported(library: str) -> set[str]:
-    lines = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True, check=True)
+    command = ["nm", "-D", "--defined-only", library]
+    lines = subprocess.run(command, capture_output=True, text=True, check=True)
     return {line.split()[-1].split("@")[0] for line in lines.stdout.splitlines() if line.strip()}
 
 
