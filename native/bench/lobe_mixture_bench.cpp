@@ -36,11 +36,7 @@ void count_pairs(benchmark::State& state, double pairs) {
       benchmark::Counter(pairs * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-// The lobes of four neighbouring views. Arguments: lobes a view, directions.
-void eval_neighbors(benchmark::State& state) {
-  constexpr int kViews = 4;
-  const int lobes = kViews * static_cast<int>(state.range(0)), directions = static_cast<int>(state.range(1));
-  const LobeMixture mixture = make_mixture(Kernel::gaussian, lobes);
+void time_eval(benchmark::State& state, const LobeMixture& mixture, int directions) {
   const DirectionBatch batch = make_batch(directions);
   RgbBatch value;
   ScalarBatch pdf;
@@ -49,6 +45,14 @@ void eval_neighbors(benchmark::State& state) {
     benchmark::DoNotOptimize(value);
     benchmark::DoNotOptimize(pdf);
   }
+}
+
+// The lobes of four neighbouring views. Arguments: lobes a view, directions.
+void eval_neighbors(benchmark::State& state) {
+  constexpr int kViews = 4;
+  const int lobes = kViews * static_cast<int>(state.range(0)), directions = static_cast<int>(state.range(1));
+  const LobeMixture mixture = make_mixture(Kernel::gaussian, lobes);
+  time_eval(state, mixture, directions);
   state.counters["ns_per_lobe"] =
       benchmark::Counter(lobes * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   const double pairs = static_cast<double>(lobes) * directions;
@@ -63,14 +67,7 @@ BENCHMARK(eval_neighbors)->ArgsProduct({{4, 8, 16, 32}, {8, 16, 64}});
 void eval_lobe_mixture(benchmark::State& state) {
   const int lobes = static_cast<int>(state.range(1)), directions = static_cast<int>(state.range(2));
   const LobeMixture mixture = make_mixture(static_cast<Kernel>(state.range(0)), lobes);
-  const DirectionBatch batch = make_batch(directions);
-  RgbBatch value;
-  ScalarBatch pdf;
-  for (auto _ : state) {
-    eval_mixture(mixture, batch, value, pdf);
-    benchmark::DoNotOptimize(value);
-    benchmark::DoNotOptimize(pdf);
-  }
+  time_eval(state, mixture, directions);
   count_pairs(state, static_cast<double>(lobes) * directions);
   state.SetLabel(std::string(simd_target()) + " " + kernel_name(mixture.kernel));
 }

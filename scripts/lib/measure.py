@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 
@@ -11,6 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import data_files
 import measure_text
 import provenance
+import script
 from table_csv import csv_text
 from velour.core import files, plots
 from velour_cli import ROOT, velour
@@ -113,11 +113,4 @@ def _flat(report: dict, prefix: str = ""):
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except data_files.NoDataError as absent:
-        print(f"measure: {absent}")
-    except KeyboardInterrupt:
-        sys.exit(130)
-    except subprocess.CalledProcessError as error:
-        sys.exit(error.returncode)
+    sys.exit(script.guarded("measure", main, "stopped; nothing is kept."))

@@ -16,6 +16,7 @@ import call_profile
 import data_files
 import performance_text
 import provenance
+import script
 from velour.core import files
 from velour_cli import ROOT, velour
 
@@ -133,11 +134,4 @@ def _bench(program: str, wanted: str) -> dict[str, dict]:
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except data_files.NoDataError as absent:
-        print(f"performance: {absent}")
-    except KeyboardInterrupt:
-        sys.exit(130)
-    except subprocess.CalledProcessError as error:
-        sys.exit(error.returncode)
+    sys.exit(script.guarded("performance", main, "stopped; nothing is kept."))

@@ -1,4 +1,4 @@
-"""What scripts/figures and scripts/chart share: options, the folder of kept results, how they end."""
+"""What the measuring scripts share: options, the folder of kept results, how they end."""
 
 from __future__ import annotations
 
@@ -46,14 +46,16 @@ def start(args: argparse.Namespace, settings: Settings) -> Run:
     return Run(data, renders, provenance.conditions(settings.seed, settings.threads))
 
 
-def guarded(name: str, main: Callable[[], int]) -> int:
+def guarded(
+    name: str, main: Callable[[], int], stopped: str = "stopped; the next run goes on from here."
+) -> int:
     try:
         return main()
     except data_files.NoDataError as absent:
         print(f"{name}: {absent}")
         return 0
     except KeyboardInterrupt:
-        print(f"{name}: stopped; the next run goes on from here.", file=sys.stderr)
+        print(f"{name}: {stopped}", file=sys.stderr)
         return 130
     except subprocess.CalledProcessError as error:
         return error.returncode

@@ -16,7 +16,6 @@ from . import library, table
 from .arrays import pointer, small
 from .errors import VelourError, refuse
 from .handle import Handle, choice, path_bytes, set_fields
-from .library import json_of
 from .measurement import Measurement
 from .model import Model
 
@@ -95,7 +94,7 @@ class Job(Handle):
 
     def report(self) -> dict:
         """What a finished job reports: the JSON keys of the command line's verb."""
-        return json_of(self._lib.vlr_job_report_json, self.pointer)
+        return library.json_of(self._lib.vlr_job_report_json, self.pointer)
 
     def result_model(self) -> Model:
         """The model of a finished fit."""

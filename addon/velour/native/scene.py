@@ -15,7 +15,6 @@ from . import library, table
 from .arrays import affine, checked, pointer, small
 from .errors import refuse
 from .handle import Handle, choice, path_bytes, set_fields
-from .library import json_of
 from .measurement import Measurement
 from .model import Model
 
@@ -171,7 +170,7 @@ class Scene(Handle):
 
     def info(self) -> dict:
         """triangles, instances, lights, materials, bytes, bvh_seconds, warnings."""
-        return json_of(self._lib.vlr_scene_info_json, self.pointer)
+        return library.json_of(self._lib.vlr_scene_info_json, self.pointer)
 
     def _numbered(self, function_name: str, *arguments) -> int:
         number = c_uint32()
