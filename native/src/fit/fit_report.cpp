@@ -7,10 +7,15 @@
 #include "brdf/held_out.h"
 #include "fit/compare.h"
 #include "fit/evaluate.h"
+#include "fit/measurement_warnings.h"
+#include "fit/reciprocity.h"
 #include "fit/view_grid.h"
 
 namespace velour {
 namespace {
+
+// No error of a real measurement doubles what a perfect reflector sends back.
+constexpr double kWrongScale = 2;
 
 std::string number(double x, const char* format = "%.4g") {
   char text[32];
@@ -73,9 +78,10 @@ void add_albedos(const Measurement& measurement, const Material& material, const
     if (albedo > record.albedo_max) record.albedo_max = albedo, brightest = v.wv;
   }
   if (record.albedo_max > 1) {
-    record.warnings.push_back("albedo " + number(record.albedo_max) + " at view " +
-                              view_name(brightest, measurement.isotropic()) +
-                              " degrees: the measurement reflects more light there than arrives");
+    record.warnings.push_back(
+        "albedo " + number(record.albedo_max) + " at view " + view_name(brightest, measurement.isotropic()) +
+        " degrees: the measurement reflects more light there than arrives" +
+        (record.albedo_max > kWrongScale ? ", far more than errors explain: check its scale" : ""));
   }
 }
 
@@ -106,6 +112,9 @@ FitRecord report_fit(const Measurement& measurement, const Material& material, c
   warn_of_errors(record, record.warnings);
   warn_of_fitted_views(fitted, options, measurement.isotropic(), record.warnings);
   add_albedos(measurement, material, fitted, record, progress);
+  record.reciprocity = reciprocity_error(material, progress);
+  record.measured_reciprocity = reciprocity_error(measurement, progress);
+  warn_of_measurement(measurement, errors, record);
   return record;
 }
 

@@ -120,7 +120,8 @@ Model fit_scattered(const Measurement& measurement, const FitOptions& options, P
   auto [slices, uncovered] = sample_slices(source, !options.all_data && !unseen, options.threads, progress);
   if (slices.empty()) {
     throw Error(Status::bad_data, "'" + measurement.provenance().path +
-                                      "' has no valid entry at any view direction; there is nothing to fit.");
+                                      "' has no view direction with at least 8 valid light directions; there is "
+                                      "nothing to fit.");
   }
   progress.stage("fitting", 0.1, 0.95);
   auto paths = fit_slices(slices, options, progress);

@@ -26,6 +26,8 @@ class ViewError {
   /// Weighted relative L2; a black measurement gives 0 for a black model and 1 for any other.
   double relative_l2() const { return energy_ > 0 ? std::sqrt(error_sq_ / energy_) : (error_sq_ > 0 ? 1.0 : 0.0); }
   double log_sq_sum() const { return log_sq_; }
+  /// Of the measurement: the integral of (f cos)^2.
+  double energy() const { return energy_; }
 
  private:
   /// log(1 + f cos / 0.01); a colour outside the gamut cannot drive it below the logarithm's domain.

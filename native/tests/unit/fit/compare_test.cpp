@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "analytic_measurement.h"
+#include "support/analytic_measurement.h"
 #include "brdf/held_out.h"
 #include "fit/view_error.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analytic_measurement.h"
+#include "support/analytic_measurement.h"
 #include "fit/ggx_problem.h"
 #include "material/ggx.h"
 #include "material/material.h"

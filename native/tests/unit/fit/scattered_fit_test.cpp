@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "analytic_measurement.h"
+#include "support/analytic_measurement.h"
 #include "brdf/held_out.h"
 #include "fit/compare.h"
 #include "material/scattered_material.h"
