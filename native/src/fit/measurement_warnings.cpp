@@ -117,7 +117,7 @@ void warn_of_reciprocity(const FitRecord& record, std::vector<std::string>& warn
   if (is_not_reciprocal(record)) {
     warnings.push_back("the measurement is not reciprocal: exchanging light and view changes it by " +
                        number(*record.measured_reciprocity) +
-                       " (relative L2); check that its light and view directions are not exchanged");
+                       " (relative L2); the model follows it, and light paths traced from either end will differ");
   } else if (record.reciprocity > kBrokenReciprocity) {
     warnings.push_back("the model is not reciprocal: exchanging light and view changes it by " +
                        number(record.reciprocity) + " (relative L2)");
