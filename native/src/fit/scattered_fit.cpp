@@ -119,9 +119,12 @@ Model fit_scattered(const Measurement& measurement, const FitOptions& options, P
   const Measurement& source = unseen ? *unseen : measurement;
   auto [slices, uncovered] = sample_slices(source, !options.all_data && !unseen, options.threads, progress);
   if (slices.empty()) {
+    const EntryCounts& n = measurement.counts();
     throw Error(Status::bad_data, "'" + measurement.provenance().path +
-                                      "' has no view direction with at least 8 valid light directions; there is "
-                                      "nothing to fit.");
+                                      "' has no view direction with at least 8 valid light directions (" +
+                                      std::to_string(n.valid) + " of " + std::to_string(n.valid + n.invalid()) +
+                                      " entries are valid); there is nothing to fit. Measure more directions, or "
+                                      "check how the file marks what is missing.");
   }
   progress.stage("fitting", 0.1, 0.95);
   auto paths = fit_slices(slices, options, progress);
