@@ -16,8 +16,9 @@ namespace {
 
 constexpr int kLights = 4096;
 constexpr uint64_t kLeastLights = 64;  // fewer tell nothing of a view
-// Lights that see less than a half or more than twice the energy miss a highlight or take one direction for all of it.
-constexpr double kEnergyFactor = 2;
+// Lights that see less than a half or more than twice the energy miss a highlight or take one direction for all of it;
+// where fewer than two carry what is seen, the error is that of one direction.
+constexpr double kEnergyFactor = 2, kLeastCarriers = 2;
 
 std::string key_of(int degrees) { return std::to_string(degrees); }
 
@@ -57,16 +58,18 @@ AzimuthErrors table_errors(const Measurement& measurement, const Material& mater
                            Comparison& out) {
   const WeightedLights even{hemisphere_fibonacci(kLights), std::vector<double>(kLights, 2 * kPiD / kLights)};
   AzimuthErrors errors, close_errors;
-  double seen = 0, energy = 0, covered = 0;
+  double seen = 0, energy = 0, covered = 0, carriers = kLights;
   for (const Vec3& wv : reported_views(degrees, measurement.isotropic())) {
     errors.push_back(error_of_view(measurement, material, wv, even, progress));
     close_errors.push_back(error_of_view(measurement, material, wv, close_lights(wv), progress));
     covered += static_cast<double>(errors.back().count()) / kLights;
     seen += errors.back().energy();
+    carriers = std::min(carriers, errors.back().carriers());
     energy += close_errors.back().energy();
   }
   out.covered_share[degrees] = covered / static_cast<double>(errors.size());
-  if (seen * kEnergyFactor >= energy && seen <= kEnergyFactor * energy) return errors;
+  const bool even_see_all = seen * kEnergyFactor >= energy && seen <= kEnergyFactor * energy;
+  if (energy == 0 || (even_see_all && carriers >= kLeastCarriers)) return errors;
   out.narrow_views[degrees] = seen / energy;
   return close_errors;
 }

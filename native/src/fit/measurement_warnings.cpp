@@ -76,7 +76,7 @@ void warn_of_narrow_views(const Comparison& errors, std::vector<std::string>& wa
   if (views.names.empty()) return;
   warnings.push_back(
       views.names +
-      " degrees: the highlight is narrower than the 4096 directions of the error, which see as little as " +
+      " degrees: the highlight is narrower than the spacing of the error's 4096 directions, which see as little as " +
       number(views.least) + " of its energy; the error was taken on directions close to it instead");
 }
 

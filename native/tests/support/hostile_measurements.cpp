@@ -122,6 +122,7 @@ std::vector<HostileCase> hostile_cases() {
   const Formula glossy = ggx(0.3f, 0.3f);
   const auto black = [](const DirectionPair&) { return Rgb(0); };
   return {
+      sound("near-mirror, bandwidth 1e4", near_mirror(1e4)),
       sound("near-mirror, bandwidth 1e5", near_mirror(1e5), {"narrower than"}),
       sound("near-mirror, bandwidth 1e6", near_mirror(1e6), {"narrower than"}),
       sound("perfectly diffuse", lambert),
