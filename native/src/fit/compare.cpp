@@ -101,6 +101,7 @@ Comparison compare(const Measurement& measurement, const Material& material, Pro
       const auto errors = scattered ? sample_errors(measurement, material, degrees, progress)
                                     : table_errors(measurement, material, degrees, progress, out);
       entry = mean_error(errors, scattered ? 1 : kLeastLights);
+      if (!entry) out.narrow_views.erase(degrees);
       for (const ViewError& e : errors) {
         log_sq += e.log_sq_sum();
         out.samples += e.count();

@@ -59,25 +59,31 @@ void warn_of_noise(const Comparison& errors, double tolerance, std::vector<std::
                      ": a smaller error there says nothing, a larger tolerance saves lobes");
 }
 
-/// "views 5, 30 degrees" of the keys, and the least of the values.
-struct Views {
-  std::string names;
-  double least = std::numeric_limits<double>::infinity();
-
+/// "view 5 degrees", "views 5, 30 degrees" of the keys, and the least of the values.
+class Views {
+ public:
   void add(int degrees, double value) {
-    names += (names.empty() ? "views " : ", ") + std::to_string(degrees);
-    least = std::min(least, value);
+    angles_ += (count_++ == 0 ? "" : ", ") + std::to_string(degrees);
+    least_ = std::min(least_, value);
   }
+  bool empty() const { return count_ == 0; }
+  std::string names() const { return (count_ == 1 ? "view " : "views ") + angles_ + " degrees"; }
+  std::string least() const { return number(least_); }
+
+ private:
+  std::string angles_;
+  int count_ = 0;
+  double least_ = std::numeric_limits<double>::infinity();
 };
 
 void warn_of_narrow_views(const Comparison& errors, std::vector<std::string>& warnings) {
   Views views;
   for (const auto& [degrees, share] : errors.narrow_views) views.add(degrees, share);
-  if (views.names.empty()) return;
+  if (views.empty()) return;
   warnings.push_back(
-      views.names +
-      " degrees: the highlight is narrower than the spacing of the error's 4096 directions, which see as little as " +
-      number(views.least) + " of its energy; the error was taken on directions close to it instead");
+      views.names() +
+      ": the highlight is narrower than the spacing of the error's 4096 directions, which see as little as " +
+      views.least() + " of its energy; the error was taken on directions close to it instead");
 }
 
 void warn_of_holes(const Comparison& errors, std::vector<std::string>& warnings) {
@@ -85,8 +91,8 @@ void warn_of_holes(const Comparison& errors, std::vector<std::string>& warnings)
   for (const auto& [degrees, share] : errors.covered_share) {
     if (share < kFewLights && errors.by_view_angle.at(std::to_string(degrees))) views.add(degrees, share);
   }
-  if (views.names.empty()) return;
-  warnings.push_back(views.names + " degrees: the measurement covers as little as " + number(views.least) +
+  if (views.empty()) return;
+  warnings.push_back(views.names() + ": the measurement covers as little as " + views.least() +
                      " of the light directions; errors are those of these, elsewhere the model is a guess");
 }
 
