@@ -2,6 +2,7 @@
 // on a hostile case beside ours.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -208,23 +209,35 @@ TEST(PlainMethod, LobesWithoutMassHaveNoProbabilities) {
   }
 }
 
-/// `hostile` with 0 where nothing was measured.
-std::shared_ptr<AnalyticMeasurement> taken_for_black(const AnalyticMeasurement::Coverage& known) {
-  const auto glossy = test::ggx(0.3f, 0.3f);
-  return std::make_shared<AnalyticMeasurement>([=](const DirectionPair& p) { return known(p) ? glossy(p) : Rgb(0); });
-}
+struct PlainAndOurs {
+  FitRecord plain, ours;
+};
 
-TEST(PlainMethod, HolesTakenForBlackAreFittedAsBlack) {
-  const auto known = [](const DirectionPair& p) { return std::min(p.wl.z, p.wv.z) > std::cos(radians_from(80.0f)); };
-  AnalyticMeasurement honest(test::ggx(0.3f, 0.3f));
-  honest.set_coverage(known);
+/// Records of fits of the hostile case `name`, with 0 where nothing was measured and as it is.
+PlainAndOurs holes_as_black_and_as_holes(const std::string& name) {
+  const auto cases = test::hostile_cases();
+  const auto hostile = std::find_if(cases.begin(), cases.end(), [&](const auto& c) { return c.name == name; });
+  const AnalyticMeasurement black([given = hostile->given](const DirectionPair& p) {
+    Rgb f;
+    uint8_t valid = 0;
+    given->eval(p.wv, {&p.wl, 1}, {&f, 1}, {&valid, 1});
+    return f;
+  });
   FitOptions options;
   options.max_lobes = 4;
   Progress progress;
-  const FitRecord plain = fit_scattered(*taken_for_black(known), options, progress).fit;
+  return {fit_scattered(black, options, progress).fit, fit_scattered(*hostile->given, options, progress).fit};
+}
+
+TEST(PlainMethod, HolesTakenForBlackAreFittedAsBlack) {
+  const auto [plain, ours] = holes_as_black_and_as_holes("holes at grazing angles");
   EXPECT_EQ(plain.by_view_angle.at("85"), 0.0) << "a black model of a hole is called exact";
-  const FitRecord ours = fit_scattered(honest, options, progress).fit;
   EXPECT_EQ(ours.by_view_angle.at("85"), std::nullopt);
+}
+
+TEST(PlainMethod, InvalidEntriesTakenForBlackDarkenTheMaterial) {
+  const auto [plain, ours] = holes_as_black_and_as_holes("a third of entries invalid");
+  EXPECT_NEAR(*plain.albedo_by_view_angle.at("30") / *ours.albedo_by_view_angle.at("30"), 2.0 / 3, 0.05);
 }
 
 TEST(PlainMethod, ARelativeErrorIsBlindToTheScale) {
