@@ -16,6 +16,7 @@ namespace {
 
 // A slice is fitted a little tighter than asked, for what the interpolation between slices adds at the views between.
 constexpr double kGoalShare = 0.8;
+constexpr SliceGrid kGrid{96, 64};
 
 void check_options(const FitOptions& o, bool isotropic) {
   const auto refuse = [](const std::string& sentence) { throw Error(Status::invalid_argument, sentence); };
@@ -119,7 +120,7 @@ Model fit_scattered(const Measurement& measurement, const FitOptions& options, P
   // Scattered samples are held out one by one, inside the measurement; tables by view and light.
   const auto unseen = options.all_data ? nullptr : measurement.without_held_out(progress);
   const Measurement& source = unseen ? *unseen : measurement;
-  auto [slices, uncovered] = sample_slices(source, !options.all_data && !unseen, options.threads, progress);
+  auto [slices, uncovered] = sample_slices(source, kGrid, !options.all_data && !unseen, options.threads, progress);
   if (slices.empty()) {
     throw Error(Status::bad_data, "'" + measurement.provenance().path +
                                       "' has no valid entry at any view direction; there is nothing to fit.");
