@@ -46,7 +46,6 @@ class _Canvas:
         self.side = side
         self.pixels = np.ones((side, side, 4), np.float32)
         self.pixels[..., :3] = _BACKGROUND
-        self._y, self._x = np.mgrid[:side, :side] + 0.5
 
     def place(self, value: float, low: float, high: float) -> float:
         """Where `value` of [low, high] lies along a side, in pixels."""
@@ -56,9 +55,16 @@ class _Canvas:
     def line(self, start, end, color, radius: float) -> None:
         """A line with round ends, smooth over a pixel; a dot where both ends are the same."""
         (ax, ay), (bx, by) = start, end
+        columns, rows = (self._touched(a, b, radius) for a, b in ((ax, bx), (ay, by)))
+        y, x = np.mgrid[rows, columns] + 0.5
         dx, dy = bx - ax, by - ay
-        along = ((self._x - ax) * dx + (self._y - ay) * dy) / max(dx * dx + dy * dy, 1e-12)
+        along = ((x - ax) * dx + (y - ay) * dy) / max(dx * dx + dy * dy, 1e-12)
         along = along.clip(0.0, 1.0)
-        distance = np.hypot(self._x - ax - along * dx, self._y - ay - along * dy)
+        distance = np.hypot(x - ax - along * dx, y - ay - along * dy)
         cover = (radius + 0.5 - distance).clip(0.0, 1.0)[..., None]
-        self.pixels[..., :3] += cover * (np.array(color, np.float32) - self.pixels[..., :3])
+        below = self.pixels[rows, columns, :3]
+        below += cover * (np.array(color, np.float32) - below)
+
+    def _touched(self, a: float, b: float, radius: float) -> slice:
+        low, high = min(a, b) - radius - 1, max(a, b) + radius + 2
+        return slice(max(0, int(low)), min(self.side, int(high)))

@@ -1,5 +1,5 @@
 // What a control value of the parametric model may be. A spline's value lies between its control values, so a model
-// within these ranges stays within them at every view. Fits keep to them; a file outside is refused.
+// within these ranges stays within them at every view. Fits stay well inside; a file outside is refused.
 #pragma once
 
 #include "brdf/parametric_brdf.h"
