@@ -15,17 +15,17 @@ using P = ParametricBrdf;
 constexpr double kChannel[3] = {0.2126, 0.7152, 0.0722};
 constexpr size_t kStride = 4;  // of the blocks of samples that the search looks at
 // A start below the best coefficient leaves room for the lobes that are there; none starts at nothing.
-constexpr double kShare = 0.7, kFloor = 1e-2;
+constexpr double kShare = 0.7, kFloor = 1e-3;
 
 /// A lobe over all views, before the fit bends it.
 struct Candidate {
   enum class Follows { nothing, view, mirror };
-  LobeSpace space;
   Follows follows = Follows::nothing;
-  double log_bandwidth = 0, tilt_x = 0, tilt_y = 0, stretch_a = 0, stretch_b = 0;
+  double log_bandwidth = 0;
+  std::array<double, 2> tilt{}, stretch{};
 
-  WarpedShape at(const Vec3d& wv) const {
-    WarpedShape s{space, log_bandwidth, tilt_x, tilt_y, stretch_a, stretch_b};
+  WarpedShape at(LobeSpace space, const Vec3d& wv) const {
+    WarpedShape s{space, log_bandwidth, tilt[0], tilt[1], stretch[0], stretch[1]};
     if (follows == Follows::nothing) return s;
     const double sine = std::hypot(wv.x, wv.y), theta = std::atan2(sine, wv.z);
     const double turn = (follows == Follows::view ? theta : -theta) / std::max(sine, 1e-12);
@@ -44,31 +44,32 @@ std::vector<std::array<double, 2>> tilts(double angle, bool isotropic) {
   return out;
 }
 
-std::vector<Candidate> candidates(bool isotropic) {
+std::vector<Candidate> half_candidates(bool isotropic) {
+  using Ab = std::array<double, 2>;
+  const auto stretches = isotropic ? std::vector<Ab>{{0, 0}, {0.4, 0}, {-0.4, 0}, {0.9, 0}, {-0.9, 0}}
+                                   : std::vector<Ab>{{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
   std::vector<Candidate> out;
-  const std::vector<std::array<double, 2>> stretches =
-      isotropic ? std::vector<std::array<double, 2>>{{0, 0}, {0.3, 0}, {-0.3, 0}}
-                : std::vector<std::array<double, 2>>{{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
-  // Ratios of three: the fit moves a bandwidth that far in a step or two.
+  // The fit moves a bandwidth by a factor e a step.
   for (double bandwidth = 1; bandwidth < 1e5; bandwidth *= 2.7) {
     for (const double widths : {0.0, 0.7, 1.5}) {
-      for (const auto& tilt : tilts(widths / std::sqrt(std::max(bandwidth, 4.0)), isotropic)) {
-        for (const auto& s : stretches) {
-          out.push_back(
-              {LobeSpace::half, Candidate::Follows::nothing, std::log(bandwidth), tilt[0], tilt[1], s[0], s[1]});
-        }
+      for (const auto& t : tilts(widths / std::sqrt(std::max(bandwidth, 4.0)), isotropic)) {
+        for (const auto& s : stretches) out.push_back({Candidate::Follows::nothing, std::log(bandwidth), t, s});
       }
     }
   }
+  return out;
+}
+
+std::vector<Candidate> light_candidates(bool isotropic) {
+  std::vector<Candidate> out;
   for (const double bandwidth : {0.05, 1.0, 3.0, 8.0, 20.0, 60.0}) {
     for (const double angle : {0.0, 0.5, 1.0, 1.4}) {
-      for (const auto& tilt : tilts(angle, isotropic)) {
-        out.push_back({LobeSpace::light, Candidate::Follows::nothing, std::log(bandwidth), tilt[0], tilt[1]});
+      for (const auto& t : tilts(angle, isotropic)) {
+        out.push_back({Candidate::Follows::nothing, std::log(bandwidth), t, {}});
       }
     }
-    for (const auto follows : {Candidate::Follows::view, Candidate::Follows::mirror}) {
-      out.push_back({LobeSpace::light, follows, std::log(bandwidth)});
-    }
+    out.push_back({Candidate::Follows::view, std::log(bandwidth), {}, {}});
+    out.push_back({Candidate::Follows::mirror, std::log(bandwidth), {}, {}});
   }
   return out;
 }
@@ -79,9 +80,9 @@ struct Start {
   double gain = 0;
 };
 
-Start start_at(const Candidate& candidate, const TrackedView& view) {
+Start start_at(LobeSpace space, const Candidate& candidate, const TrackedView& view) {
   const float* residual[3] = {view.residual[0].data(), view.residual[1].data(), view.residual[2].data()};
-  const Projection p = project_warped(candidate.at(view.wv), view.wv, view.samples, residual, kStride);
+  const Projection p = project_warped(candidate.at(space, view.wv), view.wv, view.samples, residual, kStride);
   Start start;
   if (p.norm_sq <= 0) return start;
   for (int c = 0; c < 3; ++c) {
@@ -93,12 +94,13 @@ Start start_at(const Candidate& candidate, const TrackedView& view) {
 }
 
 /// The control values of the new lobe: [node][parameter].
-Eigen::MatrixXd control_values(const Candidate& candidate, const std::vector<TrackedView>& views, const P& model) {
+Eigen::MatrixXd control_values(LobeSpace space, const Candidate& candidate, const std::vector<TrackedView>& views,
+                               const P& model) {
   const ViewSpline spline = model.spline();
   std::vector<Start> starts;
   std::array<double, 3> most{};
   for (const TrackedView& v : views) {
-    starts.push_back(start_at(candidate, v));
+    starts.push_back(start_at(space, candidate, v));
     for (size_t c = 0; c < 3; ++c) most[c] = std::max(most[c], starts.back().coefficient[c]);
   }
   Eigen::MatrixXd out(spline.node_count(), model.parameter_count());
@@ -110,11 +112,11 @@ Eigen::MatrixXd control_values(const Candidate& candidate, const std::vector<Tra
                              .cwiseMin(upper_bound(parameter));
   };
   through(P::kLogBandwidth, [&](size_t) { return candidate.log_bandwidth; });
-  through(P::kTiltX, [&](size_t i) { return candidate.at(views[i].wv).tilt_x; });
-  through(P::kStretchA, [&](size_t) { return candidate.stretch_a; });
+  through(P::kTiltX, [&](size_t i) { return candidate.at(space, views[i].wv).tilt_x; });
+  through(P::kStretchA, [&](size_t) { return candidate.stretch[0]; });
   if (!model.isotropic) {
-    through(P::kTiltY, [&](size_t i) { return candidate.at(views[i].wv).tilt_y; });
-    through(P::kStretchB, [&](size_t) { return candidate.stretch_b; });
+    through(P::kTiltY, [&](size_t i) { return candidate.at(space, views[i].wv).tilt_y; });
+    through(P::kStretchB, [&](size_t) { return candidate.stretch[1]; });
   }
   for (int c = 0; c < 3; ++c) {
     through(P::kLogRed + c, [&](size_t i) {
@@ -141,16 +143,16 @@ TrackedLobes with_lobe(const TrackedLobes& lobes, LobeSpace space, const Eigen::
 
 }  // namespace
 
-bool add_best_lobe(const TrackedProblem& problem, TrackedLobes& lobes) {
-  const std::vector<Candidate> all = candidates(lobes.model.isotropic);
+std::optional<TrackedLobes> with_best_lobe(const TrackedProblem& problem, const TrackedLobes& lobes, LobeSpace space) {
+  const std::vector<Candidate> all =
+      space == LobeSpace::half ? half_candidates(lobes.model.isotropic) : light_candidates(lobes.model.isotropic);
   std::vector<double> gain(all.size(), 0.0);
   parallel_pieces(all.size(), problem.threads(), problem.progress(), [&](size_t i) {
-    for (const TrackedView& v : problem.views()) gain[i] += start_at(all[i], v).gain;
+    for (const TrackedView& v : problem.views()) gain[i] += start_at(space, all[i], v).gain;
   });
   const size_t best = static_cast<size_t>(std::max_element(gain.begin(), gain.end()) - gain.begin());
-  if (!(gain[best] > 0)) return false;
-  lobes = with_lobe(lobes, all[best].space, control_values(all[best], problem.views(), lobes.model));
-  return true;
+  if (!(gain[best] > 0)) return std::nullopt;
+  return with_lobe(lobes, space, control_values(space, all[best], problem.views(), lobes.model));
 }
 
 }  // namespace velour

@@ -12,10 +12,10 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr int kGrowthSteps = 6;
-constexpr double kGrowthLeast = 1e-2;
-constexpr int kPolishSteps = 40, kRounds = 4, kRoundSteps = 8;
-constexpr double kPolishLeast = 5e-4;
+constexpr int kGrowthSteps = 20;
+constexpr double kGrowthLeast = 3e-3;
+constexpr int kPolishSteps = 80, kRounds = 4, kRoundSteps = 8;
+constexpr double kPolishLeast = 3e-4;
 
 OrderStep order_step(const TrackedProblem& problem, const TrackedLobes& lobes) {
   OrderStep step{lobes.model.lobe_count(), 0, 0};
@@ -56,6 +56,20 @@ void round_to_half(TrackedProblem& problem, TrackedLobes& lobes) {
   lobes.cost = problem.evaluate(lobes.model, lobes.x);
 }
 
+/// One lobe more, of the space that fits better with it. False when neither lowers the cost.
+bool grow(TrackedProblem& problem, TrackedLobes& lobes) {
+  const TrackedLobes before = lobes;
+  for (const LobeSpace space : {LobeSpace::half, LobeSpace::light}) {
+    problem.evaluate(before.model, before.x);  // its residuals are what the search looks at
+    auto trial = with_best_lobe(problem, before, space);
+    if (!trial) continue;
+    refine(problem, *trial, kGrowthSteps, kGrowthLeast);
+    if (trial->cost < lobes.cost) lobes = std::move(*trial);
+  }
+  problem.evaluate(lobes.model, lobes.x);
+  return lobes.model.lobe_count() > before.model.lobe_count();
+}
+
 }  // namespace
 
 TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress) {
@@ -67,8 +81,8 @@ TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFi
   TrackedLobes lobes;
   lobes.model.isotropic = options.isotropic;
   lobes.model.cells = options.cells;
-  while (lobes.model.lobe_count() < options.max_lobes && add_best_lobe(problem, lobes)) {
-    refine(problem, lobes, kGrowthSteps, kGrowthLeast);
+  lobes.cost = problem.evaluate(lobes.model, lobes.x);
+  while (lobes.model.lobe_count() < options.max_lobes && grow(problem, lobes)) {
     fit.order.push_back(order_step(problem, lobes));
     progress.update(static_cast<double>(lobes.model.lobe_count()) / options.max_lobes);
   }

@@ -18,13 +18,17 @@ CellWeights cell_weights(double x, int cells) {
   return {cell, {0.5 * (1 - u) * (1 - u), 0.5 + u * (1 - u), 0.5 * u * u}};
 }
 
-double polar_angle(const Vec3d& w) { return std::atan2(std::hypot(w.x, w.y), w.z); }
-
 }  // namespace
 
-ViewTaps ViewSpline::at(const Vec3d& wv) const {
+PolarView polar_view(const Vec3d& wv) {
+  const double sine = std::hypot(wv.x, wv.y);
+  if (sine == 0) return {0, 1, 0};
+  return {std::atan2(sine, wv.z), wv.x / sine, wv.y / sine};
+}
+
+ViewTaps ViewSpline::at(const PolarView& view) const {
   ViewTaps taps;
-  const double r = std::min(polar_angle(wv) / (kPiD / 2), 1.0);
+  const double r = std::min(view.theta / (kPiD / 2), 1.0);
   const auto add = [&](int node, double weight, double odd) {
     taps.node[taps.count] = node;
     taps.weight[taps.count] = weight;
@@ -42,9 +46,8 @@ ViewTaps ViewSpline::at(const Vec3d& wv) const {
     add(c.cell + 1, c.weight[2], c.weight[2]);
     return taps;
   }
-  const double sine = std::hypot(wv.x, wv.y), scale = sine > 0 ? r / sine : 0.0;
-  const CellWeights x = cell_weights(0.5 * (1 + scale * wv.x) * cells_, cells_);
-  const CellWeights y = cell_weights(0.5 * (1 + scale * wv.y) * cells_, cells_);
+  const CellWeights x = cell_weights(0.5 * (1 + r * view.cos_phi) * cells_, cells_);
+  const CellWeights y = cell_weights(0.5 * (1 + r * view.sin_phi) * cells_, cells_);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const double weight = y.weight[i] * x.weight[j];
@@ -54,8 +57,8 @@ ViewTaps ViewSpline::at(const Vec3d& wv) const {
   return taps;
 }
 
-double pole_fade(const Vec3d& wv) {
-  const double x = polar_angle(wv) / radians_from(2.5);
+double pole_fade(double theta_v) {
+  const double x = theta_v / radians_from(2.5);
   return -std::expm1(-x * x);
 }
 

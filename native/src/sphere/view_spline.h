@@ -8,6 +8,12 @@
 
 namespace velour {
 
+/// A view by its angles: the polar one, radians up to pi / 2, and the azimuth, 0 at the normal.
+struct PolarView {
+  double theta, cos_phi, sin_phi;
+};
+PolarView polar_view(const Vec3d& wv);
+
 /// The nodes that a view touches. Sums over them are the spline's value there, once differentiable.
 struct ViewTaps {
   static constexpr int kMost = 9;
@@ -29,7 +35,8 @@ class ViewSpline {
   int cells() const { return cells_; }
   int node_count() const { return isotropic_ ? cells_ + 1 : (cells_ + 2) * (cells_ + 2); }
   /// Of unit `wv`, on or above the horizon.
-  ViewTaps at(const Vec3d& wv) const;
+  ViewTaps at(const Vec3d& wv) const { return at(polar_view(wv)); }
+  ViewTaps at(const PolarView& view) const;
 
  private:
   bool isotropic_;
@@ -38,6 +45,7 @@ class ViewSpline {
 
 /// 0 for a view along the normal, 1 from some degrees on: an isotropic material has no direction to stretch along
 /// there. 1 - exp(-(theta_v / 2.5 degrees)^2).
-double pole_fade(const Vec3d& wv);
+double pole_fade(double theta_v);
+inline double pole_fade(const Vec3d& wv) { return pole_fade(polar_view(wv).theta); }
 
 }  // namespace velour

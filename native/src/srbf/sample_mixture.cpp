@@ -93,12 +93,6 @@ namespace velour {
 
 HWY_EXPORT(directions_simd);
 
-namespace {
-
-constexpr float kCosine = -1;  // for a bandwidth
-
-}  // namespace
-
 void LobeDraws::push(const Vec3& axis, float lobe_bandwidth, double u_zenith, float u_azimuth) {
   x[count] = axis.x;
   y[count] = axis.y;
