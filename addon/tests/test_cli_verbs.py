@@ -17,9 +17,11 @@ FIT_KEYS = [
     "relative_l2",
     "by_view_angle",
     "albedo_max",
+    "reciprocity",
+    "measured_reciprocity",
     "warnings",
 ]
-COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples"]
+COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views"]
 RENDER_KEYS = [
     "seconds",
     "rays",

@@ -6,7 +6,7 @@
 
 #include "brdf/scattered_brdf.h"
 #include "fit/lobe_budget.h"
-#include "fit/scattered_fit.h"
+#include "fit/fit_options.h"
 #include "fit/slice_sampling.h"
 
 namespace velour {

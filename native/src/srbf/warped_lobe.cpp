@@ -19,6 +19,22 @@ Stretch stretch_from(double a, double b) {
   return {c - s * a, s * b, c + s * a};
 }
 
+StretchSlopes stretch_slopes(double a, double b) {
+  // S = cosh(m) + q M, M = [[-a, b], [b, a]], q = sinh(m) / m.
+  const double m_sq = a * a + b * b, m = std::sqrt(m_sq);
+  const double c = std::cosh(m), q = m > 1e-4 ? std::sinh(m) / m : 1 + m_sq / 6;
+  const double k = m > 1e-4 ? (c - q) / m_sq : 1.0 / 3;
+  return {{(q + k * -a) * a - q, k * a * b, (q + k * a) * a + q}, {(q + k * -a) * b, k * b * b + q, (q + k * a) * b}};
+}
+
+TiltSlopes tilt_slopes(double tilt_x, double tilt_y) {
+  const double t_sq = tilt_x * tilt_x + tilt_y * tilt_y, t = std::sqrt(t_sq);
+  const double s = t > 1e-4 ? std::sin(t) / t : 1 - t_sq / 6;
+  const double k = t > 1e-4 ? (std::cos(t) - s) / t_sq : -1.0 / 3;
+  return {{s + k * tilt_x * tilt_x, k * tilt_x * tilt_y, -s * tilt_x},
+          {k * tilt_x * tilt_y, s + k * tilt_y * tilt_y, -s * tilt_y}};
+}
+
 Vec3d tilted_normal(double tilt_x, double tilt_y) {
   const double angle = std::hypot(tilt_x, tilt_y);
   const double s = angle > 1e-8 ? std::sin(angle) / angle : 1.0;

@@ -27,8 +27,18 @@ struct Stretch {
 /// exp [[-a, b], [b, a]]: by e^m along one axis and e^-m along the other, m = |(a, b)|. Positive a is longer in x of
 /// the directions (the argument is squeezed there).
 Stretch stretch_from(double a, double b);
+/// Its derivatives; they are no stretches themselves.
+struct StretchSlopes {
+  Stretch by_a, by_b;
+};
+StretchSlopes stretch_slopes(double a, double b);
+
 /// Centre of tilt `t` (radians) from the normal: the exponential map of the sphere, smooth at 0.
 Vec3d tilted_normal(double tilt_x, double tilt_y);
+struct TiltSlopes {
+  Vec3d by_x, by_y;
+};
+TiltSlopes tilt_slopes(double tilt_x, double tilt_y);
 
 /// coefficient exp(bandwidth (psi . center - 1)).
 struct WarpedLobe {
