@@ -17,11 +17,13 @@ FIT_KEYS = [
     "relative_l2",
     "by_view_angle",
     "albedo_max",
+    "reciprocity",
+    "measured_reciprocity",
     "warnings",
     "order",
 ]
 ORDER_KEYS = ["lobes", "parameter_bytes", "worst", "relative_l2", "chosen"]
-COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples"]
+COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views"]
 RENDER_KEYS = [
     "seconds",
     "rays",

@@ -107,6 +107,7 @@ def _draw_numbers(layout, info):
         ("Size", f"{info['bytes'] / 1024:.1f} KiB"),
         ("Relative error", _number(info["relative_l2"])),
         ("Largest albedo", _number(info["albedo_max"])),
+        ("Reciprocity error", _number(info["reciprocity"])),
     )
     split = layout.split(factor=0.4)
     names, values = split.column(align=True), split.column(align=True)

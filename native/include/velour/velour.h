@@ -91,9 +91,9 @@ VLR_API vlr_status vlr_model_save(const vlr_model* model, const char* path);
 /* The bytes that vlr_model_save would write; they belong to the handle. */
 VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_t* size);
 /* JSON: kind "model", model "scattered" or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes, relative_l2,
- * by_view_angle, albedo_by_view_angle, albedo_max, tolerance, seconds, seed, all_data, warnings, order (as of a fit),
- * source {name, format, sha256}. Scattered: also views, max_lobes_per_view. Parametric: also cells, spaces {light,
- * half}, the lobes of each. */
+ * by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds, seed,
+ * all_data, warnings, order (as of a fit), source {name, format, sha256}. Scattered: also views, max_lobes_per_view.
+ * Parametric: also cells, spaces {light, half}, the lobes of each. */
 VLR_API vlr_status vlr_model_info_json(vlr_model* model, const char** json);
 /* As vlr_measurement_eval; also the density of the model's own sampler when `pdf` [count] is not NULL. */
 VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t count, const float* wl, float* f,
@@ -163,14 +163,14 @@ typedef struct vlr_fit_options {
   int32_t pad;
 } vlr_fit_options;
 VLR_API void vlr_fit_options_init(vlr_fit_options* options);
-/* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, warnings,
- * order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the error falls as the model grows.
- * `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the number of the point that the model
- * is, or null. */
+/* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, reciprocity,
+ * measured_reciprocity, warnings, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the error
+ * falls as the model grows. `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the number
+ * of the point that the model is, or null. */
 VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options,
                                       vlr_job** out);
 
-/* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples. */
+/* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples, narrow_views. */
 VLR_API vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_model* model, vlr_job** out);
 /* The same of the GGX lobe over a diffuse base that suits the measurement best: what the strategies `ggx` and `mis-ggx`
  * draw from. JSON: also ggx {alpha [x, y], f0, f90, diffuse}, colours linear Rec. 709. */

@@ -19,22 +19,29 @@ using Json = nlohmann::ordered_json;
 /// nlohmann writes NaN as null by itself; bytes that are not UTF-8 (file names) are replaced instead of thrown on.
 std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
 Json by_view_angle(const ErrorByViewAngle& errors) {
   // In the order of the angles, not of their texts.
   Json json = Json::object();
   for (const char* angle : {"5", "30", "60", "75", "85"}) {
     const auto found = errors.find(angle);
-    json[angle] = found != errors.end() && found->second ? Json(*found->second) : Json(nullptr);
+    json[angle] = found != errors.end() ? or_null(found->second) : Json(nullptr);
   }
   return json;
 }
 
+Json narrow_views(const Comparison& comparison) {
+  Json json = Json::array();
+  for (const auto& [degrees, share] : comparison.narrow_views) json.push_back(degrees);
+  return json;
+}
+
 Json errors_of(const Comparison& comparison) {
-  return {{"relative_l2", comparison.relative_l2},
-          {"by_view_angle", by_view_angle(comparison.by_view_angle)},
-          {"log_rms", comparison.log_rms},
-          {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
-          {"samples", comparison.samples}};
+  return {
+      {"relative_l2", comparison.relative_l2}, {"by_view_angle", by_view_angle(comparison.by_view_angle)},
+      {"log_rms", comparison.log_rms},         {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
+      {"samples", comparison.samples},         {"narrow_views", narrow_views(comparison)}};
 }
 
 Json colour(const Rgb& c) { return {c.r, c.g, c.b}; }
@@ -108,6 +115,8 @@ std::string model_json(const Model& model, uint64_t file_bytes) {
       {"by_view_angle", by_view_angle(fit.by_view_angle)},
       {"albedo_by_view_angle", by_view_angle(fit.albedo_by_view_angle)},
       {"albedo_max", fit.albedo_max},
+      {"reciprocity", fit.reciprocity},
+      {"measured_reciprocity", or_null(fit.measured_reciprocity)},
       {"tolerance", fit.tolerance},
       {"seconds", fit.seconds},
       {"seed", fit.seed},
@@ -124,6 +133,8 @@ std::string fit_json(const Model& model, uint64_t file_bytes) {
                    {"relative_l2", model.fit.relative_l2},
                    {"by_view_angle", by_view_angle(model.fit.by_view_angle)},
                    {"albedo_max", model.fit.albedo_max},
+                   {"reciprocity", model.fit.reciprocity},
+                   {"measured_reciprocity", or_null(model.fit.measured_reciprocity)},
                    {"warnings", model.fit.warnings},
                    {"order", order_json(model.fit.order)}});
   return text(json);

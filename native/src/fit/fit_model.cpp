@@ -1,13 +1,14 @@
 #include "fit/fit_model.h"
 
-#include "job/error.h"
+#include "fit/parametric_fit.h"
+#include "fit/scattered_fit.h"
 
 namespace velour {
 
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
   switch (kind) {
     case ModelKind::parametric:
-      throw Error(Status::unsupported, "Parametric models cannot be fitted yet.");
+      return fit_parametric(measurement, options, progress);
     case ModelKind::scattered:
       break;
   }

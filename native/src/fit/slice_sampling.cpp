@@ -13,7 +13,17 @@ namespace {
 // Fewer samples than this leave a lobe's four unknowns undetermined.
 constexpr size_t kLeastSamples = 8;
 
+// Squares of more would not fit a float, and a model file holds no larger coefficients.
+constexpr float kLargestValue = 1e12f;
+
 bool usable(const Rgb& f) { return std::isfinite(f.r) && std::isfinite(f.g) && std::isfinite(f.b); }
+
+void check_size(const Measurement& source, const Rgb& f) {
+  const float largest = std::max({std::abs(f.r), std::abs(f.g), std::abs(f.b)});
+  if (largest <= kLargestValue) return;
+  throw Error(Status::bad_data, "'" + source.provenance().path + "' holds the value " + std::to_string(largest) +
+                                    " 1/sr; values up to 1e12 can be fitted. Check the measurement's scale.");
+}
 
 void keep_one_side(LightGrid& grid) {
   LightGrid half;
@@ -59,6 +69,7 @@ MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const Slic
   MeasuredSlice slice{wv, {}, 0};
   for (size_t i = 0; i < n; ++i) {
     if (!kept[i] || !valid[i] || !usable(f[i])) continue;
+    check_size(source, f[i]);
     slice.samples.push_back({grid.wl[i], grid.weight[i], f[i] * grid.wl[i].z});
     slice.out_of_gamut += std::min({f[i].r, f[i].g, f[i].b}) < 0;
   }

@@ -11,9 +11,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json number_json(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
 Json errors_json(const ErrorByViewAngle& errors) {
   Json json = Json::object();
-  for (const auto& [angle, error] : errors) json[angle] = error ? Json(*error) : Json(nullptr);
+  for (const auto& [angle, error] : errors) json[angle] = number_json(error);
   return json;
 }
 
@@ -24,6 +26,10 @@ class Reader {
 
   void number(const char* key, double& out) const {
     if (const Json* v = find(key)) out = number_of(*v, key);
+  }
+  void number_or_null(const char* key, std::optional<double>& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_null()) out = number_of(*v, key);
   }
   void integer(const char* key, uint64_t& out) const {
     const Json* v = find(key);
@@ -80,6 +86,8 @@ std::string fit_record_json(const FitRecord& record) {
                {"by_view_angle", errors_json(record.by_view_angle)},
                {"albedo_by_view_angle", errors_json(record.albedo_by_view_angle)},
                {"albedo_max", record.albedo_max},
+               {"reciprocity", record.reciprocity},
+               {"measured_reciprocity", number_json(record.measured_reciprocity)},
                {"tolerance", record.tolerance},
                {"seconds", record.seconds},
                {"seed", record.seed},
@@ -98,6 +106,8 @@ FitRecord parse_fit_record(const std::string& text, const std::string& where) {
   reader.errors("by_view_angle", record.by_view_angle);
   reader.errors("albedo_by_view_angle", record.albedo_by_view_angle);
   reader.number("albedo_max", record.albedo_max);
+  reader.number("reciprocity", record.reciprocity);
+  reader.number_or_null("measured_reciprocity", record.measured_reciprocity);
   reader.number("tolerance", record.tolerance);
   reader.number("seconds", record.seconds);
   reader.integer("seed", record.seed);

@@ -22,6 +22,8 @@ struct FitRecord {
   ErrorByViewAngle by_view_angle;
   ErrorByViewAngle albedo_by_view_angle;  // directional albedo (largest channel) at those views
   double albedo_max = 0;                  // over all fitted views, largest channel
+  double reciprocity = 0;                 // of the model: fit/reciprocity.h
+  std::optional<double> measured_reciprocity = std::nullopt;  // of the measurement, where it has pairs
   double tolerance = 0;
   double seconds = 0;  // wall clock of the fit
   uint64_t seed = 0;

@@ -6,6 +6,7 @@
 #include "file/file.h"
 #include "image/exr_tensors.h"
 #include "job/error.h"
+#include "material/parametric_material.h"
 #include "material/scattered_material.h"
 #include "model/fit_record_json.h"
 #include "model/parametric_file.h"
@@ -27,11 +28,11 @@ const char* kind_of(const ParametricBrdf&) { return "parametric"; }
 void write_body(const ScatteredBrdf& brdf, TensorFile& file) { write_scattered(brdf, file); }
 void write_body(const ParametricBrdf& brdf, TensorFile& file) { write_parametric(brdf, file); }
 
-std::shared_ptr<const Material> material_of(std::shared_ptr<const ScatteredBrdf> brdf, int neighbors) {
-  return make_scattered_material(std::move(brdf), neighbors);
+std::shared_ptr<const Material> material_of(const std::shared_ptr<const ScatteredBrdf>& brdf, int neighbors) {
+  return make_scattered_material(brdf, neighbors);
 }
-std::shared_ptr<const Material> material_of(std::shared_ptr<const ParametricBrdf>, int) {
-  throw Error(Status::unsupported, "Parametric models have no evaluator yet.");
+std::shared_ptr<const Material> material_of(const std::shared_ptr<const ParametricBrdf>& brdf, int) {
+  return make_parametric_material(brdf);
 }
 
 ModelBody read_body(const ModelFields& fields) {

@@ -15,6 +15,8 @@ KEYS = (
     "relative_l2",
     "by_view_angle",
     "albedo_max",
+    "reciprocity",
+    "measured_reciprocity",
     "warnings",
     "order",
 )

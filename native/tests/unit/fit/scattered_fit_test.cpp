@@ -5,10 +5,10 @@
 #include <chrono>
 #include <thread>
 
-#include "analytic_measurement.h"
 #include "brdf/held_out.h"
 #include "fit/compare.h"
 #include "material/scattered_material.h"
+#include "support/analytic_measurement.h"
 
 namespace velour {
 namespace {

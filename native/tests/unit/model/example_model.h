@@ -16,6 +16,8 @@ inline Model example_record() {
                .by_view_angle = {{"5", 0.01}, {"30", 0.02}, {"60", 0.03}, {"75", std::nullopt}, {"85", std::nullopt}},
                .albedo_by_view_angle = {{"5", 0.4}, {"30", std::nullopt}},
                .albedo_max = 0.7,
+               .reciprocity = 0.05,
+               .measured_reciprocity = 0.125,
                .tolerance = 0.02,
                .seconds = 1.25,
                .seed = 12345678901234567ull,

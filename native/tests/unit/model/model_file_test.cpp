@@ -23,6 +23,8 @@ void expect_same_record(const Model& a, const Model& b) {
   EXPECT_EQ(a.fit.by_view_angle, b.fit.by_view_angle);
   EXPECT_EQ(a.fit.albedo_by_view_angle, b.fit.albedo_by_view_angle);
   EXPECT_EQ(a.fit.albedo_max, b.fit.albedo_max);
+  EXPECT_EQ(a.fit.reciprocity, b.fit.reciprocity);
+  EXPECT_EQ(a.fit.measured_reciprocity, b.fit.measured_reciprocity);
   EXPECT_EQ(a.fit.tolerance, b.fit.tolerance);
   EXPECT_EQ(a.fit.seconds, b.fit.seconds);
   EXPECT_EQ(a.fit.seed, b.fit.seed);
