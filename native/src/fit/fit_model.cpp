@@ -6,12 +6,7 @@
 namespace velour {
 
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
-  switch (kind) {
-    case ModelKind::parametric:
-      return fit_parametric(measurement, options, progress);
-    case ModelKind::scattered:
-      break;
-  }
+  if (kind == ModelKind::parametric) return fit_parametric(measurement, options, progress);
   return fit_scattered(measurement, options, progress);
 }
 

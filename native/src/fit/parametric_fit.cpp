@@ -4,7 +4,6 @@
 
 #include "fit/fit_input.h"
 #include "fit/fit_report.h"
-#include "fit/order_of_growth.h"
 #include "fit/tracked_fit.h"
 #include "material/parametric_material.h"
 
@@ -42,7 +41,7 @@ Model fit_parametric(const Measurement& measurement, const FitOptions& options, 
   Model model;
   const auto brdf = std::make_shared<const ParametricBrdf>(fit.brdf);
   model.fit = report_fit(measurement, *make_parametric_material(brdf), options, views, progress);
-  model.fit.order = order_of_growth(fit);
+  model.fit.order = fit.order;
   warn_of_slices(measured, model.fit.warnings);
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};

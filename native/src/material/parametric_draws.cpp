@@ -1,12 +1,11 @@
 // Highway compiles this file once for each instruction set.
 #include "material/parametric_draws.h"
 
+#include "srbf/kernel.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "material/parametric_draws.cpp"
 #include <hwy/foreach_target.h>
-
-// Only after that one:
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 #include "srbf/simd_dispatch.h"
@@ -18,18 +17,16 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void draws_simd(const float* table, const NodeWeights& nodes, WarpedMixture& m) {
+template <int kNodes>
+HWY_INLINE void add_draws(const float* const (&row)[4], const float (&weight)[4], WarpedMixture& m) {
   using P = ParametricDraws;
   const hn::CappedTag<float, WarpedMixture::kLanes> d;
   using V = hn::Vec<decltype(d)>;
-  const int row = P::kColumns * m.padded;
   for (int at = 0; at < m.padded; at += static_cast<int>(hn::Lanes(d))) {
     const auto column = [&](int which) {
-      V sum = hn::Zero(d);
-      for (int i = 0; i < nodes.count; ++i) {
-        const float* values = table + nodes.node[i] * row + which * m.padded + at;
-        sum = hn::MulAdd(hn::Set(d, nodes.weight[i]), hn::LoadU(d, values), sum);
-      }
+      const int from = which * m.padded + at;
+      V sum = hn::Mul(hn::Set(d, weight[0]), hn::LoadU(d, row[0] + from));
+      for (int i = 1; i < kNodes; ++i) sum = hn::MulAdd(hn::Set(d, weight[i]), hn::LoadU(d, row[i] + from), sum);
       return sum;
     };
     const V x = hn::Add(hn::Load(d, m.x + at), column(P::kOffsetX));
@@ -39,15 +36,24 @@ void draws_simd(const float* table, const NodeWeights& nodes, WarpedMixture& m) 
     hn::Store(hn::Mul(scale, x), d, m.draw_x + at);
     hn::Store(hn::Mul(scale, y), d, m.draw_y + at);
     hn::Store(hn::Mul(scale, z), d, m.draw_z + at);
-    const V bandwidth = hn::Max(hn::Mul(hn::Load(d, m.bandwidth + at), column(P::kBandwidthRatio)), hn::Set(d, 1e-2f));
+    const V ratio = column(P::kBandwidthRatio), least = hn::Set(d, static_cast<float>(kMinMeanBandwidth));
+    const V bandwidth = hn::Max(hn::Mul(hn::Load(d, m.bandwidth + at), ratio), least);
     hn::Store(bandwidth, d, m.draw_bandwidth + at);
     // The same sums, rounded the same way, as the numbers that choose: this is the probability of the draws.
     const V below = column(P::kBelow), up_to = column(P::kUpTo), probability = hn::Sub(up_to, below);
     hn::StoreU(up_to, d, m.cdf + 1 + at);
     if (at == 0) m.cdf[0] = hn::GetLane(below);
-    const V whole = hn::Mul(hn::Set(d, -2 * kPi), hn::Expm1(d, hn::Mul(hn::Set(d, -2.0f), bandwidth)));
-    hn::Store(hn::Div(hn::Mul(probability, bandwidth), whole), d, m.density + at);
+    // The integral of the kernel, 2 pi (1 - e^-2l) / l; no smaller l than the least, so the difference is exact enough.
+    const V whole = hn::Sub(hn::Set(d, 1.0f), exp_nonpositive(d, hn::Mul(hn::Set(d, -2.0f), bandwidth)));
+    const V scaled = hn::Mul(hn::Mul(hn::Set(d, 0.5f / kPi), probability), bandwidth);
+    hn::Store(hn::Div(scaled, whole), d, m.density + at);
   }
+}
+
+void add_draws_simd(const float* table, const NodeWeights& nodes, WarpedMixture& m) {
+  const float* row[4];
+  for (int i = 0; i < nodes.count; ++i) row[i] = table + nodes.node[i] * ParametricDraws::kColumns * m.padded;
+  return nodes.count == 2 ? add_draws<2>(row, nodes.weight, m) : add_draws<4>(row, nodes.weight, m);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -63,7 +69,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace velour {
 
-HWY_EXPORT(draws_simd);
+HWY_EXPORT(add_draws_simd);
 
 namespace {
 
@@ -116,7 +122,8 @@ ParametricDraws::ParametricDraws(const ParametricValues& values)
 
 void ParametricDraws::add_node(const ParametricValues& values, int node) {
   WarpedMixture m;
-  values.evaluate(nodes_.view(node), m);
+  const Vec3 wv = nodes_.view(node);
+  values.evaluate(wv, ViewPlace(wv), m);
   const std::vector<DrawnLobe> drawn = drawn_lobes(m);
   double total = 0, cosine = 0;
   for (const DrawnLobe& lobe : drawn) {
@@ -147,12 +154,12 @@ void ParametricDraws::add_node(const ParametricValues& values, int node) {
   proposals_.push_back(few_lobes(drawn));
 }
 
-void ParametricDraws::add_to(WarpedMixture& mixture) const {
-  VELOUR_SIMD_DISPATCH(draws_simd)(rows_.data(), nodes_.at(mixture.wv), mixture);
+void ParametricDraws::add_to(const ViewPlace& place, WarpedMixture& mixture) const {
+  VELOUR_SIMD_DISPATCH(add_draws_simd)(rows_.data(), nodes_.at(place), mixture);
 }
 
 void ParametricDraws::propose(const WarpedMixture& mixture, ProposalLobes& lobes) const {
-  const int node = nodes_.at(mixture.wv).nearest;
+  const int node = nodes_.at(ViewPlace(mixture.wv)).nearest;
   lobes = proposals_[static_cast<size_t>(node)];
   const Mat3 align = rotation_between(mirror(nodes_.view(node)), mirror(mixture.wv));
   const float c = mixture.turn_cos, s = mixture.turn_sin;

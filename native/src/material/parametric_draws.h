@@ -15,9 +15,9 @@ class ParametricDraws {
  public:
   explicit ParametricDraws(const ParametricValues& values);
 
-  /// Fills in the density of a mixture that `values` has evaluated. A twentieth of it, and the mass of lobes that are
-  /// nearly constant, is the cosine's. No allocation. Run-time dispatched SIMD.
-  void add_to(WarpedMixture& mixture) const;
+  /// Fills in the density of a mixture that `values` has evaluated at `place`. A twentieth of it, and the mass of lobes
+  /// that are nearly constant, is the cosine's. No allocation. Run-time dispatched SIMD.
+  void add_to(const ViewPlace& place, WarpedMixture& mixture) const;
   /// The lobes of f cos over light directions at the mixture's view, joined to few, in the surface's frame: those of
   /// the nearest node, turned with the mirror direction of the view.
   void propose(const WarpedMixture& mixture, ProposalLobes& lobes) const;

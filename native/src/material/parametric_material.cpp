@@ -13,8 +13,9 @@ class ParametricMaterial : public Material {
 
   void prepare(const Vec3& wv, PreparedBrdf& point) const override {
     point.wv = wv;
-    values_.evaluate(wv, point.warped);
-    draws_.add_to(point.warped);
+    const ViewPlace place(wv);
+    values_.evaluate(wv, place, point.warped);
+    draws_.add_to(place, point.warped);
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {

@@ -1,16 +1,15 @@
 // Highway compiles this file once for each instruction set.
 #include "material/parametric_values.h"
 
+#include "material/spline_rows.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "material/parametric_values.cpp"
 #include <hwy/foreach_target.h>
-
-// Only after that one:
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "material/spline_rows.h"
 #include "srbf/simd_dispatch.h"
+#include "srbf/simd_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {
@@ -19,12 +18,11 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Parameters of the lobes from `at` on.
-template <class D, class V = hn::Vec<D>>
+template <int kTaps, class D, class V = hn::Vec<D>>
 HWY_INLINE V parameter(D d, const SplineRows& rows, const float* weight, int which, int at) {
-  V sum = hn::Zero(d);
-  for (int i = 0; i < rows.count; ++i) {
-    sum = hn::MulAdd(hn::Set(d, weight[i]), hn::LoadU(d, rows.row[i] + which * rows.stride + at), sum);
-  }
+  const int from = which * rows.stride + at;
+  V sum = hn::Mul(hn::Set(d, weight[0]), hn::LoadU(d, rows.row[0] + from));
+  for (int i = 1; i < kTaps; ++i) sum = hn::MulAdd(hn::Set(d, weight[i]), hn::LoadU(d, rows.row[i] + from), sum);
   return sum;
 }
 
@@ -38,10 +36,12 @@ HWY_INLINE V over(D d, V sine, V x) {
 /// tilted_normal and stretch_from in the plane of incidence.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void store_shape_on_meridian(D d, V tilt, V stretch, int at, WarpedMixture& m) {
-  hn::Store(hn::Sin(d, tilt), d, m.x + at);
+  V sine, cosine;
+  sin_cos_within_pi(d, tilt, sine, cosine);
+  hn::Store(sine, d, m.x + at);
   hn::Store(hn::Zero(d), d, m.y + at);
-  hn::Store(hn::Cos(d, tilt), d, m.z + at);
-  const V grown = hn::Exp(d, stretch);
+  hn::Store(cosine, d, m.z + at);
+  const V grown = exp2_clamped(d, hn::Mul(hn::Set(d, kLog2E), stretch));
   hn::Store(hn::Div(hn::Set(d, 1.0f), grown), d, m.s_xx + at);
   hn::Store(hn::Zero(d), d, m.s_xy + at);
   hn::Store(grown, d, m.s_yy + at);
@@ -51,35 +51,45 @@ HWY_INLINE void store_shape_on_meridian(D d, V tilt, V stretch, int at, WarpedMi
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void store_shape(D d, V tilt_x, V tilt_y, V a, V b, int at, WarpedMixture& m) {
   const V angle = hn::Sqrt(hn::MulAdd(tilt_x, tilt_x, hn::Mul(tilt_y, tilt_y)));
-  const V s = over(d, hn::Sin(d, angle), angle);
+  V sine, cosine;
+  sin_cos_within_pi(d, angle, sine, cosine);
+  const V s = over(d, sine, angle);
   hn::Store(hn::Mul(s, tilt_x), d, m.x + at);
   hn::Store(hn::Mul(s, tilt_y), d, m.y + at);
-  hn::Store(hn::Cos(d, angle), d, m.z + at);
+  hn::Store(cosine, d, m.z + at);
   const V size = hn::Sqrt(hn::MulAdd(a, a, hn::Mul(b, b))), half = hn::Set(d, 0.5f);
-  const V grown = hn::Exp(d, size), shrunk = hn::Div(hn::Set(d, 1.0f), grown);
-  const V cosine = hn::Mul(half, hn::Add(grown, shrunk));
+  const V grown = exp2_clamped(d, hn::Mul(hn::Set(d, kLog2E), size)), shrunk = hn::Div(hn::Set(d, 1.0f), grown);
+  const V middle = hn::Mul(half, hn::Add(grown, shrunk));
   const V ratio = over(d, hn::Mul(half, hn::Sub(grown, shrunk)), size);
-  hn::Store(hn::NegMulAdd(ratio, a, cosine), d, m.s_xx + at);
+  hn::Store(hn::NegMulAdd(ratio, a, middle), d, m.s_xx + at);
   hn::Store(hn::Mul(ratio, b), d, m.s_xy + at);
-  hn::Store(hn::MulAdd(ratio, a, cosine), d, m.s_yy + at);
+  hn::Store(hn::MulAdd(ratio, a, middle), d, m.s_yy + at);
+}
+
+template <bool kIsotropic>
+HWY_INLINE void evaluate_lobes(const SplineRows& rows, WarpedMixture& m) {
+  using P = ParametricBrdf;
+  constexpr int kTaps = kIsotropic ? SplineRows::kIsotropicTaps : ViewTaps::kMost;
+  const hn::CappedTag<float, WarpedMixture::kLanes> d;
+  for (int at = 0; at < m.padded; at += static_cast<int>(hn::Lanes(d))) {
+    hn::Store(hn::LoadU(d, rows.half + at), d, m.half + at);
+    const auto of = [&](int which) { return parameter<kTaps>(d, rows, rows.weight, which, at); };
+    const auto exp_of = [&](int which) { return exp2_clamped(d, of(which)); };  // kept as logarithms to base 2
+    hn::Store(exp_of(P::kLogBandwidth), d, m.bandwidth + at);
+    hn::Store(exp_of(P::kLogRed), d, m.r + at);
+    hn::Store(exp_of(P::kLogGreen), d, m.g + at);
+    hn::Store(exp_of(P::kLogBlue), d, m.b + at);
+    if constexpr (kIsotropic) {
+      const auto tilt = parameter<kTaps>(d, rows, rows.odd_weight, P::kTiltX, at);
+      store_shape_on_meridian(d, tilt, hn::Mul(hn::Set(d, rows.stretch), of(P::kStretchA)), at, m);
+    } else {
+      store_shape(d, of(P::kTiltX), of(P::kTiltY), of(P::kStretchA), of(P::kStretchB), at, m);
+    }
+  }
 }
 
 void evaluate_simd(const SplineRows& rows, bool isotropic, WarpedMixture& m) {
-  using P = ParametricBrdf;
-  const hn::CappedTag<float, WarpedMixture::kLanes> d;
-  for (int at = 0; at < m.padded; at += static_cast<int>(hn::Lanes(d))) {
-    const auto of = [&](int which) { return parameter(d, rows, rows.weight, which, at); };
-    const auto tilt_x = parameter(d, rows, rows.odd_weight, P::kTiltX, at);
-    hn::Store(hn::Exp(d, of(P::kLogBandwidth)), d, m.bandwidth + at);
-    hn::Store(hn::Exp(d, of(P::kLogRed)), d, m.r + at);
-    hn::Store(hn::Exp(d, of(P::kLogGreen)), d, m.g + at);
-    hn::Store(hn::Exp(d, of(P::kLogBlue)), d, m.b + at);
-    if (isotropic) {
-      store_shape_on_meridian(d, tilt_x, hn::Mul(hn::Set(d, rows.stretch), of(P::kStretchA)), at, m);
-    } else {
-      store_shape(d, tilt_x, of(P::kTiltY), of(P::kStretchA), of(P::kStretchB), at, m);
-    }
-  }
+  return isotropic ? evaluate_lobes<true>(rows, m) : evaluate_lobes<false>(rows, m);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -89,7 +99,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <algorithm>
 
-#include "brdf/fast_atan2.h"
 #include "job/error.h"
 
 namespace velour {
@@ -98,7 +107,7 @@ HWY_EXPORT(evaluate_simd);
 
 namespace {
 
-/// Of what fills up the lanes: exp gives 0.
+/// Of what fills up the lanes: its exponential is 0.
 constexpr float kNoCoefficient = -1000;
 
 /// At least one vector, so that a model without lobes needs no branch.
@@ -107,8 +116,14 @@ int padded_of(int count) {
   return std::max(1, (count + kLanes - 1) / kLanes) * kLanes;
 }
 
-bool is_logarithm_of_coefficient(int parameter) {
-  return parameter >= ParametricBrdf::kLogRed && parameter <= ParametricBrdf::kLogBlue;
+float stored(int parameter, float value) {
+  const bool is_logarithm = parameter >= ParametricBrdf::kLogBandwidth && parameter <= ParametricBrdf::kLogBlue;
+  return is_logarithm ? value * kLog2E : value;
+}
+
+float neutral(int parameter) {
+  const bool is_coefficient = parameter >= ParametricBrdf::kLogRed && parameter <= ParametricBrdf::kLogBlue;
+  return is_coefficient ? kNoCoefficient : 0.0f;
 }
 
 }  // namespace
@@ -126,36 +141,34 @@ ParametricValues::ParametricValues(const ParametricBrdf& brdf)
   for (int node = 0; node < spline_.node_count(); ++node) {
     for (int k = 0; k < brdf.parameter_count(); ++k) {
       for (int j = 0; j < padded_; ++j) {
-        const float unused = is_logarithm_of_coefficient(k) ? kNoCoefficient : 0.0f;
-        control_.push_back(j < count_ ? brdf.control[brdf.index(node, k, j)] : unused);
+        control_.push_back(j < count_ ? stored(k, brdf.control[brdf.index(node, k, j)]) : neutral(k));
       }
     }
   }
 }
 
-void ParametricValues::evaluate(const Vec3& wv, WarpedMixture& mixture) const {
-  const float sine = std::sqrt(wv.x * wv.x + wv.y * wv.y);
-  const float theta = fast_atan2(sine, wv.z), c = sine > 0 ? wv.x / sine : 1, s = sine > 0 ? wv.y / sine : 0;
-  const ViewTaps taps = spline_.at(PolarView{theta, c, s});
-
+void ParametricValues::evaluate(const Vec3& wv, const ViewPlace& place, WarpedMixture& mixture) const {
+  const ViewTaps taps = spline_.at(PolarView{place.theta, place.cos_phi, place.sin_phi});
   SplineRows rows;
-  rows.count = taps.count;
+  rows.half = half_.data();
   rows.stride = padded_;
   // Beyond 11 degrees the fade is 1 in float.
-  rows.stretch = theta < 0.2f ? static_cast<float>(pole_fade(theta)) : 1.0f;
+  rows.stretch = place.theta < 0.2f ? static_cast<float>(pole_fade(place.theta)) : 1.0f;
   const int row = padded_ * ParametricBrdf::parameters_of(isotropic());
   for (int i = 0; i < taps.count; ++i) {
     rows.row[i] = control_.data() + taps.node[i] * row;
     rows.weight[i] = static_cast<float>(taps.weight[i]);
     rows.odd_weight[i] = static_cast<float>(taps.odd_weight[i]);
   }
-
+  for (int i = taps.count; i < SplineRows::kIsotropicTaps; ++i) {  // beside the normal
+    rows.row[i] = control_.data();
+    rows.weight[i] = rows.odd_weight[i] = 0;
+  }
   mixture.count = count_;
   mixture.padded = padded_;
-  mixture.turn_cos = isotropic() ? c : 1.0f;
-  mixture.turn_sin = isotropic() ? s : 0.0f;
-  mixture.wv = isotropic() ? Vec3(sine, 0, wv.z) : wv;
-  std::copy(half_.begin(), half_.end(), mixture.half);
+  mixture.turn_cos = isotropic() ? place.cos_phi : 1.0f;
+  mixture.turn_sin = isotropic() ? place.sin_phi : 0.0f;
+  mixture.wv = isotropic() ? Vec3(place.sine, 0, wv.z) : wv;
   VELOUR_SIMD_DISPATCH(evaluate_simd)(rows, isotropic(), mixture);
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "brdf/parametric_brdf.h"
+#include "material/view_place.h"
 #include "srbf/warped_mixture.h"
 
 namespace velour {
@@ -19,11 +20,11 @@ class ParametricValues {
   int padded_count() const { return padded_; }
   uint64_t bytes() const { return sizeof(float) * (control_.size() + half_.size()); }
 
-  /// Fills in the frame, the parameterisations and the lobes of the value (not those of the density) at unit `wv` above
-  /// or on the horizon. Lobes of isotropic models lie in the view's frame: x along its azimuth. Run-time dispatched
-  /// SIMD. Relative to lobes_at: 1e-5 in bandwidths and coefficients, 1e-6 radians in centres, where the model's
-  /// splines change by a few units a cell.
-  void evaluate(const Vec3& wv, WarpedMixture& mixture) const;
+  /// Fills in the frame, the parameterisations and the lobes of the value (not those of the density) at unit `wv`,
+  /// which is at `place`, above or on the horizon. Lobes of isotropic models lie in the view's frame: x along its
+  /// azimuth. Run-time dispatched SIMD. Relative to lobes_at: 1e-5 in bandwidths and coefficients, 1e-6 radians in
+  /// centres, where the model's splines change by a few units a cell.
+  void evaluate(const Vec3& wv, const ViewPlace& place, WarpedMixture& mixture) const;
 
  private:
   ViewSpline spline_;

@@ -5,11 +5,14 @@
 
 namespace velour {
 
+inline constexpr float kLog2E = 1.44269504f;
+
 /// ViewTaps with pointers to the coefficients, in float: what the SIMD kernel reads.
 struct SplineRows {
-  int count;
-  int stride;     // from one parameter to the next, lobes
-  float stretch;  // factor of the stretches: pole_fade
+  static constexpr int kIsotropicTaps = 3;
+  const float* half;  // of the lobes
+  int stride;         // from one parameter to the next, lobes
+  float stretch;      // factor of the stretches: pole_fade
   const float* row[ViewTaps::kMost];
   float weight[ViewTaps::kMost], odd_weight[ViewTaps::kMost];
 };

@@ -34,14 +34,14 @@ Vec3 ViewNodes::view(int node) const {
   return view_of({2 * static_cast<float>(x) / size - 1, 2 * static_cast<float>(y) / size - 1});
 }
 
-NodeWeights ViewNodes::at(const Vec3& wv) const {
+NodeWeights ViewNodes::at(const ViewPlace& place) const {
   const auto size = static_cast<float>(cells_);
-  const float scale = 1 / std::sqrt(1 + std::max(wv.z, 0.0f));
   if (isotropic_) {
-    const Interval r(size * scale * std::sqrt(wv.x * wv.x + wv.y * wv.y), cells_);
+    const Interval r(size * place.radius, cells_);
     return {2, {r.low, r.low + 1}, {1 - r.share, r.share}, r.nearest()};
   }
-  const Interval x(0.5f * size * (1 + scale * wv.x), cells_), y(0.5f * size * (1 + scale * wv.y), cells_);
+  const Interval x(0.5f * size * (1 + place.radius * place.cos_phi), cells_);
+  const Interval y(0.5f * size * (1 + place.radius * place.sin_phi), cells_);
   const int side = cells_ + 1, first = y.low * side + x.low;
   return {4,
           {first, first + 1, first + side, first + side + 1},

@@ -1,7 +1,7 @@
 // Where tables over view directions have their nodes, and how a view is placed between them.
 #pragma once
 
-#include "sphere/vec.h"
+#include "material/view_place.h"
 
 namespace velour {
 
@@ -23,8 +23,7 @@ class ViewNodes {
   int count() const { return isotropic_ ? cells_ + 1 : (cells_ + 1) * (cells_ + 1); }
   /// The view of a node, unit. Nodes outside the disk have that of the horizon's nearest point.
   Vec3 view(int node) const;
-  /// Of unit `wv`, on or above the horizon.
-  NodeWeights at(const Vec3& wv) const;
+  NodeWeights at(const ViewPlace& place) const;
 
  private:
   bool isotropic_;

@@ -22,9 +22,9 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// psi, in `w`, becomes wl: eta = normalize(S^-1 psi), in half space mirrored. Lanes past the count hold anything.
-void unwarp_simd(const WarpedMixture& m, const Unwarps& how, DirectionBatch& w) {
-  const hn::CappedTag<float, 8> d;
-  using V = hn::Vec<decltype(d)>;
+template <class D>
+HWY_INLINE void unwarp(D d, const WarpedMixture& m, const Unwarps& how, DirectionBatch& w) {
+  using V = hn::Vec<D>;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const V vx = hn::Set(d, m.wv.x), vy = hn::Set(d, m.wv.y), vz = hn::Set(d, m.wv.z);
   const V c = hn::Set(d, m.turn_cos), s = hn::Set(d, m.turn_sin);
@@ -48,6 +48,12 @@ void unwarp_simd(const WarpedMixture& m, const Unwarps& how, DirectionBatch& w) 
   }
 }
 
+/// A single draw has no vector to wait for.
+void unwarp_simd(const WarpedMixture& m, const Unwarps& how, DirectionBatch& w) {
+  if (w.count == 1) return unwarp(hn::CappedTag<float, 1>(), m, how, w);
+  return unwarp(hn::CappedTag<float, 8>(), m, how, w);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace velour
 HWY_AFTER_NAMESPACE();
@@ -64,14 +70,16 @@ void sample_warped(const WarpedMixture& m, std::span<const Vec2> u, DirectionBat
   for (const Vec2& number : u) {
     const int at = draws.count;
     double left = middle_of_step(number.x);
-    const int j = choose_index(m.cdf, m.count + 1, left) - 1;
-    if (j < 0) {
-      draws.push({0, 0, 1}, LobeDraws::kCosine, std::min(left, 1 - 0x1p-24), number.y);
-      how.set(at, 0, 1, 0, 1);
-    } else {
-      draws.push({m.draw_x[j], m.draw_y[j], m.draw_z[j]}, m.draw_bandwidth[j], left, number.y);
-      how.set(at, m.half[j], m.s_xx[j], m.s_xy[j], m.s_yy[j]);
-    }
+    const int chosen = choose_index(m.cdf, m.count + 1, left);
+    // The first component is the cosine. Without a branch: which one it is cannot be predicted.
+    const int j = std::max(chosen - 1, 0);
+    const auto pick = [is_lobe = chosen > 0](float cosine, float lobe) {
+      const float both[2] = {cosine, lobe};
+      return both[is_lobe];
+    };
+    const Vec3 axis(pick(0, m.draw_x[j]), pick(0, m.draw_y[j]), pick(1, m.draw_z[j]));
+    draws.push(axis, pick(LobeDraws::kCosine, m.draw_bandwidth[j]), std::min(left, 1 - 0x1p-24), number.y);
+    how.set(at, pick(0, m.half[j]), pick(1, m.s_xx[j]), pick(0, m.s_xy[j]), pick(1, m.s_yy[j]));
   }
   draws.directions(Kernel::gaussian, wl);
   VELOUR_SIMD_DISPATCH(unwarp_simd)(m, how, wl);
