@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "material/measured_values.h"
 #include "material/scattered_lobes.h"
 
 namespace velour {
@@ -57,15 +58,7 @@ class MeasuredMaterial final : public LobeSampledMaterial {
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     eval_mixture(point.lobes, wl, f, pdf);  // its value, the model's, is overwritten
-    Vec3 directions[DirectionBatch::kCapacity];
-    Rgb measured[DirectionBatch::kCapacity];
-    uint8_t covered[DirectionBatch::kCapacity];
-    const auto count = static_cast<size_t>(wl.count);
-    for (int i = 0; i < wl.count; ++i) directions[i] = wl.get(i);
-    measurement_->eval(point.wv, {directions, count}, {measured, count}, {covered, count});
-    for (int i = 0; i < wl.count; ++i) {
-      f.set(i, covered[i] && wl.z[i] > 0 ? glm::max(measured[i], Rgb(0)) : Rgb(0));
-    }
+    measured_values(*measurement_, point.wv, wl, f);
   }
 
   bool isotropic() const override { return measurement_->isotropic(); }

@@ -8,6 +8,7 @@
 #include "brdf/held_out.h"
 #include "fit/scattered_fit.h"
 #include "model/model_file.h"
+#include "model/model_material.h"
 #include "sphere/frame.h"
 #include "sphere/random.h"
 #include "sphere/warp.h"
