@@ -39,7 +39,8 @@ struct ParametricBrdf {
            static_cast<size_t>(lobe);
   }
   /// Bytes of the coefficients alone: half floats, and a byte a lobe for its space.
-  uint64_t parameter_bytes() const { return 2 * control.size() + space.size(); }
+  static constexpr uint64_t parameter_bytes(uint64_t values, uint64_t lobes) { return 2 * values + lobes; }
+  uint64_t parameter_bytes() const { return parameter_bytes(control.size(), space.size()); }
 };
 
 /// The lobes at `wv` (unit, above the horizon), in the surface's frame: the scalar reference. Isotropic models turn

@@ -41,6 +41,7 @@ Model fit_parametric(const Measurement& measurement, const FitOptions& options, 
   Model model;
   const auto brdf = std::make_shared<const ParametricBrdf>(fit.brdf);
   model.fit = report_fit(measurement, *make_parametric_material(brdf), options, views, progress);
+  model.fit.order = fit.order;
   warn_of_slices(measured, model.fit.warnings);
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};

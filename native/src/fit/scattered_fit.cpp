@@ -7,6 +7,7 @@
 #include "fit/fit_input.h"
 #include "fit/fit_report.h"
 #include "fit/fitted_slices.h"
+#include "fit/order_of_slices.h"
 #include "fit/parallel.h"
 #include "material/scattered_material.h"
 #include "srbf/lobe_mixture.h"
@@ -30,9 +31,9 @@ std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const
   return paths;
 }
 
-/// The model of `fitted`, with its record: errors, albedo, warnings.
-Model reported(const Measurement& measurement, const FittedSlices& fitted, const FitOptions& options,
-               Progress& progress) {
+/// The model of `fitted`, which is `all` or a part of it, with its record: errors, albedo, order, warnings.
+Model reported(const Measurement& measurement, const FittedSlices& all, const FittedSlices& fitted,
+               const FitOptions& options, Progress& progress) {
   const auto brdf = assemble(fitted, measurement.isotropic(), options);
   std::vector<FittedView> views;
   for (size_t i = 0; i < fitted.slices.size(); ++i) {
@@ -40,6 +41,7 @@ Model reported(const Measurement& measurement, const FittedSlices& fitted, const
   }
   Model model;
   model.fit = report_fit(measurement, *make_scattered_material(brdf, 0), options, views, progress);
+  model.fit.order = order_of_slices(all, fitted, options.tolerance);
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
   return model;
@@ -57,7 +59,7 @@ Model bounded_model(const Measurement& measurement, const FittedSlices& all, con
   for (uint64_t budget = std::max(kViewBytes, std::min(options.max_bytes, whole));;) {
     progress.check();
     const FittedSlices fitted = within(budget, all, measurement.isotropic(), options);
-    Model model = reported(measurement, fitted, options, progress);
+    Model model = reported(measurement, all, fitted, options, progress);
     if (budget < whole) {
       model.fit.warnings.push_back("the bound of " + std::to_string(options.max_bytes) + " bytes leaves " +
                                    std::to_string(fitted.slices.size()) + " views and " +
@@ -90,7 +92,7 @@ Model fit_scattered(const Measurement& measurement, const FitOptions& options, P
 
   progress.stage("checking", 0.95, 1.0);
   Model model = options.max_bytes > 0 ? bounded_model(measurement, fitted, options, progress)
-                                      : reported(measurement, fitted, options, progress);
+                                      : reported(measurement, fitted, fitted, options, progress);
   model.fit.warnings.insert(model.fit.warnings.end(), warnings.begin(), warnings.end());
   progress.check();
   progress.update(1.0);

@@ -17,13 +17,19 @@ constexpr double kGrowthLeast = 3e-3;
 constexpr int kPolishSteps = 80, kRounds = 4, kRoundSteps = 8;
 constexpr double kPolishLeast = 3e-4;
 
-OrderStep order_step(const TrackedProblem& problem, const TrackedLobes& lobes) {
-  OrderStep step{lobes.model.lobe_count(), 0, 0};
+OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes) {
+  OrderPoint point;
+  point.lobes = lobes.model.lobe_count();
+  point.parameter_bytes =
+      ParametricBrdf::parameter_bytes(static_cast<uint64_t>(lobes.x.size()), lobes.model.space.size());
+  double weight = 0;
   for (const TrackedView& v : problem.views()) {
-    step.worst = std::max(step.worst, v.error / v.goal);
-    step.mean += v.error / static_cast<double>(problem.views().size());
+    point.worst = std::max(point.worst, v.error / v.goal);
+    point.relative_l2 += v.wv.z * v.error;
+    weight += v.wv.z;
   }
-  return step;
+  point.relative_l2 /= std::max(weight, 1e-12);
+  return point;
 }
 
 /// Views that are far from their goal count more from now on.
@@ -83,7 +89,7 @@ TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFi
   lobes.model.cells = options.cells;
   lobes.cost = problem.evaluate(lobes.model, lobes.x);
   while (lobes.model.lobe_count() < options.max_lobes && grow(problem, lobes)) {
-    fit.order.push_back(order_step(problem, lobes));
+    fit.order.points.push_back(order_point(problem, lobes));
     progress.update(static_cast<double>(lobes.model.lobe_count()) / options.max_lobes);
   }
   if (lobes.model.lobe_count() > 0) {
@@ -93,7 +99,9 @@ TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFi
       refine(problem, lobes, kRoundSteps, kPolishLeast);
     }
     round_to_half(problem, lobes);
-    fit.order.push_back(order_step(problem, lobes));
+    // What the growth ends with takes the place of its last point.
+    fit.order.points.back() = order_point(problem, lobes);
+    fit.order.chosen = fit.order.points.size() - 1;
   }
   fit.brdf = lobes.model;
   for (const double v : lobes.x) fit.brdf.control.push_back(static_cast<float>(v));

@@ -6,6 +6,7 @@
 #include "brdf/parametric_brdf.h"
 #include "fit/slice_sampling.h"
 #include "job/progress.h"
+#include "model/order_curve.h"
 
 namespace velour {
 
@@ -17,18 +18,11 @@ struct TrackedFitOptions {
   int threads = 0;
 };
 
-/// One step of the growth.
-struct OrderStep {
-  int lobes = 0;
-  double worst = 0;  // largest error over its tolerance of any view
-  double mean = 0;   // mean error of the views
-};
-
 struct TrackedFit {
   ParametricBrdf brdf;  // control values are half floats
   std::vector<Vec3d> views;
   std::vector<double> error;  // relative L2 of each view, channels weighted as in luminance
-  std::vector<OrderStep> order;
+  OrderCurve order;           // the growth, and what it became
 };
 
 TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);

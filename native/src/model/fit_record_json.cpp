@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "job/error.h"
+#include "model/order_json.h"
 
 namespace velour {
 namespace {
@@ -57,6 +58,9 @@ class Reader {
       out.push_back(sentence.get<std::string>());
     }
   }
+  void order(const char* key, OrderCurve& out) const {
+    if (const Json* v = find(key)) out = parse_order(*v, where_ + ": '" + key + "'");
+  }
 
  private:
   const Json* find(const char* key) const {
@@ -78,17 +82,16 @@ class Reader {
 }  // namespace
 
 std::string fit_record_json(const FitRecord& record) {
-  const Json json = {{"relative_l2", record.relative_l2},
-                     {"by_view_angle", errors_json(record.by_view_angle)},
-                     {"albedo_by_view_angle", errors_json(record.albedo_by_view_angle)},
-                     {"albedo_max", record.albedo_max},
-                     {"reciprocity", record.reciprocity},
-                     {"measured_reciprocity", number_json(record.measured_reciprocity)},
-                     {"tolerance", record.tolerance},
-                     {"seconds", record.seconds},
-                     {"seed", record.seed},
-                     {"all_data", record.all_data},
-                     {"warnings", record.warnings}};
+  Json json = {{"relative_l2", record.relative_l2},
+               {"by_view_angle", errors_json(record.by_view_angle)},
+               {"albedo_by_view_angle", errors_json(record.albedo_by_view_angle)},
+               {"albedo_max", record.albedo_max},
+               {"tolerance", record.tolerance},
+               {"seconds", record.seconds},
+               {"seed", record.seed},
+               {"all_data", record.all_data},
+               {"warnings", record.warnings}};
+  if (!record.order.points.empty()) json["order"] = order_json(record.order);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -108,6 +111,7 @@ FitRecord parse_fit_record(const std::string& text, const std::string& where) {
   reader.integer("seed", record.seed);
   reader.boolean("all_data", record.all_data);
   reader.sentences("warnings", record.warnings);
+  reader.order("order", record.order);
   return record;
 }
 

@@ -7,7 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include "brdf/parametric_brdf.h"
 #include "brdf/scattered_brdf.h"
+#include "model/order_curve.h"
 
 namespace velour {
 
@@ -25,7 +27,8 @@ struct FitRecord {
   double tolerance = 0;
   double seconds = 0;  // wall clock of the fit
   uint64_t seed = 0;
-  bool all_data = false;              // fitted without holding anything out
+  bool all_data = false;  // fitted without holding anything out
+  OrderCurve order;
   std::vector<std::string> warnings;  // sentences
 };
 
@@ -35,7 +38,7 @@ struct SourceRecord {
 };
 
 /// Kinds of model; a new kind is appended.
-using ModelBody = std::variant<ScatteredBrdf>;
+using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf>;
 
 struct Model {
   ModelBody body;
@@ -43,7 +46,7 @@ struct Model {
   SourceRecord source;
 };
 
-/// "scattered", ...
+/// "scattered", "parametric".
 const char* model_kind(const Model& model);
 
 }  // namespace velour
