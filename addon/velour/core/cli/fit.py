@@ -18,6 +18,8 @@ KEYS = (
     "warnings",
 )
 
+MODELS = ("scattered",)  # that this version fits
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("input", metavar="INPUT", help="a measurement")
@@ -41,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> dict:
-    later.only("--model", args.model, ("scattered",))
+    later.only("--model", args.model, MODELS)
     output.check_writable(args.output)
     with Measurement.load(args.input) as measurement, fit_job(measurement, **_options(args)) as job:
         report = job.run(output.progress_of(args))
