@@ -1,4 +1,4 @@
-"""The fits, comparisons and measured costs behind docs/models.md, each kept under a key of all it depends on."""
+"""Fits, comparisons and measured costs behind docs/models.md, kept under a key of all they depend on."""
 
 from __future__ import annotations
 
@@ -50,7 +50,8 @@ class Result:
 
 class ModelRuns:
     def __init__(self, renders: Renders):
-        self._kept, self._settings = renders, renders.settings
+        self._kept = renders
+        self._common = {"seed": renders.settings.seed, "threads": renders.settings.threads}
 
     def announce(self, materials: int, points: int) -> None:
         self._kept.progress.expect(1, 1 + materials * (2 + len(MODELS) * (points + 2) + 2 * len(PEERS)))
@@ -95,8 +96,8 @@ class ModelRuns:
 
     def _parameters(self, measurement: Path, model: str, bounds: dict) -> dict:
         tolerance = _UNBOUND if "max-lobes" in bounds else TOLERANCE
-        own = {"model": model, "tolerance": tolerance, **bounds}
-        return {"measurement": measurement, **own, "seed": self._settings.seed, "threads": self._settings.threads}
+        own = {"measurement": measurement, "model": model, "tolerance": tolerance, **bounds}
+        return {**own, **self._common}
 
     def _path(self, measurement: Path, model: str, bounds: dict) -> Path:
         return self._kept.stem("fit", self._parameters(measurement, model, bounds)).with_suffix(".velour")
@@ -120,8 +121,7 @@ class ModelRuns:
         return self._keep(f"{model} fit of {name}{bound}", "fit", parameters, run)
 
     def _unturned(self, name: str, measurement: Path) -> dict:
-        options = {"tolerance": TOLERANCE, "align_views": 0}
-        options |= {"seed": self._settings.seed, "threads": self._settings.threads}
+        options = {"tolerance": TOLERANCE, "align_views": 0, **self._common}
 
         def run(report: Path) -> dict:
             with Measurement.load(measurement) as source, fit_job(source, **options) as job:
@@ -132,6 +132,10 @@ class ModelRuns:
         return self._keep(f"unturned fit of {name}", "unturned", {"measurement": measurement, **options}, run)
 
     def _cost(self, name: str, file: Path | str, peer: str = "") -> dict:
+        """Nanoseconds; nothing where the program is not built."""
+        if not _PROGRAM.is_file():
+            return {}
+
         def run(report: Path) -> dict:
             command = [_PROGRAM, file, *([peer] if peer else [])]
             found = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)

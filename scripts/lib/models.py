@@ -26,7 +26,7 @@ class Extent:
     bytes: tuple[int, ...] = (4000, 6000, 8000, 12000, 16000, 24000, 32000)
 
 
-QUICK = Extent(2, (1, 4), (4000, 8000))
+QUICK = Extent(1, (1, 4), (2000, 8000))
 
 
 def main() -> int:

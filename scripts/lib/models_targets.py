@@ -16,7 +16,9 @@ def meets(angle: str, error: float, noise: Mapping[str, float | None]) -> bool:
     return error <= target(angle, noise[angle])
 
 
-def met(errors: Mapping[str, float | None], noise: Mapping[str, float | None]) -> tuple[int, int]:
-    """Views that meet their target, of the views that the measurement covers."""
-    covered = [(angle, error) for angle, error in errors.items() if error is not None]
-    return sum(meets(angle, error, noise) for angle, error in covered), len(covered)
+def met(errors: Mapping[str, float | None], noise: Mapping[str, float | None]) -> int:
+    """How many views meet their target."""
+    return sum(meets(angle, error, noise) for angle, error in errors.items() if error is not None)
+
+
+NO_NOISE = dict.fromkeys(ANGLES)

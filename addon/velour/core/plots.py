@@ -77,7 +77,7 @@ def errors_by_size(
     size: str,
     tolerance: float,
 ) -> None:
-    """A panel a material, four in a row; in each one curve a model: (size, relative L2), both axes logarithmic."""
+    """A panel a material, four in a row; a curve a model: (size, relative L2), both axes logarithmic."""
     columns = min(4, len(panels))
     rows = -(-len(panels) // columns)
     figure, axes = _pyplot().subplots(

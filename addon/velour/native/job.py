@@ -147,7 +147,7 @@ def compare_job(measurement: Measurement, model: Model) -> Job:
 
 
 def compare_peer_job(measurement: Measurement, peer: str) -> Job:
-    """The same errors of the analytic material ("ggx", "principled") that suits it best, and its parameters."""
+    """The same errors of the `peer` (table.PEERS) that suits it best, and its parameters."""
     number = choice("peer", peer, table.PEERS)
     return Job._create("vlr_compare_peer_create_job", measurement.pointer, number)
 
