@@ -10,16 +10,19 @@ namespace {
 
 constexpr size_t kRoughnesses = 8;
 
-/// kRoughnesses of one kind, then the next kind.
+PrincipledParameters kind(float metallic, float tint, float coat, float coat_roughness) {
+  return {.metallic = metallic, .specular_tint = Rgb(tint), .coat = coat, .coat_roughness = coat_roughness};
+}
+
+/// kRoughnesses of one kind, then the next kind. At the ends of the ranges, and between them: a weight of 0 hides the
+/// parameters of what it weighs, and some descents get stuck there.
 std::vector<PrincipledParameters> starts() {
-  constexpr PrincipledParameters kKinds[] = {{.metallic = 0},
-                                             {.metallic = 0, .coat = 1, .coat_roughness = 0.1f},
-                                             {.metallic = 0, .coat = 1, .coat_roughness = 0.3f},
-                                             {.metallic = 1},
-                                             {.metallic = 1, .coat = 1, .coat_roughness = 0.1f},
-                                             {.metallic = 1, .coat = 1, .coat_roughness = 0.3f}};
+  const PrincipledParameters kinds[] = {kind(0, 1, 0, 0.1f),           kind(0, 1, 1, 0.3f),
+                                        kind(1, 1, 0, 0.1f),           kind(1, 1, 0.5f, 0.15f),
+                                        kind(0.3f, 0.5f, 0.3f, 0.3f),  kind(0.3f, 0.5f, 0.5f, 0.5f),
+                                        kind(0.7f, 0.5f, 0.05f, 0.1f), kind(0.7f, 0.5f, 0.3f, 0.3f)};
   std::vector<PrincipledParameters> out;
-  for (PrincipledParameters p : kKinds) {
+  for (PrincipledParameters p : kinds) {
     for (size_t i = 0; i < kRoughnesses; ++i) {
       p.roughness = 0.08f * std::pow(1 / 0.08f, static_cast<float>(i) / (kRoughnesses - 1));
       out.push_back(p);

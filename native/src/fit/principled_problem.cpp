@@ -52,20 +52,19 @@ double PrincipledProblem::cost(const PrincipledParameters& p) const {
 
 PrincipledParameters PrincipledProblem::completed(const PrincipledParameters& start) const {
   const std::vector<Parts> f = parts(PrincipledLobes(start));
-  Vec3d bottom(0), top(0);
-  for (size_t i = 0; i < f.size(); ++i) {
-    const PairSample& s = samples_[i];
-    const Vec3d y(s.f_cos), weight = static_cast<double>(s.weight) / (y + Vec3d(floor_));
-    // Without a tint the value is linear in the base colour.
-    const double black = PrincipledLobes::value(f[i], 0, 1) * s.w.wl.z;
-    const double tinted = PrincipledLobes::value(f[i], 1, 1) * s.w.wl.z - black;
-    top += weight * tinted * (y - black);
-    bottom += weight * tinted * tinted;
-  }
   PrincipledParameters p = start;
-  p.specular_tint = Rgb(1);
   for (int c = 0; c < 3; ++c) {
-    p.base_color[c] = bottom[c] > 0 ? std::clamp(static_cast<float>(top[c] / bottom[c]), 0.0f, 1.0f) : 0.5f;
+    double top = 0, bottom = 0;
+    for (size_t i = 0; i < f.size(); ++i) {
+      const PairSample& s = samples_[i];
+      // Linear in the base colour but where a strong tint has been clamped.
+      const float black = PrincipledLobes::value(f[i], 0, p.specular_tint[c]);
+      const double tinted = (PrincipledLobes::value(f[i], 1, p.specular_tint[c]) - black) * s.w.wl.z;
+      const double weight = s.weight / (s.f_cos[c] + floor_);  // g'(y)^2 but for a factor
+      top += weight * tinted * (s.f_cos[c] - black * s.w.wl.z);
+      bottom += weight * tinted * tinted;
+    }
+    p.base_color[c] = bottom > 0 ? std::clamp(static_cast<float>(top / bottom), 0.0f, 1.0f) : 0.5f;
   }
   return p;
 }
