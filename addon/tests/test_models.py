@@ -82,11 +82,12 @@ def test_tables_name_every_material_and_model(results):
 
 def test_pages_and_rows_are_written(results, tmp_path):
     (tmp_path / "models").mkdir()
-    conditions = {"machine": "m", "date": "d", "commit": "c", "seed": 1, "threads": 2}
+    conditions = {"machine": "m", "date": "d", "commit": "c", "seed": 1, "threads": 2, "load": 1.25}
     models_text.write(ROOT / "docs", tmp_path, results, {}, conditions)
     page = (tmp_path / "models.md").read_text(encoding="utf-8")
     assert "| scattered | 0.0200 | 6 of 8 | 4 | 44 | 2.00 | 50 | 100 | 10 | 20 |" in page
     assert "commit c" in page
+    assert "other programs kept 1.2 processors busy" in page
     with open(tmp_path / "models/models.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert {row["model"] for row in rows if row["material"] == "paper"} == {

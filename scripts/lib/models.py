@@ -12,6 +12,7 @@ import data_files
 import model_runs
 import models_plot
 import models_text
+import provenance
 import script
 from renders import Settings
 from velour_cli import ROOT
@@ -32,6 +33,7 @@ QUICK = Extent(1, (1, 4), (2000, 8000))
 def main() -> int:
     args = script.arguments("models", ROOT / "docs")
     extent = QUICK if args.quick else Extent()
+    load = provenance.busy_threads()
     run = script.start(args, Settings(args.work / "kept", (0, 0), args.threads, args.seed))
     subjects = _subjects(run.data)[: extent.materials]
     runs = model_runs.ModelRuns(run.renders)
@@ -39,7 +41,7 @@ def main() -> int:
     results = [runs.result(name, path, extent) for name, path in subjects]
     floor = runs.floor()
     models_plot.draw(args.output / "models", results)
-    models_text.write(ROOT / "docs", args.output, results, floor, run.conditions)
+    models_text.write(ROOT / "docs", args.output, results, floor, {**run.conditions, "load": load})
     print(args.output / "models.md")
     return 0
 

@@ -56,10 +56,12 @@ at grazing angles, which the stand-ins of metals do not show: hence its errors a
 {models_tables.errors(results)}
 ## Size, fit, evaluation
 
-Bytes of the file, and of the parameters alone: a peer has no file. Seconds of the fit, from the loaded
-measurement. Nanoseconds on one core, random views and lights, everything in cache, the least of many runs:
-`f`, one view and one light a call; `sample, pdf`, one direction drawn at one view, with its density and f;
-`16`: one view with 16 lights, or 16 directions drawn, a call, per light. {_floor(floor)}
+Bytes of the file, and of the parameters alone: a peer has no file. Seconds of the fit, without
+reading the measurement{_neighbors(conditions["load"])}.
+
+Nanoseconds on one core, random views and lights, everything in cache, the least of many runs: `f`, one
+view and one light a call; `sample, pdf`, one direction drawn at one view, with its density and f; `16`: one
+view with 16 lights, or 16 directions drawn, a call, per light. {_floor(floor)}
 A measurement's table of many megabytes is in cache only where it was just asked.
 
 {models_tables.costs(results)}
@@ -78,6 +80,12 @@ are left out. Peers by their parameters alone.
 
 ![Error against bytes](models/error_by_bytes.png)
 """
+
+
+def _neighbors(load: float) -> str:
+    if load < 0.2:
+        return ""
+    return f"; **other programs kept {load:.1f} processors busy**, so they are too many"
 
 
 def _floor(floor: dict) -> str:
