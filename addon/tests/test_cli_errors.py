@@ -26,6 +26,7 @@ RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-
         ["fit", "x", "-o", "y", "--tolerance", "nan"],
         ["fit", "x", "-o", "y", "--max-lobes", "0"],
         ["fit", "x", "-o", "y", "--kernel", "box"],
+        ["fit", "x", "-o", "y", "--model", "box"],
         ["fit", "x", "-o", "y", "--tol", "0.1"],
         ["compare", "x"],
         ["compare", "x", "y", "--ggx"],
@@ -46,7 +47,6 @@ def test_wrong_usage_is_2(arguments):
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (["fit", "x", "-o", "y", "--model", "parametric"], "parametric"),
         (["fit", "x", "-o", "y", "--for-scene", "s.json"], "--for-scene"),
         ([*RENDER, "--texture-scale", "2"], "--texture-scale"),
         (["capture", "weave", "-o", "f"], "weave"),

@@ -17,9 +17,13 @@ FIT_KEYS = [
     "relative_l2",
     "by_view_angle",
     "albedo_max",
+    "reciprocity",
+    "measured_reciprocity",
     "warnings",
+    "order",
 ]
-COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples"]
+ORDER_KEYS = ["lobes", "parameter_bytes", "worst", "relative_l2", "chosen"]
+COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views"]
 RENDER_KEYS = [
     "seconds",
     "rays",
@@ -104,13 +108,37 @@ def test_compare_with_the_closest_principled_material(measurement_file):
 
 def test_fit_options_reach_the_model(measurement_file, tmp_path):
     path = tmp_path / "m.velour"
-    options = ["--kernel", "abel-poisson", "--max-lobes", 1, "--tolerance", 0.5, "--all-data", "--seed", 9]
-    assert velour("fit", measurement_file, "-o", path, *options).status == 0
+    options = ["--model", "scattered", "--kernel", "abel-poisson", "--max-lobes", 1, "--tolerance", 0.5]
+    assert velour("fit", measurement_file, "-o", path, *options, "--all-data", "--seed", 9).status == 0
     with Model.load(path) as model:
         info = model.info()
     assert info["kernel"] == "abel-poisson"
     assert info["max_lobes_per_view"] == 1
     assert (info["tolerance"], info["all_data"], info["seed"]) == (0.5, True, 9)
+
+
+@pytest.mark.parametrize("kind", table.MODELS)
+def test_a_fit_reports_its_error_against_lobes(measurement_file, tmp_path, kind):
+    path = tmp_path / "m.velour"
+    report = velour("fit", measurement_file, "-o", path, "--model", kind, "--max-lobes", 5, "--json").json
+    order = report["order"]
+    assert list(order) == ORDER_KEYS
+    columns = [order[key] for key in ORDER_KEYS[:-1]]
+    assert len(columns[0]) > 1
+    assert {len(column) for column in columns} == {len(columns[0])}
+    assert order["lobes"] == sorted(order["lobes"])
+    assert order["parameter_bytes"][order["chosen"]] == report["parameter_bytes"]
+    info = velour("info", path, "--json").json
+    assert (info["model"], info["order"]) == (kind, order)
+
+
+def test_parametric_models_have_gaussian_lobes_only(measurement_file, tmp_path):
+    path = tmp_path / "m.velour"
+    arguments = ["fit", measurement_file, "-o", path, "--model", "parametric", "--kernel", "abel-poisson"]
+    result = velour(*arguments)
+    assert result.status == 1
+    assert "Gaussian" in result.err
+    assert not path.exists()
 
 
 def test_views_that_miss_the_tolerance_are_warned_of_on_stderr(measurement_file, tmp_path):

@@ -64,7 +64,7 @@ def _model(name: str, lobes: int) -> Path:
 def _fit(path: Path, lobes: int = LOBES[-1]) -> dict:
     print(f"fitting {path.stem}, {lobes} lobes ...", flush=True)
     options = ["--tolerance", TOLERANCE, "--max-lobes", lobes, "--seed", SEED, "--threads", THREADS]
-    return velour("fit", path, "-o", _model(path.stem, lobes), *options)
+    return velour("fit", path, "-o", _model(path.stem, lobes), "--model", "scattered", *options)
 
 
 def _main_render(scene: list) -> dict:

@@ -10,10 +10,10 @@ from pathlib import Path
 
 from renders import Renders, flags
 from velour.core import files
-from velour.core.cli.fit import MODELS
 from velour.native import Measurement, fit_job, table
 from velour_cli import ROOT, velour, velour_to_file
 
+MODELS = table.MODELS
 PEERS = table.PEERS
 TOLERANCE = 0.02
 _PROGRAM = ROOT / "build/release/native/bench/evaluation_cost"
@@ -121,7 +121,7 @@ class ModelRuns:
         return self._keep(f"{model} fit of {name}{bound}", "fit", parameters, run)
 
     def _unturned(self, name: str, measurement: Path) -> dict:
-        options = {"tolerance": TOLERANCE, "align_views": 0, **self._common}
+        options = {"model": "scattered", "tolerance": TOLERANCE, "align_views": 0, **self._common}
 
         def run(report: Path) -> dict:
             with Measurement.load(measurement) as source, fit_job(source, **options) as job:

@@ -78,7 +78,8 @@ def main() -> int:
 def _fit(measurement: Path, lobes: int) -> Path:
     model = WORK / f"{MATERIAL}-{lobes}.velour"
     print(f"fitting {lobes} lobes ...", flush=True)
-    velour("fit", measurement, "-o", model, "--max-lobes", lobes, "--tolerance", 1e-6, "--seed", SEED)
+    options = ["--model", "scattered", "--max-lobes", lobes, "--tolerance", 1e-6, "--seed", SEED]
+    velour("fit", measurement, "-o", model, *options)
     return model
 
 

@@ -94,7 +94,9 @@ class Renders:
         out = self.stem("fit", parameters).with_suffix(".velour")
 
         def run(report: Path) -> dict:
-            return velour_to_file(report, "fit", measurement, "-o", out, *flags(options))
+            return velour_to_file(
+                report, "fit", measurement, "-o", out, "--model", "scattered", *flags(options)
+            )
 
         return out, self.keep(f"fit of {measurement.stem}", "fit", parameters, run)
 

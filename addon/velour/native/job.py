@@ -132,11 +132,13 @@ class Job(Handle):
 
 
 def fit_job(measurement: Measurement, **options) -> Job:
-    """Options: kernel ("gaussian", "abel-poisson"), tolerance, max_lobes, threads, max_bytes, seed, all_data,
-    align_views. What is not given has the library's default. Result: result_model()."""
+    """Options: model ("scattered", "parametric"), kernel (scattered: "gaussian", "abel-poisson"), tolerance,
+    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered). What is not given has the
+    library's default. Result: result_model()."""
     raw = _defaults(table.FitOptions, "vlr_fit_options_init")
-    if "kernel" in options:
-        options["kernel"] = choice("kernel", options["kernel"], table.KERNELS)
+    enums = {"model": table.MODELS, "kernel": table.KERNELS}
+    for name in enums.keys() & options.keys():
+        options[name] = choice(name, options[name], enums[name])
     set_fields(raw, options)
     return Job._create("vlr_fit_create_job", measurement.pointer, ctypes.byref(raw))
 

@@ -38,7 +38,7 @@ class Model(Handle):
         self._lib.vlr_model_save(self.pointer, path_bytes(path))
 
     def info(self) -> dict:
-        """kind, model, kernel, views, lobes, bytes, relative_l2, by_view_angle, warnings, source, ..."""
+        """kind, model, kernel, lobes, bytes, relative_l2, by_view_angle, warnings, order, source, ..."""
         return json_of(self._lib.vlr_model_info_json, self.pointer)
 
     def eval(self, wv, wl: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -12,6 +12,7 @@ from .errors import VelourError
 
 JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
+MODELS = ("scattered", "parametric")
 PEERS = ("ggx", "principled")
 LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
@@ -50,6 +51,8 @@ class FitOptions(Struct):
         ("seed", c_uint64),
         ("all_data", c_int32),
         ("align_views", c_int32),
+        ("model", c_int32),
+        ("pad", c_int32),
     ]
 
 

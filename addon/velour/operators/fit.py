@@ -9,9 +9,10 @@ from ..export import ExportError
 from ..export.files import measurement_path
 from ..export.nodes import velour_node
 from ..native import Measurement, VelourError, fit_job
+from ..properties.material_settings import MODELS
 from . import measured
 
-_SETTINGS = ("tolerance", "max_lobes", "kernel", "seed")
+_SETTINGS = ("model", "tolerance", "max_lobes", "kernel", "seed")
 
 
 class VELOUR_OT_fit(bpy.types.Operator):
@@ -22,6 +23,7 @@ class VELOUR_OT_fit(bpy.types.Operator):
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
     # Where given these replace the settings of the material; what is not given stays as it is.
+    model: EnumProperty(name="Model", items=MODELS, default="PARAMETRIC", options={"SKIP_SAVE"})
     tolerance: FloatProperty(name="Tolerance", min=0.0005, max=1.0, default=0.02, options={"SKIP_SAVE"})
     max_lobes: IntProperty(name="Max Lobes", min=1, max=64, default=16, options={"SKIP_SAVE"})
     kernel: EnumProperty(
@@ -97,8 +99,8 @@ class VELOUR_OT_fit(bpy.types.Operator):
                 measurement,
                 tolerance=settings.tolerance,
                 max_lobes=settings.max_lobes,
-                kernel=settings.kernel.lower().replace("_", "-"),
                 seed=settings.seed,
+                **_model_options(settings),
                 all_data=int(settings.use_all_data),
                 threads=context.scene.render.threads,
             ).start()
@@ -151,6 +153,13 @@ class VELOUR_OT_fit(bpy.types.Operator):
             self._timer = None
         if context.workspace:
             context.workspace.status_text_set(None)
+
+
+def _model_options(settings):
+    """A parametric model has Gaussian lobes, whatever kernel the settings keep for a scattered one."""
+    if settings.model == "PARAMETRIC":
+        return {"model": "parametric"}
+    return {"model": "scattered", "kernel": settings.kernel.lower().replace("_", "-")}
 
 
 class VELOUR_OT_cancel_fit(bpy.types.Operator):

@@ -5,6 +5,11 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
+MODELS = (
+    ("SCATTERED", "Scattered", "Lobes of each sampled view direction, mixed between views", 0),
+    ("PARAMETRIC", "Parametric", "Few lobes that change smoothly with the view direction: smallest", 1),
+)
+
 
 class VelourMaterialSettings(bpy.types.PropertyGroup):
     """`node.velour`; the model itself is `node.image`."""
@@ -21,9 +26,16 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         type=bpy.types.Image,
         override=_OVERRIDE,
     )
+    model: EnumProperty(
+        name="Model",
+        description="What the measurement is turned into",
+        items=MODELS,
+        default="PARAMETRIC",
+        override=_OVERRIDE,
+    )
     kernel: EnumProperty(
         name="Kernel",
-        description="The shape of a lobe",
+        description="The shape of a lobe of a scattered model",
         items=(
             ("GAUSSIAN", "Gaussian", "exp(bandwidth (cos - 1)), the von Mises-Fisher shape", 0),
             ("ABEL_POISSON", "Abel-Poisson", "A sharp peak with a long tail", 1),
@@ -45,7 +57,8 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     max_lobes: IntProperty(
         name="Max Lobes",
-        description="Most lobes a view direction; the fit stops earlier where the tolerance is met",
+        description="Most lobes in all; of a scattered model, of a view. The fit stops earlier where"
+        " the tolerance is met",
         default=16,
         min=1,
         max=64,
@@ -53,7 +66,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     neighbors: IntProperty(
         name="Neighbours",
-        description="View directions that are mixed at run time. 0: the model's default",
+        description="View directions of a scattered model that are mixed at run time. 0: the model's default",
         default=0,
         min=0,
         max=16,

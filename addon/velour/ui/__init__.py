@@ -1,6 +1,6 @@
 """Panels and preferences."""
 
-from . import library_state, stock_panels, summaries
+from . import library_state, order_preview, stock_panels, summaries
 from .layer_panel import VELOUR_VIEWLAYER_PT_passes
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
@@ -32,3 +32,4 @@ def attach():
 def detach():
     stock_panels.close_to_engine()
     summaries.forget()
+    order_preview.forget()

@@ -11,6 +11,7 @@ from ..operators.add_material import VELOUR_OT_add_material
 from ..operators.fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.save_model import VELOUR_OT_save_model
+from .order_preview import order_icon
 from .summaries import model_summary
 from .text import draw_sentence
 
@@ -42,15 +43,20 @@ class VELOUR_MATERIAL_PT_measured(_MaterialPanel, bpy.types.Panel):
         settings = node.velour
         layout.template_ID(settings, "measurement", open="image.open", text="Measurement")
         layout.template_ID(node, "image", open="image.open", text="Model")
-        column = layout.column(align=True)
-        column.prop(settings, "tolerance")
-        column.prop(settings, "max_lobes")
-        column.prop(settings, "kernel")
-        column.prop(settings, "use_all_data")
+        _draw_fit_settings(layout.column(align=True), settings)
         _draw_fit(context, layout)
         column = layout.column()
         column.prop(settings, "neighbors")
         column.prop(settings, "use_reference")
+
+
+def _draw_fit_settings(column, settings):
+    column.prop(settings, "model")
+    column.prop(settings, "tolerance")
+    column.prop(settings, "max_lobes")
+    if settings.model == "SCATTERED":
+        column.prop(settings, "kernel")
+    column.prop(settings, "use_all_data")
 
 
 def _draw_fit(context, layout):
@@ -87,6 +93,7 @@ class VELOUR_MATERIAL_PT_model(_MaterialPanel, bpy.types.Panel):
             self.layout.operator(VELOUR_OT_accept_file.bl_idname)
             return
         _draw_numbers(self.layout, info)
+        _draw_order(self.layout, info["order"])
         for warning in info["warnings"]:
             draw_sentence(context, self.layout, warning, icon="INFO")
         self.layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT")
@@ -95,10 +102,12 @@ class VELOUR_MATERIAL_PT_model(_MaterialPanel, bpy.types.Panel):
 def _draw_numbers(layout, info):
     rows = (
         ("Source", info["source"]["name"]),
-        ("Lobes", f"{info['lobes']} over {info['views']} views"),
-        ("Size", f"{info['bytes'] / 1024:.0f} KiB"),
+        ("Model", info["model"].capitalize()),
+        ("Lobes", _lobes(info)),
+        ("Size", f"{info['bytes'] / 1024:.1f} KiB"),
         ("Relative error", _number(info["relative_l2"])),
         ("Largest albedo", _number(info["albedo_max"])),
+        ("Reciprocity error", _number(info["reciprocity"])),
     )
     split = layout.split(factor=0.4)
     names, values = split.column(align=True), split.column(align=True)
@@ -107,6 +116,25 @@ def _draw_numbers(layout, info):
         names.label(text=name)
         values.label(text=value)
     _draw_error_by_angle(layout.box(), info["by_view_angle"])
+
+
+def _lobes(info):
+    if info["model"] == "scattered":
+        return f"{info['lobes']} over {info['views']} views"
+    return f"{info['lobes']} for all views"
+
+
+def _draw_order(layout, order):
+    """The curve with the point that the model is; older models have none."""
+    if not order["lobes"]:
+        return
+    box = layout.box()
+    box.label(text="Error against lobes")
+    box.template_icon(order_icon(order), scale=7.0)
+    chosen = order["chosen"]
+    if chosen is not None:
+        worst, size = _number(order["worst"][chosen]), order["parameter_bytes"][chosen]
+        box.label(text=f"{order['lobes'][chosen]} lobes, {size} bytes: {worst} of the tolerance")
 
 
 def _draw_error_by_angle(box, errors):

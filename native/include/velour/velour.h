@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 2
+#define VLR_ABI_VERSION 3
 
 typedef int32_t vlr_status;
 enum {
@@ -90,9 +90,10 @@ VLR_API void vlr_model_free(vlr_model* model);
 VLR_API vlr_status vlr_model_save(const vlr_model* model, const char* path);
 /* The bytes that vlr_model_save would write; they belong to the handle. */
 VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_t* size);
-/* JSON: kind "model", model "scattered", kernel, isotropic, views, lobes, max_lobes_per_view, bytes, parameter_bytes,
- * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, tolerance, seconds, seed, all_data, warnings,
- * source {name, format, sha256}. */
+/* JSON: kind "model", model "scattered" or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes, relative_l2,
+ * by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds, seed,
+ * all_data, warnings, order (as of a fit), source {name, format, sha256}. Scattered: also views, max_lobes_per_view. Parametric: also cells, spaces {light,
+ * half}, the lobes of each. */
 VLR_API vlr_status vlr_model_info_json(vlr_model* model, const char** json);
 /* As vlr_measurement_eval; also the density of the model's own sampler when `pdf` [count] is not NULL. */
 VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t count, const float* wl, float* f,
@@ -143,24 +144,33 @@ VLR_API void vlr_job_free(vlr_job* job);
 /* ---- fit, compare, capture ----------------------------------------------------------------------------------- */
 
 enum { VLR_KERNEL_GAUSSIAN = 0, VLR_KERNEL_ABEL_POISSON = 1 };
+enum {
+  VLR_MODEL_SCATTERED = 0, /* lobes of each sampled view; views are mixed at run time */
+  VLR_MODEL_PARAMETRIC = 1 /* few lobes for all views, their parameters splines of the view; Gaussian only */
+};
 
 typedef struct vlr_fit_options {
   uint32_t struct_size;
   int32_t kernel;     /* VLR_KERNEL_* */
   double tolerance;   /* relative L2 asked for at every view up to 75 degrees, twice that beyond; 0.02 */
-  uint32_t max_lobes; /* a view; 16 */
+  uint32_t max_lobes; /* scattered: a view; parametric: in all; 16 */
   uint32_t threads;   /* 0: all */
   uint64_t max_bytes; /* of the model file; 0: no bound */
   uint64_t seed;
   int32_t all_data;    /* 1: hold nothing out (production); the model says so */
-  int32_t align_views; /* 1: turn neighbouring slices onto the query's mirror direction before mixing */
+  int32_t align_views; /* scattered, 1: turn neighbouring slices onto the query's mirror direction before mixing */
+  int32_t model;       /* VLR_MODEL_* */
+  int32_t pad;
 } vlr_fit_options;
 VLR_API void vlr_fit_options_init(vlr_fit_options* options);
-/* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, warnings. */
+/* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, reciprocity,
+ * measured_reciprocity, warnings, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the error falls as the model grows.
+ * `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the number of the point that the model
+ * is, or null. */
 VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options,
                                       vlr_job** out);
 
-/* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples. */
+/* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples, narrow_views. */
 VLR_API vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_model* model, vlr_job** out);
 /* Analytic materials to compare with: the GGX lobe over a diffuse base that the strategies `ggx` and `mis-ggx` draw
  * from, and Blender's Principled material. */

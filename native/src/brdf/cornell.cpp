@@ -158,6 +158,12 @@ class ScatteredMeasurement : public TableMeasurement {
     for (size_t i = 0; i < samples_.size(); ++i) {
       if (!held_out_sample(i)) kept.push_back(samples_[i]);
     }
+    if (kept.size() < ScatteredInterpolant::kNeighbours)
+      fail(provenance().path, "has " + std::to_string(samples_.size()) + " valid samples, " +
+                                  std::to_string(kept.size()) +
+                                  " of them left when one in eight is held out to judge the fit; at least " +
+                                  std::to_string(ScatteredInterpolant::kNeighbours) +
+                                  " are needed. Measure more, or fit all data and hold nothing out.");
     return std::make_shared<ScatteredMeasurement>(std::move(kept), provenance(), counts(), details(), progress);
   }
 

@@ -4,8 +4,8 @@
 #include "capi/reports.h"
 #include "capture/microsurface.h"
 #include "fit/compare.h"
+#include "fit/fit_model.h"
 #include "fit/peer.h"
-#include "fit/scattered_fit.h"
 #include "model/model_file.h"
 
 using namespace velour;
@@ -19,9 +19,18 @@ void vlr_fit_options_init(vlr_fit_options* options) {
   options->tolerance = defaults.tolerance;
   options->max_lobes = static_cast<uint32_t>(defaults.max_lobes);
   options->align_views = defaults.align_views ? 1 : 0;
+  options->model = static_cast<int32_t>(kDefaultModelKind);
 }
 
 namespace {
+
+ModelKind kind_of(const vlr_fit_options& given) {
+  if (given.model != VLR_MODEL_SCATTERED && given.model != VLR_MODEL_PARAMETRIC) {
+    throw Error(Status::invalid_argument,
+                "vlr_fit_options.model is " + std::to_string(given.model) + ", not a VLR_MODEL value.");
+  }
+  return static_cast<ModelKind>(given.model);
+}
 
 FitOptions converted(const vlr_fit_options& given) {
   if (given.kernel != VLR_KERNEL_GAUSSIAN && given.kernel != VLR_KERNEL_ABEL_POISSON) {
@@ -60,10 +69,16 @@ vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_
   return guard([&] {
     require(measurement, "measurement");
     require(out, "out");
-    const FitOptions fit = converted(read_options(options, vlr_fit_options_init, "vlr_fit_options"));
+    const auto given = read_options(options, vlr_fit_options_init, "vlr_fit_options");
+    const ModelKind kind = kind_of(given);
+    const FitOptions fit = converted(given);
+    if (kind == ModelKind::parametric && fit.kernel != Kernel::gaussian) {
+      throw Error(Status::invalid_argument,
+                  "Parametric models have Gaussian lobes only: fit a scattered model for other kernels.");
+    }
     auto output = std::make_shared<JobOutput>();
-    *out = new vlr_job(output, [output, fit, source = measurement->measurement](Progress& progress) {
-      auto model = std::make_shared<const Model>(fit_scattered(*source, fit, progress));
+    *out = new vlr_job(output, [output, kind, fit, source = measurement->measurement](Progress& progress) {
+      auto model = std::make_shared<const Model>(fit_model(kind, *source, fit, progress));
       output->set(fit_json(*model, encode_model(*model).size()), model);
     });
   });

@@ -2,8 +2,10 @@
 
 #include <tbb/info.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "model/order_json.h"
 #include "scene/embree_scene.h"
 #include "srbf/simd_target.h"
 #include "velour/version.h"
@@ -17,22 +19,29 @@ using Json = nlohmann::ordered_json;
 /// nlohmann writes NaN as null by itself; bytes that are not UTF-8 (file names) are replaced instead of thrown on.
 std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
 Json by_view_angle(const ErrorByViewAngle& errors) {
   // In the order of the angles, not of their texts.
   Json json = Json::object();
   for (const char* angle : {"5", "30", "60", "75", "85"}) {
     const auto found = errors.find(angle);
-    json[angle] = found != errors.end() && found->second ? Json(*found->second) : Json(nullptr);
+    json[angle] = found != errors.end() ? or_null(found->second) : Json(nullptr);
   }
   return json;
 }
 
+Json narrow_views(const Comparison& comparison) {
+  Json json = Json::array();
+  for (const auto& [degrees, share] : comparison.narrow_views) json.push_back(degrees);
+  return json;
+}
+
 Json errors_of(const Comparison& comparison) {
-  return {{"relative_l2", comparison.relative_l2},
-          {"by_view_angle", by_view_angle(comparison.by_view_angle)},
-          {"log_rms", comparison.log_rms},
-          {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
-          {"samples", comparison.samples}};
+  return {
+      {"relative_l2", comparison.relative_l2}, {"by_view_angle", by_view_angle(comparison.by_view_angle)},
+      {"log_rms", comparison.log_rms},         {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
+      {"samples", comparison.samples},         {"narrow_views", narrow_views(comparison)}};
 }
 
 Json colour(const Rgb& c) { return {c.r, c.g, c.b}; }
@@ -56,9 +65,28 @@ Json peer_of(const PrincipledParameters& p) {
             {"coat_roughness", p.coat_roughness}}}};
 }
 
-Json lobe_counts(const Model& model, uint64_t file_bytes) {
-  const auto& brdf = std::get<ScatteredBrdf>(model.body);
-  return {{"lobes", brdf.lobe_count()}, {"bytes", file_bytes}, {"parameter_bytes", brdf.parameter_bytes()}};
+Json size_json(const Model& model, uint64_t file_bytes) {
+  return std::visit(
+      [&](const auto& brdf) {
+        return Json{{"lobes", brdf.lobe_count()}, {"bytes", file_bytes}, {"parameter_bytes", brdf.parameter_bytes()}};
+      },
+      model.body);
+}
+
+/// What only one kind of model has to say.
+Json own_json(const ScatteredBrdf& brdf) {
+  return {{"kernel", kernel_name(brdf.kernel)},
+          {"isotropic", brdf.isotropic},
+          {"views", brdf.views.size()},
+          {"max_lobes_per_view", brdf.max_lobes_per_view()}};
+}
+
+Json own_json(const ParametricBrdf& brdf) {
+  const auto half = std::count(brdf.space.begin(), brdf.space.end(), LobeSpace::half);
+  return {{"kernel", kernel_name(Kernel::gaussian)},
+          {"isotropic", brdf.isotropic},
+          {"cells", brdf.cells},
+          {"spaces", {{"light", brdf.lobe_count() - half}, {"half", half}}}};
 }
 
 }  // namespace
@@ -97,36 +125,37 @@ std::string measurement_json(const Measurement& measurement) {
 }
 
 std::string model_json(const Model& model, uint64_t file_bytes) {
-  const auto& brdf = std::get<ScatteredBrdf>(model.body);
   const FitRecord& fit = model.fit;
-  Json json = {{"kind", "model"},
-               {"model", model_kind(model)},
-               {"kernel", kernel_name(brdf.kernel)},
-               {"isotropic", brdf.isotropic},
-               {"views", brdf.views.size()},
-               {"max_lobes_per_view", brdf.max_lobes_per_view()}};
-  json.update(lobe_counts(model, file_bytes));
+  Json json = {{"kind", "model"}, {"model", model_kind(model)}};
+  json.update(std::visit([](const auto& brdf) { return own_json(brdf); }, model.body));
+  json.update(size_json(model, file_bytes));
   json.update(Json{
       {"relative_l2", fit.relative_l2},
       {"by_view_angle", by_view_angle(fit.by_view_angle)},
       {"albedo_by_view_angle", by_view_angle(fit.albedo_by_view_angle)},
       {"albedo_max", fit.albedo_max},
+      {"reciprocity", fit.reciprocity},
+      {"measured_reciprocity", or_null(fit.measured_reciprocity)},
       {"tolerance", fit.tolerance},
       {"seconds", fit.seconds},
       {"seed", fit.seed},
       {"all_data", fit.all_data},
       {"warnings", fit.warnings},
+      {"order", order_json(fit.order)},
       {"source", {{"name", model.source.name}, {"format", model.source.format}, {"sha256", model.source.sha256}}}});
   return text(json);
 }
 
 std::string fit_json(const Model& model, uint64_t file_bytes) {
-  Json json = lobe_counts(model, file_bytes);
+  Json json = size_json(model, file_bytes);
   json.update(Json{{"seconds", model.fit.seconds},
                    {"relative_l2", model.fit.relative_l2},
                    {"by_view_angle", by_view_angle(model.fit.by_view_angle)},
                    {"albedo_max", model.fit.albedo_max},
-                   {"warnings", model.fit.warnings}});
+                   {"reciprocity", model.fit.reciprocity},
+                   {"measured_reciprocity", or_null(model.fit.measured_reciprocity)},
+                                      {"warnings", model.fit.warnings},
+                   {"order", order_json(model.fit.order)}});
   return text(json);
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "brdf/held_out.h"
+#include "fit/close_lights.h"
 #include "fit/evaluate.h"
 #include "fit/noise.h"
 #include "fit/view_error.h"
@@ -14,18 +15,22 @@ namespace velour {
 namespace {
 
 constexpr int kLights = 4096;
+constexpr uint64_t kLeastLights = 64;  // fewer tell nothing of a view
+// Lights that see less than a half or more than twice the energy miss a highlight or take one direction for all of it;
+// where fewer than two carry what is seen, the error is that of one direction.
+constexpr double kEnergyFactor = 2, kLeastCarriers = 2;
 
 std::string key_of(int degrees) { return std::to_string(degrees); }
 
 /// Errors of one reported view, one entry an azimuth.
 using AzimuthErrors = std::vector<ViewError>;
 
-/// Mean over the azimuths that hold data; nothing when none does.
-std::optional<double> mean_error(const AzimuthErrors& errors) {
+/// Mean over the azimuths that hold at least `least` directions; nothing when none does.
+std::optional<double> mean_error(const AzimuthErrors& errors, uint64_t least) {
   double sum = 0;
   int covered = 0;
   for (const ViewError& e : errors) {
-    if (e.count() == 0) continue;
+    if (e.count() < least) continue;
     sum += e.relative_l2();
     ++covered;
   }
@@ -33,26 +38,40 @@ std::optional<double> mean_error(const AzimuthErrors& errors) {
 }
 
 ViewError error_of_view(const Measurement& measurement, const Material& material, const Vec3& wv,
-                        std::span<const Vec3> lights, Progress& progress) {
-  std::vector<Rgb> measured(lights.size()), model(lights.size());
-  std::vector<uint8_t> valid(lights.size());
-  measurement.eval(wv, lights, measured, valid);
+                        const WeightedLights& lights, Progress& progress) {
+  const size_t n = lights.wl.size();
+  std::vector<Rgb> measured(n), model(n);
+  std::vector<uint8_t> valid(n);
+  measurement.eval(wv, lights.wl, measured, valid);
   progress.check();
-  evaluate(material, wv, lights, model);
+  evaluate(material, wv, lights.wl, model);
   ViewError error;
-  for (size_t i = 0; i < lights.size(); ++i) {
-    if (valid[i]) error.add(2 * kPiD / kLights, measured[i], model[i], lights[i].z);
+  for (size_t i = 0; i < n; ++i) {
+    if (valid[i]) error.add(lights.weight[i], measured[i], model[i], lights.wl[i].z);
   }
   return error;
 }
 
-AzimuthErrors table_errors(const Measurement& measurement, const Material& material, int degrees, Progress& progress) {
-  const std::vector<Vec3> lights = hemisphere_fibonacci(kLights);
-  AzimuthErrors errors;
+/// Errors of one reported view on the even lights, or on close ones where those see another energy. `out` takes the
+/// shares of lights and of energy.
+AzimuthErrors table_errors(const Measurement& measurement, const Material& material, int degrees, Progress& progress,
+                           Comparison& out) {
+  const WeightedLights even{hemisphere_fibonacci(kLights), std::vector<double>(kLights, 2 * kPiD / kLights)};
+  AzimuthErrors errors, close_errors;
+  double seen = 0, energy = 0, covered = 0, carriers = kLights;
   for (const Vec3& wv : reported_views(degrees, measurement.isotropic())) {
-    errors.push_back(error_of_view(measurement, material, wv, lights, progress));
+    errors.push_back(error_of_view(measurement, material, wv, even, progress));
+    close_errors.push_back(error_of_view(measurement, material, wv, close_lights(wv), progress));
+    covered += static_cast<double>(errors.back().count()) / kLights;
+    seen += errors.back().energy();
+    carriers = std::min(carriers, errors.back().carriers());
+    energy += close_errors.back().energy();
   }
-  return errors;
+  out.covered_share[degrees] = covered / static_cast<double>(errors.size());
+  const bool even_see_all = seen * kEnergyFactor >= energy && seen <= kEnergyFactor * energy;
+  if (energy == 0 || (even_see_all && carriers >= kLeastCarriers)) return errors;
+  out.narrow_views[degrees] = seen / energy;
+  return close_errors;
 }
 
 AzimuthErrors sample_errors(const Measurement& measurement, const Material& material, int degrees, Progress& progress) {
@@ -78,9 +97,11 @@ Comparison compare(const Measurement& measurement, const Material& material, Pro
   for (const int degrees : kHeldOutViews) {
     std::optional<double>& entry = out.by_view_angle[key_of(degrees)];
     if (measurement.covers_view(static_cast<float>(radians_from(static_cast<double>(degrees))))) {
-      const auto errors = measurement.samples().empty() ? table_errors(measurement, material, degrees, progress)
-                                                        : sample_errors(measurement, material, degrees, progress);
-      entry = mean_error(errors);
+      const bool scattered = !measurement.samples().empty();
+      const auto errors = scattered ? sample_errors(measurement, material, degrees, progress)
+                                    : table_errors(measurement, material, degrees, progress, out);
+      entry = mean_error(errors, scattered ? 1 : kLeastLights);
+      if (!entry) out.narrow_views.erase(degrees);
       for (const ViewError& e : errors) {
         log_sq += e.log_sq_sum();
         out.samples += e.count();
@@ -94,7 +115,8 @@ Comparison compare(const Measurement& measurement, const Material& material, Pro
     out.noise_by_view_angle[key_of(degrees)] = entry ? noise_of_view(measurement, degrees, progress) : std::nullopt;
     progress.update(++done / static_cast<double>(kHeldOutViews.size()));
   }
-  if (weights > 0) out.relative_l2 = weighted / weights;
+  // Where nothing can be judged, nothing good may be claimed.
+  out.relative_l2 = weights > 0 ? weighted / weights : 1.0;
   if (out.samples > 0) out.log_rms = std::sqrt(log_sq / static_cast<double>(out.samples));
   return out;
 }

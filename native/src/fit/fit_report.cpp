@@ -7,10 +7,15 @@
 #include "brdf/held_out.h"
 #include "fit/compare.h"
 #include "fit/evaluate.h"
+#include "fit/measurement_warnings.h"
+#include "fit/reciprocity.h"
 #include "fit/view_grid.h"
 
 namespace velour {
 namespace {
+
+// No error of a real measurement doubles what a perfect reflector sends back.
+constexpr double kWrongScale = 2;
 
 std::string number(double x, const char* format = "%.4g") {
   char text[32];
@@ -55,6 +60,35 @@ void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOption
                      " with relative L2 " + number(worst->relative_l2));
 }
 
+/// Directional albedo of the covered light directions.
+double measured_albedo(const Measurement& measurement, const Vec3& wv) {
+  const LightGrid grid = light_grid(wv);
+  std::vector<Rgb> f(grid.wl.size());
+  std::vector<uint8_t> valid(grid.wl.size());
+  measurement.eval(wv, grid.wl, f, valid);
+  Vec3d albedo(0);
+  for (size_t i = 0; i < f.size(); ++i) {
+    if (valid[i]) albedo += Vec3d(f[i]) * static_cast<double>(grid.weight[i] * grid.wl[i].z);
+  }
+  return largest(albedo);
+}
+
+void warn_of_albedo(const Measurement& measurement, const Vec3& wv, FitRecord& record) {
+  const std::string where =
+      "albedo " + number(record.albedo_max) + " at view " + view_name(wv, measurement.isotropic()) + " degrees: ";
+  const double measured = measured_albedo(measurement, wv);
+  if (measured > kWrongScale) {
+    record.warnings.push_back(where +
+                              "the measurement reflects more light there than arrives, far more than errors "
+                              "explain: check its scale");
+  } else if (measured > 1) {
+    record.warnings.push_back(where + "the measurement reflects more light there than arrives");
+  } else {
+    record.warnings.push_back(where + "the model reflects more light there than arrives, the measurement " +
+                              number(measured) + "; allow it more lobes");
+  }
+}
+
 void add_albedos(const Measurement& measurement, const Material& material, const std::vector<FittedView>& fitted,
                  FitRecord& record, Progress& progress) {
   for (const int degrees : kHeldOutViews) {
@@ -72,11 +106,7 @@ void add_albedos(const Measurement& measurement, const Material& material, const
     const double albedo = largest(directional_albedo(material, v.wv));
     if (albedo > record.albedo_max) record.albedo_max = albedo, brightest = v.wv;
   }
-  if (record.albedo_max > 1) {
-    record.warnings.push_back("albedo " + number(record.albedo_max) + " at view " +
-                              view_name(brightest, measurement.isotropic()) +
-                              " degrees: the measurement reflects more light there than arrives");
-  }
+  if (record.albedo_max > 1) warn_of_albedo(measurement, brightest, record);
 }
 
 }  // namespace
@@ -106,6 +136,9 @@ FitRecord report_fit(const Measurement& measurement, const Material& material, c
   warn_of_errors(record, record.warnings);
   warn_of_fitted_views(fitted, options, measurement.isotropic(), record.warnings);
   add_albedos(measurement, material, fitted, record, progress);
+  record.reciprocity = reciprocity_error(material, progress);
+  record.measured_reciprocity = reciprocity_error(measurement, progress);
+  warn_of_measurement(measurement, errors, record);
   return record;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "brdf/measurement.h"
-#include "fit/scattered_fit.h"
+#include "fit/fit_options.h"
 #include "material/material.h"
 
 namespace velour {

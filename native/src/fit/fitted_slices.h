@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "brdf/scattered_brdf.h"
+#include "fit/fit_options.h"
 #include "fit/lobe_budget.h"
-#include "fit/scattered_fit.h"
 #include "fit/slice_sampling.h"
 
 namespace velour {

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <cmath>
 
+#include "fit/fit_input.h"
 #include "fit/fit_report.h"
 #include "fit/fitted_slices.h"
+#include "fit/order_of_slices.h"
 #include "fit/parallel.h"
 #include "material/scattered_material.h"
 #include "srbf/lobe_mixture.h"
@@ -15,19 +17,7 @@ namespace {
 
 // A slice is fitted a little tighter than asked, for what the interpolation between slices adds at the views between.
 constexpr double kGoalShare = 0.8;
-
-void check_options(const FitOptions& o, bool isotropic) {
-  const auto refuse = [](const std::string& sentence) { throw Error(Status::invalid_argument, sentence); };
-  if (!(o.tolerance > 0 && o.tolerance <= 1)) {
-    refuse("The fit's tolerance is " + std::to_string(o.tolerance) + "; it must be above 0 and at most 1.");
-  }
-  const int most = LobeMixture::kCapacity / ScatteredBrdf::usual_neighbors(isotropic);
-  if (o.max_lobes < 1 || o.max_lobes > most) {
-    refuse("The fit's max_lobes is " + std::to_string(o.max_lobes) + "; it must be 1 to " + std::to_string(most) +
-           " for this measurement.");
-  }
-  if (o.threads < 0) refuse("The fit's threads is " + std::to_string(o.threads) + "; it must be 0 (all) or more.");
-}
+constexpr SliceGrid kGrid{96, 64};
 
 std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const FitOptions& options,
                                  Progress& progress) {
@@ -41,30 +31,9 @@ std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const
   return paths;
 }
 
-void warn_of_uncovered(size_t uncovered, size_t fitted, std::vector<std::string>& warnings) {
-  if (uncovered == 0) return;
-  warnings.push_back(std::to_string(uncovered) + " of " + std::to_string(uncovered + fitted) +
-                     " sampled views are outside the measurement and were left out");
-}
-
-void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<std::string>& warnings) {
-  size_t total = 0, outside = 0;
-  double cost = 0;
-  for (const MeasuredSlice& s : slices) {
-    total += s.samples.size();
-    outside += s.out_of_gamut;
-    cost = std::max(cost, SliceSamples(s.samples).gamut_error());
-  }
-  if (outside == 0) return;
-  warnings.push_back(std::to_string(outside) + " of " + std::to_string(total) +
-                     " fitted values have a negative channel (a colour outside Rec. 709), which non-negative "
-                     "coefficients cannot follow; alone they cost a relative L2 of up to " +
-                     std::to_string(cost));
-}
-
-/// The model of `fitted`, with its record: errors, albedo, warnings.
-Model reported(const Measurement& measurement, const FittedSlices& fitted, const FitOptions& options,
-               Progress& progress) {
+/// The model of `fitted`, which is `all` or a part of it, with its record: errors, albedo, order, warnings.
+Model reported(const Measurement& measurement, const FittedSlices& all, const FittedSlices& fitted,
+               const FitOptions& options, Progress& progress) {
   const auto brdf = assemble(fitted, measurement.isotropic(), options);
   std::vector<FittedView> views;
   for (size_t i = 0; i < fitted.slices.size(); ++i) {
@@ -72,7 +41,7 @@ Model reported(const Measurement& measurement, const FittedSlices& fitted, const
   }
   Model model;
   model.fit = report_fit(measurement, *make_scattered_material(brdf, 0), options, views, progress);
-  warn_of_gamut(fitted.slices, model.fit.warnings);
+  model.fit.order = order_of_slices(all, fitted, options.tolerance);
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
   return model;
@@ -90,7 +59,7 @@ Model bounded_model(const Measurement& measurement, const FittedSlices& all, con
   for (uint64_t budget = std::max(kViewBytes, std::min(options.max_bytes, whole));;) {
     progress.check();
     const FittedSlices fitted = within(budget, all, measurement.isotropic(), options);
-    Model model = reported(measurement, fitted, options, progress);
+    Model model = reported(measurement, all, fitted, options, progress);
     if (budget < whole) {
       model.fit.warnings.push_back("the bound of " + std::to_string(options.max_bytes) + " bytes leaves " +
                                    std::to_string(fitted.slices.size()) + " views and " +
@@ -112,24 +81,19 @@ Model bounded_model(const Measurement& measurement, const FittedSlices& all, con
 
 Model fit_scattered(const Measurement& measurement, const FitOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  check_options(options, measurement.isotropic());
+  check_options(options, LobeMixture::kCapacity / ScatteredBrdf::usual_neighbors(measurement.isotropic()));
   progress.stage("sampling", 0.0, 0.1);
-  // Scattered samples are held out one by one, inside the measurement; tables by view and light.
-  const auto unseen = options.all_data ? nullptr : measurement.without_held_out(progress);
-  const Measurement& source = unseen ? *unseen : measurement;
-  auto [slices, uncovered] = sample_slices(source, !options.all_data && !unseen, options.threads, progress);
-  if (slices.empty()) {
-    throw Error(Status::bad_data, "'" + measurement.provenance().path +
-                                      "' has no valid entry at any view direction; there is nothing to fit.");
-  }
+  MeasuredSlices measured = read_slices(measurement, kGrid, options, progress);
+  std::vector<std::string> warnings;
+  warn_of_slices(measured, warnings);
   progress.stage("fitting", 0.1, 0.95);
-  auto paths = fit_slices(slices, options, progress);
-  const FittedSlices fitted{std::move(slices), std::move(paths)};
+  auto paths = fit_slices(measured.slices, options, progress);
+  const FittedSlices fitted{std::move(measured.slices), std::move(paths)};
 
   progress.stage("checking", 0.95, 1.0);
   Model model = options.max_bytes > 0 ? bounded_model(measurement, fitted, options, progress)
-                                      : reported(measurement, fitted, options, progress);
-  warn_of_uncovered(uncovered.size(), fitted.slices.size(), model.fit.warnings);
+                                      : reported(measurement, fitted, fitted, options, progress);
+  model.fit.warnings.insert(model.fit.warnings.end(), warnings.begin(), warnings.end());
   progress.check();
   progress.update(1.0);
   model.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

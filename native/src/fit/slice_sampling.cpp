@@ -13,10 +13,48 @@ namespace {
 // Fewer samples than this leave a lobe's four unknowns undetermined.
 constexpr size_t kLeastSamples = 8;
 
+// Squares of more would not fit a float, and a model file holds no larger coefficients.
+constexpr float kLargestValue = 1e12f;
+
 bool usable(const Rgb& f) { return std::isfinite(f.r) && std::isfinite(f.g) && std::isfinite(f.b); }
 
-MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, bool hold_out) {
-  LightGrid grid = light_grid(wv);
+void check_size(const Measurement& source, const Rgb& f) {
+  const float largest = std::max({std::abs(f.r), std::abs(f.g), std::abs(f.b)});
+  if (largest <= kLargestValue) return;
+  throw Error(Status::bad_data, "'" + source.provenance().path + "' holds the value " + std::to_string(largest) +
+                                    " 1/sr; values up to 1e12 can be fitted. Check the measurement's scale.");
+}
+
+void keep_one_side(LightGrid& grid) {
+  LightGrid half;
+  for (size_t i = 0; i < grid.wl.size(); ++i) {
+    if (grid.wl[i].y < 0) continue;
+    half.wl.push_back(grid.wl[i]);
+    half.weight.push_back(2 * grid.weight[i]);
+    half.ring.push_back(grid.ring[i]);
+  }
+  grid = std::move(half);
+}
+
+/// f of `lights` for a view on the meridian, each the mean of what is valid of it and its mirror image.
+void eval_folded(const Measurement& source, const Vec3& wv, const std::vector<Vec3>& lights, std::vector<Rgb>& f,
+                 std::vector<uint8_t>& valid) {
+  source.eval(wv, lights, f, valid);
+  std::vector<Vec3> mirrored = lights;
+  for (Vec3& wl : mirrored) wl.y = -wl.y;
+  std::vector<Rgb> other(f.size(), Rgb(0));
+  std::vector<uint8_t> other_valid(f.size(), 0);
+  source.eval(wv, mirrored, other, other_valid);
+  for (size_t i = 0; i < f.size(); ++i) {
+    if (!other_valid[i] || !usable(other[i])) continue;
+    f[i] = valid[i] && usable(f[i]) ? 0.5f * (f[i] + other[i]) : other[i];
+    valid[i] = 1;
+  }
+}
+
+MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const SliceGrid& size, bool hold_out) {
+  LightGrid grid = light_grid(wv, size.rings, size.spokes);
+  if (size.folded) keep_one_side(grid);
   const size_t n = grid.wl.size();
   std::vector<uint8_t> kept(n, 1), valid(n, 0);
   if (hold_out) {
@@ -24,10 +62,14 @@ MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, bool hold_
     redistribute_weights(grid, kept);
   }
   std::vector<Rgb> f(n, Rgb(0));
-  source.eval(wv, grid.wl, f, valid);
+  if (size.folded)
+    eval_folded(source, wv, grid.wl, f, valid);
+  else
+    source.eval(wv, grid.wl, f, valid);
   MeasuredSlice slice{wv, {}, 0};
   for (size_t i = 0; i < n; ++i) {
     if (!kept[i] || !valid[i] || !usable(f[i])) continue;
+    check_size(source, f[i]);
     slice.samples.push_back({grid.wl[i], grid.weight[i], f[i] * grid.wl[i].z});
     slice.out_of_gamut += std::min({f[i].r, f[i].g, f[i].b}) < 0;
   }
@@ -36,12 +78,13 @@ MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, bool hold_
 
 }  // namespace
 
-MeasuredSlices sample_slices(const Measurement& source, bool hold_out, int threads, Progress& progress) {
+MeasuredSlices sample_slices(const Measurement& source, const SliceGrid& grid, bool hold_out, int threads,
+                             Progress& progress) {
   const std::vector<Vec3> views = source.isotropic() ? meridian_views(!hold_out) : hemisphere_views(!hold_out);
   std::vector<MeasuredSlice> all(views.size());
   parallel_for_each(views.size(), threads, progress, [&](size_t i) {
     if (source.covers_view(std::acos(std::clamp(views[i].z, -1.0f, 1.0f)))) {
-      all[i] = sample_slice(source, views[i], hold_out);
+      all[i] = sample_slice(source, views[i], grid, hold_out);
     }
   });
   MeasuredSlices out;

@@ -21,8 +21,17 @@ struct MeasuredSlices {
   std::vector<Vec3> uncovered;        // views left out because the measurement holds nothing there
 };
 
+/// The light grid of a view (fit/view_grid.h).
+struct SliceGrid {
+  int rings, spokes;
+  /// Isotropic data: only lights on one side of the plane of incidence, each with the mean of its value and its mirror
+  /// image's, for models that are symmetric about that plane: the same fit from half the samples.
+  bool folded = false;
+};
+
 /// Samples every view that `source` covers at its light grid. `hold_out` leaves out the held-out views and one light in
 /// eight. Pairs that the measurement does not cover are left out, never taken for black. `threads` 0: all.
-MeasuredSlices sample_slices(const Measurement& source, bool hold_out, int threads, Progress& progress);
+MeasuredSlices sample_slices(const Measurement& source, const SliceGrid& grid, bool hold_out, int threads,
+                             Progress& progress);
 
 }  // namespace velour

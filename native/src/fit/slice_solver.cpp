@@ -14,7 +14,9 @@ using Index = Eigen::Index;
 
 // Broader than this a lobe is a constant over the hemisphere, whatever its centre.
 constexpr double kMinSharpness = 0.02;
-constexpr double kMaxPeakToHorizon = 100;  // of a lobe below the horizon
+// Of a lobe whose centre no sample is near, the peak over what is seen of it.
+constexpr double kMaxPeakToSeen = 100;
+constexpr double kHole = 4;  // so many spacings of the samples from the nearest one
 // Column products are sums in float: below this share of its length a column is rounding.
 constexpr double kRidge = 1e-7;
 // Longest step of one refinement: this many lobe widths, and a factor e of sharpness.
@@ -90,11 +92,15 @@ double SliceSolver::max_sharpness(const Vec3d& center) const {
   }
   const double half_width = 0.5 * std::clamp(static_cast<double>(spacing), 1e-4, 1.0);
   const double s = std::sin(0.5 * half_width);
-  const double limit = std::log(2.0) / (2 * s * s);
+  double limit = std::log(2.0) / (2 * s * s);
+  // Of a lobe below the horizon or in a hole of the data only the tail is seen: a sharp one would need a peak without
+  // bound.
+  const double to_nearest = 1 - static_cast<double>(nearest);
+  if (2 * to_nearest > kHole * kHole * spacing * spacing)
+    limit = std::min(limit, std::log(kMaxPeakToSeen) / to_nearest);
   if (center.z >= 0) return limit;
-  // Of a lobe below the horizon only the tail is seen: a sharp one would need a peak without bound.
   const double cos_depth = std::sqrt(std::max(0.0, 1 - center.z * center.z));
-  return std::min(limit, std::log(kMaxPeakToHorizon) / (1 - cos_depth));
+  return std::min(limit, std::log(kMaxPeakToSeen) / (1 - cos_depth));
 }
 
 /// The lobes' values, then the cosine term's.

@@ -54,7 +54,7 @@ class SliceSolver {
   const float* residual(int c) const { return state_.residual[static_cast<size_t>(c)]; }
 
   /// Largest sharpness at `center`: the half-width of a lobe is never below half the spacing of the samples there, so
-  /// no lobe hides between samples.
+  /// no lobe hides between samples. Where there are none, its peak is bounded by the tail that is seen.
   double max_sharpness(const Vec3d& center) const;
 
  private:

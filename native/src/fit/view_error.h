@@ -17,6 +17,7 @@ class ViewError {
     const double m = luminance(measured) * cosine, f = luminance(model) * cosine;
     error_sq_ += weight * (m - f) * (m - f);
     energy_ += weight * m * m;
+    squared_energy_ += weight * m * m * weight * m * m;
     const double logs = log_value(m) - log_value(f);
     log_sq_ += logs * logs;
     ++count_;
@@ -26,12 +27,16 @@ class ViewError {
   /// Weighted relative L2; a black measurement gives 0 for a black model and 1 for any other.
   double relative_l2() const { return energy_ > 0 ? std::sqrt(error_sq_ / energy_) : (error_sq_ > 0 ? 1.0 : 0.0); }
   double log_sq_sum() const { return log_sq_; }
+  /// Of the measurement: the integral of (f cos)^2.
+  double energy() const { return energy_; }
+  /// How many directions carry the energy: all of them when it is even, 1 when one has it all.
+  double carriers() const { return energy_ > 0 ? energy_ * energy_ / squared_energy_ : static_cast<double>(count_); }
 
  private:
   /// log(1 + f cos / 0.01); a colour outside the gamut cannot drive it below the logarithm's domain.
   static double log_value(double f_cos) { return std::log1p(std::max(f_cos, 0.0) / 0.01); }
 
-  double error_sq_ = 0, energy_ = 0, log_sq_ = 0;
+  double error_sq_ = 0, energy_ = 0, squared_energy_ = 0, log_sq_ = 0;
   uint64_t count_ = 0;
 };
 

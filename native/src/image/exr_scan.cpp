@@ -15,7 +15,7 @@ constexpr uint32_t kTiled = 0x200, kDeep = 0x800, kMultiPart = 0x1000;
 constexpr size_t kMaxParts = 4096;
 /// DEFLATE cannot expand a byte to more than this.
 constexpr uint64_t kMaxDeflateRatio = 1032;
-constexpr int32_t kFloatPixels = 2;
+constexpr int32_t kHalfPixels = 1, kFloatPixels = 2;
 
 /// What the scan needs of a part beside its ExrPart.
 struct PartLayout {
@@ -67,9 +67,13 @@ void read_channels(ByteReader value, ExrPart& part) {
     value.take(4, "channel flags");
     const auto x_step = value.number<int32_t>("channel sampling");
     const auto y_step = value.number<int32_t>("channel sampling");
-    if (pixel_type != kFloatPixels || x_step != 1 || y_step != 1)
-      fail(value, part, "channel " + channel + " is not 32-bit float at full resolution; write floats.");
+    if ((pixel_type != kFloatPixels && pixel_type != kHalfPixels) || x_step != 1 || y_step != 1)
+      fail(value, part, "channel " + channel + " is not 32-bit or 16-bit float at full resolution; write floats.");
     if (part.channels.size() == 16) fail(value, part, "has more than 16 channels.");
+    const uint64_t bytes = pixel_type == kHalfPixels ? 2 : 4;
+    if (!part.channels.empty() && bytes != part.value_bytes)
+      fail(value, part, "channel " + channel + " is not of the same type as those before; write all alike.");
+    part.value_bytes = bytes;
     part.channels.push_back(channel);
   }
 }
@@ -116,8 +120,7 @@ void check_part(const ByteReader& in, const ExrPart& part, const PartLayout& lay
   if (layout.type != "scanlineimage") fail(in, part, "type is '" + layout.type + "', not scanlineimage.");
   if (layout.compression != 0 && layout.compression != 2 && layout.compression != 3)
     fail(in, part, "compression is " + std::to_string(layout.compression) + "; only none, zips and zip are read.");
-  const uint64_t line_bytes = part.width * part.channels.size() * 4;
-  if (line_bytes * layout.lines_per_chunk() > INT32_MAX)
+  if (part.row_bytes() * layout.lines_per_chunk() > INT32_MAX)
     fail(in, part, "dataWindow has " + std::to_string(part.width) + " columns, more than a chunk can hold.");
 }
 
@@ -142,7 +145,7 @@ void check_chunks(ByteReader& in, const ExrPart& part, const PartLayout& layout,
     const auto stored = chunk.number<uint32_t>("size of a chunk");
     chunk.take(stored, "chunk " + std::to_string(i) + " of part '" + part.name + "'");
     const uint64_t rows = std::min(lines, part.height - i * lines);
-    if (rows * part.width * part.channels.size() * 4 > uint64_t{stored} * kMaxDeflateRatio)
+    if (rows * part.row_bytes() > uint64_t{stored} * kMaxDeflateRatio)
       fail(in, part,
            "chunk " + std::to_string(i) + " holds " + std::to_string(stored) +
                " bytes, too few for its pixels; the file is damaged.");

@@ -2,7 +2,8 @@
 //
 // OpenEXR allocates what a header claims, and its only limits (Header::setMaxImageSize) are global to the process,
 // which may be Blender's. So the claims are compared with the bytes here: afterwards OpenEXR opens nothing but scan
-// line parts of floats, lossless, whose chunks lie inside the file and are large enough for their pixels.
+// line parts of floats or half floats, lossless, whose chunks lie inside the file and are large enough for their
+// pixels.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +17,11 @@ struct ExrPart {
   std::string name;   // empty in a single-part file without a name
   std::string shape;  // text of "velour.shape"; empty: not a tensor
   uint64_t width = 0, height = 0;
-  std::vector<std::string> channels;  // float, full resolution, in file order
+  std::vector<std::string> channels;  // full resolution, in file order
+  uint64_t value_bytes = 4;           // of all channels: 4 (float) or 2 (half)
 
   uint64_t value_count() const { return width * height * channels.size(); }
+  uint64_t row_bytes() const { return width * channels.size() * value_bytes; }
 };
 
 /// Throws Error(bad_data, unsupported) with `name`, the part and the field at fault.

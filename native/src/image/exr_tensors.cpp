@@ -13,6 +13,7 @@
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 
@@ -126,6 +127,10 @@ void check_tensor(const std::string& name, const Tensor& tensor) {
   if (count == 0 || count != tensor.data.size() || tensor.shape.size() > kMaxRank)
     throw Error(Status::invalid_argument, "Tensor '" + name + "' of shape '" + shape_text(tensor.shape) + "' has " +
                                               std::to_string(tensor.data.size()) + " values.");
+  for (const float value : tensor.data)
+    if (tensor.half && rounded_to_half(value) != value)
+      throw Error(Status::invalid_argument, "Tensor '" + name + "' is to be stored as half floats, which cannot hold " +
+                                                std::to_string(value) + "; round it first.");
   const PartSize size = part_size(tensor.shape);
   constexpr uint64_t kMaxLine = INT32_MAX / (4 * 16 * 3);  // a chunk's bytes are an int in OpenEXR
   if (size.width > kMaxLine || size.height > INT32_MAX / 2)
@@ -143,7 +148,8 @@ Imf::Header make_header(const std::string& name, const Tensor& tensor, const Ima
   header.zipCompressionLevel() = kZipLevel;
   Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
   header.insert(kShapeAttribute, Imf::StringAttribute(shape_text(tensor.shape)));
-  for (const auto& channel : channel_names(size.channels)) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+  for (const auto& channel : channel_names(size.channels))
+    header.channels().insert(channel, Imf::Channel(tensor.half ? Imf::HALF : Imf::FLOAT));
   return header;
 }
 
@@ -158,25 +164,33 @@ std::vector<Imf::Header> make_headers(const TensorFile& file) {
   return headers;
 }
 
-/// OpenEXR's view of row-major floats.
-Imf::FrameBuffer frame_buffer(float* data, const PartSize& size) {
+constexpr Imf::PixelType pixel_type(const float*) { return Imf::FLOAT; }
+constexpr Imf::PixelType pixel_type(const half*) { return Imf::HALF; }
+
+/// OpenEXR's view of row-major values.
+template <typename Value>
+Imf::FrameBuffer frame_buffer(Value* data, const PartSize& size) {
   Imf::FrameBuffer buffer;
-  const size_t x_stride = sizeof(float) * size.channels;
+  const size_t x_stride = sizeof(Value) * size.channels, y_stride = x_stride * size.width;
   const auto names = channel_names(size.channels);
   for (size_t c = 0; c < names.size(); ++c)
-    buffer.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(data + c), x_stride, x_stride * size.width));
+    buffer.insert(names[c], Imf::Slice(pixel_type(data), reinterpret_cast<char*>(data + c), x_stride, y_stride));
   return buffer;
+}
+
+void write_part(Imf::OutputPart part, const Tensor& tensor) {
+  const PartSize size = part_size(tensor.shape);
+  // OpenEXR converts what it reads, not what it writes.
+  const std::vector<half> halves(tensor.data.begin(), tensor.half ? tensor.data.end() : tensor.data.begin());
+  // Slice takes a mutable pointer for reading and writing alike; nothing is written through it here.
+  part.setFrameBuffer(tensor.half ? frame_buffer(const_cast<half*>(halves.data()), size)
+                                  : frame_buffer(const_cast<float*>(tensor.data.data()), size));
+  part.writePixels(static_cast<int>(size.height));
 }
 
 void write_parts(Imf::MultiPartOutputFile& out, const TensorFile& file) {
   int index = 0;
-  for (const auto& [name, tensor] : file.tensors) {
-    const PartSize size = part_size(tensor.shape);
-    Imf::OutputPart part(out, index++);
-    // Slice takes a mutable pointer for reading and writing alike; nothing is written through it here.
-    part.setFrameBuffer(frame_buffer(const_cast<float*>(tensor.data.data()), size));
-    part.writePixels(static_cast<int>(size.height));
-  }
+  for (const auto& [name, tensor] : file.tensors) write_part(Imf::OutputPart(out, index++), tensor);
 }
 
 /// The shape of a scanned part, agreed with its pixels.
@@ -201,7 +215,7 @@ void read_attributes(const Imf::Header& header, std::map<std::string, std::strin
 }
 
 Tensor read_part(Imf::MultiPartInputFile& in, int index, const ExrPart& scanned, const std::string& name) {
-  Tensor tensor{checked_shape(scanned, name), {}};
+  Tensor tensor{checked_shape(scanned, name), {}, scanned.value_bytes == sizeof(half)};
   const PartSize size = part_size(tensor.shape);
   for (const auto& channel : channel_names(size.channels))
     if (!in.header(index).channels().findChannel(channel))
@@ -228,6 +242,8 @@ TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrP
 }
 
 }  // namespace
+
+float rounded_to_half(float value) { return half(value); }
 
 std::vector<uint8_t> encode_tensors(const TensorFile& file) {
   if (file.tensors.empty()) throw Error(Status::invalid_argument, "A file of tensors needs at least one tensor.");

@@ -15,7 +15,13 @@ namespace velour {
 struct Tensor {
   std::vector<uint64_t> shape;
   std::vector<float> data;
+  /// Two bytes a value in the file. Then every value is one that a half float holds (rounded_to_half), so that what is
+  /// read is what was written.
+  bool half = false;
 };
+
+/// The half float nearest to `value`; infinite past 65504.
+float rounded_to_half(float value);
 
 struct TensorFile {
   std::map<std::string, std::string> attributes;  // "velour.kind", "velour.format_version", ...: strings

@@ -8,16 +8,18 @@
 #include "sphere/direction_batch.h"
 #include "srbf/lobe_mixture.h"
 #include "srbf/lobe_products.h"
+#include "srbf/warped_mixture.h"
 
 namespace velour {
 
 /// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it
 /// needs; the struct is scratch memory of the thread, reused from hit to hit.
 struct PreparedBrdf {
-  Vec3 wv;             // local, unit, wv.z > 0
-  LobeMixture lobes;   // SRBF materials: value and density. Raw measurements: density only
-  float parameter[8];  // analytic materials: what they derive from wv
-  GgxPoint ggx;        // of the fitted GGX lobe, where one is the material or draws its samples
+  Vec3 wv;               // local, unit, wv.z > 0
+  LobeMixture lobes;     // SRBF materials: value and density. Raw measurements: density only
+  WarpedMixture warped;  // parametric models: value and density
+  float parameter[8];    // analytic materials: what they derive from wv
+  GgxPoint ggx;          // of the fitted GGX lobe, where one is the material or draws its samples
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.

@@ -4,15 +4,18 @@
 #include <nlohmann/json.hpp>
 
 #include "job/error.h"
+#include "model/order_json.h"
 
 namespace velour {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json number_json(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
 Json errors_json(const ErrorByViewAngle& errors) {
   Json json = Json::object();
-  for (const auto& [angle, error] : errors) json[angle] = error ? Json(*error) : Json(nullptr);
+  for (const auto& [angle, error] : errors) json[angle] = number_json(error);
   return json;
 }
 
@@ -23,6 +26,10 @@ class Reader {
 
   void number(const char* key, double& out) const {
     if (const Json* v = find(key)) out = number_of(*v, key);
+  }
+  void number_or_null(const char* key, std::optional<double>& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_null()) out = number_of(*v, key);
   }
   void integer(const char* key, uint64_t& out) const {
     const Json* v = find(key);
@@ -51,6 +58,9 @@ class Reader {
       out.push_back(sentence.get<std::string>());
     }
   }
+  void order(const char* key, OrderCurve& out) const {
+    if (const Json* v = find(key)) out = parse_order(*v, where_ + ": '" + key + "'");
+  }
 
  private:
   const Json* find(const char* key) const {
@@ -72,15 +82,16 @@ class Reader {
 }  // namespace
 
 std::string fit_record_json(const FitRecord& record) {
-  const Json json = {{"relative_l2", record.relative_l2},
-                     {"by_view_angle", errors_json(record.by_view_angle)},
-                     {"albedo_by_view_angle", errors_json(record.albedo_by_view_angle)},
-                     {"albedo_max", record.albedo_max},
-                     {"tolerance", record.tolerance},
-                     {"seconds", record.seconds},
-                     {"seed", record.seed},
-                     {"all_data", record.all_data},
-                     {"warnings", record.warnings}};
+  Json json = {{"relative_l2", record.relative_l2},
+               {"by_view_angle", errors_json(record.by_view_angle)},
+               {"albedo_by_view_angle", errors_json(record.albedo_by_view_angle)},
+               {"albedo_max", record.albedo_max},
+               {"tolerance", record.tolerance},
+               {"seconds", record.seconds},
+               {"seed", record.seed},
+               {"all_data", record.all_data},
+               {"warnings", record.warnings}};
+  if (!record.order.points.empty()) json["order"] = order_json(record.order);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -93,11 +104,14 @@ FitRecord parse_fit_record(const std::string& text, const std::string& where) {
   reader.errors("by_view_angle", record.by_view_angle);
   reader.errors("albedo_by_view_angle", record.albedo_by_view_angle);
   reader.number("albedo_max", record.albedo_max);
+  reader.number("reciprocity", record.reciprocity);
+  reader.number_or_null("measured_reciprocity", record.measured_reciprocity);
   reader.number("tolerance", record.tolerance);
   reader.number("seconds", record.seconds);
   reader.integer("seed", record.seed);
   reader.boolean("all_data", record.all_data);
   reader.sentences("warnings", record.warnings);
+  reader.order("order", record.order);
   return record;
 }
 

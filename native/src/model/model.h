@@ -7,7 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include "brdf/parametric_brdf.h"
 #include "brdf/scattered_brdf.h"
+#include "model/order_curve.h"
 
 namespace velour {
 
@@ -20,10 +22,13 @@ struct FitRecord {
   ErrorByViewAngle by_view_angle;
   ErrorByViewAngle albedo_by_view_angle;  // directional albedo (largest channel) at those views
   double albedo_max = 0;                  // over all fitted views, largest channel
+  double reciprocity = 0;                 // of the model: fit/reciprocity.h
+  std::optional<double> measured_reciprocity = std::nullopt;  // of the measurement, where it has pairs
   double tolerance = 0;
   double seconds = 0;  // wall clock of the fit
   uint64_t seed = 0;
-  bool all_data = false;              // fitted without holding anything out
+  bool all_data = false;  // fitted without holding anything out
+  OrderCurve order;
   std::vector<std::string> warnings;  // sentences
 };
 
@@ -33,7 +38,7 @@ struct SourceRecord {
 };
 
 /// Kinds of model; a new kind is appended.
-using ModelBody = std::variant<ScatteredBrdf>;
+using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf>;
 
 struct Model {
   ModelBody body;
@@ -41,7 +46,7 @@ struct Model {
   SourceRecord source;
 };
 
-/// "scattered", ...
+/// "scattered", "parametric".
 const char* model_kind(const Model& model);
 
 }  // namespace velour

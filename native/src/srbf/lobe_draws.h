@@ -14,6 +14,7 @@ struct LobeMixture;
 /// from several mixtures of one kernel; sample_mixture does the same for one.
 struct alignas(64) LobeDraws {
   static constexpr int kCapacity = DirectionBatch::kCapacity;
+  static constexpr float kCosine = -1;             // for a bandwidth
   float x[kCapacity], y[kCapacity], z[kCapacity];  // axis, unit
   float bandwidth[kCapacity];                      // negative: no lobe but the cosine about the axis
   float u[kCapacity], rest[kCapacity];             // the zenith's number and 1 - u, both with all their digits

@@ -39,7 +39,7 @@ void LobeMixture::finish(float defensive_share) {
   float total = 0;
   for (int j = 0; j < count; ++j) cdf[j] = total += cdf[j];
   const float diffuse = kPi * std::max(luminance({diffuse_r, diffuse_g, diffuse_b}), 0.0f);
-  if (total <= 0) {
+  if (!(total >= kLeastMass)) {
     cosine_share = 1;
     std::fill_n(density, count, 0.0f);
     return;

@@ -23,10 +23,11 @@ struct LobeSpan {
 
 struct alignas(64) LobeMixture {
   static constexpr int kCapacity = 400;
+  static constexpr float kLeastMass = 1e-30f;  // of all lobes; less is none, because one over it is near no float
 
   Kernel kernel = Kernel::gaussian;
   int count = 0;
-  /// Probability of the cosine component: that of the diffuse term and the defence; 1 when no lobe has mass.
+  /// Probability of the cosine component: that of the diffuse term and the defence; 1 when the lobes have no mass.
   float cosine_share = 1;
   float diffuse_r = 0, diffuse_g = 0, diffuse_b = 0;  // coefficients of max(w.z, 0) in the value
 

@@ -151,7 +151,7 @@ constexpr float kSmallest = std::numeric_limits<float>::min();  // lanes that fi
 
 bool keep_products(const LobeProducts& products, float least, LobeMixture& mixture) {
   const float total = VELOUR_SIMD_DISPATCH(total_simd)(products);
-  if (!(total > 0) || !std::isfinite(total)) return false;
+  if (!(total >= LobeMixture::kLeastMass) || !std::isfinite(total)) return false;
   mixture.clear(Kernel::gaussian);
   mixture.cosine_share = 0;
   mixture.count = VELOUR_SIMD_DISPATCH(keep_simd)(products, std::max(least * total, kSmallest), mixture);

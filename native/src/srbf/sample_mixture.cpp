@@ -53,10 +53,9 @@ struct AbelPoissonZenith {
   }
 };
 
-template <class Zenith>
-HWY_INLINE void directions_of(const LobeDraws& draws, DirectionBatch& w) {
-  const hn::CappedTag<float, 8> tag;
-  using V = hn::Vec<decltype(tag)>;
+template <class Zenith, class D>
+HWY_INLINE void directions_of(D tag, const LobeDraws& draws, DirectionBatch& w) {
+  using V = hn::Vec<D>;
   const V zero = hn::Zero(tag), one = hn::Set(tag, 1.0f), two = hn::Set(tag, 2.0f);
   for (int at = 0; at < draws.count; at += static_cast<int>(hn::Lanes(tag))) {
     const V bandwidth = hn::Load(tag, draws.bandwidth + at);
@@ -79,6 +78,13 @@ HWY_INLINE void directions_of(const LobeDraws& draws, DirectionBatch& w) {
   }
 }
 
+/// A single draw has no vector to wait for.
+template <class Zenith>
+HWY_INLINE void directions_of(const LobeDraws& draws, DirectionBatch& w) {
+  if (draws.count == 1) return directions_of<Zenith>(hn::CappedTag<float, 1>(), draws, w);
+  return directions_of<Zenith>(hn::CappedTag<float, 8>(), draws, w);
+}
+
 void directions_simd(Kernel kernel, const LobeDraws& draws, DirectionBatch& w) {
   if (kernel == Kernel::gaussian) return directions_of<GaussianZenith>(draws, w);
   return directions_of<AbelPoissonZenith>(draws, w);
@@ -92,12 +98,6 @@ HWY_AFTER_NAMESPACE();
 namespace velour {
 
 HWY_EXPORT(directions_simd);
-
-namespace {
-
-constexpr float kCosine = -1;  // for a bandwidth
-
-}  // namespace
 
 void LobeDraws::push(const Vec3& axis, float lobe_bandwidth, double u_zenith, float u_azimuth) {
   x[count] = axis.x;
@@ -126,7 +126,7 @@ void LobeDraws::choose(const LobeMixture& mixture, std::span<const Vec2> numbers
 
 void LobeDraws::directions(Kernel kernel, DirectionBatch& w) {
   w.count = count;
-  while (count % 8 != 0) push({0, 0, 1}, kCosine, 0.5, 0.0f);
+  while (count != 1 && count % 8 != 0) push({0, 0, 1}, kCosine, 0.5, 0.0f);
   VELOUR_SIMD_DISPATCH(directions_simd)(kernel, *this, w);
   count = w.count;
 }

@@ -14,14 +14,16 @@ namespace velour::test {
 namespace {
 
 std::vector<double> count_samples(const SphereCells& cells, const std::function<Vec3(const Vec2&)>& sample,
-                                  const ChiSquareOptions& options, std::string& problem) {
+                                  const ChiSquareOptions& options, ChiSquareResult& result) {
   std::vector<double> counts(cells.count(), 0.0);
   for (int64_t i = 0; i < options.samples; ++i) {
     const Vec3 w = sample(RandomStream(options.seed, 0, static_cast<uint64_t>(i)).next2());
     if (std::abs(glm::length(w) - 1) < 1e-4f) {
       ++counts[cells.find(w)];
+    } else if (options.may_fail && w == Vec3(0)) {
+      ++result.failed;
     } else {
-      problem = "a sample is not a unit direction";
+      result.problem = "a sample is not a unit direction";
     }
   }
   return counts;
@@ -35,14 +37,22 @@ void add_terms(double minimum, ChiSquareResult& result) {
                    [&](size_t a, size_t b) { return result.expected[a] < result.expected[b]; });
   double pooled_observed = 0, pooled_expected = 0;
   int groups = 0;
-  for (const size_t i : order) {
-    pooled_observed += result.observed[i];
-    pooled_expected += result.expected[i];
-    if (pooled_expected < minimum) continue;
+  const auto add_group = [&] {
     const double difference = pooled_observed - pooled_expected;
     result.statistic += difference * difference / pooled_expected;
     pooled_observed = pooled_expected = 0;
     ++groups;
+  };
+  for (const size_t i : order) {
+    pooled_observed += result.observed[i];
+    pooled_expected += result.expected[i];
+    if (pooled_expected < minimum) continue;
+    add_group();
+  }
+  if (result.options.may_fail) {
+    pooled_observed += result.failed;
+    pooled_expected += std::max(0.0, 1 - result.density_mass) * static_cast<double>(result.options.samples);
+    if (pooled_expected >= minimum) add_group();
   }
   result.degrees_of_freedom = groups - 1;
 }
@@ -63,7 +73,7 @@ ChiSquareResult chi_square(const std::function<Vec3(const Vec2&)>& sample,
   result.options = options;
   const SphereCells cells(options);
   const auto samples = static_cast<double>(options.samples);
-  result.observed = count_samples(cells, sample, options, result.problem);
+  result.observed = count_samples(cells, sample, options, result);
   const CellMasses masses = integrate_cells(cells, pdf, samples, options.refinements);
   for (const double mass : masses.mass) {
     result.density_mass += mass;
@@ -82,14 +92,16 @@ ChiSquareResult chi_square(const std::function<Vec3(const Vec2&)>& sample,
 
 ::testing::AssertionResult follows_density(const ChiSquareResult& result, double level, const std::string& name,
                                            double mass_tolerance) {
-  const bool has_mass = std::abs(result.density_mass - 1) <= mass_tolerance;
+  const double reached = 1 - result.failed / static_cast<double>(result.options.samples);
+  const bool has_mass = std::abs(result.density_mass - reached) <= mass_tolerance;
   if (result.problem.empty() && result.p_value > level && has_mass) return ::testing::AssertionSuccess();
   const auto path = artifact_path(name + ".cells.csv");
   write_cells(path, result);
   return ::testing::AssertionFailure() << name << ": p " << result.p_value << " at level " << level << ", chi-square "
                                        << result.statistic << " of " << result.degrees_of_freedom
                                        << " degrees of freedom, mass of the density " << result.density_mass
-                                       << ", seed " << result.options.seed
+                                       << " where 1 less the failed samples is " << reached << ", seed "
+                                       << result.options.seed
                                        << (result.problem.empty() ? "" : ", problem: " + result.problem)
                                        << "; cells in " << path.string();
 }

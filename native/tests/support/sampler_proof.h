@@ -12,6 +12,7 @@ struct Sampler {
   Vec3 axis{0, 0, 1};
   double concentration = 0;
   CellRefinements refinements{};
+  bool may_fail = false;  // ChiSquareOptions
 };
 
 /// 200,000 samples in 25 x 16 cells: in a list of 135, a bandwidth off by 3.2 % is rejected in 99 of 100 cases

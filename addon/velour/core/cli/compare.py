@@ -8,7 +8,7 @@ import contextlib
 from ...native import Job, Measurement, Model, compare_job, compare_peer_job
 from . import output
 
-KEYS = ("relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples")
+KEYS = ("relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views")
 PEER_KEYS = ("seconds", "parameter_bytes")
 
 

@@ -15,24 +15,28 @@ KEYS = (
     "relative_l2",
     "by_view_angle",
     "albedo_max",
+    "reciprocity",
+    "measured_reciprocity",
     "warnings",
+    "order",
 )
-
-MODELS = ("scattered",)  # that this version fits
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("input", metavar="INPUT", help="a measurement")
     parser.add_argument(
         "-o", "--output", metavar="MODEL", required=True, help="the model file to write (.velour)"
     )
-    parser.add_argument("--model", choices=("scattered", "parametric"), default="scattered")
-    parser.add_argument("--kernel", choices=table.KERNELS)
+    parser.add_argument(
+        "--model", choices=table.MODELS, help="parametric: few lobes for all views; scattered: lobes a view"
+    )
+    parser.add_argument("--kernel", choices=table.KERNELS, help="of a scattered model's lobes")
     parser.add_argument(
         "--tolerance", type=numbers.real(1e-6, 1), metavar="T",
         help="relative L2 asked for at every view up to 75 degrees, 2 T beyond (0.02)",
     )  # fmt: skip
-    parser.add_argument("--max-lobes", type=numbers.whole(1, 64), metavar="N", help="lobes a view (16)")
+    parser.add_argument(
+        "--max-lobes", type=numbers.whole(1, 64), metavar="N", help="lobes in all; scattered: a view (16)"
+    )
     parser.add_argument(
         "--bytes", type=numbers.whole(1, 2**63), metavar="N", help="bound on the model's size"
     )
@@ -43,7 +47,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> dict:
-    later.only("--model", args.model, MODELS)
     output.check_writable(args.output)
     with Measurement.load(args.input) as measurement, fit_job(measurement, **_options(args)) as job:
         report = job.run(output.progress_of(args))
@@ -57,6 +60,7 @@ def run(args: argparse.Namespace) -> dict:
 
 def _options(args: argparse.Namespace) -> dict:
     given = {
+        "model": args.model,
         "kernel": args.kernel,
         "tolerance": args.tolerance,
         "max_lobes": args.max_lobes,

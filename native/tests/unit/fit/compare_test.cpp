@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "analytic_measurement.h"
 #include "brdf/held_out.h"
 #include "fit/view_error.h"
+#include "support/analytic_measurement.h"
 
 namespace velour {
 namespace {

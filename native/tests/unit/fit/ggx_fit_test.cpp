@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "analytic_measurement.h"
 #include "fit/ggx_problem.h"
 #include "fit/peer.h"
 #include "material/ggx.h"
 #include "material/material.h"
 #include "sphere/directions.h"
+#include "support/analytic_measurement.h"
 #include "support/test_data.h"
 
 namespace velour {

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <thread>
 
-#include "analytic_measurement.h"
 #include "brdf/held_out.h"
 #include "fit/compare.h"
 #include "material/scattered_material.h"
+#include "support/analytic_measurement.h"
 
 namespace velour {
 namespace {
@@ -206,6 +206,40 @@ TEST(ScatteredFitRules, TheBoundIsOfWhateverTheCallerCounts) {
   const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.2f, 0.2f)), options, progress);
   EXPECT_LE(options.size_of(model), 2000u);
   EXPECT_GE(options.size_of(model), 1700u) << "most of the bound is used";
+}
+
+TEST(ScatteredFitRules, TheOrderCurveFallsToTheModel) {
+  FitOptions options;
+  Progress progress;
+  const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
+  const OrderCurve& order = model.fit.order;
+  ASSERT_GE(order.points.size(), 3u);
+  EXPECT_EQ(order.points[0].lobes, 1);
+  EXPECT_EQ(order.points[1].lobes, 2);
+  for (size_t i = 1; i < order.points.size(); ++i) {
+    EXPECT_GT(order.points[i].parameter_bytes, order.points[i - 1].parameter_bytes);
+    EXPECT_LE(order.points[i].worst, order.points[i - 1].worst);
+    EXPECT_LE(order.points[i].relative_l2, order.points[i - 1].relative_l2);
+  }
+  ASSERT_EQ(order.chosen, order.points.size() - 1);
+  EXPECT_EQ(order.points.back().lobes, lobes_of(model).max_lobes_per_view());
+  EXPECT_EQ(order.points.back().parameter_bytes, lobes_of(model).parameter_bytes());
+  EXPECT_GT(order.points.front().worst, 1);
+  EXPECT_LE(order.points.back().worst, 1);
+}
+
+TEST(ScatteredFitRules, ABoundedModelStandsOnTheCurveOfTheWholeOne) {
+  FitOptions options;
+  Progress progress;
+  const AnalyticMeasurement glossy(test::ggx(0.3f, 0.3f));
+  const Model whole = fit_scattered(glossy, options, progress);
+  options.max_bytes = lobes_of(whole).parameter_bytes() / 2;
+  const Model bounded = fit_scattered(glossy, options, progress);
+  const OrderCurve& order = bounded.fit.order;
+  EXPECT_EQ(order.points.back(), whole.fit.order.points.back());
+  ASSERT_TRUE(order.chosen);
+  EXPECT_EQ(order.points[*order.chosen].parameter_bytes, lobes_of(bounded).parameter_bytes());
+  EXPECT_LT(*order.chosen, order.points.size() - 1);
 }
 
 TEST(ScatteredFitRules, AnisotropicMaterialsHaveViewsOverTheHemisphere) {

@@ -161,6 +161,18 @@ TEST(SliceSolver, NoLobeHidesBetweenSamples) {
   EXPECT_LE(solver.shapes()[0].sharpness, solver.max_sharpness(solver.shapes()[0].center) * (1 + 1e-9));
 }
 
+TEST(SliceSolver, ALobeInAHoleIsNoSharperThanItsTailShows) {
+  std::vector<SliceSample> around;
+  for (const Vec3& w : hemisphere_fibonacci(2000)) {
+    if (w.z < 0.8f) around.push_back({w, 2 * kPi / 2000, Rgb(1)});
+  }
+  const Progress progress;
+  const SliceSamples samples(around);
+  const SliceSolver solver(Kernel::gaussian, samples, progress);
+  EXPECT_NEAR(solver.max_sharpness({0, 0, 1}), std::log(100.0) / 0.2, 0.1);
+  EXPECT_GT(solver.max_sharpness({0.8, 0, 0.6}), 500) << "not where there are samples";
+}
+
 TEST(SliceSolver, TheCosineTermTakesWhatIsDiffuse) {
   std::vector<SliceSample> samples;
   for (const Vec3& w : hemisphere_fibonacci(1000)) {

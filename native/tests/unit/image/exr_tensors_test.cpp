@@ -27,6 +27,7 @@ TensorFile sample_file() {
   file.tensors = {{"cube", ramp({4, 5, 6})}, {"lobes.center", ramp({7, 3})},
                   {"one", ramp({})},         {"rows.of.colour", ramp({2, 40, 9, 3})},
                   {"tall", ramp({100, 1})},  {"wide", ramp({1000})}};
+  file.tensors["small"] = {{2, 2}, {1, 0.5f, -3, 1024}, true};
   return file;
 }
 
@@ -37,6 +38,7 @@ void expect_equal(const TensorFile& a, const TensorFile& b) {
     const auto found = b.tensors.find(name);
     ASSERT_NE(found, b.tensors.end()) << name;
     EXPECT_EQ(tensor.shape, found->second.shape) << name;
+    EXPECT_EQ(tensor.half, found->second.half) << name;
     EXPECT_EQ(0, std::memcmp(tensor.data.data(), found->second.data.data(), tensor.data.size() * 4)) << name;
   }
 }
@@ -71,6 +73,35 @@ TEST(ExrTensors, KeepsEveryBit) {
   TensorFile file;
   file.tensors["x"] = {{6}, {nan, infinity, -infinity, -0.0f, 1e-45f, std::numeric_limits<float>::max()}};
   expect_equal(file, decode_tensors(encode_tensors(file), "test"));
+}
+
+TEST(ExrTensors, HalfFloatsTakeTwoBytesAndKeepTheirBits) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  TensorFile file;
+  file.tensors["halves"] = {{3, 2, 3}, {0, -0.0f, 1, -2.5f, 65504, 6e-8f, infinity, 0.1f, 3.14f}, true};
+  file.tensors["halves"].data.resize(18, 7.0f / 3.0f);
+  for (float& x : file.tensors["halves"].data) x = rounded_to_half(x);
+  const TensorFile again = decode_tensors(encode_tensors(file), "test");
+  expect_equal(file, again);
+  EXPECT_EQ(encode_tensors(again), encode_tensors(file));
+
+  const auto size = [](bool half) {
+    TensorFile noise;
+    noise.tensors["noise"] = {{1000}, {}, half};
+    for (uint32_t i = 0; i < 1000; ++i)
+      noise.tensors["noise"].data.push_back(rounded_to_half(static_cast<float>(i * 2654435761u % 65521u) / 7.0f));
+    return static_cast<int>(encode_tensors(noise).size());
+  };
+  EXPECT_LT(size(true), 2000 + 600);
+  EXPECT_GT(size(false) - size(true), 500);
+}
+
+TEST(ExrTensors, WhatHalfFloatsCannotHoldIsRefused) {
+  for (const float value : {1.0f / 3.0f, 1e6f, 1e-30f, std::numeric_limits<float>::quiet_NaN()}) {
+    TensorFile file;
+    file.tensors["x"] = {{1}, {value}, true};
+    EXPECT_THROW(encode_tensors(file), Error) << value;
+  }
 }
 
 TEST(ExrTensors, SinglePartFile) {

@@ -1,10 +1,34 @@
-// A small model with every field set to something that is not its default.
+// Small models with every field set to something that is not its default.
 #pragma once
 
+#include <cmath>
+
+#include "image/exr_tensors.h"
 #include "model/model.h"
 #include "sphere/directions.h"
 
 namespace velour::test {
+
+/// A record without body.
+inline Model example_record() {
+  Model model;
+  model.fit = {.relative_l2 = 1.0 / 3.0,
+               .by_view_angle = {{"5", 0.01}, {"30", 0.02}, {"60", 0.03}, {"75", std::nullopt}, {"85", std::nullopt}},
+               .albedo_by_view_angle = {{"5", 0.4}, {"30", std::nullopt}},
+               .albedo_max = 0.7,
+               .reciprocity = 0.05,
+               .measured_reciprocity = 0.125,
+               .tolerance = 0.02,
+               .seconds = 1.25,
+               .seed = 12345678901234567ull,
+               .all_data = true,
+               .order = {},
+               .warnings = {"view 60 degrees: relative L2 0.03 exceeds 0.02", "\"quoted\" and accented: \xc3\xa9"}};
+  model.fit.order.points = {{1, 52, 12.5, 0.25}, {2, 80, 2.125, 0.0425}, {4, 136, 0.875, 0.0175}};
+  model.fit.order.chosen = 2;
+  model.source = {"metal", "merl", std::string(64, 'a')};
+  return model;
+}
 
 inline Model example_model(Kernel kernel = Kernel::gaussian, bool isotropic = true) {
   ScatteredBrdf brdf;
@@ -25,18 +49,23 @@ inline Model example_model(Kernel kernel = Kernel::gaussian, bool isotropic = tr
     }
     brdf.first_lobe.push_back(static_cast<uint32_t>(brdf.center.size()));
   }
-  Model model;
+  Model model = example_record();
   model.body = brdf;
-  model.fit = {.relative_l2 = 1.0 / 3.0,
-               .by_view_angle = {{"5", 0.01}, {"30", 0.02}, {"60", 0.03}, {"75", std::nullopt}, {"85", std::nullopt}},
-               .albedo_by_view_angle = {{"5", 0.4}, {"30", std::nullopt}},
-               .albedo_max = 0.7,
-               .tolerance = 0.02,
-               .seconds = 1.25,
-               .seed = 12345678901234567ull,
-               .all_data = true,
-               .warnings = {"view 60 degrees: relative L2 0.03 exceeds 0.02", "\"quoted\" and accented: \xc3\xa9"}};
-  model.source = {"metal", "merl", std::string(64, 'a')};
+  return model;
+}
+
+/// Lobes of both spaces, control values all over their ranges.
+inline Model example_parametric(bool isotropic = true, int lobes = 5, int cells = 10) {
+  ParametricBrdf brdf;
+  brdf.isotropic = isotropic;
+  brdf.cells = cells;
+  for (int j = 0; j < lobes; ++j) brdf.space.push_back(j % 2 == 0 ? LobeSpace::half : LobeSpace::light);
+  brdf.control.resize(static_cast<size_t>(brdf.spline().node_count() * brdf.parameter_count() * lobes));
+  for (size_t i = 0; i < brdf.control.size(); ++i) {
+    brdf.control[i] = rounded_to_half(2.5f * std::sin(static_cast<float>(i * i)));
+  }
+  Model model = example_record();
+  model.body = brdf;
   return model;
 }
 

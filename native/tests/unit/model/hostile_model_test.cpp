@@ -12,9 +12,11 @@
 namespace velour {
 namespace {
 
-/// What decode_model says to the example with `change` made to its file; "" when it accepts it.
-std::string complaint(const std::function<void(TensorFile&)>& change, Kernel kernel = Kernel::gaussian) {
-  TensorFile file = decode_tensors(encode_model(test::example_model(kernel)), "example");
+using Change = std::function<void(TensorFile&)>;
+
+/// What decode_model says to `model` with `change` made to its file; "" when it accepts it.
+std::string complaint_of(const Model& model, const Change& change) {
+  TensorFile file = decode_tensors(encode_model(model), "example");
   change(file);
   try {
     decode_model(encode_tensors(file), "metal.velour");
@@ -24,13 +26,23 @@ std::string complaint(const std::function<void(TensorFile&)>& change, Kernel ker
   return "";
 }
 
+std::string complaint(const Change& change, Kernel kernel = Kernel::gaussian) {
+  return complaint_of(test::example_model(kernel), change);
+}
+
+std::string parametric_complaint(const Change& change) { return complaint_of(test::example_parametric(), change); }
+
 void expect_named(const std::string& complaint, const std::string& field) {
   EXPECT_EQ(complaint.find("metal.velour"), 0u) << complaint;
   EXPECT_NE(complaint.find(field), std::string::npos) << complaint << " should name " << field;
 }
 
+/// As a float, so that values reach the file that no half float holds.
 auto set(const std::string& part, size_t i, float value) {
-  return [=](TensorFile& file) { file.tensors.at(part).data.at(i) = value; };
+  return [=](TensorFile& file) {
+    file.tensors.at(part).half = false;
+    file.tensors.at(part).data.at(i) = value;
+  };
 }
 
 auto attribute(const std::string& key, const std::string& value) {
@@ -39,6 +51,7 @@ auto attribute(const std::string& key, const std::string& value) {
 
 TEST(HostileModel, TheUnchangedExampleIsAccepted) {
   EXPECT_EQ(complaint([](TensorFile&) {}), "");
+  EXPECT_EQ(parametric_complaint([](TensorFile&) {}), "");
 }
 
 TEST(HostileModel, ValuesOutOfRangeAreNamed) {
@@ -99,6 +112,68 @@ TEST(HostileModel, AttributesAreChecked) {
   expect_named(complaint(attribute("velour.fit", std::string(100000, '['))), "velour.fit");
 }
 
+TEST(HostileModel, ParametricValuesOutOfRangeAreNamed) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  expect_named(parametric_complaint(set("lobes.space", 2, 2)), "lobes.space[2]");
+  expect_named(parametric_complaint(set("lobes.space", 2, 0.5f)), "lobes.space[2]");
+  expect_named(parametric_complaint(set("lobes.space", 2, nan)), "lobes.space[2]");
+  // [node][parameter][lobe], five lobes: the second of each parameter.
+  const auto first = [](int parameter) { return static_cast<size_t>(5 * parameter + 1); };
+  const std::pair<int, float> hostile[] = {
+      {ParametricBrdf::kLogBandwidth, 21.0f}, {ParametricBrdf::kLogBandwidth, -12.0f},
+      {ParametricBrdf::kLogRed, 28.0f},       {ParametricBrdf::kLogGreen, -41.0f},
+      {ParametricBrdf::kLogBlue, infinity},   {ParametricBrdf::kTiltX, 3.15f},
+      {ParametricBrdf::kTiltX, -infinity},    {ParametricBrdf::kStretchA, -6.01f},
+      {ParametricBrdf::kStretchA, nan},       {ParametricBrdf::kLogBandwidth, infinity}};
+  for (const auto& [parameter, value] : hostile) {
+    const std::string said = parametric_complaint(set("lobes.control", first(parameter), value));
+    expect_named(said, "lobes.control[" + std::to_string(first(parameter)) + "]");
+  }
+  expect_named(parametric_complaint(set("lobes.control", first(ParametricBrdf::kTiltX), 4)), "tilt in radians");
+}
+
+TEST(HostileModel, ParametricPartsAndAttributesAreChecked) {
+  for (const char* part : {"lobes.space", "lobes.control"}) {
+    expect_named(parametric_complaint([part](TensorFile& f) { f.tensors.erase(part); }), part);
+    expect_named(parametric_complaint([part](TensorFile& f) { f.tensors[part] = {{2, 2}, {1, 1, 1, 1}}; }), part);
+  }
+  expect_named(parametric_complaint([](TensorFile& f) {
+                 f.tensors.clear();
+                 f.tensors["other"] = {{1}, {1}};
+               }),
+               "lobes.none");
+  expect_named(parametric_complaint([](TensorFile& f) {
+                 f.tensors["lobes.space"] = {{33}, std::vector<float>(33)};
+               }),
+               "lobes.space");
+  for (const char* key : {"velour.isotropic", "velour.cells"}) {
+    expect_named(parametric_complaint([key](TensorFile& f) { f.attributes.erase(key); }), key);
+    expect_named(parametric_complaint(attribute(key, "nonsense")), key);
+  }
+  expect_named(parametric_complaint(attribute("velour.cells", "0")), "velour.cells");
+  expect_named(parametric_complaint(attribute("velour.cells", "65")), "velour.cells");
+  expect_named(parametric_complaint(attribute("velour.cells", "11")), "velour.cells");
+  expect_named(parametric_complaint(attribute("velour.isotropic", "false")), "lobes.control");
+}
+
+TEST(HostileModel, TheOrderIsChecked) {
+  const auto order = [](const std::string& json) {
+    return complaint(attribute("velour.fit", "{\"order\": " + json + "}"));
+  };
+  const std::string columns = R"("parameter_bytes": [1], "worst": [1], "relative_l2": [1]})";
+  EXPECT_EQ(order(R"({"lobes": [1], )" + columns), "");
+  EXPECT_EQ(order(R"({"lobes": [1], "chosen": 0, )" + columns), "");
+  expect_named(order("3"), "order");
+  expect_named(order("{}"), "lobes");
+  expect_named(order(R"({"lobes": [1, 2], )" + columns), "differ in length");
+  for (const std::string lobes : {"1", "[-1]", "[1e30]", "[null]", "[\"1\"]"}) {
+    expect_named(order(R"({"lobes": )" + lobes + ", " + columns), "'lobes'");
+  }
+  for (const std::string chosen : {"1", "-1", "0.5", "\"0\""}) {
+    expect_named(order(R"({"lobes": [1], "chosen": )" + chosen + ", " + columns), "'chosen'");
+  }
+}
+
 TEST(HostileModel, UnknownPartsAndAttributesAreIgnored) {
   EXPECT_EQ(complaint([](TensorFile& f) {
               f.tensors["future.part"] = {{2}, {1, 2}};
@@ -114,25 +189,41 @@ TEST(HostileModel, ANewerFormatIsRefusedWithASentence) {
   EXPECT_NE(sentence.find("newer Velour"), std::string::npos);
 }
 
+std::vector<Model> examples() { return {test::example_model(), test::example_parametric()}; }
+
 TEST(HostileModel, TruncatedFilesAreRefused) {
-  const auto bytes = encode_model(test::example_model());
-  for (size_t length = 0; length < bytes.size(); length += 13) {
-    EXPECT_THROW(decode_model(std::span(bytes).first(length), "cut"), Error) << length;
+  for (const Model& model : examples()) {
+    const auto bytes = encode_model(model);
+    for (size_t length = 0; length < bytes.size(); length += 13) {
+      EXPECT_THROW(decode_model(std::span(bytes).first(length), "cut"), Error) << length;
+    }
+  }
+}
+
+void expect_sound(const ScatteredBrdf& brdf) { ASSERT_EQ(brdf.first_lobe.back(), brdf.center.size()); }
+
+void expect_sound(const ParametricBrdf& brdf) {
+  for (const float angle : {0.0f, 0.7f, 1.57f}) {
+    for (const WarpedLobe& lobe : lobes_at(brdf, Vec3d(direction(angle, 0.3f)))) {
+      ASSERT_TRUE(std::isfinite(lobe.bandwidth) && lobe.bandwidth > 0);
+      ASSERT_TRUE(std::isfinite(lobe.coefficient.x + lobe.coefficient.y + lobe.coefficient.z));
+    }
   }
 }
 
 TEST(HostileModel, DamagedFilesAreRefusedOrSound) {
-  const auto good = encode_model(test::example_model());
-  for (uint64_t trial = 0; trial < 3000; ++trial) {
-    auto bytes = good;
-    RandomStream random(17, trial, 0);
-    for (int i = 0; i < 4; ++i) bytes[random.next_bits() % bytes.size()] = static_cast<uint8_t>(random.next_bits());
-    try {
-      const Model model = decode_model(bytes, "damaged");
-      const auto& brdf = std::get<ScatteredBrdf>(model.body);
-      ASSERT_EQ(brdf.first_lobe.back(), brdf.center.size());
-      make_material(std::make_shared<const Model>(model), 0);
-    } catch (const Error&) {
+  for (const Model& model : examples()) {
+    const auto good = encode_model(model);
+    for (uint64_t trial = 0; trial < 3000; ++trial) {
+      auto bytes = good;
+      RandomStream random(17, trial, 0);
+      for (int i = 0; i < 4; ++i) bytes[random.next_bits() % bytes.size()] = static_cast<uint8_t>(random.next_bits());
+      try {
+        const auto damaged = std::make_shared<const Model>(decode_model(bytes, "damaged"));
+        std::visit([](const auto& brdf) { expect_sound(brdf); }, damaged->body);
+        make_material(damaged, 0);
+      } catch (const Error&) {
+      }
     }
   }
 }

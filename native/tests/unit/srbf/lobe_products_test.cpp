@@ -141,7 +141,9 @@ TEST(LobeProducts, KeepsTheBestAndRefusesTheBlack) {
   EXPECT_GT(best.count, 0);
   EXPECT_EQ(best.cdf[best.count - 1], 1);
   LobeMixture none;
-  EXPECT_FALSE(keep_products(multiplied({{0, 0, 1}, 20, 0}, sky()), 0, none));
+  for (const float amplitude : {0.0f, 1e-42f}) {
+    EXPECT_FALSE(keep_products(multiplied({{0, 0, 1}, 20, amplitude}, sky()), 0, none));
+  }
   EXPECT_FALSE(keep_products({}, 0, none));
 }
 

@@ -20,6 +20,7 @@ class AnalyticMeasurement : public Measurement {
     provenance_.path = "analytic.test";
   }
   void set_coverage(Coverage covers) { covers_ = std::move(covers); }
+  void set_counts(const EntryCounts& counts) { counts_ = counts; }
 
   void eval(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> valid) const override {
     for (size_t i = 0; i < wl.size(); ++i) {

@@ -1,0 +1,16 @@
+// Which model a measurement is fitted with: the one place that knows all fits.
+#pragma once
+
+#include "fit/fit_options.h"
+#include "job/progress.h"
+
+namespace velour {
+
+/// In the order of Model's bodies; the numbers are those of VLR_MODEL_*.
+enum class ModelKind { scattered = 0, parametric = 1 };
+
+constexpr ModelKind kDefaultModelKind = ModelKind::parametric;
+
+Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress);
+
+}  // namespace velour

@@ -1,0 +1,146 @@
+#include "fit/measurement_warnings.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "brdf/held_out.h"
+#include "fit/fit_report.h"
+
+namespace velour {
+namespace {
+
+constexpr double kManyInvalid = 0.1;   // of the entries above the horizon
+constexpr double kFewLights = 0.9;     // of the hemisphere
+constexpr uint64_t kFewSamples = 500;  // some 60 of them held out, a dozen for each reported view
+constexpr double kDarkest = 0.001;     // albedo; black velvet and soot are above
+constexpr double kBrokenReciprocity = 0.1;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+void warn_of_entries(const Measurement& measurement, std::vector<std::string>& warnings) {
+  const EntryCounts& n = measurement.counts();
+  const uint64_t possible = n.valid + n.invalid();
+  if (static_cast<double>(n.invalid()) > kManyInvalid * static_cast<double>(possible)) {
+    warnings.push_back(std::to_string(n.invalid()) + " of " + std::to_string(possible) +
+                       " entries are invalid and were left out; errors are those of the others");
+  }
+  const size_t samples = measurement.samples().size();
+  if (samples > 0 && samples < kFewSamples) {
+    uint64_t judges = 0;
+    for (uint64_t i = 0; i < samples; ++i) judges += held_out_sample(i);
+    warnings.push_back("the measurement has " + std::to_string(samples) +
+                       " samples: what lies between them is a guess, "
+                       "and the errors rest on the " +
+                       std::to_string(judges) + " that were held out");
+  }
+}
+
+/// The view whose noise is furthest above its tolerance speaks for all.
+void warn_of_noise(const Comparison& errors, double tolerance, std::vector<std::string>& warnings) {
+  int worst = 0, count = 0;
+  double most = 1;
+  for (const int degrees : kHeldOutViews) {
+    const auto noise = errors.noise_by_view_angle.at(std::to_string(degrees));
+    const double limit = tolerance_at(tolerance, radians_from(static_cast<double>(degrees)));
+    if (!noise || *noise <= limit) continue;
+    ++count;
+    if (*noise / limit > most) most = *noise / limit, worst = degrees;
+  }
+  if (count == 0) return;
+  warnings.push_back("the measurement's own noise exceeds the tolerance at " + std::to_string(count) +
+                     " of the reported views; at " + std::to_string(worst) +
+                     " degrees values that symmetry or reciprocity makes equal differ by " +
+                     number(*errors.noise_by_view_angle.at(std::to_string(worst))) +
+                     ": a smaller error there says nothing, a larger tolerance saves lobes");
+}
+
+/// "view 5 degrees", "views 5, 30 degrees" of the keys, and the least of the values.
+class Views {
+ public:
+  void add(int degrees, double value) {
+    angles_ += (count_++ == 0 ? "" : ", ") + std::to_string(degrees);
+    least_ = std::min(least_, value);
+  }
+  bool empty() const { return count_ == 0; }
+  std::string names() const { return (count_ == 1 ? "view " : "views ") + angles_ + " degrees"; }
+  std::string least() const { return number(least_); }
+
+ private:
+  std::string angles_;
+  int count_ = 0;
+  double least_ = std::numeric_limits<double>::infinity();
+};
+
+void warn_of_narrow_views(const Comparison& errors, std::vector<std::string>& warnings) {
+  Views views;
+  for (const auto& [degrees, share] : errors.narrow_views) views.add(degrees, share);
+  if (views.empty()) return;
+  warnings.push_back(
+      views.names() +
+      ": the highlight is narrower than the spacing of the error's 4096 directions, which see as little as " +
+      views.least() + " of its energy; the error was taken on directions close to it instead");
+}
+
+void warn_of_holes(const Comparison& errors, std::vector<std::string>& warnings) {
+  Views views;
+  for (const auto& [degrees, share] : errors.covered_share) {
+    if (share < kFewLights && errors.by_view_angle.at(std::to_string(degrees))) views.add(degrees, share);
+  }
+  if (views.empty()) return;
+  warnings.push_back(views.names() + ": the measurement covers as little as " + views.least() +
+                     " of the light directions; errors are those of these, elsewhere the model is a guess");
+}
+
+void warn_of_nothing_to_judge(const Comparison& errors, std::vector<std::string>& warnings) {
+  const bool judged = std::any_of(errors.by_view_angle.begin(), errors.by_view_angle.end(),
+                                  [](const auto& entry) { return entry.second.has_value(); });
+  if (!judged) {
+    warnings.emplace_back("no reported view is covered: the error is not known, and is given as 1");
+  }
+}
+
+void warn_of_darkness(double albedo, std::vector<std::string>& warnings) {
+  if (albedo == 0) {
+    warnings.push_back("the measurement is black at every view; check that it is the right file");
+  } else if (albedo < kDarkest) {
+    warnings.push_back("albedo at most " + number(albedo) +
+                       " at every view, darker than any material we know of: check the measurement's scale");
+  }
+}
+
+/// Noise breaks the measurement's reciprocity but, mostly, not that of the smooth model.
+bool is_not_reciprocal(const FitRecord& record) {
+  const double measured = record.measured_reciprocity.value_or(0);
+  return measured > kBrokenReciprocity && record.reciprocity > 0.5 * measured;
+}
+
+void warn_of_reciprocity(const FitRecord& record, std::vector<std::string>& warnings) {
+  if (is_not_reciprocal(record)) {
+    warnings.push_back("the measurement is not reciprocal: exchanging light and view changes it by " +
+                       number(*record.measured_reciprocity) +
+                       " (relative L2); the model follows it, and light paths traced from either end will differ");
+  } else if (record.reciprocity > kBrokenReciprocity) {
+    warnings.push_back("the model is not reciprocal: exchanging light and view changes it by " +
+                       number(record.reciprocity) + " (relative L2)");
+  }
+}
+
+}  // namespace
+
+void warn_of_measurement(const Measurement& measurement, const Comparison& errors, FitRecord& record) {
+  warn_of_entries(measurement, record.warnings);
+  // Reciprocal pairs of such a measurement tell nothing of its noise.
+  if (!is_not_reciprocal(record)) warn_of_noise(errors, record.tolerance, record.warnings);
+  warn_of_narrow_views(errors, record.warnings);
+  warn_of_holes(errors, record.warnings);
+  warn_of_nothing_to_judge(errors, record.warnings);
+  warn_of_darkness(record.albedo_max, record.warnings);
+  warn_of_reciprocity(record, record.warnings);
+}
+
+}  // namespace velour

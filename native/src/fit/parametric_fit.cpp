@@ -1,0 +1,54 @@
+#include "fit/parametric_fit.h"
+
+#include <chrono>
+
+#include "fit/fit_input.h"
+#include "fit/fit_report.h"
+#include "fit/tracked_fit.h"
+#include "material/parametric_material.h"
+
+namespace velour {
+namespace {
+
+// Interpolated samples are few and slow to look up: no more of them than they can tell apart.
+SliceGrid grid_for(const Measurement& measurement) {
+  if (!measurement.samples().empty()) return {32, 24, measurement.isotropic()};
+  return {64, 32, measurement.isotropic()};
+}
+
+TrackedFitOptions tracked_options(const Measurement& measurement, const FitOptions& options) {
+  TrackedFitOptions tracked;
+  tracked.isotropic = measurement.isotropic();
+  tracked.max_lobes = options.max_lobes;
+  tracked.tolerance = options.tolerance;
+  tracked.threads = options.threads;
+  return tracked;
+}
+
+}  // namespace
+
+Model fit_parametric(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  check_options(options, ParametricBrdf::kMaxLobes);
+  progress.stage("sampling", 0.0, 0.1);
+  const MeasuredSlices measured = read_slices(measurement, grid_for(measurement), options, progress);
+  progress.stage("fitting", 0.1, 0.9);
+  const TrackedFit fit = fit_tracked(measured.slices, tracked_options(measurement, options), progress);
+
+  progress.stage("checking", 0.9, 1.0);
+  std::vector<FittedView> views;
+  for (size_t i = 0; i < fit.views.size(); ++i) views.push_back({Vec3(fit.views[i]), fit.error[i]});
+  Model model;
+  const auto brdf = std::make_shared<const ParametricBrdf>(fit.brdf);
+  model.fit = report_fit(measurement, *make_parametric_material(brdf), options, views, progress);
+  model.fit.order = fit.order;
+  warn_of_slices(measured, model.fit.warnings);
+  model.body = *brdf;
+  model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
+  progress.check();
+  progress.update(1.0);
+  model.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return model;
+}
+
+}  // namespace velour

@@ -1,0 +1,30 @@
+// From the slices of a measurement to a parametric model: growth, refinement, rounding.
+#pragma once
+
+#include <vector>
+
+#include "brdf/parametric_brdf.h"
+#include "fit/slice_sampling.h"
+#include "job/progress.h"
+#include "model/order_curve.h"
+
+namespace velour {
+
+struct TrackedFitOptions {
+  bool isotropic = true;
+  int cells = 10;
+  int max_lobes = 12;
+  double tolerance = 0.02;  // relative L2 of every view up to 75 degrees; twice that beyond
+  int threads = 0;
+};
+
+struct TrackedFit {
+  ParametricBrdf brdf;  // control values are half floats
+  std::vector<Vec3d> views;
+  std::vector<double> error;  // relative L2 of each view, channels weighted as in luminance
+  OrderCurve order;           // the growth, and what it became
+};
+
+TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);
+
+}  // namespace velour

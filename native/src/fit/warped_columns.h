@@ -1,0 +1,30 @@
+// The loops over the samples of a view for lobes with a parameterisation of their own: columns and their derivatives.
+// SIMD through Highway with run-time dispatch; the rest of the linear algebra is that of fit/slice_columns.h.
+#pragma once
+
+#include "fit/slice_columns.h"
+#include "srbf/warped_lobe.h"
+
+namespace velour {
+
+/// The shape of a lobe at one view, as the fit varies it.
+struct WarpedShape {
+  LobeSpace space = LobeSpace::light;
+  double log_bandwidth = 0;
+  double tilt_x = 0, tilt_y = 0;        // radians
+  double stretch_a = 0, stretch_b = 0;  // logarithms
+};
+
+/// out_i = sqrt(weight_i) cos(theta_i) G(psi(wl_i)).
+void fill_warped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, float* out);
+
+/// Derivatives of that column by log bandwidth, tilt_x, stretch_a, tilt_y, stretch_b: the first `count` of them.
+inline constexpr int kWarpedSlopes = 5;
+void fill_warped_slopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, int count,
+                        float* const out[kWarpedSlopes]);
+
+/// What one more lobe of this shape would meet (fit/slice_columns.h project), at every `stride`-th vector of samples.
+Projection project_warped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples,
+                          const float* const residual[3], size_t stride);
+
+}  // namespace velour

@@ -1,0 +1,177 @@
+// Highway compiles this file once for each instruction set.
+#include "material/parametric_draws.h"
+
+#include "srbf/kernel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "material/parametric_draws.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "srbf/simd_dispatch.h"
+#include "srbf/simd_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace velour {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <int kNodes>
+HWY_INLINE void add_draws(const float* const (&row)[4], const float (&weight)[4], WarpedMixture& m) {
+  using P = ParametricDraws;
+  const hn::CappedTag<float, WarpedMixture::kLanes> d;
+  using V = hn::Vec<decltype(d)>;
+  for (int at = 0; at < m.padded; at += static_cast<int>(hn::Lanes(d))) {
+    const auto column = [&](int which) {
+      const int from = which * m.padded + at;
+      V sum = hn::Mul(hn::Set(d, weight[0]), hn::LoadU(d, row[0] + from));
+      for (int i = 1; i < kNodes; ++i) sum = hn::MulAdd(hn::Set(d, weight[i]), hn::LoadU(d, row[i] + from), sum);
+      return sum;
+    };
+    const V x = hn::Add(hn::Load(d, m.x + at), column(P::kOffsetX));
+    const V y = hn::Add(hn::Load(d, m.y + at), column(P::kOffsetY));
+    const V z = hn::Add(hn::Load(d, m.z + at), column(P::kOffsetZ));
+    const V scale = reciprocal_sqrt(d, hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
+    hn::Store(hn::Mul(scale, x), d, m.draw_x + at);
+    hn::Store(hn::Mul(scale, y), d, m.draw_y + at);
+    hn::Store(hn::Mul(scale, z), d, m.draw_z + at);
+    const V ratio = column(P::kBandwidthRatio), least = hn::Set(d, static_cast<float>(kMinMeanBandwidth));
+    const V bandwidth = hn::Max(hn::Mul(hn::Load(d, m.bandwidth + at), ratio), least);
+    hn::Store(bandwidth, d, m.draw_bandwidth + at);
+    // The same sums, rounded the same way, as the numbers that choose: this is the probability of the draws.
+    const V below = column(P::kBelow), up_to = column(P::kUpTo), probability = hn::Sub(up_to, below);
+    hn::StoreU(up_to, d, m.cdf + 1 + at);
+    if (at == 0) m.cdf[0] = hn::GetLane(below);
+    // The integral of the kernel, 2 pi (1 - e^-2l) / l; no smaller l than the least, so the difference is exact enough.
+    const V whole = hn::Sub(hn::Set(d, 1.0f), exp_nonpositive(d, hn::Mul(hn::Set(d, -2.0f), bandwidth)));
+    const V scaled = hn::Mul(hn::Mul(hn::Set(d, 0.5f / kPi), probability), bandwidth);
+    hn::Store(hn::Div(scaled, whole), d, m.density + at);
+  }
+}
+
+void add_draws_simd(const float* table, const NodeWeights& nodes, WarpedMixture& m) {
+  const float* row[4];
+  for (int i = 0; i < nodes.count; ++i) row[i] = table + nodes.node[i] * ParametricDraws::kColumns * m.padded;
+  return nodes.count == 2 ? add_draws<2>(row, nodes.weight, m) : add_draws<4>(row, nodes.weight, m);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace velour
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <algorithm>
+
+#include "material/drawn_lobe.h"
+#include "sphere/frame.h"
+#include "srbf/lobe_tree.h"
+
+namespace velour {
+
+HWY_EXPORT(add_draws_simd);
+
+namespace {
+
+constexpr double kDefensiveShare = 0.05;  // method 6.2
+constexpr int kRadiusCells = 64, kSquareCells = 24;
+
+/// A lobe of the mixture, as scalar code has it.
+WarpedLobe lobe_of(const WarpedMixture& m, int j) {
+  return {m.half[j] > 0 ? LobeSpace::half : LobeSpace::light,
+          {m.s_xx[j], m.s_xy[j], m.s_yy[j]},
+          glm::normalize(Vec3d(m.x[j], m.y[j], m.z[j])),
+          m.bandwidth[j],
+          {m.r[j], m.g[j], m.b[j]}};
+}
+
+std::vector<DrawnLobe> drawn_lobes(const WarpedMixture& m) {
+  std::vector<DrawnLobe> lobes;
+  for (int j = 0; j < m.count; ++j) lobes.push_back(drawn_lobe(lobe_of(m, j), Vec3d(m.wv)));
+  return lobes;
+}
+
+ProposalLobes few_lobes(const std::vector<DrawnLobe>& drawn) {
+  GaussianLobes lobes;
+  ProposalLobes few;
+  for (const DrawnLobe& lobe : drawn) {
+    if (lobe.is_cosine) {
+      few.cosine += static_cast<float>(lobe.mass / kPiD);
+    } else {
+      const double amplitude = lobe.mass / kernel_integral(Kernel::gaussian, lobe.light_bandwidth);
+      lobes.add({Vec3(lobe.light_center), static_cast<float>(lobe.light_bandwidth), static_cast<float>(amplitude)});
+    }
+  }
+  constexpr GaussianLobe kEverywhere{{0, 0, 1}, 0, 1};
+  for (const GaussianLobe& lobe : LobeTree(lobes).cut(kEverywhere, ProposalLobes::kCapacity)) {
+    few.lobe[few.count++] = lobe;
+  }
+  return few;
+}
+
+Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
+
+}  // namespace
+
+ParametricDraws::ParametricDraws(const ParametricValues& values)
+    : isotropic_(values.isotropic()),
+      padded_(values.padded_count()),
+      nodes_(isotropic_, isotropic_ ? kRadiusCells : kSquareCells) {
+  for (int node = 0; node < nodes_.count(); ++node) add_node(values, node);
+}
+
+void ParametricDraws::add_node(const ParametricValues& values, int node) {
+  WarpedMixture m;
+  const Vec3 wv = nodes_.view(node);
+  values.evaluate(wv, ViewPlace(wv), m);
+  const std::vector<DrawnLobe> drawn = drawn_lobes(m);
+  double total = 0, cosine = 0;
+  for (const DrawnLobe& lobe : drawn) {
+    total += lobe.mass;
+    cosine += lobe.is_cosine ? lobe.mass : 0.0;
+  }
+  const auto probability = [&](double mass) { return total > 0 ? (1 - kDefensiveShare) * mass / total : 0.0; };
+  double up_to = total > 0 ? kDefensiveShare + probability(cosine) : 1.0;
+  auto below = static_cast<float>(up_to);
+
+  std::vector<float> row(static_cast<size_t>(kColumns * padded_));
+  const auto at = [&](int column, int lobe) -> float& { return row[static_cast<size_t>(column * padded_ + lobe)]; };
+  for (int j = 0; j < padded_; ++j) {
+    at(kBandwidthRatio, j) = 1;
+    at(kBelow, j) = below;
+    if (j < m.count) {
+      const DrawnLobe& lobe = drawn[static_cast<size_t>(j)];
+      const Vec3 offset = Vec3(lobe.center) - Vec3(m.x[j], m.y[j], m.z[j]);
+      at(kOffsetX, j) = offset.x;
+      at(kOffsetY, j) = offset.y;
+      at(kOffsetZ, j) = offset.z;
+      at(kBandwidthRatio, j) = static_cast<float>(lobe.bandwidth) / m.bandwidth[j];
+      up_to += lobe.is_cosine ? 0.0 : probability(lobe.mass);
+    }
+    at(kUpTo, j) = below = j + 1 < m.count ? static_cast<float>(std::min(up_to, 1.0)) : 1.0f;
+  }
+  rows_.insert(rows_.end(), row.begin(), row.end());
+  proposals_.push_back(few_lobes(drawn));
+}
+
+void ParametricDraws::add_to(const ViewPlace& place, WarpedMixture& mixture) const {
+  VELOUR_SIMD_DISPATCH(add_draws_simd)(rows_.data(), nodes_.at(place), mixture);
+}
+
+void ParametricDraws::propose(const WarpedMixture& mixture, ProposalLobes& lobes) const {
+  const int node = nodes_.at(ViewPlace(mixture.wv)).nearest;
+  lobes = proposals_[static_cast<size_t>(node)];
+  const Mat3 align = rotation_between(mirror(nodes_.view(node)), mirror(mixture.wv));
+  const float c = mixture.turn_cos, s = mixture.turn_sin;
+  for (int j = 0; j < lobes.count; ++j) {
+    const Vec3 center = align * lobes.lobe[j].center;
+    lobes.lobe[j].center = {c * center.x - s * center.y, s * center.x + c * center.y, center.z};
+  }
+}
+
+uint64_t ParametricDraws::bytes() const {
+  return sizeof(float) * rows_.size() + sizeof(ProposalLobes) * proposals_.size();
+}
+
+}  // namespace velour
+#endif

@@ -1,0 +1,46 @@
+#include "material/parametric_material.h"
+
+#include "material/parametric_draws.h"
+
+namespace velour {
+
+namespace {
+
+class ParametricMaterial final : public Material {
+ public:
+  explicit ParametricMaterial(const ParametricBrdf& brdf) : values_(brdf), draws_(values_) {}
+
+  void prepare(const Vec3& wv, PreparedBrdf& point) const override {
+    point.wv = wv;
+    const ViewPlace place(wv);
+    values_.evaluate(wv, place, point.warped);
+    draws_.add_to(place, point.warped);
+  }
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    eval_warped(point.warped, wl, f, pdf);
+  }
+
+  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    sample_warped(point.warped, u, wl);
+  }
+
+  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
+    draws_.propose(point.warped, lobes);
+    return true;
+  }
+
+  bool isotropic() const override { return values_.isotropic(); }
+
+ private:
+  ParametricValues values_;
+  ParametricDraws draws_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> make_parametric_material(const std::shared_ptr<const ParametricBrdf>& brdf) {
+  return std::make_shared<ParametricMaterial>(*brdf);
+}
+
+}  // namespace velour

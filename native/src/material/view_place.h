@@ -1,0 +1,35 @@
+// A view direction in the coordinates that tables and splines over views use, computed once a view.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "sphere/vec.h"
+
+namespace velour {
+
+/// Float is enough here: a spline of the view changes by parts of itself over a tenth of a radian.
+struct ViewPlace {
+  float sine;              // of the polar angle
+  float cos_phi, sin_phi;  // 1, 0 at the normal
+  float radius;            // of Lambert's equal-area map, sqrt(1 - cos theta), without cancellation
+  float theta;             // radians, absolute error below 3e-7
+
+  /// Of unit `wv` on or above the horizon.
+  explicit ViewPlace(const Vec3& wv) {
+    const float z = std::max(wv.z, 0.0f), sine_sq = wv.x * wv.x + wv.y * wv.y;
+    sine = std::sqrt(sine_sq);
+    const float inverse = 1 / std::max(sine, 1e-30f);
+    cos_phi = sine > 0 ? inverse * wv.x : 1.0f;
+    sin_phi = inverse * wv.y;
+    radius = std::sqrt(sine_sq / (1 + z));
+    // arccos z = sqrt(1 - z) times a polynomial: Abramowitz & Stegun 4.4.46. By pairs, which is half as long to wait
+    // for.
+    const float z2 = z * z, z4 = z2 * z2;
+    const float a = 1.5707963050f - 0.2145988016f * z, b = 0.0889789874f - 0.0501743046f * z;
+    const float c = 0.0308918810f - 0.0170881256f * z, d = 0.0066700901f - 0.0012624911f * z;
+    theta = radius * ((a + b * z2) + (c + d * z2) * z4);
+  }
+};
+
+}  // namespace velour

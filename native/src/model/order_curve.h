@@ -1,0 +1,27 @@
+// How the error of a fit falls as its model grows, and where the fit stopped.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace velour {
+
+/// The best fit found with at most this many lobes.
+struct OrderPoint {
+  int lobes = 0;  // scattered: of the view that has most; parametric: in all
+  uint64_t parameter_bytes = 0;
+  double worst = 0;        // largest relative L2 over tolerance of a fitted view: at most 1 where the fit holds
+  double relative_l2 = 0;  // of the fitted samples, a mean over views weighted by cos(theta_v)
+
+  bool operator==(const OrderPoint&) const = default;
+};
+
+struct OrderCurve {
+  std::vector<OrderPoint> points;  // in the order of parameter_bytes; empty: not recorded
+  std::optional<size_t> chosen;    // the point that the model is
+
+  bool operator==(const OrderCurve&) const = default;
+};
+
+}  // namespace velour

@@ -1,0 +1,14 @@
+// The parametric model's parts and attributes in the model file (docs/formats.md, "Model file").
+#pragma once
+
+#include "brdf/parametric_brdf.h"
+#include "model/model_fields.h"
+
+namespace velour {
+
+/// Throws Error(invalid_argument) for control values that a half float does not hold.
+void write_parametric(const ParametricBrdf& brdf, TensorFile& file);
+/// Checks every shape and range.
+ParametricBrdf read_parametric(const ModelFields& fields);
+
+}  // namespace velour

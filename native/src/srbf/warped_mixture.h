@@ -1,0 +1,58 @@
+// The lobes of a parametric model at one view: value and density of many directions, and samples.
+//
+// Each lobe has a parameterisation of its own (warped_lobe.h) and, in the same parameterisation, a second Gaussian for
+// the density: that of f cos instead of f, so that what lies below the horizon or at grazing angles is seldom drawn.
+#pragma once
+
+#include <span>
+
+#include "sphere/direction_batch.h"
+
+namespace velour {
+
+/// Structure of arrays of `padded` elements; those past `count` hold lobes of value and density 0. Filled by whoever
+/// owns the lobes; scratch memory of a thread.
+struct alignas(64) WarpedMixture {
+  static constexpr int kCapacity = 32;
+  static constexpr int kLanes = 8;  // padded is a multiple of it
+
+  // The arrays come first: vectors are loaded from them.
+  // psi = normalize(S (wl + half wv)), S = [[s_xx, s_xy], [s_xy, s_yy]] (+) 1 of determinant 1; half is 0 or 1.
+  float half[kCapacity];
+  float s_xx[kCapacity], s_xy[kCapacity], s_yy[kCapacity];
+
+  // f = sum of (r, g, b) exp(-bandwidth |psi - (x, y, z)|^2 / 2).
+  float x[kCapacity], y[kCapacity], z[kCapacity];
+  float bandwidth[kCapacity];
+  float r[kCapacity], g[kCapacity], b[kCapacity];
+
+  // The density over psi: sum of density exp(-draw_bandwidth |psi - (draw_x, draw_y, draw_z)|^2 / 2), where density is
+  // the probability of the lobe / the integral of its kernel.
+  float draw_x[kCapacity], draw_y[kCapacity], draw_z[kCapacity];
+  float draw_bandwidth[kCapacity];
+  float density[kCapacity];
+
+  int count, padded;
+  /// The lobes' frame is the surface's, turned about the normal by an angle of this cosine and sine.
+  float turn_cos, turn_sin;
+  Vec3 wv;  // in the lobes' frame
+
+  /// Running sums of the probabilities: first the cosine's about the normal, then the lobes'; cdf[count] = 1.
+  float cdf[1 + kCapacity];
+};
+
+/// f[i]   = the value at wl_i, without cosine; 0 at and below the horizon.
+/// pdf[i] = density of sample_warped at wl_i, per solid angle. Over the sphere its integral is 1 less the share of
+/// draws
+///          that have no direction.
+/// Of up to 64 directions in the surface's frame, padded. Run-time dispatched SIMD: lanes hold lobes for one or two
+/// directions, else directions. Relative error of a kernel: 1e-6 plus 1e-6 times its exponent, for float parameters and
+/// directions; in half space the exponent's error grows by 1 / |wl + wv| of what the directions have.
+void eval_warped(const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf);
+
+/// Draws a direction for each of up to 64 `u`: `u.x` picks lobe and zenith about its centre, `u.y` the azimuth. Half
+/// vectors that face away from the viewer have no light direction: the draw is then -z, which counts as a draw that
+/// brought nothing. The batch is not padded. Run-time dispatched SIMD.
+void sample_warped(const WarpedMixture& mixture, std::span<const Vec2> u, DirectionBatch& wl);
+
+}  // namespace velour

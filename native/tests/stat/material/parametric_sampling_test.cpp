@@ -1,0 +1,97 @@
+// The sampler of parametric models against the density that it claims: all angles of the view, all widths of the
+// highlight. Draws whose half vector faces away from the viewer have no direction; they are a cell of their own.
+#include "material/parametric_material.h"
+#include "support/parametric_models.h"
+#include "support/proof_materials.h"
+
+namespace velour {
+namespace {
+
+using test::LobeRecipe;
+using test::Sampler;
+
+/// Cells about the sharpest lobe that the density has at `wv`.
+Sampler sampler_of(const ParametricBrdf& brdf, const Vec3& wv) {
+  const auto material = make_parametric_material(std::make_shared<ParametricBrdf>(brdf));
+  PreparedBrdf point;
+  material->prepare(wv, point);
+  const WarpedMixture& m = point.warped;
+  const auto sharpest = std::max_element(m.draw_bandwidth, m.draw_bandwidth + m.count) - m.draw_bandwidth;
+  const bool half = m.half[sharpest] > 0;
+  const WarpedLobe lobe{half ? LobeSpace::half : LobeSpace::light,
+                        {m.s_xx[sharpest], m.s_xy[sharpest], m.s_yy[sharpest]},
+                        Vec3d(m.x[sharpest], m.y[sharpest], m.z[sharpest])};
+  const auto axis = unwarped(lobe, lobe.center, Vec3d(m.wv));
+  Sampler sampler = test::material_sampler(material, wv);
+  sampler.may_fail = true;
+  sampler.sample = [draw = sampler.sample](const Vec2& u) {
+    const Vec3 wl = draw(u);
+    return wl == Vec3(0, 0, -1) ? Vec3(0) : wl;
+  };
+  if (!axis || m.draw_bandwidth[sharpest] < 10) return sampler;
+  const Vec3 turned(m.turn_cos * axis->x - m.turn_sin * axis->y, m.turn_sin * axis->x + m.turn_cos * axis->y, axis->z);
+  const float across = half ? 2 * std::max(wv.z, 0.01f) : 1;
+  sampler.axis = turned;
+  // Against the view, where half vectors are normal to it, the density grows without bound.
+  if (half) sampler.refinements = {2, 9};
+  sampler.concentration = m.draw_bandwidth[sharpest] / (across * across);
+  return sampler;
+}
+
+struct SamplingCase {
+  bool isotropic;
+  float bandwidth, degrees;
+};
+
+void PrintTo(const SamplingCase& c, std::ostream* out) {
+  *out << (c.isotropic ? "isotropic" : "anisotropic") << ", bandwidth " << c.bandwidth << ", view " << c.degrees
+       << " degrees";
+}
+
+std::vector<SamplingCase> sampling_cases() {
+  std::vector<SamplingCase> cases;
+  for (const float degrees : test::kViewAngles) {
+    for (const float b : {1e-4f, 0.1f, 3.0f, 30.0f, 1e3f, 1e5f, 1e6f}) cases.push_back({true, b, degrees});
+    for (const float b : {3.0f, 1e3f, 1e6f}) cases.push_back({false, b, degrees});
+  }
+  return cases;
+}
+
+class ParametricSampling : public ::testing::TestWithParam<SamplingCase> {};
+
+TEST_P(ParametricSampling, FollowsItsDensity) {
+  const auto [isotropic, bandwidth, degrees] = GetParam();
+  const auto brdf = test::parametric_model(isotropic, test::highlight_recipe(bandwidth));
+  test::expect_proven(sampler_of(brdf, test::view_at(degrees)), "parametric");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ParametricSampling, ::testing::ValuesIn(sampling_cases()));
+
+/// One lobe alone, so that nothing hides what it does.
+ParametricBrdf lone(LobeSpace space, float bandwidth) {
+  return test::parametric_model(true, {{space, bandwidth, Rgb(1), space == LobeSpace::half ? 0 : -0.8f, 0.3f}});
+}
+
+TEST(ParametricSamplingControl, ABandwidthOffByFivePercentIsSeen) {
+  for (const LobeSpace space : {LobeSpace::light, LobeSpace::half}) {
+    for (const float bandwidth : {10.0f, 1e3f, 1e6f}) {
+      const Vec3 wv = test::view_at(50);
+      const auto sampler = [&](float b) { return sampler_of(lone(space, b), wv); };
+      EXPECT_GT(test::p_value(sampler(bandwidth), sampler(bandwidth)), 1e-4) << bandwidth;
+      EXPECT_LT(test::p_value(sampler(bandwidth), sampler(1.05f * bandwidth)), 1e-6) << bandwidth;
+    }
+  }
+}
+
+// A lobe of half vectors, seen from the side: many of its draws face away.
+TEST(ParametricSamplingControl, DrawsWithoutDirectionAreCounted) {
+  Sampler sampler = sampler_of(lone(LobeSpace::half, 20), test::view_at(89));
+  auto result = test::chi_square(sampler.sample, sampler.pdf, test::proof_options(sampler));
+  EXPECT_GT(result.failed, 0.02 * static_cast<double>(result.options.samples));
+  EXPECT_TRUE(test::follows_density(result, 1e-4, "broad"));
+  sampler.pdf = [pdf = sampler.pdf](const Vec3& w) { return 1.02 * pdf(w); };
+  EXPECT_LT(test::p_value(sampler, sampler), 1e-6);
+}
+
+}  // namespace
+}  // namespace velour
