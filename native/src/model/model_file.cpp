@@ -6,6 +6,7 @@
 #include "file/file.h"
 #include "image/exr_tensors.h"
 #include "job/error.h"
+#include "material/parametric_material.h"
 #include "material/scattered_material.h"
 #include "model/fit_record_json.h"
 #include "model/parametric_file.h"
@@ -30,8 +31,8 @@ void write_body(const ParametricBrdf& brdf, TensorFile& file) { write_parametric
 std::shared_ptr<const Material> material_of(std::shared_ptr<const ScatteredBrdf> brdf, int neighbors) {
   return make_scattered_material(std::move(brdf), neighbors);
 }
-std::shared_ptr<const Material> material_of(std::shared_ptr<const ParametricBrdf>, int) {
-  throw Error(Status::unsupported, "Parametric models have no evaluator yet.");
+std::shared_ptr<const Material> material_of(const std::shared_ptr<const ParametricBrdf>& brdf, int) {
+  return make_parametric_material(brdf);
 }
 
 ModelBody read_body(const ModelFields& fields) {
