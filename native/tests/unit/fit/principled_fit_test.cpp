@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "analytic_measurement.h"
 #include "fit/evaluate.h"
 #include "fit/peer.h"
 #include "fit/principled_problem.h"
 #include "material/principled_material.h"
+#include "support/analytic_measurement.h"
 #include "support/test_data.h"
 
 namespace velour {
