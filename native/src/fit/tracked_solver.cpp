@@ -31,7 +31,7 @@ double lower_bound(int parameter) {
       return -4;
     case P::kTiltX:
     case P::kTiltY:
-      return -1.875;  // a half float: rounded models stay within
+      return -1.875;
     case P::kStretchA:
     case P::kStretchB:
       return -2.5;
