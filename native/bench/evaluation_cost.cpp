@@ -21,6 +21,7 @@
 
 #include "fit/peer.h"
 #include "model/model_file.h"
+#include "model/model_material.h"
 #include "sphere/random.h"
 #include "srbf/simd_target.h"
 
