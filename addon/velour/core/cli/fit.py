@@ -21,6 +21,7 @@ KEYS = (
     "order",
 )
 
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("input", metavar="INPUT", help="a measurement")
     parser.add_argument(
