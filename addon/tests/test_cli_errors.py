@@ -30,6 +30,7 @@ RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-
         ["fit", "x", "-o", "y", "--tol", "0.1"],
         ["compare", "x"],
         ["compare", "x", "y", "--ggx"],
+        ["compare", "x", "--principled", "--ggx"],
         [*RENDER, "--size", "640"],
         [*RENDER, "--spp", "-1"],
         [*RENDER, "--strategy", "luck"],

@@ -90,9 +90,19 @@ def test_fit_and_compare(measurement_file, tmp_path):
 
 def test_compare_with_the_best_ggx_lobe(measurement_file):
     report = velour("compare", measurement_file, "--ggx", "--json").json
-    assert list(report) == [*COMPARE_KEYS, "ggx"]
+    assert list(report) == [*COMPARE_KEYS, "seconds", "parameter_bytes", "ggx"]
     assert list(report["ggx"]) == ["alpha", "f0", "f90", "diffuse"]
     assert 0 < report["ggx"]["alpha"][0] == report["ggx"]["alpha"][1] < 2
+    assert 0 < report["relative_l2"] < 1
+
+
+def test_compare_with_the_closest_principled_material(measurement_file):
+    report = velour("compare", measurement_file, "--principled", "--json").json
+    assert list(report) == [*COMPARE_KEYS, "seconds", "parameter_bytes", "principled"]
+    found = report["principled"]
+    colors = [*found.pop("base_color"), *found.pop("specular_tint")]
+    assert list(found) == ["metallic", "roughness", "specular", "coat", "coat_roughness"]
+    assert all(0 <= value <= 1 for value in [*colors, *found.values()])
     assert 0 < report["relative_l2"] < 1
 
 

@@ -51,6 +51,7 @@ def test_sizes_and_offsets_agree_with_the_compiler(compiler, tmp_path):
     [
         ("VLR_KERNEL_", table.KERNELS),
         ("VLR_MODEL_", table.MODELS),
+        ("VLR_PEER_", table.PEERS),
         ("VLR_LIGHT_", table.LIGHTS),
         ("VLR_CAMERA_", table.CAMERAS),
         ("VLR_STRATEGY_", table.STRATEGIES),

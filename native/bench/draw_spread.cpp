@@ -7,6 +7,7 @@
 
 #include "fit/ggx_fit.h"
 #include "model/model_file.h"
+#include "model/model_material.h"
 #include "sphere/random.h"
 #include "srbf/kernel.h"
 

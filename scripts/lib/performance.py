@@ -6,7 +6,6 @@ import argparse
 import json
 import subprocess
 import sys
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,7 +48,7 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
     sizes = QUICK if quick else WHOLE
-    load = _busy_threads()
+    load = provenance.busy_threads()
     data = data_files.folder()
     WORK.mkdir(parents=True, exist_ok=True)
     measurement = data_files.merl(data, MATERIAL)
@@ -74,21 +73,6 @@ def main() -> int:
     files.write_text(document, performance_text.page(results))
     print(document)
     return 0
-
-
-def _busy_threads() -> float:
-    """How many processors other programs keep busy, over two seconds."""
-
-    def spent() -> tuple[int, int, int]:
-        lines = Path("/proc/stat").read_text(encoding="ascii").splitlines()
-        ticks = [int(number) for number in lines[0].split()[1:9]]
-        processors = sum(line.startswith("cpu") for line in lines) - 1
-        return sum(ticks), ticks[3] + ticks[4], processors  # all, idle
-
-    all_before, idle_before, processors = spent()
-    time.sleep(2)
-    all_after, idle_after, _ = spent()
-    return processors * (1 - (idle_after - idle_before) / (all_after - all_before))
 
 
 def _fit(measurement: Path, lobes: int) -> Path:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import datetime
 import subprocess
+import time
+from pathlib import Path
 
 from velour.core.machine import machine
 from velour_cli import ROOT
@@ -19,6 +21,21 @@ def sentence(c: dict) -> str:
         f"All numbers come from one run: {c['date']}, commit {c['commit']},\n"
         f"{c['machine']}; {c['threads']} threads used, seed {c['seed']}."
     )
+
+
+def busy_threads() -> float:
+    """How many processors other programs keep busy, over two seconds."""
+
+    def spent() -> tuple[int, int, int]:
+        lines = Path("/proc/stat").read_text(encoding="ascii").splitlines()
+        ticks = [int(number) for number in lines[0].split()[1:9]]
+        processors = sum(line.startswith("cpu") for line in lines) - 1
+        return sum(ticks), ticks[3] + ticks[4], processors  # all, idle
+
+    all_before, idle_before, processors = spent()
+    time.sleep(2)
+    all_after, idle_after, _ = spent()
+    return processors * (1 - (idle_after - idle_before) / (all_after - all_before))
 
 
 def _commit() -> str:

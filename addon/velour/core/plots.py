@@ -10,7 +10,7 @@ import numpy as np
 
 from . import files
 
-# One colour a strategy in all plots, distinguishable for the colour-blind (Okabe and Ito's palette).
+# One colour a strategy or model in all plots, distinguishable for the colour-blind (Okabe and Ito's palette).
 COLORS = {
     "uniform": "#999999",
     "cosine": "#56b4e9",
@@ -21,6 +21,9 @@ COLORS = {
     "ggx": "#f0e442",
     "mis-ggx": "#0072b2",
     "product": "#000000",
+    "scattered": "#d55e00",
+    "parametric": "#0072b2",
+    "principled": "#009e73",
 }
 
 
@@ -66,6 +69,32 @@ def error_by_view_angle(
     axes.axhline(tolerance, color="black", linewidth=0.8, linestyle=":", label=f"tolerance {tolerance:g}")
     axes.set(xlabel="view angle, degrees", ylabel="relative L2")
     axes.legend()
+    save(figure, path)
+
+
+def errors_by_size(
+    path: str | os.PathLike,
+    panels: Mapping[str, Mapping[str, Sequence[tuple[float, float]]]],
+    size: str,
+    tolerance: float,
+) -> None:
+    """A panel a material, four in a row; a curve a model: (size, relative L2), both axes logarithmic."""
+    columns = min(4, len(panels))
+    rows = -(-len(panels) // columns)
+    figure, axes = _pyplot().subplots(
+        rows, columns, figsize=(3.6 * columns, 3.0 * rows), squeeze=False, sharey=True, layout="constrained"
+    )
+    for cell, (name, curves) in zip(axes.flat, panels.items(), strict=False):
+        for model, points in curves.items():
+            cell.loglog(*np.reshape(points, (-1, 2)).T, "o-", color=COLORS[model], label=model, markersize=4)
+        cell.axhline(tolerance, color="black", linewidth=0.8, linestyle=":")
+        cell.set_title(name, fontsize="small")
+        cell.grid(which="both", alpha=0.25)
+    for cell in axes.flat[len(panels) :]:
+        cell.set_axis_off()
+    axes.flat[0].legend(fontsize="small")
+    figure.supxlabel(size)
+    figure.supylabel("relative L2")
     save(figure, path)
 
 

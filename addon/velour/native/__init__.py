@@ -2,7 +2,7 @@
 
 from . import images, library
 from .errors import LibraryError, Status, VelourError
-from .job import Job, JobState, compare_ggx_job, compare_job, fit_job, microsurface_job, render_job
+from .job import Job, JobState, compare_job, compare_peer_job, fit_job, microsurface_job, render_job
 from .measurement import Measurement
 from .model import Model
 from .scene import Scene
@@ -16,8 +16,8 @@ __all__ = [
     "Scene",
     "Status",
     "VelourError",
-    "compare_ggx_job",
     "compare_job",
+    "compare_peer_job",
     "fit_job",
     "images",
     "library",

@@ -148,9 +148,10 @@ def compare_job(measurement: Measurement, model: Model) -> Job:
     return Job._create("vlr_compare_create_job", measurement.pointer, model.pointer)
 
 
-def compare_ggx_job(measurement: Measurement) -> Job:
-    """The same errors of the GGX lobe over a diffuse base that suits it best, and the lobe."""
-    return Job._create("vlr_compare_ggx_create_job", measurement.pointer)
+def compare_peer_job(measurement: Measurement, peer: str) -> Job:
+    """The same errors of the `peer` (table.PEERS) that suits it best, and its parameters."""
+    number = choice("peer", peer, table.PEERS)
+    return Job._create("vlr_compare_peer_create_job", measurement.pointer, number)
 
 
 def microsurface_job(path: str | os.PathLike, **options) -> Job:

@@ -13,6 +13,7 @@ from .errors import VelourError
 JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
 MODELS = ("scattered", "parametric")
+PEERS = ("ggx", "principled")
 LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
@@ -182,7 +183,7 @@ STATUS_CALLS = {
     "vlr_job_result_model": [_handle, _out_handle],
     "vlr_fit_create_job": [_handle, POINTER(FitOptions), _out_handle],
     "vlr_compare_create_job": [_handle, _handle, _out_handle],
-    "vlr_compare_ggx_create_job": [_handle, _out_handle],
+    "vlr_compare_peer_create_job": [_handle, c_int32, _out_handle],
     "vlr_microsurface_create_job": [POINTER(MicrosurfaceOptions), c_char_p, _out_handle],
     "vlr_scene_create": [_out_handle],
     "vlr_scene_set_working_space": [_handle, _floats],

@@ -5,7 +5,7 @@
 #include "capture/microsurface.h"
 #include "fit/compare.h"
 #include "fit/fit_model.h"
-#include "fit/ggx_fit.h"
+#include "fit/peer.h"
 #include "model/model_file.h"
 #include "model/model_material.h"
 
@@ -98,13 +98,16 @@ vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_
   });
 }
 
-vlr_status vlr_compare_ggx_create_job(const vlr_measurement* measurement, vlr_job** out) {
+vlr_status vlr_compare_peer_create_job(const vlr_measurement* measurement, int32_t peer, vlr_job** out) {
   return guard([&] {
     require(measurement, "measurement");
     require(out, "out");
+    if (peer != VLR_PEER_GGX && peer != VLR_PEER_PRINCIPLED) {
+      throw Error(Status::invalid_argument, "The peer is " + std::to_string(peer) + ", not a VLR_PEER value.");
+    }
     auto output = std::make_shared<JobOutput>();
-    *out = new vlr_job(output, [output, source = measurement->measurement](Progress& progress) {
-      output->set(ggx_json(judge_ggx(*source, 0, progress)));
+    *out = new vlr_job(output, [output, peer, source = measurement->measurement](Progress& progress) {
+      output->set(peer_json(judge_peer(*source, static_cast<Peer>(peer), 0, progress)));
     });
   });
 }

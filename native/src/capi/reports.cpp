@@ -46,6 +46,25 @@ Json errors_of(const Comparison& comparison) {
 
 Json colour(const Rgb& c) { return {c.r, c.g, c.b}; }
 
+Json peer_of(const GgxParameters& p) {
+  return {{"ggx",
+           {{"alpha", {p.alpha.x, p.alpha.y}},
+            {"f0", colour(p.f0)},
+            {"f90", colour(p.f90)},
+            {"diffuse", colour(p.diffuse)}}}};
+}
+
+Json peer_of(const PrincipledParameters& p) {
+  return {{"principled",
+           {{"base_color", colour(p.base_color)},
+            {"metallic", p.metallic},
+            {"roughness", p.roughness},
+            {"specular", p.specular},
+            {"specular_tint", colour(p.specular_tint)},
+            {"coat", p.coat},
+            {"coat_roughness", p.coat_roughness}}}};
+}
+
 Json size_json(const Model& model, uint64_t file_bytes) {
   return std::visit(
       [&](const auto& brdf) {
@@ -142,11 +161,10 @@ std::string fit_json(const Model& model, uint64_t file_bytes) {
 
 std::string comparison_json(const Comparison& comparison) { return text(errors_of(comparison)); }
 
-std::string ggx_json(const GgxFit& fit) {
-  const GgxParameters& p = fit.parameters;
+std::string peer_json(const PeerFit& fit) {
   Json json = errors_of(fit.error);
-  json["ggx"] = {
-      {"alpha", {p.alpha.x, p.alpha.y}}, {"f0", colour(p.f0)}, {"f90", colour(p.f90)}, {"diffuse", colour(p.diffuse)}};
+  json.update(Json{{"seconds", fit.seconds}, {"parameter_bytes", fit.parameter_bytes()}});
+  json.update(std::visit([](const auto& p) { return peer_of(p); }, fit.parameters));
   return text(json);
 }
 

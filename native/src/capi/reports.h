@@ -6,7 +6,7 @@
 #include "brdf/measurement.h"
 #include "capture/microsurface.h"
 #include "fit/compare.h"
-#include "fit/ggx_fit.h"
+#include "fit/peer.h"
 #include "model/model.h"
 #include "render/report.h"
 #include "scene/scene.h"
@@ -18,7 +18,7 @@ std::string measurement_json(const Measurement& measurement);
 std::string model_json(const Model& model, uint64_t file_bytes);
 std::string fit_json(const Model& model, uint64_t file_bytes);
 std::string comparison_json(const Comparison& comparison);
-std::string ggx_json(const GgxFit& fit);
+std::string peer_json(const PeerFit& fit);
 std::string microsurface_json(const MicrosurfaceReport& report);
 std::string scene_json(const Scene& scene);
 std::string render_json(const RenderReport& report);

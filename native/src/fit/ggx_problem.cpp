@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <Eigen/Cholesky>
 
 #include "fit/nnls.h"
 #include "material/ggx.h"
 
 namespace velour {
 namespace {
-
-constexpr int kSteps = 40;
-constexpr double kSettled = 1e-5;  // relative gain of a step that ends the descent
 
 /// The unknowns of one colour, in the order of Basis.
 Vec3 unknowns(const GgxParameters& p, int c) { return {p.diffuse[c], p.f0[c], p.f90[c]}; }
@@ -24,16 +20,16 @@ void set_unknowns(GgxParameters& p, int c, const Vec3& value) {
 
 }  // namespace
 
-GgxProblem::GgxProblem(std::vector<GgxSample> samples, float floor, bool isotropic)
-    : samples_(std::move(samples)), floor_(floor), isotropic_(isotropic) {
-  for (const GgxSample& s : samples_) {
+GgxProblem::GgxProblem(PairSamples samples, bool isotropic)
+    : samples_(std::move(samples.samples)), floor_(samples.floor), isotropic_(isotropic) {
+  for (const PairSample& s : samples_) {
     const Vec3 h = glm::normalize(s.w.wl + s.w.wv);
     geometry_.push_back({h, schlick_share(std::min(glm::dot(s.w.wv, h), 1.0f))});
   }
 }
 
 GgxProblem::Basis GgxProblem::basis(size_t i, const Vec2& alpha) const {
-  const GgxSample& s = samples_[i];
+  const PairSample& s = samples_[i];
   const float lobe = ggx_brdf_without_fresnel(s.w, geometry_[i].h, alpha) * s.w.wl.z;
   return {s.w.wl.z / kPi, (1 - geometry_[i].schlick) * lobe, geometry_[i].schlick * lobe};
 }
@@ -49,12 +45,12 @@ double GgxProblem::cost(const GgxParameters& p) const {
   return sum;
 }
 
-GgxParameters GgxProblem::reflectances(const Vec2& alpha) const {
+GgxParameters GgxProblem::completed(const GgxParameters& start) const {
   Eigen::Matrix3d gram[3];
   Eigen::Vector3d moment[3];
   for (int c = 0; c < 3; ++c) gram[c].setZero(), moment[c].setZero();
   for (size_t i = 0; i < samples_.size(); ++i) {
-    const Basis b = basis(i, alpha);
+    const Basis b = basis(i, start.alpha);
     const Eigen::Vector3d row(b.base, b.normal, b.grazing);
     for (int c = 0; c < 3; ++c) {
       const double y = samples_[i].f_cos[c], weight = samples_[i].weight / (y + floor_);  // g'(y)^2 but for a factor
@@ -62,7 +58,7 @@ GgxParameters GgxProblem::reflectances(const Vec2& alpha) const {
       moment[c].noalias() += weight * y * row;
     }
   }
-  GgxParameters p{.alpha = alpha};
+  GgxParameters p{.alpha = start.alpha};
   for (int c = 0; c < 3; ++c) {
     Eigen::VectorXd x = Eigen::VectorXd::Ones(3);
     solve_nnls(gram[c], moment[c], 1e-9, x);
@@ -73,9 +69,9 @@ GgxParameters GgxProblem::reflectances(const Vec2& alpha) const {
 
 GgxProblem::Normal GgxProblem::normal(const GgxParameters& p) const {
   const int shared = alphas(), size = shared + 9;
-  Normal n{Matrix::Zero(size, size), Vector::Zero(size)};
+  Normal n(size);
   for (size_t i = 0; i < samples_.size(); ++i) {
-    const GgxSample& s = samples_[i];
+    const PairSample& s = samples_[i];
     const Basis b = basis(i, p.alpha);
     const Vec2 both = ggx_log_slope(s.w, geometry_[i].h, p.alpha);
     const Vec2 slope = isotropic_ ? Vec2(both.x + both.y, 0) : both;
@@ -106,15 +102,12 @@ void GgxProblem::freeze_at_zero(const GgxParameters& p, Normal& n) const {
     for (int k = 0; k < 3; ++k) {
       const int at = alphas() + 3 * c + k;
       if (now[k] > 0 || n.slope[at] < 0) continue;
-      n.curvature.row(at).setZero();
-      n.curvature.col(at).setZero();
-      n.curvature(at, at) = 1;
-      n.slope[at] = 0;
+      n.freeze(at);
     }
   }
 }
 
-GgxParameters GgxProblem::moved(const GgxParameters& p, const Vector& step) const {
+GgxParameters GgxProblem::moved(const GgxParameters& p, const decltype(Normal::slope)& step) const {
   GgxParameters to = p;
   for (int k = 0; k < 2; ++k) {
     const double by = std::clamp(step[isotropic_ ? 0 : k], -1.0, 1.0);  // the linear model reaches no further
@@ -125,29 +118,6 @@ GgxParameters GgxProblem::moved(const GgxParameters& p, const Vector& step) cons
     set_unknowns(to, c, glm::max(unknowns(p, c) + Vec3(by[0], by[1], by[2]), Vec3(0)));
   }
   return to;
-}
-
-GgxParameters GgxProblem::polish(GgxParameters p, const std::function<void()>& check) const {
-  double now = cost(p), damping = 1e-3;
-  Normal n = normal(p);
-  for (int step = 0; step < kSteps && damping < 1e8; ++step) {
-    check();
-    Matrix damped = n.curvature;
-    damped.diagonal() += damping * n.curvature.diagonal() + Vector::Constant(n.slope.size(), 1e-12);
-    const GgxParameters to = moved(p, -damped.ldlt().solve(n.slope));
-    const double then = cost(to);
-    if (!(then < now)) {
-      damping *= 5;
-      continue;
-    }
-    const bool settled = now - then < kSettled * now;
-    p = to;
-    now = then;
-    if (settled) break;
-    damping = std::max(0.2 * damping, 1e-9);
-    n = normal(p);
-  }
-  return p;
 }
 
 }  // namespace velour

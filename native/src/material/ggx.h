@@ -98,4 +98,13 @@ inline Rgb schlick_fresnel(const Rgb& f0, float cosine, const Rgb& f90 = Rgb(1))
   return f0 + (f90 - f0) * schlick_share(cosine);
 }
 
+/// A metal's reflectance, per colour: Schlick's, bent down to `tint` times it at 82 degrees, where metals dip before
+/// they rise to 1 ([KHE21], "F82-tint"). Never negative.
+inline float tinted_metal_fresnel(float f0, float tint, float cosine) {
+  constexpr float kShare = 0.46266436f, kBottom = 0.056652779f;  // (1 - c)^5 and c (1 - c)^6 at c = 1 / 7
+  const float share = schlick_share(cosine);
+  const float dip = cosine * share * (1 - cosine) / kBottom * (1 - tint);
+  return std::max(0.0f, f0 + (1 - f0) * share - dip * (f0 + (1 - f0) * kShare));
+}
+
 }  // namespace velour

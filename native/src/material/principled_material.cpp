@@ -3,45 +3,38 @@
 #include <algorithm>
 
 #include "material/ggx.h"
-#include "material/specular_albedo.h"
 #include "sphere/warp.h"
 
 namespace velour {
 
 namespace {
 
-/// A metal, and a dielectric coat over a diffuse base, blended by `metallic`.
-///
-/// The base receives what the coat lets through: base / pi (1 - E(wv)) (1 - E(wl)) / (1 - E_mean), with E the coat's
-/// albedo (Kelemen & Szirmay-Kalos 2001, Sec. 2.2). It is reciprocal, and a white base under any coat reflects exactly
-/// all light, so no parameters reflect more than they receive.
+/// Samples the cosine, the visible normals of the base's lobe or those of the coat's, in proportion to their albedos.
 class PrincipledMaterial final : public Material {
  public:
   explicit PrincipledMaterial(const PrincipledParameters& p)
-      : base_color_(glm::clamp(p.base_color, Rgb(0), Rgb(1))),
-        metallic_(std::clamp(p.metallic, 0.0f, 1.0f)),
-        alpha_(std::clamp(p.roughness * p.roughness, kMinGgxAlpha, 1.0f)),
-        eta_(index_of(p.specular)),
-        coat_(alpha_, [this](float cosine) { return dielectric_fresnel(cosine, eta_); }),
-        specular_(alpha_, [this](float cosine) { return luminance(fresnel(cosine)); }) {}
+      : lobes_(p), specular_(lobes_.alpha(), [this](float cosine) { return lobes_.fresnel_luminance(cosine); }) {}
 
   void prepare(const Vec3& wv, PreparedBrdf& point) const override {
-    point.wv = wv;
-    const float through = (1 - metallic_) * (1 - coat_.at(wv.z));
-    const float diffuse = luminance(base_color_) * through, specular = specular_.at(wv.z);
-    point.parameter[kDiffuseScale] = through / (kPi * (1 - coat_.mean()));
-    point.parameter[kDiffuseProbability] = diffuse + specular > 0 ? diffuse / (diffuse + specular) : 1;
+    const PrincipledLobes::View view = lobes_.view(point.wv = wv);
+    const PrincipledParameters& p = lobes_.parameters();
+    const float diffuse = luminance(p.base_color) * lobes_.base_albedo(view);
+    const float specular = view.through * specular_.at(wv.z), coat = lobes_.coat_albedo(wv.z);
+    const float total = diffuse + specular + coat;
+    point.parameter[kDiffuseScale] = view.diffuse_scale;
+    point.parameter[kThrough] = view.through;
+    point.parameter[kDiffuseEnd] = total > 0 ? diffuse / total : 1;
+    point.parameter[kSpecularEnd] = coat > 0 ? (diffuse + specular) / total : 1;
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    const PrincipledLobes::View view{point.wv, point.parameter[kDiffuseScale], point.parameter[kThrough]};
     for (int i = 0; i < wl.count; ++i) {
-      const DirectionPair w{wl.get(i), point.wv};
-      const Vec3 sum = w.wl + w.wv;
+      const Vec3 w = wl.get(i), sum = w + point.wv;
       const float length_sq = glm::dot(sum, sum);
       const Vec3 h = length_sq > 0 ? sum / std::sqrt(length_sq) : Vec3(0);  // opposed directions: no facet mirrors them
-      f.set(i, w.wl.z > 0 ? diffuse(point, w.wl) + specular(w, h) : Rgb(0));
-      const float share = point.parameter[kDiffuseProbability];
-      pdf.v[i] = share * pdf_cosine_hemisphere(w.wl) + (1 - share) * pdf_ggx_reflection(w.wv, h, alpha_);
+      f.set(i, w.z > 0 ? lobes_.value(lobes_.parts(view, w, h)) : Rgb(0));
+      pdf.v[i] = density(point, w, h);
     }
   }
 
@@ -52,40 +45,27 @@ class PrincipledMaterial final : public Material {
   bool isotropic() const override { return true; }
 
  private:
+  enum Parameter { kDiffuseScale, kThrough, kDiffuseEnd, kSpecularEnd };  // ends of ranges of the random number
+
+  float density(const PreparedBrdf& point, const Vec3& wl, const Vec3& h) const {
+    const float diffuse = point.parameter[kDiffuseEnd], end = point.parameter[kSpecularEnd];
+    float sum = diffuse * pdf_cosine_hemisphere(wl) + (end - diffuse) * pdf_ggx_reflection(point.wv, h, lobes_.alpha());
+    if (end < 1) sum += (1 - end) * pdf_ggx_reflection(point.wv, h, lobes_.coat_alpha());
+    return sum;
+  }
+
   Vec3 sample_one(const PreparedBrdf& point, const Vec2& u) const {
-    const float share = point.parameter[kDiffuseProbability];
-    if (u.x < share) return sample_cosine_hemisphere({u.x / share, u.y});
-    const float rest = std::min((u.x - share) / (1 - share), 1 - 0x1p-24f);
-    const Vec3 h = sample_ggx_visible_normal(point.wv, alpha_, {rest, u.y});
+    const float diffuse = point.parameter[kDiffuseEnd], end = point.parameter[kSpecularEnd];
+    if (u.x < diffuse) return sample_cosine_hemisphere({u.x / diffuse, u.y});
+    const bool coat = u.x >= end;
+    const float first = coat ? end : diffuse, last = coat ? 1 : end;
+    const float rest = std::min((u.x - first) / (last - first), 1 - 0x1p-24f);
+    const Vec3 h = sample_ggx_visible_normal(point.wv, coat ? lobes_.coat_alpha() : lobes_.alpha(), {rest, u.y});
     return 2 * glm::dot(point.wv, h) * h - point.wv;
   }
 
-  enum Parameter { kDiffuseScale, kDiffuseProbability };
-
-  /// Blender's scale: specular 0.5 is 4 % at normal incidence, an index of 1.5.
-  static float index_of(float specular) {
-    const float root = std::sqrt(std::clamp(0.08f * specular, 0.0f, 0.9f));
-    return (1 + root) / (1 - root);
-  }
-
-  Rgb fresnel(float cosine) const {
-    return metallic_ * schlick_fresnel(base_color_, cosine) + Rgb((1 - metallic_) * dielectric_fresnel(cosine, eta_));
-  }
-
-  Rgb diffuse(const PreparedBrdf& point, const Vec3& wl) const {
-    return point.parameter[kDiffuseScale] * (1 - coat_.at(wl.z)) * base_color_;
-  }
-
-  Rgb specular(const DirectionPair& w, const Vec3& h) const {
-    const float cosine = std::clamp(glm::dot(w.wv, h), 0.0f, 1.0f);
-    return ggx_brdf_without_fresnel(w, h, alpha_) * fresnel(cosine);
-  }
-
-  Rgb base_color_;
-  float metallic_;
-  Vec2 alpha_;
-  float eta_;
-  SpecularAlbedo coat_, specular_;
+  PrincipledLobes lobes_;
+  SpecularAlbedo specular_;  // of metal and dielectric, in luminance
 };
 
 }  // namespace

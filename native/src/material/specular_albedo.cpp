@@ -12,12 +12,13 @@ namespace {
 /// Mean of F G2 / G1 over visible normals: the integrand is smooth whatever the roughness.
 float integrate_albedo(const Vec3& wv, const Vec2& alpha, const Fresnel& fresnel) {
   const Quadrature radius = gauss_legendre(24, 0, 1);
-  constexpr int kTurns = 48;
+  constexpr int kTurns = 24;  // half a circle's: the other side of the plane of incidence is its mirror image
   double sum = 0;
   for (size_t i = 0; i < radius.node.size(); ++i) {
     for (int k = 0; k < kTurns; ++k) {
+      const float turn = 0.5f * (static_cast<float>(k) + 0.5f) / kTurns - 0.25f;
       const auto r = static_cast<float>(radius.node[i]);
-      const Vec3 h = sample_ggx_visible_normal(wv, alpha, {r * r, (static_cast<float>(k) + 0.5f) / kTurns});
+      const Vec3 h = sample_ggx_visible_normal(wv, alpha, {r * r, turn});
       const float cosine = std::min(glm::dot(wv, h), 1.0f);
       const Vec3 wl = 2 * cosine * h - wv;
       if (cosine <= 0 || wl.z <= 0) continue;
@@ -37,6 +38,19 @@ SpecularAlbedo::SpecularAlbedo(const Vec2& alpha, const Fresnel& fresnel) {
     const float cosine = root * root;
     albedo_[i] = integrate_albedo({std::sqrt(1 - cosine * cosine), 0, cosine}, alpha, fresnel);
   }
+  mean_ = integrated();
+}
+
+SpecularAlbedo SpecularAlbedo::layered(const SpecularAlbedo& above, float weight, const SpecularAlbedo& below) {
+  SpecularAlbedo both;
+  for (size_t i = 0; i < kEntries; ++i) {
+    both.albedo_[i] = 1 - (1 - weight * above.albedo_[i]) * (1 - below.albedo_[i]);
+  }
+  both.mean_ = both.integrated();
+  return both;
+}
+
+float SpecularAlbedo::integrated() const {
   double mean = 0;
   for (int i = 0; i + 1 < kEntries; ++i) {  // mu = s^2: 4 int albedo s^3 ds, a quartic on each piece
     const Quadrature piece = gauss_legendre(3, i / (kEntries - 1.0), (i + 1) / (kEntries - 1.0));
@@ -45,7 +59,7 @@ SpecularAlbedo::SpecularAlbedo(const Vec2& alpha, const Fresnel& fresnel) {
       mean += 4 * s * s * s * piece.weight[k] * at(static_cast<float>(s * s));
     }
   }
-  mean_ = static_cast<float>(mean);
+  return static_cast<float>(mean);
 }
 
 float SpecularAlbedo::at(float cosine) const {

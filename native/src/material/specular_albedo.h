@@ -17,12 +17,16 @@ class SpecularAlbedo {
   SpecularAlbedo() = default;
   /// Albedo of the GGX lobe of roughness `alpha` by quadrature, for views along x.
   SpecularAlbedo(const Vec2& alpha, const Fresnel& fresnel);
+  /// Of `below` under a layer `above` that is there with `weight` in [0, 1]: all but what both let through.
+  static SpecularAlbedo layered(const SpecularAlbedo& above, float weight, const SpecularAlbedo& below);
 
   float at(float cosine) const;
   /// 2 int albedo(mu) mu dmu of this interpolant.
   float mean() const { return mean_; }
 
  private:
+  float integrated() const;
+
   static constexpr int kEntries = 64;
   std::array<float, kEntries> albedo_{};
   float mean_ = 0;

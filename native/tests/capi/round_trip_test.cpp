@@ -115,7 +115,7 @@ TEST_P(RoundTrip, SamplesCarryTheDensityThatEvalReports) {
 
 TEST_P(RoundTrip, TheBestGgxLobeIsJudgedToo) {
   vlr_job* job = nullptr;
-  ASSERT_EQ(VLR_OK, vlr_compare_ggx_create_job(measurement_, &job)) << vlr_last_error();
+  ASSERT_EQ(VLR_OK, vlr_compare_peer_create_job(measurement_, VLR_PEER_GGX, &job)) << vlr_last_error();
   ASSERT_EQ(VLR_OK, vlr_job_start(job));
   ASSERT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
   const char* text = nullptr;
@@ -124,7 +124,8 @@ TEST_P(RoundTrip, TheBestGgxLobeIsJudgedToo) {
   vlr_job_free(job);
   EXPECT_NE(json.find("\"by_view_angle\""), std::string::npos) << json;
   EXPECT_NE(json.find("\"alpha\""), std::string::npos) << json;
-  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_compare_ggx_create_job(nullptr, &job));
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_compare_peer_create_job(nullptr, VLR_PEER_GGX, &job));
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_compare_peer_create_job(measurement_, 7, &job));
 }
 
 TEST_P(RoundTrip, InfoNamesTheSource) {

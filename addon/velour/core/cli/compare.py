@@ -1,14 +1,15 @@
-"""velour compare INPUT MODEL, velour compare INPUT --ggx"""
+"""velour compare INPUT MODEL, velour compare INPUT --ggx, velour compare INPUT --principled"""
 
 from __future__ import annotations
 
 import argparse
 import contextlib
 
-from ...native import Job, Measurement, Model, compare_ggx_job, compare_job
+from ...native import Job, Measurement, Model, compare_job, compare_peer_job
 from . import output
 
 KEYS = ("relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views")
+PEER_KEYS = ("seconds", "parameter_bytes")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -16,19 +17,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     judged = parser.add_mutually_exclusive_group(required=True)
     judged.add_argument("model", metavar="MODEL", nargs="?", help="the model to judge by it")
     judged.add_argument(
-        "--ggx", action="store_true", help="judge the GGX lobe over a diffuse base that suits it best"
-    )
+        "--ggx", dest="peer", action="store_const", const="ggx",
+        help="judge the GGX lobe over a diffuse base that suits it best",
+    )  # fmt: skip
+    judged.add_argument(
+        "--principled", dest="peer", action="store_const", const="principled",
+        help="judge the Principled material that suits it best, and print its values",
+    )  # fmt: skip
 
 
 def run(args: argparse.Namespace) -> dict:
     with contextlib.ExitStack() as handles:
         measurement = handles.enter_context(Measurement.load(args.input))
         report = handles.enter_context(_job(args, measurement, handles)).run(output.progress_of(args))
-    keys = (*KEYS, "ggx") if args.ggx else KEYS
+    keys = (*KEYS, *PEER_KEYS, args.peer) if args.peer else KEYS
     return {key: report[key] for key in keys}
 
 
 def _job(args: argparse.Namespace, measurement: Measurement, handles: contextlib.ExitStack) -> Job:
-    if args.ggx:
-        return compare_ggx_job(measurement)
+    if args.peer:
+        return compare_peer_job(measurement, args.peer)
     return compare_job(measurement, handles.enter_context(Model.load(args.model)))

@@ -114,7 +114,8 @@ std::vector<PrincipledCase> principled_cases() {
       {"plastic", {.base_color = {0.2f, 0.5f, 0.8f}, .roughness = 0.4f}},
       {"rough metal", {.metallic = 1, .roughness = 1}},
       {"metal", {.base_color = {0.9f, 0.6f, 0.3f}, .metallic = 1, .roughness = 0.35f}},
-      {"mirror", {.metallic = 1, .roughness = 0.03f}}};
+      {"mirror", {.metallic = 1, .roughness = 0.03f}},
+      {"coated metal", {.metallic = 1, .roughness = 0.95f, .coat = 0.8f, .coat_roughness = 0.56f}}};
   std::vector<PrincipledCase> cases;
   for (const auto& [name, parameters] : kinds) {
     for (const float degrees : test::kViewAngles) cases.push_back({name, parameters, degrees});
@@ -126,7 +127,9 @@ class PrincipledSampling : public ::testing::TestWithParam<PrincipledCase> {};
 
 TEST_P(PrincipledSampling, FollowsItsDensity) {
   const auto& [name, parameters, degrees] = GetParam();
-  const float alpha = std::max(parameters.roughness * parameters.roughness, 1e-3f);
+  const float sharpest =
+      parameters.coat > 0 ? std::min(parameters.roughness, parameters.coat_roughness) : parameters.roughness;
+  const float alpha = std::max(sharpest * sharpest, 1e-3f);
   test::expect_proven(about_mirror(make_principled_material(parameters), test::view_at(degrees), alpha), name);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fit/ggx_problem.h"
+#include "fit/peer.h"
 #include "material/ggx.h"
 #include "material/material.h"
 #include "sphere/directions.h"
@@ -65,7 +66,7 @@ TEST(GgxFit, LambertIsAllDiffuse) {
   Progress progress;
   const GgxParameters p = fit_ggx(AnalyticMeasurement(test::lambert), 2, progress);
   EXPECT_NEAR(p.diffuse.r, 0.5f, 0.01f);
-  EXPECT_LT(judge_ggx(AnalyticMeasurement(test::lambert), 2, progress).error.relative_l2, 0.01);
+  EXPECT_LT(judge_peer(AnalyticMeasurement(test::lambert), Peer::ggx, 2, progress).error.relative_l2, 0.01);
 }
 
 TEST(GgxFit, BlackAndUncoveredDataGiveABlackLobe) {
@@ -85,26 +86,26 @@ TEST(GgxFit, StopsAtACancel) {
 
 TEST(GgxFit, JudgesItselfAsAnyModelIsJudged) {
   Progress progress;
-  const GgxFit exact = judge_ggx(measurement_of(known_lobes()[1]), 2, progress);
+  const PeerFit exact = judge_peer(measurement_of(known_lobes()[1]), Peer::ggx, 2, progress);
   EXPECT_LT(exact.error.relative_l2, 2e-3);
   EXPECT_EQ(exact.error.by_view_angle.size(), 5u);
   // Two highlights are not one.
   const auto narrow = test::ggx(0.05f, 0.05f), broad = test::ggx(0.5f, 0.5f);
   const AnalyticMeasurement two([=](const DirectionPair& w) { return narrow(w) + 2.0f * broad(w); });
-  EXPECT_GT(judge_ggx(two, 2, progress).error.relative_l2, 0.05);
+  EXPECT_GT(judge_peer(two, Peer::ggx, 2, progress).error.relative_l2, 0.05);
 }
 
 TEST(GgxFit, FollowsARealPaint) {
   VELOUR_NEED_DATA(path, "brdf/paper_white_rgb.bsdf");
   Progress progress;
-  const auto fit = judge_ggx(*load_measurement(path.string()), 2, progress);
+  const auto fit = judge_peer(*load_measurement(path.string()), Peer::ggx, 2, progress);
   EXPECT_LT(fit.error.relative_l2, 0.08);
-  EXPECT_GT(luminance(fit.parameters.diffuse), 0.6f);
+  EXPECT_GT(luminance(std::get<GgxParameters>(fit.parameters).diffuse), 0.6f);
 }
 
 // The descent must end where no small change helps: the minimum of the cost, not of a model of it.
 TEST(GgxProblem, EndsAtAMinimumOfItsCost) {
-  std::vector<GgxSample> samples;
+  std::vector<PairSample> samples;
   const auto narrow = test::ggx(0.1f, 0.2f), broad = test::ggx(0.5f, 0.5f);
   for (const Vec3& wl : hemisphere_fibonacci(400)) {
     for (const float theta : {0.2f, 0.9f}) {
@@ -112,10 +113,11 @@ TEST(GgxProblem, EndsAtAMinimumOfItsCost) {
       samples.push_back({w, wl.z * (narrow(w) + broad(w)), 1.0f});
     }
   }
-  const GgxProblem problem(samples, 1e-3f, false);
-  const GgxParameters p = problem.polish(problem.reflectances({0.3f, 0.3f}), [] {});
+  const GgxProblem problem({samples, 1e-3f}, false);
+  const GgxParameters start = problem.completed({.alpha = Vec2(0.3f)});
+  const GgxParameters p = descend(problem, start, [] {});
   const double least = problem.cost(p);
-  EXPECT_LT(least, problem.cost(problem.reflectances({0.3f, 0.3f})));
+  EXPECT_LT(least, problem.cost(start));
   for (const float factor : {0.97f, 1.03f}) {
     for (int k = 0; k < 2; ++k) {
       GgxParameters other = p;

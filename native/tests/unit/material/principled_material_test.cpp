@@ -65,6 +65,18 @@ TEST(Fresnel, Limits) {
   EXPECT_EQ(schlick_fresnel(Rgb(0.3f), 0), Rgb(1));
 }
 
+TEST(Fresnel, OfATintedMetalDipsAt82Degrees) {
+  for (const float f0 : {0.1f, 0.5f, 0.9f}) {
+    for (const float cosine : {0.0f, 1.0f / 7, 0.4f, 1.0f}) {
+      EXPECT_NEAR(tinted_metal_fresnel(f0, 1, cosine), schlick_fresnel(Rgb(f0), cosine).r, 1e-6f);
+      EXPECT_GE(tinted_metal_fresnel(f0, 0, cosine), 0);
+    }
+    EXPECT_NEAR(tinted_metal_fresnel(f0, 0.3f, 1.0f / 7), 0.3f * schlick_fresnel(Rgb(f0), 1.0f / 7).r, 1e-6f);
+    EXPECT_EQ(tinted_metal_fresnel(f0, 0, 1), f0);
+    EXPECT_EQ(tinted_metal_fresnel(f0, 0, 0), 1);
+  }
+}
+
 TEST(SpecularAlbedo, OfASmoothSurfaceIsItsFresnelTerm) {
   const SpecularAlbedo table(Vec2(1e-3f), [](float cosine) { return dielectric_fresnel(cosine, 1.5f); });
   for (const float cosine : {0.05f, 0.3f, 0.7f, 1.0f}) {
@@ -93,13 +105,34 @@ TEST(PrincipledMaterial, AWhiteCoatedBaseReflectsAllLight) {
   }
 }
 
+TEST(PrincipledMaterial, ACoatedMetalIsSharpAndBroad) {
+  const PrincipledParameters bare{.base_color = Rgb(0.5f), .metallic = 1, .roughness = 0.6f};
+  PrincipledParameters coated = bare;
+  coated.coat = 1;
+  coated.coat_roughness = 0.1f;
+  const DirectionPair mirror{.wl = direction(0.3f, kPi), .wv = direction(0.3f, 0)};
+  const DirectionPair beside{.wl = direction(0.8f, kPi), .wv = direction(0.3f, 0)};
+  const auto f = [](const PrincipledParameters& p, const DirectionPair& w) {
+    return eval_one(*make_principled_material(p), w).f.r;
+  };
+  EXPECT_GT(f(coated, mirror), 10 * f(bare, mirror));
+  EXPECT_NEAR(f(coated, beside) / f(bare, beside), 0.95f, 0.01f);  // what the coat lets through at 46 degrees
+}
+
 TEST(PrincipledMaterial, NeverReflectsMoreThanItReceives) {
   for (const float roughness : {0.4f, 1.0f}) {
     for (const float metallic : {0.0f, 0.5f, 1.0f}) {
       for (const float specular : {0.0f, 0.5f, 1.0f}) {
-        const auto material = make_principled_material({Rgb(1), metallic, roughness, specular});
-        for (const float theta_v : {0.1f, 1.0f, 1.4f}) {
-          EXPECT_LT(albedo(*material, direction(theta_v, 0), 0), 1.003) << roughness << metallic << specular;
+        for (const float coat : {0.0f, 1.0f}) {
+          const auto material = make_principled_material({.base_color = Rgb(1),
+                                                          .metallic = metallic,
+                                                          .roughness = roughness,
+                                                          .specular = specular,
+                                                          .coat = coat,
+                                                          .coat_roughness = 0.4f});
+          for (const float theta_v : {0.1f, 1.0f, 1.4f}) {
+            EXPECT_LT(albedo(*material, direction(theta_v, 0), 0), 1.003) << roughness << metallic << specular << coat;
+          }
         }
       }
     }
@@ -107,7 +140,8 @@ TEST(PrincipledMaterial, NeverReflectsMoreThanItReceives) {
 }
 
 TEST(PrincipledMaterial, IsReciprocalAndIsotropic) {
-  const auto material = make_principled_material({{0.9f, 0.4f, 0.1f}, 0.3f, 0.5f, 0.7f});
+  const auto material =
+      make_principled_material({{0.9f, 0.4f, 0.1f}, 0.3f, 0.5f, 0.7f, {0.5f, 0.8f, 1.0f}, 0.6f, 0.3f});
   for (const Vec3& a : hemisphere_fibonacci(15)) {
     for (const Vec3& b : hemisphere_fibonacci(15)) {
       const Rgb f = eval_one(*material, {.wl = a, .wv = b}).f;
@@ -119,11 +153,30 @@ TEST(PrincipledMaterial, IsReciprocalAndIsotropic) {
   }
 }
 
+TEST(PrincipledLobes, OfOtherParametersAreThoseMadeAnew) {
+  const PrincipledParameters first{.metallic = 0.3f, .coat = 0.5f, .coat_roughness = 0.2f};
+  for (const auto member : {&PrincipledParameters::roughness, &PrincipledParameters::specular,
+                            &PrincipledParameters::coat, &PrincipledParameters::coat_roughness}) {
+    for (const float value : {0.0f, 0.4f}) {
+      PrincipledParameters other = first;
+      other.*member = value;
+      const PrincipledLobes made(other), changed = PrincipledLobes(first).with(other);
+      const PrincipledLobes back = changed.with(first);
+      for (const Vec3& wl : hemisphere_fibonacci(9)) {
+        const Vec3 wv = direction(0.7f, 0), h = glm::normalize(wl + wv);
+        EXPECT_EQ(changed.value(changed.parts(changed.view(wv), wl, h)), made.value(made.parts(made.view(wv), wl, h)));
+        const PrincipledLobes start(first);
+        EXPECT_EQ(back.value(back.parts(back.view(wv), wl, h)), start.value(start.parts(start.view(wv), wl, h)));
+      }
+    }
+  }
+}
+
 TEST(PrincipledMaterial, IsFiniteInEveryCorner) {
   for (const float roughness : {0.0f, 0.01f, 1.0f}) {
     for (const float metallic : {0.0f, 1.0f}) {
       for (const Rgb& color : {Rgb(0), Rgb(1), Rgb(-1, 2, 0.5f)}) {
-        const auto material = make_principled_material({color, metallic, roughness, 0.5f});
+        const auto material = make_principled_material({color, metallic, roughness, 0.5f, color, metallic, roughness});
         for (const Vec3& wv : {Vec3(0, 0, 1), direction(1.5707f, 0.4f), Vec3(0, 1, 1e-7f)}) {
           PreparedBrdf point;
           material->prepare(wv, point);

@@ -1,0 +1,35 @@
+// Analytic materials that a fitted model is compared with: each fitted to the same measurement and judged like a model.
+#pragma once
+
+#include <memory>
+#include <variant>
+
+#include "brdf/measurement.h"
+#include "fit/compare.h"
+#include "job/progress.h"
+#include "material/ggx_sampler.h"
+#include "material/material.h"
+#include "material/principled_lobes.h"
+
+namespace velour {
+
+enum class Peer { ggx, principled };
+using PeerParameters = std::variant<GgxParameters, PrincipledParameters>;
+
+/// The peer that suits the measurement best. The result does not depend on `threads` (0: all).
+PeerParameters fit_peer(const Measurement& measurement, Peer peer, int threads, Progress& progress);
+
+std::shared_ptr<const Material> make_peer_material(const PeerParameters& parameters);
+
+/// The fitted peer, and its error as docs/conventions.md defines it for any model.
+struct PeerFit {
+  PeerParameters parameters;
+  double seconds = 0;  // of the fit
+  Comparison error;
+
+  /// Of the parameters as float32.
+  uint64_t parameter_bytes() const;
+};
+PeerFit judge_peer(const Measurement& measurement, Peer peer, int threads, Progress& progress);
+
+}  // namespace velour

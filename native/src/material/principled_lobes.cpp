@@ -1,0 +1,97 @@
+#include "material/principled_lobes.h"
+
+#include <algorithm>
+
+#include "material/ggx.h"
+
+namespace velour {
+
+namespace {
+
+constexpr float kCoatIndex = 1.5f;
+
+/// Blender's scale: specular 0.5 is 4 % at normal incidence, an index of 1.5.
+float index_of(float specular) {
+  const float root = std::sqrt(std::clamp(0.08f * specular, 0.0f, 0.9f));
+  return (1 + root) / (1 - root);
+}
+
+float rough_enough(float roughness) { return std::clamp(roughness, kMinRoughness, 1.0f); }
+
+PrincipledParameters within_ranges(PrincipledParameters p) {
+  p.base_color = glm::clamp(p.base_color, Rgb(0), Rgb(1));
+  p.specular_tint = glm::clamp(p.specular_tint, Rgb(0), Rgb(1));
+  p.metallic = std::clamp(p.metallic, 0.0f, 1.0f);
+  p.roughness = rough_enough(p.roughness);
+  p.coat = std::clamp(p.coat, 0.0f, 1.0f);
+  p.coat_roughness = rough_enough(p.coat_roughness);
+  return p;
+}
+
+}  // namespace
+
+PrincipledLobes::PrincipledLobes(const PrincipledParameters& p)
+    : parameters_(within_ranges(p)), eta_(index_of(p.specular)), f0_(dielectric_fresnel(1, eta_)) {
+  make_tables(true, true);
+}
+
+PrincipledLobes PrincipledLobes::with(const PrincipledParameters& p) const {
+  PrincipledLobes other = *this;
+  other.parameters_ = within_ranges(p);
+  other.eta_ = index_of(p.specular);
+  other.f0_ = dielectric_fresnel(1, other.eta_);
+  const bool coated = parameters_.coat > 0, will_be = other.parameters_.coat > 0;
+  other.make_tables(other.alpha() != alpha() || other.eta_ != eta_,
+                    coated != will_be || (coated && other.coat_alpha() != coat_alpha()));
+  return other;
+}
+
+void PrincipledLobes::make_tables(bool dielectric, bool coat) {
+  if (dielectric) dielectric_ = {alpha(), [this](float cosine) { return dielectric_fresnel(cosine, eta_); }};
+  if (coat) {
+    coat_ = parameters_.coat > 0
+                ? SpecularAlbedo(coat_alpha(), [](float cosine) { return dielectric_fresnel(cosine, kCoatIndex); })
+                : SpecularAlbedo();
+  }
+  top_ = SpecularAlbedo::layered(coat_, parameters_.coat, dielectric_);
+}
+
+PrincipledLobes::View PrincipledLobes::view(const Vec3& wv) const {
+  const float base = (1 - parameters_.metallic) * (1 - top_.at(wv.z));
+  return {wv, base / (kPi * (1 - top_.mean())), 1 - coat_albedo(wv.z)};
+}
+
+float PrincipledLobes::value(const Parts& p, float base_color, float specular_tint) {
+  return p.fixed + p.dielectric * specular_tint + p.diffuse * base_color +
+         p.metal * tinted_metal_fresnel(base_color, specular_tint, p.cosine);
+}
+
+Rgb PrincipledLobes::value(const Parts& p) const {
+  Rgb f;
+  for (int c = 0; c < 3; ++c) f[c] = value(p, parameters_.base_color[c], parameters_.specular_tint[c]);
+  return f;
+}
+
+PrincipledLobes::Parts PrincipledLobes::reflected(float lobe, float cosine) const {
+  const float rise = (dielectric_fresnel(cosine, eta_) - f0_) / (1 - f0_);
+  const float dielectric = (1 - parameters_.metallic) * lobe;
+  return {dielectric * rise, dielectric * f0_ * (1 - rise), 0, parameters_.metallic * lobe, cosine};
+}
+
+float PrincipledLobes::fresnel_luminance(float cosine) const { return luminance(value(reflected(1, cosine))); }
+
+PrincipledLobes::Parts PrincipledLobes::parts(const View& view, const Vec3& wl, const Vec3& h) const {
+  const DirectionPair w{.wl = wl, .wv = view.wv};
+  const float cosine = std::clamp(glm::dot(view.wv, h), 0.0f, 1.0f);
+  float lobe = ggx_brdf_without_fresnel(w, h, alpha()), coat = 0;
+  if (parameters_.coat > 0) {
+    lobe *= std::min(view.through, 1 - coat_albedo(wl.z));
+    coat = parameters_.coat * ggx_brdf_without_fresnel(w, h, coat_alpha()) * dielectric_fresnel(cosine, kCoatIndex);
+  }
+  Parts out = reflected(lobe, cosine);
+  out.fixed += coat;
+  out.diffuse = view.diffuse_scale * (1 - top_.at(wl.z));
+  return out;
+}
+
+}  // namespace velour
