@@ -42,6 +42,19 @@ class Operators(BlenderTest):
         self.assertEqual(node.velour.max_lobes, 3)
         self._check_model(node.image)
 
+    def test_fit_of_each_kind_of_model(self):
+        bpy.ops.velour.load_material(filepath=str(inputs.glossy_measurement()), fit=False)
+        self.assertEqual(scenes.velour_node(self.material).velour.model, "PARAMETRIC")
+        kernels = {"SCATTERED": "abel-poisson", "PARAMETRIC": "gaussian"}  # the latter has no other
+        scenes.velour_node(self.material).velour.kernel = "ABEL_POISSON"
+        for model, kernel in kernels.items():
+            self.assertEqual(bpy.ops.velour.fit(model=model, tolerance=0.1, max_lobes=3), {"FINISHED"})
+            node = scenes.velour_node(self.material)
+            self.assertEqual((node.velour.model, node.velour.kernel), (model, "ABEL_POISSON"))
+            info = self._info(node.image)
+            self.assertEqual((info["model"], info["kernel"]), (model.lower(), kernel))
+            self.assertIsNotNone(info["order"]["chosen"])
+
     def test_fit_keeps_the_model_before(self):
         bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)
         bpy.ops.velour.fit(tolerance=0.1, max_lobes=3)
@@ -102,8 +115,11 @@ class Operators(BlenderTest):
 
     def _check_model(self, image):
         self.assertEqual(image.source, "FILE")
+        self.assertGreater(self._info(image)["lobes"], 0)
+
+    def _info(self, image):
         with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
-            self.assertGreater(model.info()["lobes"], 0)
+            return model.info()
 
 
 class Refusals(BlenderTest):

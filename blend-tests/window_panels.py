@@ -3,6 +3,7 @@
 Runs in turns of Blender's event loop: a test is a generator that yields the seconds until its next turn.
 """
 
+import importlib
 import json
 import sys
 import traceback
@@ -162,7 +163,7 @@ def fit_and_cancel(folder):
     material = _measured_cube()
     before = scenes.velour_node(material).image.name
     yield from _show_properties("MATERIAL")
-    _start_fit(tolerance=0.0005, max_lobes=64)
+    _start_fit(model="SCATTERED", tolerance=0.0005, max_lobes=64)
     yield 0.8
     assert bpy.context.window_manager.velour.running
     _screenshot(folder, "fit-running")
@@ -189,10 +190,20 @@ def fit_and_undo(folder):
     assert node.image.name != before, "no new model"
     yield from _show_properties("MATERIAL")
     _screenshot(folder, "fit-done")
+    _check_order_plot(node.image)
     with _override():
         bpy.ops.ed.undo()
     yield 0.2
     assert scenes.velour_node(bpy.data.materials["Paint"]).image.name == before
+
+
+def _check_order_plot(image):
+    """The plot of the panel is there as an icon, and made once."""
+    preview = importlib.import_module(f"{inputs.ADDON}.ui.order_preview")
+    with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
+        order = model.info()["order"]
+    assert preview.order_icon(order) != 0
+    assert preview.order_icon(order) == preview.order_icon(order), "drawn again at every redraw"
 
 
 def render(folder):

@@ -191,7 +191,9 @@ def test_interrupted_fit(tmp_path):
     sharp = inputs.write_merl(tmp_path / "sharp.binary", sharpness=5000.0, gloss=500.0)
     out = tmp_path / "m.velour"
     out.write_text("old")
-    status, _ = _interrupted(["fit", sharp, "-o", out, "--max-lobes", 64, "--tolerance", 1e-6])
+    status, _ = _interrupted(
+        ["fit", sharp, "-o", out, "--model", "scattered", "--max-lobes", 64, "--tolerance", 1e-6]
+    )
     assert status == 130
     assert out.read_text() == "old"
     assert {p.name for p in tmp_path.iterdir()} == {"m.velour", "sharp.binary"}

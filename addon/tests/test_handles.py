@@ -99,7 +99,7 @@ class _CallbackError(Exception):
 
 
 def _long_fit(measurement):
-    return fit_job(measurement, max_lobes=64, tolerance=1e-6)
+    return fit_job(measurement, model="scattered", max_lobes=64, tolerance=1e-6)
 
 
 def test_a_progress_callback_that_raises_stops_the_job(measurement_file):

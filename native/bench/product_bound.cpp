@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "model/model_file.h"
+#include "model/model_material.h"
 #include "render/combination.h"
 #include "render/lighting.h"
 #include "render/sky_proposals.h"

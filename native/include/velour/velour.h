@@ -92,8 +92,8 @@ VLR_API vlr_status vlr_model_save(const vlr_model* model, const char* path);
 VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_t* size);
 /* JSON: kind "model", model "scattered" or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes, relative_l2,
  * by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds, seed,
- * all_data, warnings, order (as of a fit), source {name, format, sha256}. Scattered: also views, max_lobes_per_view. Parametric: also cells, spaces {light,
- * half}, the lobes of each. */
+ * all_data, warnings, order (as of a fit), source {name, format, sha256}. Scattered: also views, max_lobes_per_view.
+ * Parametric: also cells, spaces {light, half}, the lobes of each. */
 VLR_API vlr_status vlr_model_info_json(vlr_model* model, const char** json);
 /* As vlr_measurement_eval; also the density of the model's own sampler when `pdf` [count] is not NULL. */
 VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t count, const float* wl, float* f,
@@ -164,9 +164,9 @@ typedef struct vlr_fit_options {
 } vlr_fit_options;
 VLR_API void vlr_fit_options_init(vlr_fit_options* options);
 /* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, reciprocity,
- * measured_reciprocity, warnings, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the error falls as the model grows.
- * `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the number of the point that the model
- * is, or null. */
+ * measured_reciprocity, warnings, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the error
+ * falls as the model grows. `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the number
+ * of the point that the model is, or null. */
 VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options,
                                       vlr_job** out);
 

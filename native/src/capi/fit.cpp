@@ -7,6 +7,7 @@
 #include "fit/fit_model.h"
 #include "fit/ggx_fit.h"
 #include "model/model_file.h"
+#include "model/model_material.h"
 
 using namespace velour;
 using namespace velour::capi;

@@ -1,8 +1,8 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/reports.h"
-#include "material/material.h"
 #include "model/model_file.h"
+#include "model/model_material.h"
 
 using namespace velour;
 using namespace velour::capi;

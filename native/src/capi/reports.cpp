@@ -135,7 +135,7 @@ std::string fit_json(const Model& model, uint64_t file_bytes) {
                    {"albedo_max", model.fit.albedo_max},
                    {"reciprocity", model.fit.reciprocity},
                    {"measured_reciprocity", or_null(model.fit.measured_reciprocity)},
-                                      {"warnings", model.fit.warnings},
+                   {"warnings", model.fit.warnings},
                    {"order", order_json(model.fit.order)}});
   return text(json);
 }

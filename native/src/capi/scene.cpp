@@ -7,8 +7,7 @@
 #include "capi/reports.h"
 #include "fit/scattered_fit.h"
 #include "material/principled_material.h"
-#include "material/scattered_material.h"
-#include "model/model_file.h"
+#include "model/model_material.h"
 #include "scene/obj_file.h"
 
 using namespace velour;
@@ -53,20 +52,13 @@ void initialize(vlr_mesh_desc* desc) {
 
 /// Lobes that draw samples for a raw measurement: speed depends on how well they fit, the picture does not, so a coarse
 /// fit of all data serves.
-std::shared_ptr<const ScatteredBrdf> coarse_proposal(const Measurement& measurement) {
+std::shared_ptr<const Model> coarse_proposal(const Measurement& measurement) {
   FitOptions options;
   options.max_lobes = 8;
   options.tolerance = 0.05;
   options.all_data = true;
   Progress unwatched;
-  return std::make_shared<const ScatteredBrdf>(
-      std::get<ScatteredBrdf>(fit_scattered(measurement, options, unwatched).body));
-}
-
-std::shared_ptr<const ScatteredBrdf> proposal_of(const Measurement& measurement, const vlr_model* model) {
-  if (!model) return coarse_proposal(measurement);
-  // Shares ownership of the whole model.
-  return {model->model, &std::get<ScatteredBrdf>(model->model->body)};
+  return std::make_shared<const Model>(fit_scattered(measurement, options, unwatched));
 }
 
 Light converted(const vlr_light_desc& desc) {
@@ -138,9 +130,9 @@ vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measur
     require(scene, "scene");
     require(measurement, "measurement");
     require(material, "material");
-    const auto lobes = proposal_of(*measurement->measurement, proposal);
+    const auto model = proposal ? proposal->model : coarse_proposal(*measurement->measurement);
     *material = scene->scene->add_material(
-        {.material = make_measured_material(measurement->measurement, lobes, static_cast<int>(neighbors))});
+        {.material = make_measured_material(measurement->measurement, model, static_cast<int>(neighbors))});
   });
 }
 

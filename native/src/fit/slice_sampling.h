@@ -13,7 +13,9 @@ namespace velour {
 struct MeasuredSlice {
   Vec3 wv;
   std::vector<SliceSample> samples;
-  size_t out_of_gamut = 0;  // samples with a negative channel: kept, though no model of ours can follow them
+  double energy = 0;          // sum of weight x luminance(f cos)^2 that errors are measured by; 0: that of the samples
+  bool interpolated = false;  // between scattered samples that the fit reads themselves as well
+  size_t out_of_gamut = 0;    // samples with a negative channel: kept, though no model of ours can follow them
 };
 
 struct MeasuredSlices {
@@ -25,7 +27,8 @@ struct MeasuredSlices {
 struct SliceGrid {
   int rings, spokes;
   /// Isotropic data: only lights on one side of the plane of incidence, each with the mean of its value and its mirror
-  /// image's, for models that are symmetric about that plane: the same fit from half the samples.
+  /// image's (at the normal, with the mean of its ring), for models that are symmetric about that plane: the same fit
+  /// from half the samples.
   bool folded = false;
 };
 

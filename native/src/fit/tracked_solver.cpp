@@ -31,7 +31,7 @@ double lower_bound(int parameter) {
       return -4;
     case P::kTiltX:
     case P::kTiltY:
-      return -1.9;
+      return -1.875;
     case P::kStretchA:
     case P::kStretchB:
       return -2.5;
@@ -46,7 +46,7 @@ double upper_bound(int parameter) {
       return 16;
     case P::kTiltX:
     case P::kTiltY:
-      return 1.9;
+      return 1.875;
     case P::kStretchA:
     case P::kStretchB:
       return 2.5;

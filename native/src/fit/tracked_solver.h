@@ -16,7 +16,7 @@ struct TrackedLobes {
 /// Deterministic for any thread count.
 void refine(TrackedProblem& problem, TrackedLobes& lobes, int most, double least, Free free = Free::all);
 
-/// What a lobe may be at any view: bounds of its control values.
+/// What a lobe may be at any view: bounds of its control values, all of them half floats.
 double lower_bound(int parameter);
 double upper_bound(int parameter);
 

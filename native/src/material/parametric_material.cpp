@@ -1,12 +1,13 @@
 #include "material/parametric_material.h"
 
+#include "material/measured_values.h"
 #include "material/parametric_draws.h"
 
 namespace velour {
 
 namespace {
 
-class ParametricMaterial final : public Material {
+class ParametricMaterial : public Material {
  public:
   explicit ParametricMaterial(const ParametricBrdf& brdf) : values_(brdf), draws_(values_) {}
 
@@ -37,10 +38,31 @@ class ParametricMaterial final : public Material {
   ParametricDraws draws_;
 };
 
+class MeasuredMaterial final : public ParametricMaterial {
+ public:
+  MeasuredMaterial(std::shared_ptr<const Measurement> measurement, const ParametricBrdf& proposal)
+      : ParametricMaterial(proposal), measurement_(std::move(measurement)) {}
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    ParametricMaterial::eval(point, wl, f, pdf);  // its value, the model's, is overwritten
+    measured_values(*measurement_, point.wv, wl, f);
+  }
+
+  bool isotropic() const override { return measurement_->isotropic(); }
+
+ private:
+  std::shared_ptr<const Measurement> measurement_;
+};
+
 }  // namespace
 
 std::shared_ptr<const Material> make_parametric_material(const std::shared_ptr<const ParametricBrdf>& brdf) {
   return std::make_shared<ParametricMaterial>(*brdf);
+}
+
+std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
+                                                       const std::shared_ptr<const ParametricBrdf>& proposal) {
+  return std::make_shared<MeasuredMaterial>(std::move(measurement), *proposal);
 }
 
 }  // namespace velour

@@ -86,6 +86,8 @@ std::string fit_record_json(const FitRecord& record) {
                {"by_view_angle", errors_json(record.by_view_angle)},
                {"albedo_by_view_angle", errors_json(record.albedo_by_view_angle)},
                {"albedo_max", record.albedo_max},
+               {"reciprocity", record.reciprocity},
+               {"measured_reciprocity", number_json(record.measured_reciprocity)},
                {"tolerance", record.tolerance},
                {"seconds", record.seconds},
                {"seed", record.seed},

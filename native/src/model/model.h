@@ -20,9 +20,9 @@ using ErrorByViewAngle = std::map<std::string, std::optional<double>>;
 struct FitRecord {
   double relative_l2 = 0;  // mean over views weighted by cos(theta_v)
   ErrorByViewAngle by_view_angle;
-  ErrorByViewAngle albedo_by_view_angle;  // directional albedo (largest channel) at those views
-  double albedo_max = 0;                  // over all fitted views, largest channel
-  double reciprocity = 0;                 // of the model: fit/reciprocity.h
+  ErrorByViewAngle albedo_by_view_angle;                      // directional albedo (largest channel) at those views
+  double albedo_max = 0;                                      // over all fitted views, largest channel
+  double reciprocity = 0;                                     // of the model: fit/reciprocity.h
   std::optional<double> measured_reciprocity = std::nullopt;  // of the measurement, where it has pairs
   double tolerance = 0;
   double seconds = 0;  // wall clock of the fit

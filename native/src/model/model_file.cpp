@@ -6,8 +6,6 @@
 #include "file/file.h"
 #include "image/exr_tensors.h"
 #include "job/error.h"
-#include "material/parametric_material.h"
-#include "material/scattered_material.h"
 #include "model/fit_record_json.h"
 #include "model/parametric_file.h"
 #include "model/scattered_file.h"
@@ -20,20 +18,13 @@ constexpr int kMajorVersion = 1;
 constexpr char kKind[] = "model";
 constexpr uint64_t kMaxFileBytes = uint64_t{1} << 30;
 
-// One overload a kind of model: its name, its fields, its evaluator.
+// One overload a kind of model.
 
 const char* kind_of(const ScatteredBrdf&) { return "scattered"; }
 const char* kind_of(const ParametricBrdf&) { return "parametric"; }
 
 void write_body(const ScatteredBrdf& brdf, TensorFile& file) { write_scattered(brdf, file); }
 void write_body(const ParametricBrdf& brdf, TensorFile& file) { write_parametric(brdf, file); }
-
-std::shared_ptr<const Material> material_of(std::shared_ptr<const ScatteredBrdf> brdf, int neighbors) {
-  return make_scattered_material(std::move(brdf), neighbors);
-}
-std::shared_ptr<const Material> material_of(const std::shared_ptr<const ParametricBrdf>& brdf, int) {
-  return make_parametric_material(brdf);
-}
 
 ModelBody read_body(const ModelFields& fields) {
   const std::string& kind = fields.attribute("velour.model");
@@ -103,15 +94,6 @@ bool is_model_file(const std::string& path) {
   if (!looks_like_exr(head)) return false;
   constexpr char kAttribute[] = "velour.kind\0string\0\5\0\0\0model";  // name, type, length, text: OpenEXR's layout
   return std::search(head.begin(), head.end(), kAttribute, kAttribute + sizeof kAttribute - 1) != head.end();
-}
-
-std::shared_ptr<const Material> make_material(std::shared_ptr<const Model> model, int neighbors) {
-  return std::visit(
-      [&](const auto& brdf) {
-        // Shares the ownership of the model instead of copying its lobes.
-        return material_of(std::shared_ptr<const std::remove_cvref_t<decltype(brdf)>>(model, &brdf), neighbors);
-      },
-      model->body);
 }
 
 }  // namespace velour

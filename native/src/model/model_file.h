@@ -2,12 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "material/material.h"
 #include "model/model.h"
 
 namespace velour {
@@ -20,8 +18,5 @@ void save_model(const Model& model, const std::string& path);
 Model load_model(const std::string& path);
 /// True for a model file (an OpenEXR file with Velour's kind attribute).
 bool is_model_file(const std::string& path);
-
-/// The run-time evaluator of a model; `neighbors` 0 takes the model's default.
-std::shared_ptr<const Material> make_material(std::shared_ptr<const Model> model, int neighbors);
 
 }  // namespace velour

@@ -12,7 +12,7 @@ struct OrderPoint {
   int lobes = 0;  // scattered: of the view that has most; parametric: in all
   uint64_t parameter_bytes = 0;
   double worst = 0;        // largest relative L2 over tolerance of a fitted view: at most 1 where the fit holds
-  double relative_l2 = 0;  // of the fitted samples, a mean over views weighted by cos(theta_v)
+  double relative_l2 = 0;  // mean over the fitted views, weighted as the fit does
 
   bool operator==(const OrderPoint&) const = default;
 };

@@ -35,9 +35,10 @@ std::string write_merl_file(const std::filesystem::path& folder) {
   return path;
 }
 
-vlr_model* fitted(const vlr_measurement* measurement) {
+vlr_model* fitted(const vlr_measurement* measurement, int32_t kind) {
   vlr_fit_options options;
   vlr_fit_options_init(&options);
+  options.model = kind;
   options.max_lobes = 6;
   options.tolerance = 0.05;
   vlr_job* job = nullptr;
@@ -50,12 +51,12 @@ vlr_model* fitted(const vlr_measurement* measurement) {
   return model;
 }
 
-class RoundTrip : public ::testing::Test {
+class RoundTrip : public ::testing::TestWithParam<int32_t> {
  protected:
   void SetUp() override {
     folder_ = scratch_folder();
     ASSERT_EQ(VLR_OK, vlr_measurement_load(write_merl_file(folder_).c_str(), &measurement_)) << vlr_last_error();
-    model_ = fitted(measurement_);
+    model_ = fitted(measurement_, GetParam());
     ASSERT_NE(model_, nullptr);
   }
   void TearDown() override {
@@ -66,8 +67,9 @@ class RoundTrip : public ::testing::Test {
   vlr_measurement* measurement_ = nullptr;
   vlr_model* model_ = nullptr;
 };
+INSTANTIATE_TEST_SUITE_P(Models, RoundTrip, ::testing::Values(VLR_MODEL_SCATTERED, VLR_MODEL_PARAMETRIC));
 
-TEST_F(RoundTrip, TheModelIsCloseToTheMeasurement) {
+TEST_P(RoundTrip, TheModelIsCloseToTheMeasurement) {
   const float wv[3] = {0.5f, 0, std::sqrt(0.75f)}, wl[3] = {-0.4f, 0.1f, std::sqrt(1 - 0.17f)};
   float raw[3], model[3];
   uint8_t valid = 0;
@@ -77,7 +79,7 @@ TEST_F(RoundTrip, TheModelIsCloseToTheMeasurement) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(model[c], raw[c], 0.15f * raw[c]);
 }
 
-TEST_F(RoundTrip, FileAndMemoryGiveTheSameModel) {
+TEST_P(RoundTrip, FileAndMemoryGiveTheSameModel) {
   const std::string path = folder_ / "model.velour";
   ASSERT_EQ(VLR_OK, vlr_model_save(model_, path.c_str())) << vlr_last_error();
   const void* bytes = nullptr;
@@ -98,7 +100,7 @@ TEST_F(RoundTrip, FileAndMemoryGiveTheSameModel) {
   vlr_model_free(from_memory);
 }
 
-TEST_F(RoundTrip, SamplesCarryTheDensityThatEvalReports) {
+TEST_P(RoundTrip, SamplesCarryTheDensityThatEvalReports) {
   const float wv[3] = {0.6f, 0, 0.8f}, u[4] = {0.3f, 0.1f, 0.99f, 0.7f};
   float wl[6], pdf[2], f[6], again[2];
   ASSERT_EQ(VLR_OK, vlr_model_sample(model_, wv, 2, u, wl, pdf)) << vlr_last_error();
@@ -111,7 +113,7 @@ TEST_F(RoundTrip, SamplesCarryTheDensityThatEvalReports) {
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_model_sample(model_, below, 2, u, wl, pdf));
 }
 
-TEST_F(RoundTrip, TheBestGgxLobeIsJudgedToo) {
+TEST_P(RoundTrip, TheBestGgxLobeIsJudgedToo) {
   vlr_job* job = nullptr;
   ASSERT_EQ(VLR_OK, vlr_compare_ggx_create_job(measurement_, &job)) << vlr_last_error();
   ASSERT_EQ(VLR_OK, vlr_job_start(job));
@@ -125,11 +127,64 @@ TEST_F(RoundTrip, TheBestGgxLobeIsJudgedToo) {
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_compare_ggx_create_job(nullptr, &job));
 }
 
-TEST_F(RoundTrip, InfoNamesTheSource) {
+TEST_P(RoundTrip, InfoNamesTheSource) {
   const char* json = nullptr;
   ASSERT_EQ(VLR_OK, vlr_model_info_json(model_, &json));
   EXPECT_NE(std::strstr(json, "\"name\":\"synthetic\""), nullptr) << json;
   EXPECT_NE(std::strstr(json, "\"85\""), nullptr) << json;
+}
+
+TEST_P(RoundTrip, InfoSaysWhatTheModelIs) {
+  const char* json = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_model_info_json(model_, &json));
+  const bool scattered = GetParam() == VLR_MODEL_SCATTERED;
+  for (const char* key : {"\"lobes\":", "\"parameter_bytes\":", "\"bytes\":", "\"order\":", "\"chosen\":"}) {
+    EXPECT_NE(std::strstr(json, key), nullptr) << key << " in " << json;
+  }
+  const std::string own[] = {"\"model\":\"scattered\"", "\"views\":", "\"max_lobes_per_view\":"};
+  const std::string others[] = {"\"model\":\"parametric\"", "\"cells\":", "\"spaces\":{\"light\":"};
+  for (const std::string& key : own) EXPECT_EQ(std::strstr(json, key.c_str()) != nullptr, scattered) << key;
+  for (const std::string& key : others) EXPECT_EQ(std::strstr(json, key.c_str()) == nullptr, scattered) << key;
+}
+
+TEST_P(RoundTrip, AModelDrawsTheSamplesOfItsMeasurement) {
+  vlr_scene* scene = nullptr;
+  uint32_t material = 99;
+  ASSERT_EQ(VLR_OK, vlr_scene_create(&scene)) << vlr_last_error();
+  EXPECT_EQ(VLR_OK, vlr_scene_add_measurement_material(scene, measurement_, model_, 0, &material)) << vlr_last_error();
+  EXPECT_EQ(material, 0u);
+  vlr_scene_free(scene);
+}
+
+/// What the call says to `options` with a measurement.
+std::string fit_refusal(const vlr_measurement* measurement, const vlr_fit_options& options) {
+  vlr_job* job = nullptr;
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_fit_create_job(measurement, &options, &job));
+  EXPECT_EQ(job, nullptr);
+  return vlr_last_error();
+}
+
+TEST(FitOptions, UnknownModelsAndKernelsAreRefused) {
+  vlr_measurement* measurement = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_measurement_load(write_merl_file(scratch_folder()).c_str(), &measurement)) << vlr_last_error();
+  vlr_fit_options options;
+  vlr_fit_options_init(&options);
+  EXPECT_EQ(options.model, VLR_MODEL_PARAMETRIC);
+  for (const int32_t unknown : {-1, 2}) {
+    vlr_fit_options wrong = options;
+    wrong.model = unknown;
+    EXPECT_NE(fit_refusal(measurement, wrong).find("VLR_MODEL"), std::string::npos);
+    wrong = options;
+    wrong.kernel = unknown;
+    EXPECT_NE(fit_refusal(measurement, wrong).find("VLR_KERNEL"), std::string::npos);
+  }
+  options.kernel = VLR_KERNEL_ABEL_POISSON;
+  EXPECT_NE(fit_refusal(measurement, options).find("Gaussian"), std::string::npos);
+  options.model = VLR_MODEL_SCATTERED;
+  vlr_job* job = nullptr;
+  EXPECT_EQ(VLR_OK, vlr_fit_create_job(measurement, &options, &job)) << vlr_last_error();
+  vlr_job_free(job);
+  vlr_measurement_free(measurement);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "material/parametric_material.h"
 #include "material/scattered_material.h"
 #include "support/materials.h"
+#include "support/parametric_models.h"
 
 namespace velour {
 namespace {
@@ -19,10 +21,24 @@ class HalfCovered final : public Measurement {
   bool covers_view(float) const override { return true; }
 };
 
-TEST(MeasuredMaterial, ClampsChannelsAndIsBlackWhereNothingWasMeasured) {
+using Shared = std::shared_ptr<const Material>;
+
+/// A material of the measurement, and of the model that is its proposal.
+std::pair<Shared, Shared> scattered_proposal() {
   const auto proposal = std::make_shared<ScatteredBrdf>(test::isotropic_model());
-  const auto material = make_measured_material(std::make_shared<HalfCovered>(), proposal, 0);
-  const auto model = make_scattered_material(proposal, 0);
+  return {make_measured_material(std::make_shared<HalfCovered>(), proposal, 0), make_scattered_material(proposal, 0)};
+}
+
+std::pair<Shared, Shared> parametric_proposal() {
+  const auto proposal = std::make_shared<ParametricBrdf>(test::parametric_model(true, test::highlight_recipe(50)));
+  return {make_measured_material(std::make_shared<HalfCovered>(), proposal), make_parametric_material(proposal)};
+}
+
+class MeasuredMaterial : public testing::TestWithParam<std::pair<Shared, Shared> (*)()> {};
+INSTANTIATE_TEST_SUITE_P(Proposals, MeasuredMaterial, testing::Values(&scattered_proposal, &parametric_proposal));
+
+TEST_P(MeasuredMaterial, ClampsChannelsAndIsBlackWhereNothingWasMeasured) {
+  const auto [material, model] = GetParam()();
   EXPECT_FALSE(material->isotropic());
   for (const Vec3& wl : sphere_fibonacci(200)) {
     const DirectionPair w{wl, direction(0.6f, 1)};
@@ -32,10 +48,8 @@ TEST(MeasuredMaterial, ClampsChannelsAndIsBlackWhereNothingWasMeasured) {
   }
 }
 
-TEST(MeasuredMaterial, SamplesLikeItsProposal) {
-  const auto proposal = std::make_shared<ScatteredBrdf>(test::isotropic_model());
-  const auto material = make_measured_material(std::make_shared<HalfCovered>(), proposal, 0);
-  const auto model = make_scattered_material(proposal, 0);
+TEST_P(MeasuredMaterial, SamplesLikeItsProposal) {
+  const auto [material, model] = GetParam()();
   PreparedBrdf a, b;
   material->prepare(direction(1, 2), a);
   model->prepare(direction(1, 2), b);

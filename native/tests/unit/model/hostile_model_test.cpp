@@ -7,6 +7,7 @@
 #include "image/exr_tensors.h"
 #include "job/error.h"
 #include "model/model_file.h"
+#include "model/model_material.h"
 #include "sphere/random.h"
 
 namespace velour {

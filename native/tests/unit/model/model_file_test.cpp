@@ -6,6 +6,7 @@
 #include "example_model.h"
 #include "file/file.h"
 #include "job/error.h"
+#include "model/model_material.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -140,12 +141,11 @@ TEST(ModelFile, AParametricFileFitsInEightKilobytes) {
   EXPECT_LT(encode_model(example_parametric(true, 20, 10)).size(), 8000u);
 }
 
-TEST(ModelFile, AMaterialSharesTheModel) {
-  const auto model = std::make_shared<const Model>(example_model());
-  const auto material = make_material(model, 0);
-  EXPECT_TRUE(material->isotropic());
-  EXPECT_EQ(std::string(model_kind(*model)), "scattered");
-  EXPECT_EQ(std::string(model_kind(example_parametric())), "parametric");
+TEST(ModelFile, EveryKindHasItsNameAndItsMaterial) {
+  for (const auto& [model, kind] : {std::pair(example_model(), "scattered"), {example_parametric(), "parametric"}}) {
+    EXPECT_EQ(std::string(model_kind(model)), kind);
+    EXPECT_TRUE(make_material(std::make_shared<const Model>(model), 0)->isotropic()) << kind;
+  }
 }
 
 }  // namespace

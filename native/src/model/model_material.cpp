@@ -1,0 +1,40 @@
+#include "model/model_material.h"
+
+#include "material/parametric_material.h"
+#include "material/scattered_material.h"
+
+namespace velour {
+namespace {
+
+/// `make` of the model's body, as a pointer that shares the ownership of the model instead of copying its lobes.
+template <typename Make>
+std::shared_ptr<const Material> made_of_body(const std::shared_ptr<const Model>& model, const Make& make) {
+  return std::visit(
+      [&](const auto& body) { return make(std::shared_ptr<const std::remove_cvref_t<decltype(body)>>(model, &body)); },
+      model->body);
+}
+
+using Scattered = std::shared_ptr<const ScatteredBrdf>;
+using Parametric = std::shared_ptr<const ParametricBrdf>;
+
+template <typename... Makes>
+struct Either : Makes... {
+  using Makes::operator()...;
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>& model, int neighbors) {
+  return made_of_body(model, Either{[&](const Scattered& body) { return make_scattered_material(body, neighbors); },
+                                    [&](const Parametric& body) { return make_parametric_material(body); }});
+}
+
+std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
+                                                       const std::shared_ptr<const Model>& proposal, int neighbors) {
+  return made_of_body(
+      proposal,
+      Either{[&](const Scattered& body) { return make_measured_material(std::move(measurement), body, neighbors); },
+             [&](const Parametric& body) { return make_measured_material(std::move(measurement), body); }});
+}
+
+}  // namespace velour
