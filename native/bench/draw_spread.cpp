@@ -9,7 +9,7 @@
 #include "model/model_file.h"
 #include "model/model_material.h"
 #include "sphere/random.h"
-#include "srbf/kernel.h"
+#include "support/plain_lobes.h"
 
 namespace {
 
@@ -17,25 +17,6 @@ using namespace velour;
 
 constexpr float kAngles[] = {5, 15, 30, 45, 60, 75, 80, 85, 88};
 constexpr uint64_t kSamples = 1 << 16;
-
-/// Each lobe drawn as it is, in proportion to luminance times its integral over psi.
-void draw_plain_lobes(WarpedMixture& m) {
-  double total = 0, sum = 0;
-  const auto mass = [&](int j) {
-    return static_cast<double>(luminance({m.r[j], m.g[j], m.b[j]})) * kernel_integral(Kernel::gaussian, m.bandwidth[j]);
-  };
-  for (int j = 0; j < m.count; ++j) total += mass(j);
-  m.cdf[0] = 0.05f;
-  for (int j = 0; j < m.count; ++j) {
-    m.draw_x[j] = m.x[j];
-    m.draw_y[j] = m.y[j];
-    m.draw_z[j] = m.z[j];
-    m.draw_bandwidth[j] = m.bandwidth[j];
-    sum += mass(j);
-    m.cdf[j + 1] = static_cast<float>(0.05 + 0.95 * sum / total);
-    m.density[j] = static_cast<float>((m.cdf[j + 1] - m.cdf[j]) / kernel_integral(Kernel::gaussian, m.bandwidth[j]));
-  }
-}
 
 struct Spread {
   double variance, below;  // relative; share of draws that brought nothing
@@ -71,7 +52,7 @@ void report(const char* name, const Measurement& measurement, const Material& ma
     const Vec3 wv = direction(radians_from(degrees), 0.3f);
     PreparedBrdf point;
     material.prepare(wv, point);
-    if (plain) draw_plain_lobes(point.warped);
+    if (plain) test::draw_plain_lobes(point.warped);
     const Spread s = spread(measurement, material, point, wv);
     std::printf(", \"%g\": [%.3f, %.3f]", static_cast<double>(degrees), s.variance, s.below);
   }

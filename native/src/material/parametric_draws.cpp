@@ -61,6 +61,8 @@ void add_draws_simd(const float* table, const NodeWeights& nodes, WarpedMixture&
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 #include "material/draw_fit.h"
@@ -74,7 +76,7 @@ HWY_EXPORT(add_draws_simd);
 namespace {
 
 constexpr double kDefensiveShare = 0.05;  // method 6.2
-constexpr int kRadiusCells = 64, kSquareCells = 24;
+constexpr int kRadiusCells = 64, kSquareCells = 16;
 
 /// A lobe of the mixture, as scalar code has it.
 WarpedLobe lobe_of(const WarpedMixture& m, int j) {
@@ -114,20 +116,23 @@ Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 ParametricDraws::ParametricDraws(const ParametricValues& values)
     : isotropic_(values.isotropic()),
       padded_(values.padded_count()),
-      nodes_(isotropic_, isotropic_ ? kRadiusCells : kSquareCells) {
-  for (int node = 0; node < nodes_.count(); ++node) add_node(values, node);
+      nodes_(isotropic_, isotropic_ ? kRadiusCells : kSquareCells),
+      rows_(static_cast<size_t>(nodes_.count() * kColumns * padded_)),
+      proposals_(static_cast<size_t>(nodes_.count())) {
+  tbb::parallel_for(0, nodes_.count(), [&](int node) { fill_node(values, node); });
 }
 
-void ParametricDraws::add_node(const ParametricValues& values, int node) {
+void ParametricDraws::fill_node(const ParametricValues& values, int node) {
   WarpedMixture m;
   const Vec3 wv = nodes_.view(node);
   values.evaluate(wv, ViewPlace(wv), m);
   const DrawFit fit = fit_of(m);
+  proposals_[static_cast<size_t>(node)] = few_lobes(fit);
+
+  float* const row = rows_.data() + node * kColumns * padded_;
+  const auto at = [&](int column, int lobe) -> float& { return row[column * padded_ + lobe]; };
   double up_to = kDefensiveShare + (1 - kDefensiveShare) * fit.cosine;
   auto below = static_cast<float>(up_to);
-
-  std::vector<float> row(static_cast<size_t>(kColumns * padded_));
-  const auto at = [&](int column, int lobe) -> float& { return row[static_cast<size_t>(column * padded_ + lobe)]; };
   for (int j = 0; j < padded_; ++j) {
     at(kBandwidthRatio, j) = 1;
     at(kBelow, j) = below;
@@ -142,8 +147,6 @@ void ParametricDraws::add_node(const ParametricValues& values, int node) {
     }
     at(kUpTo, j) = below = j + 1 < m.count ? static_cast<float>(std::min(up_to, 1.0)) : 1.0f;
   }
-  rows_.insert(rows_.end(), row.begin(), row.end());
-  proposals_.push_back(few_lobes(fit));
 }
 
 void ParametricDraws::add_to(const ViewPlace& place, WarpedMixture& mixture) const {

@@ -28,7 +28,7 @@ class ParametricDraws {
   enum Column { kOffsetX, kOffsetY, kOffsetZ, kBandwidthRatio, kBelow, kUpTo, kColumns };
 
  private:
-  void add_node(const ParametricValues& values, int node);
+  void fill_node(const ParametricValues& values, int node);
 
   bool isotropic_;
   int padded_;

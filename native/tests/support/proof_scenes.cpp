@@ -1,8 +1,10 @@
 #include "support/proof_scenes.h"
 
+#include "material/parametric_material.h"
 #include "material/principled_material.h"
 #include "sphere/directions.h"
 #include "sphere/random.h"
+#include "support/parametric_models.h"
 #include "support/proof_materials.h"
 #include "support/test_scene.h"
 
@@ -98,9 +100,8 @@ void add_noisy_sky(Builder& builder, float contrast) {
 }
 
 Scene sphere_under_sun(Builder b, float degrees, int rows) {
-  const uint32_t material = b.material(highlight_material(40));
-  b.object(sphere(24), {}, material);
-  b.object(square(4), shift({0, 0, -1}), material);
+  b.object(sphere(24), {}, b.material(highlight_material(40)));
+  b.object(square(4), shift({0, 0, -1}), b.material(make_parametric_material(parametric_highlight(120, false))));
   add_sun(b, degrees, rows);
   return b.finish({0, -6, 3}, {0, 0, -0.2f}, 0.55f);
 }
@@ -146,7 +147,8 @@ Scene furnace(Builder b) {
 
 /// A floor and two walls that shade it, under an uneven sky half hidden by a lid.
 Scene corner(Builder b) {
-  const uint32_t glossy = b.material(highlight_material(30)), sharp = b.material(highlight_material(300));
+  const uint32_t glossy = b.material(highlight_material(30)),
+                 sharp = b.material(make_parametric_material(parametric_highlight(1200, true)));
   b.object(square(1), {}, glossy);
   Affine wall;  // x to y, y to z, z to x
   const float along_x[12] = {0, 0, 1, -1, 1, 0, 0, 0, 0, 1, 0, 1};

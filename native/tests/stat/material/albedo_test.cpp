@@ -1,8 +1,10 @@
 // Samples over their density against quadrature of the value: the estimator that every render is made of.
 #include "material/ggx_sampler.h"
+#include "material/parametric_material.h"
 #include "material/principled_material.h"
 #include "sphere/quadrature.h"
 #include "sphere/random.h"
+#include "support/parametric_models.h"
 #include "support/proof_materials.h"
 #include "support/statistics.h"
 
@@ -23,6 +25,10 @@ std::vector<Named> materials() {
       {"rough metal", make_principled_material({.metallic = 1, .roughness = 1})},
       {"metal", make_principled_material({.base_color = {0.9f, 0.6f, 0.3f}, .metallic = 1, .roughness = 0.35f})},
       {"ggx", make_ggx_material({.alpha = {0.2f, 0.5f}, .f0 = Rgb(0.5f), .f90 = Rgb(1), .diffuse = Rgb(0.1f)})}};
+  for (const bool isotropic : {true, false}) {
+    all.push_back({isotropic ? "parametric" : "parametric, anisotropic",
+                   make_parametric_material(test::parametric_highlight(200, isotropic))});
+  }
   for (const auto& kind : test::kLobeMaterials) {
     const float broad = std::string(kind.name) == "isotropic abel-poisson" ? 0.9f : 100;
     all.push_back({kind.name, kind.make(broad)});

@@ -1,7 +1,9 @@
 // The sampler of parametric models against the density that it claims: all angles of the view, all widths of the
 // highlight. Draws whose half vector faces away from the viewer have no direction; they are a cell of their own.
 #include "material/parametric_material.h"
+#include "sphere/random.h"
 #include "support/parametric_models.h"
+#include "support/plain_lobes.h"
 #include "support/proof_materials.h"
 
 namespace velour {
@@ -91,6 +93,35 @@ TEST(ParametricSamplingControl, DrawsWithoutDirectionAreCounted) {
   EXPECT_TRUE(test::follows_density(result, 1e-4, "broad"));
   sampler.pdf = [pdf = sampler.pdf](const Vec3& w) { return 1.02 * pdf(w); };
   EXPECT_LT(test::p_value(sampler, sampler), 1e-6);
+}
+
+/// Relative variance of f cos / pdf over draws from `point`.
+double spread(const Material& material, const PreparedBrdf& point) {
+  constexpr uint64_t kSamples = 20'000;
+  double sum = 0, sum_sq = 0;
+  for (uint64_t i = 0; i < kSamples; ++i) {
+    const Vec3 wl = material.sample(point, RandomStream(3, 0, i).next2());
+    if (wl.z <= 0) continue;
+    const auto e = test::eval_one(material, point, wl);
+    const double x = static_cast<double>(luminance(e.f) * wl.z / e.pdf);
+    sum += x;
+    sum_sq += x * x;
+  }
+  return sum_sq * static_cast<double>(kSamples) / (sum * sum) - 1;
+}
+
+// What the fit of the density is for: near the horizon most draws of the lobes of f would be wasted.
+TEST(ParametricDensity, LobesOfFCosWasteLessThanLobesOfF) {
+  const auto material = make_parametric_material(test::parametric_highlight(120, true));
+  for (const float degrees : {60.0f, 75.0f, 85.0f, 89.0f}) {
+    PreparedBrdf point;
+    material->prepare(test::view_at(degrees), point);
+    const double fitted = spread(*material, point);
+    test::draw_plain_lobes(point.warped);
+    const double plain = spread(*material, point);
+    EXPECT_LT(fitted, 0.4 * plain) << degrees;
+    EXPECT_LT(fitted, 0.5) << degrees;
+  }
 }
 
 }  // namespace
