@@ -52,6 +52,18 @@ void eval_folded(const Measurement& source, const Vec3& wv, const std::vector<Ve
   }
 }
 
+/// For a view along the normal, where an isotropic f depends on theta_l alone: the mean of every ring.
+void average_rings(const LightGrid& grid, std::vector<Rgb>& f, std::span<const uint8_t> valid) {
+  for (size_t begin = 0, end = 0; begin < f.size(); begin = end) {
+    Vec3d sum(0);
+    size_t count = 0;
+    for (; end < f.size() && grid.ring[end] == grid.ring[begin]; ++end) {
+      if (valid[end] && usable(f[end])) sum += Vec3d(f[end]), ++count;
+    }
+    for (size_t i = begin; i < end && count > 0; ++i) f[i] = Rgb(sum / static_cast<double>(count));
+  }
+}
+
 MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const SliceGrid& size, bool hold_out) {
   LightGrid grid = light_grid(wv, size.rings, size.spokes);
   if (size.folded) keep_one_side(grid);
@@ -62,10 +74,12 @@ MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const Slic
     redistribute_weights(grid, kept);
   }
   std::vector<Rgb> f(n, Rgb(0));
-  if (size.folded)
+  if (size.folded) {
     eval_folded(source, wv, grid.wl, f, valid);
-  else
+    if (wv.x == 0) average_rings(grid, f, valid);
+  } else {
     source.eval(wv, grid.wl, f, valid);
+  }
   MeasuredSlice slice{wv, {}, 0};
   for (size_t i = 0; i < n; ++i) {
     if (!kept[i] || !valid[i] || !usable(f[i])) continue;

@@ -25,7 +25,8 @@ struct MeasuredSlices {
 struct SliceGrid {
   int rings, spokes;
   /// Isotropic data: only lights on one side of the plane of incidence, each with the mean of its value and its mirror
-  /// image's, for models that are symmetric about that plane: the same fit from half the samples.
+  /// image's (at the normal, with the mean of its ring), for models that are symmetric about that plane: the same fit
+  /// from half the samples.
   bool folded = false;
 };
 

@@ -5,17 +5,23 @@
 #include <glm/gtc/packing.hpp>
 
 #include "fit/fit_report.h"
-#include "fit/lobe_search.h"
+#include "fit/lobe_growth.h"
 
 namespace velour {
 namespace {
 
 using Index = Eigen::Index;
 
-constexpr int kGrowthSteps = 20;
-constexpr double kGrowthLeast = 3e-3;
+// Views are fitted a little tighter than asked, for those between them and for what the fold has hidden.
+constexpr double kGoalShare = 0.8;
+constexpr int kFirstLobes = 4;
 constexpr int kPolishSteps = 80, kRounds = 4, kRoundSteps = 8;
+// Of the growth: polishing brings the worst view that much nearer.
+constexpr double kEnough = 1.1;
 constexpr double kPolishLeast = 3e-4;
+
+// A lobe that lowers the cost by less than this says that lobes are not what is missing.
+constexpr double kLeastGain = 0.01;
 
 OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes) {
   OrderPoint point;
@@ -24,7 +30,7 @@ OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes)
       ParametricBrdf::parameter_bytes(static_cast<uint64_t>(lobes.x.size()), lobes.model.space.size());
   double weight = 0;
   for (const TrackedView& v : problem.views()) {
-    point.worst = std::max(point.worst, v.error / v.goal);
+    point.worst = std::max(point.worst, kGoalShare * v.error / v.goal);
     point.relative_l2 += v.wv.z * v.error;
     weight += v.wv.z;
   }
@@ -62,43 +68,75 @@ void round_to_half(TrackedProblem& problem, TrackedLobes& lobes) {
   lobes.cost = problem.evaluate(lobes.model, lobes.x);
 }
 
-/// One lobe more, of the space that fits better with it. False when neither lowers the cost.
-bool grow(TrackedProblem& problem, TrackedLobes& lobes) {
-  const TrackedLobes before = lobes;
-  for (const LobeSpace space : {LobeSpace::half, LobeSpace::light}) {
-    problem.evaluate(before.model, before.x);  // its residuals are what the search looks at
-    auto trial = with_best_lobe(problem, before, space);
-    if (!trial) continue;
-    refine(problem, *trial, kGrowthSteps, kGrowthLeast);
-    if (trial->cost < lobes.cost) lobes = std::move(*trial);
+/// The last word on a number of lobes: the views far from their goal brought nearer, then rounded.
+void polish(TrackedProblem& problem, TrackedLobes& lobes) {
+  refine(problem, lobes, kPolishSteps, kPolishLeast);
+  for (int round = 0; round < kRounds; ++round) {
+    reweight(problem);
+    refine(problem, lobes, kRoundSteps, kPolishLeast);
   }
-  problem.evaluate(lobes.model, lobes.x);
-  return lobes.model.lobe_count() > before.model.lobe_count();
+  round_to_half(problem, lobes);
+}
+
+class Growth {
+ public:
+  Growth(TrackedProblem& problem, const TrackedFitOptions& options, Progress& progress)
+      : problem_(problem), options_(options), progress_(progress) {
+    lobes_.model.isotropic = options.isotropic;
+    lobes_.model.cells = options.cells;
+    lobes_.cost = problem.evaluate(lobes_.model, lobes_.x);
+  }
+
+  /// Adds lobes of `spaces` until there are `most`, or until no view asks for more. False when no more are wanted.
+  bool grow(std::span<const LobeSpace> spaces, int most) {
+    while (lobes_.model.lobe_count() < most) {
+      const double before = lobes_.cost;
+      if (!add_lobe(problem_, lobes_, spaces)) return false;
+      // A lobe that gains next to nothing: perhaps another stands in the wrong place.
+      if (lobes_.cost > (1 - kLeastGain) * before) exchange_lobe(problem_, lobes_);
+      points_.push_back(order_point(problem_, lobes_));
+      progress_.update(static_cast<double>(lobes_.model.lobe_count()) / options_.max_lobes);
+      if (points_.back().worst <= kGoalShare * kEnough || lobes_.cost > (1 - kLeastGain) * before) return false;
+    }
+    return true;
+  }
+
+  TrackedLobes& lobes() { return lobes_; }
+  std::vector<OrderPoint>& points() { return points_; }
+
+ private:
+  TrackedProblem& problem_;
+  const TrackedFitOptions& options_;
+  Progress& progress_;
+  TrackedLobes lobes_;
+  std::vector<OrderPoint> points_;
+};
+
+/// Greed may begin in the wrong space and never mend it, so the first lobes are tried in half space alone as well.
+Growth grown(TrackedProblem& problem, const TrackedFitOptions& options, Progress& progress) {
+  constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light}, kHalf[] = {LobeSpace::half};
+  const int first = std::min(kFirstLobes, options.max_lobes);
+  Growth both(problem, options, progress), half(problem, options, progress);
+  bool more = both.grow(kBoth, first), more_half = half.grow(kHalf, first);
+  const bool by_half = half.lobes().cost < both.lobes().cost;
+  Growth best = by_half ? std::move(half) : std::move(both);
+  problem.evaluate(best.lobes().model, best.lobes().x);
+  if (by_half ? more_half : more) best.grow(kBoth, options.max_lobes);
+  return best;
 }
 
 }  // namespace
 
 TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress) {
-  const ViewSpline spline(options.isotropic, options.cells);
   TrackedProblem problem(
-      slices, spline, [&](double theta_v) { return tolerance_at(options.tolerance, theta_v); }, options.threads,
-      progress);
+      slices, ViewSpline(options.isotropic, options.cells),
+      [&](double theta_v) { return kGoalShare * tolerance_at(options.tolerance, theta_v); }, options.threads, progress);
+  Growth growth = grown(problem, options, progress);
+  TrackedLobes& lobes = growth.lobes();
   TrackedFit fit;
-  TrackedLobes lobes;
-  lobes.model.isotropic = options.isotropic;
-  lobes.model.cells = options.cells;
-  lobes.cost = problem.evaluate(lobes.model, lobes.x);
-  while (lobes.model.lobe_count() < options.max_lobes && grow(problem, lobes)) {
-    fit.order.points.push_back(order_point(problem, lobes));
-    progress.update(static_cast<double>(lobes.model.lobe_count()) / options.max_lobes);
-  }
+  fit.order.points = std::move(growth.points());
   if (lobes.model.lobe_count() > 0) {
-    refine(problem, lobes, kPolishSteps, kPolishLeast);
-    for (int round = 0; round < kRounds; ++round) {
-      reweight(problem);
-      refine(problem, lobes, kRoundSteps, kPolishLeast);
-    }
-    round_to_half(problem, lobes);
+    polish(problem, lobes);
     // What the growth ends with takes the place of its last point.
     fit.order.points.back() = order_point(problem, lobes);
     fit.order.chosen = fit.order.points.size() - 1;

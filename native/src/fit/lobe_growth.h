@@ -1,0 +1,17 @@
+// How the lobes of the parametric model come and go.
+#pragma once
+
+#include <span>
+
+#include "fit/tracked_solver.h"
+
+namespace velour {
+
+/// One lobe more, of that of `spaces` which fits better with it. False, and nothing changed, when none lowers the cost.
+bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const LobeSpace> spaces);
+
+/// Takes out the lobe that is missed least and adds the one that gains most without it. False, and nothing changed,
+/// when that does not lower the cost.
+bool exchange_lobe(TrackedProblem& problem, TrackedLobes& lobes);
+
+}  // namespace velour

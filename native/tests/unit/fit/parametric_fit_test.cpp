@@ -1,0 +1,95 @@
+#include "fit/parametric_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "material/parametric_material.h"
+#include "support/analytic_measurement.h"
+
+namespace velour {
+namespace {
+
+using test::AnalyticMeasurement;
+
+const ParametricBrdf& lobes_of(const Model& model) { return std::get<ParametricBrdf>(model.body); }
+
+Model fitted(const Measurement& measurement, FitOptions options = {}) {
+  Progress progress;
+  return fit_parametric(measurement, options, progress);
+}
+
+void expect_tolerance_met(const Model& model, double tolerance) {
+  for (const auto& [view, error] : model.fit.by_view_angle) {
+    EXPECT_LE(error.value(), view == "85" ? 2 * tolerance : tolerance) << view;
+  }
+}
+
+TEST(ParametricFit, ADiffuseMaterialIsOneLobe) {
+  const Model model = fitted(AnalyticMeasurement(test::lambert));
+  expect_tolerance_met(model, 0.02);
+  EXPECT_LE(lobes_of(model).lobe_count(), 2);
+  EXPECT_NEAR(model.fit.albedo_max, 0.5, 0.01);
+}
+
+TEST(ParametricFit, AGlossyMaterialMeetsTheToleranceAtGrazingViewsToo) {
+  const Model model = fitted(AnalyticMeasurement(test::ggx(0.3f, 0.3f)));
+  expect_tolerance_met(model, 0.02);
+  EXPECT_LE(lobes_of(model).parameter_bytes(), 2700u);
+}
+
+TEST(ParametricFit, StopsAtTheToleranceAndSaysHowItGrew) {
+  FitOptions loose;
+  loose.tolerance = 0.1;
+  const Model few = fitted(AnalyticMeasurement(test::ggx(0.2f, 0.2f)), loose);
+  const Model many = fitted(AnalyticMeasurement(test::ggx(0.2f, 0.2f)));
+  EXPECT_LT(lobes_of(few).lobe_count(), lobes_of(many).lobe_count());
+  const OrderCurve& order = many.fit.order;
+  ASSERT_TRUE(order.chosen);
+  EXPECT_EQ(order.points[*order.chosen].lobes, lobes_of(many).lobe_count());
+  EXPECT_EQ(order.points[*order.chosen].parameter_bytes, lobes_of(many).parameter_bytes());
+  for (size_t i = 1; i < order.points.size(); ++i) EXPECT_GT(order.points[i].lobes, order.points[i - 1].lobes);
+}
+
+TEST(ParametricFit, LobesAreBounded) {
+  FitOptions options;
+  options.max_lobes = 2;
+  EXPECT_EQ(lobes_of(fitted(AnalyticMeasurement(test::ggx(0.1f, 0.1f)), options)).lobe_count(), 2);
+}
+
+TEST(ParametricFit, DoesNotDependOnThreads) {
+  FitOptions one, two;
+  one.max_lobes = two.max_lobes = 3;
+  one.threads = 1;
+  two.threads = 2;
+  const AnalyticMeasurement measurement(test::ggx(0.25f, 0.25f));
+  EXPECT_EQ(lobes_of(fitted(measurement, one)).control, lobes_of(fitted(measurement, two)).control);
+}
+
+TEST(ParametricFit, BrushedMetalHasStretchedLobes) {
+  FitOptions options;
+  options.max_lobes = 4;
+  const Model model = fitted(AnalyticMeasurement(test::ggx(0.15f, 0.4f), false), options);
+  EXPECT_FALSE(lobes_of(model).isotropic);
+  EXPECT_LE(model.fit.by_view_angle.at("30").value(), 0.06);
+}
+
+TEST(ParametricFit, BlackNeedsNoLobe) {
+  const Model model = fitted(AnalyticMeasurement([](const DirectionPair&) { return Rgb(0); }));
+  EXPECT_EQ(lobes_of(model).lobe_count(), 0);
+}
+
+TEST(ParametricFit, CancelEndsIt) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(fit_parametric(AnalyticMeasurement(test::lambert), {}, progress), Error);
+}
+
+TEST(ParametricFit, RefusesSenselessOptions) {
+  FitOptions options;
+  options.max_lobes = 33;
+  EXPECT_THROW(fitted(AnalyticMeasurement(test::lambert), options), Error);
+}
+
+}  // namespace
+}  // namespace velour

@@ -1,0 +1,144 @@
+#include "fit/tracked_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <Eigen/Cholesky>
+
+#include "fit/tracked_normal.h"
+#include "fit/tracked_solver.h"
+#include "fit/view_grid.h"
+
+namespace velour {
+namespace {
+
+using P = ParametricBrdf;
+
+/// Two lobes of both spaces on a spline of few cells.
+struct Lobes {
+  P model;
+  Eigen::VectorXd x;
+};
+
+Lobes two_lobes(bool isotropic, double change) {
+  Lobes lobes;
+  lobes.model.isotropic = isotropic;
+  lobes.model.cells = isotropic ? 4 : 2;
+  lobes.model.space = {LobeSpace::half, LobeSpace::light};
+  const int nodes = lobes.model.spline().node_count();
+  lobes.x.resize(static_cast<Eigen::Index>(lobes.model.index(nodes, 0, 0)));
+  for (int node = 0; node < nodes; ++node) {
+    for (int k = 0; k < lobes.model.parameter_count(); ++k) {
+      for (int j = 0; j < 2; ++j) {
+        const double wave = std::sin(3.1 * node + 1.7 * k + j) + change * std::cos(5 * node + k);
+        const double middle = k == P::kLogBandwidth ? (j == 0 ? 3.0 : 1.0) : 0.0;
+        lobes.x[static_cast<Eigen::Index>(lobes.model.index(node, k, j))] = middle + 0.2 * wave;
+      }
+    }
+  }
+  return lobes;
+}
+
+std::vector<MeasuredSlice> slices_of(const Lobes& lobes) {
+  P brdf = lobes.model;
+  for (const double v : lobes.x) brdf.control.push_back(static_cast<float>(v));
+  std::vector<MeasuredSlice> slices;
+  for (const float degrees : {2.0f, 20.0f, 41.0f, 63.0f, 80.0f, 88.0f}) {
+    for (const float azimuth : {0.0f, 1.0f, 2.5f, 4.5f}) {
+      if (brdf.isotropic && azimuth > 0) continue;
+      const Vec3 wv = direction(radians_from(degrees), azimuth);
+      const LightGrid grid = light_grid(wv, 16, 16);
+      MeasuredSlice slice{wv, {}, 0};
+      const auto at_view = lobes_at(brdf, Vec3d(wv));
+      for (size_t i = 0; i < grid.wl.size(); ++i) {
+        Vec3d f(0);
+        for (const WarpedLobe& lobe : at_view)
+          f += lobe.coefficient * warped_kernel(lobe, Vec3d(grid.wl[i]), Vec3d(wv));
+        slice.samples.push_back({grid.wl[i], grid.weight[i], Rgb(f) * grid.wl[i].z});
+      }
+      slices.push_back(std::move(slice));
+    }
+  }
+  return slices;
+}
+
+class Tracked : public testing::TestWithParam<bool> {
+ protected:
+  Lobes truth_ = two_lobes(GetParam(), 0.0), start_ = two_lobes(GetParam(), 0.3);
+  Progress progress_;
+  TrackedProblem problem_{slices_of(truth_), truth_.model.spline(), [](double) { return 0.02; }, 1, progress_};
+};
+
+TEST_P(Tracked, TheTruthHasNoErrorButThePenalty) {
+  const double cost = problem_.evaluate(truth_.model, truth_.x);
+  EXPECT_NEAR(cost, truth_.x.dot(smoothness_gradient(truth_.model, truth_.x)), 1e-4);
+  for (const TrackedView& v : problem_.views()) EXPECT_LT(v.error, 1e-4);
+}
+
+TEST_P(Tracked, TheStepSolvesTheNormalEquationsOfTheCost) {
+  std::vector<LocalNormal> local;
+  const double here = problem_.linearise(start_.model, start_.x, local);
+  const TrackedNormal normal(start_.model, problem_.views(), local, start_.x);
+  const Eigen::VectorXd step = normal.step(1e-3, Free::all);
+  // Gauss-Newton predicts the cost along its step: half the gradient's drop twice, plus the curvature.
+  const double slope = (problem_.evaluate(start_.model, start_.x + 1e-4 * step) -
+                        problem_.evaluate(start_.model, start_.x - 1e-4 * step)) /
+                       2e-4;
+  EXPECT_LT(slope, 0);
+  EXPECT_LT(problem_.evaluate(start_.model, start_.x + 0.05 * step), here);
+  // A full Newton step of a nearly quadratic cost lowers it by half the slope; far from it something is wrong.
+  EXPECT_NEAR(problem_.evaluate(start_.model, start_.x + 0.05 * step), here + 0.05 * slope * (1 - 0.025), 0.05 * here);
+}
+
+TEST_P(Tracked, HeldParametersDoNotMove) {
+  std::vector<LocalNormal> local;
+  problem_.linearise(start_.model, start_.x, local);
+  const Eigen::VectorXd step = TrackedNormal(start_.model, problem_.views(), local, start_.x).step(1e-3, Free::colors);
+  double moved = 0;
+  for (int node = 0; node < start_.model.spline().node_count(); ++node) {
+    for (int k = 0; k < start_.model.parameter_count(); ++k) {
+      const double s = step[static_cast<Eigen::Index>(start_.model.index(node, k, 1))];
+      if (k >= P::kLogRed && k <= P::kLogBlue)
+        moved += std::abs(s);
+      else
+        EXPECT_EQ(s, 0);
+    }
+  }
+  EXPECT_GT(moved, 0);
+}
+
+TEST_P(Tracked, RefinementFindsTheTruthAgain) {
+  TrackedLobes lobes{start_.model, start_.x, 0};
+  const double before = problem_.evaluate(start_.model, start_.x);
+  refine(problem_, lobes, 60, 1e-6);
+  EXPECT_LT(lobes.cost, 0.01 * before);
+  for (const TrackedView& v : problem_.views()) EXPECT_LT(v.error, 2e-3);
+}
+
+TEST_P(Tracked, RefinementIsNeverWorseThanItsStart) {
+  TrackedLobes lobes{truth_.model, truth_.x, 0};
+  const double before = problem_.evaluate(truth_.model, truth_.x);
+  refine(problem_, lobes, 5, 0);
+  EXPECT_LE(lobes.cost, before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Symmetries, Tracked, testing::Bool());
+
+TEST(SplineThrough, PassesNearSmoothValues) {
+  const Lobes lobes = two_lobes(true, 0);
+  Progress progress;
+  const TrackedProblem problem(
+      slices_of(lobes), ViewSpline(true, 4), [](double) { return 0.02; }, 1, progress);
+  std::vector<double> wanted;
+  for (const TrackedView& v : problem.views()) wanted.push_back(std::cos(std::acos(v.wv.z)));
+  const Eigen::VectorXd control = spline_through(problem.views(), ViewSpline(true, 4), wanted, false);
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    const ViewTaps& taps = problem.views()[i].taps;
+    double value = 0;
+    for (int t = 0; t < taps.count; ++t) value += taps.weight[t] * control[taps.node[t]];
+    EXPECT_NEAR(value, wanted[i], 0.02);
+  }
+}
+
+}  // namespace
+}  // namespace velour

@@ -1,0 +1,82 @@
+#include "sphere/view_spline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace velour {
+namespace {
+
+Vec3d view(double degrees, double azimuth = 0) {
+  const double t = radians_from(degrees);
+  return {std::sin(t) * std::cos(azimuth), std::sin(t) * std::sin(azimuth), std::cos(t)};
+}
+
+double value(const ViewTaps& taps, const std::vector<double>& control, bool odd = false) {
+  double sum = 0;
+  for (int i = 0; i < taps.count; ++i) {
+    sum += (odd ? taps.odd_weight[i] : taps.weight[i]) * control[static_cast<size_t>(taps.node[i])];
+  }
+  return sum;
+}
+
+std::vector<double> waves(const ViewSpline& spline) {
+  std::vector<double> control;
+  for (int i = 0; i < spline.node_count(); ++i) control.push_back(std::sin(1.7 * i * i));
+  return control;
+}
+
+TEST(ViewSpline, WeightsSumToOneAndNodesAreThere) {
+  for (const bool isotropic : {true, false}) {
+    const ViewSpline spline(isotropic, 7);
+    for (double degrees = 0; degrees <= 90; degrees += 0.7) {
+      const ViewTaps taps = spline.at(view(degrees, 1.1));
+      double sum = 0;
+      for (int i = 0; i < taps.count; ++i) {
+        sum += taps.weight[i];
+        EXPECT_GE(taps.node[i], 0);
+        EXPECT_LT(taps.node[i], spline.node_count());
+      }
+      EXPECT_NEAR(sum, 1, 1e-12);
+    }
+  }
+}
+
+TEST(ViewSpline, IsSmoothAcrossCells) {
+  for (const bool isotropic : {true, false}) {
+    const ViewSpline spline(isotropic, 6);
+    const auto control = waves(spline);
+    const double step = 0.01;
+    for (double degrees = step; degrees + step <= 90; degrees += step) {
+      const double bend = value(spline.at(view(degrees + step, 0.3)), control) -
+                          2 * value(spline.at(view(degrees, 0.3)), control) +
+                          value(spline.at(view(degrees - step, 0.3)), control);
+      EXPECT_LT(std::abs(bend), 1e-4) << degrees;  // a kink would leave 1e-3
+    }
+  }
+}
+
+TEST(ViewSpline, IsotropicValuesAreEvenAndOddAcrossTheNormal) {
+  const ViewSpline spline(true, 9);
+  const auto control = waves(spline);
+  EXPECT_EQ(value(spline.at(view(0)), control, true), 0);
+  EXPECT_NEAR(value(spline.at(view(0.01)), control), value(spline.at(view(0)), control), 1e-5);
+  EXPECT_NEAR(value(spline.at(view(40, 0.2)), control), value(spline.at(view(40, 4)), control), 1e-12);
+}
+
+TEST(ViewSpline, HemisphereSplinesHaveNoSeam) {
+  const ViewSpline spline(false, 5);
+  const auto control = waves(spline);
+  EXPECT_NEAR(value(spline.at(view(60, -kPiD + 1e-7)), control), value(spline.at(view(60, kPiD - 1e-7)), control),
+              1e-6);
+  EXPECT_NEAR(value(spline.at(view(1e-6, 0.1)), control), value(spline.at(view(1e-6, 4)), control), 1e-6);
+}
+
+TEST(PoleFade, GoesFromNothingToAll) {
+  EXPECT_EQ(pole_fade(view(0)), 0);
+  EXPECT_GT(pole_fade(view(8)), 0.9999);
+}
+
+}  // namespace
+}  // namespace velour
