@@ -48,7 +48,8 @@ def errors_against_time(
         if levels and error in levels:
             cell.axhline(levels[error], color="black", linewidth=0.8, linestyle=":")
         cell.set(xlabel="seconds", ylabel=f"{error} against the reference")
-    axes[-1].legend(fontsize="small")
+    # Beside the axes: inside them it would hide points.
+    axes[-1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
     figure.suptitle(title, fontsize="medium")
     save(figure, path)
 

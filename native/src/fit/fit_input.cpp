@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fit/sample_bins.h"
 #include "fit/slice_samples.h"
 
 namespace velour {
@@ -54,6 +55,10 @@ MeasuredSlices read_slices(const Measurement& measurement, const SliceGrid& grid
                                       std::to_string(n.valid) + " of " + std::to_string(n.valid + n.invalid()) +
                                       " entries are valid); there is nothing to fit. Measure more directions, or "
                                       "check how the file marks what is missing.");
+  }
+  if (grid.folded && !source.samples().empty()) {
+    for (MeasuredSlice& slice : slices.slices) slice.interpolated = true;
+    for (MeasuredSlice& slice : bin_samples(source.samples())) slices.slices.push_back(std::move(slice));
   }
   return slices;
 }

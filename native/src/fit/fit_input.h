@@ -11,7 +11,8 @@ namespace velour {
 void check_options(const FitOptions& options, int most_lobes);
 
 /// The slices that the fit may read: scattered samples are held out one by one, inside the measurement; tables by view
-/// and light. Throws Error(bad_data) when there is nothing to fit.
+/// and light. A folded grid adds scattered samples themselves (fit/sample_bins.h). Throws Error(bad_data) when there is
+/// nothing to fit.
 MeasuredSlices read_slices(const Measurement& measurement, const SliceGrid& grid, const FitOptions& options,
                            Progress& progress);
 

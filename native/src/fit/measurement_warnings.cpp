@@ -10,10 +10,10 @@
 namespace velour {
 namespace {
 
-constexpr double kManyInvalid = 0.1;   // of the entries above the horizon
-constexpr double kFewLights = 0.9;     // of the hemisphere
-constexpr uint64_t kFewSamples = 500;  // some 60 of them held out, a dozen for each reported view
-constexpr double kDarkest = 0.001;     // albedo; black velvet and soot are above
+constexpr double kManyInvalid = 0.1;  // of the entries above the horizon
+constexpr double kFewLights = 0.9;    // of the hemisphere
+constexpr size_t kFewSamples = 500;   // some 60 of them held out, a dozen for each reported view
+constexpr double kDarkest = 0.001;    // albedo; black velvet and soot are above
 constexpr double kBrokenReciprocity = 0.1;
 
 std::string number(double x) {
@@ -29,15 +29,15 @@ void warn_of_entries(const Measurement& measurement, std::vector<std::string>& w
     warnings.push_back(std::to_string(n.invalid()) + " of " + std::to_string(possible) +
                        " entries are invalid and were left out; errors are those of the others");
   }
-  const size_t samples = measurement.samples().size();
-  if (samples > 0 && samples < kFewSamples) {
-    uint64_t judges = 0;
-    for (uint64_t i = 0; i < samples; ++i) judges += held_out_sample(i);
-    warnings.push_back("the measurement has " + std::to_string(samples) +
-                       " samples: what lies between them is a guess, "
-                       "and the errors rest on the " +
-                       std::to_string(judges) + " that were held out");
-  }
+}
+
+void warn_of_few_samples(size_t samples, bool all_data, std::vector<std::string>& warnings) {
+  if (samples == 0 || samples >= kFewSamples) return;
+  uint64_t judges = 0;
+  for (uint64_t i = 0; i < samples; ++i) judges += held_out_sample(i);
+  warnings.push_back("the measurement has " + std::to_string(samples) +
+                     " samples: what lies between them is a guess, and the errors rest on " + std::to_string(judges) +
+                     (all_data ? " that the fit has seen" : " that were held out"));
 }
 
 /// The view whose noise is furthest above its tolerance speaks for all.
@@ -134,6 +134,7 @@ void warn_of_reciprocity(const FitRecord& record, std::vector<std::string>& warn
 
 void warn_of_measurement(const Measurement& measurement, const Comparison& errors, FitRecord& record) {
   warn_of_entries(measurement, record.warnings);
+  warn_of_few_samples(measurement.samples().size(), record.all_data, record.warnings);
   // Reciprocal pairs of such a measurement tell nothing of its noise.
   if (!is_not_reciprocal(record)) warn_of_noise(errors, record.tolerance, record.warnings);
   warn_of_narrow_views(errors, record.warnings);

@@ -80,7 +80,7 @@ MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const Slic
   } else {
     source.eval(wv, grid.wl, f, valid);
   }
-  MeasuredSlice slice{wv, {}, 0};
+  MeasuredSlice slice{.wv = wv, .samples = {}};
   for (size_t i = 0; i < n; ++i) {
     if (!kept[i] || !valid[i] || !usable(f[i])) continue;
     check_size(source, f[i]);

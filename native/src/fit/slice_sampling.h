@@ -13,7 +13,9 @@ namespace velour {
 struct MeasuredSlice {
   Vec3 wv;
   std::vector<SliceSample> samples;
-  size_t out_of_gamut = 0;  // samples with a negative channel: kept, though no model of ours can follow them
+  double energy = 0;          // sum of weight x luminance(f cos)^2 that errors are measured by; 0: that of the samples
+  bool interpolated = false;  // between scattered samples that the fit reads themselves as well
+  size_t out_of_gamut = 0;    // samples with a negative channel: kept, though no model of ours can follow them
 };
 
 struct MeasuredSlices {

@@ -30,6 +30,7 @@ OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes)
       ParametricBrdf::parameter_bytes(static_cast<uint64_t>(lobes.x.size()), lobes.model.space.size());
   double weight = 0;
   for (const TrackedView& v : problem.views()) {
+    if (v.guide) continue;
     point.worst = std::max(point.worst, kGoalShare * v.error / v.goal);
     point.relative_l2 += v.wv.z * v.error;
     weight += v.wv.z;
@@ -40,14 +41,20 @@ OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes)
 
 /// Views that are far from their goal count more from now on.
 void reweight(TrackedProblem& problem) {
-  double square = 0, mean = 0;
-  const double n = static_cast<double>(problem.views().size());
-  for (const TrackedView& v : problem.views()) square += (v.error / v.goal) * (v.error / v.goal) / n;
-  for (TrackedView& v : problem.views()) {
-    v.weight *= std::clamp(v.error / v.goal / std::sqrt(square), 0.6, 1.8);
-    mean += v.weight / n;
+  double square = 0, mean = 0, count = 0;
+  for (const TrackedView& v : problem.views()) {
+    if (!v.guide) square += (v.error / v.goal) * (v.error / v.goal), ++count;
   }
-  for (TrackedView& v : problem.views()) v.weight /= mean;
+  const double middle = std::sqrt(square / count);
+  if (!(middle > 0)) return;
+  for (TrackedView& v : problem.views()) {
+    if (v.guide) continue;
+    v.weight *= std::clamp(v.error / v.goal / middle, 0.6, 1.8);
+    mean += v.weight / count;
+  }
+  for (TrackedView& v : problem.views()) {
+    if (!v.guide) v.weight /= mean;
+  }
 }
 
 bool is_color(const ParametricBrdf& model, Index i) {
@@ -144,6 +151,7 @@ TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFi
   fit.brdf = lobes.model;
   for (const double v : lobes.x) fit.brdf.control.push_back(static_cast<float>(v));
   for (const TrackedView& v : problem.views()) {
+    if (v.guide) continue;
     fit.views.push_back(v.wv);
     fit.error.push_back(v.error);
   }

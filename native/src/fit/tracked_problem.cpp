@@ -78,7 +78,7 @@ void leave_residual(const Linear& linear, TrackedView& view) {
     const Eigen::Map<const Eigen::ArrayXf> r(view.residual[c].data(), static_cast<Index>(view.residual[c].size()));
     sum += kChannel[c] * r.cast<double>().square().sum();
   }
-  view.error = std::sqrt(sum / view.samples.luminance_energy());
+  view.error = std::sqrt(sum / view.energy);
 }
 
 LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView& view) {
@@ -150,7 +150,10 @@ TrackedView::TrackedView(const MeasuredSlice& slice, const ViewSpline& spline, d
       taps(spline.at(wv)),
       fade(spline.isotropic() ? pole_fade(wv) : 1.0),
       samples(slice.samples),
-      goal(error_goal) {
+      energy(slice.energy > 0 ? slice.energy : samples.luminance_energy()),
+      goal(error_goal),
+      weight(slice.interpolated ? kGuideWeight : 1.0),
+      guide(slice.interpolated) {
   for (int c = 0; c < 3; ++c) residual[c].assign(samples.target(c), samples.target(c) + samples.padded());
 }
 
@@ -159,7 +162,7 @@ TrackedProblem::TrackedProblem(const std::vector<MeasuredSlice>& slices, const V
     : threads_(threads), progress_(progress) {
   for (const MeasuredSlice& slice : slices) {
     TrackedView view(slice, spline, goal(std::acos(std::clamp(Vec3d(slice.wv).z, -1.0, 1.0))));
-    if (view.samples.luminance_energy() > 0) views_.push_back(std::move(view));
+    if (view.energy > 0) views_.push_back(std::move(view));
   }
 }
 

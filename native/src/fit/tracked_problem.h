@@ -13,6 +13,9 @@
 
 namespace velour {
 
+// Weight of a guide's squared error.
+inline constexpr double kGuideWeight = 0.1;
+
 /// A view of the fit. `error` is the relative L2 of its f cos, channels weighted as in luminance: never below that of
 /// the luminance.
 struct TrackedView {
@@ -20,14 +23,16 @@ struct TrackedView {
   ViewTaps taps;
   double fade;  // of the stretch
   SliceSamples samples;
+  double energy;      // that errors are measured by
   double goal;        // the error wanted
   double weight = 1;  // in the cost
   double error = 1;
+  bool guide;                 // only to keep lobes in bounds between samples: its error is nobody's goal
   AlignedFloats residual[3];  // sqrt(weight of the sample) (measured - model)
 
   TrackedView(const MeasuredSlice& slice, const ViewSpline& spline, double error_goal);
   /// What a sum of squared residuals, channels weighted as in luminance, is worth in the cost.
-  double scale() const { return weight / (goal * goal * samples.luminance_energy()); }
+  double scale() const { return weight / (goal * goal * energy); }
 };
 
 // Of the second differences of control values. Against errors in units of their goal it matters only where the data

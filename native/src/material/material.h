@@ -16,7 +16,8 @@ namespace velour {
 /// needs; the struct is scratch memory of the thread, reused from hit to hit.
 struct PreparedBrdf {
   Vec3 wv;               // local, unit, wv.z > 0
-  LobeMixture lobes;     // SRBF materials: value and density. Raw measurements: density only
+  LobeMixture lobes;     // SRBF materials: the value
+  LobeMixture draws;     // materials that sample lobes: what they draw from, and its density
   WarpedMixture warped;  // parametric models: value and density
   float parameter[8];    // analytic materials: what they derive from wv
   GgxPoint ggx;          // of the fitted GGX lobe, where one is the material or draws its samples

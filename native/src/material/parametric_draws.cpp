@@ -63,7 +63,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <algorithm>
 
-#include "material/drawn_lobe.h"
+#include "material/draw_fit.h"
 #include "sphere/frame.h"
 #include "srbf/lobe_tree.h"
 
@@ -85,22 +85,20 @@ WarpedLobe lobe_of(const WarpedMixture& m, int j) {
           {m.r[j], m.g[j], m.b[j]}};
 }
 
-std::vector<DrawnLobe> drawn_lobes(const WarpedMixture& m) {
-  std::vector<DrawnLobe> lobes;
-  for (int j = 0; j < m.count; ++j) lobes.push_back(drawn_lobe(lobe_of(m, j), Vec3d(m.wv)));
-  return lobes;
+DrawFit fit_of(const WarpedMixture& m) {
+  std::vector<WarpedLobe> lobes;
+  for (int j = 0; j < m.count; ++j) lobes.push_back(lobe_of(m, j));
+  return fit_draws(lobes, Vec3d(m.wv));
 }
 
-ProposalLobes few_lobes(const std::vector<DrawnLobe>& drawn) {
+ProposalLobes few_lobes(const DrawFit& fit) {
   GaussianLobes lobes;
   ProposalLobes few;
-  for (const DrawnLobe& lobe : drawn) {
-    if (lobe.is_cosine) {
-      few.cosine += static_cast<float>(lobe.mass / kPiD);
-    } else {
-      const double amplitude = lobe.mass / kernel_integral(Kernel::gaussian, lobe.light_bandwidth);
-      lobes.add({Vec3(lobe.light_center), static_cast<float>(lobe.light_bandwidth), static_cast<float>(amplitude)});
-    }
+  few.cosine = static_cast<float>(fit.mass * fit.cosine / kPiD);
+  for (const DrawnLobe& lobe : fit.lobes) {
+    const double integral = kernel_integral(Kernel::gaussian, lobe.light_bandwidth);
+    const double amplitude = fit.mass * lobe.probability / integral;
+    lobes.add({Vec3(lobe.light_center), static_cast<float>(lobe.light_bandwidth), static_cast<float>(amplitude)});
   }
   constexpr GaussianLobe kEverywhere{{0, 0, 1}, 0, 1};
   for (const GaussianLobe& lobe : LobeTree(lobes).cut(kEverywhere, ProposalLobes::kCapacity)) {
@@ -124,14 +122,8 @@ void ParametricDraws::add_node(const ParametricValues& values, int node) {
   WarpedMixture m;
   const Vec3 wv = nodes_.view(node);
   values.evaluate(wv, ViewPlace(wv), m);
-  const std::vector<DrawnLobe> drawn = drawn_lobes(m);
-  double total = 0, cosine = 0;
-  for (const DrawnLobe& lobe : drawn) {
-    total += lobe.mass;
-    cosine += lobe.is_cosine ? lobe.mass : 0.0;
-  }
-  const auto probability = [&](double mass) { return total > 0 ? (1 - kDefensiveShare) * mass / total : 0.0; };
-  double up_to = total > 0 ? kDefensiveShare + probability(cosine) : 1.0;
+  const DrawFit fit = fit_of(m);
+  double up_to = kDefensiveShare + (1 - kDefensiveShare) * fit.cosine;
   auto below = static_cast<float>(up_to);
 
   std::vector<float> row(static_cast<size_t>(kColumns * padded_));
@@ -140,18 +132,18 @@ void ParametricDraws::add_node(const ParametricValues& values, int node) {
     at(kBandwidthRatio, j) = 1;
     at(kBelow, j) = below;
     if (j < m.count) {
-      const DrawnLobe& lobe = drawn[static_cast<size_t>(j)];
+      const DrawnLobe& lobe = fit.lobes[static_cast<size_t>(j)];
       const Vec3 offset = Vec3(lobe.center) - Vec3(m.x[j], m.y[j], m.z[j]);
       at(kOffsetX, j) = offset.x;
       at(kOffsetY, j) = offset.y;
       at(kOffsetZ, j) = offset.z;
       at(kBandwidthRatio, j) = static_cast<float>(lobe.bandwidth) / m.bandwidth[j];
-      up_to += lobe.is_cosine ? 0.0 : probability(lobe.mass);
+      up_to += (1 - kDefensiveShare) * lobe.probability;
     }
     at(kUpTo, j) = below = j + 1 < m.count ? static_cast<float>(std::min(up_to, 1.0)) : 1.0f;
   }
   rows_.insert(rows_.end(), row.begin(), row.end());
-  proposals_.push_back(few_lobes(drawn));
+  proposals_.push_back(few_lobes(fit));
 }
 
 void ParametricDraws::add_to(const ViewPlace& place, WarpedMixture& mixture) const {

@@ -20,9 +20,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Parameters of the lobes from `at` on.
 template <int kTaps, class D, class V = hn::Vec<D>>
 HWY_INLINE V parameter(D d, const SplineRows& rows, const float* weight, int which, int at) {
-  const int from = which * rows.stride + at;
-  V sum = hn::Mul(hn::Set(d, weight[0]), hn::LoadU(d, rows.row[0] + from));
-  for (int i = 1; i < kTaps; ++i) sum = hn::MulAdd(hn::Set(d, weight[i]), hn::LoadU(d, rows.row[i] + from), sum);
+  const float* from = rows.control + which * rows.stride + at;
+  V sum = hn::Zero(d);
+  for (int i = 0; i < kTaps; ++i) {
+    sum = hn::MulAdd(hn::Set(d, weight[i]), hn::LoadU(d, from + rows.taps.node[i] * rows.row), sum);
+  }
   return sum;
 }
 
@@ -73,14 +75,14 @@ HWY_INLINE void evaluate_lobes(const SplineRows& rows, WarpedMixture& m) {
   const hn::CappedTag<float, WarpedMixture::kLanes> d;
   for (int at = 0; at < m.padded; at += static_cast<int>(hn::Lanes(d))) {
     hn::Store(hn::LoadU(d, rows.half + at), d, m.half + at);
-    const auto of = [&](int which) { return parameter<kTaps>(d, rows, rows.weight, which, at); };
+    const auto of = [&](int which) { return parameter<kTaps>(d, rows, rows.taps.weight, which, at); };
     const auto exp_of = [&](int which) { return exp2_clamped(d, of(which)); };  // kept as logarithms to base 2
     hn::Store(exp_of(P::kLogBandwidth), d, m.bandwidth + at);
     hn::Store(exp_of(P::kLogRed), d, m.r + at);
     hn::Store(exp_of(P::kLogGreen), d, m.g + at);
     hn::Store(exp_of(P::kLogBlue), d, m.b + at);
     if constexpr (kIsotropic) {
-      const auto tilt = parameter<kTaps>(d, rows, rows.odd_weight, P::kTiltX, at);
+      const auto tilt = parameter<kTaps>(d, rows, rows.taps.odd_weight, P::kTiltX, at);
       store_shape_on_meridian(d, tilt, hn::Mul(hn::Set(d, rows.stretch), of(P::kStretchA)), at, m);
     } else {
       store_shape(d, of(P::kTiltX), of(P::kTiltY), of(P::kStretchA), of(P::kStretchB), at, m);
@@ -148,22 +150,15 @@ ParametricValues::ParametricValues(const ParametricBrdf& brdf)
 }
 
 void ParametricValues::evaluate(const Vec3& wv, const ViewPlace& place, WarpedMixture& mixture) const {
-  const ViewTaps taps = spline_.at(PolarView{place.theta, place.cos_phi, place.sin_phi});
-  SplineRows rows;
-  rows.half = half_.data();
-  rows.stride = padded_;
+  SplineRows rows{half_.data(),
+                  control_.data(),
+                  padded_,
+                  padded_ * ParametricBrdf::parameters_of(isotropic()),
+                  1,
+                  spline_.at(PolarView<float>{place.theta, place.cos_phi, place.sin_phi})};
   // Beyond 11 degrees the fade is 1 in float.
-  rows.stretch = place.theta < 0.2f ? static_cast<float>(pole_fade(place.theta)) : 1.0f;
-  const int row = padded_ * ParametricBrdf::parameters_of(isotropic());
-  for (int i = 0; i < taps.count; ++i) {
-    rows.row[i] = control_.data() + taps.node[i] * row;
-    rows.weight[i] = static_cast<float>(taps.weight[i]);
-    rows.odd_weight[i] = static_cast<float>(taps.odd_weight[i]);
-  }
-  for (int i = taps.count; i < SplineRows::kIsotropicTaps; ++i) {  // beside the normal
-    rows.row[i] = control_.data();
-    rows.weight[i] = rows.odd_weight[i] = 0;
-  }
+  if (place.theta < 0.2f) rows.stretch = static_cast<float>(pole_fade(static_cast<double>(place.theta)));
+  while (rows.taps.count < SplineRows::kIsotropicTaps) rows.taps.add(0, 0, 0);  // beside the normal
   mixture.count = count_;
   mixture.padded = padded_;
   mixture.turn_cos = isotropic() ? place.cos_phi : 1.0f;

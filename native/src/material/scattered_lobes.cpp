@@ -4,13 +4,16 @@
 
 #include "job/error.h"
 #include "sphere/frame.h"
-#include "srbf/lobe_tree.h"
+#include "srbf/few_lobes.h"
 
 namespace velour {
 
 namespace {
 
 constexpr float kDefensiveShare = 0.05f;  // method 6.2
+
+/// Relative L2 that the few lobes which samples are drawn from may err by; docs/rendering.md has what others cost.
+constexpr double kDrawsTolerance = 0.3;
 
 Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 
@@ -35,9 +38,9 @@ struct Meridian {
   }
 };
 
-/// The lobes of a view as few Gaussians. An Abel-Poisson lobe, the Henyey-Greenstein density, counts as the Gaussian of
-/// its mean cosine, which is its bandwidth.
-ProposalLobes few_lobes(const ScatteredBrdf& brdf, size_t view) {
+/// The lobes of a view as Gaussians of luminance. An Abel-Poisson lobe, the Henyey-Greenstein density, counts as the
+/// Gaussian of its mean cosine, which is its bandwidth.
+GaussianLobes gaussians_of(const ScatteredBrdf& brdf, size_t view) {
   GaussianLobes lobes;
   for (size_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {
     const auto own = static_cast<double>(brdf.bandwidth[j]);
@@ -46,13 +49,21 @@ ProposalLobes few_lobes(const ScatteredBrdf& brdf, size_t view) {
     lobes.add({brdf.center[j], static_cast<float>(bandwidth),
                static_cast<float>(mass / kernel_integral(Kernel::gaussian, bandwidth))});
   }
+  return lobes;
+}
+
+ProposalLobes proposal_of(const GaussianLobes& lobes, float cosine) {
   ProposalLobes few;
-  if (!brdf.diffuse.empty()) few.cosine = std::max(luminance(brdf.diffuse[view]), 0.0f);
+  few.cosine = cosine;
   constexpr GaussianLobe kEverywhere{{0, 0, 1}, 0, 1};
   for (const GaussianLobe& lobe : LobeTree(lobes).cut(kEverywhere, ProposalLobes::kCapacity)) {
     few.lobe[few.count++] = lobe;
   }
   return few;
+}
+
+size_t nearest_of(const ViewNeighbors& views) {
+  return static_cast<size_t>(std::max_element(views.weight, views.weight + views.count) - views.weight);
 }
 
 int checked_neighbors(const ScatteredBrdf& brdf, int neighbors) {
@@ -73,44 +84,53 @@ int checked_neighbors(const ScatteredBrdf& brdf, int neighbors) {
 }  // namespace
 
 ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
-    : kernel_(brdf.kernel),
-      isotropic_(brdf.isotropic),
+    : isotropic_(brdf.isotropic),
       align_views_(brdf.align_views),
       neighbors_(checked_neighbors(brdf, neighbors)),
       views_(brdf.views),
       search_(brdf.views, neighbors_),
-      diffuse_(brdf.diffuse),
-      first_lobe_(brdf.first_lobe),
-      bandwidth_(brdf.bandwidth) {
-  diffuse_.resize(views_.size(), Rgb(0));
-  for (const Vec3& view : views_) theta_.push_back(Meridian(view).theta());
-  for (size_t j = 0; j < brdf.center.size(); ++j) {
-    x_.push_back(brdf.center[j].x);
-    y_.push_back(brdf.center[j].y);
-    z_.push_back(brdf.center[j].z);
-    r_.push_back(brdf.coefficient[j].r);
-    g_.push_back(brdf.coefficient[j].g);
-    b_.push_back(brdf.coefficient[j].b);
-    luminance_.push_back(std::max(luminance(brdf.coefficient[j]), 0.0f));
-    mass_.push_back(luminance_.back() * static_cast<float>(kernel_integral(kernel_, bandwidth_[j])));
-  }
-  for (size_t view = 0; view < views_.size(); ++view) proposals_.push_back(few_lobes(brdf, view));
+      lobes_(brdf.kernel),
+      draws_(Kernel::gaussian) {
+  for (size_t view = 0; view < views_.size(); ++view) add_view(brdf, view);
 }
 
-void ScatteredLobes::gather(const Vec3& wv, LobeMixture& mixture) const {
-  mixture.clear(kernel_);
-  const Placement placed = place(wv);
-  for (int i = 0; i < placed.views.count; ++i) {
-    add_slice(placed.views.index[i], placed.rotation[i], placed.views.weight[i], mixture);
+void ScatteredLobes::add_view(const ScatteredBrdf& brdf, size_t view) {
+  const Rgb diffuse = brdf.diffuse.empty() ? Rgb(0) : brdf.diffuse[view];
+  const float cosine = std::max(luminance(diffuse), 0.0f);
+  const GaussianLobes gaussians = gaussians_of(brdf, view);
+  theta_.push_back(Meridian(views_[view]).theta());
+  for (size_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {
+    lobes_.add(brdf.center[j], brdf.bandwidth[j], brdf.coefficient[j]);
+  }
+  lobes_.end_view(diffuse);
+  for (const GaussianLobe& lobe : few_lobes(gaussians, kDrawsTolerance, ProposalLobes::kCapacity)) {
+    draws_.add(lobe.center, lobe.bandwidth, Rgb(lobe.amplitude));
+  }
+  draws_.end_view(Rgb(cosine));
+  proposals_.push_back(proposal_of(gaussians, cosine));
+}
+
+void ScatteredLobes::gather(const Placement& placed, LobeMixture& mixture) const {
+  const ViewNeighbors& views = placed.views;
+  mixture.clear(lobes_.kernel());
+  for (int i = 0; i < views.count; ++i) {
+    lobes_.append_to(mixture, static_cast<size_t>(views.index[i]), placed.rotation[i], views.weight[i]);
   }
   mixture.finish(kDefensiveShare);
 }
 
-void ScatteredLobes::propose(const Vec3& wv, ProposalLobes& lobes) const {
-  const Placement placed = place(wv);
-  const ViewNeighbors& views = placed.views;
-  const auto nearest = std::max_element(views.weight, views.weight + views.count) - views.weight;
-  lobes = proposals_[static_cast<size_t>(views.index[nearest])];
+void ScatteredLobes::gather_draws(const Placement& placed, LobeMixture& mixture) const {
+  mixture.clear(draws_.kernel());
+  if (placed.views.count > 0) {
+    const size_t nearest = nearest_of(placed.views);
+    draws_.append_to(mixture, static_cast<size_t>(placed.views.index[nearest]), placed.rotation[nearest], 1);
+  }
+  mixture.finish(kDefensiveShare);
+}
+
+void ScatteredLobes::propose(const Placement& placed, ProposalLobes& lobes) const {
+  const size_t nearest = nearest_of(placed.views);
+  lobes = proposals_[static_cast<size_t>(placed.views.index[nearest])];
   for (int j = 0; j < lobes.count; ++j) lobes.lobe[j].center = placed.rotation[nearest] * lobes.lobe[j].center;
 }
 
@@ -137,17 +157,6 @@ ScatteredLobes::Placement ScatteredLobes::place_on_hemisphere(const Vec3& wv) co
     placed.rotation[i] = align_views_ ? rotation_between(mirror(view), mirror(wv)) : Mat3(1);
   }
   return placed;
-}
-
-void ScatteredLobes::add_slice(int view, const Mat3& rotation, float weight, LobeMixture& mixture) const {
-  const auto at = static_cast<size_t>(view);
-  const uint32_t first = first_lobe_[at];
-  const auto from = [first](const std::vector<float>& values) { return values.data() + first; };
-  const LobeSpan lobes{
-      from(x_), from(y_), from(z_),         from(bandwidth_), from(r_),
-      from(g_), from(b_), from(luminance_), from(mass_),      static_cast<int>(first_lobe_[at + 1] - first)};
-  mixture.append(lobes, rotation, weight);
-  mixture.add_diffuse(weight * diffuse_[at]);  // belongs to the normal: it does not turn with the highlight
 }
 
 }  // namespace velour

@@ -9,22 +9,17 @@ namespace velour {
 
 namespace {
 
-/// What the two materials share: the model's lobes as sampling density.
+/// What the two materials share: samples and density of few lobes that resemble the model.
 class LobeSampledMaterial : public Material {
  public:
   LobeSampledMaterial(const ScatteredBrdf& brdf, int neighbors) : lobes_(brdf, neighbors) {}
 
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override {
-    point.wv = wv;
-    lobes_.gather(wv, point.lobes);
-  }
-
   void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    sample_mixture(point.lobes, u, wl);
+    sample_mixture(point.draws, u, wl);
   }
 
   bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
-    lobes_.propose(point.wv, lobes);
+    lobes_.propose(lobes_.place(point.wv), lobes);
     return true;
   }
 
@@ -36,8 +31,16 @@ class ScatteredMaterial final : public LobeSampledMaterial {
  public:
   using LobeSampledMaterial::LobeSampledMaterial;
 
+  void prepare(const Vec3& wv, PreparedBrdf& point) const override {
+    const ScatteredLobes::Placement placed = lobes_.place(wv);
+    point.wv = wv;
+    lobes_.gather(placed, point.lobes);
+    lobes_.gather_draws(placed, point.draws);
+  }
+
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    eval_mixture(point.lobes, wl, f, pdf);
+    eval_mixture(point.lobes, wl, f, pdf);  // its density, the model's own, is overwritten
+    eval_density(point.draws, wl, pdf);
     for (int i = 0; i < wl.count; ++i) {
       // The lobes hold f cos, which stays finite at the horizon where f does not: the floor keeps the quotient finite,
       // and f times the cosine is the lobes' value down to cosines far below what a float direction can hold.
@@ -56,8 +59,13 @@ class MeasuredMaterial final : public LobeSampledMaterial {
   MeasuredMaterial(std::shared_ptr<const Measurement> measurement, const ScatteredBrdf& proposal, int neighbors)
       : LobeSampledMaterial(proposal, neighbors), measurement_(std::move(measurement)) {}
 
+  void prepare(const Vec3& wv, PreparedBrdf& point) const override {
+    point.wv = wv;
+    lobes_.gather_draws(lobes_.place(wv), point.draws);
+  }
+
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    eval_mixture(point.lobes, wl, f, pdf);  // its value, the model's, is overwritten
+    eval_density(point.draws, wl, pdf);
     measured_values(*measurement_, point.wv, wl, f);
   }
 

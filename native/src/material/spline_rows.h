@@ -7,14 +7,15 @@ namespace velour {
 
 inline constexpr float kLog2E = 1.44269504f;
 
-/// ViewTaps with pointers to the coefficients, in float: what the SIMD kernel reads.
+/// What the SIMD kernel reads: rows of [parameter][lobe], and how they are mixed.
 struct SplineRows {
   static constexpr int kIsotropicTaps = 3;
-  const float* half;  // of the lobes
-  int stride;         // from one parameter to the next, lobes
-  float stretch;      // factor of the stretches: pole_fade
-  const float* row[ViewTaps::kMost];
-  float weight[ViewTaps::kMost], odd_weight[ViewTaps::kMost];
+  const float* half;     // of the lobes
+  const float* control;  // the first row
+  int stride;            // from one parameter to the next
+  int row;               // from one row to the next
+  float stretch;         // factor of the stretches: pole_fade
+  ViewTapsOf<float> taps;
 };
 
 }  // namespace velour

@@ -4,26 +4,37 @@
 // that disk, mirrored at its centre; otherwise a square grid over the disk, which has no seam and no pole.
 #pragma once
 
+#include <algorithm>
+
 #include "sphere/vec.h"
 
 namespace velour {
 
-/// A view by its angles: the polar one, radians up to pi / 2, and the azimuth, 0 at the normal.
+/// A view by its angles: the polar one, radians up to pi / 2, and the azimuth, 1 and 0 at the normal.
+template <class T>
 struct PolarView {
-  double theta, cos_phi, sin_phi;
+  T theta, cos_phi, sin_phi;
 };
-PolarView polar_view(const Vec3d& wv);
+PolarView<double> polar_view(const Vec3d& wv);
 
 /// The nodes that a view touches. Sums over them are the spline's value there, once differentiable.
-struct ViewTaps {
+template <class T>
+struct ViewTapsOf {
   static constexpr int kMost = 9;
   int count = 0;
   int node[kMost];
-  double weight[kMost];
+  T weight[kMost];
   /// The weights for components that change sign across the normal (what points along the view's azimuth).
   /// Isotropic splines only; elsewhere equal to `weight`.
-  double odd_weight[kMost];
+  T odd_weight[kMost];
+
+  void add(int to, T even, T odd) {
+    node[count] = to;
+    weight[count] = even;
+    odd_weight[count++] = odd;
+  }
 };
+using ViewTaps = ViewTapsOf<double>;
 
 /// `cells` intervals over a radius (isotropic) or over each side of the square.
 class ViewSpline {
@@ -36,12 +47,54 @@ class ViewSpline {
   int node_count() const { return isotropic_ ? cells_ + 1 : (cells_ + 2) * (cells_ + 2); }
   /// Of unit `wv`, on or above the horizon.
   ViewTaps at(const Vec3d& wv) const { return at(polar_view(wv)); }
-  ViewTaps at(const PolarView& view) const;
+  /// The same in any precision: fits want double, renderers float.
+  template <class T>
+  ViewTapsOf<T> at(const PolarView<T>& view) const;
 
  private:
+  /// The three quadratic B-splines on the cell of `x`, in [0, cells].
+  template <class T>
+  struct CellWeights {
+    int cell;
+    T weight[3];
+    CellWeights(T x, int cells) : cell(std::clamp(static_cast<int>(x), 0, cells - 1)) {
+      const T u = x - static_cast<T>(cell), half(0.5);
+      weight[0] = half * (1 - u) * (1 - u);
+      weight[1] = half + u * (1 - u);
+      weight[2] = half * u * u;
+    }
+  };
+
   bool isotropic_;
   int cells_;
 };
+
+template <class T>
+ViewTapsOf<T> ViewSpline::at(const PolarView<T>& view) const {
+  ViewTapsOf<T> taps;
+  const T r = std::min(view.theta * static_cast<T>(2 / kPiD), T(1)), size = static_cast<T>(cells_);
+  if (isotropic_) {
+    const CellWeights<T> c(r * size, cells_);
+    // The node before the first is the first's own mirror image.
+    if (c.cell == 0) {
+      taps.add(0, c.weight[0] + c.weight[1], c.weight[1] - c.weight[0]);
+    } else {
+      taps.add(c.cell - 1, c.weight[0], c.weight[0]);
+      taps.add(c.cell, c.weight[1], c.weight[1]);
+    }
+    taps.add(c.cell + 1, c.weight[2], c.weight[2]);
+    return taps;
+  }
+  const T half_size = size / 2;
+  const CellWeights<T> x(half_size * (1 + r * view.cos_phi), cells_), y(half_size * (1 + r * view.sin_phi), cells_);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const T weight = y.weight[i] * x.weight[j];
+      taps.add((y.cell + i) * (cells_ + 2) + x.cell + j, weight, weight);
+    }
+  }
+  return taps;
+}
 
 /// 0 for a view along the normal, 1 from some degrees on: an isotropic material has no direction to stretch along
 /// there. 1 - exp(-(theta_v / 2.5 degrees)^2).

@@ -21,7 +21,9 @@ struct alignas(64) LobeDraws {
   float azimuth[kCapacity];                        // in [0, 1)
   int count = 0;
 
-  /// Chooses a component of `mixture` for each of `numbers`; no more than kCapacity in all.
+  /// Chooses a component of `mixture` for each of `numbers`; no more than kCapacity in all. Lobes are drawn from the
+  /// rim to the centre and from the centre to the rim by turns, so that where lobes lie over each other a step from one
+  /// slice of the numbers to the next is a small step on the sphere.
   void choose(const LobeMixture& mixture, std::span<const Vec2> numbers);
   void push(const Vec3& axis, float lobe_bandwidth, double u_zenith, float u_azimuth);
   /// The directions, in the order of choose(). The batch is not padded. Run-time dispatched SIMD.

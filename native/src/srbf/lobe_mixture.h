@@ -69,9 +69,10 @@ void eval_mixture(const LobeMixture& mixture, const DirectionBatch& w, RgbBatch&
 /// The density alone.
 void eval_density(const LobeMixture& mixture, const DirectionBatch& w, ScalarBatch& pdf);
 
-/// Draws a direction for each of up to 64 `u`: `u.x` picks component and zenith about the lobe, `u.y` the azimuth. May
-/// lie below the horizon. The batch is not padded. Run-time dispatched SIMD: a direction is within 6e-7 of the one that
-/// kernel_sample gives in double, relative to the zenith's sine, but for the antipode, where 1 - cos is rounded.
+/// Draws a direction for each of up to 64 `u`: `u.x` picks component and zenith about the lobe (LobeDraws::choose),
+/// `u.y` the azimuth. May lie below the horizon. The batch is not padded. Run-time dispatched SIMD: a direction is
+/// within 6e-7 of the one that kernel_sample gives in double, relative to the zenith's sine, but for the antipode,
+/// where 1 - cos is rounded.
 void sample_mixture(const LobeMixture& mixture, std::span<const Vec2> u, DirectionBatch& w);
 Vec3 sample_mixture(const LobeMixture& mixture, const Vec2& u);
 

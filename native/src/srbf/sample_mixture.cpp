@@ -120,7 +120,8 @@ void LobeDraws::choose(const LobeMixture& mixture, std::span<const Vec2> numbers
     }
     left = (left - share) / (1 - share);
     const int j = choose_index(mixture.cdf, mixture.count, left);
-    push({mixture.x[j], mixture.y[j], mixture.z[j]}, mixture.bandwidth[j], left, number.y);
+    const double zenith = j % 2 == 0 ? left : std::min(1 - left, 1 - 0x1p-53);
+    push({mixture.x[j], mixture.y[j], mixture.z[j]}, mixture.bandwidth[j], zenith, number.y);
   }
 }
 

@@ -48,7 +48,7 @@ std::vector<MeasuredSlice> slices_of(const Lobes& lobes) {
       if (brdf.isotropic && azimuth > 0) continue;
       const Vec3 wv = direction(radians_from(degrees), azimuth);
       const LightGrid grid = light_grid(wv, 16, 16);
-      MeasuredSlice slice{wv, {}, 0};
+      MeasuredSlice slice{.wv = wv, .samples = {}};
       const auto at_view = lobes_at(brdf, Vec3d(wv));
       for (size_t i = 0; i < grid.wl.size(); ++i) {
         Vec3d f(0);

@@ -1,0 +1,96 @@
+// How well models' densities fit a measurement: relative variance of f cos(theta_l) / pdf of a sample, by view angle,
+// one JSON object a line. Of parametric models also with the lobes of f as they are for density, which shows what the
+// lobes of f cos gain. Arguments: a measurement, then models.
+#include <cmath>
+#include <cstdio>
+#include <exception>
+
+#include "fit/ggx_fit.h"
+#include "model/model_file.h"
+#include "sphere/random.h"
+#include "srbf/kernel.h"
+
+namespace {
+
+using namespace velour;
+
+constexpr float kAngles[] = {5, 15, 30, 45, 60, 75, 80, 85, 88};
+constexpr uint64_t kSamples = 1 << 16;
+
+/// Each lobe drawn as it is, in proportion to luminance times its integral over psi.
+void draw_plain_lobes(WarpedMixture& m) {
+  double total = 0, sum = 0;
+  const auto mass = [&](int j) {
+    return static_cast<double>(luminance({m.r[j], m.g[j], m.b[j]})) * kernel_integral(Kernel::gaussian, m.bandwidth[j]);
+  };
+  for (int j = 0; j < m.count; ++j) total += mass(j);
+  m.cdf[0] = 0.05f;
+  for (int j = 0; j < m.count; ++j) {
+    m.draw_x[j] = m.x[j];
+    m.draw_y[j] = m.y[j];
+    m.draw_z[j] = m.z[j];
+    m.draw_bandwidth[j] = m.bandwidth[j];
+    sum += mass(j);
+    m.cdf[j + 1] = static_cast<float>(0.05 + 0.95 * sum / total);
+    m.density[j] = static_cast<float>((m.cdf[j + 1] - m.cdf[j]) / kernel_integral(Kernel::gaussian, m.bandwidth[j]));
+  }
+}
+
+struct Spread {
+  double variance, below;  // relative; share of draws that brought nothing
+};
+
+Spread spread(const Measurement& measurement, const Material& material, const PreparedBrdf& point, const Vec3& wv) {
+  double sum = 0, sum_sq = 0;
+  int below = 0;
+  for (uint64_t i = 0; i < kSamples; ++i) {
+    DirectionBatch wl;
+    wl.push(material.sample(point, RandomStream(7, 0, i).next2()));
+    wl.pad();
+    const Vec3 w = wl.get(0);
+    below += w.z <= 0;
+    if (w.z <= 0) continue;
+    RgbBatch unused;
+    ScalarBatch pdf;
+    material.eval(point, wl, unused, pdf);
+    Rgb f(0);
+    uint8_t valid = 0;
+    measurement.eval(wv, {&w, 1}, {&f, 1}, {&valid, 1});
+    const double x = valid ? static_cast<double>(std::max(luminance(f), 0.0f) * w.z / pdf.v[0]) : 0.0;
+    sum += x;
+    sum_sq += x * x;
+  }
+  const auto n = static_cast<double>(kSamples);
+  return {sum_sq * n / (sum * sum) - 1, below / n};
+}
+
+void report(const char* name, const Measurement& measurement, const Material& material, bool plain) {
+  std::printf("{\"density\": \"%s%s\"", name, plain ? ", lobes of f" : "");
+  for (const float degrees : kAngles) {
+    const Vec3 wv = direction(radians_from(degrees), 0.3f);
+    PreparedBrdf point;
+    material.prepare(wv, point);
+    if (plain) draw_plain_lobes(point.warped);
+    const Spread s = spread(measurement, material, point, wv);
+    std::printf(", \"%g\": [%.3f, %.3f]", static_cast<double>(degrees), s.variance, s.below);
+  }
+  std::printf("}\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc < 2) return 2;
+  const auto measurement = load_measurement(argv[1]);
+  Progress progress;
+  report("ggx", *measurement, *make_ggx_material(fit_ggx(*measurement, 0, progress)), false);
+  for (int i = 2; i < argc; ++i) {
+    const auto model = std::make_shared<const Model>(load_model(argv[i]));
+    const auto material = make_material(model, 0);
+    report(argv[i], *measurement, *material, false);
+    if (std::holds_alternative<ParametricBrdf>(model->body)) report(argv[i], *measurement, *material, true);
+  }
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
