@@ -10,6 +10,9 @@
 namespace velour {
 namespace {
 
+// Splines over the view: of tables, and of scattered samples, which are too few to hold more.
+constexpr int kTableCells = 10, kSampleCells = 4;
+
 // Interpolated samples are few and slow to look up: no more of them than they can tell apart.
 SliceGrid grid_for(const Measurement& measurement) {
   if (!measurement.samples().empty()) return {32, 24, measurement.isotropic()};
@@ -19,6 +22,7 @@ SliceGrid grid_for(const Measurement& measurement) {
 TrackedFitOptions tracked_options(const Measurement& measurement, const FitOptions& options) {
   TrackedFitOptions tracked;
   tracked.isotropic = measurement.isotropic();
+  tracked.cells = measurement.samples().empty() ? kTableCells : kSampleCells;
   tracked.max_lobes = options.max_lobes;
   tracked.tolerance = options.tolerance;
   tracked.threads = options.threads;

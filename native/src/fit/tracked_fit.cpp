@@ -31,8 +31,9 @@ OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes)
   double weight = 0;
   for (const TrackedView& v : problem.views()) {
     if (v.guide) continue;
-    point.worst = std::max(point.worst, kGoalShare * v.error / v.goal);
-    point.relative_l2 += v.wv.z * v.error;
+    const double error = reported_error(problem.views(), v);
+    point.worst = std::max(point.worst, kGoalShare * error / v.goal);
+    point.relative_l2 += v.wv.z * error;
     weight += v.wv.z;
   }
   point.relative_l2 /= std::max(weight, 1e-12);
@@ -153,7 +154,7 @@ TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFi
   for (const TrackedView& v : problem.views()) {
     if (v.guide) continue;
     fit.views.push_back(v.wv);
-    fit.error.push_back(v.error);
+    fit.error.push_back(reported_error(problem.views(), v));
   }
   return fit;
 }

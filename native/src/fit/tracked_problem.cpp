@@ -4,6 +4,7 @@
 #include <cmath>
 #include <Eigen/Cholesky>
 
+#include "brdf/held_out.h"
 #include "fit/parallel.h"
 
 namespace velour {
@@ -187,6 +188,16 @@ double TrackedProblem::linearise(const ParametricBrdf& model, const Eigen::Vecto
     local[i] = local_normal(model, linear, views_[i]);
   });
   return cost(model, x);
+}
+
+double reported_error(const std::vector<TrackedView>& views, const TrackedView& view) {
+  if (view.energy <= view.samples.luminance_energy()) return view.error;
+  const auto degrees = [](const TrackedView& v) { return std::atan2(v.wv.x, v.wv.z) * 180 / kPiD; };
+  double sum = 0;
+  for (const TrackedView& v : views) {
+    if (!v.guide && std::abs(degrees(v) - degrees(view)) <= kHeldOutGroup) sum += v.error * v.error * v.energy;
+  }
+  return std::sqrt(sum / view.energy);
 }
 
 Eigen::VectorXd smoothness_gradient(const ParametricBrdf& model, const Eigen::VectorXd& x) {

@@ -14,7 +14,7 @@
 namespace velour {
 
 // Weight of a guide's squared error.
-inline constexpr double kGuideWeight = 0.1;
+inline constexpr double kGuideWeight = 0.01;
 
 /// A view of the fit. `error` is the relative L2 of its f cos, channels weighted as in luminance: never below that of
 /// the luminance.
@@ -71,6 +71,9 @@ class TrackedProblem {
   int threads_;
   const Progress& progress_;
 };
+
+/// The error of a view as it is reported: of bins that share their energy, all within kHeldOutGroup together.
+double reported_error(const std::vector<TrackedView>& views, const TrackedView& view);
 
 /// Half the gradient of the penalty; it is linear in x.
 Eigen::VectorXd smoothness_gradient(const ParametricBrdf& model, const Eigen::VectorXd& x);
