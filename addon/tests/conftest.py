@@ -30,7 +30,10 @@ def model_file(tmp_path_factory, measurement_file) -> Path:
     from velour.native import Measurement, fit_job
 
     path = tmp_path_factory.mktemp("model") / "paint.velour"
-    with Measurement.load(measurement_file) as measurement, fit_job(measurement, max_lobes=2) as job:
+    with (
+        Measurement.load(measurement_file) as measurement,
+        fit_job(measurement, max_lobes=2, tolerance=1e-4) as job,
+    ):
         job.run()
         with job.result_model() as model:
             model.save(path)

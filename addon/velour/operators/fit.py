@@ -23,7 +23,7 @@ class VELOUR_OT_fit(bpy.types.Operator):
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
     # Where given these replace the settings of the material; what is not given stays as it is.
-    model: EnumProperty(name="Model", items=MODELS, default="PARAMETRIC", options={"SKIP_SAVE"})
+    model: EnumProperty(name="Kind", items=MODELS, default="PARAMETRIC", options={"SKIP_SAVE"})
     tolerance: FloatProperty(name="Tolerance", min=0.0005, max=1.0, default=0.02, options={"SKIP_SAVE"})
     max_lobes: IntProperty(name="Max Lobes", min=1, max=64, default=16, options={"SKIP_SAVE"})
     kernel: EnumProperty(

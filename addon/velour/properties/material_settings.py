@@ -27,8 +27,8 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         override=_OVERRIDE,
     )
     model: EnumProperty(
-        name="Model",
-        description="What the measurement is turned into",
+        name="Kind",
+        description="The kind of model that the measurement is turned into",
         items=MODELS,
         default="PARAMETRIC",
         override=_OVERRIDE,

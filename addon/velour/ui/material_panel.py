@@ -46,8 +46,16 @@ class VELOUR_MATERIAL_PT_measured(_MaterialPanel, bpy.types.Panel):
         _draw_fit_settings(layout.column(align=True), settings)
         _draw_fit(context, layout)
         column = layout.column()
-        column.prop(settings, "neighbors")
+        row = column.row()
+        row.active = not _is_parametric(node.image)
+        row.prop(settings, "neighbors")
         column.prop(settings, "use_reference")
+
+
+def _is_parametric(image):
+    """Of a model that has been read; such models have no views to mix."""
+    info = model_summary(image) if image is not None else None
+    return isinstance(info, dict) and info["model"] == "parametric"
 
 
 def _draw_fit_settings(column, settings):
@@ -102,7 +110,7 @@ class VELOUR_MATERIAL_PT_model(_MaterialPanel, bpy.types.Panel):
 def _draw_numbers(layout, info):
     rows = (
         ("Source", info["source"]["name"]),
-        ("Model", info["model"].capitalize()),
+        ("Kind", info["model"].capitalize()),
         ("Lobes", _lobes(info)),
         ("Size", f"{info['bytes'] / 1024:.1f} KiB"),
         ("Relative error", _number(info["relative_l2"])),

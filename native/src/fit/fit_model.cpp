@@ -1,12 +1,40 @@
 #include "fit/fit_model.h"
 
+#include <algorithm>
+
 #include "fit/parametric_fit.h"
 #include "fit/scattered_fit.h"
+#include "job/error.h"
 
 namespace velour {
+namespace {
+
+uint64_t size_of(const Model& model, const FitOptions& options) {
+  return options.size_of ? options.size_of(model) : std::get<ParametricBrdf>(model.body).parameter_bytes();
+}
+
+/// Fewer lobes until the model is within options.max_bytes: a file's size is known only when it is made.
+Model bounded_parametric(const Measurement& measurement, FitOptions options, Progress& progress) {
+  while (true) {
+    Model model = fit_parametric(measurement, options, progress);
+    const uint64_t size = size_of(model, options);
+    if (options.max_bytes == 0 || size <= options.max_bytes) return model;
+    const auto& brdf = std::get<ParametricBrdf>(model.body);
+    if (brdf.lobe_count() <= 1) {
+      throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
+                                                "; the smallest model of this measurement takes " +
+                                                std::to_string(size) + ".");
+    }
+    const uint64_t lobe = brdf.parameter_bytes() / brdf.space.size();
+    const auto excess = static_cast<int>(std::min<uint64_t>((size - options.max_bytes) / lobe + 1, brdf.kMaxLobes));
+    options.max_lobes = std::max(1, brdf.lobe_count() - excess);
+  }
+}
+
+}  // namespace
 
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
-  if (kind == ModelKind::parametric) return fit_parametric(measurement, options, progress);
+  if (kind == ModelKind::parametric) return bounded_parametric(measurement, options, progress);
   return fit_scattered(measurement, options, progress);
 }
 

@@ -11,6 +11,7 @@ enum class ModelKind { scattered = 0, parametric = 1 };
 
 constexpr ModelKind kDefaultModelKind = ModelKind::parametric;
 
+/// options.max_bytes bounds models of either kind; a parametric one is fitted again with fewer lobes until it holds.
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress);
 
 }  // namespace velour
