@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "sphere/directions.h"
 #include "sphere/frame.h"
@@ -49,18 +50,52 @@ class Rings {
   Frame frame_;
 };
 
+constexpr int kOwnLights = 2048;
+
+/// The density of the sampler of `material` at each of `wl`, per steradian.
+std::vector<double> own_densities(const Material& material, const PreparedBrdf& point, const std::vector<Vec3>& wl) {
+  std::vector<double> out;
+  DirectionBatch batch;
+  RgbBatch f;
+  ScalarBatch pdf;
+  for (size_t begin = 0; begin < wl.size(); begin += DirectionBatch::kCapacity) {
+    const size_t end = std::min(begin + DirectionBatch::kCapacity, wl.size());
+    batch.count = 0;
+    for (size_t i = begin; i < end; ++i) batch.push(wl[i]);
+    batch.pad();
+    material.eval(point, batch, f, pdf);
+    for (size_t i = begin; i < end; ++i) out.push_back(static_cast<double>(pdf.v[i - begin]));
+  }
+  return out;
+}
+
+/// What the sampler draws from a rank-1 lattice.
+void append_own(const Material& material, const PreparedBrdf& point, std::vector<Vec3>& out) {
+  for (int i = 0; i < kOwnLights; ++i) {
+    const double u = (i + 0.5) / kOwnLights, v = 0.6180339887498949 * i;
+    out.push_back(material.sample(point, Vec2(u, v - std::floor(v))));
+  }
+}
+
 }  // namespace
 
-WeightedLights close_lights(const Vec3& wv) {
+WeightedLights close_lights(const Material& material, const Vec3& wv) {
+  const auto point = std::make_unique<PreparedBrdf>();
+  material.prepare(wv, *point);
   const Rings mirror({-wv.x, -wv.y, wv.z}), retro(wv);
   std::vector<Vec3> all = hemisphere_fibonacci(kEvenLights);
   mirror.append(all);
   retro.append(all);
+  const size_t not_own = all.size();
+  append_own(material, *point, all);
+  const std::vector<double> own = own_densities(material, *point, all);
   WeightedLights lights;
-  for (const Vec3& w : all) {
-    if (w.z <= 0) continue;
-    lights.wl.push_back(w);
-    lights.weight.push_back(1 / (kEvenLights / (2 * kPiD) + mirror.density(w) + retro.density(w)));
+  for (size_t i = 0; i < all.size(); ++i) {
+    const bool drawn_with_density = i < not_own || own[i] > 0;
+    if (all[i].z <= 0 || !drawn_with_density) continue;
+    lights.wl.push_back(all[i]);
+    lights.weight.push_back(
+        1 / (kEvenLights / (2 * kPiD) + mirror.density(all[i]) + retro.density(all[i]) + kOwnLights * own[i]));
   }
   return lights;
 }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sphere/vec.h"
+#include "material/material.h"
 
 namespace velour {
 
@@ -13,9 +13,11 @@ struct WeightedLights {
   std::vector<double> weight;
 };
 
-/// Equal-area directions joined with rings about the mirror direction of `wv` and about `wv` itself, whose radii grow
-/// geometrically from a ten-thousandth of a radian: the two places where measured materials are sharp are seen at every
-/// scale. Weights are one over the summed densities of the three sets, the balance heuristic [VG95] as a quadrature.
-WeightedLights close_lights(const Vec3& wv);
+/// Directions for the error of `material` at the view `wv`: equal-area directions joined with rings about the mirror
+/// direction of `wv` and about `wv` itself, whose radii grow geometrically from a ten-thousandth of a radian: the two
+/// places where measured materials are sharp are seen at every scale. So are narrow lobes of the material itself,
+/// wherever they are, by directions that its own sampler draws. Weights are one over the summed densities of the four
+/// sets, the balance heuristic [VG95] as a quadrature.
+WeightedLights close_lights(const Material& material, const Vec3& wv);
 
 }  // namespace velour

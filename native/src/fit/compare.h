@@ -21,9 +21,9 @@ struct Comparison {
 };
 
 /// Held-out views 5, 30, 60, 75, 85 degrees on 4096 equal-area light directions each; scattered measurements at their
-/// held-out samples. Where the 4096 directions misjudge the energy of the measurement, or hardly two of them carry it,
-/// the error of the view is taken on close_lights() and the view is among `narrow_views`: a highlight between the
-/// directions would cost nothing there.
+/// held-out samples. Where the 4096 directions misjudge the energy of the measurement, hardly two of them carry it, or
+/// they understate the error, as when a narrow lobe of the model falls between them, the error of the view is taken on
+/// close_lights() and the view is among `narrow_views`.
 Comparison compare(const Measurement& measurement, const Material& material, Progress& progress);
 
 }  // namespace velour

@@ -80,10 +80,10 @@ void warn_of_narrow_views(const Comparison& errors, std::vector<std::string>& wa
   Views views;
   for (const auto& [degrees, share] : errors.narrow_views) views.add(degrees, share);
   if (views.empty()) return;
-  warnings.push_back(
-      views.names() +
-      ": the highlight is narrower than the spacing of the error's 4096 directions, which see as little as " +
-      views.least() + " of its energy; the error was taken on directions close to it instead");
+  warnings.push_back(views.names() +
+                     ": the highlight, or a lobe of the model, is narrower than the spacing of the error's 4096 "
+                     "directions, which see as little as " +
+                     views.least() + " of the highlight's energy; the error was taken on closer directions instead");
 }
 
 void warn_of_holes(const Comparison& errors, std::vector<std::string>& warnings) {
@@ -104,8 +104,11 @@ void warn_of_nothing_to_judge(const Comparison& errors, std::vector<std::string>
   }
 }
 
-void warn_of_darkness(double albedo, std::vector<std::string>& warnings) {
-  if (albedo == 0) {
+void warn_of_darkness(double albedo, double error, std::vector<std::string>& warnings) {
+  if (albedo == 0 && error > 0) {
+    warnings.push_back(
+        "the model is black: the measurement is darker than what can be fitted; check the measurement's scale");
+  } else if (albedo == 0) {
     warnings.push_back("the measurement is black at every view; check that it is the right file");
   } else if (albedo < kDarkest) {
     warnings.push_back("albedo at most " + number(albedo) +
@@ -140,7 +143,7 @@ void warn_of_measurement(const Measurement& measurement, const Comparison& error
   warn_of_narrow_views(errors, record.warnings);
   warn_of_holes(errors, record.warnings);
   warn_of_nothing_to_judge(errors, record.warnings);
-  warn_of_darkness(record.albedo_max, record.warnings);
+  warn_of_darkness(record.albedo_max, errors.relative_l2, record.warnings);
   warn_of_reciprocity(record, record.warnings);
 }
 
