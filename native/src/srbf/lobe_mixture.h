@@ -22,7 +22,7 @@ struct LobeSpan {
 };
 
 struct alignas(64) LobeMixture {
-  static constexpr int kCapacity = 400;
+  static constexpr int kCapacity = 448;
 
   Kernel kernel = Kernel::gaussian;
   int count = 0;
