@@ -193,16 +193,17 @@ class Study {
     const bool proposed =
         material.proposal_lobes(prepared_, lobes) && sky_.propose(lobes, vertex.frame, scratch_, product_);
     if (proposed) lobes_ += product_.count;
-    add(Tabulation(scene_, lighting_, vertex, prepared_, proposed ? &product_ : nullptr).take(),
-        proposed ? product_share_ : 0);
+    const double both = proposed ? product_share_ : 0;
+    const double sun = sky_.has_sun() ? static_cast<double>(kSunPart) * both : 0;
+    add(Tabulation(scene_, lighting_, vertex, prepared_, proposed ? &product_ : nullptr).take(), both - sun, sun);
   }
 
-  void add(const std::vector<Place>& places, double product) {
+  void add(const std::vector<Place>& places, double product, double sun) {
     double exact = 0;
     for (const Place& place : places) exact += place.weight * place.pdf[kExact];
     if (!(exact > 0)) return;  // unlit
-    const double rest = 0.5 * (1 - product);
-    const double shares[kCases][kDensities] = {{0, 0.5, 0.5, 0}, {product, rest, rest, 0}, {0, 0, 0, 1}};
+    const double rest = 0.5 * (1 - product - sun);
+    const double shares[kCases][kDensities] = {{0, 0.5, 0.5, 0}, {product, rest, rest + sun, 0}, {0, 0, 0, 1}};
     std::vector<Place> normalized = places;
     for (Place& place : normalized) place.pdf[kExact] /= exact;
     Hits& of = hits_.emplace_back();

@@ -126,14 +126,16 @@ RglMeasurement::View RglMeasurement::prepare(const Vec3& wv) const {
   return view;
 }
 
-bool RglMeasurement::lookup(const View& view, Vec3 wl, Rgb& f) const {
+Vec2 RglMeasurement::half_vector_at(const View& view, Vec3 wl) const {
   wl.x *= view.flip.x;
   wl.y *= view.flip.y;
   const Vec3 sum = wl + view.wv;
   const float x = sum.x * view.cos_phi + sum.y * view.sin_phi, y = sum.y * view.cos_phi - sum.x * view.sin_phi;
-  const Vec2 position(u_of_theta(theta_of(sum)), u_of_phi(fast_atan2(y, x)));
-  Vec2 u;
-  if (!warp_.invert(view.mix, position, u)) return false;
+  return {u_of_theta(theta_of(sum)), u_of_phi(fast_atan2(y, x))};
+}
+
+/// `u`: where the warp takes `position`.
+bool RglMeasurement::lookup(const View& view, const Vec2& position, const Vec2& u, float cosine, Rgb& f) const {
   const AxisCell cx = axis_cell(u.x, tables_.width), cy = axis_cell(u.y, tables_.height);
   alignas(16) float total[4] = {0, 0, 0, 0};
   for (size_t s = 0; s < static_cast<size_t>(view.mix.count); ++s) {
@@ -147,15 +149,30 @@ bool RglMeasurement::lookup(const View& view, Vec3 wl, Rgb& f) const {
   }
   if (!(total[3] > 0.0f)) return false;
   const float normals = tables_.microfacet_scale ? tables_.normals.at(position) : 1.0f;
-  f = Rgb(total[0], total[1], total[2]) * (normals * view.scale / (total[3] * std::max(wl.z, kMinCosine)));
+  f = Rgb(total[0], total[1], total[2]) * (normals * view.scale / (total[3] * std::max(cosine, kMinCosine)));
   return std::isfinite(f.r + f.g + f.b);
 }
 
 void RglMeasurement::eval(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> valid) const {
+  // Each of the three steps reads tables far from the core. One step for several directions, then the next, keeps many
+  // reads on their way.
+  constexpr size_t kTogether = 16;
   const View view = prepare(wv);
-  for (size_t i = 0; i < wl.size(); ++i) {
-    valid[i] = view.covered && wl[i].z > 0.0f && lookup(view, wl[i], f[i]);
-    if (!valid[i]) f[i] = Rgb(0.0f);
+  for (size_t first = 0; first < wl.size(); first += kTogether) {
+    const size_t count = std::min(kTogether, wl.size() - first);
+    Vec2 position[kTogether], u[kTogether];
+    for (size_t i = 0; i < count; ++i) {
+      valid[first + i] = view.covered && wl[first + i].z > 0.0f;
+      if (valid[first + i]) position[i] = half_vector_at(view, wl[first + i]);
+    }
+    for (size_t i = 0; i < count; ++i) {
+      if (valid[first + i]) valid[first + i] = warp_.invert(view.mix, position[i], u[i]);
+    }
+    for (size_t i = 0; i < count; ++i) {
+      const size_t at = first + i;
+      if (valid[at]) valid[at] = lookup(view, position[i], u[i], wl[at].z, f[at]);
+      if (!valid[at]) f[at] = Rgb(0.0f);
+    }
   }
 }
 

@@ -49,7 +49,9 @@ class RglMeasurement : public Measurement {
   };
   View prepare(const Vec3& wv) const;
   SliceMix mix_of(float phi, float theta) const;
-  bool lookup(const View& view, Vec3 wl, Rgb& f) const;
+  /// The half vector of a direction pair in the paper's units.
+  Vec2 half_vector_at(const View& view, Vec3 wl) const;
+  bool lookup(const View& view, const Vec2& position, const Vec2& u, float cosine, Rgb& f) const;
   void build_nodes();
   bool texel_above_horizon(uint32_t slice, uint32_t y, uint32_t x) const;
 

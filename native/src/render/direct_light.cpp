@@ -28,7 +28,7 @@ void DirectLight::prepare(const Receiver& receiver, Work& work) {
   const Vertex& vertex = receiver.vertex;
   vertex.surface->material->prepare(vertex.wv, work.prepared);
   prepare_surface(sampling_, vertex, work.prepared);
-  work.shares = shares(options_, product_share(vertex, work));
+  work.shares = shares_at(vertex, work);
   PathNumbers& numbers = *receiver.numbers;
   const auto all = numbers.all(lighting_.has_extended() ? receiver.directions : 0, receiver.full);
   const auto [rest, product] = numbers.deal(all, work.shares.product, Purpose::product_side);
@@ -38,12 +38,14 @@ void DirectLight::prepare(const Receiver& receiver, Work& work) {
   work.from_lights = lights;
 }
 
-float DirectLight::product_share(const Vertex& vertex, Work& work) {
-  if (options_.strategy != Strategy::product || sky_ == nullptr) return 0.0f;
+Shares DirectLight::shares_at(const Vertex& vertex, Work& work) {
+  if (options_.strategy != Strategy::product || sky_ == nullptr) return shares(options_, 0.0f);
   ProposalLobes lobes;
   const bool proposed = vertex.surface->material->proposal_lobes(work.prepared, lobes) &&
                         sky_->propose(lobes, vertex.frame, products_, work.product);
-  return proposed ? kProductShare * lighting_.environment_share() : 0.0f;
+  if (!proposed) return shares(options_, 0.0f);
+  const float both = kProductShare * lighting_.environment_share(), sun = sky_->has_sun() ? kSunPart * both : 0.0f;
+  return shares(options_, both - sun, sun);
 }
 
 void DirectLight::make_points(std::span<const Receiver> receivers) {

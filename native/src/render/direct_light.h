@@ -85,8 +85,8 @@ class DirectLight {
   void prepare(const Receiver& receiver, Work& work);
   /// Asks for the points of all vertices, those of the lights in a row at the front.
   void make_points(std::span<const Receiver> receivers);
-  /// Makes the products of the vertex, if it has any; the share of directions that they draw.
-  float product_share(const Vertex& vertex, Work& work);
+  /// Makes the products of the vertex, if it has any.
+  Shares shares_at(const Vertex& vertex, Work& work);
   void draw_towards_lights(std::span<const Receiver> receivers);
   void draw_towards_products(std::span<const Receiver> receivers);
   void draw_from_surface(const Receiver& receiver, const Work& work);

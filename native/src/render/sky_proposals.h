@@ -14,6 +14,11 @@ namespace velour {
 /// (octahedral cells) and bandwidth (powers of four) of such a lobe a cut through the tree of sky lobes is kept, fine
 /// where that lobe is and coarse elsewhere. A cut stands for the whole sky, so no light is left to the other strategies
 /// alone; how well it tells the light costs variance only.
+///
+/// One exception: a sun, a narrow lobe with most of the sky's energy. Its disk has an edge and a Gaussian has
+/// none, so many draws from its products miss it, while the density of the lights draws its texels exactly and is
+/// mostly about it. Where the BRDF's lobe is far broader than the sun, their product is left to the lights, which get a
+/// larger share under such a sky (kSunPart).
 class SkyProposals {
  public:
   explicit SkyProposals(const SkyMixture& sky);
@@ -23,13 +28,17 @@ class SkyProposals {
   /// the Gaussian that resembles it. False when there is none: below the horizon, or black.
   bool propose(const ProposalLobes& brdf, const Frame& frame, LobeProducts& scratch, LobeMixture& density) const;
 
+  bool has_sun() const { return sun_.size() > 0; }
+
  private:
   void fill_list(size_t list, const LobeTree& tree);
   void multiply(const GaussianLobe& world, const Frame& frame, LobeProducts& products) const;
+  void set_sun(GaussianLobes& sky);
   static constexpr int kSide = 32;   // cells of five degrees or so
   static constexpr int kLevels = 9;  // bandwidths 1, 4, ... 4^8
 
   GaussianLobes lists_;          // kListed places a list, by cell, then level; of amplitude 0 where a list is shorter
+  GaussianLobes sun_;            // kLanes places, or none without a sun
   std::vector<uint8_t> listed_;  // of each list, a multiple of LobeProducts::kLanes
 };
 

@@ -22,7 +22,7 @@ struct LobeSpan {
 };
 
 struct alignas(64) LobeMixture {
-  static constexpr int kCapacity = 400;
+  static constexpr int kCapacity = 448;
   static constexpr float kLeastMass = 1e-30f;  // of all lobes; less is none, because one over it is near no float
 
   Kernel kernel = Kernel::gaussian;

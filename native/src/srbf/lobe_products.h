@@ -37,7 +37,7 @@ struct ProposalLobes {
 /// The products of the lobes of a shading point, before the best are chosen. Scratch memory of a thread.
 struct alignas(64) LobeProducts {
   static constexpr int kLanes = 16;
-  static constexpr int kCapacity = 384;
+  static constexpr int kCapacity = 432;
   int count = 0;  // a multiple of kLanes; what fills up has mass 0
   /// Integral of the product over the sphere, times an estimate of its share above the horizon.
   float mass[kCapacity];

@@ -49,7 +49,7 @@ Sampler lobe_material_sampler(const test::LobeMaterial& kind, float bandwidth, f
   PreparedBrdf point;
   material->prepare(wv, point);
   Sampler sampler = test::material_sampler(material, wv);
-  test::resolve_lobe(point.lobes, test::sharpest_lobe(point.lobes), sampler);
+  test::resolve_lobe(point.draws, test::sharpest_lobe(point.draws), sampler);
   return sampler;
 }
 

@@ -97,6 +97,21 @@ TEST(ProductSampling, GoesWhereBothAre) {
   EXPECT_GT(test::mixture_density(mixture, sky.center[0]), 20 * test::mixture_density(mixture, sky.center[1]));
 }
 
+// The lights draw a sun's texels exactly: only a highlight about as sharp as the sun is multiplied with it.
+TEST(ProductSampling, LeavesASunToTheLights) {
+  SkyMixture sky;
+  sky.center = {kFrame.to_world(glossy().lobe[0].center), kFrame.z};
+  sky.bandwidth = {1e5f, 2.0f};
+  sky.coefficient = {Rgb(1e6f), Rgb(1.0f)};
+  ASSERT_TRUE(SkyProposals(sky).has_sun());
+  EXPECT_LT(test::mixture_density(proposal(sky), sky.center[0]), 10);
+  ProposalLobes mirror = glossy();
+  mirror.lobe[0].bandwidth = 1e5f;
+  EXPECT_GT(test::mixture_density(proposal(sky, mirror), sky.center[0]), 1000);
+  sky.coefficient[0] = Rgb(1.0f);
+  EXPECT_FALSE(SkyProposals(sky).has_sun());
+}
+
 TEST(ProductSampling, NothingToProposeBelowTheHorizon) {
   SkyMixture sky;
   sky.center = {-kFrame.z};

@@ -51,6 +51,19 @@ TEST(SampleMixture, ChoosesLobesByTheirProbability) {
   }
 }
 
+// Nested lobes: where one slice of the numbers ends and the next begins, directions are next to each other.
+TEST(SampleMixture, NeighbouringSlicesMeet) {
+  LobeMixture mixture;
+  mixture.clear(Kernel::gaussian);
+  for (const float bandwidth : {1.0f, 10.0f, 100.0f, 1000.0f}) mixture.add({0, 0, 1}, bandwidth, Rgb(bandwidth));
+  mixture.finish(0);
+  for (const int j : {0, 2}) {  // where both are at the centre
+    const Vec3 last = sample_mixture(mixture, {mixture.cdf[j] - 1e-5f, 0.3f});
+    const Vec3 next = sample_mixture(mixture, {mixture.cdf[j] + 1e-5f, 0.3f});
+    EXPECT_LT(glm::distance(last, next), 0.02f) << j;
+  }
+}
+
 // The number left after the choice of a rare lobe still spreads over that lobe's zenith angles without bias.
 TEST(SampleMixture, ZenithOfARareLobeIsNotQuantised) {
   LobeMixture mixture;
