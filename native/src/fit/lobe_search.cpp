@@ -68,8 +68,11 @@ std::vector<Candidate> light_candidates(bool isotropic) {
         out.push_back({Candidate::Follows::nothing, std::log(bandwidth), t, {}});
       }
     }
-    out.push_back({Candidate::Follows::view, std::log(bandwidth), {}, {}});
-    out.push_back({Candidate::Follows::mirror, std::log(bandwidth), {}, {}});
+  }
+  for (double bandwidth = 1; bandwidth < 1e5; bandwidth *= 2.7) {
+    for (const auto follows : {Candidate::Follows::view, Candidate::Follows::mirror}) {
+      out.push_back({follows, std::log(bandwidth), {}, {}});
+    }
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "brdf/held_out.h"
+#include "fit/parametric_fit.h"
 #include "fit/scattered_fit.h"
 #include "model/model_file.h"
 #include "model/model_material.h"
@@ -35,7 +36,7 @@ std::vector<FitKind> fit_kinds() {
     own.max_lobes = 3;  // never reaches the tolerance on Gaussians: more only takes time
     return fit_scattered(measurement, own, progress);
   };
-  return {{"scattered", fit_scattered}, {"scattered_abel_poisson", abel_poisson}};
+  return {{"scattered", fit_scattered}, {"scattered_abel_poisson", abel_poisson}, {"parametric", fit_parametric}};
 }
 
 // Seconds. A fit of these takes about one, ten with the sanitizers, and machines are shared; a hang takes longer.
