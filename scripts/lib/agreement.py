@@ -42,6 +42,22 @@ def agreement(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> Agreement:
     )
 
 
+def blocks(stack: np.ndarray, where: np.ndarray, side: int) -> np.ndarray:
+    """Means of the pixels of `where` in blocks of side x side: [batch, row, column, channel].
+
+    Blocks without such pixels are 0 in every batch, which no test counts. What rounds off at the edges is
+    left out.
+    """
+    rows, columns = where.shape[0] // side, where.shape[1] // side
+
+    def total(a: np.ndarray) -> np.ndarray:
+        cut = a[:, : rows * side, : columns * side]
+        return cut.reshape(len(cut), rows, side, columns, side, -1).sum(axis=(2, 4))
+
+    count = total(where[None, :, :, None].astype(float))
+    return total(stack * where[:, :, None]) / np.maximum(count, 1)
+
+
 def _two_sided_z(p: float) -> float:
     return float(stats.norm.isf(p / 2))
 

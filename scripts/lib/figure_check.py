@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import silhouette
-from agreement import Agreement, agreement
+from agreement import Agreement, agreement, blocks
 from reference import FIRST_SEED, Reference
 from renders import Renders
 from scenes import Scene
+
+BLOCK = 8  # pixels
 
 
 @dataclass(frozen=True)
@@ -17,6 +19,7 @@ class Check:
     """Each of them against `product`."""
 
     uniform: Agreement
+    uniform_blocks: Agreement  # the same of blocks of BLOCK x BLOCK pixels
     mis: Agreement
     control: Agreement  # uniform, with `product` a hundredth too bright: must not hold
 
@@ -34,6 +37,12 @@ def check(renders: Renders, measured: Scene, extent) -> Check:
     where = silhouette.of(measured, renders, extent.check_size)
     return Check(
         agreement(uniform, product, where),
+        _block_agreement(uniform, product, where),
         agreement(mis, product, where),
         agreement(uniform, 1.01 * product, where),
     )
+
+
+def _block_agreement(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> Agreement:
+    a, b = (blocks(stack, where, BLOCK) for stack in (a, b))
+    return agreement(a, b, np.ones(a.shape[1:3], bool))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import provenance
 from agreement import LEVEL
+from figure_check import BLOCK
 from markdown_table import small, table
 from table_csv import csv_text
 from velour.core import files
@@ -40,7 +41,8 @@ and more; last, what the fit alone is off by.
 
 Against the reference. `random`: independent numbers, the dissertation's; `sobol`: the default here. The
 pictures show the model, the reference the measurement, so errors do not fall below the fit's own: the
-last row of each figure.
+last row of each figure. Seconds are wall clock, of a machine that may have done other work: docs/performance.md has
+those of a free one.
 
 {_errors(figures)}
 ## References
@@ -60,7 +62,8 @@ Uniform samples of the measurement, {extent.uniform_spp} a pixel at {columns}x{r
 is at least {LEVEL}. Control: `product` a hundredth too bright, which must not agree. `mis` against
 `product`, {extent.check_batches} renders of {extent.check_spp} each, is the same test without rare events:
 what uniform samples meet a few times in all renders together (the brightest texels of the sun, mirrored),
-some renders miss, and error bars from their spread are too short.
+some renders miss, and error bars from their spread are too short. Blocks of pixels meet such texels as many
+times more often as they have pixels, so that their error bars mean more; in a sharp highlight not enough.
 
 {_checks(figures)}"""
 
@@ -119,7 +122,13 @@ def _checks(figures: list) -> str:
     rows = []
     for figure in figures:
         found = figure.check
-        for pair, a in (("uniform", found.uniform), ("mis", found.mis), ("control", found.control)):
+        pairs = {
+            "uniform": found.uniform,
+            f"uniform, blocks of {BLOCK}x{BLOCK}": found.uniform_blocks,
+            "mis": found.mis,
+            "control": found.control,
+        }
+        for pair, a in pairs.items():
             numbers = [
                 a.tests,
                 f"{a.largest_z:.2f}",
