@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 import subprocess
 import sys
 
@@ -108,12 +109,20 @@ def test_without_data_a_sentence(tmp_path):
     assert "there is no test data" in done.stdout
 
 
+def _page(folder) -> str:
+    """Without the load of other programs, which is that of the moment."""
+    page = (folder / "out/models.md").read_text(encoding="utf-8")
+    return re.sub(
+        r"; \*\*other programs kept .*? processors busy\*\*, so they are too many", "", page, flags=re.S
+    )
+
+
 def test_a_small_run_is_whole_and_is_not_repeated(data_folder, tmp_path):
     assert _run(tmp_path, data_folder).returncode == 0
-    page = (tmp_path / "out/models.md").read_text(encoding="utf-8")
+    page = _page(tmp_path)
     assert "| blue-metallic-paint | principled |" in page
     for picture in ("error_by_lobes", "error_by_bytes"):
         assert (tmp_path / f"out/models/{picture}.png").stat().st_size > 5000
     again = _run(tmp_path, data_folder)
     assert all("kept" in line for line in again.stdout.splitlines() if line.startswith("["))
-    assert (tmp_path / "out/models.md").read_text(encoding="utf-8") == page
+    assert _page(tmp_path) == page

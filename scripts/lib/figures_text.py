@@ -41,8 +41,8 @@ and more; last, what the fit alone is off by.
 
 Against the reference. `random`: independent numbers, the dissertation's; `sobol`: the default here. The
 pictures show the model, the reference the measurement, so errors do not fall below the fit's own: the
-last row of each figure. Seconds are wall clock, of a machine that may have done other work: docs/performance.md has
-those of a free one.
+last row of each figure. Seconds are wall clock, of a machine that may have done other work:
+docs/performance.md has those of a free one.
 
 {_errors(figures)}
 ## References
