@@ -8,21 +8,21 @@ from ctypes import byref, c_double, c_uint32
 
 import numpy as np
 
+from . import library
 from .arrays import checked, pointer
 from .errors import refuse
 from .handle import path_bytes
-from .library import load
 
 
 def write(path: str | os.PathLike, pixels: np.ndarray) -> None:
     """Atomic. The extension picks the format: .exr keeps floats, .png gets the sRGB curve and 8 bits."""
     pixels = checked("pixels", pixels, (None, None, None))
     height, width, channels = pixels.shape
-    load().vlr_image_write(path_bytes(path), width, height, channels, pointer(pixels))
+    library.load().vlr_image_write(path_bytes(path), width, height, channels, pointer(pixels))
 
 
 def read(path: str | os.PathLike) -> np.ndarray:
-    lib, name = load(), path_bytes(path)
+    lib, name = library.load(), path_bytes(path)
     width, height, channels = c_uint32(), c_uint32(), c_uint32()
     size = byref(width), byref(height), byref(channels)
     lib.vlr_image_read(name, *size, None, 0)
@@ -40,7 +40,7 @@ def compare(pixels: np.ndarray, reference: np.ndarray) -> tuple[float, float]:
         raise refuse(f"The picture is {_size(pixels)}, the reference {_size(reference)}; they must agree.")
     rmse, relmse = c_double(), c_double()
     height, width, channels = pixels.shape
-    load().vlr_image_compare(
+    library.load().vlr_image_compare(
         ctypes.c_uint64(height * width),
         channels,
         pointer(pixels),

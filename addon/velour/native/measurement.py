@@ -6,9 +6,9 @@ import os
 
 import numpy as np
 
+from . import library
 from .arrays import directions, pointer, small
 from .handle import Handle, path_bytes
-from .library import json_of
 
 
 class Measurement(Handle):
@@ -23,7 +23,7 @@ class Measurement(Handle):
 
     def info(self) -> dict:
         """kind, format, name, path, sha256, bytes, isotropic, entries {...}, details {...}."""
-        return json_of(self._lib.vlr_measurement_info_json, self.pointer)
+        return library.json_of(self._lib.vlr_measurement_info_json, self.pointer)
 
     def eval(self, wv, wl: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """f [n x 3] in 1/sr, without cosine, linear Rec. 709, and valid [n] (the pair is covered).

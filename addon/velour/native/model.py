@@ -7,9 +7,9 @@ import os
 
 import numpy as np
 
+from . import library
 from .arrays import checked, directions, pointer, small
 from .handle import Handle, path_bytes
-from .library import json_of
 
 
 class Model(Handle):
@@ -39,7 +39,7 @@ class Model(Handle):
 
     def info(self) -> dict:
         """kind, model, kernel, lobes, bytes, relative_l2, by_view_angle, warnings, order, source, ..."""
-        return json_of(self._lib.vlr_model_info_json, self.pointer)
+        return library.json_of(self._lib.vlr_model_info_json, self.pointer)
 
     def eval(self, wv, wl: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """f [n x 3] and the density pdf [n] of the model's own sampler, per solid angle, for `wl` [n x 3]."""
