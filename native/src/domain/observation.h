@@ -1,0 +1,35 @@
+// What scenes show a material, in enough detail to tell how a picture changes with the material's model.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "domain/scene_domain.h"
+#include "sphere/vec.h"
+
+namespace velour {
+
+/// A hit, and where its light comes from: terms [first, middle) and [middle, last) are two independent estimates, so
+/// that the product of what a change of f makes of either has the square of the true change as its expectation.
+struct ObservedHit {
+  uint64_t key;  // hits are kept by their key: those with the smallest ones
+  Vec3 wv;       // local frame
+  uint32_t first, middle, last;
+};
+
+/// Hits are chosen with probability proportional to their weight (SceneDomain), so each counts the same.
+struct SceneObservation {
+  static constexpr size_t kHits = 1024;
+
+  SceneDomain domain;
+  std::vector<ObservedHit> hits;  // by key
+  // The terms of all hits: f(wl) . light summed over the terms of a half estimates the radiance that leaves the hit.
+  std::vector<Vec3> wl;    // local frame
+  std::vector<Rgb> light;  // radiance x cos / density / number of terms, shadows included; Rec. 709 or working space
+};
+
+/// Adds what another frame or scene saw; of all hits, the kHits with the smallest keys are kept. The result does not
+/// depend on the order of frames.
+void merge(SceneObservation& into, const SceneObservation& other);
+
+}  // namespace velour

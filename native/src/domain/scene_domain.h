@@ -1,0 +1,40 @@
+// Under which views and lights scenes show a material.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace velour {
+
+/// Weights are what a hit contributes to the picture: the luminance of the path's throughput at it, in camera rays.
+struct SceneDomain {
+  static constexpr int kViewBins = 90;  // of theta_v, one degree each
+
+  /// Weight of the hits, by the view's polar angle.
+  std::array<double, kViewBins> view{};
+  /// Camera rays behind the weights, hits or not; those of all frames together.
+  uint64_t camera_rays = 0;
+  uint64_t frames = 0;
+  /// The most concentrated light seen, 1/sr: the density with which the renderer draws that direction of it, which is
+  /// one over the solid angle of a lamp alone; infinite for a light without extent.
+  double light_density = 0;
+  /// Of each frame the SHA-256 of all that was observed; of several their sum, word by word, whatever their order.
+  std::array<uint64_t, 4> hash{};
+
+  double weight() const;
+};
+
+/// The part of a domain's views that a model reduced to it covers, radians.
+struct ViewRange {
+  double begin = 0, end = 1.5707963267948966;
+};
+
+/// The shortest range of whole bins that leaves out at most `kOutside` of the weight at either end, widened by a
+/// degree.
+ViewRange view_range(const SceneDomain& domain);
+constexpr double kOutside = 1e-4;
+
+/// Light this many times as concentrated as a domain's most concentrated light is outside of it.
+constexpr double kSharperLight = 2;
+
+}  // namespace velour
