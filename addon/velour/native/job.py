@@ -133,9 +133,12 @@ class Job(Handle):
 
 def fit_job(measurement: Measurement, **options) -> Job:
     """Options: model ("scattered", "parametric"), kernel (scattered: "gaussian", "abel-poisson"), tolerance,
-    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered). What is not given has the
-    library's default. Result: result_model()."""
+    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered); for_scene (an Observation) and
+    full_model (a Model) reduce a parametric model to what scenes show. What is not given has the library's
+    default. Result: result_model()."""
     raw = _defaults(table.FitOptions, "vlr_fit_options_init")
+    for name in {"for_scene", "full_model"} & options.keys():
+        options[name] = options[name].pointer
     enums = {"model": table.MODELS, "kernel": table.KERNELS}
     for name in enums.keys() & options.keys():
         options[name] = choice(name, options[name], enums[name])
