@@ -1,4 +1,4 @@
-"""Anything long: fit, compare, capture, render. One mechanism for progress, cancel and errors."""
+"""Anything long: fit, compare, capture, render, observe. One mechanism for progress, cancel and errors."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from .errors import VelourError, refuse
 from .handle import Handle, choice, path_bytes, set_fields
 from .measurement import Measurement
 from .model import Model
+from .observation import Observation
 
 PASS_CHANNELS = {"Combined": 4, "Depth": 1, "Normal": 3, "Sample Count": 1}
 _SLICE_SECONDS = 0.1  # how long a signal (Ctrl-C) may have to wait for the interpreter
@@ -99,6 +100,10 @@ class Job(Handle):
     def result_model(self) -> Model:
         """The model of a finished fit."""
         return Model._create("vlr_job_result_model", self.pointer)
+
+    def result_observation(self) -> Observation:
+        """The observation of a finished observe_job()."""
+        return Observation._create("vlr_job_result_observation", self.pointer)
 
     def read_pass(self, name: str, out: np.ndarray | None = None) -> np.ndarray:
         """The film so far, also while the job runs: [height x width x channels] float32, row 0 at the bottom.
@@ -182,6 +187,14 @@ def render_job(scene, **options) -> Job:
     set_fields(raw, options)
     size = (raw.width, raw.height)
     return Job._create("vlr_render_create_job", scene.pointer, ctypes.byref(raw), size=size)
+
+
+def observe_job(scene, material: int, **options) -> Job:
+    """Learns under which views and lights `scene`, which is committed, shows its material of that number.
+    Options: width, height, bounces, threads, seed. Result: result_observation()."""
+    raw = _defaults(table.ObserveOptions, "vlr_observe_options_init")
+    set_fields(raw, options)
+    return Job._create("vlr_observe_create_job", scene.pointer, material, ctypes.byref(raw))
 
 
 def _defaults(struct_type, init_name: str):

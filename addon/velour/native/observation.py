@@ -1,0 +1,35 @@
+"""What scenes show of one material."""
+
+from __future__ import annotations
+
+import os
+
+from . import library
+from .handle import Handle, path_bytes
+
+
+class Observation(Handle):
+    """Views and lights under which frames show a material, with weights; may be of no frame, and grow."""
+
+    _free_name = "vlr_observation_free"
+
+    @classmethod
+    def of_nothing(cls) -> Observation:
+        """Of no frame: something to merge into."""
+        return cls._create("vlr_observation_create")
+
+    @classmethod
+    def load(cls, path: str | os.PathLike) -> Observation:
+        return cls._create("vlr_observation_load", path_bytes(path))
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Writes the old file or the new one, never a part."""
+        self._lib.vlr_observation_save(self.pointer, path_bytes(path))
+
+    def merge(self, other: Observation) -> None:
+        """Adds what `other` saw."""
+        self._lib.vlr_observation_merge(self.pointer, other.pointer)
+
+    def info(self) -> dict:
+        """kind, frames, camera_rays, hits, weight, share, views (degrees), light_density (1/sr), hash."""
+        return library.json_of(self._lib.vlr_observation_info_json, self.pointer)
