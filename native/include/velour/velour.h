@@ -162,7 +162,7 @@ typedef struct vlr_fit_options {
   int32_t all_data;    /* 1: hold nothing out (production); the model says so */
   int32_t align_views; /* scattered, 1: turn neighbouring slices onto the query's mirror direction before mixing */
   int32_t model;       /* VLR_MODEL_* */
-  int32_t pad;
+  int32_t limit_albedo; /* parametric, 1: lower the model where more light would leave than arrives */
   /* Reduce a parametric model to what scenes show of the material: fewer lobes over the views seen, as long as pictures
    * are no worse than those of the full model. NULL: for any scene. */
   const vlr_observation* for_scene;

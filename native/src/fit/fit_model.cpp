@@ -35,12 +35,14 @@ Model bounded_parametric(const Measurement& measurement, FitOptions options, Pro
 }  // namespace
 
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
-  if (options.for_scene) {
+  if (options.for_scene || options.limit_albedo) {
     if (kind != ModelKind::parametric) {
-      throw Error(Status::invalid_argument, "Only parametric models can be fitted for a scene.");
+      throw Error(Status::invalid_argument,
+                  std::string("Only parametric models can ") +
+                      (options.for_scene ? "be fitted for a scene." : "have their albedo limited."));
     }
-    return fit_for_scene(measurement, options, progress);
   }
+  if (options.for_scene) return fit_for_scene(measurement, options, progress);
   if (kind == ModelKind::parametric) return bounded_parametric(measurement, options, progress);
   return fit_scattered(measurement, options, progress);
 }

@@ -16,9 +16,10 @@ struct FitOptions {
   int max_lobes = 16;       // scattered: a view; parametric: in all
   uint64_t max_bytes = 0;   // of what `size_of` measures; 0: no bound
   uint64_t seed = 0;
-  int threads = 0;          // 0: all
-  bool all_data = false;    // hold nothing out
-  bool align_views = true;  // scattered alone
+  int threads = 0;            // 0: all
+  bool all_data = false;      // hold nothing out
+  bool align_views = true;    // scattered alone
+  bool limit_albedo = false;  // parametric: lowered where more light would leave than arrives (fit/albedo_limit.h)
   /// What scenes show of the material: the model is reduced to it (fit/scene_fit.h). Null: the model is for any scene.
   std::shared_ptr<const SceneObservation> for_scene;
   /// With for_scene: the parametric model that serves any scene; null: it is fitted first.

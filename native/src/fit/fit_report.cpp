@@ -155,7 +155,7 @@ FitRecord report_fit(const Measurement& measurement, const Material& material, c
   add_albedos(measurement, material, fitted, record, progress);
   record.reciprocity = reciprocity_error(material, progress);
   record.measured_reciprocity = reciprocity_error(measurement, progress);
-  warn_of_measurement(measurement, errors, record);
+  if (views.whole()) warn_of_measurement(measurement, errors, record);
   return record;
 }
 

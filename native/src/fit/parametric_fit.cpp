@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "fit/albedo_limit.h"
 #include "fit/fit_input.h"
 #include "fit/fit_report.h"
 #include "fit/tracked_fit.h"
@@ -54,8 +55,12 @@ Model fit_parametric(const Measurement& measurement, const FitOptions& options, 
   progress.stage("sampling", 0.0, 0.1);
   const MeasuredSlices measured = parametric_slices(measurement, options, progress);
   progress.stage("fitting", 0.1, 0.9);
-  const TrackedFit fit = fit_tracked(measured.slices, tracked_options(measurement, options), progress);
+  const TrackedFitOptions tracked = tracked_options(measurement, options);
+  TrackedFit fit = fit_tracked(measured.slices, tracked, progress);
   progress.stage("checking", 0.9, 1.0);
+  if (options.limit_albedo && limit_albedo(fit.brdf, options.threads, progress)) {
+    judge_again(measured.slices, tracked, fit, progress);
+  }
   Model model = parametric_model(measurement, fit, options, progress);
   warn_of_slices(measured, model.fit.warnings);
   progress.check();

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "fit/albedo_limit.h"
 #include "fit/light_importance.h"
 #include "fit/parametric_fit.h"
 #include "fit/picture_error.h"
@@ -58,9 +59,14 @@ std::vector<MeasuredSlice> seen_slices(std::vector<MeasuredSlice> slices, const 
 /// Looks for the smallest model whose pictures are no worse than the full one's.
 class SceneSearch {
  public:
-  SceneSearch(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& tracked, const PictureError& judge,
-              const ParametricBrdf& full, Progress& progress)
-      : slices_(slices), tracked_(tracked), judge_(judge), progress_(progress), full_shares_(judge.shares(full)) {
+  SceneSearch(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& tracked, bool limit,
+              const PictureError& judge, const ParametricBrdf& full, Progress& progress)
+      : slices_(slices),
+        tracked_(tracked),
+        limit_(limit),
+        judge_(judge),
+        progress_(progress),
+        full_shares_(judge.shares(full)) {
     tracked_.tolerance *= kGoalShare;
     least_bytes_ = full.parameter_bytes();
   }
@@ -77,7 +83,7 @@ class SceneSearch {
   }
 
   /// Nothing when no smaller model will do.
-  const std::optional<TrackedFit>& best() const { return best_; }
+  std::optional<TrackedFit>& best() { return best_; }
   const std::vector<double>& full_shares() const { return full_shares_; }
 
  private:
@@ -104,6 +110,7 @@ class SceneSearch {
     TrackedFit fit = fit_tracked(slices_, tracked_, progress_);
     tried_lobes_ = fit.brdf.lobe_count();
     judge_.refine_colors(fit.brdf);
+    if (limit_) limit_albedo(fit.brdf, tracked_.threads, progress_);
     // Of this model beyond the full one, hit by hit: what both have in common, and its noise, cancels.
     std::vector<double> excess = judge_.shares(fit.brdf);
     for (size_t i = 0; i < excess.size(); ++i) excess[i] -= (1 + kSlack) * full_shares_[i];
@@ -116,6 +123,7 @@ class SceneSearch {
 
   const std::vector<MeasuredSlice>& slices_;
   TrackedFitOptions tracked_;
+  bool limit_;  // of the albedo
   const PictureError& judge_;
   Progress& progress_;
   std::vector<double> full_shares_;
@@ -159,12 +167,13 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
   const PictureError judge(measurement, full_brdf, observation, options.threads, progress);
   TrackedFitOptions tracked = tracked_options(measurement, options);
   tracked.views = range;
-  SceneSearch search(slices, tracked, judge, full_brdf, progress);
+  SceneSearch search(slices, tracked, options.limit_albedo, judge, full_brdf, progress);
   search.run();
 
   progress.stage("checking", 0.95, 1.0);
   Model model = full;
   if (search.best()) {
+    judge_again(slices, tracked, *search.best(), progress);  // colours have moved
     model = parametric_model(measurement, *search.best(), options, progress);
   } else {
     model.fit.warnings.push_back("the scene needs all of the full model: nothing smaller makes pictures as good");

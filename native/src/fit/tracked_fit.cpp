@@ -134,12 +134,26 @@ Growth grown(TrackedProblem& problem, const TrackedFitOptions& options, Progress
   return best;
 }
 
+TrackedProblem problem_of(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options,
+                          const Progress& progress) {
+  const auto goal = [&options](double theta_v) { return kGoalShare * tolerance_at(options.tolerance, theta_v); };
+  return {slices, ViewSpline(options.isotropic, options.cells, options.views), goal, options.threads, progress};
+}
+
+void record_errors(const TrackedProblem& problem, TrackedFit& fit) {
+  fit.views.clear();
+  fit.error.clear();
+  for (const TrackedView& v : problem.views()) {
+    if (v.guide) continue;
+    fit.views.push_back(v.wv);
+    fit.error.push_back(reported_error(problem.views(), v));
+  }
+}
+
 }  // namespace
 
 TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress) {
-  TrackedProblem problem(
-      slices, ViewSpline(options.isotropic, options.cells, options.views),
-      [&](double theta_v) { return kGoalShare * tolerance_at(options.tolerance, theta_v); }, options.threads, progress);
+  TrackedProblem problem = problem_of(slices, options, progress);
   Growth growth = grown(problem, options, progress);
   TrackedLobes& lobes = growth.lobes();
   TrackedFit fit;
@@ -152,12 +166,19 @@ TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFi
   }
   fit.brdf = lobes.model;
   for (const double v : lobes.x) fit.brdf.control.push_back(static_cast<float>(v));
-  for (const TrackedView& v : problem.views()) {
-    if (v.guide) continue;
-    fit.views.push_back(v.wv);
-    fit.error.push_back(reported_error(problem.views(), v));
-  }
+  record_errors(problem, fit);
   return fit;
+}
+
+void judge_again(const std::vector<MeasuredSlice>& slices, TrackedFitOptions options, TrackedFit& fit,
+                 const Progress& progress) {
+  options.cells = fit.brdf.cells;
+  options.views = fit.brdf.views;
+  TrackedProblem problem = problem_of(slices, options, progress);
+  const Eigen::VectorXf control =
+      Eigen::Map<const Eigen::VectorXf>(fit.brdf.control.data(), static_cast<Index>(fit.brdf.control.size()));
+  problem.evaluate(fit.brdf, control.cast<double>());
+  record_errors(problem, fit);
 }
 
 }  // namespace velour

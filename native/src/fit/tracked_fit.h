@@ -28,4 +28,8 @@ struct TrackedFit {
 
 TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);
 
+/// Takes the errors of `fit` anew, after its model was changed.
+void judge_again(const std::vector<MeasuredSlice>& slices, TrackedFitOptions options, TrackedFit& fit,
+                 const Progress& progress);
+
 }  // namespace velour

@@ -44,6 +44,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bytes", type=numbers.whole(1, 2**63), metavar="N", help="bound on the model's size"
     )
+    parser.add_argument(
+        "--limit-albedo", action="store_true", help="lower the model where more light would leave than arrives"
+    )
     parser.add_argument("--all-data", action="store_true", help="hold nothing out: for production")
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
@@ -87,5 +90,6 @@ def _options(args: argparse.Namespace) -> dict:
         "seed": args.seed,
         "threads": args.threads,
         "all_data": int(args.all_data),
+        "limit_albedo": int(args.limit_albedo),
     }
     return {name: value for name, value in given.items() if value is not None}
