@@ -369,8 +369,8 @@ typedef struct vlr_observe_options {
   uint64_t seed;
 } vlr_observe_options;
 VLR_API void vlr_observe_options_init(vlr_observe_options* options);
-/* Observes one material of a committed scene. Result: an observation of one frame. JSON: of
- * vlr_observation_info_json, and seconds. */
+/* Observes one material of a committed scene. Result: an observation of one frame. JSON: seconds, and the keys of
+ * vlr_observation_info_json but kind. */
 VLR_API vlr_status vlr_observe_create_job(const vlr_scene* scene, uint32_t material, const vlr_observe_options* options,
                                           vlr_job** out);
 /* Share of the weight of the material in `frame` that lies outside of what a reduced model was made for: seen at other

@@ -76,7 +76,7 @@ inline Scene observed_scene(ObservedLight light, float factor) {
   const auto add = [&scene](Mesh mesh, const Affine& place, SurfaceMaterial material) {
     scene.add_instance(scene.add_mesh(std::move(mesh)), place, {scene.add_material(std::move(material))});
   };
-  add(sphere(24), {}, {std::make_shared<ScaledGrey>(highlight_material(40), factor), Rgb(0.0f), false});
+  add(sphere(24), {}, {std::make_shared<ScaledGrey>(highlight_material(10), factor), Rgb(0.0f), false});
   add(square(4), shift({0, 0, -1}), {std::make_shared<Lambert>(0.7f), Rgb(0.0f), false});
   add(square(0.7f), shift({1.2f, -1.2f, -0.9f}), {std::make_shared<Lambert>(0.3f), {1.5f, 2, 1}, false});
   if (light == ObservedLight::sky) add_sky(scene);

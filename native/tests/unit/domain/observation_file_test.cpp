@@ -158,6 +158,26 @@ TEST(ObservationFile, ArraysOfNonsenseAreNamed) {
   expect_named(complaint(put("terms", "light", 5, infinity)), "terms.light");
 }
 
+TEST(ObservationFile, DamageAnywhereIsReadOrRefused) {
+  const std::string whole = encode_observation(test::example_observation(20));
+  RandomStream random(5, 5, 5);
+  int refused = 0;
+  for (int i = 0; i < 5000; ++i) {
+    std::string text = whole;
+    for (int damages = 0; damages <= i % 3; ++damages) {
+      text[random.next_bits() % text.size()] = static_cast<char>(random.next_bits());
+    }
+    try {
+      const auto read = decode_observation(bytes_of(text), "SCENE.json");
+      ASSERT_LE(read.hits.size(), SceneObservation::kHits);
+      ASSERT_TRUE(read.hits.empty() || read.hits.back().last == read.wl.size());
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 2500);
+}
+
 TEST(ObservationFile, WeightWithoutHitsIsRefused) {
   Json json = Json::parse(encode_observation({}));
   json["view"][3] = 1.0;
