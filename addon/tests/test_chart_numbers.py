@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from agreement import agreement, blocks
+from agreement import agreement
 from chart_result import Point, Result
 from curve import Curve, ratio
 from progress import Progress
@@ -39,17 +39,6 @@ def test_one_wrong_pixel_is_seen_where_it_is_looked_for():
     elsewhere[3, 4] = False
     assert not agreement(_renders(1.0, 12, 1), wrong, SOMEWHERE).holds
     assert agreement(_renders(1.0, 12, 1), wrong, elsewhere).holds
-
-
-def test_blocks_are_means_of_the_pixels_asked_for():
-    stack = _renders(1.0, 3, 1)
-    where = SOMEWHERE.copy()
-    where[:8, 8:12] = False
-    where[8:16] = False
-    found = blocks(stack, where, 8)
-    assert found.shape == (3, 3, 5, 3)
-    np.testing.assert_allclose(found[:, 0, 1], stack[:, :8, 12:16].mean(axis=(1, 2)))
-    assert not found[:, 1].any()
 
 
 def test_the_fits_error_is_found_under_noise():

@@ -12,20 +12,17 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "model/model_file.h"
-#include "model/model_material.h"
+#include "described_scene.h"
+#include "material/material.h"
 #include "render/combination.h"
 #include "render/lighting.h"
 #include "render/sky_proposals.h"
 #include "render/vertex.h"
-#include "scene/obj_file.h"
 #include "scene/sky_mixture.h"
 #include "sphere/random.h"
 
@@ -37,22 +34,6 @@ constexpr int kColumns = 1024, kRows = 512;
 enum Density { kProduct, kSurface, kLights, kExact, kDensities };
 enum Case { kMis, kProductCase, kExactCase, kCases };
 constexpr const char* kNames[kCases] = {"mis", "product", "exact"};
-
-class Arguments {
- public:
-  Arguments(int argc, char** argv) {
-    for (int i = 1; i + 1 < argc; i += 2) values_[std::string(argv[i]).substr(2)] = argv[i + 1];
-  }
-  const std::string& operator[](const std::string& name) const {
-    const auto found = values_.find(name);
-    if (found == values_.end()) throw std::runtime_error("product_bound: --" + name + " is missing.");
-    return found->second;
-  }
-
- private:
-  std::map<std::string, std::string> values_ = {
-      {"size", "640x480"}, {"hits", "200"}, {"seed", "1"}, {"share", std::to_string(kProductShare)}};
-};
 
 /// What a vertex sees at one texel.
 struct Place {
@@ -165,17 +146,8 @@ class Study {
  private:
   using Hits = std::array<std::array<Moments, kCases>, 2>;
 
-  /// The scene of `velour render` with its defaults: the mesh's y is up.
   Lighting prepare(const Arguments& a) {
-    const std::string& size = a["size"];
-    const float aspect = std::stof(size) / std::stof(size.substr(size.find('x') + 1));
-    const Affine up{{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0}};
-    const uint32_t mesh = scene_.add_mesh(read_obj(a["mesh"]));
-    const auto model = std::make_shared<const Model>(load_model(a["material"]));
-    scene_.add_instance(mesh, up, {scene_.add_material({.material = make_material(model, 0)})});
-    scene_.set_environment(Environment::load(a["world"], 1, Mat3(1)));
-    scene_.frame_camera(aspect, 2);
-    scene_.commit();
+    describe(a, scene_);
     return Lighting(scene_);
   }
 
@@ -240,7 +212,9 @@ class Study {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  std::printf("%s\n", Study(Arguments(argc, argv)).report().dump(2).c_str());
+  const Arguments arguments(
+      argc, argv, {{"size", "640x480"}, {"hits", "200"}, {"seed", "1"}, {"share", std::to_string(kProductShare)}});
+  std::printf("%s\n", Study(arguments).report().dump(2).c_str());
   return 0;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());

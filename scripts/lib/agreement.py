@@ -8,7 +8,7 @@ import numpy as np
 from scipy import stats
 
 LEVEL = 0.01  # of the whole list of tests, not of each
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 @dataclass(frozen=True)
@@ -29,36 +29,20 @@ def agreement(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> Agreement:
 
     Luminance of each pixel of `where` and their mean; Welch's t of the batches, as the z that is as unlikely.
     """
-    a, b = (_with_mean(stack[:, where] @ _LUMINANCE) for stack in (a, b))
+    a, b = (_with_mean(stack[:, where] @ LUMINANCE) for stack in (a, b))
     varies = (a.var(axis=0) > 0) | (b.var(axis=0) > 0)
     t = stats.ttest_ind(a[:, varies], b[:, varies], equal_var=False)
     smallest, tests = float(np.min(t.pvalue)), int(varies.sum())
     return Agreement(
         tests=tests,
-        largest_z=_two_sided_z(smallest),
-        sidak_z=_two_sided_z(-np.expm1(np.log1p(-LEVEL) / tests)),
+        largest_z=two_sided_z(smallest),
+        sidak_z=two_sided_z(-np.expm1(np.log1p(-LEVEL) / tests)),
         p_value=float(-np.expm1(tests * np.log1p(-smallest))),
         ratio=float(a[:, -1].mean() / b[:, -1].mean()),
     )
 
 
-def blocks(stack: np.ndarray, where: np.ndarray, side: int) -> np.ndarray:
-    """Means of the pixels of `where` in blocks of side x side: [batch, row, column, channel].
-
-    Blocks without such pixels are 0 in every batch, which no test counts. What rounds off at the edges is
-    left out.
-    """
-    rows, columns = where.shape[0] // side, where.shape[1] // side
-
-    def total(a: np.ndarray) -> np.ndarray:
-        cut = a[:, : rows * side, : columns * side]
-        return cut.reshape(len(cut), rows, side, columns, side, -1).sum(axis=(2, 4))
-
-    count = total(where[None, :, :, None].astype(float))
-    return total(stack * where[:, :, None]) / np.maximum(count, 1)
-
-
-def _two_sided_z(p: float) -> float:
+def two_sided_z(p: float) -> float:
     return float(stats.norm.isf(p / 2))
 
 

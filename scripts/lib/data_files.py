@@ -39,6 +39,14 @@ def merl(data: Path, name: str) -> Path:
     return path
 
 
+def materials(data: Path) -> list[tuple[str, Path]]:
+    """Every one of the data: its name and its file."""
+    found = [(name, merl(data, name)) for name in merl_names(data)]
+    for ending in ("bsdf", "brdf"):
+        found += [(path.stem, path) for path in sorted((data / "brdf").glob(f"*.{ending}"))]
+    return found
+
+
 def mesh(data: Path, name: str) -> Path:
     return data / f"mesh/{name}.obj"
 

@@ -6,43 +6,65 @@ from dataclasses import dataclass
 
 import numpy as np
 import silhouette
-from agreement import Agreement, agreement, blocks
+import uniform_moments
+from agreement import Agreement, agreement
+from figure_scenes import Subject
 from reference import FIRST_SEED, Reference
 from renders import Renders
 from scenes import Scene
+from uniform_check import UniformAgreement, uniform_agreement
 
-BLOCK = 8  # pixels
+TOO_BRIGHT = 1.02  # the control: must be refused
+# Every sample on its own, one direction a camera ray: only of independent ones is the variance known.
+UNIFORM = {"strategy": "uniform", "sequence": "random", "split": 1}
 
 
 @dataclass(frozen=True)
 class Check:
     """Each of them against `product`."""
 
-    uniform: Agreement
-    uniform_blocks: Agreement  # the same of blocks of BLOCK x BLOCK pixels
+    subject: Subject
+    uniform: UniformAgreement
+    control: UniformAgreement  # uniform, with `product` too bright
+    by_spread: Agreement  # uniform, with error bars from the spread of its renders
     mis: Agreement
-    control: Agreement  # uniform, with `product` a hundredth too bright: must not hold
+    moment_error: float  # median over the pixels of the relative standard error of the second moment
+    worst_moment_error: float
 
 
-def check(renders: Renders, measured: Scene, extent) -> Check:
+def announce(renders: Renders, extent) -> None:
+    size, batches = extent.check_size, extent.check_batches
+    renders.expect(extent.uniform_spp // batches, size, batches)
+    renders.expect(extent.check_spp, size, 2 * batches)
+
+
+def check(subject: Subject, scene: Scene, renders: Renders, extent) -> Check:
+    """`scene`: of the measurement."""
     size, batches = {"size": extent.check_size}, extent.check_batches
 
-    def stack(spp: int, number: int, strategy: str) -> np.ndarray:
+    def stack(spp: int, number: int, **strategy) -> np.ndarray:
         seed = number * FIRST_SEED
-        return Reference(renders, measured, spp, seed, strategy=strategy, **size).add(batches).stack()
+        return Reference(renders, scene, spp, seed, **strategy, **size).add(batches).stack()
 
-    uniform = stack(extent.uniform_spp // batches, 2, "uniform")
-    product = stack(extent.check_spp, 3, "product")
-    mis = stack(extent.check_spp, 4, "mis")
-    where = silhouette.of(measured, renders, extent.check_size)
-    return Check(
-        agreement(uniform, product, where),
-        _block_agreement(uniform, product, where),
-        agreement(mis, product, where),
-        agreement(uniform, 1.01 * product, where),
+    product = stack(extent.check_spp, 3, strategy="product")
+    mis = stack(extent.check_spp, 4, strategy="mis")
+    uniform = stack(extent.uniform_spp // batches, 2, **UNIFORM)
+    where = silhouette.of(scene, renders, extent.check_size)
+    found = uniform_moments.of(
+        scene, renders, extent.check_size, extent.moment_rays, range(1, 1 + extent.moment_runs)
     )
 
+    def verdict(brightness: float) -> UniformAgreement:
+        samples = batches * (extent.uniform_spp // batches)
+        mean = uniform.mean(axis=0)
+        return uniform_agreement(mean, brightness * product, where, found.moments, samples)
 
-def _block_agreement(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> Agreement:
-    a, b = (blocks(stack, where, BLOCK) for stack in (a, b))
-    return agreement(a, b, np.ones(a.shape[1:3], bool))
+    return Check(
+        subject,
+        verdict(1.0),
+        verdict(TOO_BRIGHT),
+        agreement(uniform, product, where),
+        agreement(mis, product, where),
+        float(np.median(found.error[where])),
+        float(found.error[where].max()),
+    )

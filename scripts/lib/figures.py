@@ -8,12 +8,13 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+import figure_check
+import figure_check_text
 import figure_scenes
 import figures_sheet
 import figures_text
 import numpy as np
 import script
-from figure_check import Check, check
 from fit_error import fit_error
 from reference import Reference
 from renders import Picture, Renders, Settings
@@ -42,9 +43,11 @@ class Extent:
     check_batches: int = 16
     uniform_spp: int = 400_000  # in all batches
     check_spp: int = 2048  # of the others, in each batch
+    moment_rays: int = 8192
+    moment_runs: int = 4
 
 
-QUICK = Extent((96, 72), (8, 32), 64, (2, 3), 16, (16, 12), 3, 3000, 64)
+QUICK = Extent((96, 72), (8, 32), 64, (2, 3), 16, (16, 12), 3, 3000, 64, 64, 2)
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,6 @@ class Figure:
     errors: dict[tuple[str, int], tuple[float, float]]  # rmse, relmse
     reference: Reference
     differences: np.ndarray  # of some renders: model minus measurement, with the very same directions
-    check: Check
 
     @property
     def floor(self) -> tuple[float, float]:
@@ -71,19 +73,37 @@ class Figure:
 
 
 def main() -> int:
-    args = script.arguments("figures", ROOT / "docs/figures")
+    args = script.arguments("figures", ROOT / "docs/figures", check="the uniform reference's check alone")
     extent = QUICK if args.quick else Extent()
     run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
     subjects = figure_scenes.subjects(run.data, run.renders)
     for _ in subjects:
-        _announce(run.renders, extent)
+        if not args.check:
+            _announce(run.renders, extent)
+        figure_check.announce(run.renders, extent)
+    if not args.check:
+        _make_figures(subjects, run, args, extent)
+    _make_checks(subjects, run, args.output, extent)
+    return 0
+
+
+def _make_figures(subjects: list, run: script.Run, args, extent: Extent) -> None:
     figures = [_figure(subject, subject.scene(WORLD, run.data), run.renders, extent) for subject in subjects]
     for figure in figures:
         figure.reference.save(args.work / f"reference-{figure.subject.figure}")
     figures_sheet.draw(args.output / "contact_sheet.png", figures, extent.spp)
     figures_text.write(args.output, figures, run.conditions, extent)
     print(args.output / "README.md")
-    return 0
+
+
+def _make_checks(subjects: list, run: script.Run, output: Path, extent: Extent) -> None:
+    scenes = [subject.scene(WORLD, run.data).measured(subject.measurement) for subject in subjects]
+    checks = [
+        figure_check.check(subject, scene, run.renders, extent)
+        for subject, scene in zip(subjects, scenes, strict=True)
+    ]
+    figure_check_text.write(output, checks, run.conditions, extent)
+    print(output / "check.md")
 
 
 def _announce(renders: Renders, extent: Extent) -> None:
@@ -91,8 +111,6 @@ def _announce(renders: Renders, extent: Extent) -> None:
         renders.expect(spp, count=len(SEQUENCES))
     renders.expect(extent.batch_spp, count=extent.batches[0])
     renders.expect(extent.floor_spp, count=2 * _FLOOR_RENDERS)
-    renders.expect(extent.uniform_spp // extent.check_batches, extent.check_size, extent.check_batches)
-    renders.expect(extent.check_spp, extent.check_size, 2 * extent.check_batches)
 
 
 def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, extent: Extent) -> Figure:
@@ -115,7 +133,7 @@ def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, exte
         ]
     )
     errors = _converge(pictures, reference, extent.batches[1])
-    return Figure(subject, pictures, errors, reference, differences, check(renders, measured, extent))
+    return Figure(subject, pictures, errors, reference, differences)
 
 
 def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str, int], tuple[float, float]]:

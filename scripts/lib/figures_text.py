@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import provenance
-from agreement import LEVEL
-from figure_check import BLOCK
 from markdown_table import small, table
 from table_csv import csv_text
 from velour.core import files
@@ -19,7 +17,6 @@ def write(folder: Path, figures: list, conditions: dict, extent) -> None:
 
 def _page(figures: list, conditions: dict, extent) -> str:
     width, height = extent.size
-    columns, rows = extent.check_size
     return f"""# The dissertation's figures
 
 Written by `scripts/figures`; the rows behind the tables are in [figures.csv](figures.csv).
@@ -54,18 +51,8 @@ dissertation's strategy, `random`; renders are added until it is, up to {extent.
 strategy errs less, and the reference's error is a larger part of what is measured.
 
 {_references(figures)}
-## The dissertation's reference
-
-Uniform samples of the measurement, {extent.uniform_spp} a pixel at {columns}x{rows}, against
-`product`: Welch's test of the luminance of each pixel that shows the object and of their mean, both from
-{extent.check_batches} independent renders. p: of the largest |z| among so many (Sidak); they agree where it
-is at least {LEVEL}. Control: `product` a hundredth too bright, which must not agree. `mis` against
-`product`, {extent.check_batches} renders of {extent.check_spp} each, is the same test without rare events:
-what uniform samples meet a few times in all renders together (the brightest texels of the sun, mirrored),
-some renders miss, and error bars from their spread are too short. Blocks of pixels meet such texels as many
-times more often as they have pixels, so that their error bars mean more; in a sharp highlight not enough.
-
-{_checks(figures)}"""
+Whether the dissertation's own reference, uniform samples, agrees with this strategy: [check.md](check.md).
+"""
 
 
 def _errors(figures: list) -> str:
@@ -114,29 +101,6 @@ def _references(figures: list) -> str:
         ours, theirs = ([small(figure.smallest(s)), f"{figure.margin(s):.1f}"] for s in ("sobol", "random"))
         met = "met" if figure.margin("random") >= 10 else "missed"
         rows.append([_name(figure), *numbers, *theirs, met, *ours])
-    return table(header, rows)
-
-
-def _checks(figures: list) -> str:
-    header = ["figure", "pair", "tests", "largest z", "Sidak's bound", "p", "ratio of means", "agree"]
-    rows = []
-    for figure in figures:
-        found = figure.check
-        pairs = {
-            "uniform": found.uniform,
-            f"uniform, blocks of {BLOCK}x{BLOCK}": found.uniform_blocks,
-            "mis": found.mis,
-            "control": found.control,
-        }
-        for pair, a in pairs.items():
-            numbers = [
-                a.tests,
-                f"{a.largest_z:.2f}",
-                f"{a.sidak_z:.2f}",
-                f"{a.p_value:.2g}",
-                f"{a.ratio:.5f}",
-            ]
-            rows.append([_name(figure), pair, *numbers, "yes" if a.holds else "no"])
     return table(header, rows)
 
 

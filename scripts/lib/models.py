@@ -35,7 +35,7 @@ def main() -> int:
     extent = QUICK if args.quick else Extent()
     load = provenance.busy_threads()
     run = script.start(args, Settings(args.work / "kept", (0, 0), args.threads, args.seed))
-    subjects = _subjects(run.data)[: extent.materials]
+    subjects = data_files.materials(run.data)[: extent.materials]
     runs = model_runs.ModelRuns(run.renders)
     runs.announce(len(subjects), len(extent.lobes) + len(extent.bytes))
     results = [runs.result(name, path, extent) for name, path in subjects]
@@ -44,14 +44,6 @@ def main() -> int:
     models_text.write(ROOT / "docs", args.output, results, floor, {**run.conditions, "load": load})
     print(args.output / "models.md")
     return 0
-
-
-def _subjects(data: Path) -> list[tuple[str, Path]]:
-    """Every material of the data: its name and its file."""
-    found = [(name, data_files.merl(data, name)) for name in data_files.merl_names(data)]
-    for ending in ("bsdf", "brdf"):
-        found += [(path.stem, path) for path in sorted((data / "brdf").glob(f"*.{ending}"))]
-    return found
 
 
 if __name__ == "__main__":

@@ -87,18 +87,19 @@ class Renders:
 
         return Picture(out, self.keep(label, "render", parameters, run, self._cost(spp, size)))
 
-    def fit(self, measurement: Path) -> tuple[Path, dict]:
+    def fit(
+        self, measurement: Path, model: str = "scattered", tolerance: float = 0.02, lobes: int = 16
+    ) -> tuple[Path, dict]:
         """The model and the report of its fit."""
-        options = {"tolerance": 0.02, "max-lobes": 16, "seed": self.settings.seed}
+        options = {"model": model, "tolerance": tolerance, "max-lobes": lobes, "seed": self.settings.seed}
         parameters = {"measurement": measurement, **options}
         out = self.stem("fit", parameters).with_suffix(".velour")
 
         def run(report: Path) -> dict:
-            return velour_to_file(
-                report, "fit", measurement, "-o", out, "--model", "scattered", *flags(options)
-            )
+            return velour_to_file(report, "fit", measurement, "-o", out, *flags(options))
 
-        return out, self.keep(f"fit of {measurement.stem}", "fit", parameters, run)
+        label = f"{model} fit of {measurement.stem}, tolerance {tolerance:g}, up to {lobes} lobes"
+        return out, self.keep(label, "fit", parameters, run)
 
     def ggx(self, measurement: Path) -> dict:
         """How well the best GGX lobe fits."""

@@ -24,7 +24,8 @@ class Run:
     conditions: dict
 
 
-def arguments(name: str, documents: Path) -> argparse.Namespace:
+def arguments(name: str, documents: Path, **switches: str) -> argparse.Namespace:
+    """`switches`: what the script knows besides, with a help text each."""
     parser = argparse.ArgumentParser(prog=name)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--fresh", action="store_true")
@@ -32,6 +33,8 @@ def arguments(name: str, documents: Path) -> argparse.Namespace:
     parser.add_argument("--work", metavar="FOLDER", type=Path)
     parser.add_argument("--seed", metavar="K", type=int, default=1)
     parser.add_argument("--threads", metavar="T", type=int, default=min(2, threads()))
+    for switch, text in switches.items():
+        parser.add_argument(f"--{switch}", action="store_true", help=text)
     args = parser.parse_args()
     # A small version is for trying out; it must not replace the numbers of the whole one.
     args.work = args.work or ROOT / "build" / name / ("quick" if args.quick else "full")

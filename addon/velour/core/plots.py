@@ -78,23 +78,35 @@ def errors_by_size(
     size: str,
     tolerance: float,
 ) -> None:
-    """A panel a material, four in a row; a curve a model: (size, relative L2), both axes logarithmic."""
+    """A panel a material; a curve a model: (size, relative L2)."""
+    curves_by_panel(path, panels, (size, "relative L2"), [tolerance])
+
+
+def curves_by_panel(
+    path: str | os.PathLike,
+    panels: Mapping[str, Mapping[str, Sequence[tuple[float, float]]]],
+    axes_names: tuple[str, str],
+    levels: Sequence[float],
+) -> None:
+    """Panels, four in a row, both axes logarithmic. `levels`: dotted lines across all of them."""
     columns = min(4, len(panels))
     rows = -(-len(panels) // columns)
     figure, axes = _pyplot().subplots(
         rows, columns, figsize=(3.6 * columns, 3.0 * rows), squeeze=False, sharey=True, layout="constrained"
     )
     for cell, (name, curves) in zip(axes.flat, panels.items(), strict=False):
-        for model, points in curves.items():
-            cell.loglog(*np.reshape(points, (-1, 2)).T, "o-", color=COLORS[model], label=model, markersize=4)
-        cell.axhline(tolerance, color="black", linewidth=0.8, linestyle=":")
+        for curve, points in curves.items():
+            usable = np.reshape(points, (-1, 2)).T
+            cell.loglog(*usable, "o-", color=COLORS.get(curve), label=curve, markersize=4)
+        for level in levels:
+            cell.axhline(level, color="black", linewidth=0.8, linestyle=":")
         cell.set_title(name, fontsize="small")
         cell.grid(which="both", alpha=0.25)
     for cell in axes.flat[len(panels) :]:
         cell.set_axis_off()
     axes.flat[0].legend(fontsize="small")
-    figure.supxlabel(size)
-    figure.supylabel("relative L2")
+    figure.supxlabel(axes_names[0])
+    figure.supylabel(axes_names[1])
     save(figure, path)
 
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "fit/evaluate.h"
 #include "sphere/directions.h"
 #include "sphere/frame.h"
 
@@ -52,23 +53,6 @@ class Rings {
 
 constexpr int kOwnLights = 2048;
 
-/// The density of the sampler of `material` at each of `wl`, per steradian.
-std::vector<double> own_densities(const Material& material, const PreparedBrdf& point, const std::vector<Vec3>& wl) {
-  std::vector<double> out;
-  DirectionBatch batch;
-  RgbBatch f;
-  ScalarBatch pdf;
-  for (size_t begin = 0; begin < wl.size(); begin += DirectionBatch::kCapacity) {
-    const size_t end = std::min(begin + DirectionBatch::kCapacity, wl.size());
-    batch.count = 0;
-    for (size_t i = begin; i < end; ++i) batch.push(wl[i]);
-    batch.pad();
-    material.eval(point, batch, f, pdf);
-    for (size_t i = begin; i < end; ++i) out.push_back(static_cast<double>(pdf.v[i - begin]));
-  }
-  return out;
-}
-
 /// What the sampler draws from a rank-1 lattice.
 void append_own(const Material& material, const PreparedBrdf& point, std::vector<Vec3>& out) {
   for (int i = 0; i < kOwnLights; ++i) {
@@ -88,14 +72,15 @@ WeightedLights close_lights(const Material& material, const Vec3& wv) {
   retro.append(all);
   const size_t not_own = all.size();
   append_own(material, *point, all);
-  const std::vector<double> own = own_densities(material, *point, all);
+  std::vector<float> own(all.size());
+  evaluate(material, wv, all, {}, own);
   WeightedLights lights;
   for (size_t i = 0; i < all.size(); ++i) {
-    const bool drawn_with_density = i < not_own || own[i] > 0;
+    const bool drawn_with_density = i < not_own || own[i] > 0.0f;
     if (all[i].z <= 0 || !drawn_with_density) continue;
     lights.wl.push_back(all[i]);
-    lights.weight.push_back(
-        1 / (kEvenLights / (2 * kPiD) + mirror.density(all[i]) + retro.density(all[i]) + kOwnLights * own[i]));
+    lights.weight.push_back(1 / (kEvenLights / (2 * kPiD) + mirror.density(all[i]) + retro.density(all[i]) +
+                                 kOwnLights * static_cast<double>(own[i])));
   }
   return lights;
 }

@@ -8,8 +8,10 @@
 
 namespace velour {
 
-/// f (1/sr, no cosine) of `material` for one view and each of `wl`.
-void evaluate(const Material& material, const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f);
+/// f (1/sr, no cosine) of `material` and the density (1/sr) of its sampler, for one view and each of `wl`. Either
+/// result may be empty: then it is left out.
+void evaluate(const Material& material, const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f,
+              std::span<float> density = {});
 
 /// The views that stand for one reported polar angle: one on the meridian for isotropic data, eight azimuths else.
 std::vector<Vec3> reported_views(int degrees, bool isotropic);
