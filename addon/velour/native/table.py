@@ -190,6 +190,7 @@ STATUS_CALLS = {
     "vlr_scene_add_mesh": [_handle, POINTER(MeshDesc), _number, _number],
     "vlr_scene_load_mesh": [_handle, c_char_p, _number],
     "vlr_scene_add_model_material": [_handle, _handle, c_uint32, _number],
+    "vlr_scene_set_model_material": [_handle, c_uint32, _handle, c_uint32],
     "vlr_scene_add_measurement_material": [_handle, _handle, _handle, c_uint32, _number],
     "vlr_scene_add_principled_material": [_handle, POINTER(PrincipledDesc), _number],
     "vlr_scene_add_instance": [_handle, c_uint32, _floats, _number, c_uint32],
