@@ -85,3 +85,17 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         override=_OVERRIDE,
     )
     seed: IntProperty(name="Seed", description="Of the fit", default=0, min=0, override=_OVERRIDE)
+    scene_model: PointerProperty(
+        name="Model for the Scene",
+        description="A smaller model that holds for the views and lights of one scene. The full model stays"
+        " beside it",
+        type=bpy.types.Image,
+        override=_OVERRIDE,
+    )
+    use_scene_model: BoolProperty(
+        name="Use Model for the Scene",
+        description="Render with the model for the scene, in every frame that shows the material no otherwise"
+        " than it was fitted for; other frames take the full model and say so. Off: always the full model",
+        default=False,
+        override=_OVERRIDE,
+    )
