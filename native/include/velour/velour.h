@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 3
+#define VLR_ABI_VERSION 4
 
 typedef int32_t vlr_status;
 enum {
@@ -51,6 +51,7 @@ enum {
 typedef struct vlr_measurement vlr_measurement;
 typedef struct vlr_model vlr_model;
 typedef struct vlr_scene vlr_scene;
+typedef struct vlr_observation vlr_observation; /* what scenes show of one material */
 typedef struct vlr_job vlr_job;
 
 /* ---- library ------------------------------------------------------------------------------------------------- */
@@ -103,8 +104,8 @@ VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint6
 VLR_API vlr_status vlr_model_sample(const vlr_model* model, const float* wv, uint64_t count, const float* u, float* wl,
                                     float* pdf);
 
-/* JSON of vlr_measurement_info_json or vlr_model_info_json, whichever the file is; the text belongs to the thread until
- * its next call of this function. */
+/* JSON of vlr_measurement_info_json, vlr_model_info_json or vlr_observation_info_json, whichever the file is; the text
+ * belongs to the thread until its next call of this function. */
 VLR_API vlr_status vlr_file_info_json(const char* path, const char** json);
 
 /* ---- jobs ---------------------------------------------------------------------------------------------------- */
@@ -337,6 +338,40 @@ VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_rende
 /* The film so far, row 0 at the bottom. Passes and channels: "Combined" 4 (RGBA, premultiplied), "Depth" 1,
  * "Normal" 3 (world), "Sample Count" 1. `pixels` holds width x height x channels. May be called while the job runs. */
 VLR_API vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels, uint64_t count);
+
+/* ---- observations -------------------------------------------------------------------------------------------- */
+
+/* Under which views and lights frames show a material, with weights, and 1024 of its hits with their light. Files are
+ * JSON (docs/formats.md). An observation may be changed (merge) by one thread at a time. */
+
+/* Of no frame: something to merge into. */
+VLR_API vlr_status vlr_observation_create(vlr_observation** out);
+VLR_API vlr_status vlr_observation_load(const char* path, vlr_observation** out);
+/* Writes atomically. */
+VLR_API vlr_status vlr_observation_save(const vlr_observation* observation, const char* path);
+VLR_API void vlr_observation_free(vlr_observation* observation);
+/* Adds what `other` saw to `into`. The result does not depend on the order of frames, but for the rounding of sums. */
+VLR_API vlr_status vlr_observation_merge(vlr_observation* into, const vlr_observation* other);
+/* JSON: kind "observation", frames, camera_rays, hits, weight (of all hits, in camera rays), share (weight /
+ * camera_rays), views [from, to] (degrees that a model reduced to it covers; null when nothing was seen), light_density
+ * (1/sr; null: light without extent), hash. */
+VLR_API vlr_status vlr_observation_info_json(vlr_observation* observation, const char** json);
+
+typedef struct vlr_observe_options {
+  uint32_t struct_size;
+  uint32_t width, height; /* of the picture; its pixels are observed in about 65,536 places, however many they are */
+  uint32_t bounces;       /* as of the render */
+  uint32_t threads;       /* 0: all */
+  uint32_t pad;
+  uint64_t seed;
+} vlr_observe_options;
+VLR_API void vlr_observe_options_init(vlr_observe_options* options);
+/* Observes one material of a committed scene. Result: an observation of one frame. JSON: of
+ * vlr_observation_info_json, and seconds. */
+VLR_API vlr_status vlr_observe_create_job(const vlr_scene* scene, uint32_t material, const vlr_observe_options* options,
+                                          vlr_job** out);
+/* The observation of a finished job; a new handle. */
+VLR_API vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observation** out);
 
 /* ---- images -------------------------------------------------------------------------------------------------- */
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "brdf/measurement.h"
+#include "domain/observation.h"
 #include "job/job.h"
 #include "model/model.h"
 #include "render/film.h"
@@ -29,6 +30,12 @@ struct vlr_scene {
   std::string info;
 };
 
+/// The observation itself never changes: merging puts another in its place, so that jobs keep what they were given.
+struct vlr_observation {
+  std::shared_ptr<const velour::SceneObservation> observation;
+  std::string info;
+};
+
 namespace velour::capi {
 
 /// What a task leaves for its reader. Written by the task before it ends, read after; `film` is thread-safe by itself.
@@ -36,12 +43,18 @@ struct JobOutput {
   std::mutex mutex;
   std::string report;
   std::shared_ptr<const Model> model;
+  std::shared_ptr<const SceneObservation> observation;
   std::shared_ptr<const Film> film;  // set when the job is made
 
   void set(std::string json, std::shared_ptr<const Model> result = nullptr) {
     const std::lock_guard lock(mutex);
     report = std::move(json);
     model = std::move(result);
+  }
+  void set(std::string json, std::shared_ptr<const SceneObservation> result) {
+    const std::lock_guard lock(mutex);
+    report = std::move(json);
+    observation = std::move(result);
   }
 };
 

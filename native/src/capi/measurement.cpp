@@ -3,6 +3,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/reports.h"
+#include "domain/observation_file.h"
 #include "model/model_file.h"
 
 using namespace velour;
@@ -50,6 +51,8 @@ vlr_status vlr_file_info_json(const char* path, const char** json) {
     if (is_model_file(path)) {
       const Model model = load_model(path);
       text = model_json(model, encode_model(model).size());
+    } else if (is_observation_file(path)) {
+      text = observation_json(load_observation(path));
     } else {
       text = measurement_json(*load_measurement(path));
     }

@@ -3,8 +3,10 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "domain/hash_text.h"
 #include "model/order_json.h"
 #include "scene/embree_scene.h"
 #include "srbf/simd_target.h"
@@ -214,6 +216,43 @@ std::string render_json(const RenderReport& report) {
                {"block_noise", report.block_noise},
                {"blocks_unfinished", report.blocks_unfinished ? Json(*report.blocks_unfinished) : Json(nullptr)},
                {"sky", report.sky ? sky_json(*report.sky) : Json(nullptr)}});
+}
+
+namespace {
+
+Json views_json(const SceneDomain& domain) {
+  if (!(domain.weight() > 0.0)) return nullptr;
+  const ViewRange range = view_range(domain);
+  constexpr double kDegrees = 180.0 / kPiD;
+  // Whole degrees but for rounding.
+  return {std::round(range.begin * kDegrees), std::round(range.end * kDegrees)};
+}
+
+Json own_json(const SceneObservation& observation) {
+  const SceneDomain& domain = observation.domain;
+  const double weight = domain.weight();
+  return {{"frames", domain.frames},
+          {"camera_rays", domain.camera_rays},
+          {"hits", observation.hits.size()},
+          {"weight", weight},
+          {"share", domain.camera_rays > 0 ? weight / static_cast<double>(domain.camera_rays) : 0.0},
+          {"views", views_json(domain)},
+          {"light_density", std::isfinite(domain.light_density) ? Json(domain.light_density) : Json(nullptr)},
+          {"hash", hash_text(domain.hash)}};
+}
+
+}  // namespace
+
+std::string observation_json(const SceneObservation& observation) {
+  Json json = {{"kind", "observation"}};
+  json.update(own_json(observation));
+  return text(json);
+}
+
+std::string observe_json(const SceneObservation& observation, double seconds) {
+  Json json = {{"seconds", seconds}};
+  json.update(own_json(observation));
+  return text(json);
 }
 
 }  // namespace velour::capi

@@ -5,6 +5,7 @@
 
 #include "brdf/measurement.h"
 #include "capture/microsurface.h"
+#include "domain/observation.h"
 #include "fit/compare.h"
 #include "fit/peer.h"
 #include "model/model.h"
@@ -22,5 +23,8 @@ std::string peer_json(const PeerFit& fit);
 std::string microsurface_json(const MicrosurfaceReport& report);
 std::string scene_json(const Scene& scene);
 std::string render_json(const RenderReport& report);
+std::string observation_json(const SceneObservation& observation);
+/// The same of the job that made it, which took `seconds`.
+std::string observe_json(const SceneObservation& observation, double seconds);
 
 }  // namespace velour::capi

@@ -113,23 +113,8 @@ void DirectLight::draw_from_surface(const Receiver& receiver, const Work& work) 
 }
 
 void DirectLight::draw_sharp(const Receiver& receiver) {
-  const Vertex& vertex = receiver.vertex;
-  const auto lamps = lighting_.sharp();
-  const bool all = lamps.size() <= kSharpLamps;
-  const int count = all ? static_cast<int>(lamps.size()) : kSharpLamps;
-  sharp_count_ = 0;
-  Vec2 u[kSharpLamps];
-  if (!all) receiver.numbers->points(Purpose::sharp, receiver.numbers->ray() * kSharpLamps, u);
-  for (int i = 0; i < count; ++i) {
-    float probability = 1.0f;
-    const size_t chosen = all ? static_cast<size_t>(i) : lighting_.choose_sharp(u[i].x, probability);
-    const Lamp::Irradiance light = lamps[chosen].irradiance(vertex.position);
-    const Vec3 wl = vertex.frame.to_local(light.direction);
-    if (!(wl.z > 0.0f) || !(glm::dot(light.direction, vertex.geometric_normal) > 0.0f)) continue;
-    const float share = all ? 1.0f : 1.0f / (kSharpLamps * probability);
-    sharp_[sharp_count_++] = {&lamps[chosen], light.distance, light.direction, share * light.perpendicular};
-    local_.push(wl);
-  }
+  sharp_count_ = find_sharp_light(lighting_, receiver.vertex, *receiver.numbers, sharp_);
+  for (int i = 0; i < sharp_count_; ++i) local_.push(sharp_[i].wl);
 }
 
 void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) {
@@ -148,7 +133,7 @@ void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) 
   for (int k = 0; k < sharp_count_; ++k) {
     const int i = world_.count + k;
     const Rgb reflected = receiver.throughput * reflectance(vertex, i) * local_.z[i];
-    const Sharp& sharp = sharp_[k];
+    const SharpLight& sharp = sharp_[k];
     queue(receiver, sharp.wl_world, reflected * sharp.irradiance, sharp.distance, sharp.lamp->casts_shadow(), output);
   }
 }
@@ -187,8 +172,7 @@ void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
 }
 
 Rgb DirectLight::reflectance(const Vertex& vertex, int direction) const {
-  const Rgb f = f_.get(direction);
-  return working_space_ && vertex.surface->rec709_colors ? *working_space_ * f : f;
+  return in_working_space(working_space_, vertex, f_.get(direction));
 }
 
 void DirectLight::queue(const Receiver& receiver, const Vec3& wl_world, const Rgb& light, float far, bool casts_shadow,
@@ -205,24 +189,13 @@ void DirectLight::queue(const Receiver& receiver, const Vec3& wl_world, const Rg
   output.shadows.add(receiver.vertex.ray(wl_world, far), light, receiver.sample);
 }
 
-std::optional<DirectLight::Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
-  const Vertex& vertex = receiver.vertex;
-  const PreparedBrdf& prepared = work_[place].prepared;
+std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
   const Vec2 u = receiver.numbers->point(Purpose::onward);
-  sample_surface(sampling_, vertex, prepared, {&u, 1}, local_);
-  local_.pad();
-  const Vec3 wl_world = vertex.frame.to_world(local_.get(0));
-  if (!(local_.z[0] > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return std::nullopt;
-  vertex.surface->material->eval(prepared, local_, f_, material_pdf_);
-  surface_pdf(sampling_, vertex, prepared, local_, material_pdf_, surface_pdf_);
-  const Rgb f = reflectance(vertex, 0);
-  if (zero(f)) return std::nullopt;
-  const Rgb onward = receiver.throughput * f * (local_.z[0] / surface_pdf_.v[0]);
-  if (!finite(onward)) {
-    ++nan_samples_;
-    return std::nullopt;
-  }
-  return Continuation{vertex.ray(wl_world, std::numeric_limits<float>::infinity()), onward};
+  const auto onward =
+      draw_onward(receiver.vertex, work_[place].prepared, sampling_, working_space_, receiver.throughput, u);
+  if (!onward || finite(onward->throughput)) return onward;
+  ++nan_samples_;
+  return std::nullopt;
 }
 
 }  // namespace velour

@@ -5,10 +5,11 @@
 #include <optional>
 #include <span>
 
-#include "render/direction_sampling.h"
 #include "render/light_terms.h"
+#include "render/onward.h"
 #include "render/path_numbers.h"
 #include "render/shadow_queue.h"
+#include "render/sharp_lamps.h"
 #include "render/sky_proposals.h"
 #include "srbf/lobe_draws.h"
 
@@ -51,10 +52,6 @@ class DirectLight {
   /// kSharpLamps, else that many drawn in proportion to power.
   void gather(std::span<const Receiver> receivers, ShadowQueue& shadows, std::vector<CameraSample>& samples);
 
-  struct Continuation {
-    Ray ray;
-    Rgb throughput;
-  };
   /// One more ray from the vertex that was number `place` of the last gather(), drawn from the surface side alone: what
   /// it meets on surfaces was in no term of gather(), and what it meets beyond them (lamps, environment) was in all, so
   /// only surfaces may be counted at its end.
@@ -62,8 +59,6 @@ class DirectLight {
 
   /// Directions left out so far because their term was not finite.
   uint64_t nan_samples() const { return nan_samples_; }
-
-  static constexpr int kSharpLamps = 4;
 
  private:
   static constexpr int kReceivers = 8;
@@ -107,13 +102,6 @@ class DirectLight {
   const SurfaceSampling sampling_;
   const SkyProposals* sky_;
 
-  struct Sharp {
-    const Lamp* lamp;
-    float distance;
-    Vec3 wl_world;
-    Rgb irradiance;  // perpendicular, over the probability of having been chosen
-  };
-
   Work work_[kReceivers];
   // Of all vertices.
   PointBatch points_;
@@ -128,7 +116,7 @@ class DirectLight {
   RgbBatch f_;
   ScalarBatch material_pdf_, surface_pdf_, product_pdf_;
   LobeProducts products_;
-  Sharp sharp_[kSharpLamps];
+  SharpLight sharp_[kSharpLamps];
   int sharp_count_ = 0;
   uint64_t nan_samples_ = 0;
 };

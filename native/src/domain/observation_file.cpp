@@ -1,0 +1,175 @@
+#include "domain/observation_file.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "domain/hash_text.h"
+#include "domain/observation_fields.h"
+#include "file/base64.h"
+#include "file/file.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+using Json = ObservationFields::Json;
+
+static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
+
+constexpr const char* kFormat = "velour-observation";
+constexpr uint64_t kVersion = 1;
+/// Fifty times what an observation takes.
+constexpr uint64_t kMostBytes = uint64_t{128} << 20;
+constexpr uint64_t kMostTerms = kMostBytes / sizeof(Vec3);
+constexpr uint64_t kMostRays = uint64_t{1} << 62;  // so that sums of a few stay whole numbers
+
+template <typename T>
+std::string base64_of(const std::vector<T>& values) {
+  const auto bytes = std::as_bytes(std::span(values));
+  return base64({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+}
+
+Json hits_json(const std::vector<ObservedHit>& hits) {
+  std::vector<uint64_t> key;
+  std::vector<Vec3> wv;
+  std::vector<float> light_density;
+  std::vector<uint32_t> terms;
+  for (const ObservedHit& hit : hits) {
+    key.push_back(hit.key);
+    wv.push_back(hit.wv);
+    light_density.push_back(hit.light_density);
+    terms.insert(terms.end(), {hit.middle - hit.first, hit.last - hit.middle});
+  }
+  return {{"count", hits.size()},
+          {"key", base64_of(key)},
+          {"wv", base64_of(wv)},
+          {"light_density", base64_of(light_density)},
+          {"terms", base64_of(terms)}};
+}
+
+SceneDomain read_domain(const ObservationFields& fields) {
+  SceneDomain domain;
+  std::ranges::copy(fields.numbers("view", SceneDomain::kViewBins), domain.view.begin());
+  if (!std::isfinite(domain.weight())) fields.fail("view", "a list of numbers of a finite sum");
+  domain.camera_rays = fields.whole("camera_rays", kMostRays);
+  domain.frames = fields.whole("frames", kMostRays);
+  domain.light_density = fields.number_or_infinite("light_density");
+  const auto hash = parse_hash(fields.text("hash"));
+  if (!hash) fields.fail("hash", "64 hexadecimal digits");
+  domain.hash = *hash;
+  return domain;
+}
+
+bool is_above_horizon(const Vec3& w) { return w.z > 0.0f && std::abs(glm::length(w) - 1.0f) < 1e-3f; }
+
+/// Gives each hit the terms that follow those of the hit before.
+void read_term_counts(const ObservationFields& fields, uint64_t total, std::vector<ObservedHit>& hits) {
+  const auto counts = fields.values<uint32_t>("terms", 2 * hits.size());
+  uint64_t next = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const uint64_t middle = next + counts[2 * i], last = middle + counts[2 * i + 1];
+    if (last > total) break;
+    hits[i].first = static_cast<uint32_t>(next);
+    hits[i].middle = static_cast<uint32_t>(middle);
+    hits[i].last = static_cast<uint32_t>(next = last);
+  }
+  if (next != total || (!hits.empty() && hits.back().last != total)) {
+    fields.fail("terms", "numbers whose sum is 'terms.count'");
+  }
+}
+
+std::vector<ObservedHit> read_hits(const ObservationFields& fields, uint64_t terms) {
+  std::vector<ObservedHit> hits(fields.whole("count", SceneObservation::kHits));
+  const auto key = fields.values<uint64_t>("key", hits.size());
+  const auto wv = fields.values<Vec3>("wv", hits.size());
+  const auto light_density = fields.values<float>("light_density", hits.size());
+  if (!std::ranges::is_sorted(key)) fields.fail("key", "in ascending order");
+  if (!std::ranges::all_of(wv, is_above_horizon)) fields.fail("wv", "unit directions above the horizon");
+  if (!std::ranges::all_of(light_density, [](float d) { return d >= 0.0f; })) {
+    fields.fail("light_density", "numbers of at least 0");
+  }
+  for (size_t i = 0; i < hits.size(); ++i) hits[i] = {key[i], wv[i], 0, 0, 0, light_density[i]};
+  read_term_counts(fields, terms, hits);
+  return hits;
+}
+
+/// A channel may be negative: a colour outside the working space.
+bool is_finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); }
+
+void read_terms(const ObservationFields& fields, uint64_t count, SceneObservation& observation) {
+  observation.wl = fields.values<Vec3>("wl", count);
+  observation.light = fields.values<Rgb>("light", count);
+  if (!std::ranges::all_of(observation.wl, is_above_horizon)) fields.fail("wl", "unit directions above the horizon");
+  if (!std::ranges::all_of(observation.light, is_finite)) fields.fail("light", "finite numbers");
+}
+
+Json parsed(std::span<const uint8_t> bytes, const std::string& name) {
+  Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  if (!json.is_object() || json.value("format", Json()) != kFormat) {
+    throw Error(Status::bad_data, name + ": is not an observation of a scene, which is JSON of the format '" + kFormat +
+                                      "'; it may be cut short. Write one with 'velour observe'.");
+  }
+  return json;
+}
+
+void check_version(const ObservationFields& fields, const std::string& name) {
+  const uint64_t version = fields.whole("version", std::numeric_limits<uint64_t>::max());
+  if (version == kVersion) return;
+  throw Error(Status::version_mismatch, name + ": is an observation of format version " + std::to_string(version) +
+                                            ", this library reads version " + std::to_string(kVersion) +
+                                            "; observe the scene anew.");
+}
+
+}  // namespace
+
+std::string encode_observation(const SceneObservation& observation) {
+  const SceneDomain& domain = observation.domain;
+  const Json density = std::isfinite(domain.light_density) ? Json(domain.light_density) : Json(nullptr);
+  const Json json = {
+      {"format", kFormat},
+      {"version", kVersion},
+      {"frames", domain.frames},
+      {"camera_rays", domain.camera_rays},
+      {"light_density", density},
+      {"hash", hash_text(domain.hash)},
+      {"view", domain.view},
+      {"hits", hits_json(observation.hits)},
+      {"terms",
+       {{"count", observation.wl.size()}, {"wl", base64_of(observation.wl)}, {"light", base64_of(observation.light)}}}};
+  return json.dump(1) + "\n";
+}
+
+SceneObservation decode_observation(std::span<const uint8_t> bytes, const std::string& name) {
+  const Json json = parsed(bytes, name);
+  const ObservationFields fields(json, name);
+  check_version(fields, name);
+  SceneObservation observation;
+  observation.domain = read_domain(fields);
+  const ObservationFields terms = fields.object("terms");
+  const uint64_t count = terms.whole("count", kMostTerms);
+  observation.hits = read_hits(fields.object("hits"), count);
+  read_terms(terms, count, observation);
+  if (observation.hits.empty() != (observation.domain.weight() == 0.0)) {
+    fields.fail("hits", "of the weight that 'view' has");
+  }
+  return observation;
+}
+
+void save_observation(const SceneObservation& observation, const std::string& path) {
+  const std::string text = encode_observation(observation);
+  write_file(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+}
+
+SceneObservation load_observation(const std::string& path) {
+  return decode_observation(read_file(path, kMostBytes), path);
+}
+
+bool is_observation_file(const std::string& path) {
+  const auto head = read_file_head(path, 64);
+  const std::string text(head.begin(), head.end());
+  return text.starts_with('{') && text.find(kFormat) != std::string::npos;
+}
+
+}  // namespace velour

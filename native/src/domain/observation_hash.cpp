@@ -1,0 +1,44 @@
+#include "domain/observation_hash.h"
+
+#include <span>
+
+#include "domain/hash_text.h"
+#include "file/file.h"
+
+namespace velour {
+namespace {
+
+template <typename T>
+void append(std::vector<uint8_t>& bytes, std::span<const T> values) {
+  const auto raw = std::as_bytes(values);
+  const auto* first = reinterpret_cast<const uint8_t*>(raw.data());
+  bytes.insert(bytes.end(), first, first + raw.size());
+}
+
+/// A hit without padding, whose bytes mean nothing.
+struct PackedHit {
+  uint64_t key;
+  float wv[3], light_density;
+  uint32_t first, middle, last, zero;
+};
+static_assert(sizeof(PackedHit) == 40);
+
+PackedHit packed(const ObservedHit& hit) {
+  return {hit.key, {hit.wv.x, hit.wv.y, hit.wv.z}, hit.light_density, hit.first, hit.middle, hit.last, 0};
+}
+
+}  // namespace
+
+std::array<uint64_t, 4> content_hash(const SceneObservation& observation) {
+  std::vector<PackedHit> hits;
+  for (const ObservedHit& hit : observation.hits) hits.push_back(packed(hit));
+  std::vector<uint8_t> bytes;
+  append(bytes, std::span<const double>(observation.domain.view));
+  append(bytes, std::span<const double>(&observation.domain.light_density, 1));
+  append(bytes, std::span<const PackedHit>(hits));
+  append(bytes, std::span<const Vec3>(observation.wl));
+  append(bytes, std::span<const Rgb>(observation.light));
+  return *parse_hash(sha256_hex(bytes));
+}
+
+}  // namespace velour

@@ -1,0 +1,160 @@
+#include "render/hit_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/scene_observer.h"
+
+namespace velour {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+HitLight HitLightEstimator::estimate(const Vertex& vertex, int bounces, uint64_t key) {
+  result_ = {};
+  concentrations_.clear();
+  irradiance_ = 0;
+  vertex.surface->material->prepare(vertex.wv, prepared_);
+  estimate_half(vertex, bounces, key, 0);
+  result_.middle = static_cast<uint32_t>(result_.wl.size());
+  estimate_half(vertex, bounces, key, 1);
+  result_.light_density = light_density();
+  return std::move(result_);
+}
+
+void HitLightEstimator::estimate_half(const Vertex& vertex, int bounces, uint64_t key, int half) {
+  PathNumbers numbers(options_[half], key, 0);
+  const Counts n = counts(bounces);
+  if (n.all() > 0) {
+    draw(vertex, n, numbers);
+    weigh(vertex, n);
+    trace(vertex);
+    add_lights();
+    if (bounces > 0) add_surfaces(bounces, key, half);
+    for (int i = 0; i < world_.count; ++i) add_term(local_.get(i), weight_[i] * radiance_[i]);
+  }
+  add_sharp(vertex, numbers);
+}
+
+HitLightEstimator::Counts HitLightEstimator::counts(int bounces) const {
+  if (lighting_.has_extended()) return {kObservedDirections / 2, kObservedDirections / 2};
+  return {0, bounces > 0 ? kObservedDirections : 0};
+}
+
+void HitLightEstimator::draw(const Vertex& vertex, Counts counts, PathNumbers& numbers) {
+  local_.count = world_.count = 0;
+  Vec2 u[kObservedDirections];
+  DirectionBatch drawn;
+  if (counts.lights > 0) {
+    const std::span<Vec2> points(u, static_cast<size_t>(counts.lights));
+    numbers.points(Purpose::light, 0, points);
+    std::fill_n(position_, counts.lights, vertex.position);
+    lighting_.sample({position_, points.size()}, points, drawn);
+    for (int i = 0; i < drawn.count; ++i) keep_if_above(vertex, vertex.frame.to_local(drawn.get(i)), drawn.get(i));
+  }
+  const std::span<Vec2> points(u, static_cast<size_t>(counts.surface));
+  numbers.points(Purpose::surface, 0, points);
+  vertex.surface->material->sample(prepared_, points, drawn);
+  for (int i = 0; i < drawn.count; ++i) keep_if_above(vertex, drawn.get(i), vertex.frame.to_world(drawn.get(i)));
+}
+
+void HitLightEstimator::keep_if_above(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world) {
+  if (!(wl.z > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return;
+  local_.push(wl);
+  world_.push(wl_world);
+}
+
+/// Looks the directions up and weighs them by the density of the balance heuristic.
+void HitLightEstimator::weigh(const Vertex& vertex, Counts counts) {
+  local_.pad();
+  world_.pad();
+  lamp_hits_.clear();
+  std::fill_n(environment_.r, world_.count, 0.0f);
+  std::fill_n(environment_.g, world_.count, 0.0f);
+  std::fill_n(environment_.b, world_.count, 0.0f);
+  std::fill_n(light_pdf_.v, world_.count, 0.0f);
+  std::fill_n(position_, world_.count, vertex.position);
+  if (lighting_.has_extended() && world_.count > 0) {
+    lighting_.look_up({position_, static_cast<size_t>(world_.count)}, world_, environment_, light_pdf_, lamp_hits_);
+  }
+  vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
+  for (int i = 0; i < world_.count; ++i) {
+    const float density =
+        static_cast<float>(counts.lights) * light_pdf_.v[i] + static_cast<float>(counts.surface) * material_pdf_.v[i];
+    weight_[i] = density > 0.0f ? local_.z[i] / density : 0.0f;
+  }
+}
+
+void HitLightEstimator::trace(const Vertex& vertex) {
+  const auto count = static_cast<size_t>(world_.count);
+  for (size_t i = 0; i < count; ++i) rays_[i] = vertex.ray(world_.get(static_cast<int>(i)), kInfinity);
+  scene_.rays().intersect({rays_, count}, hits_);
+}
+
+/// Radiance of environment and lamps where nothing stands before them.
+void HitLightEstimator::add_lights() {
+  for (int i = 0; i < world_.count; ++i) {
+    radiance_[i] = hits_[i].instance == kNoHit ? environment_.get(i) : Rgb(0.0f);
+  }
+  for (const LampHit& lamp : lamp_hits_) {
+    const Hit& hit = hits_[lamp.direction];
+    const bool blocked = hit.instance != kNoHit && hit.distance < lamp.distance;
+    if (!blocked || !lamp.lamp->casts_shadow()) radiance_[lamp.direction] += lamp.lamp->radiance();
+  }
+  for (int i = 0; i < world_.count; ++i) note_density(light_pdf_.v[i], weight_[i] * radiance_[i]);
+}
+
+void HitLightEstimator::add_surfaces(int bounces, uint64_t key, int half) {
+  IndirectLight& indirect = indirect_[half];
+  int direction[DirectionBatch::kCapacity];
+  indirect.clear();
+  for (int i = 0; i < world_.count; ++i) {
+    if (hits_[i].instance == kNoHit) continue;
+    PathNumbers numbers(options_[half], key, static_cast<uint32_t>(i));
+    numbers.next_vertex();
+    direction[indirect.samples().size()] = i;
+    indirect.add(rays_[i], hits_[i], numbers);
+  }
+  indirect.resolve(bounces);
+  for (size_t k = 0; k < indirect.samples().size(); ++k) radiance_[direction[k]] += indirect.samples()[k].radiance;
+}
+
+void HitLightEstimator::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
+  SharpLight sharp[kSharpLamps];
+  const int count = find_sharp_light(lighting_, vertex, numbers, sharp);
+  for (int i = 0; i < count; ++i) {
+    const SharpLight& s = sharp[i];
+    if (s.lamp->casts_shadow() && scene_.rays().occluded(vertex.ray(s.wl_world, s.distance))) continue;
+    const Rgb light = s.wl.z * s.irradiance;
+    note_density(kInfinity, light);
+    add_term(s.wl, light);
+  }
+}
+
+/// What is not finite is left out, as the renderer leaves it out.
+void HitLightEstimator::add_term(const Vec3& wl, const Rgb& light) {
+  if (light == Rgb(0.0f) || !std::isfinite(light.r + light.g + light.b)) return;
+  result_.wl.push_back(wl);
+  result_.light.push_back(light);
+  irradiance_ += static_cast<double>(luminance(light));
+}
+
+void HitLightEstimator::note_density(float density, const Rgb& light) {
+  const double brought = static_cast<double>(luminance(light));
+  if (brought > 0.0 && std::isfinite(brought)) concentrations_.push_back({density, brought});
+}
+
+float HitLightEstimator::light_density() {
+  std::ranges::sort(concentrations_, std::ranges::greater(), &Concentration::density);
+  double brought = 0;
+  for (const Concentration& c : concentrations_) {
+    brought += c.luminance;
+    if (brought >= kNoticeableLight * irradiance_) return c.density;
+  }
+  return 0.0f;
+}
+
+}  // namespace velour

@@ -1,0 +1,80 @@
+// Where the light of one hit comes from: the terms of an ObservedHit.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/indirect_light.h"
+#include "render/sharp_lamps.h"
+
+namespace velour {
+
+/// Terms [0, middle) and [middle, end) are independent estimates (ObservedHit).
+struct HitLight {
+  std::vector<Vec3> wl;
+  std::vector<Rgb> light;
+  uint32_t middle = 0;
+  float light_density = 0;
+};
+
+/// One a thread.
+class HitLightEstimator {
+ public:
+  /// `options`: those of two renders whose random numbers are independent, one a half.
+  HitLightEstimator(const Scene& scene, const Lighting& lighting, const RenderOptions (&options)[2])
+      : scene_(scene),
+        lighting_(lighting),
+        options_(options),
+        indirect_{IndirectLight(scene, lighting, options[0]), IndirectLight(scene, lighting, options[1])} {}
+
+  /// What arrives at `vertex` over up to `bounces` surfaces. Random numbers come from `key`.
+  HitLight estimate(const Vertex& vertex, int bounces, uint64_t key);
+
+ private:
+  void estimate_half(const Vertex& vertex, int bounces, uint64_t key, int half);
+  /// How many directions there are, and which of them are drawn towards light.
+  struct Counts {
+    int lights, surface;
+    int all() const { return lights + surface; }
+  };
+  Counts counts(int bounces) const;
+  void draw(const Vertex& vertex, Counts counts, PathNumbers& numbers);
+  void keep_if_above(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world);
+  void weigh(const Vertex& vertex, Counts counts);
+  void trace(const Vertex& vertex);
+  void add_lights();
+  void add_surfaces(int bounces, uint64_t key, int half);
+  void add_sharp(const Vertex& vertex, PathNumbers& numbers);
+  void add_term(const Vec3& wl, const Rgb& light);
+  /// Luminance of the light of lamps and environment, by Lighting's density.
+  void note_density(float density, const Rgb& light);
+  float light_density();
+
+  const Scene& scene_;
+  const Lighting& lighting_;
+  const RenderOptions (&options_)[2];
+  IndirectLight indirect_[2];
+  PreparedBrdf prepared_;
+  HitLight result_;
+
+  // Of one half: directions above both horizons.
+  DirectionBatch local_, world_;
+  RgbBatch environment_, f_;
+  ScalarBatch light_pdf_, material_pdf_;
+  std::vector<LampHit> lamp_hits_;
+  float weight_[DirectionBatch::kCapacity];  // cos / (n density)
+  Ray rays_[DirectionBatch::kCapacity];
+  Hit hits_[DirectionBatch::kCapacity];
+  Rgb radiance_[DirectionBatch::kCapacity];
+  Vec3 position_[DirectionBatch::kCapacity];
+
+  // Of both halves.
+  struct Concentration {
+    float density;
+    double luminance;
+  };
+  std::vector<Concentration> concentrations_;
+  double irradiance_ = 0;  // luminance
+};
+
+}  // namespace velour

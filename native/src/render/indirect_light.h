@@ -1,0 +1,46 @@
+// Radiance that surfaces send along given rays.
+#pragma once
+
+#include <vector>
+
+#include "render/direct_light.h"
+
+namespace velour {
+
+/// One a thread. Estimates what TileRenderer counts beyond a path's first continuing ray: emission and light of lamps
+/// and environment at every surface that the path meets.
+class IndirectLight {
+ public:
+  IndirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options)
+      : scene_(scene), light_(scene, lighting, options, nullptr) {}
+
+  void clear();
+  /// A ray that met a surface; its radiance will be number `radiance().size()` so far. `numbers`: those of that
+  /// surface.
+  void add(const Ray& ray, const Hit& hit, const PathNumbers& numbers);
+  /// Follows all paths over up to `surfaces` surfaces, one path a ray.
+  void resolve(int surfaces);
+  /// Of the rays, in the order of add().
+  const std::vector<CameraSample>& samples() const { return samples_; }
+
+ private:
+  struct Path {
+    PathNumbers numbers;
+    Rgb throughput;
+    uint32_t sample;
+  };
+  void meet_surfaces();
+  void gather(bool go_on);
+  void trace();
+
+  const Scene& scene_;
+  DirectLight light_;
+  ShadowQueue shadows_;
+  std::vector<Path> paths_, next_;
+  std::vector<Ray> rays_, next_rays_;  // of the paths
+  std::vector<Hit> hits_;
+  std::vector<Receiver> receivers_;
+  std::vector<CameraSample> samples_;
+};
+
+}  // namespace velour

@@ -1,0 +1,25 @@
+#include "render/onward.h"
+
+#include <limits>
+
+namespace velour {
+
+std::optional<Continuation> draw_onward(const Vertex& vertex, const PreparedBrdf& prepared, SurfaceSampling sampling,
+                                        const std::optional<Mat3>& rec709_to_working, const Rgb& throughput,
+                                        const Vec2& u) {
+  DirectionBatch wl;
+  sample_surface(sampling, vertex, prepared, {&u, 1}, wl);
+  wl.pad();
+  const Vec3 wl_world = vertex.frame.to_world(wl.get(0));
+  if (!(wl.z[0] > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return std::nullopt;
+  RgbBatch f;
+  ScalarBatch material_pdf, pdf;
+  vertex.surface->material->eval(prepared, wl, f, material_pdf);
+  surface_pdf(sampling, vertex, prepared, wl, material_pdf, pdf);
+  const Rgb reflected = in_working_space(rec709_to_working, vertex, f.get(0));
+  if (reflected == Rgb(0.0f)) return std::nullopt;
+  return Continuation{vertex.ray(wl_world, std::numeric_limits<float>::infinity()),
+                      throughput * reflected * (wl.z[0] / pdf.v[0])};
+}
+
+}  // namespace velour

@@ -1,0 +1,26 @@
+// The ray with which a path goes on from a surface.
+#pragma once
+
+#include <optional>
+
+#include "render/direction_sampling.h"
+
+namespace velour {
+
+struct Continuation {
+  Ray ray;
+  Rgb throughput;
+};
+
+/// f of the vertex's material in the scene's space.
+inline Rgb in_working_space(const std::optional<Mat3>& rec709_to_working, const Vertex& vertex, const Rgb& f) {
+  return rec709_to_working && vertex.surface->rec709_colors ? *rec709_to_working * f : f;
+}
+
+/// One ray drawn with `u` by the surface side, and `throughput` f cos / pdf, which need not be finite. Nothing when it
+/// would go below the surface or carry nothing. `prepared` is the material's point.
+std::optional<Continuation> draw_onward(const Vertex& vertex, const PreparedBrdf& prepared, SurfaceSampling sampling,
+                                        const std::optional<Mat3>& rec709_to_working, const Rgb& throughput,
+                                        const Vec2& u);
+
+}  // namespace velour

@@ -1,0 +1,153 @@
+#include "render/scene_observer.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <string>
+
+#include "domain/observation_hash.h"
+#include "job/threads.h"
+#include "render/hit_light.h"
+#include "render/view_tracer.h"
+
+namespace velour {
+namespace {
+
+/// Camera rays of a frame, about.
+constexpr double kPlaces = 65536;
+/// Camera rays that one task follows: a few milliseconds.
+constexpr uint64_t kRaysOfBlock = 256;
+
+void require_range(const char* name, int value, int low, int high) {
+  if (value >= low && value <= high) return;
+  throw Error(Status::invalid_argument, "Observe option " + std::string(name) + " is " + std::to_string(value) +
+                                            "; it must lie between " + std::to_string(low) + " and " +
+                                            std::to_string(high) + ".");
+}
+
+CameraGrid grid_of(const ObserverOptions& options) {
+  const double pixels = static_cast<double>(options.width) * options.height;
+  const double scale = std::min(1.0, std::sqrt(kPlaces / pixels));
+  const double width = std::max(1.0, std::round(scale * options.width));
+  const double height = std::clamp(std::floor(kPlaces / width), 1.0, static_cast<double>(options.height));
+  const double rays = std::max(1.0, std::floor(kPlaces / (width * height)));
+  return {static_cast<uint64_t>(width), static_cast<uint64_t>(height), static_cast<uint64_t>(rays)};
+}
+
+/// The render whose paths are followed; `stream` tells independent ones apart.
+RenderOptions render_options(const ObserverOptions& options, uint64_t stream) {
+  RenderOptions render;
+  render.bounces = options.bounces;
+  render.seed = mix64(mix64(options.seed) + stream);
+  return render;
+}
+
+/// One observation, from its start to its hash.
+class Observer {
+ public:
+  Observer(const Scene& scene, uint32_t material, const ObserverOptions& options, Progress& progress)
+      : scene_(scene),
+        material_(scene.materials()[material]),
+        grid_(grid_of(options)),
+        paths_(render_options(options, 0)),
+        halves_{render_options(options, 1), render_options(options, 2)},
+        progress_(progress),
+        lighting_(scene),
+        arena_(arena_concurrency(options.threads)) {}
+
+  SceneObservation run() {
+    progress_.stage("views", 0.0, 0.3);
+    see_views();
+    progress_.stage("light", 0.3, 1.0);
+    see_light();
+    observation_.domain.hash = content_hash(observation_);
+    progress_.update(1.0);
+    return std::move(observation_);
+  }
+
+ private:
+  template <typename Work>
+  void in_parallel(size_t count, const Work& work) {
+    std::atomic<size_t> finished{0};
+    arena_.execute([&] {
+      tbb::parallel_for(size_t{0}, count, [&](size_t i) {
+        progress_.check();
+        work(i);
+        progress_.update(static_cast<double>(++finished) / static_cast<double>(count));
+      });
+    });
+  }
+
+  void see_views() {
+    std::vector<ViewHistogram> views((grid_.all() + kRaysOfBlock - 1) / kRaysOfBlock);
+    in_parallel(views.size(), [&](size_t i) {
+      const uint64_t first = i * kRaysOfBlock;
+      tracers_.local().follow(first, std::min(grid_.all(), first + kRaysOfBlock), views[i]);
+    });
+    SceneDomain& domain = observation_.domain;
+    for (const ViewHistogram& view : views) {  // in this order, whatever the threads did
+      for (size_t i = 0; i < view.size(); ++i) domain.view[i] += view[i];
+    }
+    domain.camera_rays = grid_.all();
+    domain.frames = 1;
+  }
+
+  void see_light() {
+    DrawByWeight<SeenHit> draws(SceneObservation::kHits);
+    for (const ViewTracer& tracer : tracers_) draws.add(tracer.draws());
+    const auto kept = draws.sorted();
+    std::vector<HitLight> light(kept.size());
+    in_parallel(kept.size(), [&](size_t i) {
+      const SeenHit& hit = kept[i].item;
+      light[i] = estimators_.local().estimate(hit.vertex, hit.bounces, kept[i].key);
+    });
+    for (size_t i = 0; i < kept.size(); ++i) append(kept[i].key, kept[i].item.vertex.wv, light[i]);
+  }
+
+  void append(uint64_t key, const Vec3& wv, const HitLight& found) {
+    auto& [domain, hits, wl, light] = observation_;
+    const auto first = static_cast<uint32_t>(wl.size());
+    wl.insert(wl.end(), found.wl.begin(), found.wl.end());
+    light.insert(light.end(), found.light.begin(), found.light.end());
+    hits.push_back({key, wv, first, first + found.middle, static_cast<uint32_t>(wl.size()), found.light_density});
+    domain.light_density = std::max(domain.light_density, static_cast<double>(found.light_density));
+  }
+
+  const Scene& scene_;
+  const SurfaceMaterial& material_;
+  const CameraGrid grid_;
+  const RenderOptions paths_, halves_[2];
+  Progress& progress_;
+  const Lighting lighting_;
+  tbb::task_arena arena_;
+  tbb::enumerable_thread_specific<ViewTracer> tracers_{
+      [this] { return ViewTracer(scene_, material_, grid_, paths_, SceneObservation::kHits); }};
+  tbb::enumerable_thread_specific<HitLightEstimator> estimators_{
+      [this] { return HitLightEstimator(scene_, lighting_, halves_); }};
+  SceneObservation observation_;
+};
+
+}  // namespace
+
+void check_observer(const Scene& scene, uint32_t material, const ObserverOptions& options) {
+  require_range("width", options.width, 1, 65536);
+  require_range("height", options.height, 1, 65536);
+  require_range("bounces", options.bounces, 0, 1024);
+  require_range("threads", options.threads, 0, 4096);
+  if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is observed.");
+  if (material >= scene.materials().size()) {
+    throw Error(Status::invalid_argument, "Material " + std::to_string(material) +
+                                              " cannot be observed: the scene has " +
+                                              std::to_string(scene.materials().size()) + " materials.");
+  }
+}
+
+SceneObservation observe(const Scene& scene, uint32_t material, const ObserverOptions& options, Progress& progress) {
+  check_observer(scene, material, options);
+  return Observer(scene, material, options, progress).run();
+}
+
+}  // namespace velour

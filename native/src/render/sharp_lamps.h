@@ -1,0 +1,25 @@
+// Lamps without extent, which no drawn direction can meet, at one vertex.
+#pragma once
+
+#include "render/lighting.h"
+#include "render/path_numbers.h"
+#include "render/vertex.h"
+
+namespace velour {
+
+/// Light of a sharp lamp that stands above both the shading horizon and the surface; shadows are not looked at.
+struct SharpLight {
+  const Lamp* lamp;
+  float distance;
+  Vec3 wl, wl_world;
+  Rgb irradiance;  // perpendicular, over the probability of having been chosen
+};
+
+inline constexpr int kSharpLamps = 4;
+
+/// Each sharp lamp once when there are at most kSharpLamps, else that many drawn in proportion to power. Returns how
+/// many `found` holds.
+int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers& numbers,
+                     SharpLight (&found)[kSharpLamps]);
+
+}  // namespace velour

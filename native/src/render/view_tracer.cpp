@@ -1,0 +1,72 @@
+#include "render/view_tracer.h"
+
+#include <bit>
+
+#include "domain/observation.h"
+
+namespace velour {
+namespace {
+
+size_t view_bin(const Vec3& wv) {
+  const double bin = theta_of(wv) * (SceneDomain::kViewBins / (0.5 * kPiD));
+  return static_cast<size_t>(std::min(bin, SceneDomain::kViewBins - 1.0));
+}
+
+}  // namespace
+
+void ViewTracer::follow(uint64_t first, uint64_t end, ViewHistogram& view) {
+  start(first, end);
+  for (int depth = 0; depth <= options_.bounces && !paths_.empty(); ++depth) {
+    hits_.resize(rays_.size());
+    scene_.rays().intersect(rays_, hits_.data());
+    next_.clear();
+    next_rays_.clear();
+    for (size_t i = 0; i < paths_.size(); ++i) meet(i, depth, view);
+    paths_.swap(next_);
+    rays_.swap(next_rays_);
+  }
+}
+
+void ViewTracer::start(uint64_t first, uint64_t end) {
+  paths_.clear();
+  rays_.clear();
+  const Vec2 size(static_cast<float>(grid_.width), static_cast<float>(grid_.height));
+  for (uint64_t i = first; i < end; ++i) {
+    const uint64_t cell = i / grid_.rays;
+    paths_.push_back({PathNumbers(options_, cell, static_cast<uint32_t>(i % grid_.rays)), Rgb(1.0f), i});
+    const Vec2 corner(static_cast<float>(cell % grid_.width), static_cast<float>(cell / grid_.width));
+    rays_.push_back(scene_.camera().ray((corner + paths_.back().numbers.point(Purpose::camera)) / size));
+  }
+}
+
+void ViewTracer::meet(size_t path, int depth, ViewHistogram& view) {
+  if (hits_[path].instance == kNoHit) return;
+  const SurfacePoint point = scene_.surface(hits_[path]);
+  Vertex vertex(point, -rays_[path].direction);
+  vertex.surface = &scene_.materials()[point.material];
+  if (vertex.surface == &material_) see(vertex, paths_[path], depth, view);
+  if (depth < options_.bounces) go_on(vertex, paths_[path]);
+}
+
+void ViewTracer::see(const Vertex& vertex, const Path& path, int depth, ViewHistogram& view) {
+  const double weight = static_cast<double>(luminance(path.throughput));
+  if (!(weight > 0.0)) return;
+  view[view_bin(vertex.wv)] += weight;
+  // The place counts, too, so that frames of one seed draw on their own.
+  auto place = static_cast<uint64_t>(depth);
+  for (int i = 0; i < 3; ++i) place = mix64(place + std::bit_cast<uint32_t>(vertex.position[i]));
+  draws_.add({vertex, options_.bounces - depth}, weight, RandomStream(options_.seed, path.number, place));
+}
+
+void ViewTracer::go_on(const Vertex& vertex, const Path& path) {
+  PathNumbers numbers = path.numbers;
+  vertex.surface->material->prepare(vertex.wv, prepared_);
+  const auto onward = draw_onward(vertex, prepared_, SurfaceSampling::material, scene_.rec709_to_working(),
+                                  path.throughput, numbers.point(Purpose::onward));
+  if (!onward || !std::isfinite(luminance(onward->throughput))) return;
+  numbers.next_vertex();
+  next_.push_back({numbers, onward->throughput, path.number});
+  next_rays_.push_back(onward->ray);
+}
+
+}  // namespace velour

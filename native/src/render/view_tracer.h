@@ -1,0 +1,63 @@
+// The views under which camera rays, continued from bounce to bounce, meet one material.
+#pragma once
+
+#include <vector>
+
+#include "domain/scene_domain.h"
+#include "render/draw_by_weight.h"
+#include "render/onward.h"
+#include "render/path_numbers.h"
+
+namespace velour {
+
+/// Cells that cover the picture evenly, and camera rays through each.
+struct CameraGrid {
+  uint64_t width, height, rays;
+  uint64_t all() const { return width * height * rays; }
+};
+
+/// A hit of the material.
+struct SeenHit {
+  Vertex vertex;
+  int bounces;  // that are left
+};
+
+using ViewHistogram = decltype(SceneDomain::view);
+
+/// One a thread.
+class ViewTracer {
+ public:
+  /// Paths are those of a render with `options`. `draws`: how many hits to draw.
+  ViewTracer(const Scene& scene, const SurfaceMaterial& material, const CameraGrid& grid, const RenderOptions& options,
+             size_t draws)
+      : scene_(scene), material_(material), grid_(grid), options_(options), draws_(draws) {}
+
+  /// Follows camera rays [first, end) of the grid and adds the weights of their hits to `view`.
+  void follow(uint64_t first, uint64_t end, ViewHistogram& view);
+
+  /// Hits drawn by weight, of all rays followed so far.
+  const DrawByWeight<SeenHit>& draws() const { return draws_; }
+
+ private:
+  struct Path {
+    PathNumbers numbers;
+    Rgb throughput;
+    uint64_t number;  // of the camera ray
+  };
+  void start(uint64_t first, uint64_t end);
+  void meet(size_t path, int depth, ViewHistogram& view);
+  void see(const Vertex& vertex, const Path& path, int depth, ViewHistogram& view);
+  void go_on(const Vertex& vertex, const Path& path);
+
+  const Scene& scene_;
+  const SurfaceMaterial& material_;
+  const CameraGrid& grid_;
+  const RenderOptions& options_;
+  DrawByWeight<SeenHit> draws_;
+  std::vector<Path> paths_, next_;
+  std::vector<Ray> rays_, next_rays_;  // of the paths
+  std::vector<Hit> hits_;
+  PreparedBrdf prepared_;
+};
+
+}  // namespace velour
