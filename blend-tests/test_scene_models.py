@@ -208,6 +208,16 @@ class Fits(SceneModelTest):
         self.assertTrue(self.settings.use_scene_model)
         self.assertIsNotNone(self.settings.scene_model)
 
+    def test_switch_reaches_a_kept_depsgraph(self):
+        """With persistent data Blender evaluates only what has changed."""
+        self.scene.render.use_persistent_data = True
+        bpy.ops.velour.fit_for_scene()
+        self.assertIn("rendered with that model", self._render()[1])
+        self.settings.use_scene_model = False
+        self.assertNotIn("Paint", self._render()[1])
+        self.settings.use_scene_model = True
+        self.assertIn("rendered with that model", self._render()[1])
+
     def test_a_new_fit_switches_it_off(self):
         bpy.ops.velour.fit_for_scene()
         bpy.ops.velour.fit(tolerance=0.1, max_lobes=3)

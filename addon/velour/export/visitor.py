@@ -9,6 +9,8 @@ import contextlib
 
 import bpy
 
+from .notes import ExportError
+
 _visit = None
 
 
@@ -34,9 +36,17 @@ def visit_frame(scene, frame, visit, engine_id):
         _instead_of_rendering(guarded),
         bpy.context.temp_override(scene=copy),  # Blender renders the frame of the context's scene
     ):
-        bpy.ops.render.render(scene=copy.name)
+        _render(copy)
     if errors:
         raise errors[0]
+
+
+def _render(scene):
+    try:
+        bpy.ops.render.render(scene=scene.name)
+    except RuntimeError as error:  # Blender itself refuses: no camera, for one
+        sentence = str(error).splitlines()[0].removeprefix("Error: ")
+        raise ExportError(f"The scene cannot be looked at: {sentence}.") from error
 
 
 @contextlib.contextmanager

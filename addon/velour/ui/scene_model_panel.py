@@ -14,7 +14,6 @@ from .text import draw_sentence
 class VELOUR_MATERIAL_PT_scene_model(MaterialPanel, bpy.types.Panel):
     bl_label = "Model for the Scene"
     bl_parent_id = "VELOUR_MATERIAL_PT_measured"
-    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
