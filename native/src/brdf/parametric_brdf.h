@@ -26,13 +26,15 @@ struct ParametricBrdf {
 
   bool isotropic = true;
   int cells = 0;  // of the spline
+  /// The views that it is fitted to; beyond them it has the parameters of the nearest of these.
+  ViewRange views;
   std::vector<LobeSpace> space;
   /// [node][parameter][lobe]: radians for tilts, logarithms elsewhere.
   std::vector<float> control;
 
   int lobe_count() const { return static_cast<int>(space.size()); }
   int parameter_count() const { return parameters_of(isotropic); }
-  ViewSpline spline() const { return {isotropic, cells}; }
+  ViewSpline spline() const { return {isotropic, cells, views}; }
   size_t index(int node, int parameter, int lobe) const {
     return (static_cast<size_t>(node) * static_cast<size_t>(parameter_count()) + static_cast<size_t>(parameter)) *
                space.size() +

@@ -8,13 +8,12 @@ namespace velour {
 double SceneDomain::weight() const { return std::accumulate(view.begin(), view.end(), 0.0); }
 
 ViewRange view_range(const SceneDomain& domain) {
-  constexpr double kDegree = 1.5707963267948966 / SceneDomain::kViewBins;
   const double outside = kOutside * domain.weight();
   int begin = 0, end = SceneDomain::kViewBins;
   for (double left = 0; begin < end && (left += domain.view[static_cast<size_t>(begin)]) <= outside;) ++begin;
   for (double left = 0; end > begin && (left += domain.view[static_cast<size_t>(end - 1)]) <= outside;) --end;
   if (begin == end) return {};
-  return {std::max(0, begin - 1) * kDegree, std::min(SceneDomain::kViewBins, end + 1) * kDegree};
+  return {std::max(0, begin - 1), std::min(SceneDomain::kViewBins, end + 1)};
 }
 
 }  // namespace velour

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "sphere/view_range.h"
+
 namespace velour {
 
 /// Weights are what a hit contributes to the picture: the luminance of the path's throughput at it, in camera rays.
@@ -22,11 +24,6 @@ struct SceneDomain {
   std::array<uint64_t, 4> hash{};
 
   double weight() const;
-};
-
-/// The part of a domain's views that a model reduced to it covers, radians.
-struct ViewRange {
-  double begin = 0, end = 1.5707963267948966;
 };
 
 /// The shortest range of whole bins that leaves out at most `kOutside` of the weight at either end, widened by a

@@ -4,6 +4,7 @@
 
 #include "fit/parametric_fit.h"
 #include "fit/scattered_fit.h"
+#include "fit/scene_fit.h"
 #include "job/error.h"
 
 namespace velour {
@@ -34,6 +35,12 @@ Model bounded_parametric(const Measurement& measurement, FitOptions options, Pro
 }  // namespace
 
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  if (options.for_scene) {
+    if (kind != ModelKind::parametric) {
+      throw Error(Status::invalid_argument, "Only parametric models can be fitted for a scene.");
+    }
+    return fit_for_scene(measurement, options, progress);
+  }
   if (kind == ModelKind::parametric) return bounded_parametric(measurement, options, progress);
   return fit_scattered(measurement, options, progress);
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "brdf/measurement.h"
+#include "domain/observation.h"
 #include "model/model.h"
 
 namespace velour {
@@ -17,6 +19,10 @@ struct FitOptions {
   int threads = 0;          // 0: all
   bool all_data = false;    // hold nothing out
   bool align_views = true;  // scattered alone
+  /// What scenes show of the material: the model is reduced to it (fit/scene_fit.h). Null: the model is for any scene.
+  std::shared_ptr<const SceneObservation> for_scene;
+  /// With for_scene: the parametric model that serves any scene; null: it is fitted first.
+  std::shared_ptr<const Model> full_model;
   /// Bytes of a model as its user counts them: of its file, say, which the fit knows nothing of. Empty:
   /// parameter_bytes.
   std::function<uint64_t(const Model&)> size_of;

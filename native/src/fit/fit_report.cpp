@@ -109,6 +109,19 @@ void add_albedos(const Measurement& measurement, const Material& material, const
   if (record.albedo_max > 1) warn_of_albedo(measurement, brightest, record);
 }
 
+/// Leaves the errors inside `views`, and those of the fitted views in place of their mean.
+void forget_errors_outside(const ViewRange& views, const std::vector<FittedView>& fitted, FitRecord& record) {
+  for (auto& [degrees, error] : record.by_view_angle) {
+    if (!views.holds(radians_from(std::stod(degrees)))) error = std::nullopt;
+  }
+  double sum = 0, weight = 0;
+  for (const FittedView& v : fitted) {
+    sum += static_cast<double>(v.wv.z) * v.relative_l2;
+    weight += static_cast<double>(v.wv.z);
+  }
+  record.relative_l2 = sum / std::max(weight, 1e-12);
+}
+
 }  // namespace
 
 double tolerance_at(double tolerance, double theta_v) {
@@ -125,7 +138,7 @@ Vec3d directional_albedo(const Material& material, const Vec3& wv) {
 }
 
 FitRecord report_fit(const Measurement& measurement, const Material& material, const FitOptions& options,
-                     const std::vector<FittedView>& fitted, Progress& progress) {
+                     const std::vector<FittedView>& fitted, const ViewRange& views, Progress& progress) {
   FitRecord record;
   record.tolerance = options.tolerance;
   record.seed = options.seed;
@@ -133,8 +146,12 @@ FitRecord report_fit(const Measurement& measurement, const Material& material, c
   const Comparison errors = compare(measurement, material, progress);
   record.relative_l2 = errors.relative_l2;
   record.by_view_angle = errors.by_view_angle;
-  warn_of_errors(record, record.warnings);
-  warn_of_fitted_views(fitted, options, measurement.isotropic(), record.warnings);
+  if (views.whole()) {
+    warn_of_errors(record, record.warnings);
+    warn_of_fitted_views(fitted, options, measurement.isotropic(), record.warnings);
+  } else {
+    forget_errors_outside(views, fitted, record);
+  }
   add_albedos(measurement, material, fitted, record, progress);
   record.reciprocity = reciprocity_error(material, progress);
   record.measured_reciprocity = reciprocity_error(measurement, progress);

@@ -7,6 +7,7 @@
 #include "brdf/measurement.h"
 #include "fit/fit_options.h"
 #include "material/material.h"
+#include "sphere/view_range.h"
 
 namespace velour {
 
@@ -22,8 +23,10 @@ double tolerance_at(double tolerance, double theta_v);
 /// Directional albedo, the integral of f cos over the lights, of each channel.
 Vec3d directional_albedo(const Material& material, const Vec3& wv);
 
-/// Errors by compare(), albedos, and a sentence for each thing a user should know. `fitted` are the views of the model.
+/// Errors by compare(), albedos, and a sentence for each thing a user should know. `fitted` are the views of the model,
+/// `views` the range that it is for: errors elsewhere are nobody's, and those of a part of the views are no promise of
+/// a tolerance.
 FitRecord report_fit(const Measurement& measurement, const Material& material, const FitOptions& options,
-                     const std::vector<FittedView>& fitted, Progress& progress);
+                     const std::vector<FittedView>& fitted, const ViewRange& views, Progress& progress);
 
 }  // namespace velour

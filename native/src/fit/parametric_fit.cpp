@@ -19,6 +19,13 @@ SliceGrid grid_for(const Measurement& measurement) {
   return {64, 32, measurement.isotropic()};
 }
 
+}  // namespace
+
+MeasuredSlices parametric_slices(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  check_options(options, ParametricBrdf::kMaxLobes);
+  return read_slices(measurement, grid_for(measurement), options, progress);
+}
+
 TrackedFitOptions tracked_options(const Measurement& measurement, const FitOptions& options) {
   TrackedFitOptions tracked;
   tracked.isotropic = measurement.isotropic();
@@ -29,26 +36,28 @@ TrackedFitOptions tracked_options(const Measurement& measurement, const FitOptio
   return tracked;
 }
 
-}  // namespace
-
-Model fit_parametric(const Measurement& measurement, const FitOptions& options, Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
-  check_options(options, ParametricBrdf::kMaxLobes);
-  progress.stage("sampling", 0.0, 0.1);
-  const MeasuredSlices measured = read_slices(measurement, grid_for(measurement), options, progress);
-  progress.stage("fitting", 0.1, 0.9);
-  const TrackedFit fit = fit_tracked(measured.slices, tracked_options(measurement, options), progress);
-
-  progress.stage("checking", 0.9, 1.0);
+Model parametric_model(const Measurement& measurement, const TrackedFit& fit, const FitOptions& options,
+                       Progress& progress) {
   std::vector<FittedView> views;
   for (size_t i = 0; i < fit.views.size(); ++i) views.push_back({Vec3(fit.views[i]), fit.error[i]});
   Model model;
   const auto brdf = std::make_shared<const ParametricBrdf>(fit.brdf);
-  model.fit = report_fit(measurement, *make_parametric_material(brdf), options, views, progress);
+  model.fit = report_fit(measurement, *make_parametric_material(brdf), options, views, fit.brdf.views, progress);
   model.fit.order = fit.order;
-  warn_of_slices(measured, model.fit.warnings);
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
+  return model;
+}
+
+Model fit_parametric(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  progress.stage("sampling", 0.0, 0.1);
+  const MeasuredSlices measured = parametric_slices(measurement, options, progress);
+  progress.stage("fitting", 0.1, 0.9);
+  const TrackedFit fit = fit_tracked(measured.slices, tracked_options(measurement, options), progress);
+  progress.stage("checking", 0.9, 1.0);
+  Model model = parametric_model(measurement, fit, options, progress);
+  warn_of_slices(measured, model.fit.warnings);
   progress.check();
   progress.update(1.0);
   model.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

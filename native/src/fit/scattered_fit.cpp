@@ -40,7 +40,7 @@ Model reported(const Measurement& measurement, const FittedSlices& all, const Fi
     views.push_back({fitted.slices[i].wv, fitted.paths[i].path.back().relative_l2});
   }
   Model model;
-  model.fit = report_fit(measurement, *make_scattered_material(brdf, 0), options, views, progress);
+  model.fit = report_fit(measurement, *make_scattered_material(brdf, 0), options, views, {}, progress);
   model.fit.order = order_of_slices(all, fitted, options.tolerance);
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};

@@ -92,6 +92,7 @@ class Growth {
       : problem_(problem), options_(options), progress_(progress) {
     lobes_.model.isotropic = options.isotropic;
     lobes_.model.cells = options.cells;
+    lobes_.model.views = options.views;
     lobes_.cost = problem.evaluate(lobes_.model, lobes_.x);
   }
 
@@ -137,7 +138,7 @@ Growth grown(TrackedProblem& problem, const TrackedFitOptions& options, Progress
 
 TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress) {
   TrackedProblem problem(
-      slices, ViewSpline(options.isotropic, options.cells),
+      slices, ViewSpline(options.isotropic, options.cells, options.views),
       [&](double theta_v) { return kGoalShare * tolerance_at(options.tolerance, theta_v); }, options.threads, progress);
   Growth growth = grown(problem, options, progress);
   TrackedLobes& lobes = growth.lobes();

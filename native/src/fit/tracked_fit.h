@@ -13,6 +13,7 @@ namespace velour {
 struct TrackedFitOptions {
   bool isotropic = true;
   int cells = 10;
+  ViewRange views;
   int max_lobes = 12;
   double tolerance = 0.02;  // relative L2 of every view up to 75 degrees; twice that beyond
   int threads = 0;

@@ -133,7 +133,7 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
 /// Triples of neighbouring nodes whose second difference is to be small.
 template <class Use>
 void for_each_triple(const ViewSpline& spline, const Use& use) {
-  const int side = spline.isotropic() ? spline.cells() + 1 : spline.cells() + 2;
+  const int side = spline.side();
   const int rows = spline.isotropic() ? 1 : side;
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < side; ++x) {
@@ -162,7 +162,8 @@ TrackedProblem::TrackedProblem(const std::vector<MeasuredSlice>& slices, const V
                                const std::function<double(double)>& goal, int threads, const Progress& progress)
     : threads_(threads), progress_(progress) {
   for (const MeasuredSlice& slice : slices) {
-    TrackedView view(slice, spline, goal(std::acos(std::clamp(Vec3d(slice.wv).z, -1.0, 1.0))));
+    const double wanted = goal(std::acos(std::clamp(Vec3d(slice.wv).z, -1.0, 1.0)));
+    TrackedView view(slice, spline, wanted / std::sqrt(slice.weight));
     if (view.energy > 0) views_.push_back(std::move(view));
   }
 }

@@ -10,6 +10,7 @@
 #include "brdf/parametric_brdf.h"
 #include "brdf/scattered_brdf.h"
 #include "model/order_curve.h"
+#include "model/scene_record.h"
 
 namespace velour {
 
@@ -44,6 +45,8 @@ struct Model {
   ModelBody body;
   FitRecord fit;
   SourceRecord source;
+  /// Of a model that was reduced to what scenes need: its views are those of the body.
+  std::optional<SceneRecord> scene = std::nullopt;
 };
 
 /// "scattered", "parametric".

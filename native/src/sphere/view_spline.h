@@ -1,12 +1,15 @@
 // Quadratic B-splines over view directions: how parameters vary smoothly with the view.
 //
 // The view is placed in the unit disk at radius r = theta_v / (pi / 2) and its own azimuth. Isotropic: one radius of
-// that disk, mirrored at its centre; otherwise a square grid over the disk, which has no seam and no pole.
+// that disk, mirrored at its centre; otherwise a square grid over the disk, which has no seam and no pole. A spline of
+// a range of views covers the part of the radius, or of the disk about its centre, that the range takes; views outside
+// have the value of the range's nearest.
 #pragma once
 
 #include <algorithm>
 
 #include "sphere/vec.h"
+#include "sphere/view_range.h"
 
 namespace velour {
 
@@ -40,11 +43,18 @@ using ViewTaps = ViewTapsOf<double>;
 class ViewSpline {
  public:
   static constexpr int kMaxCells = 64;
-  ViewSpline(bool isotropic, int cells) : isotropic_(isotropic), cells_(cells) {}
+  ViewSpline(bool isotropic, int cells, const ViewRange& views = {})
+      : isotropic_(isotropic),
+        mirrored_(isotropic && views.begin <= 0),
+        cells_(cells),
+        begin_(isotropic ? views.first() : 0.0),
+        per_radian_(1 / (views.last() - begin_)) {}
 
   bool isotropic() const { return isotropic_; }
   int cells() const { return cells_; }
-  int node_count() const { return isotropic_ ? cells_ + 1 : (cells_ + 2) * (cells_ + 2); }
+  /// Along the radius, or along a side of the square.
+  int side() const { return cells_ + (mirrored_ ? 1 : 2); }
+  int node_count() const { return isotropic_ ? side() : side() * side(); }
   /// Of unit `wv`, on or above the horizon.
   ViewTaps at(const Vec3d& wv) const { return at(polar_view(wv)); }
   /// The same in any precision: fits want double, renderers float.
@@ -65,24 +75,27 @@ class ViewSpline {
     }
   };
 
-  bool isotropic_;
+  bool isotropic_, mirrored_;
   int cells_;
+  double begin_, per_radian_;
 };
 
 template <class T>
 ViewTapsOf<T> ViewSpline::at(const PolarView<T>& view) const {
   ViewTapsOf<T> taps;
-  const T r = std::min(view.theta * static_cast<T>(2 / kPiD), T(1)), size = static_cast<T>(cells_);
+  const T along = (view.theta - static_cast<T>(begin_)) * static_cast<T>(per_radian_);
+  const T r = std::clamp(along, T(0), T(1)), size = static_cast<T>(cells_);
   if (isotropic_) {
     const CellWeights<T> c(r * size, cells_);
-    // The node before the first is the first's own mirror image.
-    if (c.cell == 0) {
+    const int first = c.cell - (mirrored_ ? 1 : 0);
+    // Where the radius begins at the normal, the node before the first is the first's own mirror image.
+    if (first < 0) {
       taps.add(0, c.weight[0] + c.weight[1], c.weight[1] - c.weight[0]);
     } else {
-      taps.add(c.cell - 1, c.weight[0], c.weight[0]);
-      taps.add(c.cell, c.weight[1], c.weight[1]);
+      taps.add(first, c.weight[0], c.weight[0]);
+      taps.add(first + 1, c.weight[1], c.weight[1]);
     }
-    taps.add(c.cell + 1, c.weight[2], c.weight[2]);
+    taps.add(first + 2, c.weight[2], c.weight[2]);
     return taps;
   }
   const T half_size = size / 2;
@@ -90,7 +103,7 @@ ViewTapsOf<T> ViewSpline::at(const PolarView<T>& view) const {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const T weight = y.weight[i] * x.weight[j];
-      taps.add((y.cell + i) * (cells_ + 2) + x.cell + j, weight, weight);
+      taps.add((y.cell + i) * side() + x.cell + j, weight, weight);
     }
   }
   return taps;

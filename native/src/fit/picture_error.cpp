@@ -1,0 +1,185 @@
+#include "fit/picture_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <Eigen/Cholesky>
+#include <glm/gtc/packing.hpp>
+
+#include "brdf/parametric_limits.h"
+#include "fit/parallel.h"
+
+namespace velour {
+namespace {
+
+/// f of `lobes` (of brdf/parametric_brdf.h at wv).
+Vec3d value_of(const std::vector<WarpedLobe>& lobes, const Vec3& wl, const Vec3& wv) {
+  Vec3d f(0);
+  for (const WarpedLobe& lobe : lobes) f += lobe.coefficient * warped_kernel(lobe, Vec3d(wl), Vec3d(wv));
+  return f;
+}
+
+/// `f` of the measurement at a hit's terms, as it is rendered: no channel below 0. `stand_in` where it is silent.
+void measure_hit(const Measurement& measurement, const ParametricBrdf& stand_in, const ObservedHit& hit,
+                 std::span<const Vec3> wl, Vec3d* out) {
+  std::vector<Rgb> f(wl.size());
+  std::vector<uint8_t> valid(wl.size());
+  measurement.eval(hit.wv, wl, f, valid);
+  const std::vector<WarpedLobe> lobes = lobes_at(stand_in, Vec3d(hit.wv));
+  for (size_t i = 0; i < wl.size(); ++i)
+    out[i] = valid[i] ? Vec3d(glm::max(f[i], Rgb(0))) : value_of(lobes, wl[i], hit.wv);
+}
+
+/// At one hit and for each half of its light: what each lobe sends to the viewer, and the error of their sum.
+struct HitSlopes {
+  ViewTaps taps;
+  std::vector<Vec3d> lobe[2];
+  Vec3d error[2] = {Vec3d(0), Vec3d(0)};
+};
+
+HitSlopes hit_slopes(const SceneObservation& observation, const ObservedHit& hit, const ParametricBrdf& model,
+                     const std::vector<Vec3d>& measured) {
+  const std::vector<WarpedLobe> lobes = lobes_at(model, Vec3d(hit.wv));
+  HitSlopes out;
+  out.taps = model.spline().at(Vec3d(hit.wv));
+  for (auto& half : out.lobe) half.assign(lobes.size(), Vec3d(0));
+  for (uint32_t i = hit.first; i < hit.last; ++i) {
+    const int half = i < hit.middle ? 0 : 1;
+    const Vec3d light(observation.light[i]);
+    out.error[half] -= light * measured[i];
+    for (size_t j = 0; j < lobes.size(); ++j) {
+      const Vec3d sent =
+          light * lobes[j].coefficient * warped_kernel(lobes[j], Vec3d(observation.wl[i]), Vec3d(hit.wv));
+      out.lobe[half][j] += sent;
+      out.error[half] += sent;
+    }
+  }
+  return out;
+}
+
+/// Normal equations of one channel by the logarithms of its coefficients, [node][lobe].
+class ColorNormal {
+ public:
+  explicit ColorNormal(size_t unknowns)
+      : matrix_(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(unknowns), static_cast<Eigen::Index>(unknowns))),
+        gradient_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns))) {}
+
+  void add(const HitSlopes& hit, size_t lobes, int c, double scale) {
+    // Slopes by coefficient: of both halves together, and of each against the other's error.
+    const auto count = static_cast<Eigen::Index>(hit.taps.count) * static_cast<Eigen::Index>(lobes);
+    Eigen::VectorXd both(count), crossed(count);
+    std::vector<Eigen::Index> place;
+    for (int t = 0; t < hit.taps.count; ++t) {
+      for (size_t j = 0; j < lobes; ++j) {
+        const auto row = static_cast<Eigen::Index>(place.size());
+        const double weight = hit.taps.weight[t], a = hit.lobe[0][j][c], b = hit.lobe[1][j][c];
+        both[row] = 0.5 * weight * (a + b);
+        crossed[row] = 0.5 * weight * (a * hit.error[1][c] + b * hit.error[0][c]);
+        place.push_back(static_cast<Eigen::Index>(static_cast<size_t>(hit.taps.node[t]) * lobes + j));
+      }
+    }
+    for (Eigen::Index r = 0; r < count; ++r) {
+      gradient_[place[static_cast<size_t>(r)]] += scale * crossed[r];
+      for (Eigen::Index s = 0; s < count; ++s) {
+        matrix_(place[static_cast<size_t>(r)], place[static_cast<size_t>(s)]) += scale * both[r] * both[s];
+      }
+    }
+  }
+
+  /// `ridge`: of the mean diagonal.
+  Eigen::VectorXd solve(double ridge) const {
+    const double mean = matrix_.trace() / static_cast<double>(std::max<Eigen::Index>(matrix_.rows(), 1));
+    Eigen::MatrixXd held = matrix_;
+    held.diagonal().array() += ridge * mean + 1e-30;
+    return -held.ldlt().solve(gradient_).cwiseMax(-1.0).cwiseMin(1.0);
+  }
+
+ private:
+  Eigen::MatrixXd matrix_;
+  Eigen::VectorXd gradient_;
+};
+
+}  // namespace
+
+PictureError::PictureError(const Measurement& measurement, const ParametricBrdf& stand_in,
+                           const SceneObservation& observation, int threads, const Progress& progress)
+    : observation_(observation), threads_(threads), progress_(progress), measured_(observation.wl.size()) {
+  const auto& hits = observation.hits;
+  std::vector<Vec3d> radiance(hits.size(), Vec3d(0));
+  parallel_pieces(hits.size(), threads, progress, [&](size_t h) {
+    const ObservedHit& hit = hits[h];
+    const std::span<const Vec3> wl(observation.wl.data() + hit.first, hit.last - hit.first);
+    measure_hit(measurement, stand_in, hit, wl, measured_.data() + hit.first);
+    for (uint32_t i = hit.first; i < hit.last; ++i) radiance[h] += 0.5 * measured_[i] * Vec3d(observation.light[i]);
+  });
+  Vec3d mean(0);
+  for (const Vec3d& r : radiance) mean += r / static_cast<double>(radiance.size());
+  for (const Vec3d& r : radiance) scale_.push_back(1.0 / (3.0 * (r * r + 0.01 * mean * mean + 1e-30)));
+}
+
+std::vector<double> PictureError::shares(const ParametricBrdf& model) const {
+  std::vector<double> out(observation_.hits.size());
+  parallel_pieces(out.size(), threads_, progress_, [&](size_t h) {
+    const ObservedHit& hit = observation_.hits[h];
+    const std::vector<WarpedLobe> lobes = lobes_at(model, Vec3d(hit.wv));
+    Vec3d error[2] = {Vec3d(0), Vec3d(0)};
+    for (uint32_t i = hit.first; i < hit.last; ++i) {
+      const Vec3d difference = value_of(lobes, observation_.wl[i], hit.wv) - measured_[i];
+      error[i < hit.middle ? 0 : 1] += difference * Vec3d(observation_.light[i]);
+    }
+    out[h] = glm::dot(error[0] * error[1], scale_[h]);
+  });
+  return out;
+}
+
+void PictureError::refine_colors(ParametricBrdf& model) const {
+  constexpr int kSteps = 3;
+  constexpr double kRidges[] = {1e-4, 1e-2, 1};  // of the mean diagonal
+  double error = estimate(shares(model)).relmse;
+  for (int i = 0; i < kSteps; ++i) {
+    bool better = false;
+    for (const double ridge : kRidges) {
+      ParametricBrdf trial = model;
+      step_colors(trial, ridge);
+      const double trial_error = estimate(shares(trial)).relmse;
+      better = trial_error < error;
+      if (!better) continue;
+      error = trial_error;
+      model = std::move(trial);
+      break;
+    }
+    if (!better) return;
+  }
+}
+
+void PictureError::step_colors(ParametricBrdf& model, double ridge) const {
+  using P = ParametricBrdf;
+  const auto lobe_count = static_cast<size_t>(model.lobe_count());
+  std::vector<HitSlopes> slopes(observation_.hits.size());
+  parallel_pieces(slopes.size(), threads_, progress_,
+                  [&](size_t h) { slopes[h] = hit_slopes(observation_, observation_.hits[h], model, measured_); });
+  const auto nodes = static_cast<size_t>(model.spline().node_count());
+  for (int c = 0; c < 3; ++c) {
+    ColorNormal normal(nodes * lobe_count);
+    for (size_t h = 0; h < slopes.size(); ++h) normal.add(slopes[h], lobe_count, c, scale_[h][c]);
+    const Eigen::VectorXd step = normal.solve(ridge);
+    for (size_t k = 0; k < nodes; ++k) {
+      for (size_t j = 0; j < lobe_count; ++j) {
+        const int parameter = P::kLogRed + c;
+        const ParameterRange range = parameter_range(parameter);
+        float& value = model.control[model.index(static_cast<int>(k), parameter, static_cast<int>(j))];
+        const auto moved = value + static_cast<float>(step[static_cast<Eigen::Index>(k * lobe_count + j)]);
+        value = glm::unpackHalf1x16(glm::packHalf1x16(std::clamp(moved, range.least, range.most)));
+      }
+    }
+  }
+}
+
+PictureErrorEstimate PictureError::estimate(const std::vector<double>& shares) {
+  const auto n = static_cast<double>(shares.size());
+  double sum = 0, squares = 0;
+  for (const double s : shares) sum += s, squares += s * s;
+  const double mean = sum / std::max(n, 1.0);
+  return {mean, std::sqrt(std::max(squares / std::max(n, 1.0) - mean * mean, 0.0) / std::max(n - 1, 1.0))};
+}
+
+}  // namespace velour

@@ -1,0 +1,180 @@
+#include "fit/scene_fit.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "fit/light_importance.h"
+#include "fit/parametric_fit.h"
+#include "fit/picture_error.h"
+
+namespace velour {
+namespace {
+
+constexpr int kCells[] = {1, 2, 3, 4};
+constexpr size_t kLeastViews = 4;
+// A view that was hardly seen keeps this share of the mean view's weight.
+constexpr double kLeastViewWeight = 0.05;
+// The pictures decide how many lobes are enough, so views are pushed beyond any tolerance.
+constexpr double kGoalShare = 0.1;
+
+// Pictures may err that much more, in relmse.
+constexpr double kSlack = 0.05;
+
+double polar_angle(const Vec3& w) { return std::acos(std::clamp(static_cast<double>(w.z), -1.0, 1.0)); }
+
+/// The weight of the views within a degree and a half of `theta`.
+double seen_weight(const SceneDomain& domain, double theta) {
+  const int bin = static_cast<int>(theta / (kPiD / 2) * SceneDomain::kViewBins);
+  double sum = 0;
+  for (int i = bin - 1; i <= bin + 1; ++i) sum += domain.view[static_cast<size_t>(std::clamp(i, 0, 89))];
+  return sum;
+}
+
+/// The slices within the range, or the nearest few to it, weighted as they are seen and lit.
+std::vector<MeasuredSlice> seen_slices(std::vector<MeasuredSlice> slices, const ViewRange& range, bool isotropic,
+                                       const SceneObservation& observation) {
+  const auto outside = [&range](const MeasuredSlice& s) {
+    const double theta = polar_angle(s.wv);
+    return std::max({range.first() - theta, theta - range.last(), 0.0});
+  };
+  std::stable_sort(slices.begin(), slices.end(), [&](const auto& a, const auto& b) { return outside(a) < outside(b); });
+  size_t kept = 0;
+  while (kept < slices.size() && (kept < kLeastViews || outside(slices[kept]) <= 0)) ++kept;
+  slices.erase(slices.begin() + static_cast<std::ptrdiff_t>(kept), slices.end());
+
+  const LightImportance importance(observation, isotropic);
+  double mean = 0;
+  for (MeasuredSlice& s : slices) {
+    s.weight = seen_weight(observation.domain, polar_angle(s.wv));
+    mean += s.weight / static_cast<double>(slices.size());
+    if (s.energy > 0) continue;  // bins that share their energy
+    for (SliceSample& sample : s.samples) sample.weight *= static_cast<float>(importance(s.wv, sample.wl));
+  }
+  for (MeasuredSlice& s : slices) s.weight = mean > 0 ? std::max(s.weight / mean, kLeastViewWeight) : 1;
+  return slices;
+}
+
+/// Looks for the smallest model whose pictures are no worse than the full one's.
+class SceneSearch {
+ public:
+  SceneSearch(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& tracked, const PictureError& judge,
+              const ParametricBrdf& full, Progress& progress)
+      : slices_(slices), tracked_(tracked), judge_(judge), progress_(progress), full_shares_(judge.shares(full)) {
+    tracked_.tolerance *= kGoalShare;
+    least_bytes_ = full.parameter_bytes();
+  }
+
+  void run() {
+    const int most = tracked_.cells;
+    int tried = 0;
+    for (const int cells : kCells) {
+      if (cells > most) break;
+      tracked_.cells = cells;
+      try_lobes();
+      progress_.update(static_cast<double>(++tried) / static_cast<double>(std::size(kCells)));
+    }
+  }
+
+  /// Nothing when no smaller model will do.
+  const std::optional<TrackedFit>& best() const { return best_; }
+  const std::vector<double>& full_shares() const { return full_shares_; }
+
+ private:
+  uint64_t bytes_of(int lobes) const {
+    ParametricBrdf brdf;
+    brdf.isotropic = tracked_.isotropic;
+    brdf.cells = tracked_.cells;
+    brdf.views = tracked_.views;
+    brdf.space.resize(static_cast<size_t>(lobes));
+    return ParametricBrdf::parameter_bytes(brdf.index(brdf.spline().node_count(), 0, 0), brdf.space.size());
+  }
+
+  /// The fewest lobes that are enough, if that makes a smaller model than the best so far. From below: small fits are
+  /// fast, and a fit that ended with fewer lobes than it might have had ends the same with more.
+  void try_lobes() {
+    for (int lobes = 1; lobes <= ParametricBrdf::kMaxLobes && bytes_of(lobes) < least_bytes_; lobes += 1 + lobes / 5) {
+      if (enough(lobes) || tried_lobes_ < lobes) return;
+    }
+  }
+
+  /// Whether a fit of at most `lobes` makes pictures as good as the full model's; then it is the best so far.
+  bool enough(int lobes) {
+    tracked_.max_lobes = lobes;
+    TrackedFit fit = fit_tracked(slices_, tracked_, progress_);
+    tried_lobes_ = fit.brdf.lobe_count();
+    judge_.refine_colors(fit.brdf);
+    // Of this model beyond the full one, hit by hit: what both have in common, and its noise, cancels.
+    std::vector<double> excess = judge_.shares(fit.brdf);
+    for (size_t i = 0; i < excess.size(); ++i) excess[i] -= (1 + kSlack) * full_shares_[i];
+    const PictureErrorEstimate worse = PictureError::estimate(excess);
+    if (!(worse.relmse + worse.standard_error <= 0)) return false;
+    least_bytes_ = fit.brdf.parameter_bytes();
+    best_ = std::move(fit);
+    return true;
+  }
+
+  const std::vector<MeasuredSlice>& slices_;
+  TrackedFitOptions tracked_;
+  const PictureError& judge_;
+  Progress& progress_;
+  std::vector<double> full_shares_;
+  uint64_t least_bytes_;
+  int tried_lobes_ = 0;  // that the last fit came to
+  std::optional<TrackedFit> best_;
+};
+
+Model full_model(const Measurement& measurement, FitOptions options, Progress& progress) {
+  if (options.full_model) return *options.full_model;
+  options.for_scene = nullptr;
+  return fit_parametric(measurement, options, progress);
+}
+
+const SceneObservation& checked(const FitOptions& options) {
+  if (!options.for_scene->hits.empty()) return *options.for_scene;
+  throw Error(Status::invalid_argument,
+              "The scene shows nothing of the material: no camera ray met it. Check camera, visibility and frames, or "
+              "fit without a scene.");
+}
+
+const ParametricBrdf& parametric_body(const Model& model) {
+  if (const auto* brdf = std::get_if<ParametricBrdf>(&model.body); brdf && !model.scene) return *brdf;
+  throw Error(Status::invalid_argument,
+              "The full model of a fit for a scene must be parametric and for all views; "
+              "this one is " +
+                  std::string(model.scene ? "itself reduced" : model_kind(model)) + ".");
+}
+
+}  // namespace
+
+Model fit_for_scene(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const SceneObservation& observation = checked(options);
+  const Model full = full_model(measurement, options, progress);
+  const ParametricBrdf& full_brdf = parametric_body(full);
+  progress.stage("scene", 0.5, 0.95);
+  const ViewRange range = view_range(observation.domain);
+  const MeasuredSlices measured = parametric_slices(measurement, options, progress);
+  const std::vector<MeasuredSlice> slices = seen_slices(measured.slices, range, measurement.isotropic(), observation);
+  const PictureError judge(measurement, full_brdf, observation, options.threads, progress);
+  TrackedFitOptions tracked = tracked_options(measurement, options);
+  tracked.views = range;
+  SceneSearch search(slices, tracked, judge, full_brdf, progress);
+  search.run();
+
+  progress.stage("checking", 0.95, 1.0);
+  Model model = full;
+  if (search.best()) {
+    model = parametric_model(measurement, *search.best(), options, progress);
+  } else {
+    model.fit.warnings.push_back("the scene needs all of the full model: nothing smaller makes pictures as good");
+  }
+  const auto error = [](const std::vector<double>& shares) { return PictureError::estimate(shares).relmse; };
+  model.scene =
+      SceneRecord{observation.domain, std::max(0.0, error(judge.shares(std::get<ParametricBrdf>(model.body)))),
+                  std::max(0.0, error(search.full_shares())), full_brdf.parameter_bytes()};
+  model.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return model;
+}
+
+}  // namespace velour
