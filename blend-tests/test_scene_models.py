@@ -97,13 +97,13 @@ class Fits(SceneModelTest):
             self.assertEqual(bpy.ops.velour.fit_for_scene(), {"FINISHED"})
         self.assertEqual(self.node.image, full)
         self.assertTrue(self.settings.use_scene_model)
-        record = self._info(self.settings.scene_model)["scene"]
-        self.assertLess(record["parameter_bytes"], record["full_parameter_bytes"])
-        self.assertLess(record["parameter_bytes"], self._info(full)["parameter_bytes"])
-        self.assertLessEqual(record["picture_error"], record["full_picture_error"])
-        self.assertGreater(record["view_begin_degrees"], 25)
-        self.assertLess(record["view_end_degrees"], 55)
-        self.assertEqual(record["frames"], 1)
+        info = self._info(self.settings.scene_model)
+        self.assertLess(info["parameter_bytes"], self._info(full)["parameter_bytes"])
+        self.assertEqual(info["scene"]["full_parameter_bytes"], self._info(full)["parameter_bytes"])
+        self.assertLessEqual(info["scene"]["picture_error"], info["scene"]["full_picture_error"])
+        self.assertGreater(info["view_range"][0], 25)
+        self.assertLess(info["view_range"][1], 55)
+        self.assertEqual(info["scene"]["frames"], 1)
         self.assertEqual((self.scene.frame_current, self.scene.frame_subframe), (7, 0.25))
         self.assertEqual([scene.name for scene in bpy.data.scenes], ["Scene"])
         self.assertIn("looked at frame 1 (1/1)", said.getvalue())
@@ -128,26 +128,26 @@ class Fits(SceneModelTest):
         self.scene.frame_set(3)
         location = self.camera.location.copy()
         bpy.ops.velour.fit_for_scene()
-        record = self._info(self.settings.scene_model)["scene"]
-        self.assertEqual(record["frames"], 6)
-        self.assertLess(record["view_begin_degrees"], math.degrees(0.4))
-        self.assertGreater(record["view_end_degrees"], math.degrees(1.0))
+        info = self._info(self.settings.scene_model)
+        self.assertEqual(info["scene"]["frames"], 6)
+        self.assertLess(info["view_range"][0], math.degrees(0.4))
+        self.assertGreater(info["view_range"][1], math.degrees(1.0))
         self.assertEqual(self.camera.location, location, "animated values stay those of the current frame")
         bpy.ops.velour.fit_for_scene(current_frame=True)
-        record = self._info(self.settings.scene_model)["scene"]
-        self.assertEqual(record["frames"], 2)
-        self.assertGreater(record["view_begin_degrees"], math.degrees(0.4))
+        info = self._info(self.settings.scene_model)
+        self.assertEqual(info["scene"]["frames"], 2)
+        self.assertGreater(info["view_range"][0], math.degrees(0.4))
 
     def test_covers_what_only_renders_show(self):
         """Another plane, seen flat, hidden in the viewport but not in renders."""
         bpy.ops.velour.fit_for_scene()
-        narrow = self._info(self.settings.scene_model)["scene"]["view_end_degrees"]
+        narrow = self._info(self.settings.scene_model)["view_range"][1]
         other = scenes.add_plane(bpy.data.materials["Paint"], size=1.0)
         other.rotation_euler.x = math.radians(-30)
         other.location.z = 0.4
         other.hide_viewport = True
         bpy.ops.velour.fit_for_scene(material="Paint")
-        self.assertGreater(self._info(self.settings.scene_model)["scene"]["view_end_degrees"], narrow + 10)
+        self.assertGreater(self._info(self.settings.scene_model)["view_range"][1], narrow + 10)
 
     def test_covers_instances(self):
         """An empty that instances a collection outside of the scene."""
@@ -161,7 +161,7 @@ class Fits(SceneModelTest):
         empty.location.z = 0.4
         self.scene.collection.objects.link(empty)
         bpy.ops.velour.fit_for_scene(material="Paint")
-        self.assertGreater(self._info(self.settings.scene_model)["scene"]["view_end_degrees"], 60)
+        self.assertGreater(self._info(self.settings.scene_model)["view_range"][1], 60)
 
     def test_without_a_window(self):
         """`blender -b` with a script: the report is printed, the .blend keeps both models."""
@@ -176,8 +176,8 @@ class Fits(SceneModelTest):
         self.assertEqual(child.returncode, 0, child.stdout)
         self.assertRegex(child.stdout, r"Fitted 'Paint' for scene 'Scene', 1 frames, in .* picture error")
         bpy.ops.wm.open_mainfile(filepath=str(blend))
-        record = self._info(self.settings.scene_model)["scene"]
-        self.assertLess(record["parameter_bytes"], self._info(self.node.image)["parameter_bytes"])
+        info = self._info(self.settings.scene_model)
+        self.assertLess(info["parameter_bytes"], self._info(self.node.image)["parameter_bytes"])
 
     def test_save_and_load(self):
         bpy.ops.velour.fit_for_scene()

@@ -115,7 +115,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             self._work.keep(model)
         for warning in info["warnings"]:
             self.report({"WARNING"}, f"Material '{self._work.material_name}': {warning}")
-        self.report({"INFO"}, _report(self._work, info["scene"], seconds))
+        self.report({"INFO"}, _report(self._work, info, seconds))
         self._close()
         return {"FINISHED"}
 
@@ -147,8 +147,9 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             )
 
 
-def _report(work, scene, seconds):
-    full, own = scene["full_parameter_bytes"], scene["parameter_bytes"]
+def _report(work, info, seconds):
+    scene, own = info["scene"], info["parameter_bytes"]
+    full = scene["full_parameter_bytes"]
     return (
         f"Fitted '{work.material_name}' for scene '{work.scene_name}', {len(work.frames)} frames, in"
         f" {seconds:.1f} s: {own} bytes of parameters, the full model has {full} ({full / own:.1f} times as"

@@ -4,7 +4,7 @@ import bpy
 
 from ..export import ExportError, Notes, export_with_materials, visitor
 from ..export.camera import final_view
-from ..export.files import measurement_path
+from ..export.files import measurement_path, read_model
 from ..export.nodes import velour_node
 from ..export.observe import observe
 from ..native import Measurement, Observation, fit_job
@@ -29,7 +29,7 @@ class SceneFit:
         if others:
             raise SharedMaterialError(
                 f"Material '{material.name}' is also used by {_scenes(others)}, for which the model would not"
-                " be fitted; make the material single-user, or ask for it with shared=True."
+                " be fitted. Make the material single-user, or fit it even if shared (shared=True)."
             )
         self.material_name, self.scene_name = material.name, scene.name
         self.frames = [scene.frame_current] if current_frame else frame_range(scene)
@@ -51,15 +51,18 @@ class SceneFit:
                 f"Material '{self.material_name}' is not seen in {self._range()} of scene"
                 f" '{self.scene_name}'; nothing tells what its model is needed for."
             )
-        node = self.node()
+        node, owner = self.node(), f"Material '{self.material_name}'"
         with (
-            measurement_path(node.velour.measurement, f"Material '{self.material_name}'") as path,
+            measurement_path(node.velour.measurement, owner) as path,
             Measurement.load(path) as measurement,
+            read_model(node.image, owner) as full,
         ):
             return fit_job(
                 measurement,
                 model="parametric",
                 for_scene=self.observation,
+                # One of another kind is no measure of a parametric one: it is fitted first.
+                full_model=full if full.info()["model"] == "parametric" else None,
                 tolerance=node.velour.tolerance,
                 max_lobes=node.velour.max_lobes,
                 seed=node.velour.seed,

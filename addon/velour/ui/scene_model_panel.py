@@ -41,17 +41,17 @@ def _draw_model(context, layout, info):
         draw_sentence(context, layout, info, icon="ERROR")
         layout.operator(VELOUR_OT_accept_file.bl_idname)
         return
-    if info["scene"] is None:
+    if info.get("scene") is None:
         sentence = "This model was not fitted for a scene; every frame takes it."
         draw_sentence(context, layout, sentence, icon="INFO")
         return
-    draw_rows(layout, _rows(info["scene"]))
+    draw_rows(layout, _rows(info))
     layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT").for_scene = True
 
 
-def _rows(scene):
-    own, full = scene["parameter_bytes"], scene["full_parameter_bytes"]
-    begin, end = scene["view_begin_degrees"], scene["view_end_degrees"]
+def _rows(info):
+    scene, own = info["scene"], info["parameter_bytes"]
+    full, (begin, end) = scene["full_parameter_bytes"], info["view_range"]
     return (
         ("Parameters", f"{own} bytes, full model {full}: {full / own:.1f} times"),
         ("Picture error", f"{scene['picture_error']:.3g}, full model {scene['full_picture_error']:.3g}"),
