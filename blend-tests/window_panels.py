@@ -222,7 +222,8 @@ def scene_fit_and_cancel(folder):
     _start_scene_fit(last_frame=200)
     yield 1.5
     state = bpy.context.window_manager.velour
-    assert state.running and state.stage.startswith("frame "), state.stage
+    assert state.running
+    assert state.stage.startswith("frame "), state.stage
     _screenshot(folder, "scene-fit-running")
     bpy.ops.velour.cancel_fit()
     yield 1.0
