@@ -94,7 +94,8 @@ VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_
 /* JSON: kind "model", model "scattered" or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes, relative_l2,
  * by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds, seed,
  * all_data, warnings, order (as of a fit), source {name, format, sha256}. Scattered: also views, max_lobes_per_view.
- * Parametric: also cells, spaces {light, half}, the lobes of each. */
+ * Parametric: also cells, view_range [from, to] in degrees, spaces {light, half}, the lobes of each, and scene (as of
+ * a fit) when it was reduced. */
 VLR_API vlr_status vlr_model_info_json(vlr_model* model, const char** json);
 /* As vlr_measurement_eval; also the density of the model's own sampler when `pdf` [count] is not NULL. */
 VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t count, const float* wl, float* f,
@@ -162,12 +163,18 @@ typedef struct vlr_fit_options {
   int32_t align_views; /* scattered, 1: turn neighbouring slices onto the query's mirror direction before mixing */
   int32_t model;       /* VLR_MODEL_* */
   int32_t pad;
+  /* Reduce a parametric model to what scenes show of the material: fewer lobes over the views seen, as long as pictures
+   * are no worse than those of the full model. NULL: for any scene. */
+  const vlr_observation* for_scene;
+  const vlr_model* full_model; /* with for_scene: the full model; NULL: it is fitted first */
 } vlr_fit_options;
 VLR_API void vlr_fit_options_init(vlr_fit_options* options);
 /* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, reciprocity,
  * measured_reciprocity, warnings, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the error
  * falls as the model grows. `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the number
- * of the point that the model is, or null. */
+ * of the point that the model is, or null. Parametric: also view_range [from, to], the degrees that the model is for.
+ * With for_scene also scene {frames, light_density, hash, picture_error, full_picture_error, full_parameter_bytes}:
+ * errors are the relmse at the observed hits against the measurement, of this model and of the full one. */
 VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options,
                                       vlr_job** out);
 
@@ -370,6 +377,9 @@ VLR_API void vlr_observe_options_init(vlr_observe_options* options);
  * vlr_observation_info_json, and seconds. */
 VLR_API vlr_status vlr_observe_create_job(const vlr_scene* scene, uint32_t material, const vlr_observe_options* options,
                                           vlr_job** out);
+/* Share of the weight of the material in `frame` that lies outside of what a reduced model was made for: seen at other
+ * views, or under more concentrated light. 0 for a model of any scene. */
+VLR_API vlr_status vlr_model_out_of_domain(const vlr_model* model, const vlr_observation* frame, double* share);
 /* The observation of a finished job; a new handle. */
 VLR_API vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observation** out);
 

@@ -48,6 +48,8 @@ FitOptions converted(const vlr_fit_options& given) {
   options.threads = static_cast<int>(given.threads);
   options.all_data = given.all_data != 0;
   options.align_views = given.align_views != 0;
+  if (given.for_scene) options.for_scene = given.for_scene->observation;
+  if (given.full_model) options.full_model = given.full_model->model;
   return options;
 }
 

@@ -6,6 +6,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/reports.h"
+#include "domain/out_of_domain.h"
 #include "render/scene_observer.h"
 
 using namespace velour;
@@ -113,5 +114,16 @@ vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observation** out)
     const std::lock_guard lock(job->output->mutex);
     if (!job->output->observation) throw Error(Status::invalid_state, "This job makes no observation.");
     *out = new_handle(job->output->observation);
+  });
+}
+
+vlr_status vlr_model_out_of_domain(const vlr_model* model, const vlr_observation* frame, double* share) {
+  return guard([&] {
+    require(model, "model");
+    require(frame, "frame");
+    require(share, "share");
+    const Model& reduced = *model->model;
+    const auto* brdf = std::get_if<ParametricBrdf>(&reduced.body);
+    *share = reduced.scene && brdf ? out_of_domain(reduced.scene->domain, brdf->views, *frame->observation) : 0.0;
   });
 }

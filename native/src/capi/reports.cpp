@@ -75,6 +75,19 @@ Json size_json(const Model& model, uint64_t file_bytes) {
       model.body);
 }
 
+Json views_json(const ViewRange& views) { return {views.begin, views.end}; }
+
+/// Of a model that was reduced to what scenes need.
+Json reduced_json(const SceneRecord& scene) {
+  return {
+      {"frames", scene.domain.frames},
+      {"light_density", std::isfinite(scene.domain.light_density) ? Json(scene.domain.light_density) : Json(nullptr)},
+      {"hash", hash_text(scene.domain.hash)},
+      {"picture_error", scene.picture_error},
+      {"full_picture_error", scene.full_picture_error},
+      {"full_parameter_bytes", scene.full_parameter_bytes}};
+}
+
 /// What only one kind of model has to say.
 Json own_json(const ScatteredBrdf& brdf) {
   return {{"kernel", kernel_name(brdf.kernel)},
@@ -88,6 +101,7 @@ Json own_json(const ParametricBrdf& brdf) {
   return {{"kernel", kernel_name(Kernel::gaussian)},
           {"isotropic", brdf.isotropic},
           {"cells", brdf.cells},
+          {"view_range", views_json(brdf.views)},
           {"spaces", {{"light", brdf.lobe_count() - half}, {"half", half}}}};
 }
 
@@ -145,6 +159,7 @@ std::string model_json(const Model& model, uint64_t file_bytes) {
       {"warnings", fit.warnings},
       {"order", order_json(fit.order)},
       {"source", {{"name", model.source.name}, {"format", model.source.format}, {"sha256", model.source.sha256}}}});
+  if (model.scene) json["scene"] = reduced_json(*model.scene);
   return text(json);
 }
 
@@ -158,6 +173,8 @@ std::string fit_json(const Model& model, uint64_t file_bytes) {
                    {"measured_reciprocity", or_null(model.fit.measured_reciprocity)},
                    {"warnings", model.fit.warnings},
                    {"order", order_json(model.fit.order)}});
+  if (const auto* brdf = std::get_if<ParametricBrdf>(&model.body)) json["view_range"] = views_json(brdf->views);
+  if (model.scene) json["scene"] = reduced_json(*model.scene);
   return text(json);
 }
 
@@ -222,10 +239,7 @@ namespace {
 
 Json views_json(const SceneDomain& domain) {
   if (!(domain.weight() > 0.0)) return nullptr;
-  const ViewRange range = view_range(domain);
-  constexpr double kDegrees = 180.0 / kPiD;
-  // Whole degrees but for rounding.
-  return {std::round(range.begin * kDegrees), std::round(range.end * kDegrees)};
+  return views_json(view_range(domain));
 }
 
 Json own_json(const SceneObservation& observation) {

@@ -10,7 +10,7 @@ namespace velour {
 /// that never shows the material.
 ///
 /// The two parts are disjoint, so they add up. The first comes from the histogram of views, of all hits: one camera ray
-/// in 65,536 counts; a bin that the range cuts counts in proportion. The second comes from the kept hits, of which each
+/// in 65,536 counts. The second comes from the kept hits, of which each
 /// is an independent draw by weight: a true share p is found with the deviation sqrt(p (1 - p) / 1024), 0.1 % of the
 /// picture at p = 0.1 %. Of light that sharp on 0.1 % of the weight no hit tells in 36 frames of 100, on 0.5 % in one
 /// of 170.

@@ -9,6 +9,7 @@
 #include "model/fit_record_json.h"
 #include "model/parametric_file.h"
 #include "model/scattered_file.h"
+#include "model/scene_json.h"
 
 namespace velour {
 namespace {
@@ -16,6 +17,7 @@ namespace {
 constexpr char kFormatVersion[] = "1.1";
 constexpr int kMajorVersion = 1;
 constexpr char kKind[] = "model";
+constexpr char kScene[] = "velour.scene";
 constexpr uint64_t kMaxFileBytes = uint64_t{1} << 30;
 
 // One overload a kind of model.
@@ -63,6 +65,7 @@ std::vector<uint8_t> encode_model(const Model& model) {
                      {"velour.source.name", model.source.name},
                      {"velour.source.format", model.source.format},
                      {"velour.source.sha256", model.source.sha256}};
+  if (model.scene) file.attributes[kScene] = scene_record_json(*model.scene);
   std::visit([&](const auto& brdf) { write_body(brdf, file); }, model.body);
   return encode_tensors(file);
 }
@@ -81,6 +84,8 @@ Model decode_model(std::span<const uint8_t> bytes, const std::string& name) {
   model.fit = parse_fit_record(fields.attribute("velour.fit"), name + ": velour.fit");
   model.source = {fields.attribute_or_empty("velour.source.name"), fields.attribute_or_empty("velour.source.format"),
                   fields.attribute_or_empty("velour.source.sha256")};
+  const std::string scene = fields.attribute_or_empty(kScene);
+  if (!scene.empty()) model.scene = parse_scene_record(scene, name + ": " + kScene);
   return model;
 }
 

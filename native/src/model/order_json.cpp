@@ -16,14 +16,6 @@ using Json = nlohmann::ordered_json;
 constexpr size_t kMaxPoints = 1000;
 constexpr double kMaxWhole = 1e15;  // exact as a double
 
-double four_digits(double value) {
-  std::array<char, 32> text;
-  const auto written = std::to_chars(text.begin(), text.end(), value, std::chars_format::scientific, 3);
-  double rounded = value;
-  std::from_chars(text.begin(), written.ptr, rounded);
-  return rounded;
-}
-
 std::vector<double> column(const Json& json, const char* key, double most, const std::string& where) {
   const auto found = json.find(key);
   const auto fail = [&](const std::string& wanted) {
@@ -40,6 +32,14 @@ std::vector<double> column(const Json& json, const char* key, double most, const
 }
 
 }  // namespace
+
+double four_digits(double value) {
+  std::array<char, 32> text;
+  const auto written = std::to_chars(text.begin(), text.end(), value, std::chars_format::scientific, 3);
+  double rounded = value;
+  std::from_chars(text.begin(), written.ptr, rounded);
+  return rounded;
+}
 
 Json order_json(const OrderCurve& order) {
   Json json = {{"lobes", Json::array()},

@@ -8,6 +8,9 @@
 
 namespace velour {
 
+/// `value` with four digits.
+double four_digits(double value);
+
 /// {"lobes": [], "parameter_bytes": [], "worst": [], "relative_l2": [], "chosen": index or null}. Errors keep four
 /// digits: a model file stays small, and what is read and written again stays the same.
 nlohmann::ordered_json order_json(const OrderCurve& order);

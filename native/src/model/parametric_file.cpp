@@ -6,6 +6,8 @@ namespace velour {
 namespace {
 
 constexpr char kIsotropic[] = "velour.isotropic", kCells[] = "velour.cells";
+// Whole degrees; not there in models of all views.
+constexpr char kFirstView[] = "velour.first_view", kLastView[] = "velour.last_view";
 constexpr char kSpace[] = "lobes.space", kControl[] = "lobes.control", kNone[] = "lobes.none";
 
 std::vector<LobeSpace> read_spaces(const ModelFields& fields) {
@@ -52,6 +54,10 @@ void write_parametric(const ParametricBrdf& brdf, TensorFile& file) {
   file.attributes[kIsotropic] = boolean_text(brdf.isotropic);
   file.attributes[kCells] = std::to_string(brdf.cells);
   file.attributes["velour.units"] = "f in 1/sr, linear Rec. 709; natural logarithms; radians";
+  if (!brdf.views.whole()) {
+    file.attributes[kFirstView] = std::to_string(brdf.views.begin);
+    file.attributes[kLastView] = std::to_string(brdf.views.end);
+  }
   const auto lobes = static_cast<uint64_t>(brdf.lobe_count());
   if (lobes == 0) {  // a black model: OpenEXR has neither empty parts nor files without one
     file.tensors[kNone] = {{}, {0.0f}, true};
@@ -69,6 +75,10 @@ ParametricBrdf read_parametric(const ModelFields& fields) {
   ParametricBrdf brdf;
   brdf.isotropic = fields.boolean(kIsotropic);
   brdf.cells = fields.integer(kCells, 1, ViewSpline::kMaxCells);
+  if (!fields.attribute_or_empty(kFirstView).empty()) {
+    brdf.views.begin = fields.integer(kFirstView, 0, 89);
+    brdf.views.end = fields.integer(kLastView, brdf.views.begin + 1, 90);
+  }
   if (!fields.has(kSpace) && !fields.has(kControl)) {
     fields.tensor(kNone);
     return brdf;

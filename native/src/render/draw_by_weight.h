@@ -14,7 +14,7 @@ namespace velour {
 
 /// Every item receives the times of a Poisson process whose rate is its weight; the `count` earliest times of all stay,
 /// and the items to which they belong are the draws: the marks of superposed Poisson processes are independent, and
-/// proportional to the rates [Kin93, section 5.2]. (Keeping each item's first time alone would be the reservoir of
+/// proportional to the rates [Kin93 chapters 2 and 5]. (Keeping each item's first time alone would be the reservoir of
 /// [ES06]: draws without replacement, of which heavy items get less than their share.) The outcome depends on the items
 /// alone, not on their order, so parts may be drawn apart and merged.
 template <typename Item>

@@ -1,0 +1,103 @@
+#include "model/scene_json.h"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "domain/hash_text.h"
+#include "job/error.h"
+#include "model/order_json.h"
+
+namespace velour {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The bins from the first to the last that was seen.
+void write_views(const SceneDomain& domain, Json& json) {
+  size_t begin = 0, end = domain.view.size();
+  while (begin < end && domain.view[begin] == 0) ++begin;
+  while (end > begin && domain.view[end - 1] == 0) --end;
+  json["first_view"] = begin;
+  json["view_weights"] = Json::array();
+  for (size_t i = begin; i < end; ++i) json["view_weights"].push_back(four_digits(domain.view[i]));
+}
+
+/// Reads keys and names what is wrong with them; none may be missing.
+class Reader {
+ public:
+  Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}
+
+  double number(const char* key) const { return number_of(at(key), key); }
+  double number_or_infinite(const char* key) const {
+    return at(key).is_null() ? std::numeric_limits<double>::infinity() : number(key);
+  }
+  uint64_t whole(const char* key) const {
+    if (!at(key).is_number_unsigned()) fail(key, "a whole number");
+    return at(key).get<uint64_t>();
+  }
+  std::array<uint64_t, 4> hash(const char* key) const {
+    const auto parsed = at(key).is_string() ? parse_hash(at(key).get<std::string>()) : std::nullopt;
+    if (!parsed) fail(key, "64 hexadecimal digits");
+    return *parsed;
+  }
+  void views(SceneDomain& domain) const {
+    const uint64_t first = whole("first_view");
+    const Json& weights = at("view_weights");
+    if (!weights.is_array() || first > domain.view.size() || weights.size() > domain.view.size() - first) {
+      fail("view_weights", "a list of at most " + std::to_string(domain.view.size()) + " weights from 'first_view' on");
+    }
+    for (size_t i = 0; i < weights.size(); ++i) domain.view[first + i] = number_of(weights[i], "view_weights");
+  }
+
+ private:
+  const Json& at(const char* key) const {
+    const auto found = json_.find(key);
+    if (found == json_.end()) fail(key, "there");
+    return *found;
+  }
+  double number_of(const Json& v, const char* key) const {
+    if (!v.is_number() || !std::isfinite(v.get<double>()) || v.get<double>() < 0) fail(key, "a number of at least 0");
+    return v.get<double>();
+  }
+  [[noreturn]] void fail(const char* key, const std::string& wanted) const {
+    throw Error(Status::bad_data, where_ + ": '" + key + "' is not " + wanted + ".");
+  }
+
+  const Json& json_;
+  std::string where_;
+};
+
+}  // namespace
+
+std::string scene_record_json(const SceneRecord& record) {
+  const SceneDomain& domain = record.domain;
+  const bool finite = std::isfinite(domain.light_density);
+  Json json = {{"frames", domain.frames},
+               {"camera_rays", domain.camera_rays},
+               {"light_density", finite ? Json(domain.light_density) : Json(nullptr)},
+               {"hash", hash_text(domain.hash)},
+               {"picture_error", record.picture_error},
+               {"full_picture_error", record.full_picture_error},
+               {"full_parameter_bytes", record.full_parameter_bytes}};
+  write_views(domain, json);
+  return json.dump();
+}
+
+SceneRecord parse_scene_record(const std::string& text, const std::string& where) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object.");
+  const Reader reader(json, where);
+  SceneRecord record;
+  record.domain.frames = reader.whole("frames");
+  record.domain.camera_rays = reader.whole("camera_rays");
+  record.domain.light_density = reader.number_or_infinite("light_density");
+  record.domain.hash = reader.hash("hash");
+  reader.views(record.domain);
+  record.picture_error = reader.number("picture_error");
+  record.full_picture_error = reader.number("full_picture_error");
+  record.full_parameter_bytes = reader.whole("full_parameter_bytes");
+  return record;
+}
+
+}  // namespace velour

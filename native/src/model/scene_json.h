@@ -1,0 +1,16 @@
+// The scene record of a reduced model as the text of one attribute of its file.
+#pragma once
+
+#include <string>
+
+#include "model/scene_record.h"
+
+namespace velour {
+
+/// JSON. The weights of views keep four digits: they are kept to be looked at.
+std::string scene_record_json(const SceneRecord& record);
+
+/// Throws Error(bad_data) with `where` (file and attribute) and the key at fault.
+SceneRecord parse_scene_record(const std::string& text, const std::string& where);
+
+}  // namespace velour
