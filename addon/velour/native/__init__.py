@@ -2,9 +2,19 @@
 
 from . import images, library
 from .errors import LibraryError, Status, VelourError
-from .job import Job, JobState, compare_job, compare_peer_job, fit_job, microsurface_job, render_job
+from .job import (
+    Job,
+    JobState,
+    compare_job,
+    compare_peer_job,
+    fit_job,
+    microsurface_job,
+    observe_job,
+    render_job,
+)
 from .measurement import Measurement
 from .model import Model
+from .observation import Observation
 from .scene import Scene
 
 __all__ = [
@@ -13,6 +23,7 @@ __all__ = [
     "LibraryError",
     "Measurement",
     "Model",
+    "Observation",
     "Scene",
     "Status",
     "VelourError",
@@ -22,5 +33,6 @@ __all__ = [
     "images",
     "library",
     "microsurface_job",
+    "observe_job",
     "render_job",
 ]

@@ -18,6 +18,7 @@ from .errors import VelourError, refuse
 from .handle import Handle, choice, path_bytes, set_fields
 from .measurement import Measurement
 from .model import Model
+from .observation import Observation
 
 PASS_CHANNELS = {"Combined": 4, "Depth": 1, "Normal": 3, "Sample Count": 1}
 _SLICE_SECONDS = 0.1  # how long a signal (Ctrl-C) may have to wait for the interpreter
@@ -100,6 +101,10 @@ class Job(Handle):
         """The model of a finished fit."""
         return Model._create("vlr_job_result_model", self.pointer)
 
+    def result_observation(self) -> Observation:
+        """What a finished observation saw: one frame."""
+        return Observation._create("vlr_job_result_observation", self.pointer)
+
     def read_pass(self, name: str, out: np.ndarray | None = None) -> np.ndarray:
         """The film so far, also while the job runs: [height x width x channels] float32, row 0 at the bottom.
 
@@ -133,12 +138,15 @@ class Job(Handle):
 
 def fit_job(measurement: Measurement, **options) -> Job:
     """Options: model ("scattered", "parametric"), kernel (scattered: "gaussian", "abel-poisson"), tolerance,
-    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered). What is not given has the
+    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered); for_scene (an Observation: a
+    parametric model is reduced to it) with full_model (a Model; None: fitted first). What is not given has the
     library's default. Result: result_model()."""
     raw = _defaults(table.FitOptions, "vlr_fit_options_init")
     enums = {"model": table.MODELS, "kernel": table.KERNELS}
     for name in enums.keys() & options.keys():
         options[name] = choice(name, options[name], enums[name])
+    for name in {"for_scene", "full_model"} & options.keys():
+        options[name] = options[name].pointer if options[name] else None
     set_fields(raw, options)
     return Job._create("vlr_fit_create_job", measurement.pointer, ctypes.byref(raw))
 
@@ -164,6 +172,14 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
         options["base_albedo"] = small("base_albedo", options["base_albedo"], 3)
     set_fields(raw, options)
     return Job._create("vlr_microsurface_create_job", ctypes.byref(raw), path_bytes(path))
+
+
+def observe_job(scene, material: int, **options) -> Job:
+    """Looks at material number `material` of a committed scene. Options: width, height (of the picture),
+    bounces, threads, seed. Result: result_observation()."""
+    raw = _defaults(table.ObserveOptions, "vlr_observe_options_init")
+    set_fields(raw, options)
+    return Job._create("vlr_observe_create_job", scene.pointer, material, ctypes.byref(raw))
 
 
 def render_job(scene, **options) -> Job:

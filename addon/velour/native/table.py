@@ -53,6 +53,8 @@ class FitOptions(Struct):
         ("align_views", c_int32),
         ("model", c_int32),
         ("pad", c_int32),
+        ("for_scene", c_void_p),
+        ("full_model", c_void_p),
     ]
 
 
@@ -141,6 +143,18 @@ class RenderOptions(Struct):
     ]
 
 
+class ObserveOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("bounces", c_uint32),
+        ("threads", c_uint32),
+        ("pad", c_uint32),
+        ("seed", c_uint64),
+    ]
+
+
 STRUCTS = {
     "vlr_job_state": JobStateStruct,
     "vlr_fit_options": FitOptions,
@@ -150,6 +164,7 @@ STRUCTS = {
     "vlr_light_desc": LightDesc,
     "vlr_camera_desc": CameraDesc,
     "vlr_render_options": RenderOptions,
+    "vlr_observe_options": ObserveOptions,
 }
 
 _handle = c_void_p
@@ -205,6 +220,14 @@ STATUS_CALLS = {
     "vlr_scene_info_json": [_handle, _json],
     "vlr_render_create_job": [_handle, POINTER(RenderOptions), _out_handle],
     "vlr_job_read_pass": [_handle, c_char_p, _floats, c_uint64],
+    "vlr_observation_create": [_out_handle],
+    "vlr_observation_load": [c_char_p, _out_handle],
+    "vlr_observation_save": [_handle, c_char_p],
+    "vlr_observation_merge": [_handle, _handle],
+    "vlr_observation_info_json": [_handle, _json],
+    "vlr_observe_create_job": [_handle, c_uint32, POINTER(ObserveOptions), _out_handle],
+    "vlr_job_result_observation": [_handle, _out_handle],
+    "vlr_model_out_of_domain": [_handle, _handle, POINTER(c_double)],
     "vlr_image_write": [c_char_p, c_uint32, c_uint32, c_uint32, _floats],
     "vlr_image_read": [c_char_p, _number, _number, _number, _floats, c_uint64],
     "vlr_image_compare": [c_uint64, c_uint32, _floats, _floats, POINTER(c_double), POINTER(c_double)],
@@ -218,6 +241,7 @@ PLAIN_CALLS = {
     "vlr_measurement_free": (None, [_handle]),
     "vlr_model_free": (None, [_handle]),
     "vlr_job_free": (None, [_handle]),
+    "vlr_observation_free": (None, [_handle]),
     "vlr_scene_free": (None, [_handle]),
     "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
     "vlr_microsurface_options_init": (None, [POINTER(MicrosurfaceOptions)]),
@@ -225,6 +249,7 @@ PLAIN_CALLS = {
     "vlr_light_desc_init": (None, [POINTER(LightDesc)]),
     "vlr_camera_desc_init": (None, [POINTER(CameraDesc)]),
     "vlr_render_options_init": (None, [POINTER(RenderOptions)]),
+    "vlr_observe_options_init": (None, [POINTER(ObserveOptions)]),
 }
 
 
