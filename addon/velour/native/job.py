@@ -139,8 +139,8 @@ class Job(Handle):
 def fit_job(measurement: Measurement, **options) -> Job:
     """Options: model ("scattered", "parametric"), kernel (scattered: "gaussian", "abel-poisson"), tolerance,
     max_lobes, threads, max_bytes, seed, all_data, align_views (scattered); for_scene (an Observation: a
-    parametric model is reduced to it) with full_model (a Model; None: fitted first). What is not given has the
-    library's default. Result: result_model()."""
+    parametric model is reduced to it) with full_model (a Model; None: fitted first). What is not given has
+    the library's default. Result: result_model()."""
     raw = _defaults(table.FitOptions, "vlr_fit_options_init")
     enums = {"model": table.MODELS, "kernel": table.KERNELS}
     for name in enums.keys() & options.keys():

@@ -153,7 +153,8 @@ def _report(work, info, seconds):
     return (
         f"Fitted '{work.material_name}' for scene '{work.scene_name}', {len(work.frames)} frames, in"
         f" {seconds:.1f} s: {own} bytes of parameters, the full model has {full} ({full / own:.1f} times as"
-        f" many); picture error {scene['picture_error']:.4f}, full {scene['full_picture_error']:.4f}."
+        f" many); picture error (relmse) {scene['picture_error']:.2g}, full"
+        f" {scene['full_picture_error']:.2g}."
     )
 
 
