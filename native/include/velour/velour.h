@@ -366,7 +366,7 @@ VLR_API vlr_status vlr_observation_info_json(vlr_observation* observation, const
 
 typedef struct vlr_observe_options {
   uint32_t struct_size;
-  uint32_t width, height; /* of the picture; its pixels are observed in about 65,536 places, however many they are */
+  uint32_t width, height; /* of the picture: their ratio shapes the grid of about 65,536 camera rays */
   uint32_t bounces;       /* as of the render */
   uint32_t threads;       /* 0: all */
   uint32_t pad;

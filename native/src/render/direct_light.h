@@ -60,6 +60,8 @@ class DirectLight {
   /// Directions left out so far because their term was not finite.
   uint64_t nan_samples() const { return nan_samples_; }
 
+  static constexpr int kSharpLamps = 4;
+
  private:
   static constexpr int kReceivers = 8;
 

@@ -123,7 +123,7 @@ void HitLightEstimator::add_surfaces(int bounces, uint64_t key, int half) {
 }
 
 void HitLightEstimator::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
-  SharpLight sharp[kSharpLamps];
+  SharpLight sharp[kMostSharpLamps];
   const int count = find_sharp_light(lighting_, vertex, numbers, sharp);
   for (int i = 0; i < count; ++i) {
     const SharpLight& s = sharp[i];

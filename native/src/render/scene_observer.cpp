@@ -28,13 +28,13 @@ void require_range(const char* name, int value, int low, int high) {
                                             std::to_string(high) + ".");
 }
 
+/// kPlaces cells, about as wide as high.
 CameraGrid grid_of(const ObserverOptions& options) {
-  const double pixels = static_cast<double>(options.width) * options.height;
-  const double scale = std::min(1.0, std::sqrt(kPlaces / pixels));
-  const double width = std::max(1.0, std::round(scale * options.width));
-  const double height = std::clamp(std::floor(kPlaces / width), 1.0, static_cast<double>(options.height));
-  const double rays = std::max(1.0, std::floor(kPlaces / (width * height)));
-  return {static_cast<uint64_t>(width), static_cast<uint64_t>(height), static_cast<uint64_t>(rays)};
+  const bool wide = options.width > options.height;
+  const double ratio = static_cast<double>(options.width) / options.height;
+  const double shorter = std::max(1.0, std::round(std::sqrt(kPlaces * (wide ? 1.0 / ratio : ratio))));
+  const auto one = static_cast<uint64_t>(shorter), other = static_cast<uint64_t>(kPlaces / shorter);
+  return wide ? CameraGrid{other, one} : CameraGrid{one, other};
 }
 
 /// The render whose paths are followed; `stream` tells independent ones apart.
@@ -82,16 +82,16 @@ class Observer {
   }
 
   void see_views() {
-    std::vector<ViewHistogram> views((grid_.all() + kRaysOfBlock - 1) / kRaysOfBlock);
+    std::vector<ViewHistogram> views((grid_.cells() + kRaysOfBlock - 1) / kRaysOfBlock);
     in_parallel(views.size(), [&](size_t i) {
       const uint64_t first = i * kRaysOfBlock;
-      tracers_.local().follow(first, std::min(grid_.all(), first + kRaysOfBlock), views[i]);
+      tracers_.local().follow(first, std::min(grid_.cells(), first + kRaysOfBlock), views[i]);
     });
     SceneDomain& domain = observation_.domain;
     for (const ViewHistogram& view : views) {  // in this order, whatever the threads did
       for (size_t i = 0; i < view.size(); ++i) domain.view[i] += view[i];
     }
-    domain.camera_rays = grid_.all();
+    domain.camera_rays = grid_.cells();
     domain.frames = 1;
   }
 

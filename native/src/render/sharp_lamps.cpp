@@ -1,23 +1,27 @@
 #include "render/sharp_lamps.h"
 
+#include <algorithm>
+
 namespace velour {
 
 int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers& numbers,
-                     SharpLight (&found)[kSharpLamps]) {
+                     std::span<SharpLight> found) {
   const auto lamps = lighting.sharp();
-  const bool all = lamps.size() <= kSharpLamps;
-  const int count = all ? static_cast<int>(lamps.size()) : kSharpLamps;
-  Vec2 u[kSharpLamps];
-  if (!all) numbers.points(Purpose::sharp, numbers.ray() * kSharpLamps, u);
+  const size_t room = std::min(found.size(), kMostSharpLamps);
+  const bool all = lamps.size() <= room;
+  const size_t count = all ? lamps.size() : room;
+  Vec2 u[kMostSharpLamps];
+  if (!all) numbers.points(Purpose::sharp, numbers.ray() * static_cast<uint32_t>(room), {u, room});
   int lit = 0;
-  for (int i = 0; i < count; ++i) {
+  for (size_t i = 0; i < count; ++i) {
     float probability = 1.0f;
-    const size_t chosen = all ? static_cast<size_t>(i) : lighting.choose_sharp(u[i].x, probability);
+    const size_t chosen = all ? i : lighting.choose_sharp(u[i].x, probability);
     const Lamp::Irradiance light = lamps[chosen].irradiance(vertex.position);
     const Vec3 wl = vertex.frame.to_local(light.direction);
     if (!(wl.z > 0.0f) || !(glm::dot(light.direction, vertex.geometric_normal) > 0.0f)) continue;
-    const float share = all ? 1.0f : 1.0f / (kSharpLamps * probability);
-    found[lit++] = {&lamps[chosen], light.distance, wl, light.direction, share * light.perpendicular};
+    const float share = all ? 1.0f : 1.0f / (static_cast<float>(room) * probability);
+    found[static_cast<size_t>(lit++)] = {&lamps[chosen], light.distance, wl, light.direction,
+                                         share * light.perpendicular};
   }
   return lit;
 }

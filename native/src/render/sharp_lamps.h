@@ -15,11 +15,10 @@ struct SharpLight {
   Rgb irradiance;  // perpendicular, over the probability of having been chosen
 };
 
-inline constexpr int kSharpLamps = 4;
+inline constexpr size_t kMostSharpLamps = 64;
 
-/// Each sharp lamp once when there are at most kSharpLamps, else that many drawn in proportion to power. Returns how
-/// many `found` holds.
-int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers& numbers,
-                     SharpLight (&found)[kSharpLamps]);
+/// Each sharp lamp once when `found` has room for all (up to kMostSharpLamps), else as many as it has room for, drawn
+/// in proportion to power. Returns how many of them shine on the vertex and are in `found`.
+int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers& numbers, std::span<SharpLight> found);
 
 }  // namespace velour

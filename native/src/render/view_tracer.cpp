@@ -31,9 +31,8 @@ void ViewTracer::start(uint64_t first, uint64_t end) {
   paths_.clear();
   rays_.clear();
   const Vec2 size(static_cast<float>(grid_.width), static_cast<float>(grid_.height));
-  for (uint64_t i = first; i < end; ++i) {
-    const uint64_t cell = i / grid_.rays;
-    paths_.push_back({PathNumbers(options_, cell, static_cast<uint32_t>(i % grid_.rays)), Rgb(1.0f), i});
+  for (uint64_t cell = first; cell < end; ++cell) {
+    paths_.push_back({PathNumbers(options_, cell, 0), Rgb(1.0f), cell});
     const Vec2 corner(static_cast<float>(cell % grid_.width), static_cast<float>(cell / grid_.width));
     rays_.push_back(scene_.camera().ray((corner + paths_.back().numbers.point(Purpose::camera)) / size));
   }
@@ -55,7 +54,7 @@ void ViewTracer::see(const Vertex& vertex, const Path& path, int depth, ViewHist
   // The place counts, too, so that frames of one seed draw on their own.
   auto place = static_cast<uint64_t>(depth);
   for (int i = 0; i < 3; ++i) place = mix64(place + std::bit_cast<uint32_t>(vertex.position[i]));
-  draws_.add({vertex, options_.bounces - depth}, weight, RandomStream(options_.seed, path.number, place));
+  draws_.add({vertex, options_.bounces - depth}, weight, RandomStream(options_.seed, path.cell, place));
 }
 
 void ViewTracer::go_on(const Vertex& vertex, const Path& path) {
@@ -65,7 +64,7 @@ void ViewTracer::go_on(const Vertex& vertex, const Path& path) {
                                   path.throughput, numbers.point(Purpose::onward));
   if (!onward || !std::isfinite(luminance(onward->throughput))) return;
   numbers.next_vertex();
-  next_.push_back({numbers, onward->throughput, path.number});
+  next_.push_back({numbers, onward->throughput, path.cell});
   next_rays_.push_back(onward->ray);
 }
 

@@ -10,10 +10,10 @@
 
 namespace velour {
 
-/// Cells that cover the picture evenly, and camera rays through each.
+/// Cells that cover the picture evenly; a camera ray goes through a random place of each.
 struct CameraGrid {
-  uint64_t width, height, rays;
-  uint64_t all() const { return width * height * rays; }
+  uint64_t width, height;
+  uint64_t cells() const { return width * height; }
 };
 
 /// A hit of the material.
@@ -32,7 +32,7 @@ class ViewTracer {
              size_t draws)
       : scene_(scene), material_(material), grid_(grid), options_(options), draws_(draws) {}
 
-  /// Follows camera rays [first, end) of the grid and adds the weights of their hits to `view`.
+  /// Follows the camera rays of cells [first, end) and adds the weights of their hits to `view`.
   void follow(uint64_t first, uint64_t end, ViewHistogram& view);
 
   /// Hits drawn by weight, of all rays followed so far.
@@ -42,7 +42,7 @@ class ViewTracer {
   struct Path {
     PathNumbers numbers;
     Rgb throughput;
-    uint64_t number;  // of the camera ray
+    uint64_t cell;
   };
   void start(uint64_t first, uint64_t end);
   void meet(size_t path, int depth, ViewHistogram& view);
