@@ -174,7 +174,8 @@ class Fits(SceneModelTest):
         )
         child = run_blender(blend, "--python-exit-code", 1, "--python", script)
         self.assertEqual(child.returncode, 0, child.stdout)
-        self.assertRegex(child.stdout, r"Fitted 'Paint' for scene 'Scene', 1 frames, in .* picture error \(relmse\)")
+        words = r"Fitted 'Paint' for scene 'Scene', 1 frames, in .* picture error \(relmse\)"
+        self.assertRegex(child.stdout, words)
         bpy.ops.wm.open_mainfile(filepath=str(blend))
         info = self._info(self.settings.scene_model)
         self.assertLess(info["parameter_bytes"], self._info(self.node.image)["parameter_bytes"])
