@@ -16,6 +16,9 @@ NOISE = random.Random(1).randbytes(4096)
 RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-o", "o.exr"]
 
 
+OBSERVE = ["observe", *RENDER[1:-1], "o.json"]
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -35,6 +38,8 @@ RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-
         [*RENDER, "--spp", "-1"],
         [*RENDER, "--strategy", "luck"],
         [*RENDER, "--camera", "1,2,3"],
+        [*OBSERVE, "--spp", "8"],
+        [*OBSERVE, "--bounces", "-1"],
         [*RENDER, "--camera", "0,0,1,0,0,0,180"],
     ],
 )
@@ -204,3 +209,13 @@ def test_interrupted_capture(tmp_path):
     status, _ = _interrupted(["capture", "--microsurface", "--rays", 10**11, "-o", tmp_path / "c.binary"])
     assert status == 130
     assert not list(tmp_path.iterdir())
+
+
+def test_a_damaged_observation_is_refused_with_its_field(tmp_path, mesh_file, model_file, world_file):
+    path = tmp_path / "scene.json"
+    path.write_text('{"format": "velour-observation", "version": 1}')
+    assert "'view'" in refused("info", path)
+    scene = ["--mesh", mesh_file, "--material", model_file, "--world", world_file]
+    sentence = refused("observe", *scene, "-o", tmp_path / "new.json", "--merge", path)
+    assert str(path) in sentence
+    assert not (tmp_path / "new.json").exists()

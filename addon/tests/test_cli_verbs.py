@@ -39,6 +39,17 @@ RENDER_KEYS = [
     "blocks_unfinished",
     "sky",
 ]
+OBSERVE_KEYS = [
+    "seconds",
+    "frames",
+    "camera_rays",
+    "hits",
+    "weight",
+    "share",
+    "views",
+    "light_density",
+    "hash",
+]
 ANGLES = ["5", "30", "60", "75", "85"]
 
 
@@ -48,6 +59,14 @@ def render_arguments(mesh_file, world_file, model_file, tmp_path):
         "render", "--mesh", mesh_file, "--material", model_file, "--world", world_file, "--size", "32x24",
         "--spp", "8", "--threads", "2", "-o", tmp_path / "out.exr", "--json",
         "--cache", tmp_path / "cache",
+    ]  # fmt: skip
+
+
+@pytest.fixture
+def observe_arguments(mesh_file, world_file, model_file, tmp_path):
+    return [
+        "observe", "--mesh", mesh_file, "--material", model_file, "--world", world_file, "--size", "32x24",
+        "--threads", "2", "-o", tmp_path / "scene.json", "--json",
     ]  # fmt: skip
 
 
@@ -268,3 +287,34 @@ def test_log_levels(render_arguments):
 
 def test_simd_can_be_pinned(render_arguments):
     assert velour(*render_arguments, "--simd", "auto").status == 0
+
+
+def test_observe_tells_what_the_scene_asks_of_its_material(observe_arguments, tmp_path):
+    report = velour(*observe_arguments).json
+    assert list(report) == OBSERVE_KEYS
+    assert (report["frames"], report["hits"]) == (1, 1024)
+    assert report["weight"] == pytest.approx(report["share"] * report["camera_rays"])
+    assert 0 < report["share"] < 1
+    low, high = report["views"]
+    assert 0 <= low < high <= 90
+    assert report["light_density"] > 0
+    info = velour("info", tmp_path / "scene.json", "--json").json
+    assert info == {"kind": "observation", **{key: report[key] for key in OBSERVE_KEYS[1:]}}
+
+
+def test_observations_merge_in_any_order(observe_arguments, tmp_path):
+    first, second = tmp_path / "first.json", tmp_path / "second.json"
+    for path, camera in ((first, "0,-6,3,0,0,0,30"), (second, "4,-4,1,0,0,0,30")):
+        assert velour(*observe_arguments, "--camera", camera, "-o", path).status == 0
+    forwards = velour(*observe_arguments, "--merge", first, "--merge", second).json
+    backwards = velour(*observe_arguments, "--merge", second, "--merge", first).json
+    assert forwards["frames"] == 3
+    assert forwards["hash"] == backwards["hash"]
+    assert forwards["weight"] == pytest.approx(backwards["weight"])
+
+
+def test_a_picture_without_the_material_is_observed_with_a_warning(observe_arguments):
+    status, out, err = velour(*observe_arguments, "--camera", "0,-6,3,0,-12,3,30")
+    assert status == 0
+    assert "does not show the material" in err
+    assert (json.loads(out)["hits"], json.loads(out)["views"]) == (0, None)

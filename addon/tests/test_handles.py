@@ -9,12 +9,14 @@ import pytest
 from velour.native import (
     Measurement,
     Model,
+    Observation,
     Scene,
     Status,
     VelourError,
     compare_job,
     fit_job,
     images,
+    observe_job,
     render_job,
 )
 
@@ -203,3 +205,32 @@ def test_picture_errors():
     assert relmse == pytest.approx(0.25 / (4 + 0.04))
     with pytest.raises(VelourError, match="must agree"):
         images.compare(reference, reference[:2].copy())
+
+
+def test_observations_grow_by_merging(tmp_path):
+    with Scene() as scene, Observation.of_nothing() as seen:
+        square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
+        mesh, _ = scene.add_mesh(square, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
+        scene.add_instance(mesh, np.eye(4)[:3], [scene.add_principled_material(roughness=0.5)])
+        scene.set_world_color((1, 1, 1))
+        scene.look_at((0, -1, 2), (0, 0, 0), 0.3, 1.0)
+        scene.commit()
+        with observe_job(scene, 0, width=16, height=16, threads=2) as job:
+            report = job.run()
+            with job.result_observation() as frame:
+                seen.merge(frame)
+                seen.merge(frame)
+        info = seen.info()
+        seen.save(tmp_path / "scene.json")
+        with Observation.load(tmp_path / "scene.json") as read:
+            assert read.info() == info
+    assert (info["frames"], info["weight"]) == (2, 2 * report["weight"])
+    assert info["light_density"] == pytest.approx(1 / (4 * np.pi), rel=1e-5)
+    assert info["views"][0] < np.degrees(np.arctan(0.5)) < info["views"][1]
+
+
+def test_what_cannot_be_observed_is_refused():
+    with Scene() as scene, pytest.raises(VelourError, match="committed"):
+        observe_job(scene, 0)
+    with Observation.of_nothing() as seen:
+        assert (seen.info()["frames"], seen.info()["views"]) == (0, None)

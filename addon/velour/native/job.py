@@ -1,4 +1,4 @@
-"""Anything long: fit, compare, capture, render. One mechanism for progress, cancel and errors."""
+"""Anything long: fit, compare, capture, render, observe. One mechanism for progress, cancel and errors."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class Job(Handle):
         return Model._create("vlr_job_result_model", self.pointer)
 
     def result_observation(self) -> Observation:
-        """What a finished observation saw: one frame."""
+        """The observation of a finished observe_job()."""
         return Observation._create("vlr_job_result_observation", self.pointer)
 
     def read_pass(self, name: str, out: np.ndarray | None = None) -> np.ndarray:
@@ -138,15 +138,15 @@ class Job(Handle):
 
 def fit_job(measurement: Measurement, **options) -> Job:
     """Options: model ("scattered", "parametric"), kernel (scattered: "gaussian", "abel-poisson"), tolerance,
-    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered); for_scene (an Observation: a
-    parametric model is reduced to it) with full_model (a Model; None: fitted first). What is not given has
-    the library's default. Result: result_model()."""
+    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered); for_scene (an Observation) and
+    full_model (a Model) reduce a parametric model to what scenes show. What is not given has the library's
+    default. Result: result_model()."""
     raw = _defaults(table.FitOptions, "vlr_fit_options_init")
+    for name in {"for_scene", "full_model"} & options.keys():
+        options[name] = options[name].pointer
     enums = {"model": table.MODELS, "kernel": table.KERNELS}
     for name in enums.keys() & options.keys():
         options[name] = choice(name, options[name], enums[name])
-    for name in {"for_scene", "full_model"} & options.keys():
-        options[name] = options[name].pointer if options[name] else None
     set_fields(raw, options)
     return Job._create("vlr_fit_create_job", measurement.pointer, ctypes.byref(raw))
 
@@ -174,14 +174,6 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
     return Job._create("vlr_microsurface_create_job", ctypes.byref(raw), path_bytes(path))
 
 
-def observe_job(scene, material: int, **options) -> Job:
-    """Looks at material number `material` of a committed scene. Options: width, height (of the picture),
-    bounces, threads, seed. Result: result_observation()."""
-    raw = _defaults(table.ObserveOptions, "vlr_observe_options_init")
-    set_fields(raw, options)
-    return Job._create("vlr_observe_create_job", scene.pointer, material, ctypes.byref(raw))
-
-
 def render_job(scene, **options) -> Job:
     """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit
     (seconds), transparent, measure_ray_share, heuristic (table.HEURISTICS), sequence (table.SEQUENCES),
@@ -195,6 +187,14 @@ def render_job(scene, **options) -> Job:
     set_fields(raw, options)
     size = (raw.width, raw.height)
     return Job._create("vlr_render_create_job", scene.pointer, ctypes.byref(raw), size=size)
+
+
+def observe_job(scene, material: int, **options) -> Job:
+    """Learns under which views and lights `scene`, which is committed, shows its material of that number.
+    Options: width, height, bounces, threads, seed. Result: result_observation()."""
+    raw = _defaults(table.ObserveOptions, "vlr_observe_options_init")
+    set_fields(raw, options)
+    return Job._create("vlr_observe_create_job", scene.pointer, material, ctypes.byref(raw))
 
 
 def _defaults(struct_type, init_name: str):

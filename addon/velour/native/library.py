@@ -61,7 +61,7 @@ def json_of(function, *arguments) -> dict:
 
 
 def file_info(path: str | os.PathLike) -> dict:
-    """What a measurement or model file holds: Measurement.info() or Model.info(), whichever it is."""
+    """What a file holds: info() of Measurement, Model or Observation, whichever it is."""
     return json_of(load().vlr_file_info_json, os.fsencode(path))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 
 from . import library
@@ -10,16 +9,14 @@ from .handle import Handle, path_bytes
 
 
 class Observation(Handle):
-    """Views, lights and a sample of hits of some frames; a new one is of none. Merge from one thread."""
+    """Views and lights under which frames show a material, with weights; may be of no frame, and grow."""
 
     _free_name = "vlr_observation_free"
 
-    def __init__(self, lib=None, handle=None):
-        if lib is None:
-            lib = library.load()
-            handle = ctypes.c_void_p()
-            lib.vlr_observation_create(ctypes.byref(handle))
-        super().__init__(lib, handle)
+    @classmethod
+    def of_nothing(cls) -> Observation:
+        """Of no frame: something to merge into."""
+        return cls._create("vlr_observation_create")
 
     @classmethod
     def load(cls, path: str | os.PathLike) -> Observation:
@@ -30,9 +27,9 @@ class Observation(Handle):
         self._lib.vlr_observation_save(self.pointer, path_bytes(path))
 
     def merge(self, other: Observation) -> None:
-        """Adds what `other` saw; the order of frames does not matter but for the rounding of sums."""
+        """Adds what `other` saw."""
         self._lib.vlr_observation_merge(self.pointer, other.pointer)
 
     def info(self) -> dict:
-        """frames, camera_rays, hits, weight, share, views [from, to] degrees, light_density, hash."""
+        """kind, frames, camera_rays, hits, weight, share, views (degrees), light_density (1/sr), hash."""
         return library.json_of(self._lib.vlr_observation_info_json, self.pointer)

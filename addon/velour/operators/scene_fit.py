@@ -33,7 +33,7 @@ class SceneFit:
             )
         self.material_name, self.scene_name = material.name, scene.name
         self.frames = [scene.frame_current] if current_frame else frame_range(scene)
-        self.observation = Observation()
+        self.observation = Observation.of_nothing()
         self.done = 0  # frames
 
     def observe_next(self):
@@ -57,12 +57,13 @@ class SceneFit:
             Measurement.load(path) as measurement,
             read_model(node.image, owner) as full,
         ):
+            # A model of another kind is no measure of a parametric one: without one the fit makes it first.
+            measure = {"full_model": full} if full.info()["model"] == "parametric" else {}
             return fit_job(
                 measurement,
                 model="parametric",
                 for_scene=self.observation,
-                # One of another kind is no measure of a parametric one: it is fitted first.
-                full_model=full if full.info()["model"] == "parametric" else None,
+                **measure,
                 tolerance=node.velour.tolerance,
                 max_lobes=node.velour.max_lobes,
                 seed=node.velour.seed,

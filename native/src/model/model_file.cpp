@@ -14,7 +14,7 @@
 namespace velour {
 namespace {
 
-constexpr char kFormatVersion[] = "1.1";
+constexpr char kFormatVersion[] = "1.2";
 constexpr int kMajorVersion = 1;
 constexpr char kKind[] = "model";
 constexpr char kScene[] = "velour.scene";
@@ -86,6 +86,10 @@ Model decode_model(std::span<const uint8_t> bytes, const std::string& name) {
                   fields.attribute_or_empty("velour.source.sha256")};
   const std::string scene = fields.attribute_or_empty(kScene);
   if (!scene.empty()) model.scene = parse_scene_record(scene, name + ": " + kScene);
+  const auto* brdf = std::get_if<ParametricBrdf>(&model.body);
+  if (brdf && !brdf->views.whole() && !model.scene) {
+    fields.fail(std::string(kScene) + " is missing; a model of some views must say for which scenes it was made.");
+  }
   return model;
 }
 

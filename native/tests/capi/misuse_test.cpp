@@ -30,12 +30,20 @@ TEST(Misuse, NullArgumentsAreNamed) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_commit(nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_render_create_job(nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_fit_create_job(nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_create(nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_load(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_save(nullptr, "x"));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_merge(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_info_json(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observe_create_job(nullptr, 0, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_result_observation(nullptr, nullptr));
 }
 
 TEST(Misuse, FreeingNothingIsFine) {
   vlr_measurement_free(nullptr);
   vlr_model_free(nullptr);
   vlr_scene_free(nullptr);
+  vlr_observation_free(nullptr);
   vlr_job_free(nullptr);
 }
 
@@ -46,6 +54,8 @@ TEST(Misuse, MissingFilesAreNamed) {
   EXPECT_EQ(measurement, nullptr);
   vlr_model* model = nullptr;
   EXPECT_STATUS(VLR_IO, vlr_model_load("/nowhere/x.velour", &model));
+  vlr_observation* observation = nullptr;
+  EXPECT_STATUS(VLR_IO, vlr_observation_load("/nowhere/x.json", &observation));
   const char* json = nullptr;
   EXPECT_STATUS(VLR_IO, vlr_file_info_json("/nowhere/x", &json));
 }

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 
-from ...native import Measurement, fit_job, table
-from . import later, numbers, output
+from ...native import Measurement, Model, Observation, fit_job, table
+from ...native.errors import refuse
+from . import numbers, output
 
 KEYS = (
     "lobes",
@@ -20,6 +22,7 @@ KEYS = (
     "warnings",
     "order",
 )
+OWN_KEYS = ("view_range", "scene")  # of parametric models; of reduced ones
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,19 +47,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--all-data", action="store_true", help="hold nothing out: for production")
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
-    later.add_later(parser, "--for-scene", "fit for all views instead", "SCENE.json")
+    parser.add_argument(
+        "--for-scene", metavar="SCENE.json",
+        help="reduce a parametric model to what was observed (velour observe), its pictures no worse",
+    )  # fmt: skip
+    parser.add_argument(
+        "--full-model", metavar="FULL", help="with --for-scene: the full model; without: it is fitted first"
+    )
 
 
 def run(args: argparse.Namespace) -> dict:
     output.check_writable(args.output)
-    with Measurement.load(args.input) as measurement, fit_job(measurement, **_options(args)) as job:
+    with contextlib.ExitStack() as opened:
+        measurement = opened.enter_context(Measurement.load(args.input))
+        job = opened.enter_context(fit_job(measurement, **_options(args), **_scene(args, opened)))
         report = job.run(output.progress_of(args))
         with job.result_model() as model:
             model.save(args.output)
     if args.json:  # else the summary says them
         for warning in report["warnings"]:
             output.log.warning("%s", warning)
-    return {key: report[key] for key in KEYS}
+    return {key: report[key] for key in (*KEYS, *OWN_KEYS) if key in report}
+
+
+def _scene(args: argparse.Namespace, opened: contextlib.ExitStack) -> dict:
+    if args.full_model and not args.for_scene:
+        raise refuse("--full-model goes with --for-scene: it is what a fit for a scene starts from.")
+    given = {"for_scene": (Observation, args.for_scene), "full_model": (Model, args.full_model)}
+    return {name: opened.enter_context(kind.load(path)) for name, (kind, path) in given.items() if path}
 
 
 def _options(args: argparse.Namespace) -> dict:

@@ -8,7 +8,7 @@ from ...native import library
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="a measurement or a model")
+    parser.add_argument("file", metavar="FILE", help="a measurement, a model or an observation")
 
 
 def run(args: argparse.Namespace) -> dict:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import math
 import time
 
 import numpy as np
 
-from ...native import Measurement, Model, Scene, images, library, render_job, table
+from ...native import Scene, images, render_job, table
 from ...native.errors import refuse
 from ..cache import user_cache_folder
-from . import later, numbers, output
+from . import later, numbers, output, scene
 
 KEYS = (
     "seconds",
@@ -30,16 +29,11 @@ KEYS = (
     "sky",
 )
 _MOST_SPP = 1 << 16  # of a render that a noise target ends
-# A y-up model stands upright in the z-up world: (x, y, z) -> (x, -z, y), as Blender's OBJ import does it.
-_UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    _add_scene_arguments(parser)
+    scene.add_arguments(parser)
     parser.add_argument("-o", "--output", metavar="OUT.exr", required=True, help=".exr or .png")
-    parser.add_argument(
-        "--size", type=numbers.picture_size, default=(640, 480), metavar="WxH", help="640x480"
-    )
     parser.add_argument("--spp", type=numbers.whole(1), metavar="N", help="light directions a pixel")
     parser.add_argument(
         "--split", type=numbers.whole(1, 1024), metavar="N", help="of them share a camera ray (8)"
@@ -51,9 +45,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--heuristic", choices=table.HEURISTICS, help="weights of mis (balance)")
     parser.add_argument("--sequence", choices=table.SEQUENCES, help="of random numbers (sobol)")
-    parser.add_argument(
-        "--neighbors", type=numbers.whole(0, 16), default=0, metavar="K", help="views mixed; 0: auto"
-    )
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
     parser.add_argument("--time-limit", type=numbers.real(0, 1e9), metavar="SECONDS")
@@ -70,45 +61,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     later.add_later(parser, "--texture-scale", "it is for materials with texture", "S")
 
 
-def _add_scene_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--mesh", metavar="M", required=True, help="Wavefront OBJ")
-    parser.add_argument(
-        "--up", choices=tuple(_UP), default="y", help="the axis of the mesh that points up (y)"
-    )
-    parser.add_argument(
-        "--material", metavar="MATERIAL", required=True, help="a model, or a measurement itself"
-    )
-    parser.add_argument(
-        "--proposal", metavar="MODEL", help="with a measurement: the model that draws its samples"
-    )
-    parser.add_argument("--world", metavar="HDR", required=True, help="equirectangular picture")
-    parser.add_argument(
-        "--world-rotation", type=numbers.real(), default=0.0, metavar="DEG",
-        help="turns the world about +z, counter-clockwise seen from above",
-    )  # fmt: skip
-    parser.add_argument(
-        "--camera", type=numbers.camera, metavar="EYE,TARGET,FOV",
-        help="x,y,z,x,y,z,degrees in the z-up world; default: frames the mesh",
-    )  # fmt: skip
-
-
 def run(args: argparse.Namespace) -> dict:
     _refuse_unsupported(args)
     output.check_writable(args.output)
     with contextlib.ExitStack() as handles:
         reference = _read_reference(args)
         start = time.perf_counter()
-        scene = handles.enter_context(Scene())
-        _fill(scene, args, handles)
-        scene.commit()
+        described = handles.enter_context(Scene())
+        scene.fill(described, args, handles)
+        described.commit()
         loaded = time.perf_counter()
-        job = handles.enter_context(render_job(scene, **_options(args)))
+        job = handles.enter_context(render_job(described, **_options(args)))
         report = job.run(output.progress_of(args))
         picture = job.read_pass("Combined")
         rendered = time.perf_counter()
         images.write(args.output, picture)
         written = time.perf_counter()
-        info = scene.info()
+        info = described.info()
     _tell(args, report, info)
     bvh = info["bvh_seconds"]
     stages = {"load": loaded - start - bvh, "bvh": bvh, **report["stages"], "write": written - rendered}
@@ -121,31 +90,6 @@ def run(args: argparse.Namespace) -> dict:
 
 def _refuse_unsupported(args: argparse.Namespace) -> None:
     later.only("--strategy", args.strategy, table.STRATEGIES)
-
-
-def _fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> None:
-    mesh = scene.load_mesh(args.mesh)
-    scene.add_instance(mesh, _UP[args.up], [_add_material(scene, args, handles)])
-    turn = math.radians(-args.world_rotation)
-    c, s = math.cos(turn), math.sin(turn)
-    scene.set_world_file(args.world, 1.0, ((c, -s, 0), (s, c, 0), (0, 0, 1)))
-    aspect = args.size[0] / args.size[1]
-    if args.camera:
-        scene.look_at(args.camera.eye, args.camera.target, args.camera.fov, aspect)
-    else:
-        scene.frame_camera(aspect)
-
-
-def _add_material(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> int:
-    is_model = library.file_info(args.material)["kind"] == "model"
-    if is_model and args.proposal:
-        raise refuse(f"{args.material} is a model and draws its own samples; leave --proposal out.")
-    if is_model:
-        model = handles.enter_context(Model.load(args.material))
-        return scene.add_model_material(model, args.neighbors)
-    measurement = handles.enter_context(Measurement.load(args.material))
-    proposal = handles.enter_context(Model.load(args.proposal)) if args.proposal else None
-    return scene.add_measurement_material(measurement, proposal, args.neighbors)
 
 
 def _read_reference(args: argparse.Namespace) -> np.ndarray | None:

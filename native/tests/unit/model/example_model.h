@@ -55,10 +55,11 @@ inline Model example_model(Kernel kernel = Kernel::gaussian, bool isotropic = tr
 }
 
 /// Lobes of both spaces, control values all over their ranges.
-inline Model example_parametric(bool isotropic = true, int lobes = 5, int cells = 10) {
+inline Model example_parametric(bool isotropic = true, int lobes = 5, int cells = 10, const ViewRange& views = {}) {
   ParametricBrdf brdf;
   brdf.isotropic = isotropic;
   brdf.cells = cells;
+  brdf.views = views;
   for (int j = 0; j < lobes; ++j) brdf.space.push_back(j % 2 == 0 ? LobeSpace::half : LobeSpace::light);
   brdf.control.resize(static_cast<size_t>(brdf.spline().node_count() * brdf.parameter_count() * lobes));
   for (size_t i = 0; i < brdf.control.size(); ++i) {
@@ -66,6 +67,21 @@ inline Model example_parametric(bool isotropic = true, int lobes = 5, int cells 
   }
   Model model = example_record();
   model.body = brdf;
+  return model;
+}
+
+/// Seen at 31 to 48 degrees in two frames.
+inline Model example_reduced() {
+  Model model = example_parametric(true, 3, 2, {30, 49});
+  SceneRecord& scene = model.scene.emplace();
+  for (size_t i = 31; i < 48; ++i) scene.domain.view[i] = static_cast<double>(i * i);
+  scene.domain.camera_rays = 131072;
+  scene.domain.frames = 2;
+  scene.domain.light_density = 3.25;
+  scene.domain.hash = {1, 0x0123456789abcdefULL, 0, ~uint64_t{0}};
+  scene.picture_error = 1.0 / 3.0e6;
+  scene.full_picture_error = 1.0 / 7.0e6;
+  scene.full_parameter_bytes = 931;
   return model;
 }
 

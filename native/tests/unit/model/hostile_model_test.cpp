@@ -157,6 +157,38 @@ TEST(HostileModel, ParametricPartsAndAttributesAreChecked) {
   expect_named(parametric_complaint(attribute("velour.isotropic", "false")), "lobes.control");
 }
 
+TEST(HostileModel, ViewsOfReducedModelsAreChecked) {
+  const auto complaint_of_reduced = [](const Change& change) { return complaint_of(test::example_reduced(), change); };
+  EXPECT_EQ(complaint_of_reduced([](TensorFile&) {}), "");
+  expect_named(complaint_of_reduced(attribute("velour.first_view", "-1")), "velour.first_view");
+  expect_named(complaint_of_reduced(attribute("velour.last_view", "30")), "velour.last_view");
+  expect_named(complaint_of_reduced(attribute("velour.last_view", "91")), "velour.last_view");
+  expect_named(complaint_of_reduced([](TensorFile& f) { f.attributes.erase("velour.last_view"); }), "velour.last_view");
+  expect_named(complaint_of_reduced([](TensorFile& f) { f.attributes.erase("velour.scene"); }), "velour.scene");
+}
+
+TEST(HostileModel, TheSceneRecordIsChecked) {
+  const TensorFile file = decode_tensors(encode_model(test::example_reduced()), "example");
+  const std::string whole = file.attributes.at("velour.scene");
+  const auto with = [&whole](const std::string& from, const std::string& to) {
+    std::string text = whole;
+    const size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    return complaint_of(test::example_reduced(), attribute("velour.scene", text));
+  };
+  EXPECT_EQ(with("\"frames\":2", "\"frames\":3"), "");
+  expect_named(with("\"frames\":2", "\"frames\":-2"), "'frames'");
+  expect_named(with("\"camera_rays\":131072", "\"camera_rays\":\"many\""), "'camera_rays'");
+  expect_named(with("\"light_density\":3.25", "\"light_density\":-1"), "'light_density'");
+  expect_named(with("\"hash\":\"", "\"hash\":\"x"), "'hash'");
+  expect_named(with("\"first_view\":31", "\"first_view\":80"), "'view_weights'");
+  expect_named(with("\"first_view\":31", "\"first_view\":1e300"), "'first_view'");
+  expect_named(with("\"view_weights\":[", "\"view_weights\":[null,"), "'view_weights'");
+  expect_named(with("\"picture_error\"", "\"pictures\""), "'picture_error'");
+  expect_named(complaint_of(test::example_reduced(), attribute("velour.scene", "[]")), "velour.scene");
+}
+
 TEST(HostileModel, TheOrderIsChecked) {
   const auto order = [](const std::string& json) {
     return complaint(attribute("velour.fit", "{\"order\": " + json + "}"));
@@ -190,7 +222,7 @@ TEST(HostileModel, ANewerFormatIsRefusedWithASentence) {
   EXPECT_NE(sentence.find("newer Velour"), std::string::npos);
 }
 
-std::vector<Model> examples() { return {test::example_model(), test::example_parametric()}; }
+std::vector<Model> examples() { return {test::example_model(), test::example_parametric(), test::example_reduced()}; }
 
 TEST(HostileModel, TruncatedFilesAreRefused) {
   for (const Model& model : examples()) {

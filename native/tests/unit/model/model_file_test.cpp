@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "brdf/scattered_brdf.h"
 #include "example_model.h"
 #include "file/file.h"
@@ -53,6 +55,8 @@ void expect_same(const ScatteredBrdf& a, const ScatteredBrdf& b) {
 void expect_same(const ParametricBrdf& a, const ParametricBrdf& b) {
   EXPECT_EQ(a.isotropic, b.isotropic);
   EXPECT_EQ(a.cells, b.cells);
+  EXPECT_EQ(a.views.begin, b.views.begin);
+  EXPECT_EQ(a.views.end, b.views.end);
   EXPECT_EQ(a.space, b.space);
   EXPECT_EQ(a.control, b.control);
 }
@@ -81,6 +85,24 @@ TEST(ModelFile, RoundTripKeepsEveryBitOfParametricModels) {
       expect_round_trip<ParametricBrdf>(example_parametric(isotropic, lobes, 4));
     }
   }
+}
+
+TEST(ModelFile, ReducedModelsKeepTheirScene) {
+  Model model = test::example_reduced();
+  expect_round_trip<ParametricBrdf>(model);
+  const Model again = decode_model(encode_model(model), "memory");
+  ASSERT_TRUE(again.scene);
+  EXPECT_EQ(again.scene->domain.view, model.scene->domain.view);
+  EXPECT_EQ(again.scene->domain.camera_rays, model.scene->domain.camera_rays);
+  EXPECT_EQ(again.scene->domain.frames, 2u);
+  EXPECT_EQ(again.scene->domain.light_density, 3.25);
+  EXPECT_EQ(again.scene->domain.hash, model.scene->domain.hash);
+  EXPECT_EQ(again.scene->picture_error, model.scene->picture_error);
+  EXPECT_EQ(again.scene->full_picture_error, model.scene->full_picture_error);
+  EXPECT_EQ(again.scene->full_parameter_bytes, 931u);
+  model.scene->domain.light_density = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(decode_model(encode_model(model), "memory").scene->domain.light_density,
+            std::numeric_limits<double>::infinity());
 }
 
 TEST(ModelFile, AParametricModelIsBlackWithoutLobes) { expect_round_trip<ParametricBrdf>(example_parametric(true, 0)); }

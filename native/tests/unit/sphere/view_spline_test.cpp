@@ -73,6 +73,38 @@ TEST(ViewSpline, HemisphereSplinesHaveNoSeam) {
   EXPECT_NEAR(value(spline.at(view(1e-6, 0.1)), control), value(spline.at(view(1e-6, 4)), control), 1e-6);
 }
 
+TEST(ViewSpline, CoversARangeOfViewsAndHoldsItsEndsBeyond) {
+  for (const bool isotropic : {true, false}) {
+    const ViewSpline part(isotropic, 3, {20, 50});
+    const auto control = waves(part);
+    const double low = isotropic ? 20 : 0;
+    EXPECT_EQ(value(part.at(view(50)), control), value(part.at(view(80)), control));
+    if (isotropic) {
+      EXPECT_EQ(value(part.at(view(20)), control), value(part.at(view(3)), control));
+    }
+    EXPECT_GT(std::abs(value(part.at(view(low + 5)), control) - value(part.at(view(45)), control)), 1e-3);
+    for (double degrees = 0; degrees <= 90; degrees += 0.7) {
+      const ViewTaps taps = part.at(view(degrees, 0.4));
+      double sum = 0;
+      for (int i = 0; i < taps.count; ++i) {
+        sum += taps.weight[i];
+        EXPECT_TRUE(taps.node[i] >= 0 && taps.node[i] < part.node_count());
+      }
+      EXPECT_NEAR(sum, 1, 1e-12);
+    }
+  }
+}
+
+TEST(ViewSpline, TheRangeOfAllViewsChangesNothing) {
+  const ViewSpline all(true, 5), named(true, 5, {0, 90}), upper(true, 5, {10, 90});
+  EXPECT_EQ(all.node_count(), named.node_count());
+  EXPECT_EQ(upper.node_count(), all.node_count() + 1);  // no mirror image at its first view
+  const auto control = waves(all);
+  for (double degrees = 0; degrees <= 90; degrees += 3.3) {
+    EXPECT_EQ(value(all.at(view(degrees)), control), value(named.at(view(degrees)), control));
+  }
+}
+
 TEST(PoleFade, GoesFromNothingToAll) {
   EXPECT_EQ(pole_fade(view(0)), 0);
   EXPECT_GT(pole_fade(view(8)), 0.9999);

@@ -1,0 +1,70 @@
+"""The scene that verbs look at: a mesh with one material under a world, and a camera."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import math
+
+from ...native import Measurement, Model, Scene, library
+from ...native.errors import refuse
+from . import numbers
+
+# A y-up model stands upright in the z-up world: (x, y, z) -> (x, -z, y), as Blender's OBJ import does it.
+_UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--mesh", metavar="M", required=True, help="Wavefront OBJ")
+    parser.add_argument(
+        "--up", choices=tuple(_UP), default="y", help="the axis of the mesh that points up (y)"
+    )
+    parser.add_argument(
+        "--material", metavar="MATERIAL", required=True, help="a model, or a measurement itself"
+    )
+    parser.add_argument(
+        "--proposal", metavar="MODEL", help="with a measurement: the model that draws its samples"
+    )
+    parser.add_argument(
+        "--neighbors", type=numbers.whole(0, 16), default=0, metavar="K", help="views mixed; 0: auto"
+    )
+    parser.add_argument("--world", metavar="HDR", required=True, help="equirectangular picture")
+    parser.add_argument(
+        "--world-rotation", type=numbers.real(), default=0.0, metavar="DEG",
+        help="turns the world about +z, counter-clockwise seen from above",
+    )  # fmt: skip
+    parser.add_argument(
+        "--camera", type=numbers.camera, metavar="EYE,TARGET,FOV",
+        help="x,y,z,x,y,z,degrees in the z-up world; default: frames the mesh",
+    )  # fmt: skip
+    parser.add_argument(
+        "--size", type=numbers.picture_size, default=(640, 480), metavar="WxH", help="640x480"
+    )
+
+
+def fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> int:
+    """Fills `scene`, which keeps what `handles` holds; the number of the material."""
+    mesh = scene.load_mesh(args.mesh)
+    material = _add_material(scene, args, handles)
+    scene.add_instance(mesh, _UP[args.up], [material])
+    turn = math.radians(-args.world_rotation)
+    c, s = math.cos(turn), math.sin(turn)
+    scene.set_world_file(args.world, 1.0, ((c, -s, 0), (s, c, 0), (0, 0, 1)))
+    aspect = args.size[0] / args.size[1]
+    if args.camera:
+        scene.look_at(args.camera.eye, args.camera.target, args.camera.fov, aspect)
+    else:
+        scene.frame_camera(aspect)
+    return material
+
+
+def _add_material(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> int:
+    is_model = library.file_info(args.material)["kind"] == "model"
+    if is_model and args.proposal:
+        raise refuse(f"{args.material} is a model and draws its own samples; leave --proposal out.")
+    if is_model:
+        model = handles.enter_context(Model.load(args.material))
+        return scene.add_model_material(model, args.neighbors)
+    measurement = handles.enter_context(Measurement.load(args.material))
+    proposal = handles.enter_context(Model.load(args.proposal)) if args.proposal else None
+    return scene.add_measurement_material(measurement, proposal, args.neighbors)
