@@ -30,7 +30,9 @@ class VelourRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         try:
-            (visitor.current() or render_final)(self, depsgraph)
+            # Previews are rendered by other threads meanwhile: a visitor is none of their business.
+            visit = None if self.is_preview else visitor.current()
+            (visit or render_final)(self, depsgraph)
         except RenderCancelledError:
             pass  # Blender knows: it asked
         except (ExportError, VelourError) as error:

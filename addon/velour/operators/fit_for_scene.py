@@ -1,5 +1,7 @@
 """Fit a smaller model that holds for what one scene shows of a material."""
 
+import time
+
 import bpy
 from bpy.props import BoolProperty, StringProperty
 
@@ -10,6 +12,7 @@ from .background_job import BackgroundJob, console_progress
 from .scene_fit import SceneFit, SharedMaterialError
 
 _OBSERVING = 0.5  # share of the progress bar
+_TICK_SECONDS = 0.1  # of looking at frames, until the window may answer again
 
 
 class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
@@ -49,7 +52,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             return self._fail(error)
 
     def invoke(self, context, _event):
-        """A frame a tick, then the fit in the background; Esc cancels."""
+        """Some frames a tick, then the fit in the background; Esc cancels."""
         if context.window_manager.velour.running:
             self.report({"ERROR"}, "A fit is running already; wait for it, or cancel it.")
             return {"CANCELLED"}
@@ -93,17 +96,27 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         self._work = SceneFit(material, context.scene, self.current_frame, self.shared)
 
     def _step(self, context):
-        """One frame, the start of the fit, or a look at it; False once it is done."""
+        """Some frames, the start of the fit, or a look at it; False once it is done."""
         if self._job is not None:
             state = self._job.poll()
             self._show(context, state.stage, _OBSERVING + (1 - _OBSERVING) * state.fraction)
             return not self._job.wait(timeout=0.0)
-        if self._work.observe_next():
-            done, count = self._work.done, len(self._work.frames)
-            self._show(context, f"frame {self._work.frames[done - 1]}", _OBSERVING * done / count)
-        else:
+        if bpy.app.is_job_running("RENDER"):
+            return True  # its turn first
+        if not self._observe_some():
             self._start_fit(context)
+            return True
+        done, count = self._work.done, len(self._work.frames)
+        self._show(context, f"frame {self._work.frames[done - 1]}", _OBSERVING * done / count)
         return True
+
+    def _observe_some(self):
+        """Frames for a tick, one at least; False when none was left."""
+        end = time.monotonic() + _TICK_SECONDS
+        seen = self._work.observe_next()
+        while seen and time.monotonic() < end and self._work.observe_next():
+            pass
+        return seen
 
     def _start_fit(self, context):
         self._job = self._work.fit(context.scene.render.threads)
