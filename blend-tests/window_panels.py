@@ -19,9 +19,8 @@ _TURNS_SECONDS = 60
 
 def start(folder):
     """Called by the harness once the window is there."""
-    runner = _Runner(
-        folder, (panels, stock_panels, preferences, viewport, fit_and_cancel, fit_and_undo, render)
-    )
+    fits = (fit_and_cancel, fit_and_undo, scene_fit_and_cancel, scene_fit_and_undo, shared_material)
+    runner = _Runner(folder, (panels, stock_panels, preferences, viewport, *fits, render))
     bpy.app.timers.register(runner.turn, first_interval=0.2, persistent=True)  # over file loads
 
 
@@ -204,6 +203,72 @@ def _check_order_plot(image):
         order = model.info()["order"]
     assert preview.order_icon(order) != 0
     assert preview.order_icon(order) == preview.order_icon(order), "drawn again at every redraw"
+
+
+def _start_scene_fit(last_frame):
+    scene = scenes.use_engine()
+    scene.frame_end = last_frame
+    with _override():
+        started = bpy.ops.velour.fit_for_scene("INVOKE_DEFAULT", material="Paint")
+    assert started == {"RUNNING_MODAL"}, started
+
+
+def scene_fit_and_cancel(folder):
+    """Frames go by while the window lives; cancel leaves everything as it was."""
+    material = _measured_cube()
+    bpy.context.scene.frame_set(3)
+    yield from _show_properties("MATERIAL")
+    images = len(bpy.data.images)
+    _start_scene_fit(last_frame=200)
+    yield 1.5
+    state = bpy.context.window_manager.velour
+    assert state.running
+    assert state.stage.startswith("frame "), state.stage
+    _screenshot(folder, "scene-fit-running")
+    bpy.ops.velour.cancel_fit()
+    yield 1.0
+    assert not state.running, "the fit goes on"
+    assert len(bpy.data.images) == images
+    assert len(bpy.data.scenes) == 1
+    assert bpy.context.scene.frame_current == 3
+    assert scenes.velour_node(material).velour.scene_model is None
+
+
+def scene_fit_and_undo(folder):
+    material = _measured_cube()
+    yield from _show_properties("MATERIAL")
+    before = _screenshot(folder, "scene-fit-before")
+    with _override():
+        bpy.ops.ed.undo_push(message="before")
+    _start_scene_fit(last_frame=2)
+    for _ in range(10 * _TURNS_SECONDS):
+        yield 0.1
+        if not bpy.context.window_manager.velour.running:
+            break
+    settings = scenes.velour_node(material).velour
+    assert settings.scene_model is not None
+    assert settings.use_scene_model
+    yield 0.7
+    assert np.abs(_screenshot(folder, "scene-fit-done") - before).max() > 0.2, "the panel shows nothing new"
+    with _override():
+        bpy.ops.ed.undo()
+    yield 0.2
+    settings = scenes.velour_node(bpy.data.materials["Paint"]).velour
+    assert settings.scene_model is None
+    assert not settings.use_scene_model
+
+
+def shared_material(folder):
+    """A menu says who shares it, and nothing starts."""
+    _measured_cube()
+    yield from _show_properties("MATERIAL")
+    before = _screenshot(folder, "shared-before")
+    bpy.data.scenes.new("Other").collection.objects.link(bpy.data.objects["Cube"])
+    with _override():
+        assert bpy.ops.velour.fit_for_scene("INVOKE_DEFAULT", material="Paint") == {"CANCELLED"}
+    yield 0.7
+    assert not bpy.context.window_manager.velour.running
+    assert np.abs(_screenshot(folder, "shared-menu") - before).max() > 0.2, "no menu"
 
 
 def render(folder):

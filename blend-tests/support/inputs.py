@@ -50,16 +50,22 @@ def write_merl(path, f):
 
 def model_bytes(measurement):
     """A coarse, quick fit of a measurement file. Kept for the library that made it."""
-    name = f"{measurement.stem}-{library_file().stat().st_mtime_ns}.velour"
-    return _made(name, lambda path: _fit(measurement, path)).read_bytes()
+    return _model(measurement, "coarse", tolerance=0.1, max_lobes=4)
 
 
-def _fit(measurement, path):
+def full_model_bytes(measurement):
+    """As model_bytes, with the defaults of a fit."""
+    return _model(measurement, "full")
+
+
+def _model(measurement, kind, **options):
+    name = f"{measurement.stem}-{kind}-{library_file().stat().st_mtime_ns}.velour"
+    return _made(name, lambda path: _fit(measurement, path, options)).read_bytes()
+
+
+def _fit(measurement, path, options):
     velour = native()
-    with (
-        velour.Measurement.load(measurement) as loaded,
-        velour.fit_job(loaded, tolerance=0.1, max_lobes=4) as job,
-    ):
+    with velour.Measurement.load(measurement) as loaded, velour.fit_job(loaded, **options) as job:
         job.run()
         with job.result_model() as model:
             path.write_bytes(model.bytes())

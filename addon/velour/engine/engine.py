@@ -4,7 +4,7 @@ import logging
 
 import bpy
 
-from ..export import ExportError
+from ..export import ExportError, visitor
 from ..native import VelourError
 from .final import RenderCancelledError, render_final
 from .passes import register_passes
@@ -30,7 +30,9 @@ class VelourRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         try:
-            render_final(self, depsgraph)
+            # Previews are rendered by other threads meanwhile: a visitor is none of their business.
+            visit = None if self.is_preview else visitor.current()
+            (visit or render_final)(self, depsgraph)
         except RenderCancelledError:
             pass  # Blender knows: it asked
         except (ExportError, VelourError) as error:

@@ -6,10 +6,11 @@ import time
 import bpy
 
 from ..core.cache import user_cache_folder
-from ..export import ExportError, Notes, export_scene
+from ..export import ExportError, Notes, export_with_materials
 from ..export.camera import final_view
 from ..native import render_job
 from .passes import add_passes, write_passes
+from .scene_models import choose_models
 
 log = logging.getLogger(__package__)
 
@@ -35,12 +36,18 @@ def render_final(engine, depsgraph):
         if engine.test_break():
             raise RenderCancelledError
 
-    with export_scene(depsgraph, view, notes, check_break, strict=not engine.is_preview) as native_scene:
+    native_scene, materials = export_with_materials(
+        depsgraph, view, notes, check_break, strict=not engine.is_preview
+    )
+    with native_scene:
+        stamps = {}
         if not engine.is_preview:
+            stamps = choose_models(native_scene, materials.reduced, view, depsgraph, notes, check_break)
             _say(notes)
         options = _options(scene, view, engine.is_preview)
         with render_job(native_scene, **options) as job:
             _render_layer(engine, depsgraph.view_layer_eval, job, view, options["spp"])
+        _stamp(engine, depsgraph.view_layer_eval.name, stamps)
 
 
 def _options(scene, view, is_preview):
@@ -123,6 +130,12 @@ def _statistics(state, spp):
     left = state.seconds_left
     remaining = "" if left is None else f" | Remaining {int(left) // 60:02d}:{int(left) % 60:02d}"
     return f"Sample {int(state.fraction * spp)}/{spp}{remaining}"
+
+
+def _stamp(engine, layer_name, stamps):
+    """Fields of the picture's metadata, beside Blender's own."""
+    for name, text in stamps.items():
+        engine.get_result().stamp_data_add_field(f"velour.{layer_name}.{name}", text)
 
 
 def _say(notes):

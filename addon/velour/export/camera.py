@@ -25,8 +25,8 @@ class View(NamedTuple):
         )
 
 
-def final_view(depsgraph, notes):
-    """The view of a final render: the scene's camera, film size and render border."""
+def final_view(depsgraph, notes, whole=False):
+    """The view of a final render: the scene's camera, film size and, unless `whole`, render border."""
     scene = depsgraph.scene_eval
     if scene.camera is None:
         raise ExportError(
@@ -44,7 +44,8 @@ def final_view(depsgraph, notes):
         notes.add(f"Camera '{camera.name}': depth of field is not supported yet; all is sharp.")
     size = _full_size(scene.render)
     window = _WINDOWS[lens.type](_projection(camera, depsgraph, scene.render, size))
-    window, size = _inside_border(window, size, scene.render)
+    if not whole:
+        window, size = _inside_border(window, size, scene.render)
     kind = "perspective" if lens.type == "PERSP" else "orthographic"
     return View(kind, rigid(camera.matrix_world), window, lens.clip_start, lens.clip_end, *size)
 

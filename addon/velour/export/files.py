@@ -43,6 +43,11 @@ def content(image, owner):
         ) from error
 
 
+def is_there(image):
+    """Whether the file that `image` (or None) stands for exists."""
+    return image is not None and (image.packed_file is not None or os.path.isfile(absolute_path(image)))
+
+
 def sha256(data):
     return hashlib.sha256(data).hexdigest()
 

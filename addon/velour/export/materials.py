@@ -1,14 +1,26 @@
 """Blender materials as numbers in the library's scene."""
 
-from ..native import VelourError
+from typing import NamedTuple
+
+from ..native import Model, VelourError
 from . import files
 from .nodes import velour_node
 from .notes import ExportError
 from .principled import principled_values
 
 
+class Reduced(NamedTuple):
+    """A material that may render with its model for the scene."""
+
+    number: int  # of the material in the library's scene
+    name: str
+    model: Model  # the one for the scene; the full one is in the library's scene
+    neighbors: int
+    has_full: bool  # False: the full model is missing, and the other one is in its place
+
+
 class MaterialTable:
-    """Adds each material once.
+    """Adds each material once, with its full model; which of them may change to another one is in `reduced`.
 
     `strict` refuses a measured material that cannot be had; else (previews, the viewport) it renders as its
     Principled approximation, with a note.
@@ -19,6 +31,11 @@ class MaterialTable:
         self._notes = notes
         self._strict = strict
         self._numbers = {}
+        self.reduced = []
+
+    def find(self, material):
+        """The number of a material of the .blend; None where nothing shows it."""
+        return self._numbers.get(material.as_pointer())
 
     def number(self, material):
         """`material` may be None: Blender's default grey."""
@@ -43,12 +60,22 @@ class MaterialTable:
         owner = f"Material '{material.name}'"
         if settings.use_reference:
             return self._add_reference(node, owner)
+        if settings.use_scene_model and settings.scene_model is not None:
+            return self._add_pair(material, node, owner)
         if node.image is None:
             raise ExportError(
                 f"{owner}: node '{node.name}' has no model; press Fit, or choose a model as its image."
             )
         with files.read_model(node.image, owner) as model:
             return self._scene.add_model_material(model, settings.neighbors)
+
+    def _add_pair(self, material, node, owner):
+        reduced = files.read_model(node.velour.scene_model, owner)
+        has_full = files.is_there(node.image)
+        model = files.read_model(node.image, owner) if has_full else reduced
+        number = self._scene.add_model_material(model, node.velour.neighbors)
+        self.reduced.append(Reduced(number, material.name, reduced, node.velour.neighbors, has_full))
+        return number
 
     def _add_reference(self, node, owner):
         if node.velour.measurement is None:

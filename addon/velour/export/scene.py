@@ -14,6 +14,11 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
 
     `check_break` is called often and raises to stop; `strict` refuses measured materials that cannot be had.
     """
+    return export_with_materials(depsgraph, view, notes, check_break, strict)[0]
+
+
+def export_with_materials(depsgraph, view, notes, check_break=lambda: None, strict=True):
+    """As export_scene; and the MaterialTable, which knows the materials' numbers."""
     scene = Scene()
     try:
         working = rec709_to_working()
@@ -28,7 +33,7 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
         scene.commit()
         for warning in scene.info()["warnings"]:
             notes.add(warning)
-        return scene
+        return scene, materials
     except BaseException:
         scene.close()
         raise

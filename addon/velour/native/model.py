@@ -10,6 +10,7 @@ import numpy as np
 from . import library
 from .arrays import checked, directions, pointer, small
 from .handle import Handle, path_bytes
+from .observation import Observation
 
 
 class Model(Handle):
@@ -40,6 +41,12 @@ class Model(Handle):
     def info(self) -> dict:
         """kind, model, kernel, lobes, bytes, relative_l2, by_view_angle, warnings, order, source, ..."""
         return library.json_of(self._lib.vlr_model_info_json, self.pointer)
+
+    def out_of_domain(self, frame: Observation) -> float:
+        """Share of what `frame` shows that a model reduced to a scene was not made for; 0 for others."""
+        share = ctypes.c_double()
+        self._lib.vlr_model_out_of_domain(self.pointer, frame.pointer, ctypes.byref(share))
+        return share.value
 
     def eval(self, wv, wl: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """f [n x 3] and the density pdf [n] of the model's own sampler, per solid angle, for `wl` [n x 3]."""

@@ -91,6 +91,10 @@ class Scene(Handle):
         """`neighbors`: view directions mixed at run time; 0: the model's default."""
         return self._numbered("vlr_scene_add_model_material", model.pointer, neighbors)
 
+    def set_model_material(self, material: int, model: Model, neighbors: int = 0) -> None:
+        """Puts a model in the place of a material. A committed scene stays so; no job may run on it."""
+        self._lib.vlr_scene_set_model_material(self.pointer, material, model.pointer, neighbors)
+
     def add_measurement_material(
         self, measurement: Measurement, proposal: Model | None = None, neighbors: int = 0
     ) -> int:

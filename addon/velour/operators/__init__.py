@@ -5,6 +5,7 @@ import bpy
 from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
 from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
+from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
 from .save_model import VELOUR_OT_save_model
 
@@ -12,6 +13,7 @@ CLASSES = (
     VELOUR_OT_add_material,
     VELOUR_OT_load_material,
     VELOUR_OT_fit,
+    VELOUR_OT_fit_for_scene,
     VELOUR_OT_cancel_fit,
     VELOUR_OT_save_model,
     VELOUR_OT_accept_file,

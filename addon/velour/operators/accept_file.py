@@ -24,7 +24,7 @@ class VELOUR_OT_accept_file(bpy.types.Operator):
             self.report({"ERROR"}, "There is no measured material.")
             return {"CANCELLED"}
         try:
-            for image in filter(None, (node.image, node.velour.measurement)):
+            for image in filter(None, (node.image, node.velour.scene_model, node.velour.measurement)):
                 image.velour.sha256 = sha256(content(image, f"Material '{material.name}'"))
         except ExportError as error:
             self.report({"ERROR"}, str(error))

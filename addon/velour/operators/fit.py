@@ -1,7 +1,5 @@
 """Fit a model to the measurement of a material: in the background of a window, or at once without one."""
 
-import time
-
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
@@ -11,11 +9,12 @@ from ..export.nodes import velour_node
 from ..native import Measurement, VelourError, fit_job
 from ..properties.material_settings import MODELS
 from . import measured
+from .background_job import BackgroundJob, console_progress
 
 _SETTINGS = ("model", "tolerance", "max_lobes", "kernel", "seed")
 
 
-class VELOUR_OT_fit(bpy.types.Operator):
+class VELOUR_OT_fit(BackgroundJob, bpy.types.Operator):
     bl_idname = "velour.fit"
     bl_label = "Fit"
     bl_description = "Fit a model to the material's measurement. The model before it is not touched"
@@ -33,13 +32,11 @@ class VELOUR_OT_fit(bpy.types.Operator):
     )
     seed: IntProperty(name="Seed", min=0, options={"SKIP_SAVE"})
 
-    _timer = None
-
     def execute(self, context):
         """Waits for the model."""
         try:
             self._begin(context)
-            self._job.wait(_console_progress() if bpy.app.background else None)
+            self._job.wait(console_progress() if bpy.app.background else None)
             return self._finish()
         except (ExportError, VelourError) as error:
             return self._fail(error)
@@ -53,21 +50,17 @@ class VELOUR_OT_fit(bpy.types.Operator):
             self._begin(context)
         except (ExportError, VelourError) as error:
             return self._fail(error)
-        state = context.window_manager.velour
-        state.running, state.cancel_requested, state.material_name = True, False, self._material_name
-        self._timer = context.window_manager.event_timer_add(0.1, window=context.window)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+        return self._enter(context, self._material_name)
 
     def modal(self, context, event):
-        state = context.window_manager.velour
-        if event.type == "ESC" or state.cancel_requested:
+        if self._wants_to_stop(context, event):
             self._job.cancel()
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         try:
             if not self._job.wait(timeout=0.0):
-                self._show(context, self._job.poll())
+                state = self._job.poll()
+                self._show(context, state.stage, state.fraction)
                 return {"PASS_THROUGH"}
             self._leave(context)
             return self._finish()
@@ -123,6 +116,9 @@ class VELOUR_OT_fit(bpy.types.Operator):
             self.report({"WARNING"}, f"The material is gone; its model is kept as image '{image.name}'.")
             return {"FINISHED"}
         node.image = image
+        if node.velour.use_scene_model:
+            node.velour.use_scene_model = False
+            self.report({"INFO"}, "The model for the scene is of the fit before, and is switched off.")
         node.velour.measurement.velour.sha256 = self._digest
         for warning in info["warnings"]:
             self.report({"WARNING"}, f"Material '{material.name}': {warning}")
@@ -135,24 +131,6 @@ class VELOUR_OT_fit(bpy.types.Operator):
             {"WARNING" if cancelled else "ERROR"}, "The fit was cancelled." if cancelled else str(error)
         )
         return {"CANCELLED"}
-
-    def _show(self, context, job):
-        state = context.window_manager.velour
-        state.fraction, state.stage = job.fraction, job.stage
-        if context.workspace:
-            context.workspace.status_text_set(f"Velour: {job.stage} {job.fraction:.0%}   Esc: Cancel")
-        for window in context.window_manager.windows:
-            for area in window.screen.areas:
-                if area.type == "PROPERTIES":
-                    area.tag_redraw()
-
-    def _leave(self, context):
-        context.window_manager.velour.running = False
-        if self._timer is not None:
-            context.window_manager.event_timer_remove(self._timer)
-            self._timer = None
-        if context.workspace:
-            context.workspace.status_text_set(None)
 
 
 def _model_options(settings):
@@ -170,16 +148,3 @@ class VELOUR_OT_cancel_fit(bpy.types.Operator):
     def execute(self, context):
         context.window_manager.velour.cancel_requested = True
         return {"FINISHED"}
-
-
-def _console_progress():
-    """Prints a line when the stage changes and about once a second."""
-    last = {"stage": None, "time": 0.0}
-
-    def show(job):
-        now = time.monotonic()
-        if job.stage != last["stage"] or now - last["time"] > 1.0:
-            last.update(stage=job.stage, time=now)
-            print(f"Velour: {job.stage} {job.fraction:.0%}", flush=True)
-
-    return show

@@ -1,7 +1,7 @@
 """A model out of the .blend."""
 
 import bpy
-from bpy.props import StringProperty
+from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ..core.files import write_atomic
@@ -19,15 +19,21 @@ class VELOUR_OT_save_model(bpy.types.Operator, ExportHelper):
     filename_ext = ".velour"
     filter_glob: StringProperty(default="*.velour", options={"HIDDEN"})
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    for_scene: BoolProperty(
+        name="Model for the Scene", description="That one instead of the full model", options={"SKIP_SAVE"}
+    )
 
     def execute(self, context):
         material = measured.find_material(context, self.material)
         node = velour_node(material)
-        if node is None or node.image is None:
+        image = None
+        if node is not None:
+            image = node.velour.scene_model if self.for_scene else node.image
+        if image is None:
             self.report({"ERROR"}, "There is no model to save; fit or import one first.")
             return {"CANCELLED"}
         try:
-            data = content(node.image, f"Material '{material.name}'")
+            data = content(image, f"Material '{material.name}'")
             write_atomic(bpy.path.abspath(self.filepath), lambda path: path.write_bytes(data))
         except (ExportError, OSError) as error:
             self.report({"ERROR"}, str(error))

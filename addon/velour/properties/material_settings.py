@@ -11,6 +11,11 @@ MODELS = (
 )
 
 
+def _changed(settings, _context):
+    """Python's properties do not say by themselves that evaluated copies are out of date."""
+    settings.id_data.update_tag()
+
+
 class VelourMaterialSettings(bpy.types.PropertyGroup):
     """`node.velour`; the model itself is `node.image`."""
 
@@ -18,6 +23,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         name="Measured Material",
         description="Render the material of this node from the measured model in its image",
         default=False,
+        update=_changed,
         override=_OVERRIDE,
     )
     measurement: PointerProperty(
@@ -70,6 +76,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         default=0,
         min=0,
         max=16,
+        update=_changed,
         override=_OVERRIDE,
     )
     use_all_data: BoolProperty(
@@ -82,6 +89,23 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         name="Render from Measurement",
         description="Evaluate the raw measurement instead of the model: slower, for comparison",
         default=False,
+        update=_changed,
         override=_OVERRIDE,
     )
     seed: IntProperty(name="Seed", description="Of the fit", default=0, min=0, override=_OVERRIDE)
+    scene_model: PointerProperty(
+        name="Model for the Scene",
+        description="A smaller model that holds for the views and lights of one scene. The full model stays"
+        " beside it",
+        type=bpy.types.Image,
+        update=_changed,
+        override=_OVERRIDE,
+    )
+    use_scene_model: BoolProperty(
+        name="Use Model for the Scene",
+        description="Render with the model for the scene, in every frame that shows the material no otherwise"
+        " than it was fitted for; other frames take the full model and say so. Off: always the full model",
+        default=False,
+        update=_changed,
+        override=_OVERRIDE,
+    )

@@ -10,6 +10,7 @@ from .material_panel import (
 )
 from .preferences import VelourPreferences
 from .render_panel import VELOUR_RENDER_PT_film, VELOUR_RENDER_PT_library, VELOUR_RENDER_PT_sampling
+from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
 
 CLASSES = (
     VelourPreferences,
@@ -18,6 +19,7 @@ CLASSES = (
     VELOUR_RENDER_PT_film,
     VELOUR_VIEWLAYER_PT_passes,
     VELOUR_MATERIAL_PT_measured,
+    VELOUR_MATERIAL_PT_scene_model,
     VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_surface,

@@ -16,7 +16,7 @@ from .summaries import model_summary
 from .text import draw_sentence
 
 
-class _MaterialPanel:
+class MaterialPanel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "material"
@@ -27,7 +27,7 @@ class _MaterialPanel:
         return context.engine in cls.COMPAT_ENGINES and context.object is not None
 
 
-class VELOUR_MATERIAL_PT_measured(_MaterialPanel, bpy.types.Panel):
+class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
     bl_label = "Measured Material"
 
     def draw(self, context):
@@ -82,7 +82,7 @@ def _draw_fit(context, layout):
     row.operator(VELOUR_OT_cancel_fit.bl_idname, text="", icon="CANCEL")
 
 
-class VELOUR_MATERIAL_PT_model(_MaterialPanel, bpy.types.Panel):
+class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
     bl_label = "Model"
     bl_parent_id = "VELOUR_MATERIAL_PT_measured"
 
@@ -117,13 +117,18 @@ def _draw_numbers(layout, info):
         ("Largest albedo", _number(info["albedo_max"])),
         ("Reciprocity error", _number(info["reciprocity"])),
     )
+    draw_rows(layout, rows)
+    _draw_error_by_angle(layout.box(), info["by_view_angle"])
+
+
+def draw_rows(layout, rows):
+    """Names on the left, values on the right."""
     split = layout.split(factor=0.4)
     names, values = split.column(align=True), split.column(align=True)
     names.alignment = "RIGHT"
     for name, value in rows:
         names.label(text=name)
         values.label(text=value)
-    _draw_error_by_angle(layout.box(), info["by_view_angle"])
 
 
 def _lobes(info):
@@ -159,7 +164,7 @@ def _number(value):
     return "not covered" if value is None else f"{value:.3g}"
 
 
-class VELOUR_MATERIAL_PT_surface(_MaterialPanel, bpy.types.Panel):
+class VELOUR_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
     """Blender's own panel would stand above ours. For a measured material it edits the approximation."""
 
     bl_label = "Surface"
@@ -180,7 +185,7 @@ class VELOUR_MATERIAL_PT_surface(_MaterialPanel, bpy.types.Panel):
         layout.template_node_view(material.node_tree, output, output.inputs["Surface"])
 
 
-class VELOUR_MATERIAL_PT_notes(_MaterialPanel, bpy.types.Panel):
+class VELOUR_MATERIAL_PT_notes(MaterialPanel, bpy.types.Panel):
     """What a material that is not measured loses in Velour: said before the render."""
 
     bl_label = "Not Supported by Velour"

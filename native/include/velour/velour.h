@@ -234,6 +234,10 @@ VLR_API vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint3
 /* Materials are numbered in the order of adding. */
 VLR_API vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model, uint32_t neighbors,
                                                 uint32_t* material);
+/* Puts a model in the place of material number `material`, of whatever kind it was. A committed scene stays committed;
+ * no job of the scene may run meanwhile. */
+VLR_API vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t material, const vlr_model* model,
+                                                uint32_t neighbors);
 /* Reference mode: f comes from the raw measurement. `proposal` (may be NULL) is the model whose lobes draw samples;
  * without one a coarse model is fitted here, which takes about a second. */
 VLR_API vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,

@@ -124,6 +124,15 @@ vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model
   });
 }
 
+vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t material, const vlr_model* model,
+                                        uint32_t neighbors) {
+  return guard([&] {
+    require(scene, "scene");
+    require(model, "model");
+    scene->scene->set_material(material, {.material = make_material(model->model, static_cast<int>(neighbors))});
+  });
+}
+
 vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,
                                               const vlr_model* proposal, uint32_t neighbors, uint32_t* material) {
   return guard([&] {

@@ -42,6 +42,11 @@ uint32_t Scene::add_material(SurfaceMaterial material) {
   return static_cast<uint32_t>(materials_.size() - 1);
 }
 
+void Scene::set_material(uint32_t number, SurfaceMaterial material) {
+  if (number >= materials_.size()) refuse("There is no material " + std::to_string(number) + " to replace.");
+  materials_[number] = std::move(material);
+}
+
 void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials) {
   if (mesh >= meshes_.size()) refuse("There is no mesh " + std::to_string(mesh) + " to instance.");
   require_finite(object_to_world, "an instance");

@@ -48,6 +48,8 @@ class Scene {
   /// Error(invalid_argument).
   uint32_t add_mesh(Mesh mesh);
   uint32_t add_material(SurfaceMaterial material);
+  /// Puts another material in the place of one. A committed scene stays committed; nothing may read it meanwhile.
+  void set_material(uint32_t number, SurfaceMaterial material);
   /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a
   /// zero scale) is left out and counted in the warnings.
   void add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials);

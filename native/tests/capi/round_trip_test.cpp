@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "capi/test_scene.h"
 #include "support/test_data.h"
 #include "velour/velour.h"
 
@@ -68,6 +69,33 @@ class RoundTrip : public ::testing::TestWithParam<int32_t> {
   vlr_model* model_ = nullptr;
 };
 INSTANTIATE_TEST_SUITE_P(Models, RoundTrip, ::testing::Values(VLR_MODEL_SCATTERED, VLR_MODEL_PARAMETRIC));
+
+/// The mean colour of `scene`.
+std::vector<double> mean_of(const TestScene& scene) {
+  constexpr uint32_t kSize = 8;
+  vlr_job* job = scene.render_job(kSize, 256);
+  EXPECT_EQ(VLR_OK, vlr_job_start(job)) << vlr_last_error();
+  EXPECT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
+  std::vector<float> pixels(size_t{kSize} * kSize * 4);
+  EXPECT_EQ(VLR_OK, vlr_job_read_pass(job, "Combined", pixels.data(), pixels.size())) << vlr_last_error();
+  vlr_job_free(job);
+  std::vector<double> mean(3);
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    if (i % 4 < 3) mean[i % 4] += static_cast<double>(pixels[i]) / (kSize * kSize);
+  }
+  return mean;
+}
+
+TEST_P(RoundTrip, AModelTakesThePlaceOfAMaterialInACommittedScene) {
+  const TestScene scene;
+  const auto white = mean_of(scene);
+  ASSERT_EQ(VLR_OK, vlr_scene_set_model_material(scene.scene, 0, model_, 0)) << vlr_last_error();
+  const auto measured = mean_of(scene);
+  EXPECT_NEAR(white[0], white[2], 1e-4);
+  EXPECT_GT(measured[2], measured[0] + 0.2) << "0.5 pi (0.3 - 0.1) of the base";
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_scene_set_model_material(scene.scene, 1, model_, 0));
+  EXPECT_NE(std::strstr(vlr_last_error(), "no material 1"), nullptr) << vlr_last_error();
+}
 
 TEST_P(RoundTrip, TheModelIsCloseToTheMeasurement) {
   const float wv[3] = {0.5f, 0, std::sqrt(0.75f)}, wl[3] = {-0.4f, 0.1f, std::sqrt(1 - 0.17f)};

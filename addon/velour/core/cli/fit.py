@@ -45,7 +45,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--bytes", type=numbers.whole(1, 2**63), metavar="N", help="bound on the model's size"
     )
     parser.add_argument(
-        "--limit-albedo", action="store_true", help="lower the model where more light would leave than arrives"
+        "--limit-albedo",
+        action="store_true",
+        help="lower the model where more light would leave than arrives",
     )
     parser.add_argument("--all-data", action="store_true", help="hold nothing out: for production")
     parser.add_argument("--seed", type=numbers.seed, metavar="K")

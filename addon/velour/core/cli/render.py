@@ -8,8 +8,9 @@ import time
 
 import numpy as np
 
-from ...native import Scene, images, render_job, table
+from ...native import Model, Scene, images, library, observe_job, render_job, table
 from ...native.errors import refuse
+from .. import domain
 from ..cache import user_cache_folder
 from . import later, numbers, output, scene
 
@@ -27,6 +28,7 @@ KEYS = (
     "block_noise",
     "blocks_unfinished",
     "sky",
+    "out_of_domain",
 )
 _MOST_SPP = 1 << 16  # of a render that a noise target ends
 
@@ -58,6 +60,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--no-cache", dest="cache", action="store_const", const="", help="neither reads nor keeps them"
     )
     parser.add_argument("--reference", metavar="REF.exr", help="picture to compare with: rmse, relmse")
+    parser.add_argument(
+        "--full-model", metavar="FULL",
+        help="serves pictures that the material, a model reduced to other scenes, was not made for",
+    )  # fmt: skip
     later.add_later(parser, "--texture-scale", "it is for materials with texture", "S")
 
 
@@ -68,8 +74,9 @@ def run(args: argparse.Namespace) -> dict:
         reference = _read_reference(args)
         start = time.perf_counter()
         described = handles.enter_context(Scene())
-        scene.fill(described, args, handles)
+        material = scene.fill(described, args, handles)
         described.commit()
+        outside = _choose_model(described, material, args, handles)
         loaded = time.perf_counter()
         job = handles.enter_context(render_job(described, **_options(args)))
         report = job.run(output.progress_of(args))
@@ -84,8 +91,40 @@ def run(args: argparse.Namespace) -> dict:
     rmse, relmse = (
         images.compare(picture[..., :3].copy(), reference) if reference is not None else (None, None)
     )
-    report |= {"stages": stages, "rmse": rmse, "relmse": relmse}
+    report |= {"stages": stages, "rmse": rmse, "relmse": relmse, "out_of_domain": outside}
     return {key: report[key] for key in KEYS}
+
+
+def _choose_model(
+    described: Scene, material: int, args: argparse.Namespace, handles: contextlib.ExitStack
+) -> float | None:
+    """The share that a reduced model was not made for; the full model takes its place if need be."""
+    if library.file_info(args.material).get("scene") is None:
+        if args.full_model:
+            raise refuse(f"{args.material} is no model that was fitted for a scene; leave --full-model out.")
+        return None
+    model = handles.enter_context(Model.load(args.material))
+    full = handles.enter_context(Model.load(args.full_model)) if args.full_model else None
+    seen = {"width": args.size[0], "height": args.size[1]}
+    seen |= {name: v for name in ("bounces", "threads") if (v := getattr(args, name)) is not None}
+    with observe_job(described, material, **seen) as job:
+        job.run()
+        with job.result_observation() as frame:
+            share = model.out_of_domain(frame)
+    if domain.inside(share):
+        return share
+    instead = (
+        "the full model is used"
+        if full
+        else "give the full model with --full-model, or fit it for this scene"
+    )
+    output.log.warning(
+        "%.2g %% of what the picture shows of the material is outside of what %s was fitted for; %s.",
+        100 * share, args.material, instead,
+    )  # fmt: skip
+    if full:
+        described.set_model_material(material, full, args.neighbors)
+    return share
 
 
 def _refuse_unsupported(args: argparse.Namespace) -> None:

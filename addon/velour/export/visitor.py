@@ -1,0 +1,82 @@
+"""Looks at the frames of a scene as a render sees them, without rendering.
+
+Blender gives Python no evaluated scene in render mode (render visibility, render levels of modifiers, every
+view layer) but inside a render engine. So a copy of the scene is "rendered", and the engine calls a visitor
+instead. The scene itself, its current frame and its render result stay as they are.
+"""
+
+import contextlib
+
+import bpy
+
+from .notes import ExportError
+
+_visit = None
+
+
+def current():
+    """What the engine calls with itself and the depsgraph instead of rendering; None: it renders."""
+    return _visit
+
+
+def visit_frame(scene, frame, visit, engine_id):
+    """Calls `visit(engine, depsgraph)` for every view layer that renders; its exceptions come up here."""
+    errors = []
+
+    def guarded(engine, depsgraph):
+        try:
+            if not errors:
+                visit(engine, depsgraph)
+        except Exception as error:
+            errors.append(error)
+
+    with (
+        _kept_frame(scene),
+        _copy(scene, frame, engine_id) as copy,
+        _instead_of_rendering(guarded),
+        bpy.context.temp_override(scene=copy),  # Blender renders the frame of the context's scene
+    ):
+        _render(copy)
+    if errors:
+        raise errors[0]
+
+
+def _render(scene):
+    try:
+        bpy.ops.render.render(scene=scene.name)
+    except RuntimeError as error:  # Blender itself refuses: no camera, for one
+        sentence = str(error).splitlines()[0].removeprefix("Error: ")
+        raise ExportError(f"The scene cannot be looked at: {sentence}.") from error
+
+
+@contextlib.contextmanager
+def _kept_frame(scene):
+    """Rendering leaves the animated values of its frame in the .blend, also for the scene that was copied."""
+    try:
+        yield
+    finally:
+        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+
+
+@contextlib.contextmanager
+def _copy(scene, frame, engine_id):
+    copy = scene.copy()
+    try:
+        copy.render.engine = engine_id
+        copy.render.use_border = copy.render.use_compositing = copy.render.use_sequencer = False
+        copy.render.use_single_layer = False
+        copy.render.use_persistent_data = False  # nothing of the copy may outlive it
+        copy.frame_current = frame
+        yield copy
+    finally:
+        bpy.data.scenes.remove(copy)
+
+
+@contextlib.contextmanager
+def _instead_of_rendering(visit):
+    global _visit
+    _visit = visit
+    try:
+        yield
+    finally:
+        _visit = None

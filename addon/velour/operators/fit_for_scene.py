@@ -1,0 +1,183 @@
+"""Fit a smaller model that holds for what one scene shows of a material."""
+
+import time
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+
+from ..export import ExportError
+from ..native import VelourError
+from . import measured
+from .background_job import BackgroundJob, console_progress
+from .scene_fit import SceneFit, SharedMaterialError
+
+_OBSERVING = 0.5  # share of the progress bar
+_TICK_SECONDS = 0.1  # of looking at frames, until the window may answer again
+
+
+class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
+    bl_idname = "velour.fit_for_scene"
+    bl_label = "Fit for This Scene"
+    bl_description = (
+        "Look at the material in all frames, view layers and instances of the scene, and fit a second,"
+        " smaller model that holds for the views and lights found. The full model stays"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    current_frame: BoolProperty(
+        name="Current Frame Only",
+        description="Look at the current frame instead of the scene's frame range",
+        options={"SKIP_SAVE"},
+    )
+    shared: BoolProperty(
+        name="Even if Shared",
+        description="Also if another scene uses the material. Its frames take the full model where they show"
+        " the material otherwise",
+        options={"SKIP_SAVE"},
+    )
+
+    _job = None
+
+    def execute(self, context):
+        """Waits for the model."""
+        try:
+            self._begin(context)
+            while self._work.observe_next():
+                self._say_frame()
+            self._start_fit(context)
+            self._job.wait(console_progress() if bpy.app.background else None)
+            return self._finish()
+        except (ExportError, VelourError) as error:
+            return self._fail(error)
+
+    def invoke(self, context, _event):
+        """Some frames a tick, then the fit in the background; Esc cancels."""
+        if context.window_manager.velour.running:
+            self.report({"ERROR"}, "A fit is running already; wait for it, or cancel it.")
+            return {"CANCELLED"}
+        try:
+            self._begin(context)
+        except SharedMaterialError as error:
+            _ask(context, str(error), self.material, self.current_frame)
+            return {"CANCELLED"}
+        except (ExportError, VelourError) as error:
+            return self._fail(error)
+        return self._enter(context, self._work.material_name)
+
+    def modal(self, context, event):
+        if self._wants_to_stop(context, event):
+            self._leave(context)
+            return self._cancelled()
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        try:
+            if self._step(context):
+                return {"PASS_THROUGH"}
+            self._leave(context)
+            return self._finish()
+        except (ExportError, VelourError) as error:
+            self._leave(context)
+            return self._fail(error)
+
+    def cancel(self, context):
+        """Blender closes the window or loads another file."""
+        self._leave(context)
+        self._close()
+
+    def _begin(self, context):
+        material = measured.find_material(context, self.material)
+        if material is None:
+            raise ExportError(
+                f"There is no material {self.material!r} to fit." if self.material else "No active material."
+            )
+        if bpy.app.is_job_running("RENDER"):
+            raise ExportError("A render is running; wait for it, or cancel it.")
+        self._work = SceneFit(material, context.scene, self.current_frame, self.shared)
+
+    def _step(self, context):
+        """Some frames, the start of the fit, or a look at it; False once it is done."""
+        if self._job is not None:
+            state = self._job.poll()
+            self._show(context, state.stage, _OBSERVING + (1 - _OBSERVING) * state.fraction)
+            return not self._job.wait(timeout=0.0)
+        if bpy.app.is_job_running("RENDER"):
+            return True  # its turn first
+        if not self._observe_some():
+            self._start_fit(context)
+            return True
+        done, count = self._work.done, len(self._work.frames)
+        self._show(context, f"frame {self._work.frames[done - 1]}", _OBSERVING * done / count)
+        return True
+
+    def _observe_some(self):
+        """Frames for a tick, one at least; False when none was left."""
+        end = time.monotonic() + _TICK_SECONDS
+        seen = self._work.observe_next()
+        while seen and time.monotonic() < end and self._work.observe_next():
+            pass
+        return seen
+
+    def _start_fit(self, context):
+        self._job = self._work.fit(context.scene.render.threads)
+
+    def _finish(self):
+        with self._job, self._job.result_model() as model:
+            info = model.info()
+            seconds = self._job.poll().seconds
+            self._work.keep(model)
+        for warning in info["warnings"]:
+            self.report({"WARNING"}, f"Material '{self._work.material_name}': {warning}")
+        self.report({"INFO"}, _report(self._work, info, seconds))
+        self._close()
+        return {"FINISHED"}
+
+    def _fail(self, error):
+        self._close()
+        if isinstance(error, VelourError) and error.cancelled:
+            return self._cancelled()
+        self.report({"ERROR"}, str(error))
+        return {"CANCELLED"}
+
+    def _cancelled(self):
+        self._close()
+        self.report({"WARNING"}, "The fit for the scene was cancelled.")
+        return {"CANCELLED"}
+
+    def _close(self):
+        if self._job is not None:
+            self._job.close()  # cancels what still runs
+        work = getattr(self, "_work", None)
+        if work is not None:
+            work.observation.close()
+
+    def _say_frame(self):
+        if bpy.app.background:
+            work = self._work
+            print(
+                f"Velour: looked at frame {work.frames[work.done - 1]} ({work.done}/{len(work.frames)})",
+                flush=True,
+            )
+
+
+def _report(work, info, seconds):
+    scene, own = info["scene"], info["parameter_bytes"]
+    full = scene["full_parameter_bytes"]
+    return (
+        f"Fitted '{work.material_name}' for scene '{work.scene_name}', {len(work.frames)} frames, in"
+        f" {seconds:.1f} s: {own} bytes of parameters, the full model has {full} ({full / own:.1f} times as"
+        f" many); picture error (relmse) {scene['picture_error']:.2g}, full"
+        f" {scene['full_picture_error']:.2g}."
+    )
+
+
+def _ask(context, sentence, material, current_frame):
+    """Says why not, and offers to do it all the same."""
+
+    def draw(menu, _context):
+        menu.layout.operator_context = "INVOKE_DEFAULT"
+        menu.layout.label(text=sentence)
+        choice = menu.layout.operator(VELOUR_OT_fit_for_scene.bl_idname, text="Fit Even if Shared")
+        choice.material, choice.current_frame, choice.shared = material, current_frame, True
+
+    context.window_manager.popup_menu(draw, title="Shared Material", icon="QUESTION")

@@ -1,0 +1,125 @@
+"""The steps of a fit for a scene, for the operator that takes them at once or one at a time."""
+
+import bpy
+
+from ..export import ExportError, Notes, export_with_materials, visitor
+from ..export.camera import final_view
+from ..export.files import measurement_path, read_model
+from ..export.nodes import velour_node
+from ..export.observe import observe
+from ..native import Measurement, Observation, fit_job
+from . import measured
+from .sharing import other_scenes
+
+ENGINE = "VELOUR"
+
+
+class SharedMaterialError(ExportError):
+    """Another scene uses the material, too."""
+
+
+class SceneFit:
+    """Observes frame after frame, then fits. Holds names: undo may replace any datablock meanwhile."""
+
+    def __init__(self, material, scene, current_frame=False, shared=False):
+        _refuse_unfit(material)
+        if not any(layer.use for layer in scene.view_layers):
+            raise ExportError(f"Scene '{scene.name}': no view layer renders; switch one on.")
+        others = [] if shared else other_scenes(material, scene)
+        if others:
+            raise SharedMaterialError(
+                f"Material '{material.name}' is also used by {_scenes(others)}, for which the model would not"
+                " be fitted. Make the material single-user, or fit it even if shared (shared=True)."
+            )
+        self.material_name, self.scene_name = material.name, scene.name
+        self.frames = [scene.frame_current] if current_frame else frame_range(scene)
+        self.observation = Observation.of_nothing()
+        self.done = 0  # frames
+
+    def observe_next(self):
+        """Adds what the next frame shows; False when there is none left."""
+        if self.done == len(self.frames):
+            return False
+        visitor.visit_frame(self._scene(), self.frames[self.done], self._visit, ENGINE)
+        self.done += 1
+        return True
+
+    def fit(self, threads):
+        """The job, started."""
+        if self.observation.info()["hits"] == 0:
+            raise ExportError(
+                f"Material '{self.material_name}' is not seen in {self._range()} of scene"
+                f" '{self.scene_name}'; nothing tells what its model is needed for."
+            )
+        node, owner = self.node(), f"Material '{self.material_name}'"
+        with (
+            measurement_path(node.velour.measurement, owner) as path,
+            Measurement.load(path) as measurement,
+            read_model(node.image, owner) as full,
+        ):
+            # A model of another kind is no measure of a parametric one: without one the fit makes it first.
+            measure = {"full_model": full} if full.info()["model"] == "parametric" else {}
+            return fit_job(
+                measurement,
+                model="parametric",
+                for_scene=self.observation,
+                **measure,
+                tolerance=node.velour.tolerance,
+                max_lobes=node.velour.max_lobes,
+                seed=node.velour.seed,
+                all_data=int(node.velour.use_all_data),
+                threads=threads,
+            ).start()
+
+    def keep(self, model):
+        """Puts the model beside the full one, in a new image, and switches it on."""
+        image = measured.packed_model(model.bytes(), f"{self.material_name} for {self.scene_name}")
+        settings = self.node().velour
+        settings.scene_model, settings.use_scene_model = image, True
+
+    def node(self):
+        material = bpy.data.materials.get(self.material_name)
+        if velour_node(material) is None:
+            raise ExportError(f"Material '{self.material_name}' is gone, or is not measured any more.")
+        return velour_node(material)
+
+    def _scene(self):
+        scene = bpy.data.scenes.get(self.scene_name)
+        if scene is None:
+            raise ExportError(f"Scene '{self.scene_name}' is gone.")
+        return scene
+
+    def _visit(self, engine, depsgraph):
+        """One view layer of one frame."""
+        notes = Notes()  # said by renders
+        view = final_view(depsgraph, notes, whole=True)
+        native_scene, materials = export_with_materials(depsgraph, view, notes)
+        with native_scene:
+            number = materials.find(bpy.data.materials[self.material_name])
+            if number is not None:
+                with observe(native_scene, number, view, depsgraph) as seen:
+                    self.observation.merge(seen)
+
+    def _range(self):
+        first, last = self.frames[0], self.frames[-1]
+        return f"frame {first}" if first == last else f"frames {first} to {last}"
+
+
+def frame_range(scene):
+    return list(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
+
+
+def _refuse_unfit(material):
+    node = velour_node(material)
+    owner = f"Material '{material.name}'"
+    if node is None or node.velour.measurement is None:
+        raise ExportError(f"{owner}: no measurement is chosen; use File > Import > Measured Material.")
+    if node.image is None:
+        raise ExportError(f"{owner}: it has no full model yet; press Fit first.")
+    if material.library is not None:
+        raise ExportError(f"{owner} is linked from a library, where nothing can be kept; make it local.")
+
+
+def _scenes(names):
+    quoted = [f"'{name}'" for name in names]
+    return f"scene {quoted[0]}" if len(names) == 1 else f"scenes {', '.join(quoted)}"

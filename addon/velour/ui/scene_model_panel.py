@@ -1,0 +1,59 @@
+"""The second model of a material: the smaller one, for what a scene shows of it."""
+
+import bpy
+
+from ..export.nodes import velour_node
+from ..operators.accept_file import VELOUR_OT_accept_file
+from ..operators.fit_for_scene import VELOUR_OT_fit_for_scene
+from ..operators.save_model import VELOUR_OT_save_model
+from .material_panel import MaterialPanel, draw_rows
+from .summaries import model_summary
+from .text import draw_sentence
+
+
+class VELOUR_MATERIAL_PT_scene_model(MaterialPanel, bpy.types.Panel):
+    bl_label = "Model for the Scene"
+    bl_parent_id = "VELOUR_MATERIAL_PT_measured"
+
+    @classmethod
+    def poll(cls, context):
+        node = velour_node(context.material)
+        return node is not None and (node.image is not None or node.velour.scene_model is not None)
+
+    def draw(self, context):
+        layout, settings = self.layout, velour_node(context.material).velour
+        row = layout.row(align=True)
+        row.enabled = not context.window_manager.velour.running
+        row.operator(VELOUR_OT_fit_for_scene.bl_idname, icon="PLAY")
+        row.operator(VELOUR_OT_fit_for_scene.bl_idname, text="This Frame Only").current_frame = True
+        if settings.scene_model is None:
+            return
+        layout.prop(settings, "use_scene_model")
+        layout.template_ID(settings, "scene_model", open="image.open")
+        _draw_model(context, layout, model_summary(settings.scene_model))
+
+
+def _draw_model(context, layout, info):
+    if info is None:
+        layout.label(text="Reading the model...", icon="TIME")
+        return
+    if isinstance(info, str):
+        draw_sentence(context, layout, info, icon="ERROR")
+        layout.operator(VELOUR_OT_accept_file.bl_idname)
+        return
+    if info.get("scene") is None:
+        sentence = "This model was not fitted for a scene; every frame takes it."
+        draw_sentence(context, layout, sentence, icon="INFO")
+        return
+    draw_rows(layout, _rows(info))
+    layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT").for_scene = True
+
+
+def _rows(info):
+    scene, own = info["scene"], info["parameter_bytes"]
+    full, (begin, end) = scene["full_parameter_bytes"], info["view_range"]
+    return (
+        ("Parameters", f"{own} bytes, full model {full}: {full / own:.1f} times"),
+        ("Picture error", f"{scene['picture_error']:.3g}, full model {scene['full_picture_error']:.3g}"),
+        ("Views", f"{begin:.0f} to {end:.0f}\N{DEGREE SIGN}, {scene['frames']} pictures"),
+    )
