@@ -52,7 +52,6 @@ def test_wrong_usage_is_2(arguments):
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (["fit", "x", "-o", "y", "--for-scene", "s.json"], "--for-scene"),
         ([*RENDER, "--texture-scale", "2"], "--texture-scale"),
         (["capture", "weave", "-o", "f"], "weave"),
         (["capture", "weave", "-o", "f", "--texels", "8"], "--texels"),

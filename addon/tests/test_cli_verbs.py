@@ -21,6 +21,7 @@ FIT_KEYS = [
     "measured_reciprocity",
     "warnings",
     "order",
+    "view_range",
 ]
 ORDER_KEYS = ["lobes", "parameter_bytes", "worst", "relative_l2", "chosen"]
 COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views"]
@@ -38,6 +39,7 @@ RENDER_KEYS = [
     "block_noise",
     "blocks_unfinished",
     "sky",
+    "out_of_domain",
 ]
 OBSERVE_KEYS = [
     "seconds",
