@@ -62,17 +62,11 @@ void parametric_value(benchmark::State& state) {
   const auto material = make(state.range(0) != 0, static_cast<int>(state.range(1)));
   const Directions d;
   PreparedBrdf point;
-  DirectionBatch wl;
-  RgbBatch f;
-  ScalarBatch pdf;
   size_t i = 0;
   for (auto _ : state) {
     ++i;
     material->prepare(d.wv[i % 1024], point);
-    wl.count = 0;
-    wl.push(d.wl[i % 1024]);
-    material->eval(point, wl, f, pdf);
-    benchmark::DoNotOptimize(f);
+    benchmark::DoNotOptimize(material->eval_one(point, d.wl[i % 1024]));
   }
   count(state, 1);
 }
@@ -82,16 +76,11 @@ void parametric_sample(benchmark::State& state) {
   const auto material = make(state.range(0) != 0, static_cast<int>(state.range(1)));
   const Directions d;
   PreparedBrdf point;
-  DirectionBatch wl;
-  RgbBatch f;
-  ScalarBatch pdf;
   size_t i = 0;
   for (auto _ : state) {
     ++i;
     material->prepare(d.wv[i % 1024], point);
-    material->sample(point, {&d.u[i % 1024], 1}, wl);
-    material->eval(point, wl, f, pdf);
-    benchmark::DoNotOptimize(pdf);
+    benchmark::DoNotOptimize(material->eval_one(point, material->sample_one(point, d.u[i % 1024])));
   }
   count(state, 1);
 }

@@ -1,15 +1,13 @@
 // Highway compiles this file once for each instruction set.
 #include "material/parametric_draws.h"
 
-#include "srbf/kernel.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "material/parametric_draws.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "material/store_draws-inl.h"
 #include "srbf/simd_dispatch.h"
-#include "srbf/simd_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {
@@ -20,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <int kNodes>
 HWY_INLINE void add_draws(const float* const (&row)[4], const float (&weight)[4], WarpedMixture& m) {
   using P = ParametricDraws;
-  const hn::CappedTag<float, WarpedMixture::kLanes> d;
+  const hn::CappedTag<float, 8> d;  // padded is a multiple of it
   using V = hn::Vec<decltype(d)>;
   for (int at = 0; at < m.padded; at += static_cast<int>(hn::Lanes(d))) {
     const auto column = [&](int which) {
@@ -29,24 +27,11 @@ HWY_INLINE void add_draws(const float* const (&row)[4], const float (&weight)[4]
       for (int i = 1; i < kNodes; ++i) sum = hn::MulAdd(hn::Set(d, weight[i]), hn::LoadU(d, row[i] + from), sum);
       return sum;
     };
-    const V x = hn::Add(hn::Load(d, m.x + at), column(P::kOffsetX));
-    const V y = hn::Add(hn::Load(d, m.y + at), column(P::kOffsetY));
-    const V z = hn::Add(hn::Load(d, m.z + at), column(P::kOffsetZ));
-    const V scale = reciprocal_sqrt(d, hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
-    hn::Store(hn::Mul(scale, x), d, m.draw_x + at);
-    hn::Store(hn::Mul(scale, y), d, m.draw_y + at);
-    hn::Store(hn::Mul(scale, z), d, m.draw_z + at);
-    const V ratio = column(P::kBandwidthRatio), least = hn::Set(d, static_cast<float>(kMinMeanBandwidth));
-    const V bandwidth = hn::Max(hn::Mul(hn::Load(d, m.bandwidth + at), ratio), least);
-    hn::Store(bandwidth, d, m.draw_bandwidth + at);
-    // The same sums, rounded the same way, as the numbers that choose: this is the probability of the draws.
-    const V below = column(P::kBelow), up_to = column(P::kUpTo), probability = hn::Sub(up_to, below);
-    hn::StoreU(up_to, d, m.cdf + 1 + at);
-    if (at == 0) m.cdf[0] = hn::GetLane(below);
-    // The integral of the kernel, 2 pi (1 - e^-2l) / l; no smaller l than the least, so the difference is exact enough.
-    const V whole = hn::Sub(hn::Set(d, 1.0f), exp_nonpositive(d, hn::Mul(hn::Set(d, -2.0f), bandwidth)));
-    const V scaled = hn::Mul(hn::Mul(hn::Set(d, 0.5f / kPi), probability), bandwidth);
-    hn::Store(hn::Div(scaled, whole), d, m.density + at);
+    const Vector<V> center{hn::Add(hn::Load(d, m.x + at), column(P::kOffsetX)),
+                           hn::Add(hn::Load(d, m.y + at), column(P::kOffsetY)),
+                           hn::Add(hn::Load(d, m.z + at), column(P::kOffsetZ))};
+    const V bandwidth = hn::Mul(hn::Load(d, m.bandwidth + at), column(P::kBandwidthRatio));
+    store_draws(d, center, bandwidth, column(P::kBelow), column(P::kUpTo), at, m);
   }
 }
 

@@ -100,7 +100,7 @@ double spread(const Material& material, const PreparedBrdf& point) {
   constexpr uint64_t kSamples = 20'000;
   double sum = 0, sum_sq = 0;
   for (uint64_t i = 0; i < kSamples; ++i) {
-    const Vec3 wl = material.sample(point, RandomStream(3, 0, i).next2());
+    const Vec3 wl = material.sample_one(point, RandomStream(3, 0, i).next2());
     if (wl.z <= 0) continue;
     const auto e = test::eval_one(material, point, wl);
     const double x = static_cast<double>(luminance(e.f) * wl.z / e.pdf);

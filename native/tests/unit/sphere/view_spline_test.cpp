@@ -73,6 +73,20 @@ TEST(ViewSpline, HemisphereSplinesHaveNoSeam) {
   EXPECT_NEAR(value(spline.at(view(1e-6, 0.1)), control), value(spline.at(view(1e-6, 4)), control), 1e-6);
 }
 
+TEST(ViewSpline, RefinedSplinesFollowWhatTheirOwnKnotsAllow) {
+  const ViewSpline coarse(true, 5), fine = coarse.refined(3);
+  const auto control = waves(coarse);
+  for (const bool odd : {false, true}) {
+    auto values = fine.sites();
+    ASSERT_EQ(static_cast<int>(values.size()), fine.node_count());
+    for (double& v : values) v = value(coarse.at(PolarView<double>{v, 1, 0}), control, odd);
+    fine.interpolate(values, odd);
+    for (double degrees = 0; degrees <= 90; degrees += 0.37) {
+      EXPECT_NEAR(value(fine.at(view(degrees)), values, odd), value(coarse.at(view(degrees)), control, odd), 1e-12);
+    }
+  }
+}
+
 TEST(PoleFade, GoesFromNothingToAll) {
   EXPECT_EQ(pole_fade(view(0)), 0);
   EXPECT_GT(pole_fade(view(8)), 0.9999);
