@@ -51,6 +51,7 @@ HWY_AFTER_NAMESPACE();
 #include <algorithm>
 
 #include "material/draw_fit.h"
+#include "material/idle_lobes.h"
 #include "sphere/frame.h"
 #include "srbf/lobe_tree.h"
 
@@ -72,10 +73,28 @@ WarpedLobe lobe_of(const WarpedMixture& m, int j) {
           {m.r[j], m.g[j], m.b[j]}};
 }
 
-DrawFit fit_of(const WarpedMixture& m) {
+std::vector<WarpedLobe> lobes_of(const WarpedMixture& m) {
   std::vector<WarpedLobe> lobes;
   for (int j = 0; j < m.count; ++j) lobes.push_back(lobe_of(m, j));
-  return fit_draws(lobes, Vec3d(m.wv));
+  return lobes;
+}
+
+bool has(uint32_t set, size_t lobe) { return (set >> lobe & 1) != 0; }
+
+/// The fit of some lobes; the others are not drawn.
+DrawFit fit_of(const std::vector<WarpedLobe>& lobes, uint32_t chosen, const Vec3d& wv) {
+  std::vector<WarpedLobe> some;
+  for (size_t j = 0; j < lobes.size(); ++j) {
+    if (has(chosen, j)) some.push_back(lobes[j]);
+  }
+  DrawFit fit = fit_draws(some, wv);
+  auto next = fit.lobes.begin();
+  auto all = drawn_as_they_are(lobes);
+  for (size_t j = 0; j < all.size(); ++j) {
+    if (has(chosen, j)) all[j] = *next++;
+  }
+  fit.lobes = std::move(all);
+  return fit;
 }
 
 ProposalLobes few_lobes(const DrawFit& fit) {
@@ -83,6 +102,7 @@ ProposalLobes few_lobes(const DrawFit& fit) {
   ProposalLobes few;
   few.cosine = static_cast<float>(fit.mass * fit.cosine / kPiD);
   for (const DrawnLobe& lobe : fit.lobes) {
+    if (!(lobe.probability > 0)) continue;
     const double integral = kernel_integral(Kernel::gaussian, lobe.light_bandwidth);
     const double amplitude = fit.mass * lobe.probability / integral;
     lobes.add({Vec3(lobe.light_center), static_cast<float>(lobe.light_bandwidth), static_cast<float>(amplitude)});
@@ -103,7 +123,8 @@ ParametricDraws::ParametricDraws(const ParametricValues& values)
       padded_(values.padded_count()),
       nodes_(isotropic_, isotropic_ ? kRadiusCells : kSquareCells),
       rows_(static_cast<size_t>(nodes_.count() * kColumns * padded_)),
-      proposals_(static_cast<size_t>(nodes_.count())) {
+      proposals_(static_cast<size_t>(nodes_.count())),
+      matter_(static_cast<size_t>(nodes_.count())) {
   tbb::parallel_for(0, nodes_.count(), [&](int node) { fill_node(values, node); });
 }
 
@@ -111,7 +132,10 @@ void ParametricDraws::fill_node(const ParametricValues& values, int node) {
   WarpedMixture m;
   const Vec3 wv = nodes_.view(node);
   values.evaluate(wv, ViewPlace(wv), m);
-  const DrawFit fit = fit_of(m);
+  const std::vector<WarpedLobe> lobes = lobes_of(m);
+  const uint32_t matter = lobes_that_matter(lobes, Vec3d(m.wv));
+  matter_[static_cast<size_t>(node)] = matter;
+  const DrawFit fit = fit_of(lobes, matter, Vec3d(m.wv));
   proposals_[static_cast<size_t>(node)] = few_lobes(fit);
 
   float* const row = rows_.data() + node * kColumns * padded_;
@@ -134,6 +158,14 @@ void ParametricDraws::fill_node(const ParametricValues& values, int node) {
   }
 }
 
+uint32_t ParametricDraws::matter_between(const ViewPlace& first, const ViewPlace& last) const {
+  uint32_t matter = 0;
+  for (int node = nodes_.at(first).node[0]; node <= nodes_.at(last).node[1]; ++node) {
+    matter |= matter_[static_cast<size_t>(node)];
+  }
+  return matter;
+}
+
 void ParametricDraws::add_to(const ViewPlace& place, WarpedMixture& mixture) const {
   VELOUR_SIMD_DISPATCH(add_draws_simd)(rows_.data(), nodes_.at(place), mixture);
 }
@@ -150,7 +182,7 @@ void ParametricDraws::propose(const WarpedMixture& mixture, ProposalLobes& lobes
 }
 
 uint64_t ParametricDraws::bytes() const {
-  return sizeof(float) * rows_.size() + sizeof(ProposalLobes) * proposals_.size();
+  return sizeof(float) * rows_.size() + sizeof(ProposalLobes) * proposals_.size() + sizeof(uint32_t) * matter_.size();
 }
 
 }  // namespace velour

@@ -63,6 +63,9 @@ void evaluate_simd(const TableRows& rows, const Vec3& wv, WarpedMixture& m) {
   m.wv = Vec3(inverse * sine_sq, 0, wv.z);
   ViewTapsOf<float> taps = rows.spline.at(PolarView<float>{polar_angle(std::sqrt(1 - z), z), m.turn_cos, m.turn_sin});
   while (taps.count < SplineRows::kIsotropicTaps) taps.add(0, 0, 0);  // beside the normal
+  const LobeList& list = rows.lists[taps.node[0]];
+  m.listed = list.lobe;
+  m.listed_count = list.count;
   if (m.padded == 8) return mix_rows<8>(rows, taps, m);
   if (m.padded == 16) return mix_rows<16>(rows, taps, m);
   return mix_rows<32>(rows, taps, m);
@@ -111,6 +114,7 @@ ParametricTable::ParametricTable(const ParametricValues& values, const Parametri
   most_z_ = static_cast<float>(std::cos(kFadeEnd));
   spline_ = spline_.refined((kIntervals + spline_.cells() - 1) / spline_.cells());
   fill(values, draws);
+  leave_out_idle(draws);
 }
 
 void ParametricTable::fill(const ParametricValues& values, const ParametricDraws& draws) {
@@ -122,10 +126,6 @@ void ParametricTable::fill(const ParametricValues& values, const ParametricDraws
     draws.add_to(ViewPlace(wv), mixtures[i]);
   }
   rows_.assign(sites.size() * kColumns * static_cast<size_t>(padded_), 0.0f);
-  const auto at = [&](size_t site, int column, int lobe) -> float& {
-    return rows_[(site * kColumns + static_cast<size_t>(column)) * static_cast<size_t>(padded_) +
-                 static_cast<size_t>(lobe)];
-  };
   std::vector<double> control(sites.size());
   for (int j = 0; j < padded_; ++j) {
     for (const auto& [column, array, odd] : kValues) {
@@ -143,11 +143,34 @@ void ParametricTable::fill(const ParametricValues& values, const ParametricDraws
   }
 }
 
+void ParametricTable::leave_out_idle(const ParametricDraws& draws) {
+  const auto sites = spline_.sites();
+  const double step = sites[2] - sites[1];
+  const auto place = [](double theta) { return ViewPlace(view_of(std::clamp(theta, 0.0, kPiD / 2))); };
+  std::vector<uint32_t> matter;
+  for (const double site : sites) {
+    // Where the table ends, beside the normal, it has all lobes, as the model has them beyond.
+    const bool at_the_end = site < kFadeEnd + 2 * step;
+    matter.push_back(at_the_end ? ~0u : draws.matter_between(place(site - 1.5 * step), place(site + 1.5 * step)));
+  }
+  for (size_t i = 0; i < sites.size(); ++i) {
+    for (int j = 0; j < count_; ++j) {
+      if ((matter[i] >> j & 1) == 0) at(i, kRed, j) = at(i, kGreen, j) = at(i, kBlue, j) = 0;
+    }
+  }
+  for (size_t i = 0; i + 2 < sites.size(); ++i) {
+    LobeList& list = lists_.emplace_back();
+    for (int j = 0; j < count_; ++j) {
+      if (((matter[i] | matter[i + 1] | matter[i + 2]) >> j & 1) != 0)
+        list.lobe[list.count++] = static_cast<uint8_t>(j);
+    }
+  }
+}
+
 void ParametricTable::evaluate(const Vec3& wv, WarpedMixture& mixture) const {
   mixture.count = count_;
   mixture.padded = padded_;
-  mixture.list_all();
-  VELOUR_SIMD_DISPATCH(evaluate_simd)({half_.data(), rows_.data(), spline_}, wv, mixture);
+  VELOUR_SIMD_DISPATCH(evaluate_simd)({half_.data(), rows_.data(), lists_.data(), spline_}, wv, mixture);
 }
 
 }  // namespace velour

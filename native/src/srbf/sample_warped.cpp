@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "sphere/discrete_choice.h"
 #include "srbf/warped_draws.h"
 #include "srbf/warped_mixture.h"
 
@@ -34,10 +33,12 @@ HWY_INLINE void choose(const WarpedMixture& m, const Vec2& u, WarpedDraws& draws
   const int passed = m.padded % 16 == 0 ? component_of(hn::CappedTag<float, 16>(), m, u.x)
                                         : component_of(hn::CappedTag<float, 8>(), m, u.x);
   const int component = std::min(passed, m.count);  // the last sum may be rounded to less than 1
-  const auto below = static_cast<double>(m.sums[m.kSums - 2 + component]);
-  const auto up_to = static_cast<double>(m.sums[m.kSums - 1 + component]);
-  const double left = (middle_of_step(u.x) - below) / (up_to - below);
-  draws.push(m, component - 1, std::clamp(left, 0.0, 1 - 0x1p-24), u.y);
+  // u + 2^-25, the middle of its step, lies between two sums; both differences keep their digits.
+  const float below = m.sums[m.kSums - 2 + component], up_to = m.sums[m.kSums - 1 + component];
+  const float scale = 1 / (up_to - below);
+  const float left = std::clamp((u.x - below + 0x1p-25f) * scale, 0.0f, 1 - 0x1p-24f);
+  const float rest = std::clamp((up_to - u.x - 0x1p-25f) * scale, 0x1p-24f, 1.0f);
+  draws.push(m, component - 1, left, rest, u.y);
 }
 
 /// psi of the draws at `at`, in their parameterisations.
@@ -62,7 +63,7 @@ HWY_INLINE Vector<V> unwarped(D d, const WarpedMixture& m, const WarpedDraws& dr
   const V qx = hn::NegMulAdd(s_xy, psi.y, hn::Mul(hn::Load(d, draws.s_yy + at), psi.x));  // S^-1 of determinant 1
   const V qy = hn::NegMulAdd(s_xy, psi.x, hn::Mul(hn::Load(d, draws.s_xx + at), psi.y));
   const V length_sq = hn::MulAdd(qx, qx, hn::MulAdd(qy, qy, hn::Mul(psi.z, psi.z)));
-  const V inverse = hn::Div(one, hn::Sqrt(length_sq));
+  const V inverse = reciprocal_sqrt(d, length_sq);
   const V ex = hn::Mul(qx, inverse), ey = hn::Mul(qy, inverse), ez = hn::Mul(psi.z, inverse);
   // wl = 2 (eta . wv) eta - wv in half space, eta in light space.
   const V vx = hn::Set(d, m.wv.x), vy = hn::Set(d, m.wv.y), vz = hn::Set(d, m.wv.z);
@@ -95,7 +96,7 @@ void sample_batch_simd(const WarpedMixture& m, std::span<const Vec2> u, Directio
   WarpedDraws draws;
   for (const Vec2& number : u) choose(m, number, draws);
   wl.count = draws.count;
-  while (draws.count % 8 != 0) draws.push(m, -1, 0.5, 0.0f);
+  while (draws.count % 8 != 0) draws.push(m, -1, 0.5f, 0.5f, 0.0f);
   for (int at = 0; at < draws.count; at += static_cast<int>(hn::Lanes(d))) {
     const auto w = unwarped(d, m, draws, at, psi_of(d, draws, at));
     hn::Store(w.x, d, wl.x + at);

@@ -18,7 +18,7 @@ struct alignas(64) WarpedDraws {
 
   /// A draw of `lobe`, or of the cosine where it is -1: that is a light direction about the normal, without stretch.
   /// Without a branch: which one it is cannot be predicted.
-  void push(const WarpedMixture& m, int lobe, double u_zenith, float u_azimuth) {
+  void push(const WarpedMixture& m, int lobe, float u_zenith, float rest_zenith, float u_azimuth) {
     const int j = lobe < 0 ? 0 : lobe;
     const auto is_lobe = static_cast<float>(lobe >= 0), is_cosine = 1 - is_lobe;
     x[count] = is_lobe * m.draw_x[j];
@@ -30,8 +30,8 @@ struct alignas(64) WarpedDraws {
     s_xx[count] = is_lobe * m.s_xx[j] + is_cosine;
     s_xy[count] = is_lobe * m.s_xy[j];
     s_yy[count] = is_lobe * m.s_yy[j] + is_cosine;
-    u[count] = static_cast<float>(u_zenith);
-    rest[count] = static_cast<float>(1 - u_zenith);
+    u[count] = u_zenith;
+    rest[count] = rest_zenith;
     azimuth[count++] = u_azimuth;
   }
 };

@@ -69,6 +69,14 @@ TEST_P(ParametricSampling, FollowsItsDensity) {
 
 INSTANTIATE_TEST_SUITE_P(All, ParametricSampling, ::testing::ValuesIn(sampling_cases()));
 
+// Where lobes fade and are left out.
+TEST(ParametricSamplingIdle, FollowsItsDensityWithoutIdleLobes) {
+  const auto brdf = test::parametric_model(true, test::fading_recipe(30));
+  for (const float degrees : {5.0f, 25.0f, 45.0f, 50.0f, 55.0f, 70.0f}) {
+    test::expect_proven(sampler_of(brdf, test::view_at(degrees)), "fading");
+  }
+}
+
 /// One lobe alone, so that nothing hides what it does.
 ParametricBrdf lone(LobeSpace space, float bandwidth) {
   return test::parametric_model(true, {{space, bandwidth, Rgb(1), space == LobeSpace::half ? 0 : -0.8f, 0.3f}});

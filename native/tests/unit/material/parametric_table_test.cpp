@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "material/idle_lobes.h"
 #include "material/parametric_material.h"
 #include "sphere/directions.h"
 #include "sphere/random.h"
@@ -43,7 +44,7 @@ struct Both {
   }
 };
 
-Rgb value(const WarpedMixture& m, const Vec3& wl) {
+Rgb value_of(const WarpedMixture& m, const Vec3& wl) {
   Rgb f;
   float pdf;
   eval_warped(m, wl, f, pdf);
@@ -61,10 +62,10 @@ double largest_error(const Both& both, const Vec3& wv) {
     }
   }
   float peak = 0;
-  for (const Vec3& wl : lights) peak = std::max(peak, value(exact, wl).g);
+  for (const Vec3& wl : lights) peak = std::max(peak, value_of(exact, wl).g);
   double most = 0;
   for (const Vec3& wl : lights) {
-    const double f = static_cast<double>(value(exact, wl).g), found = static_cast<double>(value(tabulated, wl).g);
+    const double f = static_cast<double>(value_of(exact, wl).g), found = static_cast<double>(value_of(tabulated, wl).g);
     most = std::max(most, std::max(std::abs(found - f) - 1e-6 * static_cast<double>(peak), 0.0) / (f + 1e-30));
   }
   return most;
@@ -81,6 +82,56 @@ TEST(ParametricTable, IsTheModelToAThousandth) {
       }
     }
   });
+}
+
+/// What f of the table lacks, as idle_lobes.h measures it.
+struct Lost {
+  double albedo = 0, norm = 0, value = 0;
+
+  Lost(const WarpedMixture& exact, const WarpedMixture& tabulated) {
+    double mass = 0, mass_sq = 0, lost_sq = 0;
+    for (const Vec3& wl : hemisphere_fibonacci(500)) {
+      const auto f = static_cast<double>(luminance(value_of(exact, wl)));
+      const double gap = f - static_cast<double>(luminance(value_of(tabulated, wl))), z = static_cast<double>(wl.z);
+      mass += f * z;
+      albedo += gap * z;
+      mass_sq += f * f * z * z;
+      lost_sq += gap * gap * z * z;
+      value = std::max(value, gap / f);
+    }
+    albedo /= mass;
+    norm = std::sqrt(lost_sq / mass_sq);
+  }
+};
+
+TEST(ParametricTable, LobesThatCannotMatterAreLeftOut) {
+  const Both both(test::parametric_model(true, test::fading_recipe(30)));
+  EXPECT_EQ(both.tabulated(direction(radians_from(20.0f), 1)).listed_count, 6);
+  EXPECT_EQ(both.tabulated(direction(radians_from(75.0f), 1)).listed_count, 4);
+  double most = 0;
+  for (float degrees = 11.6f; degrees < 90; degrees += 0.31f) {
+    const Vec3 wv = direction(radians_from(degrees), 0.4f);
+    const Lost lost(both.exact(wv), both.tabulated(wv));
+    EXPECT_LT(lost.albedo, 1.2 * kIdleAlbedo) << degrees;
+    EXPECT_LT(lost.norm, 1.2 * kIdleNorm) << degrees;
+    EXPECT_LT(lost.value, 1.2 * kIdleValue) << degrees;
+    most = std::max(most, lost.albedo);
+  }
+  EXPECT_GT(most, 0.1 * kIdleAlbedo);
+}
+
+// What is left out has neither value nor density, so batches, which leave it out, agree with single directions.
+TEST(ParametricTable, LeftOutLobesBringNothing) {
+  const Both both(test::parametric_model(true, test::fading_recipe(30)));
+  for (float degrees = 11.6f; degrees < 90; degrees += 1.3f) {
+    const WarpedMixture m = both.tabulated(direction(radians_from(degrees), 0.4f));
+    std::vector<bool> listed(static_cast<size_t>(m.count));
+    for (int k = 0; k < m.listed_count; ++k) listed[m.listed[k]] = true;
+    for (int j = 0; j < m.count; ++j) {
+      if (listed[static_cast<size_t>(j)]) continue;
+      EXPECT_EQ(m.r[j] + m.g[j] + m.b[j] + m.density[j], 0) << degrees << ' ' << j;
+    }
+  }
 }
 
 TEST(ParametricTable, LeavesOutTheNormalAndAnisotropicModels) {
@@ -105,7 +156,7 @@ TEST(ParametricTable, SteepCoefficientsStayPositive) {
   }
   const Both both(brdf);
   for (float degrees = 11.6f; degrees < 90; degrees += 0.1f) {
-    const Rgb f = value(both.tabulated(direction(radians_from(degrees), 2)), direction(0.5f, 1));
+    const Rgb f = value_of(both.tabulated(direction(radians_from(degrees), 2)), direction(0.5f, 1));
     EXPECT_TRUE(f.r >= 0 && f.g >= 0 && f.b >= 0) << degrees;
   }
 }
