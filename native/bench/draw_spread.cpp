@@ -27,7 +27,7 @@ Spread spread(const Measurement& measurement, const Material& material, const Pr
   int below = 0;
   for (uint64_t i = 0; i < kSamples; ++i) {
     DirectionBatch wl;
-    wl.push(material.sample(point, RandomStream(7, 0, i).next2()));
+    wl.push(material.sample_one(point, RandomStream(7, 0, i).next2()));
     wl.pad();
     const Vec3 w = wl.get(0);
     below += w.z <= 0;

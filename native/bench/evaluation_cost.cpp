@@ -81,6 +81,8 @@ class FloorMaterial final : public Material {
   void sample(const PreparedBrdf&, std::span<const Vec2> u, DirectionBatch& wl) const override {
     wl.fill(u, [](const Vec2&) { return Vec3(0, 0, 1); });
   }
+  Reflection eval_one(const PreparedBrdf&, const Vec3&) const override { return {}; }
+  Vec3 sample_one(const PreparedBrdf&, const Vec2&) const override { return {0, 0, 1}; }
   bool isotropic() const override { return true; }
 };
 
@@ -106,15 +108,25 @@ nlohmann::ordered_json cost_of(const Material& material) {
     for (size_t k = 0; k < lights; ++k) wl.push(pairs.wl[(i + k) % kPairs]);
     eval();
   };
+  const auto eval_one = [&](const Vec3& direction) {
+    const auto reflection = material.eval_one(*point, direction);
+    used(reflection);
+  };
   const auto sample_of = [&](size_t i, size_t directions) {
     prepare(i);
     material.sample(*point, std::span(pairs.u).subspan(std::min(i, kPairs - directions), directions), wl);
     eval();
   };
   return {{"prepare", nanoseconds(prepare)},
-          {"f", nanoseconds([&](size_t i) { f_of(i, 1); })},
+          {"f", nanoseconds([&](size_t i) {
+             prepare(i);
+             eval_one(pairs.wl[i]);
+           })},
           {"f_16", nanoseconds([&](size_t i) { f_of(i, kMany); }) / kMany},
-          {"sample_pdf", nanoseconds([&](size_t i) { sample_of(i, 1); })},
+          {"sample_pdf", nanoseconds([&](size_t i) {
+             prepare(i);
+             eval_one(material.sample_one(*point, pairs.u[i]));
+           })},
           {"sample_pdf_16", nanoseconds([&](size_t i) { sample_of(i, kMany); }) / kMany}};
 }
 

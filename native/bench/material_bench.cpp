@@ -98,7 +98,7 @@ void sample_material(benchmark::State& state) {
   PreparedBrdf point;
   material->prepare(direction(0.7f, 1), point);
   RandomStream random(1, 2, 3);
-  for (auto _ : state) benchmark::DoNotOptimize(material->sample(point, random.next2()));
+  for (auto _ : state) benchmark::DoNotOptimize(material->sample_one(point, random.next2()));
   label(state);
 }
 BENCHMARK(sample_material)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled);

@@ -123,7 +123,7 @@ vlr_status vlr_model_sample(const vlr_model* model, const float* wv, uint64_t co
     const auto point = std::make_unique<PreparedBrdf>();
     material->prepare(checked_view(wv), *point);
     for (uint64_t i = 0; i < count; ++i) {
-      const Vec3 w = material->sample(*point, {u[2 * i], u[2 * i + 1]});
+      const Vec3 w = material->sample_one(*point, {u[2 * i], u[2 * i + 1]});
       wl[3 * i] = w.x;
       wl[3 * i + 1] = w.y;
       wl[3 * i + 2] = w.z;

@@ -57,7 +57,7 @@ constexpr int kOwnLights = 2048;
 void append_own(const Material& material, const PreparedBrdf& point, std::vector<Vec3>& out) {
   for (int i = 0; i < kOwnLights; ++i) {
     const double u = (i + 0.5) / kOwnLights, v = 0.6180339887498949 * i;
-    out.push_back(material.sample(point, Vec2(u, v - std::floor(v))));
+    out.push_back(material.sample_one(point, Vec2(u, v - std::floor(v))));
   }
 }
 

@@ -1,21 +1,9 @@
 // The density that follows f cos at a view: the lobes of f, moved and sharpened to what is left of them.
 #pragma once
 
-#include <span>
-#include <vector>
-
-#include "srbf/warped_lobe.h"
+#include "material/light_points.h"
 
 namespace velour {
-
-/// A lobe as a component of the density. Its parameterisation stays that of f.
-struct DrawnLobe {
-  double probability;
-  Vec3d center;  // of a Gaussian over psi
-  double bandwidth;
-  Vec3d light_center;  // of the Gaussian over light directions that has the same mean
-  double light_bandwidth;
-};
 
 struct DrawFit {
   double mass;    // integral of the luminance of f cos over the hemisphere

@@ -38,7 +38,22 @@ class Material {
   /// Draws a wl for each of up to 64 `u` with the density that `eval` reports as pdf. It may lie below the horizon: a
   /// zero contribution. The batch is not padded.
   virtual void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const = 0;
-  Vec3 sample(const PreparedBrdf& point, const Vec2& u) const {
+
+  /// The same of one direction, without the memory of a batch.
+  struct Reflection {
+    Rgb f;
+    float pdf;
+  };
+  virtual Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const {
+    DirectionBatch batch;
+    batch.push(wl);
+    batch.pad();
+    RgbBatch f;
+    ScalarBatch pdf;
+    eval(point, batch, f, pdf);
+    return {f.get(0), pdf.v[0]};
+  }
+  virtual Vec3 sample_one(const PreparedBrdf& point, const Vec2& u) const {
     DirectionBatch wl;
     sample(point, {&u, 1}, wl);
     return wl.get(0);

@@ -1,15 +1,13 @@
 // Highway compiles this file once for each instruction set.
 #include "material/parametric_draws.h"
 
-#include "srbf/kernel.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "material/parametric_draws.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "material/store_draws-inl.h"
 #include "srbf/simd_dispatch.h"
-#include "srbf/simd_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {
@@ -20,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <int kNodes>
 HWY_INLINE void add_draws(const float* const (&row)[4], const float (&weight)[4], WarpedMixture& m) {
   using P = ParametricDraws;
-  const hn::CappedTag<float, WarpedMixture::kLanes> d;
+  const hn::CappedTag<float, 8> d;  // padded is a multiple of it
   using V = hn::Vec<decltype(d)>;
   for (int at = 0; at < m.padded; at += static_cast<int>(hn::Lanes(d))) {
     const auto column = [&](int which) {
@@ -29,24 +27,11 @@ HWY_INLINE void add_draws(const float* const (&row)[4], const float (&weight)[4]
       for (int i = 1; i < kNodes; ++i) sum = hn::MulAdd(hn::Set(d, weight[i]), hn::LoadU(d, row[i] + from), sum);
       return sum;
     };
-    const V x = hn::Add(hn::Load(d, m.x + at), column(P::kOffsetX));
-    const V y = hn::Add(hn::Load(d, m.y + at), column(P::kOffsetY));
-    const V z = hn::Add(hn::Load(d, m.z + at), column(P::kOffsetZ));
-    const V scale = reciprocal_sqrt(d, hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
-    hn::Store(hn::Mul(scale, x), d, m.draw_x + at);
-    hn::Store(hn::Mul(scale, y), d, m.draw_y + at);
-    hn::Store(hn::Mul(scale, z), d, m.draw_z + at);
-    const V ratio = column(P::kBandwidthRatio), least = hn::Set(d, static_cast<float>(kMinMeanBandwidth));
-    const V bandwidth = hn::Max(hn::Mul(hn::Load(d, m.bandwidth + at), ratio), least);
-    hn::Store(bandwidth, d, m.draw_bandwidth + at);
-    // The same sums, rounded the same way, as the numbers that choose: this is the probability of the draws.
-    const V below = column(P::kBelow), up_to = column(P::kUpTo), probability = hn::Sub(up_to, below);
-    hn::StoreU(up_to, d, m.cdf + 1 + at);
-    if (at == 0) m.cdf[0] = hn::GetLane(below);
-    // The integral of the kernel, 2 pi (1 - e^-2l) / l; no smaller l than the least, so the difference is exact enough.
-    const V whole = hn::Sub(hn::Set(d, 1.0f), exp_nonpositive(d, hn::Mul(hn::Set(d, -2.0f), bandwidth)));
-    const V scaled = hn::Mul(hn::Mul(hn::Set(d, 0.5f / kPi), probability), bandwidth);
-    hn::Store(hn::Div(scaled, whole), d, m.density + at);
+    const Vector<V> center{hn::Add(hn::Load(d, m.x + at), column(P::kOffsetX)),
+                           hn::Add(hn::Load(d, m.y + at), column(P::kOffsetY)),
+                           hn::Add(hn::Load(d, m.z + at), column(P::kOffsetZ))};
+    const V bandwidth = hn::Mul(hn::Load(d, m.bandwidth + at), column(P::kBandwidthRatio));
+    store_draws(d, center, bandwidth, column(P::kBelow), column(P::kUpTo), at, m);
   }
 }
 
@@ -66,6 +51,7 @@ HWY_AFTER_NAMESPACE();
 #include <algorithm>
 
 #include "material/draw_fit.h"
+#include "material/idle_lobes.h"
 #include "sphere/frame.h"
 #include "srbf/lobe_tree.h"
 
@@ -87,10 +73,28 @@ WarpedLobe lobe_of(const WarpedMixture& m, int j) {
           {m.r[j], m.g[j], m.b[j]}};
 }
 
-DrawFit fit_of(const WarpedMixture& m) {
+std::vector<WarpedLobe> lobes_of(const WarpedMixture& m) {
   std::vector<WarpedLobe> lobes;
   for (int j = 0; j < m.count; ++j) lobes.push_back(lobe_of(m, j));
-  return fit_draws(lobes, Vec3d(m.wv));
+  return lobes;
+}
+
+bool has(uint32_t set, size_t lobe) { return (set >> lobe & 1) != 0; }
+
+/// The fit of some lobes; the others are not drawn.
+DrawFit fit_of(const std::vector<WarpedLobe>& lobes, uint32_t chosen, const Vec3d& wv) {
+  std::vector<WarpedLobe> some;
+  for (size_t j = 0; j < lobes.size(); ++j) {
+    if (has(chosen, j)) some.push_back(lobes[j]);
+  }
+  DrawFit fit = fit_draws(some, wv);
+  auto next = fit.lobes.begin();
+  auto all = drawn_as_they_are(lobes);
+  for (size_t j = 0; j < all.size(); ++j) {
+    if (has(chosen, j)) all[j] = *next++;
+  }
+  fit.lobes = std::move(all);
+  return fit;
 }
 
 ProposalLobes few_lobes(const DrawFit& fit) {
@@ -98,6 +102,7 @@ ProposalLobes few_lobes(const DrawFit& fit) {
   ProposalLobes few;
   few.cosine = static_cast<float>(fit.mass * fit.cosine / kPiD);
   for (const DrawnLobe& lobe : fit.lobes) {
+    if (!(lobe.probability > 0)) continue;
     const double integral = kernel_integral(Kernel::gaussian, lobe.light_bandwidth);
     const double amplitude = fit.mass * lobe.probability / integral;
     lobes.add({Vec3(lobe.light_center), static_cast<float>(lobe.light_bandwidth), static_cast<float>(amplitude)});
@@ -118,7 +123,8 @@ ParametricDraws::ParametricDraws(const ParametricValues& values)
       padded_(values.padded_count()),
       nodes_(isotropic_, isotropic_ ? kRadiusCells : kSquareCells),
       rows_(static_cast<size_t>(nodes_.count() * kColumns * padded_)),
-      proposals_(static_cast<size_t>(nodes_.count())) {
+      proposals_(static_cast<size_t>(nodes_.count())),
+      matter_(static_cast<size_t>(nodes_.count())) {
   tbb::parallel_for(0, nodes_.count(), [&](int node) { fill_node(values, node); });
 }
 
@@ -126,7 +132,10 @@ void ParametricDraws::fill_node(const ParametricValues& values, int node) {
   WarpedMixture m;
   const Vec3 wv = nodes_.view(node);
   values.evaluate(wv, ViewPlace(wv), m);
-  const DrawFit fit = fit_of(m);
+  const std::vector<WarpedLobe> lobes = lobes_of(m);
+  const uint32_t matter = lobes_that_matter(lobes, Vec3d(m.wv));
+  matter_[static_cast<size_t>(node)] = matter;
+  const DrawFit fit = fit_of(lobes, matter, Vec3d(m.wv));
   proposals_[static_cast<size_t>(node)] = few_lobes(fit);
 
   float* const row = rows_.data() + node * kColumns * padded_;
@@ -149,6 +158,14 @@ void ParametricDraws::fill_node(const ParametricValues& values, int node) {
   }
 }
 
+uint32_t ParametricDraws::matter_between(const ViewPlace& first, const ViewPlace& last) const {
+  uint32_t matter = 0;
+  for (int node = nodes_.at(first).node[0]; node <= nodes_.at(last).node[1]; ++node) {
+    matter |= matter_[static_cast<size_t>(node)];
+  }
+  return matter;
+}
+
 void ParametricDraws::add_to(const ViewPlace& place, WarpedMixture& mixture) const {
   VELOUR_SIMD_DISPATCH(add_draws_simd)(rows_.data(), nodes_.at(place), mixture);
 }
@@ -165,7 +182,7 @@ void ParametricDraws::propose(const WarpedMixture& mixture, ProposalLobes& lobes
 }
 
 uint64_t ParametricDraws::bytes() const {
-  return sizeof(float) * rows_.size() + sizeof(ProposalLobes) * proposals_.size();
+  return sizeof(float) * rows_.size() + sizeof(ProposalLobes) * proposals_.size() + sizeof(uint32_t) * matter_.size();
 }
 
 }  // namespace velour

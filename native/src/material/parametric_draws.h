@@ -1,6 +1,7 @@
 // The densities of a parametric model: how f cos of its lobes differs from f, tabulated over the view.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "material/parametric_values.h"
@@ -22,6 +23,10 @@ class ParametricDraws {
   /// the nearest node, turned with the mirror direction of the view.
   void propose(const WarpedMixture& mixture, ProposalLobes& lobes) const;
 
+  /// A bit for each lobe that matters (idle_lobes.h) at any node from the one before `first` to the one behind `last`,
+  /// on a meridian of an isotropic model. The others have probability 0 there.
+  uint32_t matter_between(const ViewPlace& first, const ViewPlace& last) const;
+
   uint64_t bytes() const;
 
   /// Columns of a row, each of the padded number of lobes.
@@ -35,6 +40,7 @@ class ParametricDraws {
   ViewNodes nodes_;
   std::vector<float> rows_;               // [node][column][padded lobe]
   std::vector<ProposalLobes> proposals_;  // of each node, in the lobes' frame
+  std::vector<uint32_t> matter_;          // of each node
 };
 
 }  // namespace velour

@@ -1,7 +1,7 @@
 #include "material/parametric_material.h"
 
 #include "material/measured_values.h"
-#include "material/parametric_draws.h"
+#include "material/parametric_table.h"
 
 namespace velour {
 
@@ -9,10 +9,11 @@ namespace {
 
 class ParametricMaterial : public Material {
  public:
-  explicit ParametricMaterial(const ParametricBrdf& brdf) : values_(brdf), draws_(values_) {}
+  explicit ParametricMaterial(const ParametricBrdf& brdf) : values_(brdf), draws_(values_), table_(values_, draws_) {}
 
   void prepare(const Vec3& wv, PreparedBrdf& point) const override {
     point.wv = wv;
+    if (table_.covers(wv)) return table_.evaluate(wv, point.warped);
     const ViewPlace place(wv);
     values_.evaluate(wv, place, point.warped);
     draws_.add_to(place, point.warped);
@@ -22,9 +23,17 @@ class ParametricMaterial : public Material {
     eval_warped(point.warped, wl, f, pdf);
   }
 
+  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
+    Reflection result;
+    eval_warped(point.warped, wl, result.f, result.pdf);
+    return result;
+  }
+
   void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
     sample_warped(point.warped, u, wl);
   }
+
+  Vec3 sample_one(const PreparedBrdf& point, const Vec2& u) const override { return sample_warped(point.warped, u); }
 
   bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
     draws_.propose(point.warped, lobes);
@@ -36,6 +45,7 @@ class ParametricMaterial : public Material {
  private:
   ParametricValues values_;
   ParametricDraws draws_;
+  ParametricTable table_;
 };
 
 class MeasuredMaterial final : public ParametricMaterial {
@@ -46,6 +56,10 @@ class MeasuredMaterial final : public ParametricMaterial {
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     ParametricMaterial::eval(point, wl, f, pdf);  // its value, the model's, is overwritten
     measured_values(*measurement_, point.wv, wl, f);
+  }
+
+  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
+    return Material::eval_one(point, wl);
   }
 
   bool isotropic() const override { return measurement_->isotropic(); }

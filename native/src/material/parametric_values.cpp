@@ -72,7 +72,7 @@ template <bool kIsotropic>
 HWY_INLINE void evaluate_lobes(const SplineRows& rows, WarpedMixture& m) {
   using P = ParametricBrdf;
   constexpr int kTaps = kIsotropic ? SplineRows::kIsotropicTaps : ViewTaps::kMost;
-  const hn::CappedTag<float, WarpedMixture::kLanes> d;
+  const hn::CappedTag<float, 8> d;  // padded is a multiple of it
   for (int at = 0; at < m.padded; at += static_cast<int>(hn::Lanes(d))) {
     hn::Store(hn::LoadU(d, rows.half + at), d, m.half + at);
     const auto of = [&](int which) { return parameter<kTaps>(d, rows, rows.taps.weight, which, at); };
@@ -99,8 +99,6 @@ void evaluate_simd(const SplineRows& rows, bool isotropic, WarpedMixture& m) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <algorithm>
-
 #include "job/error.h"
 
 namespace velour {
@@ -111,12 +109,6 @@ namespace {
 
 /// Of what fills up the lanes: its exponential is 0.
 constexpr float kNoCoefficient = -1000;
-
-/// At least one vector, so that a model without lobes needs no branch.
-int padded_of(int count) {
-  constexpr int kLanes = WarpedMixture::kLanes;
-  return std::max(1, (count + kLanes - 1) / kLanes) * kLanes;
-}
 
 float stored(int parameter, float value) {
   const bool is_logarithm = parameter >= ParametricBrdf::kLogBandwidth && parameter <= ParametricBrdf::kLogBlue;
@@ -131,7 +123,7 @@ float neutral(int parameter) {
 }  // namespace
 
 ParametricValues::ParametricValues(const ParametricBrdf& brdf)
-    : spline_(brdf.spline()), count_(brdf.lobe_count()), padded_(padded_of(count_)) {
+    : spline_(brdf.spline()), count_(brdf.lobe_count()), padded_(WarpedMixture::padded_of(count_)) {
   if (count_ > WarpedMixture::kCapacity) {
     throw Error(Status::invalid_argument, "the parametric model has " + std::to_string(count_) +
                                               " lobes; fit it with at most " +
@@ -161,6 +153,7 @@ void ParametricValues::evaluate(const Vec3& wv, const ViewPlace& place, WarpedMi
   while (rows.taps.count < SplineRows::kIsotropicTaps) rows.taps.add(0, 0, 0);  // beside the normal
   mixture.count = count_;
   mixture.padded = padded_;
+  mixture.list_all();
   mixture.turn_cos = isotropic() ? place.cos_phi : 1.0f;
   mixture.turn_sin = isotropic() ? place.sin_phi : 0.0f;
   mixture.wv = isotropic() ? Vec3(place.sine, 0, wv.z) : wv;

@@ -9,15 +9,19 @@
 
 namespace velour {
 
-/// The model's coefficients, laid out for lanes over lobes; no table is evaluated beforehand, so they stay as small as
-/// the model is, and the value is the model's at every view. Immutable; thread-safe; no allocation.
+/// The model's coefficients, laid out for lanes over lobes: what ParametricTable is made from, and what evaluates where
+/// no table is. Immutable; thread-safe; no allocation.
 class ParametricValues {
  public:
   /// Throws Error(invalid_argument) when there are more lobes than WarpedMixture::kCapacity.
   explicit ParametricValues(const ParametricBrdf& brdf);
 
   bool isotropic() const { return spline_.isotropic(); }
+  const ViewSpline& spline() const { return spline_; }
+  int count() const { return count_; }
   int padded_count() const { return padded_; }
+  /// 1 for lobes of half space, of the padded number.
+  const std::vector<float>& half() const { return half_; }
   uint64_t bytes() const { return sizeof(float) * (control_.size() + half_.size()); }
 
   /// Fills in the frame, the parameterisations and the lobes of the value (not those of the density) at unit `wv`,

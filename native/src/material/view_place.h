@@ -8,6 +8,15 @@
 
 namespace velour {
 
+/// arccos z = sqrt(1 - z) times a polynomial: Abramowitz & Stegun 4.4.46; `radius` is the root. z >= 0. By pairs, which
+/// is half as long to wait for.
+inline float polar_angle(float radius, float z) {
+  const float z2 = z * z, z4 = z2 * z2;
+  const float a = 1.5707963050f - 0.2145988016f * z, b = 0.0889789874f - 0.0501743046f * z;
+  const float c = 0.0308918810f - 0.0170881256f * z, d = 0.0066700901f - 0.0012624911f * z;
+  return radius * ((a + b * z2) + (c + d * z2) * z4);
+}
+
 /// Float is enough here: a spline of the view changes by parts of itself over a tenth of a radian.
 struct ViewPlace {
   float sine;              // of the polar angle
@@ -23,12 +32,7 @@ struct ViewPlace {
     cos_phi = sine > 0 ? inverse * wv.x : 1.0f;
     sin_phi = inverse * wv.y;
     radius = std::sqrt(sine_sq / (1 + z));
-    // arccos z = sqrt(1 - z) times a polynomial: Abramowitz & Stegun 4.4.46. By pairs, which is half as long to wait
-    // for.
-    const float z2 = z * z, z4 = z2 * z2;
-    const float a = 1.5707963050f - 0.2145988016f * z, b = 0.0889789874f - 0.0501743046f * z;
-    const float c = 0.0308918810f - 0.0170881256f * z, d = 0.0066700901f - 0.0012624911f * z;
-    theta = radius * ((a + b * z2) + (c + d * z2) * z4);
+    theta = polar_angle(radius, z);
   }
 };
 

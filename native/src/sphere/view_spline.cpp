@@ -10,6 +10,33 @@ PolarView<double> polar_view(const Vec3d& wv) {
   return {std::atan2(sine, wv.z), wv.x / sine, wv.y / sine};
 }
 
+std::vector<double> ViewSpline::sites() const {
+  const double step = 1 / (per_radian_ * cells_);
+  std::vector<double> theta;
+  if (!mirrored_) theta.push_back(begin_);
+  for (int i = 0; i < cells_; ++i) theta.push_back(begin_ + (i + 0.5) * step);
+  theta.push_back(begin_ + cells_ * step);
+  return theta;
+}
+
+/// Three neighbours at most touch a site, so the equations are tridiagonal; their diagonal dominates.
+void ViewSpline::interpolate(std::span<double> values, bool odd) const {
+  const auto theta = sites();
+  std::vector<double> after(theta.size());  // the next unknown's factor, once those before are eliminated
+  for (size_t i = 0; i < theta.size(); ++i) {
+    const auto taps = at(PolarView<double>{theta[i], 1, 0});
+    double row[3] = {0, 0, 0};  // of the unknowns i - 1, i, i + 1
+    for (int k = 0; k < taps.count; ++k) {
+      const int column = taps.node[k] - static_cast<int>(i) + 1;
+      if (column >= 0 && column < 3) row[column] += odd ? taps.odd_weight[k] : taps.weight[k];
+    }
+    const double pivot = row[1] - (i > 0 ? row[0] * after[i - 1] : 0.0);
+    after[i] = row[2] / pivot;
+    values[i] = (values[i] - (i > 0 ? row[0] * values[i - 1] : 0.0)) / pivot;
+  }
+  for (size_t i = theta.size() - 1; i-- > 0;) values[i] -= after[i] * values[i + 1];
+}
+
 double pole_fade(double theta_v) {
   const double x = theta_v / radians_from(2.5);
   return -std::expm1(-x * x);

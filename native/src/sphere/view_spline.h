@@ -7,6 +7,8 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "sphere/vec.h"
 #include "sphere/view_range.h"
@@ -55,6 +57,17 @@ class ViewSpline {
   /// Along the radius, or along a side of the square.
   int side() const { return cells_ + (mirrored_ ? 1 : 2); }
   int node_count() const { return isotropic_ ? side() : side() * side(); }
+  /// With each interval cut into `times`: what this spline can be, that one can be.
+  ViewSpline refined(int times) const {
+    ViewSpline finer = *this;
+    finer.cells_ *= times;
+    return finer;
+  }
+  /// Of isotropic splines, for each node a polar angle that is mostly its own: the middles of the intervals, the end,
+  /// and the beginning unless it is mirrored there. Values at these determine the spline.
+  std::vector<double> sites() const;
+  /// Makes of the values at sites() the control values, in place; `odd` for components that change sign at the normal.
+  void interpolate(std::span<double> values, bool odd) const;
   /// Of unit `wv`, on or above the horizon.
   ViewTaps at(const Vec3d& wv) const { return at(polar_view(wv)); }
   /// The same in any precision: fits want double, renderers float.

@@ -6,8 +6,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "srbf/draw_math-inl.h"
 #include "srbf/simd_dispatch.h"
-#include "srbf/simd_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {
@@ -29,11 +29,6 @@ struct LobeALane {
   }
 };
 
-template <class V>
-struct Vector {
-  V x, y, z;
-};
-
 /// What the lobes need of a light direction, in their frame.
 template <class V>
 struct Light {
@@ -49,6 +44,26 @@ struct Sums {
 template <class D>
 HWY_INLINE Sums<hn::Vec<D>> no_sums(D d) {
   return {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+}
+
+/// The four sums over the lanes.
+template <class D>
+HWY_INLINE void sum_lanes(D d, const Sums<hn::Vec<D>>& sum, float* total) {
+#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
+  // All four at once, half as many lanes at a time, then side by side.
+  if constexpr (hn::MaxLanes(D()) > 4) {
+    const hn::Half<D> h;
+    const auto fold = [&](auto v) { return hn::Add(hn::LowerHalf(h, v), hn::UpperHalf(h, v)); };
+    sum_lanes(h, {fold(sum.r), fold(sum.g), fold(sum.b), fold(sum.density)}, total);
+  } else {
+    const auto rb = hn::Add(hn::InterleaveLower(d, sum.r, sum.b), hn::InterleaveUpper(d, sum.r, sum.b));
+    const auto gd = hn::Add(hn::InterleaveLower(d, sum.g, sum.density), hn::InterleaveUpper(d, sum.g, sum.density));
+    hn::StoreU(hn::Add(hn::InterleaveLower(d, rb, gd), hn::InterleaveUpper(d, rb, gd)), d, total);
+  }
+#else
+  const hn::Vec<D> sums[] = {sum.r, sum.g, sum.b, sum.density};
+  for (int i = 0; i < 4; ++i) total[i] = hn::GetLane(hn::SumOfLanes(d, sums[i]));
+#endif
 }
 
 template <class D, class V = hn::Vec<D>>
@@ -100,29 +115,38 @@ HWY_INLINE void eval_directions(D d, const WarpedMixture& m, const DirectionBatc
   const V z = hn::Load(d, w.z + at), zero = hn::Zero(d);
   const Light<V> light = light_of(d, m, hn::Load(d, w.x + at), hn::Load(d, w.y + at), z);
   Sums<V> sum = no_sums(d);
-  for (int j = 0; j < m.count; ++j) add_lobe(d, SameLobe(), m, j, light, sum);
+  for (int k = 0; k < m.listed_count; ++k) add_lobe(d, SameLobe(), m, m.listed[k], light, sum);
   const auto above = hn::Gt(z, zero);
   hn::Store(hn::IfThenElseZero(above, sum.r), d, f.r + at);
   hn::Store(hn::IfThenElseZero(above, sum.g), d, f.g + at);
   hn::Store(hn::IfThenElseZero(above, sum.b), d, f.b + at);
-  hn::Store(hn::MulAdd(hn::Set(d, m.cdf[0] / kPi), hn::Max(z, zero), sum.density), d, pdf.v + at);
+  hn::Store(hn::MulAdd(hn::Set(d, m.cosine() / kPi), hn::Max(z, zero), sum.density), d, pdf.v + at);
 }
 
-void eval_lobes(const WarpedMixture& m, const DirectionBatch& w, int i, RgbBatch& f, ScalarBatch& pdf) {
-  const hn::CappedTag<float, WarpedMixture::kLanes> d;
-  using V = hn::Vec<decltype(d)>;
-  const Vec3 wl = w.get(i);
+template <class D>
+HWY_INLINE void eval_lobes(D d, const WarpedMixture& m, const Vec3& wl, Rgb& f, float& pdf) {
+  using V = hn::Vec<D>;
   const Light<V> light = light_of(d, m, hn::Set(d, wl.x), hn::Set(d, wl.y), hn::Set(d, wl.z));
   Sums<V> sum = no_sums(d);
   for (int j = 0; j < m.padded; j += static_cast<int>(hn::Lanes(d))) add_lobe(d, LobeALane(), m, j, light, sum);
-  const auto total = [&](V v) { return hn::GetLane(hn::SumOfLanes(d, v)); };
-  f.set(i, wl.z > 0 ? Rgb(total(sum.r), total(sum.g), total(sum.b)) : Rgb(0));
-  pdf.v[i] = m.cdf[0] / kPi * std::max(wl.z, 0.0f) + total(sum.density);
+  float total[4];
+  sum_lanes(d, sum, total);
+  f = wl.z > 0 ? Rgb(total[0], total[1], total[2]) : Rgb(0);
+  pdf = m.cosine() / kPi * std::max(wl.z, 0.0f) + total[3];
 }
 
-void eval_warped_simd(const WarpedMixture& m, const DirectionBatch& w, RgbBatch& f, ScalarBatch& pdf) {
+void eval_one_simd(const WarpedMixture& m, const Vec3& wl, Rgb& f, float& pdf) {
+  if (m.padded % 16 == 0) return eval_lobes(hn::CappedTag<float, 16>(), m, wl, f, pdf);
+  return eval_lobes(hn::CappedTag<float, 8>(), m, wl, f, pdf);
+}
+
+void eval_batch_simd(const WarpedMixture& m, const DirectionBatch& w, RgbBatch& f, ScalarBatch& pdf) {
   if (w.count <= 2) {
-    for (int i = 0; i < w.count; ++i) eval_lobes(m, w, i, f, pdf);
+    for (int i = 0; i < w.count; ++i) {
+      Rgb value;
+      eval_one_simd(m, w.get(i), value, pdf.v[i]);
+      f.set(i, value);
+    }
     return;
   }
   const hn::CappedTag<float, 16> d;
@@ -134,12 +158,34 @@ void eval_warped_simd(const WarpedMixture& m, const DirectionBatch& w, RgbBatch&
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <array>
+
 namespace velour {
 
-HWY_EXPORT(eval_warped_simd);
+HWY_EXPORT(eval_batch_simd);
+HWY_EXPORT(eval_one_simd);
+
+namespace {
+
+constexpr auto kAll = [] {
+  std::array<uint8_t, WarpedMixture::kCapacity> all{};
+  for (size_t j = 0; j < all.size(); ++j) all[j] = static_cast<uint8_t>(j);
+  return all;
+}();
+
+}  // namespace
+
+void WarpedMixture::list_all() {
+  listed = kAll.data();
+  listed_count = count;
+}
 
 void eval_warped(const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
-  VELOUR_SIMD_DISPATCH(eval_warped_simd)(mixture, wl, f, pdf);
+  VELOUR_SIMD_DISPATCH(eval_batch_simd)(mixture, wl, f, pdf);
+}
+
+void eval_warped(const WarpedMixture& mixture, const Vec3& wl, Rgb& f, float& pdf) {
+  VELOUR_SIMD_DISPATCH(eval_one_simd)(mixture, wl, f, pdf);
 }
 
 }  // namespace velour

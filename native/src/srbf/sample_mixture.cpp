@@ -14,8 +14,8 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "srbf/draw_math-inl.h"
 #include "srbf/simd_dispatch.h"
-#include "srbf/simd_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {
@@ -23,22 +23,12 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// d = 1 - cos of the zenith about the axis: kernel_sample in float. -log(u + (1 - u) e^-2l) / l where u + ... is well
-/// below 1, else -log1p(-(1 - u) (1 - e^-2l)) / l, by the quotient that mends the rounding of 1 - t.
+/// 1 - cos of the zenith about the axis: kernel_sample in float.
 struct GaussianZenith {
   template <class D, class V = hn::Vec<D>>
   HWY_INLINE V operator()(D d, V bandwidth, V u, V rest) const {
-    const V one = hn::Set(d, 1.0f);
-    const V l = hn::Max(bandwidth, hn::Set(d, 1e-12f));
-    const V exponent = hn::Mul(hn::Set(d, -2.0f), l);
-    const V t = hn::Mul(rest, hn::Neg(hn::Expm1(d, exponent)));
-    const auto near = hn::Lt(t, hn::Set(d, 0.5f));
-    const V below_one = hn::Sub(one, t);
-    const V x = hn::IfThenElse(near, below_one, hn::MulAdd(rest, exp_nonpositive(d, exponent), u));
-    const V log = hn::Log(d, x);
-    const V gap = hn::Sub(one, below_one);
-    const V mended = hn::IfThenElse(hn::Eq(gap, hn::Zero(d)), hn::Neg(t), hn::Div(hn::Mul(log, t), gap));
-    return hn::Div(hn::Neg(hn::IfThenElse(near, mended, log)), l);
+    const V l = hn::Max(bandwidth, hn::Set(d, 1e-12f)), exponent = hn::Mul(hn::Set(d, -2.0f), l);
+    return gaussian_zenith(d, l, exp_nonpositive(d, exponent), hn::Neg(hn::Expm1(d, exponent)), u, rest);
   }
 };
 
@@ -64,17 +54,11 @@ HWY_INLINE void directions_of(D tag, const LobeDraws& draws, DirectionBatch& w) 
     const V d = hn::Min(hn::Max(Zenith()(tag, hn::Abs(bandwidth), u, rest), zero), two);
     const V sine = hn::Sqrt(hn::IfThenElse(cosine, u, hn::Mul(d, hn::Sub(two, d))));
     const V z = hn::IfThenElse(cosine, hn::Sqrt(rest), hn::Sub(one, d));
-    const V phi = hn::Mul(hn::Load(tag, draws.azimuth + at), hn::Set(tag, 2 * kPi));
-    const V x = hn::Mul(sine, hn::Cos(tag, phi)), y = hn::Mul(sine, hn::Sin(tag, phi));
-    // Frame::about, over lanes.
-    const V ax = hn::Load(tag, draws.x + at), ay = hn::Load(tag, draws.y + at), az = hn::Load(tag, draws.z + at);
-    const V sign = hn::CopySign(one, az);
-    const V a = hn::Neg(hn::Div(one, hn::Add(sign, az))), b = hn::Mul(hn::Mul(ax, ay), a);
-    const V xx = hn::MulAdd(hn::Mul(hn::Mul(sign, ax), ax), a, one), yy = hn::MulAdd(hn::Mul(ay, ay), a, sign);
-    hn::Store(hn::MulAdd(x, xx, hn::MulAdd(y, b, hn::Mul(z, ax))), tag, w.x + at);
-    hn::Store(hn::MulAdd(hn::Mul(x, sign), b, hn::MulAdd(y, yy, hn::Mul(z, ay))), tag, w.y + at);
-    const V down = hn::MulAdd(hn::Mul(x, sign), ax, hn::Mul(y, ay));
-    hn::Store(hn::NegMulAdd(one, down, hn::Mul(z, az)), tag, w.z + at);
+    const Vector<V> axis{hn::Load(tag, draws.x + at), hn::Load(tag, draws.y + at), hn::Load(tag, draws.z + at)};
+    const Vector<V> drawn = about_axis(tag, axis, sine, z, hn::Load(tag, draws.azimuth + at));
+    hn::Store(drawn.x, tag, w.x + at);
+    hn::Store(drawn.y, tag, w.y + at);
+    hn::Store(drawn.z, tag, w.z + at);
   }
 }
 

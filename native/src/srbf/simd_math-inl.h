@@ -52,6 +52,24 @@ HWY_INLINE V exp_nonpositive(D d, V x) {
   return exp2_nonpositive(d, hn::Mul(x, hn::Set(d, 1.44269504f)));
 }
 
+/// -log x of x in (0, 1], where `gap` is 1 - x with all its digits; relative error below 3e-7, 0 at gap 0. From
+/// x = 2^n m, m in [sqrt(1/2), sqrt 2): log m = 2 artanh s, s = (m - 1) / (m + 1), by its series up to s^9.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V minus_log(D d, V x, V gap) {
+  const hn::RebindToSigned<D> di;
+  const auto bits = hn::BitCast(di, x);
+  const auto n = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(di, 0x3f3504f3)));
+  const V m = hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<23>(n)));
+  const V exponent = hn::ConvertTo(d, n), one = hn::Set(d, 1.0f);
+  const V above_one = hn::IfThenElse(hn::Eq(exponent, hn::Zero(d)), hn::Neg(gap), hn::Sub(m, one));
+  const V s = hn::Div(above_one, hn::Add(above_one, hn::Set(d, 2.0f)));
+  const V q = hn::Mul(s, s), q2 = hn::Mul(q, q);
+  const V low = hn::MulAdd(q, hn::Set(d, 2.0f / 3), hn::Set(d, 2.0f));
+  const V high = hn::MulAdd(q, hn::Set(d, 2.0f / 7), hn::Set(d, 2.0f / 5));
+  const V series = hn::MulAdd(q2, hn::MulAdd(q2, hn::Set(d, 2.0f / 9), high), low);
+  return hn::NegMulSub(s, series, hn::Mul(exponent, hn::Set(d, 0.693147181f)));
+}
+
 /// Sine and cosine of x, |x| <= pi, absolute errors below 2e-7, the sine's relative to |x|. From half the angle, by the
 /// Taylor series whose next terms are (pi/2)^13 / 13! and (pi/2)^14 / 14!: sin x = 2 s c, cos x = 1 - 2 s^2.
 template <class D, class V = hn::Vec<D>>

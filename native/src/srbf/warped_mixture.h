@@ -4,6 +4,7 @@
 // the density: that of f cos instead of f, so that what lies below the horizon or at grazing angles is seldom drawn.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "sphere/direction_batch.h"
@@ -14,7 +15,8 @@ namespace velour {
 /// owns the lobes; scratch memory of a thread.
 struct alignas(64) WarpedMixture {
   static constexpr int kCapacity = 32;
-  static constexpr int kLanes = 8;  // padded is a multiple of it
+  /// Lanes over lobes take 8 at once, or 16 where there are more.
+  static constexpr int padded_of(int count) { return count <= 8 ? 8 : (count + 15) / 16 * 16; }
 
   // The arrays come first: vectors are loaded from them.
   // psi = normalize(S (wl + half wv)), S = [[s_xx, s_xy], [s_xy, s_yy]] (+) 1 of determinant 1; half is 0 or 1.
@@ -30,29 +32,40 @@ struct alignas(64) WarpedMixture {
   // the probability of the lobe / the integral of its kernel.
   float draw_x[kCapacity], draw_y[kCapacity], draw_z[kCapacity];
   float draw_bandwidth[kCapacity];
+  float draw_tail[kCapacity];  // exp(-2 draw_bandwidth), the kernel against the centre
   float density[kCapacity];
+  /// Running sums of the probabilities: from kSums on those of the lobes, 1 but for rounding at the last and past it;
+  /// right before them that of the cosine about the normal, which comes first, and before it 0.
+  static constexpr int kSums = 16;
+  float sums[kSums + kCapacity];
+  float cosine() const { return sums[kSums - 1]; }
 
   int count, padded;
+  /// The lobes that have value or density at this view: loops over lobes leave the others out.
+  const uint8_t* listed;
+  int listed_count;
   /// The lobes' frame is the surface's, turned about the normal by an angle of this cosine and sine.
   float turn_cos, turn_sin;
   Vec3 wv;  // in the lobes' frame
 
-  /// Running sums of the probabilities: first the cosine's about the normal, then the lobes'; cdf[count] = 1.
-  float cdf[1 + kCapacity];
+  void list_all();  // once count is set
 };
 
 /// f[i]   = the value at wl_i, without cosine; 0 at and below the horizon.
 /// pdf[i] = density of sample_warped at wl_i, per solid angle. Over the sphere its integral is 1 less the share of
-/// draws
-///          that have no direction.
+///          draws that have no direction.
 /// Of up to 64 directions in the surface's frame, padded. Run-time dispatched SIMD: lanes hold lobes for one or two
 /// directions, else directions. Relative error of a kernel: 1e-6 plus 1e-6 times its exponent, for float parameters and
 /// directions; in half space the exponent's error grows by 1 / |wl + wv| of what the directions have.
 void eval_warped(const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf);
+/// The same of one direction.
+void eval_warped(const WarpedMixture& mixture, const Vec3& wl, Rgb& f, float& pdf);
 
 /// Draws a direction for each of up to 64 `u`: `u.x` picks lobe and zenith about its centre, `u.y` the azimuth. Half
 /// vectors that face away from the viewer have no light direction: the draw is then -z, which counts as a draw that
 /// brought nothing. The batch is not padded. Run-time dispatched SIMD.
 void sample_warped(const WarpedMixture& mixture, std::span<const Vec2> u, DirectionBatch& wl);
+/// The same of one.
+Vec3 sample_warped(const WarpedMixture& mixture, const Vec2& u);
 
 }  // namespace velour

@@ -60,6 +60,14 @@ inline std::vector<LobeRecipe> highlight_recipe(float bandwidth) {
           {LobeSpace::light, 1e-4f, {0.02f, 0.02f, 0.03f}}};
 }
 
+/// With two lobes more that fade away towards grazing views.
+inline std::vector<LobeRecipe> fading_recipe(float bandwidth) {
+  auto lobes = highlight_recipe(bandwidth);
+  lobes.push_back({LobeSpace::light, 3, Rgb(0.05f), -0.5f, 0, -40});
+  lobes.push_back({LobeSpace::half, 10, Rgb(0.1f), 0, 0.2f, -60});
+  return lobes;
+}
+
 inline std::shared_ptr<const ParametricBrdf> parametric_highlight(float bandwidth, bool isotropic) {
   return std::make_shared<ParametricBrdf>(parametric_model(isotropic, highlight_recipe(bandwidth)));
 }

@@ -12,7 +12,7 @@ namespace velour::test {
 inline Sampler material_sampler(std::shared_ptr<const Material> material, const Vec3& wv) {
   auto point = std::make_shared<PreparedBrdf>();
   material->prepare(wv, *point);
-  return {[material, point](const Vec2& u) { return material->sample(*point, u); },
+  return {[material, point](const Vec2& u) { return material->sample_one(*point, u); },
           [material, point](const Vec3& wl) { return static_cast<double>(eval_one(*material, *point, wl).pdf); }};
 }
 

@@ -59,7 +59,7 @@ test::Estimate albedo_by_sampling(const Material& material, const Vec3& wv, doub
   material.prepare(wv, point);
   test::RunningMean mean;
   for (uint64_t i = 0; i < 100'000; ++i) {
-    const Vec3 wl = material.sample(point, RandomStream(5, 0, i).next2());
+    const Vec3 wl = material.sample_one(point, RandomStream(5, 0, i).next2());
     const auto e = eval_one(material, point, wl);
     mean.add(wl.z > 0 ? e.f.g * wl.z / (e.pdf * error) : 0.0);
   }

@@ -69,6 +69,14 @@ TEST_P(ParametricSampling, FollowsItsDensity) {
 
 INSTANTIATE_TEST_SUITE_P(All, ParametricSampling, ::testing::ValuesIn(sampling_cases()));
 
+// Where lobes fade and are left out.
+TEST(ParametricSamplingIdle, FollowsItsDensityWithoutIdleLobes) {
+  const auto brdf = test::parametric_model(true, test::fading_recipe(30));
+  for (const float degrees : {5.0f, 25.0f, 45.0f, 50.0f, 55.0f, 70.0f}) {
+    test::expect_proven(sampler_of(brdf, test::view_at(degrees)), "fading");
+  }
+}
+
 /// One lobe alone, so that nothing hides what it does.
 ParametricBrdf lone(LobeSpace space, float bandwidth) {
   return test::parametric_model(true, {{space, bandwidth, Rgb(1), space == LobeSpace::half ? 0 : -0.8f, 0.3f}});
@@ -100,7 +108,7 @@ double spread(const Material& material, const PreparedBrdf& point) {
   constexpr uint64_t kSamples = 20'000;
   double sum = 0, sum_sq = 0;
   for (uint64_t i = 0; i < kSamples; ++i) {
-    const Vec3 wl = material.sample(point, RandomStream(3, 0, i).next2());
+    const Vec3 wl = material.sample_one(point, RandomStream(3, 0, i).next2());
     if (wl.z <= 0) continue;
     const auto e = test::eval_one(material, point, wl);
     const double x = static_cast<double>(luminance(e.f) * wl.z / e.pdf);

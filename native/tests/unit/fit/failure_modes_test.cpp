@@ -122,7 +122,7 @@ void expect_sound(const Material& material) {
     for (uint64_t i = 0; i < 200; ++i) {
       RandomStream random(3, 0, i);
       lights.push_back(sample_uniform_hemisphere(random.next2()));
-      lights.push_back(material.sample(point, random.next2()));
+      lights.push_back(material.sample_one(point, random.next2()));
       EXPECT_NEAR(glm::length(lights.back()), 1, 1e-4) << degrees;
     }
     for (const Vec3& wl : lights) {

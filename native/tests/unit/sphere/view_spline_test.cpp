@@ -95,6 +95,22 @@ TEST(ViewSpline, CoversARangeOfViewsAndHoldsItsEndsBeyond) {
   }
 }
 
+TEST(ViewSpline, RefinedSplinesFollowWhatTheirOwnKnotsAllow) {
+  const ViewSpline whole(true, 5), part(true, 2, {20, 50});
+  const std::pair<ViewSpline, bool> cases[] = {{whole, false}, {whole, true}, {part, false}};
+  for (const auto& [coarse, odd] : cases) {
+    const ViewSpline fine = coarse.refined(3);
+    const auto control = waves(coarse);
+    auto values = fine.sites();
+    ASSERT_EQ(static_cast<int>(values.size()), fine.node_count());
+    for (double& v : values) v = value(coarse.at(PolarView<double>{v, 1, 0}), control, odd);
+    fine.interpolate(values, odd);
+    for (double degrees = 0; degrees <= 90; degrees += 0.37) {
+      EXPECT_NEAR(value(fine.at(view(degrees)), values, odd), value(coarse.at(view(degrees)), control, odd), 1e-12);
+    }
+  }
+}
+
 TEST(ViewSpline, TheRangeOfAllViewsChangesNothing) {
   const ViewSpline all(true, 5), named(true, 5, {0, 90}), upper(true, 5, {10, 90});
   EXPECT_EQ(all.node_count(), named.node_count());

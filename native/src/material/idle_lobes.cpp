@@ -1,0 +1,64 @@
+#include "material/idle_lobes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "material/light_points.h"
+#include "srbf/kernel.h"
+
+namespace velour {
+
+namespace {
+
+/// What is lost without a lobe, in units of what may be.
+struct Loss {
+  double albedo = 0, norm = 0, value = 0;
+
+  double most() const { return std::max({albedo, norm, value}); }
+  void add(const Loss& other) {
+    albedo += other.albedo;
+    norm += other.norm;
+    value += other.value;
+  }
+};
+
+double largest_channel(const Vec3d& c) { return std::max({c.x, c.y, c.z}); }
+
+Loss loss_of(const WarpedLobe& lobe, size_t j, const LightPoints& points) {
+  double mass = 0, albedo = 0, norm_sq = 0, lost_sq = 0, most = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (!(points.weight(i) > 0)) continue;
+    const double kernel = kernel_value(Kernel::gaussian, lobe.bandwidth, one_minus_dot(points.psi(i, j), lobe.center));
+    const double part = largest_channel(lobe.coefficient) * kernel / points.value(i);
+    const double f_cos = points.weight(i) * points.value(i) * points.light(i).z;
+    mass += points.weight(i);
+    albedo += part * points.weight(i);
+    norm_sq += f_cos;
+    lost_sq += part * part * f_cos;
+    most = std::max(most, part);
+  }
+  if (!(mass > 0)) return {1e30, 1e30, 1e30};
+  return {albedo / mass / kIdleAlbedo, std::sqrt(lost_sq / norm_sq) / kIdleNorm, most / kIdleValue};
+}
+
+}  // namespace
+
+uint32_t lobes_that_matter(std::span<const WarpedLobe> lobes, const Vec3d& wv) {
+  const LightPoints points(lobes, drawn_as_they_are(lobes), wv);
+  std::vector<Loss> loss;
+  for (size_t j = 0; j < lobes.size(); ++j) loss.push_back(loss_of(lobes[j], j, points));
+  std::vector<size_t> order(lobes.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return loss[a].most() < loss[b].most(); });
+  uint32_t matter = 0;
+  Loss lost;
+  for (const size_t j : order) {
+    lost.add(loss[j]);
+    if (!(lost.most() <= 1)) matter |= uint32_t{1} << j;
+  }
+  return matter;
+}
+
+}  // namespace velour
