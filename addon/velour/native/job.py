@@ -138,7 +138,8 @@ class Job(Handle):
 
 def fit_job(measurement: Measurement, **options) -> Job:
     """Options: model ("scattered", "parametric"), kernel (scattered: "gaussian", "abel-poisson"), tolerance,
-    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered), limit_albedo (parametric);
+    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered), limit_albedo and
+    symmetric (parametric);
     for_scene (an Observation) and full_model (a Model) reduce a parametric model to what scenes show. What is
     not given has the library's default. Result: result_model()."""
     raw = _defaults(table.FitOptions, "vlr_fit_options_init")

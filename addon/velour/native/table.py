@@ -53,6 +53,8 @@ class FitOptions(Struct):
         ("align_views", c_int32),
         ("model", c_int32),
         ("limit_albedo", c_int32),
+        ("symmetric", c_int32),
+        ("pad", c_int32),
         ("for_scene", c_void_p),
         ("full_model", c_void_p),
     ]

@@ -163,6 +163,8 @@ typedef struct vlr_fit_options {
   int32_t align_views; /* scattered, 1: turn neighbouring slices onto the query's mirror direction before mixing */
   int32_t model;       /* VLR_MODEL_* */
   int32_t limit_albedo; /* parametric, 1: lower the model where more light would leave than arrives */
+  int32_t symmetric;    /* parametric, 1: f is the mean of both orders of a pair, reciprocal; evaluation costs more */
+  int32_t pad;
   /* Reduce a parametric model to what scenes show of the material: fewer lobes over the views seen, as long as pictures
    * are no worse than those of the full model. NULL: for any scene. */
   const vlr_observation* for_scene;

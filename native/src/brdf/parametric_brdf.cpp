@@ -50,4 +50,15 @@ std::vector<WarpedLobe> lobes_at(const ParametricBrdf& brdf, const Vec3d& wv) {
   return lobes;
 }
 
+Vec3d value_of(const std::vector<WarpedLobe>& lobes, const Vec3d& wl, const Vec3d& wv) {
+  Vec3d f(0);
+  for (const WarpedLobe& lobe : lobes) f += lobe.coefficient * warped_kernel(lobe, wl, wv);
+  return f;
+}
+
+Vec3d value_of(const ParametricBrdf& brdf, const Vec3d& wl, const Vec3d& wv) {
+  const Vec3d f = value_of(lobes_at(brdf, wv), wl, wv);
+  return brdf.symmetric ? 0.5 * (f + value_of(lobes_at(brdf, wl), wv, wl)) : f;
+}
+
 }  // namespace velour

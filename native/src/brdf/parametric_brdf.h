@@ -28,6 +28,8 @@ struct ParametricBrdf {
   int cells = 0;  // of the spline
   /// The views that it is fitted to; beyond them it has the parameters of the nearest of these.
   ViewRange views;
+  /// f is the mean of this sum and of the one with light and view exchanged: reciprocal, whatever the lobes.
+  bool symmetric = false;
   std::vector<LobeSpace> space;
   /// [node][parameter][lobe]: radians for tilts, logarithms elsewhere.
   std::vector<float> control;
@@ -44,6 +46,11 @@ struct ParametricBrdf {
   static constexpr uint64_t parameter_bytes(uint64_t values, uint64_t lobes) { return 2 * values + lobes; }
   uint64_t parameter_bytes() const { return parameter_bytes(control.size(), space.size()); }
 };
+
+/// f, 1/sr, of `brdf` at a pair, both unit and above the horizon.
+Vec3d value_of(const ParametricBrdf& brdf, const Vec3d& wl, const Vec3d& wv);
+/// The sum of `lobes`, which are those at `wv`.
+Vec3d value_of(const std::vector<WarpedLobe>& lobes, const Vec3d& wl, const Vec3d& wv);
 
 /// The lobes at `wv` (unit, above the horizon), in the surface's frame: the scalar reference. Isotropic models turn
 /// them by the view's azimuth.

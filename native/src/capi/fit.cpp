@@ -49,6 +49,7 @@ FitOptions converted(const vlr_fit_options& given) {
   options.all_data = given.all_data != 0;
   options.align_views = given.align_views != 0;
   options.limit_albedo = given.limit_albedo != 0;
+  options.symmetric = given.symmetric != 0;
   if (given.for_scene) options.for_scene = given.for_scene->observation;
   if (given.full_model) options.full_model = given.full_model->model;
   return options;

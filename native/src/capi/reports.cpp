@@ -101,6 +101,7 @@ Json own_json(const ParametricBrdf& brdf) {
   return {{"kernel", kernel_name(Kernel::gaussian)},
           {"isotropic", brdf.isotropic},
           {"cells", brdf.cells},
+          {"symmetric", brdf.symmetric},
           {"view_range", views_json(brdf.views)},
           {"spaces", {{"light", brdf.lobe_count() - half}, {"half", half}}}};
 }

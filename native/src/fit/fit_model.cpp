@@ -32,16 +32,21 @@ Model bounded_parametric(const Measurement& measurement, FitOptions options, Pro
   }
 }
 
+void refuse_contradictions(ModelKind kind, const FitOptions& options) {
+  const auto refuse = [](const char* sentence) { throw Error(Status::invalid_argument, sentence); };
+  if (kind != ModelKind::parametric) {
+    if (options.for_scene) refuse("Only parametric models can be fitted for a scene.");
+    if (options.limit_albedo) refuse("Only parametric models can have their albedo limited.");
+    if (options.symmetric) refuse("Only parametric models can be made symmetric.");
+  } else if (options.for_scene && options.symmetric) {
+    refuse("A model reduced to the views of a scene cannot be symmetric: its lights are not among its views.");
+  }
+}
+
 }  // namespace
 
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
-  if (options.for_scene || options.limit_albedo) {
-    if (kind != ModelKind::parametric) {
-      throw Error(Status::invalid_argument,
-                  std::string("Only parametric models can ") +
-                      (options.for_scene ? "be fitted for a scene." : "have their albedo limited."));
-    }
-  }
+  refuse_contradictions(kind, options);
   if (options.for_scene) return fit_for_scene(measurement, options, progress);
   if (kind == ModelKind::parametric) return bounded_parametric(measurement, options, progress);
   return fit_scattered(measurement, options, progress);

@@ -19,6 +19,7 @@ struct FitOptions {
   int threads = 0;            // 0: all
   bool all_data = false;      // hold nothing out
   bool align_views = true;    // scattered alone
+  bool symmetric = false;     // parametric: made reciprocal, at twice the cost of an evaluation and more
   bool limit_albedo = false;  // parametric: lowered where more light would leave than arrives (fit/albedo_limit.h)
   /// What scenes show of the material: the model is reduced to it (fit/scene_fit.h). Null: the model is for any scene.
   std::shared_ptr<const SceneObservation> for_scene;

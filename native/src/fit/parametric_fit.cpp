@@ -58,9 +58,9 @@ Model fit_parametric(const Measurement& measurement, const FitOptions& options, 
   const TrackedFitOptions tracked = tracked_options(measurement, options);
   TrackedFit fit = fit_tracked(measured.slices, tracked, progress);
   progress.stage("checking", 0.9, 1.0);
-  if (options.limit_albedo && limit_albedo(fit.brdf, options.threads, progress)) {
-    judge_again(measured.slices, tracked, fit, progress);
-  }
+  fit.brdf.symmetric = options.symmetric;
+  const bool limited = options.limit_albedo && limit_albedo(fit.brdf, options.threads, progress);
+  if (limited || options.symmetric) judge_again(measured.slices, tracked, fit, progress);
   Model model = parametric_model(measurement, fit, options, progress);
   warn_of_slices(measured, model.fit.warnings);
   progress.check();

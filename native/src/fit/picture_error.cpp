@@ -11,12 +11,20 @@
 namespace velour {
 namespace {
 
-/// f of `lobes` (of brdf/parametric_brdf.h at wv).
-Vec3d value_of(const std::vector<WarpedLobe>& lobes, const Vec3& wl, const Vec3& wv) {
-  Vec3d f(0);
-  for (const WarpedLobe& lobe : lobes) f += lobe.coefficient * warped_kernel(lobe, Vec3d(wl), Vec3d(wv));
-  return f;
-}
+/// f of a model at one view.
+class Slice {
+ public:
+  Slice(const ParametricBrdf& brdf, const Vec3& wv) : brdf_(brdf), wv_(wv), lobes_(lobes_at(brdf, wv_)) {}
+
+  Vec3d operator()(const Vec3& wl) const {
+    return brdf_.symmetric ? value_of(brdf_, Vec3d(wl), wv_) : value_of(lobes_, Vec3d(wl), wv_);
+  }
+
+ private:
+  const ParametricBrdf& brdf_;
+  Vec3d wv_;
+  std::vector<WarpedLobe> lobes_;
+};
 
 /// `f` of the measurement at a hit's terms, as it is rendered: no channel below 0. `stand_in` where it is silent.
 void measure_hit(const Measurement& measurement, const ParametricBrdf& stand_in, const ObservedHit& hit,
@@ -24,9 +32,8 @@ void measure_hit(const Measurement& measurement, const ParametricBrdf& stand_in,
   std::vector<Rgb> f(wl.size());
   std::vector<uint8_t> valid(wl.size());
   measurement.eval(hit.wv, wl, f, valid);
-  const std::vector<WarpedLobe> lobes = lobes_at(stand_in, Vec3d(hit.wv));
-  for (size_t i = 0; i < wl.size(); ++i)
-    out[i] = valid[i] ? Vec3d(glm::max(f[i], Rgb(0))) : value_of(lobes, wl[i], hit.wv);
+  const Slice slice(stand_in, hit.wv);
+  for (size_t i = 0; i < wl.size(); ++i) out[i] = valid[i] ? Vec3d(glm::max(f[i], Rgb(0))) : slice(wl[i]);
 }
 
 /// At one hit and for each half of its light: what each lobe sends to the viewer, and the error of their sum.
@@ -120,10 +127,10 @@ std::vector<double> PictureError::shares(const ParametricBrdf& model) const {
   std::vector<double> out(observation_.hits.size());
   parallel_pieces(out.size(), threads_, progress_, [&](size_t h) {
     const ObservedHit& hit = observation_.hits[h];
-    const std::vector<WarpedLobe> lobes = lobes_at(model, Vec3d(hit.wv));
+    const Slice slice(model, hit.wv);
     Vec3d error[2] = {Vec3d(0), Vec3d(0)};
     for (uint32_t i = hit.first; i < hit.last; ++i) {
-      const Vec3d difference = value_of(lobes, observation_.wl[i], hit.wv) - measured_[i];
+      const Vec3d difference = slice(observation_.wl[i]) - measured_[i];
       error[i < hit.middle ? 0 : 1] += difference * Vec3d(observation_.light[i]);
     }
     out[h] = glm::dot(error[0] * error[1], scale_[h]);

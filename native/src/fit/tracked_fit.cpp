@@ -175,9 +175,7 @@ void judge_again(const std::vector<MeasuredSlice>& slices, TrackedFitOptions opt
   options.cells = fit.brdf.cells;
   options.views = fit.brdf.views;
   TrackedProblem problem = problem_of(slices, options, progress);
-  const Eigen::VectorXf control =
-      Eigen::Map<const Eigen::VectorXf>(fit.brdf.control.data(), static_cast<Index>(fit.brdf.control.size()));
-  problem.evaluate(fit.brdf, control.cast<double>());
+  for (TrackedView& v : problem.views()) v.error = error_of(fit.brdf, v);
   record_errors(problem, fit);
 }
 

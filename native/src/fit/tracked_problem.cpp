@@ -191,6 +191,22 @@ double TrackedProblem::linearise(const ParametricBrdf& model, const Eigen::Vecto
   return cost(model, x);
 }
 
+double error_of(const ParametricBrdf& brdf, const TrackedView& view) {
+  const SliceSamples& samples = view.samples;
+  const std::vector<WarpedLobe> lobes = lobes_at(brdf, view.wv);
+  double sum = 0;
+  for (size_t i = 0; i < samples.count(); ++i) {
+    const Vec3d wl = samples.wl(i);
+    const Vec3d f = brdf.symmetric ? value_of(brdf, wl, view.wv) : value_of(lobes, wl, view.wv);
+    for (int c = 0; c < 3; ++c) {
+      const double weight = static_cast<double>(samples.sqrt_weight()[i]);
+      const double left = weight * wl.z * f[c] - static_cast<double>(samples.target(c)[i]);
+      sum += kChannel[c] * left * left;
+    }
+  }
+  return std::sqrt(sum / view.energy);
+}
+
 double reported_error(const std::vector<TrackedView>& views, const TrackedView& view) {
   if (view.energy <= view.samples.luminance_energy()) return view.error;
   const auto degrees = [](const TrackedView& v) { return std::atan2(v.wv.x, v.wv.z) * 180 / kPiD; };

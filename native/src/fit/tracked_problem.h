@@ -72,6 +72,9 @@ class TrackedProblem {
   const Progress& progress_;
 };
 
+/// TrackedView::error of any model: the scalar reference, symmetric ones included.
+double error_of(const ParametricBrdf& brdf, const TrackedView& view);
+
 /// The error of a view as it is reported: of bins that share their energy, all within kHeldOutGroup together.
 double reported_error(const std::vector<TrackedView>& views, const TrackedView& view);
 

@@ -13,10 +13,7 @@ class ParametricMaterial : public Material {
 
   void prepare(const Vec3& wv, PreparedBrdf& point) const override {
     point.wv = wv;
-    if (table_.covers(wv)) return table_.evaluate(wv, point.warped);
-    const ViewPlace place(wv);
-    values_.evaluate(wv, place, point.warped);
-    draws_.add_to(place, point.warped);
+    evaluate(wv, point.warped);
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
@@ -42,10 +39,46 @@ class ParametricMaterial : public Material {
 
   bool isotropic() const override { return values_.isotropic(); }
 
+ protected:
+  void evaluate(const Vec3& wv, WarpedMixture& mixture) const {
+    if (table_.covers(wv)) return table_.evaluate(wv, mixture);
+    const ViewPlace place(wv);
+    values_.evaluate(wv, place, mixture);
+    draws_.add_to(place, mixture);
+  }
+
  private:
   ParametricValues values_;
   ParametricDraws draws_;
   ParametricTable table_;
+};
+
+/// f is the mean of both orders of a pair; samples are those of the lobes.
+class SymmetricMaterial final : public ParametricMaterial {
+ public:
+  using ParametricMaterial::ParametricMaterial;
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    ParametricMaterial::eval(point, wl, f, pdf);
+    for (int i = 0; i < wl.count; ++i) f.set(i, mean(point, wl.get(i), f.get(i)));
+  }
+
+  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
+    Reflection result = ParametricMaterial::eval_one(point, wl);
+    result.f = mean(point, wl, result.f);
+    return result;
+  }
+
+ private:
+  Rgb mean(const PreparedBrdf& point, const Vec3& wl, const Rgb& f) const {
+    if (!(wl.z > 0)) return Rgb(0);
+    WarpedMixture exchanged;
+    evaluate(wl, exchanged);
+    Rgb other;
+    float unused;
+    eval_warped(exchanged, point.wv, other, unused);
+    return 0.5f * (f + other);
+  }
 };
 
 class MeasuredMaterial final : public ParametricMaterial {
@@ -71,6 +104,7 @@ class MeasuredMaterial final : public ParametricMaterial {
 }  // namespace
 
 std::shared_ptr<const Material> make_parametric_material(const std::shared_ptr<const ParametricBrdf>& brdf) {
+  if (brdf->symmetric) return std::make_shared<SymmetricMaterial>(*brdf);
   return std::make_shared<ParametricMaterial>(*brdf);
 }
 

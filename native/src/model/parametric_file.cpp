@@ -8,6 +8,7 @@ namespace {
 constexpr char kIsotropic[] = "velour.isotropic", kCells[] = "velour.cells";
 // Whole degrees; not there in models of all views.
 constexpr char kFirstView[] = "velour.first_view", kLastView[] = "velour.last_view";
+constexpr char kSymmetric[] = "velour.symmetric";  // not there: false
 constexpr char kSpace[] = "lobes.space", kControl[] = "lobes.control", kNone[] = "lobes.none";
 
 std::vector<LobeSpace> read_spaces(const ModelFields& fields) {
@@ -54,6 +55,7 @@ void write_parametric(const ParametricBrdf& brdf, TensorFile& file) {
   file.attributes[kIsotropic] = boolean_text(brdf.isotropic);
   file.attributes[kCells] = std::to_string(brdf.cells);
   file.attributes["velour.units"] = "f in 1/sr, linear Rec. 709; natural logarithms; radians";
+  if (brdf.symmetric) file.attributes[kSymmetric] = boolean_text(true);
   if (!brdf.views.whole()) {
     file.attributes[kFirstView] = std::to_string(brdf.views.begin);
     file.attributes[kLastView] = std::to_string(brdf.views.end);
@@ -75,6 +77,7 @@ ParametricBrdf read_parametric(const ModelFields& fields) {
   ParametricBrdf brdf;
   brdf.isotropic = fields.boolean(kIsotropic);
   brdf.cells = fields.integer(kCells, 1, ViewSpline::kMaxCells);
+  brdf.symmetric = !fields.attribute_or_empty(kSymmetric).empty() && fields.boolean(kSymmetric);
   if (!fields.attribute_or_empty(kFirstView).empty()) {
     brdf.views.begin = fields.integer(kFirstView, 0, 89);
     brdf.views.end = fields.integer(kLastView, brdf.views.begin + 1, 90);

@@ -49,6 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="lower the model where more light would leave than arrives",
     )
+    parser.add_argument("--symmetric", action="store_true", help="make the model reciprocal")
     parser.add_argument("--all-data", action="store_true", help="hold nothing out: for production")
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
@@ -93,5 +94,6 @@ def _options(args: argparse.Namespace) -> dict:
         "threads": args.threads,
         "all_data": int(args.all_data),
         "limit_albedo": int(args.limit_albedo),
+        "symmetric": int(args.symmetric),
     }
     return {name: value for name, value in given.items() if value is not None}

@@ -77,5 +77,14 @@ TEST(AlbedoLimit, IsAnOptionOfTheFit) {
   EXPECT_GT(limited.fit.relative_l2, 2 * free.fit.relative_l2);  // and the errors are those of what was written
 }
 
+TEST(AlbedoLimit, HoldsForSymmetricModelsToo) {
+  Progress progress;
+  ParametricBrdf brdf = bright(true, 2.2f);
+  brdf.symmetric = true;
+  ASSERT_GT(largest_albedo(brdf), 1.05);
+  EXPECT_TRUE(limit_albedo(brdf, 0, progress));
+  EXPECT_LE(largest_albedo(brdf), 1);
+}
+
 }  // namespace
 }  // namespace velour

@@ -57,6 +57,20 @@ TEST(ParametricFit, LobesAreBounded) {
   EXPECT_EQ(lobes_of(fitted(AnalyticMeasurement(test::ggx(0.1f, 0.1f)), options)).lobe_count(), 2);
 }
 
+TEST(ParametricFit, IsReciprocalOnRequest) {
+  // Darker towards the viewer's side than towards the light's: nothing symmetric can follow it.
+  const auto half = test::ggx(0.3f, 0.3f);
+  const AnalyticMeasurement odd([half](const DirectionPair& p) { return (0.5f + p.wv.z) * half(p); });
+  const Model free = fitted(odd);
+  EXPECT_GT(free.fit.reciprocity, 0.1);
+  FitOptions options;
+  options.symmetric = true;
+  const Model symmetric = fitted(odd, options);
+  EXPECT_TRUE(lobes_of(symmetric).symmetric);
+  EXPECT_LT(symmetric.fit.reciprocity, 1e-4);
+  EXPECT_GT(symmetric.fit.relative_l2, 2 * free.fit.relative_l2);  // the errors are those of the mean
+}
+
 TEST(ParametricFit, DoesNotDependOnThreads) {
   FitOptions one, two;
   one.max_lobes = two.max_lobes = 3;

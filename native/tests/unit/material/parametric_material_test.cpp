@@ -220,5 +220,24 @@ TEST(ParametricMaterial, ProposalsResembleTheModel) {
   }
 }
 
+TEST(ParametricMaterial, SymmetricOnesAreReciprocalAndTheMeanOfBothOrders) {
+  for (const bool isotropic : {true, false}) {
+    ParametricBrdf brdf = test::parametric_model(isotropic, test::highlight_recipe(20));
+    const auto plain = material_of(brdf);
+    brdf.symmetric = true;
+    const auto symmetric = material_of(brdf);
+    RandomStream random(5, 2, 1);
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 a = direction(1.5f * random.next(), 6 * random.next()),
+                 b = direction(1.5f * random.next(), 6 * random.next());
+      const Vec3d expected = value_of(brdf, Vec3d(a), Vec3d(b));
+      const auto there = eval_one(*symmetric, {a, b}), back = eval_one(*symmetric, {b, a});
+      EXPECT_NEAR(there.f.g, back.f.g, 1e-5f * there.f.g) << i;
+      EXPECT_NEAR(static_cast<double>(there.f.g), expected.y, 2e-3 * expected.y + 1e-6) << i;
+      EXPECT_EQ(there.pdf, eval_one(*plain, {a, b}).pdf);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace velour

@@ -55,6 +55,7 @@ void expect_same(const ScatteredBrdf& a, const ScatteredBrdf& b) {
 void expect_same(const ParametricBrdf& a, const ParametricBrdf& b) {
   EXPECT_EQ(a.isotropic, b.isotropic);
   EXPECT_EQ(a.cells, b.cells);
+  EXPECT_EQ(a.symmetric, b.symmetric);
   EXPECT_EQ(a.views.begin, b.views.begin);
   EXPECT_EQ(a.views.end, b.views.end);
   EXPECT_EQ(a.space, b.space);
@@ -103,6 +104,12 @@ TEST(ModelFile, ReducedModelsKeepTheirScene) {
   model.scene->domain.light_density = std::numeric_limits<double>::infinity();
   EXPECT_EQ(decode_model(encode_model(model), "memory").scene->domain.light_density,
             std::numeric_limits<double>::infinity());
+}
+
+TEST(ModelFile, SymmetryIsKept) {
+  Model model = example_parametric();
+  std::get<ParametricBrdf>(model.body).symmetric = true;
+  expect_round_trip<ParametricBrdf>(model);
 }
 
 TEST(ModelFile, AParametricModelIsBlackWithoutLobes) { expect_round_trip<ParametricBrdf>(example_parametric(true, 0)); }
