@@ -3,6 +3,7 @@
 import contextlib
 import io
 import math
+import unittest.mock
 
 import bpy
 import numpy as np
@@ -42,6 +43,13 @@ class SceneModelTest(BlenderTest):
         measured = __import__(f"{inputs.ADDON}.operators.measured", fromlist=["measured"])
         data = inputs.full_model_bytes(inputs.glossy_measurement())
         return measured.packed_model(data, "Paint")
+
+    def _add_lamp(self):
+        lamp = bpy.data.lights.new("Lamp", "POINT")
+        lamp.energy, lamp.shadow_soft_size = 50, 0.0
+        obj = bpy.data.objects.new("Lamp", lamp)
+        obj.location = (0.3, 0.5, 2)
+        self.scene.collection.objects.link(obj)
 
     @property
     def node(self):
@@ -225,6 +233,22 @@ class Fits(SceneModelTest):
         self.assertFalse(self.settings.use_scene_model)
         self.assertIsNotNone(self.settings.scene_model)
 
+    def test_nothing_smaller(self):
+        """The library gives the full model back where nothing smaller does: then nothing is kept."""
+        model = inputs.native().Model
+        info = model.info
+
+        def as_large(self):
+            found = info(self)
+            if "scene" in found:
+                found["parameter_bytes"] = found["scene"]["full_parameter_bytes"]
+            return found
+
+        before = self._state()
+        with unittest.mock.patch.object(model, "info", as_large):
+            self.assertEqual(bpy.ops.velour.fit_for_scene(), {"CANCELLED"})
+        self.assertEqual(self._state(), before)
+
 
 class Frames(SceneModelTest):
     """Frames that show the material otherwise take the full model, bit by bit, and say so."""
@@ -243,11 +267,7 @@ class Frames(SceneModelTest):
         self._takes_the_full_model()
 
     def test_point_light(self):
-        lamp = bpy.data.lights.new("Lamp", "POINT")
-        lamp.energy, lamp.shadow_soft_size = 50, 0.0
-        obj = bpy.data.objects.new("Lamp", lamp)
-        obj.location = (0.3, 0.5, 2)
-        self.scene.collection.objects.link(obj)
+        self._add_lamp()
         self._takes_the_full_model()
 
     def test_brighter_world_is_no_other_light(self):

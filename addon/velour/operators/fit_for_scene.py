@@ -124,13 +124,15 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
     def _finish(self):
         with self._job, self._job.result_model() as model:
             info = model.info()
-            seconds = self._job.poll().seconds
-            self._work.keep(model)
-        for warning in info["warnings"]:
+            smaller = info["parameter_bytes"] < info["scene"]["full_parameter_bytes"]
+            if smaller:
+                self._work.keep(model)
+        for warning in info["warnings"]:  # also that nothing is smaller
             self.report({"WARNING"}, f"Material '{self._work.material_name}': {warning}")
-        self.report({"INFO"}, _report(self._work, info, seconds))
+        if smaller:
+            self.report({"INFO"}, _report(self._work, info))
         self._close()
-        return {"FINISHED"}
+        return {"FINISHED"} if smaller else {"CANCELLED"}
 
     def _fail(self, error):
         self._close()
@@ -160,14 +162,14 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             )
 
 
-def _report(work, info, seconds):
+def _report(work, info):
     scene, own = info["scene"], info["parameter_bytes"]
     full = scene["full_parameter_bytes"]
+    seconds, frames = info["seconds"], len(work.frames)
     return (
-        f"Fitted '{work.material_name}' for scene '{work.scene_name}', {len(work.frames)} frames, in"
-        f" {seconds:.1f} s: {own} bytes of parameters, the full model has {full} ({full / own:.1f} times as"
-        f" many); picture error (relmse) {scene['picture_error']:.2g}, full"
-        f" {scene['full_picture_error']:.2g}."
+        f"Fitted '{work.material_name}' for scene '{work.scene_name}', {frames} frames, in {seconds:.1f} s:"
+        f" {own} bytes of parameters, the full model has {full} ({full / own:.1f} times as many); picture"
+        f" error (relmse) {scene['picture_error']:.2g}, full {scene['full_picture_error']:.2g}."
     )
 
 
