@@ -19,7 +19,7 @@ class Notes(BlenderTest):
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
         view = camera.final_view(depsgraph, notes)
-        export.export_scene(depsgraph, view, notes).close()
+        export.export_scene(depsgraph, view, notes)[0].close()
         return list(notes)
 
     def _said(self, *words):
@@ -103,7 +103,7 @@ class Notes(BlenderTest):
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
         view = camera.final_view(depsgraph, notes)
-        export.export_scene(depsgraph, view, notes, strict=False).close()
+        export.export_scene(depsgraph, view, notes, strict=False)[0].close()
         self.assertIn("has no model", "".join(notes))
         with self.assertRaisesRegex(export.ExportError, "has no model"):
             export.export_scene(depsgraph, view, notes)

@@ -6,7 +6,7 @@ import time
 import bpy
 
 from ..core.cache import user_cache_folder
-from ..export import ExportError, Notes, export_with_materials
+from ..export import ExportError, Notes, export_scene
 from ..export.camera import final_view
 from ..native import render_job
 from .passes import add_passes, write_passes
@@ -36,9 +36,7 @@ def render_final(engine, depsgraph):
         if engine.test_break():
             raise RenderCancelledError
 
-    native_scene, materials = export_with_materials(
-        depsgraph, view, notes, check_break, strict=not engine.is_preview
-    )
+    native_scene, materials = export_scene(depsgraph, view, notes, check_break, strict=not engine.is_preview)
     with native_scene:
         stamps = {}
         if not engine.is_preview:

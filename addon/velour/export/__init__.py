@@ -1,6 +1,6 @@
 """From Blender's evaluated depsgraph to the library's scene."""
 
 from .notes import ExportError, Notes
-from .scene import export_scene, export_with_materials
+from .scene import export_scene
 
-__all__ = ["ExportError", "Notes", "export_scene", "export_with_materials"]
+__all__ = ["ExportError", "Notes", "export_scene"]

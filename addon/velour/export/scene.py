@@ -10,15 +10,10 @@ from .world import add_world
 
 
 def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
-    """A committed library scene of what the depsgraph shows, seen through `view`.
+    """A committed library scene of what the depsgraph shows, seen through `view`, and its MaterialTable.
 
     `check_break` is called often and raises to stop; `strict` refuses measured materials that cannot be had.
     """
-    return export_with_materials(depsgraph, view, notes, check_break, strict)[0]
-
-
-def export_with_materials(depsgraph, view, notes, check_break=lambda: None, strict=True):
-    """As export_scene; and the MaterialTable, which knows the materials' numbers."""
     scene = Scene()
     try:
         working = rec709_to_working()

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..export import ExportError, Notes, export_with_materials, visitor
+from ..export import ExportError, Notes, export_scene, visitor
 from ..export.camera import final_view
 from ..export.files import read_measurement, read_model
 from ..export.nodes import velour_node
@@ -98,7 +98,7 @@ class SceneFit:
         """One view layer of one frame."""
         notes = Notes()  # said by renders
         view = final_view(depsgraph, notes, whole=True)
-        native_scene, materials = export_with_materials(depsgraph, view, notes)
+        native_scene, materials = export_scene(depsgraph, view, notes)
         with native_scene:
             number = materials.find(bpy.data.materials[self.material_name])
             if number is not None:
