@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 
-def replaced(page: str, part: str, text: str) -> str:
+def replaced(page: str, part: str, text: str, script: str = "models") -> str:
     """`page` with `text` between the markers of `part`."""
-    begin, end = f"<!-- {part}: written by scripts/models -->\n", f"<!-- end of {part} -->"
+    begin, end = f"<!-- {part}: written by scripts/{script} -->\n", f"<!-- end of {part} -->"
     if page.count(begin) != 1 or page.count(end) != 1 or page.index(begin) > page.index(end):
         raise ValueError(f"the page has no part {part!r} between its two markers")
     return page[: page.index(begin) + len(begin)] + text + page[page.index(end) :]

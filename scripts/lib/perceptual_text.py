@@ -48,7 +48,7 @@ notice [MT11], and the classical just noticeable difference [MVO94].
 
 ## By tolerance
 
-Over all materials and scenes, of the default model with up to 16 lobes, and of models of one and two lobes.
+Over all materials and scenes, of the default model with up to 16 lobes, and with up to 2.
 `error`: the relative L2 that the fits reached; with a loose tolerance it is often far below.
 
 {_by_tolerance(rows, thresholds)}
