@@ -367,6 +367,17 @@ class Refusals(SceneModelTest):
         self.scene.view_layers[0].use = False
         self._refused("no view layer")
 
+    def test_anisotropic(self):
+        self.settings.measurement.filepath = str(inputs.anisotropic_measurement())
+        self.settings.measurement.velour.sha256 = ""
+        self._refused("Paint", "anisotropic")
+
+    def test_another_measurement(self):
+        self.settings.measurement.filepath = str(inputs.lambert_measurement())
+        self._refused("Paint", "has changed")
+        self.settings.measurement.velour.sha256 = ""
+        self._refused("Paint", "not of this measurement")
+
     def test_missing_measurement(self):
         self.settings.measurement.filepath = str(self.folder / "gone.binary")
         self._refused("gone.binary", "missing")

@@ -36,6 +36,16 @@ def glossy_measurement():
     return _made("glossy.binary", lambda path: write_merl(path, f))
 
 
+def anisotropic_measurement():
+    """A table of a micro-surface, far too noisy for anything but being refused."""
+
+    def make(path):
+        with native().microsurface_job(path, roughness=0.3, anisotropy=2.0, rays=20000) as job:
+            job.run()
+
+    return _made("anisotropic.exr", make)
+
+
 def write_merl(path, f):
     """`f(theta_h, theta_d, phi_d)` gives three channels in 1/sr, broadcast over the table."""
     theta_h = (np.arange(90) / 90) ** 2 * (np.pi / 2)  # the table is square-root spaced in theta_h

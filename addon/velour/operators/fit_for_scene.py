@@ -149,7 +149,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             self._job.close()  # cancels what still runs
         work = getattr(self, "_work", None)
         if work is not None:
-            work.observation.close()
+            work.close()
 
     def _say_frame(self):
         if bpy.app.background:

@@ -4,10 +4,10 @@ import bpy
 
 from ..export import ExportError, Notes, export_with_materials, visitor
 from ..export.camera import final_view
-from ..export.files import measurement_path, read_model
+from ..export.files import read_measurement, read_model
 from ..export.nodes import velour_node
 from ..export.observe import observe
-from ..native import Measurement, Observation, fit_job
+from ..native import Observation, fit_job
 from . import measured
 from .sharing import other_scenes
 
@@ -33,8 +33,13 @@ class SceneFit:
             )
         self.material_name, self.scene_name = material.name, scene.name
         self.frames = [scene.frame_current] if current_frame else frame_range(scene)
+        self._measurement = _read_measurement(material)
         self.observation = Observation.of_nothing()
         self.done = 0  # frames
+
+    def close(self):
+        self._measurement.close()
+        self.observation.close()
 
     def observe_next(self):
         """Adds what the next frame shows; False when there is none left."""
@@ -51,16 +56,16 @@ class SceneFit:
                 f"Material '{self.material_name}' is not seen in {self._range()} of scene"
                 f" '{self.scene_name}'; nothing tells what its model is needed for."
             )
-        node, owner = self.node(), f"Material '{self.material_name}'"
-        with (
-            measurement_path(node.velour.measurement, owner) as path,
-            Measurement.load(path) as measurement,
-            read_model(node.image, owner) as full,
-        ):
+        node = self.node()
+        with read_model(node.image, f"Material '{self.material_name}'") as full:
+            if full.info()["source"]["sha256"] != self._measurement.info()["sha256"]:
+                raise ExportError(
+                    f"Material '{self.material_name}': the full model is not of this measurement; press Fit."
+                )
             # A model of another kind is no measure of a parametric one: without one the fit makes it first.
             measure = {"full_model": full} if full.info()["model"] == "parametric" else {}
             return fit_job(
-                measurement,
+                self._measurement,
                 model="parametric",
                 for_scene=self.observation,
                 **measure,
@@ -118,6 +123,18 @@ def _refuse_unfit(material):
         raise ExportError(f"{owner}: it has no full model yet; press Fit first.")
     if material.library is not None:
         raise ExportError(f"{owner} is linked from a library, where nothing can be kept; make it local.")
+
+
+def _read_measurement(material):
+    owner = f"Material '{material.name}'"
+    measurement = read_measurement(velour_node(material).velour.measurement, owner)
+    if not measurement.info()["isotropic"]:
+        measurement.close()
+        raise ExportError(
+            f"{owner}: the measurement is anisotropic, and of a scene's views only the angle from the normal"
+            " is known, not the direction around it; use the full model."
+        )
+    return measurement
 
 
 def _scenes(names):
