@@ -9,6 +9,7 @@ import sys
 import time
 
 import pytest
+import uniform_moments
 from command_line import environment
 from conftest import ROOT
 
@@ -59,6 +60,9 @@ def test_figures_are_written(figures):
     pictures = [row for row in _rows(figures / "out/figures.csv") if row["what"] == "picture"]
     assert {row["figure"] for row in pictures} >= {"7.11", "7.12"}
     assert all(0 < float(row["relmse"]) < 1 for row in pictures)
+    if uniform_moments.built():
+        check = (figures / "out/check.md").read_text()
+        assert all(f"| {number} " in check for number in ("7.11", "7.12"))
     for number in ("7.11", "7.12"):
         assert (figures / f"reference-{number}-standard-error.exr").is_file()
 

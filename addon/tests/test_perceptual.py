@@ -33,7 +33,7 @@ def test_equal_pictures_do_not_differ(flip):
 
 
 def test_black_against_white_is_nearly_all(flip):
-    """[ANA*20] 4.1.3: the largest difference of colours is that of green and blue."""
+    """[ANA20] 4.1.3: the largest difference of colours is that of green and blue."""
     black, white = np.zeros((SIDE, SIDE, 3)), np.ones((SIDE, SIDE, 3))
     assert 0.9 < flip_metric.flip_map(black, white).mean() <= 1
     green, blue = (np.broadcast_to(np.eye(3)[k], (SIDE, SIDE, 3)) for k in (1, 2))
@@ -42,7 +42,7 @@ def test_black_against_white_is_nearly_all(flip):
 
 @pytest.mark.parametrize("difference", [0.5, 1.0, 2.3])
 def test_even_greys_differ_as_the_paper_says(flip, difference):
-    """[ANA*20] 4.1.3: p_t d^q / (p_c c_max), q = 0.7, p_c = 0.4, p_t = 0.95, c_max = HyAB(green, blue)^q."""
+    """[ANA20] 4.1.3: p_t d^q / (p_c c_max), q = 0.7, p_c = 0.4, p_t = 0.95, c_max = HyAB(green, blue)^q."""
     expected = 0.95 / (0.4 * 41.28) * difference**0.7
     assert flip_metric.of_lightness(difference) == pytest.approx(expected, rel=2e-3)
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import tail_bound
 from agreement import LUMINANCE, agreement
-from conftest import ROOT
 from progress import Progress
 from scenes import Scene
 from scipy import stats
@@ -158,17 +157,12 @@ def renders(tmp_path):
     return Renders(Settings(tmp_path / "kept", SIZE, 2, 1), Progress(), fresh=False)
 
 
-def _program():
-    program = ROOT / "build/release/native/bench/uniform_moments"
-    if not program.is_file():
-        pytest.skip("uniform_moments is not built")
-
-
 def test_its_moments_are_those_of_uniform_renders(scene, renders):
     """Under a soft sky without rare events the spread of renders is the true one."""
     import uniform_moments
 
-    _program()
+    if not uniform_moments.built():
+        pytest.skip("uniform_moments is not built")
     found = uniform_moments.of(scene, renders, SIZE, 1024, range(1, 5))
     spp = 64
     stack = np.array(

@@ -8,6 +8,8 @@
 //   prepare         a view alone
 //   f, f_16         a view and 1 light, or 16 of them, per light; the density comes with f
 //   sample_pdf, _16 a view, 1 direction drawn for it, or 16 of them, f and density of each, per direction
+// and of a parametric model:
+//   lobes, f_16_all its lobes that a view evaluates, in the mean, and f_16 were it all of them
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -130,6 +132,30 @@ nlohmann::ordered_json cost_of(const Material& material) {
           {"sample_pdf_16", nanoseconds([&](size_t i) { sample_of(i, kMany); }) / kMany}};
 }
 
+/// What leaving out lobes that cannot matter at a view saves.
+nlohmann::ordered_json idle_lobes_of(const Material& material) {
+  const Pairs pairs;
+  auto point = std::make_unique<PreparedBrdf>();
+  double listed = 0;
+  for (const Vec3& wv : pairs.wv) {
+    material.prepare(wv, *point);
+    listed += point->warped.listed_count;
+  }
+  DirectionBatch wl;
+  RgbBatch f;
+  ScalarBatch pdf;
+  const auto all = nanoseconds([&](size_t i) {
+    material.prepare(pairs.wv[i], *point);
+    point->warped.list_all();
+    wl.count = 0;
+    for (size_t k = 0; k < kMany; ++k) wl.push(pairs.wl[(i + k) % kPairs]);
+    material.eval(*point, wl, f, pdf);
+    used(f);
+    used(pdf);
+  });
+  return {{"lobes", listed / kPairs}, {"f_16_all", all / kMany}};
+}
+
 nlohmann::ordered_json cost_of(const Measurement& measurement) {
   const Pairs pairs;
   Rgb f[kMany];
@@ -145,7 +171,13 @@ nlohmann::ordered_json cost_of(const Measurement& measurement) {
 
 nlohmann::ordered_json report(const std::string& file, const std::string& peer) {
   if (file == "floor") return cost_of(FloorMaterial());
-  if (is_model_file(file)) return cost_of(*make_material(std::make_shared<const Model>(load_model(file)), 0));
+  if (is_model_file(file)) {
+    const auto model = std::make_shared<const Model>(load_model(file));
+    const auto material = make_material(model, 0);
+    auto json = cost_of(*material);
+    if (std::holds_alternative<ParametricBrdf>(model->body)) json.update(idle_lobes_of(*material));
+    return json;
+  }
   const auto measurement = load_measurement(file);
   if (peer.empty()) return cost_of(*measurement);
   if (peer != "ggx" && peer != "principled") throw std::runtime_error("evaluation_cost: no peer is called " + peer);

@@ -43,7 +43,7 @@ about their error. Instead:
   spread of its renders, counts as normal. The bound is never too small; where the distribution is normal, it
   is about ten times too large.
 
-The definition was fixed before these renders were made. z: difference over true error bar, the largest; where
+The definition was fixed before any of these results was seen. z: difference over true error bar; where
 rare events are few, Sidak's bound does not hold for it. Seen: what relative bias is refused in 99 of 100
 cases, of all pixels alike, and of one pixel alone (median). Control: `product` {control}, which must be
 refused.

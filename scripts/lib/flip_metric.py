@@ -1,4 +1,4 @@
-"""How different two pictures look: LDR-FLIP [ANA*20], by its authors' own package."""
+"""How different two pictures look: LDR-FLIP [ANA20], by its authors' own package."""
 
 from __future__ import annotations
 

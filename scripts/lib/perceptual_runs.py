@@ -28,7 +28,7 @@ class Order:
     lobes: int = 16  # at most
 
     def __str__(self) -> str:
-        return f"{self.tolerance:g}" if self.lobes == 16 else f"{self.tolerance:g}, {self.lobes} lobe(s)"
+        return f"{self.tolerance:g}" if self.lobes == 16 else f"{self.tolerance:g}, {self.lobes} lobes"
 
 
 DEFAULT = Order(0.02)
@@ -43,13 +43,13 @@ class Extent:
     # A fit with a loose tolerance is often far better than that; few lobes show what large errors look like.
     orders: tuple[Order, ...] = (
         *(Order(t) for t in (0.005, 0.01, 0.02, 0.04, 0.08, 0.16)),
-        *(Order(0.02, lobes) for lobes in (2, 1)),
+        Order(0.02, lobes=2),
     )
     materials: int = 99
     worlds: tuple[str, ...] = (chart_scenes.STUDIO, chart_scenes.SUNSET)
 
 
-QUICK = Extent((64, 48), 16, (DEFAULT, Order(0.02, 1)), 1, (chart_scenes.SUNSET,))
+QUICK = Extent((64, 48), 16, (DEFAULT, Order(0.02, 2)), 1, (chart_scenes.SUNSET,))
 
 
 @dataclass(frozen=True)

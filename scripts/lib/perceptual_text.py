@@ -35,7 +35,7 @@ on a sphere and on the bunny under {worlds},
 pair come from the same seed and the same light directions, the model's, so that their noise is the same and
 all but cancels.
 
-Metric: LDR-FLIP [ANA*20] in its authors' package, at its default distance of 67 pixels a degree, over the
+Metric: LDR-FLIP [ANA20] in its authors' package, at its default distance of 67 pixels a degree, over the
 pixels that show the object. Exposure: the object's mean luminance in the measurement's picture becomes 18 %;
 then the sRGB curve, clipped, unrounded. FLIP is made for two pictures that take turns in one place, the
 strictest way to compare.
@@ -48,7 +48,7 @@ notice [MT11], and the classical just noticeable difference [MVO94].
 
 ## By tolerance
 
-Over all materials and scenes, of the default model with up to 16 lobes, and of models of one and two lobes.
+Over all materials and scenes, of the default model with up to 16 lobes, and with up to 2.
 `error`: the relative L2 that the fits reached; with a loose tolerance it is often far below.
 
 {_by_tolerance(rows, thresholds)}

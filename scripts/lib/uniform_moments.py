@@ -22,6 +22,10 @@ class Found:
     error: np.ndarray  # relative standard error of the second moments, from the spread of the runs
 
 
+def built() -> bool:
+    return _PROGRAM.is_file()
+
+
 def of(scene: Scene, renders: Renders, size: tuple[int, int], rays: int, seeds: range) -> Found:
     """By `rays` camera rays a pixel in a run for each of `seeds`. `scene` has the default camera."""
     runs = np.array([_run(scene, renders, size, rays, seed) for seed in seeds], np.float64)

@@ -1,0 +1,33 @@
+"""The table of scripts/failure_modes."""
+
+from __future__ import annotations
+
+import failure_modes
+from conftest import ROOT
+from generated import replaced
+
+
+def _test(kind: str, case: str, **numbers: str) -> dict:
+    return {"value_param": f"({kind}, {case})", **numbers}
+
+
+def test_models_of_a_case_stand_together_and_the_refused_are_left_out():
+    seen = {"claimed_5": "0.0104", "true_5": "0.2", "claimed_85": "1", "true_85": "0.9"}
+    cases = [
+        _test("scattered", "near-mirror, bandwidth 1e4", **seen),
+        _test("scattered", "no light direction"),
+        _test("scattered_abel_poisson", "near-mirror, bandwidth 1e4", **seen),
+        _test("parametric", "near-mirror, bandwidth 1e4", **seen),
+        _test("parametric", "black", **seen),
+    ]
+    numbers = ["0.010 / 0.200", "-", "-", "-", "1.000 / 0.900"]
+    assert failure_modes._rows({"testsuites": [{"testsuite": cases}]}) == [
+        ["near-mirror, bandwidth 1e4", "scattered", *numbers],
+        ["near-mirror, bandwidth 1e4", "parametric", *numbers],
+        ["black", "parametric", *numbers],
+    ]
+
+
+def test_the_page_has_its_part():
+    page = (ROOT / "docs/failure_modes.md").read_text(encoding="utf-8")
+    assert replaced(page, "claims", "new\n", "failure_modes") != page
