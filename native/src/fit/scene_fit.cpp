@@ -33,7 +33,7 @@ double seen_weight(const SceneDomain& domain, double theta) {
 }
 
 /// The slices within the range, or the nearest few to it, weighted as they are seen and lit.
-std::vector<MeasuredSlice> seen_slices(std::vector<MeasuredSlice> slices, const ViewRange& range, bool isotropic,
+std::vector<MeasuredSlice> seen_slices(std::vector<MeasuredSlice> slices, const ViewRange& range,
                                        const SceneObservation& observation) {
   const auto outside = [&range](const MeasuredSlice& s) {
     const double theta = polar_angle(s.wv);
@@ -44,7 +44,7 @@ std::vector<MeasuredSlice> seen_slices(std::vector<MeasuredSlice> slices, const 
   while (kept < slices.size() && (kept < kLeastViews || outside(slices[kept]) <= 0)) ++kept;
   slices.erase(slices.begin() + static_cast<std::ptrdiff_t>(kept), slices.end());
 
-  const LightImportance importance(observation, isotropic);
+  const LightImportance importance(observation);
   double mean = 0;
   for (MeasuredSlice& s : slices) {
     s.weight = seen_weight(observation.domain, polar_angle(s.wv));
@@ -138,7 +138,14 @@ Model full_model(const Measurement& measurement, FitOptions options, Progress& p
   return fit_parametric(measurement, options, progress);
 }
 
-const SceneObservation& checked(const FitOptions& options) {
+const SceneObservation& checked(const Measurement& measurement, const FitOptions& options) {
+  if (!measurement.isotropic()) {
+    throw Error(Status::unsupported,
+                "'" + measurement.provenance().path +
+                    "' is anisotropic: what scenes show is kept by the polar angle of the view "
+                    "alone, so a model reduced to it would not know when it is turned. Fit without "
+                    "a scene.");
+  }
   if (!options.for_scene->hits.empty()) return *options.for_scene;
   throw Error(Status::invalid_argument,
               "The scene shows nothing of the material: no camera ray met it. Check camera, visibility and frames, or "
@@ -157,13 +164,13 @@ const ParametricBrdf& parametric_body(const Model& model) {
 
 Model fit_for_scene(const Measurement& measurement, const FitOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const SceneObservation& observation = checked(options);
+  const SceneObservation& observation = checked(measurement, options);
   const Model full = full_model(measurement, options, progress);
   const ParametricBrdf& full_brdf = parametric_body(full);
   progress.stage("scene", 0.5, 0.95);
   const ViewRange range = view_range(observation.domain);
   const MeasuredSlices measured = parametric_slices(measurement, options, progress);
-  const std::vector<MeasuredSlice> slices = seen_slices(measured.slices, range, measurement.isotropic(), observation);
+  const std::vector<MeasuredSlice> slices = seen_slices(measured.slices, range, observation);
   const PictureError judge(measurement, full_brdf, observation, options.threads, progress);
   TrackedFitOptions tracked = tracked_options(measurement, options);
   tracked.views = range;

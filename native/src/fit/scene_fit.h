@@ -12,7 +12,8 @@ namespace velour {
 /// will do, the full model's lobes are returned. The model carries a SceneRecord; beyond its views it is not to be
 /// trusted (domain/out_of_domain.h).
 ///
-/// Throws Error(invalid_argument) when nothing was observed, or the full model is not parametric.
+/// Throws Error(invalid_argument) when nothing was observed, or the full model is not parametric, and
+/// Error(unsupported) for anisotropic measurements: a domain does not know azimuths.
 Model fit_for_scene(const Measurement& measurement, const FitOptions& options, Progress& progress);
 
 }  // namespace velour
