@@ -106,6 +106,7 @@ def test_rare_events_pass_where_the_spread_of_renders_fails():
         found = uniform_agreement(batches.mean(axis=0), others, everywhere, moments, SAMPLES)
         assert found.holds
         assert found.tests == 1202
+        assert found.spread_of_z == pytest.approx(1, abs=0.15)
         spread_fails += not agreement(batches, others, everywhere).holds
     assert spread_fails >= 5
 

@@ -49,7 +49,8 @@ cases, of all pixels alike, and of one pixel alone (median). Control: `product` 
 refused.
 
 {_uniform(checks)}
-How well the second moment of a pixel is known, as relative standard error:
+Are the error bars right? How well the second moment of a pixel is known, as relative standard error; and how
+much z varies over the pixels: by 1, if they are.
 
 {_moments(checks)}
 By the spread of {extent.check_batches} renders instead (Welch's test): `uniform`, whose error bars are too
@@ -71,8 +72,11 @@ def _uniform(checks: list[Check]) -> str:
 
 
 def _moments(checks: list[Check]) -> str:
-    rows = [[_name(c), small(c.moment_error), small(c.worst_moment_error)] for c in checks]
-    return table(["figure", "median", "worst"], rows)
+    rows = [
+        [_name(c), small(c.moment_error), small(c.worst_moment_error), f"{c.uniform.spread_of_z:.3f}"]
+        for c in checks
+    ]
+    return table(["figure", "second moment's error, median", "worst", "standard deviation of z"], rows)
 
 
 def _by_spread(checks: list[Check]) -> str:

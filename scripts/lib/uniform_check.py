@@ -23,6 +23,7 @@ class UniformAgreement:
 
     tests: int
     largest_z: float  # with true error bars
+    spread_of_z: float  # standard deviation over the pixels; 1 where the error bars are right
     p_value: float  # of the least likely difference among so many (Sidak)
     ratio: float  # of the means of both
     factor_seen: float  # what relative bias of all pixels alike is refused in 99 of 100 cases
@@ -42,7 +43,7 @@ def uniform_agreement(
 ) -> UniformAgreement:
     """`uniform`: the mean of `samples` independent samples a pixel, [row, column, channel]. `other`: renders
     of what it is held against, [batch, row, column, channel]; the error of their mean counts as normal."""
-    where = where & (moments.largest > 0)  # others are black for whoever looks
+    where = where & (moments.variance > 0)  # others are black, or of one colour
     u, others = uniform[where] @ LUMINANCE, other[:, where] @ LUMINANCE
     pixels = _Pixels(moments.at(where), samples, others.var(axis=0, ddof=1) / len(others))
     d, sums = u - others.mean(axis=0), [np.full(len(u), 1 / len(u)), pixels.factor_weights()]
@@ -52,6 +53,7 @@ def uniform_agreement(
     return UniformAgreement(
         tests=len(log_p),
         largest_z=float(np.abs(z).max()),
+        spread_of_z=float(z[: len(u)].std()),
         p_value=float(-np.expm1(len(log_p) * np.log1p(-np.exp(log_p.min())))),
         ratio=float(u.mean() / others.mean()),
         factor_seen=pixels.sum_seen(sums[1], level) / float(sums[1] @ pixels.moments.mean),
