@@ -159,9 +159,9 @@ typedef struct vlr_fit_options {
   uint32_t threads;   /* 0: all */
   uint64_t max_bytes; /* of the model file; 0: no bound */
   uint64_t seed;
-  int32_t all_data;    /* 1: hold nothing out (production); the model says so */
-  int32_t align_views; /* scattered, 1: turn neighbouring slices onto the query's mirror direction before mixing */
-  int32_t model;       /* VLR_MODEL_* */
+  int32_t all_data;     /* 1: hold nothing out (production); the model says so */
+  int32_t align_views;  /* scattered, 1: turn neighbouring slices onto the query's mirror direction before mixing */
+  int32_t model;        /* VLR_MODEL_* */
   int32_t limit_albedo; /* parametric, 1: lower the model where more light would leave than arrives */
   int32_t symmetric;    /* parametric, 1: f is the mean of both orders of a pair, reciprocal; evaluation costs more */
   int32_t pad;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "brdf/held_out.h"
 #include "fit/parallel.h"
@@ -64,8 +65,41 @@ void average_rings(const LightGrid& grid, std::vector<Rgb>& f, std::span<const u
   }
 }
 
+/// Sum of weight x luminance(f cos)^2.
+double energy_of(const Measurement& source, const Vec3& wv, const std::vector<Vec3>& wl,
+                 const std::function<double(size_t)>& weight) {
+  std::vector<Rgb> f(wl.size(), Rgb(0));
+  std::vector<uint8_t> valid(wl.size(), 0);
+  source.eval(wv, wl, f, valid);
+  double sum = 0;
+  for (size_t i = 0; i < wl.size(); ++i) {
+    if (!valid[i] || !usable(f[i])) continue;
+    const double value = static_cast<double>(luminance(f[i]) * wl[i].z);
+    sum += weight(i) * value * value;
+  }
+  return sum;
+}
+
+/// Whether the energy about the view's own direction is not what `grid` makes of it. Scattered samples are slow to look
+/// up between, and are fitted themselves.
+bool hides_retro_reflection(const Measurement& source, const Vec3& wv, const LightGrid& grid) {
+  constexpr double kHidden = 0.02;  // of the view's energy
+  constexpr float kNearNormal =
+      0.97f;  // there the mirror direction, about which the grid is fine, lies within the rings
+  if (!source.samples().empty() || wv.z > kNearNormal) return false;
+  const CloseRings rings = retro_rings(wv);
+  std::vector<Vec3> close;
+  rings.append(close);
+  const auto near = [&](size_t i) { return rings.density(grid.wl[i]) > 0 ? static_cast<double>(grid.weight[i]) : 0.0; };
+  const double all = energy_of(source, wv, grid.wl, [&](size_t i) { return static_cast<double>(grid.weight[i]); });
+  const double seen = energy_of(source, wv, grid.wl, near);
+  const double there = energy_of(source, wv, close, [&](size_t i) { return 1 / rings.density(close[i]); });
+  return std::abs(there - seen) > kHidden * std::max(all, there);
+}
+
 MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const SliceGrid& size, bool hold_out) {
   LightGrid grid = light_grid(wv, size.rings, size.spokes);
+  if (hides_retro_reflection(source, wv, grid)) join_retro_rings(grid, wv, size.rings, size.spokes);
   if (size.folded) keep_one_side(grid);
   const size_t n = grid.wl.size();
   std::vector<uint8_t> kept(n, 1), valid(n, 0);

@@ -24,6 +24,23 @@ double outside_margins(double theta) {
   return theta;
 }
 
+/// theta_h where ring i of a light grid begins.
+double ring_edge(int i, int rings) { return 0.5 * kPiD * i * i / (rings * rings); }
+
+/// Solid angle of half vectors of one cell of ring i.
+double half_vector_cell(int i, int rings, int spokes) {
+  const double begin = ring_edge(i, rings), end = ring_edge(i + 1, rings);
+  return 2 * std::sin(0.5 * (begin + end)) * std::sin(0.5 * (end - begin)) * 2 * kPiD / spokes;
+}
+
+/// Lights of light_grid(wv, rings, spokes) per steradian at `wl`.
+double grid_density(const Vec3& wv, const Vec3& wl, int rings, int spokes) {
+  const Vec3d h = glm::normalize(Vec3d(wv) + Vec3d(wl));
+  const double theta = std::acos(std::clamp(h.z, -1.0, 1.0));
+  const int ring = std::min(static_cast<int>(rings * std::sqrt(theta / (0.5 * kPiD))), rings - 1);
+  return 1 / (4 * glm::dot(Vec3d(wv), h) * half_vector_cell(ring, rings, spokes));
+}
+
 }  // namespace
 
 std::vector<Vec3> meridian_views(bool all_data) {
@@ -57,9 +74,8 @@ LightGrid light_grid(const Vec3& wv, int rings, int spokes) {
   LightGrid grid;
   const double azimuth = std::atan2(static_cast<double>(wv.y), static_cast<double>(wv.x));
   for (int i = 0; i < rings; ++i) {
-    const double begin = 0.5 * kPiD * i * i / (rings * rings), end = 0.5 * kPiD * (i + 1) * (i + 1) / (rings * rings);
-    const double cell = 2 * std::sin(0.5 * (begin + end)) * std::sin(0.5 * (end - begin)) * 2 * kPiD / spokes;
-    const double theta = 0.5 * (begin + end);
+    const double cell = half_vector_cell(i, rings, spokes),
+                 theta = 0.5 * (ring_edge(i, rings) + ring_edge(i + 1, rings));
     const double turn = i * 0.6180339887498949;  // golden ratio: neighbouring rings do not line up
     for (int k = 0; k < spokes; ++k) {
       const double phi = azimuth + 2 * kPiD * (k + turn - std::floor(turn)) / spokes;
@@ -74,6 +90,28 @@ LightGrid light_grid(const Vec3& wv, int rings, int spokes) {
     }
   }
   return grid;
+}
+
+CloseRings retro_rings(const Vec3& wv) {
+  constexpr int kRings = 24, kSpokes = 24;
+  return {wv, radians_from(0.1), radians_from(20.0), kRings, kSpokes};
+}
+
+void join_retro_rings(LightGrid& grid, const Vec3& wv, int rings, int spokes) {
+  const CloseRings retro = retro_rings(wv);
+  for (size_t i = 0; i < grid.wl.size(); ++i) {
+    grid.weight[i] = static_cast<float>(1 / (1 / static_cast<double>(grid.weight[i]) + retro.density(grid.wl[i])));
+  }
+  std::vector<Vec3> close;
+  retro.append(close);
+  const uint32_t first = grid.ring.empty() ? 0 : grid.ring.back() + 1;
+  for (size_t i = 0; i < close.size(); ++i) {
+    if (close[i].z <= 0) continue;
+    grid.wl.push_back(close[i]);
+    grid.weight.push_back(
+        static_cast<float>(1 / (retro.density(close[i]) + grid_density(wv, close[i], rings, spokes))));
+    grid.ring.push_back(first + static_cast<uint32_t>(i / retro.spokes()));
+  }
 }
 
 void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "fit/close_rings.h"
 #include "fit/slice_samples.h"
 
 namespace velour {
@@ -24,6 +25,12 @@ struct LightGrid {
   std::vector<uint32_t> ring;  // of equal theta_h
 };
 LightGrid light_grid(const Vec3& wv, int rings = 96, int spokes = 64);
+
+/// Rings about `wv` itself, from a tenth of a degree to twenty: where the grid, which is fine about the mirror
+/// direction, sees a retro-reflector but by chance.
+CloseRings retro_rings(const Vec3& wv);
+/// Joins `grid`, of light_grid(wv, rings, spokes), with the lights of retro_rings(wv), by the balance heuristic.
+void join_retro_rings(LightGrid& grid, const Vec3& wv, int rings, int spokes);
 
 /// Hands the solid angle of the lights that are not `kept` to the kept ones of their ring.
 void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept);

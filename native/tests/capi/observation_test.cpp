@@ -43,7 +43,7 @@ TEST(CObservation, TellsWhatASquareSeenFromAboveIsAskedFor) {
   const std::string info = info_of(observation);
   EXPECT_TRUE(says(info, "\"kind\":\"observation\"") && says(info, "\"frames\":1")) << info;
   EXPECT_TRUE(says(info, "\"hits\":1024") && says(info, "\"share\":1.0")) << info;
-  EXPECT_TRUE(says(info, "\"views\":[0.0,")) << info;
+  EXPECT_TRUE(says(info, "\"views\":[0,")) << info;
   vlr_observation_free(observation);
 }
 

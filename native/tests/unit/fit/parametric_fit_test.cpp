@@ -57,6 +57,14 @@ TEST(ParametricFit, LobesAreBounded) {
   EXPECT_EQ(lobes_of(fitted(AnalyticMeasurement(test::ggx(0.1f, 0.1f)), options)).lobe_count(), 2);
 }
 
+TEST(ParametricFit, FollowsARetroReflectorToTheHorizon) {
+  const AnalyticMeasurement retro([](const DirectionPair& p) {
+    const float lobe = std::exp(1000 * (glm::dot(p.wl, p.wv) - 1));
+    return Rgb(90, 80, 70) * lobe / std::max(p.wl.z, p.wv.z);
+  });
+  for (const auto& [view, error] : fitted(retro).fit.by_view_angle) EXPECT_LT(error.value(), 0.1) << view;
+}
+
 TEST(ParametricFit, IsReciprocalOnRequest) {
   // Darker towards the viewer's side than towards the light's: nothing symmetric can follow it.
   const auto half = test::ggx(0.3f, 0.3f);
