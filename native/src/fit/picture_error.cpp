@@ -123,17 +123,25 @@ PictureError::PictureError(const Measurement& measurement, const ParametricBrdf&
   for (const Vec3d& r : radiance) scale_.push_back(1.0 / (3.0 * (r * r + 0.01 * mean * mean + 1e-30)));
 }
 
-std::vector<double> PictureError::shares(const ParametricBrdf& model) const {
-  std::vector<double> out(observation_.hits.size());
-  parallel_pieces(out.size(), threads_, progress_, [&](size_t h) {
+std::vector<size_t> PictureError::hits_of(Part part) const {
+  std::vector<size_t> out;
+  for (size_t h = static_cast<size_t>(part); h < observation_.hits.size(); h += 2) out.push_back(h);
+  return out;
+}
+
+std::vector<double> PictureError::shares(const ParametricBrdf& model, Part part) const {
+  const std::vector<size_t> hits = hits_of(part);
+  std::vector<double> out(hits.size());
+  parallel_pieces(out.size(), threads_, progress_, [&](size_t i) {
+    const size_t h = hits[i];
     const ObservedHit& hit = observation_.hits[h];
     const Slice slice(model, hit.wv);
     Vec3d error[2] = {Vec3d(0), Vec3d(0)};
-    for (uint32_t i = hit.first; i < hit.last; ++i) {
-      const Vec3d difference = slice(observation_.wl[i]) - measured_[i];
-      error[i < hit.middle ? 0 : 1] += difference * Vec3d(observation_.light[i]);
+    for (uint32_t k = hit.first; k < hit.last; ++k) {
+      const Vec3d difference = slice(observation_.wl[k]) - measured_[k];
+      error[k < hit.middle ? 0 : 1] += difference * Vec3d(observation_.light[k]);
     }
-    out[h] = glm::dot(error[0] * error[1], scale_[h]);
+    out[i] = glm::dot(error[0] * error[1], scale_[h]);
   });
   return out;
 }
@@ -141,13 +149,13 @@ std::vector<double> PictureError::shares(const ParametricBrdf& model) const {
 void PictureError::refine_colors(ParametricBrdf& model) const {
   constexpr int kSteps = 3;
   constexpr double kRidges[] = {1e-4, 1e-2, 1};  // of the mean diagonal
-  double error = estimate(shares(model)).relmse;
+  double error = estimate(shares(model, Part::refined)).relmse;
   for (int i = 0; i < kSteps; ++i) {
     bool better = false;
     for (const double ridge : kRidges) {
       ParametricBrdf trial = model;
       step_colors(trial, ridge);
-      const double trial_error = estimate(shares(trial)).relmse;
+      const double trial_error = estimate(shares(trial, Part::refined)).relmse;
       better = trial_error < error;
       if (!better) continue;
       error = trial_error;
@@ -161,13 +169,15 @@ void PictureError::refine_colors(ParametricBrdf& model) const {
 void PictureError::step_colors(ParametricBrdf& model, double ridge) const {
   using P = ParametricBrdf;
   const auto lobe_count = static_cast<size_t>(model.lobe_count());
-  std::vector<HitSlopes> slopes(observation_.hits.size());
-  parallel_pieces(slopes.size(), threads_, progress_,
-                  [&](size_t h) { slopes[h] = hit_slopes(observation_, observation_.hits[h], model, measured_); });
+  const std::vector<size_t> hits = hits_of(Part::refined);
+  std::vector<HitSlopes> slopes(hits.size());
+  parallel_pieces(slopes.size(), threads_, progress_, [&](size_t i) {
+    slopes[i] = hit_slopes(observation_, observation_.hits[hits[i]], model, measured_);
+  });
   const auto nodes = static_cast<size_t>(model.spline().node_count());
   for (int c = 0; c < 3; ++c) {
     ColorNormal normal(nodes * lobe_count);
-    for (size_t h = 0; h < slopes.size(); ++h) normal.add(slopes[h], lobe_count, c, scale_[h][c]);
+    for (size_t i = 0; i < slopes.size(); ++i) normal.add(slopes[i], lobe_count, c, scale_[hits[i]][c]);
     const Eigen::VectorXd step = normal.solve(ridge);
     for (size_t k = 0; k < nodes; ++k) {
       for (size_t j = 0; j < lobe_count; ++j) {

@@ -24,8 +24,10 @@ class PictureError {
   PictureError(const Measurement& measurement, const ParametricBrdf& stand_in, const SceneObservation& observation,
                int threads, const Progress& progress);
 
-  /// The share of each hit. Their mean is the error; shares of two models at the same hits may be compared one by one.
-  std::vector<double> shares(const ParametricBrdf& model) const;
+  /// Every other hit serves refine_colors, the others judge: what was moved to suit a hit is not judged by it.
+  enum class Part { refined = 0, judged = 1 };
+  /// The share of each hit of a part. Their mean is the error; shares of two models may be compared hit by hit.
+  std::vector<double> shares(const ParametricBrdf& model, Part part = Part::judged) const;
 
   /// Moves the coefficients of `model` (its shapes stay) by Gauss-Newton steps towards the least error of pictures,
   /// held near where they are by a ridge: what is left of the error of f after a fit is small, but its mean over the
@@ -36,6 +38,7 @@ class PictureError {
   static PictureErrorEstimate estimate(const std::vector<double>& shares);
 
  private:
+  std::vector<size_t> hits_of(Part part) const;
   void step_colors(ParametricBrdf& model, double ridge) const;
 
   const SceneObservation& observation_;

@@ -19,6 +19,8 @@ constexpr double kLeastViewWeight = 0.05;
 // The pictures decide how many lobes are enough, so views are pushed beyond any tolerance.
 constexpr double kGoalShare = 0.1;
 
+// Standard errors that a model must stay below the bound: many are tried, and the luckiest would win.
+constexpr double kSure = 2;
 // Pictures may err that much more, in relmse.
 constexpr double kSlack = 0.05;
 
@@ -115,7 +117,7 @@ class SceneSearch {
     std::vector<double> excess = judge_.shares(fit.brdf);
     for (size_t i = 0; i < excess.size(); ++i) excess[i] -= (1 + kSlack) * full_shares_[i];
     const PictureErrorEstimate worse = PictureError::estimate(excess);
-    if (!(worse.relmse + worse.standard_error <= 0)) return false;
+    if (!(worse.relmse + kSure * worse.standard_error <= 0)) return false;
     least_bytes_ = fit.brdf.parameter_bytes();
     best_ = std::move(fit);
     return true;
