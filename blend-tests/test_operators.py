@@ -55,6 +55,16 @@ class Operators(BlenderTest):
             self.assertEqual((info["model"], info["kernel"]), (model.lower(), kernel))
             self.assertIsNotNone(info["order"]["chosen"])
 
+    def test_fit_of_a_reciprocal_model_that_gives_no_more_than_it_gets(self):
+        bpy.ops.velour.load_material(filepath=str(inputs.glossy_measurement()), fit=False)
+        settings = scenes.velour_node(self.material).velour
+        settings.use_limit_albedo = settings.use_symmetric = True
+        self.assertEqual(bpy.ops.velour.fit(tolerance=0.1), {"FINISHED"})
+        info = self._info(scenes.velour_node(self.material).image)
+        self.assertTrue(info["symmetric"])
+        self.assertLess(info["reciprocity"], 1e-4)
+        self.assertLessEqual(info["albedo_max"], 1)
+
     def test_fit_keeps_the_model_before(self):
         bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)
         bpy.ops.velour.fit(tolerance=0.1, max_lobes=3)

@@ -92,7 +92,13 @@ def curves_by_panel(
     columns = min(4, len(panels))
     rows = -(-len(panels) // columns)
     figure, axes = _pyplot().subplots(
-        rows, columns, figsize=(3.6 * columns, 3.0 * rows), squeeze=False, sharey=True, layout="constrained"
+        rows,
+        columns,
+        figsize=(3.6 * columns, 3.0 * rows),
+        squeeze=False,
+        sharex=True,
+        sharey=True,
+        layout="constrained",
     )
     for cell, (name, curves) in zip(axes.flat, panels.items(), strict=False):
         for curve, points in curves.items():

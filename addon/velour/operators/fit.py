@@ -136,7 +136,11 @@ class VELOUR_OT_fit(BackgroundJob, bpy.types.Operator):
 def _model_options(settings):
     """A parametric model has Gaussian lobes, whatever kernel the settings keep for a scattered one."""
     if settings.model == "PARAMETRIC":
-        return {"model": "parametric"}
+        return {
+            "model": "parametric",
+            "limit_albedo": int(settings.use_limit_albedo),
+            "symmetric": int(settings.use_symmetric),
+        }
     return {"model": "scattered", "kernel": settings.kernel.lower().replace("_", "-")}
 
 

@@ -73,6 +73,7 @@ class SceneFit:
                 max_lobes=node.velour.max_lobes,
                 seed=node.velour.seed,
                 all_data=int(node.velour.use_all_data),
+                limit_albedo=int(node.velour.use_limit_albedo),
                 threads=threads,
             ).start()
 

@@ -79,6 +79,19 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         update=_changed,
         override=_OVERRIDE,
     )
+    use_limit_albedo: BoolProperty(
+        name="Limit Albedo",
+        description="Lower the model where the measurement reflects more light than arrives",
+        default=False,
+        override=_OVERRIDE,
+    )
+    use_symmetric: BoolProperty(
+        name="Reciprocal",
+        description="Make the model the same with light and view exchanged, for programs that trace light"
+        " from either end. It takes about three times as long to evaluate",
+        default=False,
+        override=_OVERRIDE,
+    )
     use_all_data: BoolProperty(
         name="All Data",
         description="Hold nothing out for the error estimate: for production, once the fit is trusted",

@@ -64,6 +64,9 @@ def _draw_fit_settings(column, settings):
     column.prop(settings, "max_lobes")
     if settings.model == "SCATTERED":
         column.prop(settings, "kernel")
+    else:
+        column.prop(settings, "use_limit_albedo")
+        column.prop(settings, "use_symmetric")
     column.prop(settings, "use_all_data")
 
 
