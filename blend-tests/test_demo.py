@@ -1,0 +1,42 @@
+"""The demo's Blender script, from an empty scene to its report, small."""
+
+import importlib
+import json
+import sys
+import unittest.mock
+from pathlib import Path
+
+from support import blender, inputs
+from support.blender import BlenderTest
+
+SMALL = {
+    "SIZE": (32, 24),
+    "SAMPLES": 4,
+    "PLOT_REDUCTION": 2,
+    "PLOT_REFERENCE_SAMPLES": 16,
+    "PLOT_SAMPLES": (2, 4),
+}
+
+
+class Demo(BlenderTest):
+    def test_pictures_and_curves(self):
+        scripts = str(Path(__file__).resolve().parents[1] / "scripts/lib")
+        with unittest.mock.patch.object(sys, "path", [scripts, *sys.path]):
+            demo_scene = importlib.import_module("demo_scene")
+        folder = blender.folder()
+        model = folder / "demo.velour"
+        model.write_bytes(inputs.model_bytes(inputs.glossy_measurement()))
+        task = {
+            "model": str(model),
+            "measurement": str(inputs.glossy_measurement()),
+            "folder": str(folder),
+            "report": str(folder / "demo.json"),
+        }
+        with unittest.mock.patch.multiple(demo_scene, **SMALL):
+            demo_scene.main(task)
+        report = json.loads((folder / "demo.json").read_text())
+        self.assertEqual(set(report["curves"]), set(demo_scene.PLOT_STRATEGIES))
+        for points in report["curves"].values():
+            self.assertEqual(len(points), 2)
+        for name in ("model.exr", "model.png", "reference.exr", "reference.png"):
+            self.assertTrue((folder / name).is_file(), name)
