@@ -8,6 +8,13 @@ class BackgroundJob:
 
     _timer = None
 
+    def _is_refused(self, context):
+        """One at a time: true, with an error said, while another is running."""
+        running = context.window_manager.velour.running
+        if running:
+            self.report({"ERROR"}, "A fit is running already; wait for it, or cancel it.")
+        return running
+
     def _enter(self, context, material_name):
         """What `invoke` returns once the work has begun."""
         state = context.window_manager.velour

@@ -43,8 +43,7 @@ class VELOUR_OT_fit(BackgroundJob, bpy.types.Operator):
 
     def invoke(self, context, _event):
         """Starts the fit and lets the artist go on working; Esc cancels."""
-        if context.window_manager.velour.running:
-            self.report({"ERROR"}, "A fit is running already; wait for it, or cancel it.")
+        if self._is_refused(context):
             return {"CANCELLED"}
         try:
             self._begin(context)

@@ -53,8 +53,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
 
     def invoke(self, context, _event):
         """Some frames a tick, then the fit in the background; Esc cancels."""
-        if context.window_manager.velour.running:
-            self.report({"ERROR"}, "A fit is running already; wait for it, or cancel it.")
+        if self._is_refused(context):
             return {"CANCELLED"}
         try:
             self._begin(context)
