@@ -14,6 +14,20 @@ uint64_t size_of(const Model& model, const FitOptions& options) {
   return options.size_of ? options.size_of(model) : std::get<ParametricBrdf>(model.body).parameter_bytes();
 }
 
+[[noreturn]] void refuse_bound(const FitOptions& options, const char* of_what, uint64_t smallest) {
+  throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
+                                            "; the smallest model " + of_what + " takes " + std::to_string(smallest) +
+                                            ".");
+}
+
+/// It is as small as it may be already.
+Model bounded_for_scene(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  Model model = fit_for_scene(measurement, options, progress);
+  const uint64_t size = size_of(model, options);
+  if (options.max_bytes > 0 && size > options.max_bytes) refuse_bound(options, "for this scene", size);
+  return model;
+}
+
 /// Fewer lobes until the model is within options.max_bytes: a file's size is known only when it is made.
 Model bounded_parametric(const Measurement& measurement, FitOptions options, Progress& progress) {
   while (true) {
@@ -21,11 +35,7 @@ Model bounded_parametric(const Measurement& measurement, FitOptions options, Pro
     const uint64_t size = size_of(model, options);
     if (options.max_bytes == 0 || size <= options.max_bytes) return model;
     const auto& brdf = std::get<ParametricBrdf>(model.body);
-    if (brdf.lobe_count() <= 1) {
-      throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
-                                                "; the smallest model of this measurement takes " +
-                                                std::to_string(size) + ".");
-    }
+    if (brdf.lobe_count() <= 1) refuse_bound(options, "of this measurement", size);
     const uint64_t lobe = brdf.parameter_bytes() / brdf.space.size();
     const auto excess = static_cast<int>(std::min<uint64_t>((size - options.max_bytes) / lobe + 1, brdf.kMaxLobes));
     options.max_lobes = std::max(1, brdf.lobe_count() - excess);
@@ -47,7 +57,7 @@ void refuse_contradictions(ModelKind kind, const FitOptions& options) {
 
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
   refuse_contradictions(kind, options);
-  if (options.for_scene) return fit_for_scene(measurement, options, progress);
+  if (options.for_scene) return bounded_for_scene(measurement, options, progress);
   if (kind == ModelKind::parametric) return bounded_parametric(measurement, options, progress);
   return fit_scattered(measurement, options, progress);
 }

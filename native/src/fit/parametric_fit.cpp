@@ -50,14 +50,14 @@ Model parametric_model(const Measurement& measurement, const TrackedFit& fit, co
   return model;
 }
 
-Model fit_parametric(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+Model fit_parametric(const Measurement& measurement, const FitOptions& options, Progress& progress, double share) {
   const auto start = std::chrono::steady_clock::now();
-  progress.stage("sampling", 0.0, 0.1);
+  progress.stage("sampling", 0.0, 0.1 * share);
   const MeasuredSlices measured = parametric_slices(measurement, options, progress);
-  progress.stage("fitting", 0.1, 0.9);
+  progress.stage("fitting", 0.1 * share, 0.9 * share);
   const TrackedFitOptions tracked = tracked_options(measurement, options);
   TrackedFit fit = fit_tracked(measured.slices, tracked, progress);
-  progress.stage("checking", 0.9, 1.0);
+  progress.stage("checking", 0.9 * share, share);
   fit.brdf.symmetric = options.symmetric;
   const bool limited = options.limit_albedo && limit_albedo(fit.brdf, options.threads, progress);
   if (limited || options.symmetric) judge_again(measured.slices, tracked, fit, progress);

@@ -24,13 +24,17 @@ constexpr double kSure = 2;
 // Pictures may err that much more, in relmse.
 constexpr double kSlack = 0.05;
 
+// Of the progress: the full model, where it is to be fitted, and the reading of the slices.
+constexpr double kFullShare = 0.5, kReadingShare = 0.1;
+
 double polar_angle(const Vec3& w) { return std::acos(std::clamp(static_cast<double>(w.z), -1.0, 1.0)); }
 
 /// The weight of the views within a degree and a half of `theta`.
 double seen_weight(const SceneDomain& domain, double theta) {
   const int bin = static_cast<int>(theta / (kPiD / 2) * SceneDomain::kViewBins);
   double sum = 0;
-  for (int i = bin - 1; i <= bin + 1; ++i) sum += domain.view[static_cast<size_t>(std::clamp(i, 0, 89))];
+  for (int i = bin - 1; i <= bin + 1; ++i)
+    sum += domain.view[static_cast<size_t>(std::clamp(i, 0, SceneDomain::kViewBins - 1))];
   return sum;
 }
 
@@ -73,14 +77,17 @@ class SceneSearch {
     least_bytes_ = full.parameter_bytes();
   }
 
-  void run() {
+  /// From `begin` to `end` of the task's progress, a step for each number of cells: fits of their own report theirs to
+  /// a stage without width.
+  void run(double begin, double end) {
     const int most = tracked_.cells;
-    int tried = 0;
+    double at = begin;
     for (const int cells : kCells) {
       if (cells > most) break;
+      progress_.stage("scene", at, at);
+      at += (end - begin) / static_cast<double>(std::size(kCells));
       tracked_.cells = cells;
       try_lobes();
-      progress_.update(static_cast<double>(++tried) / static_cast<double>(std::size(kCells)));
     }
   }
 
@@ -137,7 +144,7 @@ class SceneSearch {
 Model full_model(const Measurement& measurement, FitOptions options, Progress& progress) {
   if (options.full_model) return *options.full_model;
   options.for_scene = nullptr;
-  return fit_parametric(measurement, options, progress);
+  return fit_parametric(measurement, options, progress, kFullShare);
 }
 
 const SceneObservation& checked(const Measurement& measurement, const FitOptions& options) {
@@ -169,7 +176,8 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
   const SceneObservation& observation = checked(measurement, options);
   const Model full = full_model(measurement, options, progress);
   const ParametricBrdf& full_brdf = parametric_body(full);
-  progress.stage("scene", 0.5, 0.95);
+  const double begin = options.full_model ? 0 : kFullShare;
+  progress.stage("scene", begin, begin + kReadingShare);
   const ViewRange range = view_range(observation.domain);
   const MeasuredSlices measured = parametric_slices(measurement, options, progress);
   const std::vector<MeasuredSlice> slices = seen_slices(measured.slices, range, observation);
@@ -177,7 +185,7 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
   TrackedFitOptions tracked = tracked_options(measurement, options);
   tracked.views = range;
   SceneSearch search(slices, tracked, options.limit_albedo, judge, full_brdf, progress);
-  search.run();
+  search.run(begin + kReadingShare, 0.95);
 
   progress.stage("checking", 0.95, 1.0);
   Model model = full;
@@ -191,6 +199,7 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
   model.scene =
       SceneRecord{observation.domain, std::max(0.0, error(judge.shares(std::get<ParametricBrdf>(model.body)))),
                   std::max(0.0, error(search.full_shares())), full_brdf.parameter_bytes()};
+  progress.update(1.0);
   model.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return model;
 }

@@ -25,7 +25,8 @@ struct TableRows {
 /// The evaluated parameters of lobes and density (no logarithms, no angles) as quadratic splines of the view over some
 /// 320 intervals, the model's own knots among their ends: 267 KB of up to 16 lobes, 134 KB of up to 8. f is that of
 /// ParametricValues, less the lobes that cannot matter at the view (idle_lobes.h), to 1e-3 of itself plus 1e-6 of its
-/// peak, once differentiable in the view and never negative. Immutable; thread-safe; no allocation.
+/// peak on the models of the tests (on measured materials 1.4e-3 at worst: docs/parametric.md), once differentiable in
+/// the view and never negative. Immutable; thread-safe; no allocation.
 class ParametricTable {
  public:
   /// Empty of anisotropic models: tables over the disk of views would be too large for the cache.

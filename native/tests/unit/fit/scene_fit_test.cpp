@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fit/fit_model.h"
 #include "fit/light_importance.h"
 #include "fit/parametric_fit.h"
 #include "fit/picture_error.h"
@@ -150,6 +151,35 @@ TEST_F(SceneFit, DoesNotDependOnThreads) {
   const Model one = fit_for_scene(metal, options, progress_);
   options.threads = 2;
   EXPECT_EQ(lobes_of(one).control, lobes_of(fit_for_scene(metal, options, progress_)).control);
+}
+
+TEST_F(SceneFit, TheFullModelIsNotAllOfTheProgress) {
+  const auto scene = soft_scene();
+  double at_the_hits = 0;  // they are measured between the full model and the search
+  const auto metal = test::ggx(0.3f, 0.3f);
+  const AnalyticMeasurement watched([&](const DirectionPair& p) {
+    if (p.wl == scene->wl[0]) at_the_hits = progress_.fraction();
+    return metal(p);
+  });
+  FitOptions options;
+  options.for_scene = scene;
+  options.threads = 1;
+  fit_for_scene(watched, options, progress_);
+  EXPECT_GE(at_the_hits, 0.5);
+  EXPECT_LE(at_the_hits, 0.61);
+  EXPECT_EQ(progress_.fraction(), 1);
+}
+
+TEST_F(SceneFit, ABoundOnBytesIsKept) {
+  const AnalyticMeasurement metal(test::ggx(0.2f, 0.2f));
+  full(metal);
+  FitOptions options;
+  options.for_scene = soft_scene();
+  options.full_model = full_;
+  options.max_bytes = 1;
+  EXPECT_THROW(fit_model(ModelKind::parametric, metal, options, progress_), Error);
+  options.max_bytes = 10000;
+  EXPECT_LE(lobes_of(fit_model(ModelKind::parametric, metal, options, progress_)).parameter_bytes(), 10000u);
 }
 
 TEST_F(SceneFit, RefusesWhatMakesNoSense) {
