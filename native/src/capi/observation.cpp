@@ -122,8 +122,8 @@ vlr_status vlr_model_out_of_domain(const vlr_model* model, const vlr_observation
     require(model, "model");
     require(frame, "frame");
     require(share, "share");
-    const Model& reduced = *model->model;
-    const auto* brdf = std::get_if<ParametricBrdf>(&reduced.body);
-    *share = reduced.scene && brdf ? out_of_domain(reduced.scene->domain, brdf->views, *frame->observation) : 0.0;
+    const Model& asked = *model->model;
+    const auto views = [&asked] { return std::get<ParametricBrdf>(asked.body).views; };
+    *share = is_reduced(asked) ? out_of_domain(asked.scene->domain, views(), *frame->observation) : 0.0;
   });
 }

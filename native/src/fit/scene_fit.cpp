@@ -162,11 +162,11 @@ const SceneObservation& checked(const Measurement& measurement, const FitOptions
 }
 
 const ParametricBrdf& parametric_body(const Model& model) {
-  if (const auto* brdf = std::get_if<ParametricBrdf>(&model.body); brdf && !model.scene) return *brdf;
+  if (const auto* brdf = std::get_if<ParametricBrdf>(&model.body); brdf && !is_reduced(model)) return *brdf;
   throw Error(Status::invalid_argument,
               "The full model of a fit for a scene must be parametric and for all views; "
               "this one is " +
-                  std::string(model.scene ? "itself reduced" : model_kind(model)) + ".");
+                  std::string(is_reduced(model) ? "itself reduced" : model_kind(model)) + ".");
 }
 
 }  // namespace

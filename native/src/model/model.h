@@ -49,6 +49,10 @@ struct Model {
   std::optional<SceneRecord> scene = std::nullopt;
 };
 
+/// Whether the model holds for some scenes alone. One that was fitted for scenes which need all of the full model is
+/// that full model, and holds for any.
+bool is_reduced(const Model& model);
+
 /// "scattered", "parametric".
 const char* model_kind(const Model& model);
 

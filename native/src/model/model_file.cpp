@@ -56,6 +56,11 @@ const char* model_kind(const Model& model) {
   return std::visit([](const auto& brdf) { return kind_of(brdf); }, model.body);
 }
 
+bool is_reduced(const Model& model) {
+  const auto* brdf = std::get_if<ParametricBrdf>(&model.body);
+  return brdf && model.scene && brdf->parameter_bytes() < model.scene->full_parameter_bytes;
+}
+
 std::vector<uint8_t> encode_model(const Model& model) {
   TensorFile file;
   file.attributes = {{"velour.kind", kKind},

@@ -106,6 +106,15 @@ TEST(ModelFile, ReducedModelsKeepTheirScene) {
             std::numeric_limits<double>::infinity());
 }
 
+TEST(ModelFile, AModelThatNothingSmallerStandsInForIsNotReduced) {
+  Model model = test::example_reduced();
+  EXPECT_TRUE(is_reduced(model));
+  model.scene->full_parameter_bytes = parametric(model).parameter_bytes();
+  EXPECT_FALSE(is_reduced(model));
+  EXPECT_FALSE(is_reduced(example_parametric()));
+  EXPECT_FALSE(is_reduced(example_model()));
+}
+
 TEST(ModelFile, SymmetryIsKept) {
   Model model = example_parametric();
   std::get<ParametricBrdf>(model.body).symmetric = true;
