@@ -36,7 +36,10 @@ std::vector<FitKind> fit_kinds() {
     own.max_lobes = 3;  // never reaches the tolerance on Gaussians: more only takes time
     return fit_scattered(measurement, own, progress);
   };
-  return {{"scattered", fit_scattered}, {"scattered_abel_poisson", abel_poisson}, {"parametric", fit_parametric}};
+  const auto parametric = [](const Measurement& measurement, const FitOptions& options, Progress& progress) {
+    return fit_parametric(measurement, options, progress);
+  };
+  return {{"scattered", fit_scattered}, {"scattered_abel_poisson", abel_poisson}, {"parametric", parametric}};
 }
 
 // Seconds. A fit of these takes about one, ten with the sanitizers, and machines are shared; a hang takes longer.
