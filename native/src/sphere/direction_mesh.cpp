@@ -1,0 +1,137 @@
+#include "sphere/direction_mesh.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace velour {
+namespace {
+
+using Vec2d = glm::dvec2;
+
+/// From the point opposite the normal: the hemisphere becomes the unit disk.
+Vec2d stereographic(const Vec3& direction) {
+  const Vec3d d(direction);
+  if (d.z < 0) {
+    const double s = std::max(std::hypot(d.x, d.y), 1e-30);
+    return {d.x / s, d.y / s};
+  }
+  return Vec2d(d.x, d.y) / (1.0 + d.z);
+}
+
+/// Twice the area of the triangle, positive when counter-clockwise.
+double area(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// Whether `p` lies in the circle through the corners of a counter-clockwise triangle. Ties - rings have four
+/// directions on a circle - are outside, by a margin well above rounding.
+bool in_circle(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& p) {
+  const Vec2d u = a - p, v = b - p, w = c - p;
+  const double uu = glm::dot(u, u), vv = glm::dot(v, v), ww = glm::dot(w, w);
+  const double det = u.x * (v.y * ww - vv * w.y) - u.y * (v.x * ww - vv * w.x) + uu * (v.x * w.y - v.y * w.x);
+  return det > 1e-12 * std::max({uu, vv, ww});
+}
+
+}  // namespace
+
+DirectionMesh::DirectionMesh(std::span<const Vec3> directions) {
+  for (const Vec3& d : directions) points_.push_back(stereographic(d));
+  triangulate();
+  find_outline();
+  fill_grid();
+}
+
+/// Bowyer and Watson: points come one by one; the triangles whose circle holds the new point make room for a fan.
+void DirectionMesh::triangulate() {
+  const auto n = static_cast<uint32_t>(points_.size());
+  points_.insert(points_.end(), {{-1e4, -1e4}, {1e4, -1e4}, {0, 1e4}});  // a triangle around everything
+  triangles_ = {{n, n + 1, n + 2}};
+  for (uint32_t p = 0; p < n; ++p) {
+    std::map<std::array<uint32_t, 2>, bool> edges;  // of the hole; those met both ways are inside
+    std::erase_if(triangles_, [&](const Triangle& t) {
+      if (!in_circle(points_[t[0]], points_[t[1]], points_[t[2]], points_[p])) return false;
+      for (size_t k = 0; k < 3; ++k) edges[{t[k], t[(k + 1) % 3]}] = true;
+      return true;
+    });
+    for (const auto& [edge, there] : edges) {
+      const bool inner = edges.contains({edge[1], edge[0]});
+      if (!inner && area(points_[edge[0]], points_[edge[1]], points_[p]) > 0)
+        triangles_.push_back({edge[0], edge[1], p});
+    }
+  }
+  std::erase_if(triangles_, [&](const Triangle& t) { return std::max({t[0], t[1], t[2]}) >= n; });
+  points_.resize(n);
+  // The great triangle's corners are not at infinity: slivers along the outline may be missing, which on_outline hides.
+  std::sort(triangles_.begin(), triangles_.end());
+}
+
+void DirectionMesh::find_outline() {
+  std::map<std::array<uint32_t, 2>, int> count;
+  for (const Triangle& t : triangles_) {
+    for (size_t k = 0; k < 3; ++k) ++count[{std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])}];
+  }
+  for (const auto& [edge, times] : count) {
+    if (times == 1) outline_.push_back(edge);
+  }
+  if (!triangles_.empty()) return;
+  // Points on a line, or fewer than three: the line, in its order.
+  std::vector<uint32_t> order(points_.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return std::pair(points_[a].x, points_[a].y) < std::pair(points_[b].x, points_[b].y);
+  });
+  for (size_t i = 0; i + 1 < order.size(); ++i) outline_.push_back({order[i], order[i + 1]});
+  if (order.size() == 1) outline_.push_back({0, 0});
+}
+
+void DirectionMesh::fill_grid() {
+  cells_.resize(size_t{kGrid} * kGrid);
+  const auto cell = [](double x) { return std::clamp(static_cast<int>((x + 1) * 0.5 * kGrid), 0, kGrid - 1); };
+  for (uint32_t i = 0; i < triangles_.size(); ++i) {
+    const Triangle& t = triangles_[i];
+    const Vec2d low = glm::min(points_[t[0]], glm::min(points_[t[1]], points_[t[2]]));
+    const Vec2d high = glm::max(points_[t[0]], glm::max(points_[t[1]], points_[t[2]]));
+    for (int y = cell(low.y); y <= cell(high.y); ++y) {
+      for (int x = cell(low.x); x <= cell(high.x); ++x) cells_[static_cast<size_t>(y * kGrid + x)].push_back(i);
+    }
+  }
+}
+
+bool DirectionMesh::inside(const Triangle& t, const Vec2d& p, std::array<double, 3>& weight) const {
+  const Vec2d &a = points_[t[0]], &b = points_[t[1]], &c = points_[t[2]];
+  const double whole = area(a, b, c);
+  weight = {area(b, c, p) / whole, area(c, a, p) / whole, area(a, b, p) / whole};
+  return std::min({weight[0], weight[1], weight[2]}) >= -1e-9;
+}
+
+DirectionMesh::Weights DirectionMesh::on_outline(const Vec2d& p) const {
+  Weights best;
+  double least = 1e30;
+  for (const auto& [a, b] : outline_) {
+    const Vec2d along = points_[b] - points_[a];
+    const double length_sq = glm::dot(along, along);
+    const double t = length_sq > 0 ? std::clamp(glm::dot(p - points_[a], along) / length_sq, 0.0, 1.0) : 0.0;
+    const double distance = glm::distance(p, points_[a] + t * along);
+    if (distance >= least) continue;
+    least = distance;
+    best = {{a, b, a}, {static_cast<float>(1 - t), static_cast<float>(t), 0.0f}};
+  }
+  return best;
+}
+
+DirectionMesh::Weights DirectionMesh::at(const Vec3& direction) const {
+  const Vec2d p = stereographic(direction);
+  const auto cell = [](double x) { return std::clamp(static_cast<int>((x + 1) * 0.5 * kGrid), 0, kGrid - 1); };
+  std::array<double, 3> w;
+  for (const uint32_t i : cells_[static_cast<size_t>(cell(p.y) * kGrid + cell(p.x))]) {
+    if (!inside(triangles_[i], p, w)) continue;
+    for (double& x : w) x = std::max(x, 0.0);
+    const double sum = w[0] + w[1] + w[2];
+    return {triangles_[i],
+            {static_cast<float>(w[0] / sum), static_cast<float>(w[1] / sum), static_cast<float>(w[2] / sum)}};
+  }
+  return on_outline(p);
+}
+
+}  // namespace velour
