@@ -198,7 +198,6 @@ std::vector<ExrPart> scan_exr(std::span<const uint8_t> bytes, const std::string&
 ExrHeaders scan_exr_headers(std::span<const uint8_t> head, const std::string& name) {
   ByteReader in(head, name);
   ScannedHeaders scanned = read_headers(in);
-  if (!scanned.multi_part) throw Error(Status::bad_data, name + ": is not an OpenEXR file of several parts.");
   return {std::move(scanned.parts), in.position()};
 }
 

@@ -33,7 +33,7 @@ struct ExrHeaders {
   uint64_t bytes = 0;  // where they end and the chunk tables begin
 };
 
-/// The headers of a multi-part file alone: `head` is its beginning and must hold them whole. Nothing is said of chunks.
+/// The headers alone: `head` is the beginning of a file and must hold them whole. Nothing is said of chunks.
 ExrHeaders scan_exr_headers(std::span<const uint8_t> head, const std::string& name);
 
 }  // namespace velour

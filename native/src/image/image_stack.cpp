@@ -9,8 +9,10 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "file/atomic_file.h"
@@ -20,7 +22,9 @@
 namespace velour {
 namespace {
 
-constexpr uint64_t kChunkHead = 12;  // number of the part, row, bytes of the pixels
+/// Before the pixels of a row: the number of the part, where there are several, the row, the bytes of the pixels.
+uint64_t chunk_head(size_t parts) { return parts > 1 ? 12 : 8; }
+
 constexpr uint64_t kMostHeaderBytes = uint64_t{1} << 14;
 
 class FileOutput : public Imf::OStream {
@@ -117,6 +121,22 @@ void interleave(const uint8_t* planes, uint64_t width, uint8_t* row) {
   }
 }
 
+void copy_row(const ImageStack& stack, const uint8_t* planes, uint8_t* row) {
+  if (stack.channels == 1) {
+    std::memcpy(row, planes, stack.row_bytes());
+  } else if (stack.value == StackValue::half) {
+    interleave<uint16_t>(planes, stack.width, row);
+  } else {
+    interleave<uint32_t>(planes, stack.width, row);
+  }
+}
+
+/// Whether `chunk` begins with the last numbers of `expected`, as many as its head has.
+bool is_chunk(const uint8_t* chunk, uint64_t head, const std::array<int32_t, 3>& expected) {
+  const uint64_t skipped = sizeof(expected) - head;
+  return std::memcmp(chunk, reinterpret_cast<const uint8_t*>(expected.data()) + skipped, head) == 0;
+}
+
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
   throw Error(Status::bad_data, path + ": " + what);
 }
@@ -129,9 +149,10 @@ bool agrees(const ExrPart& part, const ImageStack& stack) {
 }  // namespace
 
 void write_image_stacks(const std::string& path, std::span<const ImageStack> stacks,
-                        std::span<const std::span<const uint8_t>> pixels) {
+                        std::span<const std::span<const uint8_t>> pixels, const ImageAttributes& attributes) {
   for (size_t i = 0; i < stacks.size(); ++i) check_sizes(path, stacks[i], pixels[i]);
-  const std::vector<Imf::Header> headers = headers_of(stacks);
+  std::vector<Imf::Header> headers = headers_of(stacks);
+  for (const auto& [name, text] : attributes) headers.at(0).insert(name, Imf::StringAttribute(text));
   AtomicFile file(path);
   try {
     FileOutput stream(file, path);
@@ -164,7 +185,7 @@ void ImageStackFile::check_headers(std::span<const uint8_t> head) {
   for (const ImageStack& stack : stacks_) end += 8 * stack.images * stack.height;
   for (const ImageStack& stack : stacks_) {
     begin_.push_back(end);
-    end += stack.images * stack.height * (kChunkHead + stack.row_bytes());
+    end += stack.images * stack.height * (chunk_head(stacks_.size()) + stack.row_bytes());
   }
   if (end != file_.size()) {
     refuse(file_.path(), "holds " + std::to_string(file_.size()) + " bytes where its images take " +
@@ -178,7 +199,8 @@ void ImageStackFile::check_chunk_tables() const {
   uint64_t position = tables_;
   std::vector<uint64_t> table(kPiece);
   for (size_t s = 0; s < stacks_.size(); ++s) {
-    const uint64_t rows = stacks_[s].images * stacks_[s].height, step = kChunkHead + stacks_[s].row_bytes();
+    const uint64_t rows = stacks_[s].images * stacks_[s].height;
+    const uint64_t step = chunk_head(stacks_.size()) + stacks_[s].row_bytes();
     for (uint64_t row = 0; row < rows; row += table.size()) {
       table.resize(std::min(kPiece, rows - row));
       file_.read(position, {reinterpret_cast<uint8_t*>(table.data()), 8 * table.size()});
@@ -192,27 +214,20 @@ void ImageStackFile::check_chunk_tables() const {
   }
 }
 
-void ImageStackFile::read_image(const ImageStack& stack, size_t index, uint64_t image, std::span<uint8_t> chunks,
+/// The rows of one image as they lie in the file, the top one first.
+void ImageStackFile::read_image(size_t index, uint64_t image, std::span<uint8_t> chunks,
                                 std::span<uint8_t> pixels) const {
-  const uint64_t row_bytes = stack.row_bytes(), step = kChunkHead + row_bytes;
+  const ImageStack& stack = stacks_[index];
+  const uint64_t row_bytes = stack.row_bytes(), head = chunk_head(stacks_.size()), step = head + row_bytes;
   file_.read(begin_[index] + image * stack.height * step, chunks);
   for (uint64_t row = 0; row < stack.height; ++row) {
     const uint8_t* chunk = chunks.data() + row * step;
-    int32_t head[3];
-    std::memcpy(head, chunk, kChunkHead);
-    const int64_t expected[3] = {static_cast<int64_t>(index), static_cast<int64_t>(image * stack.height + row),
-                                 static_cast<int64_t>(row_bytes)};
-    if (!std::equal(head, head + 3, expected)) {
-      refuse(file_.path(), "row " + std::to_string(expected[1]) + " of part '" + stack.name + "' is damaged.");
+    const uint64_t y = image * stack.height + row;
+    if (!is_chunk(chunk, head,
+                  {static_cast<int32_t>(index), static_cast<int32_t>(y), static_cast<int32_t>(row_bytes)})) {
+      refuse(file_.path(), "row " + std::to_string(y) + " of part '" + stack.name + "' is damaged.");
     }
-    uint8_t* to = pixels.data() + (stack.height - 1 - row) * row_bytes;
-    if (stack.channels == 1) {
-      std::memcpy(to, chunk + kChunkHead, row_bytes);
-    } else if (stack.value == StackValue::half) {
-      interleave<uint16_t>(chunk + kChunkHead, stack.width, to);
-    } else {
-      interleave<uint32_t>(chunk + kChunkHead, stack.width, to);
-    }
+    copy_row(stack, chunk + head, pixels.data() + (stack.height - 1 - row) * row_bytes);
   }
 }
 
@@ -222,10 +237,8 @@ void ImageStackFile::read(size_t stack, uint64_t first, std::span<uint8_t> pixel
   if (first > of.images || count > of.images - first || count * bytes != pixels.size()) {
     throw Error(Status::invalid_argument, file_.path() + ": part '" + of.name + "' does not have those images.");
   }
-  std::vector<uint8_t> chunks(of.height * (kChunkHead + of.row_bytes()));
-  for (uint64_t i = 0; i < count; ++i) {
-    read_image(of, stack, first + i, chunks, pixels.subspan(i * bytes, bytes));
-  }
+  std::vector<uint8_t> chunks(of.height * (chunk_head(stacks_.size()) + of.row_bytes()));
+  for (uint64_t i = 0; i < count; ++i) read_image(stack, first + i, chunks, pixels.subspan(i * bytes, bytes));
 }
 
 }  // namespace velour

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,9 +31,12 @@ struct ImageStack {
   bool operator==(const ImageStack&) const = default;
 };
 
+/// Names and texts of the header.
+using ImageAttributes = std::map<std::string, std::string>;
+
 /// Atomic. `pixels[i]`: all bytes of stacks[i]. Throws Error(io, invalid_argument).
 void write_image_stacks(const std::string& path, std::span<const ImageStack> stacks,
-                        std::span<const std::span<const uint8_t>> pixels);
+                        std::span<const std::span<const uint8_t>> pixels, const ImageAttributes& attributes = {});
 
 /// An open file of stacks. Calls are thread-safe.
 class ImageStackFile {
@@ -49,8 +53,7 @@ class ImageStackFile {
 
  private:
   void check_headers(std::span<const uint8_t> head);
-  void read_image(const ImageStack& stack, size_t index, uint64_t image, std::span<uint8_t> chunks,
-                  std::span<uint8_t> pixels) const;
+  void read_image(size_t index, uint64_t image, std::span<uint8_t> chunks, std::span<uint8_t> pixels) const;
 
   RandomAccessFile file_;
   std::vector<ImageStack> stacks_;

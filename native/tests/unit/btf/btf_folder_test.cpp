@@ -37,6 +37,19 @@ TEST(BtfFolder, GivesBackEveryBit) {
   }
 }
 
+// A file of one part is laid out in another way than one of several.
+TEST(BtfFolder, NeedsNeitherErrorsNorStructureNorSize) {
+  const std::string path = test::scratch_folder() / "tile";
+  BtfIndex index{PairLayout(ring_directions(30, 2), ring_directions(45, 3)), {4, 2}};
+  const test::RandomBtf btf(index, 9);
+  btf.write(path);
+  const auto read = load_btf_folder(path);
+  EXPECT_EQ(test::all_pairs(*read), btf.values);
+  EXPECT_FALSE(read->grid().tile_metres || read->shell() || read->read_structure(0));
+  EXPECT_FALSE(read->read_errors(0, 0, {}));
+  EXPECT_TRUE(read->layout().complete());
+}
+
 TEST(BtfFolder, ReadsAnyRangeOfPairs) {
   const std::string path = test::scratch_folder() / "tile";
   const test::RandomBtf btf(test::small_index(), 2);
