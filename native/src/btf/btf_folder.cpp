@@ -19,7 +19,10 @@ std::span<uint8_t> writable_bytes(std::span<T> values) {
 
 class BtfFolder : public BtfMeasurement {
  public:
-  explicit BtfFolder(const std::string& path) : BtfFolder(path, fs::path(path) / "btf.json") {}
+  BtfFolder(const std::string& path, const std::optional<Vec2>& tile_metres)
+      : BtfFolder(path, fs::path(path) / "btf.json") {
+    if (tile_metres) grid_.tile_metres = tile_metres;
+  }
 
   void read_pairs(uint64_t first, uint64_t count, std::span<HalfBits> values) const override {
     read_images(kValuesPart, first, count, values);
@@ -52,7 +55,7 @@ class BtfFolder : public BtfMeasurement {
   std::optional<ValueCounts> all_counts() const override { return content_.counts; }
 
  private:
-  BtfFolder(const std::string& path, const std::string& index_path)
+  BtfFolder(const std::string& path, const fs::path& index_path)
       : BtfFolder(path, index_path, read_file(index_path, kMostIndexBytes)) {}
 
   BtfFolder(const std::string& path, const std::string& index_path, const std::vector<uint8_t>& bytes)
@@ -104,8 +107,8 @@ class BtfFolder : public BtfMeasurement {
 
 }  // namespace
 
-std::shared_ptr<const BtfMeasurement> load_btf_folder(const std::string& path) {
-  return std::make_shared<BtfFolder>(path);
+std::shared_ptr<const BtfMeasurement> load_btf_folder(const std::string& path, const std::optional<Vec2>& tile_metres) {
+  return std::make_shared<BtfFolder>(path, tile_metres);
 }
 
 }  // namespace velour

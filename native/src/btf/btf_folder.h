@@ -40,8 +40,10 @@ class BtfFolderWriter {
 };
 
 /// Throws Error(io, bad_data, version_mismatch) with one sentence that names file and field. Checks sizes, headers and
-/// chunk tables of all views' files; their pixels are read when asked for.
-std::shared_ptr<const BtfMeasurement> load_btf_folder(const std::string& path);
+/// chunk tables of all views' files; their pixels are read when asked for. `tile_metres` stands in for what the index
+/// says.
+std::shared_ptr<const BtfMeasurement> load_btf_folder(const std::string& path,
+                                                      const std::optional<Vec2>& tile_metres = std::nullopt);
 
 /// Whether `path` is a folder that holds an index of ours.
 bool is_btf_folder(const std::string& path);
