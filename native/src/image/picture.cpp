@@ -66,10 +66,11 @@ void flip_rows(Picture& picture) {
     std::swap_ranges(begin + low * row, begin + (low + 1) * row, begin + high * row);
 }
 
-void make_linear(Picture& picture, int alpha_channel) {
+void make_linear(Picture& picture, int alpha_channel, const TransferCurve& curve) {
+  const auto linear = [&](float v) { return curve.gamma ? std::pow(v, *curve.gamma) : linear_from_srgb(v); };
   for (size_t i = 0; i < picture.pixels.size(); ++i)
     if (static_cast<int>(i % static_cast<size_t>(picture.channels)) != alpha_channel)
-      picture.pixels[i] = linear_from_srgb(picture.pixels[i]);
+      picture.pixels[i] = linear(picture.pixels[i]);
 }
 
 /// Encodes into memory first, so that the file appears whole or not at all.
@@ -108,16 +109,23 @@ void write_png(const std::string& path, const Picture& picture) {
 
 Picture read_picture_header(const std::string& path) { return picture_of(open_picture(path)->spec()); }
 
-Picture read_picture(const std::string& path) {
+std::optional<std::string> read_picture_text(const std::string& path, const std::string& name) {
+  const auto input = open_picture(path);
+  const OIIO::ParamValue* found = input->spec().find_attribute(name, OIIO::TypeDesc::STRING);
+  return found ? std::optional(found->get_string()) : std::nullopt;
+}
+
+Picture read_picture(const std::string& path, const TransferCurve& curve) {
   const auto input = open_picture(path);
   const OIIO::ImageSpec spec = input->spec();
   Picture picture = picture_of(spec);
   picture.pixels.resize(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) *
                         static_cast<size_t>(spec.nchannels));
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.pixels.data()))
-    throw Error(Status::bad_data, input_error(path, input->geterror()));
+  const bool read = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.pixels.data());
+  // Of a JPEG or TIFF that ends early it says so, and that all is well.
+  if (!read || input->has_error()) throw Error(Status::bad_data, input_error(path, input->geterror()));
   flip_rows(picture);
-  if (!spec.format.is_floating_point()) make_linear(picture, spec.alpha_channel);
+  if (!spec.format.is_floating_point()) make_linear(picture, spec.alpha_channel, curve);
   return picture;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,19 @@ struct Picture {
   }
 };
 
-/// Any format OpenImageIO knows; integer formats are taken as sRGB and made linear. Throws Error with the file's name.
-/// Dimensions are checked against the file's size before anything is allocated.
-Picture read_picture(const std::string& path);
+/// How the pixels of integer formats become linear: by the sRGB curve, or as stored^gamma.
+struct TransferCurve {
+  std::optional<float> gamma = std::nullopt;  // nothing: sRGB; 1: they are linear already
+};
+
+/// Any format OpenImageIO knows; integer formats are made linear, floats are taken as they are. Throws Error with the
+/// file's name, also for a file that ends early. Dimensions are checked against the file's size before anything is
+/// allocated.
+Picture read_picture(const std::string& path, const TransferCurve& curve = {});
 /// Width, height, channels without the pixels.
 Picture read_picture_header(const std::string& path);
+/// The text of that name in the header; nothing where there is none.
+std::optional<std::string> read_picture_text(const std::string& path, const std::string& name);
 
 /// By extension: .exr keeps float32, .png gets the sRGB curve and 8 bits. Atomic.
 void write_picture(const std::string& path, const Picture& picture);

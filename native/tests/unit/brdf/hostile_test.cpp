@@ -10,6 +10,7 @@
 #include "brdf/rgl.h"
 #include "file/file.h"
 #include "measurement_support.h"
+#include "support/mutation.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -17,55 +18,6 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 using Read = std::shared_ptr<const Measurement> (*)(std::span<const uint8_t>, Provenance);
-
-/// One small change of the kinds that break parsers: flipped bits, sizes at the edge of their type, cuts, repeats.
-void mutate(Bytes& bytes, RandomStream& random) {
-  if (bytes.empty()) return;
-  const auto below = [&](size_t n) { return static_cast<size_t>(random.next_bits() % n); };
-  const size_t at = below(bytes.size());
-  constexpr uint64_t kEdges[] = {0,
-                                 1,
-                                 2,
-                                 0x7f,
-                                 0xff,
-                                 0x7fff,
-                                 0xffff,
-                                 0x7fffffff,
-                                 0x80000000,
-                                 0xffffffff,
-                                 uint64_t{1} << 40,
-                                 uint64_t{1} << 62,
-                                 uint64_t{1} << 63,
-                                 ~uint64_t{0},
-                                 0x7fc00000,
-                                 0x7f800000};
-  switch (below(6)) {
-    case 0:
-      bytes[at] = static_cast<uint8_t>(bytes[at] ^ (1u << below(8)));
-      break;
-    case 1:
-      bytes[at] = static_cast<uint8_t>(random.next_bits());
-      break;
-    case 2:
-      bytes.resize(at);
-      break;
-    case 3: {
-      const uint64_t edge = kEdges[below(std::size(kEdges))];
-      const size_t size = size_t{1} << below(4);
-      for (size_t i = 0; i < size && at + i < bytes.size(); ++i) bytes[at + i] = static_cast<uint8_t>(edge >> (8 * i));
-      break;
-    }
-    case 4: {
-      const size_t from = below(bytes.size()), count = below(std::min<size_t>(64, bytes.size() - std::max(from, at)));
-      std::copy_n(Bytes(bytes).begin() + static_cast<std::ptrdiff_t>(from), count,
-                  bytes.begin() + static_cast<std::ptrdiff_t>(at));
-      break;
-    }
-    default:
-      bytes[at] = static_cast<uint8_t>("0123456789.-#enai \n"[below(19)]);
-      break;
-  }
-}
 
 void expect_sane(const Measurement& measurement) {
   const EntryCounts& counts = measurement.counts();
@@ -83,7 +35,7 @@ void attack(const char* name, const Bytes& good, Read read, uint64_t trials) {
   for (uint64_t trial = 0; trial < trials; ++trial) {
     RandomStream random(99, 0, trial);
     Bytes bytes = good;
-    for (uint64_t changes = 1 + random.next_bits() % 4; changes > 0; --changes) mutate(bytes, random);
+    for (uint64_t changes = 1 + random.next_bits() % 4; changes > 0; --changes) test::mutate(bytes, random);
     try {
       expect_sane(*read(bytes, test::provenance_named(name)));
       ++accepted;
@@ -122,7 +74,7 @@ TEST(Hostile, MerlHeader) {
   for (uint64_t trial = 0; trial < 2000; ++trial) {
     RandomStream random(98, 0, trial);
     Bytes bytes = head;
-    mutate(bytes, random);
+    test::mutate(bytes, random);
     EXPECT_NE(test::refusal([&] { read_merl(bytes, test::provenance_named("x.binary")); }), "");
   }
 }

@@ -1,0 +1,162 @@
+#include "btf/csv_index.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <set>
+#include <tuple>
+
+#include "file/file.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+constexpr uint64_t kMostBytes = uint64_t{1} << 30;
+constexpr size_t kMostRows = kMaxDirections * kMaxDirections;
+constexpr std::array kNeeded = {"file", "theta_l", "phi_l", "theta_v", "phi_v"};
+
+using Fields = std::vector<std::string>;
+
+std::string trimmed(const std::string& text) {
+  const size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+/// Fields between commas; within double quotes commas are text and two quotes are one.
+Fields split(const std::string& line) {
+  Fields fields(1);
+  bool quoted = false;
+  for (size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      const bool doubled = quoted && i + 1 < line.size() && line[i + 1] == '"';
+      if (doubled) fields.back() += line[i++];
+      if (!doubled) quoted = !quoted;
+    } else if (line[i] == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += line[i];
+    }
+  }
+  for (std::string& field : fields) field = trimmed(field);
+  return fields;
+}
+
+/// Line by line, numbered from 1, without comments, empty lines and marks of Windows.
+class Lines {
+ public:
+  explicit Lines(std::string text) : text_(std::move(text)) {
+    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
+  }
+  bool next(std::string& line) {
+    while (at_ < text_.size()) {
+      const size_t end = std::min(text_.find('\n', at_), text_.size());
+      line = text_.substr(at_, end - at_);
+      at_ = end + 1;
+      ++number_;
+      if (line.ends_with('\r')) line.pop_back();
+      const std::string content = trimmed(line);
+      if (!content.empty() && content[0] != '#') return true;
+    }
+    return false;
+  }
+  size_t number() const { return number_; }
+
+ private:
+  std::string text_;
+  size_t at_ = 0, number_ = 0;
+};
+
+class CsvIndex {
+ public:
+  CsvIndex(const std::string& path, std::string text) : path_(path), lines_(std::move(text)) {
+    std::string line;
+    if (lines_.next(line)) columns_ = split(line);
+    for (const char* name : kNeeded) {
+      if (column(name) == columns_.size()) {
+        fail(std::string("the first line has no column '") + name +
+             "'; it must name file, theta_l, phi_l, theta_v and phi_v, separated by commas");
+      }
+    }
+    numbered_ = column("view") < columns_.size();
+    if (numbered_ != (column("light") < columns_.size())) fail("the columns 'view' and 'light' must be there together");
+  }
+
+  std::vector<PairPicture> pictures() {
+    std::vector<PairPicture> pictures;
+    std::set<std::tuple<double, double, double, double>> pairs;
+    for (std::string line; lines_.next(line);) {
+      if (pictures.size() == kMostRows) fail("there are more than 4096 x 4096 pictures");
+      PairPicture p = picture(split(line), pictures.size());
+      if (!pairs.emplace(p.view.theta, p.view.phi, p.light.theta, p.light.phi).second) {
+        fail("these angles stand on an earlier line already; keep one of the two");
+      }
+      pictures.push_back(std::move(p));
+    }
+    if (pictures.empty()) fail("there are no pictures");
+    return pictures;
+  }
+
+ private:
+  size_t column(const std::string& name) const {
+    return static_cast<size_t>(std::ranges::find(columns_, name) - columns_.begin());
+  }
+
+  PairPicture picture(const Fields& fields, size_t row) const {
+    if (fields.size() != columns_.size()) {
+      fail("there are " + std::to_string(fields.size()) + " fields where the first line names " +
+           std::to_string(columns_.size()));
+    }
+    const std::string& file = fields[column("file")];
+    if (file.empty()) fail("'file' is empty");
+    PairPicture p{std::filesystem::path(path_).parent_path() / file,
+                  {number(fields, "theta_v"), number(fields, "phi_v")},
+                  {number(fields, "theta_l"), number(fields, "phi_l")},
+                  row,
+                  row};
+    if (numbered_) {
+      p.view_number = static_cast<uint64_t>(number(fields, "view"));
+      p.light_number = static_cast<uint64_t>(number(fields, "light"));
+    }
+    return p;
+  }
+
+  double number(const Fields& fields, const char* name) const {
+    const std::string& text = fields[column(name)];
+    double value = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = failure == std::errc() && end == text.data() + text.size();
+    if (!whole || !(value >= -1e6 && value <= 1e6)) fail(std::string("'") + name + "' is '" + text + "', not a number");
+    const bool signs = std::string_view(name).starts_with("phi");
+    if (value < 0 && !signs) fail(std::string("'") + name + "' is negative");
+    return value;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(Status::bad_data, path_ + ": line " + std::to_string(lines_.number()) + ": " + what + ".");
+  }
+
+  std::string path_;
+  Lines lines_;
+  Fields columns_;
+  bool numbered_ = false;
+};
+
+std::string text_of(const std::vector<uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+
+}  // namespace
+
+std::vector<PairPicture> read_csv_index(const std::string& path) {
+  return CsvIndex(path, text_of(read_file(path, kMostBytes))).pictures();
+}
+
+bool is_csv_index(const std::string& path) {
+  Lines lines(text_of(read_file_head(path, size_t{1} << 16)));
+  std::string line;
+  if (!lines.next(line)) return false;
+  const Fields columns = split(line);
+  return std::ranges::all_of(kNeeded, [&](const char* name) { return std::ranges::count(columns, name) == 1; });
+}
+
+}  // namespace velour

@@ -1,0 +1,199 @@
+#include "btf/image_set.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "btf/value_scale.h"
+#include "file/file.h"
+#include "image/picture.h"
+#include "job/error.h"
+
+namespace velour {
+namespace fs = std::filesystem;
+namespace {
+
+/// Names of header texts by which Velour's own exports say what they are.
+constexpr const char* kValuesText = "velour.values";
+constexpr const char* kTileText = "velour.tile_metres";
+
+/// The directions of a set and the place of each.
+class DirectionSet {
+ public:
+  void add(const PolarAngles& d, uint64_t number) {
+    const auto [at, is_new] = number_.emplace(std::pair(d.theta, d.phi), number);
+    if (!is_new) at->second = std::min(at->second, number);
+  }
+  /// In the order of their smallest numbers.
+  std::vector<PolarAngles> ordered() {
+    std::vector<std::pair<uint64_t, PolarAngles>> order;
+    for (const auto& [angles, number] : number_) order.push_back({number, {angles.first, angles.second}});
+    std::ranges::stable_sort(order, {}, [](const auto& entry) { return entry.first; });
+    std::vector<PolarAngles> directions;
+    for (const auto& [number, d] : order) {
+      number_[{d.theta, d.phi}] = directions.size();
+      directions.push_back(d);
+    }
+    return directions;
+  }
+  /// Once ordered.
+  uint32_t place(const PolarAngles& d) const { return static_cast<uint32_t>(number_.at({d.theta, d.phi})); }
+
+ private:
+  std::map<std::pair<double, double>, uint64_t> number_;
+};
+
+struct OrderedPictures {
+  std::optional<PairLayout> layout;
+  std::vector<std::string> paths;  // by pair
+};
+
+/// Throws Error(bad_data) with the source's name where the directions are none.
+OrderedPictures ordered(const ImageSetSource& source) {
+  DirectionSet views, lights;
+  for (const PairPicture& p : source.pictures) {
+    views.add(p.view, p.view_number);
+    lights.add(p.light, p.light_number);
+  }
+  const std::vector<PolarAngles> view_list = views.ordered(), light_list = lights.ordered();
+  std::vector<std::map<uint32_t, std::string>> by_view(view_list.size());
+  for (const PairPicture& p : source.pictures) by_view[views.place(p.view)][lights.place(p.light)] = p.path;
+  OrderedPictures result;
+  std::vector<std::vector<uint32_t>> lights_of_view;
+  for (const auto& pictures : by_view) {
+    lights_of_view.emplace_back();
+    for (const auto& [light, path] : pictures) {
+      lights_of_view.back().push_back(light);
+      result.paths.push_back(path);
+    }
+  }
+  try {
+    result.layout.emplace(view_list, light_list, lights_of_view);
+  } catch (const Error& error) {
+    throw Error(Status::bad_data, source.path + ": " + error.what());
+  }
+  return result;
+}
+
+BtfValues values_of(const BtfLoadOptions& options, const std::string& picture) {
+  if (options.values != BtfValues::automatic) return options.values;
+  return read_picture_text(picture, kValuesText) == "brdf" ? BtfValues::brdf : BtfValues::radiance;
+}
+
+std::optional<Vec2> tile_of(const BtfLoadOptions& options, const std::string& picture) {
+  if (options.tile_metres) return options.tile_metres;
+  const auto text = read_picture_text(picture, kTileText);
+  Vec2 tile;
+  const bool read = text && std::sscanf(text->c_str(), "%f %f", &tile.x, &tile.y) == 2;
+  return read && tile.x > 0 && tile.y > 0 ? std::optional(tile) : std::nullopt;
+}
+
+/// CIE XYZ, D65 white of luminance 1, to linear Rec. 709 (IEC 61966-2-1).
+Rgb rgb_of_xyz(const Rgb& c) {
+  return {3.2406f * c.r - 1.5372f * c.g - 0.4986f * c.b, -0.9689f * c.r + 1.8758f * c.g + 0.0415f * c.b,
+          0.0557f * c.r - 0.2040f * c.g + 1.0570f * c.b};
+}
+
+std::string curve_text(const TransferCurve& curve) {
+  return curve.gamma ? "stored^" + std::to_string(*curve.gamma) : std::string("sRGB");
+}
+
+class ImageSet : public BtfMeasurement {
+ public:
+  ImageSet(const ImageSetSource& source, const BtfLoadOptions& options) : options_(options) {
+    OrderedPictures pictures = ordered(source);
+    layout_ = std::move(pictures.layout);
+    paths_ = std::move(pictures.paths);
+    scale_ = scale_of(values_of(options, paths_[0]));
+    check_sizes();
+    grid_.tile_metres = tile_of(options, paths_[0]);
+    name_source(source);
+  }
+
+  void read_pairs(uint64_t first, uint64_t count, std::span<HalfBits> values) const override {
+    check_range(first, count);
+    const uint64_t image = grid_.texels() * 3;
+    tbb::parallel_for(uint64_t{0}, count,
+                      [&](uint64_t i) { read_picture_of(first + i, values.subspan(i * image, image)); });
+  }
+
+  std::vector<std::pair<std::string, std::string>> details() const override {
+    return {{"values", scale_.text()},
+            {"curve", curve_text(options_.curve) + " for pictures of whole numbers, none for floats"},
+            {"colors", colors_text()},
+            {"first_picture", paths_[0]}};
+  }
+
+ private:
+  std::string colors_text() const {
+    return options_.colors == BtfColors::xyz ? "CIE XYZ, made linear Rec. 709" : "linear Rec. 709";
+  }
+
+  void check_sizes() {
+    const Picture first = read_picture_header(paths_[0]);
+    if (first.width > static_cast<int>(kMaxTexelsAlong) || first.height > static_cast<int>(kMaxTexelsAlong)) {
+      throw Error(Status::bad_data, paths_[0] + ": has more than 16384 pixels along a side.");
+    }
+    grid_ = {static_cast<uint32_t>(first.width), static_cast<uint32_t>(first.height)};
+    tbb::parallel_for(size_t{1}, paths_.size(), [&](size_t i) { check_size(read_picture_header(paths_[i]), i); });
+  }
+
+  void check_size(const Picture& picture, uint64_t pair) const {
+    if (static_cast<uint32_t>(picture.width) == grid_.width && static_cast<uint32_t>(picture.height) == grid_.height)
+      return;
+    throw Error(Status::bad_data, paths_[pair] + ": has " + std::to_string(picture.width) + " x " +
+                                      std::to_string(picture.height) + " pixels where " + paths_[0] + " has " +
+                                      std::to_string(grid_.width) + " x " + std::to_string(grid_.height) +
+                                      "; bring all pictures of the set to one size.");
+  }
+
+  /// The hash is one of all names, sizes and angles: the pictures themselves are too many to be read for it.
+  void name_source(const ImageSetSource& source) {
+    std::string text = scale_.text() + " " + curve_text(options_.curve) + " " + colors_text() + "\n";
+    uint64_t bytes = 0;
+    for (uint64_t p = 0; p < paths_.size(); ++p) {
+      const uint64_t size = fs::file_size(paths_[p]);
+      const PolarAngles &l = layout().lights()[layout().light_of(p)], &v = layout().views()[layout().view_of(p)];
+      text += fs::path(paths_[p]).filename().string() + " " + std::to_string(size) + " " + std::to_string(l.theta) +
+              " " + std::to_string(l.phi) + " " + std::to_string(v.theta) + " " + std::to_string(v.phi) + "\n";
+      bytes += size;
+    }
+    const auto folder = fs::weakly_canonical(source.path);
+    provenance_ = {source.path,
+                   folder.stem().string(),
+                   source.format,
+                   std::to_string(paths_.size()) + " pictures",
+                   sha256_hex({reinterpret_cast<const uint8_t*>(text.data()), text.size()}),
+                   bytes};
+  }
+
+  void read_picture_of(uint64_t pair, std::span<HalfBits> values) const {
+    const Picture picture = read_picture(paths_[pair], options_.curve);
+    check_size(picture, pair);  // it may have been replaced
+    const float scale = scale_.of(layout().lights()[layout().light_of(pair)]);
+    std::vector<float> floats(values.size());
+    const auto channels = static_cast<size_t>(picture.channels);
+    for (uint64_t t = 0; t < grid_.texels(); ++t) {
+      const float* pixel = picture.pixels.data() + t * channels;
+      Rgb c = channels >= 3 ? Rgb(pixel[0], pixel[1], pixel[2]) : Rgb(pixel[0]);
+      if (options_.colors == BtfColors::xyz) c = rgb_of_xyz(c);
+      for (int k = 0; k < 3; ++k) floats[3 * t + static_cast<size_t>(k)] = c[k] * scale;
+    }
+    floats_to_halves(floats, values);
+  }
+
+  BtfLoadOptions options_;
+  ValueScale scale_;
+  std::vector<std::string> paths_;
+};
+
+}  // namespace
+
+std::shared_ptr<const BtfMeasurement> load_image_set(ImageSetSource source, const BtfLoadOptions& options) {
+  return std::make_shared<ImageSet>(source, options);
+}
+
+}  // namespace velour

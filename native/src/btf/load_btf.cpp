@@ -1,0 +1,76 @@
+#include "btf/load_btf.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "btf/btf_folder.h"
+#include "btf/csv_index.h"
+#include "btf/image_names.h"
+#include "btf/image_set.h"
+#include "btf/ubo_file.h"
+#include "file/file.h"
+#include "job/error.h"
+
+namespace velour {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+void check(const BtfLoadOptions& options) {
+  const auto refuse = [](const char* sentence) { throw Error(Status::invalid_argument, sentence); };
+  if (options.curve.gamma && !(*options.curve.gamma >= 0.1f && *options.curve.gamma <= 10.0f)) {
+    refuse("The gamma of a BTF's pictures must be from 0.1 to 10.");
+  }
+  if (!options.tile_metres) return;
+  const Vec2 tile = *options.tile_metres;
+  if (!(tile.x > 0 && tile.y > 0 && std::isfinite(tile.x) && std::isfinite(tile.y))) {
+    refuse("The size of a BTF's tile must be two positive numbers of metres.");
+  }
+}
+
+std::shared_ptr<const BtfMeasurement> load_csv(const std::string& path, const BtfLoadOptions& options) {
+  return load_image_set({path, "csv", read_csv_index(path)}, options);
+}
+
+std::shared_ptr<const BtfMeasurement> load_folder(const std::string& path, const BtfLoadOptions& options) {
+  if (is_btf_folder(path)) return load_btf_folder(path, options.tile_metres);
+  const std::string index = fs::path(path) / "btf.csv";
+  if (is_file(index)) return load_csv(index, options);
+  return load_image_set({path, "ubo2003", find_named_pictures(path)}, options);
+}
+
+bool is_archive(const std::string& path) {
+  const std::vector<uint8_t> head = read_file_head(path, 4);
+  return std::ranges::equal(head, std::array<uint8_t, 4>{'P', 'K', 3, 4});
+}
+
+}  // namespace
+
+std::shared_ptr<const BtfMeasurement> load_btf(const std::string& path, const BtfLoadOptions& options) {
+  check(options);
+  if (is_folder(path)) return load_folder(path, options);
+  if (fs::path(path).filename() == "btf.json") return load_folder(fs::absolute(path).parent_path(), options);
+  if (is_ubo_file(path)) return load_ubo_file(path, options);
+  if (is_csv_index(path) || fs::path(path).extension() == ".csv") return load_csv(path, options);
+  if (is_archive(path)) throw Error(Status::unsupported, path + ": is an archive; unpack it and give its folder.");
+  throw Error(Status::bad_data, path + ": is no BTF: neither a .btf file of Bonn, nor a CSV index of pictures, nor a " +
+                                    "folder; see docs/btf.md for what is read.");
+}
+
+bool is_btf(const std::string& path) {
+  if (is_folder(path) || fs::path(path).filename() == "btf.json") return true;
+  return is_file(path) && (is_ubo_file(path) || is_csv_index(path));
+}
+
+}  // namespace velour

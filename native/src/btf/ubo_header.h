@@ -1,0 +1,53 @@
+// What stands before and around the factors of a .btf file of Bonn (UBO2014), as public readers of it know it
+// (docs/btf.md). Internal to btf/.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "btf/pair_layout.h"
+#include "file/random_access_file.h"
+
+namespace velour {
+
+/// How three decorrelated channels become red, green and blue.
+enum class UboColors : int32_t {
+  rgb = 0,
+  yuv = 1,
+  log_y_uv = 9,       // ln(Y + eps), U, V
+  log_y_ratios = 11,  // ln(Y + eps), U / (Y + eps), V / (Y + eps)
+  log_rgb = 12,       // ln(channel + eps)
+};
+
+/// A matrix of `rows` x `components`, row by row.
+struct UboMatrix {
+  uint64_t offset = 0;  // bytes
+  uint64_t rows = 0;
+};
+
+/// channel[texel][pair] = sum over components of texels[texel][k] pairs[pair][k].
+struct UboChannel {
+  uint32_t scalar_bytes = 2;  // 2, 4 or 8
+  uint64_t components = 0;
+  UboMatrix pairs, texels;
+};
+
+struct UboHeader {
+  uint32_t version = 0;
+  std::string setup, sensor, light_source;
+  float pixels_per_mm = 0;
+  bool cosine = false;  // of the light, in the numbers
+  std::optional<PairLayout> layout;
+  std::vector<uint64_t> row_of_pair;  // of the pairs' matrices
+  uint32_t width = 0, height = 0;
+  UboColors colors = UboColors::rgb;
+  std::array<UboChannel, 3> channels;
+};
+
+/// Every size is compared with the file's before anything is allocated. Throws Error(bad_data, unsupported) with file
+/// and field.
+UboHeader read_ubo_header(const RandomAccessFile& file);
+
+}  // namespace velour

@@ -1,0 +1,70 @@
+#include "btf/csv_index.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "btf_support.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+using test::message_of;
+
+class CsvIndexTest : public ::testing::Test {
+ protected:
+  std::string written(const std::string& text) const {
+    std::ofstream(path_, std::ios::binary) << text;
+    return path_;
+  }
+  std::string refusal(const std::string& text) const {
+    const std::string message = message_of([&] { read_csv_index(written(text)); });
+    return message.empty() ? "" : message.substr(path_.size());
+  }
+  std::string path_ = test::scratch_folder() / "set.csv";
+};
+
+TEST_F(CsvIndexTest, ReadsColumnsInAnyOrder) {
+  const auto pictures = read_csv_index(
+      written("\xef\xbb\xbf# my set\r\n\r\n phi_v, theta_v ,file,phi_l,theta_l,camera\r\n"
+              "# first\r\n-30.5,0,\"a, \"\"b\"\".jpg\",1e1,45,left\r\n0,60,sub/c.png,0,0.125,right\r\n"));
+  ASSERT_EQ(pictures.size(), 2u);
+  EXPECT_EQ(pictures[0].path, (std::filesystem::path(path_).parent_path() / "a, \"b\".jpg").string());
+  EXPECT_EQ(pictures[0].view, (PolarAngles{0, -30.5}));
+  EXPECT_EQ(pictures[0].light, (PolarAngles{45, 10}));
+  EXPECT_EQ(pictures[1].path, (std::filesystem::path(path_).parent_path() / "sub/c.png").string());
+  EXPECT_EQ(pictures[1].light, (PolarAngles{0.125, 0}));
+  EXPECT_EQ(pictures[1].view_number, 1u);
+  EXPECT_TRUE(is_csv_index(path_));
+}
+
+TEST_F(CsvIndexTest, NumbersSetTheOrder) {
+  const auto pictures =
+      read_csv_index(written("file,theta_l,phi_l,theta_v,phi_v,view,light\na.png,1,0,2,0,7,4\n/b.png,3,0,2,0,7,2"));
+  EXPECT_EQ(pictures[0].view_number, 7u);
+  EXPECT_EQ(pictures[1].light_number, 2u);
+  EXPECT_EQ(pictures[1].path, "/b.png");
+}
+
+TEST_F(CsvIndexTest, WhatIsWrongIsOneSentenceWithItsLine) {
+  const std::string head = "file,theta_l,phi_l,theta_v,phi_v\n";
+  EXPECT_EQ(refusal("file;theta_l;phi_l;theta_v;phi_v\n"),
+            ": line 1: the first line has no column 'file'; it must name file, theta_l, phi_l, theta_v and phi_v, "
+            "separated by commas.");
+  EXPECT_EQ(refusal("file,theta_l,phi_l,theta_v\n").substr(0, 47), ": line 1: the first line has no column 'phi_v';");
+  EXPECT_NE(refusal("").find(": line 0: the first line has no column 'file'"), std::string::npos);
+  EXPECT_EQ(refusal(head), ": line 1: there are no pictures.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3\n"), ": line 2: there are 4 fields where the first line names 5.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,4\n#\nb.png,1,two,3,4\n"), ": line 4: 'phi_l' is 'two', not a number.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,nan\n"), ": line 2: 'phi_v' is 'nan', not a number.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,4 5\n"), ": line 2: 'phi_v' is '4 5', not a number.");
+  EXPECT_EQ(refusal(head + "a.png,-1,2,3,4\n"), ": line 2: 'theta_l' is negative.");
+  EXPECT_EQ(refusal(head + ",1,2,3,4\n"), ": line 2: 'file' is empty.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,4\nb.png,1,2,3,4\n"),
+            ": line 3: these angles stand on an earlier line already; keep one of the two.");
+  EXPECT_EQ(refusal("view," + head), ": line 1: the columns 'view' and 'light' must be there together.");
+}
+
+}  // namespace
+}  // namespace velour
