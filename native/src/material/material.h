@@ -5,6 +5,7 @@
 #include <span>
 
 #include "material/ggx_sampler.h"
+#include "material/surface_site.h"
 #include "sphere/direction_batch.h"
 #include "srbf/lobe_mixture.h"
 #include "srbf/lobe_products.h"
@@ -29,7 +30,16 @@ class Material {
   virtual ~Material() = default;
 
   /// Must be called before the others with this `point`; `wv.z > 0`.
-  virtual void prepare(const Vec3& wv, PreparedBrdf& point) const = 0;
+  virtual void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const = 0;
+  /// The same averaged over the whole surface: all there is of a uniform material.
+  void prepare(const Vec3& wv, PreparedBrdf& point) const { prepare(wv, SurfaceSite::everywhere(), point); }
+
+  /// False for a uniform material: it does not look at the site, and whoever asks need not find it out.
+  virtual bool varies() const { return false; }
+
+  /// The share of `site` that is there, in [0, 1]; through the rest one sees what lies behind. f is that of what is
+  /// there.
+  virtual float alpha(const SurfaceSite& /*site*/) const { return 1.0f; }
 
   /// f in 1/sr without cosine (0 at and below the horizon, never negative, never NaN) and the density of `sample`, per
   /// solid angle, of each direction of the batch. The batch is padded.

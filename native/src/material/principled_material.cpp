@@ -15,7 +15,7 @@ class PrincipledMaterial final : public Material {
   explicit PrincipledMaterial(const PrincipledParameters& p)
       : lobes_(p), specular_(lobes_.alpha(), [this](float cosine) { return lobes_.fresnel_luminance(cosine); }) {}
 
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override {
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
     const PrincipledLobes::View view = lobes_.view(point.wv = wv);
     const PrincipledParameters& p = lobes_.parameters();
     const float diffuse = luminance(p.base_color) * lobes_.base_albedo(view);
