@@ -5,6 +5,7 @@
 #include <span>
 
 #include "material/ggx_sampler.h"
+#include "material/principled_lobes.h"
 #include "material/surface_site.h"
 #include "sphere/direction_batch.h"
 #include "srbf/lobe_mixture.h"
@@ -16,12 +17,13 @@ namespace velour {
 /// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it
 /// needs; the struct is scratch memory of the thread, reused from hit to hit.
 struct PreparedBrdf {
-  Vec3 wv;               // local, unit, wv.z > 0
-  LobeMixture lobes;     // SRBF materials: the value
-  LobeMixture draws;     // materials that sample lobes: what they draw from, and its density
-  WarpedMixture warped;  // parametric models: value and density
-  float parameter[8];    // analytic materials: what they derive from wv
-  GgxPoint ggx;          // of the fitted GGX lobe, where one is the material or draws its samples
+  Vec3 wv;                     // local, unit, wv.z > 0
+  LobeMixture lobes;           // SRBF materials: the value
+  LobeMixture draws;           // materials that sample lobes: what they draw from, and its density
+  WarpedMixture warped;        // parametric models: value and density
+  float parameter[8];          // analytic materials: what they derive from wv
+  GgxPoint ggx;                // of the fitted GGX lobe, where one is the material or draws its samples
+  PrincipledLobes principled;  // textured Principled materials: those of the site
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.
