@@ -39,7 +39,7 @@ def picture_of(socket):
         output(socket).name == "Alpha",
         _WRAPS[node.extension],
         "closest" if node.interpolation == "Closest" else "linear",
-        _uv_map(source(node.inputs["Vector"])),
+        _uv_map(node.inputs["Vector"]),
     )
 
 
@@ -52,25 +52,24 @@ def _check(node):
         raise UnsupportedError(f"'{node.name}' is not projected flat")
 
 
-def _uv_map(node):
-    """[2 x 3] of what is linked to an Image Texture's vector; None: the mesh's texture coordinates."""
-    if node is not None and node.bl_idname == "ShaderNodeMapping":
-        mapping = node
-        node = source(mapping.inputs["Vector"])
-        if node is None:
-            raise UnsupportedError(f"'{mapping.name}' has no coordinates linked to it")
-        _check_coordinates(node, mapping.inputs["Vector"])
-        return _mapping_matrix(mapping)
-    if node is not None:
-        _check_coordinates(node, None)
-    return np.eye(2, 3, dtype=np.float32)
+def _uv_map(vector):
+    """[2 x 3] of what is linked to an Image Texture's vector; nothing: the mesh's texture coordinates."""
+    node = source(vector)
+    if node is None:
+        return np.eye(2, 3, dtype=np.float32)
+    if node.bl_idname != "ShaderNodeMapping":
+        _check_coordinates(vector)
+        return np.eye(2, 3, dtype=np.float32)
+    if source(node.inputs["Vector"]) is None:
+        raise UnsupportedError(f"'{node.name}' has no coordinates linked to it")
+    _check_coordinates(node.inputs["Vector"])
+    return _mapping_matrix(node)
 
 
-def _check_coordinates(node, socket):
-    if node.bl_idname == "ShaderNodeUVMap":
-        return
-    is_uv = node.bl_idname == "ShaderNodeTexCoord" and (socket is None or output(socket).name == "UV")
-    if not is_uv:
+def _check_coordinates(vector):
+    node = source(vector)
+    is_uv = node.bl_idname == "ShaderNodeTexCoord" and output(vector).name == "UV"
+    if not is_uv and node.bl_idname != "ShaderNodeUVMap":
         raise UnsupportedError(f"the coordinates of '{node.name}' are not texture coordinates")
 
 
