@@ -16,6 +16,7 @@ from .measurement import Measurement
 from .model import Model
 from .observation import Observation
 from .scene import Scene
+from .texture import Texture, TextureSlot
 
 __all__ = [
     "Job",
@@ -26,6 +27,8 @@ __all__ = [
     "Observation",
     "Scene",
     "Status",
+    "Texture",
+    "TextureSlot",
     "VelourError",
     "compare_job",
     "compare_peer_job",
