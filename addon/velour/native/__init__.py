@@ -16,6 +16,7 @@ from .measurement import Measurement
 from .model import Model
 from .observation import Observation
 from .scene import Scene
+from .tile import Tile
 
 __all__ = [
     "Job",
@@ -26,6 +27,7 @@ __all__ = [
     "Observation",
     "Scene",
     "Status",
+    "Tile",
     "VelourError",
     "compare_job",
     "compare_peer_job",
