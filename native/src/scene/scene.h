@@ -35,6 +35,14 @@ struct SurfacePoint {
 
 /// Of a scene that is rendered; those that are only traced need none.
 inline constexpr const char* kNoLightWarning = "The scene has no light.";
+/// What a material that varies over the surface needs beside it. Of a mesh without texture coordinates, or with ones
+/// that are not finite: all zero.
+struct TexturePoint {
+  Vec2 uv{0.0f};
+  /// d uv / d position on the triangle's plane, world space, for any transform of the instance; zero where the triangle
+  /// is too small for float64.
+  Vec3 u_gradient{0.0f}, v_gradient{0.0f};
+};
 
 struct SceneInfo {
   uint64_t triangles = 0;  // over all instances
@@ -80,6 +88,8 @@ class Scene {
 
   const EmbreeScene& rays() const { return *rays_; }
   SurfacePoint surface(const Hit& hit) const;
+  /// Apart from surface(): most materials are uniform.
+  TexturePoint texture(const Hit& hit) const;
 
   const Camera& camera() const { return camera_; }
   const Environment& environment() const { return environment_; }
