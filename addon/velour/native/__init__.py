@@ -17,6 +17,7 @@ from .model import Model
 from .observation import Observation
 from .scene import Scene
 from .texture import Texture, TextureSlot
+from .tile import Tile
 
 __all__ = [
     "Job",
@@ -29,6 +30,7 @@ __all__ = [
     "Status",
     "Texture",
     "TextureSlot",
+    "Tile",
     "VelourError",
     "compare_job",
     "compare_peer_job",

@@ -91,6 +91,21 @@ class MeshDesc(Struct):
     ]
 
 
+class TileOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("count", c_uint32),
+        ("kind", c_char_p),
+        ("size", c_double),
+        ("thickness", c_double),
+        ("gap", c_double),
+        ("irregularity", c_double),
+        ("resolution", c_uint32),
+        ("pad", c_uint32),
+        ("seed", c_uint64),
+    ]
+
+
 class PrincipledDesc(Struct):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -191,6 +206,7 @@ STRUCTS = {
     "vlr_microsurface_options": MicrosurfaceOptions,
     "vlr_mesh_desc": MeshDesc,
     "vlr_principled_desc": PrincipledDesc,
+    "vlr_tile_options": TileOptions,
     "vlr_texture_options": TextureOptions,
     "vlr_principled_textures": PrincipledTextures,
     "vlr_light_desc": LightDesc,
@@ -266,6 +282,11 @@ STATUS_CALLS = {
     "vlr_scene_frame_camera": [_handle, c_float, c_uint32],
     "vlr_scene_commit": [_handle],
     "vlr_scene_info_json": [_handle, _json],
+    "vlr_tile_kinds_json": [_json],
+    "vlr_tile_create": [POINTER(TileOptions), _out_handle],
+    "vlr_tile_desc": [_handle, POINTER(MeshDesc)],
+    "vlr_tile_material": [_handle, c_uint32, POINTER(PrincipledDesc)],
+    "vlr_tile_info_json": [_handle, _json],
     "vlr_render_create_job": [_handle, POINTER(RenderOptions), _out_handle],
     "vlr_job_read_pass": [_handle, c_char_p, _floats, c_uint64],
     "vlr_observation_create": [_out_handle],
@@ -291,8 +312,10 @@ PLAIN_CALLS = {
     "vlr_scene_free": (None, [_handle]),
     "vlr_texture_free": (None, [_handle]),
     "vlr_observation_free": (None, [_handle]),
+    "vlr_tile_free": (None, [_handle]),
     "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
     "vlr_microsurface_options_init": (None, [POINTER(MicrosurfaceOptions)]),
+    "vlr_tile_options_init": (None, [POINTER(TileOptions)]),
     "vlr_principled_desc_init": (None, [POINTER(PrincipledDesc)]),
     "vlr_texture_options_init": (None, [POINTER(TextureOptions)]),
     "vlr_principled_textures_init": (None, [POINTER(PrincipledTextures)]),

@@ -53,6 +53,7 @@ typedef struct vlr_model vlr_model;
 typedef struct vlr_scene vlr_scene;
 typedef struct vlr_texture vlr_texture; /* a picture that stands for a number of a material */
 typedef struct vlr_observation vlr_observation; /* what scenes show of one material */
+typedef struct vlr_tile vlr_tile; /* procedural mesostructure */
 typedef struct vlr_job vlr_job;
 
 /* ---- library ------------------------------------------------------------------------------------------------- */
@@ -344,6 +345,41 @@ typedef struct vlr_principled_textures {
 VLR_API void vlr_principled_textures_init(vlr_principled_textures* textures);
 VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principled_desc* desc,
                                                    const vlr_principled_textures* textures, uint32_t* material);
+
+/* ---- tiles: procedural mesostructure ------------------------------------------------------------------------- */
+
+/* One period of a small structure, repeated without end in x and y: plain weave, twill, net, chain mail, gravel,
+ * corduroy. The cell is [0, period x] x [0, period y], metres, +z up. What crosses its border is there once, whole,
+ * and sticks out; copies moved by the period complete it. The same options give the same arrays.
+ *
+ * The pitch, size / count, is the distance of neighbouring yarns, cords, rings, wales; or, about, of pebbles. */
+typedef struct vlr_tile_options {
+  uint32_t struct_size;
+  uint32_t count;      /* pitches along a side of the cell; 0: the kind's own, as everywhere below */
+  const char* kind;    /* of vlr_tile_kinds_json; "weave" */
+  double size;         /* side of the cell, metres; negative: the kind's own, as everywhere below */
+  double thickness;    /* pitches: height of a yarn, cord or rib, diameter of a wire, depth of a bed of gravel */
+  double gap;          /* pitches: between neighbouring yarns, cords or ribs; kinds without a gap take none but 0 */
+  double irregularity; /* 0..1: how far things shrink, here and there, from their ideal shape */
+  uint32_t resolution; /* points around a yarn, wire, pebble or rib; even. Triangles grow with its square */
+  uint32_t pad;
+  uint64_t seed;
+} vlr_tile_options;
+VLR_API void vlr_tile_options_init(vlr_tile_options* options);
+/* JSON: kinds [{name, summary, defaults {size, count, resolution, thickness, gap, irregularity}}], in the order in which
+ * to show them; the text belongs to the library. */
+VLR_API vlr_status vlr_tile_kinds_json(const char** json);
+VLR_API vlr_status vlr_tile_create(const vlr_tile_options* options, vlr_tile** out);
+VLR_API void vlr_tile_free(vlr_tile* tile);
+/* The mesh, with normals, texture coordinates and slots, ready for vlr_scene_add_mesh; the arrays belong to the handle.
+ * Set desc->struct_size before. */
+VLR_API vlr_status vlr_tile_desc(const vlr_tile* tile, vlr_mesh_desc* desc);
+/* The material that slot `slot` has by default. Colours are linear Rec. 709. Set material->struct_size before. */
+VLR_API vlr_status vlr_tile_material(const vlr_tile* tile, uint32_t slot, vlr_principled_desc* material);
+/* JSON: kind, period [x, y] (metres), heights [lowest, highest] (metres), open (a vertical line through it may meet
+ * nothing), open_area (share of such lines; null: not known in closed form), vertices, triangles, shape (the keys of
+ * defaults, and seed), materials [{name, base_color, metallic, roughness, specular}], one a slot. */
+VLR_API vlr_status vlr_tile_info_json(vlr_tile* tile, const char** json);
 
 /* ---- render -------------------------------------------------------------------------------------------------- */
 

@@ -44,4 +44,18 @@ Options read_options(const Options* given, void (*initialize)(Options*), const c
   return options;
 }
 
+/// Fills a struct of any earlier size that the caller owns and has given its size; `name` as in read_options.
+template <typename Struct>
+void write_struct(const Struct& values, Struct* out, const char* name) {
+  require(out, name);
+  const uint32_t size = out->struct_size;
+  if (size < sizeof(uint32_t) || size > sizeof(Struct)) {
+    throw Error(Status::version_mismatch, std::string(name) + ".struct_size is " + std::to_string(size) +
+                                              ", this library knows " + std::to_string(sizeof(Struct)) +
+                                              "; set it to the struct's size, or update the library.");
+  }
+  std::memcpy(out, &values, size);
+  out->struct_size = size;
+}
+
 }  // namespace velour::capi

@@ -14,6 +14,7 @@
 #include "model/model.h"
 #include "render/film.h"
 #include "scene/scene.h"
+#include "tile/tile.h"
 
 struct vlr_measurement {
   std::shared_ptr<const velour::Measurement> measurement;
@@ -40,6 +41,11 @@ struct vlr_texture {
 /// The observation itself never changes: merging puts another in its place, so that jobs keep what they were given.
 struct vlr_observation {
   std::shared_ptr<const velour::SceneObservation> observation;
+  std::string info;
+};
+
+struct vlr_tile {
+  velour::Tile tile;
   std::string info;
 };
 

@@ -11,6 +11,7 @@
 #include "model/model.h"
 #include "render/report.h"
 #include "scene/scene.h"
+#include "tile/tile.h"
 
 namespace velour::capi {
 
@@ -26,5 +27,8 @@ std::string render_json(const RenderReport& report);
 std::string observation_json(const SceneObservation& observation);
 /// The same of the job that made it, which took `seconds`.
 std::string observe_json(const SceneObservation& observation, double seconds);
+
+std::string tile_json(const Tile& tile);
+std::string tile_kinds_json();
 
 }  // namespace velour::capi

@@ -135,7 +135,7 @@ SceneInfo Scene::count() const {
   if (flat_instances_ > 0) {
     info.warnings.push_back(std::to_string(flat_instances_) + " instances have a zero scale and are left out.");
   }
-  if (environment_.black() && lights_.empty()) info.warnings.push_back("The scene has no light.");
+  if (environment_.black() && lights_.empty()) info.warnings.push_back(kNoLightWarning);
   return info;
 }
 

@@ -1,0 +1,76 @@
+"""Procedural mesostructure."""
+
+from __future__ import annotations
+
+from ctypes import byref
+from typing import NamedTuple
+
+import numpy as np
+
+from . import library, table
+from .handle import Handle, set_fields
+from .scene import Scene
+
+
+class TileMesh(NamedTuple):
+    """The keywords of Scene.add_mesh."""
+
+    positions: np.ndarray
+    triangles: np.ndarray
+    corner_normals: np.ndarray
+    corner_uvs: np.ndarray
+    material_slots: np.ndarray
+
+
+class Tile(Handle):
+    """One period of a small structure. The cell is [0, period x] x [0, period y], metres, +z up.
+
+    What crosses the cell's border is there once and sticks out; copies moved by the period complete it.
+    """
+
+    _free_name = "vlr_tile_free"
+
+    @staticmethod
+    def kinds() -> list[dict]:
+        """name, summary and defaults of each kind."""
+        return library.json_of(library.load().vlr_tile_kinds_json)["kinds"]
+
+    @classmethod
+    def create(cls, kind: str, **shape) -> Tile:
+        """size (metres), count, resolution, thickness, gap (pitches), irregularity (0..1), seed.
+
+        What is not said is the kind's own.
+        """
+        options = table.TileOptions()
+        library.load().vlr_tile_options_init(byref(options))
+        set_fields(options, {"kind": kind.lower().encode(), **shape})
+        return cls._create("vlr_tile_create", byref(options))
+
+    def mesh(self) -> TileMesh:
+        """Copies of the arrays."""
+        desc = table.MeshDesc()
+        self._lib.vlr_tile_desc(self.pointer, byref(desc))
+
+        def array(pointer, *shape):
+            return np.ctypeslib.as_array(pointer, shape).copy()
+
+        return TileMesh(
+            positions=array(desc.positions, desc.vertex_count, 3),
+            triangles=array(desc.triangles, desc.triangle_count, 3),
+            corner_normals=array(desc.corner_normals, desc.triangle_count, 3, 3),
+            corner_uvs=array(desc.corner_uvs, desc.triangle_count, 3, 2),
+            material_slots=array(desc.material_slots, desc.triangle_count),
+        )
+
+    def info(self) -> dict:
+        """kind, period, heights, open, open_area, vertices, triangles, shape, materials."""
+        return library.json_of(self._lib.vlr_tile_info_json, self.pointer)
+
+    def add_to(self, scene: Scene) -> tuple[int, list[int]]:
+        """The numbers of its mesh and of its materials in `scene`. Make instances of it where it shall lie."""
+        mesh, _dropped = scene.add_mesh(**self.mesh()._asdict())
+        materials = [
+            scene.add_principled_material(**{name: m[name] for name in m if name != "name"})
+            for m in self.info()["materials"]
+        ]
+        return mesh, materials

@@ -1,0 +1,31 @@
+// Balls that lie on each other, in a box without sides.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sphere/vec.h"
+
+namespace velour {
+
+struct Ball {
+  Vec3d center;
+  double radius;
+};
+
+struct PackingOptions {
+  double period = 1;  // along x and y; at least four times the largest radius
+  double largest_radius = 0.1;
+  double smallest_radius = 0.05;
+  double volume = 0.1;  // balls are dropped until theirs reaches this
+  uint64_t seed = 0;
+};
+
+/// Balls dropped one by one, each at that of a few hundred random places where it comes to rest lowest; the floor is
+/// z = 0. No two meet, whatever copies of the period they belong to. Centres lie in [0, period).
+std::vector<Ball> pack_balls(const PackingOptions& options);
+
+/// From a to b by the shortest way, across the border where that is shorter.
+Vec3d periodic_difference(const Vec3d& a, const Vec3d& b, double period);
+
+}  // namespace velour
