@@ -48,7 +48,7 @@ def picture(tile: Tile, spp: int) -> np.ndarray:
 
 
 def repeat(tile: Tile, scene: Scene) -> None:
-    """REPEATS x REPEATS copies around the origin. More around them: no edge of the cloth is seen or lights it."""
+    """REPEATS x REPEATS copies around the origin, and more around them: no edge of the cloth is seen."""
     mesh, materials = tile.add_to(scene)
     period = tile.info()["period"]
     for x in range(-2, REPEATS + 2):
