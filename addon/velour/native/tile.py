@@ -32,7 +32,7 @@ class Tile(Handle):
 
     @staticmethod
     def kinds() -> list[dict]:
-        """name, summary and defaults of each kind."""
+        """name, summary and defaults of each kind; a kind has no default of what it does not take."""
         return library.json_of(library.load().vlr_tile_kinds_json)["kinds"]
 
     @classmethod
