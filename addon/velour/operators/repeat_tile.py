@@ -57,19 +57,21 @@ def _holders(owner):
 
 def _take_away(owner):
     """True where there were copies."""
-    repeats, holders = _repeats(owner), _holders(owner)
+    repeats = _repeats(owner)
+    made = {c for empty in repeats for c in empty.users_collection} | set(_holders(owner))
     for empty in repeats:
         bpy.data.objects.remove(empty)
-    for holder in holders:
-        if holder.velour.is_repeat:
-            bpy.data.collections.remove(holder)
+    for collection in made:
+        if collection.velour.is_repeat:
+            bpy.data.collections.remove(collection)
     return bool(repeats)
 
 
 def _show(context, tile):
     holder = _holder(tile.owner)
     to_world = tile.to_tile.inverted().to_3x3()
-    home = context.scene.collection  # not the tile's own collection: copies are no part of it
+    home = _new_collection(f"{tile.owner.name} Repeats")
+    context.scene.collection.children.link(home)
     for x, y in _AROUND:
         empty = bpy.data.objects.new(f"{tile.owner.name} Repeat", None)
         empty.velour.is_repeat = empty.hide_select = True
@@ -82,7 +84,12 @@ def _show(context, tile):
 def _holder(owner):
     if isinstance(owner, bpy.types.Collection):
         return owner
-    holder = bpy.data.collections.new(f"{owner.name} Tile")
-    holder.velour.is_repeat = True
+    holder = _new_collection(f"{owner.name} Tile")
     holder.objects.link(owner)
     return holder
+
+
+def _new_collection(name):
+    collection = bpy.data.collections.new(name)
+    collection.velour.is_repeat = True
+    return collection
