@@ -13,6 +13,13 @@ def rec709_to_working():
     return np.array(columns, np.float64).T
 
 
+def set_working_space(scene):
+    """Tells the library's `scene` in which space its colours are, where that is not Rec. 709."""
+    working = rec709_to_working()
+    if not np.allclose(working, np.eye(3), atol=1e-6):
+        scene.set_working_space(working.astype(np.float32))
+
+
 def is_linear_rec709(space_name):
     """True where a file in this colour space holds linear Rec. 709, and that is also the working space."""
     return space_name in _LINEAR_REC709 and np.allclose(rec709_to_working(), np.eye(3), atol=1e-4)

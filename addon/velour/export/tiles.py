@@ -5,7 +5,19 @@ from typing import NamedTuple
 import bpy
 from mathutils import Matrix, Vector
 
-from .notes import ExportError
+from ..native import Scene
+from .color import set_working_space
+from .materials import MaterialTable
+from .notes import ExportError, Notes
+from .objects import ObjectExport
+from .units import metres_per_unit
+
+
+class TilePlace(NamedTuple):
+    """In the library's scene: metres."""
+
+    origin: tuple[float, float]
+    period: tuple[float, float]
 
 
 class TileSource(NamedTuple):
@@ -43,6 +55,33 @@ def is_of_tile(instance, source):
     """True for a depsgraph instance that is an object of the tile, or that such an object makes."""
     maker = instance.parent if instance.is_instance else instance.object
     return maker is not None and maker.original in source.objects
+
+
+def export_tile(source, depsgraph, approximate=False):
+    """A committed library scene of the tile alone, metres, in its own axes; and where it repeats in it.
+
+    A material that is not rendered as it is, is refused unless `approximate`. Also returns the notes.
+    """
+    notes, material_notes, scene = Notes(), Notes(), Scene()
+    metres = metres_per_unit(depsgraph.scene)
+    try:
+        set_working_space(scene)
+        materials = MaterialTable(scene, material_notes)
+        to_scene = Matrix.Scale(metres, 4) @ source.to_tile
+        export = ObjectExport(scene, materials, notes, lambda: None, to_scene)
+        export.add_geometry(depsgraph, lambda instance: is_of_tile(instance, source))
+        if len(material_notes) and not approximate:
+            sentence = next(iter(material_notes))
+            raise ExportError(f"{sentence} Switch on Approximate to capture it all the same.")
+        scene.commit()
+    except BaseException:
+        scene.close()
+        raise
+    place = TilePlace(
+        origin=(metres * source.origin.x, metres * source.origin.y),
+        period=(metres * source.period[0], metres * source.period[1]),
+    )
+    return scene, place, [*material_notes, *notes]
 
 
 def _tile(owner, objects, to_tile, stretch, depsgraph):
