@@ -54,6 +54,8 @@ def test_sizes_and_offsets_agree_with_the_compiler(compiler, tmp_path):
         ("VLR_PEER_", table.PEERS),
         ("VLR_LIGHT_", table.LIGHTS),
         ("VLR_CAMERA_", table.CAMERAS),
+        ("VLR_WRAP_", table.WRAPS),
+        ("VLR_FILTER_", table.FILTERS),
         ("VLR_STRATEGY_", table.STRATEGIES),
         ("VLR_JOB_", table.JOB_STATES),
     ],

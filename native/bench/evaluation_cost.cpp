@@ -75,7 +75,7 @@ double nanoseconds(const Work& work) {
 /// The calls that a renderer makes, and nothing behind them.
 class FloorMaterial final : public Material {
  public:
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override { point.wv = wv; }
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override { point.wv = wv; }
   void eval(const PreparedBrdf&, const DirectionBatch&, RgbBatch& f, ScalarBatch& pdf) const override {
     used(f);
     used(pdf);

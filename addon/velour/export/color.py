@@ -20,6 +20,11 @@ def set_working_space(scene):
         scene.set_working_space(working.astype(np.float32))
 
 
+def luminance_weights():
+    """[3] float32: luminance of a colour of the working space."""
+    return (np.array((0.2126, 0.7152, 0.0722)) @ np.linalg.inv(rec709_to_working())).astype(np.float32)
+
+
 def is_linear_rec709(space_name):
     """True where a file in this colour space holds linear Rec. 709, and that is also the working space."""
     return space_name in _LINEAR_REC709 and np.allclose(rec709_to_working(), np.eye(3), atol=1e-4)

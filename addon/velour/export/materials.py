@@ -7,6 +7,7 @@ from . import files
 from .nodes import velour_node
 from .notes import ExportError
 from .principled import principled_values
+from .textures import TextureTable
 
 
 class Reduced(NamedTuple):
@@ -31,6 +32,7 @@ class MaterialTable:
         self._notes = notes
         self._strict = strict
         self._numbers = {}
+        self._textures = TextureTable(notes)
         self.reduced = []
 
     def find(self, material):
@@ -53,7 +55,16 @@ class MaterialTable:
                 if self._strict:
                     raise
                 self._notes.add(str(error))
-        return self._scene.add_principled_material(**principled_values(material, self._notes))
+        return self._add_principled(material)
+
+    def _add_principled(self, material):
+        values = principled_values(material, self._notes)
+        owner = f"Material '{material.name}'" if material else ""
+        slots = {
+            name: self._textures.slot(picture, name == "base_color", owner)
+            for name, picture in values.pop("pictures", {}).items()
+        }
+        return self._scene.add_textured_material({n: s for n, s in slots.items() if s}, **values)
 
     def _add_measured(self, material, node):
         settings = node.velour

@@ -18,14 +18,20 @@ def active_output(tree, idname):
     return next((node for node in outputs if node.is_active_output), outputs[0] if outputs else None)
 
 
-def source(socket):
-    """The node at the other end of an input socket, past reroutes; None where it is free or muted."""
+def output(socket):
+    """The output socket that feeds an input socket, past reroutes; None where it is free or muted."""
     while socket.is_linked and socket.links and not socket.links[0].is_muted:
-        node = socket.links[0].from_node
-        if node.bl_idname != "NodeReroute":
-            return node
-        socket = node.inputs[0]
+        link = socket.links[0]
+        if link.from_node.bl_idname != "NodeReroute":
+            return link.from_socket
+        socket = link.from_node.inputs[0]
     return None
+
+
+def source(socket):
+    """The node of that output socket, or None."""
+    found = output(socket)
+    return found.node if found else None
 
 
 def first_input(node, *names):

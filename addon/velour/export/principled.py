@@ -1,5 +1,6 @@
 """The analytic stand-in of materials that are not measured."""
 
+from .image_nodes import UnsupportedError, other_uv_maps, picture_of
 from .nodes import active_output, first_input, source
 
 DEFAULT = {"base_color": (0.8, 0.8, 0.8), "metallic": 0.0, "roughness": 0.5, "specular": 0.5}
@@ -10,7 +11,9 @@ _PRINCIPLED = {
     "metallic": ("Metallic",),
     "roughness": ("Roughness",),
     "specular": ("Specular IOR Level", "Specular"),
+    "alpha": ("Alpha",),
 }
+_TEXTURED = ("base_color", "metallic", "roughness", "alpha")
 # Inputs that Velour does not render, and the value at which that makes no difference.
 _IGNORED = {
     "Subsurface": 0.0,
@@ -29,7 +32,10 @@ _LINK_ONLY = ("Normal", "Clearcoat Normal", "Coat Normal", "Tangent")
 
 
 def principled_values(material, notes):
-    """Keywords of Scene.add_principled_material; says in `notes` what it leaves out."""
+    """Keywords of Scene.add_principled_material, and `pictures`: Pictures in the place of numbers.
+
+    Says in `notes` what it leaves out.
+    """
     if material is None:
         return dict(DEFAULT)
     if not material.use_nodes or material.node_tree is None:
@@ -60,9 +66,13 @@ def _without_nodes(material):
 
 
 def _read_principled(node, owner, notes):
+    inputs = {name: first_input(node, *sockets) for name, sockets in _PRINCIPLED.items()}
+    pictures = _pictures({name: inputs[name] for name in _TEXTURED}, node, owner, notes)
     values = {
-        name: _value(first_input(node, *sockets), node, owner, notes) for name, sockets in _PRINCIPLED.items()
+        name: _own_value(socket) if name in _TEXTURED else _value(socket, node, owner, notes)
+        for name, socket in inputs.items()
     }
+    values["pictures"] = pictures
     emission = first_input(node, "Emission Color", "Emission")
     strength = first_input(node, "Emission Strength")
     color, factor = _value(emission, node, owner, notes), _value(strength, node, owner, notes)
@@ -72,10 +82,11 @@ def _read_principled(node, owner, notes):
 
 
 def _read_diffuse(node, owner, notes):
-    color = _value(node.inputs["Color"], node, owner, notes)
+    color = node.inputs["Color"]
     if node.inputs["Roughness"].default_value > 0:
         notes.add(f"{owner}: node '{node.name}': roughness of a diffuse shader is ignored.")
-    return {"base_color": color, "metallic": 0.0, "roughness": 1.0, "specular": 0.0}
+    values = {"base_color": _own_value(color), "metallic": 0.0, "roughness": 1.0, "specular": 0.0}
+    return {**values, "pictures": _pictures({"base_color": color}, node, owner, notes)}
 
 
 def _read_emission(node, owner, notes):
@@ -92,16 +103,40 @@ _READERS = {
 }
 
 
+def _pictures(sockets, node, owner, notes):
+    """The Picture of each socket to which an image is linked; other links are noted."""
+    found = {}
+    for name, socket in sockets.items():
+        try:
+            picture = picture_of(socket)
+        except UnsupportedError as reason:
+            _note_link(socket, node, owner, notes, f" ({reason})")
+            continue
+        if picture:
+            found[name] = picture
+    if found:
+        for uv_map in other_uv_maps(node.id_data):
+            notes.add(f"{owner}: UV map '{uv_map}' is not the mesh's active one for renders, which is used.")
+    return found
+
+
 def _value(socket, node, owner, notes):
-    """The socket's own value: a number, or three of a colour. What is linked to it is noted."""
-    if socket is None:
-        return 0.0
-    if source(socket):
-        notes.add(
-            f"{owner}: node '{node.name}': the link to '{socket.name}' is ignored; its own value is used."
-        )
-    value = socket.default_value
+    """The socket's own value; what is linked to it is noted."""
+    if socket is not None and source(socket):
+        _note_link(socket, node, owner, notes)
+    return _own_value(socket)
+
+
+def _own_value(socket):
+    """A number, or three of a colour."""
+    value = socket.default_value if socket else 0.0
     return value if isinstance(value, float) else tuple(value[:3])
+
+
+def _note_link(socket, node, owner, notes, reason=""):
+    notes.add(
+        f"{owner}: node '{node.name}': the link to '{socket.name}' is ignored; its own value is used{reason}."
+    )
 
 
 def _note_ignored(node, owner, notes):

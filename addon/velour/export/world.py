@@ -6,10 +6,11 @@ import os
 import numpy as np
 from mathutils import Matrix
 
-from .color import bytes_to_working, is_linear_rec709
+from .color import is_linear_rec709
 from .files import absolute_path
 from .nodes import active_output, source
 from .notes import ExportError
+from .pixels import working_pixels
 
 
 def add_world(scene, world, notes):
@@ -71,21 +72,11 @@ def _can_read_file(image, path):
 
 def _pixels(owner, image, path, notes):
     """[height x width x 3] in the working space, row 0 at the top."""
-    width, height = image.size
-    if width == 0 or height == 0:
+    values = working_pixels(image, notes)
+    if values is None:
         raise ExportError(
             f"{owner}: the image '{image.name}' ({path or 'no file'}) cannot be read; choose another file."
         )
-    values = np.empty(width * height * image.channels, np.float32)
-    image.pixels.foreach_get(values)
-    values = values.reshape(height, width, image.channels)
-    if image.channels < 3:
-        values = np.repeat(values[:, :, :1], 3, axis=2)
-    if not image.is_float:
-        space = image.colorspace_settings.name
-        values, known = bytes_to_working(values, space)
-        if not known:
-            notes.add(f"{owner}: the colour space '{space}' of '{image.name}' is read as sRGB.")
     return np.ascontiguousarray(values[::-1, :, :3])
 
 

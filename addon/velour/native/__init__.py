@@ -16,6 +16,7 @@ from .measurement import Measurement
 from .model import Model
 from .observation import Observation
 from .scene import Scene
+from .texture import Texture, TextureSlot
 from .tile import Tile
 
 __all__ = [
@@ -27,6 +28,8 @@ __all__ = [
     "Observation",
     "Scene",
     "Status",
+    "Texture",
+    "TextureSlot",
     "Tile",
     "VelourError",
     "compare_job",

@@ -17,6 +17,7 @@ from .errors import refuse
 from .handle import Handle, choice, path_bytes, set_fields
 from .measurement import Measurement
 from .model import Model
+from .texture import TextureSlot
 
 _COLORS = {"base_color": 3, "emission": 3, "color": 3, "size": 2, "window": 4}
 
@@ -105,9 +106,20 @@ class Scene(Handle):
         )
 
     def add_principled_material(self, **values) -> int:
-        """base_color [3], metallic, roughness (alpha: its square), specular: 0..1; emission [3]: radiance."""
+        """base_color [3], metallic, roughness (alpha of GGX: its square), specular: 0..1.
+
+        emission [3]: radiance; alpha: 0..1, the share of the surface that is there, which renders take for 1.
+        """
+        return self.add_textured_material({}, **values)
+
+    def add_textured_material(self, textures: dict[str, TextureSlot], **values) -> int:
+        """As add_principled_material; textures of base_color, metallic, roughness, alpha go before values."""
         desc = self._desc(table.PrincipledDesc, "vlr_principled_desc_init", values)
-        return self._numbered("vlr_scene_add_principled_material", byref(desc))
+        pictures = table.PrincipledTextures()
+        self._lib.vlr_principled_textures_init(byref(pictures))
+        for name, slot in textures.items():
+            set_fields(pictures, {name: slot.texture.pointer, f"{name}_map": small("uv_map", slot.uv_map, 6)})
+        return self._numbered("vlr_scene_add_textured_material", byref(desc), byref(pictures))
 
     # ---- light
 

@@ -18,6 +18,8 @@ LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
 SEQUENCES = ("random", "sobol")
+WRAPS = ("repeat", "extend", "clip", "mirror")
+FILTERS = ("closest", "linear")
 STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product")
 
 
@@ -112,6 +114,32 @@ class PrincipledDesc(Struct):
         ("roughness", c_float),
         ("specular", c_float),
         ("emission", c_float * 3),
+        ("alpha", c_float),
+    ]
+
+
+class TextureOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("wrap", c_int32),
+        ("filter", c_int32),
+        ("channel", c_int32),
+        ("raw", c_int32),
+    ]
+
+
+class PrincipledTextures(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("pad", c_uint32),
+        ("base_color", c_void_p),
+        ("metallic", c_void_p),
+        ("roughness", c_void_p),
+        ("alpha", c_void_p),
+        ("base_color_map", c_float * 6),
+        ("metallic_map", c_float * 6),
+        ("roughness_map", c_float * 6),
+        ("alpha_map", c_float * 6),
     ]
 
 
@@ -179,6 +207,8 @@ STRUCTS = {
     "vlr_mesh_desc": MeshDesc,
     "vlr_principled_desc": PrincipledDesc,
     "vlr_tile_options": TileOptions,
+    "vlr_texture_options": TextureOptions,
+    "vlr_principled_textures": PrincipledTextures,
     "vlr_light_desc": LightDesc,
     "vlr_camera_desc": CameraDesc,
     "vlr_render_options": RenderOptions,
@@ -227,6 +257,21 @@ STATUS_CALLS = {
     "vlr_scene_set_model_material": [_handle, c_uint32, _handle, c_uint32],
     "vlr_scene_add_measurement_material": [_handle, _handle, _handle, c_uint32, _number],
     "vlr_scene_add_principled_material": [_handle, POINTER(PrincipledDesc), _number],
+    "vlr_texture_create": [
+        c_uint32,
+        c_uint32,
+        c_uint32,
+        _floats,
+        POINTER(TextureOptions),
+        _out_handle,
+    ],
+    "vlr_texture_load": [c_char_p, POINTER(TextureOptions), _out_handle],
+    "vlr_scene_add_textured_material": [
+        _handle,
+        POINTER(PrincipledDesc),
+        POINTER(PrincipledTextures),
+        _number,
+    ],
     "vlr_scene_add_instance": [_handle, c_uint32, _floats, _number, c_uint32],
     "vlr_scene_add_light": [_handle, POINTER(LightDesc)],
     "vlr_scene_set_world_color": [_handle, _floats],
@@ -265,12 +310,15 @@ PLAIN_CALLS = {
     "vlr_model_free": (None, [_handle]),
     "vlr_job_free": (None, [_handle]),
     "vlr_scene_free": (None, [_handle]),
+    "vlr_texture_free": (None, [_handle]),
     "vlr_observation_free": (None, [_handle]),
     "vlr_tile_free": (None, [_handle]),
     "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
     "vlr_microsurface_options_init": (None, [POINTER(MicrosurfaceOptions)]),
     "vlr_tile_options_init": (None, [POINTER(TileOptions)]),
     "vlr_principled_desc_init": (None, [POINTER(PrincipledDesc)]),
+    "vlr_texture_options_init": (None, [POINTER(TextureOptions)]),
+    "vlr_principled_textures_init": (None, [POINTER(PrincipledTextures)]),
     "vlr_light_desc_init": (None, [POINTER(LightDesc)]),
     "vlr_camera_desc_init": (None, [POINTER(CameraDesc)]),
     "vlr_render_options_init": (None, [POINTER(RenderOptions)]),

@@ -51,6 +51,7 @@ enum {
 typedef struct vlr_measurement vlr_measurement;
 typedef struct vlr_model vlr_model;
 typedef struct vlr_scene vlr_scene;
+typedef struct vlr_texture vlr_texture; /* a picture that stands for a number of a material */
 typedef struct vlr_observation vlr_observation; /* what scenes show of one material */
 typedef struct vlr_tile vlr_tile; /* procedural mesostructure */
 typedef struct vlr_job vlr_job;
@@ -253,6 +254,7 @@ typedef struct vlr_principled_desc {
   float roughness;     /* 0..1, Principled's: alpha = roughness^2 */
   float specular;      /* Principled's 0..1, 0.5 = index 1.5 */
   float emission[3];   /* radiance, working space */
+  float alpha;         /* 0..1: the share of the surface that is there; renders take it for 1 */
 } vlr_principled_desc;
 VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
 VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,
@@ -303,6 +305,46 @@ VLR_API vlr_status vlr_scene_frame_camera(vlr_scene* scene, float aspect, uint32
 VLR_API vlr_status vlr_scene_commit(vlr_scene* scene);
 /* JSON: triangles, instances, lights, materials, bytes, bvh_seconds, warnings. */
 VLR_API vlr_status vlr_scene_info_json(vlr_scene* scene, const char** json);
+
+/* ---- textures ------------------------------------------------------------------------------------------------ */
+
+enum { VLR_WRAP_REPEAT = 0, VLR_WRAP_EXTEND = 1, VLR_WRAP_CLIP = 2, VLR_WRAP_MIRROR = 3 };
+enum { VLR_FILTER_CLOSEST = 0, VLR_FILTER_LINEAR = 1 };
+
+typedef struct vlr_texture_options {
+  uint32_t struct_size;
+  int32_t wrap;    /* VLR_WRAP_*: beyond the picture it is repeated, its border goes on, it is 0, it is mirrored */
+  int32_t filter;  /* VLR_FILTER_*: between texels that are seen large; small ones are averaged either way */
+  int32_t channel; /* -1: a colour, of the first three channels (of one or two: the first); else this one, a number */
+  int32_t raw;     /* vlr_texture_load: 1: integer values are numbers from 0 to 1; 0: they are sRGB colours */
+} vlr_texture_options;
+VLR_API void vlr_texture_options_init(vlr_texture_options* options);
+/* Texture coordinates (0, 0) are the lower left corner of the picture, (1, 1) the upper right. `pixels` [height x width
+ * x channels], row 0 at the bottom: linear, colours in the working space; they are copied, and what is not finite
+ * counts as 0. */
+VLR_API vlr_status vlr_texture_create(uint32_t width, uint32_t height, uint32_t channels, const float* pixels,
+                                      const vlr_texture_options* options, vlr_texture** out);
+/* From an image file, whose colours are taken as they are, whatever the working space. */
+VLR_API vlr_status vlr_texture_load(const char* path, const vlr_texture_options* options, vlr_texture** out);
+VLR_API void vlr_texture_free(vlr_texture* texture);
+
+/* Each may be NULL: the number of the vlr_principled_desc holds. A map [2 x 3, row-major] takes (u, v, 1) of the surface
+ * to the picture's coordinates. */
+typedef struct vlr_principled_textures {
+  uint32_t struct_size;
+  uint32_t pad;
+  const vlr_texture* base_color; /* a colour */
+  const vlr_texture* metallic;   /* numbers: these three */
+  const vlr_texture* roughness;
+  const vlr_texture* alpha;
+  float base_color_map[6];
+  float metallic_map[6];
+  float roughness_map[6];
+  float alpha_map[6];
+} vlr_principled_textures;
+VLR_API void vlr_principled_textures_init(vlr_principled_textures* textures);
+VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principled_desc* desc,
+                                                   const vlr_principled_textures* textures, uint32_t* material);
 
 /* ---- tiles: procedural mesostructure ------------------------------------------------------------------------- */
 
@@ -404,7 +446,8 @@ VLR_API vlr_status vlr_observation_info_json(vlr_observation* observation, const
 
 typedef struct vlr_observe_options {
   uint32_t struct_size;
-  uint32_t width, height; /* of the picture: their ratio shapes the grid of about 65,536 camera rays */
+  uint32_t width, height; /* of the picture: their ratio shapes the grid of about 65,536 camera rays,
+                           * their number what of a varying material one stands for */
   uint32_t bounces;       /* as of the render */
   uint32_t threads;       /* 0: all */
   uint32_t pad;

@@ -11,6 +11,7 @@
 #include "brdf/measurement.h"
 #include "btf/half_floats.h"
 #include "btf/pair_layout.h"
+#include "btf/value_counts.h"
 
 namespace velour {
 
@@ -58,6 +59,9 @@ class BtfMeasurement {
   /// Nothing where it was not captured.
   virtual std::optional<ViewStructure> read_structure(uint32_t /*view*/) const { return std::nullopt; }
 
+  /// Of all values, where they were counted when the set was made; elsewhere they are counted in a sample of pairs.
+  virtual std::optional<ValueCounts> all_counts() const { return std::nullopt; }
+
   /// Whatever else the source knows, as (key, value) pairs for `info`.
   virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
 
@@ -69,6 +73,9 @@ class BtfMeasurement {
   uint64_t raw_bytes() const { return layout().pairs() * grid().texels() * 3 * sizeof(HalfBits); }
 
  protected:
+  /// Throws Error(invalid_argument) unless these pairs are there.
+  void check_range(uint64_t first, uint64_t count) const;
+
   std::optional<PairLayout> layout_;
   TexelGrid grid_;
   std::optional<Shell> shell_;

@@ -10,6 +10,7 @@
 #include "brdf/measurement.h"
 #include "domain/observation.h"
 #include "job/job.h"
+#include "material/texture.h"
 #include "model/model.h"
 #include "render/film.h"
 #include "scene/scene.h"
@@ -29,6 +30,12 @@ struct vlr_model {
 struct vlr_scene {
   std::shared_ptr<velour::Scene> scene;
   std::string info;
+};
+
+/// One of them.
+struct vlr_texture {
+  std::shared_ptr<const velour::Texture<velour::Rgb>> color;
+  std::shared_ptr<const velour::Texture<float>> number;
 };
 
 /// The observation itself never changes: merging puts another in its place, so that jobs keep what they were given.

@@ -6,7 +6,7 @@
 #include "capi/handles.h"
 #include "capi/reports.h"
 #include "fit/scattered_fit.h"
-#include "material/principled_material.h"
+#include "material/principled_lobes.h"
 #include "model/model_material.h"
 #include "scene/obj_file.h"
 
@@ -153,21 +153,11 @@ void vlr_principled_desc_init(vlr_principled_desc* desc) {
   desc->metallic = defaults.metallic;
   desc->roughness = defaults.roughness;
   desc->specular = defaults.specular;
+  desc->alpha = 1.0f;
 }
 
 vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc, uint32_t* material) {
-  return guard([&] {
-    require(scene, "scene");
-    require(material, "material");
-    const auto given = read_options(desc, vlr_principled_desc_init, "vlr_principled_desc");
-    const PrincipledParameters parameters{.base_color = color_from(given.base_color),
-                                          .metallic = given.metallic,
-                                          .roughness = given.roughness,
-                                          .specular = given.specular};
-    *material = scene->scene->add_material({.material = make_principled_material(parameters),
-                                            .emission = color_from(given.emission),
-                                            .rec709_colors = false});
-  });
+  return vlr_scene_add_textured_material(scene, desc, nullptr, material);
 }
 
 vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,

@@ -37,7 +37,7 @@ void add(std::vector<double>& to, const std::vector<double>& from, double sign) 
 struct Path {
   Vec3 wv;        // where it began
   Vec3 arriving;  // unit, from the current point back along the path
-  SurfacePoint at;
+  FacetPoint at;
   bool met_base;
   Rgb weight;  // flux towards the light per unit of flux that arrives along wv
 };
@@ -63,7 +63,7 @@ class TileRun {
   void sample(uint64_t index) {
     RandomStream random(options_.seed, stream_, index);
     sums_.samples += 1.0;
-    const SurfacePoint start = tile_.point_above(random.next2());
+    const FacetPoint start = tile_.point_above(random.next2());
     const Vec2 u = random.next2();
     const Vec3 wv = direction(0.5f * kPi * u.x, 2.0f * kPi * u.y);
     const float cosine = glm::dot(start.normal, wv);

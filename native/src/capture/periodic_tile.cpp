@@ -71,13 +71,13 @@ Vec2 PeriodicTile::slope(int facet) const {
   return {along_x, along_y / static_cast<float>(field_.cell_y)};
 }
 
-SurfacePoint PeriodicTile::surface_point(int facet, const Vec3& position) const {
+FacetPoint PeriodicTile::surface_point(int facet, const Vec3& position) const {
   const Vec2 s = slope(facet);
   const Vec3 normal = glm::normalize(Vec3(-s.x, -s.y, 1.0f));
   return {position + lift_ * normal, normal, is_base(facet)};
 }
 
-SurfacePoint PeriodicTile::point_above(const Vec2& u) const {
+FacetPoint PeriodicTile::point_above(const Vec2& u) const {
   const auto cells = static_cast<float>(field_.cells);
   const Vec2 at = u * cells;
   const int x = std::min(static_cast<int>(at.x), field_.cells - 1);
@@ -101,7 +101,7 @@ bool PeriodicTile::enter_next_period(Ray& ray) const {
   return true;
 }
 
-Fate PeriodicTile::trace(const Vec3& origin, const Vec3& direction, SurfacePoint& hit) const {
+Fate PeriodicTile::trace(const Vec3& origin, const Vec3& direction, FacetPoint& hit) const {
   Ray ray{origin, 0.0f, direction};
   for (int period = 0; period < kMaxPeriods; ++period) {
     Hit found;

@@ -10,7 +10,7 @@
 namespace velour {
 
 /// A point just above the surface: rays that leave it upwards of its facet cannot meet the facet again.
-struct SurfacePoint {
+struct FacetPoint {
   Vec3 position{0, 0, 0};
   Vec3 normal{0, 0, 1};  // of the flat facet, unit, z > 0
   bool base = false;     // diffuse base instead of metal
@@ -30,11 +30,11 @@ class PeriodicTile {
   bool is_base(int facet) const { return !base_cells_.empty() && base_cells_[static_cast<size_t>(facet / 2)] != 0; }
 
   /// The surface above a point of the mean plane; u uniform in [0, 1)^2 makes it uniform over that plane's area.
-  SurfacePoint point_above(const Vec2& u) const;
+  FacetPoint point_above(const Vec2& u) const;
 
   /// First meeting with the surface. `lost` are rays that run below it through rounding, or so flat that they cross
   /// kMaxPeriods periods without a meeting.
-  Fate trace(const Vec3& origin, const Vec3& direction, SurfacePoint& hit) const;
+  Fate trace(const Vec3& origin, const Vec3& direction, FacetPoint& hit) const;
   /// True when the ray meets nothing (and is not lost).
   bool escapes(const Vec3& origin, const Vec3& direction) const;
 
@@ -42,7 +42,7 @@ class PeriodicTile {
 
  private:
   bool enter_next_period(Ray& ray) const;
-  SurfacePoint surface_point(int facet, const Vec3& position) const;
+  FacetPoint surface_point(int facet, const Vec3& position) const;
 
   HeightField field_;
   std::vector<uint8_t> base_cells_;

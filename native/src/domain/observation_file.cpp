@@ -6,15 +6,15 @@
 #include <limits>
 
 #include "domain/hash_text.h"
-#include "domain/observation_fields.h"
 #include "file/base64.h"
 #include "file/file.h"
+#include "file/json_fields.h"
 #include "job/error.h"
 
 namespace velour {
 namespace {
 
-using Json = ObservationFields::Json;
+using Json = JsonFields::Json;
 
 static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
 
@@ -49,7 +49,7 @@ Json hits_json(const std::vector<ObservedHit>& hits) {
           {"terms", base64_of(terms)}};
 }
 
-SceneDomain read_domain(const ObservationFields& fields) {
+SceneDomain read_domain(const JsonFields& fields) {
   SceneDomain domain;
   std::ranges::copy(fields.numbers("view", SceneDomain::kViewBins), domain.view.begin());
   if (!std::isfinite(domain.weight())) fields.fail("view", "a list of numbers of a finite sum");
@@ -65,7 +65,7 @@ SceneDomain read_domain(const ObservationFields& fields) {
 bool is_above_horizon(const Vec3& w) { return w.z > 0.0f && std::abs(glm::length(w) - 1.0f) < 1e-3f; }
 
 /// Gives each hit the terms that follow those of the hit before.
-void read_term_counts(const ObservationFields& fields, uint64_t total, std::vector<ObservedHit>& hits) {
+void read_term_counts(const JsonFields& fields, uint64_t total, std::vector<ObservedHit>& hits) {
   const auto counts = fields.values<uint32_t>("terms", 2 * hits.size());
   uint64_t next = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
@@ -80,7 +80,7 @@ void read_term_counts(const ObservationFields& fields, uint64_t total, std::vect
   }
 }
 
-std::vector<ObservedHit> read_hits(const ObservationFields& fields, uint64_t terms) {
+std::vector<ObservedHit> read_hits(const JsonFields& fields, uint64_t terms) {
   std::vector<ObservedHit> hits(fields.whole("count", SceneObservation::kHits));
   const auto key = fields.values<uint64_t>("key", hits.size());
   const auto wv = fields.values<Vec3>("wv", hits.size());
@@ -98,7 +98,7 @@ std::vector<ObservedHit> read_hits(const ObservationFields& fields, uint64_t ter
 /// A channel may be negative: a colour outside the working space.
 bool is_finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); }
 
-void read_terms(const ObservationFields& fields, uint64_t count, SceneObservation& observation) {
+void read_terms(const JsonFields& fields, uint64_t count, SceneObservation& observation) {
   observation.wl = fields.values<Vec3>("wl", count);
   observation.light = fields.values<Rgb>("light", count);
   if (!std::ranges::all_of(observation.wl, is_above_horizon)) fields.fail("wl", "unit directions above the horizon");
@@ -114,7 +114,7 @@ Json parsed(std::span<const uint8_t> bytes, const std::string& name) {
   return json;
 }
 
-void check_version(const ObservationFields& fields, const std::string& name) {
+void check_version(const JsonFields& fields, const std::string& name) {
   const uint64_t version = fields.whole("version", std::numeric_limits<uint64_t>::max());
   if (version == kVersion) return;
   throw Error(Status::version_mismatch, name + ": is an observation of format version " + std::to_string(version) +
@@ -143,11 +143,12 @@ std::string encode_observation(const SceneObservation& observation) {
 
 SceneObservation decode_observation(std::span<const uint8_t> bytes, const std::string& name) {
   const Json json = parsed(bytes, name);
-  const ObservationFields fields(json, name);
+  const JsonSource source{name, "the file is damaged, observe the scene anew."};
+  const JsonFields fields(json, source);
   check_version(fields, name);
   SceneObservation observation;
   observation.domain = read_domain(fields);
-  const ObservationFields terms = fields.object("terms");
+  const JsonFields terms = fields.object("terms");
   const uint64_t count = terms.whole("count", kMostTerms);
   observation.hits = read_hits(fields.object("hits"), count);
   read_terms(terms, count, observation);

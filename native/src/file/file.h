@@ -14,11 +14,13 @@ std::vector<uint8_t> read_file(const std::string& path, uint64_t limit = uint64_
 /// The first `count` bytes (fewer when the file is shorter).
 std::vector<uint8_t> read_file_head(const std::string& path, size_t count);
 
-/// Writes beside `path` under a temporary name, flushes and renames: a killed process leaves the old file or the new
-/// one.
+/// A killed process leaves the old file or the new one (file/atomic_file.h).
 void write_file(const std::string& path, std::span<const uint8_t> bytes);
 
 /// Lower-case hex SHA-256.
 std::string sha256_hex(std::span<const uint8_t> bytes);
+
+/// The same of a file's bytes, a megabyte at a time.
+std::string sha256_of_file(const std::string& path);
 
 }  // namespace velour

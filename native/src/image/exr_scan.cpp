@@ -162,25 +162,44 @@ bool read_version(ByteReader& in) {
   return (version & kMultiPart) != 0;
 }
 
+struct ScannedHeaders {
+  bool multi_part = false;
+  std::vector<ExrPart> parts;
+  std::vector<PartLayout> layouts;
+};
+
+ScannedHeaders read_headers(ByteReader& in) {
+  ScannedHeaders scanned{read_version(in), {}, {}};
+  while (true) {
+    std::string field = in.text(255, "attribute name");
+    if (field.empty()) break;  // an empty header ends the list of a multi-part file
+    if (scanned.parts.size() == kMaxParts) throw Error(Status::bad_data, in.name() + ": has more than 4096 parts.");
+    ExrPart& part = scanned.parts.emplace_back();
+    PartLayout& layout = scanned.layouts.emplace_back();
+    for (; !field.empty(); field = in.text(255, "attribute name")) read_attribute(in, field, part, layout);
+    check_part(in, part, layout);
+    part.compressed = layout.compression != 0;
+    if (!scanned.multi_part) break;
+  }
+  return scanned;
+}
+
 }  // namespace
 
 std::vector<ExrPart> scan_exr(std::span<const uint8_t> bytes, const std::string& name) {
   ByteReader in(bytes, name);
-  const bool multi_part = read_version(in);
-  std::vector<ExrPart> parts;
-  std::vector<PartLayout> layouts;
-  while (true) {
-    std::string field = in.text(255, "attribute name");
-    if (field.empty()) break;  // an empty header ends the list of a multi-part file
-    if (parts.size() == kMaxParts) throw Error(Status::bad_data, name + ": has more than 4096 parts.");
-    ExrPart& part = parts.emplace_back();
-    PartLayout& layout = layouts.emplace_back();
-    for (; !field.empty(); field = in.text(255, "attribute name")) read_attribute(in, field, part, layout);
-    check_part(in, part, layout);
-    if (!multi_part) break;
+  ScannedHeaders scanned = read_headers(in);
+  for (size_t i = 0; i < scanned.parts.size(); ++i) {
+    check_chunks(in, scanned.parts[i], scanned.layouts[i], scanned.multi_part);
   }
-  for (size_t i = 0; i < parts.size(); ++i) check_chunks(in, parts[i], layouts[i], multi_part);
-  return parts;
+  return std::move(scanned.parts);
+}
+
+ExrHeaders scan_exr_headers(std::span<const uint8_t> head, const std::string& name) {
+  ByteReader in(head, name);
+  ScannedHeaders scanned = read_headers(in);
+  if (!scanned.multi_part) throw Error(Status::bad_data, name + ": is not an OpenEXR file of several parts.");
+  return {std::move(scanned.parts), in.position()};
 }
 
 }  // namespace velour

@@ -19,6 +19,7 @@ struct ExrPart {
   uint64_t width = 0, height = 0;
   std::vector<std::string> channels;  // full resolution, in file order
   uint64_t value_bytes = 4;           // of all channels: 4 (float) or 2 (half)
+  bool compressed = false;
 
   uint64_t value_count() const { return width * height * channels.size(); }
   uint64_t row_bytes() const { return width * channels.size() * value_bytes; }
@@ -26,5 +27,13 @@ struct ExrPart {
 
 /// Throws Error(bad_data, unsupported) with `name`, the part and the field at fault.
 std::vector<ExrPart> scan_exr(std::span<const uint8_t> bytes, const std::string& name);
+
+struct ExrHeaders {
+  std::vector<ExrPart> parts;
+  uint64_t bytes = 0;  // where they end and the chunk tables begin
+};
+
+/// The headers of a multi-part file alone: `head` is its beginning and must hold them whole. Nothing is said of chunks.
+ExrHeaders scan_exr_headers(std::span<const uint8_t> head, const std::string& name);
 
 }  // namespace velour

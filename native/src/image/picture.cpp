@@ -108,7 +108,7 @@ void write_png(const std::string& path, const Picture& picture) {
 
 Picture read_picture_header(const std::string& path) { return picture_of(open_picture(path)->spec()); }
 
-Picture read_picture(const std::string& path) {
+Picture read_picture(const std::string& path, IntegerValues integers) {
   const auto input = open_picture(path);
   const OIIO::ImageSpec spec = input->spec();
   Picture picture = picture_of(spec);
@@ -117,7 +117,7 @@ Picture read_picture(const std::string& path) {
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.pixels.data()))
     throw Error(Status::bad_data, input_error(path, input->geterror()));
   flip_rows(picture);
-  if (!spec.format.is_floating_point()) make_linear(picture, spec.alpha_channel);
+  if (integers == IntegerValues::srgb && !spec.format.is_floating_point()) make_linear(picture, spec.alpha_channel);
   return picture;
 }
 

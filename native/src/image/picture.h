@@ -17,9 +17,11 @@ struct Picture {
   }
 };
 
-/// Any format OpenImageIO knows; integer formats are taken as sRGB and made linear. Throws Error with the file's name.
-/// Dimensions are checked against the file's size before anything is allocated.
-Picture read_picture(const std::string& path);
+/// What the values of integer formats are: sRGB colours, which are made linear, or numbers from 0 to 1.
+enum class IntegerValues { srgb, raw };
+/// Any format OpenImageIO knows. Throws Error with the file's name. Dimensions are checked against the file's size
+/// before anything is allocated.
+Picture read_picture(const std::string& path, IntegerValues integers = IntegerValues::srgb);
 /// Width, height, channels without the pixels.
 Picture read_picture_header(const std::string& path);
 

@@ -9,7 +9,9 @@ class GgxMaterial final : public Material {
  public:
   explicit GgxMaterial(const GgxParameters& parameters) : parameters_(parameters), sampler_(parameters) {}
 
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override { sampler_.prepare(point.wv = wv, point.ggx); }
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
+    sampler_.prepare(point.wv = wv, point.ggx);
+  }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     for (int i = 0; i < wl.count; ++i) {

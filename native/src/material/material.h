@@ -5,6 +5,8 @@
 #include <span>
 
 #include "material/ggx_sampler.h"
+#include "material/principled_lobes.h"
+#include "material/surface_site.h"
 #include "sphere/direction_batch.h"
 #include "srbf/lobe_mixture.h"
 #include "srbf/lobe_products.h"
@@ -15,12 +17,13 @@ namespace velour {
 /// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it
 /// needs; the struct is scratch memory of the thread, reused from hit to hit.
 struct PreparedBrdf {
-  Vec3 wv;               // local, unit, wv.z > 0
-  LobeMixture lobes;     // SRBF materials: the value
-  LobeMixture draws;     // materials that sample lobes: what they draw from, and its density
-  WarpedMixture warped;  // parametric models: value and density
-  float parameter[8];    // analytic materials: what they derive from wv
-  GgxPoint ggx;          // of the fitted GGX lobe, where one is the material or draws its samples
+  Vec3 wv;                     // local, unit, wv.z > 0
+  LobeMixture lobes;           // SRBF materials: the value
+  LobeMixture draws;           // materials that sample lobes: what they draw from, and its density
+  WarpedMixture warped;        // parametric models: value and density
+  float parameter[8];          // analytic materials: what they derive from wv
+  GgxPoint ggx;                // of the fitted GGX lobe, where one is the material or draws its samples
+  PrincipledLobes principled;  // textured Principled materials: those of the site
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.
@@ -29,7 +32,16 @@ class Material {
   virtual ~Material() = default;
 
   /// Must be called before the others with this `point`; `wv.z > 0`.
-  virtual void prepare(const Vec3& wv, PreparedBrdf& point) const = 0;
+  virtual void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const = 0;
+  /// The same averaged over the whole surface: all there is of a uniform material.
+  void prepare(const Vec3& wv, PreparedBrdf& point) const { prepare(wv, SurfaceSite::everywhere(), point); }
+
+  /// False for a uniform material: it does not look at the site, and whoever asks need not find it out.
+  virtual bool varies() const { return false; }
+
+  /// The share of `site` that is there, in [0, 1]; through the rest one sees what lies behind. f is that of what is
+  /// there.
+  virtual float alpha(const SurfaceSite& /*site*/) const { return 1.0f; }
 
   /// f in 1/sr without cosine (0 at and below the horizon, never negative, never NaN) and the density of `sample`, per
   /// solid angle, of each direction of the batch. The batch is padded.

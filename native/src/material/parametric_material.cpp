@@ -11,7 +11,7 @@ class ParametricMaterial : public Material {
  public:
   explicit ParametricMaterial(const ParametricBrdf& brdf) : values_(brdf), draws_(values_), table_(values_, draws_) {}
 
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override {
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
     point.wv = wv;
     evaluate(wv, point.warped);
   }

@@ -46,6 +46,16 @@ PrincipledLobes PrincipledLobes::with(const PrincipledParameters& p) const {
   return other;
 }
 
+void PrincipledLobes::blend(const PrincipledParameters& parameters, const PrincipledLobes& a, const PrincipledLobes& b,
+                            float share) {
+  parameters_ = within_ranges(parameters);
+  eta_ = a.eta_;
+  f0_ = a.f0_;
+  dielectric_ = SpecularAlbedo::between(a.dielectric_, b.dielectric_, share);
+  coat_ = a.coat_;
+  top_ = SpecularAlbedo::between(a.top_, b.top_, share);
+}
+
 void PrincipledLobes::make_tables(bool dielectric, bool coat) {
   if (dielectric) dielectric_ = {alpha(), [this](float cosine) { return dielectric_fresnel(cosine, eta_); }};
   if (coat) {

@@ -29,9 +29,15 @@ inline constexpr float kMinRoughness = 0.0316227766f;
 /// Immutable, thread-safe.
 class PrincipledLobes {
  public:
+  /// Black, to be set.
+  PrincipledLobes() = default;
   explicit PrincipledLobes(const PrincipledParameters& parameters);
   /// The same for other parameters; tables of albedos are made anew only where they differ.
   PrincipledLobes with(const PrincipledParameters& parameters) const;
+
+  /// Those of `parameters`, which differ from those of `a` and `b` in base colour, metallic and roughness only; the
+  /// albedos are (1 - share) of a's and share of b's.
+  void blend(const PrincipledParameters& parameters, const PrincipledLobes& a, const PrincipledLobes& b, float share);
 
   /// What the view decides. `wv.z > 0`.
   struct View {
@@ -64,6 +70,8 @@ class PrincipledLobes {
   Vec2 coat_alpha() const { return Vec2(parameters_.coat_roughness * parameters_.coat_roughness); }
   /// Albedo of the coat alone; what passes it is 1 minus that.
   float coat_albedo(float cosine) const { return parameters_.coat * coat_.at(cosine); }
+  /// Of the dielectric under the coat.
+  float dielectric_albedo(const View& view) const { return view.through * dielectric_.at(view.wv.z); }
   /// Luminance of the reflectance of metal and dielectric at a microfacet.
   float fresnel_luminance(float cosine) const;
 
@@ -73,7 +81,7 @@ class PrincipledLobes {
   void make_tables(bool dielectric, bool coat);
 
   PrincipledParameters parameters_;
-  float eta_, f0_;                          // of the dielectric
+  float eta_ = 1, f0_ = 0;                  // of the dielectric
   SpecularAlbedo dielectric_, coat_, top_;  // top_: coat and dielectric together
 };
 

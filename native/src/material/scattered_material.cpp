@@ -31,7 +31,7 @@ class ScatteredMaterial final : public LobeSampledMaterial {
  public:
   using LobeSampledMaterial::LobeSampledMaterial;
 
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override {
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
     const ScatteredLobes::Placement placed = lobes_.place(wv);
     point.wv = wv;
     lobes_.gather(placed, point.lobes);
@@ -59,7 +59,7 @@ class MeasuredMaterial final : public LobeSampledMaterial {
   MeasuredMaterial(std::shared_ptr<const Measurement> measurement, const ScatteredBrdf& proposal, int neighbors)
       : LobeSampledMaterial(proposal, neighbors), measurement_(std::move(measurement)) {}
 
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override {
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
     point.wv = wv;
     lobes_.gather_draws(lobes_.place(wv), point.draws);
   }

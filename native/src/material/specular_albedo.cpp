@@ -50,6 +50,13 @@ SpecularAlbedo SpecularAlbedo::layered(const SpecularAlbedo& above, float weight
   return both;
 }
 
+SpecularAlbedo SpecularAlbedo::between(const SpecularAlbedo& a, const SpecularAlbedo& b, float share) {
+  SpecularAlbedo mixed;
+  for (size_t i = 0; i < kEntries; ++i) mixed.albedo_[i] = (1 - share) * a.albedo_[i] + share * b.albedo_[i];
+  mixed.mean_ = (1 - share) * a.mean_ + share * b.mean_;
+  return mixed;
+}
+
 float SpecularAlbedo::integrated() const {
   double mean = 0;
   for (int i = 0; i + 1 < kEntries; ++i) {  // mu = s^2: 4 int albedo s^3 ds, a quartic on each piece

@@ -20,6 +20,9 @@ class SpecularAlbedo {
   /// Of `below` under a layer `above` that is there with `weight` in [0, 1]: all but what both let through.
   static SpecularAlbedo layered(const SpecularAlbedo& above, float weight, const SpecularAlbedo& below);
 
+  /// (1 - share) a + share b, its mean with it.
+  static SpecularAlbedo between(const SpecularAlbedo& a, const SpecularAlbedo& b, float share);
+
   float at(float cosine) const;
   /// 2 int albedo(mu) mu dmu of this interpolant.
   float mean() const { return mean_; }

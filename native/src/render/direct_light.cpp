@@ -26,7 +26,7 @@ void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shado
 
 void DirectLight::prepare(const Receiver& receiver, Work& work) {
   const Vertex& vertex = receiver.vertex;
-  vertex.surface->material->prepare(vertex.wv, work.prepared);
+  vertex.surface->material->prepare(vertex.wv, vertex.site, work.prepared);
   prepare_surface(sampling_, vertex, work.prepared);
   work.shares = shares_at(vertex, work);
   PathNumbers& numbers = *receiver.numbers;

@@ -17,7 +17,7 @@ HitLight HitLightEstimator::estimate(const Vertex& vertex, int bounces, uint64_t
   result_ = {};
   concentrations_.clear();
   irradiance_ = 0;
-  vertex.surface->material->prepare(vertex.wv, prepared_);
+  vertex.surface->material->prepare(vertex.wv, vertex.site, prepared_);
   estimate_half(vertex, bounces, key, 0);
   result_.middle = static_cast<uint32_t>(result_.wl.size());
   estimate_half(vertex, bounces, key, 1);
@@ -33,7 +33,7 @@ void HitLightEstimator::estimate_half(const Vertex& vertex, int bounces, uint64_
     weigh(vertex, n);
     trace(vertex);
     add_lights();
-    if (bounces > 0) add_surfaces(bounces, key, half);
+    if (bounces > 0) add_surfaces(vertex.cone, bounces, key, half);
     for (int i = 0; i < world_.count; ++i) add_term(local_.get(i), weight_[i] * radiance_[i]);
   }
   add_sharp(vertex, numbers);
@@ -107,7 +107,7 @@ void HitLightEstimator::add_lights() {
   for (int i = 0; i < world_.count; ++i) note_density(light_pdf_.v[i], weight_[i] * radiance_[i]);
 }
 
-void HitLightEstimator::add_surfaces(int bounces, uint64_t key, int half) {
+void HitLightEstimator::add_surfaces(const RayCone& cone, int bounces, uint64_t key, int half) {
   IndirectLight& indirect = indirect_[half];
   int direction[DirectionBatch::kCapacity];
   indirect.clear();
@@ -116,7 +116,7 @@ void HitLightEstimator::add_surfaces(int bounces, uint64_t key, int half) {
     PathNumbers numbers(options_[half], key, static_cast<uint32_t>(i));
     numbers.next_vertex();
     direction[indirect.samples().size()] = i;
-    indirect.add(rays_[i], hits_[i], numbers);
+    indirect.add(rays_[i], cone, hits_[i], numbers);
   }
   indirect.resolve(bounces);
   for (size_t k = 0; k < indirect.samples().size(); ++k) radiance_[direction[k]] += indirect.samples()[k].radiance;

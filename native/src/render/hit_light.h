@@ -43,7 +43,7 @@ class HitLightEstimator {
   void weigh(const Vertex& vertex, Counts counts);
   void trace(const Vertex& vertex);
   void add_lights();
-  void add_surfaces(int bounces, uint64_t key, int half);
+  void add_surfaces(const RayCone& cone, int bounces, uint64_t key, int half);
   void add_sharp(const Vertex& vertex, PathNumbers& numbers);
   void add_term(const Vec3& wl, const Rgb& light);
   /// Luminance of the light of lamps and environment, by Lighting's density.

@@ -15,8 +15,8 @@ void IndirectLight::clear() {
   samples_.clear();
 }
 
-void IndirectLight::add(const Ray& ray, const Hit& hit, const PathNumbers& numbers) {
-  paths_.push_back({numbers, Rgb(1.0f), static_cast<uint32_t>(samples_.size())});
+void IndirectLight::add(const Ray& ray, const RayCone& cone, const Hit& hit, const PathNumbers& numbers) {
+  paths_.push_back({numbers, Rgb(1.0f), static_cast<uint32_t>(samples_.size()), cone});
   rays_.push_back(ray);
   hits_.push_back(hit);
   samples_.emplace_back();
@@ -38,9 +38,7 @@ void IndirectLight::meet_surfaces() {
   for (size_t i = 0; i < paths_.size(); ++i) {
     if (hits_[i].instance == kNoHit) continue;
     Path& path = paths_[i];
-    const SurfacePoint point = scene_.surface(hits_[i]);
-    Vertex vertex(point, -rays_[i].direction);
-    vertex.surface = &scene_.materials()[point.material];
+    const Vertex vertex(scene_, scene_.surface(hits_[i]), rays_[i], hits_[i], path.cone, nullptr);
     samples_[path.sample].radiance += path.throughput * vertex.surface->emission;
     receivers_.push_back({vertex, &path.numbers, path.throughput, path.sample, kDirections, kDirections});
   }
@@ -58,7 +56,7 @@ void IndirectLight::gather(bool go_on) {
       const auto onward = light_.extend(batch[k], k);
       if (!onward) continue;
       batch[k].numbers->next_vertex();
-      next_.push_back({*batch[k].numbers, onward->throughput, batch[k].sample});
+      next_.push_back({*batch[k].numbers, onward->throughput, batch[k].sample, batch[k].vertex.cone});
       next_rays_.push_back(onward->ray);
     }
   }

@@ -15,9 +15,9 @@ class IndirectLight {
       : scene_(scene), light_(scene, lighting, options, nullptr) {}
 
   void clear();
-  /// A ray that met a surface; its radiance will be number `radiance().size()` so far. `numbers`: those of that
-  /// surface.
-  void add(const Ray& ray, const Hit& hit, const PathNumbers& numbers);
+  /// A ray that met a surface, `cone` at its origin; its radiance will be number `radiance().size()` so far. `numbers`:
+  /// those of that surface.
+  void add(const Ray& ray, const RayCone& cone, const Hit& hit, const PathNumbers& numbers);
   /// Follows all paths over up to `surfaces` surfaces, one path a ray.
   void resolve(int surfaces);
   /// Of the rays, in the order of add().
@@ -28,6 +28,7 @@ class IndirectLight {
     PathNumbers numbers;
     Rgb throughput;
     uint32_t sample;
+    RayCone cone;  // at the origin of its ray
   };
   void meet_surfaces();
   void gather(bool go_on);

@@ -28,11 +28,9 @@ double RayLog::replay(const EmbreeScene& scene) const {
   const Ray* next = rays_.data();
   for (const Batch& batch : batches_) {
     const std::span<const Ray> rays(next, batch.count);
-    if (batch.kind == Kind::nearest) {
-      scene.intersect(rays, hits.data());
-    } else {
-      scene.occluded(rays, blocked.data());
-    }
+    if (batch.kind == Kind::nearest) scene.intersect(rays, hits.data());
+    if (batch.kind == Kind::occlusion) scene.occluded(rays, blocked.data());
+    if (batch.kind == Kind::coherent_occlusion) scene.occluded_coherent(rays, blocked.data());
     next += batch.count;
   }
   return thread_seconds() - start;

@@ -13,7 +13,7 @@ double thread_seconds();
 
 class RayLog {
  public:
-  enum class Kind { nearest, occlusion };
+  enum class Kind { nearest, occlusion, coherent_occlusion };
 
   void reserve(size_t rays) { rays_.reserve(rays); }
   void add(std::span<const Ray> rays, Kind kind);

@@ -40,6 +40,8 @@ CameraGrid grid_of(const ObserverOptions& options) {
 /// The render whose paths are followed; `stream` tells independent ones apart.
 RenderOptions render_options(const ObserverOptions& options, uint64_t stream) {
   RenderOptions render;
+  render.width = options.width;
+  render.height = options.height;
   render.bounces = options.bounces;
   render.seed = mix64(mix64(options.seed) + stream);
   return render;

@@ -8,7 +8,7 @@
 namespace velour {
 
 struct ObserverOptions {
-  int width = 640, height = 480;  // of the picture, 1..65536; their ratio alone matters
+  int width = 640, height = 480;  // of the picture, 1..65536; uniform materials see their ratio alone
   int bounces = 0;                // of its render, 0..1024
   int threads = 0;                // 0: all
   uint64_t seed = 0;

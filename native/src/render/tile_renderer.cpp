@@ -15,7 +15,9 @@ constexpr int kIndirectDirections = 2;
 }  // namespace
 
 TileRenderer::TileRenderer(const RenderContext& context)
-    : context_(context), light_(context.scene, context.lighting, context.options, context.sky.get()) {}
+    : context_(context),
+      pixel_(context.scene.camera(), context.options.width, context.options.height, context.camera_rays()),
+      light_(context.scene, context.lighting, context.options, context.sky.get()) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
                           const Progress& progress) {
@@ -58,7 +60,7 @@ void TileRenderer::start_paths(const PixelRect& run, int first, int count) {
     const uint64_t pixel = static_cast<uint64_t>(run.y0) * static_cast<uint64_t>(o.width) + static_cast<uint64_t>(x);
     for (int index = first; index < first + count; ++index) {
       paths_.push_back(
-          {PathNumbers(o, pixel, static_cast<uint32_t>(index)), Rgb(1.0f), static_cast<uint32_t>(samples_.size())});
+          {PathNumbers(o, pixel, static_cast<uint32_t>(index)), Rgb(1.0f), static_cast<uint32_t>(samples_.size()), {}});
       samples_.emplace_back().directions = context_.directions(index);
     }
   }
@@ -80,6 +82,7 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
     const auto places = points.points(0, points.count());
     for (size_t i = first; i < end; ++i) {
       rays_.push_back(context_.scene.camera().ray((pixel_of(i) + places[i - first]) / size));
+      paths_[i].cone = pixel_.cone(rays_.back().direction);
     }
   }
 }
@@ -94,15 +97,13 @@ void TileRenderer::trace(RayLog* log) {
 void TileRenderer::follow(size_t index, int depth) {
   Path& path = paths_[index];
   const Hit& hit = hits_[index];
-  const Vec3& direction = rays_[index].direction;
   CameraSample& sample = samples_[path.sample];
   if (hit.instance == kNoHit) {
-    if (depth == 0) missed_.push_back({path.sample, direction});
+    if (depth == 0) missed_.push_back({path.sample, rays_[index].direction});
     return;
   }
   const SurfacePoint point = context_.scene.surface(hit);
-  Vertex vertex(point, -direction);
-  vertex.surface = &context_.scene.materials()[point.material];
+  Vertex vertex(context_.scene, point, rays_[index], hit, path.cone, depth == 0 ? &pixel_ : nullptr);
   if (!context_.tables.empty()) vertex.table = context_.tables[point.material].get();
   if (!context_.ggx.empty()) vertex.ggx = context_.ggx[point.material].get();
   if (depth == 0) {
@@ -131,7 +132,7 @@ void TileRenderer::extend(const Receiver& receiver, size_t place) {
   const auto onward = light_.extend(receiver, place);
   if (!onward) return;
   receiver.numbers->next_vertex();
-  next_.push_back({*receiver.numbers, onward->throughput, receiver.sample});
+  next_.push_back({*receiver.numbers, onward->throughput, receiver.sample, receiver.vertex.cone});
   next_rays_.push_back(onward->ray);
 }
 

@@ -44,6 +44,7 @@ class TileRenderer {
     PathNumbers numbers;
     Rgb throughput;
     uint32_t sample;
+    RayCone cone;  // at the origin of its ray
   };
   void start_paths(const PixelRect& run, int first, int count);
   void aim_paths(const PixelRect& run, int count);
@@ -55,6 +56,7 @@ class TileRenderer {
   void render_run(const PixelRect& run, int first, int count, PixelSum* sums, RayLog* log);
 
   const RenderContext& context_;
+  const PixelFootprint pixel_;
   DirectLight light_;
   ShadowQueue shadows_;
   std::vector<Path> paths_, next_;

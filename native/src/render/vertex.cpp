@@ -1,5 +1,7 @@
 #include "render/vertex.h"
 
+#include "material/material.h"
+
 namespace velour {
 namespace {
 
@@ -28,6 +30,27 @@ Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world)
   if (cosine < kLeastCosine) normal = glm::normalize(normal + (kLeastCosine - cosine) * wv_world);
   frame = frame_along(normal, point.tangent);
   wv = frame.to_local(wv_world);
+}
+
+Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const Ray& ray, const Hit& hit,
+               const RayCone& cone_at_origin, const PixelFootprint* pixel)
+    : Vertex(point, -ray.direction) {
+  surface = &scene.materials()[point.material];
+  cone = cone_at_origin.at(hit.distance);
+  if (!surface->material->varies()) return;
+  find_site(point, scene.texture(hit), ray.direction,
+            pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction));
+}
+
+void Vertex::find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction,
+                       const RaySides& sides) {
+  site.uv = texture.uv;
+  site.footprint = texture_footprint(sides, direction, geometric_normal, texture);
+  site.back = glm::dot(point.geometric_normal, direction) > 0.0f;
+  if (glm::dot(texture.v_gradient, frame.y) < 0.0f) {
+    frame.y = -frame.y;
+    wv.y = -wv.y;
+  }
 }
 
 }  // namespace velour

@@ -1,6 +1,7 @@
 // A point of a path, ready to be shaded.
 #pragma once
 
+#include "render/footprint.h"
 #include "scene/scene.h"
 #include "sphere/frame.h"
 
@@ -13,6 +14,10 @@ class TableSampler;
 /// leaves the viewer below the shading horizon, the shading normal is bent towards the viewer until wv.z is
 /// kLeastCosine: continuous, no division by zero, no black rim. Light from below the geometric surface counts as
 /// nothing.
+///
+/// The frame is right-handed: a measured swatch can be turned, not mirrored. Where the material varies, +y is the side
+/// to which the second texture coordinate grows, so that a picture of a surface that is mapped mirrored, or seen from
+/// behind, is lit as it looks; the frame then may be left-handed.
 struct Vertex {
   static constexpr float kLeastCosine = 0.01f;
 
@@ -24,13 +29,22 @@ struct Vertex {
   const SurfaceMaterial* surface;
   const TableSampler* table;  // null unless the strategy needs it
   const GgxSampler* ggx;      // the same
+  RayCone cone;               // of the ray that came here, and of the one that goes on
+  SurfaceSite site;           // as good as empty where the material is uniform
 
   /// `wv_world`: unit, towards the viewer.
   Vertex(const SurfacePoint& point, const Vec3& wv_world);
+  /// The same with its surface and, where that varies, its site; `cone` at the origin of `ray`. `pixel`: of a camera
+  /// ray, null of others.
+  Vertex(const Scene& scene, const SurfacePoint& point, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
+         const PixelFootprint* pixel);
 
   Ray ray(const Vec3& direction_world, float far) const {
     return {position + offset * geometric_normal, 0.0f, direction_world, far};
   }
+
+ private:
+  void find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
 };
 
 }  // namespace velour

@@ -32,17 +32,17 @@ void ViewTracer::start(uint64_t first, uint64_t end) {
   rays_.clear();
   const Vec2 size(static_cast<float>(grid_.width), static_cast<float>(grid_.height));
   for (uint64_t cell = first; cell < end; ++cell) {
-    paths_.push_back({PathNumbers(options_, cell, 0), Rgb(1.0f), cell});
+    paths_.push_back({PathNumbers(options_, cell, 0), Rgb(1.0f), cell, {}});
     const Vec2 corner(static_cast<float>(cell % grid_.width), static_cast<float>(cell / grid_.width));
     rays_.push_back(scene_.camera().ray((corner + paths_.back().numbers.point(Purpose::camera)) / size));
+    paths_.back().cone = pixel_.cone(rays_.back().direction);
   }
 }
 
 void ViewTracer::meet(size_t path, int depth, ViewHistogram& view) {
   if (hits_[path].instance == kNoHit) return;
   const SurfacePoint point = scene_.surface(hits_[path]);
-  Vertex vertex(point, -rays_[path].direction);
-  vertex.surface = &scene_.materials()[point.material];
+  const Vertex vertex(scene_, point, rays_[path], hits_[path], paths_[path].cone, depth == 0 ? &pixel_ : nullptr);
   if (vertex.surface == &material_) see(vertex, paths_[path], depth, view);
   if (depth < options_.bounces) go_on(vertex, paths_[path]);
 }
@@ -59,12 +59,12 @@ void ViewTracer::see(const Vertex& vertex, const Path& path, int depth, ViewHist
 
 void ViewTracer::go_on(const Vertex& vertex, const Path& path) {
   PathNumbers numbers = path.numbers;
-  vertex.surface->material->prepare(vertex.wv, prepared_);
+  vertex.surface->material->prepare(vertex.wv, vertex.site, prepared_);
   const auto onward = draw_onward(vertex, prepared_, SurfaceSampling::material, scene_.rec709_to_working(),
                                   path.throughput, numbers.point(Purpose::onward));
   if (!onward || !std::isfinite(luminance(onward->throughput))) return;
   numbers.next_vertex();
-  next_.push_back({numbers, onward->throughput, path.cell});
+  next_.push_back({numbers, onward->throughput, path.cell, vertex.cone});
   next_rays_.push_back(onward->ray);
 }
 

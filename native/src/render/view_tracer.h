@@ -27,10 +27,15 @@ using ViewHistogram = decltype(SceneDomain::view);
 /// One a thread.
 class ViewTracer {
  public:
-  /// Paths are those of a render with `options`. `draws`: how many hits to draw.
+  /// Paths are those of a render with `options`, one camera ray a pixel. `draws`: how many hits to draw.
   ViewTracer(const Scene& scene, const SurfaceMaterial& material, const CameraGrid& grid, const RenderOptions& options,
              size_t draws)
-      : scene_(scene), material_(material), grid_(grid), options_(options), draws_(draws) {}
+      : scene_(scene),
+        material_(material),
+        grid_(grid),
+        options_(options),
+        pixel_(scene.camera(), options.width, options.height, 1),
+        draws_(draws) {}
 
   /// Follows the camera rays of cells [first, end) and adds the weights of their hits to `view`.
   void follow(uint64_t first, uint64_t end, ViewHistogram& view);
@@ -43,6 +48,7 @@ class ViewTracer {
     PathNumbers numbers;
     Rgb throughput;
     uint64_t cell;
+    RayCone cone;  // at the origin of its ray
   };
   void start(uint64_t first, uint64_t end);
   void meet(size_t path, int depth, ViewHistogram& view);
@@ -53,6 +59,7 @@ class ViewTracer {
   const SurfaceMaterial& material_;
   const CameraGrid& grid_;
   const RenderOptions& options_;
+  const PixelFootprint pixel_;
   DrawByWeight<SeenHit> draws_;
   std::vector<Path> paths_, next_;
   std::vector<Ray> rays_, next_rays_;  // of the paths

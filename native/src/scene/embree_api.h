@@ -55,6 +55,7 @@ struct EmbreeApi {
   void occluded(RTCScene scene, RTCRay* rays, unsigned count) const {
     for (unsigned i = 0; i < count; ++i) rtcOccluded1(scene, rays + i, nullptr);
   }
+  void occluded_coherent(RTCScene scene, RTCRay* rays, unsigned count) const { occluded(scene, rays, count); }
 #else
   struct Context : RTCIntersectContext {
     Context() { rtcInitIntersectContext(this); }
@@ -65,6 +66,15 @@ struct EmbreeApi {
   }
   void occluded(RTCScene scene, RTCRay* rays, unsigned count) const {
     Context context;
+    rtcOccluded1M(scene, &context, rays, count, sizeof(RTCRay));
+  }
+  // Parallel rays from places near each other, whose packets follow one path through the hierarchy. Over a tile of 32
+  // thousand triangles repeated by instances: 20 to 30 million a second from neighbouring texels' first hits, where the
+  // other stream makes 7 and rtcOccluded16 with this flag 20 to 29 (without it, 3.13.5 never returns from a scene of
+  // instances); 10 to 11 from hits of the next bounce in the order of their places, against 5.5.
+  void occluded_coherent(RTCScene scene, RTCRay* rays, unsigned count) const {
+    Context context;
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcOccluded1M(scene, &context, rays, count, sizeof(RTCRay));
   }
 #endif

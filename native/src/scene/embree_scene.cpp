@@ -177,14 +177,30 @@ bool EmbreeScene::occluded(const Ray& ray) const {
   return blocked != 0;
 }
 
-void EmbreeScene::occluded(std::span<const Ray> rays, uint8_t* blocked) const {
+namespace {
+
+/// `trace` gets a batch of Embree's own rays.
+template <typename Trace>
+void occluded_by_batches(std::span<const Ray> rays, uint8_t* blocked, const Trace& trace) {
   RTCRay query[kBatch];
   for (size_t done = 0; done < rays.size(); done += kBatch) {
     const size_t count = std::min(kBatch, rays.size() - done);
     for (size_t i = 0; i < count; ++i) to_embree(rays[done + i], query[i]);
-    impl_->api.occluded(impl_->traced, query, static_cast<unsigned>(count));
+    trace(query, static_cast<unsigned>(count));
     for (size_t i = 0; i < count; ++i) blocked[done + i] = query[i].tfar < 0.0f;
   }
+}
+
+}  // namespace
+
+void EmbreeScene::occluded(std::span<const Ray> rays, uint8_t* blocked) const {
+  occluded_by_batches(rays, blocked,
+                      [&](RTCRay* query, unsigned count) { impl_->api.occluded(impl_->traced, query, count); });
+}
+
+void EmbreeScene::occluded_coherent(std::span<const Ray> rays, uint8_t* blocked) const {
+  occluded_by_batches(
+      rays, blocked, [&](RTCRay* query, unsigned count) { impl_->api.occluded_coherent(impl_->traced, query, count); });
 }
 
 void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits) const {

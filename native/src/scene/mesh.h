@@ -31,6 +31,10 @@ class Mesh {
   /// How many triangles of the input were left out.
   uint32_t dropped() const { return dropped_; }
   bool has_uvs() const { return !uvs_.empty(); }
+  /// Only with has_uvs().
+  std::span<const Vec2, 3> corner_uvs(uint32_t triangle) const {
+    return std::span<const Vec2, 3>(&uvs_[3 * static_cast<size_t>(triangle)], 3);
+  }
 
   /// At barycentric weights (u, v) of corners 1 and 2. Object space; not normalised.
   Vec3 position(uint32_t triangle, const Vec2& uv) const;

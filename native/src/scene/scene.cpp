@@ -135,8 +135,31 @@ SceneInfo Scene::count() const {
   if (flat_instances_ > 0) {
     info.warnings.push_back(std::to_string(flat_instances_) + " instances have a zero scale and are left out.");
   }
-  if (environment_.black() && lights_.empty()) info.warnings.push_back("The scene has no light.");
+  if (environment_.black() && lights_.empty()) info.warnings.push_back(kNoLightWarning);
   return info;
+}
+
+TexturePoint Scene::texture(const Hit& hit) const {
+  const Instance& instance = instances_[hit.instance];
+  const Mesh& mesh = meshes_[instance.mesh];
+  if (!mesh.has_uvs()) return {};
+  const glm::uvec3& corner = mesh.triangles()[hit.triangle];
+  const std::span<const Vec2, 3> uv = mesh.corner_uvs(hit.triangle);
+  const auto edge = [&](int k) {
+    return Vec3d(instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]));
+  };
+  // The gradients have the products uv[k] - uv[0] with the edges: a sum of the edges' dual vectors.
+  const Vec3d e1 = edge(1), e2 = edge(2), normal = glm::cross(e1, e2);
+  const double square = glm::dot(normal, normal);
+  if (!(square > 0.0)) return {};
+  const Vec3d dual1 = glm::cross(e2, normal) / square, dual2 = glm::cross(normal, e1) / square;
+  const Vec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
+  const auto gradient = [&](int i) {
+    return Vec3(static_cast<double>(d1[i]) * dual1 + static_cast<double>(d2[i]) * dual2);
+  };
+  const TexturePoint point{uv[0] + hit.u * d1 + hit.v * d2, gradient(0), gradient(1)};
+  const float sum = glm::dot(point.uv, Vec2(1.0f)) + glm::dot(point.u_gradient + point.v_gradient, Vec3(1.0f));
+  return std::isfinite(sum) ? point : TexturePoint{};
 }
 
 SurfacePoint Scene::surface(const Hit& hit) const {

@@ -33,6 +33,17 @@ struct SurfacePoint {
   uint32_t material;
 };
 
+/// Of a scene that is rendered; those that are only traced need none.
+inline constexpr const char* kNoLightWarning = "The scene has no light.";
+/// What a material that varies over the surface needs beside it. Of a mesh without texture coordinates, or with ones
+/// that are not finite: all zero.
+struct TexturePoint {
+  Vec2 uv{0.0f};
+  /// d uv / d position on the triangle's plane, world space, for any transform of the instance; zero where the triangle
+  /// is too small for float64.
+  Vec3 u_gradient{0.0f}, v_gradient{0.0f};
+};
+
 struct SceneInfo {
   uint64_t triangles = 0;  // over all instances
   uint64_t instances = 0, meshes = 0, lights = 0, materials = 0;
@@ -65,8 +76,20 @@ class Scene {
   void commit(int threads = 0);
   bool committed() const { return rays_ != nullptr; }
 
+  struct Instance {
+    uint32_t mesh;
+    Affine object_to_world;
+    Mat3 normal_to_world;
+    std::vector<uint32_t> materials;
+  };
+  const std::vector<Mesh>& meshes() const { return meshes_; }
+  /// Hit::instance counts these.
+  const std::vector<Instance>& instances() const { return instances_; }
+
   const EmbreeScene& rays() const { return *rays_; }
   SurfacePoint surface(const Hit& hit) const;
+  /// Apart from surface(): most materials are uniform.
+  TexturePoint texture(const Hit& hit) const;
 
   const Camera& camera() const { return camera_; }
   const Environment& environment() const { return environment_; }
@@ -79,12 +102,6 @@ class Scene {
   const SceneInfo& info() const { return info_; }
 
  private:
-  struct Instance {
-    uint32_t mesh;
-    Affine object_to_world;
-    Mat3 normal_to_world;
-    std::vector<uint32_t> materials;
-  };
   void changed();
   Bounds bounds_of_instances() const;
   SceneInfo count() const;

@@ -11,7 +11,8 @@ namespace velour {
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
 using Vec3d = glm::dvec3;
-using Mat3 = glm::mat3;  // column-major, as GLM
+using Mat2 = glm::mat2;  // column-major, as GLM
+using Mat3 = glm::mat3;  // the same
 using Rgb = glm::vec3;   // linear Rec. 709 unless stated
 
 inline constexpr float kPi = 3.14159265358979323846f;

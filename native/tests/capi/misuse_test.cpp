@@ -30,6 +30,9 @@ TEST(Misuse, NullArgumentsAreNamed) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_commit(nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_render_create_job(nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_fit_create_job(nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_texture_create(1, 1, 1, nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_texture_load(nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_add_textured_material(nullptr, nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_create(nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_tile_kinds_json(nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_tile_create(nullptr, nullptr));
@@ -48,6 +51,7 @@ TEST(Misuse, FreeingNothingIsFine) {
   vlr_measurement_free(nullptr);
   vlr_model_free(nullptr);
   vlr_scene_free(nullptr);
+  vlr_texture_free(nullptr);
   vlr_observation_free(nullptr);
   vlr_tile_free(nullptr);
   vlr_job_free(nullptr);

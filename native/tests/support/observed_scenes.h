@@ -15,7 +15,9 @@ class ScaledGrey final : public Material {
  public:
   ScaledGrey(std::shared_ptr<const Material> material, float factor)
       : material_(std::move(material)), factor_(factor) {}
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override { material_->prepare(wv, point); }
+  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
+    material_->prepare(wv, site, point);
+  }
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     material_->eval(point, wl, f, pdf);
     for (int i = 0; i < wl.count; ++i) f.set(i, Rgb(factor_ * luminance(f.get(i))));

@@ -17,7 +17,7 @@ namespace velour::test {
 class Lambert : public Material {
  public:
   explicit Lambert(float albedo) : albedo_(albedo) {}
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override { point.wv = wv; }
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override { point.wv = wv; }
   void eval(const PreparedBrdf&, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     for (int i = 0; i < wl.count; ++i) {
       f.set(i, Rgb(wl.z[i] > 0 ? albedo_ / kPi : 0.0f));

@@ -46,12 +46,12 @@ TEST(PeriodicTile, TracesAsTheSameSurfaceRepeatedWould) {
     constexpr int rays = 20'000;
     for (uint64_t i = 0; i < rays; ++i) {
       RandomStream random(6, 7, i);
-      const SurfacePoint start = tile.point_above(random.next2());
+      const FacetPoint start = tile.point_above(random.next2());
       // Up to 84 degrees from the normal, so that the copy's edge is out of reach.
       const Vec3 w = direction(1.47f * random.next(), 2 * kPi * random.next());
       const bool expected = !scene.occluded({start.position, 0, w});
       const bool seen = tile.escapes(start.position, w);
-      SurfacePoint hit;
+      FacetPoint hit;
       EXPECT_EQ(tile.trace(start.position, w, hit) == Fate::escaped, seen);
       disagree += seen != expected;
       blocked += !seen;
@@ -65,15 +65,15 @@ TEST(PeriodicTile, HitsLieJustAboveTheFacetTheyName) {
   const PeriodicTile tile(rough(2.0), {});
   for (uint64_t i = 0; i < 5000; ++i) {
     RandomStream random(8, 9, i);
-    const SurfacePoint start = tile.point_above(random.next2());
+    const FacetPoint start = tile.point_above(random.next2());
     const Vec3 down = -direction(1.5f * random.next(), 2 * kPi * random.next());
-    SurfacePoint hit;
+    FacetPoint hit;
     const Vec3 far_above = start.position + Vec3(0, 0, 50);
     ASSERT_EQ(tile.trace(far_above, down, hit), Fate::hit);
     EXPECT_GT(glm::dot(hit.normal, -down), -1e-5f);
     EXPECT_GT(hit.normal.z, 0.0f);
     EXPECT_TRUE(tile.escapes(hit.position, {0, 0, 1}));
-    SurfacePoint again;  // straight down from just above the surface: the same place
+    FacetPoint again;  // straight down from just above the surface: the same place
     ASSERT_EQ(tile.trace(hit.position, {0, 0, -1}, again), Fate::hit);
     EXPECT_NEAR(again.position.z, hit.position.z, 1e-3);
   }
@@ -82,8 +82,8 @@ TEST(PeriodicTile, HitsLieJustAboveTheFacetTheyName) {
 TEST(PeriodicTile, PointsAboveAgreeWithVerticalRays) {
   const PeriodicTile tile(rough(1.0), {});
   for (uint64_t i = 0; i < 2000; ++i) {
-    const SurfacePoint point = tile.point_above(RandomStream(1, 1, i).next2());
-    SurfacePoint hit;
+    const FacetPoint point = tile.point_above(RandomStream(1, 1, i).next2());
+    FacetPoint hit;
     ASSERT_EQ(tile.trace(point.position + Vec3(0, 0, 20), {0, 0, -1}, hit), Fate::hit);
     EXPECT_NEAR(hit.position.z, point.position.z, 2e-3);
   }
@@ -91,10 +91,10 @@ TEST(PeriodicTile, PointsAboveAgreeWithVerticalRays) {
 
 TEST(PeriodicTile, AFlatSurfaceHidesNothing) {
   const PeriodicTile tile(HeightField{kCells, 1.0, std::vector<float>(kCells * kCells, 0.0f)}, {});
-  const SurfacePoint point = tile.point_above({0.3f, 0.9f});
+  const FacetPoint point = tile.point_above({0.3f, 0.9f});
   EXPECT_EQ(point.normal, Vec3(0, 0, 1));
   EXPECT_TRUE(tile.escapes(point.position, glm::normalize(Vec3(1, 0.3f, 1e-3f))));
-  SurfacePoint hit;
+  FacetPoint hit;
   EXPECT_EQ(tile.trace(point.position, glm::normalize(Vec3(1, 0.3f, -1e-3f)), hit), Fate::hit);
   EXPECT_EQ(tile.trace({1, 1, -1}, {0, 0, -1}, hit), Fate::lost);  // below the surface
 }

@@ -17,7 +17,7 @@ using test::AnalyticMeasurement;
 class FormulaMaterial : public Material {
  public:
   explicit FormulaMaterial(AnalyticMeasurement::Formula f) : f_(std::move(f)) {}
-  void prepare(const Vec3& wv, PreparedBrdf& point) const override { point.wv = wv; }
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override { point.wv = wv; }
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     for (int i = 0; i < wl.count; ++i) f.set(i, f_({wl.get(i), point.wv})), pdf.v[i] = 0;
   }

@@ -1,22 +1,32 @@
-// Fields of an observation's JSON, each checked as it is read. Internal to domain/.
+// Fields of a JSON file, each checked as it is read.
 #pragma once
 
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 namespace velour {
 
+/// Where fields come from and what to do about a bad one: "the file is damaged, observe the scene anew."
+struct JsonSource {
+  std::string name;  // the file's
+  std::string remedy;
+};
+
 /// Reads the members of one JSON object. What is not as it should be throws Error(bad_data) with file and field.
-class ObservationFields {
+class JsonFields {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// `name`: the file's; `path`: the object's place within it, "" or "hits.".
-  ObservationFields(const Json& json, std::string name, std::string path = {});
+  /// `path`: the object's place within the file, "" or "hits.". Both arguments must outlive this.
+  JsonFields(const Json& json, const JsonSource& source, std::string path = {});
 
-  ObservationFields object(const char* key) const;
+  const Json& at(const char* key) const;
+  bool has(const char* key) const { return json_.contains(key); }
+  JsonFields object(const char* key) const;
   std::string text(const char* key) const;
+  bool flag(const char* key) const;
   uint64_t whole(const char* key, uint64_t most) const;
   /// At least 0, finite.
   double number(const char* key) const;
@@ -36,12 +46,12 @@ class ObservationFields {
   [[noreturn]] void fail(const std::string& key, const std::string& wanted) const;
 
  private:
-  const Json& at(const char* key) const;
   double number_of(const Json& json, const char* key) const;
   std::vector<uint8_t> bytes(const char* key, uint64_t count) const;
 
   const Json& json_;
-  std::string name_, path_;
+  const JsonSource& source_;
+  std::string path_;
 };
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-#include "domain/observation_fields.h"
+#include "file/json_fields.h"
 
 #include <cmath>
 #include <limits>
@@ -8,33 +8,38 @@
 
 namespace velour {
 
-ObservationFields::ObservationFields(const Json& json, std::string name, std::string path)
-    : json_(json), name_(std::move(name)), path_(std::move(path)) {}
+JsonFields::JsonFields(const Json& json, const JsonSource& source, std::string path)
+    : json_(json), source_(source), path_(std::move(path)) {}
 
-void ObservationFields::fail(const std::string& key, const std::string& wanted) const {
-  throw Error(Status::bad_data,
-              name_ + ": '" + path_ + key + "' is not " + wanted + "; the file is damaged, observe the scene anew.");
+void JsonFields::fail(const std::string& key, const std::string& wanted) const {
+  throw Error(Status::bad_data, source_.name + ": '" + path_ + key + "' is not " + wanted + "; " + source_.remedy);
 }
 
-const ObservationFields::Json& ObservationFields::at(const char* key) const {
+const JsonFields::Json& JsonFields::at(const char* key) const {
   const auto found = json_.find(key);
   if (found == json_.end()) fail(key, "there");
   return *found;
 }
 
-ObservationFields ObservationFields::object(const char* key) const {
+JsonFields JsonFields::object(const char* key) const {
   const Json& json = at(key);
   if (!json.is_object()) fail(key, "an object");
-  return {json, name_, path_ + key + "."};
+  return {json, source_, path_ + key + "."};
 }
 
-std::string ObservationFields::text(const char* key) const {
+std::string JsonFields::text(const char* key) const {
   const Json& json = at(key);
   if (!json.is_string()) fail(key, "a text");
   return json.get<std::string>();
 }
 
-uint64_t ObservationFields::whole(const char* key, uint64_t most) const {
+bool JsonFields::flag(const char* key) const {
+  const Json& json = at(key);
+  if (!json.is_boolean()) fail(key, "true or false");
+  return json.get<bool>();
+}
+
+uint64_t JsonFields::whole(const char* key, uint64_t most) const {
   const Json& json = at(key);
   if (!json.is_number_unsigned() || json.get<uint64_t>() > most) {
     fail(key, "a whole number from 0 to " + std::to_string(most));
@@ -42,19 +47,19 @@ uint64_t ObservationFields::whole(const char* key, uint64_t most) const {
   return json.get<uint64_t>();
 }
 
-double ObservationFields::number_of(const Json& json, const char* key) const {
+double JsonFields::number_of(const Json& json, const char* key) const {
   const double value = json.is_number() ? json.get<double>() : -1.0;
   if (!(value >= 0.0) || !std::isfinite(value)) fail(key, "a finite number of at least 0");
   return value;
 }
 
-double ObservationFields::number(const char* key) const { return number_of(at(key), key); }
+double JsonFields::number(const char* key) const { return number_of(at(key), key); }
 
-double ObservationFields::number_or_infinite(const char* key) const {
+double JsonFields::number_or_infinite(const char* key) const {
   return at(key).is_null() ? std::numeric_limits<double>::infinity() : number(key);
 }
 
-std::vector<double> ObservationFields::numbers(const char* key, size_t count) const {
+std::vector<double> JsonFields::numbers(const char* key, size_t count) const {
   const Json& json = at(key);
   if (!json.is_array() || json.size() != count) fail(key, "a list of " + std::to_string(count) + " numbers");
   std::vector<double> out;
@@ -62,7 +67,7 @@ std::vector<double> ObservationFields::numbers(const char* key, size_t count) co
   return out;
 }
 
-std::vector<uint8_t> ObservationFields::bytes(const char* key, uint64_t count) const {
+std::vector<uint8_t> JsonFields::bytes(const char* key, uint64_t count) const {
   const Json& json = at(key);
   if (!json.is_string()) fail(key, "base64 of " + std::to_string(count) + " bytes");
   auto bytes = parse_base64(json.get_ref<const std::string&>());

@@ -1,0 +1,99 @@
+"""Image Texture nodes that stand for a number of a material."""
+
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from mathutils import Euler, Matrix
+
+from .nodes import output, source
+
+_WRAPS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
+_SOURCES = ("FILE", "GENERATED")
+
+
+class Picture(NamedTuple):
+    """What the library needs of a node, less the pixels."""
+
+    image: object  # bpy.types.Image
+    alpha: bool  # its alpha, not its colour
+    wrap: str
+    filter: str
+    uv_map: np.ndarray  # [2 x 3]: (u, v, 1) of the mesh to the picture's coordinates
+
+
+class UnsupportedError(Exception):
+    """Why a node cannot be rendered, as the end of a sentence."""
+
+
+def picture_of(socket):
+    """The Picture linked to `socket`, None where nothing is; raises UnsupportedError of anything else."""
+    node = source(socket)
+    if node is None:
+        return None
+    if node.bl_idname != "ShaderNodeTexImage" or node.velour.enabled:
+        raise UnsupportedError(f"'{node.name}' is not an Image Texture")
+    _check(node)
+    return Picture(
+        node.image,
+        output(socket).name == "Alpha",
+        _WRAPS[node.extension],
+        "closest" if node.interpolation == "Closest" else "linear",
+        _uv_map(node.inputs["Vector"]),
+    )
+
+
+def _check(node):
+    if node.image is None:
+        raise UnsupportedError(f"'{node.name}' has no image")
+    if node.image.source not in _SOURCES:
+        raise UnsupportedError(f"the image '{node.image.name}' is no single picture")
+    if node.projection != "FLAT":
+        raise UnsupportedError(f"'{node.name}' is not projected flat")
+
+
+def _uv_map(vector):
+    """[2 x 3] of what is linked to an Image Texture's vector; nothing: the mesh's texture coordinates."""
+    node = source(vector)
+    if node is None:
+        return np.eye(2, 3, dtype=np.float32)
+    if node.bl_idname != "ShaderNodeMapping":
+        _check_coordinates(vector)
+        return np.eye(2, 3, dtype=np.float32)
+    if source(node.inputs["Vector"]) is None:
+        raise UnsupportedError(f"'{node.name}' has no coordinates linked to it")
+    _check_coordinates(node.inputs["Vector"])
+    return _mapping_matrix(node)
+
+
+def _check_coordinates(vector):
+    node = source(vector)
+    is_uv = node.bl_idname == "ShaderNodeTexCoord" and output(vector).name == "UV"
+    if not is_uv and node.bl_idname != "ShaderNodeUVMap":
+        raise UnsupportedError(f"the coordinates of '{node.name}' are not texture coordinates")
+
+
+def _mapping_matrix(node):
+    if any(source(node.inputs[name]) for name in ("Location", "Rotation", "Scale") if name in node.inputs):
+        raise UnsupportedError(f"something is linked to '{node.name}'")
+    rotation = Euler(node.inputs["Rotation"].default_value).to_matrix().to_4x4()
+    scale = Matrix.Diagonal((*node.inputs["Scale"].default_value, 1.0))
+    shift = Matrix.Translation(node.inputs["Location"].default_value)
+    kinds = {
+        "POINT": lambda: shift @ rotation @ scale,
+        "TEXTURE": lambda: (shift @ rotation @ scale).inverted_safe(),
+        "VECTOR": lambda: rotation @ scale,
+    }
+    if node.vector_type not in kinds:
+        raise UnsupportedError(f"'{node.name}' maps normals")
+    matrix = np.array(kinds[node.vector_type](), np.float32)
+    return np.ascontiguousarray(matrix[:2][:, (0, 1, 3)])  # texture coordinates have no z
+
+
+def other_uv_maps(tree):
+    """Names of UV maps that nodes ask for where no mesh of the .blend renders with that one."""
+    names = {node.uv_map for node in tree.nodes if node.bl_idname == "ShaderNodeUVMap" and node.uv_map}
+    if not names:
+        return []
+    rendered = {layer.name for mesh in bpy.data.meshes for layer in mesh.uv_layers if layer.active_render}
+    return sorted(names - rendered)

@@ -1,0 +1,35 @@
+"""Pictures of materials as the library's textures."""
+
+import numpy as np
+
+from ..native import Texture, TextureSlot
+from .color import luminance_weights
+from .pixels import working_pixels
+
+
+class TextureTable:
+    """Makes each texture once."""
+
+    def __init__(self, notes):
+        self._notes = notes
+        self._textures = {}
+
+    def slot(self, picture, is_color, owner):
+        """Of a Picture; None where its image cannot be read, which is noted."""
+        key = (picture.image.as_pointer(), picture.alpha, picture.wrap, picture.filter, is_color)
+        if key not in self._textures:
+            self._textures[key] = self._read(picture, is_color, owner)
+        texture = self._textures[key]
+        return TextureSlot(texture, picture.uv_map) if texture else None
+
+    def _read(self, picture, is_color, owner):
+        pixels = working_pixels(picture.image, self._notes)
+        if pixels is None:
+            self._notes.add(f"{owner}: the image '{picture.image.name}' cannot be read; left out.")
+            return None
+        options = {"wrap": picture.wrap, "filter": picture.filter}
+        if is_color and not picture.alpha:
+            return Texture.from_pixels(pixels, **options)
+        number = pixels[..., 3] if picture.alpha else pixels[..., :3] @ luminance_weights()
+        number = np.ascontiguousarray(number[..., None], np.float32)
+        return Texture.from_pixels(number, channel=-1 if is_color else 0, **options)

@@ -1,0 +1,52 @@
+"""Pictures that stand for the numbers of a material."""
+
+from __future__ import annotations
+
+import os
+from ctypes import byref
+from typing import NamedTuple
+
+import numpy as np
+
+from . import library, table
+from .arrays import checked, pointer
+from .handle import Handle, choice, path_bytes, set_fields
+
+IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+
+
+class Texture(Handle):
+    """Immutable. (0, 0) is the picture's lower left corner, (1, 1) its upper right.
+
+    wrap: repeat, extend, clip, mirror; filter: closest, linear. channel: -1 makes it a colour, of the first
+    three channels (of one or two: the first); else that channel makes it a number.
+    """
+
+    _free_name = "vlr_texture_free"
+
+    @classmethod
+    def from_pixels(cls, pixels: np.ndarray, **options) -> Texture:
+        """[height x width x channels] float32, row 0 at the bottom, linear; colours in the working space."""
+        pixels = checked("pixels", pixels, (None, None, None))
+        height, width, channels = pixels.shape
+        return cls._create("vlr_texture_create", width, height, channels, pointer(pixels), _options(options))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike, **options) -> Texture:
+        """raw: 1 takes integer values as numbers from 0 to 1, not as sRGB colours."""
+        return cls._create("vlr_texture_load", path_bytes(path), _options(options))
+
+
+class TextureSlot(NamedTuple):
+    """A texture of a parameter; `uv_map` [2 x 3] takes the surface's (u, v, 1) to the picture's."""
+
+    texture: Texture
+    uv_map: object = IDENTITY
+
+
+def _options(values: dict):
+    options = table.TextureOptions()
+    library.load().vlr_texture_options_init(byref(options))
+    names = {"wrap": table.WRAPS, "filter": table.FILTERS}
+    set_fields(options, {n: choice(n, v, names[n]) if n in names else v for n, v in values.items()})
+    return byref(options)

@@ -1,0 +1,164 @@
+"""Image textures of ordinary materials: pixels of a plane, and what is said of nodes that are not read."""
+
+import math
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+SIDE = 8  # texels and pixels of a side
+
+
+def _image(name, values, is_float=True, space=None):
+    """[height x width x 4] in a new image of Blender's; row 0 at the bottom."""
+    height, width = values.shape[:2]
+    image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=is_float)
+    if space:
+        image.colorspace_settings.name = space  # forgets the pixels
+    image.pixels.foreach_set(np.ascontiguousarray(values, np.float32).ravel())
+    image.update()
+    return image
+
+
+def _colours():
+    rows, columns = np.mgrid[0:SIDE, 0:SIDE]
+    values = np.ones((SIDE, SIDE, 4), np.float32)
+    values[..., 0], values[..., 1], values[..., 2] = columns / SIDE, rows / SIDE, 0.25
+    return values
+
+
+class Textures(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        scenes.use_engine(samples=64, size=SIDE).velour.strategy = "COSINE"  # without noise here
+        scenes.add_camera(ortho_scale=2.0)  # all of the plane: a texel a pixel
+        scenes.set_world()
+
+    def _plane(self, image, shader="ShaderNodeBsdfDiffuse", socket="Color", **settings):
+        """A plane whose texture coordinates go from corner to corner."""
+        material = bpy.data.materials.new("Cloth")
+        material.use_nodes = True
+        tree = material.node_tree
+        node = tree.nodes.new(shader)
+        self.texture = tree.nodes.new("ShaderNodeTexImage")
+        self.texture.image = image
+        self.texture.interpolation = "Closest"
+        for name, value in settings.items():
+            setattr(self.texture, name, value)
+        tree.links.new(self.texture.outputs["Color"], node.inputs[socket])
+        tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        scenes.add_plane(material)
+        self.tree, self.shader = tree, node
+        return material
+
+    def _mapping(self, **inputs_of_node):
+        mapping, coordinates = (
+            self.tree.nodes.new(name) for name in ("ShaderNodeMapping", "ShaderNodeTexCoord")
+        )
+        for name, value in inputs_of_node.items():
+            mapping.inputs[name].default_value = value
+        self.tree.links.new(coordinates.outputs["UV"], mapping.inputs["Vector"])
+        self.tree.links.new(mapping.outputs[0], self.texture.inputs["Vector"])
+        return mapping
+
+    def _rendered(self):
+        return scenes.render(self.folder)[..., :3]
+
+    def _notes(self):
+        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
+        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
+        notes = export.Notes()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        export.export_scene(depsgraph, camera.final_view(depsgraph, notes), notes)[0].close()
+        return list(notes)
+
+    def test_a_plane_shows_its_picture(self):
+        self._plane(_image("float", _colours()))
+        self.assertEqual(self._notes(), [])
+        np.testing.assert_allclose(self._rendered(), _colours()[..., :3], atol=2e-3)
+
+    def test_byte_images_are_decoded(self):
+        values = np.full((SIDE, SIDE, 4), 1.0, np.float32)
+        values[..., :3] = 0.5
+        self._plane(_image("bytes", values, is_float=False))
+        np.testing.assert_allclose(self._rendered(), ((0.5 + 0.055) / 1.055) ** 2.4, atol=3e-3)
+
+    def test_data_images_are_not(self):
+        values = np.full((SIDE, SIDE, 4), 1.0, np.float32)
+        values[..., :3] = 0.5
+        self._plane(_image("data", values, is_float=False, space="Non-Color"))
+        np.testing.assert_allclose(self._rendered(), 0.5, atol=3e-3)
+
+    def test_packed_and_file_images(self):
+        native = __import__(f"{inputs.ADDON}.native", fromlist=["native"])
+        path = self.folder / "stored.exr"
+        native.images.write(path, _colours())
+        for packed in (False, True):
+            with self.subTest(packed=packed):
+                loaded = bpy.data.images.load(str(path), check_existing=False)
+                if packed:
+                    loaded.pack()
+                self._plane(loaded)
+                np.testing.assert_allclose(self._rendered(), _colours()[..., :3], atol=3e-3)
+
+    def test_mapping(self):
+        self._plane(_image("mapped", _colours()))
+        mapping = self._mapping(
+            Location=(0.25, 0.0, 0.0), Rotation=(0.0, 0.0, math.pi / 2), Scale=(1.0, -1.0, 1.0)
+        )
+        # (u, v) to (u, -v), turned to (v, u), moved to (v + 1/4, u).
+        expected = np.roll(_colours()[..., :3].transpose(1, 0, 2), -SIDE // 4, axis=0)
+        np.testing.assert_allclose(self._rendered(), expected, atol=2e-3)
+        mapping.vector_type = "TEXTURE"  # the inverse: (u', v') = (v, u - 1/4)
+        expected = np.roll(_colours()[..., :3].transpose(1, 0, 2), SIDE // 4, axis=1)
+        np.testing.assert_allclose(self._rendered(), expected, atol=2e-3)
+
+    def test_far_checkers_are_grey(self):
+        rows, columns = np.mgrid[0:64, 0:64]
+        values = np.ones((64, 64, 4), np.float32)
+        values[..., :3] = ((rows + columns) % 2)[..., None]
+        bpy.context.scene.velour.samples = 8
+        self._plane(_image("checker", values), interpolation="Linear")
+        self._mapping(Scale=(4.0, 4.0, 4.0))
+        np.testing.assert_allclose(self._rendered(), 0.5, atol=0.01)
+
+    def test_roughness_and_metallic_come_from_pictures(self):
+        """A mirror to the left, a rough metal to the right, under a lamp that only roughness shows."""
+        values = np.ones((SIDE, SIDE, 4), np.float32)
+        values[:, : SIDE // 2, :3] = 0.05
+        self._plane(_image("roughness", values, space="Non-Color"), "ShaderNodeBsdfPrincipled", "Roughness")
+        self.shader.inputs["Metallic"].default_value = 1.0
+        scenes.set_world((0, 0, 0))
+        bpy.context.scene.velour.strategy = "MIS"
+        lamp = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+        lamp.rotation_euler = (0.7, 0.0, 0.0)
+        lamp.data.energy = 3.0
+        bpy.context.scene.collection.objects.link(lamp)
+        pixels = self._rendered().mean(axis=(0, 2))
+        self.assertLess(pixels[: SIDE // 2 - 1].max(), 0.05 * pixels[SIDE // 2 + 1 :].min())
+
+    def test_other_nodes_are_named(self):
+        self._plane(_image("named", _colours()))
+        self.texture.projection = "BOX"
+        self.assertIn("is not projected flat", "".join(self._notes()))
+        self.texture.projection = "FLAT"
+        generated = self.tree.nodes.new("ShaderNodeTexCoord")
+        self.tree.links.new(generated.outputs["Generated"], self.texture.inputs["Vector"])
+        self.assertIn("are not texture coordinates", "".join(self._notes()))
+        self.tree.links.clear()
+        self.assertNotIn("coordinates", "".join(self._notes()))
+
+    def test_an_empty_node_is_named(self):
+        self._plane(None)
+        self.assertIn("has no image", "".join(self._notes()))
+
+    def test_another_uv_map_is_named(self):
+        self._plane(_image("mapped", _colours()))
+        node = self.tree.nodes.new("ShaderNodeUVMap")
+        self.tree.links.new(node.outputs[0], self.texture.inputs["Vector"])
+        node.uv_map = "UVMap"
+        self.assertEqual(self._notes(), [])
+        node.uv_map = "Other"
+        self.assertIn("UV map 'Other'", "".join(self._notes()))

@@ -1,0 +1,206 @@
+#include "capture/btf_capture.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "capture/reference_plane.h"
+#include "capture/tile_checks.h"
+#include "capture/view_capture.h"
+#include "capture/view_store.h"
+#include "job/threads.h"
+
+namespace velour {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr uint32_t kMostSamples = 16384, kMostBounces = 1024;
+
+void check_counts(const BtfCaptureOptions& options) {
+  const auto check = [](uint32_t value, uint32_t low, uint32_t high, const char* what) {
+    if (value >= low && value <= high) return;
+    throw Error(Status::invalid_argument, std::string("A capture cannot have ") + std::to_string(value) + " " + what +
+                                              "; it takes " + std::to_string(low) + " to " + std::to_string(high) +
+                                              ".");
+  };
+  check(options.texels[0], 1, kMaxTexelsAlong, "texels along x");
+  check(options.texels[1], 1, kMaxTexelsAlong, "texels along y");
+  check(options.sampling.samples, 1, kMostSamples, "samples a texel");
+  check(options.sampling.bounces, 0, kMostBounces, "bounces");
+}
+
+/// The place with what was left open filled in from the geometry.
+TilePlace place_of(const Scene& scene, const TilePlace& given) {
+  if (!scene.committed()) throw Error(Status::invalid_state, "The tile's scene is not committed.");
+  if (scene.bounds().empty()) {
+    throw Error(Status::invalid_argument, "The tile is empty: it has no triangle that a ray could meet.");
+  }
+  if (given.period.x != 0 || given.period.y != 0) return given;
+  return {Vec2(scene.bounds().low), Vec2(scene.bounds().high - scene.bounds().low)};
+}
+
+std::vector<PolarAngles> with_mirror_images(std::vector<PolarAngles> set) {
+  const std::vector<PolarAngles> mirrored = below(set);
+  set.insert(set.end(), mirrored.begin(), mirrored.end());
+  return set;
+}
+
+bool any_below(const std::vector<PolarAngles>& set) {
+  return std::any_of(set.begin(), set.end(), [](const PolarAngles& d) { return d.theta > 90; });
+}
+
+class Capture {
+ public:
+  Capture(const Scene& scene, const BtfCaptureOptions& options, const std::string& path, Progress& progress)
+      : scene_(scene),
+        options_(options),
+        path_(path),
+        progress_(progress),
+        tile_(scene, place_of(scene, options.place), options.threads) {}
+
+  BtfCaptureReport run() {
+    inspect();
+    find_reference_plane();
+    const BtfFolderWriter writer(path_, index(), options_.resume);
+    capture_views(writer);
+    progress_.stage("checking", 0.97, 1);
+    writer.finish(progress_);
+    report_.bytes = writer.bytes();
+    return report_;
+  }
+
+ private:
+  void inspect() {
+    report_.open = is_open(tile_);
+    const bool wanted =
+        options_.sides == CaptureSides::two || (options_.sides == CaptureSides::automatic && report_.open);
+    const bool given = any_below(options_.views) || any_below(options_.lights);
+    const bool mirrored = wanted && !given;
+    views_ = mirrored ? with_mirror_images(options_.views) : options_.views;
+    lights_ = mirrored ? with_mirror_images(options_.lights) : options_.lights;
+    report_.two_sided = any_below(views_) || any_below(lights_);
+    report_.warnings = scene_.info().warnings;
+    std::erase(report_.warnings, kNoLightWarning);  // lights are ours
+    if (const auto warning = seam_warning(tile_)) report_.warnings.push_back(*warning);
+    for (const SurfaceMaterial& m : scene_.materials()) {
+      if (m.emission == Rgb(0)) continue;
+      report_.warnings.push_back("A material of the tile emits light; a BTF holds reflected light alone.");
+      break;
+    }
+  }
+
+  void find_reference_plane() {
+    progress_.stage("reference plane", 0, 0.03);
+    height_ = options_.reference_height
+                  ? static_cast<float>(*options_.reference_height)
+                  : least_variance_height(tile_, any_below(views_), options_.sampling.seed, progress_);
+    report_.thickness = static_cast<double>(tile_.thickness()) * length_unit();
+    report_.reference_height = static_cast<double>(height_ - tile_.bottom()) * length_unit();
+  }
+
+  /// Metres a unit of the scene, or tile widths where those are not known.
+  double length_unit() const {
+    return options_.metres_per_unit > 0 ? options_.metres_per_unit : 1 / static_cast<double>(tile_.period().x);
+  }
+
+  BtfIndex index() const {
+    TexelGrid grid{options_.texels[0], options_.texels[1]};
+    if (options_.metres_per_unit > 0) grid.tile_metres = tile_.period() * static_cast<float>(options_.metres_per_unit);
+    return {.layout = PairLayout(views_, lights_),
+            .grid = grid,
+            .shell = Shell{report_.thickness, report_.reference_height},
+            .source = options_.source,
+            .options = options_json(),
+            .structure = true,
+            .errors = options_.sampling.samples > 1};
+  }
+
+  std::string options_json() const {
+    const TilePlace& place = tile_.place();
+    return nlohmann::ordered_json{{"samples", options_.sampling.samples},
+                                  {"bounces", options_.sampling.bounces},
+                                  {"seed", options_.sampling.seed},
+                                  {"origin", {place.origin.x, place.origin.y}},
+                                  {"period", {place.period.x, place.period.y}},
+                                  {"metres_per_unit", options_.metres_per_unit},
+                                  {"tile_sha256", tile_hash(scene_)}}
+        .dump();
+  }
+
+  void capture_views(const BtfFolderWriter& writer) {
+    progress_.stage("views", 0.03, 0.97);
+    const BtfIndex index = this->index();
+    ViewCapture capture(tile_, index.grid, height_, options_.sampling);
+    RayShare share(options_.measure_ray_share, static_cast<int>(lights_.size()));
+    const auto views = static_cast<uint32_t>(views_.size());
+    for (uint32_t v = 0; v < views; ++v) {
+      progress_.check();
+      if (writer.has(v)) {
+        ++report_.views_resumed;
+      } else {
+        capture_view(v, index, capture, writer, options_.measure_ray_share ? &share : nullptr);
+      }
+      progress_.update((v + 1.0) / views);
+    }
+    report(capture);
+    if (options_.measure_ray_share) report_.ray_share = share.measure(tile_.rays(), progress_);
+  }
+
+  void capture_view(uint32_t v, const BtfIndex& index, ViewCapture& capture, const BtfFolderWriter& writer,
+                    RayShare* share) {
+    const ViewSetup view(tile_, index.layout, v);
+    const uint64_t texels = index.grid.texels(), pairs = view.lights.size();
+    const uint64_t values = 3 * pairs * texels, errors = index.errors ? pairs * texels : 0;
+    const ViewStore store(values + errors, options_.memory_limit, path_);
+    const std::vector<float> none(texels);
+    ViewImages images{store.halves().first(values), store.halves().subspan(values), {none, none, none}, &store};
+    const auto start = Clock::now();
+    const double all = static_cast<double>(views_.size());
+    capture.run(view, images, v / all, (v + 1) / all, share, progress_);
+    report_.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    for (auto* map : {&images.structure.height_mean, &images.structure.height_spread}) {
+      for (float& height : *map) height *= static_cast<float>(length_unit());
+    }
+    store.read_by([&] { writer.write(v, {images.values, images.errors, &images.structure}); });
+  }
+
+  void report(const ViewCapture& capture) {
+    const CaptureCounts counts = capture.counts();
+    report_.rays = counts.rays;
+    report_.rays_per_second = report_.seconds > 0 ? static_cast<double>(counts.rays) / report_.seconds : 0;
+    report_.views = static_cast<uint32_t>(views_.size());
+    report_.lights = static_cast<uint32_t>(lights_.size());
+    const auto warn = [&](uint64_t count, const char* what) {
+      if (count > 0) report_.warnings.push_back(std::to_string(count) + what);
+    };
+    warn(counts.lost, " rays never left the shell and count as meeting nothing.");
+    warn(counts.broken, " values of paths were not finite and count as 0: a material is at fault.");
+  }
+
+  const Scene& scene_;
+  const BtfCaptureOptions& options_;
+  const std::string path_;
+  Progress& progress_;
+  const RepeatedTile tile_;
+  std::vector<PolarAngles> views_, lights_;
+  float height_ = 0;
+  BtfCaptureReport report_;
+};
+
+}  // namespace
+
+BtfCaptureReport capture_btf(const Scene& scene, const BtfCaptureOptions& options, const std::string& path,
+                             Progress& progress) {
+  check_counts(options);
+  BtfCaptureReport report;
+  tbb::task_arena arena(arena_concurrency(options.threads));
+  arena.execute([&] { report = Capture(scene, options, path, progress).run(); });
+  return report;
+}
+
+}  // namespace velour

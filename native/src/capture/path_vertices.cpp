@@ -1,0 +1,120 @@
+#include "capture/path_vertices.h"
+
+#include <algorithm>
+
+#include "render/onward.h"
+#include "sphere/random.h"
+#include "sphere/sobol.h"
+
+namespace velour {
+namespace {
+
+/// Bits of `x` (10 of them) with gaps of one.
+uint32_t spread_bits(uint32_t x) {
+  x = (x | (x << 8)) & 0x00ff00ffu;
+  x = (x | (x << 4)) & 0x0f0f0f0fu;
+  x = (x | (x << 2)) & 0x33333333u;
+  return (x | (x << 1)) & 0x55555555u;
+}
+
+/// Place along a Z-curve over the cell, in steps of a 1024th of it.
+uint32_t morton_code(const Vec2& place_in_cell) {
+  const Vec2 steps = glm::clamp(place_in_cell * 1024.0f, Vec2(0), Vec2(1023));
+  return spread_bits(static_cast<uint32_t>(steps.x)) | spread_bits(static_cast<uint32_t>(steps.y)) << 1;
+}
+
+}  // namespace
+
+void PathVertices::trace(const ViewSetup& view, const TexelBlock& block, TileRays& rays, RayLog* log,
+                         const Progress& progress) {
+  start(view, block);
+  for (uint32_t depth = 0;; ++depth) {
+    progress.check();
+    hits_.resize(rays_.size());
+    rays.intersect(rays_, hits_, log);
+    meet(depth);
+    if (depth == sampling_.bounces) break;
+    go_on(depth);
+  }
+}
+
+uint64_t PathVertices::key_of(const ViewSetup& view, uint32_t column, uint32_t row) const {
+  const uint64_t texel = uint64_t{row} * grid_.width + column;
+  return RandomStream(sampling_.seed, view.number, texel).next_bits();
+}
+
+void PathVertices::start(const ViewSetup& view, const TexelBlock& block) {
+  paths_ = block.texels() * sampling_.samples;
+  vertices_.clear();
+  depths_.assign(1, 0);
+  vertex_of_.assign((size_t{sampling_.bounces} + 1) * paths_, kNone);
+  keys_.clear();
+  rays_.clear();
+  path_of_.clear();
+  throughput_.assign(paths_, Rgb(1));
+  points_.resize(sampling_.samples);
+  const Vec2 texel_size = tile_.period() / Vec2(static_cast<float>(grid_.width), static_cast<float>(grid_.height));
+  for (uint32_t row = block.row; row < block.row + block.rows; ++row) {
+    for (uint32_t column = block.column; column < block.column + block.columns; ++column) {
+      keys_.push_back(key_of(view, column, row));
+      sobol_points(keys_.back(), 0, points_);
+      const Vec2 corner(static_cast<float>(column), static_cast<float>(row));
+      for (const Vec2& u : points_) {
+        path_of_.push_back(static_cast<uint32_t>(rays_.size()));
+        rays_.push_back({start_above((corner + u) * texel_size, view.wv), 0, -view.wv});
+      }
+    }
+  }
+}
+
+/// Where the line of sight through `plane`, a point of the reference plane, enters the shell: in the centre cell.
+Vec3 PathVertices::start_above(const Vec2& plane, const Vec3& wv) const {
+  const float z = wv.z > 0 ? tile_.top() : tile_.bottom();
+  const float distance = (z - reference_height_) / wv.z;
+  const Vec2 place = tile_.into_cell(plane + distance * Vec2(wv));
+  // A little above: a surface that is flat on top is met, too.
+  return Vec3(place, z) + (tile_.thickness() + tile_.period().x) * 1e-5f * wv;
+}
+
+void PathVertices::meet(uint32_t depth) {
+  order_.clear();
+  for (uint32_t i = 0; i < rays_.size(); ++i) {
+    if (hits_[i].instance == kNoHit) continue;
+    const Vec2 place = Vec2(rays_[i].origin + hits_[i].distance * rays_[i].direction);
+    // First hits of neighbouring texels are neighbours already.
+    const uint64_t code = depth == 0 ? 0 : morton_code(tile_.into_cell(place) / tile_.period());
+    order_.push_back(code << 32 | i);
+  }
+  if (depth > 0) std::sort(order_.begin(), order_.end());
+  for (const uint64_t entry : order_) {
+    const auto i = static_cast<uint32_t>(entry);
+    const SurfacePoint point = tile_.surface(hits_[i]);
+    vertex_of_[size_t{depth} * paths_ + path_of_[i]] = static_cast<uint32_t>(vertices_.size());
+    vertices_.push_back({Vertex(point, -rays_[i].direction), throughput_[i]});
+    vertices_.back().vertex.surface = &tile_.scene().materials()[point.material];
+  }
+  depths_.push_back(static_cast<uint32_t>(vertices_.size()));
+}
+
+void PathVertices::go_on(uint32_t depth) {
+  rays_.clear();
+  throughput_.clear();
+  path_of_.clear();
+  for (uint32_t path = 0; path < paths_; ++path) {
+    const uint32_t v = vertex_of(path, depth);
+    if (v == kNone) continue;
+    const PathVertex& from = vertices_[v];
+    const uint64_t key = mix64(keys_[path / sampling_.samples] + depth + 1);
+    Vec2 u;
+    sobol_points(key, path % sampling_.samples, {&u, 1});
+    from.vertex.surface->material->prepare(from.vertex.wv, prepared_);
+    const auto onward = draw_onward(from.vertex, prepared_, SurfaceSampling::material,
+                                    tile_.scene().rec709_to_working(), from.throughput, u);
+    if (!onward || !std::isfinite(luminance(onward->throughput))) continue;
+    rays_.push_back(onward->ray);
+    throughput_.push_back(onward->throughput);
+    path_of_.push_back(path);
+  }
+}
+
+}  // namespace velour

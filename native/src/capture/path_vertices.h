@@ -1,0 +1,70 @@
+// Where the paths of a block of texels meet the tile: all that lights are then tried on.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "capture/repeated_tile.h"
+#include "capture/texel_block.h"
+#include "capture/view_setup.h"
+#include "job/progress.h"
+#include "material/material.h"
+#include "render/vertex.h"
+
+namespace velour {
+
+/// A place that a path met.
+struct PathVertex {
+  Vertex vertex;
+  Rgb throughput;  // of light that leaves it along the path, until it reaches the viewer; working space
+};
+
+/// Paths from the viewer through points of the texels, `samples` a texel, those of a texel one after the other. One a
+/// thread.
+///
+/// The points of a texel are those of a scrambled Sobol sequence; each further vertex draws its direction by the
+/// material with such a sequence of its own. Every number depends on (seed, view, texel, sample, vertex) alone.
+class PathVertices {
+ public:
+  static constexpr uint32_t kNone = 0xffffffffu;
+
+  PathVertices(const RepeatedTile& tile, const TexelGrid& grid, float reference_height, const TexelSampling& sampling)
+      : tile_(tile), grid_(grid), reference_height_(reference_height), sampling_(sampling) {}
+
+  void trace(const ViewSetup& view, const TexelBlock& block, TileRays& rays, RayLog* log, const Progress& progress);
+
+  uint32_t paths() const { return paths_; }
+  /// First hits first, then those of the first bounce, and so on; within each neighbours in space stand together.
+  std::span<const PathVertex> vertices() const { return vertices_; }
+  /// Begin of the vertices of each depth, and the end.
+  std::span<const uint32_t> depths() const { return depths_; }
+  /// The vertex that path `path` met at `depth`, or kNone.
+  uint32_t vertex_of(uint32_t path, uint32_t depth) const { return vertex_of_[size_t{depth} * paths_ + path]; }
+
+ private:
+  void start(const ViewSetup& view, const TexelBlock& block);
+  Vec3 start_above(const Vec2& plane, const Vec3& wv) const;
+  void meet(uint32_t depth);
+  void go_on(uint32_t depth);
+  uint64_t key_of(const ViewSetup& view, uint32_t column, uint32_t row) const;
+
+  const RepeatedTile& tile_;
+  const TexelGrid grid_;
+  const float reference_height_;
+  const TexelSampling sampling_;
+
+  uint32_t paths_ = 0;
+  std::vector<PathVertex> vertices_;
+  std::vector<uint32_t> depths_, vertex_of_;
+  std::vector<uint64_t> keys_;  // of each texel's random numbers
+  std::vector<Vec2> points_;    // of one texel
+  // Of the rays under way.
+  std::vector<Ray> rays_;
+  std::vector<Rgb> throughput_;
+  std::vector<uint32_t> path_of_;
+  std::vector<Hit> hits_;
+  std::vector<uint64_t> order_;  // Morton code of the place, then the ray's number
+  PreparedBrdf prepared_;
+};
+
+}  // namespace velour

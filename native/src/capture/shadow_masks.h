@@ -1,0 +1,42 @@
+// Which lights reach which vertices.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "capture/path_vertices.h"
+
+namespace velour {
+
+/// Up to 128 lights are tried together.
+inline constexpr uint32_t kLightsTogether = 128;
+
+/// Bit l of a vertex: light l of the group reaches it. One a thread.
+class ShadowMasks {
+ public:
+  using Mask = std::array<uint64_t, kLightsTogether / 64>;
+
+  /// Light by light, because rays of one direction are traced in packets. Lights below a vertex's shading or geometric
+  /// horizon need no ray.
+  void trace(const PathVertices& paths, std::span<const CaptureLight> lights, TileRays& rays, RayLog* log,
+             const Progress& progress);
+
+  const Mask& of(uint32_t vertex) const { return masks_[vertex]; }
+
+ private:
+  void read(const PathVertices& paths);
+  void try_light(const CaptureLight& light, uint32_t number, TileRays& rays, RayLog* log);
+
+  // Of the vertices, for the test of their horizons: read by every light.
+  struct Facing {
+    Vec3 origin, geometric, shading;
+  };
+  std::vector<Facing> facing_;
+  std::vector<Mask> masks_;
+  std::vector<Ray> rays_;
+  std::vector<uint32_t> ids_;
+  std::vector<uint8_t> blocked_;
+};
+
+}  // namespace velour

@@ -1,0 +1,52 @@
+// From the vertices of a texel's paths and the lights that reach them to the texel's values.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "capture/path_vertices.h"
+#include "capture/shadow_masks.h"
+#include "material/material.h"
+
+namespace velour {
+
+/// Sums over the samples of a texel, of each light of a group.
+struct TexelValues {
+  alignas(64) double sum[3][kLightsTogether];  // of the values of paths, working space
+  alignas(64) double luminance_sq[kLightsTogether], luminance_sum[kLightsTogether];
+  uint32_t samples;
+  uint32_t broken;  // values that were not finite and count as 0
+
+  Rgb mean(uint32_t light) const;  // working space
+  /// Of the mean's luminance, from the spread of the samples. These are stratified, so it is an upper bound. 0 for a
+  /// single sample.
+  float standard_error(uint32_t light) const;
+};
+
+/// One a thread.
+class TexelShader {
+ public:
+  TexelShader(const Scene& scene, const TexelSampling& sampling);
+
+  /// Of texel number `texel` of the block. `masks` are those of `lights`.
+  void shade(const PathVertices& paths, uint32_t texel, std::span<const CaptureLight> lights, const ShadowMasks& masks,
+             TexelValues& values);
+
+ private:
+  void shade_path(const PathVertices& paths, uint32_t path, std::span<const CaptureLight> lights,
+                  const ShadowMasks& masks);
+  void shade_vertex(const PathVertex& at, std::span<const CaptureLight> lights, const ShadowMasks::Mask& mask);
+  void add_batch(const PathVertex& at, std::span<const CaptureLight> lights);
+
+  const TexelSampling sampling_;
+  const std::optional<Mat3>& rec709_to_working_;
+  Vec3 luminance_weights_;  // of colours of the working space
+  PreparedBrdf prepared_;
+  DirectionBatch wl_;  // of the lights that reach a vertex, local
+  uint32_t light_of_[DirectionBatch::kCapacity];
+  RgbBatch f_;
+  ScalarBatch pdf_;
+  alignas(64) float path_[3][kLightsTogether];  // what each light brings along one path
+};
+
+}  // namespace velour

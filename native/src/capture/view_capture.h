@@ -1,0 +1,75 @@
+// All texels of one view.
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <optional>
+#include <span>
+
+#include "btf/btf_folder.h"
+#include "capture/path_vertices.h"
+#include "capture/shadow_masks.h"
+#include "capture/texel_values.h"
+#include "capture/view_store.h"
+#include "render/ray_share.h"
+
+namespace velour {
+
+/// Where a view's images go; layouts as of BtfView and ViewStructure.
+struct ViewImages {
+  std::span<HalfBits> values;
+  std::span<HalfBits> errors;        // empty: not asked for
+  ViewStructure structure;           // of the grid's size
+  const ViewStore* store = nullptr;  // what `values` and `errors` are of, where that may lie in a file
+};
+
+struct CaptureCounts {
+  uint64_t rays = 0;    // traced
+  uint64_t lost = 0;    // that never left the shell, and count as meeting nothing
+  uint64_t broken = 0;  // values that were not finite, and count as 0
+};
+
+/// Captures views one after the other, block by block on all threads of the arena that it is called in. What comes out
+/// depends on neither their number nor the order of views.
+class ViewCapture {
+ public:
+  /// `tile` outlives this. `reference_height`: of the reference plane, in the scene's z.
+  ViewCapture(const RepeatedTile& tile, const TexelGrid& grid, float reference_height, const TexelSampling& sampling)
+      : tile_(tile), grid_(grid), sampling_(sampling), blocks_(grid, sampling), workers_([this, reference_height] {
+          return Worker(tile_, grid_, reference_height, sampling_);
+        }) {}
+
+  /// Traces `view` into `images`. `begin`, `end`: what of the progress's stage this is. `share`: may be null.
+  void run(const ViewSetup& view, ViewImages& images, double begin, double end, RayShare* share, Progress& progress);
+
+  CaptureCounts counts() const;
+
+ private:
+  struct Worker {
+    PathVertices paths;
+    TileRays rays;
+    ShadowMasks masks;
+    TexelShader shader;
+    TexelValues values;
+    uint64_t broken = 0;
+    std::vector<float> mean, error;  // of a group of lights
+    std::vector<HalfBits> mean_bits, error_bits;
+
+    Worker(const RepeatedTile& tile, const TexelGrid& grid, float height, const TexelSampling& sampling)
+        : paths(tile, grid, height, sampling), rays(tile), shader(tile.scene(), sampling) {}
+  };
+  void run_block(const ViewSetup& view, const TexelBlock& block, ViewImages& images, RayLog* log,
+                 const Progress& progress);
+  void shade_block(const ViewSetup& view, const TexelBlock& block, uint32_t first_light, Worker& worker,
+                   ViewImages& images, const Progress& progress);
+  void store(uint64_t texel, uint32_t first_light, uint32_t lights, Worker& worker, ViewImages& images) const;
+  void store_structure(const TexelBlock& block, const PathVertices& paths, ViewStructure& structure) const;
+
+  const RepeatedTile& tile_;
+  const TexelGrid grid_;
+  const TexelSampling sampling_;
+  const TexelBlocks blocks_;
+  tbb::enumerable_thread_specific<Worker> workers_;
+};
+
+}  // namespace velour

@@ -1,0 +1,32 @@
+// One view of a capture: where it looks from, and the lights that it is lit by.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "btf/pair_layout.h"
+#include "capture/repeated_tile.h"
+
+namespace velour {
+
+struct CaptureLight {
+  Vec3 wl;
+  float per_irradiance;  // 1 / |cos(theta_l)|: the light's irradiance on the reference plane is its cosine
+  RepeatedTile::Ends ends;
+};
+
+struct ViewSetup {
+  uint32_t number = 0;
+  Vec3 wv{0, 0, 1};
+  std::vector<CaptureLight> lights;
+
+  ViewSetup(const RepeatedTile& tile, const PairLayout& layout, uint32_t view) : number(view) {
+    wv = unit_direction(layout.views()[view]);
+    for (uint64_t pair = layout.first(view); pair < layout.first(view + 1); ++pair) {
+      const Vec3 wl = unit_direction(layout.lights()[layout.light_of(pair)]);
+      lights.push_back({wl, 1 / std::abs(wl.z), tile.ends(wl)});
+    }
+  }
+};
+
+}  // namespace velour

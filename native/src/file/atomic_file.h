@@ -1,0 +1,43 @@
+// A file that appears whole or not at all.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "file/descriptor.h"
+
+namespace velour {
+
+/// Written beside its path under a temporary name, flushed and renamed by commit(): a killed process leaves the old
+/// file or the new one. Without a commit nothing remains. A failed write stays failed, so that commit() throws even
+/// where a caller in between has swallowed the first error.
+class AtomicFile {
+ public:
+  /// Throws Error(io).
+  explicit AtomicFile(std::string path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::span<const uint8_t> bytes);
+  void seek(uint64_t position);
+  uint64_t position() const { return start_ + buffer_.size(); }
+  void commit();
+
+ private:
+  void flush();
+  void write_through(std::span<const uint8_t> bytes);
+
+  std::string path_;
+  std::filesystem::path target_;
+  std::string temporary_;
+  Descriptor fd_;
+  std::vector<uint8_t> buffer_;
+  uint64_t start_ = 0;  // where the buffer belongs
+  bool failed_ = false, committed_ = false;
+};
+
+}  // namespace velour

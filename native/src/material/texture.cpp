@@ -1,0 +1,163 @@
+#include "material/texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+bool finite(float v) { return std::isfinite(v); }
+bool finite(const Rgb& v) { return std::isfinite(v.r + v.g + v.b); }
+
+/// A row of `from` texels to one of `to`: a texel that two share is shared out.
+template <class T>
+void shrink(const T* source, size_t source_step, int from, T* target, size_t target_step, int to) {
+  const double ratio = static_cast<double>(from) / to;
+  for (int i = 0; i < to; ++i) {
+    const double begin = i * ratio, end = std::min((i + 1) * ratio, static_cast<double>(from));
+    T sum(0.0f);
+    for (int k = static_cast<int>(begin); k < from && k < end; ++k) {
+      const double covered = std::min(end, k + 1.0) - std::max(begin, static_cast<double>(k));
+      sum += static_cast<float>(covered / ratio) * source[static_cast<size_t>(k) * source_step];
+    }
+    target[static_cast<size_t>(i) * target_step] = sum;
+  }
+}
+
+/// Length and width of a parallelogram: the singular values of its sides, which are the sides of a rectangle.
+struct Extent {
+  Vec2 along;  // as long as the length
+  float length, width;
+};
+
+Extent extent_of(const Mat2& sides) {
+  const Vec2 &a = sides[0], &b = sides[1];
+  const float xx = a.x * a.x + b.x * b.x, yy = a.y * a.y + b.y * b.y, xy = a.x * a.y + b.x * b.y;
+  const float root = std::sqrt(0.25f * (xx - yy) * (xx - yy) + xy * xy);
+  const float length_sq = 0.5f * (xx + yy) + root;
+  if (!(length_sq > 0.0f)) return {Vec2(0.0f), 0.0f, 0.0f};
+  const float length = std::sqrt(length_sq);
+  // Of the two forms of the eigenvector, the one that does not cancel.
+  const Vec2 along = xx >= yy ? Vec2(length_sq - yy, xy) : Vec2(xy, length_sq - xx);
+  const float size = glm::length(along);
+  return {size > 0.0f ? along * (length / size) : Vec2(length, 0.0f), length, std::abs(a.x * b.y - a.y * b.x) / length};
+}
+
+}  // namespace
+
+template <class T>
+Texture<T>::Texture(int width, int height, std::vector<T> texels, const TextureOptions& options) : options_(options) {
+  if (width <= 0 || height <= 0 || texels.size() != static_cast<size_t>(width) * static_cast<size_t>(height)) {
+    throw Error(Status::invalid_argument, "A texture of " + std::to_string(width) + " x " + std::to_string(height) +
+                                              " has " + std::to_string(texels.size()) + " texels.");
+  }
+  for (T& t : texels) {
+    if (!finite(t)) t = T(0.0f);
+  }
+  levels_.push_back({width, height, std::move(texels)});
+  while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half(levels_.back()));
+}
+
+template <class T>
+typename Texture<T>::Level Texture<T>::half(const Level& level) {
+  const int width = std::max(1, level.width / 2), height = std::max(1, level.height / 2);
+  const auto columns = static_cast<size_t>(width), rows = static_cast<size_t>(level.height);
+  std::vector<T> narrow(columns * rows);
+  for (size_t y = 0; y < rows; ++y) {
+    shrink(&level.texels[y * static_cast<size_t>(level.width)], 1, level.width, &narrow[y * columns], 1, width);
+  }
+  Level smaller{width, height, std::vector<T>(columns * static_cast<size_t>(height))};
+  for (size_t x = 0; x < columns; ++x) {
+    shrink(&narrow[x], columns, level.height, &smaller.texels[x], columns, height);
+  }
+  return smaller;
+}
+
+/// For `i` from -1 to size of a place that is reduced() to the picture.
+template <class T>
+int Texture<T>::wrapped(int i, int size) const {
+  switch (options_.wrap) {
+    case TextureWrap::repeat:
+      return i < 0 ? i + size : (i >= size ? i - size : i);
+    case TextureWrap::clip:
+      return i < 0 || i >= size ? -1 : i;
+    case TextureWrap::mirror:  // at the border both sides are alike
+    case TextureWrap::extend:
+      break;
+  }
+  return std::clamp(i, 0, size - 1);
+}
+
+template <class T>
+T Texture<T>::texel(const Level& level, int x, int y) const {
+  const int column = wrapped(x, level.width), row = wrapped(y, level.height);
+  if (column < 0 || row < 0) return T(0.0f);
+  return level.texels[static_cast<size_t>(row) * static_cast<size_t>(level.width) + static_cast<size_t>(column)];
+}
+
+template <class T>
+Vec2 Texture<T>::reduced(const Vec2& uv) const {
+  const Vec2 given(std::isfinite(uv.x) ? uv.x : 0.0f, std::isfinite(uv.y) ? uv.y : 0.0f);
+  if (options_.wrap == TextureWrap::repeat) return given - glm::floor(given);
+  if (options_.wrap == TextureWrap::mirror) return 1.0f - glm::abs(given - 2.0f * glm::floor(0.5f * given) - 1.0f);
+  if (options_.wrap == TextureWrap::extend) return glm::clamp(given, Vec2(0.0f), Vec2(1.0f));
+  return glm::clamp(given, Vec2(-2.0f), Vec2(3.0f));  // whole numbers of texels, and still outside
+}
+
+template <class T>
+T Texture<T>::closest(const Vec2& uv) const {
+  const Level& level = levels_[0];
+  const Vec2 place = glm::floor(uv * Vec2(level.width, level.height));
+  return texel(level, static_cast<int>(place.x), static_cast<int>(place.y));
+}
+
+template <class T>
+T Texture<T>::bilinear(const Level& level, const Vec2& uv) const {
+  const Vec2 place = uv * Vec2(level.width, level.height) - 0.5f, low = glm::floor(place), part = place - low;
+  const int x = static_cast<int>(low.x), y = static_cast<int>(low.y);
+  const T bottom = (1 - part.x) * texel(level, x, y) + part.x * texel(level, x + 1, y);
+  const T top = (1 - part.x) * texel(level, x, y + 1) + part.x * texel(level, x + 1, y + 1);
+  return (1 - part.y) * bottom + part.y * top;
+}
+
+template <class T>
+T Texture<T>::trilinear(const Vec2& uv, float level) const {
+  const auto last = static_cast<float>(levels_.size() - 1);
+  const float place = std::clamp(level, 0.0f, last), low = std::floor(place), part = place - low;
+  const auto i = static_cast<size_t>(low);
+  const T fine = bilinear(levels_[i], uv);
+  return part > 0.0f ? (1 - part) * fine + part * bilinear(levels_[i + 1], uv) : fine;
+}
+
+template <class T>
+T Texture<T>::look_up(const Vec2& uv, const Mat2& footprint) const {
+  const Vec2 size(width(), height());
+  const Extent extent = extent_of({footprint[0] * size, footprint[1] * size});  // in texels
+  if (!(extent.length > 1.0f)) {
+    return options_.filter == TextureFilter::closest ? closest(reduced(uv)) : bilinear(levels_[0], reduced(uv));
+  }
+  const float tap = std::max({extent.width, extent.length / kMostTaps, 1.0f});
+  const float level = std::log2(tap);
+  const int taps = std::clamp(static_cast<int>(std::ceil(extent.length / tap - 0.01f)), 1, kMostTaps);
+  const Vec2 step = extent.along / size / static_cast<float>(taps);
+  T sum(0.0f);
+  for (int i = 0; i < taps; ++i) {
+    sum += trilinear(reduced(uv + (static_cast<float>(i) - 0.5f * static_cast<float>(taps - 1)) * step), level);
+  }
+  return sum / static_cast<float>(taps);
+}
+
+template <class T>
+uint64_t Texture<T>::bytes() const {
+  uint64_t sum = 0;
+  for (const Level& level : levels_) sum += level.texels.size() * sizeof(T);
+  return sum;
+}
+
+template class Texture<float>;
+template class Texture<Rgb>;
+
+}  // namespace velour

@@ -1,0 +1,49 @@
+#include "render/footprint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sphere/frame.h"
+
+namespace velour {
+namespace {
+
+constexpr float kLeastPart = 0.125f;  // of a pixel's side
+
+}  // namespace
+
+RaySides across(const RayCone& cone, const Vec3& direction) {
+  const Frame frame = Frame::about(direction);
+  return {cone.width * frame.x, cone.width * frame.y};
+}
+
+PixelFootprint::PixelFootprint(const Camera& camera, int width, int height, int camera_rays) : camera_(camera) {
+  const float part = std::max(kLeastPart, 1.0f / std::sqrt(static_cast<float>(camera_rays)));
+  const Vec2 window(camera.window[1] - camera.window[0], camera.window[3] - camera.window[2]);
+  pitch_ = part * window / Vec2(static_cast<float>(width), static_cast<float>(height));
+}
+
+RayCone PixelFootprint::cone(const Vec3& direction) const {
+  const float side = std::sqrt(std::abs(pitch_.x * pitch_.y));
+  if (camera_.type == Camera::Type::orthographic) return {side, 0.0f};
+  // A pixel at distance 1 / cosine from the eye shows cosine of its area.
+  const float cosine = -glm::dot(direction, camera_.camera_to_world.column(2));
+  return {0.0f, side * std::sqrt(cosine) * cosine};
+}
+
+RaySides PixelFootprint::sides(const Vec3& position) const {
+  const float scale = camera_.type == Camera::Type::orthographic ? 1.0f : camera_.depth(position);
+  return {scale * pitch_.x * camera_.camera_to_world.column(0), scale * pitch_.y * camera_.camera_to_world.column(1)};
+}
+
+Mat2 texture_footprint(const RaySides& sides, const Vec3& direction, const Vec3& normal, const TexturePoint& texture) {
+  const float slope =
+      std::copysign(std::max(std::abs(glm::dot(normal, direction)), kLeastSlope), glm::dot(normal, direction));
+  const auto side = [&](const Vec3& s) {
+    const Vec3 on_plane = s - glm::dot(normal, s) / slope * direction;
+    return Vec2(glm::dot(texture.u_gradient, on_plane), glm::dot(texture.v_gradient, on_plane));
+  };
+  return {side(sides.x), side(sides.y)};
+}
+
+}  // namespace velour

@@ -1,0 +1,57 @@
+// How much of a surface a ray stands for.
+#pragma once
+
+#include "material/surface_site.h"
+#include "scene/scene.h"
+
+namespace velour {
+
+/// A ray as wide as what it stands for [Amanatides 1984; Akenine-Moeller et al. 2021, JCGT 10(1)]: metres across at its
+/// origin, and what every metre adds.
+///
+/// Paths widen with their length alone. Mirrors that are flat keep it exact; a rough or bent surface would widen it
+/// further, and its textures are then looked up finer than they need be: that costs noise, never a blurred picture.
+/// A cone opened by the density of the sampled direction would blur it, and each strategy would converge to a picture
+/// of its own.
+struct RayCone {
+  float width = 0, spread = 0;
+
+  RayCone at(float distance) const { return {width + distance * spread, spread}; }
+};
+
+/// Two sides of a parallelogram in world space. What counts is where they lead along the ray, not where they end.
+struct RaySides {
+  Vec3 x, y;
+};
+
+/// A square as wide as the cone, across unit `direction`.
+RaySides across(const RayCone& cone, const Vec3& direction);
+
+/// What camera rays stand for: a pixel, or less where it has several. With n camera rays a pixel it is max(1/8,
+/// 1/sqrt(n)) of a pixel's side, as in pbrt-v4 (SurfaceInteraction::ComputeDifferentials): the rays spread over the
+/// pixel and average it already, and a texture that averages the whole pixel at each of them would blur the picture a
+/// second time. The eighth leaves 1 % of that.
+class PixelFootprint {
+ public:
+  /// `width`, `height` of the picture; `camera_rays` a pixel that the render is asked for, whatever ends it early.
+  PixelFootprint(const Camera& camera, int width, int height, int camera_rays);
+
+  /// Of a camera ray along unit `direction`, at the camera: as wide as its pixel's solid angle, or an orthographic
+  /// pixel's area, is large.
+  RayCone cone(const Vec3& direction) const;
+  /// Of a camera ray that ends at `position`: exact, by differentials [Igehy 1999].
+  RaySides sides(const Vec3& position) const;
+
+ private:
+  const Camera& camera_;
+  Vec2 pitch_;  // of what camera rays stand for; metres at distance 1, or anywhere
+};
+
+/// In texture coordinates, what `sides` meet along unit `direction` on the plane through the hit. At grazing angles it
+/// is stretched no further than kLeastSlope tells. Zero without texture coordinates.
+Mat2 texture_footprint(const RaySides& sides, const Vec3& direction, const Vec3& normal, const TexturePoint& texture);
+
+/// Cosine to the geometric normal from which on a footprint grows no longer: a thousand times as long as wide.
+inline constexpr float kLeastSlope = 1e-3f;
+
+}  // namespace velour
