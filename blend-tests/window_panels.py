@@ -1,18 +1,12 @@
-"""The window: panels drawn without an error, a fit in the background with cancel, a render as it grows.
-
-Runs in turns of Blender's event loop: a test is a generator that yields the seconds until its next turn.
-"""
+"""The window: panels drawn without an error, a fit in the background with cancel, a render as it grows."""
 
 import importlib
-import json
-import sys
-import traceback
 
 import addon_utils
 import bpy
 import numpy as np
 
-from support import inputs, scenes
+from support import inputs, scenes, window
 
 _TURNS_SECONDS = 60
 
@@ -20,75 +14,7 @@ _TURNS_SECONDS = 60
 def start(folder):
     """Called by the harness once the window is there."""
     fits = (fit_and_cancel, fit_and_undo, scene_fit_and_cancel, scene_fit_and_undo, shared_material)
-    runner = _Runner(folder, (panels, stock_panels, preferences, viewport, *fits, render))
-    bpy.app.timers.register(runner.turn, first_interval=0.2, persistent=True)  # over file loads
-
-
-class _Runner:
-    def __init__(self, folder, tests):
-        self.folder, self.tests = folder, list(tests)
-        self.report = {"passed": 0, "failed": 0, "skipped": 0, "reasons": []}
-        self.current = None
-
-    def turn(self):
-        """Blender calls this again after the seconds that it returns."""
-        try:
-            if self.current is None:
-                if not self.tests:
-                    self._leave()
-                    return None
-                self.name = self.tests[0].__name__
-                _fresh_file()
-                self.current = self.tests.pop(0)(self.folder)
-            return next(self.current)
-        except StopIteration:
-            self._count("passed")
-        except Exception:
-            traceback.print_exc(file=sys.stdout)
-            self._count("failed")
-        return 0.1
-
-    def _count(self, outcome):
-        print(f"{self.name} ... {outcome}", flush=True)
-        self.report[outcome] += 1
-        self.current = None
-
-    def _leave(self):
-        (self.folder / "report.json").write_text(json.dumps(self.report))
-        bpy.ops.wm.quit_blender()
-
-
-def _fresh_file():
-    bpy.ops.wm.read_homefile(use_factory_startup=True)
-
-
-def _window():
-    return bpy.context.window_manager.windows[0]
-
-
-def _override():
-    window = _window()
-    return bpy.context.temp_override(window=window, screen=window.screen)
-
-
-def _show_properties(tab):
-    """A large Properties editor in place of the 3D viewport."""
-    scenes.use_engine()
-    area = max(_window().screen.areas, key=lambda a: a.width * a.height)
-    area.type = "PROPERTIES"
-    yield 0.3  # the tabs exist once the editor has been drawn
-    area.spaces.active.context = tab
-    yield 0.7
-
-
-def _screenshot(folder, name):
-    """[height x width x 3] of what the window shows; a picture of nothing fails."""
-    path = folder / f"{name}.png"
-    with _override():
-        bpy.ops.screen.screenshot(filepath=str(path))
-    pixels = scenes.read(path)[..., :3]
-    assert pixels.std() > 0.02, "the screenshot is uniform"
-    return pixels
+    window.run(folder, (panels, stock_panels, preferences, viewport, *fits, render))
 
 
 def _measured_cube():
@@ -112,8 +38,8 @@ def panels(folder):
     _measured_cube()
     pictures = []
     for tab in ("RENDER", "VIEW_LAYER", "MATERIAL"):
-        yield from _show_properties(tab)
-        pictures.append(_screenshot(folder, f"tab-{tab.lower()}"))
+        yield from window.show_properties(tab)
+        pictures.append(window.screenshot(folder, f"tab-{tab.lower()}"))
     assert np.abs(pictures[0] - pictures[2]).max() > 0.2
     assert np.abs(pictures[0] - pictures[1]).max() > 0.2
 
@@ -122,38 +48,38 @@ def stock_panels(folder):
     """Blender's own panels for light, camera, world and output, with our engine."""
     for name, tab in (("Light", "DATA"), ("Camera", "DATA"), ("Cube", "WORLD"), ("Cube", "OUTPUT")):
         bpy.context.view_layer.objects.active = bpy.context.view_layer.objects[name]
-        yield from _show_properties(tab)
-        _screenshot(folder, f"stock-{name.lower()}-{tab.lower()}")
+        yield from window.show_properties(tab)
+        window.screenshot(folder, f"stock-{name.lower()}-{tab.lower()}")
 
 
 def preferences(folder):
-    area = max(_window().screen.areas, key=lambda a: a.width * a.height)
+    area = max(window.first().screen.areas, key=lambda a: a.width * a.height)
     area.type = "PREFERENCES"
     bpy.context.preferences.active_section = "ADDONS"
     bpy.context.window_manager.addon_search = "Velour"
     yield 0.5  # the first draw looks for add-ons
-    folded = _screenshot(folder, "preferences-folded")
+    folded = window.screenshot(folder, "preferences-folded")
     addon = next(module for module in addon_utils.modules() if module.__name__ == inputs.ADDON)
     addon_utils.module_bl_info(addon)["show_expanded"] = True
     area.tag_redraw()
     yield 0.5
-    assert np.abs(_screenshot(folder, "preferences") - folded).max() > 0.2
+    assert np.abs(window.screenshot(folder, "preferences") - folded).max() > 0.2
 
 
 def viewport(folder):
     """Every shading mode that Blender offers for the engine draws, and leaves the interface working."""
     _measured_cube()
     scenes.use_engine()
-    area = next(area for area in _window().screen.areas if area.type == "VIEW_3D")
+    area = next(area for area in window.first().screen.areas if area.type == "VIEW_3D")
     shading = area.spaces.active.shading
     for mode in ("MATERIAL", "SOLID", "WIREFRAME"):
         shading.type = mode
         yield 1.0
-        _screenshot(folder, f"viewport-{mode.lower()}")
+        window.screenshot(folder, f"viewport-{mode.lower()}")
 
 
 def _start_fit(**settings):
-    with _override():
+    with window.override():
         assert bpy.ops.velour.fit("INVOKE_DEFAULT", material="Paint", **settings) == {"RUNNING_MODAL"}
 
 
@@ -161,11 +87,11 @@ def fit_and_cancel(folder):
     """Progress is shown, cancel ends it, and the model stays."""
     material = _measured_cube()
     before = scenes.velour_node(material).image.name
-    yield from _show_properties("MATERIAL")
+    yield from window.show_properties("MATERIAL")
     _start_fit(model="SCATTERED", tolerance=0.0005, max_lobes=64)
     yield 0.8
     assert bpy.context.window_manager.velour.running
-    _screenshot(folder, "fit-running")
+    window.screenshot(folder, "fit-running")
     bpy.ops.velour.cancel_fit()
     for _ in range(20):
         yield 0.1
@@ -178,7 +104,7 @@ def fit_and_cancel(folder):
 def fit_and_undo(folder):
     material = _measured_cube()
     before = scenes.velour_node(material).image.name
-    with _override():
+    with window.override():
         bpy.ops.ed.undo_push(message="before")
     _start_fit(tolerance=0.2, max_lobes=2)
     for _ in range(10 * _TURNS_SECONDS):
@@ -187,10 +113,10 @@ def fit_and_undo(folder):
             break
     node = scenes.velour_node(bpy.data.materials["Paint"])
     assert node.image.name != before, "no new model"
-    yield from _show_properties("MATERIAL")
-    _screenshot(folder, "fit-done")
+    yield from window.show_properties("MATERIAL")
+    window.screenshot(folder, "fit-done")
     _check_order_plot(node.image)
-    with _override():
+    with window.override():
         bpy.ops.ed.undo()
     yield 0.2
     assert scenes.velour_node(bpy.data.materials["Paint"]).image.name == before
@@ -208,7 +134,7 @@ def _check_order_plot(image):
 def _start_scene_fit(last_frame):
     scene = scenes.use_engine()
     scene.frame_end = last_frame
-    with _override():
+    with window.override():
         started = bpy.ops.velour.fit_for_scene("INVOKE_DEFAULT", material="Paint")
     assert started == {"RUNNING_MODAL"}, started
 
@@ -217,14 +143,14 @@ def scene_fit_and_cancel(folder):
     """Frames go by while the window lives; cancel leaves everything as it was."""
     material = _measured_cube()
     bpy.context.scene.frame_set(3)
-    yield from _show_properties("MATERIAL")
+    yield from window.show_properties("MATERIAL")
     images = len(bpy.data.images)
     _start_scene_fit(last_frame=200)
     yield 1.5
     state = bpy.context.window_manager.velour
     assert state.running
     assert state.stage.startswith("frame "), state.stage
-    _screenshot(folder, "scene-fit-running")
+    window.screenshot(folder, "scene-fit-running")
     bpy.ops.velour.cancel_fit()
     yield 1.0
     assert not state.running, "the fit goes on"
@@ -236,9 +162,9 @@ def scene_fit_and_cancel(folder):
 
 def scene_fit_and_undo(folder):
     material = _measured_cube()
-    yield from _show_properties("MATERIAL")
-    before = _screenshot(folder, "scene-fit-before")
-    with _override():
+    yield from window.show_properties("MATERIAL")
+    before = window.screenshot(folder, "scene-fit-before")
+    with window.override():
         bpy.ops.ed.undo_push(message="before")
     _start_scene_fit(last_frame=2)
     for _ in range(10 * _TURNS_SECONDS):
@@ -249,8 +175,10 @@ def scene_fit_and_undo(folder):
     assert settings.scene_model is not None
     assert settings.use_scene_model
     yield 0.7
-    assert np.abs(_screenshot(folder, "scene-fit-done") - before).max() > 0.2, "the panel shows nothing new"
-    with _override():
+    assert np.abs(window.screenshot(folder, "scene-fit-done") - before).max() > 0.2, (
+        "the panel shows nothing new"
+    )
+    with window.override():
         bpy.ops.ed.undo()
     yield 0.2
     settings = scenes.velour_node(bpy.data.materials["Paint"]).velour
@@ -261,21 +189,21 @@ def scene_fit_and_undo(folder):
 def shared_material(folder):
     """A menu says who shares it, and nothing starts."""
     _measured_cube()
-    yield from _show_properties("MATERIAL")
-    before = _screenshot(folder, "shared-before")
+    yield from window.show_properties("MATERIAL")
+    before = window.screenshot(folder, "shared-before")
     bpy.data.scenes.new("Other").collection.objects.link(bpy.data.objects["Cube"])
-    with _override():
+    with window.override():
         assert bpy.ops.velour.fit_for_scene("INVOKE_DEFAULT", material="Paint") == {"CANCELLED"}
     yield 0.7
     assert not bpy.context.window_manager.velour.running
-    assert np.abs(_screenshot(folder, "shared-menu") - before).max() > 0.2, "no menu"
+    assert np.abs(window.screenshot(folder, "shared-menu") - before).max() > 0.2, "no menu"
 
 
 def render(folder):
     """F12 in the window: pictures in between, and the last one is whole."""
     _measured_cube()
     scene = scenes.use_engine(samples=1 << 12, size=64)
-    with _override():
+    with window.override():
         bpy.ops.render.render("INVOKE_DEFAULT")
     for _ in range(10 * _TURNS_SECONDS):
         yield 0.1

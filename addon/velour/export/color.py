@@ -13,6 +13,13 @@ def rec709_to_working():
     return np.array(columns, np.float64).T
 
 
+def set_working_space(scene):
+    """Tells the library's `scene` in which space its colours are, where that is not Rec. 709."""
+    working = rec709_to_working()
+    if not np.allclose(working, np.eye(3), atol=1e-6):
+        scene.set_working_space(working.astype(np.float32))
+
+
 def luminance_weights():
     """[3] float32: luminance of a colour of the working space."""
     return (np.array((0.2126, 0.7152, 0.0722)) @ np.linalg.inv(rec709_to_working())).astype(np.float32)

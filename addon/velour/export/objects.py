@@ -18,13 +18,17 @@ _UNSUPPORTED = {
 
 
 class ObjectExport:
-    """Adds all visible objects to `scene`; instances share the geometry of their evaluated datablock."""
+    """Adds visible objects to `scene`; instances share the geometry of their evaluated datablock.
 
-    def __init__(self, scene, materials, notes, check_break):
+    `to_scene`: the 4 x 4 matrix from Blender's world to that of `scene`; None: they are the same.
+    """
+
+    def __init__(self, scene, materials, notes, check_break, to_scene=None):
         self._scene = scene
         self._materials = materials
         self._notes = notes
         self._check_break = check_break  # called once an instance; raises to stop
+        self._to_scene = to_scene
         self._meshes = {}
 
     def add_all(self, depsgraph):
@@ -41,13 +45,26 @@ class ObjectExport:
             else:
                 self._note_unsupported(instance.object)
 
+    def add_geometry(self, depsgraph, is_wanted):
+        """Of the instances for which `is_wanted` is true; no lights."""
+        override = depsgraph.view_layer_eval.material_override
+        for instance in depsgraph.object_instances:
+            self._check_break()
+            if not instance.show_self or not is_wanted(instance):
+                continue
+            if instance.object.type in _GEOMETRY:
+                self._add_geometry(instance, override)
+            else:
+                self._note_unsupported(instance.object)
+
     def _add_geometry(self, instance, override):
         mesh, slots = self._mesh(instance.object)
         if mesh is None:
             return
         slots = [override] * len(slots) if override else slots
         numbers = [self._materials.number(material) for material in slots]
-        self._scene.add_instance(mesh, affine(instance.matrix_world), numbers)
+        matrix = instance.matrix_world if self._to_scene is None else self._to_scene @ instance.matrix_world
+        self._scene.add_instance(mesh, affine(matrix), numbers)
 
     def _mesh(self, obj):
         """The mesh's number in the scene (None: there is nothing to see) and the materials of its slots."""

@@ -1,9 +1,7 @@
 """The whole export, in order."""
 
-import numpy as np
-
 from ..native import Scene
-from .color import rec709_to_working
+from .color import set_working_space
 from .materials import MaterialTable
 from .objects import ObjectExport
 from .world import add_world
@@ -16,9 +14,7 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
     """
     scene = Scene()
     try:
-        working = rec709_to_working()
-        if not np.allclose(working, np.eye(3), atol=1e-6):
-            scene.set_working_space(working.astype(np.float32))
+        set_working_space(scene)
         materials = MaterialTable(scene, notes, strict)
         ObjectExport(scene, materials, notes, check_break).add_all(depsgraph)
         add_world(scene, depsgraph.scene_eval.world, notes)

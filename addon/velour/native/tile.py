@@ -32,7 +32,7 @@ class Tile(Handle):
 
     @staticmethod
     def kinds() -> list[dict]:
-        """name, summary and defaults of each kind."""
+        """name, summary and defaults of each kind; a kind has no default of what it does not take."""
         return library.json_of(library.load().vlr_tile_kinds_json)["kinds"]
 
     @classmethod
@@ -67,7 +67,7 @@ class Tile(Handle):
         return library.json_of(self._lib.vlr_tile_info_json, self.pointer)
 
     def add_to(self, scene: Scene) -> tuple[int, list[int]]:
-        """The numbers of its mesh and of its materials in `scene`. Make instances of it where it shall lie."""
+        """The numbers of its mesh and of its materials in `scene`, for Scene.add_instance."""
         mesh, _dropped = scene.add_mesh(**self.mesh()._asdict())
         materials = [
             scene.add_principled_material(**{name: m[name] for name in m if name != "name"})

@@ -4,9 +4,11 @@ import bpy
 
 from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
+from .add_mesostructure import VELOUR_OT_add_mesostructure
 from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
+from .repeat_tile import VELOUR_OT_repeat_tile
 from .save_model import VELOUR_OT_save_model
 
 CLASSES = (
@@ -17,18 +19,29 @@ CLASSES = (
     VELOUR_OT_cancel_fit,
     VELOUR_OT_save_model,
     VELOUR_OT_accept_file,
+    VELOUR_OT_add_mesostructure,
+    VELOUR_OT_repeat_tile,
 )
 
 
 def attach():
     bpy.types.TOPBAR_MT_file_import.append(_draw_import)
+    bpy.types.VIEW3D_MT_mesh_add.append(_draw_add_mesh)
 
 
 def detach():
+    bpy.types.VIEW3D_MT_mesh_add.remove(_draw_add_mesh)
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
 
 
 def _draw_import(menu, _context):
     menu.layout.operator(
         VELOUR_OT_load_material.bl_idname, text="Measured Material (.velour, .binary, .bsdf, .brdf)"
+    )
+
+
+def _draw_add_mesh(menu, _context):
+    menu.layout.separator()
+    menu.layout.operator_menu_enum(
+        VELOUR_OT_add_mesostructure.bl_idname, "type", text="Mesostructure", icon="TEXTURE"
     )

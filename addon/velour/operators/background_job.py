@@ -2,6 +2,11 @@
 
 import time
 
+import bpy
+
+from ..export import ExportError
+from ..native import VelourError
+
 
 class BackgroundJob:
     """Mixin: a timer, the progress that panels and the status bar show, Esc and the panel's cross."""
@@ -12,13 +17,13 @@ class BackgroundJob:
         """One at a time: true, with an error said, while another is running."""
         running = context.window_manager.velour.running
         if running:
-            self.report({"ERROR"}, "A fit is running already; wait for it, or cancel it.")
+            self.report({"ERROR"}, "A fit or a capture is running already; wait for it, or cancel it.")
         return running
 
-    def _enter(self, context, material_name):
+    def _enter(self, context, subject):
         """What `invoke` returns once the work has begun."""
         state = context.window_manager.velour
-        state.running, state.cancel_requested, state.material_name = True, False, material_name
+        state.running, state.cancel_requested, state.subject = True, False, subject
         self._timer = context.window_manager.event_timer_add(0.1, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -43,6 +48,59 @@ class BackgroundJob:
             self._timer = None
         if context.workspace:
             context.workspace.status_text_set(None)
+
+
+class OneJob(BackgroundJob):
+    """Mixin of an operator that is one job of the library.
+
+    `_begin(context)` starts `_job` and sets `_subject`, `_finish()` takes the result, `_what` is its name.
+    """
+
+    def execute(self, context):
+        """Waits for the result."""
+        try:
+            self._begin(context)
+            self._job.wait(console_progress() if bpy.app.background else None)
+            return self._finish()
+        except (ExportError, VelourError) as error:
+            return self._fail(error)
+
+    def invoke(self, context, _event):
+        """Starts the job and lets the artist go on working; Esc cancels."""
+        if self._is_refused(context):
+            return {"CANCELLED"}
+        try:
+            self._begin(context)
+        except (ExportError, VelourError) as error:
+            return self._fail(error)
+        return self._enter(context, self._subject)
+
+    def modal(self, context, event):
+        if self._wants_to_stop(context, event):
+            self._job.cancel()
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        try:
+            if not self._job.wait(timeout=0.0):
+                state = self._job.poll()
+                self._show(context, state.stage, state.fraction)
+                return {"PASS_THROUGH"}
+            self._leave(context)
+            return self._finish()
+        except (ExportError, VelourError) as error:
+            self._leave(context)
+            return self._fail(error)
+
+    def cancel(self, context):
+        """Blender closes the window or loads another file."""
+        self._leave(context)
+        self._job.close()
+
+    def _fail(self, error):
+        cancelled = isinstance(error, VelourError) and error.cancelled
+        sentence = f"{self._what} was cancelled." if cancelled else str(error)
+        self.report({"WARNING" if cancelled else "ERROR"}, sentence)
+        return {"CANCELLED"}
 
 
 def console_progress():

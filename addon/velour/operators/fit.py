@@ -6,15 +6,15 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 from ..export import ExportError
 from ..export.files import measurement_path
 from ..export.nodes import velour_node
-from ..native import Measurement, VelourError, fit_job
+from ..native import Measurement, fit_job
 from ..properties.material_settings import MODELS
 from . import measured
-from .background_job import BackgroundJob, console_progress
+from .background_job import OneJob
 
 _SETTINGS = ("model", "tolerance", "max_lobes", "kernel", "seed")
 
 
-class VELOUR_OT_fit(BackgroundJob, bpy.types.Operator):
+class VELOUR_OT_fit(OneJob, bpy.types.Operator):
     bl_idname = "velour.fit"
     bl_label = "Fit"
     bl_description = "Fit a model to the material's measurement. The model before it is not touched"
@@ -32,45 +32,7 @@ class VELOUR_OT_fit(BackgroundJob, bpy.types.Operator):
     )
     seed: IntProperty(name="Seed", min=0, options={"SKIP_SAVE"})
 
-    def execute(self, context):
-        """Waits for the model."""
-        try:
-            self._begin(context)
-            self._job.wait(console_progress() if bpy.app.background else None)
-            return self._finish()
-        except (ExportError, VelourError) as error:
-            return self._fail(error)
-
-    def invoke(self, context, _event):
-        """Starts the fit and lets the artist go on working; Esc cancels."""
-        if self._is_refused(context):
-            return {"CANCELLED"}
-        try:
-            self._begin(context)
-        except (ExportError, VelourError) as error:
-            return self._fail(error)
-        return self._enter(context, self._material_name)
-
-    def modal(self, context, event):
-        if self._wants_to_stop(context, event):
-            self._job.cancel()
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        try:
-            if not self._job.wait(timeout=0.0):
-                state = self._job.poll()
-                self._show(context, state.stage, state.fraction)
-                return {"PASS_THROUGH"}
-            self._leave(context)
-            return self._finish()
-        except (ExportError, VelourError) as error:
-            self._leave(context)
-            return self._fail(error)
-
-    def cancel(self, context):
-        """Blender closes the window or loads another file."""
-        self._leave(context)
-        self._job.close()
+    _what = "The fit"
 
     def _begin(self, context):
         material = measured.find_material(context, self.material)
@@ -84,6 +46,7 @@ class VELOUR_OT_fit(BackgroundJob, bpy.types.Operator):
             raise ExportError(f"{owner}: no measurement is chosen; use File > Import > Measured Material.")
         # Names, not pointers: undo may replace any datablock before the job is done.
         self._material_name, self._node_name = material.name, node.name
+        self._subject = material.name
         settings = self._settings(node)
         with measurement_path(node.velour.measurement, owner) as path, Measurement.load(path) as measurement:
             self._digest = measurement.info()["sha256"]
@@ -124,13 +87,6 @@ class VELOUR_OT_fit(BackgroundJob, bpy.types.Operator):
         self.report({"INFO"}, f"Fitted '{material.name}': {info['lobes']} lobes, {len(data)} bytes.")
         return {"FINISHED"}
 
-    def _fail(self, error):
-        cancelled = isinstance(error, VelourError) and error.cancelled
-        self.report(
-            {"WARNING" if cancelled else "ERROR"}, "The fit was cancelled." if cancelled else str(error)
-        )
-        return {"CANCELLED"}
-
 
 def _model_options(settings):
     """A parametric model has Gaussian lobes, whatever kernel the settings keep for a scattered one."""
@@ -145,8 +101,8 @@ def _model_options(settings):
 
 class VELOUR_OT_cancel_fit(bpy.types.Operator):
     bl_idname = "velour.cancel_fit"
-    bl_label = "Cancel Fit"
-    bl_description = "Stop the fit that is running"
+    bl_label = "Cancel"
+    bl_description = "Stop the fit or the capture that is running"
 
     def execute(self, context):
         context.window_manager.velour.cancel_requested = True

@@ -7,15 +7,18 @@ from .job_state import VelourJobState
 from .layer_settings import VelourLayerSettings
 from .material_settings import VelourMaterialSettings
 from .render_settings import VelourRenderSettings
+from .tile_settings import VelourTileSettings
 
 _POINTERS = (
     (bpy.types.Scene, VelourRenderSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.ViewLayer, VelourLayerSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.ShaderNodeTexImage, VelourMaterialSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.Image, VelourFileSettings, {"LIBRARY_OVERRIDABLE"}),
+    (bpy.types.Object, VelourTileSettings, {"LIBRARY_OVERRIDABLE"}),
+    (bpy.types.Collection, VelourTileSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.WindowManager, VelourJobState, set()),
 )
-CLASSES = tuple(group for _owner, group, _override in _POINTERS)
+CLASSES = tuple(dict.fromkeys(group for _owner, group, _override in _POINTERS))
 
 
 def attach():

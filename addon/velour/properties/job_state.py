@@ -1,4 +1,4 @@
-"""The fit that runs in the background, for the panels to show. Never saved."""
+"""The fit or capture that runs in the background, for the panels to show. Never saved."""
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty, StringProperty
@@ -9,6 +9,6 @@ class VelourJobState(bpy.types.PropertyGroup):
 
     running: BoolProperty(options={"SKIP_SAVE"})
     cancel_requested: BoolProperty(options={"SKIP_SAVE"})
-    material_name: StringProperty(options={"SKIP_SAVE"})
+    subject: StringProperty(options={"SKIP_SAVE"})  # name of what it works on
     stage: StringProperty(options={"SKIP_SAVE"})
     fraction: FloatProperty(name="Progress", subtype="FACTOR", min=0.0, max=1.0, options={"SKIP_SAVE"})

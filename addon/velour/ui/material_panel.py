@@ -8,10 +8,11 @@ from ..export.notes import Notes
 from ..export.principled import principled_values
 from ..operators.accept_file import VELOUR_OT_accept_file
 from ..operators.add_material import VELOUR_OT_add_material
-from ..operators.fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
+from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.save_model import VELOUR_OT_save_model
 from .order_preview import order_icon
+from .progress import draw_progress
 from .summaries import model_summary
 from .text import draw_sentence
 
@@ -71,18 +72,8 @@ def _draw_fit_settings(column, settings):
 
 
 def _draw_fit(context, layout):
-    job = context.window_manager.velour
-    if not job.running:
+    if not draw_progress(context, layout):
         layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
-        return
-    row = layout.row(align=True)
-    text = f"{job.material_name}: {job.stage} {job.fraction:.0%}"
-    if hasattr(row, "progress"):  # 4.0 and newer
-        row.progress(factor=job.fraction, text=text)
-    else:
-        row.label(text=text, icon="TIME")
-        row.prop(job, "fraction", text="", slider=True)
-    row.operator(VELOUR_OT_cancel_fit.bl_idname, text="", icon="CANCEL")
 
 
 class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):

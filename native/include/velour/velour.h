@@ -367,7 +367,7 @@ typedef struct vlr_tile_options {
 } vlr_tile_options;
 VLR_API void vlr_tile_options_init(vlr_tile_options* options);
 /* JSON: kinds [{name, summary, defaults {size, count, resolution, thickness, gap, irregularity}}], in the order in which
- * to show them; the text belongs to the library. */
+ * to show them; a kind has no default of what it does not take. The text belongs to the library. */
 VLR_API vlr_status vlr_tile_kinds_json(const char** json);
 VLR_API vlr_status vlr_tile_create(const vlr_tile_options* options, vlr_tile** out);
 VLR_API void vlr_tile_free(vlr_tile* tile);

@@ -313,7 +313,10 @@ std::string tile_json(const Tile& tile) {
 std::string tile_kinds_json() {
   Json kinds = Json::array();
   for (const TileKind& kind : tile_kinds()) {
-    kinds.push_back({{"name", kind.name}, {"summary", kind.summary}, {"defaults", shape_json(kind.defaults)}});
+    Json defaults = shape_json(kind.defaults);
+    if (kind.least_gap == 0) defaults.erase("gap");
+    if (!kind.has_irregularity) defaults.erase("irregularity");
+    kinds.push_back({{"name", kind.name}, {"summary", kind.summary}, {"defaults", defaults}});
   }
   return text({{"kinds", kinds}});
 }

@@ -16,7 +16,8 @@ constexpr int kTuftsAlong = 6;   // a pitch
 glm::dvec2 wale(double t, double groove_step, double gap) {
   const double angle = kPiD * t / (1 - groove_step);
   const double half_width = 0.5 * (1 - gap);
-  return {half_width * (1 - std::cos(angle)), std::max(0.0, std::sin(angle))};
+  const double across = std::cos(std::min(angle, kPiD));  // close lines where the rib is steep
+  return {half_width * (1 - across), 1 - across * across};
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ Vec3d unit_direction(double longitude, double colatitude) {
   return {s * std::cos(longitude), s * std::sin(longitude), std::cos(colatitude)};
 }
 
+double angle(const Vec3d& a, const Vec3d& b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
+
 }  // namespace
 
 uint32_t MeshBuilder::add_vertex(const Vec3d& position) {
@@ -98,9 +100,9 @@ void MeshBuilder::add_pole(int around, uint32_t pole, uint32_t ring, bool north,
 TileMesh MeshBuilder::finish() {
   std::vector<Vec3d> sums(mesh_.positions.size(), Vec3d(0.0));
   for (const glm::uvec3& t : mesh_.triangles) {
-    const Vec3d a(mesh_.positions[t.x]), b(mesh_.positions[t.y]), c(mesh_.positions[t.z]);
-    const Vec3d twice_area = glm::cross(b - a, c - a);
-    for (int k = 0; k < 3; ++k) sums[original_[t[k]]] += twice_area;
+    const Vec3d p[3] = {Vec3d(mesh_.positions[t.x]), Vec3d(mesh_.positions[t.y]), Vec3d(mesh_.positions[t.z])};
+    const Vec3d normal = glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]));
+    for (int k = 0; k < 3; ++k) sums[original_[t[k]]] += angle(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]) * normal;
   }
   for (const glm::uvec3& t : mesh_.triangles) {
     for (int k = 0; k < 3; ++k) mesh_.corner_normals.emplace_back(glm::normalize(sums[original_[t[k]]]));

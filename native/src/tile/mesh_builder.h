@@ -32,7 +32,8 @@ class MeshBuilder {
   /// `around` meridians (even), half as many steps from pole to pole; slot `slot`.
   void add_globe(int around, uint32_t slot, const Globe& globe);
 
-  /// The mesh, with normals that are the means of the triangles around, across borders of the period too.
+  /// The mesh, with normals that are the means of the triangles around, weighted by their angles as in Blender, across
+  /// borders of the period too.
   TileMesh finish();
 
  private:

@@ -33,8 +33,8 @@ struct TileShape {
 /// A shape of which some is said; the rest is the kind's own.
 struct TileOptions {
   std::string kind = "weave";
-  std::optional<double> size, thickness, gap, irregularity;
-  std::optional<int> count, resolution;
+  std::optional<double> size{}, thickness{}, gap{}, irregularity{};
+  std::optional<int> count{}, resolution{};
   uint64_t seed = 0;
 };
 
@@ -69,6 +69,7 @@ struct Tile {
   TileParts parts;
 };
 
+/// Its numbers bound what make_tile takes.
 struct TileKind {
   const char* name;
   const char* summary;

@@ -34,6 +34,11 @@ TEST(Misuse, NullArgumentsAreNamed) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_texture_load(nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_add_textured_material(nullptr, nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_create(nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_tile_kinds_json(nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_tile_create(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_tile_desc(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_tile_material(nullptr, 0, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_tile_info_json(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_load(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_save(nullptr, "x"));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_merge(nullptr, nullptr));
@@ -48,6 +53,7 @@ TEST(Misuse, FreeingNothingIsFine) {
   vlr_scene_free(nullptr);
   vlr_texture_free(nullptr);
   vlr_observation_free(nullptr);
+  vlr_tile_free(nullptr);
   vlr_job_free(nullptr);
 }
 

@@ -9,7 +9,7 @@ import sys
 from ...native import library
 from ...native.errors import VelourError
 from ...native.version import version_text
-from . import capture, compare, compress, fit, info, later, observe, output, render
+from . import capture, compare, compress, fit, info, later, observe, output, render, tile
 
 _VERBS = {
     "info": (info, "what a measurement, model or observation file holds"),
@@ -18,6 +18,7 @@ _VERBS = {
     "render": (render, "render a mesh with a measured material under a world"),
     "observe": (observe, "learn under which views and lights a scene shows its material"),
     "capture": (capture, "make a measurement of a modelled surface"),
+    "tile": (tile, "make a procedural tile of mesostructure as a mesh"),
     "compress": (compress, "a later version has it"),
 }
 _LEVELS = ("error", "warning", "info", "debug")

@@ -1,0 +1,85 @@
+"""Tests in a window: they run in turns of Blender's event loop, and look at what it shows.
+
+A test is a generator that yields the seconds until its next turn.
+"""
+
+import json
+import sys
+import traceback
+
+import bpy
+
+from . import scenes
+
+
+def run(folder, tests):
+    """Starts the tests one after the other, writes the report and leaves Blender."""
+    runner = _Runner(folder, tests)
+    bpy.app.timers.register(runner.turn, first_interval=0.2, persistent=True)  # over file loads
+
+
+class _Runner:
+    def __init__(self, folder, tests):
+        self.folder, self.tests = folder, list(tests)
+        self.report = {"passed": 0, "failed": 0, "skipped": 0, "reasons": []}
+        self.current = None
+
+    def turn(self):
+        """Blender calls this again after the seconds that it returns."""
+        try:
+            if self.current is None:
+                if not self.tests:
+                    self._leave()
+                    return None
+                self.name = self.tests[0].__name__
+                fresh_file()
+                self.current = self.tests.pop(0)(self.folder)
+            return next(self.current)
+        except StopIteration:
+            self._count("passed")
+        except Exception:
+            traceback.print_exc(file=sys.stdout)
+            self._count("failed")
+        return 0.1
+
+    def _count(self, outcome):
+        print(f"{self.name} ... {outcome}", flush=True)
+        self.report[outcome] += 1
+        self.current = None
+
+    def _leave(self):
+        (self.folder / "report.json").write_text(json.dumps(self.report))
+        bpy.ops.wm.quit_blender()
+
+
+def fresh_file():
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+
+
+def first():
+    return bpy.context.window_manager.windows[0]
+
+
+def override():
+    window = first()
+    return bpy.context.temp_override(window=window, screen=window.screen)
+
+
+def show_properties(tab):
+    """A large Properties editor in place of the 3D viewport."""
+    scenes.use_engine()
+    area = max(first().screen.areas, key=lambda a: a.width * a.height)
+    area.type = "PROPERTIES"
+    yield 0.3  # the tabs exist once the editor has been drawn
+    area.spaces.active.context = tab
+    yield 0.7
+
+
+def screenshot(folder, name):
+    """[height x width x 3] of what the window shows; a picture of nothing fails."""
+    path = folder / f"{name}.png"
+    with override():
+        bpy.ops.screen.screenshot(filepath=str(path))
+    pixels = scenes.read(path)[..., :3]
+    assert pixels.std() > 0.02, "the screenshot is uniform"
+    return pixels
