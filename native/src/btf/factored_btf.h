@@ -1,0 +1,75 @@
+// A BTF as a sum of products: functions of the direction pair times maps over the texels.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "btf/btf_measurement.h"
+#include "btf/half_floats.h"
+#include "btf/pair_layout.h"
+
+namespace velour {
+
+/// What is summed.
+enum class Companding : uint8_t {
+  none = 0,  // f itself
+  root = 1,  // the square root of f: errors count about as they are seen, and no sum gives a negative f
+};
+
+/// f from a sum, and back. Sums below 0 are the roots of nothing.
+inline float expanded(Companding companding, float sum) {
+  const float positive = sum > 0 ? sum : 0.0f;
+  return companding == Companding::root ? positive * positive : positive;
+}
+inline float companded(Companding companding, float f) {
+  const float positive = f > 0 ? f : 0.0f;
+  return companding == Companding::root ? std::sqrt(positive) : f;
+}
+
+/// The coefficients of one level of the pyramid over the tile.
+struct TexelLevel {
+  uint32_t width = 0, height = 0;
+  std::vector<HalfBits> value;  // [row][column][component], row 0 at the bottom
+};
+
+/// With a = the colour axis of component k, the sum of axis a at texel x is
+///   s_a = sum over k of axis a of value_k(x) pair_value_k(wl, wv),
+/// between pairs and between texels by interpolation of the factors, and f = expanded(axes (s_0, s_1, s_2)).
+struct FactoredBtf {
+  PairLayout layout;  // complete
+  TexelGrid grid;
+  Companding companding = Companding::root;
+  Mat3 axes{1.0f};                   // columns: orthonormal directions in RGB
+  std::vector<uint8_t> axis;         // of each component: 0, 1, 2, rising
+  std::vector<HalfBits> pair_value;  // [pair][component]
+  std::vector<TexelLevel> levels;    // the finest first; each half of the one before, down to one texel
+
+  size_t components() const { return axis.size(); }
+  /// Of all coefficients as they are stored.
+  uint64_t parameter_bytes() const;
+
+  static constexpr size_t kMaxComponents = 512;
+};
+
+/// Sizes of the level after one of `width` x `height`: half, rounded down, at least 1.
+inline uint32_t half_of(uint32_t extent) { return extent > 1 ? extent / 2 : 1; }
+
+/// How many texels all levels of a pyramid have.
+uint64_t pyramid_texels(const TexelGrid& grid);
+
+/// f of every texel of the finest level for one pair of directions, [row][column][channel]; zero where the model has no
+/// direction on a side of the plane.
+class FactoredImages {
+ public:
+  explicit FactoredImages(const FactoredBtf& btf);
+  ~FactoredImages();
+  void image(const DirectionPair& pair, std::vector<float>& rgb) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace velour

@@ -1,0 +1,91 @@
+#include "compress/btf_compare.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "fit/parallel.h"
+
+namespace velour {
+namespace {
+
+/// The sRGB curve of x in [0, 1].
+float srgb(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f; }
+
+struct Sums {
+  double squares = 0, error = 0, energy = 0;
+  uint64_t values = 0;
+};
+
+Sums compare_images(std::span<const float> truth, std::span<const float> model, float p99, double cosine) {
+  Sums sums;
+  const float scale = 1 / p99;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    if (!std::isfinite(truth[i])) continue;
+    const float seen = srgb(std::clamp(truth[i] * scale, 0.0f, 1.0f)) - srgb(std::clamp(model[i] * scale, 0.0f, 1.0f));
+    const double difference = (static_cast<double>(truth[i]) - static_cast<double>(model[i])) * cosine;
+    const double value = static_cast<double>(truth[i]) * cosine;
+    sums.squares += static_cast<double>(seen * seen);
+    sums.error += difference * difference;
+    sums.energy += value * value;
+    ++sums.values;
+  }
+  return sums;
+}
+
+}  // namespace
+
+double percentile_99(const BtfMeasurement& measurement, const Progress& progress) {
+  // Positive half floats rise with their bits.
+  constexpr HalfBits kInfinity = 0x7c00, kSign = 0x8000;
+  std::vector<uint64_t> count(kInfinity, 0);
+  std::vector<HalfBits> values(measurement.grid().texels() * 3);
+  uint64_t total = 0;
+  for (uint64_t pair = 0; pair < measurement.layout().pairs(); ++pair) {
+    progress.check();
+    measurement.read_pairs(pair, 1, values);
+    for (const HalfBits h : values) {
+      if ((h & ~kSign) >= kInfinity) continue;
+      ++count[(h & kSign) != 0 ? 0 : h];
+      ++total;
+    }
+  }
+  uint64_t below = 0;
+  HalfBits at = 0;
+  for (; at + 1 < kInfinity; ++at) {
+    below += count[at];
+    if (static_cast<double>(below) >= 0.99 * static_cast<double>(total)) break;
+  }
+  float value = 0;
+  halves_to_floats({&at, 1}, {&value, 1});
+  return static_cast<double>(value);
+}
+
+BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, double p99, int threads,
+                      const Progress& progress) {
+  const uint64_t pairs = truth.layout().pairs();
+  std::vector<Sums> sums(pairs);
+  parallel_pieces(pairs, threads, progress, [&](size_t pair) {
+    std::vector<HalfBits> halves(truth.grid().texels() * 3);
+    std::vector<float> measured(halves.size()), modelled;
+    truth.read_pairs(pair, 1, halves);
+    halves_to_floats(halves, measured);
+    const DirectionPair directions = truth.layout().directions(pair);
+    images(directions, modelled);
+    const auto cosine = static_cast<double>(std::abs(directions.wl.z));
+    sums[pair] = compare_images(measured, modelled, static_cast<float>(p99), cosine);
+  });
+  Sums all;
+  for (const Sums& s : sums) {
+    all.squares += s.squares;
+    all.error += s.error;
+    all.energy += s.energy;
+    all.values += s.values;
+  }
+  BtfErrors errors{0, 0, pairs};
+  if (all.values > 0) errors.psnr = -10 * std::log10(std::max(all.squares / static_cast<double>(all.values), 1e-30));
+  if (all.energy > 0) errors.ser = all.error / all.energy;
+  return errors;
+}
+
+}  // namespace velour

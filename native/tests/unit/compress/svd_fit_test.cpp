@@ -1,0 +1,138 @@
+#include "compress/svd_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <Eigen/SVD>
+#include <limits>
+
+#include "compress/btf_compare.h"
+#include "job/error.h"
+#include "sphere/random.h"
+#include "support/memory_btf.h"
+
+namespace velour {
+namespace {
+
+const TexelGrid kGrid{12, 10};
+
+PairLayout small_layout() { return {ring_directions(30, 5), ring_directions(50, 7)}; }
+
+SvdFit fit(const BtfMeasurement& btf, const SvdOptions& options) {
+  Progress progress;
+  return fit_svd(btf, options, progress);
+}
+
+double error_of(const FactoredBtf& model, const BtfMeasurement& btf) {
+  const FactoredImages images(model);
+  const auto decode = [&](const DirectionPair& pair, std::vector<float>& rgb) { images.image(pair, rgb); };
+  return compare_btf(btf, decode, 1.0, 2, Progress()).ser;
+}
+
+/// Square of a sum of three products, one colour: three components of one axis.
+Rgb squared_products(const DirectionPair& pair, uint32_t x, uint32_t y) {
+  const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
+  const float sum = 1.0f + pair.wl.x * 0.1f * fx + pair.wv.y * pair.wl.y * 0.2f * std::sin(fy + fx);
+  return 0.1f * sum * sum * Rgb(1.0f, 0.5f, 0.25f);
+}
+
+/// Every entry its own.
+Rgb noise(const DirectionPair& pair, uint32_t x, uint32_t y) {
+  RandomStream random(static_cast<uint64_t>(pair.wl.x * 1e6f + pair.wv.y * 1e3f + 2e6f), x, y);
+  const float r = random.next(), g = random.next();
+  return {r, g, random.next()};
+}
+
+TEST(SvdFit, RecoversAProductsSquareToTheRoundingOfHalves) {
+  const test::MemoryBtf btf(small_layout(), kGrid, squared_products);
+  const SvdFit found = fit(btf, {.bytes = 4 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid))});
+  EXPECT_EQ(found.btf.components(), 4u);
+  EXPECT_LT(error_of(found.btf, btf), 1e-6);
+  // The control: three products are not two.
+  EXPECT_GT(error_of(fit(btf, {.bytes = 2 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid))}).btf, btf), 1e-4);
+}
+
+TEST(SvdFit, LosesNoMoreThanTheExactDecomposition) {
+  const test::MemoryBtf btf(small_layout(), kGrid, noise);
+  const auto pairs = static_cast<Eigen::Index>(btf.layout().pairs());
+  const auto texels = static_cast<Eigen::Index>(kGrid.texels());
+  const SvdFit found =
+      fit(btf, {.bytes = 30 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid)), .companding = Companding::none});
+  std::vector<HalfBits> halves(static_cast<size_t>(pairs * texels) * 3);
+  std::vector<float> f(halves.size());
+  btf.read_pairs(0, btf.layout().pairs(), halves);
+  halves_to_floats(halves, f);
+  std::vector<double> energy;
+  double total = 0;
+  for (int a = 0; a < 3; ++a) {
+    Eigen::MatrixXd matrix(pairs, texels);
+    for (Eigen::Index p = 0; p < pairs; ++p) {
+      for (Eigen::Index t = 0; t < texels; ++t) {
+        const float* rgb = f.data() + (p * texels + t) * 3;
+        matrix(p, t) = static_cast<double>(glm::dot(found.btf.axes[a], Vec3(rgb[0], rgb[1], rgb[2])));
+      }
+    }
+    const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
+    for (const double x : s) energy.push_back(x * x);
+    total += matrix.squaredNorm();
+  }
+  std::sort(energy.rbegin(), energy.rend());
+  double kept = 0;
+  for (size_t k = 0; k < 30; ++k) kept += energy[k];
+  const FactoredImages images(found.btf);
+  double error = 0;
+  std::vector<float> image;
+  for (Eigen::Index p = 0; p < pairs; ++p) {
+    images.image(btf.layout().directions(static_cast<uint64_t>(p)), image);
+    for (size_t i = 0; i < image.size(); ++i) {
+      error += std::pow(static_cast<double>(image[i] - f[static_cast<size_t>(p) * image.size() + i]), 2);
+    }
+  }
+  // Noise has the slowest spectrum there is; clamping at 0 only helps.
+  EXPECT_LT(error, 1.03 * (total - kept));
+}
+
+TEST(SvdFit, CoarseLevelsKeepTheMeanOfWhatIsSquared) {
+  const test::MemoryBtf btf(small_layout(), {8, 8}, [](const DirectionPair&, uint32_t x, uint32_t y) {
+    return Rgb((x + y) % 2 == 0 ? 0.8f : 0.0f);
+  });
+  const SvdFit found = fit(btf, {.bytes = 2000});
+  ASSERT_EQ(found.btf.levels.size(), 4u);
+  FactoredBtf coarse = found.btf;
+  coarse.levels = {found.btf.levels[1]};
+  coarse.grid = {4, 4};
+  std::vector<float> image;
+  FactoredImages(coarse).image(btf.layout().directions(3), image);
+  for (const float f : image) EXPECT_NEAR(f, 0.4f, 2e-3f);  // filtered coefficients would give 0.2
+}
+
+TEST(SvdFit, KeepsToItsBytes) {
+  const test::MemoryBtf btf(small_layout(), kGrid, noise);
+  EXPECT_LE(fit(btf, {.bytes = 3000}).btf.parameter_bytes(), 3000u);
+  EXPECT_THROW(fit(btf, {.bytes = 100}), Error);
+}
+
+TEST(SvdFit, IsTheSameForAnyNumberOfThreads) {
+  const test::MemoryBtf btf(small_layout(), kGrid, noise);
+  const SvdFit one = fit(btf, {.bytes = 3000, .threads = 1}), two = fit(btf, {.bytes = 3000, .threads = 2});
+  EXPECT_EQ(one.btf.pair_value, two.btf.pair_value);
+  EXPECT_EQ(one.btf.levels[0].value, two.btf.levels[0].value);
+}
+
+TEST(SvdFit, IsNotPulledByEntriesThatAreNotFinite) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const test::MemoryBtf btf(small_layout(), kGrid, [&](const DirectionPair& pair, uint32_t x, uint32_t y) {
+    return x == 3 && y == 4 && pair.wl.x > 0 ? Rgb(nan) : squared_products(pair, x, y);
+  });
+  const SvdFit found = fit(btf, {.bytes = 6000});
+  EXPECT_GT(found.not_finite, 0u);
+  EXPECT_LT(error_of(found.btf, btf), 1e-3);
+}
+
+TEST(SvdFit, NeedsEveryPair) {
+  const PairLayout holes(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}});
+  EXPECT_THROW(fit(test::MemoryBtf(holes, kGrid, noise), {}), Error);
+}
+
+}  // namespace
+}  // namespace velour
