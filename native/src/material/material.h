@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "material/factored_point.h"
 #include "material/ggx_sampler.h"
 #include "material/principled_lobes.h"
 #include "material/surface_site.h"
@@ -24,6 +25,7 @@ struct PreparedBrdf {
   float parameter[8];          // analytic materials: what they derive from wv
   GgxPoint ggx;                // of the fitted GGX lobe, where one is the material or draws its samples
   PrincipledLobes principled;  // textured Principled materials: those of the site
+  FactoredPoint factored;      // BTFs as sums of products: those of the site and the view
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.

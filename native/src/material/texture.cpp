@@ -5,6 +5,7 @@
 #include <string>
 
 #include "job/error.h"
+#include "material/footprint_taps.h"
 
 namespace velour {
 namespace {
@@ -25,25 +26,6 @@ void shrink(const T* source, size_t source_step, int from, T* target, size_t tar
     }
     target[static_cast<size_t>(i) * target_step] = sum;
   }
-}
-
-/// Length and width of a parallelogram: the singular values of its sides, which are the sides of a rectangle.
-struct Extent {
-  Vec2 along;  // as long as the length
-  float length, width;
-};
-
-Extent extent_of(const Mat2& sides) {
-  const Vec2 &a = sides[0], &b = sides[1];
-  const float xx = a.x * a.x + b.x * b.x, yy = a.y * a.y + b.y * b.y, xy = a.x * a.y + b.x * b.y;
-  const float root = std::sqrt(0.25f * (xx - yy) * (xx - yy) + xy * xy);
-  const float length_sq = 0.5f * (xx + yy) + root;
-  if (!(length_sq > 0.0f)) return {Vec2(0.0f), 0.0f, 0.0f};
-  const float length = std::sqrt(length_sq);
-  // Of the two forms of the eigenvector, the one that does not cancel.
-  const Vec2 along = xx >= yy ? Vec2(length_sq - yy, xy) : Vec2(xy, length_sq - xx);
-  const float size = glm::length(along);
-  return {size > 0.0f ? along * (length / size) : Vec2(length, 0.0f), length, std::abs(a.x * b.y - a.y * b.x) / length};
 }
 
 }  // namespace
@@ -134,20 +116,14 @@ T Texture<T>::trilinear(const Vec2& uv, float level) const {
 
 template <class T>
 T Texture<T>::look_up(const Vec2& uv, const Mat2& footprint) const {
-  const Vec2 size(width(), height());
-  const Extent extent = extent_of({footprint[0] * size, footprint[1] * size});  // in texels
-  if (!(extent.length > 1.0f)) {
-    return options_.filter == TextureFilter::closest ? closest(reduced(uv)) : bilinear(levels_[0], reduced(uv));
+  const FootprintTaps taps = footprint_taps(footprint, Vec2(width(), height()));
+  if (taps.level <= 0.0f && taps.count == 1) {
+    return options_.filter == TextureFilter::closest && taps.magnified ? closest(reduced(uv))
+                                                                       : bilinear(levels_[0], reduced(uv));
   }
-  const float tap = std::max({extent.width, extent.length / kMostTaps, 1.0f});
-  const float level = std::log2(tap);
-  const int taps = std::clamp(static_cast<int>(std::ceil(extent.length / tap - 0.01f)), 1, kMostTaps);
-  const Vec2 step = extent.along / size / static_cast<float>(taps);
   T sum(0.0f);
-  for (int i = 0; i < taps; ++i) {
-    sum += trilinear(reduced(uv + (static_cast<float>(i) - 0.5f * static_cast<float>(taps - 1)) * step), level);
-  }
-  return sum / static_cast<float>(taps);
+  for (int i = 0; i < taps.count; ++i) sum += trilinear(reduced(taps.place(uv, i)), taps.level);
+  return sum / static_cast<float>(taps.count);
 }
 
 template <class T>

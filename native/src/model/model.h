@@ -9,6 +9,8 @@
 
 #include "brdf/parametric_brdf.h"
 #include "brdf/scattered_brdf.h"
+#include "btf/factored_btf.h"
+#include "model/btf_record.h"
 #include "model/order_curve.h"
 #include "model/scene_record.h"
 
@@ -39,7 +41,7 @@ struct SourceRecord {
 };
 
 /// Kinds of model; a new kind is appended.
-using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf>;
+using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf, FactoredBtf>;
 
 struct Model {
   ModelBody body;
@@ -47,13 +49,18 @@ struct Model {
   SourceRecord source;
   /// Of a model that was reduced to what scenes need: its views are those of the body.
   std::optional<SceneRecord> scene = std::nullopt;
+  /// Of a BTF, whose `fit` says nothing.
+  std::optional<BtfRecord> btf = std::nullopt;
 };
 
 /// Whether the model holds for some scenes alone. One that was fitted for scenes which need all of the full model is
 /// that full model, and holds for any.
 bool is_reduced(const Model& model);
 
-/// "scattered", "parametric".
+/// Whether it is of a BTF, with a BtfRecord, instead of a BRDF.
+bool is_btf(const Model& model);
+
+/// "scattered", "parametric", "factored-btf".
 const char* model_kind(const Model& model);
 
 }  // namespace velour

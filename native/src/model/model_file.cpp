@@ -6,6 +6,7 @@
 #include "file/file.h"
 #include "image/exr_tensors.h"
 #include "job/error.h"
+#include "model/factored_file.h"
 #include "model/fit_record_json.h"
 #include "model/parametric_file.h"
 #include "model/scattered_file.h"
@@ -14,24 +15,28 @@
 namespace velour {
 namespace {
 
-constexpr char kFormatVersion[] = "1.2";
+constexpr char kFormatVersion[] = "1.3";
 constexpr int kMajorVersion = 1;
 constexpr char kKind[] = "model";
-constexpr char kScene[] = "velour.scene";
+constexpr char kScene[] = "velour.scene", kBtf[] = "velour.btf.record";
 constexpr uint64_t kMaxFileBytes = uint64_t{1} << 30;
 
 // One overload a kind of model.
 
-const char* kind_of(const ScatteredBrdf&) { return "scattered"; }
-const char* kind_of(const ParametricBrdf&) { return "parametric"; }
+constexpr char kScattered[] = "scattered", kParametric[] = "parametric", kFactored[] = "factored-btf";
+const char* kind_of(const ScatteredBrdf&) { return kScattered; }
+const char* kind_of(const ParametricBrdf&) { return kParametric; }
+const char* kind_of(const FactoredBtf&) { return kFactored; }
 
 void write_body(const ScatteredBrdf& brdf, TensorFile& file) { write_scattered(brdf, file); }
 void write_body(const ParametricBrdf& brdf, TensorFile& file) { write_parametric(brdf, file); }
+void write_body(const FactoredBtf& btf, TensorFile& file) { write_factored(btf, file); }
 
 ModelBody read_body(const ModelFields& fields) {
   const std::string& kind = fields.attribute("velour.model");
-  if (kind == kind_of(ScatteredBrdf())) return read_scattered(fields);
-  if (kind == kind_of(ParametricBrdf())) return read_parametric(fields);
+  if (kind == kScattered) return read_scattered(fields);
+  if (kind == kParametric) return read_parametric(fields);
+  if (kind == kFactored) return read_factored(fields);
   throw Error(Status::unsupported, fields.name() + ": velour.model is '" + kind +
                                        "', a kind of model that this Velour does not know. Use a newer one.");
 }
@@ -56,6 +61,8 @@ const char* model_kind(const Model& model) {
   return std::visit([](const auto& brdf) { return kind_of(brdf); }, model.body);
 }
 
+bool is_btf(const Model& model) { return std::holds_alternative<FactoredBtf>(model.body); }
+
 bool is_reduced(const Model& model) {
   const auto* brdf = std::get_if<ParametricBrdf>(&model.body);
   return brdf && model.scene && brdf->parameter_bytes() < model.scene->full_parameter_bytes;
@@ -71,6 +78,7 @@ std::vector<uint8_t> encode_model(const Model& model) {
                      {"velour.source.format", model.source.format},
                      {"velour.source.sha256", model.source.sha256}};
   if (model.scene) file.attributes[kScene] = scene_record_json(*model.scene);
+  if (model.btf) file.attributes[kBtf] = btf_record_json(*model.btf);
   std::visit([&](const auto& brdf) { write_body(brdf, file); }, model.body);
   return encode_tensors(file);
 }
@@ -91,6 +99,7 @@ Model decode_model(std::span<const uint8_t> bytes, const std::string& name) {
                   fields.attribute_or_empty("velour.source.sha256")};
   const std::string scene = fields.attribute_or_empty(kScene);
   if (!scene.empty()) model.scene = parse_scene_record(scene, name + ": " + kScene);
+  if (is_btf(model)) model.btf = parse_btf_record(fields.attribute(kBtf), name + ": " + kBtf);
   const auto* brdf = std::get_if<ParametricBrdf>(&model.body);
   if (brdf && !brdf->views.whole() && !model.scene) {
     fields.fail(std::string(kScene) + " is missing; a model of some views must say for which scenes it was made.");

@@ -1,5 +1,7 @@
 #include "model/model_material.h"
 
+#include "job/error.h"
+#include "material/factored_material.h"
 #include "material/parametric_material.h"
 #include "material/scattered_material.h"
 
@@ -16,6 +18,7 @@ std::shared_ptr<const Material> made_of_body(const std::shared_ptr<const Model>&
 
 using Scattered = std::shared_ptr<const ScatteredBrdf>;
 using Parametric = std::shared_ptr<const ParametricBrdf>;
+using Factored = std::shared_ptr<const FactoredBtf>;
 
 template <typename... Makes>
 struct Either : Makes... {
@@ -26,7 +29,8 @@ struct Either : Makes... {
 
 std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>& model, int neighbors) {
   return made_of_body(model, Either{[&](const Scattered& body) { return make_scattered_material(body, neighbors); },
-                                    [&](const Parametric& body) { return make_parametric_material(body); }});
+                                    [&](const Parametric& body) { return make_parametric_material(body); },
+                                    [&](const Factored& body) { return make_factored_material(body); }});
 }
 
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
@@ -34,7 +38,11 @@ std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Mea
   return made_of_body(
       proposal,
       Either{[&](const Scattered& body) { return make_measured_material(std::move(measurement), body, neighbors); },
-             [&](const Parametric& body) { return make_measured_material(std::move(measurement), body); }});
+             [&](const Parametric& body) { return make_measured_material(std::move(measurement), body); },
+             [&](const Factored&) -> std::shared_ptr<const Material> {
+               throw Error(Status::invalid_argument,
+                           "A model of a BTF cannot draw samples for the measurement of a BRDF.");
+             }});
 }
 
 }  // namespace velour

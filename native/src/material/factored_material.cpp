@@ -1,0 +1,148 @@
+#include "material/factored_material.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "btf/pair_interpolation.h"
+#include "material/factored_sums.h"
+#include "material/footprint_taps.h"
+#include "sphere/warp.h"
+
+namespace velour {
+namespace {
+
+uint32_t padded(size_t count) {
+  return static_cast<uint32_t>((count + kFactoredPadding - 1) / kFactoredPadding * kFactoredPadding);
+}
+
+/// `i` of a period `size`, for -1 <= i <= size.
+uint32_t wrapped(int i, uint32_t size) {
+  const int n = static_cast<int>(size);
+  return static_cast<uint32_t>(i < 0 ? i + n : (i >= n ? i - n : i));
+}
+
+class FactoredMaterial final : public Material {
+ public:
+  explicit FactoredMaterial(std::shared_ptr<const FactoredBtf> btf)
+      : btf_(std::move(btf)),
+        between_(btf_->layout),
+        two_sided_(between_.view({0, 0, -1}) && between_.light({0, 0, -1})) {
+    place_components();
+    pair_value_.assign(btf_->layout.pairs() * end_[2], 0.0f);
+    for (uint64_t pair = 0; pair < btf_->layout.pairs(); ++pair) spread(btf_->pair_value, pair, pair_value_);
+    for (const TexelLevel& level : btf_->levels) {
+      const uint64_t texels = uint64_t{level.width} * level.height;
+      std::vector<float>& values = texel_value_.emplace_back(texels * end_[2], 0.0f);
+      for (uint64_t t = 0; t < texels; ++t) spread(level.value, t, values);
+    }
+  }
+
+  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
+    point.wv = wv;
+    FactoredPoint& p = point.factored;
+    p.back = site.back && two_sided_;
+    const auto views = between_.view(turned(wv, p.back));
+    p.weight = {0, 0, 0};
+    if (!views) return;
+    p.weight = views->weight;
+    for (size_t v = 0; v < 3; ++v) p.view[v] = static_cast<uint32_t>(btf_->layout.first(views->index[v]));
+    std::fill_n(p.value, end_[2], 0.0f);
+    const TexelLevel& finest = btf_->levels[0];
+    const FootprintTaps taps = footprint_taps(site.footprint, Vec2(finest.width, finest.height));
+    for (int i = 0; i < taps.count; ++i) {
+      add_trilinear(taps.place(site.uv, i), taps.level, 1.0f / static_cast<float>(taps.count), p.value);
+    }
+  }
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    for (int i = 0; i < wl.count; ++i) {
+      f.set(i, value(point, wl.get(i)));
+      pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
+    }
+  }
+
+  void sample(const PreparedBrdf& /*point*/, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    wl.fill(u, [](const Vec2& v) { return sample_cosine_hemisphere(v); });
+  }
+
+  bool varies() const override { return true; }
+  bool isotropic() const override { return false; }
+
+ private:
+  static Vec3 turned(const Vec3& w, bool back) { return {w.x, w.y, back ? -w.z : w.z}; }
+
+  /// Components of an axis stand together; each axis begins at a whole vector.
+  void place_components() {
+    uint32_t begin = 0;
+    for (uint32_t a = 0; a < 3; ++a) {
+      const auto count = static_cast<size_t>(std::count(btf_->axis.begin(), btf_->axis.end(), a));
+      for (size_t k = 0; k < count; ++k) place_.push_back(begin + static_cast<uint32_t>(k));
+      end_[a] = begin += padded(count);
+    }
+  }
+
+  /// Row `number` of halves to its padded place among floats.
+  void spread(const std::vector<HalfBits>& halves, uint64_t number, std::vector<float>& floats) const {
+    float row[FactoredBtf::kMaxComponents];
+    const size_t components = btf_->components();
+    halves_to_floats({halves.data() + number * components, components}, {row, components});
+    for (size_t k = 0; k < components; ++k) floats[number * end_[2] + place_[k]] = row[k];
+  }
+
+  void add_trilinear(const Vec2& uv, float level, float weight, float* to) const {
+    const float place = std::clamp(level, 0.0f, static_cast<float>(texel_value_.size() - 1));
+    const auto fine = static_cast<size_t>(place);
+    const float part = place - static_cast<float>(fine);
+    add_bilinear(uv, fine, weight * (1 - part), to);
+    if (part > 0) add_bilinear(uv, fine + 1, weight * part, to);
+  }
+
+  void add_bilinear(const Vec2& uv, size_t level, float weight, float* to) const {
+    const TexelLevel& size = btf_->levels[level];
+    const Vec2 inside = std::isfinite(uv.x + uv.y) ? uv - glm::floor(uv) : Vec2(0.0f);
+    const Vec2 place = inside * Vec2(size.width, size.height) - 0.5f, low = glm::floor(place), part = place - low;
+    for (int corner = 0; corner < 4; ++corner) {
+      const int dx = corner & 1, dy = corner >> 1;
+      const float share = weight * (dx ? part.x : 1 - part.x) * (dy ? part.y : 1 - part.y);
+      const uint64_t texel = uint64_t{wrapped(static_cast<int>(low.y) + dy, size.height)} * size.width +
+                             wrapped(static_cast<int>(low.x) + dx, size.width);
+      const float* from = texel_value_[level].data() + texel * end_[2];
+      for (uint32_t k = 0; k < end_[2]; ++k) to[k] += share * from[k];
+    }
+  }
+
+  Rgb value(const PreparedBrdf& point, const Vec3& wl) const {
+    const FactoredPoint& p = point.factored;
+    if (!(wl.z > 0) || p.weight[0] + p.weight[1] + p.weight[2] == 0) return Rgb(0.0f);
+    const auto lights = between_.light(turned(wl, p.back));
+    if (!lights) return Rgb(0.0f);
+    std::array<WeightedRow, 9> rows;
+    size_t count = 0;
+    for (size_t v = 0; v < 3; ++v) {
+      for (size_t l = 0; l < 3; ++l) {
+        const float weight = p.weight[v] * lights->weight[l];
+        if (weight > 0)
+          rows[count++] = {pair_value_.data() + (uint64_t{p.view[v]} + lights->index[l]) * end_[2], weight};
+      }
+    }
+    const Vec3 color = btf_->axes * factored_sums(p.value, {rows.data(), count}, end_);
+    return {expanded(btf_->companding, color.r), expanded(btf_->companding, color.g),
+            expanded(btf_->companding, color.b)};
+  }
+
+  std::shared_ptr<const FactoredBtf> btf_;
+  PairInterpolation between_;
+  bool two_sided_;
+  std::vector<uint32_t> place_;                  // of each component in a padded row
+  std::array<uint32_t, 3> end_{};                // of each axis in a padded row
+  std::vector<float> pair_value_;                // [pair][padded]
+  std::vector<std::vector<float>> texel_value_;  // a level: [texel][padded]
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> make_factored_material(std::shared_ptr<const FactoredBtf> btf) {
+  return std::make_shared<FactoredMaterial>(std::move(btf));
+}
+
+}  // namespace velour

@@ -1,0 +1,15 @@
+// A BTF as a sum of products, evaluated at a site of a surface.
+#pragma once
+
+#include <memory>
+
+#include "btf/factored_btf.h"
+#include "material/material.h"
+
+namespace velour {
+
+/// Texture coordinates are in tiles: the BTF repeats with every whole number. Samples have the density of the cosine: a
+/// factorisation knows no lobes to draw from.
+std::shared_ptr<const Material> make_factored_material(std::shared_ptr<const FactoredBtf> btf);
+
+}  // namespace velour
