@@ -1,6 +1,7 @@
 """The shared library as Python sees it. Importing this opens nothing; the first call does."""
 
 from . import images, library
+from .btf import Btf, export_btf_job
 from .errors import LibraryError, Status, VelourError
 from .job import (
     Job,
@@ -20,6 +21,7 @@ from .texture import Texture, TextureSlot
 from .tile import Tile
 
 __all__ = [
+    "Btf",
     "Job",
     "JobState",
     "LibraryError",
@@ -34,6 +36,7 @@ __all__ = [
     "VelourError",
     "compare_job",
     "compare_peer_job",
+    "export_btf_job",
     "fit_job",
     "images",
     "library",

@@ -6,13 +6,26 @@ native/include/velour/velour.h is the law; a test compares names, argument count
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_uint8, c_uint32, c_uint64, c_void_p
+from ctypes import (
+    POINTER,
+    c_char_p,
+    c_double,
+    c_float,
+    c_int32,
+    c_uint8,
+    c_uint16,
+    c_uint32,
+    c_uint64,
+    c_void_p,
+)
 
 from .errors import VelourError
 
 JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
 MODELS = ("scattered", "parametric")
+BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
+BTF_COLORS = ("rec709", "xyz")
 PEERS = ("ggx", "principled")
 LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
@@ -59,6 +72,16 @@ class FitOptions(Struct):
         ("pad", c_int32),
         ("for_scene", c_void_p),
         ("full_model", c_void_p),
+    ]
+
+
+class BtfOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("values", c_int32),
+        ("colors", c_int32),
+        ("gamma", c_float),
+        ("tile_metres", c_float * 2),
     ]
 
 
@@ -203,6 +226,7 @@ class ObserveOptions(Struct):
 STRUCTS = {
     "vlr_job_state": JobStateStruct,
     "vlr_fit_options": FitOptions,
+    "vlr_btf_options": BtfOptions,
     "vlr_microsurface_options": MicrosurfaceOptions,
     "vlr_mesh_desc": MeshDesc,
     "vlr_principled_desc": PrincipledDesc,
@@ -239,6 +263,11 @@ STATUS_CALLS = {
     "vlr_model_sample": [_handle, _floats, c_uint64, _floats, _floats, _floats],
     "vlr_model_out_of_domain": [_handle, _handle, POINTER(c_double)],
     "vlr_file_info_json": [c_char_p, _json],
+    "vlr_btf_load": [c_char_p, POINTER(BtfOptions), _out_handle],
+    "vlr_btf_info_json": [_handle, _json],
+    "vlr_btf_angles": [_handle, POINTER(c_double), c_uint64],
+    "vlr_btf_read": [_handle, c_uint64, c_uint64, POINTER(c_uint16), c_uint64],
+    "vlr_btf_export_create_job": [_handle, c_char_p, _out_handle],
     "vlr_job_start": [_handle],
     "vlr_job_poll": [_handle, POINTER(JobStateStruct)],
     "vlr_job_cancel": [_handle],
@@ -307,12 +336,14 @@ PLAIN_CALLS = {
     "vlr_version": (c_uint32, []),
     "vlr_abi_version": (c_uint32, []),
     "vlr_measurement_free": (None, [_handle]),
+    "vlr_btf_free": (None, [_handle]),
     "vlr_model_free": (None, [_handle]),
     "vlr_job_free": (None, [_handle]),
     "vlr_scene_free": (None, [_handle]),
     "vlr_texture_free": (None, [_handle]),
     "vlr_observation_free": (None, [_handle]),
     "vlr_tile_free": (None, [_handle]),
+    "vlr_btf_options_init": (None, [POINTER(BtfOptions)]),
     "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
     "vlr_microsurface_options_init": (None, [POINTER(MicrosurfaceOptions)]),
     "vlr_tile_options_init": (None, [POINTER(TileOptions)]),

@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 4
+#define VLR_ABI_VERSION 5
 
 typedef int32_t vlr_status;
 enum {
@@ -49,6 +49,7 @@ enum {
 };
 
 typedef struct vlr_measurement vlr_measurement;
+typedef struct vlr_btf vlr_btf;
 typedef struct vlr_model vlr_model;
 typedef struct vlr_scene vlr_scene;
 typedef struct vlr_texture vlr_texture; /* a picture that stands for a number of a material */
@@ -107,9 +108,47 @@ VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint6
 VLR_API vlr_status vlr_model_sample(const vlr_model* model, const float* wv, uint64_t count, const float* u, float* wl,
                                     float* pdf);
 
-/* JSON of vlr_measurement_info_json, vlr_model_info_json or vlr_observation_info_json, whichever the file is; the text
- * belongs to the thread until its next call of this function. */
+/* JSON of vlr_measurement_info_json, vlr_model_info_json, vlr_observation_info_json or vlr_btf_info_json, whichever the
+ * file or folder is; the text belongs to the thread until its next call of this function. */
 VLR_API vlr_status vlr_file_info_json(const char* path, const char** json);
+
+/* ---- bidirectional texture functions ------------------------------------------------------------------------- */
+
+/* What numbers of pictures and of .btf files mean (docs/btf.md). */
+enum {
+  VLR_BTF_AUTOMATIC = 0,   /* as they say of themselves; other pictures: radiance; .btf files: BRDF */
+  VLR_BTF_BRDF = 1,        /* apparent BRDF, 1/sr */
+  VLR_BTF_REFLECTANCE = 2, /* pi times it */
+  VLR_BTF_RADIANCE = 3     /* pi cos(theta_l) times it */
+};
+enum { VLR_BTF_REC709 = 0, VLR_BTF_XYZ = 1 };
+
+typedef struct vlr_btf_options {
+  uint32_t struct_size;
+  int32_t values;       /* VLR_BTF_AUTOMATIC ... */
+  int32_t colors;       /* of pictures: VLR_BTF_REC709 or VLR_BTF_XYZ */
+  float gamma;          /* of pictures of whole numbers: linear = stored^gamma; 0: the sRGB curve */
+  float tile_metres[2]; /* size of the tile along x and y; 0 0: what the source says, if it says anything */
+} vlr_btf_options;
+VLR_API void vlr_btf_options_init(vlr_btf_options* options);
+
+/* Opens a BTF: a folder of Velour's own, a folder of pictures named for their angles (UBO2003), a CSV index of pictures,
+ * or a .btf file of Bonn (UBO2014). Pixels are read when asked for. */
+VLR_API vlr_status vlr_btf_load(const char* path, const vlr_btf_options* options, vlr_btf** out);
+VLR_API void vlr_btf_free(vlr_btf* btf);
+/* JSON: kind "btf", format, name, path, description, sha256, bytes, raw_bytes (as half-float RGB), texels [x, y], views,
+ * lights, pairs, complete, largest_theta {view, light} (degrees), tile_metres [x, y] or null, shell {thickness,
+ * reference_height} or null, errors, structure, entries {pairs, values, not_finite, negative} (of so many pairs, evenly
+ * spread where not all), details {...}. */
+VLR_API vlr_status vlr_btf_info_json(vlr_btf* btf, const char** json);
+/* theta_l, phi_l, theta_v, phi_v of every pair in degrees, angles [pairs x 4]; `count` is the number of doubles. */
+VLR_API vlr_status vlr_btf_angles(const vlr_btf* btf, double* angles, uint64_t count);
+/* Apparent BRDFs (1/sr, without cosine, linear Rec. 709) as half floats: halves [pairs x rows x columns x 3] of the
+ * pairs [first, first + pairs), row 0 at the bottom (y = 0); `count` is the number of halves. */
+VLR_API vlr_status vlr_btf_read(const vlr_btf* btf, uint64_t first, uint64_t pairs, uint16_t* halves, uint64_t count);
+/* Writes one OpenEXR picture of half floats a pair into the new folder `path`, named for its angles where all of them
+ * are whole degrees, else listed in btf.csv. JSON: format "ubo2003" or "csv", pictures, bytes, seconds. */
+VLR_API vlr_status vlr_btf_export_create_job(const vlr_btf* btf, const char* path, vlr_job** out);
 
 /* ---- jobs ---------------------------------------------------------------------------------------------------- */
 

@@ -46,11 +46,10 @@ class BtfFolder : public BtfMeasurement {
     return structure;
   }
 
-  std::vector<std::pair<std::string, std::string>> details() const override {
-    return {{"options", index_.options},
-            {"errors", index_.errors ? "yes" : "no"},
-            {"structure", index_.structure ? "yes" : "no"}};
-  }
+  std::vector<std::pair<std::string, std::string>> details() const override { return {{"options", index_.options}}; }
+
+  bool has_errors() const override { return index_.errors; }
+  bool has_structure() const override { return index_.structure; }
 
   std::optional<ValueCounts> all_counts() const override { return content_.counts; }
 

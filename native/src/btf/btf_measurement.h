@@ -59,6 +59,10 @@ class BtfMeasurement {
   /// Nothing where it was not captured.
   virtual std::optional<ViewStructure> read_structure(uint32_t /*view*/) const { return std::nullopt; }
 
+  /// Whether read_errors() and read_structure() give something.
+  virtual bool has_errors() const { return false; }
+  virtual bool has_structure() const { return false; }
+
   /// Of all values, where they were counted when the set was made; elsewhere they are counted in a sample of pairs.
   virtual std::optional<ValueCounts> all_counts() const { return std::nullopt; }
 
@@ -81,5 +85,13 @@ class BtfMeasurement {
   std::optional<Shell> shell_;
   Provenance provenance_;  // its sha256 names the content: of the index or of all names and sizes where files are many
 };
+
+/// Pairs and what is known of their values: of all of them where they were counted before, else of at most `most`
+/// pairs, evenly spread.
+struct CountedPairs {
+  uint64_t pairs = 0;
+  ValueCounts counts;
+};
+CountedPairs count_values(const BtfMeasurement& btf, uint64_t most = 16);
 
 }  // namespace velour

@@ -15,6 +15,8 @@ namespace velour {
 namespace fs = std::filesystem;
 namespace {
 
+/// Of folders in the folder: someone may name a disk by mistake.
+constexpr int kMaxDepth = 3;
 constexpr size_t kMaxPictures = kMaxDirections * kMaxDirections;
 
 std::string lower_case(std::string_view text) {
@@ -83,6 +85,7 @@ std::vector<NamedPicture> list_pictures(const std::string& folder) {
   std::vector<NamedPicture> pictures;
   std::error_code failure;
   for (fs::recursive_directory_iterator at(folder, failure), end; !failure && at != end; at.increment(failure)) {
+    if (at.depth() == kMaxDepth) at.disable_recursion_pending();
     const fs::path& path = at->path();
     if (path.filename().string().starts_with('.') || !is_picture_name(path) || !at->is_regular_file()) continue;
     const auto angles = angles_of_name(path.stem().string());

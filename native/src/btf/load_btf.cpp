@@ -50,6 +50,9 @@ std::shared_ptr<const BtfMeasurement> load_folder(const std::string& path, const
   return load_image_set({path, "ubo2003", find_named_pictures(path)}, options);
 }
 
+/// By its extension too, so that one with a bad first line is told what is wrong with it.
+bool is_csv(const std::string& path) { return fs::path(path).extension() == ".csv" || is_csv_index(path); }
+
 bool is_archive(const std::string& path) {
   const std::vector<uint8_t> head = read_file_head(path, 4);
   return std::ranges::equal(head, std::array<uint8_t, 4>{'P', 'K', 3, 4});
@@ -62,7 +65,7 @@ std::shared_ptr<const BtfMeasurement> load_btf(const std::string& path, const Bt
   if (is_folder(path)) return load_folder(path, options);
   if (fs::path(path).filename() == "btf.json") return load_folder(fs::absolute(path).parent_path(), options);
   if (is_ubo_file(path)) return load_ubo_file(path, options);
-  if (is_csv_index(path) || fs::path(path).extension() == ".csv") return load_csv(path, options);
+  if (is_csv(path)) return load_csv(path, options);
   if (is_archive(path)) throw Error(Status::unsupported, path + ": is an archive; unpack it and give its folder.");
   throw Error(Status::bad_data, path + ": is no BTF: neither a .btf file of Bonn, nor a CSV index of pictures, nor a " +
                                     "folder; see docs/btf.md for what is read.");
@@ -70,7 +73,7 @@ std::shared_ptr<const BtfMeasurement> load_btf(const std::string& path, const Bt
 
 bool is_btf(const std::string& path) {
   if (is_folder(path) || fs::path(path).filename() == "btf.json") return true;
-  return is_file(path) && (is_ubo_file(path) || is_csv_index(path));
+  return is_file(path) && (is_ubo_file(path) || is_csv(path));
 }
 
 }  // namespace velour

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "brdf/measurement.h"
+#include "btf/btf_measurement.h"
 #include "domain/observation.h"
 #include "job/job.h"
 #include "material/texture.h"
@@ -18,6 +19,11 @@
 
 struct vlr_measurement {
   std::shared_ptr<const velour::Measurement> measurement;
+  std::string info;
+};
+
+struct vlr_btf {
+  std::shared_ptr<const velour::BtfMeasurement> btf;
   std::string info;
 };
 

@@ -1,5 +1,7 @@
 #include "brdf/measurement.h"
 
+#include "btf/load_btf.h"
+#include "capi/btf_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/reports.h"
@@ -48,7 +50,9 @@ vlr_status vlr_file_info_json(const char* path, const char** json) {
     require(path, "path");
     require(json, "json");
     thread_local std::string text;
-    if (is_model_file(path)) {
+    if (is_btf(path)) {
+      text = btf_json(*load_btf(path));
+    } else if (is_model_file(path)) {
       const Model model = load_model(path);
       text = model_json(model, encode_model(model).size());
     } else if (is_observation_file(path)) {

@@ -9,16 +9,17 @@ import sys
 from ...native import library
 from ...native.errors import VelourError
 from ...native.version import version_text
-from . import capture, compare, compress, fit, info, later, observe, output, render, tile
+from . import capture, compare, compress, export, fit, info, later, observe, output, render, tile
 
 _VERBS = {
-    "info": (info, "what a measurement, model or observation file holds"),
+    "info": (info, "what a measurement, BTF, model or observation holds"),
     "fit": (fit, "fit a model to a measurement"),
     "compare": (compare, "error of a model against a measurement"),
     "render": (render, "render a mesh with a measured material under a world"),
     "observe": (observe, "learn under which views and lights a scene shows its material"),
     "capture": (capture, "make a measurement of a modelled surface"),
     "tile": (tile, "make a procedural tile of mesostructure as a mesh"),
+    "export": (export, "write a BTF as a folder of pictures"),
     "compress": (compress, "a later version has it"),
 }
 _LEVELS = ("error", "warning", "info", "debug")

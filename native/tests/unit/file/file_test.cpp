@@ -4,7 +4,9 @@
 
 #include <fstream>
 
+#include "file/atomic_file.h"
 #include "file/byte_reader.h"
+#include "file/random_access_file.h"
 #include "job/error.h"
 #include "support/test_data.h"
 
@@ -95,6 +97,49 @@ TEST(ByteReader, NeverLeavesTheBytes) {
   EXPECT_EQ(status_of([&] { in.text(255, "t"); }), Status::bad_data);
   in.seek(4, "t");
   EXPECT_EQ(status_of([&] { in.text(1, "t"); }), Status::bad_data);
+}
+
+TEST(AtomicFile, WritesAndSeeks) {
+  const auto folder = test::scratch_folder();
+  const std::string path = folder / "a.bin";
+  {
+    AtomicFile file(path);
+    file.write(std::vector<uint8_t>(3'000'000, 7));  // more than is kept before it is written
+    file.write(bytes_of("end"));
+    EXPECT_EQ(file.position(), 3'000'003u);
+    file.seek(10);
+    file.write(bytes_of("here"));
+    EXPECT_EQ(file.position(), 14u);
+    EXPECT_FALSE(std::filesystem::exists(path));
+    file.commit();
+  }
+  const std::vector<uint8_t> bytes = read_file(path);
+  ASSERT_EQ(bytes.size(), 3'000'003u);
+  EXPECT_EQ(std::string(bytes.begin() + 9, bytes.begin() + 15), "\x07here\x07");
+  EXPECT_EQ(bytes.back(), 'd');
+  EXPECT_EQ(sha256_of_file(path), sha256_hex(bytes));
+}
+
+TEST(AtomicFile, WithoutACommitNothingRemains) {
+  const auto folder = test::scratch_folder();
+  write_file(folder / "a.bin", bytes_of("old"));
+  { AtomicFile(folder / "a.bin").write(bytes_of("new")); }
+  EXPECT_EQ(read_file(folder / "a.bin"), bytes_of("old"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST(RandomAccessFile, ReadsPartsAndNoMore) {
+  const auto folder = test::scratch_folder();
+  const std::string path = folder / "a.bin";
+  write_file(path, bytes_of("velour"));
+  const RandomAccessFile file(path);
+  EXPECT_EQ(file.size(), 6u);
+  std::vector<uint8_t> part(3);
+  file.read(2, part);
+  EXPECT_EQ(part, bytes_of("lou"));
+  EXPECT_EQ(status_of([&] { file.read(4, part); }), Status::bad_data);
+  EXPECT_EQ(status_of([&] { RandomAccessFile{folder}; }), Status::io);
+  EXPECT_EQ(sha256_of_file(path), sha256_hex(bytes_of("velour")));
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+"""What numbers of a measured BTF mean: options of every verb that reads one."""
+
+from __future__ import annotations
+
+import argparse
+
+from ...native import Btf, table
+from . import numbers
+
+_CURVES = {"srgb": 0.0, "linear": 1.0}
+
+
+def gamma(text: str) -> float:
+    """ "srgb", "linear" or an exponent."""
+    return _CURVES[text] if text in _CURVES else numbers.real(0.1, 10)(text)
+
+
+def tile_size(text: str) -> tuple[float, ...]:
+    """X,Y in metres."""
+    return numbers.reals(2, 1e-9, 1e9)(text)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("measured BTFs")
+    group.add_argument(
+        "--values", choices=table.BTF_VALUES, help="what numbers mean; as they say, or radiance (.btf: brdf)"
+    )
+    group.add_argument(
+        "--gamma", type=gamma, metavar="srgb|linear|G", help="of pictures of whole numbers; srgb"
+    )
+    group.add_argument("--colors", choices=table.BTF_COLORS, help="of pictures; rec709")
+    group.add_argument(
+        "--tile-size", type=tile_size, metavar="X,Y", help="metres, where the set does not say"
+    )
+
+
+def given(args: argparse.Namespace) -> dict:
+    """The options that the user gave, as Btf.load() takes them."""
+    names = {"values": args.values, "gamma": args.gamma, "colors": args.colors, "tile_metres": args.tile_size}
+    return {name: value for name, value in names.items() if value is not None}
+
+
+def load(path: str, args: argparse.Namespace) -> Btf:
+    return Btf.load(path, **given(args))

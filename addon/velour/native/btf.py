@@ -1,0 +1,60 @@
+"""A bidirectional texture function as it was measured or captured."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+
+import numpy as np
+
+from . import library, table
+from .arrays import small
+from .handle import Handle, choice, path_bytes, set_fields
+from .job import Job
+
+
+class Btf(Handle):
+    """Pictures over pairs of directions, read when asked for. Immutable; threads may share it."""
+
+    _free_name = "vlr_btf_free"
+
+    @classmethod
+    def load(cls, path: str | os.PathLike, **options) -> Btf:
+        """Opens a folder of Velour's own, a folder of pictures named for their angles (UBO2003), a CSV index
+        of pictures, or a .btf file of Bonn (UBO2014). Options: values (table.BTF_VALUES), colors
+        (table.BTF_COLORS), gamma (0: the sRGB curve), tile_metres (x, y)."""
+        raw = table.BtfOptions()
+        library.load().vlr_btf_options_init(ctypes.byref(raw))
+        for name, names in (("values", table.BTF_VALUES), ("colors", table.BTF_COLORS)):
+            if name in options:
+                options[name] = choice(name, options[name], names)
+        if "tile_metres" in options:
+            options["tile_metres"] = small("tile_metres", options["tile_metres"], 2)
+        set_fields(raw, options)
+        return cls._create("vlr_btf_load", path_bytes(path), ctypes.byref(raw))
+
+    def info(self) -> dict:
+        """kind, format, name, path, sha256, bytes, raw_bytes, texels, views, lights, pairs, complete, ..."""
+        return library.json_of(self._lib.vlr_btf_info_json, self.pointer)
+
+    def angles(self) -> np.ndarray:
+        """theta_l, phi_l, theta_v, phi_v of every pair in degrees: [pairs x 4]."""
+        angles = np.empty((self.info()["pairs"], 4))
+        buffer = angles.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+        self._lib.vlr_btf_angles(self.pointer, buffer, angles.size)
+        return angles
+
+    def read(self, first: int = 0, pairs: int = 1) -> np.ndarray:
+        """Apparent BRDFs (1/sr, without cosine, linear Rec. 709): [pairs x rows x columns x 3] float16, row 0
+        at the bottom (y = 0)."""
+        columns, rows = self.info()["texels"]
+        halves = np.empty((pairs, rows, columns, 3), np.float16)
+        buffer = halves.ctypes.data_as(ctypes.POINTER(ctypes.c_uint16))
+        self._lib.vlr_btf_read(self.pointer, first, pairs, buffer, halves.size)
+        return halves
+
+
+def export_btf_job(btf: Btf, path: str | os.PathLike) -> Job:
+    """Writes one OpenEXR picture a pair into the new folder `path`, named for its angles where all of them
+    are whole degrees, else listed in btf.csv."""
+    return Job._create("vlr_btf_export_create_job", btf.pointer, path_bytes(path))
