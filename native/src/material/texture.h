@@ -30,8 +30,8 @@ class Texture {
   Texture(int width, int height, std::vector<T> texels, const TextureOptions& options);
 
   /// About the mean over the parallelogram of the sides `footprint` (columns) about `uv`, both in texture coordinates:
-  /// trilinear look-ups (Williams 1983) at the level of the footprint's width, up to kMostTaps along its length
-  /// (McCormack et al. 1999); a footprint of greater stretch is taken as that much wider. The footprint may have any
+  /// trilinear look-ups [Wil83] at the level of the footprint's width, up to kMostTaps along its length
+  /// [MPFJ99]; a footprint of greater stretch is taken as that much wider. The footprint may have any
   /// size; a coordinate that is not finite counts as 0.
   T look_up(const Vec2& uv, const Mat2& footprint) const;
 
