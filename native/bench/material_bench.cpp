@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "material/principled_material.h"
+#include "material/principled_textures.h"
 #include "material/scattered_material.h"
 #include "material/table_sampler.h"
 #include "sphere/directions.h"
@@ -32,15 +33,28 @@ ScatteredBrdf make_brdf(bool isotropic, int lobes = 16) {
   return brdf;
 }
 
-enum Choice { kMeridian, kHemisphere, kPrincipled };
+enum Choice { kMeridian, kHemisphere, kPrincipled, kTextured };
+
+template <class T>
+TextureSlot<T> noise() {
+  constexpr int kSide = 512;
+  std::vector<T> texels(kSide * kSide);
+  RandomStream random(4, 5, 6);
+  for (T& t : texels) t = T(random.next());
+  return {std::make_shared<const Texture<T>>(kSide, kSide, std::move(texels), TextureOptions{}), {}};
+}
 
 std::shared_ptr<const Material> make(int64_t choice) {
   if (choice == kPrincipled) return make_principled_material({.metallic = 0.5f, .roughness = 0.4f});
+  if (choice == kTextured) {
+    return make_textured_material({}, {noise<Rgb>(), noise<float>(), noise<float>(), {}}, 1);
+  }
   return make_scattered_material(std::make_shared<ScatteredBrdf>(make_brdf(choice == kMeridian)), 0);
 }
 
 void label(benchmark::State& state) {
-  const char* const names[] = {"meridian 2 x 16 lobes", "hemisphere 4 x 16 lobes of 400 views", "principled"};
+  const char* const names[] = {"meridian 2 x 16 lobes", "hemisphere 4 x 16 lobes of 400 views", "principled",
+                               "principled, three textures"};
   state.SetLabel(names[state.range(0)]);
 }
 
@@ -52,9 +66,11 @@ const std::vector<Vec3>& views() {
 void prepare_material(benchmark::State& state) {
   const auto material = make(state.range(0));
   PreparedBrdf point;
+  SurfaceSite site{.footprint = Mat2(1.0f / 256)};  // of two texels
   size_t i = 0;
   for (auto _ : state) {
-    material->prepare(views()[++i % 1024], point);
+    site.uv = Vec2(views()[++i % 1024]);
+    material->prepare(views()[i % 1024], site, point);
     benchmark::DoNotOptimize(point);
   }
   label(state);
@@ -74,7 +90,7 @@ void prepare_neighbors(benchmark::State& state) {
 }
 BENCHMARK(prepare_neighbors)->Arg(4)->Arg(8)->Arg(16)->Arg(32);
 
-BENCHMARK(prepare_material)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled);
+BENCHMARK(prepare_material)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled)->Arg(kTextured);
 
 void eval_material_16(benchmark::State& state) {
   const auto material = make(state.range(0));
@@ -91,7 +107,7 @@ void eval_material_16(benchmark::State& state) {
   }
   label(state);
 }
-BENCHMARK(eval_material_16)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled);
+BENCHMARK(eval_material_16)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled)->Arg(kTextured);
 
 void sample_material(benchmark::State& state) {
   const auto material = make(state.range(0));

@@ -31,8 +31,10 @@ def picture_of(socket):
     node = source(socket)
     if node is None:
         return None
-    if node.bl_idname != "ShaderNodeTexImage" or node.velour.enabled:
+    if node.bl_idname != "ShaderNodeTexImage":
         raise UnsupportedError(f"'{node.name}' is not an Image Texture")
+    if node.velour.enabled:
+        raise UnsupportedError(f"'{node.name}' holds a measured material")
     _check(node)
     return Picture(
         node.image,

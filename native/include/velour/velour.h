@@ -52,9 +52,9 @@ typedef struct vlr_measurement vlr_measurement;
 typedef struct vlr_btf vlr_btf;
 typedef struct vlr_model vlr_model;
 typedef struct vlr_scene vlr_scene;
-typedef struct vlr_texture vlr_texture; /* a picture that stands for a number of a material */
+typedef struct vlr_texture vlr_texture;         /* a picture that stands for a number of a material */
 typedef struct vlr_observation vlr_observation; /* what scenes show of one material */
-typedef struct vlr_tile vlr_tile; /* procedural mesostructure */
+typedef struct vlr_tile vlr_tile;               /* procedural mesostructure */
 typedef struct vlr_job vlr_job;
 
 /* ---- library ------------------------------------------------------------------------------------------------- */
@@ -132,12 +132,12 @@ typedef struct vlr_btf_options {
 } vlr_btf_options;
 VLR_API void vlr_btf_options_init(vlr_btf_options* options);
 
-/* Opens a BTF: a folder of Velour's own, a folder of pictures named for their angles (UBO2003), a CSV index of pictures,
- * or a .btf file of Bonn (UBO2014). Pixels are read when asked for. */
+/* Opens a BTF: a folder of Velour's own, a folder of pictures named for their angles (UBO2003), a CSV index of
+ * pictures, or a .btf file of Bonn (UBO2014). Pixels are read when asked for. */
 VLR_API vlr_status vlr_btf_load(const char* path, const vlr_btf_options* options, vlr_btf** out);
 VLR_API void vlr_btf_free(vlr_btf* btf);
-/* JSON: kind "btf", format, name, path, description, sha256, bytes, raw_bytes (as half-float RGB), texels [x, y], views,
- * lights, pairs, complete, largest_theta {view, light} (degrees), tile_metres [x, y] or null, shell {thickness,
+/* JSON: kind "btf", format, name, path, description, sha256, bytes, raw_bytes (as half-float RGB), texels [x, y],
+ * views, lights, pairs, complete, largest_theta {view, light} (degrees), tile_metres [x, y] or null, shell {thickness,
  * reference_height} or null, errors, structure, entries {pairs, values, not_finite, negative} (of so many pairs, evenly
  * spread where not all), details {...}. */
 VLR_API vlr_status vlr_btf_info_json(vlr_btf* btf, const char** json);
@@ -247,6 +247,26 @@ VLR_API void vlr_microsurface_options_init(vlr_microsurface_options* options);
  * JSON: seconds, rays, rays_per_second, bytes, resolution_degrees, relative_standard_error, albedo. */
 VLR_API vlr_status vlr_microsurface_create_job(const vlr_microsurface_options* options, const char* path,
                                                vlr_job** out);
+
+/* ---- compression of BTFs ------------------------------------------------------------------------------------- */
+
+enum { VLR_COMPRESS_SVD = 0 };
+enum { VLR_COMPAND_NONE = 0, VLR_COMPAND_ROOT = 1 };
+typedef struct vlr_compress_options {
+  uint32_t struct_size;
+  int32_t method;     /* VLR_COMPRESS_* */
+  int32_t companding; /* VLR_COMPAND_*: sums of f itself, or of its square root (errors count about as they are seen) */
+  uint32_t threads;   /* 0: all */
+  uint64_t bytes;     /* of all coefficients at most; 0: a two-hundredth of the BTF as half floats */
+  uint64_t seed;
+  const vlr_btf* held_out; /* pairs that no fit has seen, of the same texels; NULL: none */
+} vlr_compress_options;
+VLR_API void vlr_compress_options_init(vlr_compress_options* options);
+/* Fits a model to a BTF; vlr_job_result_model gives it. JSON: bytes, parameter_bytes, ratio (raw half floats / bytes),
+ * psnr, psnr_held_out (null without held_out), ser, p99, components, seconds, warnings. */
+VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
+/* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, p99, pairs. */
+VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);
 
 /* ---- scene --------------------------------------------------------------------------------------------------- */
 
@@ -367,8 +387,8 @@ VLR_API vlr_status vlr_texture_create(uint32_t width, uint32_t height, uint32_t 
 VLR_API vlr_status vlr_texture_load(const char* path, const vlr_texture_options* options, vlr_texture** out);
 VLR_API void vlr_texture_free(vlr_texture* texture);
 
-/* Each may be NULL: the number of the vlr_principled_desc holds. A map [2 x 3, row-major] takes (u, v, 1) of the surface
- * to the picture's coordinates. */
+/* Each may be NULL: the number of the vlr_principled_desc holds. A map [2 x 3, row-major] takes (u, v, 1) of the
+ * surface to the picture's coordinates. */
 typedef struct vlr_principled_textures {
   uint32_t struct_size;
   uint32_t pad;
@@ -405,8 +425,8 @@ typedef struct vlr_tile_options {
   uint64_t seed;
 } vlr_tile_options;
 VLR_API void vlr_tile_options_init(vlr_tile_options* options);
-/* JSON: kinds [{name, summary, defaults {size, count, resolution, thickness, gap, irregularity}}], in the order in which
- * to show them; a kind has no default of what it does not take. The text belongs to the library. */
+/* JSON: kinds [{name, summary, defaults {size, count, resolution, thickness, gap, irregularity}}], in the order in
+ * which to show them; a kind has no default of what it does not take. The text belongs to the library. */
 VLR_API vlr_status vlr_tile_kinds_json(const char** json);
 VLR_API vlr_status vlr_tile_create(const vlr_tile_options* options, vlr_tile** out);
 VLR_API void vlr_tile_free(vlr_tile* tile);

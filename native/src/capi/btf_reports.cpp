@@ -67,4 +67,24 @@ std::string btf_export_json(const BtfExportReport& report) {
       {{"format", report.format}, {"pictures", report.pictures}, {"bytes", report.bytes}, {"seconds", report.seconds}});
 }
 
+std::string compression_json(const Model& model, uint64_t file_bytes) {
+  const BtfRecord& record = model.btf.value();
+  const auto& btf = std::get<FactoredBtf>(model.body);
+  return text({{"method", record.method},
+               {"bytes", file_bytes},
+               {"parameter_bytes", btf.parameter_bytes()},
+               {"ratio", static_cast<double>(record.raw_bytes) / static_cast<double>(file_bytes)},
+               {"psnr", record.psnr},
+               {"psnr_held_out", record.psnr_held_out ? Json(*record.psnr_held_out) : Json(nullptr)},
+               {"ser", record.ser},
+               {"p99", record.p99},
+               {"components", btf.components()},
+               {"seconds", record.seconds},
+               {"warnings", record.warnings}});
+}
+
+std::string btf_errors_json(const BtfErrors& errors, double p99) {
+  return text({{"psnr", errors.psnr}, {"ser", errors.ser}, {"p99", p99}, {"pairs", errors.pairs}});
+}
+
 }  // namespace velour::capi

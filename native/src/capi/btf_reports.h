@@ -5,11 +5,16 @@
 
 #include "btf/btf_export.h"
 #include "btf/btf_measurement.h"
+#include "compress/btf_compare.h"
+#include "model/model.h"
 
 namespace velour::capi {
 
 /// Reads a few pairs to count values, where nobody has counted them.
 std::string btf_json(const BtfMeasurement& btf);
 std::string btf_export_json(const BtfExportReport& report);
+/// Of a model of a BTF.
+std::string compression_json(const Model& model, uint64_t file_bytes);
+std::string btf_errors_json(const BtfErrors& errors, double p99);
 
 }  // namespace velour::capi

@@ -67,10 +67,16 @@ Json peer_of(const PrincipledParameters& p) {
             {"coat_roughness", p.coat_roughness}}}};
 }
 
+Json count_json(const ScatteredBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
+Json count_json(const ParametricBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
+Json count_json(const FactoredBtf& btf) { return {{"components", btf.components()}}; }
+
 Json size_json(const Model& model, uint64_t file_bytes) {
   return std::visit(
-      [&](const auto& brdf) {
-        return Json{{"lobes", brdf.lobe_count()}, {"bytes", file_bytes}, {"parameter_bytes", brdf.parameter_bytes()}};
+      [&](const auto& body) {
+        Json json = count_json(body);
+        json.update(Json{{"bytes", file_bytes}, {"parameter_bytes", body.parameter_bytes()}});
+        return json;
       },
       model.body);
 }
@@ -104,6 +110,38 @@ Json own_json(const ParametricBrdf& brdf) {
           {"symmetric", brdf.symmetric},
           {"view_range", views_json(brdf.views)},
           {"spaces", {{"light", brdf.lobe_count() - half}, {"half", half}}}};
+}
+
+Json own_json(const FactoredBtf& btf) {
+  const auto& tile = btf.grid.tile_metres;
+  return {{"texels", {btf.grid.width, btf.grid.height}},
+          {"tile_metres", tile ? Json{tile->x, tile->y} : Json(nullptr)},
+          {"views", btf.layout.views().size()},
+          {"lights", btf.layout.lights().size()},
+          {"companding", btf.companding == Companding::root ? "root" : "none"}};
+}
+
+/// What the fit found out, of a BRDF.
+Json record_json(const FitRecord& fit) {
+  return {{"relative_l2", fit.relative_l2},
+          {"by_view_angle", by_view_angle(fit.by_view_angle)},
+          {"albedo_by_view_angle", by_view_angle(fit.albedo_by_view_angle)},
+          {"albedo_max", fit.albedo_max},
+          {"reciprocity", fit.reciprocity},
+          {"measured_reciprocity", or_null(fit.measured_reciprocity)},
+          {"tolerance", fit.tolerance},
+          {"seconds", fit.seconds},
+          {"seed", fit.seed},
+          {"all_data", fit.all_data},
+          {"warnings", fit.warnings},
+          {"order", order_json(fit.order)}};
+}
+
+/// The same of a BTF.
+Json record_json(const BtfRecord& btf) {
+  return {{"method", btf.method},   {"psnr", btf.psnr}, {"psnr_held_out", or_null(btf.psnr_held_out)},
+          {"ser", btf.ser},         {"p99", btf.p99},   {"raw_bytes", btf.raw_bytes},
+          {"seconds", btf.seconds}, {"seed", btf.seed}, {"warnings", btf.warnings}};
 }
 
 }  // namespace
@@ -142,24 +180,11 @@ std::string measurement_json(const Measurement& measurement) {
 }
 
 std::string model_json(const Model& model, uint64_t file_bytes) {
-  const FitRecord& fit = model.fit;
   Json json = {{"kind", "model"}, {"model", model_kind(model)}};
   json.update(std::visit([](const auto& brdf) { return own_json(brdf); }, model.body));
   json.update(size_json(model, file_bytes));
-  json.update(Json{
-      {"relative_l2", fit.relative_l2},
-      {"by_view_angle", by_view_angle(fit.by_view_angle)},
-      {"albedo_by_view_angle", by_view_angle(fit.albedo_by_view_angle)},
-      {"albedo_max", fit.albedo_max},
-      {"reciprocity", fit.reciprocity},
-      {"measured_reciprocity", or_null(fit.measured_reciprocity)},
-      {"tolerance", fit.tolerance},
-      {"seconds", fit.seconds},
-      {"seed", fit.seed},
-      {"all_data", fit.all_data},
-      {"warnings", fit.warnings},
-      {"order", order_json(fit.order)},
-      {"source", {{"name", model.source.name}, {"format", model.source.format}, {"sha256", model.source.sha256}}}});
+  json.update(model.btf ? record_json(*model.btf) : record_json(model.fit));
+  json["source"] = {{"name", model.source.name}, {"format", model.source.format}, {"sha256", model.source.sha256}};
   if (model.scene) json["scene"] = reduced_json(*model.scene);
   return text(json);
 }

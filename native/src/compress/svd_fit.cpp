@@ -66,7 +66,7 @@ class SvdSolver {
     }
     for (AxisSketch& sketch : sketch_) rotate(sketch);
     choose(components);
-    progress_.stage("texels", 0.7, 1.0);
+    progress_.stage("texels", 0.7, 0.9);
     project();
     return {std::move(btf_), views_.not_finite()};
   }

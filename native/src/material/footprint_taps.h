@@ -5,8 +5,7 @@
 
 namespace velour {
 
-/// Trilinear look-ups (Williams 1983) at the level of the footprint's width, several along its length (McCormack et al.
-/// 1999).
+/// Trilinear look-ups [Wil83] at the level of the footprint's width, several along its length [MPFJ99].
 struct FootprintTaps {
   int count = 1;
   float level = 0;        // log2 of a tap's texels

@@ -10,6 +10,12 @@
 namespace velour {
 namespace {
 
+/// Of small numbers; std::floor is a call where no newer instruction set is named.
+int floor_of(float v) {
+  const int whole = static_cast<int>(v);
+  return whole - (v < static_cast<float>(whole) ? 1 : 0);
+}
+
 bool finite(float v) { return std::isfinite(v); }
 bool finite(const Rgb& v) { return std::isfinite(v.r + v.g + v.b); }
 
@@ -92,14 +98,15 @@ Vec2 Texture<T>::reduced(const Vec2& uv) const {
 template <class T>
 T Texture<T>::closest(const Vec2& uv) const {
   const Level& level = levels_[0];
-  const Vec2 place = glm::floor(uv * Vec2(level.width, level.height));
-  return texel(level, static_cast<int>(place.x), static_cast<int>(place.y));
+  const Vec2 place = uv * Vec2(level.width, level.height);
+  return texel(level, floor_of(place.x), floor_of(place.y));
 }
 
 template <class T>
 T Texture<T>::bilinear(const Level& level, const Vec2& uv) const {
-  const Vec2 place = uv * Vec2(level.width, level.height) - 0.5f, low = glm::floor(place), part = place - low;
-  const int x = static_cast<int>(low.x), y = static_cast<int>(low.y);
+  const Vec2 place = uv * Vec2(level.width, level.height) - 0.5f;
+  const int x = floor_of(place.x), y = floor_of(place.y);
+  const Vec2 part = place - Vec2(x, y);
   const T bottom = (1 - part.x) * texel(level, x, y) + part.x * texel(level, x + 1, y);
   const T top = (1 - part.x) * texel(level, x, y + 1) + part.x * texel(level, x + 1, y + 1);
   return (1 - part.y) * bottom + part.y * top;
@@ -108,8 +115,9 @@ T Texture<T>::bilinear(const Level& level, const Vec2& uv) const {
 template <class T>
 T Texture<T>::trilinear(const Vec2& uv, float level) const {
   const auto last = static_cast<float>(levels_.size() - 1);
-  const float place = std::clamp(level, 0.0f, last), low = std::floor(place), part = place - low;
-  const auto i = static_cast<size_t>(low);
+  const float place = std::clamp(level, 0.0f, last);
+  const auto i = static_cast<size_t>(place);
+  const float part = place - static_cast<float>(i);
   const T fine = bilinear(levels_[i], uv);
   return part > 0.0f ? (1 - part) * fine + part * bilinear(levels_[i + 1], uv) : fine;
 }

@@ -6,7 +6,7 @@
 
 namespace velour {
 
-/// A ray as wide as what it stands for [Amanatides 1984; Akenine-Moeller et al. 2021, JCGT 10(1)]: metres across at its
+/// A ray as wide as what it stands for [Ama84], [AMC21]: metres across at its
 /// origin, and what every metre adds.
 ///
 /// Paths widen with their length alone. Mirrors that are flat keep it exact; a rough or bent surface would widen it
@@ -28,7 +28,7 @@ struct RaySides {
 RaySides across(const RayCone& cone, const Vec3& direction);
 
 /// What camera rays stand for: a pixel, or less where it has several. With n camera rays a pixel it is max(1/8,
-/// 1/sqrt(n)) of a pixel's side, as in pbrt-v4 (SurfaceInteraction::ComputeDifferentials): the rays spread over the
+/// 1/sqrt(n)) of a pixel's side, as in pbrt-v4 [PJH23]: the rays spread over the
 /// pixel and average it already, and a texture that averages the whole pixel at each of them would blur the picture a
 /// second time. The eighth leaves 1 % of that.
 class PixelFootprint {
@@ -39,7 +39,7 @@ class PixelFootprint {
   /// Of a camera ray along unit `direction`, at the camera: as wide as its pixel's solid angle, or an orthographic
   /// pixel's area, is large.
   RayCone cone(const Vec3& direction) const;
-  /// Of a camera ray that ends at `position`: exact, by differentials [Igehy 1999].
+  /// Of a camera ray that ends at `position`: exact, by differentials [Ige99].
   RaySides sides(const Vec3& position) const;
 
  private:

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "material/principled_textures.h"
+#include "sphere/random.h"
 #include "support/textured_scenes.h"
 
 namespace velour {
@@ -142,6 +143,57 @@ TEST(TexturedRender, MirroredTexturesAreLitAsTheyLook) {
   EXPECT_EQ(lit_from_y(true, -1), 0);
   EXPECT_NEAR(lit_from_y(false, 1), lit, 1e-4);
   EXPECT_NEAR(lit_from_y(false, -1), lit, 1e-4);  // a uniform material cannot be mirrored
+}
+
+/// Rough and smooth, metal and not, from squares; lit by a sky and a lamp.
+Scene patchwork() {
+  const auto numbers = [](std::vector<float> texels) {
+    return TextureSlot<float>{std::make_shared<const Texture<float>>(2, 2, std::move(texels), TextureOptions{}), {}};
+  };
+  const std::vector<Rgb> colors{{0.9f, 0.5f, 0.2f}, Rgb(0.1f), Rgb(0.8f), {0.2f, 0.4f, 0.9f}};
+  Scene scene;
+  scene.add_instance(scene.add_mesh(test::repeating_square(1, 2)), {},
+                     {scene.add_material(
+                         {make_textured_material(
+                              {},
+                              {.base_color = {std::make_shared<const Texture<Rgb>>(2, 2, colors, TextureOptions{}), {}},
+                               .metallic = numbers({0, 1, 1, 0}),
+                               .roughness = numbers({0.3f, 0.5f, 0.9f, 0.6f})},
+                              1),
+                          Rgb(0.0f), false})});
+  std::vector<float> sky(3 * 16 * 8);
+  RandomStream random(2, 2, 2);
+  for (float& v : sky) v = random.next();
+  scene.set_environment(Environment::image({16, 8, 3, sky}, 1, Mat3(1.0f)));
+  Light lamp;
+  lamp.type = Light::Type::rectangle;
+  lamp.size = {2, 2};
+  lamp.color = Rgb(20);
+  lamp.light_to_world = test::shift({0.5f, 0, 2});
+  scene.add_light(lamp);
+  scene.set_camera(Camera::look_at({0, -3, 2}, {0, 0, 0}, {0, 0, 1}, 0.7f, 1));
+  scene.commit(1);
+  return scene;
+}
+
+/// Also those that know the whole material only: tables and fitted lobes.
+TEST(TexturedRender, StrategiesAgree) {
+  const Scene scene = patchwork();
+  const double expected = test::mean_of(test::rendered(scene, test::small_options(Strategy::mis, 16384)));
+  for (const Strategy strategy : {Strategy::uniform, Strategy::cosine, Strategy::table, Strategy::srbf, Strategy::light,
+                                  Strategy::ggx, Strategy::mis_ggx, Strategy::product}) {
+    EXPECT_NEAR(test::mean_of(test::rendered(scene, test::small_options(strategy, 16384))), expected, 4e-3 * expected)
+        << static_cast<int>(strategy);
+  }
+}
+
+TEST(TexturedRender, IsTheSameForAnyNumberOfThreads) {
+  const Scene scene = patchwork();
+  RenderOptions options = test::small_options(Strategy::mis);
+  options.bounces = 2;
+  const auto two = test::rendered(scene, options);
+  options.threads = 1;
+  EXPECT_EQ(test::rendered(scene, options), two);
 }
 
 /// A black-and-white floor under a white lid that is seen from below: what the lid shows is the floor's mean.

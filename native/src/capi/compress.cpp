@@ -1,0 +1,67 @@
+// Fits of BTFs and their errors.
+#include "capi/btf_reports.h"
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "compress/compress_btf.h"
+#include "model/model_file.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+void vlr_compress_options_init(vlr_compress_options* options) {
+  const CompressOptions defaults;
+  *options = {};
+  options->struct_size = sizeof(vlr_compress_options);
+  options->companding = static_cast<int32_t>(defaults.companding);
+}
+
+namespace {
+
+CompressOptions converted(const vlr_compress_options& given) {
+  if (given.method != VLR_COMPRESS_SVD) {
+    throw Error(Status::invalid_argument,
+                "vlr_compress_options.method is " + std::to_string(given.method) + ", not a VLR_COMPRESS value.");
+  }
+  if (given.companding != VLR_COMPAND_NONE && given.companding != VLR_COMPAND_ROOT) {
+    throw Error(Status::invalid_argument, "vlr_compress_options.companding is " + std::to_string(given.companding) +
+                                              ", not a VLR_COMPAND value.");
+  }
+  CompressOptions options;
+  options.companding = static_cast<Companding>(given.companding);
+  options.bytes = given.bytes;
+  options.seed = given.seed;
+  options.threads = static_cast<int>(given.threads);
+  if (given.held_out) options.held_out = given.held_out->btf;
+  return options;
+}
+
+}  // namespace
+
+vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out) {
+  return guard([&] {
+    require(btf, "btf");
+    require(out, "out");
+    const CompressOptions given = converted(read_options(options, vlr_compress_options_init, "vlr_compress_options"));
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, given, source = btf->btf](Progress& progress) {
+      auto model = std::make_shared<const Model>(compress_btf(*source, given, progress));
+      output->set(compression_json(*model, encode_model(*model).size()), model);
+    });
+  });
+}
+
+vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out) {
+  return guard([&] {
+    require(btf, "btf");
+    require(model, "model");
+    require(out, "out");
+    if (!is_btf(*model->model)) {
+      throw Error(Status::invalid_argument, "The model is of a BRDF; a BTF is compared with a model of a BTF.");
+    }
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, source = btf->btf, fitted = model->model](Progress& progress) {
+      progress.stage("comparing", 0, 1);
+      output->set(btf_errors_json(compare_with_model(*source, *fitted, 0, progress), fitted->btf->p99));
+    });
+  });
+}

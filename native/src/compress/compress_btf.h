@@ -1,0 +1,23 @@
+// From a BTF to its model.
+#pragma once
+
+#include <memory>
+
+#include "compress/btf_compare.h"
+#include "compress/svd_fit.h"
+#include "model/model.h"
+
+namespace velour {
+
+struct CompressOptions : SvdOptions {
+  std::shared_ptr<const BtfMeasurement> held_out;  // pairs that no fit has seen; null: none
+};
+
+/// A model with its errors. Throws Error(invalid_argument) when `held_out` has other texels.
+Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress);
+
+/// Errors of a BTF's model against the pairs of `truth`; white is the model's own. Throws Error(invalid_argument) when
+/// the texels differ.
+BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, const Progress& progress);
+
+}  // namespace velour
