@@ -1,7 +1,7 @@
 """The shared library as Python sees it. Importing this opens nothing; the first call does."""
 
 from . import images, library
-from .btf import Btf, export_btf_job
+from .btf import Btf, compare_btf_job, compress_job, export_btf_job
 from .errors import LibraryError, Status, VelourError
 from .job import (
     Job,
@@ -34,8 +34,10 @@ __all__ = [
     "TextureSlot",
     "Tile",
     "VelourError",
+    "compare_btf_job",
     "compare_job",
     "compare_peer_job",
+    "compress_job",
     "export_btf_job",
     "fit_job",
     "images",

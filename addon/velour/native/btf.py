@@ -11,6 +11,7 @@ from . import library, table
 from .arrays import small
 from .handle import Handle, choice, path_bytes, set_fields
 from .job import Job
+from .model import Model
 
 
 class Btf(Handle):
@@ -58,3 +59,23 @@ def export_btf_job(btf: Btf, path: str | os.PathLike) -> Job:
     """Writes one OpenEXR picture a pair into the new folder `path`, named for its angles where all of them
     are whole degrees, else listed in btf.csv."""
     return Job._create("vlr_btf_export_create_job", btf.pointer, path_bytes(path))
+
+
+def compress_job(btf: Btf, **options) -> Job:
+    """Options: method (table.COMPRESS_METHODS), companding (table.COMPANDINGS), bytes, seed, threads,
+    held_out (a Btf of pairs that the fit does not see). Result: result_model()."""
+    raw = table.CompressOptions()
+    library.load().vlr_compress_options_init(ctypes.byref(raw))
+    for name, names in (("method", table.COMPRESS_METHODS), ("companding", table.COMPANDINGS)):
+        if name in options:
+            options[name] = choice(name, options[name], names)
+    if "held_out" in options:
+        options["held_out"] = options["held_out"].pointer
+    set_fields(raw, options)
+    return Job._create("vlr_compress_create_job", btf.pointer, ctypes.byref(raw))
+
+
+def compare_btf_job(btf: Btf, judged: Model | Btf) -> Job:
+    """Errors of a model, or of another BTF interpolated, at the pairs of `btf`."""
+    create = "vlr_btf_compare_create_job" if isinstance(judged, Model) else "vlr_btf_compare_btf_create_job"
+    return Job._create(create, btf.pointer, judged.pointer)

@@ -24,6 +24,8 @@ from .errors import VelourError
 JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
 MODELS = ("scattered", "parametric")
+COMPRESS_METHODS = ("svd",)  # by number
+COMPANDINGS = ("none", "root")  # by number
 BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
 BTF_COLORS = ("rec709", "xyz")
 PEERS = ("ggx", "principled")
@@ -82,6 +84,18 @@ class BtfOptions(Struct):
         ("colors", c_int32),
         ("gamma", c_float),
         ("tile_metres", c_float * 2),
+    ]
+
+
+class CompressOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("method", c_int32),
+        ("companding", c_int32),
+        ("threads", c_uint32),
+        ("bytes", c_uint64),
+        ("seed", c_uint64),
+        ("held_out", c_void_p),
     ]
 
 
@@ -227,6 +241,7 @@ STRUCTS = {
     "vlr_job_state": JobStateStruct,
     "vlr_fit_options": FitOptions,
     "vlr_btf_options": BtfOptions,
+    "vlr_compress_options": CompressOptions,
     "vlr_microsurface_options": MicrosurfaceOptions,
     "vlr_mesh_desc": MeshDesc,
     "vlr_principled_desc": PrincipledDesc,
@@ -268,6 +283,9 @@ STATUS_CALLS = {
     "vlr_btf_angles": [_handle, POINTER(c_double), c_uint64],
     "vlr_btf_read": [_handle, c_uint64, c_uint64, POINTER(c_uint16), c_uint64],
     "vlr_btf_export_create_job": [_handle, c_char_p, _out_handle],
+    "vlr_compress_create_job": [_handle, POINTER(CompressOptions), _out_handle],
+    "vlr_btf_compare_create_job": [_handle, _handle, _out_handle],
+    "vlr_btf_compare_btf_create_job": [_handle, _handle, _out_handle],
     "vlr_job_start": [_handle],
     "vlr_job_poll": [_handle, POINTER(JobStateStruct)],
     "vlr_job_cancel": [_handle],
@@ -344,6 +362,7 @@ PLAIN_CALLS = {
     "vlr_observation_free": (None, [_handle]),
     "vlr_tile_free": (None, [_handle]),
     "vlr_btf_options_init": (None, [POINTER(BtfOptions)]),
+    "vlr_compress_options_init": (None, [POINTER(CompressOptions)]),
     "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
     "vlr_microsurface_options_init": (None, [POINTER(MicrosurfaceOptions)]),
     "vlr_tile_options_init": (None, [POINTER(TileOptions)]),

@@ -267,6 +267,8 @@ VLR_API void vlr_compress_options_init(vlr_compress_options* options);
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
 /* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, p99, pairs. */
 VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);
+/* The same of another BTF of the same texels, interpolated between its own pairs; white is its own 99th percentile. */
+VLR_API vlr_status vlr_btf_compare_btf_create_job(const vlr_btf* btf, const vlr_btf* other, vlr_job** out);
 
 /* ---- scene --------------------------------------------------------------------------------------------------- */
 

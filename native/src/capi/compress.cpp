@@ -65,3 +65,17 @@ vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model
     });
   });
 }
+
+vlr_status vlr_btf_compare_btf_create_job(const vlr_btf* btf, const vlr_btf* other, vlr_job** out) {
+  return guard([&] {
+    require(btf, "btf");
+    require(other, "other");
+    require(out, "out");
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, truth = btf->btf, table = other->btf](Progress& progress) {
+      progress.stage("comparing", 0, 1);
+      const double p99 = percentile_99(*table, progress);
+      output->set(btf_errors_json(compare_with_table(*truth, *table, p99, 0, progress), p99));
+    });
+  });
+}

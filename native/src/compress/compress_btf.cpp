@@ -3,19 +3,22 @@
 #include <chrono>
 #include <string>
 
+#include "btf/pair_interpolation.h"
 #include "job/error.h"
 
 namespace velour {
 namespace {
 
+void require_same_texels(const TexelGrid& a, const TexelGrid& b) {
+  if (a.width == b.width && a.height == b.height) return;
+  throw Error(Status::invalid_argument, "The BTF has " + std::to_string(a.width) + " x " + std::to_string(a.height) +
+                                            " texels, what it is compared with " + std::to_string(b.width) + " x " +
+                                            std::to_string(b.height) + "; they must be the same.");
+}
+
 BtfErrors compare_with_body(const BtfMeasurement& truth, const FactoredBtf& btf, double p99, int threads,
                             const Progress& progress) {
-  if (truth.grid().width != btf.grid.width || truth.grid().height != btf.grid.height) {
-    throw Error(Status::invalid_argument, "The BTF has " + std::to_string(truth.grid().width) + " x " +
-                                              std::to_string(truth.grid().height) + " texels, the model " +
-                                              std::to_string(btf.grid.width) + " x " + std::to_string(btf.grid.height) +
-                                              "; they cannot be compared.");
-  }
+  require_same_texels(truth.grid(), btf.grid);
   const FactoredImages images(btf);
   const auto image = [&](const DirectionPair& pair, std::vector<float>& rgb) { images.image(pair, rgb); };
   return compare_btf(truth, image, p99, threads, progress);
@@ -53,6 +56,29 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
 
 BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, const Progress& progress) {
   return compare_with_body(truth, std::get<FactoredBtf>(model.body), model.btf.value().p99, threads, progress);
+}
+
+BtfErrors compare_with_table(const BtfMeasurement& truth, const BtfMeasurement& table, double p99, int threads,
+                             const Progress& progress) {
+  require_same_texels(truth.grid(), table.grid());
+  const PairInterpolation between(table.layout());
+  const auto image = [&](const DirectionPair& pair, std::vector<float>& rgb) {
+    rgb.assign(table.grid().texels() * 3, 0.0f);
+    const auto view = between.view(pair.wv), light = between.light(pair.wl);
+    if (!view || !light) return;
+    std::vector<HalfBits> halves(rgb.size());
+    std::vector<float> corner(rgb.size());
+    for (size_t v = 0; v < 3; ++v) {
+      for (size_t l = 0; l < 3; ++l) {
+        const float weight = view->weight[v] * light->weight[l];
+        if (weight == 0) continue;
+        table.read_pairs(table.layout().first(view->index[v]) + light->index[l], 1, halves);
+        halves_to_floats(halves, corner);
+        for (size_t i = 0; i < rgb.size(); ++i) rgb[i] += weight * corner[i];
+      }
+    }
+  };
+  return compare_btf(truth, image, p99, threads, progress);
 }
 
 }  // namespace velour

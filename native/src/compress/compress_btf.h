@@ -20,4 +20,8 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
 /// the texels differ.
 BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, const Progress& progress);
 
+/// The same of another BTF, interpolated in f between its own pairs: what no model of it needs to beat.
+BtfErrors compare_with_table(const BtfMeasurement& truth, const BtfMeasurement& table, double p99, int threads,
+                             const Progress& progress);
+
 }  // namespace velour

@@ -1,11 +1,21 @@
-"""velour compare INPUT MODEL, velour compare INPUT --ggx, velour compare INPUT --principled"""
+"""velour compare INPUT MODEL, velour compare INPUT --ggx|--principled, velour compare BTF MODEL|BTF"""
 
 from __future__ import annotations
 
 import argparse
 import contextlib
 
-from ...native import Job, Measurement, Model, compare_job, compare_peer_job
+from ...native import (
+    Btf,
+    Job,
+    Measurement,
+    Model,
+    compare_btf_job,
+    compare_job,
+    compare_peer_job,
+    library,
+)
+from ...native.errors import refuse
 from . import output
 
 KEYS = ("relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views")
@@ -13,9 +23,11 @@ PEER_KEYS = ("seconds", "parameter_bytes")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("input", metavar="INPUT", help="the measurement")
+    parser.add_argument("input", metavar="INPUT", help="the measurement or BTF")
     judged = parser.add_mutually_exclusive_group(required=True)
-    judged.add_argument("model", metavar="MODEL", nargs="?", help="the model to judge by it")
+    judged.add_argument(
+        "model", metavar="MODEL", nargs="?", help="the model to judge by it; of a BTF also another BTF"
+    )
     judged.add_argument(
         "--ggx", dest="peer", action="store_const", const="ggx",
         help="judge the GGX lobe over a diffuse base that suits it best",
@@ -27,11 +39,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> dict:
+    if library.file_info(args.input)["kind"] == "btf":
+        return _compare_btf(args)
     with contextlib.ExitStack() as handles:
         measurement = handles.enter_context(Measurement.load(args.input))
         report = handles.enter_context(_job(args, measurement, handles)).run(output.progress_of(args))
     keys = (*KEYS, *PEER_KEYS, args.peer) if args.peer else KEYS
     return {key: report[key] for key in keys}
+
+
+def _compare_btf(args: argparse.Namespace) -> dict:
+    if args.peer:
+        raise refuse(f"{args.input} is a BTF; --{args.peer} suits measurements of BRDFs.")
+    with contextlib.ExitStack() as handles:
+        btf = handles.enter_context(Btf.load(args.input))
+        kind = library.file_info(args.model)["kind"]
+        judged = handles.enter_context((Btf if kind == "btf" else Model).load(args.model))
+        return handles.enter_context(compare_btf_job(btf, judged)).run(output.progress_of(args))
 
 
 def _job(args: argparse.Namespace, measurement: Measurement, handles: contextlib.ExitStack) -> Job:

@@ -1,19 +1,45 @@
-"""velour compress: a later version has it."""
+"""velour compress BTF -o MODEL"""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 
-from . import later
+from ...native import Btf, compress_job, table
+from . import btf_options, later, numbers, output
+
+_METHODS = (*table.COMPRESS_METHODS, "svd-view", "srbf", "tucker", "cta", "kcta")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("input", metavar="BTF")
-    parser.add_argument("-o", "--output", metavar="MODEL", required=True)
-    parser.add_argument("--method", choices=("svd", "svd-view", "srbf", "tucker", "cta", "kcta"))
-    for flag in ("--bytes", "--tolerance", "--clusters", "--k", "--memory"):
-        parser.add_argument(flag, metavar="V")
+    parser.add_argument("input", metavar="BTF", help="a folder, a CSV index or a .btf file")
+    parser.add_argument("-o", "--output", metavar="MODEL", required=True, help="the model to write")
+    parser.add_argument("--method", choices=_METHODS, default="svd", help="svd: the only one so far")
+    parser.add_argument(
+        "--companding", choices=table.COMPANDINGS, help="sums of f itself or of its root; root"
+    )
+    parser.add_argument(
+        "--bytes", type=numbers.whole(1, 2**63), metavar="N",
+        help="of all coefficients; a two-hundredth of the BTF as half floats",
+    )  # fmt: skip
+    parser.add_argument("--held-out", metavar="BTF", help="pairs that the fit does not see, to judge it by")
+    parser.add_argument("--seed", type=numbers.seed, metavar="K")
+    parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
+    for flag in ("--tolerance", "--clusters", "--k", "--memory"):
+        later.add_later(parser, flag, "--bytes bounds the model", "V")
+    btf_options.add_arguments(parser)
 
 
-def run(_args: argparse.Namespace) -> dict:
-    raise later.refusal("compress", "fit makes models of BRDF measurements")
+def run(args: argparse.Namespace) -> dict:
+    later.only("--method", args.method, table.COMPRESS_METHODS)
+    output.check_writable(args.output)
+    names = ("method", "companding", "bytes", "seed", "threads")
+    options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
+    with contextlib.ExitStack() as handles:
+        btf = handles.enter_context(btf_options.load(args.input, args))
+        if args.held_out:
+            options["held_out"] = handles.enter_context(Btf.load(args.held_out))
+        job = handles.enter_context(compress_job(btf, **options))
+        report = job.run(output.progress_of(args))
+        handles.enter_context(job.result_model()).save(args.output)
+    return report

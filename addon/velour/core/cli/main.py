@@ -14,13 +14,13 @@ from . import capture, compare, compress, export, fit, info, later, observe, out
 _VERBS = {
     "info": (info, "what a measurement, BTF, model or observation holds"),
     "fit": (fit, "fit a model to a measurement"),
-    "compare": (compare, "error of a model against a measurement"),
+    "compare": (compare, "error of a model against a measurement or BTF"),
     "render": (render, "render a mesh with a measured material under a world"),
     "observe": (observe, "learn under which views and lights a scene shows its material"),
     "capture": (capture, "make a measurement of a modelled surface"),
     "tile": (tile, "make a procedural tile of mesostructure as a mesh"),
     "export": (export, "write a BTF as a folder of pictures"),
-    "compress": (compress, "a later version has it"),
+    "compress": (compress, "fit a model to a BTF"),
 }
 _LEVELS = ("error", "warning", "info", "debug")
 DONE, FAILED, INTERRUPTED = 0, 1, 130
