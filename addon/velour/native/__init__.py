@@ -2,6 +2,7 @@
 
 from . import images, library
 from .btf import Btf, compare_btf_job, compress_job, export_btf_job
+from .capture import capture_job, directions
 from .errors import LibraryError, Status, VelourError
 from .job import (
     Job,
@@ -34,10 +35,12 @@ __all__ = [
     "TextureSlot",
     "Tile",
     "VelourError",
+    "capture_job",
     "compare_btf_job",
     "compare_job",
     "compare_peer_job",
     "compress_job",
+    "directions",
     "export_btf_job",
     "fit_job",
     "images",

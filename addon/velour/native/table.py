@@ -32,6 +32,7 @@ PEERS = ("ggx", "principled")
 LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
+SIDES = ("automatic", "one", "two")
 SEQUENCES = ("random", "sobol")
 WRAPS = ("repeat", "extend", "clip", "mirror")
 FILTERS = ("closest", "linear")
@@ -110,6 +111,31 @@ class MicrosurfaceOptions(Struct):
         ("base_share", c_double),
         ("rays", c_uint64),
         ("seed", c_uint64),
+    ]
+
+
+class CaptureOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("texels", c_uint32 * 2),
+        ("samples", c_uint32),
+        ("bounces", c_uint32),
+        ("sides", c_int32),
+        ("threads", c_uint32),
+        ("resume", c_int32),
+        ("seed", c_uint64),
+        ("views", POINTER(c_double)),
+        ("lights", POINTER(c_double)),
+        ("view_count", c_uint64),
+        ("light_count", c_uint64),
+        ("origin", c_double * 2),
+        ("period", c_double * 2),
+        ("metres_per_unit", c_double),
+        ("reference_height", c_double),
+        ("memory_limit", c_uint64),
+        ("source", c_char_p),
+        ("measure_ray_share", c_int32),
+        ("pad", c_int32),
     ]
 
 
@@ -243,6 +269,7 @@ STRUCTS = {
     "vlr_btf_options": BtfOptions,
     "vlr_compress_options": CompressOptions,
     "vlr_microsurface_options": MicrosurfaceOptions,
+    "vlr_capture_options": CaptureOptions,
     "vlr_mesh_desc": MeshDesc,
     "vlr_principled_desc": PrincipledDesc,
     "vlr_tile_options": TileOptions,
@@ -296,6 +323,8 @@ STATUS_CALLS = {
     "vlr_compare_create_job": [_handle, _handle, _out_handle],
     "vlr_compare_peer_create_job": [_handle, c_int32, _out_handle],
     "vlr_microsurface_create_job": [POINTER(MicrosurfaceOptions), c_char_p, _out_handle],
+    "vlr_directions": [c_char_p, POINTER(c_double), POINTER(c_uint64)],
+    "vlr_capture_create_job": [_handle, POINTER(CaptureOptions), c_char_p, _out_handle],
     "vlr_scene_create": [_out_handle],
     "vlr_scene_set_working_space": [_handle, _floats],
     "vlr_scene_add_mesh": [_handle, POINTER(MeshDesc), _number, _number],
@@ -365,6 +394,7 @@ PLAIN_CALLS = {
     "vlr_compress_options_init": (None, [POINTER(CompressOptions)]),
     "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
     "vlr_microsurface_options_init": (None, [POINTER(MicrosurfaceOptions)]),
+    "vlr_capture_options_init": (None, [POINTER(CaptureOptions)]),
     "vlr_tile_options_init": (None, [POINTER(TileOptions)]),
     "vlr_principled_desc_init": (None, [POINTER(PrincipledDesc)]),
     "vlr_texture_options_init": (None, [POINTER(TextureOptions)]),
