@@ -1,6 +1,7 @@
 """The shared library as Python sees it. Importing this opens nothing; the first call does."""
 
 from . import images, library
+from .capture import capture_job, directions
 from .errors import LibraryError, Status, VelourError
 from .job import (
     Job,
@@ -32,8 +33,10 @@ __all__ = [
     "TextureSlot",
     "Tile",
     "VelourError",
+    "capture_job",
     "compare_job",
     "compare_peer_job",
+    "directions",
     "fit_job",
     "images",
     "library",

@@ -17,6 +17,7 @@ PEERS = ("ggx", "principled")
 LIGHTS = ("sun", "point", "rectangle", "disk")
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
+SIDES = ("automatic", "one", "two")
 SEQUENCES = ("random", "sobol")
 WRAPS = ("repeat", "extend", "clip", "mirror")
 FILTERS = ("closest", "linear")
@@ -73,6 +74,31 @@ class MicrosurfaceOptions(Struct):
         ("base_share", c_double),
         ("rays", c_uint64),
         ("seed", c_uint64),
+    ]
+
+
+class CaptureOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("texels", c_uint32 * 2),
+        ("samples", c_uint32),
+        ("bounces", c_uint32),
+        ("sides", c_int32),
+        ("threads", c_uint32),
+        ("resume", c_int32),
+        ("seed", c_uint64),
+        ("views", POINTER(c_double)),
+        ("lights", POINTER(c_double)),
+        ("view_count", c_uint64),
+        ("light_count", c_uint64),
+        ("origin", c_double * 2),
+        ("period", c_double * 2),
+        ("metres_per_unit", c_double),
+        ("reference_height", c_double),
+        ("memory_limit", c_uint64),
+        ("source", c_char_p),
+        ("measure_ray_share", c_int32),
+        ("pad", c_int32),
     ]
 
 
@@ -204,6 +230,7 @@ STRUCTS = {
     "vlr_job_state": JobStateStruct,
     "vlr_fit_options": FitOptions,
     "vlr_microsurface_options": MicrosurfaceOptions,
+    "vlr_capture_options": CaptureOptions,
     "vlr_mesh_desc": MeshDesc,
     "vlr_principled_desc": PrincipledDesc,
     "vlr_tile_options": TileOptions,
@@ -249,6 +276,8 @@ STATUS_CALLS = {
     "vlr_compare_create_job": [_handle, _handle, _out_handle],
     "vlr_compare_peer_create_job": [_handle, c_int32, _out_handle],
     "vlr_microsurface_create_job": [POINTER(MicrosurfaceOptions), c_char_p, _out_handle],
+    "vlr_directions": [c_char_p, POINTER(c_double), POINTER(c_uint64)],
+    "vlr_capture_create_job": [_handle, POINTER(CaptureOptions), c_char_p, _out_handle],
     "vlr_scene_create": [_out_handle],
     "vlr_scene_set_working_space": [_handle, _floats],
     "vlr_scene_add_mesh": [_handle, POINTER(MeshDesc), _number, _number],
@@ -315,6 +344,7 @@ PLAIN_CALLS = {
     "vlr_tile_free": (None, [_handle]),
     "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
     "vlr_microsurface_options_init": (None, [POINTER(MicrosurfaceOptions)]),
+    "vlr_capture_options_init": (None, [POINTER(CaptureOptions)]),
     "vlr_tile_options_init": (None, [POINTER(TileOptions)]),
     "vlr_principled_desc_init": (None, [POINTER(PrincipledDesc)]),
     "vlr_texture_options_init": (None, [POINTER(TextureOptions)]),

@@ -51,9 +51,9 @@ enum {
 typedef struct vlr_measurement vlr_measurement;
 typedef struct vlr_model vlr_model;
 typedef struct vlr_scene vlr_scene;
-typedef struct vlr_texture vlr_texture; /* a picture that stands for a number of a material */
+typedef struct vlr_texture vlr_texture;         /* a picture that stands for a number of a material */
 typedef struct vlr_observation vlr_observation; /* what scenes show of one material */
-typedef struct vlr_tile vlr_tile; /* procedural mesostructure */
+typedef struct vlr_tile vlr_tile;               /* procedural mesostructure */
 typedef struct vlr_job vlr_job;
 
 /* ---- library ------------------------------------------------------------------------------------------------- */
@@ -232,7 +232,7 @@ typedef struct vlr_mesh_desc {
 } vlr_mesh_desc;
 /* Degenerate triangles and non-finite vertices are left out; *dropped (may be NULL) says how many triangles. */
 VLR_API vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint32_t* mesh, uint32_t* dropped);
-/* Reads a Wavefront OBJ file. */
+/* Reads a Wavefront OBJ file, or a Stanford PLY file by its extension .ply. */
 VLR_API vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint32_t* mesh);
 
 /* Materials are numbered in the order of adding. */
@@ -328,8 +328,8 @@ VLR_API vlr_status vlr_texture_create(uint32_t width, uint32_t height, uint32_t 
 VLR_API vlr_status vlr_texture_load(const char* path, const vlr_texture_options* options, vlr_texture** out);
 VLR_API void vlr_texture_free(vlr_texture* texture);
 
-/* Each may be NULL: the number of the vlr_principled_desc holds. A map [2 x 3, row-major] takes (u, v, 1) of the surface
- * to the picture's coordinates. */
+/* Each may be NULL: the number of the vlr_principled_desc holds. A map [2 x 3, row-major] takes (u, v, 1) of the
+ * surface to the picture's coordinates. */
 typedef struct vlr_principled_textures {
   uint32_t struct_size;
   uint32_t pad;
@@ -366,8 +366,8 @@ typedef struct vlr_tile_options {
   uint64_t seed;
 } vlr_tile_options;
 VLR_API void vlr_tile_options_init(vlr_tile_options* options);
-/* JSON: kinds [{name, summary, defaults {size, count, resolution, thickness, gap, irregularity}}], in the order in which
- * to show them; a kind has no default of what it does not take. The text belongs to the library. */
+/* JSON: kinds [{name, summary, defaults {size, count, resolution, thickness, gap, irregularity}}], in the order in
+ * which to show them; a kind has no default of what it does not take. The text belongs to the library. */
 VLR_API vlr_status vlr_tile_kinds_json(const char** json);
 VLR_API vlr_status vlr_tile_create(const vlr_tile_options* options, vlr_tile** out);
 VLR_API void vlr_tile_free(vlr_tile* tile);
@@ -380,6 +380,43 @@ VLR_API vlr_status vlr_tile_material(const vlr_tile* tile, uint32_t slot, vlr_pr
  * nothing), open_area (share of such lines; null: not known in closed form), vertices, triangles, shape (the keys of
  * defaults, and seed), materials [{name, base_color, metallic, roughness, specular}], one a slot. */
 VLR_API vlr_status vlr_tile_info_json(vlr_tile* tile, const char** json);
+
+/* ---- capture of tiles ---------------------------------------------------------------------------------------- */
+
+enum { VLR_SIDES_AUTOMATIC = 0, VLR_SIDES_ONE = 1, VLR_SIDES_TWO = 2 };
+
+/* Directions are pairs (theta, phi) in degrees: theta from the normal of the reference plane, beyond 90 below it. */
+typedef struct vlr_capture_options {
+  uint32_t struct_size;
+  uint32_t texels[2]; /* along x and y */
+  uint32_t samples;   /* paths a texel and view */
+  uint32_t bounces;   /* further surfaces a path meets */
+  int32_t sides;      /* VLR_SIDES_*: two adds the mirror images of all directions; automatic: of an open tile */
+  uint32_t threads;   /* 0: all */
+  int32_t resume;     /* 1: go on with the views that the folder holds of this very capture */
+  uint64_t seed;
+  const double* views;  /* [view_count x 2]; NULL: the library's 105, rings to 85 degrees */
+  const double* lights; /* [light_count x 2]; NULL: the same */
+  uint64_t view_count, light_count;
+  double origin[2];        /* of the cell, in the scene's units */
+  double period[2];        /* both 0: the bounding box of the geometry, its origin included */
+  double metres_per_unit;  /* 0: not known */
+  double reference_height; /* scene's z of the reference plane; NaN: chosen by least variance over views */
+  uint64_t memory_limit;   /* bytes that the images of a view may hold; beyond it they lie in a file in the folder */
+  const char* source;      /* name of what is captured */
+  int32_t measure_ray_share;
+  int32_t pad;
+} vlr_capture_options;
+VLR_API void vlr_capture_options_init(vlr_capture_options* options);
+/* Angles of a set: [*count x 2] degrees. `name`: "81" (Bonn's), "105" (the same and a ring at 85 degrees), or another
+ * number of directions of equal solid angle. First reads the count (angles NULL). */
+VLR_API vlr_status vlr_directions(const char* name, double* angles, uint64_t* count);
+/* Captures the committed scene `tile`, repeated by the period, into the folder `path`. JSON: seconds, rays,
+ * rays_per_second, ray_share (or null), bytes, views, lights, views_resumed, sides, open, thickness, reference_height
+ * (metres, or widths of the tile, over its lowest point), warnings. The scene must not change while the job is there.
+ */
+VLR_API vlr_status vlr_capture_create_job(const vlr_scene* tile, const vlr_capture_options* options, const char* path,
+                                          vlr_job** out);
 
 /* ---- render -------------------------------------------------------------------------------------------------- */
 

@@ -188,6 +188,22 @@ std::string peer_json(const PeerFit& fit) {
   return text(json);
 }
 
+std::string capture_json(const BtfCaptureReport& report) {
+  return text({{"seconds", report.seconds},
+               {"rays", report.rays},
+               {"rays_per_second", report.rays_per_second},
+               {"ray_share", report.ray_share ? Json(*report.ray_share) : Json()},
+               {"bytes", report.bytes},
+               {"views", report.views},
+               {"lights", report.lights},
+               {"views_resumed", report.views_resumed},
+               {"sides", report.two_sided ? 2 : 1},
+               {"open", report.open},
+               {"thickness", report.thickness},
+               {"reference_height", report.reference_height},
+               {"warnings", report.warnings}});
+}
+
 std::string microsurface_json(const MicrosurfaceReport& report) {
   return text({{"seconds", report.seconds},
                {"rays", report.rays},

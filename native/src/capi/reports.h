@@ -4,6 +4,7 @@
 #include <string>
 
 #include "brdf/measurement.h"
+#include "capture/btf_capture.h"
 #include "capture/microsurface.h"
 #include "domain/observation.h"
 #include "fit/compare.h"
@@ -21,6 +22,7 @@ std::string model_json(const Model& model, uint64_t file_bytes);
 std::string fit_json(const Model& model, uint64_t file_bytes);
 std::string comparison_json(const Comparison& comparison);
 std::string peer_json(const PeerFit& fit);
+std::string capture_json(const BtfCaptureReport& report);
 std::string microsurface_json(const MicrosurfaceReport& report);
 std::string scene_json(const Scene& scene);
 std::string render_json(const RenderReport& report);

@@ -8,7 +8,7 @@
 #include "fit/scattered_fit.h"
 #include "material/principled_lobes.h"
 #include "model/model_material.h"
-#include "scene/obj_file.h"
+#include "scene/mesh_file.h"
 
 using namespace velour;
 using namespace velour::capi;
@@ -110,7 +110,7 @@ vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint32_t* mes
     require(scene, "scene");
     require(path, "path");
     require(mesh, "mesh");
-    *mesh = scene->scene->add_mesh(read_obj(path));
+    *mesh = scene->scene->add_mesh(read_mesh(path));
   });
 }
 

@@ -54,6 +54,8 @@ void PathVertices::start(const ViewSetup& view, const TexelBlock& block) {
   throughput_.assign(paths_, Rgb(1));
   points_.resize(sampling_.samples);
   const Vec2 texel_size = tile_.period() / Vec2(static_cast<float>(grid_.width), static_cast<float>(grid_.height));
+  const float part = std::max(0.125f, 1 / std::sqrt(static_cast<float>(sampling_.samples)));
+  cone_.width = part * std::sqrt(texel_size.x * texel_size.y * std::abs(view.wv.z));
   for (uint32_t row = block.row; row < block.row + block.rows; ++row) {
     for (uint32_t column = block.column; column < block.column + block.columns; ++column) {
       keys_.push_back(key_of(view, column, row));
@@ -88,10 +90,10 @@ void PathVertices::meet(uint32_t depth) {
   if (depth > 0) std::sort(order_.begin(), order_.end());
   for (const uint64_t entry : order_) {
     const auto i = static_cast<uint32_t>(entry);
-    const SurfacePoint point = tile_.surface(hits_[i]);
+    const Hit hit = tile_.of_scene(hits_[i]);
+    const SurfacePoint point = tile_.surface(hit);
     vertex_of_[size_t{depth} * paths_ + path_of_[i]] = static_cast<uint32_t>(vertices_.size());
-    vertices_.push_back({Vertex(point, -rays_[i].direction), throughput_[i]});
-    vertices_.back().vertex.surface = &tile_.scene().materials()[point.material];
+    vertices_.push_back({Vertex(tile_.scene(), point, rays_[i], hit, cone_, nullptr), throughput_[i]});
   }
   depths_.push_back(static_cast<uint32_t>(vertices_.size()));
 }
@@ -107,7 +109,7 @@ void PathVertices::go_on(uint32_t depth) {
     const uint64_t key = mix64(keys_[path / sampling_.samples] + depth + 1);
     Vec2 u;
     sobol_points(key, path % sampling_.samples, {&u, 1});
-    from.vertex.surface->material->prepare(from.vertex.wv, prepared_);
+    from.vertex.surface->material->prepare(from.vertex.wv, from.vertex.site, prepared_);
     const auto onward = draw_onward(from.vertex, prepared_, SurfaceSampling::material,
                                     tile_.scene().rec709_to_working(), from.throughput, u);
     if (!onward || !std::isfinite(luminance(onward->throughput))) continue;

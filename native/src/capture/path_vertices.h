@@ -58,6 +58,7 @@ class PathVertices {
   std::vector<uint32_t> depths_, vertex_of_;
   std::vector<uint64_t> keys_;  // of each texel's random numbers
   std::vector<Vec2> points_;    // of one texel
+  RayCone cone_;  // as wide as what a path stands for, as PixelFootprint has it: a texel's samples share it
   // Of the rays under way.
   std::vector<Ray> rays_;
   std::vector<Rgb> throughput_;

@@ -9,7 +9,7 @@ namespace velour {
 namespace {
 
 /// The pilot's texels along a side, and their paths: noise is the same at all heights, so few of these show the least.
-constexpr uint32_t kSide = 32, kSamples = 16;
+constexpr uint32_t kSide = 32, kSamples = 4;
 
 PairLayout pilot_layout(bool two_sided) {
   std::vector<PolarAngles> views{{0, 0}}, lights{{0, 0}};

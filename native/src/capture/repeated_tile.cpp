@@ -106,9 +106,13 @@ Vec2 RepeatedTile::into_cell(const Vec2& p) const {
   return glm::clamp(moved, Vec2(0), period());
 }
 
-SurfacePoint RepeatedTile::surface(const Hit& hit) const {
-  Hit of_scene = hit;
-  of_scene.instance = source_[hit.instance];
+Hit RepeatedTile::of_scene(const Hit& hit) const {
+  Hit same = hit;
+  same.instance = source_[hit.instance];
+  return same;
+}
+
+SurfacePoint RepeatedTile::surface(const Hit& of_scene) const {
   SurfacePoint point = scene_.surface(of_scene);
   point.position -= Vec3(place_.origin, 0);
   for (int axis = 0; axis < 2; ++axis) {

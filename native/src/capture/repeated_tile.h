@@ -38,8 +38,10 @@ class RepeatedTile {
   float thickness() const { return top_ - bottom_; }
   uint64_t bytes() const { return rays_.bytes(); }
 
-  /// Surface of a hit, moved by whole periods to be in or near the centre cell.
-  SurfacePoint surface(const Hit& hit) const;
+  /// A hit of rays() as the scene's own.
+  Hit of_scene(const Hit& hit) const;
+  /// Surface of a hit of the scene's, moved by whole periods to be in or near the centre cell.
+  SurfacePoint surface(const Hit& of_scene) const;
   /// The same place of the centre cell.
   Vec2 into_cell(const Vec2& p) const;
 

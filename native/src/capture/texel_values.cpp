@@ -65,7 +65,7 @@ void TexelShader::shade_path(const PathVertices& paths, uint32_t path, std::span
 void TexelShader::shade_vertex(const PathVertex& at, std::span<const CaptureLight> lights,
                                const ShadowMasks::Mask& mask) {
   if ((mask[0] | mask[1]) == 0) return;
-  at.vertex.surface->material->prepare(at.vertex.wv, prepared_);
+  at.vertex.surface->material->prepare(at.vertex.wv, at.vertex.site, prepared_);
   wl_.count = 0;
   for (uint32_t word = 0; word < mask.size(); ++word) {
     for (uint64_t bits = mask[word]; bits != 0; bits &= bits - 1) {

@@ -25,7 +25,7 @@ class Heights {
     rays_.intersect(down, hits_, nullptr);
     heights_.clear();
     for (const Hit& hit : hits_) {
-      heights_.push_back(hit.instance == kNoHit ? tile_.bottom() : tile_.surface(hit).position.z);
+      heights_.push_back(hit.instance == kNoHit ? tile_.bottom() : tile_.surface(tile_.of_scene(hit)).position.z);
     }
     return heights_;
   }
@@ -45,7 +45,7 @@ struct Jumps {
   double share = 0;  // of the places where the surface jumps by more than kJump of the thickness
   double rms = 0;    // of all places
 };
-constexpr double kJump = 0.02;
+constexpr double kJump = 0.02, kRounding = 1e-5;  // of the thickness; of the period
 
 /// Across the line x (axis 0) or y (axis 1) = `at` periods.
 Jumps jumps_across(Heights& heights, const RepeatedTile& tile, int axis, float at) {
@@ -61,10 +61,12 @@ Jumps jumps_across(Heights& heights, const RepeatedTile& tile, int axis, float a
     after.push_back(p * tile.period());
   }
   const std::vector<float> a = heights.at(before), b = heights.at(after);
+  const double least =
+      std::max(kJump * static_cast<double>(tile.thickness()), kRounding * static_cast<double>(tile.period()[axis]));
   Jumps jumps;
   for (size_t i = 0; i < a.size(); ++i) {
     const double jump = std::abs(static_cast<double>(a[i] - b[i]));
-    jumps.share += (jump > kJump * static_cast<double>(tile.thickness()) ? 1.0 : 0.0) / kPlaces;
+    jumps.share += (jump > least ? 1.0 : 0.0) / kPlaces;
     jumps.rms += jump * jump / kPlaces;
   }
   jumps.rms = std::sqrt(jumps.rms);

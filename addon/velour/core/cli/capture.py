@@ -1,42 +1,147 @@
-"""velour capture --microsurface -o FILE"""
+"""velour capture TILE|MESH -o BTF; velour capture --microsurface -o FILE"""
 
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
-from ...native import microsurface_job
-from . import later, numbers, output
+from ...native import Scene, Tile, capture_job, directions, microsurface_job
+from ...native.errors import refuse
+from . import numbers, output
+
+# What is up in the file is +z here; (x, y, z) -> (x, -z, y) as Blender's OBJ import does it.
+_UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
+_MESOSTRUCTURE = (
+    "texels", "views", "lights", "samples", "bounces", "sides", "memory", "resume", "period", "origin",
+    "metres_per_unit", "up", "base_color", "roughness", "metallic", "ray_share",
+)  # fmt: skip
+_MICROSURFACE = ("metal", "anisotropy", "base_albedo", "base_share", "rays")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("subject", metavar="TILE|MESH", nargs="?", help="a later version has it")
-    parser.add_argument("-o", "--output", metavar="FILE", required=True, help="the measurement to write")
     parser.add_argument(
-        "--microsurface", action="store_true", help="a virtual goniometer over a random surface"
-    )
-    parser.add_argument("--roughness", type=numbers.real(0.01, 1), metavar="R", help="Beckmann alpha")
-    parser.add_argument("--metal", metavar="NAME", help="nickel, gold, copper, ...")
-    parser.add_argument("--anisotropy", type=numbers.real(1, 100), metavar="A", help="alpha_x / alpha_y")
-    parser.add_argument(
-        "--base-albedo", type=numbers.reals(3, 0, 1), metavar="R,G,B", help="of a diffuse base"
+        "subject",
+        metavar="TILE|MESH",
+        nargs="?",
+        help="weave, twill, net, chainmail, gravel, corduroy; or OBJ, PLY",
     )
     parser.add_argument(
-        "--base-share", type=numbers.real(0, 1), metavar="S", help="of the surface that is base"
+        "-o", "--output", metavar="BTF|FILE", required=True, help="the folder or file to write"
     )
-    parser.add_argument("--rays", type=numbers.whole(1, 2**63), metavar="N", help="camera-side rays in all")
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
-    for flag in ("--texels", "--views", "--lights", "--samples", "--bounces", "--sides", "--memory"):
-        later.add_later(parser, flag, "capture --microsurface instead", "V")
-    parser.add_argument("--resume", action="store_true", help="a later version has it")
+    parser.add_argument(
+        "--roughness",
+        type=numbers.real(0, 1),
+        metavar="R",
+        help="of a mesh (0.5); --microsurface: Beckmann alpha",
+    )
+    _add_mesostructure(parser.add_argument_group("mesostructure"))
+    _add_microsurface(parser.add_argument_group("micro-surface"))
+
+
+def _add_mesostructure(group) -> None:
+    group.add_argument("--texels", type=numbers.whole(1, 16384), metavar="N", help="along a side (128)")
+    group.add_argument("--views", metavar="81|105|N", help="set of view directions (105)")
+    group.add_argument("--lights", metavar="81|105|N", help="set of light directions (105)")
+    group.add_argument(
+        "--samples", type=numbers.whole(1, 16384), metavar="S", help="paths a texel and view (16)"
+    )
+    group.add_argument("--bounces", type=numbers.whole(0, 1024), metavar="B", help="interreflections (1)")
+    group.add_argument("--sides", choices=("one", "two"), help="two by default where the tile is open")
+    group.add_argument(
+        "--memory",
+        type=numbers.whole(0, 2**63),
+        metavar="BYTES",
+        help="of a view's images, beyond it in a file",
+    )
+    group.add_argument("--resume", action="store_true", help="goes on with the views that are there")
+    group.add_argument(
+        "--period", type=numbers.reals(2, 0), metavar="X,Y", help="of a mesh; its bounding box"
+    )
+    group.add_argument(
+        "--origin", type=numbers.reals(2), metavar="X,Y", help="of the cell, with --period (0,0)"
+    )
+    group.add_argument("--up", choices=tuple(_UP), help="axis of a mesh that the surface faces (z)")
+    group.add_argument(
+        "--metres-per-unit", type=numbers.real(0), metavar="M", help="of a mesh (1); 0: not known"
+    )
+    group.add_argument("--base-color", type=numbers.reals(3, 0, 1), metavar="R,G,B", help="of a mesh")
+    group.add_argument("--metallic", type=numbers.real(0, 1), metavar="M", help="of a mesh")
+    group.add_argument(
+        "--ray-share", action="store_true", help="also measures the share of the bare ray tracer"
+    )
+
+
+def _add_microsurface(group) -> None:
+    group.add_argument(
+        "--microsurface", action="store_true", help="a virtual goniometer over a random surface"
+    )
+    group.add_argument("--metal", metavar="NAME", help="nickel, gold, copper, ...")
+    group.add_argument("--anisotropy", type=numbers.real(1, 100), metavar="A", help="alpha_x / alpha_y")
+    group.add_argument(
+        "--base-albedo", type=numbers.reals(3, 0, 1), metavar="R,G,B", help="of a diffuse base"
+    )
+    group.add_argument(
+        "--base-share", type=numbers.real(0, 1), metavar="S", help="of the surface that is base"
+    )
+    group.add_argument("--rays", type=numbers.whole(1, 2**63), metavar="N", help="camera-side rays in all")
 
 
 def run(args: argparse.Namespace) -> dict:
-    if args.subject or args.resume or not args.microsurface:
-        what = f"capture of {args.subject}" if args.subject else "capture of anything else"
-        raise later.refusal(what, "capture --microsurface instead")
+    if bool(args.subject) == args.microsurface:
+        raise refuse("Name a tile or a mesh to capture, or use --microsurface.")
+    other = _MESOSTRUCTURE if args.microsurface else _MICROSURFACE
+    for name in other:
+        if getattr(args, name):
+            kind = "--microsurface" if args.microsurface else "a capture of mesostructure"
+            raise refuse(f"--{name.replace('_', '-')} is no option of {kind}.")
+    return _capture_microsurface(args) if args.microsurface else _capture_tile(args)
+
+
+def _given(args: argparse.Namespace, *names: str) -> dict:
+    return {name: getattr(args, name) for name in names if getattr(args, name) is not None}
+
+
+def _capture_microsurface(args: argparse.Namespace) -> dict:
     output.check_writable(args.output)
-    names = ("roughness", "metal", "anisotropy", "base_albedo", "base_share", "rays", "seed", "threads")
-    options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
-    with microsurface_job(args.output, **options) as job:
+    with microsurface_job(args.output, **_given(args, *_MICROSURFACE, "roughness", "seed", "threads")) as job:
         return job.run(output.progress_of(args))
+
+
+def _capture_tile(args: argparse.Namespace) -> dict:
+    options = _given(args, "texels", "samples", "bounces", "sides", "seed", "threads")
+    for name in ("views", "lights"):
+        if getattr(args, name):
+            options[name] = directions(getattr(args, name))
+    if args.memory is not None:
+        options["memory_limit"] = args.memory
+    with Scene() as scene:
+        place = _add_subject(scene, args)
+        scene.commit()
+        options.update(place, resume=int(args.resume), measure_ray_share=int(args.ray_share))
+        with capture_job(scene, args.output, source=args.subject, **options) as job:
+            return job.run(output.progress_of(args))
+
+
+def _add_subject(scene: Scene, args: argparse.Namespace) -> dict:
+    """Where it lies: options of capture_job."""
+    if Path(args.subject).suffix.lower() in (".obj", ".ply"):
+        return _add_mesh(scene, args)
+    of_mesh = ("period", "origin", "metres_per_unit", "up", "base_color", "roughness", "metallic")
+    for name in of_mesh:
+        if getattr(args, name) is not None:
+            raise refuse(f"--{name.replace('_', '-')} is for meshes; the tile {args.subject} has its own.")
+    with Tile.create(args.subject) as tile:
+        mesh, materials = tile.add_to(scene)
+        scene.add_instance(mesh, _UP["z"], materials)
+        return {"origin": (0, 0), "period": tile.info()["period"]}
+
+
+def _add_mesh(scene: Scene, args: argparse.Namespace) -> dict:
+    mesh = scene.load_mesh(args.subject)
+    material = scene.add_principled_material(**_given(args, "base_color", "roughness", "metallic"))
+    scene.add_instance(mesh, _UP[args.up or "z"], [material])
+    if args.origin and not args.period:
+        raise refuse("--origin needs --period: without them the cell is the mesh's bounding box.")
+    return _given(args, "period", "origin", "metres_per_unit")

@@ -1,0 +1,58 @@
+"""Captures of tiles: a virtual goniometer for mesostructure."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import POINTER, byref, c_double, c_uint64
+
+import numpy as np
+
+from . import library, table
+from .handle import choice, path_bytes, set_fields
+from .job import Job
+
+_PAIRS = {"texels": ctypes.c_uint32 * 2, "origin": c_double * 2, "period": c_double * 2}
+
+
+def directions(name: str) -> np.ndarray:
+    """[n x 2] theta and phi, degrees, of a set: "81" (Bonn's), "105" (and a ring at 85 degrees), or another
+    number of directions of equal solid angle."""
+    lib, count = library.load(), c_uint64()
+    lib.vlr_directions(name.encode(), None, byref(count))
+    angles = np.empty((count.value, 2))
+    lib.vlr_directions(name.encode(), _doubles(angles), byref(count))
+    return angles
+
+
+def capture_job(tile, path: str | os.PathLike, **options) -> Job:
+    """Captures a committed Scene, repeated by its period, as a BTF in the folder `path`.
+
+    Options: texels (one number or two), views and lights ([n x 2] degrees), samples, bounces, sides
+    (table.SIDES), origin and period (pairs, the scene's units; no period: the bounding box),
+    metres_per_unit (0: not known), reference_height (the scene's z; none: chosen), memory_limit (bytes of a
+    view's images that are kept in memory), source (a name), seed, threads, resume, measure_ray_share.
+    """
+    raw = table.CaptureOptions()
+    library.load().vlr_capture_options_init(byref(raw))
+    arrays = {name: _angles(options.pop(name)) for name in ("views", "lights") if name in options}
+    for name, array in arrays.items():
+        setattr(raw, name, _doubles(array))
+        setattr(raw, f"{name[:-1]}_count", len(array))
+    for name, kind in _PAIRS.items():
+        if name in options:
+            options[name] = kind(*np.broadcast_to(options[name], 2).tolist())
+    if "sides" in options:
+        options["sides"] = choice("sides", options["sides"], table.SIDES)
+    if "source" in options:
+        options["source"] = options["source"].encode()
+    set_fields(raw, options)
+    return Job._create("vlr_capture_create_job", tile.pointer, byref(raw), path_bytes(path))
+
+
+def _angles(angles) -> np.ndarray:
+    return np.ascontiguousarray(angles, np.float64).reshape(-1, 2)
+
+
+def _doubles(array: np.ndarray):
+    return array.ctypes.data_as(POINTER(c_double))

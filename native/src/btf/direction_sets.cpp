@@ -1,0 +1,23 @@
+#include "btf/direction_sets.h"
+
+#include <charconv>
+
+#include "btf/btf_measurement.h"
+#include "job/error.h"
+
+namespace velour {
+
+std::vector<PolarAngles> named_directions(const std::string& name) {
+  if (name == "81") return bonn_directions();
+  if (name == "105") return capture_directions();
+  int count = 0;
+  const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), count);
+  const bool whole = problem == std::errc() && end == name.data() + name.size();
+  if (!whole || count < 1 || count > static_cast<int>(kMaxDirections)) {
+    throw Error(Status::invalid_argument, "There is no set of directions " + name + ": use 81, 105, or a number from " +
+                                              "1 to " + std::to_string(kMaxDirections) + ".");
+  }
+  return even_directions(count);
+}
+
+}  // namespace velour

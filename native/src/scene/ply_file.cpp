@@ -1,0 +1,311 @@
+#include "scene/ply_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <optional>
+#include <sstream>
+
+#include "file/file.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+enum class Format { ascii, little_endian, big_endian };
+enum class Number { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+struct Property {
+  std::string name;
+  Number type = Number::float32;
+  std::optional<Number> count;  // a list's; nothing: a single number
+};
+
+struct Element {
+  std::string name;
+  uint64_t count = 0;
+  std::vector<Property> properties;
+};
+
+size_t bytes_of(Number type) {
+  constexpr std::array<size_t, 8> kBytes = {1, 1, 2, 2, 4, 4, 4, 8};
+  return kBytes[static_cast<size_t>(type)];
+}
+
+std::optional<Number> number_named(const std::string& name) {
+  constexpr std::array<std::array<const char*, 2>, 8> kNames = {{{"char", "int8"},
+                                                                 {"uchar", "uint8"},
+                                                                 {"short", "int16"},
+                                                                 {"ushort", "uint16"},
+                                                                 {"int", "int32"},
+                                                                 {"uint", "uint32"},
+                                                                 {"float", "float32"},
+                                                                 {"double", "float64"}}};
+  for (size_t i = 0; i < kNames.size(); ++i) {
+    if (name == kNames[i][0] || name == kNames[i][1]) return static_cast<Number>(i);
+  }
+  return std::nullopt;
+}
+
+/// Reads the file's words and numbers one after the other.
+class Reader {
+ public:
+  Reader(std::span<const uint8_t> bytes, const std::string& path) : bytes_(bytes), path_(path) {}
+
+  Format format = Format::ascii;
+
+  [[noreturn]] void refuse(const std::string& why) const { throw Error(Status::bad_data, path_ + ": " + why); }
+
+  /// A line of the header, without its end.
+  std::string line() {
+    const auto rest = bytes_.subspan(at_);
+    const auto end = std::find(rest.begin(), rest.begin() + std::min<std::ptrdiff_t>(kLongestLine, std::ssize(rest)),
+                               static_cast<uint8_t>('\n'));
+    if (end == rest.end() || *end != '\n') refuse("the header of the PLY file does not end.");
+    std::string text(rest.begin(), end);
+    at_ += text.size() + 1;
+    if (!text.empty() && text.back() == '\r') text.pop_back();
+    return text;
+  }
+
+  double number(Number type) { return format == Format::ascii ? ascii_number() : binary_number(type); }
+
+  /// Throws when `count` things cannot be in what is left, each of which takes at least `bytes` bytes.
+  void expect(uint64_t count, uint64_t bytes, const std::string& what) const {
+    if (count > (bytes_.size() - at_) / std::max<uint64_t>(1, bytes)) {
+      refuse("it says that it holds " + std::to_string(count) + " " + what + ", but it is too short for them.");
+    }
+  }
+
+ private:
+  static constexpr std::ptrdiff_t kLongestLine = 4096;
+
+  static bool is_space(uint8_t c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
+
+  double ascii_number() {
+    while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
+    const auto* begin = reinterpret_cast<const char*>(bytes_.data()) + at_;
+    const auto* end = reinterpret_cast<const char*>(bytes_.data()) + bytes_.size();
+    if (begin == end) refuse("the PLY file ends before its last number.");
+    double value = 0;
+    const auto [next, problem] = std::from_chars(begin, end, value);
+    if (problem == std::errc::invalid_argument || (next != end && !is_space(static_cast<uint8_t>(*next)))) {
+      refuse("there is no number at byte " + std::to_string(at_) + " of the PLY file.");
+    }
+    at_ += static_cast<size_t>(next - begin);
+    return value;
+  }
+
+  template <typename T>
+  double read_as() {
+    std::array<uint8_t, sizeof(T)> raw;
+    std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(at_), sizeof(T), raw.begin());
+    if (format == Format::big_endian) std::reverse(raw.begin(), raw.end());
+    return static_cast<double>(std::bit_cast<T>(raw));
+  }
+
+  double binary_number(Number type) {
+    if (bytes_.size() - at_ < bytes_of(type)) refuse("the PLY file ends before its last number.");
+    const double value = decoded(type);
+    at_ += bytes_of(type);
+    return value;
+  }
+
+  double decoded(Number type) {
+    switch (type) {
+      case Number::int8:
+        return read_as<int8_t>();
+      case Number::uint8:
+        return read_as<uint8_t>();
+      case Number::int16:
+        return read_as<int16_t>();
+      case Number::uint16:
+        return read_as<uint16_t>();
+      case Number::int32:
+        return read_as<int32_t>();
+      case Number::uint32:
+        return read_as<uint32_t>();
+      case Number::float32:
+        return read_as<float>();
+      case Number::float64:
+        break;
+    }
+    return read_as<double>();
+  }
+
+  std::span<const uint8_t> bytes_;
+  const std::string& path_;
+  size_t at_ = 0;
+};
+
+Property read_property(std::istringstream& words, const Reader& reader) {
+  const auto type = [&] {
+    std::string name;
+    words >> name;
+    const auto number = number_named(name);
+    if (!number) reader.refuse("'" + name + "' is no type of a PLY file's property.");
+    return *number;
+  };
+  Property property;
+  const auto start = words.tellg();
+  std::string first;
+  words >> first;
+  if (first == "list") {
+    property.count = type();
+  } else {
+    words.seekg(start);
+  }
+  property.type = type();
+  words >> property.name;
+  return property;
+}
+
+std::vector<Element> read_header(Reader& reader) {
+  if (reader.line() != "ply") reader.refuse("is not a PLY file.");
+  std::vector<Element> elements;
+  for (;;) {
+    std::istringstream words(reader.line());
+    std::string word, value;
+    words >> word;
+    if (word == "end_header") return elements;
+    if (word == "format") {
+      words >> value;
+      if (value != "ascii" && value != "binary_little_endian" && value != "binary_big_endian") {
+        reader.refuse("its format is '" + value + "', not ascii, binary_little_endian or binary_big_endian.");
+      }
+      reader.format = value == "ascii"                  ? Format::ascii
+                      : value == "binary_little_endian" ? Format::little_endian
+                                                        : Format::big_endian;
+    } else if (word == "element") {
+      Element element;
+      if (!(words >> element.name >> element.count)) reader.refuse("an element of its header has no name and count.");
+      elements.push_back(element);
+    } else if (word == "property") {
+      if (elements.empty()) reader.refuse("its header has a property before any element.");
+      elements.back().properties.push_back(read_property(words, reader));
+    }
+  }
+}
+
+struct Content {
+  std::vector<Vec3> positions, normals;
+  std::vector<Vec2> uvs;
+  std::vector<glm::uvec3> triangles;
+};
+
+/// Bytes that one of `element` takes at the least.
+uint64_t least_bytes(const Element& element, Format format) {
+  uint64_t bytes = 0;
+  for (const Property& p : element.properties) {
+    bytes += format == Format::ascii ? 2 : bytes_of(p.count ? *p.count : p.type);
+  }
+  return bytes;
+}
+
+/// Where a vertex's property goes: x, y, z, nx, ny, nz, s, t; nothing: nowhere.
+std::optional<size_t> place_of(const std::string& name) {
+  constexpr std::array<const char*, 8> kNames = {"x", "y", "z", "nx", "ny", "nz", "s", "t"};
+  const std::string same = name == "u" || name == "texture_u" ? "s" : name == "v" || name == "texture_v" ? "t" : name;
+  const auto* found = std::find(kNames.begin(), kNames.end(), same);
+  return found == kNames.end() ? std::nullopt : std::optional(static_cast<size_t>(found - kNames.begin()));
+}
+
+uint64_t read_count(Reader& reader, const Property& property) {
+  const double count = reader.number(*property.count);
+  if (!(count >= 0) || count > 1e9) reader.refuse("a list of the PLY file has no usable length.");
+  return static_cast<uint64_t>(count);
+}
+
+void skip(Reader& reader, const Property& property) {
+  const uint64_t count = property.count ? read_count(reader, property) : 1;
+  for (uint64_t i = 0; i < count; ++i) reader.number(property.type);
+}
+
+void read_vertices(Reader& reader, const Element& element, Content& content) {
+  std::array<bool, 8> there{};
+  for (const Property& p : element.properties) {
+    if (const auto place = place_of(p.name); place && !p.count) there[*place] = true;
+  }
+  if (!there[0] || !there[1] || !there[2]) reader.refuse("its vertices have no x, y and z.");
+  for (uint64_t i = 0; i < element.count; ++i) {
+    std::array<float, 8> values{};
+    for (const Property& p : element.properties) {
+      const auto place = p.count ? std::nullopt : place_of(p.name);
+      if (place) {
+        values[*place] = static_cast<float>(reader.number(p.type));
+      } else {
+        skip(reader, p);
+      }
+    }
+    content.positions.push_back({values[0], values[1], values[2]});
+    if (there[3] && there[4] && there[5]) content.normals.push_back({values[3], values[4], values[5]});
+    if (there[6] && there[7]) content.uvs.push_back({values[6], values[7]});
+  }
+}
+
+void read_polygon(Reader& reader, const Property& property, std::vector<uint32_t>& corners, Content& content) {
+  corners.clear();
+  const uint64_t count = read_count(reader, property);
+  reader.expect(count, reader.format == Format::ascii ? 2 : bytes_of(property.type), "corners of a face");
+  for (uint64_t i = 0; i < count; ++i) {
+    const double vertex = reader.number(property.type);
+    if (!(vertex >= 0) || vertex >= static_cast<double>(content.positions.size())) {
+      reader.refuse("a face names a vertex that is not among its " + std::to_string(content.positions.size()) + ".");
+    }
+    corners.push_back(static_cast<uint32_t>(vertex));
+  }
+  for (size_t i = 2; i < corners.size(); ++i) content.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+}
+
+void read_faces(Reader& reader, const Element& element, Content& content) {
+  std::vector<uint32_t> corners;
+  for (uint64_t i = 0; i < element.count; ++i) {
+    for (const Property& p : element.properties) {
+      if (p.count && (p.name == "vertex_indices" || p.name == "vertex_index")) {
+        read_polygon(reader, p, corners, content);
+      } else {
+        skip(reader, p);
+      }
+    }
+  }
+}
+
+template <typename T>
+std::vector<T> at_corners(const std::vector<T>& of_vertices, const std::vector<glm::uvec3>& triangles) {
+  std::vector<T> corners;
+  if (of_vertices.empty()) return corners;
+  for (const glm::uvec3& t : triangles) {
+    for (int k = 0; k < 3; ++k) corners.push_back(of_vertices[t[k]]);
+  }
+  return corners;
+}
+
+}  // namespace
+
+Mesh read_ply(const std::string& path) {
+  const std::vector<uint8_t> bytes = read_file(path);
+  Reader reader(bytes, path);
+  const std::vector<Element> elements = read_header(reader);
+  Content content;
+  for (const Element& element : elements) {
+    reader.expect(element.count, least_bytes(element, reader.format), "'" + element.name + "' elements");
+    if (element.name == "vertex") {
+      read_vertices(reader, element, content);
+    } else if (element.name == "face") {
+      read_faces(reader, element, content);
+    } else if (!element.properties.empty()) {
+      for (uint64_t i = 0; i < element.count; ++i) {
+        for (const Property& p : element.properties) skip(reader, p);
+      }
+    }
+  }
+  if (content.triangles.empty()) reader.refuse("holds no faces.");
+  const std::vector<Vec3> normals = at_corners(content.normals, content.triangles);
+  const std::vector<Vec2> uvs = at_corners(content.uvs, content.triangles);
+  return Mesh(
+      {.positions = content.positions, .triangles = content.triangles, .corner_normals = normals, .corner_uvs = uvs});
+}
+
+}  // namespace velour

@@ -1,0 +1,88 @@
+#include "scene/ply_file.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <filesystem>
+#include <fstream>
+
+#include "job/error.h"
+#include "scene/mesh_file.h"
+
+namespace velour {
+namespace {
+
+std::string written(const std::string& bytes, const std::string& name = "mesh.ply") {
+  const auto path = std::filesystem::path(VELOUR_SCRATCH_DIR) / name;
+  std::filesystem::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path.string();
+}
+
+const std::string kHeader =
+    "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+const std::string kAscii =
+    "ply\nformat ascii 1.0\ncomment a square\n" + kHeader + "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n";
+
+template <typename T>
+void append(std::string& to, T value, bool big) {
+  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if (big) std::reverse(raw.begin(), raw.end());
+  to.append(raw.begin(), raw.end());
+}
+
+std::string binary(bool big) {
+  std::string bytes = std::string("ply\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\n" + kHeader;
+  for (const float x : {0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 1, 0, 1, 0, 0, 1}) append(bytes, x, big);
+  append(bytes, uint8_t{4}, big);
+  for (const int i : {0, 1, 2, 3}) append(bytes, i, big);
+  return bytes;
+}
+
+TEST(PlyFile, ReadsAllFormatsAlike) {
+  for (const std::string& bytes : {kAscii, binary(false), binary(true)}) {
+    const Mesh mesh = read_mesh(written(bytes));
+    ASSERT_EQ(mesh.triangles().size(), 2u);
+    EXPECT_EQ(mesh.position(1, {0, 1}), Vec3(0, 1, 0));
+    EXPECT_TRUE(mesh.has_uvs());
+  }
+}
+
+TEST(PlyFile, SkipsWhatItDoesNotKnow) {
+  const std::string bytes =
+      "ply\nformat ascii 1.0\nelement camera 2\nproperty double focus\nelement vertex 3\nproperty double y\n"
+      "property uchar red\nproperty double x\nproperty double z\nelement face 1\nproperty list uchar float weights\n"
+      "property list uint8 uint32 vertex_index\nproperty short group\nend_header\n"
+      "5 6\n0 255 0 0\n0 255 1 0\n1 255 0 0\n2 0.5 0.25\n3 0 1 2\n7\n";
+  EXPECT_FALSE(read_ply(written("ply\r\n" + bytes.substr(4))).has_uvs());
+  EXPECT_EQ(read_ply(written(bytes)).position(0, {1, 0}), Vec3(1, 0, 0));
+}
+
+TEST(PlyFile, EveryTruncationIsASentence) {
+  for (const std::string& bytes : {kAscii, binary(false)}) {
+    for (size_t n = 0; n + 2 < bytes.size(); ++n) {
+      EXPECT_THROW(read_ply(written(bytes.substr(0, n))), Error) << n;
+    }
+  }
+}
+
+std::string with(const std::string& what, const std::string& instead) {
+  std::string bytes = kAscii;
+  return bytes.replace(bytes.find(what), what.size(), instead);
+}
+
+TEST(PlyFile, RefusesLies) {
+  for (const std::string& bytes :
+       {with("vertex 4", "vertex 4000000000000"), with("vertex 4", "vertex -4"), with("face 1", "face 99999"),
+        with("4 0 1 2 3", "4 0 1 2 4"), with("4 0 1 2 3", "4 0 1 2 -1"), with("4 0 1 2 3", "255 0 1 2 3"),
+        with("4 0 1 2 3", "4 0 1 2 x"), with("float z", "float depth"), with("uchar int", "uchar text"),
+        with("ascii", "binary_middle_endian"), with("element face 1", "element faces 1"),
+        std::string("property float x\nend_header\n")}) {
+    EXPECT_THROW(read_ply(written(bytes)), Error) << bytes;
+  }
+  EXPECT_THROW(read_ply("/nowhere/at_all.ply"), Error);
+}
+
+}  // namespace
+}  // namespace velour
