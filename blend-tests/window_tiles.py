@@ -3,12 +3,18 @@
 import bpy
 import numpy as np
 
-from support import window
+from support import scenes, window
+
+_TURNS = 300  # of 0.1 s that a capture may take
 
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (add_and_repeat, another_type))
+    for panel in (bpy.types.VELOUR_OBJECT_PT_tile, bpy.types.VELOUR_COLLECTION_PT_tile):
+        bpy.utils.unregister_class(panel)
+        panel.bl_options = set()  # open, to be looked at
+        bpy.utils.register_class(panel)
+    window.run(folder, (add_and_repeat, another_type, capture_and_cancel, capture))
 
 
 def _clear_view():
@@ -58,3 +64,62 @@ def another_type(folder):
     for name in ("size", "gap", "count"):
         assert not last.is_property_set(name), name
     window.screenshot(folder, "net")
+
+
+def _tile_in_properties(tab):
+    """A plane that is a tile, and its panel."""
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    with window.override():
+        obj = scenes.add_plane()
+    yield from window.show_properties(tab)
+    return obj
+
+
+def _start_capture(folder, **settings):
+    path = folder / "plane.btf"
+    with window.override():
+        started = bpy.ops.velour.capture_btf("INVOKE_DEFAULT", directory=str(path), **settings)
+    assert started == {"RUNNING_MODAL"}, started
+    return path
+
+
+def _refusal(folder):
+    """What a capture says that does not start."""
+    try:
+        _start_capture(folder)
+    except RuntimeError as error:
+        return str(error)
+    return ""
+
+
+def capture_and_cancel(folder):
+    """The panel shows the progress; a second one is refused; cancel ends it, and it can be resumed."""
+    yield from _tile_in_properties("OBJECT")
+    state = bpy.context.window_manager.velour
+    path = _start_capture(folder, texels=256, samples=256)
+    yield 0.8
+    assert state.running
+    assert state.subject == "Plane"
+    window.screenshot(folder, "capture-running")
+    assert "running already" in _refusal(folder), "a second capture beside the first"
+    bpy.ops.velour.cancel_fit()
+    for _ in range(20):
+        yield 0.1
+        if not state.running:
+            break
+    assert not state.running, "the capture goes on"
+    assert (path / "btf.json").is_file(), "nothing to resume"
+
+
+def capture(folder):
+    yield from _tile_in_properties("OBJECT")
+    window.screenshot(folder, "tile-panel")
+    path = _start_capture(folder / "done", texels=4, views=6, lights=6)
+    for _ in range(_TURNS):
+        yield 0.1
+        if not bpy.context.window_manager.velour.running:
+            break
+    assert (path / "btf.json").is_file()
+    yield from window.show_properties("COLLECTION")
+    window.screenshot(folder, "collection-panel")

@@ -6,7 +6,7 @@ from .axes import affine
 from .lights import add_light
 from .meshes import mesh_arrays
 
-_GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
     "CURVES": "hair curves",
     "POINTCLOUD": "point clouds",
@@ -38,7 +38,7 @@ class ObjectExport:
             # The instance is only valid within this turn of the loop.
             if not instance.show_self:
                 continue
-            if instance.object.type in _GEOMETRY:
+            if instance.object.type in GEOMETRY:
                 self._add_geometry(instance, override)
             elif instance.object.type == "LIGHT":
                 add_light(self._scene, instance.object, instance.matrix_world, self._notes)
@@ -52,7 +52,7 @@ class ObjectExport:
             self._check_break()
             if not instance.show_self or not is_wanted(instance):
                 continue
-            if instance.object.type in _GEOMETRY:
+            if instance.object.type in GEOMETRY:
                 self._add_geometry(instance, override)
             else:
                 self._note_unsupported(instance.object)

@@ -9,7 +9,7 @@ from ..native import Scene
 from .color import set_working_space
 from .materials import MaterialTable
 from .notes import ExportError, Notes
-from .objects import ObjectExport
+from .objects import GEOMETRY, ObjectExport
 from .units import metres_per_unit
 
 
@@ -98,7 +98,7 @@ def _bounds(source, depsgraph):
     corners = [
         source.to_tile @ instance.matrix_world @ Vector(corner)
         for instance in depsgraph.object_instances
-        if is_of_tile(instance, source) and instance.show_self
+        if is_of_tile(instance, source) and instance.show_self and instance.object.type in GEOMETRY
         for corner in instance.object.bound_box
     ]
     if not corners:

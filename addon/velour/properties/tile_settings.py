@@ -1,7 +1,14 @@
 """What makes an object, or a collection, one tile of a mesostructure."""
 
 import bpy
-from bpy.props import BoolProperty, FloatVectorProperty
+from bpy.props import BoolProperty, EnumProperty, FloatVectorProperty, IntProperty, StringProperty
+
+SIDES = (
+    ("AUTOMATIC", "As Needed", "Both where light can pass through the tile", 0),
+    ("ONE", "Front", "Seen and lit from above alone", 1),
+    ("TWO", "Both", "Seen and lit from above and from below", 2),
+)
+_OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 
 class VelourTileSettings(bpy.types.PropertyGroup):
@@ -15,11 +22,61 @@ class VelourTileSettings(bpy.types.PropertyGroup):
         unit="LENGTH",
         description="After this distance along its own x and y the structure repeats. What crosses the border"
         " of the tile is there once and sticks out. 0: the size of its bounding box",
-        override={"LIBRARY_OVERRIDABLE"},
+        override=_OVERRIDABLE,
     )
     is_repeat: BoolProperty(
         name="Is a Repeat",
         description="A copy that shows how a tile goes on; never captured",
         options={"HIDDEN"},
-        override={"LIBRARY_OVERRIDABLE"},
+        override=_OVERRIDABLE,
+    )
+
+    # What a capture is asked for.
+    directory: StringProperty(
+        name="Folder",
+        description="Where the capture goes; empty: beside the .blend, under the tile's name",
+        subtype="DIR_PATH",
+        override=_OVERRIDABLE,
+    )
+    texels: IntProperty(
+        name="Texels", description="Along each side", min=1, max=4096, default=128, override=_OVERRIDABLE
+    )
+    views: IntProperty(
+        name="Views",
+        description="Directions it is seen from. 81: rings to 75 degrees, as measured sets have; 105: also a"
+        " ring at 85 degrees; other numbers: spread evenly over the hemisphere",
+        min=1,
+        max=4096,
+        default=105,
+        override=_OVERRIDABLE,
+    )
+    lights: IntProperty(
+        name="Lights",
+        description="Directions it is lit from; numbers as of the views",
+        min=1,
+        max=4096,
+        default=105,
+        override=_OVERRIDABLE,
+    )
+    samples: IntProperty(
+        name="Samples",
+        description="Paths a texel and view",
+        min=1,
+        max=65536,
+        default=16,
+        override=_OVERRIDABLE,
+    )
+    bounces: IntProperty(
+        name="Bounces",
+        description="Of light within the tile; 0: direct light only",
+        min=0,
+        max=64,
+        default=1,
+        override=_OVERRIDABLE,
+    )
+    sides: EnumProperty(name="Sides", items=SIDES, default="AUTOMATIC", override=_OVERRIDABLE)
+    use_approximate: BoolProperty(
+        name="Approximate",
+        description="Also capture materials that Velour does not render as they are",
+        override=_OVERRIDABLE,
     )

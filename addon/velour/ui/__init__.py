@@ -11,6 +11,7 @@ from .material_panel import (
 from .preferences import VelourPreferences
 from .render_panel import VELOUR_RENDER_PT_film, VELOUR_RENDER_PT_library, VELOUR_RENDER_PT_sampling
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
+from .tile_panel import VELOUR_COLLECTION_PT_tile, VELOUR_OBJECT_PT_tile
 
 CLASSES = (
     VelourPreferences,
@@ -23,6 +24,8 @@ CLASSES = (
     VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_surface,
+    VELOUR_OBJECT_PT_tile,
+    VELOUR_COLLECTION_PT_tile,
 )
 
 

@@ -1,0 +1,95 @@
+"""Capture a tile as a BTF: in the background of a window, or at once without one."""
+
+import os
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
+
+from ..export import ExportError
+from ..export.tiles import export_tile
+from ..native import capture_job, directions
+from ..properties.tile_settings import SIDES
+from .background_job import OneJob
+from .tiles import find_tile
+
+_SETTINGS = ("directory", "texels", "views", "lights", "samples", "bounces", "sides", "use_approximate")
+
+
+class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
+    bl_idname = "velour.capture_btf"
+    bl_label = "Capture BTF"
+    bl_description = (
+        "Trace how the tile, repeated without end, looks under every light from every view, and write it to a"
+        " folder"
+    )
+    bl_options = {"REGISTER"}
+
+    collection: StringProperty(
+        name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}
+    )
+    # Where given these replace the settings of the tile; what is not given stays as it is.
+    directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
+    texels: IntProperty(name="Texels", min=1, default=128, options={"SKIP_SAVE"})
+    views: IntProperty(name="Views", min=1, default=105, options={"SKIP_SAVE"})
+    lights: IntProperty(name="Lights", min=1, default=105, options={"SKIP_SAVE"})
+    samples: IntProperty(name="Samples", min=1, default=16, options={"SKIP_SAVE"})
+    bounces: IntProperty(name="Bounces", min=0, default=1, options={"SKIP_SAVE"})
+    sides: EnumProperty(name="Sides", items=SIDES, options={"SKIP_SAVE"})
+    use_approximate: BoolProperty(name="Approximate", options={"SKIP_SAVE"})
+    seed: IntProperty(name="Seed", min=0, options={"SKIP_SAVE"})
+    resume: BoolProperty(
+        name="Resume",
+        description="Go on with a capture of the same tile that was stopped",
+        options={"SKIP_SAVE"},
+    )
+
+    _what = "The capture"
+
+    def _begin(self, context):
+        tile = find_tile(context, self.collection)
+        settings = tile.owner.velour
+        for name in _SETTINGS:
+            if self.properties.is_property_set(name):
+                setattr(settings, name, getattr(self, name))
+        self._subject, self._folder = tile.owner.name, _folder(tile)
+        scene, place, self._notes = export_tile(
+            tile, context.evaluated_depsgraph_get(), settings.use_approximate
+        )
+        with scene:
+            self._job = capture_job(
+                scene,
+                self._folder,
+                origin=place.origin,
+                period=place.period,
+                source=self._subject,
+                texels=settings.texels,
+                views=directions(str(settings.views)),
+                lights=directions(str(settings.lights)),
+                samples=settings.samples,
+                bounces=settings.bounces,
+                sides=settings.sides.lower(),
+                seed=self.seed,
+                threads=context.scene.render.threads,
+                resume=self.resume,
+            ).start()
+
+    def _finish(self):
+        with self._job:
+            report = self._job.report()
+        for sentence in (*self._notes, *report["warnings"]):
+            self.report({"WARNING"}, sentence)
+        self.report(
+            {"INFO"},
+            f"Captured '{self._subject}' in {report['seconds']:.0f} s: {report['bytes'] / 1e6:.1f} MB in"
+            f" {self._folder}",
+        )
+        return {"FINISHED"}
+
+
+def _folder(tile):
+    """Absolute."""
+    chosen = tile.owner.velour.directory
+    if not chosen and not bpy.data.filepath:
+        raise ExportError(f"{tile.label}: save the .blend first, or choose a folder for the capture.")
+    name = bpy.path.clean_name(tile.owner.name)
+    return os.path.normpath(bpy.path.abspath(chosen or f"//{name}.btf"))

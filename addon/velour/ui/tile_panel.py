@@ -1,0 +1,69 @@
+"""Tiles of mesostructure: what repeats, and its capture."""
+
+import bpy
+
+from ..engine.engine import VelourRenderEngine
+from ..export.objects import GEOMETRY
+from ..operators.capture_btf import VELOUR_OT_capture_btf
+from ..operators.repeat_tile import VELOUR_OT_repeat_tile, is_repeated
+from .progress import draw_progress
+
+
+class TilePanel:
+    bl_label = "Mesostructure"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_options = {"DEFAULT_CLOSED"}
+    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
+
+    def _draw(self, context, owner, collection_name):
+        layout, settings = self.layout, owner.velour
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.column().prop(settings, "period")
+        text = "Hide Repeats" if is_repeated(owner) else "Show Repeated"
+        layout.operator(VELOUR_OT_repeat_tile.bl_idname, text=text).collection = collection_name
+        column = layout.column(align=True)
+        for name in ("directory", "texels", "views", "lights", "samples", "bounces", "sides"):
+            column.prop(settings, name)
+        column.prop(settings, "use_approximate")
+        column.label(text=_size(settings), icon="INFO")
+        if not draw_progress(context, layout):
+            operator = layout.operator(VELOUR_OT_capture_btf.bl_idname, icon="PLAY")
+            operator.collection = collection_name
+
+
+class VELOUR_OBJECT_PT_tile(TilePanel, bpy.types.Panel):
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.object
+        return context.engine in cls.COMPAT_ENGINES and obj is not None and obj.type in GEOMETRY
+
+    def draw(self, context):
+        self._draw(context, context.object, "")
+
+
+class VELOUR_COLLECTION_PT_tile(TilePanel, bpy.types.Panel):
+    bl_context = "collection"
+
+    @classmethod
+    def poll(cls, context):
+        collection = context.collection
+        is_one = collection is not None and collection != context.scene.collection
+        return context.engine in cls.COMPAT_ENGINES and is_one
+
+    def draw(self, context):
+        self._draw(context, context.collection, context.collection.name)
+
+
+def _size(settings):
+    """What is written: half floats, three channels; of two sides all four pairs of hemispheres."""
+    front = 6 * settings.texels**2 * settings.views * settings.lights
+    both = f"{4 * front / 1e6:,.0f} MB"
+    return {
+        "ONE": f"{front / 1e6:,.0f} MB",
+        "TWO": both,
+        "AUTOMATIC": f"{front / 1e6:,.0f} MB, with holes {both}",
+    }[settings.sides]
