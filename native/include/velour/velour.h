@@ -138,8 +138,8 @@ VLR_API vlr_status vlr_btf_load(const char* path, const vlr_btf_options* options
 VLR_API void vlr_btf_free(vlr_btf* btf);
 /* JSON: kind "btf", format, name, path, description, sha256, bytes, raw_bytes (as half-float RGB), texels [x, y],
  * views, lights, pairs, complete, largest_theta {view, light} (degrees), tile_metres [x, y] or null, shell {thickness,
- * reference_height} or null, errors, structure, entries {pairs, values, not_finite, negative} (of so many pairs, evenly
- * spread where not all), details {...}. */
+ * reference_height} or null, errors, structure, entries {pairs, values, not_finite, negative} (of so many pairs, spread
+ * where not all), details {...}. */
 VLR_API vlr_status vlr_btf_info_json(vlr_btf* btf, const char** json);
 /* theta_l, phi_l, theta_v, phi_v of every pair in degrees, angles [pairs x 4]; `count` is the number of doubles. */
 VLR_API vlr_status vlr_btf_angles(const vlr_btf* btf, double* angles, uint64_t count);

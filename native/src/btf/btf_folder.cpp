@@ -10,8 +10,6 @@ namespace velour {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kMostIndexBytes = uint64_t{256} << 20;
-
 template <typename T>
 std::span<uint8_t> writable_bytes(std::span<T> values) {
   return {reinterpret_cast<uint8_t*>(values.data()), values.size_bytes()};
@@ -55,7 +53,7 @@ class BtfFolder : public BtfMeasurement {
 
  private:
   BtfFolder(const std::string& path, const fs::path& index_path)
-      : BtfFolder(path, index_path, read_file(index_path, kMostIndexBytes)) {}
+      : BtfFolder(path, index_path, read_file(index_path, kMostBtfIndexBytes)) {}
 
   BtfFolder(const std::string& path, const std::string& index_path, const std::vector<uint8_t>& bytes)
       : BtfFolder(path, decode_btf_index(bytes, index_path)) {

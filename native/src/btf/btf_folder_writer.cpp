@@ -9,8 +9,6 @@ namespace velour {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kMostIndexBytes = uint64_t{256} << 20;
-
 template <typename T>
 std::span<const uint8_t> bytes_of(std::span<const T> values) {
   return {reinterpret_cast<const uint8_t*>(values.data()), values.size_bytes()};
@@ -20,7 +18,7 @@ std::string index_path(const std::string& folder) { return fs::path(folder) / "b
 
 DecodedBtfIndex read_index(const std::string& folder) {
   const std::string path = index_path(folder);
-  return decode_btf_index(read_file(path, kMostIndexBytes), path);
+  return decode_btf_index(read_file(path, kMostBtfIndexBytes), path);
 }
 
 void write_index(const std::string& folder, const BtfIndex& index, const std::optional<BtfContent>& content) {

@@ -11,6 +11,9 @@
 
 namespace velour {
 
+/// More than the largest index takes.
+inline constexpr uint64_t kMostBtfIndexBytes = uint64_t{1} << 30;
+
 /// What is known before any view is there.
 struct BtfIndex {
   PairLayout layout;

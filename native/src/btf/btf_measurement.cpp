@@ -13,13 +13,16 @@ void BtfMeasurement::check_range(uint64_t first, uint64_t count) const {
                                             std::to_string(first) + " on are not among them.");
 }
 
-CountedPairs count_values(const BtfMeasurement& btf, uint64_t most) {
+CountedPairs count_values(const BtfMeasurement& btf) {
   const uint64_t pairs = btf.layout().pairs();
   if (const auto counts = btf.all_counts()) return {pairs, *counts};
-  CountedPairs counted{std::min(most, pairs), {}};
-  std::vector<HalfBits> values(btf.grid().texels() * 3);
-  for (uint64_t i = 0; i < counted.pairs; ++i) {
-    btf.read_pairs(i * pairs / counted.pairs, 1, values);
+  constexpr uint64_t kMost = 16;
+  constexpr uint64_t kRun = 4;  // pairs read together: where a set is compressed, one costs nearly as much as four
+  const uint64_t runs = pairs <= kMost ? 1 : kMost / kRun, run = pairs <= kMost ? pairs : kRun;
+  std::vector<HalfBits> values(run * btf.grid().texels() * 3);
+  CountedPairs counted{runs * run, {}};
+  for (uint64_t i = 0; i < runs; ++i) {
+    btf.read_pairs(i * (pairs - run) / std::max<uint64_t>(1, runs - 1), run, values);
     counted.counts.add(values);
   }
   return counted;

@@ -86,12 +86,12 @@ class BtfMeasurement {
   Provenance provenance_;  // its sha256 names the content: of the index or of all names and sizes where files are many
 };
 
-/// Pairs and what is known of their values: of all of them where they were counted before, else of at most `most`
-/// pairs, evenly spread.
+/// Pairs and what is known of their values: of all of them where they were counted before, else of 16 pairs in four
+/// runs, evenly spread (of all where they are no more).
 struct CountedPairs {
   uint64_t pairs = 0;
   ValueCounts counts;
 };
-CountedPairs count_values(const BtfMeasurement& btf, uint64_t most = 16);
+CountedPairs count_values(const BtfMeasurement& btf);
 
 }  // namespace velour

@@ -65,6 +65,20 @@ void copy_numbers(const std::vector<uint8_t>& bytes, std::vector<float>& floats)
   }
 }
 
+/// From [row][column] to [column][row]; some columns at a time, so that what is written stays in the cache.
+std::vector<float> transposed(const std::vector<float>& matrix, uint64_t columns) {
+  constexpr uint64_t kColumnsAtOnce = 16;
+  const uint64_t rows = matrix.size() / columns;
+  std::vector<float> result(matrix.size());
+  for (uint64_t first = 0; first < columns; first += kColumnsAtOnce) {
+    const uint64_t end = std::min(columns, first + kColumnsAtOnce);
+    for (uint64_t row = 0; row < rows; ++row) {
+      for (uint64_t k = first; k < end; ++k) result[k * rows + row] = matrix[row * columns + k];
+    }
+  }
+  return result;
+}
+
 /// The texels of some rows of the images, for all components: [component][texel] for each channel.
 struct TexelBlock {
   uint64_t first = 0, count = 0;
@@ -147,11 +161,7 @@ class UboFile : public BtfMeasurement {
     for (size_t c = 0; c < 3; ++c) {
       const UboChannel& channel = header_.channels[c];
       const std::vector<float> rows = rows_of(channel, channel.texels, first, count);
-      std::vector<float>& factors = block.factors[c];
-      factors.resize(rows.size());
-      for (uint64_t t = 0; t < count; ++t) {
-        for (uint64_t k = 0; k < channel.components; ++k) factors[k * count + t] = rows[t * channel.components + k];
-      }
+      block.factors[c] = transposed(rows, channel.components);
     }
     return block;
   }

@@ -24,12 +24,13 @@ void write_bytes(const fs::path& file, uint8_t code, int width = 3) {
   const auto output = OIIO::ImageOutput::create(file.string());
   OIIO::ImageSpec spec(width, 2, 3, OIIO::TypeDesc::UINT8);
   spec.attribute("Compression", "jpeg:100");
-  ASSERT_TRUE(output && output->open(file.string(), spec) && output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) &&
-              output->close());
+  ASSERT_TRUE(output && output->open(file.string(), spec) &&
+              output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && output->close());
 }
 
 /// Two views, two lights, pictures of `extension`.
 fs::path written_set(const fs::path& folder, const std::string& extension) {
+  fs::create_directories(folder);
   uint8_t code = 100;
   for (const char* light : {"tl000 pl000", "tl060 pl090"}) {
     for (const char* view : {"tv000 pv000", "tv045 pv180"}) {
@@ -127,6 +128,19 @@ TEST(LoadBtf, PicturesOfFloatsAreTakenAsTheyAre) {
   std::vector<float> floats(6);
   halves_to_floats(halves, floats);
   EXPECT_NEAR(floats[0], 0.5 / (M_PI * 0.5), 1e-3);
+}
+
+TEST(LoadBtf, ValuesAreCountedInAllPairsOrInSome) {
+  const auto folder = test::scratch_folder();
+  EXPECT_EQ(count_values(*load_btf(written_set(folder / "few", ".png"))).pairs, 4u);
+  for (int light = 0; light < 60; light += 3) {
+    const std::string name = "tl" + std::to_string(light) + " pl0 tv0 pv0.exr";
+    write_picture(folder / name, {1, 1, 3, {1, -1, NAN}});
+  }
+  fs::remove_all(folder / "few");
+  const CountedPairs counted = count_values(*load_btf(folder));
+  EXPECT_EQ(counted.pairs, 16u);
+  EXPECT_EQ(counted.counts, (ValueCounts{48, 16, 16}));
 }
 
 TEST(LoadBtf, DamagedPicturesAreNamed) {
