@@ -1,11 +1,17 @@
 #include "btf/direction_sets.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "btf/btf_measurement.h"
 #include "job/error.h"
 
 namespace velour {
+namespace {
+
+constexpr double kLargestTheta = 89.89;  // what a PairLayout takes
+
+}  // namespace
 
 std::vector<PolarAngles> named_directions(const std::string& name) {
   if (name == "81") return bonn_directions();
@@ -17,7 +23,9 @@ std::vector<PolarAngles> named_directions(const std::string& name) {
     throw Error(Status::invalid_argument, "There is no set of directions " + name + ": use 81, 105, or a number from " +
                                               "1 to " + std::to_string(kMaxDirections) + ".");
   }
-  return even_directions(count);
+  std::vector<PolarAngles> set = even_directions(count);
+  for (PolarAngles& d : set) d.theta = std::min(d.theta, kLargestTheta);
+  return set;
 }
 
 }  // namespace velour

@@ -9,7 +9,8 @@
 namespace velour {
 
 /// "81": bonn_directions(); "105": capture_directions(); another whole number from 1 to kMaxDirections:
-/// even_directions(). Throws Error(invalid_argument).
+/// even_directions(), of which those within 0.11 degrees of the plane are lifted to that. Throws
+/// Error(invalid_argument).
 std::vector<PolarAngles> named_directions(const std::string& name);
 
 }  // namespace velour

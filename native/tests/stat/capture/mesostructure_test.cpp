@@ -53,7 +53,7 @@ TEST(Mesostructure, SawtoothIsMaskedAndShadowedAsGeometrySays) {
     for (size_t p = 0; p < set.size() * set.size(); ++p) {
       const Vec3 wv = unit_direction(set[p / set.size()]), wl = unit_direction(set[p % set.size()]);
       test::Estimate found = captured.mean(p);
-      found.error += 1e-5 * found.mean;  // rounding to halves, which half the texels share
+      found.error += 2.5e-4 * found.mean;  // rounding to halves, which many texels share
       tests.add(std::to_string(p), found, {sawtooth_brdf(wl, wv, mask, shadow), 0});
     }
     return tests;
@@ -74,14 +74,14 @@ double albedo(const Captured& captured, const std::vector<PolarAngles>& lights, 
 
 TEST(Mesostructure, WhiteSurfacesLoseNothing) {
   const auto scene = tile_of(test::sawtooth(), std::make_shared<test::Lambert>(1.0f));
-  const std::vector<PolarAngles> views{{0, 0}, {50, 30}, {75, 170}}, lights = even_directions(500);
+  const std::vector<PolarAngles> views{{0, 0}, {50, 30}, {75, 170}}, lights = even_directions(250);
   BtfCaptureOptions options = sharp(views, lights, 40);
   options.sampling.samples = 64;
   const Captured all(*scene, options, "energy");
   options.sampling.bounces = 1;
   const Captured one(*scene, options, "energy_one");
   for (size_t v = 0; v < views.size(); ++v) {
-    EXPECT_NEAR(albedo(all, lights, v), 1, 0.01) << v;  // 500 lights: the quadrature's own error is some 0.3 %
+    EXPECT_NEAR(albedo(all, lights, v), 1, 0.01) << v;  // mostly the quadrature's
     EXPECT_LT(albedo(one, lights, v), 0.97) << v << " control: one bounce does lose light";
   }
 }

@@ -24,14 +24,18 @@ std::string written(const std::string& bytes, const std::string& name = "mesh.pl
 const std::string kHeader =
     "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n"
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-const std::string kAscii =
-    "ply\nformat ascii 1.0\ncomment a square\n" + kHeader + "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n";
+std::string ascii() {
+  std::string bytes = "ply\nformat ascii 1.0\ncomment a square\n";
+  bytes += kHeader;
+  return bytes.append("0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n");
+}
+const std::string kAscii = ascii();
 
 template <typename T>
 void append(std::string& to, T value, bool big) {
   auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
   if (big) std::reverse(raw.begin(), raw.end());
-  to.append(raw.begin(), raw.end());
+  for (const char c : raw) to.push_back(c);
 }
 
 std::string binary(bool big) {
@@ -73,7 +77,9 @@ TEST(PlyFile, EveryTruncationIsASentence) {
 
 std::string with(const std::string& what, const std::string& instead) {
   const size_t at = kAscii.find(what);
-  return kAscii.substr(0, at) + instead + kAscii.substr(at + what.size());
+  std::string bytes(kAscii, 0, at);
+  bytes += instead;
+  return bytes.append(kAscii, at + what.size());
 }
 
 TEST(PlyFile, RefusesLies) {
