@@ -58,9 +58,9 @@ class Notes(BlenderTest):
     def test_ignored_input(self):
         material = self._material("ShaderNodeBsdfPrincipled")
         for node in material.node_tree.nodes:
-            if "Alpha" in node.inputs:
-                node.inputs["Alpha"].default_value = 0.5
-        self._said("Material 'Glass'", "'Alpha'")
+            if "Anisotropic" in node.inputs:
+                node.inputs["Anisotropic"].default_value = 0.5
+        self._said("Material 'Glass'", "'Anisotropic'")
 
     def test_spot(self):
         lamp = bpy.data.objects.new("Spot", bpy.data.lights.new("Spot", "SPOT"))

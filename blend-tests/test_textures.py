@@ -139,6 +139,15 @@ class Textures(BlenderTest):
         pixels = self._rendered().mean(axis=(0, 2))
         self.assertLess(pixels[: SIDE // 2 - 1].max(), 0.05 * pixels[SIDE // 2 + 1 :].min())
 
+    def test_alpha_cuts_out(self):
+        values = np.ones((SIDE, SIDE, 4), np.float32)
+        values[: SIDE // 2, :, 3] = 0.0
+        self._plane(_image("mask", values), "ShaderNodeBsdfPrincipled", "Base Color")
+        self.tree.links.new(self.texture.outputs["Alpha"], self.shader.inputs["Alpha"])
+        bpy.context.scene.render.film_transparent = True
+        alpha = scenes.render(self.folder)[..., 3]
+        np.testing.assert_array_equal(alpha, values[..., 3])
+
     def test_other_nodes_are_named(self):
         self._plane(_image("named", _colours()))
         self.texture.projection = "BOX"

@@ -26,7 +26,6 @@ _IGNORED = {
     "Coat Weight": 0.0,
     "Transmission": 0.0,
     "Transmission Weight": 0.0,
-    "Alpha": 1.0,
 }
 _LINK_ONLY = ("Normal", "Clearcoat Normal", "Coat Normal", "Tangent")
 

@@ -108,7 +108,7 @@ class Scene(Handle):
     def add_principled_material(self, **values) -> int:
         """base_color [3], metallic, roughness (alpha of GGX: its square), specular: 0..1.
 
-        emission [3]: radiance; alpha: 0..1, the share of the surface that is there, which renders take for 1.
+        emission [3]: radiance; alpha: 0..1, the share of the surface that is there; rays pass the rest.
         """
         return self.add_textured_material({}, **values)
 

@@ -315,7 +315,7 @@ typedef struct vlr_principled_desc {
   float roughness;     /* 0..1, Principled's: alpha = roughness^2 */
   float specular;      /* Principled's 0..1, 0.5 = index 1.5 */
   float emission[3];   /* radiance, working space */
-  float alpha;         /* 0..1: the share of the surface that is there; renders take it for 1 */
+  float alpha;         /* 0..1: the share of the surface that is there; rays pass the rest */
 } vlr_principled_desc;
 VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
 VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,

@@ -41,6 +41,8 @@ class Material {
   /// False for a uniform material: it does not look at the site, and whoever asks need not find it out.
   virtual bool varies() const { return false; }
 
+  /// True where alpha() is 1 everywhere.
+  virtual bool opaque() const { return true; }
   /// The share of `site` that is there, in [0, 1]; through the rest one sees what lies behind. f is that of what is
   /// there.
   virtual float alpha(const SurfaceSite& /*site*/) const { return 1.0f; }

@@ -26,6 +26,8 @@ class TexturedMaterial final : public PrincipledSampling {
 
   bool varies() const override { return textures_.any(); }
 
+  bool opaque() const override { return !textures_.alpha.texture && alpha_ >= 1.0f; }
+
   float alpha(const SurfaceSite& site) const override {
     return std::clamp(textures_.alpha.at(site, alpha_), 0.0f, 1.0f);
   }

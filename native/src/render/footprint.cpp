@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "material/material.h"
 #include "sphere/frame.h"
 
 namespace velour {
 namespace {
 
 constexpr float kLeastPart = 0.125f;  // of a pixel's side
+
+bool varies(const Scene& scene) {
+  return std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.material->varies(); });
+}
 
 }  // namespace
 
@@ -17,13 +22,14 @@ RaySides across(const RayCone& cone, const Vec3& direction) {
   return {cone.width * frame.x, cone.width * frame.y};
 }
 
-PixelFootprint::PixelFootprint(const Camera& camera, int width, int height, int camera_rays) : camera_(camera) {
+PixelFootprint::PixelFootprint(const Scene& scene, int width, int height, int camera_rays)
+    : camera_(scene.camera()), needed_(varies(scene)) {
   const float part = std::max(kLeastPart, 1.0f / std::sqrt(static_cast<float>(camera_rays)));
-  const Vec2 window(camera.window[1] - camera.window[0], camera.window[3] - camera.window[2]);
+  const Vec2 window(camera_.window[1] - camera_.window[0], camera_.window[3] - camera_.window[2]);
   pitch_ = part * window / Vec2(static_cast<float>(width), static_cast<float>(height));
 }
 
-RayCone PixelFootprint::cone(const Vec3& direction) const {
+RayCone PixelFootprint::cone_along(const Vec3& direction) const {
   const float side = std::sqrt(std::abs(pitch_.x * pitch_.y));
   if (camera_.type == Camera::Type::orthographic) return {side, 0.0f};
   // A pixel at distance 1 / cosine from the eye shows cosine of its area.

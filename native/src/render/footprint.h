@@ -34,16 +34,20 @@ RaySides across(const RayCone& cone, const Vec3& direction);
 class PixelFootprint {
  public:
   /// `width`, `height` of the picture; `camera_rays` a pixel that the render is asked for, whatever ends it early.
-  PixelFootprint(const Camera& camera, int width, int height, int camera_rays);
+  PixelFootprint(const Scene& scene, int width, int height, int camera_rays);
 
   /// Of a camera ray along unit `direction`, at the camera: as wide as its pixel's solid angle, or an orthographic
-  /// pixel's area, is large.
-  RayCone cone(const Vec3& direction) const;
+  /// pixel's area, is large. Empty where no material of the
+  /// scene varies.
+  RayCone cone(const Vec3& direction) const { return needed_ ? cone_along(direction) : RayCone{}; }
   /// Of a camera ray that ends at `position`: exact, by differentials [Ige99].
   RaySides sides(const Vec3& position) const;
 
  private:
+  RayCone cone_along(const Vec3& direction) const;
+
   const Camera& camera_;
+  const bool needed_;
   Vec2 pitch_;  // of what camera rays stand for; metres at distance 1, or anywhere
 };
 

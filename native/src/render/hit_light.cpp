@@ -91,7 +91,7 @@ void HitLightEstimator::weigh(const Vertex& vertex, Counts counts) {
 void HitLightEstimator::trace(const Vertex& vertex) {
   const auto count = static_cast<size_t>(world_.count);
   for (size_t i = 0; i < count; ++i) rays_[i] = vertex.ray(world_.get(static_cast<int>(i)), kInfinity);
-  scene_.rays().intersect({rays_, count}, hits_);
+  visible_.intersect({rays_, count}, hits_);
 }
 
 /// Radiance of environment and lamps where nothing stands before them.
@@ -127,7 +127,7 @@ void HitLightEstimator::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
   const int count = find_sharp_light(lighting_, vertex, numbers, sharp);
   for (int i = 0; i < count; ++i) {
     const SharpLight& s = sharp[i];
-    if (s.lamp->casts_shadow() && scene_.rays().occluded(vertex.ray(s.wl_world, s.distance))) continue;
+    if (s.lamp->casts_shadow() && visible_.occluded(vertex.ray(s.wl_world, s.distance))) continue;
     const Rgb light = s.wl.z * s.irradiance;
     note_density(kInfinity, light);
     add_term(s.wl, light);

@@ -22,7 +22,7 @@ class HitLightEstimator {
  public:
   /// `options`: those of two renders whose random numbers are independent, one a half.
   HitLightEstimator(const Scene& scene, const Lighting& lighting, const RenderOptions (&options)[2])
-      : scene_(scene),
+      : visible_(scene),
         lighting_(lighting),
         options_(options),
         indirect_{IndirectLight(scene, lighting, options[0]), IndirectLight(scene, lighting, options[1])} {}
@@ -50,7 +50,7 @@ class HitLightEstimator {
   void note_density(float density, const Rgb& light);
   float light_density();
 
-  const Scene& scene_;
+  const VisibleRays visible_;
   const Lighting& lighting_;
   const RenderOptions (&options_)[2];
   IndirectLight indirect_[2];

@@ -26,7 +26,7 @@ void IndirectLight::resolve(int surfaces) {
   for (int met = 1; met <= surfaces && !paths_.empty(); ++met) {
     meet_surfaces();
     gather(met < surfaces);
-    shadows_.resolve(scene_.rays(), samples_, nullptr);
+    shadows_.resolve(visible_, samples_, nullptr);
     paths_.swap(next_);
     rays_.swap(next_rays_);
     trace();
@@ -40,7 +40,7 @@ void IndirectLight::meet_surfaces() {
     Path& path = paths_[i];
     const Vertex vertex(scene_, scene_.surface(hits_[i]), rays_[i], hits_[i], path.cone, nullptr);
     samples_[path.sample].radiance += path.throughput * vertex.surface->emission;
-    receivers_.push_back({vertex, &path.numbers, path.throughput, path.sample, kDirections, kDirections});
+    receivers_.emplace_back(vertex, &path.numbers, path.throughput, path.sample, kDirections, kDirections);
   }
 }
 
@@ -64,7 +64,7 @@ void IndirectLight::gather(bool go_on) {
 
 void IndirectLight::trace() {
   hits_.resize(rays_.size());
-  scene_.rays().intersect(rays_, hits_.data());
+  visible_.intersect(rays_, hits_.data());
 }
 
 }  // namespace velour

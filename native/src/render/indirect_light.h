@@ -12,7 +12,7 @@ namespace velour {
 class IndirectLight {
  public:
   IndirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options)
-      : scene_(scene), light_(scene, lighting, options, nullptr) {}
+      : scene_(scene), visible_(scene), light_(scene, lighting, options, nullptr) {}
 
   void clear();
   /// A ray that met a surface, `cone` at its origin; its radiance will be number `radiance().size()` so far. `numbers`:
@@ -35,6 +35,7 @@ class IndirectLight {
   void trace();
 
   const Scene& scene_;
+  const VisibleRays visible_;
   DirectLight light_;
   ShadowQueue shadows_;
   std::vector<Path> paths_, next_;

@@ -4,11 +4,11 @@
 
 namespace velour {
 
-size_t ShadowQueue::resolve(const EmbreeScene& scene, std::vector<CameraSample>& samples, RayLog* log) {
+size_t ShadowQueue::resolve(const VisibleRays& visible, std::vector<CameraSample>& samples, RayLog* log) {
   const size_t count = rays_.size();
   blocked_.resize(count);
   if (log != nullptr) log->add(rays_, RayLog::Kind::occlusion);
-  scene.occluded(rays_, blocked_.data());
+  visible.occluded(rays_, blocked_.data());
   for (size_t i = 0; i < count; ++i) {
     if (blocked_[i] == 0) samples[sample_[i]].radiance += light_[i];
   }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/film.h"
-#include "scene/embree_scene.h"
+#include "render/visible_rays.h"
 
 namespace velour {
 
@@ -20,7 +20,7 @@ class ShadowQueue {
   }
   /// Traces all and adds what arrives to `samples`, in the order of add(); then forgets them. Returns how many.
   /// `log` may be null.
-  size_t resolve(const EmbreeScene& scene, std::vector<CameraSample>& samples, RayLog* log);
+  size_t resolve(const VisibleRays& visible, std::vector<CameraSample>& samples, RayLog* log);
 
  private:
   std::vector<Ray> rays_;

@@ -16,7 +16,8 @@ constexpr int kIndirectDirections = 2;
 
 TileRenderer::TileRenderer(const RenderContext& context)
     : context_(context),
-      pixel_(context.scene.camera(), context.options.width, context.options.height, context.camera_rays()),
+      pixel_(context.scene, context.options.width, context.options.height, context.camera_rays()),
+      visible_(context.scene),
       light_(context.scene, context.lighting, context.options, context.sky.get()) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
@@ -44,7 +45,7 @@ void TileRenderer::render_run(const PixelRect& run, int first, int count, PixelS
     receivers_.clear();
     for (size_t i = 0; i < paths_.size(); ++i) follow(i, depth);
     gather(depth);
-    ray_count_ += shadows_.resolve(context_.scene.rays(), samples_, log);
+    ray_count_ += shadows_.resolve(visible_, samples_, log);
     paths_.swap(next_);
     rays_.swap(next_rays_);
   }
@@ -90,7 +91,7 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
 void TileRenderer::trace(RayLog* log) {
   hits_.resize(rays_.size());
   if (log != nullptr) log->add(rays_, RayLog::Kind::nearest);
-  context_.scene.rays().intersect(rays_, hits_.data());
+  visible_.intersect(rays_, hits_.data());
   ray_count_ += rays_.size();
 }
 
@@ -113,7 +114,7 @@ void TileRenderer::follow(size_t index, int depth) {
   }
   sample.radiance += path.throughput * vertex.surface->emission;
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);
-  receivers_.push_back({vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most), most});
+  receivers_.emplace_back(vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most), most);
 }
 
 void TileRenderer::gather(int depth) {

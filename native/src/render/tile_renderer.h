@@ -57,6 +57,7 @@ class TileRenderer {
 
   const RenderContext& context_;
   const PixelFootprint pixel_;
+  const VisibleRays visible_;
   DirectLight light_;
   ShadowQueue shadows_;
   std::vector<Path> paths_, next_;

@@ -18,7 +18,7 @@ void ViewTracer::follow(uint64_t first, uint64_t end, ViewHistogram& view) {
   start(first, end);
   for (int depth = 0; depth <= options_.bounces && !paths_.empty(); ++depth) {
     hits_.resize(rays_.size());
-    scene_.rays().intersect(rays_, hits_.data());
+    visible_.intersect(rays_, hits_.data());
     next_.clear();
     next_rays_.clear();
     for (size_t i = 0; i < paths_.size(); ++i) meet(i, depth, view);

@@ -7,6 +7,7 @@
 #include "render/draw_by_weight.h"
 #include "render/onward.h"
 #include "render/path_numbers.h"
+#include "render/visible_rays.h"
 
 namespace velour {
 
@@ -31,10 +32,11 @@ class ViewTracer {
   ViewTracer(const Scene& scene, const SurfaceMaterial& material, const CameraGrid& grid, const RenderOptions& options,
              size_t draws)
       : scene_(scene),
+        visible_(scene),
         material_(material),
         grid_(grid),
         options_(options),
-        pixel_(scene.camera(), options.width, options.height, 1),
+        pixel_(scene, options.width, options.height, 1),
         draws_(draws) {}
 
   /// Follows the camera rays of cells [first, end) and adds the weights of their hits to `view`.
@@ -56,6 +58,7 @@ class ViewTracer {
   void go_on(const Vertex& vertex, const Path& path);
 
   const Scene& scene_;
+  const VisibleRays visible_;
   const SurfaceMaterial& material_;
   const CameraGrid& grid_;
   const RenderOptions& options_;

@@ -139,6 +139,12 @@ SceneInfo Scene::count() const {
   return info;
 }
 
+uint32_t Scene::material(const Hit& hit) const {
+  const Instance& instance = instances_[hit.instance];
+  const uint32_t slot = meshes_[instance.mesh].material_slot(hit.triangle);
+  return instance.materials[std::min<uint32_t>(slot, static_cast<uint32_t>(instance.materials.size() - 1))];
+}
+
 TexturePoint Scene::texture(const Hit& hit) const {
   const Instance& instance = instances_[hit.instance];
   const Mesh& mesh = meshes_[instance.mesh];
@@ -176,9 +182,7 @@ SurfacePoint Scene::surface(const Hit& hit) const {
   point.shading_normal = glm::normalize(instance.normal_to_world * mesh.shading_normal(hit.triangle, uv));
   point.tangent = map.vector(mesh.tangent(hit.triangle));
   point.error = position_error(map, mesh.position_magnitude(hit.triangle, uv));
-  const uint32_t slot =
-      std::min<uint32_t>(mesh.material_slot(hit.triangle), static_cast<uint32_t>(instance.materials.size() - 1));
-  point.material = instance.materials[slot];
+  point.material = material(hit);
   return point;
 }
 

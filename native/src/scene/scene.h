@@ -88,6 +88,8 @@ class Scene {
 
   const EmbreeScene& rays() const { return *rays_; }
   SurfacePoint surface(const Hit& hit) const;
+  /// Number of the material that was hit.
+  uint32_t material(const Hit& hit) const;
   /// Apart from surface(): most materials are uniform.
   TexturePoint texture(const Hit& hit) const;
 

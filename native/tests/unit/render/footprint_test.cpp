@@ -32,7 +32,7 @@ std::optional<Vertex> vertex_at(const Scene& scene, const Vec2& picture, int cam
   const Ray ray = scene.camera().ray(picture);
   const Hit hit = hit_of(scene, ray);
   if (hit.instance == kNoHit) return std::nullopt;
-  const PixelFootprint pixel(scene.camera(), kSide, kSide, camera_rays);
+  const PixelFootprint pixel(scene, kSide, kSide, camera_rays);
   return Vertex(scene, scene.surface(hit), ray, hit, pixel.cone(ray.direction), &pixel);
 }
 
@@ -160,7 +160,8 @@ TEST(Footprint, OfTinyTrianglesIsRight) {
 /// Area of a pixel at distance 1 along the cone, against its share of the sphere.
 TEST(RayCone, IsAsWideAsThePixelsSolidAngle) {
   const Camera camera = Camera::look_at({1, 2, 3}, {0, 0, 0}, {0, 0, 1}, 2.0f, 1);
-  const PixelFootprint pixel(camera, kSide, kSide, 1);
+  const Scene scene = one_object(test::square(1), {}, camera);
+  const PixelFootprint pixel(scene, kSide, kSide, 1);
   for (const Vec2& picture : {Vec2(0.5f), Vec2(0.1f, 0.6f), Vec2(0.02f, 0.97f)}) {
     const auto towards = [&](float x, float y) {
       return camera.ray(picture + Vec2(x, y) / static_cast<float>(kSide)).direction;
@@ -178,7 +179,7 @@ TEST(RayCone, SeesInAFlatMirrorWhatTheMirroredCameraSees) {
   const Scene scene = one_object(test::textured_square(3, kSkewed), {}, tilted_camera());
   const Ray ray = scene.camera().ray(Vec2(0.45f, 0.6f));
   const Hit hit = hit_of(scene, ray);
-  const PixelFootprint pixel(scene.camera(), kSide, kSide, 1);
+  const PixelFootprint pixel(scene, kSide, kSide, 1);
   const Vertex seen(scene, scene.surface(hit), ray, hit, pixel.cone(ray.direction), &pixel);
   // Half way a mirror sends the ray aside; the cone goes on from there over the rest of the way.
   const float half = 0.5f * hit.distance;

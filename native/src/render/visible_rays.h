@@ -1,0 +1,32 @@
+// Rays that see what is there of every surface.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace velour {
+
+/// As EmbreeScene's, but a ray meets a surface of a material that is not opaque with the probability of its alpha
+/// there, and goes on straight otherwise: right on average, for camera, bounce and shadow rays alike. Whether it does
+/// is drawn with bits of ray and triangle, so that it depends on neither threads nor order. Thread-safe; scenes without
+/// such materials are traced as they are.
+class VisibleRays {
+ public:
+  /// `scene` is committed, and its materials stay.
+  explicit VisibleRays(const Scene& scene);
+
+  /// Distances are from the origin, whatever was passed on the way.
+  void intersect(std::span<const Ray> rays, Hit* hits) const;
+  bool occluded(const Ray& ray) const;
+  /// A batch, as EmbreeScene::occluded.
+  void occluded(std::span<const Ray> rays, uint8_t* blocked) const;
+
+ private:
+  bool meets(const Ray& ray, const Hit& hit) const;
+  /// Replaces `hit`, the nearest one of `ray`, by the nearest that the ray meets.
+  void pass_on(Ray ray, Hit& hit) const;
+
+  const Scene& scene_;
+  const bool all_opaque_;
+};
+
+}  // namespace velour

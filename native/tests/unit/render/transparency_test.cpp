@@ -1,0 +1,129 @@
+// Surfaces that are there in part: means of camera, shadow and bounce rays that are known.
+#include <gtest/gtest.h>
+
+#include "material/principled_textures.h"
+#include "support/textured_scenes.h"
+
+namespace velour {
+namespace {
+
+constexpr float kAlbedo = 0.8f;
+
+/// Matte; `alpha` of it is there, or of each of 2 x 2 squares.
+SurfaceMaterial matte(float albedo, const std::vector<float>& alpha) {
+  PrincipledTextures textures;
+  if (alpha.size() > 1) {
+    textures.alpha.texture =
+        std::make_shared<const Texture<float>>(2, 2, alpha, TextureOptions{.filter = TextureFilter::closest});
+  }
+  return {make_textured_material({.base_color = Rgb(albedo), .specular = 0}, textures, alpha[0]), Rgb(0.0f), false};
+}
+
+void add(Scene& scene, Mesh mesh, const Affine& place, SurfaceMaterial material) {
+  scene.add_instance(scene.add_mesh(std::move(mesh)), place, {scene.add_material(std::move(material))});
+}
+
+RenderOptions options_for(int spp, int bounces = 0) {
+  RenderOptions options = test::small_options(Strategy::cosine, spp);
+  options.bounces = bounces;
+  options.transparent = true;
+  return options;
+}
+
+Scene veil(const std::vector<float>& alpha, int layers = 1) {
+  Scene scene;
+  for (int i = 0; i < layers; ++i) {
+    add(scene, test::repeating_square(2, 1), test::shift({0, 0, -0.5f * static_cast<float>(i)}), matte(kAlbedo, alpha));
+  }
+  scene.set_environment(Environment::constant(Rgb(1)));
+  scene.set_camera(test::camera_above(1));
+  scene.commit(1);
+  return scene;
+}
+
+TEST(Transparency, APartlyThereSurfaceCoversThatPartOfItsPixels) {
+  const Scene scene = veil({0.3f});
+  const auto pixels = test::rendered(scene, options_for(16384));
+  EXPECT_NEAR(test::mean_of(pixels, 3), 0.3, 3e-3);  // 131072 rays: a deviation of 1.3e-3
+  EXPECT_NEAR(test::mean_of(pixels), 0.3 * kAlbedo, 4e-3);
+}
+
+TEST(Transparency, LayersMultiply) {
+  const auto pixels = test::rendered(veil({0.3f}, 3), options_for(16384));
+  EXPECT_NEAR(test::mean_of(pixels, 3), 1 - 0.7 * 0.7 * 0.7, 4e-3);
+}
+
+TEST(Transparency, CutOutsAreExact) {
+  const auto pixels = test::rendered(veil({1, 0, 0, 1}), options_for(64));
+  for (size_t i = 0; i < 64; ++i) {
+    const bool left = i % 8 < 4, low = i / 8 < 4;
+    EXPECT_EQ(pixels[4 * i + 3], left == low ? 1 : 0) << i;
+  }
+}
+
+TEST(Transparency, ControlAnOpaqueSurfaceCoversAll) {
+  EXPECT_EQ(test::mean_of(test::rendered(veil({1}), options_for(64)), 3), 1);
+}
+
+/// A floor under a veil, and a camera between them that looks down: only shadow rays meet the veil.
+double floor_under_veil(float alpha, const Light* lamp) {
+  Scene scene;
+  add(scene, test::square(0.5f), {}, matte(kAlbedo, {1}));
+  add(scene, test::square(50), test::shift({0, 0, 2}), matte(0, {alpha}));
+  if (lamp != nullptr) {
+    scene.add_light(*lamp);
+  } else {
+    scene.set_environment(Environment::constant(Rgb(1)));
+  }
+  scene.set_camera(Camera::look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 0.5f, 1));
+  scene.commit(1);
+  return test::mean_of(test::rendered(scene, options_for(8192)));
+}
+
+TEST(Transparency, ShadowsArePartial) {
+  EXPECT_NEAR(floor_under_veil(0.25f, nullptr), 0.75 * kAlbedo, 5e-3);
+  Light sun;  // sharp: found by name
+  const double open = kAlbedo / static_cast<double>(kPi);
+  EXPECT_NEAR(floor_under_veil(0.25f, &sun), 0.75 * open, 5e-3 * open);
+  EXPECT_NEAR(floor_under_veil(0, &sun), open, 1e-3 * open);
+  EXPECT_EQ(floor_under_veil(1, &sun), 0);
+}
+
+/// A wide lamp-lit floor sends its light through the veil to a lid above it.
+TEST(Transparency, BouncesPass) {
+  const auto lid = [](float alpha) {
+    Scene scene;
+    add(scene, test::square(50), test::shift({0, 0, -1}), {std::make_shared<test::Lambert>(0.0f), Rgb(1.0f), false});
+    add(scene, test::square(50), test::shift({0, 0, -0.5f}), matte(0, {alpha}));
+    add(scene, test::square(1), {}, {std::make_shared<test::Lambert>(1.0f), Rgb(0.0f), false});
+    scene.set_camera(Camera::look_at({0, 0, -0.2f}, {0, 0, 0}, {0, 1, 0}, 0.5f, 1));
+    scene.commit(1);
+    return test::mean_of(test::rendered(scene, options_for(16384, 1)));
+  };
+  const double open = lid(0);
+  EXPECT_NEAR(open, 1, 0.01);
+  EXPECT_NEAR(lid(0.4f), 0.6 * open, 6e-3);
+  EXPECT_EQ(lid(1), 0);
+}
+
+TEST(Transparency, IsTheSameForAnyNumberOfThreads) {
+  const Scene scene = veil({0.5f}, 2);
+  RenderOptions options = options_for(64, 1);
+  const auto two = test::rendered(scene, options);
+  options.threads = 1;
+  EXPECT_EQ(test::rendered(scene, options), two);
+}
+
+/// Twice as far from the world's origin as rays are long: rounding finds triangles again.
+TEST(Transparency, ATriangleIsCrossedOnce) {
+  Scene scene;
+  const Vec3 far(3000, -2000, 1000);
+  add(scene, test::square(2), test::shift(far), matte(kAlbedo, {0.5f}));
+  scene.set_environment(Environment::constant(Rgb(1)));
+  scene.set_camera(Camera::look_at(far + Vec3(0.01f, 0, 0.02f), far, {0, 1, 0}, 1.0f, 1));
+  scene.commit(1);
+  EXPECT_NEAR(test::mean_of(test::rendered(scene, options_for(16384)), 3), 0.5, 5e-3);
+}
+
+}  // namespace
+}  // namespace velour
