@@ -32,15 +32,28 @@ void PathVertices::trace(const ViewSetup& view, const TexelBlock& block, TileRay
     progress.check();
     hits_.resize(rays_.size());
     rays.intersect(rays_, hits_, log);
+    if (cutouts_.any()) pass_cutouts(depth, rays, log);
     meet(depth);
     if (depth == sampling_.bounces) break;
     go_on(depth);
   }
 }
 
-uint64_t PathVertices::key_of(const ViewSetup& view, uint32_t column, uint32_t row) const {
+uint64_t PathVertices::texel_key(const ViewSetup& view, uint32_t column, uint32_t row) const {
   const uint64_t texel = uint64_t{row} * grid_.width + column;
   return RandomStream(sampling_.seed, view.number, texel).next_bits();
+}
+
+/// Streams of a vertex: its own number, and from there on others.
+uint64_t PathVertices::vertex_key(uint32_t path, uint32_t depth) const {
+  const uint32_t sample = path % sampling_.samples;
+  return mix64(keys_[path / sampling_.samples] ^ mix64(uint64_t{depth} << 32 | sample));
+}
+
+void PathVertices::pass_cutouts(uint32_t depth, TileRays& rays, RayLog* log) {
+  ray_keys_.clear();
+  for (const uint32_t path : path_of_) ray_keys_.push_back(~vertex_key(path, depth));
+  cutouts_.pass(rays_, hits_, ray_keys_, cone_, rays, log);
 }
 
 void PathVertices::start(const ViewSetup& view, const TexelBlock& block) {
@@ -58,7 +71,7 @@ void PathVertices::start(const ViewSetup& view, const TexelBlock& block) {
   cone_.width = part * std::sqrt(texel_size.x * texel_size.y * std::abs(view.wv.z));
   for (uint32_t row = block.row; row < block.row + block.rows; ++row) {
     for (uint32_t column = block.column; column < block.column + block.columns; ++column) {
-      keys_.push_back(key_of(view, column, row));
+      keys_.push_back(texel_key(view, column, row));
       sobol_points(keys_.back(), 0, points_);
       const Vec2 corner(static_cast<float>(column), static_cast<float>(row));
       for (const Vec2& u : points_) {
@@ -93,7 +106,8 @@ void PathVertices::meet(uint32_t depth) {
     const Hit hit = tile_.of_scene(hits_[i]);
     const SurfacePoint point = tile_.surface(hit);
     vertex_of_[size_t{depth} * paths_ + path_of_[i]] = static_cast<uint32_t>(vertices_.size());
-    vertices_.push_back({Vertex(tile_.scene(), point, rays_[i], hit, cone_, nullptr), throughput_[i]});
+    vertices_.push_back(
+        {Vertex(tile_.scene(), point, rays_[i], hit, cone_, nullptr), throughput_[i], vertex_key(path_of_[i], depth)});
   }
   depths_.push_back(static_cast<uint32_t>(vertices_.size()));
 }

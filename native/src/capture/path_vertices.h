@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "capture/cutouts.h"
 #include "capture/repeated_tile.h"
 #include "capture/texel_block.h"
 #include "capture/view_setup.h"
@@ -17,6 +18,7 @@ namespace velour {
 struct PathVertex {
   Vertex vertex;
   Rgb throughput;  // of light that leaves it along the path, until it reaches the viewer; working space
+  uint64_t key;    // of the random numbers of its shadow rays, where surfaces let some through
 };
 
 /// Paths from the viewer through points of the texels, `samples` a texel, those of a texel one after the other. One a
@@ -29,7 +31,7 @@ class PathVertices {
   static constexpr uint32_t kNone = 0xffffffffu;
 
   PathVertices(const RepeatedTile& tile, const TexelGrid& grid, float reference_height, const TexelSampling& sampling)
-      : tile_(tile), grid_(grid), reference_height_(reference_height), sampling_(sampling) {}
+      : tile_(tile), cutouts_(tile), grid_(grid), reference_height_(reference_height), sampling_(sampling) {}
 
   void trace(const ViewSetup& view, const TexelBlock& block, TileRays& rays, RayLog* log, const Progress& progress);
 
@@ -38,17 +40,21 @@ class PathVertices {
   std::span<const PathVertex> vertices() const { return vertices_; }
   /// Begin of the vertices of each depth, and the end.
   std::span<const uint32_t> depths() const { return depths_; }
+  const RayCone& cone() const { return cone_; }
   /// The vertex that path `path` met at `depth`, or kNone.
   uint32_t vertex_of(uint32_t path, uint32_t depth) const { return vertex_of_[size_t{depth} * paths_ + path]; }
 
  private:
   void start(const ViewSetup& view, const TexelBlock& block);
   Vec3 start_above(const Vec2& plane, const Vec3& wv) const;
+  void pass_cutouts(uint32_t depth, TileRays& rays, RayLog* log);
   void meet(uint32_t depth);
   void go_on(uint32_t depth);
-  uint64_t key_of(const ViewSetup& view, uint32_t column, uint32_t row) const;
+  uint64_t texel_key(const ViewSetup& view, uint32_t column, uint32_t row) const;
+  uint64_t vertex_key(uint32_t path, uint32_t depth) const;
 
   const RepeatedTile& tile_;
+  Cutouts cutouts_;
   const TexelGrid grid_;
   const float reference_height_;
   const TexelSampling sampling_;
@@ -64,6 +70,7 @@ class PathVertices {
   std::vector<Rgb> throughput_;
   std::vector<uint32_t> path_of_;
   std::vector<Hit> hits_;
+  std::vector<uint64_t> ray_keys_;
   std::vector<uint64_t> order_;  // Morton code of the place, then the ray's number
   PreparedBrdf prepared_;
 };

@@ -15,6 +15,8 @@ inline constexpr uint32_t kLightsTogether = 128;
 /// Bit l of a vertex: light l of the group reaches it. One a thread.
 class ShadowMasks {
  public:
+  explicit ShadowMasks(const RepeatedTile& tile) : cutouts_(tile) {}
+
   using Mask = std::array<uint64_t, kLightsTogether / 64>;
 
   /// Light by light, because rays of one direction are traced in packets. Lights below a vertex's shading or geometric
@@ -26,17 +28,23 @@ class ShadowMasks {
 
  private:
   void read(const PathVertices& paths);
-  void try_light(const CaptureLight& light, uint32_t number, TileRays& rays, RayLog* log);
+  void try_light(const PathVertices& paths, const CaptureLight& light, uint32_t bit, TileRays& rays, RayLog* log);
+  size_t collect_facing(const CaptureLight& light);
+  void trace_through_cutouts(const PathVertices& paths, const CaptureLight& light, TileRays& rays, RayLog* log);
 
   // Of the vertices, for the test of their horizons: read by every light.
   struct Facing {
     Vec3 origin, geometric, shading;
   };
   std::vector<Facing> facing_;
+  Cutouts cutouts_;
   std::vector<Mask> masks_;
   std::vector<Ray> rays_;
   std::vector<uint32_t> ids_;
   std::vector<uint8_t> blocked_;
+  // Where surfaces let rays through.
+  std::vector<Hit> hits_;
+  std::vector<uint64_t> keys_;
 };
 
 }  // namespace velour

@@ -56,7 +56,7 @@ class ViewCapture {
     std::vector<HalfBits> mean_bits, error_bits;
 
     Worker(const RepeatedTile& tile, const TexelGrid& grid, float height, const TexelSampling& sampling)
-        : paths(tile, grid, height, sampling), rays(tile), shader(tile.scene(), sampling) {}
+        : paths(tile, grid, height, sampling), rays(tile), masks(tile), shader(tile.scene(), sampling) {}
   };
   void run_block(const ViewSetup& view, const TexelBlock& block, ViewImages& images, RayLog* log,
                  const Progress& progress);

@@ -11,6 +11,7 @@ namespace velour {
 
 struct CaptureLight {
   Vec3 wl;
+  uint32_t number;       // in the layout's set
   float per_irradiance;  // 1 / |cos(theta_l)|: the light's irradiance on the reference plane is its cosine
   RepeatedTile::Ends ends;
 };
@@ -23,8 +24,9 @@ struct ViewSetup {
   ViewSetup(const RepeatedTile& tile, const PairLayout& layout, uint32_t view) : number(view) {
     wv = unit_direction(layout.views()[view]);
     for (uint64_t pair = layout.first(view); pair < layout.first(view + 1); ++pair) {
-      const Vec3 wl = unit_direction(layout.lights()[layout.light_of(pair)]);
-      lights.push_back({wl, 1 / std::abs(wl.z), tile.ends(wl)});
+      const uint32_t light = layout.light_of(pair);
+      const Vec3 wl = unit_direction(layout.lights()[light]);
+      lights.push_back({wl, light, 1 / std::abs(wl.z), tile.ends(wl)});
     }
   }
 };

@@ -33,6 +33,16 @@ class Lambert : public Material {
   float albedo_;
 };
 
+/// Lambert that is there to a share of `alpha`.
+class ThinLambert : public Lambert {
+ public:
+  ThinLambert(float albedo, float alpha) : Lambert(albedo), alpha_(alpha) {}
+  float alpha(const SurfaceSite& /*site*/) const override { return alpha_; }
+
+ private:
+  float alpha_;
+};
+
 /// Lambert, but a third of its directions has a value that is not a number.
 class BrokenLambert : public Lambert {
  public:

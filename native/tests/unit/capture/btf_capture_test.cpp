@@ -204,6 +204,32 @@ TEST(BtfCapture, OddGeometryWorks) {
   for (const float value : captured.values) EXPECT_TRUE(std::isfinite(value));
 }
 
+TEST(BtfCapture, SurfacesOfWhichPartIsThereLetTheRestThrough) {
+  // Two sheets of alpha 0.5 over a floor that is whole. The upper one is met by half the rays, the lower one by a
+  // quarter; light on the floor passes two sheets on its way, light on the lower sheet one.
+  constexpr float kAlpha = 0.5f;
+  Corners corners;
+  corners.rectangle(0, 0, 1, 1, 0).rectangle(0, 0, 1, 1, 0.1f).rectangle(0, 0, 1, 1, 0.2f);
+  auto scene = std::make_unique<Scene>();
+  scene->add_material({.material = lambert(0.8f)});
+  scene->add_material({.material = std::make_shared<test::ThinLambert>(0.8f, kAlpha)});
+  const std::vector<uint32_t> slots{0, 0, 1, 1, 1, 1};
+  scene->add_instance(
+      scene->add_mesh(Mesh({.positions = corners.positions, .triangles = corners.triangles, .material_slots = slots})),
+      {}, {0, 1});
+  scene->commit(1);
+  BtfCaptureOptions options = small_capture({{0, 0}, {60, 45}}, {{0, 0}, {70, 10}});
+  options.sampling.samples = 1024;
+  options.sampling.bounces = 0;
+  const Captured captured(*scene, options, "sheets");
+  const double expected = 0.8 / kPiD * (0.5 + 0.5 * 0.5 * 0.5 + 0.25 * 0.25);
+  for (size_t pair = 0; pair < 4; ++pair) {
+    const test::Estimate mean = captured.mean(pair);
+    EXPECT_NEAR(mean.mean, expected, 4 * mean.error) << pair;
+    EXPECT_GT(std::abs(mean.mean - 0.8 / kPiD * 0.5), 20 * mean.error) << "control: the upper sheet alone";
+  }
+}
+
 TEST(BtfCapture, BrokenMaterialsAreCountedAndCountAsNothing) {
   const Mesh flat = Corners().rectangle(0, 0, 1, 1).mesh();
   const auto scene = tile_of(flat, std::make_shared<test::BrokenLambert>(0.5f));
