@@ -53,8 +53,6 @@ def test_wrong_usage_is_2(arguments):
     ("arguments", "word"),
     [
         ([*RENDER, "--texture-scale", "2"], "--texture-scale"),
-        (["capture", "weave", "-o", "f"], "weave"),
-        (["capture", "weave", "-o", "f", "--texels", "8"], "--texels"),
         (["compress", "b", "-o", "f", "--method", "kcta"], "compress"),
     ],
 )
@@ -62,6 +60,25 @@ def test_what_later_versions_have_is_refused_with_a_sentence(arguments, word, tm
     sentence = refused(*arguments)
     assert word in sentence
     assert "yet" in sentence
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["-o", "f"], "--microsurface"),
+        (["weave", "--microsurface", "-o", "f"], "--microsurface"),
+        (["--microsurface", "--texels", 8, "-o", "f"], "--texels"),
+        (["weave", "--metal", "gold", "-o", "f"], "--metal"),
+        (["weave", "--period", "1,1", "-o", "f"], "--period"),
+        (["tartan", "-o", "f"], "tartan"),
+        (["nowhere.ply", "-o", "f"], "nowhere.ply"),
+        (["weave", "--views", "many", "-o", "f"], "many"),
+    ],
+)
+def test_captures_that_cannot_be_are_refused_with_a_sentence(arguments, word, tmp_path):
+    arguments[-1] = tmp_path / "f"
+    assert word in refused("capture", *arguments)
+    assert not list(tmp_path.iterdir())
 
 
 def test_help_and_version():

@@ -271,6 +271,39 @@ def test_capture(tmp_path):
     assert velour("info", path, "--json").json["format"] == "merl"
 
 
+_SMALL = ("--texels", 8, "--views", 81, "--lights", 3, "--samples", 4, "--json")
+
+
+def test_capture_of_a_tile(tmp_path):
+    folder = tmp_path / "net"
+    result = velour("capture", "net", *_SMALL, "-o", folder)
+    assert result.status == 0, result.err
+    report = result.json
+    assert (report["sides"], report["views"], report["lights"], report["open"]) == (2, 162, 6, True)
+    assert report["bytes"] == sum(path.stat().st_size for path in folder.iterdir())
+    assert 0 <= report["reference_height"] <= report["thickness"]
+    assert (folder / "btf.json").exists()
+    assert "--resume" in velour("capture", "net", *_SMALL, "-o", folder).err
+    assert velour("capture", "net", *_SMALL, "--resume", "-o", folder).json["views_resumed"] == 162
+
+
+@pytest.mark.parametrize("name", ["mesh.obj", "mesh.ply"])
+def test_capture_of_a_mesh(name, tmp_path):
+    """A white square of 2 x 2: its f is the base colour over pi from everywhere."""
+    path = tmp_path / name
+    obj = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
+    ply = (
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n4 0 1 2 3\n"
+    )
+    path.write_text(obj if name.endswith("obj") else ply)
+    result = velour("capture", path, *_SMALL, "--ray-share", "-o", tmp_path / "btf")
+    assert result.status == 0, result.err
+    assert (result.json["sides"], result.json["thickness"], result.json["warnings"]) == (1, 0, [])
+    assert 0 < result.json["ray_share"] < 1.5
+
+
 def test_reports_in_a_file(model_file, tmp_path):
     path = tmp_path / "report.json"
     result = velour("info", model_file, "--json", "--json-file", path)

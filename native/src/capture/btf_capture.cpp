@@ -99,6 +99,11 @@ class Capture {
     height_ = options_.reference_height
                   ? static_cast<float>(*options_.reference_height)
                   : least_variance_height(tile_, any_below(views_), options_.sampling.seed, progress_);
+    if (height_ < tile_.bottom()) {
+      throw Error(Status::invalid_argument, "The reference plane at z = " + std::to_string(height_) +
+                                                " lies below the tile's lowest point, " +
+                                                std::to_string(tile_.bottom()) + ".");
+    }
     report_.thickness = static_cast<double>(tile_.thickness()) * length_unit();
     report_.reference_height = static_cast<double>(height_ - tile_.bottom()) * length_unit();
   }

@@ -33,6 +33,8 @@ TEST(Misuse, NullArgumentsAreNamed) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_texture_create(1, 1, 1, nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_texture_load(nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_add_textured_material(nullptr, nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_capture_create_job(nullptr, nullptr, "x", nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_directions(nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_create(nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_tile_kinds_json(nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_tile_create(nullptr, nullptr));

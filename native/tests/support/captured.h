@@ -76,6 +76,7 @@ inline BtfCaptureOptions small_capture(std::vector<PolarAngles> views, std::vect
   options.views = std::move(views);
   options.lights = std::move(lights);
   options.sides = CaptureSides::one;
+  options.reference_height = 0;
   options.sampling.seed = 3;
   options.threads = 2;
   return options;

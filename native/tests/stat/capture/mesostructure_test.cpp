@@ -146,7 +146,6 @@ TEST(Mesostructure, HasNoSeam) {
   const auto set = some_directions();
   BtfCaptureOptions options = small_capture(set, set);
   options.sampling.samples = 64;
-  options.reference_height = 0;
   const Captured captured(*scene, options, "seam");
   options.place.origin = {0.5f, 0.25f};
   const Captured shifted(*scene, options, "seam_shifted");

@@ -46,7 +46,9 @@ std::vector<std::pair<std::string, std::string>> captured_files(const Scene& sce
 
 TEST(BtfCapture, FlatLambertianTileIsAlbedoOverPiEverywhere) {
   const auto scene = tile_of(Corners().rectangle(0, 0, 1, 1, 0.3f).mesh(), lambert(0.5f));
-  const Captured captured(*scene, small_capture(kFew, kFew), "flat");
+  BtfCaptureOptions options = small_capture(kFew, kFew);
+  options.reference_height.reset();
+  const Captured captured(*scene, options, "flat");
   const float expected = 0.5f / kPi;
   for (const float value : captured.values) EXPECT_NEAR(value, expected, expected * 0x1p-11f);
   for (const float error : captured.errors) EXPECT_LT(error, 1e-4f * expected);
@@ -160,7 +162,9 @@ TEST(BtfCapture, ReferencePlaneOfASheetIsTheSheet) {
       scene->add_mesh(Mesh({.positions = corners.positions, .triangles = corners.triangles, .material_slots = slots})),
       {}, {0, 1});
   scene->commit(1);
-  const Captured captured(*scene, small_capture({{0, 0}}, {{0, 0}}), "sheet");
+  BtfCaptureOptions options = small_capture({{0, 0}}, {{0, 0}});
+  options.reference_height.reset();
+  const Captured captured(*scene, options, "sheet");
   EXPECT_NEAR(captured.report.reference_height, 0.4, 0.4 / 32 + 1e-6);
   EXPECT_NEAR(captured.report.thickness, 0.4, 1e-6);
 }
@@ -176,6 +180,9 @@ TEST(BtfCapture, RefusesOrReportsWhatIsWrong) {
   options.place.period = {1, -1};
   EXPECT_THROW(capture_btf(*scene, options, folder.path(), progress), Error);
   options.place.period = {0.001f, 0.001f};
+  EXPECT_THROW(capture_btf(*scene, options, folder.path(), progress), Error);
+  options = small_capture(kFew, kFew);
+  options.reference_height = -0.1;
   EXPECT_THROW(capture_btf(*scene, options, folder.path(), progress), Error);
   options = small_capture(kFew, kFew);
   options.sampling.samples = 0;

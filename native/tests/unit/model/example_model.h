@@ -6,6 +6,7 @@
 #include "image/exr_tensors.h"
 #include "model/model.h"
 #include "sphere/directions.h"
+#include "support/example_btf.h"
 
 namespace velour::test {
 
@@ -82,6 +83,12 @@ inline Model example_reduced() {
   scene.picture_error = 1.0 / 3.0e6;
   scene.full_picture_error = 1.0 / 7.0e6;
   scene.full_parameter_bytes = 931;
+  return model;
+}
+
+inline Model example_btf_model(bool two_sided = false) {
+  Model model{example_factored(two_sided), {}, {"weave", "velour-btf", std::string(64, 'b')}};
+  model.btf = BtfRecord{"svd", 23.5, 21.25, 0.01, 0.5, 123456, 1.5, 42, {"a sentence"}};
   return model;
 }
 

@@ -222,7 +222,9 @@ TEST(HostileModel, ANewerFormatIsRefusedWithASentence) {
   EXPECT_NE(sentence.find("newer Velour"), std::string::npos);
 }
 
-std::vector<Model> examples() { return {test::example_model(), test::example_parametric(), test::example_reduced()}; }
+std::vector<Model> examples() {
+  return {test::example_model(), test::example_parametric(), test::example_reduced(), test::example_btf_model()};
+}
 
 TEST(HostileModel, TruncatedFilesAreRefused) {
   for (const Model& model : examples()) {
@@ -242,6 +244,11 @@ void expect_sound(const ParametricBrdf& brdf) {
       ASSERT_TRUE(std::isfinite(lobe.coefficient.x + lobe.coefficient.y + lobe.coefficient.z));
     }
   }
+}
+
+void expect_sound(const FactoredBtf& btf) {
+  ASSERT_EQ(btf.pair_value.size(), btf.layout.pairs() * btf.components());
+  ASSERT_EQ(btf.levels.back().value.size(), btf.components());
 }
 
 TEST(HostileModel, DamagedFilesAreRefusedOrSound) {

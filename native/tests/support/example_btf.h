@@ -1,0 +1,34 @@
+// A small factored BTF with every field set to something that is not its default.
+#pragma once
+
+#include <cmath>
+
+#include "btf/factored_btf.h"
+
+namespace velour::test {
+
+/// Five components over two axes; 6 x 4 texels; views and lights on one side, or on both.
+inline FactoredBtf example_factored(bool two_sided = false, Companding companding = Companding::root) {
+  std::vector<PolarAngles> views = ring_directions(30, 5), lights = ring_directions(50, 6);
+  views.push_back({0, 0});
+  if (two_sided) {
+    for (const PolarAngles& d : below(views)) views.push_back(d);
+    for (const PolarAngles& d : below(lights)) lights.push_back(d);
+  }
+  FactoredBtf btf{PairLayout(views, lights), {6, 4, Vec2(0.002f, 0.003f)}, companding, {}, {0, 0, 0, 2, 2}, {}, {}};
+  btf.axes = Mat3(Vec3(0.8f, 0.6f, 0.0f), Vec3(-0.6f, 0.8f, 0.0f), Vec3(0.0f, 0.0f, 1.0f));
+  const auto halves = [](size_t count, float phase) {
+    std::vector<float> floats(count);
+    for (size_t i = 0; i < count; ++i) floats[i] = 0.4f + 0.3f * std::sin(phase + 1.7f * static_cast<float>(i));
+    std::vector<HalfBits> bits(count);
+    floats_to_halves(floats, bits);
+    return bits;
+  };
+  btf.pair_value = halves(btf.layout.pairs() * btf.components(), 0.1f);
+  for (uint32_t width = 6, height = 4;; width = half_of(width), height = half_of(height)) {
+    btf.levels.push_back({width, height, halves(size_t{width} * height * btf.components(), 0.3f)});
+    if (width == 1 && height == 1) return btf;
+  }
+}
+
+}  // namespace velour::test
