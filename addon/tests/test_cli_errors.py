@@ -53,7 +53,6 @@ def test_wrong_usage_is_2(arguments):
     ("arguments", "word"),
     [
         ([*RENDER, "--texture-scale", "2"], "--texture-scale"),
-        (["compress", "b", "-o", "f", "--method", "kcta"], "compress"),
     ],
 )
 def test_what_later_versions_have_is_refused_with_a_sentence(arguments, word, tmp_path):

@@ -20,10 +20,10 @@ struct SvdFit {
   uint64_t not_finite = 0;  // entries of the measurement that were left out
 };
 
-/// The components of most energy over the three axes, by randomised range finding with two power iterations (Halko,
-/// Martinsson, Tropp 2011, Alg. 4.4): after them the loss against the exact decomposition is far below what is cut off.
-/// Coarse levels are projections of the filtered measurement, not filtered coefficients: means are kept whatever the
-/// companding. Deterministic. Throws Error(invalid_argument) when `bytes` hold not one component.
+/// The components of most energy over the three axes, by randomised range finding with two power iterations ([HMT11],
+/// Alg. 4.4): after them the loss against the exact decomposition is far below what is cut off. Coarse levels are
+/// projections of the filtered measurement, not filtered coefficients: means are kept whatever the companding.
+/// Deterministic. Throws Error(invalid_argument) when `bytes` hold not one component.
 SvdFit fit_svd(const BtfMeasurement& measurement, const SvdOptions& options, Progress& progress);
 
 }  // namespace velour

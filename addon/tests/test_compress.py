@@ -1,0 +1,150 @@
+"""velour compress and what comes after it: info, compare, render, on one small BTF."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from command_line import refused, velour
+from inputs import write_octahedron
+from velour.native import Btf, Model, images
+
+COMPRESS_KEYS = [
+    "method", "bytes", "parameter_bytes", "ratio", "psnr", "psnr_held_out", "ser", "p99", "components", "seconds",
+    "warnings",
+]  # fmt: skip
+LIGHTS = 40
+
+
+def capture(path, views: int, seed: int):
+    common = ["--texels", 12, "--lights", LIGHTS, "--samples", 16, "--sides", "one", "--quiet"]
+    assert velour("capture", "corduroy", *common, "--views", views, "--seed", seed, "-o", path).status == 0
+    return path
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("btf")
+
+
+@pytest.fixture(scope="module")
+def btf(folder):
+    return capture(folder / "fitted", 30, 1)
+
+
+@pytest.fixture(scope="module")
+def held_out(folder):
+    return capture(folder / "held-out", 9, 2)
+
+
+@pytest.fixture(scope="module")
+def model(folder, btf):
+    path = folder / "corduroy.velour"
+    assert velour("compress", btf, "-o", path, "--bytes", 60000, "--quiet").status == 0
+    return path
+
+
+def test_report_and_held_out_pairs(folder, btf, held_out):
+    path = folder / "judged.velour"
+    report = velour("compress", btf, "-o", path, "--held-out", held_out, "--bytes", 60000, "--json").json
+    assert list(report) == COMPRESS_KEYS
+    assert report["parameter_bytes"] <= 60000
+    assert report["bytes"] == path.stat().st_size
+    assert report["ratio"] == pytest.approx(30 * LIGHTS * 144 * 6 / report["bytes"])
+    assert report["psnr"] > 25
+    assert 15 < report["psnr_held_out"] < report["psnr"]
+    same = velour("compare", held_out, path, "--json").json
+    assert same["psnr"] == pytest.approx(report["psnr_held_out"], abs=1e-9)
+    assert same["pairs"] == 9 * LIGHTS
+
+
+def test_more_bytes_are_closer(folder, btf, model):
+    path = folder / "coarse.velour"
+    coarse = velour("compress", btf, "-o", path, "--bytes", 12000, "--json").json
+    fine = velour("compare", btf, model, "--json").json
+    assert coarse["psnr"] < fine["psnr"] - 1
+    assert coarse["ser"] > fine["ser"]
+
+
+def test_a_btf_interpolated_is_itself_at_its_own_pairs(btf, held_out):
+    assert velour("compare", btf, btf, "--json").json["ser"] < 1e-9
+    assert velour("compare", held_out, btf, "--json").json["psnr"] < 40
+
+
+def test_info_of_the_model(model):
+    report = velour("info", model, "--json").json
+    assert (report["kind"], report["model"], report["method"]) == ("model", "factored-btf", "svd")
+    assert report["texels"] == [12, 12]
+    assert (report["views"], report["lights"], report["companding"]) == (30, LIGHTS, "root")
+    assert len(report["tile_metres"]) == 2
+    assert report["source"]["format"] == "velour-btf"
+
+
+def test_the_model_renders_with_the_light_that_the_btf_reflects(folder, btf, model):
+    """A plane of many tiles under an even sky of 1: the mean pixel is the BTF's albedo at that view."""
+    plane = folder / "plane.obj"
+    plane.write_text(
+        "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nvt 0 0\nvt 90 0\nvt 90 90\nvt 0 90\n"
+        "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n"
+    )
+    sky = folder / "sky.exr"
+    images.write(sky, np.ones((16, 32, 3), np.float32))
+    picture = folder / "plane.exr"
+    camera = "0,0.001,10,0,0,0,10"
+    done = velour(
+        "render", "--mesh", plane, "--up", "z", "--material", model, "--world", sky, "--size", "32x32",
+        "--spp", 64, "--camera", camera, "-o", picture, "--quiet",
+    )  # fmt: skip
+    assert done.status == 0, done.err
+    rendered = images.read(picture)[..., :3].mean(axis=(0, 1))
+    with Btf.load(btf) as loaded:
+        angles = loaded.angles()
+        steepest = angles[:, 2].argmin() // LIGHTS
+        f = loaded.read(int(steepest) * LIGHTS, LIGHTS).astype(np.float64).mean(axis=(1, 2))
+    cosine = np.cos(np.radians(angles[:LIGHTS, 0]))
+    albedo = 2 * np.pi / LIGHTS * (f * cosine[:, None]).sum(axis=0)
+    assert rendered == pytest.approx(albedo, rel=0.06)
+
+
+def test_the_model_evaluates_over_the_whole_tile(model):
+    with Model.load(model) as loaded:
+        f = loaded.eval((0, 0, 1), np.array([[0, 0, 1], [0.6, 0, 0.8], [0, 0, -1]], np.float32))[0]
+    assert (f[:2] > 0).all()
+    assert (f[2] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["--bytes", 100], "ask for more"),
+        (["--method", "kcta"], "yet"),
+        (["--tolerance", 0.1], "yet"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_a_sentence(folder, btf, arguments, word):
+    assert word in refused("compress", btf, "-o", folder / "none.velour", *arguments)
+    assert not (folder / "none.velour").exists()
+
+
+def test_a_model_of_other_texels_is_refused(folder, model):
+    other = folder / "other"
+    velour(
+        "capture",
+        "corduroy",
+        "--texels",
+        8,
+        "--views",
+        4,
+        "--lights",
+        4,
+        "--samples",
+        1,
+        "-o",
+        other,
+        "--quiet",
+    )
+    assert "texels" in refused("compare", other, model)
+
+
+def test_a_brdf_is_no_btf(folder, model):
+    mesh = write_octahedron(folder / "mesh.obj")
+    assert "mesh.obj" in refused("compress", mesh, "-o", folder / "none.velour")
