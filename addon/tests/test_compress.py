@@ -9,8 +9,8 @@ from inputs import write_octahedron
 from velour.native import Btf, Model, images
 
 COMPRESS_KEYS = [
-    "method", "bytes", "parameter_bytes", "ratio", "psnr", "psnr_held_out", "ser", "p99", "components", "seconds",
-    "warnings",
+    "method", "bytes", "parameter_bytes", "ratio", "psnr", "psnr_held_out", "ser", "p99", "components",
+    "seconds", "warnings",
 ]  # fmt: skip
 LIGHTS = 40
 
@@ -79,8 +79,12 @@ def test_info_of_the_model(model):
     assert report["source"]["format"] == "velour-btf"
 
 
-def test_the_model_renders_with_the_light_that_the_btf_reflects(folder, btf, model):
-    """A plane of many tiles under an even sky of 1: the mean pixel is the BTF's albedo at that view."""
+@pytest.mark.parametrize(("companding", "darker", "lighter"), [("none", 0.03, 0.03), ("root", 0.1, 0.02)])
+def test_the_model_renders_with_the_light_that_the_btf_reflects(folder, btf, companding, darker, lighter):
+    """A plane of many tiles under an even sky of 1: the mean pixel is the BTF's albedo at that view. Between
+    texels, levels and directions the square of a mean of roots is below the mean."""
+    model = folder / f"{companding}.velour"
+    velour("compress", btf, "-o", model, "--bytes", 60000, "--companding", companding, "--quiet")
     plane = folder / "plane.obj"
     plane.write_text(
         "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nvt 0 0\nvt 90 0\nvt 90 90\nvt 0 90\n"
@@ -102,7 +106,8 @@ def test_the_model_renders_with_the_light_that_the_btf_reflects(folder, btf, mod
         f = loaded.read(int(steepest) * LIGHTS, LIGHTS).astype(np.float64).mean(axis=(1, 2))
     cosine = np.cos(np.radians(angles[:LIGHTS, 0]))
     albedo = 2 * np.pi / LIGHTS * (f * cosine[:, None]).sum(axis=0)
-    assert rendered == pytest.approx(albedo, rel=0.06)
+    assert (rendered > (1 - darker) * albedo).all()
+    assert (rendered < (1 + lighter) * albedo).all()
 
 
 def test_the_model_evaluates_over_the_whole_tile(model):
