@@ -283,7 +283,7 @@ def test_capture_of_a_tile(tmp_path):
     assert report["bytes"] == sum(path.stat().st_size for path in folder.iterdir())
     assert 0 <= report["reference_height"] <= report["thickness"]
     assert (folder / "btf.json").exists()
-    assert "--resume" in velour("capture", "net", *_SMALL, "-o", folder).err
+    assert "resume" in velour("capture", "net", *_SMALL, "-o", folder).err
     assert velour("capture", "net", *_SMALL, "--resume", "-o", folder).json["views_resumed"] == 162
 
 

@@ -13,7 +13,7 @@ from . import numbers, output
 _UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
 _MESOSTRUCTURE = (
     "texels", "views", "lights", "samples", "bounces", "sides", "memory", "resume", "period", "origin",
-    "metres_per_unit", "up", "base_color", "roughness", "metallic", "ray_share",
+    "metres_per_unit", "up", "base_color", "metallic", "ray_share",
 )  # fmt: skip
 _MICROSURFACE = ("metal", "anisotropy", "base_albedo", "base_share", "rays")
 
@@ -93,7 +93,7 @@ def run(args: argparse.Namespace) -> dict:
         raise refuse("Name a tile or a mesh to capture, or use --microsurface.")
     other = _MESOSTRUCTURE if args.microsurface else _MICROSURFACE
     for name in other:
-        if getattr(args, name):
+        if getattr(args, name) not in (None, False):
             kind = "--microsurface" if args.microsurface else "a capture of mesostructure"
             raise refuse(f"--{name.replace('_', '-')} is no option of {kind}.")
     return _capture_microsurface(args) if args.microsurface else _capture_tile(args)
