@@ -79,9 +79,11 @@ void round_to_half(TrackedProblem& problem, TrackedLobes& lobes) {
   lobes.cost = problem.evaluate(lobes.model, lobes.x);
 }
 
-bool pictures_ask_for_more(const TrackedProblem& problem) {
-  return std::any_of(problem.views().begin(), problem.views().end(),
-                     [](const TrackedView& v) { return v.picture_error > kPictureGoal; });
+/// Mean over the views, each by the area that faces its viewer.
+double mean_picture_error(const TrackedProblem& problem) {
+  double sum = 0, weight = 0;
+  for (const TrackedView& v : problem.views()) sum += v.wv.z * v.picture_error, weight += v.wv.z;
+  return sum / std::max(weight, 1e-12);
 }
 
 /// What pictures show counts from now on, with more lobes while they gain much there.
@@ -89,7 +91,7 @@ void grow_for_pictures(TrackedProblem& problem, TrackedLobes& lobes, int most, s
   constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light};
   problem.weigh_for_pictures();
   refine(problem, lobes, kPolishSteps, kPolishLeast);
-  while (lobes.model.lobe_count() < most && pictures_ask_for_more(problem)) {
+  while (lobes.model.lobe_count() < most && mean_picture_error(problem) > kPictureGoal) {
     const double before = lobes.cost;
     if (!add_lobe(problem, lobes, kBoth)) return;
     points.push_back(order_point(problem, lobes));
