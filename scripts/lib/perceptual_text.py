@@ -71,11 +71,16 @@ def holds(seen, thresholds) -> bool:
 def _verdict(rows: list, thresholds) -> str:
     at = [row for row in rows if row.order == DEFAULT]
     below = sum(holds(row.model, thresholds) for row in at)
+    means = sum(row.model.mean < thresholds.mean for row in at)
+    whole = [name for name in dict.fromkeys(row.material for row in at) if _all_hold(at, name, thresholds)]
     ending = "" if below == len(at) else " The others are named below."
-    return (
-        f"**At the default tolerance of {DEFAULT}, {below} of {len(at)} pictures are below the "
-        f"threshold.**{ending}"
-    )
+    return f"""**At the default tolerance of {DEFAULT}, {below} of {len(at)} pictures are below the
+threshold, and {means} have their mean below its own.** Materials with all their pictures below:
+{", ".join(whole) or "none"}.{ending}"""
+
+
+def _all_hold(rows: list, material: str, thresholds) -> bool:
+    return all(holds(row.model, thresholds) for row in rows if row.material == material)
 
 
 def _by_tolerance(rows: list, thresholds) -> str:

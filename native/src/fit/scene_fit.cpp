@@ -74,6 +74,7 @@ class SceneSearch {
         progress_(progress),
         full_shares_(judge.shares(full)) {
     tracked_.tolerance *= kGoalShare;
+    tracked_.seen_evenly = false;
     least_bytes_ = full.parameter_bytes();
   }
 

@@ -23,6 +23,14 @@ SliceSamples::SliceSamples(std::span<const SliceSample> samples) : count_(sample
   }
 }
 
+void SliceSamples::scale_weights(std::span<const float> factors) {
+  for (size_t i = 0; i < count_; ++i) {
+    const float root = std::sqrt(factors[i]);
+    sqrt_weight_[i] *= root;
+    for (AlignedFloats& target : target_) target[i] *= root;
+  }
+}
+
 double SliceSamples::gamut_error() const {
   return luminance_energy_ > 0 ? std::sqrt(gamut_error_sq_ / luminance_energy_) : 0.0;
 }

@@ -39,6 +39,9 @@ class SliceSamples {
   /// sqrt(weight) x channel `c` of f cos.
   const float* target(int c) const { return target_[c].data(); }
 
+  /// Multiplies the weights by `factors`, one a sample. The energies stay those of the weights that were given.
+  void scale_weights(std::span<const float> factors);
+
   /// Sum of weight x luminance(f cos)^2.
   double luminance_energy() const { return luminance_energy_; }
   /// Relative L2 of the luminance that is left when every channel is fitted exactly but for its negative values, which

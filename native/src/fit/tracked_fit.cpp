@@ -22,6 +22,8 @@ constexpr double kPolishLeast = 3e-4;
 
 // A lobe that lowers the cost by less than this says that lobes are not what is missing.
 constexpr double kLeastGain = 0.01;
+// The same where the growth by the error is over and only pictures ask for more.
+constexpr double kLeastPictureGain = 0.03;
 
 OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes) {
   OrderPoint point;
@@ -56,6 +58,7 @@ void reweight(TrackedProblem& problem) {
   for (TrackedView& v : problem.views()) {
     if (!v.guide) v.weight /= mean;
   }
+  problem.weigh_for_pictures();
 }
 
 bool is_color(const ParametricBrdf& model, Index i) {
@@ -74,6 +77,26 @@ void round_to_half(TrackedProblem& problem, TrackedLobes& lobes) {
     if (!colors) refine(problem, lobes, 4, 1e-3, Free::colors);
   }
   lobes.cost = problem.evaluate(lobes.model, lobes.x);
+}
+
+/// Mean over the views, each by the area that faces its viewer.
+double mean_picture_error(const TrackedProblem& problem) {
+  double sum = 0, weight = 0;
+  for (const TrackedView& v : problem.views()) sum += v.wv.z * v.picture_error, weight += v.wv.z;
+  return sum / std::max(weight, 1e-12);
+}
+
+/// What pictures show counts from now on, with more lobes while they gain much there.
+void grow_for_pictures(TrackedProblem& problem, TrackedLobes& lobes, int most, std::vector<OrderPoint>& points) {
+  constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light};
+  problem.weigh_for_pictures();
+  refine(problem, lobes, kPolishSteps, kPolishLeast);
+  while (lobes.model.lobe_count() < most && mean_picture_error(problem) > kPictureGoal) {
+    const double before = lobes.cost;
+    if (!add_lobe(problem, lobes, kBoth)) return;
+    points.push_back(order_point(problem, lobes));
+    if (lobes.cost > (1 - kLeastPictureGain) * before) return;
+  }
 }
 
 /// The last word on a number of lobes: the views far from their goal brought nearer, then rounded.
@@ -137,7 +160,8 @@ Growth grown(TrackedProblem& problem, const TrackedFitOptions& options, Progress
 TrackedProblem problem_of(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options,
                           const Progress& progress) {
   const auto goal = [&options](double theta_v) { return kGoalShare * tolerance_at(options.tolerance, theta_v); };
-  return {slices, ViewSpline(options.isotropic, options.cells, options.views), goal, options.threads, progress};
+  const ViewSpline spline(options.isotropic, options.cells, options.views);
+  return {slices, spline, goal, options.seen_evenly, options.threads, progress};
 }
 
 void record_errors(const TrackedProblem& problem, TrackedFit& fit) {
@@ -159,6 +183,7 @@ TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFi
   TrackedFit fit;
   fit.order.points = std::move(growth.points());
   if (lobes.model.lobe_count() > 0) {
+    grow_for_pictures(problem, lobes, options.max_lobes, fit.order.points);
     polish(problem, lobes);
     // What the growth ends with takes the place of its last point.
     fit.order.points.back() = order_point(problem, lobes);

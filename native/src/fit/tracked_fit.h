@@ -16,6 +16,7 @@ struct TrackedFitOptions {
   ViewRange views;
   int max_lobes = 12;
   double tolerance = 0.02;  // relative L2 of every view up to 75 degrees; twice that beyond
+  bool seen_evenly = true;  // samples weigh their solid angle alone (fit/tracked_problem.h)
   int threads = 0;
 };
 

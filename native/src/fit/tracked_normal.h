@@ -20,6 +20,8 @@ class TrackedNormal {
 
   /// Solves (H + damping diag H) step = -gradient.
   Eigen::VectorXd step(double damping, Free free) const;
+  /// Half the gradient of the cost.
+  const Eigen::VectorXd& gradient() const { return gradient_; }
 
  private:
   Eigen::VectorXd product(const Eigen::VectorXd& x, const Eigen::VectorXd& added, const Eigen::VectorXd& mask) const;

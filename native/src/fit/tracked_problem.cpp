@@ -46,10 +46,17 @@ WarpedShape shape_of(const P& model, const Eigen::MatrixXd& parameters, Index lo
   return s;
 }
 
+double excess_of(const WarpedShape& shape, const TrackedView& view) {
+  if (!view.spacing) return 0;
+  const Vec3d center = tilted_normal(shape.tilt_x, shape.tilt_y);
+  return std::max(shape.log_bandwidth - view.spacing->most_log_bandwidth(shape.space, center), 0.0);
+}
+
 /// One view at one x: the columns of its lobes, then those of their slopes, and the coefficients.
 struct Linear {
   ColumnSet columns;
   Eigen::MatrixXd coefficient;  // [lobe][channel]
+  Eigen::VectorXd excess;       // of each lobe's log bandwidth
 
   Linear(const P& model, const Eigen::VectorXd& x, const TrackedView& view, bool slopes)
       : columns(view.samples.padded()) {
@@ -57,8 +64,10 @@ struct Linear {
     const int per_lobe = slopes ? slopes_of(model) : 0;
     const Eigen::MatrixXd parameters = parameters_at(model, x, view.taps);
     columns.resize(static_cast<size_t>(lobes) * static_cast<size_t>(1 + per_lobe));
+    excess.resize(lobes);
     for (Index j = 0; j < lobes; ++j) {
       const WarpedShape shape = shape_of(model, parameters, j, view.fade);
+      excess[j] = excess_of(shape, view);
       fill_warped(shape, view.wv, view.samples, columns[static_cast<size_t>(j)]);
       if (!slopes) continue;
       float* out[kWarpedSlopes] = {};
@@ -72,14 +81,19 @@ struct Linear {
 void leave_residual(const Linear& linear, TrackedView& view) {
   const size_t lobes = static_cast<size_t>(linear.coefficient.rows());
   const auto values = linear.columns.first(lobes);
-  double sum = 0;
+  double plain = 0, pictures = 0;
+  const Eigen::Map<const Eigen::ArrayXf> share(view.share.data(), static_cast<Index>(view.share.size()));
   for (int c = 0; c < 3; ++c) {
     const std::span<const double> coefficients(linear.coefficient.col(c).data(), lobes);
     subtract_columns(values, coefficients, view.samples.target(c), view.samples.padded(), view.residual[c].data());
     const Eigen::Map<const Eigen::ArrayXf> r(view.residual[c].data(), static_cast<Index>(view.residual[c].size()));
-    sum += kChannel[c] * r.cast<double>().square().sum();
+    const Eigen::ArrayXd square = r.cast<double>().square();
+    plain += kChannel[c] * (square * share.cast<double>()).sum();
+    pictures += kChannel[c] * (square * (1 - share).cast<double>()).sum();
   }
-  view.error = std::sqrt(sum / view.energy);
+  view.error = std::sqrt(plain / view.energy);
+  view.picture_error = std::sqrt(pictures / view.picture_share());
+  view.excess = linear.excess.squaredNorm();
 }
 
 LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView& view) {
@@ -120,6 +134,13 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
       }
     }
   }
+  // An excess counts in the cost as it is, the rest by the view's scale.
+  for (Index j = 0; j < lobes; ++j) {
+    if (!(linear.excess[j] > 0)) continue;
+    const Index row = P::kLogBandwidth * lobes + j;
+    out.gradient[row] += linear.excess[j] / view.scale();
+    out.hessian(row, row) += 1 / view.scale();
+  }
   // The stretch that the view sees is the faded one.
   for (const int p : {static_cast<int>(P::kStretchA), static_cast<int>(P::kStretchB)}) {
     if (p >= model.parameter_count()) continue;
@@ -154,24 +175,51 @@ TrackedView::TrackedView(const MeasuredSlice& slice, const ViewSpline& spline, d
       energy(slice.energy > 0 ? slice.energy : samples.luminance_energy()),
       goal(error_goal),
       weight(slice.interpolated ? kGuideWeight : 1.0),
-      guide(slice.interpolated) {
+      guide(slice.interpolated),
+      share(samples.padded(), 1.0f) {
   for (int c = 0; c < 3; ++c) residual[c].assign(samples.target(c), samples.target(c) + samples.padded());
 }
 
+void TrackedView::weigh_for_pictures() {
+  if (picture_weight.empty()) return;
+  const auto ratio = static_cast<float>(picture_share());
+  std::vector<float> factors(samples.count());
+  for (size_t i = 0; i < factors.size(); ++i) {
+    const float whole = 1 + ratio * picture_weight[i];
+    factors[i] = whole * share[i];
+    share[i] = 1 / whole;
+  }
+  samples.scale_weights(factors);
+}
+
 TrackedProblem::TrackedProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
-                               const std::function<double(double)>& goal, int threads, const Progress& progress)
+                               const std::function<double(double)>& goal, bool seen_evenly, int threads,
+                               const Progress& progress)
     : threads_(threads), progress_(progress) {
   for (const MeasuredSlice& slice : slices) {
     const double wanted = goal(std::acos(std::clamp(Vec3d(slice.wv).z, -1.0, 1.0)));
     TrackedView view(slice, spline, wanted / std::sqrt(slice.weight));
-    if (view.energy > 0) views_.push_back(std::move(view));
+    if (!(view.energy > 0)) continue;
+    // Samples of a goniometer weigh one each, and nobody measured what lies between.
+    if (seen_evenly && !slice.interpolated && !(slice.energy > 0)) {
+      view.picture_weight = picture_weights(slice.samples);
+      view.spacing.emplace(slice.samples, view.wv);
+    }
+    views_.push_back(std::move(view));
   }
 }
 
 double TrackedProblem::cost(const ParametricBrdf& model, const Eigen::VectorXd& x) const {
   double sum = x.dot(smoothness_gradient(model, x));
-  for (const TrackedView& v : views_) sum += v.weight * (v.error / v.goal) * (v.error / v.goal);
+  for (const TrackedView& v : views_) {
+    const double plain = v.error / v.goal, pictures = v.picture_error / kPictureGoal;
+    sum += v.weight * plain * plain + pictures * pictures + v.excess;
+  }
   return sum;
+}
+
+void TrackedProblem::weigh_for_pictures() {
+  for (TrackedView& v : views_) v.weigh_for_pictures();
 }
 
 double TrackedProblem::evaluate(const ParametricBrdf& model, const Eigen::VectorXd& x) {
@@ -201,7 +249,7 @@ double error_of(const ParametricBrdf& brdf, const TrackedView& view) {
     for (int c = 0; c < 3; ++c) {
       const double weight = static_cast<double>(samples.sqrt_weight()[i]);
       const double left = weight * wl.z * f[c] - static_cast<double>(samples.target(c)[i]);
-      sum += kChannel[c] * left * left;
+      sum += kChannel[c] * left * left * static_cast<double>(view.share[i]);
     }
   }
   return std::sqrt(sum / view.energy);

@@ -3,9 +3,12 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "brdf/parametric_brdf.h"
+#include "fit/picture_weights.h"
+#include "fit/sample_spacing.h"
 #include "fit/slice_samples.h"
 #include "fit/slice_sampling.h"
 #include "fit/warped_columns.h"
@@ -27,10 +30,20 @@ struct TrackedView {
   double goal;        // the error wanted
   double weight = 1;  // in the cost
   double error = 1;
+  double picture_error = 0;   // the same with picture_weights, once the view is weighed for pictures
+  double excess = 0;          // squared, of the lobes' log bandwidths above what the samples can tell
   bool guide;                 // only to keep lobes in bounds between samples: its error is nobody's goal
   AlignedFloats residual[3];  // sqrt(weight of the sample) (measured - model)
+  AlignedFloats share;        // of each sample's weight: what it has in `error`, the rest being that of pictures
+  std::vector<float> picture_weight;     // none: pictures are not asked for
+  std::optional<SampleSpacing> spacing;  // none: any bandwidth will do
 
   TrackedView(const MeasuredSlice& slice, const ViewSpline& spline, double error_goal);
+  /// Adds the picture weights to those of the samples, so that scale() makes weight (error / goal)^2 + (picture_error /
+  /// kPictureGoal)^2 of the residuals. To be called again when `weight` changes.
+  void weigh_for_pictures();
+  /// Picture weight of a sample per plain weight.
+  double picture_share() const { return goal * goal * energy / (weight * kPictureGoal * kPictureGoal); }
   /// What a sum of squared residuals, channels weighted as in luminance, is worth in the cost.
   double scale() const { return weight / (goal * goal * energy); }
 };
@@ -46,16 +59,21 @@ struct LocalNormal {
   Eigen::VectorXd gradient;
 };
 
-/// cost(x) = sum over the views of weight (error / goal)^2 + kSmoothness x the squared second differences of the
-/// control values. The unknowns x are the control values of a model, in its own order (ParametricBrdf::index).
+/// cost(x) = sum over the views of weight (error / goal)^2 + excess + kSmoothness x the squared second differences of
+/// the control values; with weigh_for_pictures() (picture_error / kPictureGoal)^2 of each view as well. The unknowns x
+/// are the control values of a model, in its own order (ParametricBrdf::index).
 class TrackedProblem {
  public:
-  /// `goal` of a view's polar angle (radians). Views without light are left out. `threads` 0: all.
+  /// `goal` of a view's polar angle (radians). Views without light are left out. `threads` 0: all. `seen_evenly`: the
+  /// samples of tables weigh their solid angle and no more, so that what pictures show can be told from it, and how
+  /// narrow a lobe may be.
   TrackedProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
-                 const std::function<double(double)>& goal, int threads, const Progress& progress);
+                 const std::function<double(double)>& goal, bool seen_evenly, int threads, const Progress& progress);
 
   std::vector<TrackedView>& views() { return views_; }
   const std::vector<TrackedView>& views() const { return views_; }
+  /// From now on; again after weights of views have changed. Nothing happens to views that know no picture weights.
+  void weigh_for_pictures();
   int threads() const { return threads_; }
   const Progress& progress() const { return progress_; }
 

@@ -2,10 +2,12 @@
 // finite everywhere, its claimed error is no smaller than the true one, and the user is told what is wrong.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "brdf/held_out.h"
+#include "fit/fit_report.h"
 #include "fit/parametric_fit.h"
 #include "fit/scattered_fit.h"
 #include "model/model_file.h"
@@ -157,6 +159,13 @@ void expect_honest(const Material& material, const HostileCase& hostile, const F
 
 class FailureModes : public testing::TestWithParam<std::tuple<FitKind, HostileCase>> {};
 
+bool keeps_its_tolerance(const FitRecord& record) {
+  return std::all_of(record.by_view_angle.begin(), record.by_view_angle.end(), [&record](const auto& entry) {
+    const double theta = radians_from(std::stod(entry.first));
+    return entry.second && *entry.second <= tolerance_at(record.tolerance, theta);
+  });
+}
+
 TEST_P(FailureModes, AreSurvivedAndTold) {
   const auto& [kind, hostile] = GetParam();
   Progress progress;
@@ -179,7 +188,10 @@ TEST_P(FailureModes, AreSurvivedAndTold) {
   const std::string warnings = all_of(model->fit.warnings);
   RecordProperty("warnings", warnings);
   RecordProperty("reciprocity", std::to_string(model->fit.reciprocity));
-  for (const std::string& sentence : hostile.told) EXPECT_NE(warnings.find(sentence), std::string::npos) << warnings;
+  for (const std::string& sentence : hostile.told) {
+    if (sentence == "exceeds" && keeps_its_tolerance(model->fit)) continue;  // and says so truly: expect_honest
+    EXPECT_NE(warnings.find(sentence), std::string::npos) << warnings;
+  }
 }
 
 std::string test_name(const testing::TestParamInfo<FailureModes::ParamType>& info) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fit/evaluate.h"
 #include "material/parametric_material.h"
 #include "support/analytic_measurement.h"
 
@@ -36,6 +37,21 @@ TEST(ParametricFit, AGlossyMaterialMeetsTheToleranceAtGrazingViewsToo) {
   const Model model = fitted(AnalyticMeasurement(test::ggx(0.3f, 0.3f)));
   expect_tolerance_met(model, 0.02);
   EXPECT_LE(lobes_of(model).parameter_bytes(), 2700u);
+}
+
+TEST(ParametricFit, WhatIsDimBesideAHighlightIsFittedToo) {
+  // A thousandth of the highlight: nothing to the squared error, half of the picture where no lamp is mirrored.
+  const auto highlight = test::ggx(0.1f, 0.1f);
+  const AnalyticMeasurement metal([highlight](const DirectionPair& p) { return highlight(p) + Rgb(0.01f); });
+  const Model model = fitted(metal);
+  expect_tolerance_met(model, 0.02);
+  const auto material = make_parametric_material(std::make_shared<const ParametricBrdf>(lobes_of(model)));
+  for (const float degrees : {20.0f, 45.0f, 65.0f}) {
+    const Vec3 wv = direction(radians_from(degrees), 0.0f), wl = direction(radians_from(50.0f), 0.8f);
+    Rgb f;
+    evaluate(*material, wv, {&wl, 1}, {&f, 1});
+    EXPECT_NEAR(f.g / (highlight({wl, wv}).g + 0.01f), 1, 0.2) << degrees;
+  }
 }
 
 TEST(ParametricFit, StopsAtTheToleranceAndSaysHowItGrew) {

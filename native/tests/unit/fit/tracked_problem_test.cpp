@@ -66,7 +66,7 @@ class Tracked : public testing::TestWithParam<bool> {
  protected:
   Lobes truth_ = two_lobes(GetParam(), 0.0), start_ = two_lobes(GetParam(), 0.3);
   Progress progress_;
-  TrackedProblem problem_{slices_of(truth_), truth_.model.spline(), [](double) { return 0.02; }, 1, progress_};
+  TrackedProblem problem_{slices_of(truth_), truth_.model.spline(), [](double) { return 0.02; }, true, 1, progress_};
 };
 
 TEST_P(Tracked, TheTruthHasNoErrorButThePenalty) {
@@ -88,6 +88,51 @@ TEST_P(Tracked, TheStepSolvesTheNormalEquationsOfTheCost) {
   EXPECT_LT(problem_.evaluate(start_.model, start_.x + 0.05 * step), here);
   // A full Newton step of a nearly quadratic cost lowers it by half the slope; far from it something is wrong.
   EXPECT_NEAR(problem_.evaluate(start_.model, start_.x + 0.05 * step), here + 0.05 * slope * (1 - 0.025), 0.05 * here);
+}
+
+TEST_P(Tracked, WhatPicturesShowCountsBesideTheErrorAndLeavesItAsItIs) {
+  std::vector<double> plain;
+  const double before = problem_.evaluate(start_.model, start_.x);
+  for (const TrackedView& v : problem_.views()) plain.push_back(v.error);
+  for (int time = 0; time < 2; ++time) {  // called again, it starts from the weights of the samples
+    problem_.weigh_for_pictures();
+    double pictures = 0;
+    const double cost = problem_.evaluate(start_.model, start_.x);
+    for (size_t i = 0; i < plain.size(); ++i) {
+      const TrackedView& v = problem_.views()[i];
+      EXPECT_NEAR(v.error, plain[i], 1e-5 * plain[i]);
+      pictures += std::pow(v.picture_error / kPictureGoal, 2);
+    }
+    EXPECT_GT(pictures, 0);
+    EXPECT_NEAR(cost, before + pictures, 1e-5 * cost);
+  }
+}
+
+TEST_P(Tracked, TheGradientIsThatOfTheCost) {
+  // Sharp enough to fall between the samples: the bound of the bandwidth speaks as well.
+  Eigen::VectorXd x = start_.x;
+  for (int node = 0; node < start_.model.spline().node_count(); ++node) {
+    x[static_cast<Eigen::Index>(start_.model.index(node, P::kLogBandwidth, 1))] = 7;
+  }
+  problem_.weigh_for_pictures();
+  std::vector<LocalNormal> local;
+  problem_.linearise(start_.model, x, local);
+  double excess = 0;
+  for (const TrackedView& v : problem_.views()) excess += v.excess;
+  EXPECT_GT(excess, 0);
+  Eigen::VectorXd along = Eigen::VectorXd::Zero(x.size());
+  for (int node = 0; node < start_.model.spline().node_count(); ++node) {
+    for (int k : {static_cast<int>(P::kLogBandwidth), static_cast<int>(P::kLogGreen)}) {
+      for (int j = 0; j < 2; ++j)
+        along[static_cast<Eigen::Index>(start_.model.index(node, k, j))] = std::cos(node + k + j);
+    }
+  }
+  constexpr double kStep = 1e-3;
+  const double slope =
+      (problem_.evaluate(start_.model, x + kStep * along) - problem_.evaluate(start_.model, x - kStep * along)) /
+      (2 * kStep);
+  const Eigen::VectorXd gradient = TrackedNormal(start_.model, problem_.views(), local, x).gradient();
+  EXPECT_NEAR(2 * gradient.dot(along), slope, 2e-3 * std::abs(slope));
 }
 
 TEST_P(Tracked, HeldParametersDoNotMove) {
@@ -128,7 +173,7 @@ TEST(SplineThrough, PassesNearSmoothValues) {
   const Lobes lobes = two_lobes(true, 0);
   Progress progress;
   const TrackedProblem problem(
-      slices_of(lobes), ViewSpline(true, 4), [](double) { return 0.02; }, 1, progress);
+      slices_of(lobes), ViewSpline(true, 4), [](double) { return 0.02; }, true, 1, progress);
   std::vector<double> wanted;
   for (const TrackedView& v : problem.views()) wanted.push_back(std::cos(std::acos(v.wv.z)));
   const Eigen::VectorXd control = spline_through(problem.views(), ViewSpline(true, 4), wanted, false);
