@@ -126,8 +126,8 @@ def test_the_model_evaluates_over_the_whole_tile(model):
     ],
 )
 def test_what_cannot_be_is_refused_with_a_sentence(folder, btf, arguments, word):
-    assert word in refused("compress", btf, "-o", folder / "none.velour", *arguments)
-    assert not (folder / "none.velour").exists()
+    assert word in refused("compress", btf, "-o", folder / "refused.velour", *arguments)
+    assert not (folder / "refused.velour").exists()
 
 
 def test_a_model_of_other_texels_is_refused(folder, model):
@@ -152,4 +152,4 @@ def test_a_model_of_other_texels_is_refused(folder, model):
 
 def test_a_brdf_is_no_btf(folder, model):
     mesh = write_octahedron(folder / "mesh.obj")
-    assert "mesh.obj" in refused("compress", mesh, "-o", folder / "none.velour")
+    assert "mesh.obj" in refused("compress", mesh, "-o", folder / "refused.velour")
