@@ -6,6 +6,7 @@ from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
 from .add_mesostructure import VELOUR_OT_add_mesostructure
 from .capture_btf import VELOUR_OT_capture_btf
+from .compress_btf import VELOUR_OT_compress_btf
 from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
@@ -23,6 +24,7 @@ CLASSES = (
     VELOUR_OT_add_mesostructure,
     VELOUR_OT_repeat_tile,
     VELOUR_OT_capture_btf,
+    VELOUR_OT_compress_btf,
 )
 
 

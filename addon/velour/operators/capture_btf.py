@@ -1,16 +1,13 @@
 """Capture a tile as a BTF: in the background of a window, or at once without one."""
 
-import os
-
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
-from ..export import ExportError
 from ..export.tiles import export_tile
 from ..native import capture_job, directions
 from ..properties.tile_settings import SIDES
 from .background_job import OneJob
-from .tiles import find_tile
+from .tiles import find_tile, tile_folder
 
 _SETTINGS = ("directory", "texels", "views", "lights", "samples", "bounces", "sides", "use_approximate")
 
@@ -51,7 +48,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         for name in _SETTINGS:
             if self.properties.is_property_set(name):
                 setattr(settings, name, getattr(self, name))
-        self._subject, self._folder = tile.owner.name, _folder(tile)
+        self._subject, self._folder = tile.owner.name, tile_folder(tile)
         scene, place, self._notes = export_tile(
             tile, context.evaluated_depsgraph_get(), settings.use_approximate
         )
@@ -84,12 +81,3 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
             f" {self._folder}",
         )
         return {"FINISHED"}
-
-
-def _folder(tile):
-    """Absolute."""
-    chosen = tile.owner.velour.directory
-    if not chosen and not bpy.data.filepath:
-        raise ExportError(f"{tile.label}: save the .blend first, or choose a folder for the capture.")
-    name = bpy.path.clean_name(tile.owner.name)
-    return os.path.normpath(bpy.path.abspath(chosen or f"//{name}.btf"))

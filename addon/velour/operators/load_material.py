@@ -7,6 +7,7 @@ from bpy.props import BoolProperty, CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..native import VelourError, library
+from ..native.errors import refuse
 from . import measured
 
 
@@ -50,6 +51,8 @@ class VELOUR_OT_load_material(bpy.types.Operator, ImportHelper):
     def _load(self, path):
         info = library.file_info(path)
         name = os.path.splitext(os.path.basename(path))[0]
+        if info["kind"] == "btf":
+            raise refuse(f"{path} is a BTF; bpy.ops.velour.compress_btf makes a material of it.")
         if info["kind"] != "model":
             image = measured.measurement_image(path, info["sha256"])
             material = measured.new_material(name)

@@ -1,5 +1,7 @@
 """Which tile an operator is for."""
 
+import os
+
 import bpy
 
 from ..export import ExportError
@@ -17,3 +19,12 @@ def find_tile(context, collection_name):
     if context.object is None:
         raise ExportError("There is no active object to take as a tile.")
     return object_tile(context.object, depsgraph)
+
+
+def tile_folder(tile):
+    """Where its BTF is or will be; absolute."""
+    chosen = tile.owner.velour.directory
+    if not chosen and not bpy.data.filepath:
+        raise ExportError(f"{tile.label}: save the .blend first, or choose a folder for the capture.")
+    name = bpy.path.clean_name(tile.owner.name)
+    return os.path.normpath(bpy.path.abspath(chosen or f"//{name}.btf"))

@@ -94,8 +94,11 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
             draw_sentence(context, self.layout, info, icon="ERROR")
             self.layout.operator(VELOUR_OT_accept_file.bl_idname)
             return
-        _draw_numbers(self.layout, info)
-        _draw_order(self.layout, info["order"])
+        if info["model"] == "factored-btf":
+            draw_rows(self.layout, _btf_rows(info))
+        else:
+            _draw_numbers(self.layout, info)
+            _draw_order(self.layout, info["order"])
         for warning in info["warnings"]:
             draw_sentence(context, self.layout, warning, icon="INFO")
         self.layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT")
@@ -113,6 +116,20 @@ def _draw_numbers(layout, info):
     )
     draw_rows(layout, rows)
     _draw_error_by_angle(layout.box(), info["by_view_angle"])
+
+
+def _btf_rows(info):
+    unseen, tile = info["psnr_held_out"], info["tile_metres"]
+    return (
+        ("Source", info["source"]["name"]),
+        ("Kind", f"BTF, {info['method']}"),
+        ("Texels", "{} x {}".format(*info["texels"])),
+        ("Tile", "size not known" if tile is None else "{:.4g} x {:.4g} mm".format(*(1e3 * t for t in tile))),
+        ("Directions", f"{info['views']} views, {info['lights']} lights"),
+        ("Size", f"{info['bytes'] / 1e6:.2f} MB, 1:{info['raw_bytes'] / info['bytes']:.0f}"),
+        ("PSNR", f"{info['psnr']:.1f} dB"),
+        ("Unseen pairs", "not measured" if unseen is None else f"{unseen:.1f} dB"),
+    )
 
 
 def draw_rows(layout, rows):

@@ -5,6 +5,7 @@ import bpy
 from ..engine.engine import VelourRenderEngine
 from ..export.objects import GEOMETRY
 from ..operators.capture_btf import VELOUR_OT_capture_btf
+from ..operators.compress_btf import VELOUR_OT_compress_btf
 from ..operators.repeat_tile import VELOUR_OT_repeat_tile, is_repeated
 from .progress import draw_progress
 
@@ -30,6 +31,8 @@ class TilePanel:
         column.label(text=_size(settings), icon="INFO")
         if not draw_progress(context, layout):
             operator = layout.operator(VELOUR_OT_capture_btf.bl_idname, icon="PLAY")
+            operator.collection = collection_name
+            operator = layout.operator(VELOUR_OT_compress_btf.bl_idname, icon="MATERIAL")
             operator.collection = collection_name
 
 

@@ -257,7 +257,7 @@ typedef struct vlr_compress_options {
   int32_t method;     /* VLR_COMPRESS_* */
   int32_t companding; /* VLR_COMPAND_*: sums of f itself, or of its square root (errors count about as they are seen) */
   uint32_t threads;   /* 0: all */
-  uint64_t bytes;     /* of all coefficients at most; 0: a two-hundredth of the BTF as half floats */
+  uint64_t bytes;     /* of all coefficients at most; 0: a two-hundredth of the BTF as half floats, or 8 components */
   uint64_t seed;
   const vlr_btf* held_out; /* pairs that no fit has seen, of the same texels; NULL: none */
 } vlr_compress_options;

@@ -9,6 +9,7 @@
 #include "btf/btf_measurement.h"
 #include "btf/half_floats.h"
 #include "btf/pair_layout.h"
+#include "image/half_image.h"
 
 namespace velour {
 
@@ -52,9 +53,6 @@ struct FactoredBtf {
 
   static constexpr size_t kMaxComponents = 512;
 };
-
-/// Sizes of the level after one of `width` x `height`: half, rounded down, at least 1.
-inline uint32_t half_of(uint32_t extent) { return extent > 1 ? extent / 2 : 1; }
 
 /// How many texels all levels of a pyramid have.
 uint64_t pyramid_texels(const TexelGrid& grid);

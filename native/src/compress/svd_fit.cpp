@@ -6,9 +6,9 @@
 #include <numeric>
 #include <string>
 
-#include "compress/box_pyramid.h"
 #include "compress/companded_views.h"
 #include "fit/parallel.h"
+#include "image/half_image.h"
 #include "job/error.h"
 #include "sphere/random.h"
 
@@ -21,9 +21,13 @@ constexpr double kRounding = 1e-9;
 constexpr int kOversampling = 8;                    // columns beyond those asked for
 constexpr Eigen::Index kRows = 16, kColumns = 512;  // of a block of work: fixed, so that sums do not depend on threads
 
+// What a small BTF gets where nobody asked for a size.
+constexpr uint64_t kUsualRatio = 200, kUsualLeast = 8;
+
 /// How many components fit.
-uint64_t components_within(uint64_t bytes, const BtfMeasurement& measurement) {
+uint64_t components_within(uint64_t asked, const BtfMeasurement& measurement) {
   const uint64_t one = (measurement.layout().pairs() + pyramid_texels(measurement.grid())) * sizeof(HalfBits);
+  const uint64_t bytes = asked > 0 ? asked : std::max(measurement.raw_bytes() / kUsualRatio, kUsualLeast * one);
   const uint64_t count = std::min<uint64_t>(bytes / one, FactoredBtf::kMaxComponents);
   if (count > 0) return count;
   throw Error(Status::invalid_argument, "One component takes " + std::to_string(one) + " bytes, and " +
@@ -233,8 +237,7 @@ SvdFit fit_svd(const BtfMeasurement& measurement, const SvdOptions& options, Pro
     throw Error(Status::unsupported, "A decomposition needs every view under every light; the BTF has " +
                                          std::to_string(measurement.layout().pairs()) + " pairs alone.");
   }
-  const uint64_t bytes = options.bytes > 0 ? options.bytes : measurement.raw_bytes() / 200;
-  return SvdSolver(measurement, options, progress).solve(components_within(bytes, measurement));
+  return SvdSolver(measurement, options, progress).solve(components_within(options.bytes, measurement));
 }
 
 }  // namespace velour

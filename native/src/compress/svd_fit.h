@@ -9,7 +9,7 @@
 namespace velour {
 
 struct SvdOptions {
-  uint64_t bytes = 0;  // of all coefficients at most; 0: a two-hundredth of the measurement's half floats
+  uint64_t bytes = 0;  // of all coefficients at most; 0: a two-hundredth of the measurement, 8 components at least
   Companding companding = Companding::root;
   uint64_t seed = 0;
   int threads = 0;  // 0: all

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 
+#include "image/half_image.h"
 #include "job/error.h"
 #include "material/footprint_taps.h"
 
@@ -18,21 +20,6 @@ int floor_of(float v) {
 
 bool finite(float v) { return std::isfinite(v); }
 bool finite(const Rgb& v) { return std::isfinite(v.r + v.g + v.b); }
-
-/// A row of `from` texels to one of `to`: a texel that two share is shared out.
-template <class T>
-void shrink(const T* source, size_t source_step, int from, T* target, size_t target_step, int to) {
-  const double ratio = static_cast<double>(from) / to;
-  for (int i = 0; i < to; ++i) {
-    const double begin = i * ratio, end = std::min((i + 1) * ratio, static_cast<double>(from));
-    T sum(0.0f);
-    for (int k = static_cast<int>(begin); k < from && k < end; ++k) {
-      const double covered = std::min(end, k + 1.0) - std::max(begin, static_cast<double>(k));
-      sum += static_cast<float>(covered / ratio) * source[static_cast<size_t>(k) * source_step];
-    }
-    target[static_cast<size_t>(i) * target_step] = sum;
-  }
-}
 
 }  // namespace
 
@@ -51,17 +38,14 @@ Texture<T>::Texture(int width, int height, std::vector<T> texels, const TextureO
 
 template <class T>
 typename Texture<T>::Level Texture<T>::half(const Level& level) {
-  const int width = std::max(1, level.width / 2), height = std::max(1, level.height / 2);
-  const auto columns = static_cast<size_t>(width), rows = static_cast<size_t>(level.height);
-  std::vector<T> narrow(columns * rows);
-  for (size_t y = 0; y < rows; ++y) {
-    shrink(&level.texels[y * static_cast<size_t>(level.width)], 1, level.width, &narrow[y * columns], 1, width);
-  }
-  Level smaller{width, height, std::vector<T>(columns * static_cast<size_t>(height))};
-  for (size_t x = 0; x < columns; ++x) {
-    shrink(&narrow[x], columns, level.height, &smaller.texels[x], columns, height);
-  }
-  return smaller;
+  constexpr uint32_t kChannels = sizeof(T) / sizeof(float);
+  const auto width = static_cast<uint32_t>(level.width), height = static_cast<uint32_t>(level.height);
+  const auto* floats = reinterpret_cast<const float*>(level.texels.data());
+  const std::vector<float> smaller = half_image({floats, level.texels.size() * kChannels}, width, height, kChannels);
+  Level next{static_cast<int>(half_of(width)), static_cast<int>(half_of(height)), {}};
+  next.texels.resize(smaller.size() / kChannels);
+  std::memcpy(next.texels.data(), smaller.data(), smaller.size() * sizeof(float));
+  return next;
 }
 
 /// For `i` from -1 to size of a place that is reduced() to the picture.

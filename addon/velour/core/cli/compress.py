@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--bytes", type=numbers.whole(1, 2**63), metavar="N",
-        help="of all coefficients; a two-hundredth of the BTF as half floats",
+        help="of all coefficients; a two-hundredth of the BTF, or 8 components",
     )  # fmt: skip
     parser.add_argument("--held-out", metavar="BTF", help="pairs that the fit does not see, to judge it by")
     parser.add_argument("--seed", type=numbers.seed, metavar="K")

@@ -1,4 +1,4 @@
-#include "compress/box_pyramid.h"
+#include "image/half_image.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-TEST(BoxPyramid, KeepsTheMeanOfAnySize) {
+TEST(HalfImage, KeepsTheMeanOfAnySize) {
   for (const auto& [width, height] : {std::pair(8u, 4u), std::pair(7u, 5u), std::pair(1u, 9u), std::pair(3u, 1u)}) {
     std::vector<float> image(size_t{width} * height * 2);
     for (size_t i = 0; i < image.size(); ++i) image[i] = static_cast<float>(i * i % 17);
@@ -22,7 +22,7 @@ TEST(BoxPyramid, KeepsTheMeanOfAnySize) {
   }
 }
 
-TEST(BoxPyramid, IsTheMeanOfFourWhereSizesAreEven) {
+TEST(HalfImage, IsTheMeanOfFourWhereSizesAreEven) {
   const std::vector<float> half = half_image(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}, 4, 2, 1);
   EXPECT_EQ(half, (std::vector<float>{3.5f, 5.5f}));
 }

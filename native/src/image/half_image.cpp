@@ -1,9 +1,7 @@
-#include "compress/box_pyramid.h"
+#include "image/half_image.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "btf/factored_btf.h"
 
 namespace velour {
 namespace {
