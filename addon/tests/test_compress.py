@@ -130,7 +130,7 @@ def test_what_cannot_be_is_refused_with_a_sentence(folder, btf, arguments, word)
     assert not (folder / "refused.velour").exists()
 
 
-def test_a_model_of_other_texels_is_refused(folder, model):
+def test_what_has_other_texels_is_refused(folder, btf, model):
     other = folder / "other"
     velour(
         "capture",
@@ -148,6 +148,7 @@ def test_a_model_of_other_texels_is_refused(folder, model):
         "--quiet",
     )
     assert "texels" in refused("compare", other, model)
+    assert "texels" in refused("compress", btf, "-o", folder / "refused.velour", "--held-out", other)
 
 
 def test_a_brdf_is_no_btf(folder, model):

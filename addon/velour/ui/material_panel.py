@@ -48,15 +48,15 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         _draw_fit(context, layout)
         column = layout.column()
         row = column.row()
-        row.active = not _is_parametric(node.image)
+        row.active = _mixes_views(node.image)
         row.prop(settings, "neighbors")
         column.prop(settings, "use_reference")
 
 
-def _is_parametric(image):
-    """Of a model that has been read; such models have no views to mix."""
+def _mixes_views(image):
+    """Not of a model that has been read and is of another kind than scattered."""
     info = model_summary(image) if image is not None else None
-    return isinstance(info, dict) and info["model"] == "parametric"
+    return not isinstance(info, dict) or info["model"] == "scattered"
 
 
 def _draw_fit_settings(column, settings):

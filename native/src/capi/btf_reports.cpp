@@ -1,24 +1,15 @@
 #include "capi/btf_reports.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "capi/json_text.h"
 namespace velour::capi {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// File names may hold bytes that are not UTF-8.
-std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 double largest_theta(const std::vector<PolarAngles>& directions) {
   double largest = 0;
   for (const PolarAngles& d : directions) largest = std::max(largest, d.theta);
   return largest;
-}
-
-Json tile_json(const TexelGrid& grid) {
-  return grid.tile_metres ? Json{grid.tile_metres->x, grid.tile_metres->y} : Json(nullptr);
 }
 
 Json shell_json(const std::optional<Shell>& shell) {
@@ -36,30 +27,23 @@ Json entries_json(const CountedPairs& counted) {
 }  // namespace
 
 std::string btf_json(const BtfMeasurement& btf) {
-  const Provenance& p = btf.provenance();
   const PairLayout& layout = btf.layout();
-  Json details = Json::object();
-  for (const auto& [key, value] : btf.details()) details[key] = value;
-  return text({{"kind", "btf"},
-               {"format", p.format},
-               {"name", p.name},
-               {"path", p.path},
-               {"description", p.description},
-               {"sha256", p.sha256},
-               {"bytes", p.file_bytes},
-               {"raw_bytes", btf.raw_bytes()},
-               {"texels", {btf.grid().width, btf.grid().height}},
-               {"views", layout.views().size()},
-               {"lights", layout.lights().size()},
-               {"pairs", layout.pairs()},
-               {"complete", layout.complete()},
-               {"largest_theta", {{"view", largest_theta(layout.views())}, {"light", largest_theta(layout.lights())}}},
-               {"tile_metres", tile_json(btf.grid())},
-               {"shell", shell_json(btf.shell())},
-               {"errors", btf.has_errors()},
-               {"structure", btf.has_structure()},
-               {"entries", entries_json(count_values(btf))},
-               {"details", std::move(details)}});
+  Json json = source_json("btf", btf.provenance());
+  json.update(
+      Json{{"raw_bytes", btf.raw_bytes()},
+           {"texels", {btf.grid().width, btf.grid().height}},
+           {"views", layout.views().size()},
+           {"lights", layout.lights().size()},
+           {"pairs", layout.pairs()},
+           {"complete", layout.complete()},
+           {"largest_theta", {{"view", largest_theta(layout.views())}, {"light", largest_theta(layout.lights())}}},
+           {"tile_metres", tile_json(btf.grid())},
+           {"shell", shell_json(btf.shell())},
+           {"errors", btf.has_errors()},
+           {"structure", btf.has_structure()},
+           {"entries", entries_json(count_values(btf))},
+           {"details", details_json(btf)}});
+  return text(json);
 }
 
 std::string btf_export_json(const BtfExportReport& report) {
@@ -75,7 +59,7 @@ std::string compression_json(const Model& model, uint64_t file_bytes) {
                {"parameter_bytes", btf.parameter_bytes()},
                {"ratio", static_cast<double>(record.raw_bytes) / static_cast<double>(file_bytes)},
                {"psnr", record.psnr},
-               {"psnr_held_out", record.psnr_held_out ? Json(*record.psnr_held_out) : Json(nullptr)},
+               {"psnr_held_out", or_null(record.psnr_held_out)},
                {"ser", record.ser},
                {"p99", record.p99},
                {"components", btf.components()},

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "capi/json_text.h"
 #include "domain/hash_text.h"
 #include "model/order_json.h"
 #include "scene/embree_scene.h"
@@ -15,13 +15,6 @@
 namespace velour::capi {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// nlohmann writes NaN as null by itself; bytes that are not UTF-8 (file names) are replaced instead of thrown on.
-std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
 Json by_view_angle(const ErrorByViewAngle& errors) {
   // In the order of the angles, not of their texts.
@@ -113,9 +106,8 @@ Json own_json(const ParametricBrdf& brdf) {
 }
 
 Json own_json(const FactoredBtf& btf) {
-  const auto& tile = btf.grid.tile_metres;
   return {{"texels", {btf.grid.width, btf.grid.height}},
-          {"tile_metres", tile ? Json{tile->x, tile->y} : Json(nullptr)},
+          {"tile_metres", tile_json(btf.grid)},
           {"views", btf.layout.views().size()},
           {"lights", btf.layout.lights().size()},
           {"companding", btf.companding == Companding::root ? "root" : "none"}};
@@ -157,26 +149,18 @@ std::string system_json() {
 }
 
 std::string measurement_json(const Measurement& measurement) {
-  const Provenance& p = measurement.provenance();
   const EntryCounts& n = measurement.counts();
-  Json details = Json::object();
-  for (const auto& [key, value] : measurement.details()) details[key] = value;
-  return text({{"kind", "measurement"},
-               {"format", p.format},
-               {"name", p.name},
-               {"path", p.path},
-               {"description", p.description},
-               {"sha256", p.sha256},
-               {"bytes", p.file_bytes},
-               {"isotropic", measurement.isotropic()},
-               {"entries",
-                {{"total", n.total},
-                 {"valid", n.valid},
-                 {"negative", n.negative},
-                 {"not_finite", n.not_finite},
-                 {"below_horizon", n.below_horizon},
-                 {"out_of_gamut", n.out_of_gamut}}},
-               {"details", details}});
+  Json json = source_json("measurement", measurement.provenance());
+  json.update(Json{{"isotropic", measurement.isotropic()},
+                   {"entries",
+                    {{"total", n.total},
+                     {"valid", n.valid},
+                     {"negative", n.negative},
+                     {"not_finite", n.not_finite},
+                     {"below_horizon", n.below_horizon},
+                     {"out_of_gamut", n.out_of_gamut}}},
+                   {"details", details_json(measurement)}});
+  return text(json);
 }
 
 std::string model_json(const Model& model, uint64_t file_bytes) {

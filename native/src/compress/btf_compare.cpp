@@ -62,10 +62,10 @@ double percentile_99(const BtfMeasurement& measurement, const Progress& progress
 }
 
 BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, double p99, int threads,
-                      const Progress& progress) {
+                      Progress& progress) {
   const uint64_t pairs = truth.layout().pairs();
   std::vector<Sums> sums(pairs);
-  parallel_pieces(pairs, threads, progress, [&](size_t pair) {
+  parallel_for_each(pairs, threads, progress, [&](size_t pair) {
     std::vector<HalfBits> halves(truth.grid().texels() * 3);
     std::vector<float> measured(halves.size()), modelled;
     truth.read_pairs(pair, 1, halves);

@@ -24,6 +24,6 @@ using BtfImages = std::function<void(const DirectionPair&, std::vector<float>&)>
 /// Over all pairs of `truth` with equal weight. `p99`: of the measurement that was fitted, also for other pairs.
 /// `images` is called from several threads. Entries of `truth` that are not finite are left out.
 BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, double p99, int threads,
-                      const Progress& progress);
+                      Progress& progress);
 
 }  // namespace velour

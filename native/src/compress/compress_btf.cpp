@@ -17,7 +17,7 @@ void require_same_texels(const TexelGrid& a, const TexelGrid& b) {
 }
 
 BtfErrors compare_with_body(const BtfMeasurement& truth, const FactoredBtf& btf, double p99, int threads,
-                            const Progress& progress) {
+                            Progress& progress) {
   require_same_texels(truth.grid(), btf.grid);
   const FactoredImages images(btf);
   const auto image = [&](const DirectionPair& pair, std::vector<float>& rgb) { images.image(pair, rgb); };
@@ -27,6 +27,7 @@ BtfErrors compare_with_body(const BtfMeasurement& truth, const FactoredBtf& btf,
 }  // namespace
 
 Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
+  if (options.held_out) require_same_texels(options.held_out->grid(), measurement.grid());
   const auto start = std::chrono::steady_clock::now();
   SvdFit fit = fit_svd(measurement, options, progress);
   BtfRecord record;
@@ -38,12 +39,13 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
     record.warnings.push_back(std::to_string(fit.not_finite) +
                               " entries of the BTF are not finite; the mean of their image stands in for them.");
   }
-  progress.stage("errors", 0.9, 1.0);
+  progress.stage("errors", 0.55, 0.95);
   record.p99 = percentile_99(measurement, progress);
   const BtfErrors fitted = compare_with_body(measurement, fit.btf, record.p99, options.threads, progress);
   record.psnr = fitted.psnr;
   record.ser = fitted.ser;
   if (options.held_out) {
+    progress.stage("unseen pairs", 0.95, 1.0);
     const BtfErrors unseen = compare_with_body(*options.held_out, fit.btf, record.p99, options.threads, progress);
     record.psnr_held_out = unseen.psnr;
   }
@@ -54,12 +56,12 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
   return model;
 }
 
-BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, const Progress& progress) {
+BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, Progress& progress) {
   return compare_with_body(truth, std::get<FactoredBtf>(model.body), model.btf.value().p99, threads, progress);
 }
 
 BtfErrors compare_with_table(const BtfMeasurement& truth, const BtfMeasurement& table, double p99, int threads,
-                             const Progress& progress) {
+                             Progress& progress) {
   require_same_texels(truth.grid(), table.grid());
   const PairInterpolation between(table.layout());
   const auto image = [&](const DirectionPair& pair, std::vector<float>& rgb) {

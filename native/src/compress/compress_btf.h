@@ -18,10 +18,10 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
 
 /// Errors of a BTF's model against the pairs of `truth`; white is the model's own. Throws Error(invalid_argument) when
 /// the texels differ.
-BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, const Progress& progress);
+BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, Progress& progress);
 
 /// The same of another BTF, interpolated in f between its own pairs: what no model of it needs to beat.
 BtfErrors compare_with_table(const BtfMeasurement& truth, const BtfMeasurement& table, double p99, int threads,
-                             const Progress& progress);
+                             Progress& progress);
 
 }  // namespace velour

@@ -59,18 +59,18 @@ class SvdSolver {
         views_(measurement, options.companding, options.threads, progress) {}
 
   SvdFit solve(uint64_t components) {
-    progress_.stage("colours", 0, 0.1);
+    progress_.stage("colours", 0, 0.05);
     btf_.axes = views_.decorrelate();
     const auto columns = static_cast<Eigen::Index>(
         std::min({components + kOversampling, measurement_.layout().pairs(), measurement_.grid().texels()}));
     for (size_t a = 0; a < 3; ++a) start(sketch_[a], columns, a);
     for (int i = 0; i <= kPowerIterations; ++i) {
-      progress_.stage("directions", 0.1 + 0.2 * i, 0.3 + 0.2 * i);
+      progress_.stage("directions", 0.05 + 0.12 * i, 0.17 + 0.12 * i);
       pass(i < kPowerIterations);
     }
     for (AxisSketch& sketch : sketch_) rotate(sketch);
     choose(components);
-    progress_.stage("texels", 0.7, 0.9);
+    progress_.stage("texels", 0.41, 0.55);
     project();
     return {std::move(btf_), views_.not_finite()};
   }

@@ -17,7 +17,8 @@ PairLayout few_pairs() { return {ring_directions(30, 3), ring_directions(60, 4)}
 TEST(BtfCompare, MeasuresAKnownDifference) {
   const test::MemoryBtf btf(few_pairs(), kGrid, [](auto&&...) { return Rgb(0.5f); });
   const auto darker = [](const DirectionPair&, std::vector<float>& rgb) { rgb.assign(kGrid.texels() * 3, 0.25f); };
-  const BtfErrors errors = compare_btf(btf, darker, 0.5, 1, Progress());
+  Progress progress;
+  const BtfErrors errors = compare_btf(btf, darker, 0.5, 1, progress);
   EXPECT_NEAR(errors.ser, 0.25, 1e-12);
   const double seen = 1.0 - (1.055 * std::pow(0.5, 1 / 2.4) - 0.055);
   EXPECT_NEAR(errors.psnr, -20 * std::log10(seen), 1e-4);
@@ -29,7 +30,8 @@ TEST(BtfCompare, LeavesOutWhatIsNotFinite) {
   const test::MemoryBtf btf(few_pairs(), kGrid,
                             [&](const DirectionPair&, uint32_t x, uint32_t) { return x == 0 ? Rgb(nan) : Rgb(0.5f); });
   const auto same = [](const DirectionPair&, std::vector<float>& rgb) { rgb.assign(kGrid.texels() * 3, 0.5f); };
-  EXPECT_EQ(compare_btf(btf, same, 0.5, 1, Progress()).ser, 0.0);
+  Progress progress;
+  EXPECT_EQ(compare_btf(btf, same, 0.5, 1, progress).ser, 0.0);
 }
 
 TEST(BtfCompare, FindsThePercentile) {

@@ -26,7 +26,8 @@ SvdFit fit(const BtfMeasurement& btf, const SvdOptions& options) {
 double error_of(const FactoredBtf& model, const BtfMeasurement& btf) {
   const FactoredImages images(model);
   const auto decode = [&](const DirectionPair& pair, std::vector<float>& rgb) { images.image(pair, rgb); };
-  return compare_btf(btf, decode, 1.0, 2, Progress()).ser;
+  Progress progress;
+  return compare_btf(btf, decode, 1.0, 2, progress).ser;
 }
 
 /// Square of a sum of three products, one colour: three components of one axis.
