@@ -28,7 +28,7 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
     )
     megabytes: FloatProperty(
         name="Megabytes",
-        description="Of all coefficients at most; 0: a two-hundredth of the BTF, or 8 components",
+        description="Of all coefficients at most; 0: a two-hundredth of the BTF, or a few components",
         min=0.0,
         options={"SKIP_SAVE"},
     )

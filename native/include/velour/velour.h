@@ -250,20 +250,21 @@ VLR_API vlr_status vlr_microsurface_create_job(const vlr_microsurface_options* o
 
 /* ---- compression of BTFs ------------------------------------------------------------------------------------- */
 
-enum { VLR_COMPRESS_SVD = 0 };
+enum { VLR_COMPRESS_SVD = 0, VLR_COMPRESS_SRBF = 1 };
 enum { VLR_COMPAND_NONE = 0, VLR_COMPAND_ROOT = 1 };
 typedef struct vlr_compress_options {
   uint32_t struct_size;
-  int32_t method;     /* VLR_COMPRESS_* */
+  int32_t method;     /* VLR_COMPRESS_*; SRBF */
   int32_t companding; /* VLR_COMPAND_*: sums of f itself, or of its square root (errors count about as they are seen) */
   uint32_t threads;   /* 0: all */
-  uint64_t bytes;     /* of all coefficients at most; 0: a two-hundredth of the BTF as half floats, or 8 components */
+  uint64_t bytes;     /* of all coefficients at most; 0: a two-hundredth of the BTF as half floats, or a few */
   uint64_t seed;
   const vlr_btf* held_out; /* pairs that no fit has seen, of the same texels; NULL: none */
 } vlr_compress_options;
 VLR_API void vlr_compress_options_init(vlr_compress_options* options);
 /* Fits a model to a BTF; vlr_job_result_model gives it. JSON: bytes, parameter_bytes, ratio (raw half floats / bytes),
- * psnr, psnr_held_out (null without held_out), ser, p99, components, seconds, warnings. */
+ * psnr, psnr_held_out (null without held_out), ser, p99, evaluations_per_second, seconds, warnings; components of an
+ * SVD; lobes and coefficients of SRBFs. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
 /* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, p99, pairs. */
 VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);

@@ -53,18 +53,17 @@ std::string btf_export_json(const BtfExportReport& report) {
 
 std::string compression_json(const Model& model, uint64_t file_bytes) {
   const BtfRecord& record = model.btf.value();
-  const auto& btf = std::get<FactoredBtf>(model.body);
-  return text({{"method", record.method},
-               {"bytes", file_bytes},
-               {"parameter_bytes", btf.parameter_bytes()},
-               {"ratio", static_cast<double>(record.raw_bytes) / static_cast<double>(file_bytes)},
-               {"psnr", record.psnr},
-               {"psnr_held_out", or_null(record.psnr_held_out)},
-               {"ser", record.ser},
-               {"p99", record.p99},
-               {"components", btf.components()},
-               {"seconds", record.seconds},
-               {"warnings", record.warnings}});
+  Json json = {{"method", record.method}};
+  json.update(size_json(model, file_bytes));
+  json.update(Json{{"ratio", static_cast<double>(record.raw_bytes) / static_cast<double>(file_bytes)},
+                   {"psnr", record.psnr},
+                   {"psnr_held_out", or_null(record.psnr_held_out)},
+                   {"ser", record.ser},
+                   {"p99", record.p99},
+                   {"evaluations_per_second", record.evaluations_per_second},
+                   {"seconds", record.seconds},
+                   {"warnings", record.warnings}});
+  return text(json);
 }
 
 std::string btf_errors_json(const BtfErrors& errors, double p99) {

@@ -12,13 +12,14 @@ void vlr_compress_options_init(vlr_compress_options* options) {
   const CompressOptions defaults;
   *options = {};
   options->struct_size = sizeof(vlr_compress_options);
+  options->method = static_cast<int32_t>(defaults.method);
   options->companding = static_cast<int32_t>(defaults.companding);
 }
 
 namespace {
 
 CompressOptions converted(const vlr_compress_options& given) {
-  if (given.method != VLR_COMPRESS_SVD) {
+  if (given.method != VLR_COMPRESS_SVD && given.method != VLR_COMPRESS_SRBF) {
     throw Error(Status::invalid_argument,
                 "vlr_compress_options.method is " + std::to_string(given.method) + ", not a VLR_COMPRESS value.");
   }
@@ -27,6 +28,7 @@ CompressOptions converted(const vlr_compress_options& given) {
                                               ", not a VLR_COMPAND value.");
   }
   CompressOptions options;
+  options.method = static_cast<CompressMethod>(given.method);
   options.companding = static_cast<Companding>(given.companding);
   options.bytes = given.bytes;
   options.seed = given.seed;

@@ -7,6 +7,7 @@
 
 #include "brdf/measurement.h"
 #include "btf/btf_measurement.h"
+#include "model/model.h"
 
 namespace velour::capi {
 
@@ -35,5 +36,8 @@ Json details_json(const Measured& measured) {
   for (const auto& [key, value] : measured.details()) details[key] = value;
   return details;
 }
+
+/// How many lobes or components a model has, and its bytes.
+Json size_json(const Model& model, uint64_t file_bytes);
 
 }  // namespace velour::capi

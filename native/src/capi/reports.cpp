@@ -64,6 +64,18 @@ Json count_json(const ScatteredBrdf& brdf) { return {{"lobes", brdf.lobe_count()
 Json count_json(const ParametricBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
 Json count_json(const FactoredBtf& btf) { return {{"components", btf.components()}}; }
 
+/// Of the side of most lobes.
+Json count_json(const SrbfBtf& btf) {
+  size_t lobes = 0, coefficients = 0;
+  for (const SrbfSide& side : btf.sides) {
+    lobes = std::max(lobes, side.lobes.size());
+    coefficients = std::max(coefficients, side.coefficients());
+  }
+  return {{"lobes", lobes}, {"coefficients", coefficients}};
+}
+
+}  // namespace
+
 Json size_json(const Model& model, uint64_t file_bytes) {
   return std::visit(
       [&](const auto& body) {
@@ -73,6 +85,8 @@ Json size_json(const Model& model, uint64_t file_bytes) {
       },
       model.body);
 }
+
+namespace {
 
 Json views_json(const ViewRange& views) { return {views.begin, views.end}; }
 
@@ -105,12 +119,27 @@ Json own_json(const ParametricBrdf& brdf) {
           {"spaces", {{"light", brdf.lobe_count() - half}, {"half", half}}}};
 }
 
-Json own_json(const FactoredBtf& btf) {
+template <class Btf>
+Json btf_own_json(const Btf& btf) {
   return {{"texels", {btf.grid.width, btf.grid.height}},
           {"tile_metres", tile_json(btf.grid)},
           {"views", btf.layout.views().size()},
           {"lights", btf.layout.lights().size()},
           {"companding", btf.companding == Companding::root ? "root" : "none"}};
+}
+
+Json own_json(const FactoredBtf& btf) { return btf_own_json(btf); }
+
+Json own_json(const SrbfBtf& btf) {
+  Json json = btf_own_json(btf);
+  json["sides"] = Json::array();
+  for (const SrbfSide& side : btf.sides) {
+    json["sides"].push_back({{"view", side.view_below ? "below" : "above"},
+                             {"light", side.light_below ? "below" : "above"},
+                             {"lobes", {{"tile", side.tile_lobes}, {"texel", side.lobes.size() - side.tile_lobes}}},
+                             {"parameter_bytes", side.parameter_bytes()}});
+  }
+  return json;
 }
 
 /// What the fit found out, of a BRDF.

@@ -4,7 +4,10 @@
 #include <string>
 
 #include "btf/pair_interpolation.h"
+#include "btf/srbf_evaluator.h"
+#include "compress/evaluation_rate.h"
 #include "job/error.h"
+#include "model/model_material.h"
 
 namespace velour {
 namespace {
@@ -16,48 +19,83 @@ void require_same_texels(const TexelGrid& a, const TexelGrid& b) {
                                             std::to_string(b.height) + "; they must be the same.");
 }
 
-BtfErrors compare_with_body(const BtfMeasurement& truth, const FactoredBtf& btf, double p99, int threads,
-                            Progress& progress) {
-  require_same_texels(truth.grid(), btf.grid);
-  const FactoredImages images(btf);
-  const auto image = [&](const DirectionPair& pair, std::vector<float>& rgb) { images.image(pair, rgb); };
-  return compare_btf(truth, image, p99, threads, progress);
+/// The images of a model of a BTF.
+class ModelImages {
+ public:
+  explicit ModelImages(const ModelBody& body) {
+    if (const auto* factored = std::get_if<FactoredBtf>(&body)) {
+      grid_ = factored->grid;
+      images_ = [images = std::make_shared<FactoredImages>(*factored)](
+                    const DirectionPair& pair, std::vector<float>& rgb) { images->image(pair, rgb); };
+    } else {
+      const auto& srbf = std::get<SrbfBtf>(body);
+      grid_ = srbf.grid;
+      images_ = [evaluator = std::make_shared<SrbfEvaluator>(unowned(srbf))](
+                    const DirectionPair& pair, std::vector<float>& rgb) { srbf_image(*evaluator, pair, rgb); };
+    }
+  }
+
+  BtfErrors compare(const BtfMeasurement& truth, double p99, int threads, Progress& progress) const {
+    require_same_texels(truth.grid(), grid_);
+    return compare_btf(truth, images_, p99, threads, progress);
+  }
+
+ private:
+  /// The body outlives the images.
+  static std::shared_ptr<const SrbfBtf> unowned(const SrbfBtf& btf) { return {std::shared_ptr<const void>(), &btf}; }
+
+  TexelGrid grid_;
+  BtfImages images_;
+};
+
+/// The body of a model and how many entries were left out.
+std::pair<ModelBody, uint64_t> fitted(const BtfMeasurement& measurement, const CompressOptions& options,
+                                      Progress& progress) {
+  if (options.method == CompressMethod::svd) {
+    SvdFit fit = fit_svd(measurement, {options.bytes, options.companding, options.seed, options.threads}, progress);
+    return {std::move(fit.btf), fit.not_finite};
+  }
+  SrbfFit fit = fit_srbf(measurement, {options.bytes, options.companding, options.seed, options.threads}, progress);
+  return {std::move(fit.btf), fit.not_finite};
 }
+
+const char* name_of(CompressMethod method) { return method == CompressMethod::svd ? "svd" : "srbf"; }
 
 }  // namespace
 
 Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
   if (options.held_out) require_same_texels(options.held_out->grid(), measurement.grid());
   const auto start = std::chrono::steady_clock::now();
-  SvdFit fit = fit_svd(measurement, options, progress);
+  auto [body, not_finite] = fitted(measurement, options, progress);
+  const auto model = std::make_shared<Model>(Model{std::move(body), {}, {}});
   BtfRecord record;
-  record.method = "svd";
+  record.method = name_of(options.method);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.seed = options.seed;
   record.raw_bytes = measurement.raw_bytes();
-  if (fit.not_finite > 0) {
-    record.warnings.push_back(std::to_string(fit.not_finite) +
+  if (not_finite > 0) {
+    record.warnings.push_back(std::to_string(not_finite) +
                               " entries of the BTF are not finite; the mean of their image stands in for them.");
   }
-  progress.stage("errors", 0.55, 0.95);
+  progress.stage("errors", 0.8, 0.97);
   record.p99 = percentile_99(measurement, progress);
-  const BtfErrors fitted = compare_with_body(measurement, fit.btf, record.p99, options.threads, progress);
-  record.psnr = fitted.psnr;
-  record.ser = fitted.ser;
+  const ModelImages images(model->body);
+  const BtfErrors errors = images.compare(measurement, record.p99, options.threads, progress);
+  record.psnr = errors.psnr;
+  record.ser = errors.ser;
   if (options.held_out) {
-    progress.stage("unseen pairs", 0.95, 1.0);
-    const BtfErrors unseen = compare_with_body(*options.held_out, fit.btf, record.p99, options.threads, progress);
-    record.psnr_held_out = unseen.psnr;
+    progress.stage("unseen pairs", 0.97, 1.0);
+    record.psnr_held_out = images.compare(*options.held_out, record.p99, options.threads, progress).psnr;
   }
-  Model model{std::move(fit.btf), {}, {}};
+  record.evaluations_per_second = evaluation_rate(*make_material(model, 0));
   const Provenance& source = measurement.provenance();
-  model.source = {source.name, source.format, source.sha256};
-  model.btf = std::move(record);
-  return model;
+  model->source = {source.name, source.format, source.sha256};
+  model->btf = std::move(record);
+  return std::move(*model);
 }
 
 BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, Progress& progress) {
-  return compare_with_body(truth, std::get<FactoredBtf>(model.body), model.btf.value().p99, threads, progress);
+  return ModelImages(model.body).compare(truth, model.btf.value().p99, threads, progress);
 }
 
 BtfErrors compare_with_table(const BtfMeasurement& truth, const BtfMeasurement& table, double p99, int threads,

@@ -4,12 +4,20 @@
 #include <memory>
 
 #include "compress/btf_compare.h"
+#include "compress/srbf_fit.h"
 #include "compress/svd_fit.h"
 #include "model/model.h"
 
 namespace velour {
 
-struct CompressOptions : SvdOptions {
+enum class CompressMethod : uint8_t { svd = 0, srbf = 1 };
+
+struct CompressOptions {
+  CompressMethod method = CompressMethod::srbf;
+  uint64_t bytes = 0;  // of all coefficients at most; 0: a two-hundredth of the measurement, or a few components
+  Companding companding = Companding::root;
+  uint64_t seed = 0;
+  int threads = 0;                                 // 0: all
   std::shared_ptr<const BtfMeasurement> held_out;  // pairs that no fit has seen; null: none
 };
 

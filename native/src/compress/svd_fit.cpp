@@ -6,7 +6,7 @@
 #include <numeric>
 #include <string>
 
-#include "compress/companded_views.h"
+#include "compress/side_views.h"
 #include "fit/parallel.h"
 #include "image/half_image.h"
 #include "job/error.h"
@@ -65,12 +65,12 @@ class SvdSolver {
         std::min({components + kOversampling, measurement_.layout().pairs(), measurement_.grid().texels()}));
     for (size_t a = 0; a < 3; ++a) start(sketch_[a], columns, a);
     for (int i = 0; i <= kPowerIterations; ++i) {
-      progress_.stage("directions", 0.05 + 0.12 * i, 0.17 + 0.12 * i);
+      progress_.stage("directions", 0.05 + 0.2 * i, 0.25 + 0.2 * i);
       pass(i < kPowerIterations);
     }
     for (AxisSketch& sketch : sketch_) rotate(sketch);
     choose(components);
-    progress_.stage("texels", 0.41, 0.55);
+    progress_.stage("texels", 0.65, 0.8);
     project();
     return {std::move(btf_), views_.not_finite()};
   }
@@ -181,7 +181,7 @@ class SvdSolver {
       progress_.check();
       views_.read(v, f_);
       for (size_t l = 0; l < levels.size(); ++l) {
-        if (l > 0) f_ = halved(f_, levels[l - 1]);
+        if (l > 0) f_ = halved_images(f_, levels[l - 1].width, levels[l - 1].height);
         project(v, levels[l]);
       }
       progress_.update(static_cast<double>(v + 1) / views_.views());
@@ -206,17 +206,6 @@ class SvdSolver {
         level.value.block(t, column, n, count).noalias() += planes_[a].middleCols(t, n).transpose() * functions;
       });
     }
-  }
-
-  std::vector<float> halved(const std::vector<float>& f, const Level& fine) const {
-    const size_t image = static_cast<size_t>(fine.value.rows()) * 3, count = f.size() / image;
-    const size_t coarse = size_t{half_of(fine.width)} * half_of(fine.height) * 3;
-    std::vector<float> out(count * coarse);
-    parallel_pieces(count, options_.threads, progress_, [&](size_t i) {
-      const std::vector<float> half = half_image({f.data() + i * image, image}, fine.width, fine.height, 3);
-      std::copy(half.begin(), half.end(), out.begin() + static_cast<ptrdiff_t>(i * coarse));
-    });
-    return out;
   }
 
   const BtfMeasurement& measurement_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "btf/bilinear_texels.h"
 #include "btf/pair_interpolation.h"
 #include "material/factored_sums.h"
 #include "material/footprint_taps.h"
@@ -13,12 +14,6 @@ namespace {
 
 uint32_t padded(size_t count) {
   return static_cast<uint32_t>((count + kFactoredPadding - 1) / kFactoredPadding * kFactoredPadding);
-}
-
-/// `i` of a period `size`, for -1 <= i <= size.
-uint32_t wrapped(int i, uint32_t size) {
-  const int n = static_cast<int>(size);
-  return static_cast<uint32_t>(i < 0 ? i + n : (i >= n ? i - n : i));
 }
 
 class FactoredMaterial final : public Material {
@@ -99,14 +94,11 @@ class FactoredMaterial final : public Material {
 
   void add_bilinear(const Vec2& uv, size_t level, float weight, float* to) const {
     const TexelLevel& size = btf_->levels[level];
-    const Vec2 inside = std::isfinite(uv.x + uv.y) ? uv - glm::floor(uv) : Vec2(0.0f);
-    const Vec2 place = inside * Vec2(size.width, size.height) - 0.5f, low = glm::floor(place), part = place - low;
-    for (int corner = 0; corner < 4; ++corner) {
-      const int dx = corner & 1, dy = corner >> 1;
-      const float share = weight * (dx ? part.x : 1 - part.x) * (dy ? part.y : 1 - part.y);
-      const uint64_t texel = uint64_t{wrapped(static_cast<int>(low.y) + dy, size.height)} * size.width +
-                             wrapped(static_cast<int>(low.x) + dx, size.width);
-      const float* from = texel_value_[level].data() + texel * end_[2];
+    const Vec2 place = std::isfinite(uv.x + uv.y) ? uv : Vec2(0.0f);
+    const BilinearTexels texels = bilinear_texels(place, size.width, size.height);
+    for (size_t corner = 0; corner < 4; ++corner) {
+      const float share = weight * texels.weight[corner];
+      const float* from = texel_value_[level].data() + uint64_t{texels.index[corner]} * end_[2];
       for (uint32_t k = 0; k < end_[2]; ++k) to[k] += share * from[k];
     }
   }

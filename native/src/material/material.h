@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "btf/srbf_point.h"
 #include "material/factored_point.h"
 #include "material/ggx_sampler.h"
 #include "material/principled_lobes.h"
@@ -26,6 +27,7 @@ struct PreparedBrdf {
   GgxPoint ggx;                // of the fitted GGX lobe, where one is the material or draws its samples
   PrincipledLobes principled;  // textured Principled materials: those of the site
   FactoredPoint factored;      // BTFs as sums of products: those of the site and the view
+  SrbfPoint srbf;              // BTFs of multivariate SRBFs: the same
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.

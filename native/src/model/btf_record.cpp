@@ -8,9 +8,15 @@ namespace velour {
 using Json = JsonFields::Json;
 
 std::string btf_record_json(const BtfRecord& record) {
-  Json json = {{"method", record.method}, {"psnr", record.psnr},           {"ser", record.ser},
-               {"p99", record.p99},       {"raw_bytes", record.raw_bytes}, {"seconds", record.seconds},
-               {"seed", record.seed},     {"warnings", record.warnings}};
+  Json json = {{"method", record.method},
+               {"psnr", record.psnr},
+               {"ser", record.ser},
+               {"p99", record.p99},
+               {"raw_bytes", record.raw_bytes},
+               {"seconds", record.seconds},
+               {"evaluations_per_second", record.evaluations_per_second},
+               {"seed", record.seed},
+               {"warnings", record.warnings}};
   if (record.psnr_held_out) json["psnr_held_out"] = *record.psnr_held_out;
   return json.dump();
 }
@@ -27,6 +33,7 @@ BtfRecord parse_btf_record(const std::string& text, const std::string& where) {
   record.p99 = fields.number("p99");
   record.raw_bytes = fields.whole("raw_bytes", uint64_t{1} << 53);
   record.seconds = fields.number("seconds");
+  if (fields.has("evaluations_per_second")) record.evaluations_per_second = fields.number("evaluations_per_second");
   record.seed = fields.whole("seed", ~uint64_t{0});
   if (fields.has("psnr_held_out")) record.psnr_held_out = fields.number("psnr_held_out");
   for (const Json& warning : fields.at("warnings")) {

@@ -10,6 +10,7 @@
 #include "brdf/parametric_brdf.h"
 #include "brdf/scattered_brdf.h"
 #include "btf/factored_btf.h"
+#include "btf/srbf_btf.h"
 #include "model/btf_record.h"
 #include "model/order_curve.h"
 #include "model/scene_record.h"
@@ -41,7 +42,7 @@ struct SourceRecord {
 };
 
 /// Kinds of model; a new kind is appended.
-using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf, FactoredBtf>;
+using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf, FactoredBtf, SrbfBtf>;
 
 struct Model {
   ModelBody body;
@@ -60,7 +61,7 @@ bool is_reduced(const Model& model);
 /// Whether it is of a BTF, with a BtfRecord, instead of a BRDF.
 bool is_btf(const Model& model);
 
-/// "scattered", "parametric", "factored-btf".
+/// "scattered", "parametric", "factored-btf", "srbf-btf".
 const char* model_kind(const Model& model);
 
 }  // namespace velour

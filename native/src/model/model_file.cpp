@@ -11,11 +11,12 @@
 #include "model/parametric_file.h"
 #include "model/scattered_file.h"
 #include "model/scene_json.h"
+#include "model/srbf_btf_file.h"
 
 namespace velour {
 namespace {
 
-constexpr char kFormatVersion[] = "1.3";
+constexpr char kFormatVersion[] = "1.4";
 constexpr int kMajorVersion = 1;
 constexpr char kKind[] = "model";
 constexpr char kScene[] = "velour.scene", kBtf[] = "velour.btf.record";
@@ -23,20 +24,24 @@ constexpr uint64_t kMaxFileBytes = uint64_t{1} << 30;
 
 // One overload a kind of model.
 
-constexpr char kScattered[] = "scattered", kParametric[] = "parametric", kFactored[] = "factored-btf";
+constexpr char kScattered[] = "scattered", kParametric[] = "parametric", kFactored[] = "factored-btf",
+               kSrbf[] = "srbf-btf";
 const char* kind_of(const ScatteredBrdf&) { return kScattered; }
 const char* kind_of(const ParametricBrdf&) { return kParametric; }
 const char* kind_of(const FactoredBtf&) { return kFactored; }
+const char* kind_of(const SrbfBtf&) { return kSrbf; }
 
 void write_body(const ScatteredBrdf& brdf, TensorFile& file) { write_scattered(brdf, file); }
 void write_body(const ParametricBrdf& brdf, TensorFile& file) { write_parametric(brdf, file); }
 void write_body(const FactoredBtf& btf, TensorFile& file) { write_factored(btf, file); }
+void write_body(const SrbfBtf& btf, TensorFile& file) { write_srbf_btf(btf, file); }
 
 ModelBody read_body(const ModelFields& fields) {
   const std::string& kind = fields.attribute("velour.model");
   if (kind == kScattered) return read_scattered(fields);
   if (kind == kParametric) return read_parametric(fields);
   if (kind == kFactored) return read_factored(fields);
+  if (kind == kSrbf) return read_srbf_btf(fields);
   throw Error(Status::unsupported, fields.name() + ": velour.model is '" + kind +
                                        "', a kind of model that this Velour does not know. Use a newer one.");
 }
@@ -61,7 +66,9 @@ const char* model_kind(const Model& model) {
   return std::visit([](const auto& brdf) { return kind_of(brdf); }, model.body);
 }
 
-bool is_btf(const Model& model) { return std::holds_alternative<FactoredBtf>(model.body); }
+bool is_btf(const Model& model) {
+  return std::holds_alternative<FactoredBtf>(model.body) || std::holds_alternative<SrbfBtf>(model.body);
+}
 
 bool is_reduced(const Model& model) {
   const auto* brdf = std::get_if<ParametricBrdf>(&model.body);

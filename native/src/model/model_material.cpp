@@ -4,6 +4,7 @@
 #include "material/factored_material.h"
 #include "material/parametric_material.h"
 #include "material/scattered_material.h"
+#include "material/srbf_btf_material.h"
 
 namespace velour {
 namespace {
@@ -19,6 +20,7 @@ std::shared_ptr<const Material> made_of_body(const std::shared_ptr<const Model>&
 using Scattered = std::shared_ptr<const ScatteredBrdf>;
 using Parametric = std::shared_ptr<const ParametricBrdf>;
 using Factored = std::shared_ptr<const FactoredBtf>;
+using Srbf = std::shared_ptr<const SrbfBtf>;
 
 template <typename... Makes>
 struct Either : Makes... {
@@ -30,19 +32,20 @@ struct Either : Makes... {
 std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>& model, int neighbors) {
   return made_of_body(model, Either{[&](const Scattered& body) { return make_scattered_material(body, neighbors); },
                                     [&](const Parametric& body) { return make_parametric_material(body); },
-                                    [&](const Factored& body) { return make_factored_material(body); }});
+                                    [&](const Factored& body) { return make_factored_material(body); },
+                                    [&](const Srbf& body) { return make_srbf_btf_material(body); }});
 }
 
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
                                                        const std::shared_ptr<const Model>& proposal, int neighbors) {
-  return made_of_body(
-      proposal,
-      Either{[&](const Scattered& body) { return make_measured_material(std::move(measurement), body, neighbors); },
-             [&](const Parametric& body) { return make_measured_material(std::move(measurement), body); },
-             [&](const Factored&) -> std::shared_ptr<const Material> {
-               throw Error(Status::invalid_argument,
-                           "A model of a BTF cannot draw samples for the measurement of a BRDF.");
-             }});
+  if (is_btf(*proposal)) {
+    throw Error(Status::invalid_argument, "A model of a BTF cannot draw samples for the measurement of a BRDF.");
+  }
+  if (const auto* body = std::get_if<ScatteredBrdf>(&proposal->body)) {
+    return make_measured_material(std::move(measurement), Scattered(proposal, body), neighbors);
+  }
+  const auto* body = &std::get<ParametricBrdf>(proposal->body);
+  return make_measured_material(std::move(measurement), Parametric(proposal, body));
 }
 
 }  // namespace velour

@@ -8,19 +8,23 @@ import contextlib
 from ...native import Btf, compress_job, table
 from . import btf_options, later, numbers, output
 
-_METHODS = (*table.COMPRESS_METHODS, "svd-view", "srbf", "tucker", "cta", "kcta")
+_METHODS = (*table.COMPRESS_METHODS, "svd-view", "tucker", "cta", "kcta")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("input", metavar="BTF", help="a folder, a CSV index or a .btf file")
     parser.add_argument("-o", "--output", metavar="MODEL", required=True, help="the model to write")
-    parser.add_argument("--method", choices=_METHODS, default="svd", help="svd: the only one so far")
+    parser.add_argument(
+        "--method",
+        choices=_METHODS,
+        help="srbf: multivariate SRBFs over a relief (default); svd: truncated singular values",
+    )
     parser.add_argument(
         "--companding", choices=table.COMPANDINGS, help="sums of f itself or of its root; root"
     )
     parser.add_argument(
         "--bytes", type=numbers.whole(1, 2**63), metavar="N",
-        help="of all coefficients; a two-hundredth of the BTF, or 8 components",
+        help="of all coefficients; a two-hundredth of the BTF, or a few components",
     )  # fmt: skip
     parser.add_argument("--held-out", metavar="BTF", help="pairs that the fit does not see, to judge it by")
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
@@ -31,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> dict:
-    later.only("--method", args.method, table.COMPRESS_METHODS)
+    later.only("--method", args.method or "srbf", table.COMPRESS_METHODS)
     output.check_writable(args.output)
     names = ("method", "companding", "bytes", "seed", "threads")
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}

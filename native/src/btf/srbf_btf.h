@@ -1,0 +1,60 @@
+// A BTF as sums of multivariate SRBFs over a relief.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "btf/btf_measurement.h"
+#include "btf/factored_btf.h"
+#include "srbf/multivariate_lobes.h"
+
+namespace velour {
+
+/// One level of the pyramid over the tile.
+struct SrbfLevel {
+  uint32_t width = 0, height = 0;
+  std::vector<HalfBits> relief;  // [row][column]: over the reference plane, widths of the tile
+  std::vector<HalfBits> value;   // [row][column][coefficient], row 0 at the bottom
+};
+
+/// What is seen from one side of the reference plane under light from one side: both are looked at in the frame of the
+/// viewer, or of the light, mirrored to z > 0.
+///
+/// Let p be where the view's ray meets the relief of the level (Relief::seen). With a = a colour axis, the sum at p is
+///   s_a = sum over the coefficients k of a of value_k(p) g_{lobe_k}(wl, wv)
+/// and f = expanded(axes (s_0, s_1, s_2)). The first `tile_lobes` are functions of the directions in the tile's frame;
+/// the others, in the frame of the relief's normal at p: the tile's, turned the shortest way.
+struct SrbfSide {
+  bool view_below = false, light_below = false;
+  std::vector<MultivariateLobe> lobes;
+  uint32_t tile_lobes = 0;
+  std::array<std::vector<uint16_t>, 3> lobe;  // of each axis' coefficients: of axis 0 every lobe in order
+  std::vector<SrbfLevel> levels;              // the finest first; each half of the one before, down to one texel
+
+  size_t coefficients() const { return lobe[0].size() + lobe[1].size() + lobe[2].size(); }
+  /// Of all coefficients, heights and lobes as they are stored.
+  uint64_t parameter_bytes() const;
+};
+
+struct SrbfBtf {
+  PairLayout layout;  // that was fitted
+  TexelGrid grid;
+  Companding companding = Companding::root;
+  Mat3 axes{1.0f};  // columns: orthonormal directions in RGB
+  std::vector<SrbfSide> sides;
+
+  uint64_t parameter_bytes() const;
+
+  static constexpr size_t kMaxLobes = 256;
+};
+
+/// The tile's extent along y over that along x; square texels where its size is not known.
+float tile_aspect(const TexelGrid& grid);
+
+/// The rotation that takes unit `normal` (z > 0) to +z the shortest way.
+Mat3 to_normal(const Vec3& normal);
+/// Unit normal of Relief::slope().
+inline Vec3 normal_of(const Vec2& slope) { return glm::normalize(Vec3(slope, 1.0f)); }
+
+}  // namespace velour

@@ -1,0 +1,50 @@
+#include "compress/relief_pyramid.h"
+
+#include <algorithm>
+
+#include "btf/srbf_btf.h"
+#include "image/half_image.h"
+
+namespace velour {
+namespace {
+
+/// Over the reference plane, in widths of the tile, away from the plane on the viewer's side.
+std::vector<float> heights_of(const BtfMeasurement& measurement, const SideDirections& side) {
+  std::vector<float> heights(measurement.grid().texels(), 0.0f);
+  if (!measurement.has_structure() || !measurement.shell()) return heights;
+  const auto normal =
+      std::max_element(side.view.begin(), side.view.end(), [](const Vec3& a, const Vec3& b) { return a.z < b.z; });
+  const auto view = side.view_number[static_cast<size_t>(normal - side.view.begin())];
+  const ViewStructure structure = measurement.read_structure(view).value();
+  const double width = measurement.grid().tile_metres ? static_cast<double>(measurement.grid().tile_metres->x) : 1.0;
+  const Shell& shell = *measurement.shell();
+  const double sign = side.view_below ? -1 : 1;
+  for (size_t t = 0; t < heights.size(); ++t) {
+    const bool met = structure.coverage[t] > 0 && std::isfinite(structure.height_mean[t]);
+    const double lowest = side.view_below ? shell.thickness : 0.0;
+    const double height = met ? static_cast<double>(structure.height_mean[t]) : lowest;
+    heights[t] = static_cast<float>(sign * (height - shell.reference_height) / width);
+  }
+  return heights;
+}
+
+}  // namespace
+
+std::vector<Relief> relief_pyramid(const BtfMeasurement& measurement, const SideDirections& side) {
+  std::vector<Relief> pyramid;
+  std::vector<float> heights = heights_of(measurement, side);
+  uint32_t width = measurement.grid().width, height = measurement.grid().height;
+  for (;;) {
+    std::vector<HalfBits> halves(heights.size());
+    floats_to_halves(heights, halves);
+    std::vector<float> stored(heights.size());
+    halves_to_floats(halves, stored);
+    pyramid.emplace_back(width, height, std::move(stored), tile_aspect(measurement.grid()));
+    if (width == 1 && height == 1) return pyramid;
+    heights = half_image(heights, width, height, 1);
+    width = half_of(width);
+    height = half_of(height);
+  }
+}
+
+}  // namespace velour

@@ -1,0 +1,33 @@
+// The part of a BTF that is seen from one side of the plane under light from one side.
+#pragma once
+
+#include <vector>
+
+#include "compress/companded_views.h"
+
+namespace velour {
+
+/// Views and lights of a side, mirrored to z > 0.
+struct SideDirections {
+  bool view_below = false, light_below = false;
+  std::vector<uint32_t> view_number, light_number;  // in the layout
+  std::vector<Vec3> view, light;
+};
+
+/// The sides that a complete layout has directions on: reflection from above first.
+std::vector<SideDirections> sides_of(const PairLayout& layout);
+
+/// One level of the images of a view: companded, along the three colour axes.
+struct LevelImages {
+  uint32_t width, height;
+  std::array<RowMatrix, 3> value;  // texel x light
+};
+
+/// Reads a view of a side: all of its levels, or the finest `levels`.
+void read_side_view(CompandedViews& views, const TexelGrid& grid, const SideDirections& side, size_t view,
+                    size_t levels, std::vector<LevelImages>& images);
+
+/// [image][row][column][channel] at the next level of the pyramid.
+std::vector<float> halved_images(const std::vector<float>& f, uint32_t width, uint32_t height);
+
+}  // namespace velour

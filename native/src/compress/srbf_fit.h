@@ -1,0 +1,28 @@
+// A BTF fitted by sums of multivariate SRBFs over a relief.
+#pragma once
+
+#include <cstdint>
+
+#include "btf/srbf_btf.h"
+#include "job/progress.h"
+
+namespace velour {
+
+struct SrbfOptions {
+  uint64_t bytes = 0;  // of all coefficients, heights and lobes at most; 0: a two-hundredth of the measurement
+  Companding companding = Companding::root;
+  uint64_t seed = 0;
+  int threads = 0;  // 0: all
+};
+
+struct SrbfFit {
+  SrbfBtf btf;
+  uint64_t not_finite = 0;  // entries of the measurement that were left out
+};
+
+/// Lobes that all texels share are chosen and refined by what random points of the surface show, then the texels of
+/// every level are solved for, each level from the coarser one. Deterministic. Throws Error(invalid_argument) when
+/// `bytes` hold not one coefficient, Error(unsupported) for a layout that is not complete.
+SrbfFit fit_srbf(const BtfMeasurement& measurement, const SrbfOptions& options, Progress& progress);
+
+}  // namespace velour

@@ -1,0 +1,29 @@
+// Random points of a relief with what all views show of them: what lobes are chosen and refined by.
+#pragma once
+
+#include <vector>
+
+#include "btf/relief.h"
+#include "compress/side_views.h"
+#include "srbf/multivariate_lobes.h"
+
+namespace velour {
+
+struct SurfacePoint {
+  Vec2 place;      // in tiles
+  Mat3 to_normal;  // the tile's frame to that of the relief's normal
+  std::vector<LobeArguments> pair;
+  std::array<std::vector<float>, 3> value;  // along the colour axes, of each pair
+};
+
+struct SurfacePointOptions {
+  uint32_t points = 0;
+  uint32_t pairs = 0;  // of a point that every view sees, about
+  uint64_t seed = 0;
+};
+
+/// Reads every view once. A view shows a point where its ray through it ends within three quarters of a texel of it.
+std::vector<SurfacePoint> surface_points(CompandedViews& views, const TexelGrid& grid, const SideDirections& side,
+                                         const Relief& relief, const SurfacePointOptions& options, Progress& progress);
+
+}  // namespace velour

@@ -1,0 +1,212 @@
+#include "compress/texel_solver.h"
+
+#include <Eigen/Eigenvalues>
+
+#include "btf/bilinear_texels.h"
+#include "btf/srbf_btf.h"
+#include "compress/row_products.h"
+#include "fit/parallel.h"
+#include "srbf/aligned_floats.h"
+
+namespace velour {
+namespace {
+
+constexpr double kRidge = 1e-4;      // of coefficients, relative to a lobe of value 1 everywhere
+constexpr size_t kTexels = 64;       // of a block of work: fixed, so that sums do not depend on threads
+constexpr size_t kGramTexels = 170;  // of a view that the mean Gram matrix is taken over, about
+
+}  // namespace
+
+struct TexelSolver::Place {
+  BilinearTexels texels;
+  Mat3 to_normal;
+};
+
+TexelSolver::TexelSolver(const SideDirections& side, const SharedLobes& lobes, const Relief& relief, int threads,
+                         const Progress& progress)
+    : side_(side),
+      lobes_(lobes),
+      relief_(relief),
+      threads_(threads),
+      progress_(progress),
+      tile_(std::span(lobes.lobes).first(lobes.tile_lobes)),
+      texel_(std::span(lobes.lobes).subspan(lobes.tile_lobes)),
+      stride_(tile_.padded() + texel_.padded()) {
+  for (uint32_t a = 0; a < 3; ++a) {
+    for (const uint16_t lobe : lobes.lobe[a]) {
+      column_.push_back(a * stride_ + (lobe < tile_.size() ? lobe : tile_.padded() + lobe - tile_.size()));
+    }
+  }
+  data_.setZero(Eigen::Index{relief.width()} * relief.height(), static_cast<Eigen::Index>(column_.size()));
+  average_gram();
+}
+
+std::vector<TexelSolver::Place> TexelSolver::places(size_t view) const {
+  const uint32_t width = relief_.width(), height = relief_.height();
+  std::vector<Place> places(size_t{width} * height);
+  parallel_pieces(height, threads_, progress_, [&](size_t row) {
+    for (uint32_t x = 0; x < width; ++x) {
+      const Vec2 place((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+                       (static_cast<float>(row) + 0.5f) / static_cast<float>(height));
+      Place& at = places[row * width + x];
+      at.texels = bilinear_texels(relief_.seen(place, side_.view[view]), width, height);
+      Vec2 slope(0.0f);
+      for (size_t i = 0; i < 4; ++i) {
+        slope += at.texels.weight[i] * relief_.slope(at.texels.index[i] % width, at.texels.index[i] / width);
+      }
+      at.to_normal = to_normal(normal_of(slope));
+    }
+  });
+  return places;
+}
+
+/// `sums` += for every texel of the view, its lobes' moments with values_of(texel, place, rows, values), at the texels
+/// where it is seen.
+template <class Values>
+void TexelSolver::accumulate(size_t view, const Values& values_of, RowMatrix& sums) const {
+  const std::vector<Place> place = places(view);
+  const auto lights = static_cast<uint32_t>(side_.light.size());
+  std::vector<LobeArguments> pair;
+  AlignedFloats tile_rows(size_t{lights} * stride_);
+  for (uint32_t l = 0; l < lights; ++l) {
+    pair.emplace_back(DirectionPair{side_.light[l], side_.view[view]});
+    tile_.values(pair[l], tile_rows.data() + size_t{l} * stride_);
+  }
+  RowMatrix moment(static_cast<Eigen::Index>(place.size()), sums.cols());
+  parallel_pieces((place.size() + kTexels - 1) / kTexels, threads_, progress_, [&](size_t block) {
+    AlignedFloats rows(size_t{lights} * stride_), values(size_t{lights} * 3), sum(size_t{3} * stride_);
+    std::copy_n(tile_rows.data(), size_t{lights} * stride_, rows.data());
+    for (size_t t = block * kTexels; t < std::min(place.size(), (block + 1) * kTexels); ++t) {
+      for (uint32_t l = 0; l < lights; ++l) {
+        texel_.values(pair[l].turned(place[t].to_normal), rows.data() + size_t{l} * stride_ + tile_.padded());
+      }
+      values_of(t, place[t], rows.data(), values.data());
+      times_rows(rows.data(), lights, stride_, values.data(), sum.data());
+      gather(sum.data(), moment.row(static_cast<Eigen::Index>(t)).data());
+    }
+  });
+  // From the texels of the view to those that they see: by target, so that threads do not meet and sums have one order.
+  std::vector<uint32_t> first(place.size() + 1);
+  for (const Place& p : place) {
+    for (const uint32_t i : p.texels.index) ++first[i + 1];
+  }
+  for (size_t t = 0; t < place.size(); ++t) first[t + 1] += first[t];
+  std::vector<uint32_t> source(first.back()), next = first;
+  for (uint32_t t = 0; t < place.size(); ++t) {
+    for (uint32_t i = 0; i < 4; ++i) source[next[place[t].texels.index[i]]++] = 4 * t + i;
+  }
+  parallel_pieces((place.size() + kTexels - 1) / kTexels, threads_, progress_, [&](size_t block) {
+    for (size_t t = block * kTexels; t < std::min(place.size(), (block + 1) * kTexels); ++t) {
+      for (uint32_t i = first[t]; i < first[t + 1]; ++i) {
+        const float weight = place[source[i] / 4].texels.weight[source[i] % 4];
+        sums.row(static_cast<Eigen::Index>(t)) += weight * moment.row(source[i] / 4);
+      }
+    }
+  });
+}
+
+void TexelSolver::add_view(size_t view, const LevelImages& images) {
+  const auto take = [&](size_t t, const Place&, const float*, float* values) {
+    for (size_t l = 0; l < side_.light.size(); ++l) {
+      for (size_t a = 0; a < 3; ++a) {
+        values[3 * l + a] = images.value[a](static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(l));
+      }
+    }
+  };
+  accumulate(view, take, data_);
+}
+
+RowMatrix TexelSolver::normal_product(const RowMatrix& coefficient) const {
+  RowMatrix product = RowMatrix::Zero(coefficient.rows(), coefficient.cols());
+  const auto lights = static_cast<uint32_t>(side_.light.size());
+  const auto blended = [&](size_t, const Place& place, const float* rows, float* values) {
+    Eigen::RowVectorXf compact = Eigen::RowVectorXf::Zero(coefficient.cols());
+    for (size_t i = 0; i < 4; ++i) compact += place.texels.weight[i] * coefficient.row(place.texels.index[i]);
+    AlignedFloats padded(size_t{3} * stride_);
+    spread(compact.data(), padded.data());
+    rows_times(rows, lights, stride_, padded.data(), values);
+  };
+  for (size_t v = 0; v < side_.view.size(); ++v) {
+    progress_.check();
+    accumulate(v, blended, product);
+  }
+  return product;
+}
+
+void TexelSolver::spread(const float* compact, float* padded) const {
+  std::fill_n(padded, size_t{3} * stride_, 0.0f);
+  for (size_t k = 0; k < column_.size(); ++k) padded[column_[k]] = compact[k];
+}
+
+void TexelSolver::gather(const float* padded, float* compact) const {
+  for (size_t k = 0; k < column_.size(); ++k) compact[k] = padded[column_[k]];
+}
+
+void TexelSolver::average_gram() {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(stride_, stride_);
+  AlignedFloats values(stride_);
+  const Eigen::Map<const Eigen::VectorXf> value(values.data(), stride_);
+  uint64_t count = 0;
+  for (size_t v = 0; v < side_.view.size(); ++v) {
+    const std::vector<Place> place = places(v);
+    const size_t step = std::max<size_t>(1, place.size() / kGramTexels);
+    Eigen::MatrixXf rows(stride_, static_cast<Eigen::Index>(side_.light.size()));
+    for (size_t t = v % step; t < place.size(); t += step) {
+      for (size_t l = 0; l < side_.light.size(); ++l) {
+        const LobeArguments at({side_.light[l], side_.view[v]});
+        tile_.values(at, values.data());
+        texel_.values(at.turned(place[t].to_normal), values.data() + tile_.padded());
+        rows.col(static_cast<Eigen::Index>(l)) = value;
+      }
+      sum += (rows * rows.transpose()).cast<double>();
+      count += side_.light.size();
+    }
+  }
+  gram_ = sum / static_cast<double>(count);
+  for (size_t a = 0, k = 0; a < 3; ++a) {
+    const auto n = static_cast<Eigen::Index>(lobes_.lobe[a].size());
+    Eigen::MatrixXd gram(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        gram(i, j) =
+            gram_(column_[k + static_cast<size_t>(i)] % stride_, column_[k + static_cast<size_t>(j)] % stride_);
+      }
+    }
+    gram.diagonal().array() += kRidge;
+    whiten_[a] = n > 0 ? Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram).operatorInverseSqrt().cast<float>().eval()
+                       : Eigen::MatrixXf();
+    k += static_cast<size_t>(n);
+  }
+}
+
+RowMatrix TexelSolver::whitened(const RowMatrix& m) const {
+  RowMatrix out(m.rows(), m.cols());
+  Eigen::Index first = 0;
+  for (const Eigen::MatrixXf& w : whiten_) {
+    if (w.cols() > 0) out.middleCols(first, w.cols()).noalias() = m.middleCols(first, w.cols()) * w;
+    first += w.cols();
+  }
+  return out;
+}
+
+RowMatrix TexelSolver::solve(const RowMatrix& start, int steps, const std::function<void(int)>& after_step) {
+  // A texel counts as if it were seen by this many views.
+  const auto ridge = static_cast<float>(kRidge * static_cast<double>(side_.light.size() * side_.view.size()) / 4);
+  RowMatrix x = RowMatrix::Zero(start.rows(), start.cols());
+  RowMatrix rest = whitened(data_ - normal_product(start));
+  RowMatrix direction = rest;
+  double energy = static_cast<double>(rest.squaredNorm());
+  for (int step = 0; step < steps && energy > 0; ++step) {
+    const RowMatrix product = whitened(normal_product(whitened(direction))) + ridge * direction;
+    const double length = energy / static_cast<double>(direction.cwiseProduct(product).sum());
+    x += static_cast<float>(length) * direction;
+    rest -= static_cast<float>(length) * product;
+    const double now = static_cast<double>(rest.squaredNorm());
+    direction = rest + static_cast<float>(now / energy) * direction;
+    energy = now;
+    after_step(step);
+  }
+  return start + whitened(x);
+}
+
+}  // namespace velour

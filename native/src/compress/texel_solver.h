@@ -1,0 +1,54 @@
+// The coefficients of all texels of a level, for lobes that are given.
+#pragma once
+
+#include <functional>
+
+#include "btf/relief.h"
+#include "compress/shared_lobes.h"
+#include "compress/side_views.h"
+
+namespace velour {
+
+/// Least squares over every pair and texel of a level: a value is the sum of lobes with coefficients interpolated
+/// where the view's ray meets the relief, so neighbours share it and all are solved for together, by conjugate
+/// gradients ([HS52]) in coordinates in which lobes are orthonormal on average. The normal matrix is never stored; its
+/// products need the directions alone, so data are read once.
+class TexelSolver {
+ public:
+  TexelSolver(const SideDirections& side, const SharedLobes& lobes, const Relief& relief, int threads,
+              const Progress& progress);
+
+  /// Of every view once.
+  void add_view(size_t view, const LevelImages& images);
+
+  /// [texel][coefficient], from a start of the same shape.
+  RowMatrix solve(const RowMatrix& start, int steps, const std::function<void(int)>& after_step);
+
+  /// The mean of the products of any two lobes over sampled texels and pairs, from which coordinates are made.
+  const Eigen::MatrixXd& gram() const { return gram_; }
+
+ private:
+  struct Place;  // where texels of a view are seen
+  std::vector<Place> places(size_t view) const;
+  template <class Values>
+  void accumulate(size_t view, const Values& values_of, RowMatrix& sums) const;
+  RowMatrix normal_product(const RowMatrix& coefficient) const;
+  RowMatrix whitened(const RowMatrix& m) const;
+  void average_gram();
+  void spread(const float* compact, float* padded) const;
+  void gather(const float* padded, float* compact) const;
+
+  const SideDirections& side_;
+  const SharedLobes& lobes_;
+  const Relief& relief_;
+  int threads_;
+  const Progress& progress_;
+  MultivariateLobes tile_, texel_;
+  uint32_t stride_;               // of a row of lobes, padded
+  std::vector<uint32_t> column_;  // of each coefficient in [axis][padded lobe]
+  Eigen::MatrixXd gram_;
+  std::array<Eigen::MatrixXf, 3> whiten_;  // symmetric: inverse roots of the axes' Gram matrices
+  RowMatrix data_;                         // moments of the data with each coefficient's function
+};
+
+}  // namespace velour

@@ -1,0 +1,14 @@
+// A BTF as sums of multivariate SRBFs, as a material.
+#pragma once
+
+#include <memory>
+
+#include "btf/srbf_btf.h"
+#include "material/material.h"
+
+namespace velour {
+
+/// Texture coordinates are in tiles: the BTF repeats with every whole number.
+std::shared_ptr<const Material> make_srbf_btf_material(std::shared_ptr<const SrbfBtf> btf);
+
+}  // namespace velour

@@ -1,0 +1,94 @@
+#include "model/btf_parts.h"
+
+#include <cmath>
+
+#include "btf/btf_index.h"
+
+namespace velour {
+namespace {
+
+constexpr char kIndex[] = "velour.btf.index", kCompanding[] = "velour.companding", kAxes[] = "btf.axes";
+constexpr const char* kCompandingNames[] = {"none", "root"};
+
+Companding companding_named(const ModelFields& fields) {
+  const std::string& name = fields.attribute(kCompanding);
+  if (name == kCompandingNames[0]) return Companding::none;
+  if (name == kCompandingNames[1]) return Companding::root;
+  fields.fail(std::string(kCompanding) + " is '" + name + "'; it must be none or root.");
+}
+
+Mat3 read_axes(const ModelFields& fields) {
+  const Tensor& tensor = shaped_tensor(fields, kAxes, {3, 3});
+  Mat3 axes;
+  for (size_t i = 0; i < 9; ++i) {
+    const float value = tensor.data[i];
+    if (!(std::abs(value) <= 1.001f)) fields.fail_at(kAxes, i, value, "a component of a unit vector");
+    axes[static_cast<int>(i / 3)][static_cast<int>(i % 3)] = value;
+  }
+  return axes;
+}
+
+/// [from][to] to [to][from].
+template <class Value>
+std::vector<Value> transposed(const std::vector<Value>& values, size_t to) {
+  std::vector<Value> out(values.size());
+  const size_t from = values.size() / to;
+  for (size_t f = 0; f < from; ++f) {
+    for (size_t t = 0; t < to; ++t) out[t * from + f] = values[f * to + t];
+  }
+  return out;
+}
+
+}  // namespace
+
+void write_btf_frame(const BtfFrame& frame, TensorFile& file) {
+  file.attributes[kIndex] = encode_btf_index({.layout = frame.layout, .grid = frame.grid}, std::nullopt);
+  file.attributes[kCompanding] = kCompandingNames[static_cast<size_t>(frame.companding)];
+  file.attributes["velour.units"] = "apparent BRDF in 1/sr, linear Rec. 709";
+  Tensor& axes = file.tensors[kAxes] = {{3, 3}, {}, false};
+  for (int i = 0; i < 9; ++i) axes.data.push_back(frame.axes[i / 3][i % 3]);
+}
+
+BtfFrame read_btf_frame(const ModelFields& fields) {
+  const std::string& text = fields.attribute(kIndex);
+  const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(text.data()), text.size());
+  const BtfIndex index = decode_btf_index(bytes, fields.name() + ": " + kIndex).index;
+  if (!index.layout.complete()) fields.fail(std::string(kIndex) + " leaves out pairs; a model needs all of them.");
+  return {index.layout, index.grid, companding_named(fields), read_axes(fields)};
+}
+
+const Tensor& shaped_tensor(const ModelFields& fields, const std::string& part, const std::vector<uint64_t>& shape) {
+  const Tensor& tensor = fields.tensor(part);
+  if (tensor.shape == shape) return tensor;
+  std::string text;
+  for (const uint64_t extent : shape) text += (text.empty() ? "[" : ", ") + std::to_string(extent);
+  fields.fail("the part " + part + " must have the shape " + text + "].");
+}
+
+std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string& part,
+                                    const std::vector<uint64_t>& shape) {
+  const Tensor& tensor = shaped_tensor(fields, part, shape);
+  for (size_t i = 0; i < tensor.data.size(); ++i) {
+    if (!std::isfinite(tensor.data[i])) fields.fail_at(part, i, tensor.data[i], "finite");
+  }
+  std::vector<HalfBits> halves(tensor.data.size());
+  floats_to_halves(tensor.data, halves);
+  return halves;
+}
+
+Tensor tensor_of(const std::vector<HalfBits>& halves, const std::vector<uint64_t>& shape) {
+  Tensor tensor{shape, std::vector<float>(halves.size()), true};
+  halves_to_floats(halves, tensor.data);
+  return tensor;
+}
+
+Tensor maps_tensor(const std::vector<HalfBits>& values, uint64_t coefficients, uint32_t width, uint32_t height) {
+  return tensor_of(transposed(values, coefficients), {coefficients, height, width});
+}
+
+std::vector<HalfBits> read_maps(const ModelFields& fields, const std::string& part, uint64_t coefficients,
+                                uint32_t width, uint32_t height) {
+  return transposed(shaped_halves(fields, part, {coefficients, height, width}), size_t{width} * height);
+}
+
+}  // namespace velour

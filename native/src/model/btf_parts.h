@@ -1,0 +1,37 @@
+// What the model files of all BTFs share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "btf/factored_btf.h"
+#include "model/model_fields.h"
+
+namespace velour {
+
+/// What is known of a BTF beside its coefficients.
+struct BtfFrame {
+  PairLayout layout;
+  TexelGrid grid;
+  Companding companding = Companding::root;
+  Mat3 axes{1.0f};  // columns
+};
+
+void write_btf_frame(const BtfFrame& frame, TensorFile& file);
+/// Refuses layouts that leave out pairs.
+BtfFrame read_btf_frame(const ModelFields& fields);
+
+/// The tensor `part`, of this shape.
+const Tensor& shaped_tensor(const ModelFields& fields, const std::string& part, const std::vector<uint64_t>& shape);
+/// The same as half floats, all finite.
+std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string& part,
+                                    const std::vector<uint64_t>& shape);
+/// A part of half floats.
+Tensor tensor_of(const std::vector<HalfBits>& halves, const std::vector<uint64_t>& shape);
+
+/// Values [texel][coefficient] as a part of pictures, one a coefficient, and back.
+Tensor maps_tensor(const std::vector<HalfBits>& values, uint64_t coefficients, uint32_t width, uint32_t height);
+std::vector<HalfBits> read_maps(const ModelFields& fields, const std::string& part, uint64_t coefficients,
+                                uint32_t width, uint32_t height);
+
+}  // namespace velour

@@ -1,0 +1,129 @@
+#include "model/srbf_btf_file.h"
+
+#include <cmath>
+
+#include "image/half_image.h"
+#include "model/btf_parts.h"
+
+namespace velour {
+namespace {
+
+constexpr char kSides[] = "btf.sides";
+
+/// Names of the parts of side `number`.
+struct SideParts {
+  explicit SideParts(size_t number) : prefix("btf.side." + std::to_string(number) + ".") {}
+  std::string lobes() const { return prefix + "lobes"; }
+  std::string frames() const { return prefix + "frames"; }
+  std::string coefficients() const { return prefix + "coefficients"; }
+  std::string relief(size_t level) const { return prefix + "relief." + std::to_string(level); }
+  std::string texels(size_t level) const { return prefix + "texels." + std::to_string(level); }
+  std::string prefix;
+};
+
+void write_side(const SrbfSide& side, const SideParts& part, TensorFile& file) {
+  Tensor& lobes = file.tensors[part.lobes()] = {{side.lobes.size(), 9}, {}, false};
+  Tensor& frames = file.tensors[part.frames()] = {{side.lobes.size()}, {}, true};
+  for (size_t j = 0; j < side.lobes.size(); ++j) {
+    const MultivariateLobe& lobe = side.lobes[j];
+    for (const Vec3& v : {lobe.light, lobe.view, lobe.half}) lobes.data.insert(lobes.data.end(), {v.x, v.y, v.z});
+    frames.data.push_back(j < side.tile_lobes ? 0.0f : 1.0f);
+  }
+  Tensor& coefficients = file.tensors[part.coefficients()] = {{side.coefficients(), 2}, {}, true};
+  for (size_t a = 0; a < 3; ++a) {
+    for (const uint16_t lobe : side.lobe[a]) {
+      coefficients.data.insert(coefficients.data.end(), {static_cast<float>(a), static_cast<float>(lobe)});
+    }
+  }
+  for (size_t l = 0; l < side.levels.size(); ++l) {
+    const SrbfLevel& level = side.levels[l];
+    file.tensors[part.relief(l)] = tensor_of(level.relief, {level.height, level.width});
+    file.tensors[part.texels(l)] = maps_tensor(level.value, side.coefficients(), level.width, level.height);
+  }
+}
+
+void read_lobes(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
+  constexpr float kSharpest = 1e6f;  // bandwidths of any use are far below
+  const Tensor& lobes = fields.rows(part.lobes(), 9);
+  const size_t count = lobes.data.size() / 9;
+  if (count > SrbfBtf::kMaxLobes) {
+    fields.fail(part.lobes() + " has " + std::to_string(count) + " lobes; a model has at most " +
+                std::to_string(SrbfBtf::kMaxLobes) + ".");
+  }
+  for (size_t i = 0; i < lobes.data.size(); ++i) {
+    if (!(std::abs(lobes.data[i]) <= kSharpest)) fields.fail_at(part.lobes(), i, lobes.data[i], "at most 1e6");
+  }
+  for (const float* v = lobes.data.data(); side.lobes.size() < count; v += 9) {
+    side.lobes.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}});
+  }
+  const Tensor& frames = shaped_tensor(fields, part.frames(), {count});
+  for (size_t j = 0; j < count; ++j) {
+    const float frame = frames.data[j];
+    if (frame != 0 && frame != 1) fields.fail_at(part.frames(), j, frame, "0 (tile) or 1 (texel)");
+    if (frame == 0 && side.tile_lobes < j) fields.fail_at(part.frames(), j, frame, "1, as those before");
+    side.tile_lobes += frame == 0;
+  }
+}
+
+void read_coefficients(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
+  const Tensor& tensor = fields.rows(part.coefficients(), 2);
+  const size_t count = tensor.data.size() / 2;
+  if (count > 3 * SrbfBtf::kMaxLobes) fields.fail(part.coefficients() + " has too many rows.");
+  float least = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const float axis = tensor.data[2 * k], lobe = tensor.data[2 * k + 1];
+    if (!(axis >= least && axis <= 2 && axis == std::floor(axis))) {
+      fields.fail_at(part.coefficients(), 2 * k, axis, "0, 1 or 2, never falling");
+    }
+    least = axis;
+    const bool in_order = axis > 0 || lobe == static_cast<float>(k);
+    if (!(lobe >= 0 && lobe < static_cast<float>(side.lobes.size()) && lobe == std::floor(lobe) && in_order)) {
+      fields.fail_at(part.coefficients(), 2 * k + 1, lobe, "the number of a lobe (for axis 0: all, in order)");
+    }
+    side.lobe[static_cast<size_t>(axis)].push_back(static_cast<uint16_t>(lobe));
+  }
+  if (side.lobe[0].size() != side.lobes.size()) fields.fail(part.coefficients() + " leaves out lobes of axis 0.");
+}
+
+SrbfSide read_side(const ModelFields& fields, const SideParts& part, const TexelGrid& grid) {
+  SrbfSide side;
+  read_lobes(fields, part, side);
+  read_coefficients(fields, part, side);
+  uint32_t width = grid.width, height = grid.height;
+  for (;; width = half_of(width), height = half_of(height)) {
+    const size_t l = side.levels.size();
+    side.levels.push_back({width, height, shaped_halves(fields, part.relief(l), {height, width}),
+                           read_maps(fields, part.texels(l), side.coefficients(), width, height)});
+    if (width == 1 && height == 1) return side;
+  }
+}
+
+}  // namespace
+
+void write_srbf_btf(const SrbfBtf& btf, TensorFile& file) {
+  write_btf_frame({btf.layout, btf.grid, btf.companding, btf.axes}, file);
+  Tensor& sides = file.tensors[kSides] = {{btf.sides.size(), 2}, {}, true};
+  for (size_t s = 0; s < btf.sides.size(); ++s) {
+    const SrbfSide& side = btf.sides[s];
+    sides.data.insert(sides.data.end(), {side.view_below ? 1.0f : 0.0f, side.light_below ? 1.0f : 0.0f});
+    write_side(side, SideParts(s), file);
+  }
+}
+
+SrbfBtf read_srbf_btf(const ModelFields& fields) {
+  const BtfFrame frame = read_btf_frame(fields);
+  SrbfBtf btf{frame.layout, frame.grid, frame.companding, frame.axes, {}};
+  const Tensor& sides = fields.rows(kSides, 2);
+  if (sides.data.size() > 8) fields.fail(std::string(kSides) + " has more than four rows.");
+  for (size_t i = 0; i < sides.data.size(); ++i) {
+    if (sides.data[i] != 0 && sides.data[i] != 1) fields.fail_at(kSides, i, sides.data[i], "0 (above) or 1 (below)");
+  }
+  for (size_t s = 0; 2 * s < sides.data.size(); ++s) {
+    SrbfSide& side = btf.sides.emplace_back(read_side(fields, SideParts(s), btf.grid));
+    side.view_below = sides.data[2 * s] != 0;
+    side.light_below = sides.data[2 * s + 1] != 0;
+  }
+  return btf;
+}
+
+}  // namespace velour
