@@ -91,6 +91,15 @@ class MaterialTable:
     def _add_reference(self, node, owner):
         if node.velour.measurement is None:
             raise ExportError(f"{owner}: 'Render from Measurement' is on, but no measurement is chosen.")
+        if files.measurement_info(node.velour.measurement, owner)["kind"] == "btf":
+            return self._add_btf(node.velour.measurement, owner)
         proposal = files.read_model(node.image, owner) if node.image else None
         with files.read_measurement(node.velour.measurement, owner) as measurement:
             return self._scene.add_measurement_material(measurement, proposal, node.velour.neighbors)
+
+    def _add_btf(self, image, owner):
+        try:
+            with files.read_btf(image, owner) as btf:
+                return self._scene.add_btf_material(btf)
+        except VelourError as error:
+            raise ExportError(f"{owner}: {error}") from error

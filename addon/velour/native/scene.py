@@ -13,6 +13,7 @@ import numpy as np
 
 from . import library, table
 from .arrays import affine, checked, pointer, small
+from .btf import Btf
 from .errors import refuse
 from .handle import Handle, choice, path_bytes, set_fields
 from .measurement import Measurement
@@ -104,6 +105,10 @@ class Scene(Handle):
         return self._numbered(
             "vlr_scene_add_measurement_material", measurement.pointer, proposal_pointer, neighbors
         )
+
+    def add_btf_material(self, btf: Btf, most_bytes: int = 0) -> int:
+        """Reference mode of a BTF: f of the BTF itself, read into memory: `most_bytes` (0: 4 GiB)."""
+        return self._numbered("vlr_scene_add_btf_material", btf.pointer, most_bytes)
 
     def add_principled_material(self, **values) -> int:
         """base_color [3], metallic, roughness (alpha of GGX: its square), specular: 0..1.

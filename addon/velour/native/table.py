@@ -332,6 +332,7 @@ STATUS_CALLS = {
     "vlr_scene_add_model_material": [_handle, _handle, c_uint32, _number],
     "vlr_scene_set_model_material": [_handle, c_uint32, _handle, c_uint32],
     "vlr_scene_add_measurement_material": [_handle, _handle, _handle, c_uint32, _number],
+    "vlr_scene_add_btf_material": [_handle, _handle, c_uint64, _number],
     "vlr_scene_add_principled_material": [_handle, POINTER(PrincipledDesc), _number],
     "vlr_texture_create": [
         c_uint32,

@@ -308,6 +308,11 @@ VLR_API vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t mater
 VLR_API vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,
                                                       const vlr_model* proposal, uint32_t neighbors,
                                                       uint32_t* material);
+/* Reference mode of BTFs: f is that of the BTF itself, barycentric between its directions, linear between texels and mip
+ * levels. All of it is read into memory as half floats; VLR_UNSUPPORTED where that takes more than `most_bytes` (0: 4
+ * GiB) or pairs are missing. Texture coordinates count tiles. Samples are drawn by the cosine. */
+VLR_API vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint64_t most_bytes,
+                                              uint32_t* material);
 typedef struct vlr_principled_desc {
   uint32_t struct_size;
   float base_color[3]; /* working space */

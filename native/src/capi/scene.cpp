@@ -6,6 +6,7 @@
 #include "capi/handles.h"
 #include "capi/reports.h"
 #include "fit/scattered_fit.h"
+#include "material/measured_btf_material.h"
 #include "material/principled_lobes.h"
 #include "model/model_material.h"
 #include "scene/mesh_file.h"
@@ -142,6 +143,16 @@ vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measur
     const auto model = proposal ? proposal->model : coarse_proposal(*measurement->measurement);
     *material = scene->scene->add_material(
         {.material = make_measured_material(measurement->measurement, model, static_cast<int>(neighbors))});
+  });
+}
+
+vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint64_t most_bytes, uint32_t* material) {
+  return guard([&] {
+    require(scene, "scene");
+    require(btf, "btf");
+    require(material, "material");
+    auto table = read_btf_table(*btf->btf, most_bytes != 0 ? most_bytes : kUsualTableBytes);
+    *material = scene->scene->add_material({.material = make_measured_btf_material(std::move(table))});
   });
 }
 
