@@ -29,10 +29,10 @@ PLOT_STRATEGIES = ("uniform", "cosine", "srbf", "light", "mis")
 
 def main(task: dict) -> None:
     scene = empty_scene(SIZE, SAMPLES, BOUNCES)
-    subject = _add_subject()
-    _add_ground()
-    _add_camera(scene)
-    _add_world(scene)
+    subject = add_subject()
+    add_ground()
+    add_camera(scene)
+    add_world(scene)
     node = _add_materials(subject, task["model"], task["measurement"])
     report = _render_pictures(scene, node, task["folder"])
     report["curves"] = _curves(scene)
@@ -40,7 +40,7 @@ def main(task: dict) -> None:
         json.dump(report, file)
 
 
-def _add_subject() -> bpy.types.Object:
+def add_subject() -> bpy.types.Object:
     rotation = (math.radians(-25), 0, math.radians(30))
     bpy.ops.mesh.primitive_monkey_add(size=2.0, rotation=rotation)
     subject = bpy.context.object
@@ -56,7 +56,7 @@ def _lowest_point(subject: bpy.types.Object) -> float:
     return min((evaluated.matrix_world @ vertex.co).z for vertex in evaluated.data.vertices)
 
 
-def _add_ground() -> None:
+def add_ground() -> None:
     bpy.ops.mesh.primitive_circle_add(vertices=128, radius=9.0, fill_type="NGON")
     material = bpy.data.materials.new("Ground")
     material.use_nodes = True
@@ -66,7 +66,7 @@ def _add_ground() -> None:
     bpy.context.object.data.materials.append(material)
 
 
-def _add_camera(scene: bpy.types.Scene) -> None:
+def add_camera(scene: bpy.types.Scene) -> None:
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location = (0.6, -6.4, 1.2)
     camera.rotation_euler = (Vector((0, 0, 0.8)) - camera.location).to_track_quat("-Z", "Y").to_euler()
@@ -75,7 +75,7 @@ def _add_camera(scene: bpy.types.Scene) -> None:
     scene.camera = camera
 
 
-def _add_world(scene: bpy.types.Scene) -> None:
+def add_world(scene: bpy.types.Scene) -> None:
     """One of the worlds that come with Blender."""
     world = scene.world = bpy.data.worlds.new("World")
     world.use_nodes = True
