@@ -1,10 +1,11 @@
 #include "material/factored_material.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "btf/pair_interpolation.h"
 #include "material/factored_sums.h"
-#include "material/texel_taps.h"
+#include "material/footprint_taps.h"
 #include "sphere/warp.h"
 
 namespace velour {
@@ -14,10 +15,18 @@ uint32_t padded(size_t count) {
   return static_cast<uint32_t>((count + kFactoredPadding - 1) / kFactoredPadding * kFactoredPadding);
 }
 
+/// `i` of a period `size`, for -1 <= i <= size.
+uint32_t wrapped(int i, uint32_t size) {
+  const int n = static_cast<int>(size);
+  return static_cast<uint32_t>(i < 0 ? i + n : (i >= n ? i - n : i));
+}
+
 class FactoredMaterial final : public Material {
  public:
   explicit FactoredMaterial(std::shared_ptr<const FactoredBtf> btf)
-      : btf_(std::move(btf)), between_(btf_->layout), two_sided_(between_.has_lower_side()) {
+      : btf_(std::move(btf)),
+        between_(btf_->layout),
+        two_sided_(between_.view({0, 0, -1}) && between_.light({0, 0, -1})) {
     place_components();
     pair_value_.assign(btf_->layout.pairs() * end_[2], 0.0f);
     for (uint64_t pair = 0; pair < btf_->layout.pairs(); ++pair) spread(btf_->pair_value, pair, pair_value_);
@@ -38,10 +47,11 @@ class FactoredMaterial final : public Material {
     p.weight = views->weight;
     for (size_t v = 0; v < 3; ++v) p.view[v] = static_cast<uint32_t>(btf_->layout.first(views->index[v]));
     std::fill_n(p.value, end_[2], 0.0f);
-    visit_texels(site, btf_->levels, [&](size_t level, uint64_t texel, float share) {
-      const float* from = texel_value_[level].data() + texel * end_[2];
-      for (uint32_t k = 0; k < end_[2]; ++k) p.value[k] += share * from[k];
-    });
+    const TexelLevel& finest = btf_->levels[0];
+    const FootprintTaps taps = footprint_taps(site.footprint, Vec2(finest.width, finest.height));
+    for (int i = 0; i < taps.count; ++i) {
+      add_trilinear(taps.place(site.uv, i), taps.level, 1.0f / static_cast<float>(taps.count), p.value);
+    }
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
@@ -77,6 +87,28 @@ class FactoredMaterial final : public Material {
     const size_t components = btf_->components();
     halves_to_floats({halves.data() + number * components, components}, {row, components});
     for (size_t k = 0; k < components; ++k) floats[number * end_[2] + place_[k]] = row[k];
+  }
+
+  void add_trilinear(const Vec2& uv, float level, float weight, float* to) const {
+    const float place = std::clamp(level, 0.0f, static_cast<float>(texel_value_.size() - 1));
+    const auto fine = static_cast<size_t>(place);
+    const float part = place - static_cast<float>(fine);
+    add_bilinear(uv, fine, weight * (1 - part), to);
+    if (part > 0) add_bilinear(uv, fine + 1, weight * part, to);
+  }
+
+  void add_bilinear(const Vec2& uv, size_t level, float weight, float* to) const {
+    const TexelLevel& size = btf_->levels[level];
+    const Vec2 inside = std::isfinite(uv.x + uv.y) ? uv - glm::floor(uv) : Vec2(0.0f);
+    const Vec2 place = inside * Vec2(size.width, size.height) - 0.5f, low = glm::floor(place), part = place - low;
+    for (int corner = 0; corner < 4; ++corner) {
+      const int dx = corner & 1, dy = corner >> 1;
+      const float share = weight * (dx ? part.x : 1 - part.x) * (dy ? part.y : 1 - part.y);
+      const uint64_t texel = uint64_t{wrapped(static_cast<int>(low.y) + dy, size.height)} * size.width +
+                             wrapped(static_cast<int>(low.x) + dx, size.width);
+      const float* from = texel_value_[level].data() + texel * end_[2];
+      for (uint32_t k = 0; k < end_[2]; ++k) to[k] += share * from[k];
+    }
   }
 
   Rgb value(const PreparedBrdf& point, const Vec3& wl) const {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <span>
 
+#include "material/btf_table_point.h"
 #include "material/factored_point.h"
 #include "material/ggx_sampler.h"
-#include "material/measured_btf_point.h"
 #include "material/principled_lobes.h"
 #include "material/surface_site.h"
 #include "sphere/direction_batch.h"
@@ -19,15 +19,15 @@ namespace velour {
 /// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it
 /// needs; the struct is scratch memory of the thread, reused from hit to hit.
 struct PreparedBrdf {
-  Vec3 wv;                        // local, unit, wv.z > 0
-  LobeMixture lobes;              // SRBF materials: the value
-  LobeMixture draws;              // materials that sample lobes: what they draw from, and its density
-  WarpedMixture warped;           // parametric models: value and density
-  float parameter[8];             // analytic materials: what they derive from wv
-  GgxPoint ggx;                   // of the fitted GGX lobe, where one is the material or draws its samples
-  PrincipledLobes principled;     // textured Principled materials: those of the site
-  FactoredPoint factored;         // BTFs as sums of products: those of the site and the view
-  MeasuredBtfPoint measured_btf;  // uncompressed BTFs: what is blended at the site for the view
+  Vec3 wv;                     // local, unit, wv.z > 0
+  LobeMixture lobes;           // SRBF materials: the value
+  LobeMixture draws;           // materials that sample lobes: what they draw from, and its density
+  WarpedMixture warped;        // parametric models: value and density
+  float parameter[8];          // analytic materials: what they derive from wv
+  GgxPoint ggx;                // of the fitted GGX lobe, where one is the material or draws its samples
+  PrincipledLobes principled;  // textured Principled materials: those of the site
+  FactoredPoint factored;      // BTFs as sums of products: those of the site and the view
+  BtfTablePoint btf_table;     // BTFs themselves: what is blended at the site for the view
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.

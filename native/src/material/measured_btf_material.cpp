@@ -15,7 +15,7 @@ class MeasuredBtfMaterial final : public Material {
 
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
     point.wv = wv;
-    MeasuredBtfPoint& p = point.measured_btf;
+    BtfTablePoint& p = point.btf_table;
     p.count = 0;
     p.back = site.back && two_sided_;
     const auto views = table_->between.view(turned(wv, p.back));
@@ -30,7 +30,7 @@ class MeasuredBtfMaterial final : public Material {
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     for (int i = 0; i < wl.count; ++i) {
-      f.set(i, value(point.measured_btf, wl.get(i)));
+      f.set(i, value(point.btf_table, wl.get(i)));
       pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
     }
   }
@@ -43,12 +43,12 @@ class MeasuredBtfMaterial final : public Material {
   bool isotropic() const override { return false; }
 
  private:
-  Rgb value(const MeasuredBtfPoint& p, const Vec3& wl) const {
+  Rgb value(const BtfTablePoint& p, const Vec3& wl) const {
     const auto lights = wl.z > 0 ? table_->between.light(turned(wl, p.back)) : std::nullopt;
     if (!lights) return Rgb(0.0f);
     Rgb sum(0.0f);
     for (int i = 0; i < p.count; ++i) {
-      const MeasuredBtfPoint::Row& row = p.row[static_cast<size_t>(i)];
+      const BtfTablePoint::Row& row = p.row[static_cast<size_t>(i)];
       for (size_t l = 0; l < 3; ++l) sum += row.weight * lights->weight[l] * color(row.lights, lights->index[l]);
     }
     return glm::max(sum, Rgb(0.0f));

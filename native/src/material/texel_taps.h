@@ -3,32 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
+#include "btf/bilinear_texels.h"
 #include "material/footprint_taps.h"
 #include "material/surface_site.h"
 
 namespace velour {
 
-/// `i` of a period `size`, for -1 <= i <= size.
-inline uint32_t wrapped(int i, uint32_t size) {
-  const int n = static_cast<int>(size);
-  return static_cast<uint32_t>(i < 0 ? i + n : (i >= n ? i - n : i));
-}
-
 /// Calls `visit(level, texel, weight)` for the four texels about `uv` of one level, `weight` in all.
 template <typename Levels, typename Visit>
 void visit_bilinear(const Vec2& uv, const Levels& levels, size_t level, float weight, const Visit& visit) {
-  const uint32_t width = levels[level].width, height = levels[level].height;
-  const Vec2 inside = std::isfinite(uv.x + uv.y) ? uv - glm::floor(uv) : Vec2(0.0f);
-  const Vec2 place = inside * Vec2(width, height) - 0.5f, low = glm::floor(place), part = place - low;
-  for (int corner = 0; corner < 4; ++corner) {
-    const int dx = corner & 1, dy = corner >> 1;
-    const float share = weight * (dx ? part.x : 1 - part.x) * (dy ? part.y : 1 - part.y);
-    const uint64_t texel =
-        uint64_t{wrapped(static_cast<int>(low.y) + dy, height)} * width + wrapped(static_cast<int>(low.x) + dx, width);
-    visit(level, texel, share);
-  }
+  const Vec2 place = std::isfinite(uv.x + uv.y) ? uv : Vec2(0.0f);
+  const BilinearTexels texels = bilinear_texels(place, levels[level].width, levels[level].height);
+  for (size_t corner = 0; corner < 4; ++corner) visit(level, texels.index[corner], weight * texels.weight[corner]);
 }
 
 /// The same of the two levels about `level`.

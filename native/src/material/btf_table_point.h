@@ -9,7 +9,7 @@
 namespace velour {
 
 /// What the site and the view decide of an uncompressed BTF: which rows of lights are blended, and how.
-struct MeasuredBtfPoint {
+struct BtfTablePoint {
   /// Taps of the footprint, two levels, four texels, three views.
   static constexpr int kMost = FootprintTaps::kMost * 2 * 4 * 3;
   struct Row {
