@@ -230,6 +230,7 @@ std::string scene_json(const Scene& scene) {
                {"meshes", info.meshes},
                {"lights", info.lights},
                {"materials", info.materials},
+               {"untextured", info.untextured},
                {"bytes", info.bytes},
                {"bvh_seconds", info.bvh_seconds},
                {"warnings", info.warnings}});
