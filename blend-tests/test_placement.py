@@ -93,7 +93,7 @@ class Pictures(Placed):
         for vertex in obj.data.vertices:
             vertex.co.y /= 2
         self.assertEqual(self._rows()["Stretch"], "1.00:1, 0% above 2:1")
-        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, 1 of real")
+        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, real size")
         self._check_picture(((2, 0, 0), (0, 1, 0)), height=0.5)
 
     def test_entered_size_goes_before_the_btfs_own(self):
@@ -166,7 +166,7 @@ class Reports(Placed):
             self._rows(),
             {
                 "UV density": "0.5 x 0.5 per metre",
-                "Tile here": "500 x 500 mm, 1 of real",
+                "Tile here": "500 x 500 mm, real size",
                 "Spread": "1.00 to 1.00",
                 "Texels": "0.032 per mm",  # 16 over 500 mm
                 "In the camera": "1 texels per pixel, least 1",  # a pixel is 1/32 m wide
@@ -272,7 +272,9 @@ class Warnings(Placed):
             "own axes",
         ):
             self.assertIn(words, notes[0])
-        self.assertEqual(list(self._report().warnings), notes)
+        report = self._report()
+        self.assertEqual(list(report.warnings), notes)
+        self.assertEqual(dict(report.rows)["Tile here"], "6 x 2 m, 12 x 4 of real size")
         for vertex in obj.data.vertices:
             vertex.co.x /= 3
         obj.scale.x = 3
@@ -303,12 +305,20 @@ class Warnings(Placed):
         self.assertIn("enter Tile Size", report.warnings[0])
         self._placement().tile_size = (500, 500)
         self._check_picture(((4, 0, 0), (0, 4, 0)))
-        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, 1 of real")
+        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, real size")
+
+    def test_a_preview_without_a_size_falls_back_to_repeats(self):
+        scenes.add_plane(self._material(metres=0, mode="REAL_SIZE"))
+        export = importlib.import_module(f"{inputs.ADDON}.export")
+        notes, depsgraph = export.Notes(), bpy.context.evaluated_depsgraph_get()
+        view = _export("camera").final_view(depsgraph, notes)
+        export.export_scene(depsgraph, view, notes, strict=False)[0].close()
+        self.assertIn("enter Tile Size", " ".join(notes))
 
     def test_repeats_of_unknown_size_are_fine_and_said(self):
         scenes.add_plane(self._material(metres=0))
         self.assertEqual(self._notes(), [])
-        self.assertEqual(self._rows()["Tile here"], "2e+03 x 2e+03 mm, real size not known")
+        self.assertEqual(self._rows()["Tile here"], "2 x 2 m, real size not known")
 
     def test_slots_are_measured_apart(self):
         """Two faces, one of them 3 times as dense in u: only the material of that one is stretched."""

@@ -7,7 +7,7 @@ import pytest
 from command_line import refused, velour
 from inputs import write_octahedron
 from velour.core.placement import texture_map
-from velour.native import images
+from velour.native import Scene, Status, VelourError, images
 
 CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
 
@@ -77,3 +77,16 @@ def test_a_mesh_without_coordinates_is_warned_of(folder, model, world_file):
     )  # fmt: skip
     assert done.status == 0
     assert "octahedron.obj has no texture coordinates" in done.err
+
+
+@pytest.mark.parametrize("uv_map", [((0, 0, 0), (0, 1, 0)), ((1, 1, 0), (2, 2, 0))])
+def test_placements_that_leave_no_width_are_refused(uv_map):
+    with Scene() as scene:
+        positions = np.array([[x, y, 0] for x, y in CORNERS], np.float32)
+        mesh, _ = scene.add_mesh(positions, np.array([[0, 1, 2]], np.uint32))
+        material = scene.add_principled_material()
+        with pytest.raises(VelourError, match="without width") as caught:
+            scene.add_instance(mesh, np.eye(4), [material], [uv_map])
+        assert caught.value.status == Status.INVALID_ARGUMENT
+        with pytest.raises(VelourError, match="6 numbers; 12 are needed"):
+            scene.add_instance(mesh, np.eye(4), [material] * 2, [((1, 0, 0), (0, 1, 0))])

@@ -144,7 +144,7 @@ class Placements:
             return None
         if tile is None:
             return None
-        shape = (key, tile.material, _size_of(instance.matrix_world))
+        shape = (key, material.original.as_pointer(), _size_of(instance.matrix_world))
         if shape not in self._maps:
             self._maps[shape] = self._measure(obj, tile, surface, instance.matrix_world, metres_per_unit)
         return self._maps[shape]

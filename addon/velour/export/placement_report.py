@@ -1,5 +1,6 @@
 """What a BTF's placement on one object comes to, for the panel and for scripts."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,8 @@ from .placement import (
 )
 from .units import metres_per_unit
 
+_SAME = 0.005  # of real size: nobody sees that
+
 
 class PlacementReport(NamedTuple):
     rows: tuple[tuple[str, str], ...]  # name and value, for people
@@ -36,17 +39,17 @@ def report_on(depsgraph, obj, material, tile):
     metrics = None if surface is None else Metrics.of(surface, evaluated.matrix_world, metres)
     if metrics is None or metrics.world.is_flat:
         return PlacementReport((), (missing_coordinates(obj, material.name),))
+    rows, density = [_density_row(metrics)], metrics.local.density()
     try:
         uv_map = tile_map(tile, metrics)
     except ExportError as error:
-        return PlacementReport(_density_rows(metrics), (str(error),), metrics.local.density())
-    lie = lie_on(tile, metrics, uv_map)
-    rows = [*_density_rows(metrics), *_size_rows(tile, lie), _texel_row(tile, lie)]
-    scales = metrics.world.placed(uv_map).scales() * metres * np.sqrt(np.prod(tile.texels))
-    rows.append(("In the camera", _camera_value(depsgraph, obj, _of_faces(evaluated, arrays, slots, scales))))
-    rows.append(("Stretch", _stretch_value(lie)))
+        return PlacementReport(tuple(rows), (str(error),), density)
+    tiles, lie = metrics.world.placed(uv_map), lie_on(tile, metrics, uv_map)
+    rows += [_size_row(tile, tiles), _spread_row(lie), _texel_row(tile, lie)]
+    of_faces = _of_faces(evaluated, arrays, slots, tiles.scales() * metres * _texels(tile))
+    rows += [_camera_row(depsgraph, obj, of_faces), _stretch_row(lie)]
     warnings = (stretch_sentence(obj, tile, lie, surface),) if lie.is_stretched else ()
-    return PlacementReport(tuple(rows), warnings, metrics.local.density())
+    return PlacementReport(tuple(rows), warnings, density)
 
 
 def _slots(obj, arrays, material):
@@ -64,38 +67,44 @@ def _of_faces(obj, arrays, slots, values):
     return found
 
 
-def _density_rows(metrics):
-    u, v = metrics.world.density()
-    return (("UV density", f"{u:.3g} x {v:.3g} per metre"),)
+def _texels(tile):
+    """Along a side, geometric mean of both."""
+    return math.sqrt(math.prod(tile.texels))
 
 
-def _size_rows(tile, lie):
-    width, height = (1e3 * side / lie.scale for side in tile.shape)
-    size = f"{width:.3g} x {height:.3g} mm"
-    if tile.metres is not None:
-        real = 1 / lie.scale / np.sqrt(np.prod(tile.metres))
-        size += f", {real:.3g} of real"
-    else:
-        size += ", real size not known"
-    low, high = lie.spread
-    return (("Tile here", size), ("Spread", f"{low:.2f} to {high:.2f}"))
+def _density_row(metrics):
+    return "UV density", "{:.3g} x {:.3g} per metre".format(*metrics.world.density())
+
+
+def _size_row(tile, tiles):
+    sides = [1 / grow for grow in tiles.density()]
+    unit, factor = ("m", 1) if max(sides) >= 1 else ("mm", 1e3)
+    size = "{:.3g} x {:.3g} {}".format(*(factor * side for side in sides), unit)
+    if tile.metres is None:
+        return "Tile here", f"{size}, real size not known"
+    times = [side / real for side, real in zip(sides, tile.metres, strict=True)]
+    if max(abs(t - 1) for t in times) < _SAME:
+        return "Tile here", f"{size}, real size"
+    return "Tile here", "{}, {:.3g} x {:.3g} of real size".format(size, *times)
+
+
+def _spread_row(lie):
+    return "Spread", "{:.2f} to {:.2f}".format(*lie.spread)
 
 
 def _texel_row(tile, lie):
-    return "Texels", f"{1e-3 * lie.scale * np.sqrt(np.prod(tile.texels)):.3g} per mm"
+    return "Texels", f"{1e-3 * lie.scale * _texels(tile):.3g} per mm"
 
 
-def _stretch_value(lie):
-    most = f"{lie.stretch:.2f}:1" if np.isfinite(lie.stretch) else "without end"
-    return f"{most}, {lie.stretched:.0%} above {LARGEST_STRETCH:g}:1"
+def _stretch_row(lie):
+    most = f"{lie.stretch:.2f}:1" if math.isfinite(lie.stretch) else "without end"
+    return "Stretch", f"{most}, {lie.stretched:.0%} above {LARGEST_STRETCH:g}:1"
 
 
-def _camera_value(depsgraph, obj, texels_per_unit):
+def _camera_row(depsgraph, obj, texels_per_unit):
+    name = "In the camera"
     try:
         found = texels_per_pixel(depsgraph, obj, texels_per_unit)
     except ExportError:
-        return "no camera that renders"
-    if found is None:
-        return "not seen"
-    least, median = found
-    return f"{median:.3g} texels per pixel, least {least:.3g}"
+        return name, "no camera that renders"
+    return name, "{1:.3g} texels per pixel, least {0:.3g}".format(*found) if found else "not seen"
