@@ -42,60 +42,74 @@ class Surface(NamedTuple):
 
 
 class UvMetric(NamedTuple):
-    """Of each triangle; those without extent have an area or a determinant of 0."""
+    """Of each triangle: products of the gradients of u and v, 1/m^2; all 0 without extent."""
 
     area: np.ndarray  # [n] m^2
-    gram: np.ndarray  # [n x 2 x 2] products of the gradients of u and v, 1/m^2
+    gram: np.ndarray  # [3 x n] u u, u v, v v
 
     @classmethod
     def of(cls, surface: Surface, to_metres: np.ndarray) -> UvMetric:
         """`to_metres` [3 x 3] takes the mesh's own space to metres."""
-        edges = surface.edges.astype(np.float64) @ np.asarray(to_metres, np.float64).T
-        products = edges @ edges.transpose(0, 2, 1)  # the surface's own metric in the basis of the edges
-        determinant = _determinants(products)
-        inverse = np.empty_like(products)
-        inverse[:, 0, 0], inverse[:, 1, 1] = products[:, 1, 1], products[:, 0, 0]
-        inverse[:, 0, 1] = inverse[:, 1, 0] = -products[:, 0, 1]
+        a, b = surface.edges.transpose(1, 0, 2) @ np.asarray(to_metres, np.float64).T
+        p, q = surface.uv_edges.astype(np.float64).transpose(1, 2, 0)
+        aa, ab, bb = (np.einsum("ni,ni->n", x, y) for x, y in ((a, a), (a, b), (b, b)))
+        square = aa * bb - ab * ab  # of twice the area
+        # The metric of the surface in the basis of its edges is [[aa, ab], [ab, bb]]: this is its inverse.
+        gram = np.stack(
+            [
+                p[i] * p[j] * bb - (p[i] * q[j] + q[i] * p[j]) * ab + q[i] * q[j] * aa
+                for i, j in ((0, 0), (0, 1), (1, 1))
+            ]
+        )
         with np.errstate(divide="ignore", invalid="ignore"):
-            inverse /= determinant[:, None, None]
-            gram = surface.uv_edges.transpose(0, 2, 1).astype(np.float64) @ inverse @ surface.uv_edges
-        area = 0.5 * np.sqrt(np.maximum(determinant, 0))
-        area[~np.isfinite(gram).all(axis=(1, 2))] = 0
-        gram[area == 0] = 0
-        return cls(area, gram)
+            gram /= square
+        good = (square > 0) & np.isfinite(gram).all(axis=0)
+        gram[:, ~good] = 0
+        return cls(np.where(good, 0.5 * np.sqrt(np.maximum(square, 0)), 0), gram)
 
     def placed(self, uv_map: np.ndarray) -> UvMetric:
         """The same of the coordinates that a map makes."""
-        linear = np.asarray(uv_map)[:, :2]
-        return UvMetric(self.area, linear @ self.gram @ linear.T)
+        (a, b), (c, d) = np.asarray(uv_map)[:, :2]
+        uu, uv, vv = self.gram
+        return UvMetric(
+            self.area,
+            np.stack(
+                [
+                    a * a * uu + 2 * a * b * uv + b * b * vv,
+                    a * c * uu + (a * d + b * c) * uv + b * d * vv,
+                    c * c * uu + 2 * c * d * uv + d * d * vv,
+                ]
+            ),
+        )
 
     @property
     def is_flat(self) -> bool:
         """True where texture coordinates have no extent on any part of the surface."""
-        return not self._good.any()
+        return not (self._determinants() > 0).any()
 
     def density(self) -> tuple[float, float]:
         """Median over the surface of how fast u and v grow, 1/m."""
-        good = self._good
-        grow = np.sqrt(self.gram[good][:, (0, 1), (0, 1)])
-        return tuple(float(quantiles(column, self.area[good], (0.5,))[0]) for column in grow.T)
+        good = self._determinants() > 0
+        return tuple(
+            float(quantiles(np.sqrt(square[good]), self.area[good], (0.5,))[0])
+            for square in self.gram[(0, 2), :]
+        )
 
     def scales(self) -> np.ndarray:
         """[n] of each triangle: the geometric mean over directions of tiles (or units of u, v) a metre."""
-        return np.maximum(_determinants(self.gram), 0) ** 0.25
+        return self._determinants() ** 0.25
 
     def stretches(self) -> np.ndarray:
         """[n] of each triangle: the longest direction over the shortest; infinite without extent."""
-        half = 0.5 * (self.gram[:, 0, 0] + self.gram[:, 1, 1])
-        root = np.hypot(0.5 * (self.gram[:, 0, 0] - self.gram[:, 1, 1]), self.gram[:, 0, 1])
-        # Largest times least is the determinant; their difference would cancel.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = (half + root) / np.sqrt(np.maximum(_determinants(self.gram), 0))
-        return np.where(self._good, ratio, np.inf)
+        uu, uv, vv = self.gram
+        largest = 0.5 * (uu + vv) + np.hypot(0.5 * (uu - vv), uv)
+        # Largest times least eigenvalue is the determinant; the difference of the two terms would cancel.
+        root = np.sqrt(self._determinants())
+        return np.divide(largest, root, out=np.full_like(root, np.inf), where=root > 0)
 
-    @property
-    def _good(self) -> np.ndarray:
-        return (self.area > 0) & (_determinants(self.gram) > 0)
+    def _determinants(self) -> np.ndarray:
+        uu, uv, vv = self.gram
+        return np.maximum(uu * vv - uv * uv, 0)
 
 
 class Lie(NamedTuple):
@@ -129,11 +143,7 @@ def lie_of(tiles: UvMetric) -> Lie:
 
 def quantiles(values: np.ndarray, weights: np.ndarray, shares) -> np.ndarray:
     """Values below which the given shares of the weight lie."""
-    order = np.argsort(values, kind="stable")
+    order = np.argsort(values)
     below = np.cumsum(weights[order])
     places = np.searchsorted(below, np.asarray(shares) * below[-1])
     return values[order][np.minimum(places, len(values) - 1)]
-
-
-def _determinants(matrices: np.ndarray) -> np.ndarray:
-    return matrices[:, 0, 0] * matrices[:, 1, 1] - matrices[:, 0, 1] * matrices[:, 1, 0]

@@ -48,8 +48,11 @@ class Metrics(NamedTuple):
 
     @classmethod
     def of(cls, surface, matrix, metres_per_unit):
-        world = metres_per_unit * np.array(matrix, float)[:3, :3]
-        return cls(UvMetric.of(surface, metres_per_unit * np.eye(3)), UvMetric.of(surface, world))
+        local = UvMetric.of(surface, metres_per_unit * np.eye(3))
+        linear = np.array(matrix, float)[:3, :3]
+        if np.abs(linear.T @ linear - np.eye(3)).max() < 1e-6:
+            return cls(local, local)
+        return cls(local, UvMetric.of(surface, metres_per_unit * linear))
 
     def growth(self, keeps_size):
         """How much longer u and v count because the object is scaled."""
