@@ -207,6 +207,32 @@ class Reports(Placed):
         self.assert_close(least, 16 * pixel * lowest * np.cos(camera.data.angle / 2), 0.1 * least)
         self.assertGreater(median, least)
 
+    def test_while_the_object_is_edited(self):
+        scenes.add_plane(self._material(mode="REAL_SIZE"))
+        rows = self._rows()
+        bpy.ops.object.mode_set(mode="EDIT")
+        self.assertEqual(self._rows(), rows)
+
+    def test_curves_have_texture_coordinates_of_their_own(self):
+        bpy.ops.curve.primitive_bezier_circle_add()
+        curve = bpy.context.object
+        curve.data.materials.append(self._material())
+        curve.data.extrude = 0.5
+        bpy.context.view_layer.update()
+        # u runs around once, v over 1 m.
+        self.assertEqual(self._rows()["UV density"], "0.159 x 1 per metre")
+        self.assertIn("stretched", self._notes()[0])
+        self._placement().mode = "REAL_SIZE"
+        self.assertEqual(self._notes(), [])
+
+    def test_modifiers_count(self):
+        obj = scenes.add_plane(self._material(mode="REAL_SIZE"))
+        array = obj.modifiers.new("Array", "ARRAY")
+        array.count = 3
+        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, real size")
+        obj.modifiers.new("Lift", "DISPLACE").strength = 0.5
+        self.assertEqual(self._rows()["Stretch"], "1.00:1, 0% above 2:1")
+
     def test_without_a_camera(self):
         scenes.add_plane(self._material())
         self.scene.camera = None
@@ -307,7 +333,7 @@ class Warnings(Placed):
         self._check_picture(((4, 0, 0), (0, 4, 0)))
         self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, real size")
 
-    def test_a_preview_without_a_size_falls_back_to_repeats(self):
+    def test_a_preview_without_a_size_is_not_refused(self):
         scenes.add_plane(self._material(metres=0, mode="REAL_SIZE"))
         export = importlib.import_module(f"{inputs.ADDON}.export")
         notes, depsgraph = export.Notes(), bpy.context.evaluated_depsgraph_get()
