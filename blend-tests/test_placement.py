@@ -4,6 +4,7 @@ import importlib
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from support import inputs, scenes
 from support.blender import BlenderTest
@@ -308,6 +309,14 @@ class Warnings(Placed):
         self.assertIn("up to 3.0:1", self._notes()[0])
         self._placement().mode = "REAL_SIZE"
         self.assertEqual(self._notes(), [])
+
+    def test_objects_that_share_a_mesh_are_all_named(self):
+        obj = scenes.add_plane(self._material())
+        obj.data.transform(Matrix.Diagonal((3, 1, 1, 1)))
+        for name in ("Second", "Third"):
+            self.scene.collection.objects.link(bpy.data.objects.new(name, obj.data))
+        owners = {note.split("'")[1] for note in self._notes()}
+        self.assertEqual(owners, {"Plane", "Second", "Third"})
 
     def test_a_mesh_without_texture_coordinates(self):
         obj = scenes.add_plane(self._material())

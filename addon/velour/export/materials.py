@@ -98,6 +98,7 @@ class MaterialTable:
         reduced = files.read_model(node.velour.scene_model, owner)
         has_full = files.is_there(node.image)
         model = files.read_model(node.image, owner) if has_full else reduced
+        self._tiles[_key(material)] = Tile.of(material, model.info())
         number = self._scene.add_model_material(model, node.velour.neighbors)
         self.reduced.append(Reduced(number, material.name, reduced, node.velour.neighbors, has_full))
         return number

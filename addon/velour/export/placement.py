@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.placement import LARGEST_STRETCH, Surface, UvMetric, lie_of, texture_map
+from ..core.placement import LARGEST_STRETCH, Lie, Surface, UvMetric, lie_of, texture_map
 from .meshes import object_arrays
 from .nodes import velour_node
 from .notes import ExportError
@@ -111,6 +111,11 @@ def stretch_sentence(obj, tile, lie, surface):
     )
 
 
+class _Placed(NamedTuple):
+    uv_map: np.ndarray
+    lie: Lie
+
+
 class Placements:
     """Of the instances of an export; says in `notes` what is stretched or cannot be placed."""
 
@@ -118,7 +123,7 @@ class Placements:
         self._materials = materials
         self._notes = notes
         self._surfaces = {}
-        self._maps = {}
+        self._placed = {}
 
     def of(self, instance, key, slots, metres_per_unit):
         """A map for each material in `slots`, or None: texture coordinates as they are.
@@ -142,20 +147,19 @@ class Placements:
         if key not in self._surfaces:
             self._surfaces[key] = surface_of(object_arrays(obj), key[1])
         surface = self._surfaces[key]
-        if surface is None:
-            self._notes.add(missing_coordinates(obj, material.name))
-            return None
-        if tile is None:
-            return None
-        shape = (key, material.original.as_pointer(), _size_of(instance.matrix_world))
-        if shape not in self._maps:
-            self._maps[shape] = self._measure(obj, tile, surface, instance.matrix_world, metres_per_unit)
-        return self._maps[shape]
+        placed = None
+        if surface is not None and tile is not None:
+            shape = (key, material.original.as_pointer(), _size_of(instance.matrix_world))
+            if shape not in self._placed:
+                self._placed[shape] = self._place(tile, surface, instance.matrix_world, metres_per_unit)
+            placed = self._placed[shape]
+        self._warn(obj, material, tile, surface, placed)
+        return placed.uv_map if placed else None
 
-    def _measure(self, obj, tile, surface, matrix, metres_per_unit):
+    def _place(self, tile, surface, matrix, metres_per_unit):
+        """None where texture coordinates have no extent."""
         metrics = Metrics.of(surface, matrix, metres_per_unit)
         if metrics.world.is_flat:
-            self._notes.add(missing_coordinates(obj, tile.material))
             return None
         try:
             uv_map = tile_map(tile, metrics)
@@ -163,11 +167,14 @@ class Placements:
             if self._materials.strict:
                 raise
             self._notes.add(str(error))
-            return None
-        lie = lie_on(tile, metrics, uv_map)
-        if lie.is_stretched:
-            self._notes.add(stretch_sentence(obj, tile, lie, surface))
-        return uv_map
+            uv_map = texture_map((1, 1))
+        return _Placed(uv_map, lie_on(tile, metrics, uv_map))
+
+    def _warn(self, obj, material, tile, surface, placed):
+        if surface is None or (tile is not None and placed is None):
+            self._notes.add(missing_coordinates(obj, material.name))
+        elif placed is not None and placed.lie.is_stretched:
+            self._notes.add(stretch_sentence(obj, tile, placed.lie, surface))
 
 
 def _size_of(matrix):
