@@ -5,7 +5,6 @@
 #include <string>
 
 #include "job/error.h"
-#include "material/material.h"
 
 namespace velour {
 namespace {
@@ -139,10 +138,7 @@ SceneInfo Scene::count() const {
   info.lights = lights_.size();
   info.materials = materials_.size();
   info.bytes = environment_.bytes();
-  for (const Instance& i : instances_) {
-    info.triangles += meshes_[i.mesh].triangles().size();
-    info.untextured += needs_coordinates(i) && !meshes_[i.mesh].has_uvs();
-  }
+  for (const Instance& i : instances_) info.triangles += meshes_[i.mesh].triangles().size();
   for (size_t m = 0; m < meshes_.size(); ++m) {
     info.bytes += meshes_[m].bytes();
     if (meshes_[m].dropped() == 0) continue;
@@ -154,10 +150,6 @@ SceneInfo Scene::count() const {
   }
   if (environment_.black() && lights_.empty()) info.warnings.push_back(kNoLightWarning);
   return info;
-}
-
-bool Scene::needs_coordinates(const Instance& instance) const {
-  return std::ranges::any_of(instance.materials, [&](uint32_t m) { return materials_[m].material->varies(); });
 }
 
 uint32_t Scene::slot(const Hit& hit) const {

@@ -48,8 +48,7 @@ struct TexturePoint {
 struct SceneInfo {
   uint64_t triangles = 0;  // over all instances
   uint64_t instances = 0, meshes = 0, lights = 0, materials = 0;
-  uint64_t untextured = 0;  // instances of a mesh without texture coordinates whose material varies
-  uint64_t bytes = 0;       // hierarchy, meshes, environment
+  uint64_t bytes = 0;  // hierarchy, meshes, environment
   double bvh_seconds = 0;
   std::vector<std::string> warnings;
 };
@@ -114,7 +113,6 @@ class Scene {
   /// Null where texture coordinates are the mesh's own.
   const TextureMap* placement(const Hit& hit) const;
   TexturePoint texture_of_mesh(const Hit& hit) const;
-  bool needs_coordinates(const Instance& instance) const;
   Bounds bounds_of_instances() const;
   SceneInfo count() const;
 

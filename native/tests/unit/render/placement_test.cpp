@@ -9,7 +9,6 @@
 #include "material/factored_material.h"
 #include "material/principled_textures.h"
 #include "render/vertex.h"
-#include "sphere/random.h"
 #include "support/example_btf.h"
 #include "support/textured_scenes.h"
 
@@ -265,8 +264,7 @@ TEST(Placement, MeshesWithoutCoordinatesAreCounted) {
   scene.add_instance(bare, {}, {varying});
   scene.add_instance(bare, {}, {uniform});
   scene.add_instance(mapped, {}, {varying});
-  scene.commit(1);
-  EXPECT_EQ(scene.info().untextured, 1u);
+  EXPECT_EQ(untextured_instances(scene), 1u);
 }
 
 }  // namespace
