@@ -68,6 +68,24 @@ class CompressBtf(BlenderTest):
         moved = np.maximum(*(np.abs(np.roll(model, 8, axis) - itself).mean() for axis in (0, 1)))
         self.assertGreater(moved, 3 * np.abs(model - itself).mean())
 
+    def test_the_btf_itself_is_placed_as_its_model_is(self):
+        folder = self._captured()
+        bpy.data.objects.remove(bpy.context.object)
+        scenes.use_engine(size=64)
+        scenes.add_plane(size=4)
+        bpy.ops.velour.compress_btf(filepath=str(folder), assign=True, megabytes=0.1)
+        scenes.set_world()
+        scenes.add_camera(ortho_scale=4)
+        node = scenes.velour_node(bpy.data.materials["ribs"])
+        node.velour.use_reference = True
+        plain = scenes.render(self.folder, "plain")[:, :, :3]
+        node.velour.placement.rotation = np.pi / 2
+        turned = scenes.render(self.folder, "turned")[:, :, :3]
+        node.velour.use_reference = False
+        model = scenes.render(self.folder, "model")[:, :, :3]
+        self.assertLess(np.abs(model - turned).mean(), 0.1 * turned.mean())
+        self.assertGreater(np.abs(model - plain).mean(), 3 * np.abs(model - turned).mean())
+
     def test_a_btf_that_changed_is_not_rendered_unless_accepted(self):
         folder = self._captured()
         scenes.use_engine(samples=1, size=8)

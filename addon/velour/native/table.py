@@ -350,6 +350,7 @@ STATUS_CALLS = {
         _number,
     ],
     "vlr_scene_add_instance": [_handle, c_uint32, _floats, _number, c_uint32],
+    "vlr_scene_add_placed_instance": [_handle, c_uint32, _floats, _number, _floats, c_uint32],
     "vlr_scene_add_light": [_handle, POINTER(LightDesc)],
     "vlr_scene_set_world_color": [_handle, _floats],
     "vlr_scene_set_world_pixels": [_handle, c_uint32, c_uint32, c_uint32, _floats, c_float, _floats],

@@ -8,7 +8,7 @@ import math
 
 from ...native import Measurement, Model, Scene, library
 from ...native.errors import refuse
-from . import btf_options, numbers
+from . import btf_options, numbers, texture_options
 
 # A y-up model stands upright in the z-up world: (x, y, z) -> (x, -z, y), as Blender's OBJ import does it.
 _UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
@@ -46,13 +46,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--size", type=numbers.picture_size, default=(640, 480), metavar="WxH", help="640x480"
     )
+    texture_options.add_arguments(parser)
 
 
 def fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> int:
-    """Fills `scene`, which keeps what `handles` holds; the number of the material."""
+    """Fills and commits `scene`, which keeps what `handles` holds; the number of the material."""
     mesh = scene.load_mesh(args.mesh)
     material = _add_material(scene, args, handles)
-    scene.add_instance(mesh, _UP[args.up], [material])
+    scene.add_instance(mesh, _UP[args.up], [material], texture_options.placements(args))
     turn = math.radians(-args.world_rotation)
     c, s = math.cos(turn), math.sin(turn)
     scene.set_world_file(args.world, 1.0, ((c, -s, 0), (s, c, 0), (0, 0, 1)))
@@ -61,6 +62,8 @@ def fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) 
         scene.look_at(args.camera.eye, args.camera.target, args.camera.fov, aspect)
     else:
         scene.frame_camera(aspect)
+    scene.commit()
+    texture_options.warn_of_missing_coordinates(scene, args.mesh)
     return material
 
 
