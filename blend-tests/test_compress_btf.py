@@ -1,6 +1,7 @@
 """Materials made from BTFs."""
 
 import bpy
+import numpy as np
 
 from support import scenes
 from support.blender import BlenderTest
@@ -49,6 +50,64 @@ class CompressBtf(BlenderTest):
         # One tile covers the plane: its ribs run one way, so only across them is it uneven.
         spread = [picture.mean(axis=axis).std(axis=0).max() for axis in (0, 1)]
         self.assertGreater(max(spread), 5 * min(spread))
+
+    def test_the_btf_itself_renders_in_place_of_its_model(self):
+        folder = self._captured()
+        bpy.data.objects.remove(bpy.context.object)
+        scenes.use_engine(size=64)
+        scenes.add_plane(size=4)
+        bpy.ops.velour.compress_btf(filepath=str(folder), assign=True, megabytes=0.1)
+        scenes.set_world()
+        scenes.add_camera(ortho_scale=4)
+        node = scenes.velour_node(bpy.data.materials["ribs"])
+        model = scenes.render(self.folder, "model")[:, :, :3]
+        node.velour.use_reference = True
+        itself = scenes.render(self.folder, "itself")[:, :, :3]
+        self.assertLess(np.abs(model - itself).mean(), 0.1 * itself.mean())  # roots darken
+        # The control: the same picture a quarter of a rib further on.
+        moved = np.maximum(*(np.abs(np.roll(model, 8, axis) - itself).mean() for axis in (0, 1)))
+        self.assertGreater(moved, 3 * np.abs(model - itself).mean())
+
+    def test_the_btf_itself_is_placed_as_its_model_is(self):
+        folder = self._captured()
+        bpy.data.objects.remove(bpy.context.object)
+        scenes.use_engine(size=64)
+        scenes.add_plane(size=4)
+        bpy.ops.velour.compress_btf(filepath=str(folder), assign=True, megabytes=0.1)
+        scenes.set_world()
+        scenes.add_camera(ortho_scale=4)
+        node = scenes.velour_node(bpy.data.materials["ribs"])
+        node.velour.use_reference = True
+        plain = scenes.render(self.folder, "plain")[:, :, :3]
+        node.velour.placement.rotation = np.pi / 2
+        turned = scenes.render(self.folder, "turned")[:, :, :3]
+        node.velour.use_reference = False
+        model = scenes.render(self.folder, "model")[:, :, :3]
+        self.assertLess(np.abs(model - turned).mean(), 0.1 * turned.mean())
+        self.assertGreater(np.abs(model - plain).mean(), 3 * np.abs(model - turned).mean())
+
+    def test_a_btf_that_changed_is_not_rendered_unless_accepted(self):
+        folder = self._captured()
+        scenes.use_engine(samples=1, size=8)
+        scenes.add_camera()
+        bpy.ops.velour.compress_btf(assign=True, megabytes=0.02)
+        scenes.velour_node(bpy.data.materials["ribs"]).velour.use_reference = True
+        scenes.render(self.folder)
+        index = folder / "btf.json"
+        index.write_text(index.read_text() + " ")
+        with self.assertRaisesRegex(RuntimeError, "has changed"):
+            scenes.render(self.folder)
+        bpy.ops.velour.accept_file()
+        scenes.render(self.folder)
+        index.rename(folder / "away.json")
+        with self.assertRaisesRegex(RuntimeError, "btf.json.* is missing"):
+            scenes.render(self.folder)
+
+    def test_a_btf_is_no_measurement_to_fit(self):
+        self._captured()
+        bpy.ops.velour.compress_btf(assign=True, megabytes=0.02)
+        with self.assertRaisesRegex(RuntimeError, "btf.json"):
+            bpy.ops.velour.fit()
 
     def test_what_is_not_a_btf_is_refused_with_its_name(self):
         with self.assertRaisesRegex(RuntimeError, "nowhere.btf"):

@@ -1,4 +1,4 @@
-"""The demo's Blender script, from an empty scene to its report, small."""
+"""The demo's Blender scripts, from an empty scene to their reports, small."""
 
 import importlib
 import json
@@ -16,13 +16,32 @@ SMALL = {
     "PLOT_REFERENCE_SAMPLES": 16,
     "PLOT_SAMPLES": (2, 4),
 }
+SMALL_BTF = {
+    "SIZE": (32, 24),
+    "SAMPLES": 4,
+    "CAPTURE": {"texels": 8, "views": 20, "lights": 20, "samples": 1, "bounces": 0},
+}
 
 
 class Demo(BlenderTest):
-    def test_pictures_and_curves(self):
+    def _script(self, name):
         scripts = str(Path(__file__).resolve().parents[1] / "scripts/lib")
         with unittest.mock.patch.object(sys, "path", [scripts, *sys.path]):
-            demo_scene = importlib.import_module("demo_scene")
+            return importlib.import_module(name)
+
+    def test_a_btf(self):
+        scene, folder = self._script("demo_btf_scene"), self.folder
+        task = {"folder": str(folder), "report": str(folder / "demo.json")}
+        with unittest.mock.patch.multiple(scene, **SMALL_BTF):
+            scene.main(task)
+        report = json.loads((folder / "demo.json").read_text())
+        self.assertGreater(report["btf_bytes"], report["model_bytes"])
+        for name in ("model.exr", "model.png", "reference.exr", "reference.png"):
+            self.assertTrue((folder / name).is_file(), name)
+        self.assertGreater(report["reference_seconds"], 0)
+
+    def test_pictures_and_curves(self):
+        demo_scene = self._script("demo_scene")
         folder = blender.folder()
         model = folder / "demo.velour"
         model.write_bytes(inputs.model_bytes(inputs.glossy_measurement()))

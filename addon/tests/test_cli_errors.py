@@ -41,24 +41,15 @@ OBSERVE = ["observe", *RENDER[1:-1], "o.json"]
         [*OBSERVE, "--spp", "8"],
         [*OBSERVE, "--bounces", "-1"],
         [*RENDER, "--camera", "0,0,1,0,0,0,180"],
+        [*RENDER, "--texture-scale", "2,0"],
+        [*RENDER, "--texture-scale", "1,2,3"],
+        [*RENDER, "--texture-offset", "1"],
     ],
 )
 def test_wrong_usage_is_2(arguments):
     status, out, err = velour(*arguments)
     assert (status, out) == (2, "")
     assert "usage: velour" in err
-
-
-@pytest.mark.parametrize(
-    ("arguments", "word"),
-    [
-        ([*RENDER, "--texture-scale", "2"], "--texture-scale"),
-    ],
-)
-def test_what_later_versions_have_is_refused_with_a_sentence(arguments, word, tmp_path):
-    sentence = refused(*arguments)
-    assert word in sentence
-    assert "yet" in sentence
 
 
 @pytest.mark.parametrize(

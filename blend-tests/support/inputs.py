@@ -89,3 +89,45 @@ def _made(name, make):
         make(temporary)
         os.replace(temporary, path)
     return path
+
+
+QUARTERS = ((0.8, 0.4), (0.2, 0.1))  # rows from below: albedos of a tile's quarters
+QUARTER_TEXELS = 16  # along the tile's side
+
+
+def quarters_model(metres=0.5):
+    """A model of the BTF of a flat, matt tile of four greys, `metres` wide; 0: its size is not known."""
+
+    def make(path):
+        capture = Path(f"{path}.btf")
+        _capture_quarters(capture, metres)
+        velour = native()
+        with velour.Btf.load(capture) as btf, velour.compress_job(btf) as job:
+            job.run()
+            with job.result_model() as model:
+                path.write_bytes(model.bytes())
+
+    return _made(f"quarters-{metres:g}-{library_file().stat().st_mtime_ns}.velour", make).read_bytes()
+
+
+def _capture_quarters(folder_of_btf, metres):
+    velour = native()
+    x, y = np.meshgrid((0, 0.5, 1), (0, 0.5, 1))
+    positions = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3).astype(np.float32)
+    corners = [(a, a + 1, a + 4, a + 3) for a in (0, 1, 3, 4)]
+    triangles = np.array([t for a, b, c, d in corners for t in ((a, b, c), (a, c, d))], np.uint32)
+    with velour.Scene() as scene:
+        mesh, _ = scene.add_mesh(positions, triangles, material_slots=np.arange(4, dtype=np.uint32).repeat(2))
+        greys = [
+            scene.add_principled_material(base_color=(a, a, a), roughness=1.0, specular=0.0)
+            for row in QUARTERS
+            for a in row
+        ]
+        scene.add_instance(mesh, np.eye(4), greys)
+        scene.commit()
+        angles = velour.directions("16")
+        options = {"texels": QUARTER_TEXELS, "views": angles, "lights": angles, "samples": 4, "bounces": 0}
+        with velour.capture_job(
+            scene, folder_of_btf, metres_per_unit=metres, period=(1, 1), sides="one", **options
+        ) as job:
+            job.run()

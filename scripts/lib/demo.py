@@ -1,4 +1,4 @@
-"""The demonstration: measurement, fit, two pictures through Blender, difference, plot, report."""
+"""The demonstration: measurement, fit, two pictures through Blender, difference, plot, report; then a BTF."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
-
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import demo_blender
+import demo_btf
 import demo_capture
 import headless_blender
+from demo_difference import write_difference
 from velour.core import files, plots
 from velour.core.machine import machine
-from velour.native import Measurement, VelourError, fit_job, images, library
+from velour.native import Measurement, VelourError, fit_job, library
 
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "out/demo"
@@ -28,6 +28,8 @@ def main() -> int:
         for source, folder in _tasks(args):
             folder.mkdir(parents=True, exist_ok=True)
             demonstrate(source, folder, args.fresh)
+        if not args.files:
+            demo_btf.demonstrate(OUT / "btf")
     except KeyboardInterrupt:
         return 130
     except (VelourError, OSError, headless_blender.BlenderError) as error:
@@ -63,11 +65,7 @@ def demonstrate(source: Path | None, folder: Path, fresh: bool) -> None:
         model_file = folder / "model.velour"
         fit = _fit(measurement, model_file)
     picture = demo_blender.render(model_file, measurement_file, folder)
-    model, reference = (
-        images.read(folder / f"{name}.exr")[..., :3].copy() for name in ("model", "reference")
-    )
-    rmse, relmse = images.compare(model, reference)
-    _write_difference(folder, model, reference)
+    rmse, relmse = write_difference(folder)
     title = "sampling error of the demo's scene at a quarter of its size"
     plots.error_against_time(folder / "error_against_time.png", picture["curves"], title)
     report = {
@@ -95,12 +93,6 @@ def _fit(measurement: Measurement, path: Path) -> dict:
         with job.result_model() as model:
             model.save(path)
     return report
-
-
-def _write_difference(folder: Path, model: np.ndarray, reference: np.ndarray) -> None:
-    difference = np.ascontiguousarray(np.abs(model - reference))
-    for name in ("difference.exr", "difference.png"):
-        images.write(folder / name, difference)
 
 
 def _tell(folder: Path, report: dict, warnings: list[str]) -> None:

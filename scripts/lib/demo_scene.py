@@ -4,16 +4,18 @@ and takes the points of the error-against-time plot. The task is the JSON text a
 from __future__ import annotations
 
 import json
-import logging
 import math
 import os
 import sys
 
-import addon_utils
 import bpy
 import numpy as np
 from mathutils import Vector
 from velour.native import images, render_job
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+from blender_picture import empty_scene, measured_node, render_picture
 
 SIZE = (640, 480)
 SAMPLES, BOUNCES = 384, 1
@@ -26,11 +28,11 @@ PLOT_STRATEGIES = ("uniform", "cosine", "srbf", "light", "mis")
 
 
 def main(task: dict) -> None:
-    scene = _empty_scene()
-    subject = _add_subject()
-    _add_ground()
-    _add_camera(scene)
-    _add_world(scene)
+    scene = empty_scene(SIZE, SAMPLES, BOUNCES)
+    subject = add_subject()
+    add_ground()
+    add_camera(scene)
+    add_world(scene)
     node = _add_materials(subject, task["model"], task["measurement"])
     report = _render_pictures(scene, node, task["folder"])
     report["curves"] = _curves(scene)
@@ -38,22 +40,7 @@ def main(task: dict) -> None:
         json.dump(report, file)
 
 
-def _raise(error):
-    raise error
-
-
-def _empty_scene() -> bpy.types.Scene:
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    addon_utils.enable("velour", default_set=False, handle_error=_raise)
-    scene = bpy.context.scene
-    scene.render.engine = "VELOUR"
-    scene.render.resolution_x, scene.render.resolution_y = SIZE
-    scene.view_settings.view_transform = "Standard"
-    scene.velour.samples, scene.velour.bounces, scene.velour.seed = SAMPLES, BOUNCES, 1
-    return scene
-
-
-def _add_subject() -> bpy.types.Object:
+def add_subject() -> bpy.types.Object:
     rotation = (math.radians(-25), 0, math.radians(30))
     bpy.ops.mesh.primitive_monkey_add(size=2.0, rotation=rotation)
     subject = bpy.context.object
@@ -69,7 +56,7 @@ def _lowest_point(subject: bpy.types.Object) -> float:
     return min((evaluated.matrix_world @ vertex.co).z for vertex in evaluated.data.vertices)
 
 
-def _add_ground() -> None:
+def add_ground() -> None:
     bpy.ops.mesh.primitive_circle_add(vertices=128, radius=9.0, fill_type="NGON")
     material = bpy.data.materials.new("Ground")
     material.use_nodes = True
@@ -79,7 +66,7 @@ def _add_ground() -> None:
     bpy.context.object.data.materials.append(material)
 
 
-def _add_camera(scene: bpy.types.Scene) -> None:
+def add_camera(scene: bpy.types.Scene) -> None:
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location = (0.6, -6.4, 1.2)
     camera.rotation_euler = (Vector((0, 0, 0.8)) - camera.location).to_track_quat("-Z", "Y").to_euler()
@@ -88,7 +75,7 @@ def _add_camera(scene: bpy.types.Scene) -> None:
     scene.camera = camera
 
 
-def _add_world(scene: bpy.types.Scene) -> None:
+def add_world(scene: bpy.types.Scene) -> None:
     """One of the worlds that come with Blender."""
     world = scene.world = bpy.data.worlds.new("World")
     world.use_nodes = True
@@ -110,55 +97,19 @@ def _add_materials(subject: bpy.types.Object, model: str, measurement: str) -> b
     """The subject's measured node, with the model and the measurement that it was fitted to."""
     bpy.context.view_layer.objects.active = subject
     bpy.ops.velour.load_material(filepath=measurement, fit=False)
-    raw = _measured_node(subject)
+    raw = measured_node(subject.active_material)
     bpy.ops.velour.load_material(filepath=model)
-    node = _measured_node(subject)
+    node = measured_node(subject.active_material)
     node.velour.measurement = raw.velour.measurement
     return node
-
-
-def _measured_node(subject: bpy.types.Object) -> bpy.types.ShaderNodeTexImage:
-    nodes = subject.active_material.node_tree.nodes
-    return next(node for node in nodes if node.bl_idname == "ShaderNodeTexImage" and node.velour.enabled)
 
 
 def _render_pictures(scene: bpy.types.Scene, node: bpy.types.ShaderNodeTexImage, folder: str) -> dict:
     """model.{exr,png} and reference.{exr,png}; what the render of the model took."""
     node.velour.use_reference = True
-    _render_picture(scene, folder, "reference")
+    render_picture(scene, folder, "reference")
     node.velour.use_reference = False
-    return _render_picture(scene, folder, "model")
-
-
-def _render_picture(scene: bpy.types.Scene, folder: str, name: str) -> dict:
-    """Writes the picture; returns the engine's report."""
-    reports = _ReportHandler()
-    bpy.ops.render.render()
-    reports.close()
-    picture, settings = bpy.data.images["Render Result"], scene.render.image_settings
-    for suffix, file_format, depth in ((".exr", "OPEN_EXR", "32"), (".png", "PNG", "8")):
-        settings.file_format, settings.color_depth = file_format, depth
-        picture.save_render(os.path.join(folder, name + suffix), scene=scene)
-    return reports.last
-
-
-class _ReportHandler(logging.Handler):
-    """Picks the report of each render out of the engine's log."""
-
-    def __init__(self):
-        super().__init__()
-        self.last = {}
-        self._log = logging.getLogger("velour.engine")
-        self._log.setLevel(logging.INFO)
-        self._log.addHandler(self)
-
-    def emit(self, record):
-        if isinstance(record.args, dict):
-            self.last = dict(record.args)
-
-    def close(self):
-        self._log.removeHandler(self)
-        super().close()
+    return render_picture(scene, folder, "model")
 
 
 def _curves(scene: bpy.types.Scene) -> dict[str, list[tuple[float, float]]]:

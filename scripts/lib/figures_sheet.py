@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 import numpy as np
+from display import display
 from markdown_table import small
 from velour.core import plots
-from velour.native import images
 
 _CELL = 2.6  # inches of a picture's width, at 100 dots an inch
 _WORST = 0.2  # relative error that is drawn brightest
@@ -37,7 +36,7 @@ def _draw_figure(above, below, figure, spp: tuple[int, ...]) -> None:
 
 
 def _show(axes, pixels: np.ndarray, title: str) -> None:
-    axes.imshow(_display(pixels), interpolation="none")
+    axes.imshow(display(pixels), interpolation="none")
     axes.set_title(title, fontsize=8)
 
 
@@ -47,13 +46,3 @@ def _show_error(axes, pixels: np.ndarray, reference: np.ndarray, title: str) -> 
     error = np.abs(x - r) / np.sqrt(r**2 + 0.01 * r.mean() ** 2)
     axes.imshow(error[::-1], cmap="inferno", vmin=0, vmax=_WORST, interpolation="none")
     axes.set_title(title, fontsize=8)
-
-
-def _display(pixels: np.ndarray) -> np.ndarray:
-    """As the library writes them for the eye: sRGB, row 0 on top."""
-    from matplotlib import image
-
-    with tempfile.TemporaryDirectory(prefix="velour-sheet-") as folder:
-        path = Path(folder) / "picture.png"
-        images.write(path, pixels)
-        return image.imread(path)

@@ -10,7 +10,7 @@ import tempfile
 
 import bpy
 
-from ..native import Measurement, Model, VelourError
+from ..native import Btf, Measurement, Model, VelourError, library
 from .notes import ExportError
 
 _FIND = "put it back, or use File > External Data > Find Missing Files"
@@ -63,14 +63,32 @@ def read_model(image, owner):
 
 
 def read_measurement(image, owner):
-    """As read_model, for raw measurements."""
+    """As read_model, for raw measurements of BRDFs."""
+    return _read_raw(Measurement, image, owner)
+
+
+def read_btf(image, owner):
+    """As read_model, for captured and measured BTFs."""
+    return _read_raw(Btf, image, owner)
+
+
+def _read_raw(kind, image, owner):
     try:
         with measurement_path(image, owner) as path:
-            measurement = Measurement.load(path)
-        _refuse_change(image, measurement.info()["sha256"], owner)
+            raw = kind.load(path)
+        _refuse_change(image, raw.info()["sha256"], owner)
     except VelourError as error:
         raise ExportError(f"{owner}: {error}") from error
-    return measurement
+    return raw
+
+
+def measurement_info(image, owner):
+    """What the library knows of the measurement or BTF that `image` names; its "kind" says which it is."""
+    try:
+        with measurement_path(image, owner) as path:
+            return library.file_info(path)
+    except VelourError as error:
+        raise ExportError(f"{owner}: {error}") from error
 
 
 @contextlib.contextmanager
@@ -78,7 +96,7 @@ def measurement_path(image, owner):
     """A readable path of a measurement; packed bytes are written to a temporary file first."""
     path = absolute_path(image)
     if image.packed_file is None:
-        if not os.path.isfile(path):
+        if not os.path.exists(path):  # some BTFs are folders
             raise ExportError(f"{owner}: the measurement {path or image.name!r} is missing; {_FIND}.")
         yield path
         return

@@ -6,6 +6,7 @@ from ..native import Model, VelourError
 from . import files
 from .nodes import velour_node
 from .notes import ExportError
+from .placement import Tile
 from .principled import principled_values
 from .textures import TextureTable
 
@@ -30,8 +31,10 @@ class MaterialTable:
     def __init__(self, scene, notes, strict=True):
         self._scene = scene
         self._notes = notes
-        self._strict = strict
+        self.strict = strict
         self._numbers = {}
+        self._tiles = {}  # of materials that show a BTF
+        self._textured = set()  # of others: those with textures
         self._textures = TextureTable(notes)
         self.reduced = []
 
@@ -39,9 +42,17 @@ class MaterialTable:
         """The number of a material of the .blend; None where nothing shows it."""
         return self._numbers.get(material.as_pointer())
 
+    def tile(self, material):
+        """The Tile of a material that has its number; None of one that is no BTF."""
+        return self._tiles.get(_key(material))
+
+    def needs_coordinates(self, material):
+        """Whether a material that has its number looks at texture coordinates."""
+        return _key(material) in self._textured or self.tile(material) is not None
+
     def number(self, material):
         """`material` may be None: Blender's default grey."""
-        key = material.original.as_pointer() if material else None
+        key = _key(material)
         if key not in self._numbers:
             self._numbers[key] = self._add(material)
         return self._numbers[key]
@@ -52,7 +63,7 @@ class MaterialTable:
             try:
                 return self._add_measured(material, node)
             except (ExportError, VelourError) as error:
-                if self._strict:
+                if self.strict:
                     raise
                 self._notes.add(str(error))
         return self._add_principled(material)
@@ -64,13 +75,15 @@ class MaterialTable:
             name: self._textures.slot(picture, name == "base_color", owner)
             for name, picture in values.pop("pictures", {}).items()
         }
+        if any(slots.values()):
+            self._textured.add(_key(material))
         return self._scene.add_textured_material({n: s for n, s in slots.items() if s}, **values)
 
     def _add_measured(self, material, node):
         settings = node.velour
         owner = f"Material '{material.name}'"
         if settings.use_reference:
-            return self._add_reference(node, owner)
+            return self._add_reference(material, node, owner)
         if settings.use_scene_model and settings.scene_model is not None:
             return self._add_pair(material, node, owner)
         if node.image is None:
@@ -78,19 +91,36 @@ class MaterialTable:
                 f"{owner}: node '{node.name}' has no model; press Fit, or choose a model as its image."
             )
         with files.read_model(node.image, owner) as model:
+            self._tiles[_key(material)] = Tile.of(material, model.info())
             return self._scene.add_model_material(model, settings.neighbors)
 
     def _add_pair(self, material, node, owner):
         reduced = files.read_model(node.velour.scene_model, owner)
         has_full = files.is_there(node.image)
         model = files.read_model(node.image, owner) if has_full else reduced
+        self._tiles[_key(material)] = Tile.of(material, model.info())
         number = self._scene.add_model_material(model, node.velour.neighbors)
         self.reduced.append(Reduced(number, material.name, reduced, node.velour.neighbors, has_full))
         return number
 
-    def _add_reference(self, node, owner):
+    def _add_reference(self, material, node, owner):
         if node.velour.measurement is None:
             raise ExportError(f"{owner}: 'Render from Measurement' is on, but no measurement is chosen.")
+        if files.measurement_info(node.velour.measurement, owner)["kind"] == "btf":
+            return self._add_btf(material, node.velour.measurement, owner)
         proposal = files.read_model(node.image, owner) if node.image else None
         with files.read_measurement(node.velour.measurement, owner) as measurement:
             return self._scene.add_measurement_material(measurement, proposal, node.velour.neighbors)
+
+    def _add_btf(self, material, image, owner):
+        try:
+            with files.read_btf(image, owner) as btf:
+                self._tiles[_key(material)] = Tile.of(material, btf.info())
+                return self._scene.add_btf_material(btf)
+        except VelourError as error:
+            raise ExportError(f"{owner}: {error}") from error
+
+
+def _key(material):
+    """Of the datablock in the .blend, whatever evaluated copy of it is given."""
+    return material.original.as_pointer() if material else None

@@ -1,5 +1,6 @@
 """Evaluated geometry as numpy arrays."""
 
+import contextlib
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,30 @@ class MeshArrays(NamedTuple):
     corner_normals: np.ndarray
     corner_uvs: np.ndarray | None
     material_slots: np.ndarray
+
+
+def object_arrays(obj):
+    """MeshArrays of an evaluated object; None where it has no face."""
+    with _mesh_of(obj) as mesh:
+        return mesh_arrays(mesh) if mesh else None
+
+
+def triangle_faces(obj):
+    """[triangles] The face of an evaluated object that each triangle of object_arrays() is a part of."""
+    with _mesh_of(obj) as mesh:
+        mesh.calc_loop_triangles()
+        return _read(mesh.loop_triangles, "polygon_index", len(mesh.loop_triangles), np.int32)
+
+
+@contextlib.contextmanager
+def _mesh_of(obj):
+    # Only what is not a mesh yet, or is being edited, needs a converted copy.
+    convert = obj.type != "MESH" or obj.mode == "EDIT"
+    try:
+        yield obj.to_mesh() if convert else obj.data
+    finally:
+        if convert:
+            obj.to_mesh_clear()
 
 
 def mesh_arrays(mesh):

@@ -4,7 +4,9 @@ import numpy as np
 
 from .axes import affine
 from .lights import add_light
-from .meshes import mesh_arrays
+from .meshes import object_arrays
+from .placement import Placements
+from .units import metres_per_unit
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
@@ -30,16 +32,17 @@ class ObjectExport:
         self._check_break = check_break  # called once an instance; raises to stop
         self._to_scene = to_scene
         self._meshes = {}
+        self._placements = Placements(materials, notes)
 
     def add_all(self, depsgraph):
-        override = depsgraph.view_layer_eval.material_override
+        override, metres = depsgraph.view_layer_eval.material_override, metres_per_unit(depsgraph.scene)
         for instance in depsgraph.object_instances:
             self._check_break()
             # The instance is only valid within this turn of the loop.
             if not instance.show_self:
                 continue
             if instance.object.type in GEOMETRY:
-                self._add_geometry(instance, override)
+                self._add_geometry(instance, override, metres)
             elif instance.object.type == "LIGHT":
                 add_light(self._scene, instance.object, instance.matrix_world, self._notes)
             else:
@@ -47,24 +50,25 @@ class ObjectExport:
 
     def add_geometry(self, depsgraph, is_wanted):
         """Of the instances for which `is_wanted` is true; no lights."""
-        override = depsgraph.view_layer_eval.material_override
+        override, metres = depsgraph.view_layer_eval.material_override, metres_per_unit(depsgraph.scene)
         for instance in depsgraph.object_instances:
             self._check_break()
             if not instance.show_self or not is_wanted(instance):
                 continue
             if instance.object.type in GEOMETRY:
-                self._add_geometry(instance, override)
+                self._add_geometry(instance, override, metres)
             else:
                 self._note_unsupported(instance.object)
 
-    def _add_geometry(self, instance, override):
+    def _add_geometry(self, instance, override, metres):
         mesh, slots = self._mesh(instance.object)
         if mesh is None:
             return
         slots = [override] * len(slots) if override else slots
         numbers = [self._materials.number(material) for material in slots]
+        placements = self._placements.of(instance, mesh, slots, metres)
         matrix = instance.matrix_world if self._to_scene is None else self._to_scene @ instance.matrix_world
-        self._scene.add_instance(mesh, affine(matrix), numbers)
+        self._scene.add_instance(mesh, affine(matrix), numbers, placements)
 
     def _mesh(self, obj):
         """The mesh's number in the scene (None: there is nothing to see) and the materials of its slots."""
@@ -72,17 +76,10 @@ class ObjectExport:
         if key not in self._meshes:
             self._meshes[key] = self._add_mesh(obj)
         number, slots = self._meshes[key]
-        return number, _slot_materials(obj, slots)
+        return number, slot_materials(obj, slots)
 
     def _add_mesh(self, obj):
-        # Only what is not a mesh yet, or is being edited, needs a converted copy.
-        convert = obj.type != "MESH" or obj.mode == "EDIT"
-        mesh = obj.to_mesh() if convert else obj.data
-        try:
-            arrays = mesh_arrays(mesh) if mesh else None
-        finally:
-            if convert:
-                obj.to_mesh_clear()
+        arrays = object_arrays(obj)
         if arrays is None:
             return None, 0
         number, dropped = self._scene.add_mesh(**arrays._asdict())
@@ -98,7 +95,7 @@ class ObjectExport:
             self._notes.add(f"Object '{obj.name}': {kind} are not supported; left out.")
 
 
-def _slot_materials(obj, count):
+def slot_materials(obj, count):
     """The materials of slots 0..count-1; a face beyond the last slot shows the last one, as in Blender."""
     own = [slot.material for slot in obj.material_slots]
     of_data = list(obj.data.materials) if hasattr(obj.data, "materials") else []

@@ -13,6 +13,7 @@ import numpy as np
 
 from . import library, table
 from .arrays import affine, checked, pointer, small
+from .btf import Btf
 from .errors import refuse
 from .handle import Handle, choice, path_bytes, set_fields
 from .measurement import Measurement
@@ -80,11 +81,17 @@ class Scene(Handle):
         """Reads a Wavefront OBJ file; the mesh's number."""
         return self._numbered("vlr_scene_load_mesh", path_bytes(path))
 
-    def add_instance(self, mesh: int, object_to_world, materials) -> None:
-        """`materials`: the material's number of each slot of the mesh."""
+    def add_instance(self, mesh: int, object_to_world, materials, placements=None) -> None:
+        """`materials`: the material's number of each slot of the mesh.
+
+        placements: of each slot a map [2 x 3] that takes (u, v, 1) of the mesh to the texture coordinates
+        that its material is shown with, footprints and tangents included; None: they are the mesh's own.
+        """
         numbers = (c_uint32 * len(materials))(*materials)
         matrix = affine("object_to_world", object_to_world)
-        self._lib.vlr_scene_add_instance(self.pointer, mesh, matrix, numbers, len(numbers))
+        if placements is not None:
+            placements = small("placements", placements, 6 * len(materials))
+        self._lib.vlr_scene_add_placed_instance(self.pointer, mesh, matrix, numbers, placements, len(numbers))
 
     # ---- materials: each returns its number
 
@@ -104,6 +111,10 @@ class Scene(Handle):
         return self._numbered(
             "vlr_scene_add_measurement_material", measurement.pointer, proposal_pointer, neighbors
         )
+
+    def add_btf_material(self, btf: Btf, most_bytes: int = 0) -> int:
+        """Reference mode of a BTF: f of the BTF itself, read into memory: `most_bytes` (0: 4 GiB)."""
+        return self._numbered("vlr_scene_add_btf_material", btf.pointer, most_bytes)
 
     def add_principled_material(self, **values) -> int:
         """base_color [3], metallic, roughness (alpha of GGX: its square), specular: 0..1.
@@ -185,7 +196,7 @@ class Scene(Handle):
         self._lib.vlr_scene_commit(self.pointer)
 
     def info(self) -> dict:
-        """triangles, instances, lights, materials, bytes, bvh_seconds, warnings."""
+        """triangles, instances, lights, materials, untextured, bytes, bvh_seconds, warnings."""
         return library.json_of(self._lib.vlr_scene_info_json, self.pointer)
 
     def _numbered(self, function_name: str, *arguments) -> int:

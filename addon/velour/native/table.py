@@ -332,6 +332,7 @@ STATUS_CALLS = {
     "vlr_scene_add_model_material": [_handle, _handle, c_uint32, _number],
     "vlr_scene_set_model_material": [_handle, c_uint32, _handle, c_uint32],
     "vlr_scene_add_measurement_material": [_handle, _handle, _handle, c_uint32, _number],
+    "vlr_scene_add_btf_material": [_handle, _handle, c_uint64, _number],
     "vlr_scene_add_principled_material": [_handle, POINTER(PrincipledDesc), _number],
     "vlr_texture_create": [
         c_uint32,
@@ -349,6 +350,7 @@ STATUS_CALLS = {
         _number,
     ],
     "vlr_scene_add_instance": [_handle, c_uint32, _floats, _number, c_uint32],
+    "vlr_scene_add_placed_instance": [_handle, c_uint32, _floats, _number, _floats, c_uint32],
     "vlr_scene_add_light": [_handle, POINTER(LightDesc)],
     "vlr_scene_set_world_color": [_handle, _floats],
     "vlr_scene_set_world_pixels": [_handle, c_uint32, c_uint32, c_uint32, _floats, c_float, _floats],

@@ -10,6 +10,7 @@ from .compress_btf import VELOUR_OT_compress_btf
 from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
+from .placement import VELOUR_OT_describe_placement, VELOUR_OT_keep_uv_density
 from .repeat_tile import VELOUR_OT_repeat_tile
 from .save_model import VELOUR_OT_save_model
 
@@ -25,6 +26,8 @@ CLASSES = (
     VELOUR_OT_repeat_tile,
     VELOUR_OT_capture_btf,
     VELOUR_OT_compress_btf,
+    VELOUR_OT_describe_placement,
+    VELOUR_OT_keep_uv_density,
 )
 
 

@@ -4,7 +4,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ..export import ExportError
-from ..export.files import content, sha256
+from ..export.files import content, measurement_info, sha256
 from ..export.nodes import velour_node
 from . import measured
 
@@ -24,9 +24,15 @@ class VELOUR_OT_accept_file(bpy.types.Operator):
             self.report({"ERROR"}, "There is no measured material.")
             return {"CANCELLED"}
         try:
-            for image in filter(None, (node.image, node.velour.scene_model, node.velour.measurement)):
-                image.velour.sha256 = sha256(content(image, f"Material '{material.name}'"))
+            self._accept(node, f"Material '{material.name}'")
         except ExportError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
+
+    def _accept(self, node, owner):
+        for image in filter(None, (node.image, node.velour.scene_model)):
+            image.velour.sha256 = sha256(content(image, owner))
+        raw = node.velour.measurement
+        if raw is not None:
+            raw.velour.sha256 = measurement_info(raw, owner)["sha256"]

@@ -44,7 +44,9 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
         path = self.filepath or tile_folder(find_tile(context, self.collection))
         path = os.path.normpath(bpy.path.abspath(path))
         self._subject = os.path.splitext(os.path.basename(path))[0]
+        self._path = measured.btf_file(path)
         with Btf.load(path) as btf:
+            self._digest = btf.info()["sha256"]
             self._job = compress_job(
                 btf, bytes=int(self.megabytes * 1e6), threads=context.scene.render.threads
             ).start()
@@ -53,7 +55,9 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
         with self._job, self._job.result_model() as model:
             data, report = model.bytes(), self._job.report()
         material = measured.new_material(self._subject)
-        measured.ensure_node(material).image = measured.packed_model(data, self._subject)
+        node = measured.ensure_node(material)
+        node.image = measured.packed_model(data, self._subject)
+        node.velour.measurement = measured.measurement_image(self._path, self._digest)
         if not (self.assign and measured.assign(bpy.context, material)):
             material.use_fake_user = True
         for sentence in report["warnings"]:

@@ -83,6 +83,12 @@ def measurement_image(path, digest):
     return image
 
 
+def btf_file(path):
+    """The file that stands for a BTF: its index, where the BTF is a folder that has one."""
+    indices = (os.path.join(path, name) for name in ("btf.json", "btf.csv"))
+    return next((index for index in indices if os.path.isfile(index)), path)
+
+
 def _data_space(image):
     """The colour space of this configuration that leaves values alone."""
     names = image.colorspace_settings.bl_rna.properties["name"].enum_items.keys()

@@ -6,6 +6,7 @@ from .file_settings import VelourFileSettings
 from .job_state import VelourJobState
 from .layer_settings import VelourLayerSettings
 from .material_settings import VelourMaterialSettings
+from .placement_settings import VelourPlacementSettings
 from .render_settings import VelourRenderSettings
 from .tile_settings import VelourTileSettings
 
@@ -18,7 +19,8 @@ _POINTERS = (
     (bpy.types.Collection, VelourTileSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.WindowManager, VelourJobState, set()),
 )
-CLASSES = tuple(dict.fromkeys(group for _owner, group, _override in _POINTERS))
+# A group comes after those that it holds.
+CLASSES = (VelourPlacementSettings, *dict.fromkeys(group for _owner, group, _override in _POINTERS))
 
 
 def attach():

@@ -3,6 +3,8 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
+from .placement_settings import VelourPlacementSettings
+
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
 MODELS = (
@@ -120,5 +122,11 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         " than it was fitted for; other frames take the full model and say so. Off: always the full model",
         default=False,
         update=_changed,
+        override=_OVERRIDE,
+    )
+    placement: PointerProperty(
+        name="Placement",
+        description="Where the tiles of a BTF lie on objects",
+        type=VelourPlacementSettings,
         override=_OVERRIDE,
     )

@@ -1,6 +1,6 @@
 """Panels and preferences."""
 
-from . import library_state, order_preview, stock_panels, summaries
+from . import library_state, order_preview, placement_summary, stock_panels, summaries
 from .layer_panel import VELOUR_VIEWLAYER_PT_passes
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
@@ -8,6 +8,7 @@ from .material_panel import (
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_surface,
 )
+from .placement_panel import VELOUR_MATERIAL_PT_placement
 from .preferences import VelourPreferences
 from .render_panel import VELOUR_RENDER_PT_film, VELOUR_RENDER_PT_library, VELOUR_RENDER_PT_sampling
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
@@ -20,6 +21,7 @@ CLASSES = (
     VELOUR_RENDER_PT_film,
     VELOUR_VIEWLAYER_PT_passes,
     VELOUR_MATERIAL_PT_measured,
+    VELOUR_MATERIAL_PT_placement,
     VELOUR_MATERIAL_PT_scene_model,
     VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_notes,
@@ -31,10 +33,12 @@ CLASSES = (
 
 def attach():
     library_state.refresh()
+    placement_summary.attach()
     stock_panels.open_to_engine()
 
 
 def detach():
     stock_panels.close_to_engine()
+    placement_summary.detach()
     summaries.forget()
     order_preview.forget()

@@ -44,19 +44,15 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         settings = node.velour
         layout.template_ID(settings, "measurement", open="image.open", text="Measurement")
         layout.template_ID(node, "image", open="image.open", text="Model")
-        _draw_fit_settings(layout.column(align=True), settings)
-        _draw_fit(context, layout)
-        column = layout.column()
-        row = column.row()
-        row.active = _mixes_views(node.image)
-        row.prop(settings, "neighbors")
-        column.prop(settings, "use_reference")
-
-
-def _mixes_views(image):
-    """Not of a model that has been read and is of another kind than scattered."""
-    info = model_summary(image) if image is not None else None
-    return not isinstance(info, dict) or info["model"] == "scattered"
+        info = model_summary(node.image) if node.image is not None else None
+        info = info if isinstance(info, dict) else {}
+        if "texels" not in info:  # BTFs are fitted elsewhere
+            _draw_fit_settings(layout.column(align=True), settings)
+            _draw_fit(context, layout)
+            row = layout.row()
+            row.active = info.get("model", "scattered") == "scattered"
+            row.prop(settings, "neighbors")
+        layout.column().prop(settings, "use_reference")
 
 
 def _draw_fit_settings(column, settings):
@@ -94,7 +90,7 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
             draw_sentence(context, self.layout, info, icon="ERROR")
             self.layout.operator(VELOUR_OT_accept_file.bl_idname)
             return
-        if info["model"] == "factored-btf":
+        if "texels" in info:
             draw_rows(self.layout, _btf_rows(info))
         else:
             _draw_numbers(self.layout, info)

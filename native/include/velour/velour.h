@@ -309,6 +309,11 @@ VLR_API vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t mater
 VLR_API vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,
                                                       const vlr_model* proposal, uint32_t neighbors,
                                                       uint32_t* material);
+/* Reference mode of BTFs: f is that of the BTF itself, barycentric between its directions, linear between texels and mip
+ * levels. All of it is read into memory as half floats; VLR_UNSUPPORTED where that takes more than `most_bytes` (0: 4
+ * GiB) or pairs are missing. Texture coordinates count tiles. Samples are drawn by the cosine. */
+VLR_API vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint64_t most_bytes,
+                                              uint32_t* material);
 typedef struct vlr_principled_desc {
   uint32_t struct_size;
   float base_color[3]; /* working space */
@@ -325,6 +330,11 @@ VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr
 /* object_to_world [12]: 3 x 4 row-major. materials [count]: material of each slot of the mesh. */
 VLR_API vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
                                           const uint32_t* materials, uint32_t count);
+/* The same with placements [count x 6]: of each slot a map [2 x 3, row-major] that takes (u, v, 1) of the mesh to the
+ * texture coordinates that its material is shown with, as if the mesh had those; footprints, and the tangent that
+ * anisotropy follows, come with them. NULL: they are the mesh's own. */
+VLR_API vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
+                                                 const uint32_t* materials, const float* placements, uint32_t count);
 
 enum { VLR_LIGHT_SUN = 0, VLR_LIGHT_POINT = 1, VLR_LIGHT_RECTANGLE = 2, VLR_LIGHT_DISK = 3 };
 typedef struct vlr_light_desc {
@@ -365,7 +375,8 @@ VLR_API vlr_status vlr_scene_frame_camera(vlr_scene* scene, float aspect, uint32
 
 /* Builds the acceleration structure and checks the scene. Needed before a render job is made, after every change. */
 VLR_API vlr_status vlr_scene_commit(vlr_scene* scene);
-/* JSON: triangles, instances, lights, materials, bytes, bvh_seconds, warnings. */
+/* JSON: triangles, instances, lights, materials, untextured (instances of a mesh without texture coordinates whose
+ * material varies over the surface: one place of it is shown everywhere), bytes, bvh_seconds, warnings. */
 VLR_API vlr_status vlr_scene_info_json(vlr_scene* scene, const char** json);
 
 /* ---- textures ------------------------------------------------------------------------------------------------ */

@@ -20,6 +20,8 @@ class PairInterpolation {
   /// Numbers of views (lights) and their weights; nothing where the set has no direction on that side of the plane.
   std::optional<Corners> view(const Vec3& wv) const { return views_.at(wv); }
   std::optional<Corners> light(const Vec3& wl) const { return lights_.at(wl); }
+  /// Whether it knows what is seen, and lit, from below.
+  bool has_lower_side() const { return view({0, 0, -1}) && light({0, 0, -1}); }
 
  private:
   /// A set of directions, the lower ones mirrored up into a mesh of their own.

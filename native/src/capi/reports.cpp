@@ -8,6 +8,7 @@
 #include "capi/json_text.h"
 #include "domain/hash_text.h"
 #include "model/order_json.h"
+#include "render/footprint.h"
 #include "scene/embree_scene.h"
 #include "srbf/simd_target.h"
 #include "velour/version.h"
@@ -259,6 +260,7 @@ std::string scene_json(const Scene& scene) {
                {"meshes", info.meshes},
                {"lights", info.lights},
                {"materials", info.materials},
+               {"untextured", untextured_instances(scene)},
                {"bytes", info.bytes},
                {"bvh_seconds", info.bvh_seconds},
                {"warnings", info.warnings}});

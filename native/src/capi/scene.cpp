@@ -5,7 +5,9 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/reports.h"
+#include "capi/texture_maps.h"
 #include "fit/scattered_fit.h"
+#include "material/measured_btf_material.h"
 #include "material/principled_lobes.h"
 #include "model/model_material.h"
 #include "scene/mesh_file.h"
@@ -145,6 +147,16 @@ vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measur
   });
 }
 
+vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint64_t most_bytes, uint32_t* material) {
+  return guard([&] {
+    require(scene, "scene");
+    require(btf, "btf");
+    require(material, "material");
+    auto table = read_btf_table(*btf->btf, most_bytes != 0 ? most_bytes : kUsualTableBytes);
+    *material = scene->scene->add_material({.material = make_measured_btf_material(std::move(table))});
+  });
+}
+
 void vlr_principled_desc_init(vlr_principled_desc* desc) {
   const PrincipledParameters defaults;
   *desc = {};
@@ -162,11 +174,18 @@ vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_princip
 
 vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
                                   const uint32_t* materials, uint32_t count) {
+  return vlr_scene_add_placed_instance(scene, mesh, object_to_world, materials, nullptr, count);
+}
+
+vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
+                                         const uint32_t* materials, const float* placements, uint32_t count) {
   return guard([&] {
     require(scene, "scene");
     require(object_to_world, "object_to_world");
     require(materials, "materials");
-    scene->scene->add_instance(mesh, affine_from(object_to_world), {materials, materials + count});
+    std::vector<TextureMap> maps;
+    for (uint32_t i = 0; placements != nullptr && i < count; ++i) maps.push_back(map_from(placements + 6 * i));
+    scene->scene->add_instance(mesh, affine_from(object_to_world), {materials, materials + count}, std::move(maps));
   });
 }
 

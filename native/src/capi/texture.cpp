@@ -4,6 +4,7 @@
 
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "capi/texture_maps.h"
 #include "image/picture.h"
 #include "material/principled_material.h"
 #include "material/principled_textures.h"
@@ -55,8 +56,6 @@ vlr_texture* texture_of(const Pixels& pixels, const vlr_texture_options& options
   }
   return texture.release();
 }
-
-TextureMap map_from(const float* m) { return {{m[0], m[3], m[1], m[4]}, {m[2], m[5]}}; }
 
 [[noreturn]] void refuse_kind(const char* field, const char* needed) {
   throw Error(Status::invalid_argument,

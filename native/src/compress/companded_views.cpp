@@ -1,33 +1,11 @@
 #include "compress/companded_views.h"
 
-#include <cmath>
 #include <Eigen/Eigenvalues>
 
+#include "btf/mended_image.h"
 #include "fit/parallel.h"
 
 namespace velour {
-namespace {
-
-/// How many of `image` are not finite; those become the mean of the rest, channel by channel.
-uint64_t mend(std::span<float> image) {
-  uint64_t bad = 0;
-  for (size_t channel = 0; channel < 3; ++channel) {
-    double sum = 0;
-    uint64_t good = 0, here = 0;
-    for (size_t i = channel; i < image.size(); i += 3) {
-      std::isfinite(image[i]) ? (sum += static_cast<double>(image[i]), ++good) : ++here;
-    }
-    bad += here;
-    if (here == 0) continue;
-    const float mean = good > 0 ? static_cast<float>(sum / static_cast<double>(good)) : 0.0f;
-    for (size_t i = channel; i < image.size(); i += 3) {
-      if (!std::isfinite(image[i])) image[i] = mean;
-    }
-  }
-  return bad;
-}
-
-}  // namespace
 
 CompandedViews::CompandedViews(const BtfMeasurement& btf, Companding companding, int threads, const Progress& progress)
     : btf_(btf), companding_(companding), threads_(threads), progress_(progress) {}
@@ -43,7 +21,7 @@ void CompandedViews::read(uint32_t view, std::vector<float>& f) {
   parallel_pieces(count, threads_, progress_, [&](size_t i) {
     const std::span<float> floats(f.data() + i * image, image);
     halves_to_floats({halves_.data() + i * image, image}, floats);
-    bad[i] = mend(floats);
+    bad[i] = mend_image(floats);
   });
   if (view == 0) not_finite_ = 0;
   for (const uint64_t n : bad) not_finite_ += n;

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "btf/bilinear_texels.h"
 #include "btf/pair_interpolation.h"
 #include "material/factored_sums.h"
-#include "material/footprint_taps.h"
+#include "material/texel_taps.h"
 #include "sphere/warp.h"
 
 namespace velour {
@@ -19,9 +18,7 @@ uint32_t padded(size_t count) {
 class FactoredMaterial final : public Material {
  public:
   explicit FactoredMaterial(std::shared_ptr<const FactoredBtf> btf)
-      : btf_(std::move(btf)),
-        between_(btf_->layout),
-        two_sided_(between_.view({0, 0, -1}) && between_.light({0, 0, -1})) {
+      : btf_(std::move(btf)), between_(btf_->layout), two_sided_(between_.has_lower_side()) {
     place_components();
     pair_value_.assign(btf_->layout.pairs() * end_[2], 0.0f);
     for (uint64_t pair = 0; pair < btf_->layout.pairs(); ++pair) spread(btf_->pair_value, pair, pair_value_);
@@ -42,11 +39,10 @@ class FactoredMaterial final : public Material {
     p.weight = views->weight;
     for (size_t v = 0; v < 3; ++v) p.view[v] = static_cast<uint32_t>(btf_->layout.first(views->index[v]));
     std::fill_n(p.value, end_[2], 0.0f);
-    const TexelLevel& finest = btf_->levels[0];
-    const FootprintTaps taps = footprint_taps(site.footprint, Vec2(finest.width, finest.height));
-    for (int i = 0; i < taps.count; ++i) {
-      add_trilinear(taps.place(site.uv, i), taps.level, 1.0f / static_cast<float>(taps.count), p.value);
-    }
+    visit_texels(site, btf_->levels, [&](size_t level, uint64_t texel, float weight) {
+      const float* from = texel_value_[level].data() + texel * end_[2];
+      for (uint32_t k = 0; k < end_[2]; ++k) p.value[k] += weight * from[k];
+    });
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
@@ -82,25 +78,6 @@ class FactoredMaterial final : public Material {
     const size_t components = btf_->components();
     halves_to_floats({halves.data() + number * components, components}, {row, components});
     for (size_t k = 0; k < components; ++k) floats[number * end_[2] + place_[k]] = row[k];
-  }
-
-  void add_trilinear(const Vec2& uv, float level, float weight, float* to) const {
-    const float place = std::clamp(level, 0.0f, static_cast<float>(texel_value_.size() - 1));
-    const auto fine = static_cast<size_t>(place);
-    const float part = place - static_cast<float>(fine);
-    add_bilinear(uv, fine, weight * (1 - part), to);
-    if (part > 0) add_bilinear(uv, fine + 1, weight * part, to);
-  }
-
-  void add_bilinear(const Vec2& uv, size_t level, float weight, float* to) const {
-    const TexelLevel& size = btf_->levels[level];
-    const Vec2 place = std::isfinite(uv.x + uv.y) ? uv : Vec2(0.0f);
-    const BilinearTexels texels = bilinear_texels(place, size.width, size.height);
-    for (size_t corner = 0; corner < 4; ++corner) {
-      const float share = weight * texels.weight[corner];
-      const float* from = texel_value_[level].data() + uint64_t{texels.index[corner]} * end_[2];
-      for (uint32_t k = 0; k < end_[2]; ++k) to[k] += share * from[k];
-    }
   }
 
   Rgb value(const PreparedBrdf& point, const Vec3& wl) const {

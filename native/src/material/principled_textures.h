@@ -6,23 +6,18 @@
 #include "material/material.h"
 #include "material/principled_lobes.h"
 #include "material/texture.h"
+#include "material/texture_map.h"
 
 namespace velour {
-
-/// Texture coordinates of a surface to those of a picture: `map` uv + `shift`.
-struct TextureMap {
-  Mat2 map{1.0f};
-  Vec2 shift{0.0f};
-};
 
 /// A picture in the place of a parameter; without one the parameter's own value holds.
 template <class T>
 struct TextureSlot {
   std::shared_ptr<const Texture<T>> texture{};
-  TextureMap map{};
+  TextureMap map{};  // of the surface's coordinates to the picture's
 
   T at(const SurfaceSite& site, const T& otherwise) const {
-    return texture ? texture->look_up(map.map * site.uv + map.shift, map.map * site.footprint) : otherwise;
+    return texture ? texture->look_up(map.point(site.uv), map.map * site.footprint) : otherwise;
   }
 };
 

@@ -55,6 +55,9 @@ class PixelFootprint {
 /// is stretched no further than kLeastSlope tells. Zero without texture coordinates.
 Mat2 texture_footprint(const RaySides& sides, const Vec3& direction, const Vec3& normal, const TexturePoint& texture);
 
+/// Instances of a mesh without texture coordinates of which a material varies: one point of it is shown all over them.
+uint64_t untextured_instances(const Scene& scene);
+
 /// Cosine to the geometric normal from which on a footprint grows no longer: a thousand times as long as wide.
 inline constexpr float kLeastSlope = 1e-3f;
 

@@ -122,12 +122,12 @@ Vec3 Mesh::shading_normal(uint32_t triangle, const Vec2& uv) const {
   return usable_normal(mean) ? mean : n[0];  // opposed corner normals cancel
 }
 
-Vec3 Mesh::tangent(uint32_t triangle) const {
+Vec3 Mesh::tangent(uint32_t triangle, const Mat2& map) const {
   if (uvs_.empty()) return Vec3(0.0f);
   const glm::uvec3& t = triangles_[triangle];
   const Vec2* uv = &uvs_[3 * static_cast<size_t>(triangle)];
   const Vec3 e1 = positions_[t.y] - positions_[t.x], e2 = positions_[t.z] - positions_[t.x];
-  const Vec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
+  const Vec2 d1 = map * (uv[1] - uv[0]), d2 = map * (uv[2] - uv[0]);
   const float determinant = d1.x * d2.y - d1.y * d2.x;
   const Vec3 along = (d2.y * e1 - d1.y * e2) * (determinant < 0.0f ? -1.0f : 1.0f);
   return determinant != 0.0f && usable_normal(along) ? along : Vec3(0.0f);

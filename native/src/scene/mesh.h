@@ -41,8 +41,9 @@ class Mesh {
   /// The same sum over absolute coordinates: what the rounding error of position() is proportional to.
   Vec3 position_magnitude(uint32_t triangle, const Vec2& uv) const;
   Vec3 shading_normal(uint32_t triangle, const Vec2& uv) const;
-  /// d position / d (first texture coordinate); zero without uvs or where they are degenerate.
-  Vec3 tangent(uint32_t triangle) const;
+  /// Along d position / d (first coordinate of `map` times the texture coordinates); zero without uvs or where they are
+  /// degenerate.
+  Vec3 tangent(uint32_t triangle, const Mat2& map = Mat2(1.0f)) const;
   uint32_t material_slot(uint32_t triangle) const { return slots_.empty() ? 0 : slots_[triangle]; }
   uint64_t bytes() const;
 

@@ -26,6 +26,16 @@ void require_finite(const Affine& map, const char* what) {
   if (!map.finite()) refuse(std::string("The transform of ") + what + " holds a number that is not finite.");
 }
 
+void require_placements(const std::vector<TextureMap>& placements, size_t materials) {
+  if (!placements.empty() && placements.size() != materials) {
+    refuse("An instance has " + std::to_string(materials) + " materials and " + std::to_string(placements.size()) +
+           " texture placements; give as many, or none.");
+  }
+  if (!std::ranges::all_of(placements, &TextureMap::invertible)) {
+    refuse("A texture placement holds a number that is not finite, or leaves the texture without width.");
+  }
+}
+
 }  // namespace
 
 void Scene::changed() { rays_.reset(); }
@@ -47,19 +57,22 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
   materials_[number] = std::move(material);
 }
 
-void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials) {
+void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
+                         std::vector<TextureMap> placements) {
   if (mesh >= meshes_.size()) refuse("There is no mesh " + std::to_string(mesh) + " to instance.");
   require_finite(object_to_world, "an instance");
   if (materials.empty()) refuse("An instance needs at least one material.");
   for (uint32_t m : materials) {
     if (m >= materials_.size()) refuse("There is no material " + std::to_string(m) + " for an instance.");
   }
+  require_placements(placements, materials.size());
   changed();
   if (!object_to_world.invertible()) {
     ++flat_instances_;
     return;
   }
-  instances_.push_back({mesh, object_to_world, object_to_world.normal_map(), std::move(materials)});
+  instances_.push_back(
+      {mesh, object_to_world, object_to_world.normal_map(), std::move(materials), std::move(placements)});
 }
 
 uint32_t Scene::add_light(const Light& light) {
@@ -139,13 +152,29 @@ SceneInfo Scene::count() const {
   return info;
 }
 
-uint32_t Scene::material(const Hit& hit) const {
+uint32_t Scene::slot(const Hit& hit) const {
   const Instance& instance = instances_[hit.instance];
   const uint32_t slot = meshes_[instance.mesh].material_slot(hit.triangle);
-  return instance.materials[std::min<uint32_t>(slot, static_cast<uint32_t>(instance.materials.size() - 1))];
+  return std::min<uint32_t>(slot, static_cast<uint32_t>(instance.materials.size() - 1));
+}
+
+uint32_t Scene::material(const Hit& hit) const { return instances_[hit.instance].materials[slot(hit)]; }
+
+const TextureMap* Scene::placement(const Hit& hit) const {
+  const Instance& instance = instances_[hit.instance];
+  return instance.placements.empty() ? nullptr : &instance.placements[slot(hit)];
 }
 
 TexturePoint Scene::texture(const Hit& hit) const {
+  const TexturePoint point = texture_of_mesh(hit);
+  const TextureMap* placed = placement(hit);
+  if (placed == nullptr) return point;
+  const Mat2& map = placed->map;
+  return {placed->point(point.uv), map[0].x * point.u_gradient + map[1].x * point.v_gradient,
+          map[0].y * point.u_gradient + map[1].y * point.v_gradient};
+}
+
+TexturePoint Scene::texture_of_mesh(const Hit& hit) const {
   const Instance& instance = instances_[hit.instance];
   const Mesh& mesh = meshes_[instance.mesh];
   if (!mesh.has_uvs()) return {};
@@ -180,7 +209,8 @@ SurfacePoint Scene::surface(const Hit& hit) const {
   point.geometric_normal =
       glm::normalize(front / std::max({std::abs(front.x), std::abs(front.y), std::abs(front.z), 1e-37f}));
   point.shading_normal = glm::normalize(instance.normal_to_world * mesh.shading_normal(hit.triangle, uv));
-  point.tangent = map.vector(mesh.tangent(hit.triangle));
+  const TextureMap* placed = placement(hit);
+  point.tangent = map.vector(mesh.tangent(hit.triangle, placed != nullptr ? placed->map : Mat2(1.0f)));
   point.error = position_error(map, mesh.position_magnitude(hit.triangle, uv));
   point.material = material(hit);
   return point;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "material/texture_map.h"
 #include "scene/camera.h"
 #include "scene/embree_scene.h"
 #include "scene/environment.h"
@@ -28,15 +29,15 @@ struct SurfacePoint {
   Vec3 position;
   Vec3 geometric_normal;  // unit, towards the mesh's front
   Vec3 shading_normal;    // unit, interpolated, towards the mesh's front
-  Vec3 tangent;           // along the first texture coordinate, not normalised; zero when there is none
+  Vec3 tangent;           // along the first texture coordinate as placed, not normalised; zero when there is none
   float error;            // bound of |position - exact|, per coordinate
   uint32_t material;
 };
 
 /// Of a scene that is rendered; those that are only traced need none.
 inline constexpr const char* kNoLightWarning = "The scene has no light.";
-/// What a material that varies over the surface needs beside it. Of a mesh without texture coordinates, or with ones
-/// that are not finite: all zero.
+/// What a material that varies over the surface needs beside it, as placed. Of a mesh without texture coordinates, or
+/// with ones that are not finite, it is that of (0, 0), without gradients.
 struct TexturePoint {
   Vec2 uv{0.0f};
   /// d uv / d position on the triangle's plane, world space, for any transform of the instance; zero where the triangle
@@ -62,8 +63,10 @@ class Scene {
   /// Puts another material in the place of one. A committed scene stays committed; nothing may read it meanwhile.
   void set_material(uint32_t number, SurfaceMaterial material);
   /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a
-  /// zero scale) is left out and counted in the warnings.
-  void add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials);
+  /// zero scale) is left out and counted in the warnings. `placements[s]` takes the mesh's texture coordinates to those
+  /// that slot s is shown with, and with them its footprints and its tangents; none: they are the same.
+  void add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
+                    std::vector<TextureMap> placements = {});
   uint32_t add_light(const Light& light);
   void set_environment(Environment environment);
   void set_camera(const Camera& camera);
@@ -81,6 +84,7 @@ class Scene {
     Affine object_to_world;
     Mat3 normal_to_world;
     std::vector<uint32_t> materials;
+    std::vector<TextureMap> placements;  // as many, or none
   };
   const std::vector<Mesh>& meshes() const { return meshes_; }
   /// Hit::instance counts these.
@@ -105,6 +109,10 @@ class Scene {
 
  private:
   void changed();
+  uint32_t slot(const Hit& hit) const;
+  /// Null where texture coordinates are the mesh's own.
+  const TextureMap* placement(const Hit& hit) const;
+  TexturePoint texture_of_mesh(const Hit& hit) const;
   Bounds bounds_of_instances() const;
   SceneInfo count() const;
 

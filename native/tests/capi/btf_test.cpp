@@ -105,6 +105,22 @@ TEST(Btf, TellsOfItselfByHandleAndByPath) {
   EXPECT_NE(std::string(of_path).find(R"("kind":"btf")"), std::string::npos);
 }
 
+TEST(Btf, IsAMaterialItself) {
+  const BtfHandle btf(written_set());
+  vlr_scene* scene = nullptr;
+  uint32_t material = 99;
+  ASSERT_EQ(VLR_OK, vlr_scene_create(&scene)) << vlr_last_error();
+  EXPECT_EQ(VLR_OK, vlr_scene_add_btf_material(scene, btf.get(), 0, &material)) << vlr_last_error();
+  EXPECT_EQ(material, 0u);
+  EXPECT_STATUS(VLR_UNSUPPORTED, vlr_scene_add_btf_material(scene, btf.get(), 17, &material));  // 2 + 1 texels
+  EXPECT_TRUE(last_error_has("the limit is"));
+  EXPECT_EQ(VLR_OK, vlr_scene_add_btf_material(scene, btf.get(), 18, &material)) << vlr_last_error();
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_add_btf_material(nullptr, btf.get(), 0, &material));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_add_btf_material(scene, nullptr, 0, &material));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_add_btf_material(scene, btf.get(), 0, nullptr));
+  vlr_scene_free(scene);
+}
+
 TEST(Btf, AnExportKeepsWhatItNeeds) {
   const std::string path = written_set(), target = path + "/out";
   vlr_job* job = nullptr;

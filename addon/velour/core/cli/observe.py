@@ -31,7 +31,6 @@ def run(args: argparse.Namespace) -> dict:
         others = [handles.enter_context(Observation.load(path)) for path in args.merge]
         described = handles.enter_context(Scene())
         material = scene.fill(described, args, handles)
-        described.commit()
         job = handles.enter_context(observe_job(described, material, **_options(args)))
         report = job.run(output.progress_of(args))
         observation = handles.enter_context(job.result_observation())

@@ -64,7 +64,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--full-model", metavar="FULL",
         help="serves pictures that the material, a model reduced to other scenes, was not made for",
     )  # fmt: skip
-    later.add_later(parser, "--texture-scale", "it is for materials with texture", "S")
 
 
 def run(args: argparse.Namespace) -> dict:
@@ -75,7 +74,6 @@ def run(args: argparse.Namespace) -> dict:
         start = time.perf_counter()
         described = handles.enter_context(Scene())
         material = scene.fill(described, args, handles)
-        described.commit()
         outside = _choose_model(described, material, args, handles)
         loaded = time.perf_counter()
         job = handles.enter_context(render_job(described, **_options(args)))

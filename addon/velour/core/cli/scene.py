@@ -8,10 +8,12 @@ import math
 
 from ...native import Measurement, Model, Scene, library
 from ...native.errors import refuse
-from . import numbers
+from . import btf_options, numbers, texture_options
 
 # A y-up model stands upright in the z-up world: (x, y, z) -> (x, -z, y), as Blender's OBJ import does it.
 _UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
+
+_OWN_SAMPLES = {"model": "a model", "btf": "a BTF"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--up", choices=tuple(_UP), default="y", help="the axis of the mesh that points up (y)"
     )
     parser.add_argument(
-        "--material", metavar="MATERIAL", required=True, help="a model, or a measurement itself"
+        "--material", metavar="MATERIAL", required=True, help="a model, or a measurement or BTF itself"
     )
     parser.add_argument(
         "--proposal", metavar="MODEL", help="with a measurement: the model that draws its samples"
@@ -37,16 +39,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--camera", type=numbers.camera, metavar="EYE,TARGET,FOV",
         help="x,y,z,x,y,z,degrees in the z-up world; default: frames the mesh",
     )  # fmt: skip
+    btf_options.add_arguments(parser)
+    parser.add_argument(
+        "--memory", type=numbers.whole(1, 2**63), metavar="BYTES", help="that a BTF itself may take (4 GiB)"
+    )
     parser.add_argument(
         "--size", type=numbers.picture_size, default=(640, 480), metavar="WxH", help="640x480"
     )
+    texture_options.add_arguments(parser)
 
 
 def fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> int:
-    """Fills `scene`, which keeps what `handles` holds; the number of the material."""
+    """Fills and commits `scene`, which keeps what `handles` holds; the number of the material."""
     mesh = scene.load_mesh(args.mesh)
     material = _add_material(scene, args, handles)
-    scene.add_instance(mesh, _UP[args.up], [material])
+    scene.add_instance(mesh, _UP[args.up], [material], texture_options.placements(args))
     turn = math.radians(-args.world_rotation)
     c, s = math.cos(turn), math.sin(turn)
     scene.set_world_file(args.world, 1.0, ((c, -s, 0), (s, c, 0), (0, 0, 1)))
@@ -55,14 +62,20 @@ def fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) 
         scene.look_at(args.camera.eye, args.camera.target, args.camera.fov, aspect)
     else:
         scene.frame_camera(aspect)
+    scene.commit()
+    texture_options.warn_of_missing_coordinates(scene, args.mesh)
     return material
 
 
 def _add_material(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> int:
-    is_model = library.file_info(args.material)["kind"] == "model"
-    if is_model and args.proposal:
-        raise refuse(f"{args.material} is a model and draws its own samples; leave --proposal out.")
-    if is_model:
+    kind = library.file_info(args.material)["kind"]
+    if kind in _OWN_SAMPLES and args.proposal:
+        what = _OWN_SAMPLES[kind]
+        raise refuse(f"{args.material} is {what} and draws its own samples; leave --proposal out.")
+    if kind == "btf":
+        btf = handles.enter_context(btf_options.load(args.material, args))
+        return scene.add_btf_material(btf, args.memory or 0)
+    if kind == "model":
         model = handles.enter_context(Model.load(args.material))
         return scene.add_model_material(model, args.neighbors)
     measurement = handles.enter_context(Measurement.load(args.material))

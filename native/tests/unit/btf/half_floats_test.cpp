@@ -28,6 +28,17 @@ TEST(HalfFloats, EveryHalfSurvivesTheWayThereAndBack) {
   });
 }
 
+TEST(HalfFloats, OneByOneTheyAreTheSame) {
+  for (uint32_t bits = 0; bits < 65536; ++bits) {
+    const auto half = static_cast<HalfBits>(bits);
+    float together = 0;
+    halves_to_floats({&half, 1}, {&together, 1});
+    if (std::isfinite(together)) {
+      ASSERT_EQ(std::bit_cast<uint32_t>(finite_half_to_float(half)), std::bit_cast<uint32_t>(together)) << bits;
+    }
+  }
+}
+
 TEST(HalfFloats, RoundAsTheFilesDo) {
   std::vector<float> floats;
   for (float x = 1e-9f; x < 1e6f; x *= 1.0007f) floats.insert(floats.end(), {x, -x});

@@ -1,0 +1,56 @@
+"""Where a texture lies on a mesh: options of every verb that looks at a scene."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+from ...native import Scene, library
+from ...native.errors import refuse
+from .. import placement
+from . import numbers, output
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("materials with texture (BTFs)")
+    group.add_argument(
+        "--texture-scale", type=scale, metavar="S|SX,SY",
+        help="tiles a unit of the mesh's texture coordinates (1)",
+    )  # fmt: skip
+    group.add_argument(
+        "--texture-rotation", type=numbers.real(), metavar="DEG",
+        help="turns the tiles counter-clockwise about the first one's corner (0)",
+    )  # fmt: skip
+    group.add_argument(
+        "--texture-offset", type=numbers.reals(2), metavar="U,V",
+        help="texture coordinates of the first tile's lower left corner (0,0)",
+    )  # fmt: skip
+
+
+def scale(text: str) -> tuple[float, ...]:
+    """One number for both axes, or two; none is 0, which nothing could be seen of."""
+    values = numbers.reals(2 if "," in text else 1)(text)
+    if 0 in values:
+        raise argparse.ArgumentTypeError("a texture cannot be scaled by 0")
+    return values if len(values) == 2 else 2 * values
+
+
+def placements(args: argparse.Namespace) -> list | None:
+    """As Scene.add_instance() takes them, of the one material."""
+    names = ("scale", "rotation", "offset")
+    given = {name: v for name in names if (v := getattr(args, f"texture_{name}")) is not None}
+    if not given:
+        return None
+    if "texels" not in library.file_info(args.material):
+        flags = " and ".join(f"--texture-{name}" for name in given)
+        raise refuse(f"{args.material} has no texture that could be placed; leave {flags} out.")
+    turn = math.radians(given.get("rotation", 0.0))
+    return [placement.texture_map(given.get("scale", (1.0, 1.0)), turn, given.get("offset", (0.0, 0.0)))]
+
+
+def warn_of_missing_coordinates(scene: Scene, mesh: str) -> None:
+    """Of a committed scene of one mesh."""
+    if scene.info()["untextured"]:
+        output.log.warning(
+            "%s has no texture coordinates: one point of the material is shown all over it.", mesh
+        )

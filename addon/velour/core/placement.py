@@ -1,0 +1,149 @@
+"""How a tiled texture lies on a mesh: the map of its coordinates, and the sizes that come of it.
+
+A map [2 x 3] takes (u, v, 1) of the mesh to tiles: the texture repeats with every whole number.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+LARGEST_STRETCH = 2.0  # that is not worth a warning
+LEAST_SHARE = 0.01  # of the surface: smaller spots do not show
+
+
+def texture_map(repeats, rotation=0.0, offset=(0.0, 0.0), metric=(1.0, 1.0)) -> np.ndarray:
+    """A tile's lower left corner lies at `offset` (u, v) and the tile is turned there, counter-clockwise by
+    `rotation` (radians); `repeats` of them fit a unit along the tile's own x and y.
+
+    metric: how long u and v are in that unit. (1, 1): it is that of u and v themselves, so that a rotation on
+    a mesh whose u and v are not equally long shears.
+    """
+    c, s = np.cos(rotation), np.sin(rotation)
+    linear = np.diag(repeats) @ ((c, s), (-s, c)) @ np.diag(metric)
+    return np.column_stack((linear, -linear @ np.asarray(offset, float)))
+
+
+class Surface(NamedTuple):
+    """Triangles with texture coordinates: two edges of each."""
+
+    edges: np.ndarray  # [n x 2 x 3]
+    uv_edges: np.ndarray  # [n x 2 x 2]
+    centers: np.ndarray  # [n x 3]
+
+    @classmethod
+    def of(cls, positions: np.ndarray, triangles: np.ndarray, corner_uvs: np.ndarray) -> Surface:
+        """positions [v x 3], triangles [n x 3], corner_uvs [n x 3 x 2]."""
+        corners = positions[triangles]
+        return cls(
+            corners[:, 1:] - corners[:, :1], corner_uvs[:, 1:] - corner_uvs[:, :1], corners.mean(axis=1)
+        )
+
+
+class UvMetric(NamedTuple):
+    """Of each triangle: products of the gradients of u and v, 1/m^2; all 0 without extent."""
+
+    area: np.ndarray  # [n] m^2
+    gram: np.ndarray  # [3 x n] u u, u v, v v
+
+    @classmethod
+    def of(cls, surface: Surface, to_metres: np.ndarray) -> UvMetric:
+        """`to_metres` [3 x 3] takes the mesh's own space to metres."""
+        a, b = surface.edges.transpose(1, 0, 2) @ np.asarray(to_metres, np.float64).T
+        p, q = surface.uv_edges.astype(np.float64).transpose(1, 2, 0)
+        aa, ab, bb = (np.einsum("ni,ni->n", x, y) for x, y in ((a, a), (a, b), (b, b)))
+        square = aa * bb - ab * ab  # of twice the area
+        # The metric of the surface in the basis of its edges is [[aa, ab], [ab, bb]]: this is its inverse.
+        gram = np.stack(
+            [
+                p[i] * p[j] * bb - (p[i] * q[j] + q[i] * p[j]) * ab + q[i] * q[j] * aa
+                for i, j in ((0, 0), (0, 1), (1, 1))
+            ]
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            gram /= square
+        good = (square > 0) & np.isfinite(gram).all(axis=0)
+        gram[:, ~good] = 0
+        return cls(np.where(good, 0.5 * np.sqrt(np.maximum(square, 0)), 0), gram)
+
+    def placed(self, uv_map: np.ndarray) -> UvMetric:
+        """The same of the coordinates that a map makes."""
+        (a, b), (c, d) = np.asarray(uv_map)[:, :2]
+        uu, uv, vv = self.gram
+        return UvMetric(
+            self.area,
+            np.stack(
+                [
+                    a * a * uu + 2 * a * b * uv + b * b * vv,
+                    a * c * uu + (a * d + b * c) * uv + b * d * vv,
+                    c * c * uu + 2 * c * d * uv + d * d * vv,
+                ]
+            ),
+        )
+
+    @property
+    def is_flat(self) -> bool:
+        """True where texture coordinates have no extent on any part of the surface."""
+        return not (self._determinants() > 0).any()
+
+    def density(self) -> tuple[float, float]:
+        """Median over the surface of how fast u and v grow, 1/m."""
+        good = self._determinants() > 0
+        return tuple(
+            float(quantiles(np.sqrt(square[good]), self.area[good], (0.5,))[0])
+            for square in self.gram[(0, 2), :]
+        )
+
+    def scales(self) -> np.ndarray:
+        """[n] of each triangle: the geometric mean over directions of tiles (or units of u, v) a metre."""
+        return self._determinants() ** 0.25
+
+    def stretches(self) -> np.ndarray:
+        """[n] of each triangle: the longest direction over the shortest; infinite without extent."""
+        uu, uv, vv = self.gram
+        largest = 0.5 * (uu + vv) + np.hypot(0.5 * (uu - vv), uv)
+        # Largest times least eigenvalue is the determinant; the difference of the two terms would cancel.
+        root = np.sqrt(self._determinants())
+        return np.divide(largest, root, out=np.full_like(root, np.inf), where=root > 0)
+
+    def _determinants(self) -> np.ndarray:
+        uu, uv, vv = self.gram
+        return np.maximum(uu * vv - uv * uv, 0)
+
+
+class Lie(NamedTuple):
+    """What a placement comes to on a surface. Quantiles are by area."""
+
+    scale: float  # tiles a metre, median
+    spread: tuple[float, float]  # of tiles' size over its median: 10 % are smaller, 10 % larger
+    stretched: float  # share of the surface where tiles are stretched by more than LARGEST_STRETCH
+    stretch: float  # that 1 % of the surface exceeds
+    worst: int  # the most stretched triangle
+
+    @property
+    def is_stretched(self) -> bool:
+        return self.stretched > LEAST_SHARE
+
+
+def lie_of(tiles: UvMetric) -> Lie:
+    """`tiles`: placed, in units that are squares where a tile is not stretched. Not of a flat one."""
+    scales, stretches = tiles.scales(), tiles.stretches()
+    good = scales > 0
+    low, scale, high = quantiles(scales[good], tiles.area[good], (0.1, 0.5, 0.9))
+    seen = tiles.area > 0
+    return Lie(
+        scale=float(scale),
+        spread=(float(scale / high), float(scale / low)),
+        stretched=float(tiles.area[stretches > LARGEST_STRETCH].sum() / tiles.area.sum()),
+        stretch=float(quantiles(stretches[seen], tiles.area[seen], (0.99,))[0]),
+        worst=int(np.argmax(np.where(good, stretches, 0))),
+    )
+
+
+def quantiles(values: np.ndarray, weights: np.ndarray, shares) -> np.ndarray:
+    """Values below which the given shares of the weight lie."""
+    order = np.argsort(values)
+    below = np.cumsum(weights[order])
+    places = np.searchsorted(below, np.asarray(shares) * below[-1])
+    return values[order][np.minimum(places, len(values) - 1)]

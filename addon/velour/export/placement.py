@@ -1,0 +1,185 @@
+"""Where tiles of BTFs lie on objects: the map of texture coordinates of each slot of an instance."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.placement import LARGEST_STRETCH, Lie, Surface, UvMetric, lie_of, texture_map
+from .meshes import object_arrays
+from .nodes import velour_node
+from .notes import ExportError
+
+
+class Tile(NamedTuple):
+    """What a placement needs to know of a material that shows a BTF."""
+
+    material: str  # its name
+    settings: object  # node.velour.placement
+    texels: tuple[int, int]
+    own_metres: tuple[float, float] | None  # as the BTF says, if it says anything
+
+    @classmethod
+    def of(cls, material, info):
+        """`info`: of the model or BTF; None where it is the same all over a surface."""
+        if "texels" not in info:
+            return None
+        settings, metres = velour_node(material).velour.placement, info["tile_metres"]
+        return cls(material.name, settings, tuple(info["texels"]), tuple(metres) if metres else None)
+
+    @property
+    def metres(self):
+        """Entered or the BTF's own; None: not known."""
+        entered = tuple(1e-3 * side for side in self.settings.tile_size)
+        return entered if min(entered) > 0 else self.own_metres
+
+    @property
+    def shape(self):
+        """Width and height, whose product is 1; of unknown size: with square texels."""
+        width, height = self.metres or self.texels
+        return math.sqrt(width / height), math.sqrt(height / width)
+
+
+class Metrics(NamedTuple):
+    """Of a surface in metres: without the object's scale, and in the world."""
+
+    local: UvMetric
+    world: UvMetric
+
+    @classmethod
+    def of(cls, surface, matrix, metres_per_unit):
+        local = UvMetric.of(surface, metres_per_unit * np.eye(3))
+        linear = np.array(matrix, float)[:3, :3]
+        if np.abs(linear.T @ linear - np.eye(3)).max() < 1e-6:
+            return cls(local, local)
+        return cls(local, UvMetric.of(surface, metres_per_unit * linear))
+
+    def growth(self, keeps_size):
+        """How much longer u and v count because the object is scaled."""
+        if not keeps_size:
+            return np.ones(2)
+        return np.array(self.local.density()) / self.world.density()
+
+
+def tile_map(tile, metrics):
+    """[2 x 3]: from the mesh's texture coordinates to tiles. Not of a flat surface."""
+    settings = tile.settings
+    repeats, lengths = settings.repeats, metrics.growth(settings.keeps_size)
+    if settings.mode == "REAL_SIZE":
+        if tile.metres is None:
+            raise ExportError(
+                f"Material '{tile.material}': its BTF does not know how large its tile is; enter Tile Size in"
+                " its Placement panel, or choose Repeats there."
+            )
+        repeats, lengths = 1 / np.array(tile.metres), lengths / _density(settings, metrics)
+    return texture_map(repeats, settings.rotation, settings.offset, lengths)
+
+
+def _density(settings, metrics):
+    """Of u and v on the object without its scale, 1/m."""
+    given = np.array(settings.uv_density)
+    return given if given.min() > 0 else np.array(metrics.local.density())
+
+
+def lie_on(tile, metrics, uv_map):
+    """The Lie of tiles of a map; its scale is of tiles without their shape."""
+    return lie_of(metrics.world.placed(np.diag(tile.shape) @ uv_map))
+
+
+def surface_of(arrays, slots):
+    """The Surface of those slots of MeshArrays; None without texture coordinates."""
+    if arrays is None or arrays.corner_uvs is None:
+        return None
+    shown = np.isin(arrays.material_slots, slots)
+    return Surface.of(arrays.positions, arrays.triangles[shown], arrays.corner_uvs[shown])
+
+
+def missing_coordinates(obj, material_name):
+    return (
+        f"Object '{obj.name}': its UV map is missing or has no extent; one point of material"
+        f" '{material_name}' is shown all over it. Unwrap it, or choose another material."
+    )
+
+
+def stretch_sentence(obj, tile, lie, surface):
+    x, y, z = surface.centers[lie.worst]
+    most = f"up to {lie.stretch:.1f}:1" if math.isfinite(lie.stretch) else "in places without end"
+    return (
+        f"Object '{obj.name}': tiles of material '{tile.material}' are stretched by more than"
+        f" {LARGEST_STRETCH:g}:1 on {lie.stretched:.0%} of it, {most}, worst near ({x:.3g}, {y:.3g}, {z:.3g})"
+        " of its own axes."
+    )
+
+
+class _Placed(NamedTuple):
+    uv_map: np.ndarray
+    lie: Lie
+
+
+class Placements:
+    """Of the instances of an export; says in `notes` what is stretched or cannot be placed."""
+
+    def __init__(self, materials, notes):
+        self._materials = materials
+        self._notes = notes
+        self._surfaces = {}
+        self._placed = {}
+
+    def of(self, instance, key, slots, metres_per_unit):
+        """A map for each material in `slots`, or None: texture coordinates as they are.
+
+        `key`: the same for instances of one mesh.
+        """
+        if not any(map(self._materials.needs_coordinates, slots)):
+            return None
+        maps, is_placed = [], False
+        for material in slots:
+            same = tuple(slot for slot, other in enumerate(slots) if other == material)
+            uv_map = self._map(instance, material, (key, same), metres_per_unit)
+            is_placed = is_placed or uv_map is not None
+            maps.append(texture_map((1, 1)) if uv_map is None else uv_map)
+        return maps if is_placed else None
+
+    def _map(self, instance, material, key, metres_per_unit):
+        if not self._materials.needs_coordinates(material):
+            return None
+        obj, tile = instance.object, self._materials.tile(material)
+        if key not in self._surfaces:
+            self._surfaces[key] = surface_of(object_arrays(obj), key[1])
+        surface = self._surfaces[key]
+        placed = None
+        if surface is not None and tile is not None:
+            shape = (key, material.original.as_pointer(), _size_of(instance.matrix_world))
+            if shape not in self._placed:
+                self._placed[shape] = self._place(tile, surface, instance.matrix_world, metres_per_unit)
+            placed = self._placed[shape]
+        self._warn(obj, material, tile, surface, placed)
+        return placed.uv_map if placed else None
+
+    def _place(self, tile, surface, matrix, metres_per_unit):
+        """None where texture coordinates have no extent."""
+        metrics = Metrics.of(surface, matrix, metres_per_unit)
+        if metrics.world.is_flat:
+            return None
+        try:
+            uv_map = tile_map(tile, metrics)
+        except ExportError as error:
+            if self._materials.strict:
+                raise
+            self._notes.add(str(error))
+            uv_map = texture_map((1, 1))
+        return _Placed(uv_map, lie_on(tile, metrics, uv_map))
+
+    def _warn(self, obj, material, tile, surface, placed):
+        if surface is None or (tile is not None and placed is None):
+            self._notes.add(missing_coordinates(obj, material.name))
+        elif placed is not None and placed.lie.is_stretched:
+            self._notes.add(stretch_sentence(obj, tile, placed.lie, surface))
+
+
+def _size_of(matrix):
+    """What is left of a matrix without its rotation, rounded: rotated copies share their measures."""
+    linear = np.array(matrix, float)[:3, :3]
+    gram = linear.T @ linear
+    size = np.trace(gram) or 1.0
+    return (f"{size:.5g}", *np.round(gram / size, 5).ravel().tolist())

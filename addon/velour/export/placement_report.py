@@ -1,0 +1,110 @@
+"""What a BTF's placement on one object comes to, for the panel and for scripts."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.placement import LARGEST_STRETCH
+from .camera_texels import texels_per_pixel
+from .meshes import object_arrays, triangle_faces
+from .notes import ExportError
+from .objects import slot_materials
+from .placement import (
+    Metrics,
+    lie_on,
+    missing_coordinates,
+    stretch_sentence,
+    surface_of,
+    tile_map,
+)
+from .units import metres_per_unit
+
+_SAME = 0.005  # of real size: nobody sees that
+
+
+class PlacementReport(NamedTuple):
+    rows: tuple[tuple[str, str], ...]  # name and value, for people
+    warnings: tuple[str, ...]
+    uv_density: tuple[float, float] | None = None  # of the object without its scale, 1/m
+
+
+def report_on(depsgraph, obj, material, tile):
+    """Of an object of the .blend that shows `material`, whose Tile is `tile`."""
+    evaluated = obj.evaluated_get(depsgraph)
+    arrays = object_arrays(evaluated)
+    slots = _slots(evaluated, arrays, material)
+    surface = surface_of(arrays, slots)
+    metres = metres_per_unit(depsgraph.scene)
+    metrics = None if surface is None else Metrics.of(surface, evaluated.matrix_world, metres)
+    if metrics is None or metrics.world.is_flat:
+        return PlacementReport((), (missing_coordinates(obj, material.name),))
+    rows, density = [_density_row(metrics)], metrics.local.density()
+    try:
+        uv_map = tile_map(tile, metrics)
+    except ExportError as error:
+        return PlacementReport(tuple(rows), (str(error),), density)
+    tiles, lie = metrics.world.placed(uv_map), lie_on(tile, metrics, uv_map)
+    rows += [_size_row(tile, tiles), _spread_row(lie), _texel_row(tile, lie)]
+    of_faces = _of_faces(evaluated, arrays, slots, tiles.scales() * metres * _texels(tile))
+    rows += [_camera_row(depsgraph, obj, of_faces), _stretch_row(lie)]
+    warnings = (stretch_sentence(obj, tile, lie, surface),) if lie.is_stretched else ()
+    return PlacementReport(tuple(rows), warnings, density)
+
+
+def _slots(obj, arrays, material):
+    if arrays is None:
+        return ()
+    shown = slot_materials(obj, int(np.max(arrays.material_slots)) + 1)
+    return tuple(slot for slot, other in enumerate(shown) if other and other.original == material.original)
+
+
+def _of_faces(obj, arrays, slots, values):
+    """Values of the slots' triangles as values of the object's faces; NaN of other slots."""
+    faces = triangle_faces(obj)
+    found = np.full(int(faces.max()) + 1, np.nan)
+    found[faces[np.isin(arrays.material_slots, slots)]] = values
+    return found
+
+
+def _texels(tile):
+    """Along a side, geometric mean of both."""
+    return math.sqrt(math.prod(tile.texels))
+
+
+def _density_row(metrics):
+    return "UV density", "{:.3g} x {:.3g} per metre".format(*metrics.world.density())
+
+
+def _size_row(tile, tiles):
+    sides = [1 / grow for grow in tiles.density()]
+    unit, factor = ("m", 1) if max(sides) >= 1 else ("mm", 1e3)
+    size = "{:.3g} x {:.3g} {}".format(*(factor * side for side in sides), unit)
+    if tile.metres is None:
+        return "Tile here", f"{size}, real size not known"
+    times = [side / real for side, real in zip(sides, tile.metres, strict=True)]
+    if max(abs(t - 1) for t in times) < _SAME:
+        return "Tile here", f"{size}, real size"
+    return "Tile here", "{}, {:.3g} x {:.3g} of real size".format(size, *times)
+
+
+def _spread_row(lie):
+    return "Spread", "{:.2f} to {:.2f}".format(*lie.spread)
+
+
+def _texel_row(tile, lie):
+    return "Texels", f"{1e-3 * lie.scale * _texels(tile):.3g} per mm"
+
+
+def _stretch_row(lie):
+    most = f"{lie.stretch:.2f}:1" if math.isfinite(lie.stretch) else "without end"
+    return "Stretch", f"{most}, {lie.stretched:.0%} above {LARGEST_STRETCH:g}:1"
+
+
+def _camera_row(depsgraph, obj, texels_per_unit):
+    name = "In the camera"
+    try:
+        found = texels_per_pixel(depsgraph, obj, texels_per_unit)
+    except ExportError:
+        return name, "no camera that renders"
+    return name, "{1:.3g} texels per pixel, least {0:.3g}".format(*found) if found else "not seen"

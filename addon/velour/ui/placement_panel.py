@@ -1,0 +1,61 @@
+"""Where the tiles of a BTF lie on objects."""
+
+import bpy
+
+from ..export.nodes import velour_node
+from ..operators.placement import VELOUR_OT_keep_uv_density
+from .material_panel import MaterialPanel, draw_rows
+from .placement_summary import placement_report
+from .summaries import model_summary
+from .text import draw_sentence
+
+
+class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
+    bl_label = "Placement"
+    bl_parent_id = "VELOUR_MATERIAL_PT_measured"
+
+    @classmethod
+    def poll(cls, context):
+        node = velour_node(context.material)
+        info = model_summary(node.image) if node is not None and node.image is not None else None
+        return isinstance(info, dict) and "texels" in info
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        node = velour_node(context.material)
+        settings = node.velour.placement
+        layout.row().prop(settings, "mode", expand=True)
+        if settings.mode == "REPEATS":
+            layout.column().prop(settings, "repeats")
+        else:
+            _draw_real_size(layout, settings, model_summary(node.image)["tile_metres"])
+        layout.prop(settings, "rotation")
+        layout.column().prop(settings, "offset")
+        layout.prop(settings, settings.scale_property)
+        _draw_report(context, layout, placement_report(context, context.material))
+
+
+def _draw_real_size(layout, settings, own_metres):
+    column = layout.column()
+    column.prop(settings, "tile_size", text="Tile Size (mm)")
+    if min(settings.tile_size) == 0:
+        icon, text = ("ERROR", "The BTF does not know it: enter it")
+        if own_metres:
+            icon, text = "INFO", "Of the BTF: {:.4g} x {:.4g} mm".format(*(1e3 * side for side in own_metres))
+        column.label(text=text, icon=icon)
+    column = layout.column()
+    column.prop(settings, "uv_density", text="UV Density (1/m)")
+    column.operator(VELOUR_OT_keep_uv_density.bl_idname, icon="PINNED")
+
+
+def _draw_report(context, layout, report):
+    if report is None:
+        layout.label(text="Measuring...", icon="TIME")
+        return
+    box = layout.box()
+    box.label(text=f"On '{context.object.name}'")
+    draw_rows(box, report.rows)
+    for sentence in report.warnings:
+        draw_sentence(context, layout, sentence, icon="ERROR")

@@ -1,0 +1,76 @@
+"""What the Placement panel shows, measured between redraws (engine/write_lock.py says why)."""
+
+import time
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..export.nodes import velour_node
+from ..export.placement import Tile
+from ..export.placement_report import report_on
+from .summaries import model_summary
+
+_QUIET_SECONDS = 0.3  # while something is dragged nothing is measured
+
+_key = None  # of what was drawn last
+_report = None  # of _key, perhaps of a moment ago
+_is_fresh = False
+_changed = 0.0  # time.monotonic() of the last change
+
+
+def placement_report(context, material):
+    """The PlacementReport of the active object; None while there is none yet."""
+    global _key, _report, _is_fresh
+    key = (context.object.name_full, material.name_full, context.scene.name_full, context.scene.frame_current)
+    if key != _key:
+        _key, _report, _is_fresh = key, None, False
+    if not _is_fresh and not bpy.app.timers.is_registered(_measure):
+        bpy.app.timers.register(_measure)
+    return _report
+
+
+def attach():
+    bpy.app.handlers.depsgraph_update_post.append(_note_change)
+
+
+def detach():
+    global _key, _report
+    bpy.app.handlers.depsgraph_update_post.remove(_note_change)
+    if bpy.app.timers.is_registered(_measure):
+        bpy.app.timers.unregister(_measure)
+    _key = _report = None
+
+
+@persistent
+def _note_change(_scene, _depsgraph):
+    """Renders may call it from their thread: it only takes notes."""
+    global _is_fresh, _changed
+    _is_fresh, _changed = False, time.monotonic()
+
+
+def _measure():
+    """A timer: runs on the main thread between two redraws."""
+    global _report, _is_fresh
+    quiet = time.monotonic() - _changed
+    if quiet < _QUIET_SECONDS:
+        return _QUIET_SECONDS - quiet
+    obj, material, scene, _frame = _key
+    _is_fresh = True
+    _report = _report_of(
+        bpy.data.objects.get(obj), bpy.data.materials.get(material), bpy.data.scenes.get(scene)
+    )
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "PROPERTIES":
+                area.tag_redraw()
+    return None
+
+
+def _report_of(obj, material, scene):
+    node = velour_node(material)
+    info = model_summary(node.image) if node is not None and node.image is not None else None
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    if obj is None or not isinstance(info, dict) or depsgraph.scene != scene:
+        return None
+    tile = Tile.of(material, info)
+    return report_on(depsgraph, obj, material, tile) if tile is not None else None

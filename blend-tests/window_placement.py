@@ -1,0 +1,144 @@
+"""The window: panels of a material made from a BTF, and the numbers in them."""
+
+import importlib
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes, window
+
+_TURNS = 100  # of 0.1 s that a measurement may take
+
+
+def start(folder):
+    """Called by the harness once the window is there."""
+    window.run(folder, (model_rows, repeats, real_size, unknown_size, follows_changes, without_coordinates))
+
+
+def _ui(name):
+    return importlib.import_module(f"{inputs.ADDON}.ui.{name}")
+
+
+def _plane(metres=0.5):
+    """A plane of 2 m with the tile of four greys, seen from above, and its material's tab."""
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    with window.override():
+        obj = scenes.add_plane(scenes.measured_material(inputs.quarters_model(metres), "Quarters"))
+    scenes.add_camera(ortho_scale=2.0)
+    yield from window.show_properties("MATERIAL")
+    scenes.use_engine(size=64)
+    return obj
+
+
+def _settings():
+    return scenes.velour_node(bpy.data.materials["Quarters"]).velour.placement
+
+
+def _report():
+    """What the panel shows once it is measured."""
+    summary = _ui("placement_summary")
+    for area in window.first().screen.areas:
+        area.tag_redraw()
+    for _ in range(_TURNS):
+        yield 0.1
+        if summary._is_fresh and summary._report is not None:
+            return summary._report
+    raise AssertionError("nothing was measured")
+
+
+def _scroll_down():
+    area = max(window.first().screen.areas, key=lambda a: a.width * a.height)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(window=window.first(), area=area, region=region):
+        bpy.ops.view2d.scroll_down(deltay=600)
+
+
+def model_rows(folder):
+    """The Model panel's rows are those of the model."""
+    yield from _plane()
+    image = scenes.velour_node(bpy.data.materials["Quarters"]).image
+    info = _ui("summaries").model_summary(image)
+    size = image.packed_file.size
+    rows = dict(_ui("material_panel")._btf_rows(info))
+    raw = 6 * (inputs.QUARTER_TEXELS * 16) ** 2  # texels and pairs of half-float colours
+    assert rows["Kind"] == "BTF, svd", rows
+    assert rows["Texels"] == "16 x 16", rows
+    assert rows["Tile"] == "500 x 500 mm", rows
+    assert rows["Directions"] == "16 views, 16 lights", rows
+    assert rows["Size"] == f"{size / 1e6:.2f} MB, 1:{raw / size:.0f}", rows
+    assert float(rows["PSNR"].removesuffix(" dB")) > 40, rows  # four greys: one component holds them
+    assert rows["Unseen pairs"] == "not measured", rows
+    yield from _report()
+    _scroll_down()
+    yield 0.3
+    window.screenshot(folder, "model-rows")
+
+
+def repeats(folder):
+    yield from _plane()
+    report = yield from _report()
+    assert dict(report.rows)["Tile here"] == "2 x 2 m, 4 x 4 of real size", report.rows
+    before = window.screenshot(folder, "repeats-one")
+    _settings().repeats = (4, 4)
+    report = yield from _report()
+    yield 0.3
+    assert dict(report.rows)["Tile here"] == "500 x 500 mm, real size", report.rows
+    assert np.abs(window.screenshot(folder, "repeats-four") - before).max() > 0.2, (
+        "the panel shows nothing new"
+    )
+
+
+def real_size(folder):
+    yield from _plane()
+    _settings().mode = "REAL_SIZE"
+    report = yield from _report()
+    yield 0.3
+    rows = dict(report.rows)
+    assert rows["UV density"] == "0.5 x 0.5 per metre", rows
+    assert rows["Texels"] == "0.032 per mm", rows
+    assert rows["In the camera"] == "1 texels per pixel, least 1", rows
+    assert report.warnings == ()
+    window.screenshot(folder, "real-size")
+
+
+def unknown_size(folder):
+    yield from _plane(metres=0)
+    _settings().mode = "REAL_SIZE"
+    report = yield from _report()
+    yield 0.3
+    assert "enter Tile Size" in report.warnings[0], report.warnings
+    window.screenshot(folder, "unknown-size")
+    image = scenes.velour_node(bpy.data.materials["Quarters"]).image
+    assert (
+        dict(_ui("material_panel")._btf_rows(_ui("summaries").model_summary(image)))["Tile"]
+        == "size not known"
+    )
+
+
+def follows_changes(folder):
+    """The panel measures again when the object, the camera or the frame changes."""
+    obj = yield from _plane()
+    yield from _report()
+    obj.scale.x = 3
+    bpy.context.view_layer.update()
+    report = yield from _report()
+    assert "up to 3.0:1" in report.warnings[0], report.warnings
+    yield 0.3
+    window.screenshot(folder, "stretched")
+    bpy.context.scene.camera.data.ortho_scale = 4
+    bpy.context.view_layer.update()
+    report = yield from _report()
+    texels = 16 / np.sqrt(12) * 4 / 64  # 12 m^2 for a tile of 16 x 16
+    assert dict(report.rows)["In the camera"] == f"{texels:.3g} texels per pixel, least {texels:.3g}", (
+        report.rows
+    )
+
+
+def without_coordinates(folder):
+    obj = yield from _plane()
+    obj.data.uv_layers.remove(obj.data.uv_layers[0])
+    report = yield from _report()
+    yield 0.3
+    assert "its UV map is missing" in report.warnings[0], report.warnings
+    window.screenshot(folder, "without-coordinates")

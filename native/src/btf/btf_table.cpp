@@ -1,0 +1,74 @@
+#include "btf/btf_table.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "btf/factored_btf.h"
+#include "btf/mended_image.h"
+#include "image/half_image.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+std::string gigabytes(uint64_t bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g GB", static_cast<double>(bytes) * 1e-9);
+  return text;
+}
+
+void require_room(const BtfMeasurement& btf, uint64_t most_bytes) {
+  const uint64_t bytes = btf.layout().pairs() * pyramid_texels(btf.grid()) * 3 * sizeof(HalfBits);
+  if (bytes <= most_bytes) return;
+  throw Error(Status::unsupported, btf.provenance().path + ": takes " + gigabytes(bytes) +
+                                       " of memory uncompressed, with mip levels; the limit is " +
+                                       gigabytes(most_bytes) +
+                                       ". Raise it, compress the BTF, or capture fewer texels or directions.");
+}
+
+void size_levels(const BtfMeasurement& btf, BtfTable& table) {
+  uint32_t width = btf.grid().width, height = btf.grid().height;
+  for (;; width = half_of(width), height = half_of(height)) {
+    const uint64_t values = btf.layout().pairs() * width * height * 3;
+    table.levels.push_back({width, height, std::vector<HalfBits>(values)});
+    if (width == 1 && height == 1) return;
+  }
+}
+
+/// `image` and its mip levels, to their places among those of all lights.
+void scatter_pyramid(std::vector<float> image, uint32_t view, size_t light, BtfTable& table) {
+  std::vector<HalfBits> halves(image.size());
+  for (size_t l = 0; l < table.levels.size(); ++l) {
+    BtfTable::Level& level = table.levels[l];
+    halves.resize(image.size());
+    floats_to_halves(image, halves);
+    const size_t stride = table.lights * 3;
+    HalfBits* to = level.value.data() + view * uint64_t{level.width} * level.height * stride + light * 3;
+    for (size_t i = 0; i < halves.size(); i += 3, to += stride) std::copy_n(halves.data() + i, 3, to);
+    if (l + 1 < table.levels.size()) image = half_image(image, level.width, level.height, 3);
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const BtfTable> read_btf_table(const BtfMeasurement& btf, uint64_t most_bytes) {
+  require_room(btf, most_bytes);
+  const PairLayout& layout = btf.layout();
+  auto table = std::make_shared<BtfTable>(BtfTable{PairInterpolation(layout), layout.lights().size(), {}});
+  size_levels(btf, *table);
+  const size_t image = btf.grid().texels() * 3;
+  std::vector<HalfBits> halves(table->lights * image);
+  std::vector<float> floats(image);
+  for (uint32_t view = 0; view < layout.views().size(); ++view) {
+    btf.read_pairs(layout.first(view), table->lights, halves);
+    for (size_t light = 0; light < table->lights; ++light) {
+      halves_to_floats({halves.data() + light * image, image}, floats);
+      mend_image(floats);
+      scatter_pyramid(floats, view, light, *table);
+    }
+  }
+  return table;
+}
+
+}  // namespace velour

@@ -1,0 +1,41 @@
+// Which texels of a repeating tile's pyramid a site of the surface is made of.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "btf/bilinear_texels.h"
+#include "material/footprint_taps.h"
+#include "material/surface_site.h"
+
+namespace velour {
+
+/// Calls `visit(level, texel, weight)` for the four texels about `uv` of one level, `weight` in all.
+template <typename Levels, typename Visit>
+void visit_bilinear(const Vec2& uv, const Levels& levels, size_t level, float weight, const Visit& visit) {
+  const Vec2 place = std::isfinite(uv.x + uv.y) ? uv : Vec2(0.0f);
+  const BilinearTexels texels = bilinear_texels(place, levels[level].width, levels[level].height);
+  for (size_t corner = 0; corner < 4; ++corner) visit(level, texels.index[corner], weight * texels.weight[corner]);
+}
+
+/// The same of the two levels about `level`.
+template <typename Levels, typename Visit>
+void visit_trilinear(const Vec2& uv, const Levels& levels, float level, float weight, const Visit& visit) {
+  const float place = std::clamp(level, 0.0f, static_cast<float>(levels.size() - 1));
+  const auto fine = static_cast<size_t>(place);
+  const float part = place - static_cast<float>(fine);
+  visit_bilinear(uv, levels, fine, weight * (1 - part), visit);
+  if (part > 0) visit_bilinear(uv, levels, fine + 1, weight * part, visit);
+}
+
+/// The same of all that a site's footprint covers, 1 in all. `levels`: a sequence of what has a width and a height, the
+/// finest first. Texture coordinates count tiles.
+template <typename Levels, typename Visit>
+void visit_texels(const SurfaceSite& site, const Levels& levels, const Visit& visit) {
+  const FootprintTaps taps = footprint_taps(site.footprint, Vec2(levels[0].width, levels[0].height));
+  for (int i = 0; i < taps.count; ++i) {
+    visit_trilinear(taps.place(site.uv, i), levels, taps.level, 1.0f / static_cast<float>(taps.count), visit);
+  }
+}
+
+}  // namespace velour

@@ -1,0 +1,39 @@
+"""The demonstration's second part: a tile, its BTF, a model of it, two pictures through Blender, report."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+from pathlib import Path
+
+import headless_blender
+from demo_difference import write_difference
+from velour.core import files
+from velour.core.machine import machine
+from velour.native import library
+
+
+def demonstrate(folder: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)  # a capture goes over nothing
+    folder.mkdir(parents=True)
+    print("capturing a tile of weave ...", flush=True)
+    with tempfile.TemporaryDirectory(prefix="velour-demo-") as temporary:
+        taken = Path(temporary) / "report.json"
+        task = {"folder": str(folder.resolve()), "report": str(taken)}
+        headless_blender.run("demo_btf_scene.py", task, folder / "blender.log")
+        report = json.loads(taken.read_text())
+    report["rmse"], report["relmse"] = write_difference(folder)
+    report |= {"version": library.system()["version"], "machine": machine()}
+    files.write_json(folder / "report.json", report)
+    _tell(folder, report)
+
+
+def _tell(folder: Path, report: dict) -> None:
+    sizes = {name: report[f"{name}_bytes"] / 1e6 for name in ("btf", "model")}
+    print(f"capture {report['capture_seconds']:.1f} s, {sizes['btf']:.0f} MB")
+    print(f"fit     {report['compress_seconds']:.1f} s, {sizes['model']:.2f} MB")
+    print(f"render  {report['model_seconds']:.1f} s, relmse {report['relmse']:.2g}")
+    for name in ("model", "reference", "difference"):
+        print(f"        {folder / name}.png, .exr")
+    print(f"        {folder / 'report.json'}")

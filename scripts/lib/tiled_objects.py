@@ -1,0 +1,118 @@
+"""Runs inside Blender: one tile of geometry all over a plane or a cylinder, and the same objects smooth.
+
+The reference plane of the tile's BTF lies `height` over z = 0 of the tile; the smooth objects are made of it.
+Under the tiles lies a black sheet: what falls through is lost, as it is to a BTF of one side.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+_REACH = 6  # tiles to each side of the middle
+_STEPS = 8  # facets of the smooth cylinder a tile
+
+
+class Plane(NamedTuple):
+    period: float
+    height: float
+
+    middle = Vector((0, 0, 0))
+
+    def bent(self, points: np.ndarray) -> np.ndarray:
+        return points - np.array([0, 0, self.height])
+
+    def place(self, column: int, row: int) -> Matrix:
+        return Matrix.Translation((column * self.period, row * self.period, 0))
+
+    @property
+    def columns(self) -> range:
+        return range(-_REACH, _REACH)
+
+
+class Cylinder(NamedTuple):
+    """About an axis along y, `around` tiles; its topmost line goes through the origin."""
+
+    period: float
+    height: float
+    around: int
+
+    @property
+    def radius(self) -> float:
+        return self.around * self.period / (2 * math.pi)
+
+    @property
+    def middle(self) -> Vector:
+        return Vector((0, 0, -self.radius))
+
+    def bent(self, points: np.ndarray) -> np.ndarray:
+        angle, distance = points[:, 0] / self.radius, self.radius + points[:, 2] - self.height
+        across = distance * np.sin(angle)
+        return np.stack([across, points[:, 1], distance * np.cos(angle) - self.radius], axis=1)
+
+    def place(self, column: int, row: int) -> Matrix:
+        down = Matrix.Translation((0, row * self.period, -self.radius))
+        turn = Matrix.Rotation(column * 2 * math.pi / self.around, 4, "Y")
+        return down @ turn @ Matrix.Translation((0, 0, self.radius))
+
+    @property
+    def columns(self) -> range:
+        return range(-(self.around // 2), self.around - self.around // 2)
+
+
+def add_tiles(tile: bpy.types.Object, shape: Plane | Cylinder) -> list[bpy.types.Object]:
+    """Copies of the tile that share one mesh, bent once; and the black sheet."""
+    mesh = tile.data.copy()
+    points = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", points)
+    bent = shape.bent(points.reshape(-1, 3).astype(float))
+    mesh.vertices.foreach_set("co", bent.astype(np.float32).ravel())
+    mesh.update()
+    objects = [_black_sheet(shape, 1.01 * float(np.ptp(points[2::3])))]
+    for column in shape.columns:
+        for row in range(-_REACH, _REACH):
+            copy = bpy.data.objects.new("Copy", mesh)
+            copy.matrix_world = shape.place(column, row)
+            objects.append(copy)
+    for obj in objects:
+        bpy.context.scene.collection.objects.link(obj)
+    return objects
+
+
+def _black_sheet(shape: Plane | Cylinder, thickness: float) -> bpy.types.Object:
+    """The smooth object, sunk under all of the tile."""
+    sheet = _smooth(shape, depth=shape.height + thickness)
+    material = bpy.data.materials.new("Black")
+    material.use_nodes = True
+    shader = next(n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
+    shader.inputs["Base Color"].default_value = (0, 0, 0, 1)
+    next(s for s in shader.inputs if s.name.startswith("Specular")).default_value = 0
+    sheet.data.materials.append(material)
+    return sheet
+
+
+def add_smooth(shape: Plane | Cylinder) -> bpy.types.Object:
+    """The object of the reference plane; its texture coordinates count tiles."""
+    obj = _smooth(shape, depth=0)
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
+
+
+def _smooth(shape: Plane | Cylinder, depth: float) -> bpy.types.Object:
+    """A grid `depth` under the reference plane, bent as the tiles are."""
+    columns = np.arange(shape.columns.start * _STEPS, shape.columns.stop * _STEPS + 1) / _STEPS
+    u, v = np.meshgrid(columns, [-_REACH, _REACH])
+    flat = np.stack([u, v, np.full_like(u, (shape.height - depth) / shape.period)], axis=-1).reshape(-1, 3)
+    n = len(columns)
+    faces = [(i, i + 1, n + i + 1, n + i) for i in range(n - 1)]
+    mesh = bpy.data.meshes.new("Smooth")
+    mesh.from_pydata(shape.bent(flat * shape.period).tolist(), [], faces)
+    coordinates = flat[np.array(faces).ravel(), :2]
+    mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", coordinates.astype(np.float32).ravel())
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(faces), bool))
+    mesh.update()
+    return bpy.data.objects.new("Smooth", mesh)
