@@ -57,9 +57,9 @@ inline auto pdf_ggx_reflection(const Vec3& wv, const W& h, const Vec2& alpha) {
 template <class T>
 inline T dielectric_fresnel(T cosine, float eta) {
   if (eta <= 1) return 0.0f;
-  const T inside = square_root(eta * eta - 1 + cosine * cosine) / eta;  // cosine of the refracted ray
-  const T parallel = (eta * cosine - inside) / (eta * cosine + inside);
-  const T perpendicular = (cosine - eta * inside) / (cosine + eta * inside);
+  const T inside = square_root(eta * eta - 1 + cosine * cosine);  // eta times the cosine of the refracted ray
+  const T parallel = (eta * eta * cosine - inside) / (eta * eta * cosine + inside);
+  const T perpendicular = (cosine - inside) / (cosine + inside);
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 

@@ -4,7 +4,7 @@
 /// By metal and dielectric with their `lobe`, G2 D / (4 cos cos).
 template <class T>
 inline PrincipledParts<T> principled_reflected(const PrincipledLobes::Layers& layers, T lobe, T cosine) {
-  const T rise = (dielectric_fresnel(cosine, layers.eta) - layers.f0) / (1 - layers.f0);
+  const T rise = (dielectric_fresnel(cosine, layers.eta) - layers.f0) * (1 / (1 - layers.f0));
   const T dielectric = (1 - layers.metallic) * lobe;
   return {dielectric * rise, dielectric * layers.f0 * (1.0f - rise), 0.0f, layers.metallic * lobe, cosine};
 }
