@@ -63,7 +63,8 @@ class Capture {
         options_(options),
         path_(path),
         progress_(progress),
-        tile_(scene, place_of(scene, options.place), options.threads) {}
+        tile_(scene, place_of(scene, options.place), options.threads, progress),
+        tile_sha256_(tile_hash(scene, progress)) {}
 
   BtfCaptureReport run() {
     inspect();
@@ -145,7 +146,7 @@ class Capture {
                                   {"origin", {place.origin.x, place.origin.y}},
                                   {"period", {place.period.x, place.period.y}},
                                   {"metres_per_unit", options_.metres_per_unit},
-                                  {"tile_sha256", tile_hash(scene_)}}
+                                  {"tile_sha256", tile_sha256_}}
         .dump();
   }
 
@@ -183,7 +184,7 @@ class Capture {
     for (auto* map : {&images.structure.height_mean, &images.structure.height_spread}) {
       for (float& height : *map) height *= static_cast<float>(length_unit());
     }
-    store.read_by([&] { writer.write(v, {images.values, images.errors, &images.structure}); });
+    store.read_by([&] { writer.write(v, {images.values, images.errors, &images.structure}, progress_); });
   }
 
   void report(const ViewCapture& capture) {
@@ -205,6 +206,7 @@ class Capture {
   const std::string path_;
   Progress& progress_;
   const RepeatedTile tile_;
+  const std::string tile_sha256_;
   std::optional<PairLayout> layout_;
   float height_ = 0;
   BtfCaptureReport report_;
