@@ -1,4 +1,4 @@
-"""velour capture --held-out: pairs that models are judged by."""
+"""velour capture of tiles: directions by default, one direction, held-out pairs that models are judged by."""
 
 from __future__ import annotations
 
@@ -29,6 +29,25 @@ def btf(folder):
     path = folder / "fitted"
     assert velour("capture", *COMMON, "--views", 12, "--lights", 12, "-o", path).status == 0
     return path
+
+
+def test_captures_reach_85_degrees_by_default(folder):
+    path = folder / "default"
+    report = velour(
+        "capture", "corduroy", "--texels", 1, "--samples", 1, "--bounces", 0, "-o", path, "--json"
+    ).json
+    assert report["pairs"] == 105 * 105
+    with Btf.load(path) as loaded:
+        angles = loaded.angles()
+    assert angles[:, 0].max() == angles[:, 2].max() == 85
+
+
+def test_one_direction_makes_a_model(folder):
+    path, model = folder / "single", folder / "single.velour"
+    assert velour("capture", *COMMON, "--views", 1, "--lights", 1, "-o", path).status == 0
+    report = velour("compress", path, "-o", model, "--bytes", 100000, "--json").json
+    assert report["psnr"] > 30
+    assert velour("compare", path, path, "--json").json["pairs"] == 1
 
 
 def test_every_view_has_a_light_of_its_own(held_out):
