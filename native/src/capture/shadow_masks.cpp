@@ -37,8 +37,17 @@ void ShadowMasks::try_light(const PathVertices& paths, const CaptureLight& light
   for (size_t done = 0; done < facing_.size(); done += kRaysTogether) {
     ids_ = std::span(facing_).subspan(done, std::min(kRaysTogether, facing_.size() - done));
     trace_some(paths, light, rays, log);
-    for (size_t i = 0; i < ids_.size(); ++i) masks_[ids_[i]][bit / 64] |= uint64_t{blocked_[i] == 0} << (bit % 64);
+    note_reached(bit);
   }
+}
+
+void ShadowMasks::note_reached(uint32_t bit) {
+  const uint8_t* blocked = blocked_.data();  // bytes may be anything's: without the copies all is read again each time
+  Mask* masks = masks_.data();
+  const uint32_t* ids = ids_.data();
+  const size_t count = ids_.size();
+  const uint32_t word = bit / 64, shift = bit % 64;
+  for (size_t i = 0; i < count; ++i) masks[ids[i]][word] |= uint64_t{blocked[i] == 0} << shift;
 }
 
 void ShadowMasks::trace_some(const PathVertices& paths, const CaptureLight& light, TileRays& rays, RayLog* log) {

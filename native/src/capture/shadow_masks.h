@@ -27,6 +27,7 @@ class ShadowMasks {
   void read(const PathVertices& paths);
   void try_light(const PathVertices& paths, const CaptureLight& light, uint32_t bit, TileRays& rays, RayLog* log);
   void trace_some(const PathVertices& paths, const CaptureLight& light, TileRays& rays, RayLog* log);
+  void note_reached(uint32_t bit);
   void trace_through_cutouts(const PathVertices& paths, const CaptureLight& light, TileRays& rays, RayLog* log);
 
   // Of the vertices, read by every light.

@@ -30,8 +30,9 @@ void TexelShader::shade(const PathVertices& paths, uint32_t texel, const LightGr
                         TexelValues& values) {
   values = {};
   values.samples = sampling_.samples;
+  const uint32_t padded = (group.count() + 15) / 16 * 16;  // what add_path() reads
   for (uint32_t s = 0; s < sampling_.samples; ++s) {
-    for (auto& channel : path_) std::fill_n(channel, kLightsTogether, 0.0f);
+    for (auto& channel : path_) std::fill_n(channel, padded, 0.0f);
     shade_path(paths, texel * sampling_.samples + s, group, masks);
     values.broken += add_path(path_, luminance_weights_, group.count(), values.sums);
   }

@@ -13,6 +13,7 @@ namespace velour {
 /// A mirror's density is no function; below this a lobe is as sharp as any light we have.
 inline constexpr float kMinGgxAlpha = 1e-3f;
 
+// Here of one number; sources that Highway compiles include the same for several.
 #include "material/ggx_formulas-inl.h"
 
 inline float ggx_brdf_without_fresnel(const DirectionPair& w, const Vec3& h, const Vec2& alpha) {
