@@ -131,6 +131,16 @@ class CaptureBtf(BlenderTest):
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "scene.blend"))
         bpy.ops.velour.capture_btf(**_SMALL)
         self.assertTrue((self.folder / "Plane.btf/btf.json").is_file())
+        bpy.ops.velour.capture_btf(held_out=3)
+        held_out = json.loads((self.folder / "Plane.held-out.btf/btf.json").read_text())
+        self.assertEqual(held_out["pairs"], [[0], [1], [2]])
+        self.assertEqual(held_out["texels"], [4, 4], "the tile's settings hold for them, too")
+
+    def test_held_out_pairs_leave_the_tile_s_folder_alone(self):
+        obj = self._plane()
+        self._capture("fitted")
+        self.assertEqual(len(self._capture("judges", held_out=2)["views"]), 2)
+        self.assertEqual(obj.velour.directory, str(self.folder / "fitted.btf"))
 
 
 class Refusals(BlenderTest):

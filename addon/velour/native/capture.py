@@ -28,10 +28,11 @@ def directions(name: str) -> np.ndarray:
 def capture_job(tile, path: str | os.PathLike, **options) -> Job:
     """Captures a committed Scene, repeated by its period, as a BTF in the folder `path`.
 
-    Options: texels (one number or two), views and lights ([n x 2] degrees), samples, bounces, sides
-    (table.SIDES), origin and period (pairs, the scene's units; no period: the bounding box),
-    metres_per_unit (0: not known), reference_height (the scene's z; none: chosen), memory_limit (bytes of a
-    view's images that are kept in memory), source (a name), seed, threads, resume, measure_ray_share.
+    Options: texels (one number or two), views and lights ([n x 2] degrees), held_out (so many pairs to judge
+    models by, in place of both), samples, bounces, sides (table.SIDES), origin and period (pairs, the scene's
+    units; no period: the bounding box), metres_per_unit (0: not known), reference_height (the scene's z;
+    none: chosen), memory_limit (bytes of a view's images that are kept in memory), source (a name), seed,
+    threads, resume, measure_ray_share.
     """
     raw = table.CaptureOptions()
     library.load().vlr_capture_options_init(byref(raw))

@@ -135,7 +135,7 @@ class CaptureOptions(Struct):
         ("memory_limit", c_uint64),
         ("source", c_char_p),
         ("measure_ray_share", c_int32),
-        ("pad", c_int32),
+        ("held_out", c_uint32),
     ]
 
 

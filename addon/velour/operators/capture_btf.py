@@ -1,5 +1,7 @@
 """Capture a tile as a BTF: in the background of a window, or at once without one."""
 
+import os
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
@@ -7,7 +9,7 @@ from ..export.tiles import export_tile
 from ..native import capture_job, directions
 from ..properties.tile_settings import SIDES
 from .background_job import OneJob
-from .tiles import find_tile, tile_folder
+from .tiles import find_tile, held_out_folder, tile_folder
 
 _SETTINGS = ("directory", "texels", "views", "lights", "samples", "bounces", "sides", "use_approximate")
 
@@ -32,6 +34,14 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     samples: IntProperty(name="Samples", min=1, default=16, options={"SKIP_SAVE"})
     bounces: IntProperty(name="Bounces", min=0, default=1, options={"SKIP_SAVE"})
     sides: EnumProperty(name="Sides", items=SIDES, options={"SKIP_SAVE"})
+    held_out: IntProperty(
+        name="Held-out Pairs",
+        description="Capture so many pairs of a view and a light that models of the tile's BTF are judged by,"
+        " in place of all views and lights, into a folder beside it; 0: the BTF itself",
+        min=0,
+        max=4096,
+        options={"SKIP_SAVE"},
+    )
     use_approximate: BoolProperty(name="Approximate", options={"SKIP_SAVE"})
     seed: IntProperty(name="Seed", min=0, options={"SKIP_SAVE"})
     resume: BoolProperty(
@@ -46,9 +56,10 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         tile = find_tile(context, self.collection)
         settings = tile.owner.velour
         for name in _SETTINGS:
-            if self.properties.is_property_set(name):
+            of_these_pairs = self.held_out and name == "directory"  # not of the tile's BTF
+            if self.properties.is_property_set(name) and not of_these_pairs:
                 setattr(settings, name, getattr(self, name))
-        self._subject, self._folder = tile.owner.name, tile_folder(tile)
+        self._subject, self._folder = tile.owner.name, self._folder_of(tile)
         scene, place, self._notes = export_tile(
             tile, context.evaluated_depsgraph_get(), settings.use_approximate
         )
@@ -62,6 +73,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
                 texels=settings.texels,
                 views=directions(str(settings.views)),
                 lights=directions(str(settings.lights)),
+                held_out=self.held_out,
                 samples=settings.samples,
                 bounces=settings.bounces,
                 sides=settings.sides.lower(),
@@ -69,6 +81,13 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
                 threads=context.scene.render.threads,
                 resume=self.resume,
             ).start()
+
+    def _folder_of(self, tile):
+        if not self.held_out:
+            return tile_folder(tile)
+        if self.directory:
+            return os.path.normpath(bpy.path.abspath(self.directory))
+        return held_out_folder(tile)
 
     def _finish(self):
         with self._job:

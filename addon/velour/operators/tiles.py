@@ -28,3 +28,8 @@ def tile_folder(tile):
         raise ExportError(f"{tile.label}: save the .blend first, or choose a folder for the capture.")
     name = bpy.path.clean_name(tile.owner.name)
     return os.path.normpath(bpy.path.abspath(chosen or f"//{name}.btf"))
+
+
+def held_out_folder(tile):
+    """Where the pairs go that models of its BTF are judged by: beside it."""
+    return tile_folder(tile).removesuffix(".btf") + ".held-out.btf"

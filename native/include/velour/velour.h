@@ -478,16 +478,16 @@ typedef struct vlr_capture_options {
   uint64_t memory_limit;   /* bytes that the images of a view may hold; beyond it they lie in a file in the folder */
   const char* source;      /* name of what is captured */
   int32_t measure_ray_share;
-  int32_t pad;
+  uint32_t held_out; /* not 0: so many pairs to judge models by, up to 75 degrees, in place of views and lights */
 } vlr_capture_options;
 VLR_API void vlr_capture_options_init(vlr_capture_options* options);
 /* Angles of a set: [*count x 2] degrees. `name`: "81" (Bonn's), "105" (the same and a ring at 85 degrees), or another
  * number of directions of equal solid angle. First reads the count (angles NULL). */
 VLR_API vlr_status vlr_directions(const char* name, double* angles, uint64_t* count);
 /* Captures the committed scene `tile`, repeated by the period, into the folder `path`. JSON: seconds, rays,
- * rays_per_second, ray_share (or null), bytes, views, lights, views_resumed, sides, open, thickness, reference_height
- * (metres, or widths of the tile, over its lowest point), warnings. The scene must not change while the job is there.
- */
+ * rays_per_second, ray_share (or null), bytes, views, lights, pairs, views_resumed, sides, open, thickness,
+ * reference_height (metres, or widths of the tile, over its lowest point), warnings. The scene must not change while
+ * the job is there. */
 VLR_API vlr_status vlr_capture_create_job(const vlr_scene* tile, const vlr_capture_options* options, const char* path,
                                           vlr_job** out);
 

@@ -27,7 +27,7 @@ class BtfFolderWriter {
   /// Whether this view's file is there and whole.
   bool has(uint32_t view) const;
   /// Throws Error(invalid_argument) when an array does not have the size that the index asks for.
-  void write(uint32_t view, const BtfView& content) const;
+  void write(uint32_t view, const BtfView& content, const Progress& progress = Progress()) const;
   /// Counts values and hashes files, and marks the BTF as complete: until then it cannot be loaded. Throws
   /// Error(invalid_state) when a view is missing.
   void finish(const Progress& progress = Progress()) const;

@@ -53,20 +53,23 @@ void append(std::vector<std::span<const uint8_t>>& pixels, const ViewStructure& 
 }
 
 /// Of the file of `view`, images one by one.
-ValueCounts counts_of(const std::string& folder, const BtfIndex& index, size_t view) {
+ValueCounts counts_of(const std::string& folder, const BtfIndex& index, size_t view, const Progress& progress) {
   const std::vector<ImageStack> stacks = view_stacks(index, view);
   ValueCounts counts;
   if (index.layout.first(view) == index.layout.first(view + 1)) return counts;
   const ImageStackFile file(view_path(folder, view), stacks);
   std::vector<HalfBits> image(index.grid.texels() * 3);
   for (uint64_t i = 0; i < stacks[kValuesPart].images; ++i) {
+    progress.check();
     file.read(kValuesPart, i, {reinterpret_cast<uint8_t*>(image.data()), image.size() * sizeof(HalfBits)});
     counts.add(image);
   }
   return counts;
 }
 
-BtfContent::ViewFile file_of(const std::string& path) { return {fs::file_size(path), sha256_of_file(path)}; }
+BtfContent::ViewFile file_of(const std::string& path, const Progress& progress) {
+  return {fs::file_size(path), sha256_of_file(path, progress)};
+}
 
 }  // namespace
 
@@ -94,7 +97,7 @@ bool BtfFolderWriter::has(uint32_t view) const {
   }
 }
 
-void BtfFolderWriter::write(uint32_t view, const BtfView& content) const {
+void BtfFolderWriter::write(uint32_t view, const BtfView& content, const Progress& progress) const {
   if (view >= index_.layout.views().size()) throw Error(Status::invalid_argument, "The BTF has no such view.");
   if (index_.structure != (content.structure != nullptr) || (!index_.errors && !content.errors.empty())) {
     throw Error(Status::invalid_argument, path_ +
@@ -108,7 +111,7 @@ void BtfFolderWriter::write(uint32_t view, const BtfView& content) const {
   if (lit) pixels.push_back(bytes_of(content.values));
   if (lit && index_.errors) pixels.push_back(bytes_of(content.errors));
   if (content.structure) append(pixels, *content.structure);
-  write_image_stacks(view_path(path_, view), stacks, pixels);
+  write_image_stacks(view_path(path_, view), stacks, pixels, {}, progress);
 }
 
 void BtfFolderWriter::finish(const Progress& progress) const {
@@ -122,8 +125,9 @@ void BtfFolderWriter::finish(const Progress& progress) const {
   BtfContent content;
   for (size_t v = 0; v < views; ++v) {
     progress.check();
-    content.counts += counts_of(path_, index_, v);
-    content.views.push_back(view_stacks(index_, v).empty() ? BtfContent::ViewFile{} : file_of(view_path(path_, v)));
+    content.counts += counts_of(path_, index_, v, progress);
+    const bool written = !view_stacks(index_, v).empty();
+    content.views.push_back(written ? file_of(view_path(path_, v), progress) : BtfContent::ViewFile{});
   }
   write_index(path_, index_, content);
 }

@@ -55,6 +55,7 @@ BtfCaptureOptions converted(const vlr_capture_options& given) {
   if (given.views) options.views = directions_from(given.views, given.view_count, "view");
   if (given.lights) options.lights = directions_from(given.lights, given.light_count, "light");
   options.sides = sides_from(given.sides);
+  options.held_out = given.held_out;
   options.sampling = {.samples = given.samples, .bounces = given.bounces, .seed = given.seed};
   if (!std::isnan(given.reference_height)) options.reference_height = given.reference_height;
   options.memory_limit = given.memory_limit;

@@ -235,6 +235,7 @@ std::string capture_json(const BtfCaptureReport& report) {
                {"bytes", report.bytes},
                {"views", report.views},
                {"lights", report.lights},
+               {"pairs", report.pairs},
                {"views_resumed", report.views_resumed},
                {"sides", report.two_sided ? 2 : 1},
                {"open", report.open},

@@ -8,11 +8,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "btf/held_out_pairs.h"
 #include "capture/reference_plane.h"
 #include "capture/tile_checks.h"
 #include "capture/view_capture.h"
 #include "capture/view_store.h"
 #include "job/threads.h"
+#include "sphere/random.h"
 
 namespace velour {
 namespace {
@@ -61,7 +63,8 @@ class Capture {
         options_(options),
         path_(path),
         progress_(progress),
-        tile_(scene, place_of(scene, options.place), options.threads) {}
+        tile_(scene, place_of(scene, options.place), options.threads, progress),
+        tile_sha256_(tile_hash(scene, progress)) {}
 
   BtfCaptureReport run() {
     inspect();
@@ -79,11 +82,8 @@ class Capture {
     report_.open = is_open(tile_);
     const bool wanted =
         options_.sides == CaptureSides::two || (options_.sides == CaptureSides::automatic && report_.open);
-    const bool given = any_below(options_.views) || any_below(options_.lights);
-    const bool mirrored = wanted && !given;
-    views_ = mirrored ? with_mirror_images(options_.views) : options_.views;
-    lights_ = mirrored ? with_mirror_images(options_.lights) : options_.lights;
-    report_.two_sided = any_below(views_) || any_below(lights_);
+    layout_ = layout(wanted);
+    report_.two_sided = any_below(layout_->views()) || any_below(layout_->lights());
     report_.warnings = scene_.info().warnings;
     std::erase(report_.warnings, kNoLightWarning);  // lights are ours
     if (const auto warning = seam_warning(tile_)) report_.warnings.push_back(*warning);
@@ -94,11 +94,24 @@ class Capture {
     }
   }
 
+  PairLayout layout(bool two_sided) const {
+    if (options_.held_out > 0) return held_out_pairs(options_.held_out, two_sided);
+    const bool given = any_below(options_.views) || any_below(options_.lights);
+    if (!two_sided || given) return {options_.views, options_.lights};
+    return {with_mirror_images(options_.views), with_mirror_images(options_.lights)};
+  }
+
+  /// Held-out pairs have other random numbers: the noise of what is fitted must not come back in what judges it.
+  TexelSampling sampling() const {
+    TexelSampling sampling = options_.sampling;
+    if (options_.held_out > 0) sampling.seed = mix64(~sampling.seed);
+    return sampling;
+  }
+
   void find_reference_plane() {
     progress_.stage("reference plane", 0, 0.03);
-    height_ = options_.reference_height
-                  ? static_cast<float>(*options_.reference_height)
-                  : least_variance_height(tile_, any_below(views_), options_.sampling.seed, progress_);
+    height_ = options_.reference_height ? static_cast<float>(*options_.reference_height)
+                                        : least_variance_height(tile_, any_below(layout_->views()), progress_);
     if (height_ < tile_.bottom()) {
       throw Error(Status::invalid_argument, "The reference plane at z = " + std::to_string(height_) +
                                                 " lies below the tile's lowest point, " +
@@ -116,7 +129,7 @@ class Capture {
   BtfIndex index() const {
     TexelGrid grid{options_.texels[0], options_.texels[1]};
     if (options_.metres_per_unit > 0) grid.tile_metres = tile_.period() * static_cast<float>(options_.metres_per_unit);
-    return {.layout = PairLayout(views_, lights_),
+    return {.layout = *layout_,
             .grid = grid,
             .shell = Shell{report_.thickness, report_.reference_height},
             .source = options_.source,
@@ -133,16 +146,16 @@ class Capture {
                                   {"origin", {place.origin.x, place.origin.y}},
                                   {"period", {place.period.x, place.period.y}},
                                   {"metres_per_unit", options_.metres_per_unit},
-                                  {"tile_sha256", tile_hash(scene_)}}
+                                  {"tile_sha256", tile_sha256_}}
         .dump();
   }
 
   void capture_views(const BtfFolderWriter& writer) {
     progress_.stage("views", 0.03, 0.97);
     const BtfIndex index = this->index();
-    ViewCapture capture(tile_, index.grid, height_, options_.sampling);
-    RayShare share(options_.measure_ray_share, static_cast<int>(lights_.size()));
-    const auto views = static_cast<uint32_t>(views_.size());
+    ViewCapture capture(tile_, index.grid, height_, sampling());
+    RayShare share(options_.measure_ray_share, static_cast<int>(layout_->lights().size()));
+    const auto views = static_cast<uint32_t>(layout_->views().size());
     for (uint32_t v = 0; v < views; ++v) {
       progress_.check();
       if (writer.has(v)) {
@@ -165,21 +178,22 @@ class Capture {
     const std::vector<float> none(texels);
     ViewImages images{store.halves().first(values), store.halves().subspan(values), {none, none, none}, &store};
     const auto start = Clock::now();
-    const double all = static_cast<double>(views_.size());
+    const double all = static_cast<double>(layout_->views().size());
     capture.run(view, images, v / all, (v + 1) / all, share, progress_);
     report_.seconds += std::chrono::duration<double>(Clock::now() - start).count();
     for (auto* map : {&images.structure.height_mean, &images.structure.height_spread}) {
       for (float& height : *map) height *= static_cast<float>(length_unit());
     }
-    store.read_by([&] { writer.write(v, {images.values, images.errors, &images.structure}); });
+    store.read_by([&] { writer.write(v, {images.values, images.errors, &images.structure}, progress_); });
   }
 
   void report(const ViewCapture& capture) {
     const CaptureCounts counts = capture.counts();
     report_.rays = counts.rays;
     report_.rays_per_second = report_.seconds > 0 ? static_cast<double>(counts.rays) / report_.seconds : 0;
-    report_.views = static_cast<uint32_t>(views_.size());
-    report_.lights = static_cast<uint32_t>(lights_.size());
+    report_.views = static_cast<uint32_t>(layout_->views().size());
+    report_.lights = static_cast<uint32_t>(layout_->lights().size());
+    report_.pairs = layout_->pairs();
     const auto warn = [&](uint64_t count, const char* what) {
       if (count > 0) report_.warnings.push_back(std::to_string(count) + what);
     };
@@ -192,7 +206,8 @@ class Capture {
   const std::string path_;
   Progress& progress_;
   const RepeatedTile tile_;
-  std::vector<PolarAngles> views_, lights_;
+  const std::string tile_sha256_;
+  std::optional<PairLayout> layout_;
   float height_ = 0;
   BtfCaptureReport report_;
 };

@@ -24,6 +24,9 @@ struct BtfCaptureOptions {
   std::vector<PolarAngles> views = capture_directions();
   std::vector<PolarAngles> lights = capture_directions();
   CaptureSides sides = CaptureSides::automatic;  // two where the tile is open
+  /// Not 0: so many held_out_pairs() take the place of all pairs of `views` and `lights`, with random numbers of their
+  /// own: what a model of a capture with the same seed is judged by.
+  uint32_t held_out = 0;
   TexelSampling sampling;
   std::optional<double> reference_height;     // in the scene's z; none: least_variance_height
   uint64_t memory_limit = uint64_t{1} << 30;  // bytes that a view's images may hold; beyond it they lie in a file
@@ -40,6 +43,7 @@ struct BtfCaptureReport {
   std::optional<double> ray_share;  // of the bare Embree rate for the same rays
   uint64_t bytes = 0;               // of the folder
   uint32_t views = 0, lights = 0, views_resumed = 0;
+  uint64_t pairs = 0;
   bool two_sided = false, open = false;
   double thickness = 0, reference_height = 0;  // metres (units where their size is not known), over the lowest point
   std::vector<std::string> warnings;

@@ -10,6 +10,7 @@ namespace {
 
 /// The pilot's texels along a side, and their paths: noise is the same at all heights, so few of these show the least.
 constexpr uint32_t kSide = 32, kSamples = 4;
+constexpr uint64_t kSeed = 0;
 
 PairLayout pilot_layout(bool two_sided) {
   std::vector<PolarAngles> views{{0, 0}}, lights{{0, 0}};
@@ -51,10 +52,9 @@ class VarianceOverViews {
   std::vector<double> sum_, sum_sq_;
 };
 
-double variance_at(float height, const RepeatedTile& tile, const PairLayout& layout, uint64_t seed,
-                   Progress& progress) {
+double variance_at(float height, const RepeatedTile& tile, const PairLayout& layout, Progress& progress) {
   const TexelGrid grid{kSide, kSide};
-  ViewCapture capture(tile, grid, height, {.samples = kSamples, .bounces = 0, .seed = seed});
+  ViewCapture capture(tile, grid, height, {.samples = kSamples, .bounces = 0, .seed = kSeed});
   const size_t lights = layout.lights().size(), values = lights * grid.texels();
   VarianceOverViews sides[2] = {VarianceOverViews(values), VarianceOverViews(values)};
   std::vector<HalfBits> bits(3 * values);
@@ -73,7 +73,7 @@ double variance_at(float height, const RepeatedTile& tile, const PairLayout& lay
 
 }  // namespace
 
-float least_variance_height(const RepeatedTile& tile, bool two_sided, uint64_t seed, Progress& progress) {
+float least_variance_height(const RepeatedTile& tile, bool two_sided, Progress& progress) {
   if (tile.thickness() <= 0) return tile.bottom();
   const PairLayout layout = pilot_layout(two_sided);
   float best = tile.bottom();
@@ -81,7 +81,7 @@ float least_variance_height(const RepeatedTile& tile, bool two_sided, uint64_t s
   for (int i = 0; i < kReferenceHeights; ++i) {
     const float share = static_cast<float>(i) / (kReferenceHeights - 1);
     const float height = tile.bottom() + share * tile.thickness();
-    const double variance = variance_at(height, tile, layout, seed, progress);
+    const double variance = variance_at(height, tile, layout, progress);
     progress.update((i + 1.0) / kReferenceHeights);
     if (variance < least) {
       least = variance;

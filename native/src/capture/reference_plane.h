@@ -12,8 +12,9 @@ namespace velour {
 /// below. Values are luminance x |cos(theta_l)| of one surface, averaged over texels; a feature that lies off the plane
 /// moves through the texels from view to view, which is what varies. A flat tile has one height only.
 ///
-/// Call it in the arena that shall do the work. Depends on tile and seed alone.
-float least_variance_height(const RepeatedTile& tile, bool two_sided, uint64_t seed, Progress& progress);
+/// Call it in the arena that shall do the work. Depends on the tile alone, so that all captures of it
+/// show the same texels.
+float least_variance_height(const RepeatedTile& tile, bool two_sided, Progress& progress);
 
 inline constexpr int kReferenceHeights = 33;
 

@@ -21,11 +21,13 @@ void check_period(float period, char axis) {
          "; it must be positive.");
 }
 
-Bounds bounds_of(const Scene& scene, const Scene::Instance& instance) {
+Bounds bounds_of(const Scene& scene, const Scene::Instance& instance, const Progress& progress) {
+  constexpr size_t kPiece = 1 << 18;
   const Mesh& mesh = scene.meshes()[instance.mesh];
   Bounds bounds;
-  for (const glm::uvec3& t : mesh.triangles()) {
-    for (int k = 0; k < 3; ++k) bounds.add(instance.object_to_world.point(mesh.positions()[t[k]]));
+  for (size_t i = 0; i < mesh.triangles().size(); ++i) {
+    if (i % kPiece == 0) progress.check();
+    for (int k = 0; k < 3; ++k) bounds.add(instance.object_to_world.point(mesh.positions()[mesh.triangles()[i][k]]));
   }
   return bounds;
 }
@@ -38,20 +40,21 @@ Affine moved(Affine map, const Vec2& by) {
 
 }  // namespace
 
-RepeatedTile::RepeatedTile(const Scene& scene, const TilePlace& place, int threads) : scene_(scene), place_(place) {
+RepeatedTile::RepeatedTile(const Scene& scene, const TilePlace& place, int threads, const Progress& progress)
+    : scene_(scene), place_(place) {
   check_period(place.period.x, 'x');
   check_period(place.period.y, 'y');
-  measure();
+  measure(progress);
   choose_region();
-  for (const Mesh& mesh : scene_.meshes()) rays_.add_mesh(mesh.positions(), mesh.triangles());
+  rays_.share_meshes(scene_.rays());
   add_instances();
   rays_.commit(threads);
 }
 
-void RepeatedTile::measure() {
+void RepeatedTile::measure(const Progress& progress) {
   Bounds all;
   for (const Scene::Instance& instance : scene_.instances()) {
-    Bounds b = bounds_of(scene_, instance);
+    Bounds b = bounds_of(scene_, instance, progress);
     if (!b.empty()) {
       b.low -= Vec3(place_.origin, 0);
       b.high -= Vec3(place_.origin, 0);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "job/progress.h"
 #include "render/ray_log.h"
 #include "scene/scene.h"
 
@@ -24,9 +25,9 @@ struct TilePlace {
 /// the endless surface.
 class RepeatedTile {
  public:
-  /// `scene` is committed and outlives this. Throws Error(invalid_argument) when it is empty, or when a period is not
-  /// positive or less than a hundredth of what the geometry spans.
-  RepeatedTile(const Scene& scene, const TilePlace& place, int threads);
+  /// `scene` is committed and outlives this; its meshes are shared. Throws Error(invalid_argument) when it is empty, or
+  /// when a period is not positive or less than a hundredth of what the geometry spans.
+  RepeatedTile(const Scene& scene, const TilePlace& place, int threads, const Progress& progress = Progress());
 
   const Scene& scene() const { return scene_; }
   const EmbreeScene& rays() const { return rays_; }
@@ -36,7 +37,6 @@ class RepeatedTile {
   float bottom() const { return bottom_; }
   float top() const { return top_; }
   float thickness() const { return top_ - bottom_; }
-  uint64_t bytes() const { return rays_.bytes(); }
 
   /// A hit of rays() as the scene's own.
   Hit of_scene(const Hit& hit) const;
@@ -60,7 +60,7 @@ class RepeatedTile {
   Vec3 entered_again(const Vec3& origin, const Vec3& direction) const;
 
  private:
-  void measure();
+  void measure(const Progress& progress);
   void choose_region();
   void add_instances();
 

@@ -5,56 +5,64 @@
 #include "sphere/random.h"
 
 namespace velour {
+namespace {
 
-void ShadowMasks::trace(const PathVertices& paths, std::span<const CaptureLight> lights, TileRays& rays, RayLog* log,
+/// So many rays are traced at a time, to stay in the caches; whole packets of the ray tracer.
+constexpr size_t kRaysTogether = 2048;
+
+}  // namespace
+
+void ShadowMasks::trace(const PathVertices& paths, const LightGroup& group, TileRays& rays, RayLog* log,
                         const Progress& progress) {
   read(paths);
-  for (uint32_t l = 0; l < lights.size(); ++l) {
+  for (uint32_t l = 0; l < group.count(); ++l) {
     progress.check();
-    try_light(paths, lights[l], l, rays, log);
+    try_light(paths, group.lights[l], l, rays, log);
   }
 }
 
 void ShadowMasks::read(const PathVertices& paths) {
   masks_.assign(paths.vertices().size(), Mask{});
-  facing_.clear();
+  normals_.clear();
+  origins_.clear();
   for (const PathVertex& v : paths.vertices()) {
-    const Vec3 origin = v.vertex.position + v.vertex.offset * v.vertex.geometric_normal;
-    facing_.push_back({origin, v.vertex.geometric_normal, v.vertex.frame.z});
+    normals_.push(v.vertex.geometric_normal, v.vertex.frame.z);
+    origins_.push_back(v.vertex.position + v.vertex.offset * v.vertex.geometric_normal);
   }
-}
-
-/// Rays to the light from all vertices that face it; how many.
-size_t ShadowMasks::collect_facing(const CaptureLight& light) {
-  rays_.resize(facing_.size() + 1);
-  ids_.resize(facing_.size() + 1);
-  size_t count = 0;
-  // Written without a branch: which vertices face a light cannot be foreseen.
-  for (uint32_t v = 0; v < facing_.size(); ++v) {
-    const Facing& f = facing_[v];
-    rays_[count].origin = f.origin;
-    ids_[count] = v;
-    count += static_cast<size_t>(std::min(glm::dot(f.geometric, light.wl), glm::dot(f.shading, light.wl)) > 0.0f);
-  }
-  rays_.resize(count);
-  for (Ray& ray : rays_) {
-    ray.near = 0.0f;
-    ray.direction = light.wl;
-  }
-  return count;
 }
 
 void ShadowMasks::try_light(const PathVertices& paths, const CaptureLight& light, uint32_t bit, TileRays& rays,
                             RayLog* log) {
-  const size_t count = collect_facing(light);
-  blocked_.resize(count);
+  facing_places(normals_, light.wl, facing_);
+  for (size_t done = 0; done < facing_.size(); done += kRaysTogether) {
+    ids_ = std::span(facing_).subspan(done, std::min(kRaysTogether, facing_.size() - done));
+    trace_some(paths, light, rays, log);
+    note_reached(bit);
+  }
+}
+
+void ShadowMasks::note_reached(uint32_t bit) {
+  const uint8_t* blocked = blocked_.data();  // bytes may be anything's: without the copies all is read again each time
+  Mask* masks = masks_.data();
+  const uint32_t* ids = ids_.data();
+  const size_t count = ids_.size();
+  const uint32_t word = bit / 64, shift = bit % 64;
+  for (size_t i = 0; i < count; ++i) masks[ids[i]][word] |= uint64_t{blocked[i] == 0} << shift;
+}
+
+void ShadowMasks::trace_some(const PathVertices& paths, const CaptureLight& light, TileRays& rays, RayLog* log) {
+  rays_.resize(ids_.size());
+  for (size_t i = 0; i < ids_.size(); ++i) {
+    Ray& ray = rays_[i];
+    ray.origin = origins_[ids_[i]];
+    ray.near = 0.0f;
+    ray.direction = light.wl;  // `far` comes with the end of the shell
+  }
+  blocked_.resize(ids_.size());
   if (cutouts_.any()) {
     trace_through_cutouts(paths, light, rays, log);
   } else {
     rays.occluded(rays_, blocked_, light.ends, log);
-  }
-  for (size_t i = 0; i < count; ++i) {
-    masks_[ids_[i]][bit / 64] |= uint64_t{blocked_[i] == 0} << (bit % 64);
   }
 }
 

@@ -5,12 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "capture/light_kernels.h"
 #include "capture/path_vertices.h"
 
 namespace velour {
-
-/// Up to 128 lights are tried together.
-inline constexpr uint32_t kLightsTogether = 128;
 
 /// Bit l of a vertex: light l of the group reaches it. One a thread.
 class ShadowMasks {
@@ -21,26 +19,25 @@ class ShadowMasks {
 
   /// Light by light, because rays of one direction are traced in packets. Lights below a vertex's shading or geometric
   /// horizon need no ray.
-  void trace(const PathVertices& paths, std::span<const CaptureLight> lights, TileRays& rays, RayLog* log,
-             const Progress& progress);
+  void trace(const PathVertices& paths, const LightGroup& group, TileRays& rays, RayLog* log, const Progress& progress);
 
   const Mask& of(uint32_t vertex) const { return masks_[vertex]; }
 
  private:
   void read(const PathVertices& paths);
   void try_light(const PathVertices& paths, const CaptureLight& light, uint32_t bit, TileRays& rays, RayLog* log);
-  size_t collect_facing(const CaptureLight& light);
+  void trace_some(const PathVertices& paths, const CaptureLight& light, TileRays& rays, RayLog* log);
+  void note_reached(uint32_t bit);
   void trace_through_cutouts(const PathVertices& paths, const CaptureLight& light, TileRays& rays, RayLog* log);
 
-  // Of the vertices, for the test of their horizons: read by every light.
-  struct Facing {
-    Vec3 origin, geometric, shading;
-  };
-  std::vector<Facing> facing_;
+  // Of the vertices, read by every light.
+  PlaceNormals normals_;
+  std::vector<Vec3> origins_;
   Cutouts cutouts_;
   std::vector<Mask> masks_;
+  std::vector<uint32_t> facing_;   // vertices that face the light
+  std::span<const uint32_t> ids_;  // of those, the ones whose rays are traced now
   std::vector<Ray> rays_;
-  std::vector<uint32_t> ids_;
   std::vector<uint8_t> blocked_;
   // Where surfaces let rays through.
   std::vector<Hit> hits_;

@@ -1,27 +1,11 @@
 #include "capture/texel_values.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "render/onward.h"
 
 namespace velour {
-namespace {
-
-void add_path(const float (&path)[3][kLightsTogether], const Vec3& weights, uint32_t lights, TexelValues& values) {
-  for (uint32_t l = 0; l < lights; ++l) {
-    const float y = weights.r * path[0][l] + weights.g * path[1][l] + weights.b * path[2][l];
-    const bool good = std::isfinite(y);
-    for (int c = 0; c < 3; ++c) values.sum[c][l] += good ? static_cast<double>(path[c][l]) : 0.0;
-    const double luminance = good ? static_cast<double>(y) : 0.0;
-    values.luminance_sum[l] += luminance;
-    values.luminance_sq[l] += luminance * luminance;
-    values.broken += good ? 0 : 1;
-  }
-}
-
-}  // namespace
 
 TexelShader::TexelShader(const Scene& scene, const TexelSampling& sampling)
     : sampling_(sampling),
@@ -32,62 +16,54 @@ TexelShader::TexelShader(const Scene& scene, const TexelSampling& sampling)
 
 Rgb TexelValues::mean(uint32_t light) const {
   const double scale = 1.0 / samples;
-  return Rgb(Vec3d(sum[0][light], sum[1][light], sum[2][light]) * scale);
+  return Rgb(Vec3d(sums.sum[0][light], sums.sum[1][light], sums.sum[2][light]) * scale);
 }
 
 float TexelValues::standard_error(uint32_t light) const {
   if (samples < 2) return 0;
-  const double n = samples, mean = luminance_sum[light] / n;
-  const double variance = std::max(0.0, luminance_sq[light] / n - mean * mean) * n / (n - 1);
+  const double n = samples, mean = sums.luminance[light] / n;
+  const double variance = std::max(0.0, sums.luminance_sq[light] / n - mean * mean) * n / (n - 1);
   return static_cast<float>(std::sqrt(variance / n));
 }
 
-void TexelShader::shade(const PathVertices& paths, uint32_t texel, std::span<const CaptureLight> lights,
-                        const ShadowMasks& masks, TexelValues& values) {
+void TexelShader::shade(const PathVertices& paths, uint32_t texel, const LightGroup& group, const ShadowMasks& masks,
+                        TexelValues& values) {
   values = {};
   values.samples = sampling_.samples;
+  const uint32_t padded = (group.count() + 15) / 16 * 16;  // what add_path() reads
   for (uint32_t s = 0; s < sampling_.samples; ++s) {
-    for (auto& channel : path_) std::fill_n(channel, lights.size(), 0.0f);
-    shade_path(paths, texel * sampling_.samples + s, lights, masks);
-    add_path(path_, luminance_weights_, static_cast<uint32_t>(lights.size()), values);
+    for (auto& channel : path_) std::fill_n(channel, padded, 0.0f);
+    shade_path(paths, texel * sampling_.samples + s, group, masks);
+    values.broken += add_path(path_, luminance_weights_, group.count(), values.sums);
   }
 }
 
-void TexelShader::shade_path(const PathVertices& paths, uint32_t path, std::span<const CaptureLight> lights,
+void TexelShader::shade_path(const PathVertices& paths, uint32_t path, const LightGroup& group,
                              const ShadowMasks& masks) {
   for (uint32_t depth = 0; depth <= sampling_.bounces; ++depth) {
     const uint32_t v = paths.vertex_of(path, depth);
     if (v == PathVertices::kNone) return;
-    shade_vertex(paths.vertices()[v], lights, masks.of(v));
+    shade_vertex(paths.vertices()[v], group, masks.of(v));
   }
 }
 
-void TexelShader::shade_vertex(const PathVertex& at, std::span<const CaptureLight> lights,
-                               const ShadowMasks::Mask& mask) {
+void TexelShader::shade_vertex(const PathVertex& at, const LightGroup& group, const ShadowMasks::Mask& mask) {
   if ((mask[0] | mask[1]) == 0) return;
   at.vertex.surface->material->prepare(at.vertex.wv, at.vertex.site, prepared_);
-  wl_.count = 0;
   for (uint32_t word = 0; word < mask.size(); ++word) {
-    for (uint64_t bits = mask[word]; bits != 0; bits &= bits - 1) {
-      const uint32_t light = 64 * word + static_cast<uint32_t>(std::countr_zero(bits));
-      light_of_[wl_.count] = light;
-      wl_.push(at.vertex.frame.to_local(lights[light].wl));
-      if (wl_.count == DirectionBatch::kCapacity) add_batch(at, lights);
-    }
+    if (mask[word] == 0) continue;
+    collect_lit(group, 64 * word, mask[word], at.vertex.frame, lit_);
+    add_lit(at);
   }
-  if (wl_.count > 0) add_batch(at, lights);
 }
 
-void TexelShader::add_batch(const PathVertex& at, std::span<const CaptureLight> lights) {
-  wl_.pad();
-  at.vertex.surface->material->eval(prepared_, wl_, f_, pdf_);
-  for (int i = 0; i < wl_.count; ++i) {
-    const uint32_t light = light_of_[i];
+void TexelShader::add_lit(const PathVertex& at) {
+  at.vertex.surface->material->eval(prepared_, lit_.wl, f_, pdf_);
+  for (int i = 0; i < lit_.wl.count; ++i) {
     const Rgb f = in_working_space(rec709_to_working_, at.vertex, f_.get(i));
-    const Rgb value = at.throughput * f * (wl_.z[i] * lights[light].per_irradiance);
-    for (int c = 0; c < 3; ++c) path_[c][light] += value[c];
+    const Rgb value = at.throughput * f * lit_.weight[i];
+    for (int c = 0; c < 3; ++c) path_[c][lit_.number[i]] += value[c];
   }
-  wl_.count = 0;
 }
 
 }  // namespace velour

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "capture/light_kernels.h"
 #include "capture/path_vertices.h"
 #include "capture/shadow_masks.h"
 #include "material/material.h"
@@ -12,8 +13,7 @@ namespace velour {
 
 /// Sums over the samples of a texel, of each light of a group.
 struct TexelValues {
-  alignas(64) double sum[3][kLightsTogether];  // of the values of paths, working space
-  alignas(64) double luminance_sq[kLightsTogether], luminance_sum[kLightsTogether];
+  PathSums sums;  // working space
   uint32_t samples;
   uint32_t broken;  // values that were not finite and count as 0
 
@@ -29,21 +29,19 @@ class TexelShader {
   TexelShader(const Scene& scene, const TexelSampling& sampling);
 
   /// Of texel number `texel` of the block. `masks` are those of `lights`.
-  void shade(const PathVertices& paths, uint32_t texel, std::span<const CaptureLight> lights, const ShadowMasks& masks,
+  void shade(const PathVertices& paths, uint32_t texel, const LightGroup& group, const ShadowMasks& masks,
              TexelValues& values);
 
  private:
-  void shade_path(const PathVertices& paths, uint32_t path, std::span<const CaptureLight> lights,
-                  const ShadowMasks& masks);
-  void shade_vertex(const PathVertex& at, std::span<const CaptureLight> lights, const ShadowMasks::Mask& mask);
-  void add_batch(const PathVertex& at, std::span<const CaptureLight> lights);
+  void shade_path(const PathVertices& paths, uint32_t path, const LightGroup& group, const ShadowMasks& masks);
+  void shade_vertex(const PathVertex& at, const LightGroup& group, const ShadowMasks::Mask& mask);
+  void add_lit(const PathVertex& at);
 
   const TexelSampling sampling_;
   const std::optional<Mat3>& rec709_to_working_;
   Vec3 luminance_weights_;  // of colours of the working space
   PreparedBrdf prepared_;
-  DirectionBatch wl_;  // of the lights that reach a vertex, local
-  uint32_t light_of_[DirectionBatch::kCapacity];
+  LitLights lit_;  // of a vertex
   RgbBatch f_;
   ScalarBatch pdf_;
   alignas(64) float path_[3][kLightsTogether];  // what each light brings along one path

@@ -121,9 +121,15 @@ std::optional<std::string> seam_warning(const RepeatedTile& tile) {
   return std::nullopt;
 }
 
-std::string tile_hash(const Scene& scene) {
+std::string tile_hash(const Scene& scene, const Progress& progress) {
+  constexpr size_t kPiece = 1 << 23;
   std::string parts;
-  const auto add = [&](std::span<const uint8_t> bytes) { parts += sha256_hex(bytes); };
+  const auto add = [&](std::span<const uint8_t> bytes) {
+    for (size_t done = 0; done < bytes.size(); done += kPiece) {
+      progress.check();
+      parts += sha256_hex(bytes.subspan(done, std::min(kPiece, bytes.size() - done)));
+    }
+  };
   for (const Mesh& mesh : scene.meshes()) {
     add(bytes_of(mesh.positions()));
     add(bytes_of(mesh.triangles()));

@@ -17,6 +17,6 @@ std::optional<std::string> seam_warning(const RepeatedTile& tile);
 
 /// SHA-256 of what the values of the tile depend on: vertices, triangles, places, and what its
 /// materials answer for a few directions.
-std::string tile_hash(const Scene& scene);
+std::string tile_hash(const Scene& scene, const Progress& progress);
 
 }  // namespace velour

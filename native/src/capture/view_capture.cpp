@@ -37,24 +37,21 @@ void ViewCapture::run_block(const ViewSetup& view, const TexelBlock& block, View
   Worker& worker = workers_.local();
   worker.paths.trace(view, block, worker.rays, log, progress);
   store_structure(block, worker.paths, images.structure);
-  const auto lights = static_cast<uint32_t>(view.lights.size());
-  for (uint32_t first = 0; first < lights; first += kLightsTogether) {
-    const uint32_t count = std::min(kLightsTogether, lights - first);
-    worker.masks.trace(worker.paths, std::span(view.lights).subspan(first, count), worker.rays, log, progress);
-    shade_block(view, block, first, worker, images, progress);
+  for (uint32_t first = 0; first < view.lights.size(); first += kLightsTogether) {
+    const LightGroup group(view.lights, first);
+    worker.masks.trace(worker.paths, group, worker.rays, log, progress);
+    shade_block(group, first, block, worker, images, progress);
   }
   if (images.store != nullptr) images.store->release();
 }
 
-void ViewCapture::shade_block(const ViewSetup& view, const TexelBlock& block, uint32_t first_light, Worker& worker,
+void ViewCapture::shade_block(const LightGroup& group, uint32_t first_light, const TexelBlock& block, Worker& worker,
                               ViewImages& images, const Progress& progress) {
-  const uint32_t count = std::min(kLightsTogether, static_cast<uint32_t>(view.lights.size()) - first_light);
-  const auto lights = std::span(view.lights).subspan(first_light, count);
   for (uint32_t t = 0; t < block.texels(); ++t) {
     progress.check();
-    worker.shader.shade(worker.paths, t, lights, worker.masks, worker.values);
+    worker.shader.shade(worker.paths, t, group, worker.masks, worker.values);
     worker.broken += worker.values.broken;
-    store(grid_texel(grid_, block, t), first_light, count, worker, images);
+    store(grid_texel(grid_, block, t), first_light, group.count(), worker, images);
   }
 }
 
@@ -62,10 +59,8 @@ void ViewCapture::store(uint64_t texel, uint32_t first_light, uint32_t lights, W
                         ViewImages& images) const {
   worker.mean.clear();
   worker.error.clear();
-  const auto& to_working = tile_.scene().rec709_to_working();
-  const Mat3 to_rec709 = to_working ? glm::inverse(*to_working) : Mat3(1);
   for (uint32_t l = 0; l < lights; ++l) {
-    const Rgb mean = to_rec709 * worker.values.mean(l);
+    const Rgb mean = to_rec709_ * worker.values.mean(l);
     for (int c = 0; c < 3; ++c) worker.mean.push_back(std::clamp(mean[c], -kLargestHalf, kLargestHalf));
     worker.error.push_back(std::min(worker.values.standard_error(l), kLargestHalf));
   }

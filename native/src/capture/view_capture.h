@@ -37,7 +37,9 @@ class ViewCapture {
   ViewCapture(const RepeatedTile& tile, const TexelGrid& grid, float reference_height, const TexelSampling& sampling)
       : tile_(tile), grid_(grid), sampling_(sampling), blocks_(grid, sampling), workers_([this, reference_height] {
           return Worker(tile_, grid_, reference_height, sampling_);
-        }) {}
+        }) {
+    if (const auto& to_working = tile.scene().rec709_to_working()) to_rec709_ = glm::inverse(*to_working);
+  }
 
   /// Traces `view` into `images`. `begin`, `end`: what of the progress's stage this is. `share`: may be null.
   void run(const ViewSetup& view, ViewImages& images, double begin, double end, RayShare* share, Progress& progress);
@@ -60,7 +62,7 @@ class ViewCapture {
   };
   void run_block(const ViewSetup& view, const TexelBlock& block, ViewImages& images, RayLog* log,
                  const Progress& progress);
-  void shade_block(const ViewSetup& view, const TexelBlock& block, uint32_t first_light, Worker& worker,
+  void shade_block(const LightGroup& group, uint32_t first_light, const TexelBlock& block, Worker& worker,
                    ViewImages& images, const Progress& progress);
   void store(uint64_t texel, uint32_t first_light, uint32_t lights, Worker& worker, ViewImages& images) const;
   void store_structure(const TexelBlock& block, const PathVertices& paths, ViewStructure& structure) const;
@@ -69,6 +71,7 @@ class ViewCapture {
   const TexelGrid grid_;
   const TexelSampling sampling_;
   const TexelBlocks blocks_;
+  Mat3 to_rec709_{1.0f};  // from the scene's colours
   tbb::enumerable_thread_specific<Worker> workers_;
 };
 

@@ -1,7 +1,9 @@
 // One view of a capture: where it looks from, and the lights that it is lit by.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "btf/pair_layout.h"
@@ -14,6 +16,28 @@ struct CaptureLight {
   uint32_t number;       // in the layout's set
   float per_irradiance;  // 1 / |cos(theta_l)|: the light's irradiance on the reference plane is its cosine
   RepeatedTile::Ends ends;
+};
+
+/// Up to kLightsTogether lights are tried together.
+inline constexpr uint32_t kLightsTogether = 128;
+
+/// Some of a view's lights, side by side.
+struct LightGroup {
+  std::span<const CaptureLight> lights;
+  alignas(64) float x[kLightsTogether] = {}, y[kLightsTogether] = {}, z[kLightsTogether] = {};
+  alignas(64) float per_irradiance[kLightsTogether] = {};
+
+  /// Lights [first, first + kLightsTogether) of `all`, or as many as there are.
+  LightGroup(std::span<const CaptureLight> all, size_t first)
+      : lights(all.subspan(first, std::min<size_t>(kLightsTogether, all.size() - first))) {
+    for (size_t l = 0; l < lights.size(); ++l) {
+      x[l] = lights[l].wl.x;
+      y[l] = lights[l].wl.y;
+      z[l] = lights[l].wl.z;
+      per_irradiance[l] = lights[l].per_irradiance;
+    }
+  }
+  uint32_t count() const { return static_cast<uint32_t>(lights.size()); }
 };
 
 struct ViewSetup {

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <new>
 #include <thread>
 
 #include "job/error.h"
@@ -31,37 +32,29 @@ int nameless_file(const std::string& folder, uint64_t bytes) {
 }  // namespace
 
 ViewStore::ViewStore(uint64_t halves, uint64_t limit, const std::string& folder) : halves_(halves) {
-  if (halves * sizeof(uint16_t) > limit) {
-    map_file(folder);
-  } else {
-    memory_.resize(halves);
-    data_ = memory_.data();
-  }
-}
-
-void ViewStore::map_file(const std::string& folder) {
-  const uint64_t bytes = halves_ * sizeof(uint16_t);
-  const int file = nameless_file(folder, bytes);
-  void* mapped = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  in_file_ = bytes() > limit;
+  if (bytes() == 0) return;
+  const int file = in_file_ ? nameless_file(folder, bytes()) : -1;
+  // Memory comes from the kernel, too: it is zeroed page by page when it is used, by whoever uses it.
+  data_ = mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, in_file_ ? MAP_SHARED : MAP_PRIVATE | MAP_ANONYMOUS, file, 0);
   const int problem = errno;
-  close(file);
-  if (mapped == MAP_FAILED) {
-    throw Error(Status::io, folder + ": a temporary file cannot be mapped: " + std::strerror(problem) + ".");
-  }
-  mapped_ = mapped;
-  data_ = static_cast<uint16_t*>(mapped);
+  if (file >= 0) close(file);
+  if (data_ != MAP_FAILED) return;
+  data_ = nullptr;
+  if (!in_file_) throw std::bad_alloc();
+  throw Error(Status::io, folder + ": a temporary file cannot be mapped: " + std::strerror(problem) + ".");
 }
 
 ViewStore::~ViewStore() {
-  if (mapped_ != nullptr) munmap(mapped_, halves_ * sizeof(uint16_t));
+  if (data_ != nullptr) munmap(data_, bytes());
 }
 
 void ViewStore::release() const {
-  if (mapped_ != nullptr) madvise(mapped_, halves_ * sizeof(uint16_t), MADV_DONTNEED);
+  if (in_file_) madvise(data_, bytes(), MADV_DONTNEED);
 }
 
 void ViewStore::read_by(const std::function<void()>& work) const {
-  if (mapped_ == nullptr) return work();
+  if (!in_file_) return work();
   std::jthread releases([this](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       release();

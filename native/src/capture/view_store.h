@@ -5,7 +5,6 @@
 #include <functional>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace velour {
 
@@ -19,20 +18,18 @@ class ViewStore {
   ViewStore(const ViewStore&) = delete;
   ViewStore& operator=(const ViewStore&) = delete;
 
-  std::span<uint16_t> halves() const { return {data_, halves_}; }
-  bool in_file() const { return mapped_ != nullptr; }
+  std::span<uint16_t> halves() const { return {static_cast<uint16_t*>(data_), halves_}; }
   /// Takes the array out of the process's memory; it is read from the file again when used. Thread-safe.
   void release() const;
   /// Runs `work`, which reads the array, and releases while it does.
   void read_by(const std::function<void()>& work) const;
 
  private:
-  void map_file(const std::string& folder);
+  uint64_t bytes() const { return halves_ * sizeof(uint16_t); }
 
-  uint64_t halves_;
-  std::vector<uint16_t> memory_;
-  void* mapped_ = nullptr;
-  uint16_t* data_ = nullptr;
+  const uint64_t halves_;
+  bool in_file_ = false;
+  void* data_ = nullptr;  // pages of our own
 };
 
 }  // namespace velour

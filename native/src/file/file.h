@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "job/progress.h"
+
 namespace velour {
 
 /// All bytes of `path`. Throws Error(io) when it cannot be read, Error(bad_data) when it is larger than `limit`.
@@ -21,6 +23,6 @@ void write_file(const std::string& path, std::span<const uint8_t> bytes);
 std::string sha256_hex(std::span<const uint8_t> bytes);
 
 /// The same of a file's bytes, a megabyte at a time.
-std::string sha256_of_file(const std::string& path);
+std::string sha256_of_file(const std::string& path, const Progress& progress = Progress());
 
 }  // namespace velour

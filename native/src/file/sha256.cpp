@@ -46,11 +46,12 @@ std::string sha256_hex(std::span<const uint8_t> bytes) {
   return digest.hex();
 }
 
-std::string sha256_of_file(const std::string& path) {
+std::string sha256_of_file(const std::string& path, const Progress& progress) {
   const RandomAccessFile file(path);
   std::vector<uint8_t> piece(size_t{1} << 20);
   Digest digest;
   for (uint64_t done = 0; done < file.size(); done += piece.size()) {
+    progress.check();
     piece.resize(std::min<uint64_t>(piece.size(), file.size() - done));
     file.read(done, piece);
     digest.add(piece);

@@ -91,9 +91,11 @@ void write_image(Imf::OutputPart& part, const ImageStack& stack, uint64_t image,
   part.writePixels(static_cast<int>(stack.height));
 }
 
-void write_stack(Imf::OutputPart part, const ImageStack& stack, std::span<const uint8_t> pixels) {
+void write_stack(Imf::OutputPart part, const ImageStack& stack, std::span<const uint8_t> pixels,
+                 const Progress& progress) {
   std::vector<uint8_t> image(stack.image_bytes());
   for (uint64_t i = 0; i < stack.images; ++i) {
+    progress.check();
     std::memcpy(image.data(), pixels.data() + i * image.size(), image.size());
     flip_rows(stack.row_bytes(), image);
     write_image(part, stack, i, image);
@@ -149,7 +151,8 @@ bool agrees(const ExrPart& part, const ImageStack& stack) {
 }  // namespace
 
 void write_image_stacks(const std::string& path, std::span<const ImageStack> stacks,
-                        std::span<const std::span<const uint8_t>> pixels, const ImageAttributes& attributes) {
+                        std::span<const std::span<const uint8_t>> pixels, const ImageAttributes& attributes,
+                        const Progress& progress) {
   for (size_t i = 0; i < stacks.size(); ++i) check_sizes(path, stacks[i], pixels[i]);
   std::vector<Imf::Header> headers = headers_of(stacks);
   for (const auto& [name, text] : attributes) headers.at(0).insert(name, Imf::StringAttribute(text));
@@ -158,7 +161,7 @@ void write_image_stacks(const std::string& path, std::span<const ImageStack> sta
     FileOutput stream(file, path);
     Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
     for (size_t i = 0; i < stacks.size(); ++i) {
-      write_stack(Imf::OutputPart(out, static_cast<int>(i)), stacks[i], pixels[i]);
+      write_stack(Imf::OutputPart(out, static_cast<int>(i)), stacks[i], pixels[i], progress);
     }
   } catch (const Error&) {
     throw;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "file/random_access_file.h"
+#include "job/progress.h"
 
 namespace velour {
 
@@ -36,7 +37,8 @@ using ImageAttributes = std::map<std::string, std::string>;
 
 /// Atomic. `pixels[i]`: all bytes of stacks[i]. Throws Error(io, invalid_argument).
 void write_image_stacks(const std::string& path, std::span<const ImageStack> stacks,
-                        std::span<const std::span<const uint8_t>> pixels, const ImageAttributes& attributes = {});
+                        std::span<const std::span<const uint8_t>> pixels, const ImageAttributes& attributes = {},
+                        const Progress& progress = Progress());
 
 /// An open file of stacks. Calls are thread-safe.
 class ImageStackFile {

@@ -6,9 +6,9 @@
 
 namespace velour {
 
-namespace {
+#include "material/principled_formulas-inl.h"
 
-constexpr float kCoatIndex = 1.5f;
+namespace {
 
 /// Blender's scale: specular 0.5 is 4 % at normal incidence, an index of 1.5.
 float index_of(float specular) {
@@ -31,7 +31,7 @@ PrincipledParameters within_ranges(PrincipledParameters p) {
 }  // namespace
 
 PrincipledLobes::PrincipledLobes(const PrincipledParameters& p)
-    : parameters_(within_ranges(p)), eta_(index_of(p.specular)), f0_(dielectric_fresnel(1, eta_)) {
+    : parameters_(within_ranges(p)), eta_(index_of(p.specular)), f0_(dielectric_fresnel(1.0f, eta_)) {
   make_tables(true, true);
 }
 
@@ -39,7 +39,7 @@ PrincipledLobes PrincipledLobes::with(const PrincipledParameters& p) const {
   PrincipledLobes other = *this;
   other.parameters_ = within_ranges(p);
   other.eta_ = index_of(p.specular);
-  other.f0_ = dielectric_fresnel(1, other.eta_);
+  other.f0_ = dielectric_fresnel(1.0f, other.eta_);
   const bool coated = parameters_.coat > 0, will_be = other.parameters_.coat > 0;
   other.make_tables(other.alpha() != alpha() || other.eta_ != eta_,
                     coated != will_be || (coated && other.coat_alpha() != coat_alpha()));
@@ -71,9 +71,12 @@ PrincipledLobes::View PrincipledLobes::view(const Vec3& wv) const {
   return {wv, base / (kPi * (1 - top_.mean())), 1 - coat_albedo(wv.z)};
 }
 
-float PrincipledLobes::value(const Parts& p, float base_color, float specular_tint) {
-  return p.fixed + p.dielectric * specular_tint + p.diffuse * base_color +
-         p.metal * tinted_metal_fresnel(base_color, specular_tint, p.cosine);
+PrincipledLobes::Layers PrincipledLobes::layers() const {
+  return {alpha(), coat_alpha(), eta_, f0_, parameters_.metallic, parameters_.coat, &coat_.table(), &top_.table()};
+}
+
+float PrincipledLobes::value(const Parts& parts, float base_color, float specular_tint) {
+  return principled_value(parts, base_color, specular_tint);
 }
 
 Rgb PrincipledLobes::value(const Parts& p) const {
@@ -82,26 +85,12 @@ Rgb PrincipledLobes::value(const Parts& p) const {
   return f;
 }
 
-PrincipledLobes::Parts PrincipledLobes::reflected(float lobe, float cosine) const {
-  const float rise = (dielectric_fresnel(cosine, eta_) - f0_) / (1 - f0_);
-  const float dielectric = (1 - parameters_.metallic) * lobe;
-  return {dielectric * rise, dielectric * f0_ * (1 - rise), 0, parameters_.metallic * lobe, cosine};
+float PrincipledLobes::fresnel_luminance(float cosine) const {
+  return luminance(value(principled_reflected(layers(), 1.0f, cosine)));
 }
 
-float PrincipledLobes::fresnel_luminance(float cosine) const { return luminance(value(reflected(1, cosine))); }
-
 PrincipledLobes::Parts PrincipledLobes::parts(const View& view, const Vec3& wl, const Vec3& h) const {
-  const DirectionPair w{.wl = wl, .wv = view.wv};
-  const float cosine = std::clamp(glm::dot(view.wv, h), 0.0f, 1.0f);
-  float lobe = ggx_brdf_without_fresnel(w, h, alpha()), coat = 0;
-  if (parameters_.coat > 0) {
-    lobe *= std::min(view.through, 1 - coat_albedo(wl.z));
-    coat = parameters_.coat * ggx_brdf_without_fresnel(w, h, coat_alpha()) * dielectric_fresnel(cosine, kCoatIndex);
-  }
-  Parts out = reflected(lobe, cosine);
-  out.fixed += coat;
-  out.diffuse = view.diffuse_scale * (1 - top_.at(wl.z));
-  return out;
+  return principled_parts(layers(), view, wl, h);
 }
 
 }  // namespace velour

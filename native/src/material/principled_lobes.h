@@ -19,6 +19,17 @@ struct PrincipledParameters {
 
 /// Roughness of kMinGgxAlpha, the least that is rendered.
 inline constexpr float kMinRoughness = 0.0316227766f;
+inline constexpr float kCoatIndex = 1.5f;
+
+/// What f is made of before it gets its colours, 1/sr without cosine; of one direction, or of several side by side.
+template <class T>
+struct PrincipledParts {
+  T fixed;       // coat, and the dielectric's rise towards grazing angles
+  T dielectric;  // reflectance at normal incidence: times the tint
+  T diffuse;     // times the base colour
+  T metal;       // the lobe: times its Fresnel term
+  T cosine;      // between wv and h
+};
 
 /// A metal, and a dielectric over a diffuse base, blended by `metallic`, under a clear coat. Isotropic.
 ///
@@ -49,14 +60,16 @@ class PrincipledLobes {
   /// Albedo of a white base.
   float base_albedo(const View& view) const { return kPi * (1 - top_.mean()) * view.diffuse_scale; }
 
-  /// What f is made of before it gets its colours, 1/sr without cosine.
-  struct Parts {
-    float fixed;       // coat, and the dielectric's rise towards grazing angles
-    float dielectric;  // reflectance at normal incidence: times the tint
-    float diffuse;     // times the base colour
-    float metal;       // the lobe: times its Fresnel term
-    float cosine;      // between wv and h
+  /// What all directions share (principled_formulas-inl.h); the tables are those of the lobes.
+  struct Layers {
+    Vec2 alpha, coat_alpha;
+    float eta, f0, metallic, coat;
+    const SpecularAlbedo::Table* coat_albedo;
+    const SpecularAlbedo::Table* top_albedo;
   };
+  Layers layers() const;
+
+  using Parts = PrincipledParts<float>;
   /// `wl.z > 0`; `h` the half vector, 0 for opposed directions.
   Parts parts(const View& view, const Vec3& wl, const Vec3& h) const;
 
@@ -76,8 +89,6 @@ class PrincipledLobes {
   float fresnel_luminance(float cosine) const;
 
  private:
-  /// By metal and dielectric with their `lobe`, G2 D / (4 cos cos).
-  Parts reflected(float lobe, float cosine) const;
   void make_tables(bool dielectric, bool coat);
 
   PrincipledParameters parameters_;

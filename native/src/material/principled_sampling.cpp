@@ -1,21 +1,61 @@
+// Highway compiles this file once for each instruction set.
 #include "material/principled_sampling.h"
 
-#include <algorithm>
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "material/principled_sampling.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
 
 #include "material/ggx.h"
+#include "srbf/lanes-inl.h"
+#include "srbf/simd_dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace velour {
+namespace HWY_NAMESPACE {
+
+#include "material/ggx_formulas-inl.h"
+#include "material/principled_formulas-inl.h"
+
+/// Density of PrincipledSampling::sample. `wl` may lie below the horizon.
+HWY_INLINE Lanes density(const PrincipledLobes::Layers& layers, const PrincipledShares& shares, const Vec3& wv,
+                         const LanesVec3& wl, const LanesVec3& h) {
+  Lanes sum = shares.diffuse / kPi * larger(wl.z, 0.0f) + shares.specular * pdf_ggx_reflection(wv, h, layers.alpha);
+  if (shares.coat > 0) sum = sum + shares.coat * pdf_ggx_reflection(wv, h, layers.coat_alpha);
+  return sum;
+}
+
+void eval_principled_simd(const PrincipledLobes& lobes, const PrincipledLobes::View& view,
+                          const PrincipledShares& shares, const DirectionBatch& batch, RgbBatch& f, ScalarBatch& pdf) {
+  const PrincipledLobes::Layers layers = lobes.layers();
+  const Rgb color = lobes.parameters().base_color, tint = lobes.parameters().specular_tint;
+  float* const channels[] = {f.r, f.g, f.b};
+  for (int at = 0; at < batch.count; at += kLanes) {
+    const LanesVec3 wl = load_directions(batch, at), h = half_vector(view.wv, wl);
+    const auto parts = principled_parts(layers, view, wl, h);
+    for (int c = 0; c < 3; ++c) {
+      store_lanes(select(wl.z > 0.0f, principled_value(parts, color[c], tint[c]), 0.0f), channels[c] + at);
+    }
+    store_lanes(density(layers, shares, view.wv, wl, h), pdf.v + at);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace velour
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <algorithm>
+
 #include "sphere/warp.h"
 
 namespace velour {
+
+HWY_EXPORT(eval_principled_simd);
+
 namespace {
 
 enum Parameter { kDiffuseScale, kThrough, kDiffuseEnd, kSpecularEnd };  // ends of ranges of the random number
-
-float density(const PrincipledLobes& lobes, const PreparedBrdf& point, const Vec3& wl, const Vec3& h) {
-  const float diffuse = point.parameter[kDiffuseEnd], end = point.parameter[kSpecularEnd];
-  float sum = diffuse * pdf_cosine_hemisphere(wl) + (end - diffuse) * pdf_ggx_reflection(point.wv, h, lobes.alpha());
-  if (end < 1) sum += (1 - end) * pdf_ggx_reflection(point.wv, h, lobes.coat_alpha());
-  return sum;
-}
 
 Vec3 draw(const PrincipledLobes& lobes, const PreparedBrdf& point, const Vec2& u) {
   const float diffuse = point.parameter[kDiffuseEnd], end = point.parameter[kSpecularEnd];
@@ -42,15 +82,10 @@ void PrincipledSampling::set_up(const PrincipledLobes& lobes, const PrincipledLo
 
 void PrincipledSampling::eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f,
                               ScalarBatch& pdf) const {
-  const PrincipledLobes& here = lobes(point);
   const PrincipledLobes::View view{point.wv, point.parameter[kDiffuseScale], point.parameter[kThrough]};
-  for (int i = 0; i < wl.count; ++i) {
-    const Vec3 w = wl.get(i), sum = w + point.wv;
-    const float length_sq = glm::dot(sum, sum);
-    const Vec3 h = length_sq > 0 ? sum / std::sqrt(length_sq) : Vec3(0);  // opposed directions: no facet mirrors them
-    f.set(i, w.z > 0 ? here.value(here.parts(view, w, h)) : Rgb(0));
-    pdf.v[i] = density(here, point, w, h);
-  }
+  const float diffuse = point.parameter[kDiffuseEnd], end = point.parameter[kSpecularEnd];
+  const PrincipledShares shares{diffuse, end - diffuse, 1 - end};
+  VELOUR_SIMD_DISPATCH(eval_principled_simd)(lobes(point), view, shares, wl, f, pdf);
 }
 
 void PrincipledSampling::sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const {
@@ -59,3 +94,4 @@ void PrincipledSampling::sample(const PreparedBrdf& point, std::span<const Vec2>
 }
 
 }  // namespace velour
+#endif

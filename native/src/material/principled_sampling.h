@@ -6,6 +6,11 @@
 
 namespace velour {
 
+/// Of what draws a sample: they add up to 1.
+struct PrincipledShares {
+  float diffuse, specular, coat;
+};
+
 /// Samples the cosine, the visible normals of the base's lobe or those of the coat's, in proportion to their albedos.
 class PrincipledSampling : public Material {
  public:

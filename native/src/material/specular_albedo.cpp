@@ -69,12 +69,6 @@ float SpecularAlbedo::integrated() const {
   return static_cast<float>(mean);
 }
 
-float SpecularAlbedo::at(float cosine) const {
-  const float place = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * (kEntries - 1);
-  const int low = std::min(static_cast<int>(place), kEntries - 2);
-  const float share = place - static_cast<float>(low);
-  const auto i = static_cast<size_t>(low);
-  return (1 - share) * albedo_[i] + share * albedo_[i + 1];
-}
+float SpecularAlbedo::at(float cosine) const { return albedo_at(albedo_, cosine); }
 
 }  // namespace velour

@@ -24,14 +24,17 @@ class SpecularAlbedo {
   static SpecularAlbedo between(const SpecularAlbedo& a, const SpecularAlbedo& b, float share);
 
   float at(float cosine) const;
+  /// For albedo_at().
+  static constexpr int kEntries = 64;
+  using Table = std::array<float, kEntries>;
+  const Table& table() const { return albedo_; }
   /// 2 int albedo(mu) mu dmu of this interpolant.
   float mean() const { return mean_; }
 
  private:
   float integrated() const;
 
-  static constexpr int kEntries = 64;
-  std::array<float, kEntries> albedo_{};
+  Table albedo_{};
   float mean_ = 0;
 };
 

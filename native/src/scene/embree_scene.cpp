@@ -39,6 +39,32 @@ void to_embree(const Ray& ray, RTCRay& r) {
 
 }  // namespace
 
+/// Meshes with their hierarchies: what several scenes may share.
+struct EmbreeScene::Meshes {
+  const EmbreeApi& api = embree();
+  std::atomic<int64_t> bytes{0};
+  RTCDevice device = nullptr;
+  std::vector<RTCScene> scenes;
+  size_t built = 0;  // of them
+
+  Meshes() : device(api.rtcNewDevice(nullptr)) {
+    if (device == nullptr) throw Error(Status::unsupported, "Embree cannot run on this processor.");
+    api.rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
+  }
+  ~Meshes() {
+    for (RTCScene mesh : scenes) api.rtcReleaseScene(mesh);
+    api.rtcReleaseDevice(device);
+  }
+  Meshes(const Meshes&) = delete;
+  Meshes& operator=(const Meshes&) = delete;
+
+  void build(tbb::task_arena& arena) {
+    arena.execute([this] {
+      for (; built < scenes.size(); ++built) api.rtcJoinCommitScene(scenes[built]);
+    });
+  }
+};
+
 struct EmbreeScene::Impl {
   struct Instance {
     uint32_t mesh;
@@ -47,22 +73,13 @@ struct EmbreeScene::Impl {
   };
 
   const EmbreeApi& api = embree();
-  std::atomic<int64_t> bytes{0};
-  RTCDevice device = nullptr;
-  std::vector<RTCScene> meshes;
+  std::shared_ptr<Meshes> meshes = std::make_shared<Meshes>();
   std::vector<Instance> instances;
   RTCScene top = nullptr;     // instances; stays null when `traced` is the only mesh itself
   RTCScene traced = nullptr;  // null until committed
 
-  Impl() : device(api.rtcNewDevice(nullptr)) {
-    if (device == nullptr) throw Error(Status::unsupported, "Embree cannot run on this processor.");
-    api.rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
-  }
-  ~Impl() {
-    release_top();
-    for (RTCScene mesh : meshes) api.rtcReleaseScene(mesh);
-    api.rtcReleaseDevice(device);
-  }
+  Impl() = default;
+  ~Impl() { release_top(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
@@ -73,7 +90,7 @@ struct EmbreeScene::Impl {
   }
 
   RTCScene new_scene() const {
-    RTCScene scene = api.rtcNewScene(device);
+    RTCScene scene = api.rtcNewScene(meshes->device);
     api.rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     return scene;
   }
@@ -87,8 +104,8 @@ struct EmbreeScene::Impl {
   RTCScene build_top() const {
     RTCScene scene = new_scene();
     for (uint32_t i = 0; i < instances.size(); ++i) {
-      RTCGeometry geometry = api.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-      api.rtcSetGeometryInstancedScene(geometry, meshes[instances[i].mesh]);
+      RTCGeometry geometry = api.rtcNewGeometry(meshes->device, RTC_GEOMETRY_TYPE_INSTANCE);
+      api.rtcSetGeometryInstancedScene(geometry, meshes->scenes[instances[i].mesh]);
       api.rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, instances[i].object_to_world.m);
       attach(scene, geometry, i);
     }
@@ -96,7 +113,7 @@ struct EmbreeScene::Impl {
   }
 
   void check() const {
-    const RTCError error = api.rtcGetDeviceError(device);
+    const RTCError error = api.rtcGetDeviceError(meshes->device);
     if (error == RTC_ERROR_NONE) return;
     if (error == RTC_ERROR_OUT_OF_MEMORY) {
       throw Error(Status::out_of_memory, "Not enough memory to build the ray tracer's hierarchy.");
@@ -130,7 +147,7 @@ uint32_t EmbreeScene::add_mesh(std::span<const Vec3> positions, std::span<const 
     }
   }
   const EmbreeApi& api = impl_->api;
-  RTCGeometry geometry = api.rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  RTCGeometry geometry = api.rtcNewGeometry(impl_->meshes->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (!triangles.empty()) {
     void* vertex = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3),
                                                positions.size());
@@ -140,13 +157,15 @@ uint32_t EmbreeScene::add_mesh(std::span<const Vec3> positions, std::span<const 
     std::memcpy(vertex, positions.data(), positions.size_bytes());
     std::memcpy(index, triangles.data(), triangles.size_bytes());
   }
-  impl_->meshes.push_back(impl_->new_scene());
-  impl_->attach(impl_->meshes.back(), geometry, 0);
-  return static_cast<uint32_t>(impl_->meshes.size() - 1);
+  impl_->meshes->scenes.push_back(impl_->new_scene());
+  impl_->attach(impl_->meshes->scenes.back(), geometry, 0);
+  return static_cast<uint32_t>(impl_->meshes->scenes.size() - 1);
 }
 
+void EmbreeScene::share_meshes(const EmbreeScene& other) { impl_->meshes = other.impl_->meshes; }
+
 uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world) {
-  if (mesh >= impl_->meshes.size()) {
+  if (mesh >= impl_->meshes->scenes.size()) {
     throw Error(Status::invalid_argument, "There is no mesh " + std::to_string(mesh) + " to instance.");
   }
   impl_->instances.push_back({mesh, object_to_world, object_to_world.normal_map()});
@@ -157,16 +176,14 @@ void EmbreeScene::commit(int threads) {
   Impl& s = *impl_;
   s.release_top();
   tbb::task_arena arena(arena_concurrency(threads));
-  arena.execute([&s] {
-    for (RTCScene mesh : s.meshes) s.api.rtcJoinCommitScene(mesh);
-  });
+  s.meshes->build(arena);
   const bool direct = s.instances.size() == 1 && s.instances[0].object_to_world == Affine{};
   if (!direct) {
     s.top = s.build_top();
     arena.execute([&s] { s.api.rtcJoinCommitScene(s.top); });
   }
   s.check();
-  s.traced = direct ? s.meshes[s.instances[0].mesh] : s.top;
+  s.traced = direct ? s.meshes->scenes[s.instances[0].mesh] : s.top;
 }
 
 void EmbreeScene::intersect(const Ray& ray, Hit& hit) const { intersect({&ray, 1}, &hit); }
@@ -217,7 +234,7 @@ void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits) const {
 }
 
 uint64_t EmbreeScene::bytes() const {
-  return static_cast<uint64_t>(std::max<int64_t>(0, impl_->bytes.load(std::memory_order_relaxed)));
+  return static_cast<uint64_t>(std::max<int64_t>(0, impl_->meshes->bytes.load(std::memory_order_relaxed)));
 }
 
 EmbreeInfo embree_info() {

@@ -43,6 +43,9 @@ class EmbreeScene {
 
   /// Copies the geometry. Returns the mesh's number.
   uint32_t add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
+  /// Takes the meshes of `other`, which is committed, in the place of its own: no geometry is copied, no mesh is built
+  /// again. Neither may add meshes then.
+  void share_meshes(const EmbreeScene& other);
   /// Returns the instance's number, counted from 0.
   uint32_t add_instance(uint32_t mesh, const Affine& object_to_world);
   /// Builds; uses at most `threads` threads (0: all). A scene whose only instance has the identity map is traced
@@ -58,10 +61,11 @@ class EmbreeScene {
   /// times as fast there, slower elsewhere. What a ray meets may depend, at the edge of a triangle, on its packet.
   void occluded_coherent(std::span<const Ray> rays, uint8_t* blocked) const;
 
-  /// Bytes that Embree holds for this scene.
+  /// Bytes that Embree holds for this scene and those that it shares meshes with.
   uint64_t bytes() const;
 
  private:
+  struct Meshes;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -12,8 +12,8 @@ from . import numbers, output
 # What is up in the file is +z here; (x, y, z) -> (x, -z, y) as Blender's OBJ import does it.
 _UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
 _MESOSTRUCTURE = (
-    "texels", "views", "lights", "samples", "bounces", "sides", "memory", "resume", "period", "origin",
-    "metres_per_unit", "up", "base_color", "metallic", "ray_share",
+    "texels", "views", "lights", "held_out", "samples", "bounces", "sides", "memory", "resume", "period",
+    "origin", "metres_per_unit", "up", "base_color", "metallic", "ray_share",
 )  # fmt: skip
 _MICROSURFACE = ("metal", "anisotropy", "base_albedo", "base_share", "rays")
 
@@ -44,6 +44,12 @@ def _add_mesostructure(group) -> None:
     group.add_argument("--texels", type=numbers.whole(1, 16384), metavar="N", help="along a side (128)")
     group.add_argument("--views", metavar="81|105|N", help="set of view directions (105)")
     group.add_argument("--lights", metavar="81|105|N", help="set of light directions (105)")
+    group.add_argument(
+        "--held-out",
+        type=numbers.whole(1, 4096),
+        metavar="N",
+        help="N pairs to judge models by (64 is usual) in place of all pairs of views and lights",
+    )
     group.add_argument(
         "--samples", type=numbers.whole(1, 16384), metavar="S", help="paths a texel and view (16)"
     )
@@ -110,7 +116,9 @@ def _capture_microsurface(args: argparse.Namespace) -> dict:
 
 
 def _capture_tile(args: argparse.Namespace) -> dict:
-    options = _given(args, "texels", "samples", "bounces", "sides", "seed", "threads")
+    if args.held_out and (args.views or args.lights):
+        raise refuse("--held-out has directions of its own; leave --views and --lights away.")
+    options = _given(args, "texels", "held_out", "samples", "bounces", "sides", "seed", "threads")
     for name in ("views", "lights"):
         if getattr(args, name):
             options[name] = directions(getattr(args, name))

@@ -40,6 +40,26 @@ TEST(PairInterpolation, HoldsTheLastRingToTheHorizon) {
   }
 }
 
+TEST(PairInterpolation, GoesOverTheLastRingWithoutAJump) {
+  const std::vector<PolarAngles> set = bonn_directions();
+  const PairInterpolation between(PairLayout(set, set));
+  const auto weights_at = [&](float theta, float phi) {
+    const auto corners = between.view(direction(radians_from(theta), radians_from(phi)));
+    std::vector<float> weights(set.size());
+    for (size_t k = 0; k < 3; ++k) weights[corners->index[k]] += corners->weight[k];
+    return weights;
+  };
+  constexpr float kStep = 0.1f;  // degrees; a whole weight passes in the 15 between two rings
+  for (const float phi : {0.0f, 3.3f, 7.5f, 100.0f}) {
+    std::vector<float> before = weights_at(70, phi);
+    for (float theta = 70; theta < 90; theta += kStep) {
+      const std::vector<float> weights = weights_at(theta, phi);
+      for (size_t v = 0; v < set.size(); ++v) EXPECT_NEAR(weights[v], before[v], 0.02f) << theta << ' ' << phi;
+      before = weights;
+    }
+  }
+}
+
 TEST(PairInterpolation, NeedsEveryPair) {
   EXPECT_THROW(PairInterpolation(PairLayout(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}})), Error);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <fstream>
@@ -136,18 +137,23 @@ TEST(BtfCapture, GoesOnAfterACancel) {
 
 TEST(BtfCapture, CancelsSoon) {
   const auto scene = tile_of(test::sawtooth(), lambert(0.5f));
-  BtfCaptureOptions options;
-  options.place.period = {1, 1};
-  options.sampling.samples = 4096;
-  const ScratchFolder folder("cancel");
-  Job job([&](Progress& progress) { capture_btf(*scene, options, folder.path(), progress); });
-  job.start();
-  job.wait_for(0.5);
-  const auto start = std::chrono::steady_clock::now();
-  job.cancel();
-  ASSERT_TRUE(job.wait_for(10));
-  EXPECT_EQ(job.poll().state, Job::State::cancelled);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 0.5);  // machines differ
+  std::vector<double> seconds;
+  for (int i = 0; i < 9; ++i) {
+    BtfCaptureOptions options;
+    options.place.period = {1, 1};
+    options.sampling.samples = i % 2 == 0 ? 4096 : 1;
+    const ScratchFolder folder("cancel");
+    Job job([&](Progress& progress) { capture_btf(*scene, options, folder.path(), progress); });
+    job.start();
+    job.wait_for(0.05 * i);
+    const auto start = std::chrono::steady_clock::now();
+    job.cancel();
+    ASSERT_TRUE(job.wait_for(10));
+    EXPECT_EQ(job.poll().state, Job::State::cancelled);
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::nth_element(seconds.begin(), seconds.begin() + 4, seconds.end());
+  EXPECT_LT(seconds[4], 0.05) << "the median: whether we run at all is the machine's choice";
 }
 
 TEST(BtfCapture, ReferencePlaneOfASheetIsTheSheet) {

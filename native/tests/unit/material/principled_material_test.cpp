@@ -55,12 +55,12 @@ TEST(Ggx, VisibleNormalsProjectToTheView) {
 }
 
 TEST(Fresnel, Limits) {
-  EXPECT_NEAR(dielectric_fresnel(1, 1.5f), 0.04f, 1e-6);
-  EXPECT_NEAR(dielectric_fresnel(0, 1.5f), 1, 1e-6);
+  EXPECT_NEAR(dielectric_fresnel(1.0f, 1.5f), 0.04f, 1e-6);
+  EXPECT_NEAR(dielectric_fresnel(0.0f, 1.5f), 1, 1e-6);
   // Brewster's angle, tan = eta: only the perpendicular polarisation is reflected.
   const float brewster = std::cos(std::atan(1.5f));
   EXPECT_NEAR(dielectric_fresnel(brewster, 1.5f), 0.5f * std::pow((2.25f - 1) / (2.25f + 1), 2.0f), 1e-6);
-  EXPECT_EQ(dielectric_fresnel(0, 1), 0);
+  EXPECT_EQ(dielectric_fresnel(0.0f, 1), 0);
   EXPECT_EQ(schlick_fresnel(Rgb(0.3f), 1), Rgb(0.3f));
   EXPECT_EQ(schlick_fresnel(Rgb(0.3f), 0), Rgb(1));
 }
@@ -72,8 +72,8 @@ TEST(Fresnel, OfATintedMetalDipsAt82Degrees) {
       EXPECT_GE(tinted_metal_fresnel(f0, 0, cosine), 0);
     }
     EXPECT_NEAR(tinted_metal_fresnel(f0, 0.3f, 1.0f / 7), 0.3f * schlick_fresnel(Rgb(f0), 1.0f / 7).r, 1e-6f);
-    EXPECT_EQ(tinted_metal_fresnel(f0, 0, 1), f0);
-    EXPECT_EQ(tinted_metal_fresnel(f0, 0, 0), 1);
+    EXPECT_EQ(tinted_metal_fresnel(f0, 0, 1.0f), f0);
+    EXPECT_EQ(tinted_metal_fresnel(f0, 0, 0.0f), 1);
   }
 }
 

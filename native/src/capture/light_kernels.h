@@ -1,0 +1,52 @@
+// What a capture does for every pair of a place and a light, side by side.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "capture/view_setup.h"
+#include "sphere/direction_batch.h"
+#include "sphere/frame.h"
+
+namespace velour {
+
+/// Normals of many places, one array a component.
+class PlaceNormals {
+ public:
+  void clear() { count_ = 0; }
+  void push(const Vec3& geometric, const Vec3& shading);
+  size_t count() const { return count_; }
+  const float* component(size_t c) const { return components_[c].data(); }
+
+ private:
+  size_t count_ = 0;
+  std::array<std::vector<float>, 6> components_;  // padded to whole vectors
+};
+
+/// Numbers, rising, of the places whose geometric and shading normals both face `wl`.
+void facing_places(const PlaceNormals& normals, const Vec3& wl, std::vector<uint32_t>& numbers);
+
+/// Lights that reach a place, next to each other.
+struct LitLights {
+  DirectionBatch wl;                                          // local, padded
+  uint32_t number[DirectionBatch::kCapacity];                 // in the group
+  alignas(64) float weight[DirectionBatch::kCapacity] = {0};  // what f is multiplied with: wl.z per_irradiance
+};
+
+/// Those of lights [first, first + 64) of `group` whose bit of `mask` is set.
+void collect_lit(const LightGroup& group, uint32_t first, uint64_t mask, const Frame& frame, LitLights& lit);
+
+/// Sums over paths, of each light of a group.
+struct PathSums {
+  alignas(64) double sum[3][kLightsTogether];
+  alignas(64) double luminance[kLightsTogether], luminance_sq[kLightsTogether];
+};
+
+/// Adds what each of the first `lights` lights brings along one path; a value that is not finite is left out. How many
+/// were. `luminance_weights`: of the colours' space.
+uint32_t add_path(const float (&path)[3][kLightsTogether], const Vec3& luminance_weights, uint32_t lights,
+                  PathSums& sums);
+
+}  // namespace velour

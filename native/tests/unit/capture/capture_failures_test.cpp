@@ -1,0 +1,79 @@
+// Tiles that no one would model on purpose.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "material/principled_textures.h"
+#include "support/captured.h"
+
+namespace velour {
+namespace {
+
+using test::Captured;
+using test::Corners;
+using test::small_capture;
+using test::tile_of;
+
+/// A rough white surface, painted with a picture of 2 x 1 texels.
+std::shared_ptr<const Material> painted(const Rgb& left, const Rgb& right) {
+  const auto picture = std::make_shared<Texture<Rgb>>(2, 1, std::vector<Rgb>{left, right},
+                                                      TextureOptions{.filter = TextureFilter::closest});
+  return make_textured_material({.roughness = 1, .specular = 0}, {.base_color = {.texture = picture}}, 1);
+}
+
+/// The unit square; its texture coordinates are its x and y.
+Mesh square(bool mapped) {
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const std::vector<glm::uvec3> triangles{{0, 1, 2}, {0, 2, 3}};
+  const std::vector<Vec2> uvs{{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
+  return Mesh({.positions = positions,
+               .triangles = triangles,
+               .corner_uvs = mapped ? std::span<const Vec2>(uvs) : std::span<const Vec2>()});
+}
+
+TEST(CaptureFailures, TexelsOfATextureThatAreNoNumbersAreBlackAndAlone) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  BtfCaptureOptions options = small_capture({{0, 0}, {60, 40}}, {{30, 0}});
+  options.sampling.bounces = 2;
+  const Captured broken(*tile_of(square(true), painted({nan, 1, 1}, Rgb(0.5f))), options, "nan");
+  const Captured black(*tile_of(square(true), painted(Rgb(0), Rgb(0.5f))), options, "black");
+  EXPECT_EQ(broken.values, black.values);
+  EXPECT_EQ(broken.green(0, 0), 0);
+  EXPECT_NEAR(broken.green(0, 15), 0.5f / kPi, 1e-3f);
+}
+
+TEST(CaptureFailures, WithoutTextureCoordinatesATextureHasOneColour) {
+  const Captured captured(*tile_of(square(false), painted(Rgb(0.25f), Rgb(0.5f))), small_capture({{0, 0}}, {{30, 0}}),
+                          "unmapped");
+  for (size_t t = 0; t < captured.texels; ++t) EXPECT_EQ(captured.green(0, t), captured.green(0, 0));
+  EXPECT_GT(captured.green(0, 0), 0);
+}
+
+TEST(CaptureFailures, OneDirectionIsEnough) {
+  BtfCaptureOptions options = small_capture({{0, 0}}, {{0, 0}});
+  options.reference_height.reset();
+  const Captured captured(*tile_of(test::sawtooth(), std::make_shared<test::Lambert>(0.5f)), options, "one");
+  EXPECT_EQ(captured.report.pairs, 1u);
+  EXPECT_NEAR(captured.mean(0).mean, 0.5 / kPiD * (0.5 + 0.5), 0.1) << "faces of 45 degrees, and what they bounce";
+}
+
+// A ramp without a back, and a square that it pierces; both reach over the border of the cell.
+TEST(CaptureFailures, WhatCrossesItselfAndTheBorderIsFiniteFromBothSides) {
+  Corners corners;
+  corners.quad({1.2f, 0, -0.3f}, {0.4f, 0, 0.4f}, {0.4f, 1, 0.4f}, {1.2f, 1, -0.3f});
+  corners.rectangle(0.5f, 0, 1.5f, 1, 0.1f);
+  BtfCaptureOptions options = small_capture({{0, 0}, {70, 10}}, {{0, 0}, {70, 190}});
+  options.sides = CaptureSides::two;
+  options.sampling.bounces = 4;
+  const Captured captured(*tile_of(corners.mesh(), std::make_shared<test::Lambert>(1.0f)), options, "crossing");
+  EXPECT_TRUE(captured.report.two_sided);
+  for (const float value : captured.values) EXPECT_TRUE(std::isfinite(value) && value >= 0);
+  for (size_t pair = 0; pair < 16; ++pair) {
+    const bool same_side = (pair / 4 < 2) == (pair % 4 < 2);
+    EXPECT_EQ(captured.mean(pair).mean > 0.05, same_side) << pair;
+  }
+}
+
+}  // namespace
+}  // namespace velour
