@@ -63,14 +63,15 @@ def export_btf_job(btf: Btf, path: str | os.PathLike) -> Job:
 
 def compress_job(btf: Btf, **options) -> Job:
     """Options: method (table.COMPRESS_METHODS), companding (table.COMPANDINGS), bytes, seed, threads,
-    held_out (a Btf of pairs that the fit does not see). Result: result_model()."""
+    held_out (a Btf of pairs that the fit does not see); for_scene (an Observation) and full_model (a Model)
+    leave out what scenes do not resolve. Result: result_model()."""
     raw = table.CompressOptions()
     library.load().vlr_compress_options_init(ctypes.byref(raw))
     for name, names in (("method", table.COMPRESS_METHODS), ("companding", table.COMPANDINGS)):
         if name in options:
             options[name] = choice(name, options[name], names)
-    if "held_out" in options:
-        options["held_out"] = options["held_out"].pointer
+    for name in {"held_out", "for_scene", "full_model"} & options.keys():
+        options[name] = options[name].pointer
     set_fields(raw, options)
     return Job._create("vlr_compress_create_job", btf.pointer, ctypes.byref(raw))
 

@@ -97,6 +97,8 @@ class CompressOptions(Struct):
         ("bytes", c_uint64),
         ("seed", c_uint64),
         ("held_out", c_void_p),
+        ("for_scene", c_void_p),
+        ("full_model", c_void_p),
     ]
 
 

@@ -260,11 +260,17 @@ typedef struct vlr_compress_options {
   uint64_t bytes;     /* of all coefficients at most; 0: a two-hundredth of the BTF as half floats, or a few */
   uint64_t seed;
   const vlr_btf* held_out; /* pairs that no fit has seen, of the same texels; NULL: none */
+  /* Leave out the levels that no ray of these scenes resolves; observed with a material of the BTF. NULL: for any
+   * scene. */
+  const vlr_observation* for_scene;
+  const vlr_model* full_model; /* with for_scene: the BTF's full model; NULL: it is fitted first */
 } vlr_compress_options;
 VLR_API void vlr_compress_options_init(vlr_compress_options* options);
 /* Fits a model to a BTF; vlr_job_result_model gives it. JSON: bytes, parameter_bytes, ratio (raw half floats / bytes),
  * psnr, psnr_held_out (null without held_out), ser, p99, evaluations_per_second, seconds, warnings; components of an
- * SVD; lobes and coefficients of SRBFs. */
+ * SVD; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest that are left, and scene, as
+ * of vlr_fit_create_job and with full_texels [x, y] and surface (vlr_observation_info_json); psnr, ser and speed are
+ * then those of the full model. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
 /* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, p99, pairs. */
 VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);
@@ -309,9 +315,9 @@ VLR_API vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t mater
 VLR_API vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,
                                                       const vlr_model* proposal, uint32_t neighbors,
                                                       uint32_t* material);
-/* Reference mode of BTFs: f is that of the BTF itself, barycentric between its directions, linear between texels and mip
- * levels. All of it is read into memory as half floats; VLR_UNSUPPORTED where that takes more than `most_bytes` (0: 4
- * GiB) or pairs are missing. Texture coordinates count tiles. Samples are drawn by the cosine. */
+/* Reference mode of BTFs: f is that of the BTF itself, barycentric between its directions, linear between texels and
+ * mip levels. All of it is read into memory as half floats; VLR_UNSUPPORTED where that takes more than `most_bytes` (0:
+ * 4 GiB) or pairs are missing. Texture coordinates count tiles. Samples are drawn by the cosine. */
 VLR_API vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint64_t most_bytes,
                                               uint32_t* material);
 typedef struct vlr_principled_desc {
@@ -551,7 +557,9 @@ VLR_API void vlr_observation_free(vlr_observation* observation);
 VLR_API vlr_status vlr_observation_merge(vlr_observation* into, const vlr_observation* other);
 /* JSON: kind "observation", frames, camera_rays, hits, weight (of all hits, in camera rays), share (weight /
  * camera_rays), views [from, to] (degrees that a model reduced to it covers; null when nothing was seen), light_density
- * (1/sr; null: light without extent), hash. */
+ * (1/sr; null: light without extent), hash; of a material that varies over the surface also surface {finest (width of
+ * the finest look-ups, as a share of the tile's side that has more texels), footprint [shares of the weight by that
+ * width, an octave each from 2^-16 on], tile_share (how much of the tile was seen)}. */
 VLR_API vlr_status vlr_observation_info_json(vlr_observation* observation, const char** json);
 
 typedef struct vlr_observe_options {
@@ -569,7 +577,8 @@ VLR_API void vlr_observe_options_init(vlr_observe_options* options);
 VLR_API vlr_status vlr_observe_create_job(const vlr_scene* scene, uint32_t material, const vlr_observe_options* options,
                                           vlr_job** out);
 /* Share of the weight of the material in `frame` that lies outside of what a reduced model was made for: seen at other
- * views, or under more concentrated light. 0 for a model of any scene. */
+ * views, or under more concentrated light; of a BTF, seen more finely than its finest texels. 0 for a model of any
+ * scene. */
 VLR_API vlr_status vlr_model_out_of_domain(const vlr_model* model, const vlr_observation* frame, double* share);
 /* The observation of a finished job; a new handle. */
 VLR_API vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observation** out);

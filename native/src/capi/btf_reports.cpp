@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "capi/json_text.h"
+#include "capi/scene_reports.h"
+
 namespace velour::capi {
 namespace {
 
@@ -63,6 +65,10 @@ std::string compression_json(const Model& model, uint64_t file_bytes) {
                    {"evaluations_per_second", record.evaluations_per_second},
                    {"seconds", record.seconds},
                    {"warnings", record.warnings}});
+  if (model.scene) {
+    json["texels"] = {grid_of(model)->width, grid_of(model)->height};
+    json["scene"] = reduced_json(*model.scene);
+  }
   return text(json);
 }
 

@@ -2,7 +2,7 @@
 #include "capi/btf_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "compress/compress_btf.h"
+#include "compress/scene_reduction.h"
 #include "model/model_file.h"
 
 using namespace velour;
@@ -34,6 +34,8 @@ CompressOptions converted(const vlr_compress_options& given) {
   options.seed = given.seed;
   options.threads = static_cast<int>(given.threads);
   if (given.held_out) options.held_out = given.held_out->btf;
+  if (given.for_scene) options.for_scene = given.for_scene->observation;
+  if (given.full_model) options.full_model = given.full_model->model;
   return options;
 }
 
@@ -46,7 +48,8 @@ vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_option
     const CompressOptions given = converted(read_options(options, vlr_compress_options_init, "vlr_compress_options"));
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, given, source = btf->btf](Progress& progress) {
-      auto model = std::make_shared<const Model>(compress_btf(*source, given, progress));
+      const auto compress = given.for_scene ? compress_for_scene : compress_btf;
+      auto model = std::make_shared<const Model>(compress(*source, given, progress));
       output->set(compression_json(*model, encode_model(*model).size()), model);
     });
   });

@@ -1,6 +1,7 @@
 // Observations, and the job that makes them.
 #include "domain/observation_file.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "capi/guard.h"
@@ -117,13 +118,21 @@ vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observation** out)
   });
 }
 
+namespace {
+
+double outside(const Model& model, const SceneObservation& frame) {
+  if (!is_reduced(model)) return 0.0;
+  if (const TexelGrid* grid = grid_of(model)) return out_of_resolution(std::max(grid->width, grid->height), frame);
+  return out_of_domain(model.scene->domain, std::get<ParametricBrdf>(model.body).views, frame);
+}
+
+}  // namespace
+
 vlr_status vlr_model_out_of_domain(const vlr_model* model, const vlr_observation* frame, double* share) {
   return guard([&] {
     require(model, "model");
     require(frame, "frame");
     require(share, "share");
-    const Model& asked = *model->model;
-    const auto views = [&asked] { return std::get<ParametricBrdf>(asked.body).views; };
-    *share = is_reduced(asked) ? out_of_domain(asked.scene->domain, views(), *frame->observation) : 0.0;
+    *share = outside(*model->model, *frame->observation);
   });
 }

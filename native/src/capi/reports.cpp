@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "capi/json_text.h"
+#include "capi/scene_reports.h"
 #include "domain/hash_text.h"
 #include "model/order_json.h"
 #include "render/footprint.h"
@@ -90,17 +91,6 @@ Json size_json(const Model& model, uint64_t file_bytes) {
 namespace {
 
 Json views_json(const ViewRange& views) { return {views.begin, views.end}; }
-
-/// Of a model that was reduced to what scenes need.
-Json reduced_json(const SceneRecord& scene) {
-  return {
-      {"frames", scene.domain.frames},
-      {"light_density", std::isfinite(scene.domain.light_density) ? Json(scene.domain.light_density) : Json(nullptr)},
-      {"hash", hash_text(scene.domain.hash)},
-      {"picture_error", scene.picture_error},
-      {"full_picture_error", scene.full_picture_error},
-      {"full_parameter_bytes", scene.full_parameter_bytes}};
-}
 
 /// What only one kind of model has to say.
 Json own_json(const ScatteredBrdf& brdf) {
@@ -303,14 +293,16 @@ Json views_json(const SceneDomain& domain) {
 Json own_json(const SceneObservation& observation) {
   const SceneDomain& domain = observation.domain;
   const double weight = domain.weight();
-  return {{"frames", domain.frames},
-          {"camera_rays", domain.camera_rays},
-          {"hits", observation.hits.size()},
-          {"weight", weight},
-          {"share", domain.camera_rays > 0 ? weight / static_cast<double>(domain.camera_rays) : 0.0},
-          {"views", views_json(domain)},
-          {"light_density", std::isfinite(domain.light_density) ? Json(domain.light_density) : Json(nullptr)},
-          {"hash", hash_text(domain.hash)}};
+  Json json = {{"frames", domain.frames},
+               {"camera_rays", domain.camera_rays},
+               {"hits", observation.hits.size()},
+               {"weight", weight},
+               {"share", domain.camera_rays > 0 ? weight / static_cast<double>(domain.camera_rays) : 0.0},
+               {"views", views_json(domain)},
+               {"light_density", std::isfinite(domain.light_density) ? Json(domain.light_density) : Json(nullptr)},
+               {"hash", hash_text(domain.hash)}};
+  if (domain.surface.weight() > 0) json["surface"] = surface_json(domain.surface);
+  return json;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "compress/btf_compare.h"
 #include "compress/srbf_fit.h"
 #include "compress/svd_fit.h"
+#include "domain/observation.h"
 #include "model/model.h"
 
 namespace velour {
@@ -19,9 +20,13 @@ struct CompressOptions {
   uint64_t seed = 0;
   int threads = 0;                                 // 0: all
   std::shared_ptr<const BtfMeasurement> held_out;  // pairs that no fit has seen; null: none
+  /// Leave out what these scenes do not resolve (scene_reduction.h); null: the model serves any scene.
+  std::shared_ptr<const SceneObservation> for_scene;
+  std::shared_ptr<const Model> full_model;  // with for_scene: what is reduced; null: it is fitted first
 };
 
-/// A model with its errors. Throws Error(invalid_argument) when `held_out` has other texels.
+/// A model with its errors, for any scene: whatever options.for_scene is. Throws Error(invalid_argument) when
+/// `held_out` has other texels.
 Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress);
 
 /// Errors of a BTF's model against the pairs of `truth`; white is the model's own. Throws Error(invalid_argument) when

@@ -19,6 +19,7 @@ void append(SceneObservation& into, const SceneObservation& from, const Observed
 void merge(SceneDomain& into, const SceneDomain& other) {
   for (size_t i = 0; i < into.view.size(); ++i) into.view[i] += other.view[i];
   for (size_t i = 0; i < into.hash.size(); ++i) into.hash[i] += other.hash[i];
+  merge(into.surface, other.surface);
   into.camera_rays += other.camera_rays;
   into.frames += other.frames;
   into.light_density = std::max(into.light_density, other.light_density);

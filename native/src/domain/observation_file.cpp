@@ -49,6 +49,16 @@ Json hits_json(const std::vector<ObservedHit>& hits) {
           {"terms", base64_of(terms)}};
 }
 
+Json surface_json(const SurfaceDomain& surface) { return {{"footprint", surface.footprint}, {"tile", surface.tile}}; }
+
+SurfaceDomain read_surface(const JsonFields& fields) {
+  SurfaceDomain surface;
+  std::ranges::copy(fields.numbers("footprint", surface.footprint.size()), surface.footprint.begin());
+  std::ranges::copy(fields.numbers("tile", surface.tile.size()), surface.tile.begin());
+  if (!std::isfinite(surface.weight())) fields.fail("footprint", "a list of numbers of a finite sum");
+  return surface;
+}
+
 SceneDomain read_domain(const JsonFields& fields) {
   SceneDomain domain;
   std::ranges::copy(fields.numbers("view", SceneDomain::kViewBins), domain.view.begin());
@@ -59,6 +69,7 @@ SceneDomain read_domain(const JsonFields& fields) {
   const auto hash = parse_hash(fields.text("hash"));
   if (!hash) fields.fail("hash", "64 hexadecimal digits");
   domain.hash = *hash;
+  if (fields.has("surface")) domain.surface = read_surface(fields.object("surface"));
   return domain;
 }
 
@@ -127,7 +138,7 @@ void check_version(const JsonFields& fields, const std::string& name) {
 std::string encode_observation(const SceneObservation& observation) {
   const SceneDomain& domain = observation.domain;
   const Json density = std::isfinite(domain.light_density) ? Json(domain.light_density) : Json(nullptr);
-  const Json json = {
+  Json json = {
       {"format", kFormat},
       {"version", kVersion},
       {"frames", domain.frames},
@@ -138,6 +149,7 @@ std::string encode_observation(const SceneObservation& observation) {
       {"hits", hits_json(observation.hits)},
       {"terms",
        {{"count", observation.wl.size()}, {"wl", base64_of(observation.wl)}, {"light", base64_of(observation.light)}}}};
+  if (domain.surface.weight() > 0) json["surface"] = surface_json(domain.surface);
   return json.dump(1) + "\n";
 }
 

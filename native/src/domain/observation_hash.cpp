@@ -35,6 +35,10 @@ std::array<uint64_t, 4> content_hash(const SceneObservation& observation) {
   std::vector<uint8_t> bytes;
   append(bytes, std::span<const double>(observation.domain.view));
   append(bytes, std::span<const double>(&observation.domain.light_density, 1));
+  if (observation.domain.surface.weight() > 0) {  // of uniform materials hashes are what they were without it
+    append(bytes, std::span<const double>(observation.domain.surface.footprint));
+    append(bytes, std::span<const double>(observation.domain.surface.tile));
+  }
   append(bytes, std::span<const PackedHit>(hits));
   append(bytes, std::span<const Vec3>(observation.wl));
   append(bytes, std::span<const Rgb>(observation.light));

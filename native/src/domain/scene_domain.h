@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "domain/surface_domain.h"
 #include "sphere/view_range.h"
 
 namespace velour {
@@ -22,6 +23,8 @@ struct SceneDomain {
   double light_density = 0;
   /// Of each frame the SHA-256 of all that was observed; of several their sum, word by word, whatever their order.
   std::array<uint64_t, 4> hash{};
+  /// Of a material that varies over the surface.
+  SurfaceDomain surface;
 
   double weight() const;
 };

@@ -57,6 +57,7 @@ class FactoredMaterial final : public Material {
   }
 
   bool varies() const override { return true; }
+  Vec2 texels() const override { return Vec2(btf_->grid.width, btf_->grid.height); }
   bool isotropic() const override { return false; }
 
  private:

@@ -44,6 +44,8 @@ class Material {
 
   /// False for a uniform material: it does not look at the site, and whoever asks need not find it out.
   virtual bool varies() const { return false; }
+  /// How many texels along both coordinates a pyramid over the tile has at its finest; (1, 1) where there is none.
+  virtual Vec2 texels() const { return Vec2(1.0f); }
 
   /// True where alpha() is 1 everywhere.
   virtual bool opaque() const { return true; }

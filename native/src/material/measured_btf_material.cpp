@@ -40,6 +40,7 @@ class MeasuredBtfMaterial final : public Material {
   }
 
   bool varies() const override { return true; }
+  Vec2 texels() const override { return Vec2(table_->levels[0].width, table_->levels[0].height); }
   bool isotropic() const override { return false; }
 
  private:

@@ -40,6 +40,7 @@ class SrbfBtfMaterial final : public Material {
   }
 
   bool varies() const override { return true; }
+  Vec2 texels() const override { return evaluator_.texels(); }
   bool isotropic() const override { return false; }
 
  private:

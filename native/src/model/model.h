@@ -61,6 +61,9 @@ bool is_reduced(const Model& model);
 /// Whether it is of a BTF, with a BtfRecord, instead of a BRDF.
 bool is_btf(const Model& model);
 
+/// The texels of a BTF's model; null of a BRDF's.
+const TexelGrid* grid_of(const Model& model);
+
 /// "scattered", "parametric", "factored-btf", "srbf-btf".
 const char* model_kind(const Model& model);
 

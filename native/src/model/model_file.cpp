@@ -70,9 +70,16 @@ bool is_btf(const Model& model) {
   return std::holds_alternative<FactoredBtf>(model.body) || std::holds_alternative<SrbfBtf>(model.body);
 }
 
+const TexelGrid* grid_of(const Model& model) {
+  if (const auto* factored = std::get_if<FactoredBtf>(&model.body)) return &factored->grid;
+  const auto* srbf = std::get_if<SrbfBtf>(&model.body);
+  return srbf ? &srbf->grid : nullptr;
+}
+
 bool is_reduced(const Model& model) {
-  const auto* brdf = std::get_if<ParametricBrdf>(&model.body);
-  return brdf && model.scene && brdf->parameter_bytes() < model.scene->full_parameter_bytes;
+  if (!model.scene) return false;
+  const auto bytes = std::visit([](const auto& body) { return body.parameter_bytes(); }, model.body);
+  return bytes < model.scene->full_parameter_bytes;
 }
 
 std::vector<uint8_t> encode_model(const Model& model) {

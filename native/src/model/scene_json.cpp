@@ -13,6 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr uint32_t kMostTexels = 1u << 20;  // along a side of a tile: far beyond what a file holds
+
 /// The bins from the first to the last that was seen.
 void write_views(const SceneDomain& domain, Json& json) {
   size_t begin = 0, end = domain.view.size();
@@ -21,6 +23,19 @@ void write_views(const SceneDomain& domain, Json& json) {
   json["first_view"] = begin;
   json["view_weights"] = Json::array();
   for (size_t i = begin; i < end; ++i) json["view_weights"].push_back(four_digits(domain.view[i]));
+}
+
+Json weights_json(const auto& weights) {
+  Json json = Json::array();
+  for (const double weight : weights) json.push_back(four_digits(weight));
+  return json;
+}
+
+/// What a BTF's record has beside that of a BRDF.
+void write_surface(const SceneRecord& record, Json& json) {
+  json["full_texels"] = record.full_texels;
+  json["footprint_weights"] = weights_json(record.domain.surface.footprint);
+  json["tile_weights"] = weights_json(record.domain.surface.tile);
 }
 
 /// Reads keys and names what is wrong with them; none may be missing.
@@ -48,6 +63,18 @@ class Reader {
       fail("view_weights", "a list of at most " + std::to_string(domain.view.size()) + " weights from 'first_view' on");
     }
     for (size_t i = 0; i < weights.size(); ++i) domain.view[first + i] = number_of(weights[i], "view_weights");
+  }
+  bool has(const char* key) const { return json_.contains(key); }
+  void weights(const char* key, auto& to) const {
+    const Json& json = at(key);
+    if (!json.is_array() || json.size() != to.size()) fail(key, "a list of " + std::to_string(to.size()) + " weights");
+    for (size_t i = 0; i < to.size(); ++i) to[i] = number_of(json[i], key);
+  }
+  std::array<uint32_t, 2> texels(const char* key) const {
+    const Json& json = at(key);
+    const auto good = [](const Json& n) { return n.is_number_unsigned() && n >= 1u && n <= kMostTexels; };
+    if (!json.is_array() || json.size() != 2 || !good(json[0]) || !good(json[1])) fail(key, "two numbers of texels");
+    return {json[0].get<uint32_t>(), json[1].get<uint32_t>()};
   }
 
  private:
@@ -81,6 +108,7 @@ std::string scene_record_json(const SceneRecord& record) {
                {"full_picture_error", record.full_picture_error},
                {"full_parameter_bytes", record.full_parameter_bytes}};
   write_views(domain, json);
+  if (record.full_texels[0] > 0) write_surface(record, json);
   return json.dump();
 }
 
@@ -97,6 +125,10 @@ SceneRecord parse_scene_record(const std::string& text, const std::string& where
   record.picture_error = reader.number("picture_error");
   record.full_picture_error = reader.number("full_picture_error");
   record.full_parameter_bytes = reader.whole("full_parameter_bytes");
+  if (!reader.has("full_texels")) return record;
+  record.full_texels = reader.texels("full_texels");
+  reader.weights("footprint_weights", record.domain.surface.footprint);
+  reader.weights("tile_weights", record.domain.surface.tile);
   return record;
 }
 

@@ -84,14 +84,15 @@ class Observer {
   }
 
   void see_views() {
-    std::vector<ViewHistogram> views((grid_.cells() + kRaysOfBlock - 1) / kRaysOfBlock);
-    in_parallel(views.size(), [&](size_t i) {
+    std::vector<SeenWeights> seen((grid_.cells() + kRaysOfBlock - 1) / kRaysOfBlock);
+    in_parallel(seen.size(), [&](size_t i) {
       const uint64_t first = i * kRaysOfBlock;
-      tracers_.local().follow(first, std::min(grid_.cells(), first + kRaysOfBlock), views[i]);
+      tracers_.local().follow(first, std::min(grid_.cells(), first + kRaysOfBlock), seen[i]);
     });
     SceneDomain& domain = observation_.domain;
-    for (const ViewHistogram& view : views) {  // in this order, whatever the threads did
-      for (size_t i = 0; i < view.size(); ++i) domain.view[i] += view[i];
+    for (const SeenWeights& block : seen) {  // in this order, whatever the threads did
+      for (size_t i = 0; i < block.view.size(); ++i) domain.view[i] += block.view[i];
+      merge(domain.surface, block.surface);
     }
     domain.camera_rays = grid_.cells();
     domain.frames = 1;

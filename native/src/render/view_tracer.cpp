@@ -3,6 +3,8 @@
 #include <bit>
 
 #include "domain/observation.h"
+#include "material/footprint_taps.h"
+#include "material/material.h"
 
 namespace velour {
 namespace {
@@ -14,14 +16,14 @@ size_t view_bin(const Vec3& wv) {
 
 }  // namespace
 
-void ViewTracer::follow(uint64_t first, uint64_t end, ViewHistogram& view) {
+void ViewTracer::follow(uint64_t first, uint64_t end, SeenWeights& seen) {
   start(first, end);
   for (int depth = 0; depth <= options_.bounces && !paths_.empty(); ++depth) {
     hits_.resize(rays_.size());
     visible_.intersect(rays_, hits_.data());
     next_.clear();
     next_rays_.clear();
-    for (size_t i = 0; i < paths_.size(); ++i) meet(i, depth, view);
+    for (size_t i = 0; i < paths_.size(); ++i) meet(i, depth, seen);
     paths_.swap(next_);
     rays_.swap(next_rays_);
   }
@@ -39,22 +41,29 @@ void ViewTracer::start(uint64_t first, uint64_t end) {
   }
 }
 
-void ViewTracer::meet(size_t path, int depth, ViewHistogram& view) {
+void ViewTracer::meet(size_t path, int depth, SeenWeights& seen) {
   if (hits_[path].instance == kNoHit) return;
   const SurfacePoint point = scene_.surface(hits_[path]);
   const Vertex vertex(scene_, point, rays_[path], hits_[path], paths_[path].cone, depth == 0 ? &pixel_ : nullptr);
-  if (vertex.surface == &material_) see(vertex, paths_[path], depth, view);
+  if (vertex.surface == &material_) see(vertex, paths_[path], depth, seen);
   if (depth < options_.bounces) go_on(vertex, paths_[path]);
 }
 
-void ViewTracer::see(const Vertex& vertex, const Path& path, int depth, ViewHistogram& view) {
+void ViewTracer::see(const Vertex& vertex, const Path& path, int depth, SeenWeights& seen) {
   const double weight = static_cast<double>(luminance(path.throughput));
   if (!(weight > 0.0)) return;
-  view[view_bin(vertex.wv)] += weight;
+  seen.view[view_bin(vertex.wv)] += weight;
+  if (material_.material->varies()) see_surface(vertex.site, weight, seen.surface);
   // The place counts, too, so that frames of one seed draw on their own.
   auto place = static_cast<uint64_t>(depth);
   for (int i = 0; i < 3; ++i) place = mix64(place + std::bit_cast<uint32_t>(vertex.position[i]));
   draws_.add({vertex, options_.bounces - depth}, weight, RandomStream(options_.seed, path.cell, place));
+}
+
+void ViewTracer::see_surface(const SurfaceSite& site, double weight, SurfaceDomain& surface) const {
+  // On a tile of so many texels that no footprint is smaller than one of them.
+  const Vec2 finest = tile_ * (kFinestTexels / std::max(tile_.x, tile_.y));
+  add_seen(surface, footprint_taps(site.footprint, finest).level, site.uv, weight);
 }
 
 void ViewTracer::go_on(const Vertex& vertex, const Path& path) {

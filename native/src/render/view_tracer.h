@@ -23,7 +23,11 @@ struct SeenHit {
   int bounces;  // that are left
 };
 
-using ViewHistogram = decltype(SceneDomain::view);
+/// Weights of hits, as SceneDomain has them.
+struct SeenWeights {
+  decltype(SceneDomain::view) view{};
+  SurfaceDomain surface;
+};
 
 /// One a thread.
 class ViewTracer {
@@ -37,10 +41,11 @@ class ViewTracer {
         grid_(grid),
         options_(options),
         pixel_(scene, options.width, options.height, 1),
+        tile_(material.material->texels()),
         draws_(draws) {}
 
-  /// Follows the camera rays of cells [first, end) and adds the weights of their hits to `view`.
-  void follow(uint64_t first, uint64_t end, ViewHistogram& view);
+  /// Follows the camera rays of cells [first, end) and adds the weights of their hits to `seen`.
+  void follow(uint64_t first, uint64_t end, SeenWeights& seen);
 
   /// Hits drawn by weight, of all rays followed so far.
   const DrawByWeight<SeenHit>& draws() const { return draws_; }
@@ -53,8 +58,9 @@ class ViewTracer {
     RayCone cone;  // at the origin of its ray
   };
   void start(uint64_t first, uint64_t end);
-  void meet(size_t path, int depth, ViewHistogram& view);
-  void see(const Vertex& vertex, const Path& path, int depth, ViewHistogram& view);
+  void meet(size_t path, int depth, SeenWeights& seen);
+  void see(const Vertex& vertex, const Path& path, int depth, SeenWeights& seen);
+  void see_surface(const SurfaceSite& site, double weight, SurfaceDomain& surface) const;
   void go_on(const Vertex& vertex, const Path& path);
 
   const Scene& scene_;
@@ -63,6 +69,7 @@ class ViewTracer {
   const CameraGrid& grid_;
   const RenderOptions& options_;
   const PixelFootprint pixel_;
+  const Vec2 tile_;  // texels
   DrawByWeight<SeenHit> draws_;
   std::vector<Path> paths_, next_;
   std::vector<Ray> rays_, next_rays_;  // of the paths

@@ -6,7 +6,7 @@ import argparse
 import contextlib
 
 from ...native import Btf, compress_job, table
-from . import btf_options, later, numbers, output
+from . import btf_options, later, numbers, output, scene_options
 
 _METHODS = (*table.COMPRESS_METHODS, "svd-view", "tucker", "cta", "kcta")
 
@@ -27,6 +27,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of all coefficients; a two-hundredth of the BTF, or a few components",
     )  # fmt: skip
     parser.add_argument("--held-out", metavar="BTF", help="pairs that the fit does not see, to judge it by")
+    parser.add_argument(
+        "--for-scene", metavar="SCENE.json",
+        help="leave out the levels that no ray of what was observed (velour observe) resolves",
+    )  # fmt: skip
+    parser.add_argument(
+        "--full-model", metavar="FULL", help="with --for-scene: the full model; without: it is fitted first"
+    )
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
     for flag in ("--tolerance", "--clusters", "--k", "--memory"):
@@ -43,6 +50,7 @@ def run(args: argparse.Namespace) -> dict:
         btf = handles.enter_context(btf_options.load(args.input, args))
         if args.held_out:
             options["held_out"] = handles.enter_context(Btf.load(args.held_out))
+        options |= scene_options.load(args, handles)
         job = handles.enter_context(compress_job(btf, **options))
         report = job.run(output.progress_of(args))
         handles.enter_context(job.result_model()).save(args.output)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 import contextlib
 
-from ...native import Measurement, Model, Observation, fit_job, table
-from ...native.errors import refuse
-from . import numbers, output
+from ...native import Measurement, fit_job, table
+from . import numbers, output, scene_options
 
 KEYS = (
     "lobes",
@@ -66,7 +65,7 @@ def run(args: argparse.Namespace) -> dict:
     output.check_writable(args.output)
     with contextlib.ExitStack() as opened:
         measurement = opened.enter_context(Measurement.load(args.input))
-        job = opened.enter_context(fit_job(measurement, **_options(args), **_scene(args, opened)))
+        job = opened.enter_context(fit_job(measurement, **_options(args), **scene_options.load(args, opened)))
         report = job.run(output.progress_of(args))
         with job.result_model() as model:
             model.save(args.output)
@@ -74,13 +73,6 @@ def run(args: argparse.Namespace) -> dict:
         for warning in report["warnings"]:
             output.log.warning("%s", warning)
     return {key: report[key] for key in (*KEYS, *OWN_KEYS) if key in report}
-
-
-def _scene(args: argparse.Namespace, opened: contextlib.ExitStack) -> dict:
-    if args.full_model and not args.for_scene:
-        raise refuse("--full-model goes with --for-scene: it is what a fit for a scene starts from.")
-    given = {"for_scene": (Observation, args.for_scene), "full_model": (Model, args.full_model)}
-    return {name: opened.enter_context(kind.load(path)) for name, (kind, path) in given.items() if path}
 
 
 def _options(args: argparse.Namespace) -> dict:

@@ -9,6 +9,7 @@ from ...native import Observation, Scene, observe_job
 from . import numbers, output, scene
 
 KEYS = ("seconds", "frames", "camera_rays", "hits", "weight", "share", "views", "light_density", "hash")
+OWN_KEYS = ("surface",)  # of materials that vary over it
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,7 +43,7 @@ def run(args: argparse.Namespace) -> dict:
         report |= observation.info()
         for warning in described.info()["warnings"]:
             output.log.warning("%s", warning)
-    return {key: report[key] for key in KEYS}
+    return {key: report[key] for key in (*KEYS, *OWN_KEYS) if key in report}
 
 
 def _options(args: argparse.Namespace) -> dict:

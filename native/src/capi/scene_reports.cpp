@@ -1,0 +1,45 @@
+#include "capi/scene_reports.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "domain/hash_text.h"
+
+namespace velour::capi {
+namespace {
+
+/// Shares of the weight, octave by octave.
+Json octaves_json(const SurfaceDomain& surface) {
+  constexpr size_t kBins = SurfaceDomain::kBinsOfOctave;
+  Json json = Json::array();
+  for (size_t begin = 0; begin < surface.footprint.size(); begin += kBins) {
+    double sum = 0;
+    for (size_t i = begin; i < begin + kBins; ++i) sum += surface.footprint[i];
+    json.push_back(sum / surface.weight());
+  }
+  return json;
+}
+
+}  // namespace
+
+Json surface_json(const SurfaceDomain& surface) {
+  return {{"finest", finest_footprint(surface)},
+          {"footprint", octaves_json(surface)},
+          {"tile_share", seen_share_of_tile(surface)}};
+}
+
+Json reduced_json(const SceneRecord& scene) {
+  Json json = {
+      {"frames", scene.domain.frames},
+      {"light_density", std::isfinite(scene.domain.light_density) ? Json(scene.domain.light_density) : Json(nullptr)},
+      {"hash", hash_text(scene.domain.hash)},
+      {"picture_error", scene.picture_error},
+      {"full_picture_error", scene.full_picture_error},
+      {"full_parameter_bytes", scene.full_parameter_bytes}};
+  if (scene.full_texels[0] == 0) return json;
+  json["full_texels"] = scene.full_texels;
+  json["surface"] = surface_json(scene.domain.surface);
+  return json;
+}
+
+}  // namespace velour::capi

@@ -1,0 +1,68 @@
+#include "compress/scene_reduction.h"
+
+#include "compress/scene_levels.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+const SceneObservation& checked(const CompressOptions& options) {
+  if (options.for_scene->hits.empty()) {
+    throw Error(Status::invalid_argument,
+                "The scene shows nothing of the material: no camera ray met it. Check camera, visibility and frames, "
+                "or compress without a scene.");
+  }
+  if (options.for_scene->domain.surface.weight() > 0) return *options.for_scene;
+  throw Error(Status::invalid_argument,
+              "The observation does not say how finely the surface was seen, because its material does not vary over "
+              "it. Observe the scene with the BTF or its model as the material.");
+}
+
+Model checked_full_model(const BtfMeasurement& measurement, const Model& model) {
+  const auto refuse = [](const std::string& what) {
+    throw Error(Status::invalid_argument,
+                "The full model of a fit for a scene must be of the same BTF and for any "
+                "scene; this one is " +
+                    what + ".");
+  };
+  if (!is_btf(model)) refuse("of a BRDF");
+  if (is_reduced(model)) refuse("itself reduced");
+  if (model.source.sha256 != measurement.provenance().sha256) {
+    refuse("of '" + model.source.name + "', whose content differs from that of '" + measurement.provenance().name +
+           "'");
+  }
+  return model;
+}
+
+Model full_model(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
+  if (options.full_model) return checked_full_model(measurement, *options.full_model);
+  return compress_btf(measurement, options, progress);
+}
+
+uint64_t bytes_of(const Model& model) {
+  return std::visit([](const auto& body) { return body.parameter_bytes(); }, model.body);
+}
+
+}  // namespace
+
+Model compress_for_scene(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
+  const SceneObservation& observation = checked(options);
+  Model model = full_model(measurement, options, progress);
+  progress.stage("scene", progress.fraction(), 1.0);
+  SceneRecord record;
+  record.domain = observation.domain;
+  record.full_parameter_bytes = bytes_of(model);
+  record.full_texels = {grid_of(model)->width, grid_of(model)->height};
+  const SurfaceDomain& seen = observation.domain.surface;
+  const TexelGrid full_grid = *grid_of(model), grid = seen_grid(full_grid, seen);
+  if (grid == full_grid) {
+    model.btf->warnings.push_back("the scene resolves the finest texels: it needs all of the full model");
+  } else {
+    model.body = at_resolution(model.body, grid, finest_footprint(seen));
+  }
+  model.scene = std::move(record);
+  progress.update(1.0);
+  return model;
+}
+
+}  // namespace velour
