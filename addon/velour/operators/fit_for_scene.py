@@ -163,13 +163,23 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
 
 def _report(work, info):
     scene, own = info["scene"], info["parameter_bytes"]
-    full = scene["full_parameter_bytes"]
-    seconds, frames = info["seconds"], len(work.frames)
+    full, of_btf = scene["full_parameter_bytes"], "full_texels" in scene
+    took, cost = _texels_left(info) if of_btf else _time_and_error(info)
     return (
-        f"Fitted '{work.material_name}' for scene '{work.scene_name}', {frames} frames, in {seconds:.1f} s:"
-        f" {own} bytes of parameters, the full model has {full} ({full / own:.1f} times as many); picture"
-        f" error (relmse) {scene['picture_error']:.2g}, full {scene['full_picture_error']:.2g}."
+        f"Fitted '{work.material_name}' for scene '{work.scene_name}', {len(work.frames)} frames{took}:"
+        f" {own} bytes of parameters, the full model has {full} ({full / own:.1f} times as many); {cost}."
     )
+
+
+def _time_and_error(info):
+    scene = info["scene"]
+    errors = f"{scene['picture_error']:.2g}, full {scene['full_picture_error']:.2g}"
+    return f", in {info['seconds']:.1f} s", f"picture error (relmse) {errors}"
+
+
+def _texels_left(info):
+    (width, height), (full_width, full_height) = info["texels"], info["scene"]["full_texels"]
+    return "", f"{width} x {height} texels of {full_width} x {full_height}"
 
 
 def _ask(context, sentence, material, current_frame):

@@ -4,10 +4,10 @@ import bpy
 
 from ..export import ExportError, Notes, export_scene, visitor
 from ..export.camera import final_view
-from ..export.files import read_measurement, read_model
+from ..export.files import measurement_info, read_btf, read_measurement, read_model
 from ..export.nodes import velour_node
 from ..export.observe import observe
-from ..native import Observation, fit_job
+from ..native import Btf, Observation, compress_job, fit_job
 from . import measured
 from .sharing import other_scenes
 
@@ -62,20 +62,29 @@ class SceneFit:
                 raise ExportError(
                     f"Material '{self.material_name}': the full model is not of this measurement; press Fit."
                 )
-            # A model of another kind is no measure of a parametric one: without one the fit makes it first.
-            measure = {"full_model": full} if full.info()["model"] == "parametric" else {}
-            return fit_job(
-                self._measurement,
-                model="parametric",
-                for_scene=self.observation,
-                **measure,
-                tolerance=node.velour.tolerance,
-                max_lobes=node.velour.max_lobes,
-                seed=node.velour.seed,
-                all_data=int(node.velour.use_all_data),
-                limit_albedo=int(node.velour.use_limit_albedo),
-                threads=threads,
-            ).start()
+            if isinstance(self._measurement, Btf):
+                job = compress_job(
+                    self._measurement, for_scene=self.observation, full_model=full, threads=threads
+                )
+            else:
+                job = self._fit_job(full, node.velour, threads)
+            return job.start()
+
+    def _fit_job(self, full, settings, threads):
+        # A model of another kind is no measure of a parametric one: without one the fit makes it first.
+        measure = {"full_model": full} if full.info()["model"] == "parametric" else {}
+        return fit_job(
+            self._measurement,
+            model="parametric",
+            for_scene=self.observation,
+            **measure,
+            tolerance=settings.tolerance,
+            max_lobes=settings.max_lobes,
+            seed=settings.seed,
+            all_data=int(settings.use_all_data),
+            limit_albedo=int(settings.use_limit_albedo),
+            threads=threads,
+        )
 
     def keep(self, model):
         """Puts the model beside the full one, in a new image, and switches it on."""
@@ -128,7 +137,10 @@ def _refuse_unfit(material):
 
 def _read_measurement(material):
     owner = f"Material '{material.name}'"
-    measurement = read_measurement(velour_node(material).velour.measurement, owner)
+    image = velour_node(material).velour.measurement
+    if measurement_info(image, owner)["kind"] == "btf":
+        return read_btf(image, owner)
+    measurement = read_measurement(image, owner)
     if not measurement.info()["isotropic"]:
         measurement.close()
         raise ExportError(

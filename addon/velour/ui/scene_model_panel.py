@@ -50,10 +50,24 @@ def _draw_model(context, layout, info):
 
 
 def _rows(info):
-    scene, own = info["scene"], info["parameter_bytes"]
-    full, (begin, end) = scene["full_parameter_bytes"], info["view_range"]
+    own, full = info["parameter_bytes"], info["scene"]["full_parameter_bytes"]
+    more = _rows_of_btf if "full_texels" in info["scene"] else _rows_of_brdf
+    return (("Parameters", f"{own} bytes, full model {full}: {full / own:.1f} times"), *more(info))
+
+
+def _rows_of_brdf(info):
+    scene, (begin, end) = info["scene"], info["view_range"]
     return (
-        ("Parameters", f"{own} bytes, full model {full}: {full / own:.1f} times"),
         ("Picture error", f"{scene['picture_error']:.3g}, full model {scene['full_picture_error']:.3g}"),
         ("Views", f"{begin:.0f} to {end:.0f}\N{DEGREE SIGN}, {scene['frames']} pictures"),
+    )
+
+
+def _rows_of_btf(info):
+    scene, (width, height) = info["scene"], info["texels"]
+    full_width, full_height = scene["full_texels"]
+    finest = scene["surface"]["finest"] * max(full_width, full_height)
+    return (
+        ("Texels", f"{width} x {height}, full model {full_width} x {full_height}"),
+        ("Pixels", f"from {finest:.1f} of those on, {scene['frames']} pictures"),
     )

@@ -269,8 +269,8 @@ VLR_API void vlr_compress_options_init(vlr_compress_options* options);
 /* Fits a model to a BTF; vlr_job_result_model gives it. JSON: bytes, parameter_bytes, ratio (raw half floats / bytes),
  * psnr, psnr_held_out (null without held_out), ser, p99, evaluations_per_second, seconds, warnings; components of an
  * SVD; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest that are left, and scene, as
- * of vlr_fit_create_job and with full_texels [x, y] and surface (vlr_observation_info_json); psnr, ser and speed are
- * then those of the full model. */
+ * of vlr_fit_create_job, but with full_texels [x, y] and surface (vlr_observation_info_json) in place of errors; psnr,
+ * ser and speed are then those of the full model. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
 /* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, p99, pairs. */
 VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);

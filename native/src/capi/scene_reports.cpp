@@ -33,12 +33,14 @@ Json reduced_json(const SceneRecord& scene) {
       {"frames", scene.domain.frames},
       {"light_density", std::isfinite(scene.domain.light_density) ? Json(scene.domain.light_density) : Json(nullptr)},
       {"hash", hash_text(scene.domain.hash)},
-      {"picture_error", scene.picture_error},
-      {"full_picture_error", scene.full_picture_error},
       {"full_parameter_bytes", scene.full_parameter_bytes}};
-  if (scene.full_texels[0] == 0) return json;
-  json["full_texels"] = scene.full_texels;
-  json["surface"] = surface_json(scene.domain.surface);
+  if (scene.full_texels[0] > 0) {
+    json["full_texels"] = scene.full_texels;
+    json["surface"] = surface_json(scene.domain.surface);
+  } else {
+    json["picture_error"] = scene.picture_error;
+    json["full_picture_error"] = scene.full_picture_error;
+  }
   return json;
 }
 

@@ -1,71 +1,64 @@
 #include "compress/scene_levels.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "compress/resampled_map.h"
 
 namespace velour {
 namespace {
 
-TexelLevel at_size(const TexelLevel& level, size_t values, const Eigen::MatrixXf& x, const Eigen::MatrixXf& y) {
-  return {static_cast<uint32_t>(x.rows()), static_cast<uint32_t>(y.rows()), resampled(level.value, values, x, y)};
+/// Calls `use` with a BTF's body.
+template <typename Use>
+auto with_btf(const ModelBody& body, const Use& use) {
+  if (const auto* factored = std::get_if<FactoredBtf>(&body)) return use(*factored);
+  return use(std::get<SrbfBtf>(body));
 }
 
-SrbfLevel at_size(const SrbfLevel& level, size_t values, const Eigen::MatrixXf& x, const Eigen::MatrixXf& y) {
-  return {static_cast<uint32_t>(x.rows()), static_cast<uint32_t>(y.rows()), resampled(level.relief, 1, x, y),
-          resampled(level.value, values, x, y)};
+const std::vector<TexelLevel>& levels_of(const FactoredBtf& btf) { return btf.levels; }
+/// Those of all sides have the same sizes.
+const std::vector<SrbfLevel>& levels_of(const SrbfBtf& btf) { return btf.sides.at(0).levels; }
+
+template <typename Level>
+void leave_out(std::vector<Level>& levels, size_t count) {
+  levels.erase(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(count));
+}
+void leave_out(FactoredBtf& btf, size_t count) { leave_out(btf.levels, count); }
+void leave_out(SrbfBtf& btf, size_t count) {
+  for (SrbfSide& side : btf.sides) leave_out(side.levels, count);
 }
 
-/// The coarsest level of at least this size; of the finest one asked for, the finest.
-template <class Level>
-const Level& source_of(const std::vector<Level>& levels, uint32_t width, uint32_t height, bool finest) {
-  size_t l = 0;
-  const auto holds = [&](const Level& level) { return level.width >= width && level.height >= height; };
-  const bool same = levels[0].width == width && levels[0].height == height;
-  while (!(finest && !same) && l + 1 < levels.size() && holds(levels[l + 1])) ++l;
-  return levels[l];
+/// Whether a tile keeps its shape with the texels of `level`.
+bool keeps_shape(const TexelGrid& grid, const auto& level) {
+  return grid.tile_metres || uint64_t{level.width} * grid.height == uint64_t{level.height} * grid.width;
 }
 
-template <class Level>
-std::vector<Level> pyramid_at(const std::vector<Level>& levels, const TexelGrid& grid, size_t values, double window) {
-  std::vector<Level> out;
-  for (uint32_t width = grid.width, height = grid.height;; width = half_of(width), height = half_of(height)) {
-    const Level& from = source_of(levels, width, height, out.empty());
-    const bool same = from.width == width && from.height == height;
-    out.push_back(
-        same ? from
-             : at_size(from, values, resampling(from.width, width, window), resampling(from.height, height, window)));
-    if (width == 1 && height == 1) return out;
-  }
-}
-
-FactoredBtf at_resolution(FactoredBtf btf, const TexelGrid& grid, double window) {
-  btf.levels = pyramid_at(btf.levels, grid, btf.components(), window);
-  btf.grid = grid;
-  return btf;
-}
-
-SrbfBtf at_resolution(SrbfBtf btf, const TexelGrid& grid, double window) {
-  for (SrbfSide& side : btf.sides) side.levels = pyramid_at(side.levels, grid, side.coefficients(), window);
-  btf.grid = grid;
-  return btf;
+bool shows_nothing(const ModelBody& body) {
+  const auto* srbf = std::get_if<SrbfBtf>(&body);
+  return srbf && srbf->sides.empty();
 }
 
 }  // namespace
 
-TexelGrid seen_grid(const TexelGrid& full, const SurfaceDomain& seen) {
-  const double most = std::max(full.width, full.height);
-  const double share = std::min(1.0, kTexelsOfLookUp / (finest_footprint(seen) * most));
-  const auto scaled = [share](uint32_t texels) {
-    return static_cast<uint32_t>(std::max(1L, std::lround(share * texels)));
-  };
-  return {scaled(full.width), scaled(full.height), full.tile_metres};
+size_t unresolved_levels(const ModelBody& body, const SurfaceDomain& seen) {
+  if (shows_nothing(body)) return 0;
+  return with_btf(body, [&](const auto& btf) {
+    const auto& levels = levels_of(btf);
+    size_t count = 0;
+    while (count + 1 < levels.size()) {
+      const auto& next = levels[count + 1];
+      if (!resolves(std::max(next.width, next.height), finest_footprint(seen)) || !keeps_shape(btf.grid, next)) break;
+      ++count;
+    }
+    return count;
+  });
 }
 
-ModelBody at_resolution(const ModelBody& body, const TexelGrid& grid, double window) {
-  if (const auto* factored = std::get_if<FactoredBtf>(&body)) return at_resolution(*factored, grid, window);
-  return at_resolution(std::get<SrbfBtf>(body), grid, window);
+ModelBody without_finest(const ModelBody& body, size_t count) {
+  if (count == 0) return body;
+  return with_btf(body, [count](auto btf) -> ModelBody {
+    leave_out(btf, count);
+    btf.grid.width = levels_of(btf).front().width;
+    btf.grid.height = levels_of(btf).front().height;
+    return btf;
+  });
 }
 
 }  // namespace velour

@@ -1,22 +1,20 @@
-// A BTF's model at the resolution that scenes need.
+// Which levels of a BTF's model scenes never resolve, and the model without them.
 #pragma once
+
+#include <cstddef>
 
 #include "domain/surface_domain.h"
 #include "model/model.h"
 
 namespace velour {
 
-/// The texels of a model for what was seen: kTexelsOfLookUp of them along every look-up that counts (finest_footprint).
-/// Never more than the model has.
-TexelGrid seen_grid(const TexelGrid& full, const SurfaceDomain& seen);
+/// How many of the finest levels may go: the next one still has kTexelsOfLookUp texels along every look-up that counts
+/// (finest_footprint). The last level stays, and so do levels without which the texels of a tile of unknown size would
+/// have another shape: their numbers are what tells the tile's.
+size_t unresolved_levels(const ModelBody& body, const SurfaceDomain& seen);
 
-/// Texels along the width of the finest look-up. A look-up stands for a pixel, and several rays of a pixel see within
-/// it: with fewer texels their interpolation blurs what their mean should keep.
-inline constexpr double kTexelsOfLookUp = 1.4142135;
-
-/// The body with a pyramid from `grid` on. The finest level comes from the finest one of the body, each other from the
-/// coarsest that is no smaller; both by resampling() (resampled_map.h), which averages over `window` of the tile. A
-/// level that keeps its size stays as it is, bit for bit.
-ModelBody at_resolution(const ModelBody& body, const TexelGrid& grid, double window);
+/// The body without its `count` finest levels. Its grid is that of the finest one left, so a footprint, counted in its
+/// texels, finds the same level as before; coefficients stay as they are, bit for bit.
+ModelBody without_finest(const ModelBody& body, size_t count);
 
 }  // namespace velour

@@ -53,13 +53,9 @@ Model compress_for_scene(const BtfMeasurement& measurement, const CompressOption
   record.domain = observation.domain;
   record.full_parameter_bytes = bytes_of(model);
   record.full_texels = {grid_of(model)->width, grid_of(model)->height};
-  const SurfaceDomain& seen = observation.domain.surface;
-  const TexelGrid full_grid = *grid_of(model), grid = seen_grid(full_grid, seen);
-  if (grid == full_grid) {
-    model.btf->warnings.push_back("the scene resolves the finest texels: it needs all of the full model");
-  } else {
-    model.body = at_resolution(model.body, grid, finest_footprint(seen));
-  }
+  const size_t count = unresolved_levels(model.body, observation.domain.surface);
+  model.body = without_finest(model.body, count);
+  if (count == 0) model.btf->warnings.push_back("the scene resolves the finest texels: it needs all of the full model");
   model.scene = std::move(record);
   progress.update(1.0);
   return model;

@@ -53,7 +53,7 @@ double share_finer_than(const SurfaceDomain& domain, uint32_t texels) {
   const double all = domain.weight();
   if (!(all > 0)) return 1.0;
   double finer = 0;
-  for (size_t i = 0; i < domain.footprint.size() && end_of_bin(i) * texels < 1; ++i) finer += domain.footprint[i];
+  for (size_t i = 0; i < domain.footprint.size() && !resolves(texels, end_of_bin(i)); ++i) finer += domain.footprint[i];
   return std::min(1.0, finer / all);
 }
 

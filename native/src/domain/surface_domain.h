@@ -34,8 +34,16 @@ void merge(SurfaceDomain& into, const SurfaceDomain& other);
 /// kOutside of the weight together, do not. Infinite where nothing was seen.
 double finest_footprint(const SurfaceDomain& domain);
 
-/// The share of the weight at which more than `texels` along the tile's side would be looked up, 0..1: bins that end
-/// below one texel. 1 where nothing was seen.
+/// Texels of the finest level along a look-up that it is fine enough for. A look-up stands for a whole pixel, while a
+/// render sends several rays through it, which see within it: with one texel a look-up their interpolation would blur
+/// what the rays' mean keeps.
+inline constexpr double kTexelsOfLookUp = 2;
+
+/// Whether `texels` along the tile's side are enough for look-ups of this width.
+inline bool resolves(uint32_t texels, double footprint) { return footprint * texels >= kTexelsOfLookUp; }
+
+/// The share of the weight for which `texels` along the tile's side are too few, 0..1; bins count by their upper ends.
+/// 1 where nothing was seen.
 double share_finer_than(const SurfaceDomain& domain, uint32_t texels);
 
 /// The share of the tile's cells that were seen at all.

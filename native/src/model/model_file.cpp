@@ -114,6 +114,10 @@ Model decode_model(std::span<const uint8_t> bytes, const std::string& name) {
   const std::string scene = fields.attribute_or_empty(kScene);
   if (!scene.empty()) model.scene = parse_scene_record(scene, name + ": " + kScene);
   if (is_btf(model)) model.btf = parse_btf_record(fields.attribute(kBtf), name + ": " + kBtf);
+  const TexelGrid* grid = model.scene ? grid_of(model) : nullptr;
+  if (grid && (model.scene->full_texels[0] < grid->width || model.scene->full_texels[1] < grid->height)) {
+    fields.fail(std::string(kScene) + ": full_texels are fewer than the model's own.");
+  }
   const auto* brdf = std::get_if<ParametricBrdf>(&model.body);
   if (brdf && !brdf->views.whole() && !model.scene) {
     fields.fail(std::string(kScene) + " is missing; a model of some views must say for which scenes it was made.");

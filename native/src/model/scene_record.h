@@ -8,7 +8,7 @@
 
 namespace velour {
 
-/// Errors are relmse at the observed hits, against the measurement (fit/picture_error.h).
+/// Errors (of BRDFs) are relmse at the observed hits, against the measurement (fit/picture_error.h).
 struct SceneRecord {
   SceneDomain domain;
   double picture_error = 0;       // relmse of this model

@@ -72,6 +72,41 @@ TEST(ObservationFile, BitsSurviveARoundTrip) {
   EXPECT_EQ(encode_observation(read), encode_observation(written));
 }
 
+/// Of a material that varies over the surface.
+SceneObservation example_on_a_surface() {
+  SceneObservation o = test::example_observation(6);
+  for (int i = 0; i < 6; ++i) {
+    add_seen(o.domain.surface, 2.3f * static_cast<float>(i), Vec2(0.15f * static_cast<float>(i)), 1);
+  }
+  return o;
+}
+
+TEST(ObservationFile, FootprintsSurviveARoundTrip) {
+  const SceneObservation written = example_on_a_surface();
+  const auto read = decode_observation(bytes_of(encode_observation(written)), "SCENE.json");
+  EXPECT_EQ(read.domain.surface.footprint, written.domain.surface.footprint);
+  EXPECT_EQ(read.domain.surface.tile, written.domain.surface.tile);
+  EXPECT_EQ(content_hash(read), content_hash(written));
+  EXPECT_NE(content_hash(read), content_hash(test::example_observation(6)));
+}
+
+TEST(ObservationFile, DamagedFootprintsAreNamed) {
+  const auto damaged = [](const std::function<void(Json&)>& change) {
+    Json json = Json::parse(encode_observation(example_on_a_surface()));
+    change(json["surface"]);
+    return complaint_of(json.dump());
+  };
+  for (const char* key : {"footprint", "tile"}) {
+    const std::string name = std::string("surface.") + key;
+    expect_named(damaged([key](Json& json) { json.erase(key); }), name);
+    expect_named(damaged([key](Json& json) { json[key].push_back(0); }), name);
+    expect_named(damaged([key](Json& json) { json[key][3] = -1; }), name);
+    expect_named(damaged([key](Json& json) { json[key] = "many"; }), name);
+  }
+  expect_named(damaged([](Json& json) { json["footprint"] = std::vector<double>(128, 1e308); }), "surface.footprint");
+  expect_named(damaged([](Json& json) { json = 3; }), "surface");
+}
+
 TEST(ObservationFile, OfNoFrameIsAFileToo) {
   const auto read = decode_observation(bytes_of(encode_observation({})), "empty");
   EXPECT_TRUE(read.hits.empty());
