@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from command_line import velour
+from inputs import write_merl
 from velour.native import Model, Observation, images
 
 # A plane of 3 x 3 tiles of 32 texels, seen over 24 pixels: 4 texels a pixel. Half as far: 2.
@@ -20,9 +21,7 @@ def folder(tmp_path_factory):
     assert velour("capture", "corduroy", *common, "-o", folder / "btf").status == 0
     for method, size in (("srbf", 60000), ("svd", 60000)):
         full = folder / f"{method}.velour"
-        done = velour(
-            "compress", folder / "btf", "--method", method, "--bytes", size, "-o", full, "--quiet"
-        )
+        done = velour("compress", folder / "btf", "--method", method, "--bytes", size, "-o", full, "--quiet")
         assert done.status == 0, done.err
     corners = "v -1.5 -1.5 0\nv 1.5 -1.5 0\nv 1.5 1.5 0\nv -1.5 1.5 0\nvt 0 0\nvt 3 0\nvt 3 3\nvt 0 3\n"
     (folder / "plane.obj").write_text(corners + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n")
@@ -76,12 +75,12 @@ def test_the_model_itself_is_observed_as_its_btf_and_its_reduction_are(folder):
 
 
 def test_what_a_uniform_material_shows_says_nothing_of_footprints(folder, tmp_path):
-    from inputs import write_merl
-
     write_merl(tmp_path / "m.binary")
     assert velour("fit", tmp_path / "m.binary", "-o", folder / "m.velour").status == 0
     assert "surface" not in observe(folder, folder / "uniform.json", FAR, "m.velour")
-    done = velour("compress", folder / "btf", "--for-scene", folder / "uniform.json", "-o", folder / "no.velour")
+    done = velour(
+        "compress", folder / "btf", "--for-scene", folder / "uniform.json", "-o", folder / "no.velour"
+    )
     assert done.status not in (0, 2)
     assert "does not vary" in done.err
 
