@@ -17,7 +17,7 @@ struct ReliefMarch {
 };
 
 /// When the ray first is not above the surface, which is bilinear between texels: looked for in steps of a texel (of a
-/// 1024th of the way where that is longer), then by the chord of the step. 1 at the latest. Run-time dispatched SIMD.
+/// 1024th of the way where that is longer), then by chords within the step. 1 at the latest. Run-time dispatched SIMD.
 float first_meeting(const ReliefMarch& march);
 
 }  // namespace velour
