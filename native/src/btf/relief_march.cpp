@@ -59,17 +59,15 @@ struct Sounding {
   float when, gap;
 };
 
-/// The first is above the surface, the second is not. Where their chord meets it, twice: a step may cross the edges of
+/// The first is above the surface, the second is not. Where their chord meets it, once more: a step may cross the edges of
 /// texels, at which the surface bends.
 HWY_INLINE float refined(const ReliefMarch& m, Sounding above, Sounding below) {
   const hn::CappedTag<float, 1> d;
   const auto chord = [&] { return above.when + (below.when - above.when) * (above.gap / (above.gap - below.gap)); };
-  for (int i = 0; i < 2; ++i) {
-    const float when = chord();
-    const float surface = hn::GetLane(surface_at(d, m, hn::Set(d, when)));
-    const Sounding between_them{when, m.top - when * m.fall - surface};
-    (between_them.gap > 0 ? above : below) = between_them;
-  }
+  const float when = chord();
+  const float surface = hn::GetLane(surface_at(d, m, hn::Set(d, when)));
+  const Sounding between_them{when, m.top - when * m.fall - surface};
+  (between_them.gap > 0 ? above : below) = between_them;
   return chord();
 }
 
