@@ -13,7 +13,8 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kPoints = 400, kPairs = 900;  // that lobes are refined by
+constexpr uint32_t kMostPoints = 400, kLeastPoints = 24, kPairs = 900;  // that lobes are refined by
+constexpr uint64_t kTexelsOfAPoint = 4;  // few texels have little to say: their lobes take less time
 constexpr int kRefinements = 100;
 constexpr int kSteps = 20, kCoarseSteps = 12;  // of the texels' solve: finest level, coarser ones
 constexpr uint64_t kUsualRatio = 200, kUsualLeast = 16;
@@ -30,6 +31,10 @@ size_t coefficients_within(uint64_t asked, const BtfMeasurement& measurement, si
                                               std::to_string(bytes) + " were asked for; ask for more.");
   }
   return static_cast<size_t>(std::min<uint64_t>((bytes - relief) / one, 2 * SrbfBtf::kMaxLobes));
+}
+
+uint32_t points_for(const TexelGrid& grid) {
+  return static_cast<uint32_t>(std::clamp<uint64_t>(grid.texels() / kTexelsOfAPoint, kLeastPoints, kMostPoints));
 }
 
 /// Coefficients of a finer level, interpolated.
@@ -74,7 +79,7 @@ class SideFitter {
       progress_.stage(name, first + share * from, first + share * to);
     };
     stage("points", 0, 0.05);
-    const SurfacePointOptions sampling{kPoints, kPairs, options_.seed};
+    const SurfacePointOptions sampling{points_for(grid_), kPairs, options_.seed};
     const auto points = surface_points(views_, grid_, side_, relief_[0], sampling, progress_);
     stage("lobes", 0.05, 0.45);
     const SharedLobeOptions choice{coefficients_, kRefinements, options_.seed, options_.threads};
