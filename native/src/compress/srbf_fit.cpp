@@ -118,6 +118,7 @@ class SideFitter {
       const double from = std::pow(0.25, static_cast<double>(l + 1)), to = 4 * from;
       const auto after_step = [&](int step) { progress_.update(from + (to - from) * (step + 1) / steps); };
       const RowMatrix value = solver[l]->solve(start, steps, after_step);
+      progress_.update(to);  // it may have settled early
       solver[l].reset();
       side.levels[l] = {relief.width(), relief.height(), halves_of(relief.heights(), relief.heights().size()),
                         halves_of(value, static_cast<size_t>(value.size()))};

@@ -10,7 +10,9 @@
 namespace velour {
 namespace {
 
-Vec3 towards(float theta_degrees, float phi_degrees) { return direction(theta_degrees * kPi / 180, phi_degrees * kPi / 180); }
+Vec3 towards(float theta_degrees, float phi_degrees) {
+  return direction(theta_degrees * kPi / 180, phi_degrees * kPi / 180);
+}
 
 /// Grooves along y with faces of 45 degrees: lowest at the centre of texel 0, highest half a tile further.
 Relief sawtooth(uint32_t width) {
@@ -83,8 +85,8 @@ TEST(Relief, SeenFromTheNormalIsWhereItIs) {
   }
 }
 
-/// The ridges at (k + 1/2 + 1/32) are 1/2 high, the grooves between them 0. A view of slope 1 / tan(theta) from the right
-/// meets the side that looks to it at z = distance to the groove, where that is not hidden by the ridge.
+/// The ridges at (k + 1/2 + 1/32) are 1/2 high, the grooves between them 0. A view of slope 1 / tan(theta) from the
+/// right meets the side that looks to it at z = distance to the groove, where that is not hidden by the ridge.
 TEST(Relief, OfASawtoothIsItsClosedForm) {
   const Relief relief = sawtooth(16);
   const float groove = 0.5f / 16;
@@ -177,9 +179,9 @@ TEST(Relief, IsContinuousWhereNothingIsHidden) {
 
 TEST(Relief, HasTheSlopesOfItsNeighbours) {
   const Relief relief = sawtooth(16);
-  EXPECT_NEAR(relief.slope(4, 0).x, -1.0f, 1e-5f);   // rising: the normal leans back
+  EXPECT_NEAR(relief.slope(4, 0).x, -1.0f, 1e-5f);  // rising: the normal leans back
   EXPECT_NEAR(relief.slope(12, 0).x, 1.0f, 1e-5f);
-  EXPECT_NEAR(relief.slope(0, 0).x, 0.0f, 1e-5f);    // the groove
+  EXPECT_NEAR(relief.slope(0, 0).x, 0.0f, 1e-5f);  // the groove
   EXPECT_EQ(relief.slope(4, 0).y, 0.0f);
 }
 

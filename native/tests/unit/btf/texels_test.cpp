@@ -61,7 +61,8 @@ TEST(HalfRows, AddWhatTheyWeigh) {
     add_half_rows(rows, kCount, to.data());
     for (uint32_t k = 0; k < kCount; ++k) {
       double expected = 7;
-      for (size_t i = 0; i < 4; ++i) expected += static_cast<double>(weight[i]) * static_cast<double>(value[i * kCount + k]);
+      for (size_t i = 0; i < 4; ++i)
+        expected += static_cast<double>(weight[i]) * static_cast<double>(value[i * kCount + k]);
       EXPECT_NEAR(static_cast<double>(to.data()[k]), expected, 1e-5);
     }
   });

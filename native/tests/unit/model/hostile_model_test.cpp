@@ -223,7 +223,8 @@ TEST(HostileModel, ANewerFormatIsRefusedWithASentence) {
 }
 
 std::vector<Model> examples() {
-  return {test::example_model(), test::example_parametric(), test::example_reduced(), test::example_btf_model()};
+  return {test::example_model(), test::example_parametric(), test::example_reduced(), test::example_btf_model(),
+          test::example_srbf_model()};
 }
 
 TEST(HostileModel, TruncatedFilesAreRefused) {
