@@ -252,6 +252,16 @@ void expect_sound(const FactoredBtf& btf) {
   ASSERT_EQ(btf.levels.back().value.size(), btf.components());
 }
 
+void expect_sound(const SrbfBtf& btf) {
+  for (const SrbfSide& side : btf.sides) {
+    ASSERT_LE(side.tile_lobes, side.lobes.size());
+    ASSERT_EQ(side.levels.back().value.size(), side.coefficients());
+    for (const auto& axis : side.lobe) {
+      for (const uint16_t lobe : axis) ASSERT_LT(lobe, side.lobes.size());
+    }
+  }
+}
+
 TEST(HostileModel, DamagedFilesAreRefusedOrSound) {
   for (const Model& model : examples()) {
     const auto good = encode_model(model);
