@@ -136,6 +136,16 @@ class SideFitter {
   std::vector<Relief> relief_;
 };
 
+/// Without those that no light goes through to: what no side shows is black.
+std::vector<SideDirections> sides_to_fit(const BtfMeasurement& measurement, CompandedViews& views) {
+  std::vector<SideDirections> sides = sides_of(measurement.layout());
+  if (sides.size() == 1) return sides;
+  std::erase_if(sides, [&](const SideDirections& side) {
+    return side.view_below != side.light_below && is_black(views, measurement.grid(), side);
+  });
+  return sides;
+}
+
 }  // namespace
 
 SrbfFit fit_srbf(const BtfMeasurement& measurement, const SrbfOptions& options, Progress& progress) {
@@ -143,11 +153,11 @@ SrbfFit fit_srbf(const BtfMeasurement& measurement, const SrbfOptions& options, 
     throw Error(Status::unsupported, "A model needs every view under every light; the BTF has " +
                                          std::to_string(measurement.layout().pairs()) + " pairs alone.");
   }
-  const std::vector<SideDirections> sides = sides_of(measurement.layout());
-  const size_t coefficients = coefficients_within(options.bytes, measurement, sides.size());
   CompandedViews views(measurement, options.companding, options.threads, progress);
   SrbfFit fit{{measurement.layout(), measurement.grid(), options.companding, Mat3(1.0f), {}}, 0};
   progress.stage("colours", 0, 0.03);
+  const std::vector<SideDirections> sides = sides_to_fit(measurement, views);
+  const size_t coefficients = coefficients_within(options.bytes, measurement, sides.size());
   fit.btf.axes = views.decorrelate();
   fit.not_finite = views.not_finite();
   const double share = 0.77 / static_cast<double>(sides.size());
