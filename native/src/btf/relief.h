@@ -15,11 +15,11 @@ class Relief {
  public:
   /// `height`: [row][column], over the reference plane, in widths of the tile (its extent along x); `aspect`: the
   /// tile's extent along y in the same unit.
-  Relief(uint32_t width, uint32_t height, std::vector<float> heights, float aspect);
+  Relief(uint32_t width, uint32_t height, const std::vector<float>& heights, float aspect);
 
   /// `place`: on the reference plane, in tiles (x, y in [0, 1) repeat). Where the ray through it towards unit `wv`
   /// (wv.z > 0) meets the relief first, coming from outside: the point below or above which it does, in tiles, not
-  /// wrapped. Steps from grid line to grid line; continuous in both arguments where the relief hides nothing of itself.
+  /// wrapped. Continuous in both arguments where the relief hides nothing of itself.
   Vec2 seen(const Vec2& place, const Vec3& wv) const;
 
   /// (-dz/dx, -dz/dy) at the centre of a texel, over two texels: the normal is along (x, y, 1). Steeper than
@@ -29,15 +29,15 @@ class Relief {
 
   uint32_t width() const { return width_; }
   uint32_t height() const { return rows_; }
-  const std::vector<float>& heights() const { return heights_; }
+  /// At the centre of a texel.
+  float height_of(uint32_t x, uint32_t y) const { return padded_[size_t{y} * (width_ + 1) + x]; }
+  /// [row][column].
+  std::vector<float> heights() const;
   bool flat() const { return top_ == bottom_; }
 
  private:
-  float at(int x, int y) const { return heights_[static_cast<size_t>(y) * width_ + static_cast<size_t>(x)]; }
-  float bilinear(const Vec2& texel) const;
-
   uint32_t width_, rows_;
-  std::vector<float> heights_;
+  std::vector<float> padded_;  // [height + 1][width + 1]: ReliefMarch
   float aspect_, top_, bottom_;
 };
 

@@ -20,7 +20,7 @@ std::span<const MultivariateLobe> texel_lobes(const SrbfSide& side) {
 Relief relief_of(const SrbfBtf& btf, const SrbfLevel& level) {
   std::vector<float> heights(level.relief.size());
   halves_to_floats(level.relief, heights);
-  return {level.width, level.height, std::move(heights), tile_aspect(btf.grid)};
+  return {level.width, level.height, heights, tile_aspect(btf.grid)};
 }
 
 }  // namespace
@@ -34,9 +34,9 @@ SrbfEvaluator::Side::Side(const SrbfBtf& btf, const SrbfSide& side) : tile(tile_
   }
   const size_t coefficients = side.coefficients(), first = side.lobe[0].size();
   for (const SrbfLevel& level : side.levels) {
-    Level& to = levels.emplace_back(relief_of(btf, level), std::vector<HalfBits>());
     const size_t texels = size_t{level.width} * level.height;
-    to.record.assign(texels * stride, 0);
+    Level& to = levels.emplace_back(Level{relief_of(btf, level), AlignedArray<HalfBits>(texels * stride)});
+    std::fill_n(to.record.data(), to.record.size(), HalfBits{0});
     for (size_t t = 0; t < texels; ++t) {
       const HalfBits* const from = level.value.data() + t * coefficients;
       HalfBits* const record = to.record.data() + t * stride;
@@ -96,17 +96,10 @@ void SrbfEvaluator::add_bilinear(const Level& level, uint32_t stride, const Vec2
 
 void SrbfEvaluator::finish(SrbfPoint& point) const {
   const Side& side = sides_[point.side];
-  const uint32_t split[] = {side.tile.padded(), side.texel.padded()};
-  for (size_t frame = 0, from = 0; frame < 2; from += split[frame++]) {
-    std::copy_n(point.record + from, split[frame], point.coefficient[frame]);
-    std::fill_n(point.coefficient[frame] + split[frame], 2 * split[frame], 0.0f);
-  }
   const float* value = point.record + side.axis1;
   for (size_t a = 0; a < 2; ++a) {
-    for (const uint32_t place : side.scatter[a]) {
-      const size_t frame = place < split[0] ? 0 : 1;
-      point.coefficient[frame][(a + 1) * split[frame] + place - (frame ? split[0] : 0)] = *value++;
-    }
+    std::fill_n(point.color[a], side.axis1, 0.0f);
+    for (const uint32_t place : side.scatter[a]) point.color[a][place] = *value++;
   }
   point.to_normal = to_normal(normal_of({point.record[side.slope], point.record[side.slope + 1]}));
 }
@@ -114,8 +107,8 @@ void SrbfEvaluator::finish(SrbfPoint& point) const {
 Rgb SrbfEvaluator::value(const SrbfPoint& point, const Vec3& wl) const {
   const Side& side = sides_[point.side];
   const LobeArguments at({wl, point.wv});
-  const Vec3 sum = side.tile.sums(at, point.coefficient[0], side.tile.padded()) +
-                   side.texel.sums(at.turned(point.to_normal), point.coefficient[1], side.texel.padded());
+  const Vec3 sum = lobe_sums({LobesAt{&side.tile, at}, LobesAt{&side.texel, at.turned(point.to_normal)}},
+                             {point.record, point.color[0], point.color[1]});
   const Vec3 color = btf_->axes * sum;
   return {expanded(btf_->companding, color.r), expanded(btf_->companding, color.g),
           expanded(btf_->companding, color.b)};

@@ -8,6 +8,7 @@
 
 #include "btf/relief.h"
 #include "btf/srbf_point.h"
+#include "srbf/aligned_array.h"
 
 namespace velour {
 
@@ -35,7 +36,7 @@ class SrbfEvaluator {
   /// one after the other, the slope of the relief; padded.
   struct Level {
     Relief relief;
-    std::vector<HalfBits> record;  // [row][column][record]
+    AlignedArray<HalfBits> record;  // [row][column][record], whole cache lines
   };
   struct Side {
     Side(const SrbfBtf& btf, const SrbfSide& side);

@@ -13,8 +13,8 @@ struct SrbfPoint {
   static constexpr uint32_t kMostLobes = SrbfBtf::kMaxLobes + 2 * MultivariateLobes::kPadding;
   static constexpr uint32_t kMostRecord = 3 * kMostLobes + kHalfRowPadding;
 
-  alignas(64) float record[kMostRecord];             // blended over texels: see SrbfEvaluator
-  alignas(64) float coefficient[2][3 * kMostLobes];  // of tile lobes, of texel lobes: [axis][padded lobe]
+  alignas(64) float record[kMostRecord];   // blended over texels; it begins with axis 0: see SrbfEvaluator
+  alignas(64) float color[2][kMostLobes];  // coefficients of axes 1, 2, by padded lobe as those of axis 0
   Vec3 wv;
   Mat3 to_normal;
   uint32_t side;

@@ -59,6 +59,24 @@ std::pair<ModelBody, uint64_t> fitted(const BtfMeasurement& measurement, const C
   return {std::move(fit.btf), fit.not_finite};
 }
 
+/// f of a model of a BTF.
+BtfValue value_of(const std::shared_ptr<const Model>& model) {
+  if (const auto* srbf = std::get_if<SrbfBtf>(&model->body)) {
+    const auto evaluator = std::make_shared<SrbfEvaluator>(std::shared_ptr<const SrbfBtf>(model, srbf));
+    return [evaluator, point = std::make_shared<SrbfPoint>()](const Vec2& place, const DirectionPair& pair) {
+      evaluator->begin(0, pair.wv, *point);
+      evaluator->add(place, 0, 1, *point);
+      evaluator->finish(*point);
+      return evaluator->value(*point, pair.wl);
+    };
+  }
+  return [material = make_material(model, 0), point = std::make_shared<PreparedBrdf>()](const Vec2& place,
+                                                                                        const DirectionPair& pair) {
+    material->prepare(pair.wv, {.uv = place}, *point);
+    return material->eval_one(*point, pair.wl).f;
+  };
+}
+
 const char* name_of(CompressMethod method) { return method == CompressMethod::svd ? "svd" : "srbf"; }
 
 }  // namespace
@@ -87,7 +105,7 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
     progress.stage("unseen pairs", 0.97, 1.0);
     record.psnr_held_out = images.compare(*options.held_out, record.p99, options.threads, progress).psnr;
   }
-  record.evaluations_per_second = evaluation_rate(*make_material(model, 0));
+  record.evaluations_per_second = evaluation_rate(value_of(model));
   const Provenance& source = measurement.provenance();
   model->source = {source.name, source.format, source.sha256};
   model->btf = std::move(record);

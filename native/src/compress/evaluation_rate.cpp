@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <vector>
 
 #include "sphere/random.h"
 #include "sphere/warp.h"
@@ -13,7 +14,7 @@ namespace {
 constexpr uint32_t kQueries = 20000;
 
 struct Query {
-  SurfaceSite site;
+  Vec2 place;
   DirectionPair pair;
 };
 
@@ -22,7 +23,7 @@ std::vector<Query> random_queries() {
   for (uint32_t i = 0; i < kQueries; ++i) {
     RandomStream random(0, i, 0);
     Query& query = queries.emplace_back();
-    query.site.uv = random.next2();
+    query.place = random.next2();
     query.pair = {sample_cosine_hemisphere(random.next2()), sample_cosine_hemisphere(random.next2())};
   }
   return queries;
@@ -30,16 +31,14 @@ std::vector<Query> random_queries() {
 
 }  // namespace
 
-double evaluation_rate(const Material& material) {
+double evaluation_rate(const BtfValue& value) {
   const std::vector<Query> queries = random_queries();
-  const auto point = std::make_unique<PreparedBrdf>();
   std::array<double, 5> rate;
   for (double& r : rate) {
     const auto start = std::chrono::steady_clock::now();
     float sum = 0;
     for (const Query& query : queries) {
-      material.prepare(query.pair.wv, query.site, *point);
-      sum += material.eval_one(*point, query.pair.wl).f.g;
+      sum += value(query.place, query.pair).g;
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     // The sum is not negative; asking for it keeps the work from being left out.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "srbf/aligned_floats.h"
+#include "srbf/aligned_array.h"
 
 namespace velour {
 RowMatrix LobeValues::at(const SurfacePoint& point, size_t pairs) const {

@@ -39,7 +39,7 @@ std::vector<Relief> relief_pyramid(const BtfMeasurement& measurement, const Side
     floats_to_halves(heights, halves);
     std::vector<float> stored(heights.size());
     halves_to_floats(halves, stored);
-    pyramid.emplace_back(width, height, std::move(stored), tile_aspect(measurement.grid()));
+    pyramid.emplace_back(width, height, stored, tile_aspect(measurement.grid()));
     if (width == 1 && height == 1) return pyramid;
     heights = half_image(heights, width, height, 1);
     width = half_of(width);

@@ -6,7 +6,7 @@
 #include "btf/srbf_btf.h"
 #include "compress/row_products.h"
 #include "fit/parallel.h"
-#include "srbf/aligned_floats.h"
+#include "srbf/aligned_array.h"
 
 namespace velour {
 namespace {

@@ -47,16 +47,20 @@ void write_values(const LobeArguments& at, const float* exponent, uint32_t padde
   }
 }
 
-void write_sums(const LobeArguments& at, const float* exponent, uint32_t padded, const float* coefficient,
-                uint32_t stride, float* sums) {
+void write_sums(const std::array<LobesAt, 2>& lobes, const std::array<const float*, 2>& exponent,
+                std::array<const float*, 3> coefficient, float* sums) {
   const Lanes d;
-  const Broadcast broadcast(at);
   auto x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
-  for (uint32_t k = 0; k < padded; k += static_cast<uint32_t>(hn::Lanes(d))) {
-    const auto value = lobe_values(d, broadcast, exponent, padded, k);
-    x = hn::MulAdd(value, hn::Load(d, coefficient + k), x);
-    y = hn::MulAdd(value, hn::Load(d, coefficient + stride + k), y);
-    z = hn::MulAdd(value, hn::Load(d, coefficient + 2 * stride + k), z);
+  for (size_t i = 0; i < 2; ++i) {
+    const Broadcast broadcast(lobes[i].at);
+    const uint32_t padded = lobes[i].lobes->padded();
+    for (uint32_t k = 0; k < padded; k += static_cast<uint32_t>(hn::Lanes(d))) {
+      const auto value = lobe_values(d, broadcast, exponent[i], padded, k);
+      x = hn::MulAdd(value, hn::Load(d, coefficient[0] + k), x);
+      y = hn::MulAdd(value, hn::Load(d, coefficient[1] + k), y);
+      z = hn::MulAdd(value, hn::Load(d, coefficient[2] + k), z);
+    }
+    for (const float*& c : coefficient) c += padded;
   }
   sums[0] = hn::GetLane(hn::SumOfLanes(d, x));
   sums[1] = hn::GetLane(hn::SumOfLanes(d, y));
@@ -101,9 +105,10 @@ void MultivariateLobes::values(const LobeArguments& at, float* values) const {
   VELOUR_SIMD_DISPATCH(write_values)(at, exponent_.data(), padded_, values);
 }
 
-Vec3 MultivariateLobes::sums(const LobeArguments& at, const float* coefficient, uint32_t stride) const {
+Vec3 lobe_sums(const std::array<LobesAt, 2>& lobes, const std::array<const float*, 3>& coefficient) {
   float sums[3];
-  VELOUR_SIMD_DISPATCH(write_sums)(at, exponent_.data(), padded_, coefficient, stride, sums);
+  const auto write = VELOUR_SIMD_DISPATCH(write_sums);
+  write(lobes, {lobes[0].lobes->exponent_.data(), lobes[1].lobes->exponent_.data()}, coefficient, sums);
   return {sums[0], sums[1], sums[2]};
 }
 

@@ -17,6 +17,8 @@ struct MultivariateLobe {
   Vec3 light{0.0f}, view{0.0f}, half{0.0f};
 };
 
+struct LobesAt;
+
 /// The unit half vector; the normal where wl = -wv leaves it undefined.
 Vec3 half_vector(const DirectionPair& pair);
 
@@ -47,13 +49,21 @@ class MultivariateLobes {
   /// Of every lobe, padding included; `values` of padded() floats, aligned to 64 bytes.
   void values(const LobeArguments& at, float* values) const;
 
-  /// For each of three arrays of padded() coefficients (aligned, one after the other, `stride` floats apart), the sum
-  /// of coefficient times value.
-  Vec3 sums(const LobeArguments& at, const float* coefficient, uint32_t stride) const;
-
  private:
+  friend Vec3 lobe_sums(const std::array<LobesAt, 2>& lobes, const std::array<const float*, 3>& coefficient);
+
   uint32_t size_, padded_;
   std::vector<float> exponent_;  // [10][padded]: components of light, view, half and the constant, for powers of 2
 };
+
+/// Lobes and what they are evaluated at.
+struct LobesAt {
+  const MultivariateLobes* lobes;
+  LobeArguments at;
+};
+
+/// For each of three arrays of coefficients - of the first lobes' padded() ones, then of the second's; aligned to 64
+/// bytes -, the sum of coefficient times value.
+Vec3 lobe_sums(const std::array<LobesAt, 2>& lobes, const std::array<const float*, 3>& coefficient);
 
 }  // namespace velour

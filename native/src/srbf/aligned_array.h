@@ -1,0 +1,32 @@
+// Arrays from the start of a cache line.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+
+namespace velour {
+
+/// Uninitialised. Of a plain type.
+template <class T>
+class AlignedArray {
+ public:
+  explicit AlignedArray(size_t count)
+      : size_(count), data_(static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{kLine}))) {}
+
+  size_t size() const { return size_; }
+  T* data() { return data_.get(); }
+  const T* data() const { return data_.get(); }
+
+ private:
+  static constexpr size_t kLine = 64;
+  struct Free {
+    void operator()(T* data) const { ::operator delete (data, std::align_val_t{kLine}); }
+  };
+  size_t size_;
+  std::unique_ptr<T, Free> data_;
+};
+
+using AlignedFloats = AlignedArray<float>;
+
+}  // namespace velour
