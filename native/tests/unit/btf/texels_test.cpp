@@ -7,7 +7,7 @@
 #include "btf/bilinear_texels.h"
 #include "btf/half_rows.h"
 #include "sphere/random.h"
-#include "srbf/aligned_floats.h"
+#include "srbf/aligned_array.h"
 #include "support/simd_targets.h"
 
 namespace velour {

@@ -7,7 +7,7 @@
 #include "compress/row_products.h"
 #include "image/half_image.h"
 #include "sphere/random.h"
-#include "srbf/aligned_floats.h"
+#include "srbf/aligned_array.h"
 #include "support/example_srbf.h"
 #include "support/simd_targets.h"
 

@@ -6,7 +6,7 @@
 
 #include "sphere/random.h"
 #include "sphere/warp.h"
-#include "srbf/aligned_floats.h"
+#include "srbf/aligned_array.h"
 #include "support/simd_targets.h"
 
 namespace velour {
@@ -82,27 +82,32 @@ TEST(MultivariateLobes, AreOneAtTheirPeak) {
   EXPECT_NEAR(values.data()[1], 1.0f, 1e-4f);
 }
 
+/// Of two groups of lobes, each at arguments of its own.
 TEST(MultivariateLobes, SumsAreThoseOfCoefficientsTimesValues) {
-  const MultivariateLobes lobes(random_lobes(40));
-  const uint32_t padded = lobes.padded();
-  AlignedFloats coefficient(size_t{3} * padded), values(padded);
-  RandomStream random(6, 0, 0);
-  // What stands behind the lobes is multiplied by nothing.
-  for (uint32_t i = 0; i < 3 * padded; ++i) coefficient.data()[i] = random.next() - 0.5f;
-  test::on_every_simd_target([&] {
-    for (uint64_t i = 0; i < 20; ++i) {
-      const LobeArguments at = random_arguments(i);
-      lobes.values(at, values.data());
-      const Vec3 sums = lobes.sums(at, coefficient.data(), padded);
-      for (uint32_t a = 0; a < 3; ++a) {
-        double expected = 0;
-        for (uint32_t k = 0; k < padded; ++k) {
-          expected += static_cast<double>(values.data()[k]) * static_cast<double>(coefficient.data()[a * padded + k]);
+  for (const uint32_t second : {0u, 5u, 30u}) {
+    const MultivariateLobes first(random_lobes(40)), other(random_lobes(second));
+    const uint32_t padded = first.padded() + other.padded();
+    AlignedFloats coefficient(size_t{3} * padded), values(padded);
+    RandomStream random(6, 0, 0);
+    // What stands behind the lobes is multiplied by nothing.
+    for (uint32_t i = 0; i < 3 * padded; ++i) coefficient.data()[i] = random.next() - 0.5f;
+    const float* const axis = coefficient.data();
+    test::on_every_simd_target([&] {
+      for (uint64_t i = 0; i < 20; ++i) {
+        const LobeArguments at = random_arguments(i), turned = random_arguments(i + 100);
+        first.values(at, values.data());
+        other.values(turned, values.data() + first.padded());
+        const Vec3 sums = lobe_sums({{{&first, at}, {&other, turned}}}, {axis, axis + padded, axis + 2 * padded});
+        for (uint32_t a = 0; a < 3; ++a) {
+          double expected = 0;
+          for (uint32_t k = 0; k < padded; ++k) {
+            expected += static_cast<double>(values.data()[k]) * static_cast<double>(axis[a * padded + k]);
+          }
+          EXPECT_NEAR(static_cast<double>(sums[static_cast<int>(a)]), expected, 1e-5);
         }
-        EXPECT_NEAR(static_cast<double>(sums[static_cast<int>(a)]), expected, 1e-5);
       }
-    }
-  });
+    });
+  }
 }
 
 TEST(MultivariateLobes, HalfVectorsOfOppositeDirectionsAreTheNormal) {
