@@ -133,7 +133,8 @@ def test_the_model_renders_with_the_light_that_the_btf_reflects(
 ):
     """A plane of many tiles under an even sky of 1: the mean pixel is the BTF's albedo at that view. Between
     texels, levels and directions the square of a mean of roots is below the mean. The SRBFs have few bytes,
-    which leave the weakest channel behind and fit one view's mean within some per cent: luminance judges them."""
+    which leave the weakest channel behind and keep one view's mean to some per cent: they are judged by
+    luminance."""
     model = folder / f"{method}-{companding}.velour"
     options = ["--method", method, "--bytes", BYTES[method], "--companding", companding, "--quiet"]
     velour("compress", btf, "-o", model, *options)

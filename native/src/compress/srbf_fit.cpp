@@ -120,7 +120,8 @@ class SideFitter {
       const RowMatrix value = solver[l]->solve(start, steps, after_step);
       progress_.update(to);  // it may have settled early
       solver[l].reset();
-      side.levels[l] = {relief.width(), relief.height(), halves_of(relief.heights(), size_t{relief.width()} * relief.height()),
+      side.levels[l] = {relief.width(), relief.height(),
+                        halves_of(relief.heights(), size_t{relief.width()} * relief.height()),
                         halves_of(value, static_cast<size_t>(value.size()))};
       if (l > 0) start = refined(value, relief.width(), relief.height(), relief_[l - 1]);
     }
