@@ -12,7 +12,7 @@ from support import blender, scenes
 from support.blender import BlenderTest
 
 CAPTURE = {"texels": 32, "views": 81, "lights": 81, "samples": 4, "bounces": 0}
-TASK = {"tile": "WEAVE", "options": {"resolution": 8}, "capture": CAPTURE, "megabytes": 0.5, "side": 96}
+TASK = {"tile": "WEAVE", "options": {"resolution": 8}, "capture": CAPTURE, "megabytes": 0.2, "side": 96}
 SHOTS = ["captured", "cylinder"]
 TILES = 2.5  # across the picture of the plane
 

@@ -62,12 +62,15 @@ def model_rows(folder):
     size = image.packed_file.size
     rows = dict(_ui("material_panel")._btf_rows(info))
     raw = 6 * (inputs.QUARTER_TEXELS * 16) ** 2  # texels and pairs of half-float colours
-    assert rows["Kind"] == "BTF, svd", rows
+    assert rows["Kind"] == "BTF, srbf", rows
     assert rows["Texels"] == "16 x 16", rows
     assert rows["Tile"] == "500 x 500 mm", rows
     assert rows["Directions"] == "16 views, 16 lights", rows
+    assert rows["Lobes"] == f"{info['lobes']}, {info['coefficients']} coefficients a texel", rows
+    assert rows["Sides"] == "front", rows
+    assert rows["Speed"].endswith("million evaluations a second, one core"), rows
     assert rows["Size"] == f"{size / 1e6:.2f} MB, 1:{raw / size:.0f}", rows
-    assert float(rows["PSNR"].removesuffix(" dB")) > 40, rows  # four greys: one component holds them
+    assert float(rows["PSNR"].removesuffix(" dB")) > 40, rows  # four greys: a constant holds them
     assert rows["Unseen pairs"] == "not measured", rows
     yield from _report()
     _scroll_down()

@@ -122,10 +122,32 @@ def _btf_rows(info):
         ("Texels", "{} x {}".format(*info["texels"])),
         ("Tile", "size not known" if tile is None else "{:.4g} x {:.4g} mm".format(*(1e3 * t for t in tile))),
         ("Directions", f"{info['views']} views, {info['lights']} lights"),
+        *_btf_terms(info),
         ("Size", f"{info['bytes'] / 1e6:.2f} MB, 1:{info['raw_bytes'] / info['bytes']:.0f}"),
         ("PSNR", f"{info['psnr']:.1f} dB"),
         ("Unseen pairs", "not measured" if unseen is None else f"{unseen:.1f} dB"),
+        ("Speed", _evaluations(info["evaluations_per_second"])),
     )
+
+
+def _btf_terms(info):
+    """What a texel is a sum of, and of which sides of the surface."""
+    if "components" in info:
+        return (("Components", str(info["components"])),)
+    names = (_side_name(side) for side in info["sides"])
+    return (
+        ("Lobes", f"{info['lobes']}, {info['coefficients']} coefficients a texel"),
+        ("Sides", ", ".join(names)),
+    )
+
+
+def _side_name(side):
+    seen, lit = ({"above": "front", "below": "back"}[side[key]] for key in ("view", "light"))
+    return seen if seen == lit else f"{seen} lit from the {lit}"
+
+
+def _evaluations(rate):
+    return "not measured" if rate is None else f"{rate / 1e6:.2g} million evaluations a second, one core"
 
 
 def draw_rows(layout, rows):

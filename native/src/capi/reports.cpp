@@ -151,9 +151,17 @@ Json record_json(const FitRecord& fit) {
 
 /// The same of a BTF.
 Json record_json(const BtfRecord& btf) {
-  return {{"method", btf.method},   {"psnr", btf.psnr}, {"psnr_held_out", or_null(btf.psnr_held_out)},
-          {"ser", btf.ser},         {"p99", btf.p99},   {"raw_bytes", btf.raw_bytes},
-          {"seconds", btf.seconds}, {"seed", btf.seed}, {"warnings", btf.warnings}};
+  const bool timed = btf.evaluations_per_second > 0;  // not in files of earlier versions
+  return {{"method", btf.method},
+          {"psnr", btf.psnr},
+          {"psnr_held_out", or_null(btf.psnr_held_out)},
+          {"ser", btf.ser},
+          {"p99", btf.p99},
+          {"raw_bytes", btf.raw_bytes},
+          {"evaluations_per_second", timed ? Json(btf.evaluations_per_second) : Json()},
+          {"seconds", btf.seconds},
+          {"seed", btf.seed},
+          {"warnings", btf.warnings}};
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ struct RefinementOptions {
 };
 
 /// All vectors of all lobes descend the error of colour axis 0 that is left when every point has its best coefficients
-/// (variable projection [GP73]). Never worse than the start; the same bits for any number of threads.
+/// (variable projection [GP73]). A vector of no length starts as a short one, and from there the error never rises; the
+/// same bits for any number of threads.
 std::vector<MultivariateLobe> refine_lobes(const std::vector<SurfacePoint>& points, std::vector<MultivariateLobe> lobes,
                                            const RefinementOptions& options, Progress& progress);
 

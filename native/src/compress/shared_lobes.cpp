@@ -91,6 +91,11 @@ std::array<size_t, 3> share_out(const std::array<PursuitChoice, 3>& choice, size
   return share;
 }
 
+/// Nothing to explain, as in what is black, takes the constant: a model has a lobe.
+void need_one(PursuitChoice& choice) {
+  if (choice.order.empty()) choice = {{0}, {choice.all}, choice.all};
+}
+
 }  // namespace
 
 SharedLobes choose_lobes(const std::vector<SurfacePoint>& points, const SharedLobeOptions& options,
@@ -104,6 +109,7 @@ SharedLobes choose_lobes(const std::vector<SurfacePoint>& points, const SharedLo
       choice[a] = pursue(search, std::min(options.coefficients, SrbfBtf::kMaxLobes), options.threads, progress);
     }
   }
+  need_one(choice[0]);
   const std::array<size_t, 3> share = share_out(choice, options.coefficients);
   SharedLobes shared;
   std::vector<size_t> chosen(choice[0].order.begin(), choice[0].order.begin() + static_cast<ptrdiff_t>(share[0]));

@@ -13,7 +13,8 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kPoints = 400, kPairs = 900;  // that lobes are refined by
+constexpr uint32_t kMostPoints = 400, kLeastPoints = 24, kPairs = 900;  // that lobes are refined by
+constexpr uint64_t kTexelsOfAPoint = 4;  // few texels have little to say: their lobes take less time
 constexpr int kRefinements = 100;
 constexpr int kSteps = 20, kCoarseSteps = 12;  // of the texels' solve: finest level, coarser ones
 constexpr uint64_t kUsualRatio = 200, kUsualLeast = 16;
@@ -30,6 +31,10 @@ size_t coefficients_within(uint64_t asked, const BtfMeasurement& measurement, si
                                               std::to_string(bytes) + " were asked for; ask for more.");
   }
   return static_cast<size_t>(std::min<uint64_t>((bytes - relief) / one, 2 * SrbfBtf::kMaxLobes));
+}
+
+uint32_t points_for(const TexelGrid& grid) {
+  return static_cast<uint32_t>(std::clamp<uint64_t>(grid.texels() / kTexelsOfAPoint, kLeastPoints, kMostPoints));
 }
 
 /// Coefficients of a finer level, interpolated.
@@ -74,7 +79,7 @@ class SideFitter {
       progress_.stage(name, first + share * from, first + share * to);
     };
     stage("points", 0, 0.05);
-    const SurfacePointOptions sampling{kPoints, kPairs, options_.seed};
+    const SurfacePointOptions sampling{points_for(grid_), kPairs, options_.seed};
     const auto points = surface_points(views_, grid_, side_, relief_[0], sampling, progress_);
     stage("lobes", 0.05, 0.45);
     const SharedLobeOptions choice{coefficients_, kRefinements, options_.seed, options_.threads};
@@ -113,8 +118,10 @@ class SideFitter {
       const double from = std::pow(0.25, static_cast<double>(l + 1)), to = 4 * from;
       const auto after_step = [&](int step) { progress_.update(from + (to - from) * (step + 1) / steps); };
       const RowMatrix value = solver[l]->solve(start, steps, after_step);
+      progress_.update(to);  // it may have settled early
       solver[l].reset();
-      side.levels[l] = {relief.width(), relief.height(), halves_of(relief.heights(), size_t{relief.width()} * relief.height()),
+      side.levels[l] = {relief.width(), relief.height(),
+                        halves_of(relief.heights(), size_t{relief.width()} * relief.height()),
                         halves_of(value, static_cast<size_t>(value.size()))};
       if (l > 0) start = refined(value, relief.width(), relief.height(), relief_[l - 1]);
     }
@@ -130,6 +137,16 @@ class SideFitter {
   std::vector<Relief> relief_;
 };
 
+/// Without those that no light goes through to: what no side shows is black.
+std::vector<SideDirections> sides_to_fit(const BtfMeasurement& measurement, CompandedViews& views) {
+  std::vector<SideDirections> sides = sides_of(measurement.layout());
+  if (sides.size() == 1) return sides;
+  std::erase_if(sides, [&](const SideDirections& side) {
+    return side.view_below != side.light_below && is_black(views, measurement.grid(), side);
+  });
+  return sides;
+}
+
 }  // namespace
 
 SrbfFit fit_srbf(const BtfMeasurement& measurement, const SrbfOptions& options, Progress& progress) {
@@ -137,11 +154,11 @@ SrbfFit fit_srbf(const BtfMeasurement& measurement, const SrbfOptions& options, 
     throw Error(Status::unsupported, "A model needs every view under every light; the BTF has " +
                                          std::to_string(measurement.layout().pairs()) + " pairs alone.");
   }
-  const std::vector<SideDirections> sides = sides_of(measurement.layout());
-  const size_t coefficients = coefficients_within(options.bytes, measurement, sides.size());
   CompandedViews views(measurement, options.companding, options.threads, progress);
   SrbfFit fit{{measurement.layout(), measurement.grid(), options.companding, Mat3(1.0f), {}}, 0};
   progress.stage("colours", 0, 0.03);
+  const std::vector<SideDirections> sides = sides_to_fit(measurement, views);
+  const size_t coefficients = coefficients_within(options.bytes, measurement, sides.size());
   fit.btf.axes = views.decorrelate();
   fit.not_finite = views.not_finite();
   const double share = 0.77 / static_cast<double>(sides.size());

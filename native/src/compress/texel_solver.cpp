@@ -12,6 +12,7 @@ namespace velour {
 namespace {
 
 constexpr double kRidge = 1e-4;      // of coefficients, relative to a lobe of value 1 everywhere
+constexpr double kSettled = 1e-12;   // of the rest's square: floats hold no better, and less would become 0 / 0
 constexpr size_t kTexels = 64;       // of a block of work: fixed, so that sums do not depend on threads
 constexpr size_t kGramTexels = 170;  // of a view that the mean Gram matrix is taken over, about
 
@@ -196,7 +197,8 @@ RowMatrix TexelSolver::solve(const RowMatrix& start, int steps, const std::funct
   RowMatrix rest = whitened(data_ - normal_product(start));
   RowMatrix direction = rest;
   double energy = static_cast<double>(rest.squaredNorm());
-  for (int step = 0; step < steps && energy > 0; ++step) {
+  const double settled = kSettled * energy;
+  for (int step = 0; step < steps && energy > settled; ++step) {
     const RowMatrix product = whitened(normal_product(whitened(direction))) + ridge * direction;
     const double length = energy / static_cast<double>(direction.cwiseProduct(product).sum());
     x += static_cast<float>(length) * direction;

@@ -51,6 +51,47 @@ TEST(Btf, NullArgumentsAreNamed) {
   vlr_btf_free(nullptr);
 }
 
+TEST(Btf, CompressOptionsAreChecked) {
+  const BtfHandle btf(written_set());
+  vlr_compress_options options;
+  vlr_compress_options_init(&options);
+  EXPECT_EQ(options.struct_size, sizeof(options));
+  EXPECT_EQ(options.method, VLR_COMPRESS_SRBF);
+  EXPECT_EQ(options.companding, VLR_COMPAND_ROOT);
+  vlr_job* job = nullptr;
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_compress_create_job(nullptr, &options, &job));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_compress_create_job(btf.get(), &options, nullptr));
+  options.method = 2;
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_compress_create_job(btf.get(), &options, &job));
+  EXPECT_TRUE(last_error_has("vlr_compress_options.method is 2"));
+  vlr_compress_options_init(&options);
+  options.companding = -1;
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_compress_create_job(btf.get(), &options, &job));
+  EXPECT_EQ(job, nullptr);
+}
+
+/// One pair of two texels is enough for either method.
+TEST(Btf, EitherMethodMakesAModel) {
+  const BtfHandle btf(written_set());
+  for (const int32_t method : {VLR_COMPRESS_SVD, VLR_COMPRESS_SRBF}) {
+    vlr_compress_options options;
+    vlr_compress_options_init(&options);
+    options.method = method;
+    vlr_job* job = nullptr;
+    ASSERT_EQ(VLR_OK, vlr_compress_create_job(btf.get(), &options, &job)) << vlr_last_error();
+    EXPECT_EQ(VLR_OK, vlr_job_start(job));
+    int32_t finished = 0;
+    EXPECT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, &finished)) << vlr_last_error();
+    vlr_model* model = nullptr;
+    ASSERT_EQ(VLR_OK, vlr_job_result_model(job, &model)) << vlr_last_error();
+    const char* json = nullptr;
+    ASSERT_EQ(VLR_OK, vlr_model_info_json(model, &json));
+    EXPECT_NE(std::string(json).find(method == VLR_COMPRESS_SVD ? "factored-btf" : "srbf-btf"), std::string::npos);
+    vlr_model_free(model);
+    vlr_job_free(job);
+  }
+}
+
 TEST(Btf, MissingFilesAreNamed) {
   vlr_btf* btf = nullptr;
   EXPECT_STATUS(VLR_IO, vlr_btf_load("/nowhere/at all.btf", nullptr, &btf));

@@ -1,12 +1,9 @@
 // Pictures of uncompressed BTFs: all strategies have the same expectation, and no light is lost or made.
 #include <gtest/gtest.h>
 
-#include "sphere/random.h"
-#include "support/proof_strategies.h"
-#include "support/renders.h"
+#include "support/btf_scenes.h"
 #include "support/significance.h"
 #include "support/striped_btf.h"
-#include "support/textured_scenes.h"
 
 namespace velour {
 namespace {
@@ -15,42 +12,12 @@ using Shared = std::shared_ptr<const Material>;
 
 Shared striped_material() { return make_measured_btf_material(read_btf_table(test::striped_btf({12, 8}))); }
 
-/// A BTF sphere over a BTF floor of many tiles under an uneven sky and a lamp.
-Scene two_objects(const Shared& material, float light = 1) {
-  Scene scene;
-  const uint32_t number = scene.add_material({.material = material});
-  scene.add_instance(scene.add_mesh(test::textured_sphere(16)), {}, {number});
-  scene.add_instance(scene.add_mesh(test::repeating_square(3, 20)), test::shift({0, 0, -1}), {number});
-  std::vector<float> sky(3 * 16 * 8);
-  RandomStream random(5, 5, 5);
-  for (float& v : sky) v = light * random.next() * random.next();
-  scene.set_environment(Environment::image({16, 8, 3, sky}, 1, Mat3(1.0f)));
-  Light lamp;
-  lamp.type = Light::Type::rectangle;
-  lamp.size = {1.5f, 1.5f};
-  lamp.color = Rgb(20 * light);
-  lamp.light_to_world = test::shift({1, -1, 3});
-  scene.add_light(lamp);
-  scene.set_camera(Camera::look_at({0, -6, 3}, {0, 0, -0.2f}, {0, 0, 1}, 0.55f, 1));
-  scene.commit(2);
-  return scene;
-}
-
-test::PictureMeans measured(const Scene& scene, const test::NamedStrategy& s, double factor = 1, uint64_t seed = 1) {
-  // The cosine seldom finds the lamp.
-  const bool blind = s.strategy != Strategy::light && !is_mixed(s.strategy);
-  RenderOptions options = test::small_options(s.strategy, static_cast<int>((blind ? 768 : 192) * factor));
-  options.heuristic = s.heuristic;
-  options.light_share = s.light_share;
-  options.bounces = 1;
-  return test::independent_renders(scene, options, 16, seed);
-}
-
 TEST(MeasuredBtf, AllStrategiesHaveTheSameExpectation) {
-  const Scene scene = two_objects(striped_material());
-  const auto expected = measured(scene, {"mis", Strategy::mis}, 8, 1'000'000);
+  const Scene scene = test::two_objects(striped_material());
+  const auto expected = test::strategy_means(scene, {"mis", Strategy::mis}, 8, 1'000'000);
   test::ZTests tests(0.01);
-  for (const test::NamedStrategy& s : test::all_strategies()) compare(s.name, measured(scene, s), expected, tests);
+  for (const test::NamedStrategy& s : test::all_strategies())
+    compare(s.name, test::strategy_means(scene, s), expected, tests);
   EXPECT_TRUE(tests.agree());
   for (const test::NamedStrategy& s : test::all_strategies()) {
     EXPECT_LT(tests.smallest_bias(s.name + " whole"), 0.05) << s.name;
@@ -58,9 +25,11 @@ TEST(MeasuredBtf, AllStrategiesHaveTheSameExpectation) {
 }
 
 TEST(MeasuredBtf, ControlLightFivePercentTooBrightIsSeen) {
-  const auto expected = measured(two_objects(striped_material()), {"mis", Strategy::mis}, 8, 1'000'000);
+  const auto expected =
+      test::strategy_means(test::two_objects(striped_material()), {"mis", Strategy::mis}, 8, 1'000'000);
   test::ZTests tests;
-  compare("brighter", measured(two_objects(striped_material(), 1.05f), {"mis", Strategy::mis}), expected, tests);
+  compare("brighter", test::strategy_means(test::two_objects(striped_material(), 1.05f), {"mis", Strategy::mis}),
+          expected, tests);
   EXPECT_TRUE(tests.differ());
 }
 

@@ -7,6 +7,7 @@
 #include "model/model.h"
 #include "sphere/directions.h"
 #include "support/example_btf.h"
+#include "support/example_srbf.h"
 
 namespace velour::test {
 
@@ -88,7 +89,13 @@ inline Model example_reduced() {
 
 inline Model example_btf_model(bool two_sided = false) {
   Model model{example_factored(two_sided), {}, {"weave", "velour-btf", std::string(64, 'b')}};
-  model.btf = BtfRecord{"svd", 23.5, 21.25, 0.01, 0.5, 123456, 1.5, 42, {"a sentence"}};
+  model.btf = BtfRecord{"svd", 23.5, 21.25, 0.01, 0.5, 123456, 1.5, 2e6, 42, {"a sentence"}};
+  return model;
+}
+
+inline Model example_srbf_model(bool two_sided = false) {
+  Model model{example_srbf(two_sided), {}, {"gravel", "velour-btf", std::string(64, 'c')}};
+  model.btf = BtfRecord{"srbf", 24.5, std::nullopt, 0.02, 0.25, 654321, 2.5, 3e6, 7, {}};
   return model;
 }
 

@@ -223,7 +223,8 @@ TEST(HostileModel, ANewerFormatIsRefusedWithASentence) {
 }
 
 std::vector<Model> examples() {
-  return {test::example_model(), test::example_parametric(), test::example_reduced(), test::example_btf_model()};
+  return {test::example_model(), test::example_parametric(), test::example_reduced(), test::example_btf_model(),
+          test::example_srbf_model()};
 }
 
 TEST(HostileModel, TruncatedFilesAreRefused) {
@@ -249,6 +250,16 @@ void expect_sound(const ParametricBrdf& brdf) {
 void expect_sound(const FactoredBtf& btf) {
   ASSERT_EQ(btf.pair_value.size(), btf.layout.pairs() * btf.components());
   ASSERT_EQ(btf.levels.back().value.size(), btf.components());
+}
+
+void expect_sound(const SrbfBtf& btf) {
+  for (const SrbfSide& side : btf.sides) {
+    ASSERT_LE(side.tile_lobes, side.lobes.size());
+    ASSERT_EQ(side.levels.back().value.size(), side.coefficients());
+    for (const auto& axis : side.lobe) {
+      for (const uint16_t lobe : axis) ASSERT_LT(lobe, side.lobes.size());
+    }
+  }
 }
 
 TEST(HostileModel, DamagedFilesAreRefusedOrSound) {

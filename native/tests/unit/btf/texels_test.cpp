@@ -1,0 +1,72 @@
+// Texels about a place, and sums of their records.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <vector>
+
+#include "btf/bilinear_texels.h"
+#include "btf/half_rows.h"
+#include "sphere/random.h"
+#include "srbf/aligned_array.h"
+#include "support/simd_targets.h"
+
+namespace velour {
+namespace {
+
+TEST(BilinearTexels, OfACentreIsThatTexel) {
+  const BilinearTexels texels = bilinear_texels({2.5f / 4 + 3, 1.5f / 2 - 5}, 4, 2);
+  EXPECT_EQ(texels.index[0], 1u * 4 + 2);
+  EXPECT_NEAR(texels.weight[0], 1.0f, 1e-5f);
+}
+
+TEST(BilinearTexels, AtTheCornerOfTheTileAreItsFourCorners) {
+  const BilinearTexels texels = bilinear_texels({0, 1}, 4, 3);
+  EXPECT_EQ(std::set<uint32_t>(texels.index.begin(), texels.index.end()), (std::set<uint32_t>{0, 3, 8, 11}));
+  for (const float weight : texels.weight) EXPECT_EQ(weight, 0.25f);
+}
+
+TEST(BilinearTexels, AreInsideAndWeighOne) {
+  for (const auto& [width, height] : {std::pair(1u, 1u), {1u, 5u}, {7u, 3u}}) {
+    for (uint64_t i = 0; i < 1000; ++i) {
+      RandomStream random(1, i, 0);
+      // Also places just below a whole number, which rounding may take to it.
+      const Vec2 place = i % 10 == 0 ? Vec2(-1e-9f, -1e-20f) : (random.next2() - 0.5f) * 1000.0f;
+      const BilinearTexels texels = bilinear_texels(place, width, height);
+      float sum = 0;
+      for (size_t c = 0; c < 4; ++c) {
+        EXPECT_LT(texels.index[c], width * height);
+        EXPECT_GE(texels.weight[c], 0.0f);
+        sum += texels.weight[c];
+      }
+      EXPECT_NEAR(sum, 1.0f, 1e-5f);
+    }
+  }
+}
+
+TEST(HalfRows, AddWhatTheyWeigh) {
+  constexpr uint32_t kCount = 3 * kHalfRowPadding;
+  RandomStream random(2, 0, 0);
+  std::vector<float> value(4 * kCount);
+  for (float& v : value) v = random.next() * 100 - 50;
+  value[5] = 1e-7f;  // below the least normal half
+  std::vector<HalfBits> halves(value.size());
+  floats_to_halves(value, halves);
+  halves_to_floats(halves, value);
+  const float weight[] = {0.5f, 0.25f, -0.125f, 0.0f};
+  std::array<WeightedHalves, 4> rows;
+  for (size_t i = 0; i < 4; ++i) rows[i] = {halves.data() + i * kCount, weight[i]};
+  test::on_every_simd_target([&] {
+    AlignedFloats to(kCount);
+    std::fill_n(to.data(), kCount, 7.0f);
+    add_half_rows(rows, kCount, to.data());
+    for (uint32_t k = 0; k < kCount; ++k) {
+      double expected = 7;
+      for (size_t i = 0; i < 4; ++i)
+        expected += static_cast<double>(weight[i]) * static_cast<double>(value[i * kCount + k]);
+      EXPECT_NEAR(static_cast<double>(to.data()[k]), expected, 1e-5);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace velour

@@ -1,0 +1,327 @@
+#include "compress/srbf_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "btf/srbf_evaluator.h"
+#include "compress/btf_compare.h"
+#include "compress/relief_pyramid.h"
+#include "image/half_image.h"
+#include "job/error.h"
+#include "support/example_srbf.h"
+#include "support/striped_btf.h"
+
+namespace velour {
+namespace {
+
+constexpr uint64_t kBytes = 3000;
+
+SrbfFit fit(const BtfMeasurement& btf, const SrbfOptions& options) {
+  Progress progress;
+  return fit_srbf(btf, options, progress);
+}
+
+std::shared_ptr<const SrbfBtf> shared(SrbfBtf btf) { return std::make_shared<const SrbfBtf>(std::move(btf)); }
+
+/// A BTF in memory with heights of its own.
+class MemoryBtfWithRelief final : public BtfMeasurement {
+ public:
+  /// Nothing is met where a height is not finite.
+  MemoryBtfWithRelief(test::MemoryBtf values, std::vector<float> heights, Shell shell)
+      : values_(std::move(values)), heights_(std::move(heights)) {
+    layout_ = values_.layout();
+    grid_ = values_.grid();
+    shell_ = shell;
+  }
+  void read_pairs(uint64_t first, uint64_t count, std::span<HalfBits> values) const override {
+    values_.read_pairs(first, count, values);
+  }
+  bool has_structure() const override { return true; }
+  std::optional<ViewStructure> read_structure(uint32_t) const override {
+    ViewStructure structure;
+    for (const float height : heights_) {
+      structure.coverage.push_back(std::isfinite(height) ? 1.0f : 0.0f);
+      structure.height_mean.push_back(std::isfinite(height) ? height : 0.0f);
+      structure.height_spread.push_back(0);
+    }
+    return structure;
+  }
+
+ private:
+  test::MemoryBtf values_;
+  std::vector<float> heights_;
+};
+
+TexelGrid small_grid() { return {12, 8, Vec2(0.003f, 0.002f)}; }
+
+/// Smooth over the tile, which repeats.
+std::vector<HalfBits> smooth_halves(const SrbfLevel& level, size_t channels, float mean, float swing) {
+  std::vector<float> value;
+  for (size_t t = 0; t < size_t{level.width} * level.height; ++t) {
+    const float x = 2 * kPi * static_cast<float>(t % level.width) / static_cast<float>(level.width);
+    const float y = 2 * kPi * static_cast<float>(t / level.width) / static_cast<float>(level.height);
+    for (size_t k = 0; k < channels; ++k) {
+      const auto phase = static_cast<float>(k);
+      value.push_back(mean + swing * std::sin(x + phase) * std::cos(y - 2 * phase));
+    }
+  }
+  std::vector<HalfBits> bits(value.size());
+  floats_to_halves(value, bits);
+  return bits;
+}
+
+/// A model over a plane, or over hills of `high` widths of the tile, 12 x 8 texels.
+SrbfBtf true_model(float high, bool two_sided = false) {
+  SrbfBtf btf = test::example_srbf(two_sided);
+  btf.layout = test::ringed_layout(two_sided);
+  btf.grid = small_grid();
+  for (SrbfSide& side : btf.sides) {
+    const bool below = side.view_below;
+    side = test::example_side(12, 8, below);
+    for (SrbfLevel& level : side.levels) {
+      level.relief = smooth_halves(level, 1, 0, high);
+      level.value = smooth_halves(level, side.coefficients(), below ? 0.2f : 0.3f, 0.2f);
+    }
+  }
+  return btf;
+}
+
+test::MemoryBtf images_of(const SrbfBtf& model) {
+  const SrbfEvaluator evaluator(shared(model));
+  DirectionPair of{Vec3(0.0f), Vec3(0.0f)};
+  std::vector<float> rgb;
+  return {model.layout, model.grid, [&](const DirectionPair& pair, uint32_t x, uint32_t y) {
+            if (pair.wl != of.wl || pair.wv != of.wv) srbf_image(evaluator, of = pair, rgb);
+            const size_t i = 3 * (size_t{y} * model.grid.width + x);
+            return Rgb(rgb[i], rgb[i + 1], rgb[i + 2]);
+          }};
+}
+
+MemoryBtfWithRelief with_relief(const SrbfBtf& model, bool hole = false) {
+  // Heights over the lowest point of a shell whose middle is the reference plane, in metres.
+  std::vector<float> heights(model.grid.texels());
+  halves_to_floats(model.sides[0].levels[0].relief, heights);
+  const double width = static_cast<double>(model.grid.tile_metres->x);
+  for (float& h : heights) h = static_cast<float>(width * (static_cast<double>(h) + 0.1));
+  if (hole) heights[0] = std::numeric_limits<float>::infinity();
+  return {images_of(model), heights, {0.2 * width, 0.1 * width}};
+}
+
+BtfErrors errors_of(const SrbfBtf& model, const BtfMeasurement& btf) {
+  const SrbfEvaluator evaluator(shared(model));
+  const auto decode = [&](const DirectionPair& pair, std::vector<float>& rgb) { srbf_image(evaluator, pair, rgb); };
+  Progress progress;
+  return compare_btf(btf, decode, percentile_99(btf, progress), 2, progress);
+}
+
+void expect_same(const SrbfBtf& a, const SrbfBtf& b) {
+  ASSERT_EQ(a.sides.size(), b.sides.size());
+  for (size_t s = 0; s < a.sides.size(); ++s) {
+    const SrbfSide &one = a.sides[s], &two = b.sides[s];
+    EXPECT_EQ(one.lobe, two.lobe);
+    EXPECT_EQ(one.tile_lobes, two.tile_lobes);
+    ASSERT_EQ(one.lobes.size(), two.lobes.size());
+    for (size_t j = 0; j < one.lobes.size(); ++j) EXPECT_EQ(one.lobes[j].light, two.lobes[j].light);
+    ASSERT_EQ(one.levels.size(), two.levels.size());
+    for (size_t l = 0; l < one.levels.size(); ++l) {
+      EXPECT_EQ(one.levels[l].value, two.levels[l].value);
+      EXPECT_EQ(one.levels[l].relief, two.levels[l].relief);
+    }
+  }
+}
+
+/// Lobes are searched for, not given: a model recovers another one to a PSNR, not to its rounding.
+TEST(SrbfFit, RecoversABtfThatIsAModelOverAPlane) {
+  const test::MemoryBtf btf = images_of(true_model(0));
+  EXPECT_GT(errors_of(fit(btf, {.bytes = 10000}).btf, btf).psnr, 38);
+  // The control: one lobe is not enough.
+  EXPECT_LT(errors_of(fit(btf, {.bytes = 600}).btf, btf).psnr, 30);
+}
+
+TEST(SrbfFit, RecoversABtfThatIsAModelOverARelief) {
+  const MemoryBtfWithRelief btf = with_relief(true_model(0.05f));
+  EXPECT_GT(errors_of(fit(btf, {.bytes = 5000}).btf, btf).psnr, 34);
+  // The control: the same without its relief.
+  const test::MemoryBtf flat = images_of(true_model(0.05f));
+  EXPECT_LT(errors_of(fit(flat, {.bytes = 5000}).btf, flat).psnr, 31);
+}
+
+TEST(SrbfFit, KeepsToItsBytes) {
+  const test::MemoryBtf btf = test::striped_btf(small_grid());
+  for (const uint64_t bytes : {600, 3000}) {
+    const SrbfBtf model = fit(btf, {.bytes = bytes}).btf;
+    EXPECT_LE(model.parameter_bytes(), bytes);
+    EXPECT_GT(model.parameter_bytes(), bytes / 2);
+  }
+}
+
+TEST(SrbfFit, RefusesTooFewBytesWithASentence) {
+  try {
+    fit(test::striped_btf(small_grid()), {.bytes = 100});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::invalid_argument);
+    EXPECT_NE(std::string(error.what()).find("100 were asked for"), std::string::npos) << error.what();
+  }
+}
+
+TEST(SrbfFit, NeedsEveryPair) {
+  const PairLayout holes(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}});
+  try {
+    fit(test::MemoryBtf(holes, small_grid(), test::striped), {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::unsupported);
+    EXPECT_NE(std::string(error.what()).find("3 pairs"), std::string::npos) << error.what();
+  }
+}
+
+TEST(SrbfFit, IsTheSameForAnyNumberOfThreads) {
+  const test::MemoryBtf btf = test::striped_btf(small_grid());
+  const SrbfBtf one = fit(btf, {.bytes = kBytes, .threads = 1}).btf,
+                two = fit(btf, {.bytes = kBytes, .threads = 2}).btf;
+  expect_same(one, two);
+}
+
+TEST(SrbfFit, IsFlatWithoutStructure) {
+  const SrbfBtf model = fit(test::striped_btf(small_grid()), {.bytes = kBytes}).btf;
+  ASSERT_EQ(model.sides.size(), 1u);
+  for (const SrbfLevel& level : model.sides[0].levels) {
+    for (const HalfBits h : level.relief) EXPECT_EQ(h, 0);
+  }
+  EXPECT_EQ(model.sides[0].levels.back().width, 1u);
+  EXPECT_EQ(model.sides[0].levels.back().height, 1u);
+}
+
+TEST(SrbfFit, HasTheReliefOfTheStructure) {
+  const SrbfBtf truth = true_model(0.05f);
+  const MemoryBtfWithRelief btf = with_relief(truth, true);
+  const std::vector<Relief> pyramid = relief_pyramid(btf, sides_of(btf.layout()).at(0));
+  ASSERT_EQ(pyramid.size(), 4u);  // 12 x 8, 6 x 4, 3 x 2, 1 x 1
+  std::vector<float> expected(truth.grid.texels());
+  halves_to_floats(truth.sides[0].levels[0].relief, expected);
+  EXPECT_NEAR(pyramid[0].heights()[0], -0.1f, 1e-4f);  // no hit: the lowest point of the shell
+  double mean[2] = {0, 0};
+  for (size_t t = 0; t < expected.size(); ++t) {
+    if (t > 0) {
+      EXPECT_NEAR(pyramid[0].heights()[t], expected[t], 1e-4f);
+    }
+    mean[0] += static_cast<double>(pyramid[0].heights()[t]) / 96;
+  }
+  for (const float h : pyramid[1].heights()) mean[1] += static_cast<double>(h) / 24;
+  EXPECT_NEAR(mean[0], mean[1], 1e-4);
+}
+
+/// Reflection from both sides, and none through: the bytes are those of two sides.
+TEST(SrbfFit, OfTwoSidesFitsBoth) {
+  const SrbfBtf truth = true_model(0, true);
+  const test::MemoryBtf btf = images_of(truth);
+  const SrbfBtf model = fit(btf, {.bytes = 10000}).btf;
+  ASSERT_EQ(model.sides.size(), 2u);
+  EXPECT_GT(errors_of(model, btf).psnr, 35);
+  const SrbfEvaluator evaluator(shared(model));
+  for (const bool below : {false, true}) EXPECT_TRUE(evaluator.side(below, below).has_value());
+}
+
+TEST(SrbfFit, KeepsSidesThatLightGoesThroughTo) {
+  const test::MemoryBtf btf = test::striped_btf({4, 4}, true);
+  const SrbfBtf model = fit(btf, {.bytes = 3000}).btf;
+  ASSERT_EQ(model.sides.size(), 4u);
+  const SrbfEvaluator evaluator(shared(model));
+  std::vector<float> rgb;
+  const Vec3 up = unit_direction(btf.layout().lights()[0]), down = -up;
+  for (const DirectionPair& pair : {DirectionPair{up, down}, DirectionPair{down, up}}) {
+    srbf_image(evaluator, pair, rgb);
+    for (const float f : rgb) EXPECT_GT(f, 0.0f);
+  }
+}
+
+TEST(SrbfFit, OfABlackBtfIsBlack) {
+  const test::MemoryBtf btf(test::ringed_layout(), small_grid(), [](auto&&...) { return Rgb(0.0f); });
+  const SrbfBtf model = fit(btf, {.bytes = kBytes}).btf;
+  EXPECT_GE(model.sides.at(0).lobes.size(), 1u);  // the file has no parts without values
+  const SrbfEvaluator evaluator(shared(model));
+  std::vector<float> rgb;
+  srbf_image(evaluator, btf.layout().directions(7), rgb);
+  for (const float f : rgb) EXPECT_EQ(f, 0.0f);
+}
+
+TEST(SrbfFit, TakesASingleTexel) {
+  const test::MemoryBtf btf = test::striped_btf({1, 1});
+  EXPECT_GT(errors_of(fit(btf, {}).btf, btf).psnr, 25);
+}
+
+TEST(SrbfFit, IsNotPulledByEntriesThatAreNotFinite) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const test::MemoryBtf btf(test::ringed_layout(), small_grid(),
+                            [&](const DirectionPair& pair, uint32_t x, uint32_t y) {
+                              return x == 3 && y == 4 && pair.wl.x > 0 ? Rgb(nan) : test::striped(pair, x, y);
+                            });
+  const test::MemoryBtf whole = test::striped_btf(small_grid());
+  const SrbfFit found = fit(btf, {.bytes = kBytes});
+  EXPECT_GT(found.not_finite, 0u);
+  EXPECT_GT(errors_of(found.btf, btf).psnr, errors_of(fit(whole, {.bytes = kBytes}).btf, whole).psnr - 1);
+}
+
+/// Every level under every light has the mean of the measurement, in f itself.
+TEST(SrbfFit, CoarseLevelsKeepTheMean) {
+  const test::MemoryBtf btf = test::striped_btf(small_grid());
+  SrbfBtf model = fit(btf, {.bytes = kBytes, .companding = Companding::none}).btf;
+  std::vector<float> rgb, coarse;
+  const SrbfEvaluator evaluator(shared(model));
+  SrbfBtf last = model;
+  last.grid = {1, 1, model.grid.tile_metres};
+  last.sides[0].levels = {model.sides[0].levels.back()};
+  const SrbfEvaluator one(shared(last));
+  for (const uint64_t pair : {3, 77, 150}) {
+    srbf_image(evaluator, btf.layout().directions(pair), rgb);
+    srbf_image(one, btf.layout().directions(pair), coarse);
+    for (size_t c = 0; c < 3; ++c) {
+      double mean = 0;
+      for (size_t t = 0; t < btf.grid().texels(); ++t) mean += static_cast<double>(rgb[3 * t + c]);
+      mean /= static_cast<double>(btf.grid().texels());
+      EXPECT_NEAR(static_cast<double>(coarse[c]), mean, 0.02 * mean + 1e-3) << pair;
+    }
+  }
+}
+
+TEST(SrbfFit, ReportsRisingProgressAndEndsAtACancel) {
+  const test::MemoryBtf btf = test::striped_btf(small_grid());
+  Progress progress;
+  std::atomic<bool> done{false};
+  double before = 0, largest_jump = 0;
+  std::thread watcher([&] {
+    while (!done) {
+      const double now = progress.fraction();
+      EXPECT_GE(now, before);
+      largest_jump = std::max(largest_jump, now - before);
+      before = now;
+      std::this_thread::yield();
+    }
+  });
+  fit_srbf(btf, {.bytes = kBytes}, progress);
+  done = true;
+  watcher.join();
+  EXPECT_NEAR(progress.fraction(), 0.8, 1e-6);  // the rest is the errors'
+
+  Progress cancelled;
+  std::thread asks([&] {
+    while (cancelled.fraction() < 0.1) std::this_thread::yield();
+    cancelled.cancel();
+  });
+  try {
+    fit_srbf(btf, {.bytes = kBytes}, cancelled);
+    ADD_FAILURE() << "not cancelled";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::cancelled);
+  }
+  asks.join();
+  EXPECT_LT(cancelled.fraction(), 0.8);
+}
+
+}  // namespace
+}  // namespace velour

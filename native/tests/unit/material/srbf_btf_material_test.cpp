@@ -1,0 +1,126 @@
+#include "material/srbf_btf_material.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "sphere/directions.h"
+#include "sphere/random.h"
+#include "support/example_srbf.h"
+#include "support/simd_targets.h"
+
+namespace velour {
+namespace {
+
+struct Evaluator {
+  explicit Evaluator(const SrbfBtf& btf) : material(make_srbf_btf_material(std::make_shared<const SrbfBtf>(btf))) {}
+  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) {
+    material->prepare(wv, site, *point);
+    return material->eval_one(*point, wl).f;
+  }
+  std::shared_ptr<const Material> material;
+  std::unique_ptr<PreparedBrdf> point = std::make_unique<PreparedBrdf>();
+};
+
+SurfaceSite at(float u, float v, const Mat2& footprint = Mat2(0.0f)) { return {.uv = {u, v}, .footprint = footprint}; }
+
+void expect_same(const Rgb& a, const Rgb& b, float tolerance) {
+  EXPECT_NEAR(glm::distance(a, b), 0.0f, tolerance) << a.r << ' ' << a.g << ' ' << a.b << " / " << b.r;
+}
+
+TEST(SrbfBtfMaterial, IsTheDefinitionEverywhere) {
+  for (const Companding companding : {Companding::none, Companding::root}) {
+    const SrbfBtf btf = test::example_srbf(false, companding);
+    test::on_every_simd_target([&] {
+      Evaluator f(btf);
+      for (uint64_t i = 0; i < 100; ++i) {
+        RandomStream random(15, i, 0);
+        const Vec2 uv = random.next2();
+        const Vec3 wl = direction(1.5f * random.next(), 2 * kPi * random.next());
+        const Vec3 wv = direction(1.4f * random.next(), 2 * kPi * random.next());
+        const Rgb expected = test::defined_value(btf, btf.sides[0], 0, uv, {wl, wv});
+        expect_same(f(at(uv.x - 2, uv.y + 5), wv, wl), expected, 1e-3f);
+      }
+    });
+  }
+}
+
+TEST(SrbfBtfMaterial, HasNoSeamWhereTheTileRepeats) {
+  Evaluator f(test::example_srbf());
+  const Vec3 wv = direction(0.2f, 0.3f), wl = direction(0.7f, 2.0f);
+  const float step = 1e-4f;
+  expect_same(f(at(1 - step, 0.4f), wv, wl), f(at(step, 0.4f), wv, wl), 5e-3f);
+  expect_same(f(at(0.3f, -step), wv, wl), f(at(0.3f, step), wv, wl), 5e-3f);
+  expect_same(f(at(0.3f, 0.4f), wv, wl), f(at(7.3f, -2.6f), wv, wl), 1e-4f);
+  // The control: elsewhere in the tile it is something else.
+  EXPECT_GT(glm::distance(f(at(0, 0.4f), wv, wl), f(at(0.25f, 0.4f), wv, wl)), 5e-3f);
+}
+
+TEST(SrbfBtfMaterial, OfAWideFootprintIsTheCoarsestLevel) {
+  const SrbfBtf btf = test::example_srbf();
+  Evaluator f(btf);
+  const Vec3 wv = direction(0.4f, 0.3f), wl = direction(0.7f, 2.0f);
+  const Rgb expected = test::defined_value(btf, btf.sides[0], 2, {0.1f, 0.9f}, {wl, wv});
+  expect_same(f(at(0.1f, 0.9f, Mat2(20.0f)), wv, wl), expected, 1e-3f);
+}
+
+TEST(SrbfBtfMaterial, ShowsItsOtherSideFromBehind) {
+  const SrbfBtf btf = test::example_srbf(true);
+  Evaluator f(btf), one(test::example_srbf());
+  const Vec3 wv = direction(0.3f, 0.6f), wl = direction(0.8f, 4.0f);
+  SurfaceSite site = at(0.5f / 6, 0.5f / 4);
+  const Rgb front = f(site, wv, wl);
+  site.back = true;
+  expect_same(f(site, wv, wl), test::defined_value(btf, btf.sides[1], 0, site.uv, {wl, wv}), 1e-3f);
+  EXPECT_GT(glm::distance(front, f(site, wv, wl)), 1e-2f);
+  EXPECT_EQ(one(site, wv, wl), front);  // one that has no other side shows its own
+}
+
+TEST(SrbfBtfMaterial, IsBlackBelowTheHorizonAndNeverNegative) {
+  SrbfBtf btf = test::example_srbf(false, Companding::none);
+  btf.axes = Mat3(1.0f);
+  for (SrbfLevel& level : btf.sides[0].levels) {
+    for (HalfBits& h : level.value) h |= 0x8000;  // all sums negative
+  }
+  Evaluator negative(btf), f(test::example_srbf());
+  for (const Vec3& wl : sphere_fibonacci(200)) {
+    EXPECT_EQ(negative(at(0.2f, 0.2f), {0, 0, 1}, wl), Rgb(0.0f));
+    if (wl.z > 0) continue;
+    EXPECT_EQ(f(at(0.2f, 0.2f), {0, 0, 1}, wl), Rgb(0.0f));
+  }
+}
+
+TEST(SrbfBtfMaterial, IsFiniteAtTheHorizon) {
+  Evaluator f(test::example_srbf());
+  for (const float z : {1e-2f, 1e-4f}) {
+    const Vec3 w(std::sqrt(1 - z * z), 0, z);
+    for (const Vec3& wl : {w, Vec3(-w.x, 0, z), Vec3(0, 0, 1)}) {
+      const Rgb value = f(at(0.2f, 0.7f), w, wl);
+      EXPECT_TRUE(std::isfinite(value.r + value.g + value.b));
+    }
+  }
+}
+
+TEST(SrbfBtfMaterial, DensitiesIntegrateToOneAndSamplesLieAbove) {
+  Evaluator f(test::example_srbf());
+  constexpr int kDirections = 20000;
+  for (const float theta : {0.0f, 0.9f, 1.4f}) {
+    f.material->prepare(direction(theta, 1), at(0.3f, 0.6f), *f.point);
+    double sum = 0;
+    for (const Vec3& wl : hemisphere_fibonacci(kDirections)) {
+      sum += static_cast<double>(f.material->eval_one(*f.point, wl).pdf);
+    }
+    EXPECT_NEAR(sum * 2 * 3.14159265358979 / kDirections, 1, 0.02) << theta;
+    for (uint64_t i = 0; i < 200; ++i) {
+      const Vec3 wl = f.material->sample_one(*f.point, RandomStream(16, i, 0).next2());
+      EXPECT_NEAR(glm::length(wl), 1.0f, 1e-4f);
+      // Lobes may draw from below; what is drawn above has a density.
+      if (wl.z > 0) {
+        EXPECT_GT(f.material->eval_one(*f.point, wl).pdf, 0.0f);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace velour

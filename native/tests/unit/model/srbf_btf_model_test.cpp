@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "image/exr_tensors.h"
+#include "job/error.h"
+#include "model/model_file.h"
+#include "unit/model/example_model.h"
+
+namespace velour {
+namespace {
+
+Model after_a_round_trip(const Model& model) { return decode_model(encode_model(model), "test.velour"); }
+
+/// The sentence that refuses a model of two sides after `change`.
+template <class Change>
+std::string refusal(const Change& change) {
+  TensorFile file = decode_tensors(encode_model(test::example_srbf_model(true)), "test.velour");
+  change(file);
+  try {
+    decode_model(encode_tensors(file), "test.velour");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// As floats, so that values reach the file that no half float holds.
+auto set(const std::string& part, size_t i, float value) {
+  return [=](TensorFile& file) {
+    file.tensors.at(part).half = false;
+    file.tensors.at(part).data.at(i) = value;
+  };
+}
+
+template <class Change>
+void expect_refused(const Change& change, const std::string& field) {
+  const std::string said = refusal(change);
+  EXPECT_EQ(said.find("test.velour"), 0u) << said;
+  EXPECT_NE(said.find(field), std::string::npos) << said << " should name " << field;
+}
+
+TEST(SrbfBtfModel, SurvivesItsFile) {
+  for (const bool two_sided : {false, true}) {
+    const Model model = test::example_srbf_model(two_sided), back = after_a_round_trip(model);
+    const auto &a = std::get<SrbfBtf>(model.body), &b = std::get<SrbfBtf>(back.body);
+    EXPECT_STREQ(model_kind(back), "srbf-btf");
+    EXPECT_EQ(a.layout, b.layout);
+    EXPECT_EQ(a.grid, b.grid);
+    EXPECT_EQ(a.companding, b.companding);
+    EXPECT_EQ(a.axes, b.axes);
+    ASSERT_EQ(a.sides.size(), b.sides.size());
+    for (size_t s = 0; s < a.sides.size(); ++s) {
+      const SrbfSide &one = a.sides[s], &two = b.sides[s];
+      EXPECT_EQ(one.view_below, two.view_below);
+      EXPECT_EQ(one.light_below, two.light_below);
+      EXPECT_EQ(one.tile_lobes, two.tile_lobes);
+      EXPECT_EQ(one.lobe, two.lobe);
+      ASSERT_EQ(one.lobes.size(), two.lobes.size());
+      for (size_t j = 0; j < one.lobes.size(); ++j) {
+        EXPECT_EQ(one.lobes[j].light, two.lobes[j].light);
+        EXPECT_EQ(one.lobes[j].view, two.lobes[j].view);
+        EXPECT_EQ(one.lobes[j].half, two.lobes[j].half);
+      }
+      ASSERT_EQ(one.levels.size(), two.levels.size());
+      for (size_t l = 0; l < one.levels.size(); ++l) {
+        EXPECT_EQ(one.levels[l].relief, two.levels[l].relief);
+        EXPECT_EQ(one.levels[l].value, two.levels[l].value);
+      }
+    }
+    EXPECT_EQ(encode_model(model), encode_model(back));
+  }
+}
+
+TEST(SrbfBtfModel, KeepsItsRecord) {
+  const BtfRecord record = *after_a_round_trip(test::example_srbf_model()).btf;
+  EXPECT_EQ(record.method, "srbf");
+  EXPECT_EQ(record.psnr_held_out, std::nullopt);
+  EXPECT_EQ(record.evaluations_per_second, 3e6);
+}
+
+TEST(SrbfBtfModel, OfOneBlackLobeSurvives) {
+  SrbfBtf btf = test::example_srbf();
+  SrbfSide& side = btf.sides[0];
+  side.lobes.resize(1);
+  side.tile_lobes = 1;
+  side.lobe = {{{0}, {}, {}}};
+  for (SrbfLevel& level : side.levels) level.value.assign(size_t{level.width} * level.height, HalfBits{0});
+  Model model = test::example_srbf_model();
+  model.body = btf;
+  const Model back = after_a_round_trip(model);
+  EXPECT_EQ(std::get<SrbfBtf>(back.body).sides[0].coefficients(), 1u);
+}
+
+TEST(SrbfBtfModel, MissingOrMisshapenPartsAreNamed) {
+  for (const char* part : {"btf.sides", "btf.axes", "btf.side.0.lobes", "btf.side.0.frames", "btf.side.0.coefficients",
+                           "btf.side.1.relief.0", "btf.side.1.texels.2"}) {
+    expect_refused([part](TensorFile& f) { f.tensors.erase(part); }, part);
+    expect_refused([part](TensorFile& f) { f.tensors[part] = {{3, 5}, std::vector<float>(15, 0.0f)}; }, part);
+  }
+  for (const char* key : {"velour.btf.index", "velour.companding", "velour.btf.record"}) {
+    expect_refused([key](TensorFile& f) { f.attributes.erase(key); }, key);
+    expect_refused([key](TensorFile& f) { f.attributes[key] = "nonsense"; }, key);
+  }
+}
+
+TEST(SrbfBtfModel, LevelsHaveTheShapeOfTheTile) {
+  expect_refused([](TensorFile& f) { std::swap(f.tensors["btf.side.0.relief.0"], f.tensors["btf.side.0.relief.1"]); },
+                 "btf.side.0.relief.0");
+  expect_refused([](TensorFile& f) { std::swap(f.tensors["btf.side.0.texels.0"], f.tensors["btf.side.0.texels.1"]); },
+                 "btf.side.0.texels.0");
+}
+
+TEST(SrbfBtfModel, ValuesThatAreNoNumbersAreNamed) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {nan, infinity}) {
+    expect_refused(set("btf.side.0.lobes", 10, bad), "btf.side.0.lobes[10]");
+    expect_refused(set("btf.side.0.frames", 2, bad), "btf.side.0.frames[2]");
+    expect_refused(set("btf.side.0.coefficients", 3, bad), "btf.side.0.coefficients[3]");
+    expect_refused(set("btf.side.1.relief.0", 7, bad), "btf.side.1.relief.0[7]");
+    expect_refused(set("btf.side.1.texels.1", 9, bad), "btf.side.1.texels.1[9]");
+    expect_refused(set("btf.sides", 1, bad), "btf.sides[1]");
+    expect_refused(set("btf.axes", 4, bad), "btf.axes[4]");
+  }
+  expect_refused(set("btf.side.0.lobes", 10, 2e6f), "btf.side.0.lobes[10]");
+}
+
+TEST(SrbfBtfModel, FiniteValuesThatNoHalfFloatHoldsAreNamed) {
+  expect_refused(set("btf.side.0.relief.0", 3, 1e6f), "btf.side.0.relief.0[3]");
+  expect_refused(set("btf.side.0.texels.0", 3, -1e6f), "btf.side.0.texels.0[3]");
+}
+
+TEST(SrbfBtfModel, FramesAreThoseOfTheTileFirst) {
+  expect_refused(set("btf.side.0.frames", 1, 0.5f), "btf.side.0.frames[1]");
+  expect_refused(set("btf.side.0.frames", 0, 1), "btf.side.0.frames[1]");
+  expect_refused(set("btf.side.0.frames", 4, 0), "btf.side.0.frames[4]");
+}
+
+/// Rows of (axis, lobe): five of axis 0, two of axis 1, one of axis 2.
+TEST(SrbfBtfModel, CoefficientsNameAxesAndLobes) {
+  const char part[] = "btf.side.0.coefficients";
+  expect_refused(set(part, 12, 3), "btf.side.0.coefficients[12]");
+  expect_refused(set(part, 12, -1), "btf.side.0.coefficients[12]");
+  expect_refused(set(part, 12, 1.5f), "btf.side.0.coefficients[12]");
+  expect_refused(set(part, 12, 0), "btf.side.0.coefficients[12]");  // falls back
+  expect_refused(set(part, 11, 5), "btf.side.0.coefficients[11]");  // there are five lobes
+  expect_refused(set(part, 11, -1), "btf.side.0.coefficients[11]");
+  expect_refused(set(part, 11, 0.5f), "btf.side.0.coefficients[11]");
+  expect_refused(set(part, 3, 0), "btf.side.0.coefficients[3]");  // axis 0 has all lobes in order
+  expect_refused(set(part, 8, 1), "btf.side.0.coefficients");     // the last lobe of axis 0 is gone
+}
+
+TEST(SrbfBtfModel, SidesAreAtMostFourOfTwoBits) {
+  expect_refused(set("btf.sides", 3, 2), "btf.sides[3]");
+  expect_refused([](TensorFile& f) { f.tensors["btf.sides"] = {{5, 2}, std::vector<float>(10, 0.0f)}; }, "btf.sides");
+  expect_refused([](TensorFile& f) { f.tensors["btf.sides"] = {{3, 2}, {0, 0, 0, 1, 1, 0}}; }, "btf.side.2");
+}
+
+TEST(SrbfBtfModel, LobesAreAtMostTheirLimit) {
+  expect_refused(
+      [](TensorFile& f) {
+        f.tensors["btf.side.0.lobes"] = {{257, 9}, std::vector<float>(257 * 9)};
+      },
+      "257 lobes");
+}
+
+TEST(SrbfBtfModel, NothingOutsideTheTableMatters) {
+  EXPECT_EQ(refusal([](TensorFile& f) { f.tensors["btf.side.7.lobes"] = {{1}, {1}}; }), "accepted");
+  EXPECT_EQ(refusal([](TensorFile&) {}), "accepted");
+}
+
+}  // namespace
+}  // namespace velour
