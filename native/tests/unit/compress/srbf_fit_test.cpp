@@ -143,11 +143,12 @@ TEST(SrbfFit, RecoversABtfThatIsAModelOverAPlane) {
 }
 
 TEST(SrbfFit, RecoversABtfThatIsAModelOverARelief) {
-  const MemoryBtfWithRelief btf = with_relief(true_model(0.05f));
-  EXPECT_GT(errors_of(fit(btf, {.bytes = 5000}).btf, btf).psnr, 34);
+  constexpr float kHigh = 0.09f;  // a ray at 60 degrees is displaced by up to two texels
+  const MemoryBtfWithRelief btf = with_relief(true_model(kHigh));
+  EXPECT_GT(errors_of(fit(btf, {.bytes = 5000}).btf, btf).psnr, 35);
   // The control: the same without its relief.
-  const test::MemoryBtf flat = images_of(true_model(0.05f));
-  EXPECT_LT(errors_of(fit(flat, {.bytes = 5000}).btf, flat).psnr, 31);
+  const test::MemoryBtf flat = images_of(true_model(kHigh));
+  EXPECT_LT(errors_of(fit(flat, {.bytes = 5000}).btf, flat).psnr, 26);
 }
 
 TEST(SrbfFit, KeepsToItsBytes) {
