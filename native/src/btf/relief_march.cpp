@@ -59,8 +59,8 @@ struct Sounding {
   float when, gap;
 };
 
-/// The first is above the surface, the second is not. Where their chord meets it, once more: a step may cross the edges of
-/// texels, at which the surface bends.
+/// The first is above the surface, the second is not. Where their chord meets it, once more: a step may cross the edges
+/// of texels, at which the surface bends.
 HWY_INLINE float refined(const ReliefMarch& m, Sounding above, Sounding below) {
   const hn::CappedTag<float, 1> d;
   const auto chord = [&] { return above.when + (below.when - above.when) * (above.gap / (above.gap - below.gap)); };
