@@ -19,7 +19,8 @@ Vec2 interpolated_slope(const Relief& relief, const BilinearTexels& texels) {
 
 float interpolated_height(const Relief& relief, const BilinearTexels& texels) {
   float height = 0;
-  for (size_t i = 0; i < 4; ++i) height += texels.weight[i] * relief.height_of(texels.index[i] % relief.width(), texels.index[i] / relief.width());
+  for (size_t i = 0; i < 4; ++i)
+    height += texels.weight[i] * relief.height_of(texels.index[i] % relief.width(), texels.index[i] / relief.width());
   return height;
 }
 
