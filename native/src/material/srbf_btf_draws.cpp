@@ -13,9 +13,9 @@ namespace velour {
 namespace {
 
 // By the variance of even light over places and views of a glossy weave and of gravel: of 6 to 13, 45 to 60 degrees,
-// and shares of 0.1 to 0.2, the least or next to it for both. Nineteen lobes gain a tenth more and cost three times the
+// the least or next to it for both. Nineteen lobes gain a tenth more and cost three times the
 // evaluations.
-constexpr float kBandwidth = 8.0f, kTilt = 0.85f, kDefensiveShare = 0.15f;
+constexpr float kBandwidth = 8.0f, kTilt = 0.85f;
 constexpr int kBroad = 7, kHalf = kBroad, kLobes = kBroad + 1;
 constexpr float kLeastCosine = 0.05f;  // of the view to the relief's normal: below it there is no highlight to speak of
 
@@ -81,7 +81,7 @@ std::array<float, kLobes> masses(const SrbfEvaluator& evaluator, const SrbfPoint
 }
 
 void fill_mixture(const SrbfPoint& point, const std::array<float, kLobes>& mass, float half_bandwidth,
-                  WarpedMixture& m) {
+                  float cosine_share, WarpedMixture& m) {
   float all = 0;
   for (const float x : mass) all += x;
   m.count = kLobes;
@@ -91,7 +91,7 @@ void fill_mixture(const SrbfPoint& point, const std::array<float, kLobes>& mass,
   m.wv = point.wv;
   m.list_all();
   // Where nothing is seen under any of the lights asked for, the cosine alone.
-  const float cosine = all > 0 ? kDefensiveShare : 1.0f;
+  const float cosine = all > 0 ? cosine_share : 1.0f;
   m.sums[WarpedMixture::kSums - 2] = 0;
   m.sums[WarpedMixture::kSums - 1] = cosine;
   const Vec3 normal = normal_at(point);
@@ -118,12 +118,12 @@ class EvenLight {
     for (uint32_t i = 0; i < kPlaces; ++i) add_place(side, i);
   }
 
-  double cost(float half_bandwidth) const {
+  double cost(float half_bandwidth, float cosine_share) const {
     double cost = 0;
     for (const Place& place : places_) {
       const auto mass = masses(evaluator_, *place.point, half_bandwidth);
       WarpedMixture mixture;
-      fill_mixture(*place.point, mass, half_bandwidth, mixture);
+      fill_mixture(*place.point, mass, half_bandwidth, cosine_share, mixture);
       double first = 0, second = 0;
       for (size_t l = 0; l < light_.size(); ++l) {
         Rgb none;
@@ -167,15 +167,18 @@ SrbfBtfDraws::SrbfBtfDraws(const SrbfEvaluator& evaluator, uint32_t side) {
   const EvenLight even(evaluator, side);
   double least = std::numeric_limits<double>::infinity();
   for (const float bandwidth : {0.0f, 15.0f, 30.0f, 60.0f, 120.0f, 240.0f, 480.0f}) {
-    const double cost = even.cost(bandwidth);
-    if (!(cost < least)) continue;
-    least = cost;
-    half_bandwidth_ = bandwidth;
+    for (const float share : {1.0f, 0.7f, 0.4f, 0.2f, 0.1f}) {
+      const double cost = even.cost(bandwidth, share);
+      if (!(cost < least)) continue;
+      least = cost;
+      half_bandwidth_ = bandwidth;
+      cosine_share_ = share;
+    }
   }
 }
 
 void SrbfBtfDraws::fill(const SrbfEvaluator& evaluator, const SrbfPoint& point, WarpedMixture& mixture) const {
-  fill_mixture(point, masses(evaluator, point, half_bandwidth_), half_bandwidth_, mixture);
+  fill_mixture(point, masses(evaluator, point, half_bandwidth_), half_bandwidth_, cosine_share_, mixture);
 }
 
 void SrbfBtfDraws::propose(const WarpedMixture& mixture, ProposalLobes& lobes) {

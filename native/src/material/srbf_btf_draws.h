@@ -14,8 +14,8 @@ namespace velour {
 /// thread-safe.
 class SrbfBtfDraws {
  public:
-  /// Chooses the bandwidth of the half vector's lobe: of a few, the one of the least variance under even light, over
-  /// random places and views.
+  /// Chooses the bandwidth of the half vector's lobe and the share of the cosine, which alone is best for a diffuse
+  /// surface without shadows: of a few, those of the least variance under even light, over random places and views.
   SrbfBtfDraws(const SrbfEvaluator& evaluator, uint32_t side);
 
   /// Fills the density of `mixture` for a finished point; its value is 0. No allocation.
@@ -26,7 +26,7 @@ class SrbfBtfDraws {
   float half_bandwidth() const { return half_bandwidth_; }
 
  private:
-  float half_bandwidth_ = 0;
+  float half_bandwidth_ = 0, cosine_share_ = 1;
 };
 
 }  // namespace velour
