@@ -52,10 +52,10 @@ class ModelImages {
 std::pair<ModelBody, uint64_t> fitted(const BtfMeasurement& measurement, const CompressOptions& options,
                                       Progress& progress) {
   if (options.method == CompressMethod::svd) {
-    SvdFit fit = fit_svd(measurement, {options.bytes, options.companding, options.seed, options.threads}, progress);
+    SvdFit fit = fit_svd(measurement, options, progress);
     return {std::move(fit.btf), fit.not_finite};
   }
-  SrbfFit fit = fit_srbf(measurement, {options.bytes, options.companding, options.seed, options.threads}, progress);
+  SrbfFit fit = fit_srbf(measurement, options, progress);
   return {std::move(fit.btf), fit.not_finite};
 }
 

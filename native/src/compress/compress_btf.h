@@ -13,12 +13,8 @@ namespace velour {
 
 enum class CompressMethod : uint8_t { svd = 0, srbf = 1 };
 
-struct CompressOptions {
+struct CompressOptions : BtfFitOptions {
   CompressMethod method = CompressMethod::srbf;
-  uint64_t bytes = 0;  // of all coefficients at most; 0: a two-hundredth of the measurement, or a few components
-  Companding companding = Companding::root;
-  uint64_t seed = 0;
-  int threads = 0;                                 // 0: all
   std::shared_ptr<const BtfMeasurement> held_out;  // pairs that no fit has seen; null: none
   /// Leave out what these scenes do not resolve (scene_reduction.h); null: the model serves any scene.
   std::shared_ptr<const SceneObservation> for_scene;

@@ -64,7 +64,7 @@ std::vector<HalfBits> halves_of(const Values& values, size_t count) {
 class SideFitter {
  public:
   SideFitter(const BtfMeasurement& measurement, CompandedViews& views, const SideDirections& side,
-             const SrbfOptions& options, size_t coefficients, Progress& progress)
+             const BtfFitOptions& options, size_t coefficients, Progress& progress)
       : grid_(measurement.grid()),
         views_(views),
         side_(side),
@@ -131,7 +131,7 @@ class SideFitter {
   const TexelGrid& grid_;
   CompandedViews& views_;
   const SideDirections& side_;
-  const SrbfOptions& options_;
+  const BtfFitOptions& options_;
   size_t coefficients_;
   Progress& progress_;
   std::vector<Relief> relief_;
@@ -149,7 +149,7 @@ std::vector<SideDirections> sides_to_fit(const BtfMeasurement& measurement, Comp
 
 }  // namespace
 
-SrbfFit fit_srbf(const BtfMeasurement& measurement, const SrbfOptions& options, Progress& progress) {
+SrbfFit fit_srbf(const BtfMeasurement& measurement, const BtfFitOptions& options, Progress& progress) {
   if (!measurement.layout().complete()) {
     throw Error(Status::unsupported, "A model needs every view under every light; the BTF has " +
                                          std::to_string(measurement.layout().pairs()) + " pairs alone.");

@@ -4,16 +4,10 @@
 #include <cstdint>
 
 #include "btf/srbf_btf.h"
+#include "compress/btf_fit_options.h"
 #include "job/progress.h"
 
 namespace velour {
-
-struct SrbfOptions {
-  uint64_t bytes = 0;  // of all coefficients, heights and lobes at most; 0: a two-hundredth of the measurement
-  Companding companding = Companding::root;
-  uint64_t seed = 0;
-  int threads = 0;  // 0: all
-};
 
 struct SrbfFit {
   SrbfBtf btf;
@@ -23,6 +17,6 @@ struct SrbfFit {
 /// Lobes that all texels share are chosen and refined by what random points of the surface show, then the texels of
 /// every level are solved for, each level from the coarser one. Deterministic. Throws Error(invalid_argument) when
 /// `bytes` hold not one coefficient, Error(unsupported) for a layout that is not complete.
-SrbfFit fit_srbf(const BtfMeasurement& measurement, const SrbfOptions& options, Progress& progress);
+SrbfFit fit_srbf(const BtfMeasurement& measurement, const BtfFitOptions& options, Progress& progress);
 
 }  // namespace velour

@@ -52,7 +52,7 @@ struct AxisSketch {
 
 class SvdSolver {
  public:
-  SvdSolver(const BtfMeasurement& measurement, const SvdOptions& options, Progress& progress)
+  SvdSolver(const BtfMeasurement& measurement, const BtfFitOptions& options, Progress& progress)
       : measurement_(measurement),
         options_(options),
         progress_(progress),
@@ -209,7 +209,7 @@ class SvdSolver {
   }
 
   const BtfMeasurement& measurement_;
-  const SvdOptions& options_;
+  const BtfFitOptions& options_;
   Progress& progress_;
   CompandedViews views_;
   std::array<AxisSketch, 3> sketch_;
@@ -221,7 +221,7 @@ class SvdSolver {
 
 }  // namespace
 
-SvdFit fit_svd(const BtfMeasurement& measurement, const SvdOptions& options, Progress& progress) {
+SvdFit fit_svd(const BtfMeasurement& measurement, const BtfFitOptions& options, Progress& progress) {
   if (!measurement.layout().complete()) {
     throw Error(Status::unsupported, "A decomposition needs every view under every light; the BTF has " +
                                          std::to_string(measurement.layout().pairs()) + " pairs alone.");

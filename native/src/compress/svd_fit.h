@@ -4,16 +4,10 @@
 #include <cstdint>
 
 #include "btf/factored_btf.h"
+#include "compress/btf_fit_options.h"
 #include "job/progress.h"
 
 namespace velour {
-
-struct SvdOptions {
-  uint64_t bytes = 0;  // of all coefficients at most; 0: a two-hundredth of the measurement, 8 components at least
-  Companding companding = Companding::root;
-  uint64_t seed = 0;
-  int threads = 0;  // 0: all
-};
 
 struct SvdFit {
   FactoredBtf btf;
@@ -23,7 +17,7 @@ struct SvdFit {
 /// The components of most energy over the three axes, by randomised range finding with two power iterations ([HMT11],
 /// Alg. 4.4): after them the loss against the exact decomposition is far below what is cut off. Coarse levels are
 /// projections of the filtered measurement, not filtered coefficients: means are kept whatever the companding.
-/// Deterministic. Throws Error(invalid_argument) when `bytes` hold not one component.
-SvdFit fit_svd(const BtfMeasurement& measurement, const SvdOptions& options, Progress& progress);
+/// Deterministic. Without `bytes`, at least 8 components. Throws Error(invalid_argument) when `bytes` hold not one.
+SvdFit fit_svd(const BtfMeasurement& measurement, const BtfFitOptions& options, Progress& progress);
 
 }  // namespace velour

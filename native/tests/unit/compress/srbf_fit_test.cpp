@@ -20,7 +20,7 @@ namespace {
 
 constexpr uint64_t kBytes = 3000;
 
-SrbfFit fit(const BtfMeasurement& btf, const SrbfOptions& options) {
+SrbfFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
   Progress progress;
   return fit_srbf(btf, options, progress);
 }

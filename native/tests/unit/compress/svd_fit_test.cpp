@@ -18,7 +18,7 @@ const TexelGrid kGrid{12, 10};
 
 PairLayout small_layout() { return {ring_directions(30, 5), ring_directions(50, 7)}; }
 
-SvdFit fit(const BtfMeasurement& btf, const SvdOptions& options) {
+SvdFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
   Progress progress;
   return fit_svd(btf, options, progress);
 }
