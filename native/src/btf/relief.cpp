@@ -42,4 +42,12 @@ Vec2 Relief::slope(uint32_t x, uint32_t y) const {
   return steepness > kSteepest ? slope * (kSteepest / steepness) : slope;
 }
 
+Vec2 Relief::slope(const BilinearTexels& texels) const {
+  Vec2 sum(0.0f);
+  for (size_t i = 0; i < 4; ++i) {
+    sum += texels.weight[i] * slope(texels.index[i] % width_, texels.index[i] / width_);
+  }
+  return sum;
+}
+
 }  // namespace velour

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "btf/bilinear_texels.h"
 #include "sphere/vec.h"
 
 namespace velour {
@@ -25,6 +26,8 @@ class Relief {
   /// (-dz/dx, -dz/dy) at the centre of a texel, over two texels: the normal is along (x, y, 1). Steeper than
   /// kSteepest is cut to that.
   Vec2 slope(uint32_t x, uint32_t y) const;
+  /// The same between texels.
+  Vec2 slope(const BilinearTexels& texels) const;
   static constexpr float kSteepest = 3.0f;
 
   uint32_t width() const { return width_; }

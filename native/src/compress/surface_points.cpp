@@ -9,14 +9,6 @@ namespace {
 
 constexpr float kSeenWithin = 0.75f;  // texels
 
-Vec2 interpolated_slope(const Relief& relief, const BilinearTexels& texels) {
-  Vec2 slope(0.0f);
-  for (size_t i = 0; i < 4; ++i) {
-    slope += texels.weight[i] * relief.slope(texels.index[i] % relief.width(), texels.index[i] / relief.width());
-  }
-  return slope;
-}
-
 float interpolated_height(const Relief& relief, const BilinearTexels& texels) {
   float height = 0;
   for (size_t i = 0; i < 4; ++i)
@@ -36,7 +28,7 @@ class PointSampler {
       SurfacePoint& point = points_[i];
       point.place = random.next2();
       const BilinearTexels texels = texels_at(point.place);
-      point.to_normal = to_normal(normal_of(interpolated_slope(relief, texels)));
+      point.to_normal = to_normal(normal_of(relief.slope(texels)));
       height_.push_back(interpolated_height(relief, texels));
     }
   }

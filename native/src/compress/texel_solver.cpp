@@ -39,7 +39,7 @@ TexelSolver::TexelSolver(const SideDirections& side, const SharedLobes& lobes, c
     }
   }
   data_.setZero(Eigen::Index{relief.width()} * relief.height(), static_cast<Eigen::Index>(column_.size()));
-  average_gram();
+  set_coordinates();
 }
 
 std::vector<TexelSolver::Place> TexelSolver::places(size_t view) const {
@@ -51,11 +51,7 @@ std::vector<TexelSolver::Place> TexelSolver::places(size_t view) const {
                        (static_cast<float>(row) + 0.5f) / static_cast<float>(height));
       Place& at = places[row * width + x];
       at.texels = bilinear_texels(relief_.seen(place, side_.view[view]), width, height);
-      Vec2 slope(0.0f);
-      for (size_t i = 0; i < 4; ++i) {
-        slope += at.texels.weight[i] * relief_.slope(at.texels.index[i] % width, at.texels.index[i] / width);
-      }
-      at.to_normal = to_normal(normal_of(slope));
+      at.to_normal = to_normal(normal_of(relief_.slope(at.texels)));
     }
   });
   return places;
@@ -143,7 +139,8 @@ void TexelSolver::gather(const float* padded, float* compact) const {
   for (size_t k = 0; k < column_.size(); ++k) compact[k] = padded[column_[k]];
 }
 
-void TexelSolver::average_gram() {
+/// From the mean of the products of any two lobes over sampled texels and pairs.
+void TexelSolver::set_coordinates() {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(stride_, stride_);
   AlignedFloats values(stride_);
   const Eigen::Map<const Eigen::VectorXf> value(values.data(), stride_);
@@ -163,14 +160,13 @@ void TexelSolver::average_gram() {
       count += side_.light.size();
     }
   }
-  gram_ = sum / static_cast<double>(count);
+  const Eigen::MatrixXd mean = sum / static_cast<double>(count);
   for (size_t a = 0, k = 0; a < 3; ++a) {
     const auto n = static_cast<Eigen::Index>(lobes_.lobe[a].size());
     Eigen::MatrixXd gram(n, n);
     for (Eigen::Index i = 0; i < n; ++i) {
       for (Eigen::Index j = 0; j < n; ++j) {
-        gram(i, j) =
-            gram_(column_[k + static_cast<size_t>(i)] % stride_, column_[k + static_cast<size_t>(j)] % stride_);
+        gram(i, j) = mean(column_[k + static_cast<size_t>(i)] % stride_, column_[k + static_cast<size_t>(j)] % stride_);
       }
     }
     gram.diagonal().array() += kRidge;

@@ -24,9 +24,6 @@ class TexelSolver {
   /// [texel][coefficient], from a start of the same shape.
   RowMatrix solve(const RowMatrix& start, int steps, const std::function<void(int)>& after_step);
 
-  /// The mean of the products of any two lobes over sampled texels and pairs, from which coordinates are made.
-  const Eigen::MatrixXd& gram() const { return gram_; }
-
  private:
   struct Place;  // where texels of a view are seen
   std::vector<Place> places(size_t view) const;
@@ -34,7 +31,7 @@ class TexelSolver {
   void accumulate(size_t view, const Values& values_of, RowMatrix& sums) const;
   RowMatrix normal_product(const RowMatrix& coefficient) const;
   RowMatrix whitened(const RowMatrix& m) const;
-  void average_gram();
+  void set_coordinates();
   void spread(const float* compact, float* padded) const;
   void gather(const float* padded, float* compact) const;
 
@@ -44,9 +41,8 @@ class TexelSolver {
   int threads_;
   const Progress& progress_;
   MultivariateLobes tile_, texel_;
-  uint32_t stride_;               // of a row of lobes, padded
-  std::vector<uint32_t> column_;  // of each coefficient in [axis][padded lobe]
-  Eigen::MatrixXd gram_;
+  uint32_t stride_;                        // of a row of lobes, padded
+  std::vector<uint32_t> column_;           // of each coefficient in [axis][padded lobe]
   std::array<Eigen::MatrixXf, 3> whiten_;  // symmetric: inverse roots of the axes' Gram matrices
   RowMatrix data_;                         // moments of the data with each coefficient's function
 };
