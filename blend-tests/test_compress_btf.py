@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-from support import scenes
+from support import inputs, scenes
 from support.blender import BlenderTest
 
 _SMALL = {"texels": 16, "views": 24, "lights": 24, "samples": 16, "bounces": 0, "sides": "ONE"}
@@ -35,6 +35,40 @@ class CompressBtf(BlenderTest):
         self.assertGreater(
             scenes.velour_node(bpy.data.materials["ribs.001"]).image.packed_file.size, small + 40000
         )
+
+    def _model_info(self, name="ribs"):
+        image = scenes.velour_node(bpy.data.materials[name]).image
+        with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
+            return model.info()
+
+    def test_the_smallest_model_within_an_error(self):
+        self._captured()
+        tile = bpy.context.object
+        bpy.ops.velour.compress_btf(tolerance=0.3)
+        info = self._model_info()
+        self.assertAlmostEqual(tile.velour.tolerance, 0.3)  # the tile keeps what was given
+        self.assertLessEqual(info["relative_l2"], 0.3)
+        self.assertEqual(tile.velour.model, scenes.velour_node(bpy.data.materials["ribs"]).image)
+        self.assertGreater(len(info["order"]["lobes"]), 3)
+        tile.velour.tolerance = 0.2
+        bpy.ops.velour.compress_btf()
+        closer = self._model_info("ribs.001")
+        self.assertLessEqual(closer["relative_l2"], 0.2)
+        self.assertGreater(closer["parameter_bytes"], info["parameter_bytes"])
+
+    def test_pairs_to_judge_by_are_captured_beside_the_btf(self):
+        bpy.ops.velour.add_mesostructure(type="CORDUROY", count=2, resolution=8)
+        bpy.context.object.velour.held_out = 8
+        folder = self.folder / "ribs.btf"
+        bpy.ops.velour.capture_btf(directory=str(folder), **_SMALL)
+        self.assertTrue((folder / "btf.json").is_file())
+        self.assertTrue((self.folder / "ribs.held-out.btf" / "btf.json").is_file())
+        bpy.ops.velour.compress_btf(megabytes=0.03)
+        self.assertGreater(self._model_info()["psnr_held_out"], 5)
+        # The control: not asked for.
+        bpy.context.object.velour.held_out = 0
+        bpy.ops.velour.compress_btf(megabytes=0.03)
+        self.assertIsNone(self._model_info("ribs.001")["psnr_held_out"])
 
     def test_the_material_renders_on_another_object_under_its_texture_coordinates(self):
         folder = self._captured()

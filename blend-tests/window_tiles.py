@@ -14,7 +14,7 @@ def start(folder):
         bpy.utils.unregister_class(panel)
         panel.bl_options = set()  # open, to be looked at
         bpy.utils.register_class(panel)
-    window.run(folder, (add_and_repeat, another_type, capture_and_cancel, capture))
+    window.run(folder, (add_and_repeat, another_type, capture_and_cancel, capture, material))
 
 
 def _clear_view():
@@ -123,3 +123,18 @@ def capture(folder):
     assert (path / "btf.json").is_file()
     yield from window.show_properties("COLLECTION")
     window.screenshot(folder, "collection-panel")
+
+
+def material(folder):
+    """The panel shows what a material was asked for, and its curve."""
+    tile = yield from _tile_in_properties("OBJECT")
+    path = folder / "material.btf"
+    with window.override():
+        bpy.ops.velour.capture_btf(directory=str(path), texels=8, views=12, lights=12, samples=4, held_out=0)
+        bpy.ops.velour.compress_btf(tolerance=0.2)
+    yield 0.7  # the model is read between two redraws
+    assert tile.velour.model is not None
+    yield 0.7
+    shown = window.screenshot(folder, "tile-panel-curve")
+    orange = (shown[..., 0] > 0.8) & (shown[..., 2] < 0.4) & (abs(shown[..., 1] - 0.6) < 0.1)
+    assert orange.sum() > 20, "no chosen point"

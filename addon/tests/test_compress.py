@@ -10,8 +10,8 @@ from velour.native import Btf, Model, images
 
 COUNTS = {"srbf": ["lobes", "coefficients"], "svd": ["components"]}
 COMPRESS_KEYS = [
-    "bytes", "parameter_bytes", "ratio", "psnr", "psnr_held_out", "ser", "p99", "evaluations_per_second",
-    "seconds", "warnings",
+    "bytes", "parameter_bytes", "ratio", "psnr", "psnr_held_out", "ser", "relative_l2", "p99",
+    "evaluations_per_second", "seconds", "warnings", "tolerance", "order", "search",
 ]  # fmt: skip
 BYTES = {"srbf": 12000, "svd": 60000}
 LIGHTS = 40
@@ -177,7 +177,7 @@ def test_the_model_evaluates_over_the_whole_tile(model):
     [
         (["--bytes", 100], "ask for more"),
         (["--method", "kcta"], "yet"),
-        (["--tolerance", 0.1], "yet"),
+        (["--clusters", 3], "yet"),
     ],
 )
 def test_what_cannot_be_is_refused_with_a_sentence(folder, btf, arguments, word):

@@ -12,20 +12,23 @@ _BACKGROUND, _GRID, _LINE, _CHOSEN = (0.11, 0.11, 0.11), (0.24, 0.24, 0.24), (0.
 _MARGIN = 0.08  # of the side
 
 
-def order_picture(order: dict, side: int = 192) -> np.ndarray:
+def order_picture(order: dict, side: int = 192, against: str = "lobes", tolerance: bool = True) -> np.ndarray:
     """Error over tolerance against lobes, logarithmic: RGBA [side x side x 4] float32, row 0 at the bottom.
 
-    `order` is the library's: lists `lobes` and `worst`, and `chosen`, the point that is marked. The dashed
-    line is the tolerance. Opaque, so that it reads on light and dark themes.
+    `order` is the library's: lists `lobes` (or what it is drawn `against`) and `worst`, and `chosen`, the
+    point that is marked. The dashed line is the `tolerance`, where there is one. Opaque, so that it reads on
+    light and dark themes.
     """
-    x = _logarithms(order["lobes"])
+    x = _logarithms(order[against])
     y = _logarithms(order["worst"])
-    low, high = min(0.0, *y), max(0.0, *y)  # the tolerance, log 1, is always in view
+    # The tolerance, log 1, is always in view.
+    low, high = (min(0.0, *y), max(0.0, *y)) if tolerance else (min(y), max(y))
     picture = _Canvas(side)
     points = [(picture.place(a, x[0], x[-1]), picture.place(b, low, high)) for a, b in zip(x, y, strict=True)]
-    level = picture.place(0.0, low, high)
-    for dash in range(0, side, 8):
-        picture.line((dash, level), (dash + 3, level), _GRID, 1.0)
+    if tolerance:
+        level = picture.place(0.0, low, high)
+        for dash in range(0, side, 8):
+            picture.line((dash, level), (dash + 3, level), _GRID, 1.0)
     for start, end in pairwise(points):
         picture.line(start, end, _LINE, 1.5)
     for number, point in enumerate(points):

@@ -62,7 +62,8 @@ def export_btf_job(btf: Btf, path: str | os.PathLike) -> Job:
 
 
 def compress_job(btf: Btf, **options) -> Job:
-    """Options: method (table.COMPRESS_METHODS), companding (table.COMPANDINGS), bytes, seed, threads,
+    """Options: method (table.COMPRESS_METHODS), companding (table.COMPANDINGS), tolerance, bytes, seed,
+    threads, memory, checkpoint (a file that finished stages are kept in until the fit succeeds) and resume,
     held_out (a Btf of pairs that the fit does not see); for_scene (an Observation) and full_model (a Model)
     leave out what scenes do not resolve. Result: result_model()."""
     raw = table.CompressOptions()
@@ -70,6 +71,8 @@ def compress_job(btf: Btf, **options) -> Job:
     for name, names in (("method", table.COMPRESS_METHODS), ("companding", table.COMPANDINGS)):
         if name in options:
             options[name] = choice(name, options[name], names)
+    if "checkpoint" in options:
+        options["checkpoint"] = path_bytes(options["checkpoint"])
     for name in {"held_out", "for_scene", "full_model"} & options.keys():
         options[name] = options[name].pointer
     set_fields(raw, options)

@@ -99,6 +99,10 @@ class CompressOptions(Struct):
         ("held_out", c_void_p),
         ("for_scene", c_void_p),
         ("full_model", c_void_p),
+        ("tolerance", c_double),
+        ("memory", c_uint64),
+        ("checkpoint", c_char_p),
+        ("resume", c_int32),
     ]
 
 

@@ -51,17 +51,24 @@ class BackgroundJob:
 
 
 class OneJob(BackgroundJob):
-    """Mixin of an operator that is one job of the library.
+    """Mixin of an operator that is one job of the library, or a few one after the other.
 
     `_begin(context)` starts `_job` and sets `_subject`, `_finish()` takes the result, `_what` is its name.
     """
+
+    def _goes_on(self):
+        """Starts the next job as `_job`, where there is one."""
+        return False
 
     def execute(self, context):
         """Waits for the result."""
         try:
             self._begin(context)
-            self._job.wait(console_progress() if bpy.app.background else None)
-            return self._finish()
+            while True:
+                self._job.wait(console_progress() if bpy.app.background else None)
+                result = self._finish()
+                if not self._goes_on():
+                    return result
         except (ExportError, VelourError) as error:
             return self._fail(error)
 
@@ -85,8 +92,11 @@ class OneJob(BackgroundJob):
                 state = self._job.poll()
                 self._show(context, state.stage, state.fraction)
                 return {"PASS_THROUGH"}
+            result = self._finish()
+            if self._goes_on():
+                return {"PASS_THROUGH"}
             self._leave(context)
-            return self._finish()
+            return result
         except (ExportError, VelourError) as error:
             self._leave(context)
             return self._fail(error)

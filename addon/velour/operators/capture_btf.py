@@ -51,6 +51,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     )
 
     _what = "The capture"
+    _later = None  # a job to start when the first has finished
 
     def _begin(self, context):
         tile = find_tile(context, self.collection)
@@ -63,24 +64,33 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         scene, place, self._notes = export_tile(
             tile, context.evaluated_depsgraph_get(), settings.use_approximate
         )
+        options = {
+            "origin": place.origin,
+            "period": place.period,
+            "source": self._subject,
+            "texels": settings.texels,
+            "views": directions(str(settings.views)),
+            "lights": directions(str(settings.lights)),
+            "samples": settings.samples,
+            "bounces": settings.bounces,
+            "sides": settings.sides.lower(),
+            "seed": self.seed,
+            "threads": context.scene.render.threads,
+            "resume": self.resume,
+        }
         with scene:
-            self._job = capture_job(
-                scene,
-                self._folder,
-                origin=place.origin,
-                period=place.period,
-                source=self._subject,
-                texels=settings.texels,
-                views=directions(str(settings.views)),
-                lights=directions(str(settings.lights)),
-                held_out=self.held_out,
-                samples=settings.samples,
-                bounces=settings.bounces,
-                sides=settings.sides.lower(),
-                seed=self.seed,
-                threads=context.scene.render.threads,
-                resume=self.resume,
-            ).start()
+            self._job = capture_job(scene, self._folder, held_out=self.held_out, **options).start()
+            if settings.held_out and not self.held_out:
+                folder = held_out_folder(tile)
+                self._later = folder, capture_job(scene, folder, held_out=settings.held_out, **options)
+
+    def _goes_on(self):
+        """The pairs to judge by, of the tile as it was when the capture began."""
+        if self._later is None:
+            return False
+        (self._folder, self._job), self._later = self._later, None
+        self._job.start()
+        return True
 
     def _folder_of(self, tile):
         if not self.held_out:
@@ -88,6 +98,11 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         if self.directory:
             return os.path.normpath(bpy.path.abspath(self.directory))
         return held_out_folder(tile)
+
+    def _fail(self, error):
+        if self._later is not None:
+            self._later[1].close()
+        return super()._fail(error)
 
     def _finish(self):
         with self._job:

@@ -1,5 +1,6 @@
 """Make a material from a BTF: in the background of a window, or at once without one."""
 
+import contextlib
 import os
 
 import bpy
@@ -8,7 +9,7 @@ from bpy.props import BoolProperty, FloatProperty, StringProperty
 from ..native import Btf, compress_job
 from . import measured
 from .background_job import OneJob
-from .tiles import find_tile, tile_folder
+from .tiles import find_tile, held_out_folder, tile_folder
 
 
 class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
@@ -26,9 +27,18 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
     collection: StringProperty(
         name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}
     )
+    # Where given these replace the settings of the tile, where there is one.
+    tolerance: FloatProperty(
+        name="Largest Error",
+        description="Relative L2 error of the roots of values; the smallest model within it. 0: none",
+        min=0.0,
+        max=0.9,
+        options={"SKIP_SAVE"},
+    )
     megabytes: FloatProperty(
         name="Megabytes",
-        description="Of all coefficients at most; 0: a two-hundredth of the BTF, or a few components",
+        description="Of all coefficients at most; 0: a two-hundredth of the BTF, or a few components; with a"
+        " largest error, whatever it takes",
         min=0.0,
         options={"SKIP_SAVE"},
     )
@@ -41,15 +51,49 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
     _what = "Making the material"
 
     def _begin(self, context):
-        path = self.filepath or tile_folder(find_tile(context, self.collection))
+        tile = None if self.filepath else find_tile(context, self.collection)
+        path = self.filepath or tile_folder(tile)
+        # By name: the owner may be another object after an undo.
+        self._owner = (type(tile.owner), tile.owner.name) if tile else None
         path = os.path.normpath(bpy.path.abspath(path))
         self._subject = os.path.splitext(os.path.basename(path))[0]
         self._path = measured.btf_file(path)
-        with Btf.load(path) as btf:
+        with contextlib.ExitStack() as opened:
+            btf = opened.enter_context(Btf.load(path))
+            held_out = self._held_out(tile, opened)
             self._digest = btf.info()["sha256"]
             self._job = compress_job(
-                btf, bytes=int(self.megabytes * 1e6), threads=context.scene.render.threads
+                btf,
+                tolerance=self._asked(tile, "tolerance"),
+                bytes=int(self._asked(tile, "megabytes") * 1e6),
+                threads=context.scene.render.threads,
+                # Of this session: a fit that was cancelled goes on where it stopped when it is started again.
+                checkpoint=os.path.join(bpy.app.tempdir, f"velour-fit-{self._digest[:32]}"),
+                resume=1,
+                **held_out,
             ).start()
+
+    def _held_out(self, tile, opened):
+        """Pairs to judge by that were captured beside the tile's BTF."""
+        if tile is None or not tile.owner.velour.held_out:
+            return {}
+        folder = held_out_folder(tile)
+        return {"held_out": opened.enter_context(Btf.load(folder))} if os.path.isdir(folder) else {}
+
+    def _asked(self, tile, name):
+        """What was given, or what the tile asks for."""
+        if tile and self.properties.is_property_set(name):
+            setattr(tile.owner.velour, name, getattr(self, name))
+        return getattr(tile.owner.velour if tile else self, name)
+
+    def _remember(self, image):
+        """For the tile's panel."""
+        if self._owner is None:
+            return
+        kind, name = self._owner
+        owner = (bpy.data.objects if issubclass(kind, bpy.types.Object) else bpy.data.collections).get(name)
+        if owner is not None:
+            owner.velour.model = image
 
     def _finish(self):
         with self._job, self._job.result_model() as model:
@@ -58,13 +102,16 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
         node = measured.ensure_node(material)
         node.image = measured.packed_model(data, self._subject)
         node.velour.measurement = measured.measurement_image(self._path, self._digest)
+        self._remember(node.image)
         if not (self.assign and measured.assign(bpy.context, material)):
             material.use_fake_user = True
         for sentence in report["warnings"]:
             self.report({"WARNING"}, sentence)
+        unseen = report["psnr_held_out"]
         self.report(
             {"INFO"},
             f"Material '{material.name}': {len(data) / 1e6:.2f} MB, 1:{report['ratio']:.0f},"
-            f" {report['psnr']:.1f} dB.",
+            f" {report['psnr']:.1f} dB, error {report['relative_l2']:.3f}"
+            + ("." if unseen is None else f"; {unseen:.1f} dB at pairs that it has not seen."),
         )
         return {"FINISHED"}

@@ -1,7 +1,15 @@
 """What makes an object, or a collection, one tile of a mesostructure."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatVectorProperty, IntProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 
 SIDES = (
     ("AUTOMATIC", "As Needed", "Both where light can pass through the tile", 0),
@@ -78,5 +86,42 @@ class VelourTileSettings(bpy.types.PropertyGroup):
     use_approximate: BoolProperty(
         name="Approximate",
         description="Also capture materials that Velour does not render as they are",
+        override=_OVERRIDABLE,
+    )
+    held_out: IntProperty(
+        name="Pairs to Judge By",
+        description="So many pairs of a view and a light are captured beside the BTF, where no model looks:"
+        " they tell how well a model does between the directions it was fitted to. 0: none",
+        min=0,
+        max=4096,
+        default=0,
+        override=_OVERRIDABLE,
+    )
+
+    # What a material is asked for.
+    tolerance: FloatProperty(
+        name="Largest Error",
+        description="The smallest material that differs from the BTF by no more than this part: 0.1 is about"
+        " a tenth of how bright things look. 0: as good as the size allows",
+        min=0.0,
+        max=0.9,
+        default=0.0,
+        precision=3,
+        step=1,
+        override=_OVERRIDABLE,
+    )
+    megabytes: FloatProperty(
+        name="Largest Size (MB)",
+        description="Of the material, at most. 0: a two-hundredth of the BTF; with a largest error, whatever"
+        " it takes",
+        min=0.0,
+        default=0.0,
+        precision=3,
+        override=_OVERRIDABLE,
+    )
+    model: PointerProperty(
+        name="Model",
+        description="That was made of the tile last",
+        type=bpy.types.Image,
         override=_OVERRIDABLE,
     )

@@ -13,6 +13,7 @@ from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.save_model import VELOUR_OT_save_model
 from .order_preview import order_icon
 from .progress import draw_progress
+from .size_curve import draw_size_curve
 from .summaries import model_summary
 from .text import draw_sentence
 
@@ -92,6 +93,7 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
             return
         if "texels" in info:
             draw_rows(self.layout, _btf_rows(info))
+            draw_size_curve(self.layout, info)
         else:
             _draw_numbers(self.layout, info)
             _draw_order(self.layout, info["order"])
@@ -125,6 +127,7 @@ def _btf_rows(info):
         *_btf_terms(info),
         ("Size", f"{info['bytes'] / 1e6:.2f} MB, 1:{info['raw_bytes'] / info['bytes']:.0f}"),
         ("PSNR", f"{info['psnr']:.1f} dB"),
+        ("Error", _relative_error(info["relative_l2"])),
         ("Unseen pairs", "not measured" if unseen is None else f"{unseen:.1f} dB"),
         ("Speed", _evaluations(info["evaluations_per_second"])),
     )
@@ -144,6 +147,10 @@ def _btf_terms(info):
 def _side_name(side):
     seen, lit = ({"above": "front", "below": "back"}[side[key]] for key in ("view", "light"))
     return seen if seen == lit else f"{seen} lit from the {lit}"
+
+
+def _relative_error(error):
+    return "not measured" if error is None else f"{error:.3g}, relative"
 
 
 def _evaluations(rate):

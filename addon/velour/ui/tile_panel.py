@@ -8,6 +8,8 @@ from ..operators.capture_btf import VELOUR_OT_capture_btf
 from ..operators.compress_btf import VELOUR_OT_compress_btf
 from ..operators.repeat_tile import VELOUR_OT_repeat_tile, is_repeated
 from .progress import draw_progress
+from .size_curve import draw_size_curve
+from .summaries import model_summary
 
 
 class TilePanel:
@@ -25,15 +27,25 @@ class TilePanel:
         text = "Hide Repeats" if is_repeated(owner) else "Show Repeated"
         layout.operator(VELOUR_OT_repeat_tile.bl_idname, text=text).collection = collection_name
         column = layout.column(align=True)
-        for name in ("directory", "texels", "views", "lights", "samples", "bounces", "sides"):
+        for name in ("directory", "texels", "views", "lights", "samples", "bounces", "sides", "held_out"):
             column.prop(settings, name)
         column.prop(settings, "use_approximate")
         column.label(text=_size(settings), icon="INFO")
         if not draw_progress(context, layout):
             operator = layout.operator(VELOUR_OT_capture_btf.bl_idname, icon="PLAY")
             operator.collection = collection_name
-            operator = layout.operator(VELOUR_OT_compress_btf.bl_idname, icon="MATERIAL")
-            operator.collection = collection_name
+            self._draw_material(layout, settings, collection_name)
+
+    def _draw_material(self, layout, settings, collection_name):
+        """What a material of the capture is asked for, and what the last one was."""
+        column = layout.column(align=True)
+        column.prop(settings, "tolerance")
+        column.prop(settings, "megabytes")
+        operator = layout.operator(VELOUR_OT_compress_btf.bl_idname, icon="MATERIAL")
+        operator.collection = collection_name
+        info = model_summary(settings.model) if settings.model is not None else None
+        if isinstance(info, dict) and "texels" in info:
+            draw_size_curve(layout, info)
 
 
 class VELOUR_OBJECT_PT_tile(TilePanel, bpy.types.Panel):

@@ -260,22 +260,33 @@ typedef struct vlr_compress_options {
   int32_t method;     /* VLR_COMPRESS_*; SRBF */
   int32_t companding; /* VLR_COMPAND_*: sums of f itself, or of its square root (errors count about as they are seen) */
   uint32_t threads;   /* 0: all */
-  uint64_t bytes;     /* of all coefficients at most; 0: a two-hundredth of the BTF as half floats, or a few */
+  uint64_t bytes;     /* of all coefficients at most; 0: a two-hundredth of the BTF as half floats, or a few; with a
+                       * tolerance: whatever that takes */
   uint64_t seed;
   const vlr_btf* held_out; /* pairs that no fit has seen, of the same texels; NULL: none */
   /* Leave out the levels that no ray of these scenes resolves; observed with a material of the BTF. NULL: for any
    * scene. */
   const vlr_observation* for_scene;
   const vlr_model* full_model; /* with for_scene: the BTF's full model; NULL: it is fitted first */
+  /* Of the relative L2 error of companded values (docs/conventions.md): the smallest model within it. 0: none. */
+  double tolerance;
+  uint64_t memory; /* bytes that the fit may hold at once, the process as it was not counted; 0: no limit */
+  /* Finished stages are kept in this file while the fit runs, written whole or not at all; it is gone after a success.
+   * NULL: nothing is kept. With `resume` what it holds of the same BTF and options is not done again, and the model has
+   * the bits of a fit that was not interrupted; a file of anything else is replaced, with a warning. */
+  const char* checkpoint;
+  int32_t resume;
 } vlr_compress_options;
 VLR_API void vlr_compress_options_init(vlr_compress_options* options);
 /* Fits a model to a BTF; vlr_job_result_model gives it. JSON: bytes, parameter_bytes, ratio (raw half floats / bytes),
- * psnr, psnr_held_out (null without held_out), ser, p99, evaluations_per_second, seconds, warnings; components of an
- * SVD; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest that are left, and scene, as
+ * psnr, psnr_held_out (null without held_out), ser, relative_l2, p99, evaluations_per_second, seconds, warnings,
+ * tolerance, order as of vlr_fit_create_job (lobes: coefficients of a texel, or components; worst: relative_l2 over the
+ * tolerance, or relative_l2 without one), search [{coefficients, parameter_bytes, expected, relative_l2}], the fits in
+ * their order; components of an SVD; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest that are left, and scene, as
  * of vlr_fit_create_job, but with full_texels [x, y] and surface (vlr_observation_info_json) in place of errors; psnr,
  * ser and speed are then those of the full model. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
-/* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, p99, pairs. */
+/* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, relative_l2, p99, pairs. */
 VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);
 /* The same of another BTF of the same texels, interpolated between its own pairs; white is its own 99th percentile. */
 VLR_API vlr_status vlr_btf_compare_btf_create_job(const vlr_btf* btf, const vlr_btf* other, vlr_job** out);

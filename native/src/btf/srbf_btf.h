@@ -37,12 +37,19 @@ struct SrbfSide {
   uint64_t parameter_bytes() const;
 };
 
+/// A side that looks as another one does, within the measurement's noise, and takes no bytes of its own.
+struct SharedSide {
+  bool view_below = false, light_below = false;
+  uint32_t side = 0;  // of `sides`
+};
+
 struct SrbfBtf {
   PairLayout layout;  // that was fitted
   TexelGrid grid;
   Companding companding = Companding::root;
   Mat3 axes{1.0f};  // columns: orthonormal directions in RGB
   std::vector<SrbfSide> sides;
+  std::vector<SharedSide> shared = {};
 
   uint64_t parameter_bytes() const;
 

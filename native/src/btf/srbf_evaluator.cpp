@@ -63,6 +63,9 @@ std::optional<uint32_t> SrbfEvaluator::side(bool view_below, bool light_below) c
     const SrbfSide& side = btf_->sides[i];
     if (side.view_below == view_below && side.light_below == light_below) return i;
   }
+  for (const SharedSide& shared : btf_->shared) {
+    if (shared.view_below == view_below && shared.light_below == light_below) return shared.side;
+  }
   return std::nullopt;
 }
 

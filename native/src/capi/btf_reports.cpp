@@ -4,6 +4,7 @@
 
 #include "capi/json_text.h"
 #include "capi/scene_reports.h"
+#include "model/order_json.h"
 
 namespace velour::capi {
 namespace {
@@ -61,10 +62,14 @@ std::string compression_json(const Model& model, uint64_t file_bytes) {
                    {"psnr", record.psnr},
                    {"psnr_held_out", or_null(record.psnr_held_out)},
                    {"ser", record.ser},
+                   {"relative_l2", record.relative_l2},
                    {"p99", record.p99},
                    {"evaluations_per_second", record.evaluations_per_second},
                    {"seconds", record.seconds},
-                   {"warnings", record.warnings}});
+                   {"warnings", record.warnings},
+                   {"tolerance", record.tolerance},
+                   {"order", order_json(record.order)},
+                   {"search", trials_json(record.search)}});
   if (model.scene) {
     json["texels"] = {grid_of(model)->width, grid_of(model)->height};
     json["scene"] = reduced_json(*model.scene);
@@ -73,7 +78,11 @@ std::string compression_json(const Model& model, uint64_t file_bytes) {
 }
 
 std::string btf_errors_json(const BtfErrors& errors, double p99) {
-  return text({{"psnr", errors.psnr}, {"ser", errors.ser}, {"p99", p99}, {"pairs", errors.pairs}});
+  return text({{"psnr", errors.psnr},
+               {"ser", errors.ser},
+               {"relative_l2", errors.relative_l2},
+               {"p99", p99},
+               {"pairs", errors.pairs}});
 }
 
 }  // namespace velour::capi

@@ -27,7 +27,16 @@ CompressOptions converted(const vlr_compress_options& given) {
     throw Error(Status::invalid_argument, "vlr_compress_options.companding is " + std::to_string(given.companding) +
                                               ", not a VLR_COMPAND value.");
   }
+  if (!(given.tolerance >= 0 && given.tolerance < 1)) {
+    throw Error(Status::invalid_argument,
+                "vlr_compress_options.tolerance is " + std::to_string(given.tolerance) +
+                    "; it must be from 0 (none) to below 1, where a model is worse than none.");
+  }
   CompressOptions options;
+  options.tolerance = given.tolerance;
+  options.memory = given.memory;
+  if (given.checkpoint) options.checkpoint = given.checkpoint;
+  options.resume = given.resume != 0;
   options.method = static_cast<CompressMethod>(given.method);
   options.companding = static_cast<Companding>(given.companding);
   options.bytes = given.bytes;

@@ -128,7 +128,15 @@ Json own_json(const SrbfBtf& btf) {
     json["sides"].push_back({{"view", side.view_below ? "below" : "above"},
                              {"light", side.light_below ? "below" : "above"},
                              {"lobes", {{"tile", side.tile_lobes}, {"texel", side.lobes.size() - side.tile_lobes}}},
-                             {"parameter_bytes", side.parameter_bytes()}});
+                             {"parameter_bytes", side.parameter_bytes()},
+                             {"as", nullptr}});
+  }
+  for (const SharedSide& shared : btf.shared) {
+    json["sides"].push_back({{"view", shared.view_below ? "below" : "above"},
+                             {"light", shared.light_below ? "below" : "above"},
+                             {"lobes", nullptr},
+                             {"parameter_bytes", 0},
+                             {"as", shared.side}});
   }
   return json;
 }
@@ -152,6 +160,7 @@ Json record_json(const FitRecord& fit) {
 /// The same of a BTF.
 Json record_json(const BtfRecord& btf) {
   const bool timed = btf.evaluations_per_second > 0;  // not in files of earlier versions
+  const bool measured = btf.relative_l2 > 0;
   return {{"method", btf.method},
           {"psnr", btf.psnr},
           {"psnr_held_out", or_null(btf.psnr_held_out)},
@@ -161,7 +170,11 @@ Json record_json(const BtfRecord& btf) {
           {"evaluations_per_second", timed ? Json(btf.evaluations_per_second) : Json()},
           {"seconds", btf.seconds},
           {"seed", btf.seed},
-          {"warnings", btf.warnings}};
+          {"warnings", btf.warnings},
+          {"relative_l2", measured ? Json(btf.relative_l2) : Json()},
+          {"tolerance", btf.tolerance},
+          {"order", order_json(btf.order)},
+          {"search", trials_json(btf.search)}};
 }
 
 }  // namespace

@@ -14,12 +14,13 @@ float srgb(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x,
 
 struct Sums {
   double squares = 0, error = 0, energy = 0;
+  double companded_error = 0, companded_energy = 0;
   uint64_t values = 0;
 };
 
-Sums compare_images(std::span<const float> truth, std::span<const float> model, float p99, double cosine) {
+Sums compare_images(std::span<const float> truth, std::span<const float> model, const BtfJudgement& by, double cosine) {
   Sums sums;
-  const float scale = 1 / p99;
+  const float scale = 1 / static_cast<float>(by.p99);
   for (size_t i = 0; i < truth.size(); ++i) {
     if (!std::isfinite(truth[i])) continue;
     const float seen = srgb(std::clamp(truth[i] * scale, 0.0f, 1.0f)) - srgb(std::clamp(model[i] * scale, 0.0f, 1.0f));
@@ -28,6 +29,10 @@ Sums compare_images(std::span<const float> truth, std::span<const float> model, 
     sums.squares += static_cast<double>(seen * seen);
     sums.error += difference * difference;
     sums.energy += value * value;
+    const auto stored = static_cast<double>(companded(by.companding, truth[i]));
+    const double off = stored - static_cast<double>(companded(by.companding, model[i]));
+    sums.companded_error += off * off;
+    sums.companded_energy += stored * stored;
     ++sums.values;
   }
   return sums;
@@ -61,7 +66,7 @@ double percentile_99(const BtfMeasurement& measurement, const Progress& progress
   return static_cast<double>(value);
 }
 
-BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, double p99, int threads,
+BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, const BtfJudgement& by, int threads,
                       Progress& progress) {
   const uint64_t pairs = truth.layout().pairs();
   std::vector<Sums> sums(pairs);
@@ -73,18 +78,21 @@ BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, doub
     const DirectionPair directions = truth.layout().directions(pair);
     images(directions, modelled);
     const auto cosine = static_cast<double>(std::abs(directions.wl.z));
-    sums[pair] = compare_images(measured, modelled, static_cast<float>(p99), cosine);
+    sums[pair] = compare_images(measured, modelled, by, cosine);
   });
   Sums all;
   for (const Sums& s : sums) {
     all.squares += s.squares;
     all.error += s.error;
     all.energy += s.energy;
+    all.companded_error += s.companded_error;
+    all.companded_energy += s.companded_energy;
     all.values += s.values;
   }
-  BtfErrors errors{0, 0, pairs};
+  BtfErrors errors{0, 0, 0, pairs};
   if (all.values > 0) errors.psnr = -10 * std::log10(std::max(all.squares / static_cast<double>(all.values), 1e-30));
   if (all.energy > 0) errors.ser = all.error / all.energy;
+  if (all.companded_energy > 0) errors.relative_l2 = std::sqrt(all.companded_error / all.companded_energy);
   return errors;
 }
 

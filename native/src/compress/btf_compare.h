@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "btf/btf_measurement.h"
+#include "btf/factored_btf.h"
 #include "job/progress.h"
 
 namespace velour {
 
 struct BtfErrors {
-  double psnr = 0;  // dB, of sRGB(clamp(f / p99, 0, 1))
-  double ser = 0;   // sum of squared errors of f cos(theta_l) over the sum of its squares
+  double psnr = 0;         // dB, of sRGB(clamp(f / p99, 0, 1))
+  double ser = 0;          // sum of squared errors of f cos(theta_l) over the sum of its squares
+  double relative_l2 = 0;  // of companded values: root of the sum of squared errors over the sum of squares
   uint64_t pairs = 0;
 };
 
@@ -21,9 +23,15 @@ double percentile_99(const BtfMeasurement& measurement, const Progress& progress
 /// f of every texel for a pair of directions, [row][column][channel].
 using BtfImages = std::function<void(const DirectionPair&, std::vector<float>&)>;
 
-/// Over all pairs of `truth` with equal weight. `p99`: of the measurement that was fitted, also for other pairs.
-/// `images` is called from several threads. Entries of `truth` that are not finite are left out.
-BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, double p99, int threads,
+/// What values are judged by.
+struct BtfJudgement {
+  double p99 = 1;  // white: of the measurement that was fitted, also for other pairs
+  Companding companding = Companding::root;
+};
+
+/// Over all pairs of `truth` with equal weight. `images` is called from several threads. Entries of `truth` that are
+/// not finite are left out.
+BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, const BtfJudgement& by, int threads,
                       Progress& progress);
 
 }  // namespace velour

@@ -8,10 +8,14 @@
 namespace velour {
 
 struct BtfFitOptions {
-  uint64_t bytes = 0;  // of all that is fitted, at most; 0: a two-hundredth of the measurement, or the method's least
+  /// Of all that is fitted, at most; 0: a two-hundredth of the measurement, or the method's least - with a tolerance,
+  /// whatever that takes.
+  uint64_t bytes = 0;
+  double tolerance = 0;  // relative L2 error of companded values that is looked for (BtfErrors); 0: none, all bytes
   Companding companding = Companding::root;
   uint64_t seed = 0;
-  int threads = 0;  // 0: all
+  int threads = 0;      // 0: all
+  uint64_t memory = 0;  // bytes that the fit may hold at once; 0: no limit
 };
 
 }  // namespace velour

@@ -47,10 +47,16 @@ Mat3 CompandedViews::decorrelate() {
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
   std::vector<float> f;
   Planes planes;
+  energies_.clear();
   for (uint32_t v = 0; v < views(); ++v) {
     progress_.check();
     read(v, f);
     this->planes(f, btf_.grid().texels(), planes);
+    for (Eigen::Index row = 0; row < planes[0].rows(); ++row) {
+      float sum = 0;
+      for (const RowMatrix& plane : planes) sum += plane.row(row).squaredNorm();
+      energies_.push_back(static_cast<double>(sum));
+    }
     for (size_t a = 0; a < 3; ++a) {
       for (size_t b = 0; b <= a; ++b) {
         double sum = 0;

@@ -28,6 +28,9 @@ class CompandedViews {
   Mat3 decorrelate();
   void set_axes(const Mat3& axes) { axes_ = axes; }
 
+  /// Sums of squares of the companded values that decorrelate() has read, [view][light] of a complete layout.
+  const std::vector<double>& energies() const { return energies_; }
+
   uint32_t views() const { return static_cast<uint32_t>(btf_.layout().views().size()); }
   uint64_t not_finite() const { return not_finite_; }
 
@@ -38,6 +41,7 @@ class CompandedViews {
   const Progress& progress_;
   Mat3 axes_{1.0f};
   std::vector<HalfBits> halves_;
+  std::vector<double> energies_;
   uint64_t not_finite_ = 0;  // in the views read last: each counts once a pass
 };
 

@@ -1,16 +1,22 @@
 #include "compress/compress_btf.h"
 
 #include <chrono>
+#include <sstream>
 #include <string>
 
 #include "btf/pair_interpolation.h"
 #include "btf/srbf_evaluator.h"
 #include "compress/evaluation_rate.h"
+#include "compress/sized_fit.h"
+#include "compress/srbf_fit.h"
+#include "compress/svd_fit.h"
 #include "job/error.h"
 #include "model/model_material.h"
 
 namespace velour {
 namespace {
+
+constexpr double kSetup = 0.2, kFits = 0.97;  // where parts of the progress end
 
 void require_same_texels(const TexelGrid& a, const TexelGrid& b) {
   if (a.width == b.width && a.height == b.height) return;
@@ -25,11 +31,13 @@ class ModelImages {
   explicit ModelImages(const ModelBody& body) {
     if (const auto* factored = std::get_if<FactoredBtf>(&body)) {
       grid_ = factored->grid;
+      companding_ = factored->companding;
       images_ = [images = std::make_shared<FactoredImages>(*factored)](
                     const DirectionPair& pair, std::vector<float>& rgb) { images->image(pair, rgb); };
     } else {
       const auto& srbf = std::get<SrbfBtf>(body);
       grid_ = srbf.grid;
+      companding_ = srbf.companding;
       images_ = [evaluator = std::make_shared<SrbfEvaluator>(unowned(srbf))](
                     const DirectionPair& pair, std::vector<float>& rgb) { srbf_image(*evaluator, pair, rgb); };
     }
@@ -37,7 +45,7 @@ class ModelImages {
 
   BtfErrors compare(const BtfMeasurement& truth, double p99, int threads, Progress& progress) const {
     require_same_texels(truth.grid(), grid_);
-    return compare_btf(truth, images_, p99, threads, progress);
+    return compare_btf(truth, images_, {p99, companding_}, threads, progress);
   }
 
  private:
@@ -45,18 +53,30 @@ class ModelImages {
   static std::shared_ptr<const SrbfBtf> unowned(const SrbfBtf& btf) { return {std::shared_ptr<const void>(), &btf}; }
 
   TexelGrid grid_;
+  Companding companding_ = Companding::root;
   BtfImages images_;
 };
 
-/// The body of a model and how many entries were left out.
-std::pair<ModelBody, uint64_t> fitted(const BtfMeasurement& measurement, const CompressOptions& options,
-                                      Progress& progress) {
+const char* name_of(CompressMethod method) { return method == CompressMethod::svd ? "svd" : "srbf"; }
+
+std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const CompressOptions& options,
+                                       FitCheckpoint& checkpoint, Progress& progress) {
   if (options.method == CompressMethod::svd) {
-    SvdFit fit = fit_svd(measurement, options, progress);
-    return {std::move(fit.btf), fit.not_finite};
+    return std::make_unique<SvdFitter>(measurement, options, checkpoint, progress);
   }
-  SrbfFit fit = fit_srbf(measurement, options, progress);
-  return {std::move(fit.btf), fit.not_finite};
+  return std::make_unique<SrbfFitter>(measurement, options, checkpoint, progress);
+}
+
+/// Names the measurement and all that the bits of the fit depend on. Whatever changes a fit's numbers changes
+/// kFitVersion.
+std::string checkpoint_key(const BtfMeasurement& measurement, const CompressOptions& options) {
+  constexpr int kFitVersion = 1;
+  std::ostringstream key;
+  key << kFitVersion << ' ' << measurement.provenance().sha256 << ' ' << measurement.raw_bytes() << ' '
+      << name_of(options.method) << ' ' << static_cast<int>(options.companding) << ' ' << options.bytes << ' '
+      << std::hexfloat << options.tolerance << ' ' << options.seed << ' ' << options.memory;
+  for (const auto& [name, value] : measurement.details()) key << '\n' << name << '=' << value;
+  return key.str();
 }
 
 /// f of a model of a BTF.
@@ -77,38 +97,54 @@ BtfValue value_of(const std::shared_ptr<const Model>& model) {
   };
 }
 
-const char* name_of(CompressMethod method) { return method == CompressMethod::svd ? "svd" : "srbf"; }
-
 }  // namespace
 
 Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
   if (options.held_out) require_same_texels(options.held_out->grid(), measurement.grid());
-  const auto start = std::chrono::steady_clock::now();
-  auto [body, not_finite] = fitted(measurement, options, progress);
-  const auto model = std::make_shared<Model>(Model{std::move(body), {}, {}});
+  FitCheckpoint checkpoint({options.checkpoint, checkpoint_key(measurement, options), options.resume});
   BtfRecord record;
-  record.method = name_of(options.method);
+  const auto start = std::chrono::steady_clock::now();
+  const auto fitter = [&] {
+    const Progress::Span setup(progress, 0, kSetup);
+    return make_fitter(measurement, options, checkpoint, progress);
+  }();
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.p99 = percentile_99(measurement, progress);
+  SizedFit found = [&] {
+    const Progress::Span fits(progress, kSetup, kFits);
+    const auto errors_of = [&](const ModelBody& body, Progress& p) {
+      return ModelImages(body).compare(measurement, record.p99, options.threads, p);
+    };
+    return fit_at_size(*fitter, errors_of, {options.tolerance, checkpoint}, progress);
+  }();
+  record.seconds += found.seconds;
+  const auto model = std::make_shared<Model>(Model{std::move(found.body), {}, {}});
+  record.method = name_of(options.method);
   record.seed = options.seed;
   record.raw_bytes = measurement.raw_bytes();
-  if (not_finite > 0) {
-    record.warnings.push_back(std::to_string(not_finite) +
+  if (fitter->not_finite() > 0) {
+    record.warnings.push_back(std::to_string(fitter->not_finite()) +
                               " entries of the BTF are not finite; the mean of their image stands in for them.");
   }
-  progress.stage("errors", 0.8, 0.97);
-  record.p99 = percentile_99(measurement, progress);
-  const ModelImages images(model->body);
-  const BtfErrors errors = images.compare(measurement, record.p99, options.threads, progress);
-  record.psnr = errors.psnr;
-  record.ser = errors.ser;
+  for (const std::string& warning : checkpoint.warnings()) record.warnings.push_back(warning);
+  if (!found.shortfall.empty()) record.warnings.push_back(found.shortfall);
+  record.psnr = found.errors.psnr;
+  record.ser = found.errors.ser;
+  record.relative_l2 = found.errors.relative_l2;
+  record.tolerance = options.tolerance;
+  record.order = std::move(found.order);
+  record.search = std::move(found.trials);
+  progress.stage("unseen pairs", kFits, 1.0);
   if (options.held_out) {
-    progress.stage("unseen pairs", 0.97, 1.0);
+    const ModelImages images(model->body);
     record.psnr_held_out = images.compare(*options.held_out, record.p99, options.threads, progress).psnr;
   }
   record.evaluations_per_second = evaluation_rate(value_of(model));
   const Provenance& source = measurement.provenance();
   model->source = {source.name, source.format, source.sha256};
   model->btf = std::move(record);
+  progress.update(1.0);
+  checkpoint.remove();
   return std::move(*model);
 }
 
@@ -136,7 +172,7 @@ BtfErrors compare_with_table(const BtfMeasurement& truth, const BtfMeasurement& 
       }
     }
   };
-  return compare_btf(truth, image, p99, threads, progress);
+  return compare_btf(truth, image, {.p99 = p99}, threads, progress);
 }
 
 }  // namespace velour

@@ -4,8 +4,7 @@
 #include <memory>
 
 #include "compress/btf_compare.h"
-#include "compress/srbf_fit.h"
-#include "compress/svd_fit.h"
+#include "compress/btf_fit_options.h"
 #include "domain/observation.h"
 #include "model/model.h"
 
@@ -15,6 +14,8 @@ enum class CompressMethod : uint8_t { svd = 0, srbf = 1 };
 
 struct CompressOptions : BtfFitOptions {
   CompressMethod method = CompressMethod::srbf;
+  std::string checkpoint;  // a file that finished stages are kept in until the fit has succeeded; empty: none
+  bool resume = false;     // what it holds is not done again
   std::shared_ptr<const BtfMeasurement> held_out;  // pairs that no fit has seen; null: none
   /// Leave out what these scenes do not resolve (scene_reduction.h); null: the model serves any scene.
   std::shared_ptr<const SceneObservation> for_scene;

@@ -1,72 +1,74 @@
 #include "compress/lobe_pursuit.h"
 
+#include <algorithm>
+
 #include "fit/parallel.h"
 
 namespace velour {
 namespace {
 
 constexpr float kDependent = 1e-3f;  // a column whose part beyond the chosen ones is smaller adds nothing
-
-/// A point on its way: an orthonormal basis of the chosen columns.
-struct Span {
-  Eigen::MatrixXf basis;
-  Eigen::VectorXf norm_sq;  // of the candidates
-
-  Span(const PursuitPoint& point, size_t count)
-      : basis(point.column.rows(), static_cast<Eigen::Index>(count)),
-        norm_sq(point.column.colwise().squaredNorm().transpose()) {}
-
-  void extend(PursuitPoint& point, Eigen::Index step, Eigen::Index candidate) {
-    Eigen::VectorXf column = point.column.col(candidate);
-    const float norm = column.norm();
-    const auto before = basis.leftCols(step);
-    for (int twice = 0; twice < 2; ++twice) column -= before * (before.transpose() * column).eval();
-    const float rest = column.norm();
-    if (rest > kDependent * norm) {
-      column /= rest;
-      point.value -= column * column.dot(point.value);
-    } else {
-      column.setZero();
-    }
-    basis.col(step) = column;
-  }
-};
-
-double energy(const std::vector<PursuitPoint>& points) {
-  double sum = 0;
-  for (const PursuitPoint& p : points) sum += static_cast<double>(p.value.squaredNorm());
-  return sum;
-}
+constexpr Eigen::Index kFirstRoom = 16;
 
 }  // namespace
 
-PursuitChoice pursue(std::vector<PursuitPoint>& points, size_t count, int threads, const Progress& progress) {
-  PursuitChoice choice;
-  choice.all = energy(points);
-  if (points.empty()) return choice;
-  const Eigen::Index candidates = points[0].column.cols();
-  std::vector<Span> spans;
-  for (const PursuitPoint& p : points) spans.emplace_back(p, count);
-  std::vector<Eigen::VectorXf> gain(points.size());
-  Eigen::VectorXf open = Eigen::VectorXf::Ones(candidates);
-  while (choice.order.size() < count) {
-    parallel_pieces(points.size(), threads, progress, [&](size_t i) {
-      const Eigen::VectorXf product = points[i].column.transpose() * points[i].value;
-      // Columns that are all but zero explain nothing, and rounding must not make them.
-      const float least = 1e-6f * static_cast<float>(points[i].value.size());
-      gain[i] = product.array().square() / (spans[i].norm_sq.array() + least);
-    });
-    Eigen::VectorXf total = Eigen::VectorXf::Zero(candidates);
-    for (const Eigen::VectorXf& g : gain) total += g;
-    Eigen::Index best = 0;
-    if (!(total.cwiseProduct(open).maxCoeff(&best) > 0)) break;
-    open[best] = 0;
-    const auto step = static_cast<Eigen::Index>(choice.order.size());
-    parallel_pieces(points.size(), threads, progress, [&](size_t i) { spans[i].extend(points[i], step, best); });
-    choice.order.push_back(static_cast<size_t>(best));
-    choice.left.push_back(energy(points));
+Pursuit::Pursuit(const std::vector<RowMatrix>& columns, std::vector<Eigen::VectorXf> values, int threads)
+    : columns_(columns), rest_(std::move(values)), basis_(columns.size()), threads_(threads) {
+  choice_.all = energy();
+  for (const RowMatrix& m : columns) norm_sq_.emplace_back(m.colwise().squaredNorm().transpose());
+  if (!columns.empty()) open_ = Eigen::VectorXf::Ones(columns[0].cols());
+}
+
+double Pursuit::energy() const {
+  double sum = 0;
+  for (const Eigen::VectorXf& rest : rest_) sum += static_cast<double>(rest.squaredNorm());
+  return sum;
+}
+
+bool Pursuit::step(const Progress& progress) {
+  if (columns_.empty()) return false;
+  std::vector<Eigen::VectorXf> gain(columns_.size());
+  parallel_pieces(columns_.size(), threads_, progress, [&](size_t i) {
+    const Eigen::VectorXf product = columns_[i].transpose() * rest_[i];
+    // Columns that are all but zero explain nothing, and rounding must not make them.
+    const float least = 1e-6f * static_cast<float>(rest_[i].size());
+    gain[i] = product.array().square() / (norm_sq_[i].array() + least);
+  });
+  Eigen::VectorXf total = Eigen::VectorXf::Zero(open_.size());
+  for (const Eigen::VectorXf& g : gain) total += g;
+  Eigen::Index best = 0;
+  if (!(total.cwiseProduct(open_).maxCoeff(&best) > 0)) return false;
+  open_[best] = 0;
+  parallel_pieces(columns_.size(), threads_, progress, [&](size_t i) { extend(i, best); });
+  choice_.order.push_back(static_cast<size_t>(best));
+  choice_.left.push_back(energy());
+  return true;
+}
+
+void Pursuit::extend(size_t point, Eigen::Index candidate) {
+  const auto step = static_cast<Eigen::Index>(choice_.order.size());
+  Eigen::MatrixXf& basis = basis_[point];
+  Eigen::VectorXf column = columns_[point].col(candidate);
+  if (step >= basis.cols()) basis.conservativeResize(column.size(), std::max(kFirstRoom, 2 * basis.cols()));
+  const float norm = column.norm();
+  const auto before = basis.leftCols(step);
+  for (int twice = 0; twice < 2; ++twice) column -= before * (before.transpose() * column).eval();
+  const float rest = column.norm();
+  if (rest > kDependent * norm) {
+    column /= rest;
+    rest_[point] -= column * column.dot(rest_[point]);
+  } else {
+    column.setZero();
   }
-  return choice;
+  basis.col(step) = column;
+}
+
+PursuitChoice pursue(const std::vector<RowMatrix>& columns, std::vector<Eigen::VectorXf> values, size_t count,
+                     int threads, const Progress& progress) {
+  Pursuit pursuit(columns, std::move(values), threads);
+  while (pursuit.choice().order.size() < count && pursuit.step(progress)) {
+  }
+  return pursuit.choice();
 }
 
 }  // namespace velour

@@ -6,6 +6,8 @@
 namespace velour {
 namespace {
 
+constexpr double kFitting = 0.98;  // of the progress, where the full model is fitted first
+
 const SceneObservation& checked(const CompressOptions& options) {
   if (options.for_scene->hits.empty()) {
     throw Error(Status::invalid_argument,
@@ -36,6 +38,7 @@ Model checked_full_model(const BtfMeasurement& measurement, const Model& model) 
 
 Model full_model(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
   if (options.full_model) return checked_full_model(measurement, *options.full_model);
+  const Progress::Span fitting(progress, 0, kFitting);
   return compress_btf(measurement, options, progress);
 }
 
@@ -48,7 +51,7 @@ uint64_t bytes_of(const Model& model) {
 Model compress_for_scene(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
   const SceneObservation& observation = checked(options);
   Model model = full_model(measurement, options, progress);
-  progress.stage("scene", progress.fraction(), 1.0);
+  progress.stage("scene", options.full_model ? 0 : kFitting, 1.0);
   SceneRecord record;
   record.domain = observation.domain;
   record.full_parameter_bytes = bytes_of(model);

@@ -1,7 +1,7 @@
 // The lobes that all texels of a BTF share.
 #pragma once
 
-#include "compress/surface_points.h"
+#include "compress/lobe_order.h"
 
 namespace velour {
 
@@ -12,16 +12,17 @@ struct SharedLobes {
   std::array<std::vector<uint16_t>, 3> lobe;  // of axis 0: all, in order
 };
 
-struct SharedLobeOptions {
-  size_t coefficients = 0;  // of a texel, over the three axes
-  int refinements = 0;      // steps of descent
-  uint64_t seed = 0;
+/// The lobes of the first `coefficients` of an order whose candidates were drawn from `seed`, as they were drawn.
+SharedLobes chosen_lobes(const LobeOrder& order, size_t coefficients, uint64_t seed);
+
+struct LobeRefinement {
+  int steps = 0;  // of descent
   int threads = 0;
 };
 
-/// Chosen greedily among random ones - of light, view, half vector and their products, in both frames -, then refined
-/// together: all their vectors descend the error that is left when every point has its best coefficients (variable
-/// projection [GP73]). The colour axes share the coefficients by what each next one explains.
-SharedLobes choose_lobes(const std::vector<SurfacePoint>& points, const SharedLobeOptions& options, Progress& progress);
+/// Refines them together: all their vectors descend the error that is left when every point has its best coefficients
+/// (variable projection [GP73]). The weaker colour axes choose as many as `share` says anew among what came of them.
+void refine_lobes(const std::vector<SurfacePoint>& points, const std::array<size_t, 3>& share,
+                  const LobeRefinement& options, SharedLobes& lobes, Progress& progress);
 
 }  // namespace velour

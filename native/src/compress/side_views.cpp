@@ -68,15 +68,4 @@ void read_side_view(CompandedViews& views, const TexelGrid& grid, const SideDire
   }
 }
 
-bool is_black(CompandedViews& views, const TexelGrid& grid, const SideDirections& side) {
-  std::vector<LevelImages> images;
-  for (size_t v = 0; v < side.view.size(); ++v) {
-    read_side_view(views, grid, side, v, 1, images);
-    for (const RowMatrix& axis : images[0].value) {
-      if (!axis.isZero(0)) return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace velour

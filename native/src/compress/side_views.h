@@ -27,9 +27,6 @@ struct LevelImages {
 void read_side_view(CompandedViews& views, const TexelGrid& grid, const SideDirections& side, size_t view,
                     size_t levels, std::vector<LevelImages>& images);
 
-/// Whether nothing is seen of a side; reads its views until something is.
-bool is_black(CompandedViews& views, const TexelGrid& grid, const SideDirections& side);
-
 /// [image][row][column][channel] at the next level of the pyramid.
 std::vector<float> halved_images(const std::vector<float>& f, uint32_t width, uint32_t height);
 

@@ -1,14 +1,15 @@
 #include "compress/srbf_fit.h"
 
 #include <algorithm>
-#include <memory>
+#include <cmath>
 #include <string>
 
-#include "btf/bilinear_texels.h"
+#include "compress/fit_memory.h"
+#include "compress/lobe_checkpoint.h"
 #include "compress/relief_pyramid.h"
-#include "compress/shared_lobes.h"
-#include "compress/texel_solver.h"
+#include "compress/texel_levels.h"
 #include "job/error.h"
+#include "job/threads.h"
 
 namespace velour {
 namespace {
@@ -16,157 +17,149 @@ namespace {
 constexpr uint32_t kMostPoints = 400, kLeastPoints = 24, kPairs = 900;  // that lobes are refined by
 constexpr uint64_t kTexelsOfAPoint = 4;  // few texels have little to say: their lobes take less time
 constexpr int kRefinements = 100;
-constexpr int kSteps = 20, kCoarseSteps = 12;  // of the texels' solve: finest level, coarser ones
 constexpr uint64_t kUsualRatio = 200, kUsualLeast = 16;
-
-/// Coefficients of a texel that fit when the sides share the bytes evenly.
-size_t coefficients_within(uint64_t asked, const BtfMeasurement& measurement, size_t sides) {
-  const uint64_t texels = pyramid_texels(measurement.grid());
-  const uint64_t one = sides * (texels * sizeof(HalfBits) + sizeof(MultivariateLobe) + sizeof(uint16_t));
-  const uint64_t relief = sides * texels * sizeof(HalfBits);
-  const uint64_t bytes =
-      asked > 0 ? asked : std::max(measurement.raw_bytes() / kUsualRatio, kUsualLeast * one + relief);
-  if (bytes < one + relief) {
-    throw Error(Status::invalid_argument, "The least model takes " + std::to_string(one + relief) + " bytes, and " +
-                                              std::to_string(bytes) + " were asked for; ask for more.");
-  }
-  return static_cast<size_t>(std::min<uint64_t>((bytes - relief) / one, 2 * SrbfBtf::kMaxLobes));
-}
+constexpr size_t kMostCoefficients = 2 * SrbfBtf::kMaxLobes;
+// Errors over all texels and pairs are larger than those that the points' order leaves: 1.3 to 1.9 times of captured
+// weaves and gravels. Fits correct this guess.
+constexpr double kHeight = 1.4;
+// The curve goes on to models of twice the size, or to a third of the error that is looked for.
+constexpr size_t kBeyond = 2;
+constexpr double kBelow = 0.3;
+constexpr double kColours = 0.2, kPoints = 0.1, kLobes = 0.45;  // where parts of the progress end
 
 uint32_t points_for(const TexelGrid& grid) {
   return static_cast<uint32_t>(std::clamp<uint64_t>(grid.texels() / kTexelsOfAPoint, kLeastPoints, kMostPoints));
 }
 
-/// Coefficients of a finer level, interpolated.
-RowMatrix refined(const RowMatrix& coarse, uint32_t width, uint32_t height, const Relief& fine) {
-  RowMatrix out(Eigen::Index{fine.width()} * fine.height(), coarse.cols());
-  for (uint32_t y = 0; y < fine.height(); ++y) {
-    for (uint32_t x = 0; x < fine.width(); ++x) {
-      const Vec2 place((static_cast<float>(x) + 0.5f) / static_cast<float>(fine.width()),
-                       (static_cast<float>(y) + 0.5f) / static_cast<float>(fine.height()));
-      const BilinearTexels texels = bilinear_texels(place, width, height);
-      auto row = out.row(Eigen::Index{y} * fine.width() + x);
-      row.setZero();
-      for (size_t i = 0; i < 4; ++i) row += texels.weight[i] * coarse.row(texels.index[i]);
-    }
-  }
-  return out;
+uint64_t usual_bytes(const BtfMeasurement& measurement, size_t sides) {
+  const uint64_t least = srbf_side_bytes(pyramid_texels(measurement.grid()), kUsualLeast, kUsualLeast);
+  return std::max(measurement.raw_bytes() / kUsualRatio, sides * least);
 }
 
-template <class Values>
-std::vector<HalfBits> halves_of(const Values& values, size_t count) {
-  std::vector<HalfBits> halves(count);
-  floats_to_halves({values.data(), count}, halves);
-  return halves;
+/// Of one side that has all bytes, at most.
+size_t most_coefficients(uint64_t bytes, uint64_t texels) {
+  const uint64_t one = srbf_side_bytes(texels, 1, 0) - srbf_side_bytes(texels, 0, 0);
+  return static_cast<size_t>(std::clamp<uint64_t>(bytes / one, 1, kMostCoefficients));
 }
 
-/// One side, from its share of the progress.
-class SideFitter {
- public:
-  SideFitter(const BtfMeasurement& measurement, CompandedViews& views, const SideDirections& side,
-             const BtfFitOptions& options, size_t coefficients, Progress& progress)
-      : grid_(measurement.grid()),
-        views_(views),
-        side_(side),
-        options_(options),
-        coefficients_(coefficients),
-        progress_(progress),
-        relief_(relief_pyramid(measurement, side)) {}
-
-  /// Progress runs from `first` by `share`.
-  SrbfSide fit(double first, double share) {
-    const auto stage = [&](const char* name, double from, double to) {
-      progress_.stage(name, first + share * from, first + share * to);
-    };
-    stage("points", 0, 0.05);
-    const SurfacePointOptions sampling{points_for(grid_), kPairs, options_.seed};
-    const auto points = surface_points(views_, grid_, side_, relief_[0], sampling, progress_);
-    stage("lobes", 0.05, 0.45);
-    const SharedLobeOptions choice{coefficients_, kRefinements, options_.seed, options_.threads};
-    const SharedLobes lobes = choose_lobes(points, choice, progress_);
-    stage("texels", 0.45, 0.5);
-    std::vector<std::unique_ptr<TexelSolver>> solver = read_data(lobes);
-    stage("texels", 0.5, 1);
-    return solved(lobes, solver);
-  }
-
- private:
-  std::vector<std::unique_ptr<TexelSolver>> read_data(const SharedLobes& lobes) {
-    std::vector<std::unique_ptr<TexelSolver>> solver;
-    for (const Relief& relief : relief_) {
-      solver.push_back(std::make_unique<TexelSolver>(side_, lobes, relief, options_.threads, progress_));
-    }
-    std::vector<LevelImages> images;
-    for (size_t v = 0; v < side_.view.size(); ++v) {
-      progress_.check();
-      read_side_view(views_, grid_, side_, v, relief_.size(), images);
-      for (size_t l = 0; l < images.size(); ++l) solver[l]->add_view(v, images[l]);
-      progress_.update(static_cast<double>(v + 1) / static_cast<double>(side_.view.size()));
-    }
-    return solver;
-  }
-
-  /// Level by level, from one texel to the finest, each from the one before.
-  SrbfSide solved(const SharedLobes& lobes, std::vector<std::unique_ptr<TexelSolver>>& solver) {
-    SrbfSide side{side_.view_below, side_.light_below, lobes.lobes, lobes.tile_lobes, lobes.lobe, {}};
-    side.levels.resize(relief_.size());
-    RowMatrix start = RowMatrix::Zero(1, static_cast<Eigen::Index>(side.coefficients()));
-    for (size_t l = relief_.size(); l-- > 0;) {
-      const Relief& relief = relief_[l];
-      const int steps = l == 0 ? kSteps : kCoarseSteps;
-      // A level costs four times the one before: the finest takes three quarters of the time.
-      const double from = std::pow(0.25, static_cast<double>(l + 1)), to = 4 * from;
-      const auto after_step = [&](int step) { progress_.update(from + (to - from) * (step + 1) / steps); };
-      const RowMatrix value = solver[l]->solve(start, steps, after_step);
-      progress_.update(to);  // it may have settled early
-      solver[l].reset();
-      side.levels[l] = {relief.width(), relief.height(),
-                        halves_of(relief.heights(), size_t{relief.width()} * relief.height()),
-                        halves_of(value, static_cast<size_t>(value.size()))};
-      if (l > 0) start = refined(value, relief.width(), relief.height(), relief_[l - 1]);
-    }
-    return side;
-  }
-
-  const TexelGrid& grid_;
-  CompandedViews& views_;
-  const SideDirections& side_;
-  const BtfFitOptions& options_;
-  size_t coefficients_;
-  Progress& progress_;
-  std::vector<Relief> relief_;
-};
-
-/// Without those that no light goes through to: what no side shows is black.
-std::vector<SideDirections> sides_to_fit(const BtfMeasurement& measurement, CompandedViews& views) {
-  std::vector<SideDirections> sides = sides_of(measurement.layout());
-  if (sides.size() == 1) return sides;
-  std::erase_if(sides, [&](const SideDirections& side) {
-    return side.view_below != side.light_below && is_black(views, measurement.grid(), side);
-  });
-  return sides;
-}
+std::string side_stage(size_t side) { return "side." + std::to_string(side); }
 
 }  // namespace
 
-SrbfFit fit_srbf(const BtfMeasurement& measurement, const BtfFitOptions& options, Progress& progress) {
+SrbfFitter::SrbfFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
+                       Progress& progress)
+    : measurement_(measurement),
+      options_(options),
+      checkpoint_(checkpoint),
+      progress_(progress),
+      views_(measurement, options.companding, options.threads, progress) {
   if (!measurement.layout().complete()) {
     throw Error(Status::unsupported, "A model needs every view under every light; the BTF has " +
                                          std::to_string(measurement.layout().pairs()) + " pairs alone.");
   }
-  CompandedViews views(measurement, options.companding, options.threads, progress);
-  SrbfFit fit{{measurement.layout(), measurement.grid(), options.companding, Mat3(1.0f), {}}, 0};
-  progress.stage("colours", 0, 0.03);
-  const std::vector<SideDirections> sides = sides_to_fit(measurement, views);
-  const size_t coefficients = coefficients_within(options.bytes, measurement, sides.size());
-  fit.btf.axes = views.decorrelate();
-  fit.not_finite = views.not_finite();
-  const double share = 0.77 / static_cast<double>(sides.size());
-  for (size_t s = 0; s < sides.size(); ++s) {
-    SideFitter fitter(measurement, views, sides[s], options, coefficients, progress);
-    fit.btf.sides.push_back(fitter.fit(0.03 + share * static_cast<double>(s), share));
+  progress.stage("colours", 0, kColours);
+  const ColourAxes colours = find_colours(views_, measurement.layout(), checkpoint);
+  axes_ = colours.axes;
+  not_finite_ = colours.not_finite;
+  find_sides(colours);
+  const bool all = options.bytes == 0 && options.tolerance > 0;
+  const uint64_t bytes = options.bytes > 0 ? options.bytes : usual_bytes(measurement, sides_.size());
+  const uint64_t texels = pyramid_texels(measurement.grid());
+  curve_.points = {{1, sides_.size() * srbf_side_bytes(texels, 1, 1), 0, 1}};
+  bound(bytes, "The least model");
+  find_orders(bytes, all);
+  shares_.emplace(demand_, texels);
+  curve_ = shares_->curve();
+  for (OrderPoint& point : curve_.points) point.relative_l2 *= kHeight;
+  bound(all ? ~uint64_t{0} : bytes, "The least model");
+}
+
+/// Without those that no light goes through to: what no side shows is black.
+void SrbfFitter::find_sides(const ColourAxes& colours) {
+  for (SideDirections& side : sides_of(measurement_.layout())) {
+    const double energy = colours.energy_of(side.view_number, side.light_number);
+    if (side.view_below != side.light_below && energy == 0) continue;
+    std::vector<Relief> relief = relief_pyramid(measurement_, side);
+    sides_.push_back({std::move(side), std::move(relief), {}});
+    demand_.push_back({{}, energy});
   }
-  return fit;
+}
+
+void SrbfFitter::find_orders(uint64_t bytes, bool all) {
+  const size_t within = most_coefficients(bytes, pyramid_texels(measurement_.grid()));
+  const size_t most = all ? kMostCoefficients : std::min(kBeyond * within, kMostCoefficients);
+  const LobeOrderOptions order{.most = most,
+                               .least = std::pow(kBelow * options_.tolerance, 2.0),
+                               .points = search_points(most),
+                               .seed = options_.seed,
+                               .threads = options_.threads};
+  const double share = (1 - kColours) / static_cast<double>(sides_.size());
+  for (size_t s = 0; s < sides_.size(); ++s) {
+    const Progress::Span of_side(progress_, kColours + share * static_cast<double>(s),
+                                 kColours + share * static_cast<double>(s + 1));
+    const std::string stage = side_stage(s) + ".order";
+    std::optional<LobeOrder> kept = kept_order(checkpoint_, stage);
+    if (!kept) {
+      const std::vector<SurfacePoint>& points = points_of(s);
+      progress_.stage("lobes", kPoints, 1);
+      kept = order_lobes(points, order, progress_);
+      keep_order(checkpoint_, stage, *kept);
+    }
+    demand_[s].order = std::move(*kept);
+  }
+}
+
+uint32_t SrbfFitter::search_points(size_t most) const {
+  if (options_.memory == 0) return LobeOrderOptions().points;
+  const PairLayout& layout = measurement_.layout();
+  const uint64_t pairs = sides_[0].directions.view.size() * sides_[0].directions.light.size();
+  return search_points_within(options_.memory, {.texels = measurement_.grid().texels(),
+                                                .pyramid_texels = pyramid_texels(measurement_.grid()),
+                                                .pairs = layout.pairs(),
+                                                .lights = layout.lights().size(),
+                                                .sides = sides_.size(),
+                                                .points = points_for(measurement_.grid()),
+                                                .point_pairs = std::min<uint64_t>(kPairs, pairs),
+                                                .coefficients = most,
+                                                .threads = static_cast<uint64_t>(arena_concurrency(options_.threads))});
+}
+
+/// Read when they are asked for first.
+const std::vector<SurfacePoint>& SrbfFitter::points_of(size_t number) {
+  Side& side = sides_[number];
+  if (!side.points.empty()) return side.points;
+  progress_.stage("points", 0, kPoints);
+  const SurfacePointOptions sampling{points_for(measurement_.grid()), kPairs, options_.seed};
+  side.points = surface_points(views_, measurement_.grid(), side.directions, side.relief[0], sampling, progress_);
+  return side.points;
+}
+
+ModelBody SrbfFitter::fit(size_t point) {
+  const std::vector<size_t> count = shares_->at(point);
+  SrbfBtf btf{measurement_.layout(), measurement_.grid(), options_.companding, axes_, {}};
+  const double share = 1.0 / static_cast<double>(sides_.size());
+  for (size_t s = 0; s < sides_.size(); ++s) {
+    const Progress::Span of_side(progress_, share * static_cast<double>(s), share * static_cast<double>(s + 1));
+    const Side& side = sides_[s];
+    const std::string stage = "fit." + std::to_string(point) + "." + side_stage(s);
+    const SharedLobes lobes = lobes_of(s, count[s], stage + ".lobes");
+    progress_.stage("texels", kLobes, 1);
+    const TexelLevelsInput input{measurement_.grid(), side.directions, side.relief, lobes, options_.threads};
+    btf.sides.push_back({side.directions.view_below, side.directions.light_below, lobes.lobes, lobes.tile_lobes,
+                         lobes.lobe, solve_levels(views_, input, checkpoint_, stage + ".level.", progress_)});
+  }
+  return btf;
+}
+
+SharedLobes SrbfFitter::lobes_of(size_t side, size_t coefficients, const std::string& stage) {
+  const LobeOrder& order = demand_[side].order;
+  SharedLobes lobes = chosen_lobes(order, coefficients, options_.seed);
+  if (take_kept_lobes(checkpoint_, stage, lobes)) return lobes;
+  const std::vector<SurfacePoint>& points = points_of(side);
+  progress_.stage("lobes", kPoints, kLobes);
+  refine_lobes(points, order.share(coefficients), {kRefinements, options_.threads}, lobes, progress_);
+  keep_lobes(checkpoint_, stage, lobes);
+  return lobes;
 }
 
 }  // namespace velour

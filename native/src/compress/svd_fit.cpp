@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <numeric>
 #include <string>
 
+#include "compress/fit_memory.h"
 #include "compress/side_views.h"
 #include "fit/parallel.h"
 #include "image/half_image.h"
 #include "job/error.h"
+#include "job/threads.h"
 #include "sphere/random.h"
 
 namespace velour {
@@ -23,16 +24,7 @@ constexpr Eigen::Index kRows = 16, kColumns = 512;  // of a block of work: fixed
 
 // What a small BTF gets where nobody asked for a size.
 constexpr uint64_t kUsualRatio = 200, kUsualLeast = 8;
-
-/// How many components fit.
-uint64_t components_within(uint64_t asked, const BtfMeasurement& measurement) {
-  const uint64_t one = (measurement.layout().pairs() + pyramid_texels(measurement.grid())) * sizeof(HalfBits);
-  const uint64_t bytes = asked > 0 ? asked : std::max(measurement.raw_bytes() / kUsualRatio, kUsualLeast * one);
-  const uint64_t count = std::min<uint64_t>(bytes / one, FactoredBtf::kMaxComponents);
-  if (count > 0) return count;
-  throw Error(Status::invalid_argument, "One component takes " + std::to_string(one) + " bytes, and " +
-                                            std::to_string(bytes) + " were asked for; ask for more.");
-}
+constexpr uint64_t kFirstLook = 32;  // components that are looked at first where an error is asked for
 
 template <class Work>
 void for_blocks(Eigen::Index extent, Eigen::Index step, int threads, const Progress& progress, const Work& work) {
@@ -42,191 +34,243 @@ void for_blocks(Eigen::Index extent, Eigen::Index step, int threads, const Progr
   });
 }
 
-/// One colour axis on its way to its components.
-struct AxisSketch {
-  RowMatrix basis;         // texel x column, orthonormal
-  RowMatrix response;      // pair x column: the matrix times the basis
-  RowMatrix image;         // texel x column: the transposed matrix times the response
-  Eigen::VectorXd energy;  // of each component, falling
-};
+void orthonormalise(RowMatrix& m) {
+  const Eigen::HouseholderQR<Eigen::MatrixXf> qr{Eigen::MatrixXf(m)};
+  m = qr.householderQ() * Eigen::MatrixXf::Identity(m.rows(), m.cols());
+}
 
-class SvdSolver {
- public:
-  SvdSolver(const BtfMeasurement& measurement, const BtfFitOptions& options, Progress& progress)
-      : measurement_(measurement),
-        options_(options),
-        progress_(progress),
-        views_(measurement, options.companding, options.threads, progress) {}
-
-  SvdFit solve(uint64_t components) {
-    progress_.stage("colours", 0, 0.05);
-    btf_.axes = views_.decorrelate();
-    const auto columns = static_cast<Eigen::Index>(
-        std::min({components + kOversampling, measurement_.layout().pairs(), measurement_.grid().texels()}));
-    for (size_t a = 0; a < 3; ++a) start(sketch_[a], columns, a);
-    for (int i = 0; i <= kPowerIterations; ++i) {
-      progress_.stage("directions", 0.05 + 0.2 * i, 0.25 + 0.2 * i);
-      pass(i < kPowerIterations);
-    }
-    for (AxisSketch& sketch : sketch_) rotate(sketch);
-    choose(components);
-    progress_.stage("texels", 0.65, 0.8);
-    project();
-    return {std::move(btf_), views_.not_finite()};
+/// Turns the response into orthonormal functions of the pair, the strongest first.
+void rotate(RowMatrix& response, Eigen::VectorXd& energy) {
+  const Eigen::MatrixXd exact = response.cast<double>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(exact.transpose() * exact);
+  energy = solver.eigenvalues().reverse().cwiseMax(0.0);
+  const Eigen::MatrixXd vectors = solver.eigenvectors().rowwise().reverse();
+  Eigen::MatrixXd functions = exact * vectors;
+  for (Eigen::Index c = 0; c < functions.cols(); ++c) {
+    const double norm = std::sqrt(energy[c]);
+    functions.col(c) *= norm > 0 ? 1 / norm : 0;
   }
-
- private:
-  void start(AxisSketch& sketch, Eigen::Index columns, size_t axis) const {
-    const auto texels = static_cast<Eigen::Index>(measurement_.grid().texels());
-    sketch.basis.resize(texels, columns);
-    for (Eigen::Index t = 0; t < texels; ++t) {
-      RandomStream random(options_.seed, static_cast<uint64_t>(t), axis);
-      // Sums of three uniform numbers are close enough to normal ones.
-      for (Eigen::Index c = 0; c < columns; ++c) {
-        const float u = random.next(), v = random.next();
-        sketch.basis(t, c) = u + v + random.next() - 1.5f;
-      }
-    }
-    sketch.response.resize(static_cast<Eigen::Index>(measurement_.layout().pairs()), columns);
-    orthonormalise(sketch.basis);
-  }
-
-  static void orthonormalise(RowMatrix& m) {
-    const Eigen::HouseholderQR<Eigen::MatrixXf> qr{Eigen::MatrixXf(m)};
-    m = qr.householderQ() * Eigen::MatrixXf::Identity(m.rows(), m.cols());
-  }
-
-  /// The response of every view to the basis; when `onward`, also the image of it, which becomes the next basis.
-  void pass(bool onward) {
-    for (AxisSketch& s : sketch_) s.image.setZero(s.basis.rows(), onward ? s.basis.cols() : 0);
-    for (uint32_t v = 0; v < views_.views(); ++v) {
-      progress_.check();
-      views_.read(v, f_);
-      views_.planes(f_, measurement_.grid().texels(), planes_);
-      for (size_t a = 0; a < 3; ++a) respond(sketch_[a], planes_[a], v, onward);
-      progress_.update(static_cast<double>(v + 1) / views_.views());
-    }
-    if (!onward) return;
-    for (AxisSketch& s : sketch_) {
-      s.basis = s.image;
-      orthonormalise(s.basis);
-    }
-  }
-
-  void respond(AxisSketch& s, const RowMatrix& plane, uint32_t view, bool onward) const {
-    const auto first = static_cast<Eigen::Index>(measurement_.layout().first(view));
-    for_blocks(plane.rows(), kRows, options_.threads, progress_, [&](Eigen::Index row, Eigen::Index count) {
-      s.response.middleRows(first + row, count).noalias() = plane.middleRows(row, count) * s.basis;
-    });
-    if (!onward) return;
-    const auto response = s.response.middleRows(first, plane.rows());
-    for_blocks(plane.cols(), kColumns, options_.threads, progress_, [&](Eigen::Index column, Eigen::Index count) {
-      s.image.middleRows(column, count).noalias() += plane.middleCols(column, count).transpose() * response;
-    });
-  }
-
-  /// Turns the response into orthonormal functions of the pair, the strongest first.
-  static void rotate(AxisSketch& s) {
-    const Eigen::MatrixXd response = s.response.cast<double>();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(response.transpose() * response);
-    const Eigen::Index columns = response.cols();
-    s.energy = solver.eigenvalues().reverse().cwiseMax(0.0);
-    const Eigen::MatrixXd vectors = solver.eigenvectors().rowwise().reverse();
-    Eigen::MatrixXd functions = response * vectors;
-    for (Eigen::Index c = 0; c < columns; ++c) {
-      const double norm = std::sqrt(s.energy[c]);
-      functions.col(c) *= norm > 0 ? 1 / norm : 0;
-    }
-    s.response = functions.cast<float>();
-  }
-
-  /// The `components` of most energy of all axes.
-  void choose(uint64_t components) {
-    std::vector<std::pair<size_t, Eigen::Index>> all;  // axis, column
-    for (size_t a = 0; a < 3; ++a) {
-      for (Eigen::Index c = 0; c < sketch_[a].energy.size(); ++c) all.emplace_back(a, c);
-    }
-    const auto energy = [&](const auto& x) { return sketch_[x.first].energy[x.second]; };
-    std::stable_sort(all.begin(), all.end(), [&](const auto& x, const auto& y) { return energy(x) > energy(y); });
-    all.resize(std::min<size_t>(all.size(), components));
-    const double least = kRounding * energy(all.front());
-    all.erase(std::find_if(all.begin() + 1, all.end(), [&](const auto& x) { return energy(x) <= least; }), all.end());
-    std::sort(all.begin(), all.end());
-    function_.resize(sketch_[0].response.rows(), static_cast<Eigen::Index>(all.size()));
-    for (const auto& [axis, column] : all) {
-      function_.col(static_cast<Eigen::Index>(btf_.axis.size())) = sketch_[axis].response.col(column);
-      btf_.axis.push_back(static_cast<uint8_t>(axis));
-    }
-    // What is stored is what the texels are projected on.
-    btf_.pair_value.resize(static_cast<size_t>(function_.size()));
-    const std::span<float> values(function_.data(), btf_.pair_value.size());
-    floats_to_halves(values, btf_.pair_value);
-    halves_to_floats(btf_.pair_value, values);
-  }
-
-  struct Level {
-    uint32_t width, height;
-    RowMatrix value;  // texel x component
-  };
-
-  /// Coefficients of every level: products of the functions with the filtered measurement.
-  void project() {
-    std::vector<Level> levels;
-    uint32_t width = measurement_.grid().width, height = measurement_.grid().height;
-    for (;; width = half_of(width), height = half_of(height)) {
-      levels.push_back({width, height, RowMatrix::Zero(Eigen::Index{width} * height, function_.cols())});
-      if (width == 1 && height == 1) break;
-    }
-    for (uint32_t v = 0; v < views_.views(); ++v) {
-      progress_.check();
-      views_.read(v, f_);
-      for (size_t l = 0; l < levels.size(); ++l) {
-        if (l > 0) f_ = halved_images(f_, levels[l - 1].width, levels[l - 1].height);
-        project(v, levels[l]);
-      }
-      progress_.update(static_cast<double>(v + 1) / views_.views());
-    }
-    for (Level& level : levels) {
-      TexelLevel stored{level.width, level.height, std::vector<HalfBits>(static_cast<size_t>(level.value.size()))};
-      floats_to_halves({level.value.data(), stored.value.size()}, stored.value);
-      btf_.levels.push_back(std::move(stored));
-    }
-  }
-
-  void project(uint32_t view, Level& level) {
-    views_.planes(f_, static_cast<uint64_t>(level.value.rows()), planes_);
-    const auto first = static_cast<Eigen::Index>(measurement_.layout().first(view));
-    for (size_t a = 0, begin = 0; a < 3; ++a) {
-      const auto end = static_cast<size_t>(std::upper_bound(btf_.axis.begin(), btf_.axis.end(), a) - btf_.axis.begin());
-      const auto column = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
-      begin = end;
-      if (count == 0) continue;
-      const RowMatrix functions = function_.block(first, column, planes_[a].rows(), count);
-      for_blocks(level.value.rows(), kColumns, options_.threads, progress_, [&](Eigen::Index t, Eigen::Index n) {
-        level.value.block(t, column, n, count).noalias() += planes_[a].middleCols(t, n).transpose() * functions;
-      });
-    }
-  }
-
-  const BtfMeasurement& measurement_;
-  const BtfFitOptions& options_;
-  Progress& progress_;
-  CompandedViews views_;
-  std::array<AxisSketch, 3> sketch_;
-  RowMatrix function_;  // pair x component
-  FactoredBtf btf_{measurement_.layout(), measurement_.grid(), options_.companding, Mat3(1.0f), {}, {}, {}};
-  std::vector<float> f_;
-  CompandedViews::Planes planes_;
-};
+  response = functions.cast<float>();
+}
 
 }  // namespace
 
-SvdFit fit_svd(const BtfMeasurement& measurement, const BtfFitOptions& options, Progress& progress) {
-  if (!measurement.layout().complete()) {
+SvdFitter::SvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
+                     Progress& progress)
+    : measurement_(measurement),
+      options_(options),
+      checkpoint_(checkpoint),
+      progress_(progress),
+      views_(measurement, options.companding, options.threads, progress),
+      one_((measurement.layout().pairs() + pyramid_texels(measurement.grid())) * sizeof(HalfBits)) {
+  const PairLayout& layout = measurement.layout();
+  if (!layout.complete()) {
     throw Error(Status::unsupported, "A decomposition needs every view under every light; the BTF has " +
-                                         std::to_string(measurement.layout().pairs()) + " pairs alone.");
+                                         std::to_string(layout.pairs()) + " pairs alone.");
   }
-  return SvdSolver(measurement, options, progress).solve(components_within(options.bytes, measurement));
+  const bool all = options.bytes == 0 && options.tolerance > 0;
+  const uint64_t usual = std::max(measurement.raw_bytes() / kUsualRatio, kUsualLeast * one_);
+  const uint64_t bytes = options.bytes > 0 ? options.bytes : all ? FactoredBtf::kMaxComponents * one_ : usual;
+  curve_.points = {{1, one_, 0, 1}};
+  bound(bytes, "One component");
+  progress.stage("colours", 0, 0.1);
+  const ColourAxes colours = find_colours(views_, layout, checkpoint);
+  axes_ = colours.axes;
+  all_ = colours.all_energy();
+  not_finite_ = colours.not_finite;
+  const uint64_t most = most_components(bytes);
+  uint64_t count = options.tolerance > 0 ? std::min(most, kFirstLook) : most;
+  // Half of what is left of the progress for each look.
+  for (double begin = 0.1;; begin = (begin + 1) / 2, count = std::min(most, 2 * count)) {
+    sketch(count, begin, count == most ? 1.0 : (begin + 1) / 2);
+    if (count == most || reaches(options.tolerance)) break;
+  }
+  bound(bytes, "One component");
+}
+
+/// That are looked at.
+uint64_t SvdFitter::most_components(uint64_t bytes) const {
+  const uint64_t most = std::clamp<uint64_t>(bytes / one_, 1, FactoredBtf::kMaxComponents);
+  if (options_.memory == 0) return most;
+  const FitExtent extent{.texels = measurement_.grid().texels(),
+                         .pyramid_texels = pyramid_texels(measurement_.grid()),
+                         .pairs = measurement_.layout().pairs(),
+                         .lights = measurement_.layout().lights().size(),
+                         .coefficients = most,
+                         .threads = static_cast<uint64_t>(arena_concurrency(options_.threads))};
+  if (options_.tolerance > 0) return components_within(options_.memory, extent);
+  require_components(options_.memory, extent);
+  return most;
+}
+
+/// Of so many components at least.
+void SvdFitter::sketch(uint64_t components, double begin, double end) {
+  const auto columns = static_cast<Eigen::Index>(
+      std::min({components + kOversampling, measurement_.layout().pairs(), measurement_.grid().texels()}));
+  const auto name = [&](int passes) {
+    return "sketch." + std::to_string(columns) + "." + std::to_string(passes) + ".";
+  };
+  int done = kPowerIterations;  // passes onward whose bases were kept
+  while (done > 0 && !take_kept_bases(name(done), columns)) --done;
+  for (size_t a = 0; a < 3; ++a) {
+    if (done == 0) start(sketch_[a], columns, a);
+    sketch_[a].response.resize(static_cast<Eigen::Index>(measurement_.layout().pairs()), columns);
+  }
+  for (int i = done; i <= kPowerIterations; ++i) {
+    const double step = (end - begin) / (kPowerIterations + 1);
+    progress_.stage("directions", begin + step * i, begin + step * (i + 1));
+    pass(i < kPowerIterations);
+    if (i == kPowerIterations) break;
+    checkpoint_.forget("sketch.");
+    for (size_t a = 0; a < 3; ++a) checkpoint_.keep(name(i + 1) + std::to_string(a), sketch_[a].basis);
+    checkpoint_.write();
+  }
+  for (Sketch& s : sketch_) rotate(s.response, s.energy);
+  rank();
+  set_curve();
+}
+
+void SvdFitter::start(Sketch& sketch, Eigen::Index columns, size_t axis) const {
+  const auto texels = static_cast<Eigen::Index>(measurement_.grid().texels());
+  sketch.basis.resize(texels, columns);
+  for (Eigen::Index t = 0; t < texels; ++t) {
+    RandomStream random(options_.seed, static_cast<uint64_t>(t), axis);
+    // Sums of three uniform numbers are close enough to normal ones.
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      const float u = random.next(), v = random.next();
+      sketch.basis(t, c) = u + v + random.next() - 1.5f;
+    }
+  }
+  orthonormalise(sketch.basis);
+}
+
+bool SvdFitter::take_kept_bases(const std::string& stage, Eigen::Index columns) {
+  const auto texels = static_cast<Eigen::Index>(measurement_.grid().texels());
+  for (size_t a = 0; a < 3; ++a) {
+    auto basis = checkpoint_.matrix(stage + std::to_string(a), texels, columns);
+    if (!basis) return false;
+    sketch_[a].basis = std::move(*basis);
+  }
+  return true;
+}
+
+/// The response of every view to the basis; when `onward`, also the image of it, which becomes the next basis.
+void SvdFitter::pass(bool onward) {
+  for (Sketch& s : sketch_) s.image.setZero(s.basis.rows(), onward ? s.basis.cols() : 0);
+  for (uint32_t v = 0; v < views_.views(); ++v) {
+    progress_.check();
+    views_.read(v, f_);
+    views_.planes(f_, measurement_.grid().texels(), planes_);
+    for (size_t a = 0; a < 3; ++a) respond(sketch_[a], planes_[a], v, onward);
+    progress_.update(static_cast<double>(v + 1) / views_.views());
+  }
+  if (!onward) return;
+  for (Sketch& s : sketch_) {
+    s.basis = s.image;
+    orthonormalise(s.basis);
+  }
+}
+
+void SvdFitter::respond(Sketch& s, const RowMatrix& plane, uint32_t view, bool onward) const {
+  const auto first = static_cast<Eigen::Index>(measurement_.layout().first(view));
+  for_blocks(plane.rows(), kRows, options_.threads, progress_, [&](Eigen::Index row, Eigen::Index count) {
+    s.response.middleRows(first + row, count).noalias() = plane.middleRows(row, count) * s.basis;
+  });
+  if (!onward) return;
+  const auto response = s.response.middleRows(first, plane.rows());
+  for_blocks(plane.cols(), kColumns, options_.threads, progress_, [&](Eigen::Index column, Eigen::Index count) {
+    s.image.middleRows(column, count).noalias() += plane.middleCols(column, count).transpose() * response;
+  });
+}
+
+/// Components of all axes that are more than rounding.
+void SvdFitter::rank() {
+  ranked_.clear();
+  for (uint8_t a = 0; a < 3; ++a) {
+    for (Eigen::Index c = 0; c < sketch_[a].energy.size(); ++c) ranked_.push_back({a, c, sketch_[a].energy[c]});
+  }
+  std::stable_sort(ranked_.begin(), ranked_.end(), [](const auto& x, const auto& y) { return x.energy > y.energy; });
+  const double least = kRounding * ranked_.front().energy;
+  ranked_.erase(std::find_if(ranked_.begin() + 1, ranked_.end(), [&](const auto& x) { return x.energy <= least; }),
+                ranked_.end());
+  if (ranked_.size() > FactoredBtf::kMaxComponents) ranked_.resize(FactoredBtf::kMaxComponents);
+}
+
+/// What the components leave. Those beyond the weakest one of an axis that was found may be preceded by unknown ones:
+/// there the curve is too high, never too low.
+void SvdFitter::set_curve() {
+  curve_ = {};
+  double left = all_;
+  for (size_t k = 0; k < ranked_.size(); ++k) {
+    left = std::max(0.0, left - ranked_[k].energy);
+    curve_.points.push_back({static_cast<int>(k + 1), (k + 1) * one_, 0, all_ > 0 ? std::sqrt(left / all_) : 0.0});
+  }
+}
+
+bool SvdFitter::reaches(double error) const { return curve_.points.back().relative_l2 <= error; }
+
+ModelBody SvdFitter::fit(size_t point) {
+  FactoredBtf btf{measurement_.layout(), measurement_.grid(), options_.companding, axes_, {}, {}, {}};
+  choose(point + 1, btf);
+  progress_.stage("texels", 0, 1);
+  project(btf);
+  return btf;
+}
+
+void SvdFitter::choose(size_t components, FactoredBtf& btf) {
+  std::vector<Component> chosen(ranked_.begin(), ranked_.begin() + static_cast<ptrdiff_t>(components));
+  std::sort(chosen.begin(), chosen.end(), [](const Component& x, const Component& y) {
+    return std::pair(x.axis, x.column) < std::pair(y.axis, y.column);
+  });
+  function_.resize(sketch_[0].response.rows(), static_cast<Eigen::Index>(chosen.size()));
+  for (const Component& c : chosen) {
+    function_.col(static_cast<Eigen::Index>(btf.axis.size())) = sketch_[c.axis].response.col(c.column);
+    btf.axis.push_back(c.axis);
+  }
+  // What is stored is what the texels are projected on.
+  btf.pair_value.resize(static_cast<size_t>(function_.size()));
+  const std::span<float> values(function_.data(), btf.pair_value.size());
+  floats_to_halves(values, btf.pair_value);
+  halves_to_floats(btf.pair_value, values);
+}
+
+/// Coefficients of every level: products of the functions with the filtered measurement.
+void SvdFitter::project(FactoredBtf& btf) {
+  std::vector<Level> levels;
+  uint32_t width = measurement_.grid().width, height = measurement_.grid().height;
+  for (;; width = half_of(width), height = half_of(height)) {
+    levels.push_back({width, height, RowMatrix::Zero(Eigen::Index{width} * height, function_.cols())});
+    if (width == 1 && height == 1) break;
+  }
+  for (uint32_t v = 0; v < views_.views(); ++v) {
+    progress_.check();
+    views_.read(v, f_);
+    for (size_t l = 0; l < levels.size(); ++l) {
+      if (l > 0) f_ = halved_images(f_, levels[l - 1].width, levels[l - 1].height);
+      project(btf, v, levels[l]);
+    }
+    progress_.update(static_cast<double>(v + 1) / views_.views());
+  }
+  for (Level& level : levels) {
+    TexelLevel stored{level.width, level.height, std::vector<HalfBits>(static_cast<size_t>(level.value.size()))};
+    floats_to_halves({level.value.data(), stored.value.size()}, stored.value);
+    btf.levels.push_back(std::move(stored));
+  }
+}
+
+void SvdFitter::project(const FactoredBtf& btf, uint32_t view, Level& level) {
+  views_.planes(f_, static_cast<uint64_t>(level.value.rows()), planes_);
+  const auto first = static_cast<Eigen::Index>(measurement_.layout().first(view));
+  for (size_t a = 0, begin = 0; a < 3; ++a) {
+    const auto end = static_cast<size_t>(std::upper_bound(btf.axis.begin(), btf.axis.end(), a) - btf.axis.begin());
+    const auto column = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
+    begin = end;
+    if (count == 0) continue;
+    const RowMatrix functions = function_.block(first, column, planes_[a].rows(), count);
+    for_blocks(level.value.rows(), kColumns, options_.threads, progress_, [&](Eigen::Index t, Eigen::Index n) {
+      level.value.block(t, column, n, count).noalias() += planes_[a].middleCols(t, n).transpose() * functions;
+    });
+  }
 }
 
 }  // namespace velour

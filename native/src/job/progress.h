@@ -10,13 +10,34 @@ namespace velour {
 
 class Progress {
  public:
-  /// Starts a named part of the task that covers [begin, end] of the whole, 0 <= begin <= end <= 1. `stage` must be a
-  /// string literal: the poller reads the pointer from another thread.
+  /// While it lives, stages cover parts of [begin, end] of the whole, or of the span around it: what is a whole task
+  /// elsewhere becomes a part of this one.
+  class Span {
+   public:
+    Span(Progress& progress, double begin, double end)
+        : progress_(progress), first_(progress.first_), extent_(progress.extent_) {
+      progress.first_ = first_ + extent_ * begin;
+      progress.extent_ = extent_ * (end - begin);
+    }
+    ~Span() {
+      progress_.first_ = first_;
+      progress_.extent_ = extent_;
+    }
+    Span(const Span&) = delete;
+    Span& operator=(const Span&) = delete;
+
+   private:
+    Progress& progress_;
+    const double first_, extent_;
+  };
+
+  /// Starts a named part of the task that covers [begin, end] of the whole, or of the innermost Span, 0 <= begin <= end
+  /// <= 1. `stage` must be a string literal: the poller reads the pointer from another thread.
   void stage(const char* name, double begin, double end) {
     stage_.store(name, std::memory_order_relaxed);
-    begin_.store(begin, std::memory_order_relaxed);
-    end_.store(end, std::memory_order_relaxed);
-    advance_to(begin);
+    begin_.store(first_ + extent_ * begin, std::memory_order_relaxed);
+    end_.store(first_ + extent_ * end, std::memory_order_relaxed);
+    advance_to(first_ + extent_ * begin);
   }
 
   /// Fraction done of the current stage, in [0, 1]; the overall fraction never falls. Thread-safe.
@@ -42,6 +63,7 @@ class Progress {
     }
   }
 
+  double first_ = 0, extent_ = 1;  // of the innermost span; the task's own thread alone uses them
   std::atomic<bool> cancelled_{false};
   std::atomic<double> fraction_{0.0}, begin_{0.0}, end_{1.0};
   std::atomic<const char*> stage_{"starting"};

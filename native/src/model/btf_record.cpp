@@ -2,10 +2,41 @@
 
 #include "file/json_fields.h"
 #include "job/error.h"
+#include "model/order_json.h"
 
 namespace velour {
 
 using Json = JsonFields::Json;
+
+namespace {
+
+constexpr size_t kMostTrials = 100;
+
+std::vector<SizeTrial> parse_trials(const Json& json, const JsonFields& record, const JsonSource& source) {
+  if (!json.is_array() || json.size() > kMostTrials) record.fail("search", "a list of at most 100 fits");
+  std::vector<SizeTrial> trials;
+  for (const Json& entry : json) {
+    if (!entry.is_object()) record.fail("search", "a list of fits");
+    const JsonFields fields(entry, source, "search.");
+    trials.push_back({static_cast<int>(fields.whole("coefficients", 1u << 30)),
+                      fields.whole("parameter_bytes", uint64_t{1} << 53), fields.number("expected"),
+                      fields.number("relative_l2")});
+  }
+  return trials;
+}
+
+}  // namespace
+
+nlohmann::ordered_json trials_json(const std::vector<SizeTrial>& trials) {
+  Json json = Json::array();
+  for (const SizeTrial& t : trials) {
+    json.push_back({{"coefficients", t.coefficients},
+                    {"parameter_bytes", t.parameter_bytes},
+                    {"expected", four_digits(t.expected)},
+                    {"relative_l2", four_digits(t.relative_l2)}});
+  }
+  return json;
+}
 
 std::string btf_record_json(const BtfRecord& record) {
   Json json = {{"method", record.method},
@@ -18,6 +49,10 @@ std::string btf_record_json(const BtfRecord& record) {
                {"seed", record.seed},
                {"warnings", record.warnings}};
   if (record.psnr_held_out) json["psnr_held_out"] = *record.psnr_held_out;
+  json["relative_l2"] = record.relative_l2;
+  json["tolerance"] = record.tolerance;
+  if (!record.order.points.empty()) json["order"] = order_json(record.order);
+  if (!record.search.empty()) json["search"] = trials_json(record.search);
   return json.dump();
 }
 
@@ -36,6 +71,10 @@ BtfRecord parse_btf_record(const std::string& text, const std::string& where) {
   if (fields.has("evaluations_per_second")) record.evaluations_per_second = fields.number("evaluations_per_second");
   record.seed = fields.whole("seed", ~uint64_t{0});
   if (fields.has("psnr_held_out")) record.psnr_held_out = fields.number("psnr_held_out");
+  if (fields.has("relative_l2")) record.relative_l2 = fields.number("relative_l2");
+  if (fields.has("tolerance")) record.tolerance = fields.number("tolerance");
+  if (fields.has("order")) record.order = parse_order(fields.at("order"), where + ": 'order'");
+  if (fields.has("search")) record.search = parse_trials(fields.at("search"), fields, source);
   for (const Json& warning : fields.at("warnings")) {
     if (!warning.is_string()) fields.fail("warnings", "a list of sentences");
     record.warnings.push_back(warning.get<std::string>());

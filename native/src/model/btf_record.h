@@ -2,11 +2,24 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "model/order_curve.h"
+
 namespace velour {
+
+/// One of the fits by which a size was looked for.
+struct SizeTrial {
+  int coefficients = 0;  // a texel's, of the side that has most; components of an SVD
+  uint64_t parameter_bytes = 0;
+  double expected = 0;     // relative L2 error before the fit
+  double relative_l2 = 0;  // measured
+
+  bool operator==(const SizeTrial&) const = default;
+};
 
 struct BtfRecord {
   std::string method;                                  // "svd", "srbf"
@@ -19,7 +32,14 @@ struct BtfRecord {
   double evaluations_per_second = 0;  // of one thread, random places and directions; 0: nobody measured
   uint64_t seed = 0;
   std::vector<std::string> warnings;  // sentences
+  double relative_l2 = 0;             // of companded values over all pairs that were fitted; 0: nobody measured
+  double tolerance = 0;               // of relative_l2 that was asked for; 0: none
+  OrderCurve order;                   // error against size: `lobes` are coefficients of a texel, or components
+  std::vector<SizeTrial> search;      // in the order of the fits
 };
+
+/// [{"coefficients", "parameter_bytes", "expected", "relative_l2"}, ...], errors with four digits.
+nlohmann::ordered_json trials_json(const std::vector<SizeTrial>& trials);
 
 /// JSON, for an attribute of the model file.
 std::string btf_record_json(const BtfRecord& record);

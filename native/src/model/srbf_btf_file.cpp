@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr char kSides[] = "btf.sides";
+constexpr char kSides[] = "btf.sides", kShared[] = "btf.shared";
 
 /// Names of the parts of side `number`.
 struct SideParts {
@@ -98,6 +98,23 @@ SrbfSide read_side(const ModelFields& fields, const SideParts& part, const Texel
   }
 }
 
+std::vector<SharedSide> read_shared(const ModelFields& fields, size_t sides) {
+  std::vector<SharedSide> shared;
+  if (!fields.has(kShared)) return shared;
+  const Tensor& tensor = fields.rows(kShared, 3);
+  if (tensor.data.size() > 9) fields.fail(std::string(kShared) + " has more than three rows.");
+  for (size_t i = 0; i < tensor.data.size(); ++i) {
+    const float value = tensor.data[i], most = i % 3 == 2 ? static_cast<float>(sides) - 1 : 1.0f;
+    if (!(value >= 0 && value <= most && value == std::floor(value))) {
+      fields.fail_at(kShared, i, value, "0 (above) or 1 (below), and the number of a side");
+    }
+  }
+  for (const float* v = tensor.data.data(); shared.size() < tensor.data.size() / 3; v += 3) {
+    shared.push_back({v[0] != 0, v[1] != 0, static_cast<uint32_t>(v[2])});
+  }
+  return shared;
+}
+
 }  // namespace
 
 void write_srbf_btf(const SrbfBtf& btf, TensorFile& file) {
@@ -107,6 +124,12 @@ void write_srbf_btf(const SrbfBtf& btf, TensorFile& file) {
     const SrbfSide& side = btf.sides[s];
     sides.data.insert(sides.data.end(), {side.view_below ? 1.0f : 0.0f, side.light_below ? 1.0f : 0.0f});
     write_side(side, SideParts(s), file);
+  }
+  if (btf.shared.empty()) return;
+  Tensor& shared = file.tensors[kShared] = {{btf.shared.size(), 3}, {}, true};
+  for (const SharedSide& s : btf.shared) {
+    shared.data.insert(shared.data.end(),
+                       {s.view_below ? 1.0f : 0.0f, s.light_below ? 1.0f : 0.0f, static_cast<float>(s.side)});
   }
 }
 
@@ -123,6 +146,7 @@ SrbfBtf read_srbf_btf(const ModelFields& fields) {
     side.view_below = sides.data[2 * s] != 0;
     side.light_below = sides.data[2 * s + 1] != 0;
   }
+  btf.shared = read_shared(fields, btf.sides.size());
   return btf;
 }
 

@@ -23,8 +23,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--companding", choices=table.COMPANDINGS, help="sums of f itself or of its root; root"
     )
     parser.add_argument(
+        "--tolerance", type=numbers.real(1e-6, 0.999), metavar="E",
+        help="the smallest model whose relative L2 error of companded values is at most E, within --bytes",
+    )  # fmt: skip
+    size = parser.add_mutually_exclusive_group()
+    size.add_argument(
         "--bytes", type=numbers.whole(1, 2**63), metavar="N",
         help="of all coefficients; a two-hundredth of the BTF, or a few components",
+    )  # fmt: skip
+    size.add_argument(
+        "--ratio", type=numbers.real(1, 1e9), metavar="R", help="the same: an R-th of the BTF as half floats"
+    )
+    parser.add_argument(
+        "--memory", type=numbers.whole(1, 2**63), metavar="BYTES",
+        help="that the fit may hold at once beside the program itself; no limit",
+    )  # fmt: skip
+    parser.add_argument(
+        "--resume", action="store_true",
+        help="goes on with a fit to MODEL that was stopped: its stages are in MODEL.checkpoint",
     )  # fmt: skip
     parser.add_argument("--held-out", metavar="BTF", help="pairs that the fit does not see, to judge it by")
     parser.add_argument(
@@ -36,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
-    for flag in ("--tolerance", "--clusters", "--k", "--memory"):
+    for flag in ("--clusters", "--k"):
         later.add_later(parser, flag, "--bytes bounds the model", "V")
     btf_options.add_arguments(parser)
 
@@ -44,10 +60,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> dict:
     later.only("--method", args.method or "srbf", table.COMPRESS_METHODS)
     output.check_writable(args.output)
-    names = ("method", "companding", "bytes", "seed", "threads")
+    names = ("method", "companding", "tolerance", "bytes", "memory", "seed", "threads")
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
+    options |= {"checkpoint": f"{args.output}.checkpoint", "resume": int(args.resume)}
     with contextlib.ExitStack() as handles:
         btf = handles.enter_context(btf_options.load(args.input, args))
+        if args.ratio:
+            options["bytes"] = max(1, int(btf.info()["raw_bytes"] / args.ratio))
         if args.held_out:
             options["held_out"] = handles.enter_context(Btf.load(args.held_out))
         options |= scene_options.load(args, handles)

@@ -10,6 +10,11 @@
 namespace velour {
 namespace {
 
+struct PursuitPoint {
+  RowMatrix column;  // pair x candidate
+  Eigen::VectorXf value;
+};
+
 constexpr Eigen::Index kPairs = 60, kCandidates = 40;
 const std::set<size_t> kTrue{4, 17, 30};
 
@@ -28,8 +33,14 @@ std::vector<PursuitPoint> sparse_points(float noise) {
   return points;
 }
 
-PursuitChoice choice_of(std::vector<PursuitPoint> points, size_t count, int threads = 2) {
-  return pursue(points, count, threads, Progress());
+PursuitChoice choice_of(const std::vector<PursuitPoint>& points, size_t count, int threads = 2) {
+  std::vector<RowMatrix> columns;
+  std::vector<Eigen::VectorXf> values;
+  for (const PursuitPoint& point : points) {
+    columns.push_back(point.column);
+    values.push_back(point.value);
+  }
+  return pursue(columns, values, count, threads, Progress());
 }
 
 TEST(LobePursuit, FindsWhatValuesAreMadeOf) {

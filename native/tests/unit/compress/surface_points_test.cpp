@@ -114,8 +114,9 @@ TEST(SharedLobes, ShareTheCoefficientsOut) {
   const test::MemoryBtf btf = test::striped_btf(kGrid);
   const auto points = points_of(btf, plane(0), {.points = 24, .pairs = 1000, .seed = 1});
   Progress progress;
-  const SharedLobes shared =
-      choose_lobes(points, {.coefficients = 14, .refinements = 3, .seed = 1, .threads = 2}, progress);
+  const LobeOrder order = order_lobes(points, {.most = 20, .seed = 1, .threads = 2}, progress);
+  SharedLobes shared = chosen_lobes(order, 14, 1);
+  refine_lobes(points, order.share(14), {.steps = 3, .threads = 2}, shared, progress);
   EXPECT_EQ(shared.lobe[0].size(), shared.lobes.size());
   EXPECT_EQ(shared.lobe[0].size() + shared.lobe[1].size() + shared.lobe[2].size(), 14u);
   EXPECT_LE(shared.tile_lobes, shared.lobes.size());
@@ -127,8 +128,9 @@ TEST(SharedLobes, ShareTheCoefficientsOut) {
 TEST(SharedLobes, OfBlackPointsAreTheConstant) {
   const auto points = points_of(uniform(Rgb(0.0f)), plane(0), {.points = 24, .pairs = 100, .seed = 1});
   Progress progress;
-  const SharedLobes shared =
-      choose_lobes(points, {.coefficients = 8, .refinements = 3, .seed = 1, .threads = 2}, progress);
+  const LobeOrder order = order_lobes(points, {.most = 8, .seed = 1, .threads = 2}, progress);
+  SharedLobes shared = chosen_lobes(order, 8, 1);
+  refine_lobes(points, order.share(8), {.steps = 3, .threads = 2}, shared, progress);
   EXPECT_EQ(shared.lobes.size(), 1u);
   EXPECT_EQ(shared.lobe[0].size(), 1u);
 }

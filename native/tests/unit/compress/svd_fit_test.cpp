@@ -18,16 +18,23 @@ const TexelGrid kGrid{12, 10};
 
 PairLayout small_layout() { return {ring_directions(30, 5), ring_directions(50, 7)}; }
 
+struct SvdFit {
+  FactoredBtf btf;
+  uint64_t not_finite;
+};
+
 SvdFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
   Progress progress;
-  return fit_svd(btf, options, progress);
+  FitCheckpoint none;
+  SvdFitter fitter(btf, options, none, progress);
+  return {std::get<FactoredBtf>(fitter.fit(fitter.largest())), fitter.not_finite()};
 }
 
 double error_of(const FactoredBtf& model, const BtfMeasurement& btf) {
   const FactoredImages images(model);
   const auto decode = [&](const DirectionPair& pair, std::vector<float>& rgb) { images.image(pair, rgb); };
   Progress progress;
-  return compare_btf(btf, decode, 1.0, 2, progress).ser;
+  return compare_btf(btf, decode, {}, 2, progress).ser;
 }
 
 /// Square of a sum of three products, one colour: three components of one axis.

@@ -1,0 +1,182 @@
+"""velour compress within an error, within memory, and after it was killed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+
+import numpy as np
+import pytest
+from command_line import command, environment, refused, velour
+from velour.native import Model
+
+BYTES = 50000
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("size")
+
+
+@pytest.fixture(scope="module")
+def btf(folder):
+    path = folder / "ribs"
+    options = ["--texels", 16, "--views", 24, "--lights", 24, "--samples", 16, "--sides", "one", "--quiet"]
+    assert velour("capture", "corduroy", *options, "-o", path).status == 0
+    return path
+
+
+@pytest.fixture(scope="module", params=["srbf", "svd"])
+def within(request, folder, btf):
+    """A method, the error that was asked for, the report and the model."""
+    path = folder / f"{request.param}.velour"
+    asked = {"srbf": 0.2, "svd": 0.1}[request.param]
+    arguments = ["--method", request.param, "--tolerance", asked, "--json"]
+    return request.param, asked, velour("compress", btf, "-o", path, *arguments).json, path
+
+
+def test_the_smallest_model_within_a_tolerance(folder, btf, within):
+    method, asked, report, _ = within
+    assert report["tolerance"] == asked
+    assert asked * 0.9 < report["relative_l2"] <= asked
+    assert not report["warnings"]
+    assert 1 <= len(report["search"]) <= 6
+    # The control: with four fifths of its bytes it is not within.
+    arguments = ["--method", method, "--bytes", int(0.8 * report["parameter_bytes"]), "--json"]
+    smaller = velour("compress", btf, "-o", folder / "smaller.velour", *arguments).json
+    assert smaller["relative_l2"] > asked
+
+
+def test_the_curve_is_stored_with_the_model(within):
+    _, asked, report, path = within
+    info = velour("info", path, "--json").json
+    order, chosen = info["order"], info["order"]["chosen"]
+    assert info["tolerance"] == asked
+    assert info["relative_l2"] == pytest.approx(report["relative_l2"])
+    assert (order, info["search"]) == (report["order"], report["search"])
+    assert order["relative_l2"][chosen] == pytest.approx(report["relative_l2"], rel=1e-3)
+    assert order["worst"][chosen] == pytest.approx(report["relative_l2"] / asked, rel=2e-3)
+    assert order["parameter_bytes"] == sorted(order["parameter_bytes"])
+    assert len(order["parameter_bytes"]) > 5
+    tried = report["search"][-1]["parameter_bytes"]
+    assert tried in order["parameter_bytes"]
+    with Model.load(path) as model:
+        assert model.info()["order"] == order
+
+
+def test_without_a_tolerance_the_curve_goes_on(folder, btf):
+    report = velour("compress", btf, "-o", folder / "plain.velour", "--bytes", BYTES // 4, "--json").json
+    order = report["order"]
+    assert report["tolerance"] == 0
+    assert len(report["search"]) == 1
+    assert order["worst"] == order["relative_l2"]
+    assert order["parameter_bytes"][-1] > 1.5 * report["parameter_bytes"]
+    assert order["relative_l2"][-1] < report["relative_l2"]
+
+
+def test_what_cannot_be_met_says_what_would(folder, btf):
+    path = folder / "bounded.velour"
+    report = velour("compress", btf, "-o", path, "--tolerance", 0.05, "--bytes", BYTES // 4, "--json").json
+    assert report["relative_l2"] > 0.05
+    assert report["parameter_bytes"] <= BYTES // 4
+    (sentence,) = report["warnings"]
+    assert "tolerance of 0.05 is not met" in sentence
+    assert "bytes would" in sentence
+
+
+def test_a_ratio_is_bytes(folder, btf):
+    raw = velour("info", btf, "--json").json["raw_bytes"]
+    report = velour("compress", btf, "-o", folder / "ratio.velour", "--ratio", 100, "--json").json
+    assert raw / 200 < report["parameter_bytes"] <= raw / 100
+    assert velour("compress", btf, "-o", path_of(folder), "--ratio", 9, "--bytes", 9).status == 2
+
+
+def path_of(folder):
+    return folder / "never.velour"
+
+
+def peak_megabytes(*arguments):
+    """Of a run of its own, in millions of bytes."""
+    process = subprocess.Popen(command(*arguments), stdout=subprocess.DEVNULL, env=environment())
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = status  # it is waited for
+    assert status == 0
+    return used.ru_maxrss * 1024 / 1e6
+
+
+def test_memory_is_kept_to(folder, btf):
+    """What the fit holds beside the program, which has the library loaded."""
+    program = peak_megabytes("info", btf, "--quiet")
+    arguments = ["compress", btf, "-o", folder / "memory.velour", "--bytes", BYTES // 4, "--quiet"]
+    assert peak_megabytes(*arguments, "--memory", 256_000_000) - program < 256
+    assert peak_megabytes(*arguments, "--memory", 100_000_000) - program < 100
+    assert peak_megabytes(*arguments) - program > 120  # the control: what it takes when it may
+
+
+def test_too_little_memory_is_refused_with_the_least_that_would_do(folder, btf):
+    for method in ("srbf", "svd"):
+        sentence = refused(
+            "compress",
+            btf,
+            "-o",
+            path_of(folder),
+            "--method",
+            method,
+            "--bytes",
+            BYTES,
+            "--memory",
+            1_000_000,
+        )
+        least = int(sentence.split("holds ")[1].split(" MB")[0])
+        done = velour(
+            "compress", btf, "-o", folder / "least.velour", "--method", method, "--bytes", BYTES,
+            "--memory", least * 1_000_000, "--quiet",
+        )  # fmt: skip
+        assert done.status == 0
+
+
+def parameters(path):
+    """Values that the model gives, which its record of seconds and rates is no part of."""
+    with Model.load(path) as model:
+        wl = np.array([[0, 0, 1], [0.6, 0, 0.8], [0, -0.6, 0.8]], np.float32)
+        return model.eval((0.28, 0, 0.96), wl)[0].tobytes()
+
+
+def killed(btf, path, *arguments):
+    """Ends a fit hard as soon as its checkpoint holds lobes."""
+    checkpoint = path.with_name(path.name + ".checkpoint")
+    process = subprocess.Popen(command("compress", btf, "-o", path, *arguments, "--quiet"), env=environment())
+    while process.poll() is None:
+        if checkpoint.is_file() and b".lobes." in checkpoint.read_bytes():
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        time.sleep(0.002)
+    assert process.returncode < 0, "it was done before it could be killed"
+    assert not path.exists()
+    return checkpoint
+
+
+def test_a_killed_fit_goes_on(folder, btf):
+    arguments = ["--bytes", BYTES, "--seed", 5]
+    whole, path = folder / "whole.velour", folder / "killed.velour"
+    assert velour("compress", btf, "-o", whole, *arguments, "--quiet").status == 0
+    checkpoint = killed(btf, path, *arguments)
+    report = velour("compress", btf, "-o", path, *arguments, "--resume", "--json").json
+    assert not report["warnings"]
+    assert parameters(path) == parameters(whole)
+    assert not checkpoint.exists()
+
+
+def test_what_is_left_of_another_fit_is_ignored(folder, btf):
+    path = folder / "stale.velour"
+    checkpoint = killed(btf, path, "--bytes", BYTES)
+    report = velour("compress", btf, "-o", path, "--bytes", BYTES // 4, "--resume", "--json").json
+    (sentence,) = report["warnings"]
+    assert "nothing was resumed" in sentence
+    assert str(checkpoint) in sentence
+    assert not checkpoint.exists()
+    checkpoint.write_bytes(b"v/1\x01" + os.urandom(500))
+    report = velour("compress", btf, "-o", path, "--bytes", BYTES // 4, "--resume", "--json").json
+    assert len(report["warnings"]) == 1

@@ -1,0 +1,91 @@
+#include "compress/fit_memory.h"
+
+#include <algorithm>
+
+#include "compress/lobe_order.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+constexpr uint64_t kFloat = sizeof(float), kHalf = sizeof(HalfBits);
+constexpr uint32_t kUsualPoints = 64, kLeastPoints = 8;
+constexpr uint64_t kLibraries = 8 << 20;  // threads' stacks and pools, and what is small
+
+/// A view: halves, values, planes along the axes, all levels of them by texel, and the next level's values.
+uint64_t reading_bytes(const FitExtent& e) {
+  return e.texels * e.lights * 3 * (2 * kHalf + kFloat + kFloat + 2 * kFloat + kFloat);
+}
+
+/// Points with their pairs, whose lists grow by doubling.
+uint64_t point_bytes(const FitExtent& e) {
+  return e.sides * e.points * e.point_pairs * 2 * (sizeof(LobeArguments) + 3 * kFloat);
+}
+
+/// Of one point: every candidate at its pairs, and bases of three axes with room for as much again.
+uint64_t search_point_bytes(const FitExtent& e) {
+  const uint64_t pairs = std::min(e.point_pairs, kOrderPairs);
+  return pairs * kFloat * (kLobeCandidates + 4 * e.coefficients) + 6 * kLobeCandidates * kFloat;
+}
+
+/// Arguments of both frames, and a thread's matrices of values.
+uint64_t refinement_bytes(const FitExtent& e) {
+  return e.points * e.point_pairs * 2 * 9 * kFloat + e.threads * e.point_pairs * e.coefficients * 4 * kFloat +
+         e.points * e.coefficients * 9 * kFloat;
+}
+
+/// Moments of all levels, and vectors of the finest one's conjugate gradients.
+uint64_t texel_bytes(const FitExtent& e) {
+  return (e.pyramid_texels + 10 * e.texels) * e.coefficients * kFloat + e.texels * 128;
+}
+
+/// The model and its evaluator, and images of each thread.
+uint64_t judging_bytes(const FitExtent& e) {
+  return 3 * e.pyramid_texels * e.coefficients * kHalf + e.threads * e.texels * 3 * (kHalf + 2 * kFloat);
+}
+
+std::string megabytes(uint64_t bytes) { return std::to_string((bytes + 999999) / 1000000) + " MB"; }
+
+[[noreturn]] void refuse(uint64_t memory, uint64_t least, const std::string& of_what) {
+  throw Error(Status::unsupported, "The fit holds " + megabytes(least) + " at least, for " + of_what +
+                                       "; the limit is " + megabytes(memory) +
+                                       ". Raise it, or capture fewer texels or lights.");
+}
+
+uint64_t svd_bytes(const FitExtent& e) {
+  const uint64_t columns = e.coefficients + 8;
+  const uint64_t sketches = 3 * columns * (2 * e.texels + e.pairs) * kFloat;
+  const uint64_t turning = columns * std::max(4 * e.texels * kFloat, 3 * e.pairs * sizeof(double));
+  const uint64_t projecting = e.coefficients * (2 * e.pairs + 2 * e.pyramid_texels) * kFloat;
+  return kLibraries + reading_bytes(e) + sketches + std::max(turning, projecting) + judging_bytes(e);
+}
+
+}  // namespace
+
+uint32_t search_points_within(uint64_t memory, const FitExtent& extent) {
+  const uint64_t held = kLibraries + point_bytes(extent);
+  const uint64_t rest = std::max({reading_bytes(extent) + texel_bytes(extent), refinement_bytes(extent),
+                                  judging_bytes(extent), kLeastPoints * search_point_bytes(extent)});
+  if (held + rest > memory) {
+    refuse(memory, held + rest,
+           "one view of " + std::to_string(extent.texels) + " texels under " + std::to_string(extent.lights) +
+               " lights and " + std::to_string(extent.coefficients) + " coefficients a texel");
+  }
+  return static_cast<uint32_t>(std::min<uint64_t>(kUsualPoints, (memory - held) / search_point_bytes(extent)));
+}
+
+void require_components(uint64_t memory, const FitExtent& extent) {
+  const uint64_t bytes = svd_bytes(extent);
+  if (bytes > memory) refuse(memory, bytes, std::to_string(extent.coefficients) + " components");
+}
+
+uint64_t components_within(uint64_t memory, FitExtent extent) {
+  const uint64_t most = extent.coefficients;
+  while (extent.coefficients > 1 && svd_bytes(extent) > memory) --extent.coefficients;
+  if (svd_bytes(extent) <= memory) return std::min(most, extent.coefficients);
+  refuse(
+      memory, svd_bytes(extent),
+      "one component of " + std::to_string(extent.texels) + " texels and " + std::to_string(extent.pairs) + " pairs");
+}
+
+}  // namespace velour

@@ -1,0 +1,32 @@
+// What fits hold in memory at once, and what a limit allows.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "btf/btf_measurement.h"
+
+namespace velour {
+
+/// Sizes that a fit's memory follows from.
+struct FitExtent {
+  uint64_t texels = 0, pyramid_texels = 0, pairs = 0;
+  uint64_t lights = 0;  // of a view
+  uint64_t sides = 1;
+  uint64_t points = 0, point_pairs = 0;  // that lobes are refined by: of a side, of a point
+  uint64_t coefficients = 0;             // of a texel, or components
+  uint64_t threads = 1;
+};
+
+/// The number of points that the order of SRBFs is chosen by, between the least and the usual one, which keeps the fit
+/// within `memory` bytes. Throws Error(unsupported) with the least that would do.
+uint32_t search_points_within(uint64_t memory, const FitExtent& extent);
+
+/// Throws Error(unsupported), with what would do, where a truncated SVD of so many components holds more than `memory`.
+void require_components(uint64_t memory, const FitExtent& extent);
+
+/// The most components, `coefficients` at most, that a truncated SVD can look at within `memory` bytes. Throws
+/// Error(unsupported) with the least that would do.
+uint64_t components_within(uint64_t memory, FitExtent extent);
+
+}  // namespace velour

@@ -1,0 +1,18 @@
+// Orders and lobes in a fit's checkpoint, checked as they are read.
+#pragma once
+
+#include "compress/fit_checkpoint.h"
+#include "compress/lobe_order.h"
+
+namespace velour {
+
+struct SharedLobes;
+
+std::optional<LobeOrder> kept_order(const FitCheckpoint& checkpoint, const std::string& stage);
+void keep_order(FitCheckpoint& checkpoint, const std::string& stage, const LobeOrder& order);
+
+/// Puts what was kept into `lobes`, which are chosen but not refined; false where nothing was.
+bool take_kept_lobes(const FitCheckpoint& checkpoint, const std::string& stage, SharedLobes& lobes);
+void keep_lobes(FitCheckpoint& checkpoint, const std::string& stage, const SharedLobes& lobes);
+
+}  // namespace velour

@@ -1,0 +1,145 @@
+#include "compress/lobe_order.h"
+
+#include <algorithm>
+
+#include "btf/srbf_btf.h"
+#include "compress/lobe_values.h"
+#include "fit/parallel.h"
+#include "sphere/random.h"
+
+namespace velour {
+namespace {
+
+/// A direction with z in [least_z, 1] times a bandwidth, evenly distributed by area and logarithm.
+Vec3 random_vector(RandomStream& random, float least_z, float narrowest, float widest) {
+  const float z = std::lerp(least_z, 1.0f, random.next()), phi = 2 * kPi * random.next(), s = std::sqrt(1 - z * z);
+  return Vec3(s * std::cos(phi), s * std::sin(phi), z) * (narrowest * std::pow(widest / narrowest, random.next()));
+}
+
+MultivariateLobe random_lobe(RandomStream& random, bool texel) {
+  MultivariateLobe lobe;
+  const int kind = static_cast<int>(random.next() * 8);
+  // Highlights of texels stand about their normals.
+  const float half_z = texel ? 0.97f : 0.2f;
+  if (kind < 3) {
+    lobe.light = random_vector(random, 0, 0.7f, 60);
+  } else if (kind < 5) {
+    lobe.light = random_vector(random, 0, 0.7f, 40);
+    lobe.view = random_vector(random, 0.1f, 0.5f, 20);
+  } else if (kind == 5) {
+    lobe.half = random_vector(random, half_z, 2, 400);
+  } else if (kind == 6) {
+    lobe.half = random_vector(random, half_z, 4, 400);
+    lobe.light = random_vector(random, 0, 0.7f, 20);
+  } else {
+    lobe.view = random_vector(random, 0.1f, 0.5f, 20);
+  }
+  return lobe;
+}
+
+/// The pursuits of three axes, which share their columns.
+class OrderSearch {
+ public:
+  OrderSearch(const std::vector<RowMatrix>& columns, const std::vector<SurfacePoint>& points, int threads) {
+    for (size_t a = 0; a < 3; ++a) {
+      pursuit_.emplace_back(columns, point_values(points, columns, a), threads);
+      all_ += pursuit_[a].choice().all;
+    }
+    rest_ = all_;
+  }
+
+  /// One more coefficient; false where nothing is left to explain.
+  bool step(const Progress& progress) {
+    double most = -1;
+    size_t to = 3;
+    for (size_t a = 0; a < 3; ++a) {
+      if (!looks_ahead(a, progress)) continue;
+      const double gain = left(a, share_[a]) - left(a, share_[a] + 1);
+      if (gain > most) {
+        most = gain;
+        to = a;
+      }
+    }
+    if (to == 3) return false;
+    ++share_[to];
+    rest_ -= most;
+    order_.axis.push_back(static_cast<uint8_t>(to));
+    order_.left.push_back(std::max(0.0, rest_ / all_));
+    return true;
+  }
+
+  double left() const { return order_.left.empty() ? 1.0 : order_.left.back(); }
+
+  LobeOrder take() {
+    for (size_t a = 0; a < 3; ++a) {
+      const std::vector<size_t>& all = pursuit_[a].choice().order;
+      order_.candidate[a].assign(all.begin(), all.begin() + static_cast<ptrdiff_t>(share_[a]));
+    }
+    if (share_[0] == 0) need_one();
+    return std::move(order_);
+  }
+
+ private:
+  double left(size_t a, size_t n) const { return n == 0 ? pursuit_[a].choice().all : pursuit_[a].choice().left[n - 1]; }
+  bool looks_ahead(size_t a, const Progress& progress) {
+    return pursuit_[a].choice().order.size() > share_[a] ||
+           (share_[a] < SrbfBtf::kMaxLobes && pursuit_[a].step(progress));
+  }
+  /// A model has a lobe.
+  void need_one() {
+    order_.candidate[0] = {0};
+    order_.axis.insert(order_.axis.begin(), 0);
+    order_.left.insert(order_.left.begin(), all_ > 0 ? 1.0 : 0.0);
+  }
+
+  std::vector<Pursuit> pursuit_;
+  std::array<size_t, 3> share_{};
+  double all_ = 0, rest_ = 0;
+  LobeOrder order_;
+};
+
+}  // namespace
+
+LobeCandidates random_candidates(uint64_t seed) {
+  LobeCandidates candidates{{MultivariateLobe{}}, kLobeCandidates / 2};
+  for (uint32_t i = 1; i < kLobeCandidates; ++i) {
+    RandomStream random(seed, i, 2);
+    candidates.lobes.push_back(random_lobe(random, i >= candidates.tile_lobes));
+  }
+  return candidates;
+}
+
+std::vector<RowMatrix> candidate_columns(const std::vector<SurfacePoint>& points, const LobeCandidates& candidates,
+                                         size_t most_points, size_t most_pairs, int threads, const Progress& progress) {
+  const LobeValues values(candidates.lobes, candidates.tile_lobes);
+  std::vector<RowMatrix> columns(std::min(most_points, points.size()));
+  parallel_pieces(columns.size(), threads, progress, [&](size_t i) { columns[i] = values.at(points[i], most_pairs); });
+  return columns;
+}
+
+std::vector<Eigen::VectorXf> point_values(const std::vector<SurfacePoint>& points,
+                                          const std::vector<RowMatrix>& columns, size_t axis) {
+  std::vector<Eigen::VectorXf> values;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    values.emplace_back(Eigen::Map<const Eigen::VectorXf>(points[i].value[axis].data(), columns[i].rows()));
+  }
+  return values;
+}
+
+std::array<size_t, 3> LobeOrder::share(size_t count) const {
+  std::array<size_t, 3> share{};
+  for (size_t i = 0; i < std::min(count, axis.size()); ++i) ++share[axis[i]];
+  return share;
+}
+
+LobeOrder order_lobes(const std::vector<SurfacePoint>& points, const LobeOrderOptions& options, Progress& progress) {
+  const std::vector<RowMatrix> columns = candidate_columns(points, random_candidates(options.seed), options.points,
+                                                           kOrderPairs, options.threads, progress);
+  OrderSearch search(columns, points, options.threads);
+  for (size_t i = 0; i < options.most && search.left() > options.least && search.step(progress); ++i) {
+    progress.update(static_cast<double>(i + 1) / static_cast<double>(options.most));
+  }
+  return search.take();
+}
+
+}  // namespace velour

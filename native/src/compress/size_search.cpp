@@ -1,0 +1,181 @@
+#include "compress/size_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+namespace velour {
+namespace {
+
+constexpr size_t kMostFits = 6;
+constexpr double kClose = 0.03;      // of the tolerance, or of the size: a smaller model would not be much smaller
+constexpr double kLeastSlope = 0.1;  // of errors against sizes, in logarithms
+constexpr double kFarthest = 2;      // times the size of a fit that failed, when lines are followed
+
+/// Keeps logarithms finite where a model is exact.
+double positive(double error) { return std::max(error, 1e-12); }
+
+std::string text(const char* format, double value) {
+  std::array<char, 32> out{};
+  std::snprintf(out.data(), out.size(), format, value);
+  return out.data();
+}
+
+}  // namespace
+
+SizeSearch::SizeSearch(const OrderCurve& curve, size_t largest, double tolerance)
+    : curve_(curve), largest_(largest), tolerance_(tolerance) {}
+
+void SizeSearch::add(size_t point, double error) { fits_.push_back({point, error}); }
+
+std::optional<size_t> SizeSearch::next() const {
+  if (fits_.empty()) return tolerance_ > 0 ? smallest_within(tolerance_) : largest_;
+  if (tolerance_ == 0 || fits_.size() >= kMostFits) return std::nullopt;
+  const auto failing = largest_failing(), holding = smallest_holding();
+  if (holding && (holding->point == 0 || holding->error >= (1 - kClose) * tolerance_)) return std::nullopt;
+  size_t point = 0;
+  if (failing && holding) {
+    if (static_cast<double>(holding->point - failing->point) <= 1 + kClose * static_cast<double>(holding->point)) {
+      return std::nullopt;
+    }
+    point = between(*failing, *holding);
+  } else if (holding) {
+    point = std::min(smallest_within(tolerance_ / height(holding->point)), holding->point - 1);
+  } else {
+    if (failing->point >= largest_) return std::nullopt;
+    point = std::clamp(beyond(*failing), failing->point + 1, largest_);
+  }
+  return was_fitted(point) ? std::nullopt : std::optional(point);
+}
+
+bool SizeSearch::was_fitted(size_t point) const {
+  return std::any_of(fits_.begin(), fits_.end(), [&](const Fit& fit) { return fit.point == point; });
+}
+
+std::optional<SizeSearch::Fit> SizeSearch::smallest_holding() const {
+  std::optional<Fit> found;
+  for (const Fit& fit : fits_) {
+    if (holds(fit) && (!found || fit.point < found->point)) found = fit;
+  }
+  return found;
+}
+
+/// Of those smaller than what holds: more bytes are not always better.
+std::optional<SizeSearch::Fit> SizeSearch::largest_failing() const {
+  const auto holding = smallest_holding();
+  std::optional<Fit> found;
+  for (const Fit& fit : fits_) {
+    const bool smaller = !holding || fit.point < holding->point;
+    if (!holds(fit) && smaller && (!found || fit.point > found->point)) found = fit;
+  }
+  return found;
+}
+
+size_t SizeSearch::smallest_within(double error) const {
+  size_t point = 0;
+  while (point < largest_ && expected(point) > error) ++point;
+  return point;
+}
+
+size_t SizeSearch::between(const Fit& failing, const Fit& holding) const {
+  const double above = std::log(positive(failing.error)), below = std::log(positive(holding.error));
+  const double share = above > below ? (above - std::log(tolerance_)) / (above - below) : 0.5;
+  const double error = std::exp(
+      std::lerp(std::log(positive(expected(failing.point))), std::log(positive(expected(holding.point))), share));
+  return std::clamp(smallest_within(error), failing.point + 1, holding.point - 1);
+}
+
+/// By the height of the last fit that fails; where two do, also by the line through them, in logarithms: noise and
+/// what no model describes make errors fall slower than expected.
+size_t SizeSearch::beyond(const Fit& failing) const {
+  const size_t by_height = smallest_within(tolerance_ / height(failing.point));
+  std::optional<Fit> before;
+  for (const Fit& fit : fits_) {
+    if (fit.point < failing.point && (!before || fit.point > before->point)) before = fit;
+  }
+  if (!before) return by_height;
+  const auto size = [](const Fit& fit) { return std::log(static_cast<double>(fit.point) + 1); };
+  const double slope = std::log(positive(before->error) / positive(failing.error)) / (size(failing) - size(*before));
+  const double by_line = size(failing) + std::log(failing.error / tolerance_) / std::max(slope, kLeastSlope);
+  const double most = std::min(size(failing) + std::log(kFarthest), std::log(static_cast<double>(largest_) + 1));
+  return std::max(by_height, static_cast<size_t>(std::exp(std::min(by_line, most))) - 1);
+}
+
+const SizeSearch::Fit& SizeSearch::best_fit() const {
+  const auto better = [&](const Fit& a, const Fit& b) {
+    if (holds(a) != holds(b)) return holds(a);
+    return holds(a) ? a.point < b.point : a.error < b.error;
+  };
+  return *std::min_element(fits_.begin(), fits_.end(), better);
+}
+
+size_t SizeSearch::best() const { return best_fit().point; }
+
+bool SizeSearch::met() const { return tolerance_ == 0 || holds(best_fit()); }
+
+/// Measured over expected error: of the nearest fit beyond the first and the last.
+double SizeSearch::height(size_t point) const {
+  const Fit *before = nullptr, *after = nullptr;
+  for (const Fit& fit : fits_) {
+    if (fit.point <= point && (!before || fit.point > before->point)) before = &fit;
+    if (fit.point >= point && (!after || fit.point < after->point)) after = &fit;
+  }
+  const auto at = [&](const Fit& fit) { return std::log(positive(fit.error) / positive(expected(fit.point))); };
+  if (!before || !after) return std::exp(at(before ? *before : *after));
+  if (before->point == after->point) return std::exp(at(*before));
+  const auto place = [](size_t p) { return std::log(static_cast<double>(p) + 1); };
+  const double share = (place(point) - place(before->point)) / (place(after->point) - place(before->point));
+  return std::exp(std::lerp(at(*before), at(*after), share));
+}
+
+std::vector<SizeTrial> SizeSearch::trials() const {
+  std::vector<SizeTrial> trials;
+  for (const Fit& fit : fits_) {
+    const OrderPoint& point = curve_.points[fit.point];
+    trials.push_back({point.lobes, point.parameter_bytes, point.relative_l2, fit.error});
+  }
+  return trials;
+}
+
+OrderCurve SizeSearch::measured_curve(size_t most) const {
+  std::set<size_t> numbers;
+  for (const Fit& fit : fits_) numbers.insert(fit.point);
+  const auto all = static_cast<double>(curve_.points.size());
+  for (size_t i = 0; i < most; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(most - 1);
+    numbers.insert(std::min(curve_.points.size() - 1, static_cast<size_t>(std::pow(all, share) + 0.5) - 1));
+  }
+  OrderCurve curve;
+  for (const size_t number : numbers) {
+    OrderPoint point = curve_.points[number];
+    point.relative_l2 *= height(number);
+    for (const Fit& fit : fits_) {
+      if (fit.point == number) point.relative_l2 = fit.error;
+    }
+    point.worst = tolerance_ > 0 ? point.relative_l2 / tolerance_ : point.relative_l2;
+    if (number == best()) curve.chosen = curve.points.size();
+    curve.points.push_back(point);
+  }
+  return curve;
+}
+
+std::string SizeSearch::shortfall() const {
+  const Fit& closest = best_fit();
+  std::string sentence = "the tolerance of " + text("%.4g", tolerance_) + " is not met: the error is " +
+                         text("%.4g", closest.error) + " with " +
+                         std::to_string(curve_.points[closest.point].parameter_bytes) + " bytes; ";
+  for (size_t point = largest_ + 1; point < curve_.points.size(); ++point) {
+    if (expected(point) * height(point) > tolerance_) continue;
+    return sentence + "about " + std::to_string(curve_.points[point].parameter_bytes) + " bytes would do";
+  }
+  if (largest_ + 1 < curve_.points.size()) {
+    return sentence + "more than " + std::to_string(curve_.points.back().parameter_bytes) +
+           " bytes would be needed, or a tolerance of " + text("%.3g", closest.error * (1 + kClose));
+  }
+  return sentence + "no larger model of this method is known to do, a tolerance of " +
+         text("%.3g", closest.error * (1 + kClose)) + " would";
+}
+
+}  // namespace velour

@@ -1,0 +1,61 @@
+#include "compress/fit_memory.h"
+
+#include <gtest/gtest.h>
+
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+FitExtent usual_extent() {
+  return {.texels = 128 * 128,
+          .pyramid_texels = 21845,
+          .pairs = 6561,
+          .lights = 81,
+          .sides = 1,
+          .points = 400,
+          .point_pairs = 900,
+          .coefficients = 112,
+          .threads = 2};
+}
+
+std::string refusal(uint64_t memory, const FitExtent& extent) {
+  try {
+    search_points_within(memory, extent);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::unsupported);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FitMemory, TakesFewerPointsWhereThereIsLess) {
+  EXPECT_EQ(search_points_within(uint64_t{1} << 30, usual_extent()), 64u);
+  const uint32_t fewer = search_points_within(uint64_t{256} << 20, usual_extent());
+  EXPECT_LT(fewer, 64u);
+  EXPECT_GE(fewer, 8u);
+}
+
+/// The least that a refusal names is enough.
+TEST(FitMemory, NamesTheLeastThatWouldDo) {
+  const std::string sentence = refusal(50'000'000, usual_extent());
+  const size_t at = sentence.find("holds ");
+  ASSERT_NE(at, std::string::npos) << sentence;
+  const auto least = std::stoull(sentence.substr(at + 6)) * 1'000'000;
+  EXPECT_GE(search_points_within(least, usual_extent()), 8u);
+  EXPECT_NE(refusal(least - 2'000'000, usual_extent()), "");
+}
+
+TEST(FitMemory, OfComponentsGrowsWithThem) {
+  FitExtent extent = usual_extent();
+  const uint64_t some = components_within(uint64_t{256} << 20, extent);
+  EXPECT_GT(some, 1u);
+  extent.coefficients = some;
+  require_components(uint64_t{256} << 20, extent);
+  extent.coefficients = 512;
+  EXPECT_THROW(require_components(uint64_t{256} << 20, extent), Error);
+  EXPECT_THROW(components_within(1'000'000, extent), Error);
+}
+
+}  // namespace
+}  // namespace velour
