@@ -7,14 +7,15 @@ from support import inputs, scenes
 from support.blender import BlenderTest
 
 _SMALL = {"texels": 16, "views": 24, "lights": 24, "samples": 16, "bounces": 0, "sides": "ONE"}
+_SMALLEST = {"texels": 8, "views": 12, "lights": 12}
 
 
 class CompressBtf(BlenderTest):
-    def _captured(self):
+    def _captured(self, **settings):
         """The folder of a captured tile, which is the active object."""
         bpy.ops.velour.add_mesostructure(type="CORDUROY", count=2, resolution=8)
         folder = self.folder / "ribs.btf"
-        bpy.ops.velour.capture_btf(directory=str(folder), **_SMALL)
+        bpy.ops.velour.capture_btf(directory=str(folder), **{**_SMALL, **settings})
         return folder
 
     def test_what_was_captured_of_a_tile_becomes_a_packed_model(self):
@@ -42,7 +43,7 @@ class CompressBtf(BlenderTest):
             return model.info()
 
     def test_the_smallest_model_within_an_error(self):
-        self._captured()
+        self._captured(**_SMALLEST)
         tile = bpy.context.object
         bpy.ops.velour.compress_btf(tolerance=0.3)
         info = self._model_info()
@@ -60,7 +61,7 @@ class CompressBtf(BlenderTest):
         bpy.ops.velour.add_mesostructure(type="CORDUROY", count=2, resolution=8)
         bpy.context.object.velour.held_out = 8
         folder = self.folder / "ribs.btf"
-        bpy.ops.velour.capture_btf(directory=str(folder), **_SMALL)
+        bpy.ops.velour.capture_btf(directory=str(folder), **{**_SMALL, **_SMALLEST})
         self.assertTrue((folder / "btf.json").is_file())
         self.assertTrue((self.folder / "ribs.held-out.btf" / "btf.json").is_file())
         bpy.ops.velour.compress_btf(megabytes=0.03)
