@@ -125,16 +125,19 @@ def capture(folder):
     window.screenshot(folder, "collection-panel")
 
 
+def _orange(picture):
+    """How many pixels have the colour of a curve's chosen point."""
+    return int((np.abs(picture - (1.0, 0.6, 0.2)).max(axis=2) < 0.1).sum())
+
+
 def material(folder):
     """The panel shows what a material was asked for, and its curve."""
-    tile = yield from _tile_in_properties("OBJECT")
-    path = folder / "material.btf"
+    yield from _tile_in_properties("COLLECTION")
+    before = window.screenshot(folder, "collection-before")
+    small = {"texels": 8, "views": 12, "lights": 12, "samples": 4}
     with window.override():
-        bpy.ops.velour.capture_btf(directory=str(path), texels=8, views=12, lights=12, samples=4, held_out=0)
-        bpy.ops.velour.compress_btf(tolerance=0.2)
-    yield 0.7  # the model is read between two redraws
-    assert tile.velour.model is not None
-    yield 0.7
-    shown = window.screenshot(folder, "tile-panel-curve")
-    orange = (shown[..., 0] > 0.8) & (shown[..., 2] < 0.4) & (abs(shown[..., 1] - 0.6) < 0.1)
-    assert orange.sum() > 20, "no chosen point"
+        bpy.ops.velour.capture_btf(collection="Collection", directory=str(folder / "material.btf"), **small)
+        bpy.ops.velour.compress_btf(collection="Collection", tolerance=0.2)
+    assert bpy.data.collections["Collection"].velour.model is not None
+    yield 1.4  # the model is read between two redraws
+    assert _orange(window.screenshot(folder, "collection-curve")) > _orange(before) + 20, "no chosen point"
