@@ -137,11 +137,17 @@ def _btf_terms(info):
     """What a texel is a sum of, and of which sides of the surface."""
     if "components" in info:
         return (("Components", str(info["components"])),)
-    names = (_side_name(side) for side in info["sides"])
     return (
         ("Lobes", f"{info['lobes']}, {info['coefficients']} coefficients a texel"),
-        ("Sides", ", ".join(names)),
+        *(("Side", _side_text(side, info["sides"])) for side in info["sides"]),
     )
+
+
+def _side_text(side, sides):
+    """Where it is seen and lit from, and what it costs."""
+    if side["as"] is not None:
+        return f"{_side_name(side)}: looks as {_side_name(sides[side['as']])}, costs nothing"
+    return f"{_side_name(side)}: {side['parameter_bytes'] / 1e6:.2f} MB"
 
 
 def _side_name(side):

@@ -30,6 +30,8 @@ class SrbfFitter final : public BtfFitter {
     std::vector<SurfacePoint> points;  // none while all that is made of them was kept
   };
   void find_sides(const ColourAxes& colours);
+  /// The number of a side that looks like this one.
+  std::optional<size_t> side_like(const SideDirections& side, double energy) const;
   void find_orders(uint64_t bytes, bool all);
   uint32_t search_points(size_t most) const;
   const std::vector<SurfacePoint>& points_of(size_t side);
@@ -43,6 +45,7 @@ class SrbfFitter final : public BtfFitter {
   Mat3 axes_{1.0f};
   std::vector<Side> sides_;
   std::vector<SideDemand> demand_;  // of each side
+  std::vector<SharedSide> shared_;
   std::optional<SideShares> shares_;
 };
 

@@ -141,7 +141,7 @@ TEST_P(Resumed, HasTheBitsOfAFitThatWasNotStopped) {
   std::filesystem::remove(path);
   const test::MemoryBtf btf = test::striped_btf({6, 4}, GetParam() == CompressMethod::srbf);
   CompressOptions options;
-  options.bytes = GetParam() == CompressMethod::srbf ? 2500 : 40000;
+  options.bytes = GetParam() == CompressMethod::srbf ? 1200 : 40000;
   options.tolerance = GetParam() == CompressMethod::srbf ? 0.2 : 0.08;
   options.method = GetParam();
   options.threads = 2;

@@ -89,13 +89,15 @@ inline Model example_reduced() {
 
 inline Model example_btf_model(bool two_sided = false) {
   Model model{example_factored(two_sided), {}, {"weave", "velour-btf", std::string(64, 'b')}};
-  model.btf = BtfRecord{"svd", 23.5, 21.25, 0.01, 0.5, 123456, 1.5, 2e6, 42, {"a sentence"}};
+  model.btf = BtfRecord{"svd", 23.5, 21.25, 0.01, 0.5, 123456, 1.5, 2e6, 42, {"a sentence"}, 0.125, 0.25, {}, {}};
+  model.btf->order = {{{1, 100, 1.5, 0.375}, {3, 300, 0.5, 0.125}}, 1};
+  model.btf->search = {{3, 300, 0.25, 0.125}};
   return model;
 }
 
 inline Model example_srbf_model(bool two_sided = false) {
   Model model{example_srbf(two_sided), {}, {"gravel", "velour-btf", std::string(64, 'c')}};
-  model.btf = BtfRecord{"srbf", 24.5, std::nullopt, 0.02, 0.25, 654321, 2.5, 3e6, 7, {}};
+  model.btf = BtfRecord{"srbf", 24.5, std::nullopt, 0.02, 0.25, 654321, 2.5, 3e6, 7, {}, 0, 0, {}, {}};
   return model;
 }
 

@@ -43,7 +43,12 @@ TEST(FactoredModel, SurvivesItsFile) {
 }
 
 TEST(FactoredModel, KeepsItsRecord) {
+  const BtfRecord written = *test::example_btf_model().btf;
   const BtfRecord record = *after_a_round_trip(test::example_btf_model()).btf;
+  EXPECT_EQ(record.relative_l2, written.relative_l2);
+  EXPECT_EQ(record.tolerance, written.tolerance);
+  EXPECT_EQ(record.order, written.order);
+  EXPECT_EQ(record.search, written.search);
   EXPECT_EQ(record.method, "svd");
   EXPECT_EQ(record.psnr, 23.5);
   EXPECT_EQ(record.psnr_held_out, 21.25);

@@ -79,6 +79,30 @@ TEST(SrbfBtfModel, KeepsItsRecord) {
   EXPECT_EQ(record.evaluations_per_second, 3e6);
 }
 
+TEST(SrbfBtfModel, KeepsSidesThatAnotherOneServes) {
+  Model model = test::example_srbf_model();
+  SrbfBtf btf = test::example_srbf(true);
+  btf.sides.pop_back();
+  btf.shared = {{true, true, 0}};
+  model.body = btf;
+  const Model back = after_a_round_trip(model);
+  const std::vector<SharedSide>& shared = std::get<SrbfBtf>(back.body).shared;
+  ASSERT_EQ(shared.size(), 1u);
+  EXPECT_TRUE(shared[0].view_below && shared[0].light_below);
+  EXPECT_EQ(shared[0].side, 0u);
+  EXPECT_EQ(encode_model(model), encode_model(back));
+}
+
+TEST(SrbfBtfModel, SharedSidesNameSidesThatAreThere) {
+  const auto shared = [](std::vector<float> row) {
+    return [row](TensorFile& f) { f.tensors["btf.shared"] = {{row.size() / 3, 3}, row, false}; };
+  };
+  expect_refused(shared({1, 0, 2}), "btf.shared[2]");  // of two
+  expect_refused(shared({1, 0, 0.5f}), "btf.shared[2]");
+  expect_refused(shared({2, 0, 0}), "btf.shared[0]");
+  expect_refused(shared(std::vector<float>(12, 0.0f)), "btf.shared");
+}
+
 TEST(SrbfBtfModel, OfOneBlackLobeSurvives) {
   SrbfBtf btf = test::example_srbf();
   SrbfSide& side = btf.sides[0];
