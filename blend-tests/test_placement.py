@@ -159,6 +159,32 @@ class Pictures(Placed):
             (settings.mode, settings.rotation, tuple(settings.tile_size)), ("REAL_SIZE", 1.0, (20, 30))
         )
 
+    def _plane_with_two_maps(self, scale, **settings):
+        """A second map, which does not render, counts `scale` times as much."""
+        plane = scenes.add_plane(size=2.0)
+        layer = plane.data.uv_layers.new(name="Fine")
+        for loop in layer.data:
+            loop.uv *= scale
+        plane.data.uv_layers[0].active_render = True
+        plane.data.materials.append(self._material(**settings))
+        return plane
+
+    def test_another_uv_map(self):
+        self._plane_with_two_maps(3, uv_map="Fine")
+        self._check_picture([[3, 0, 0], [0, 3, 0]])
+        self._placement().uv_map = ""
+        self._check_picture([[1, 0, 0], [0, 1, 0]])
+
+    def test_real_size_is_of_the_chosen_map(self):
+        self._plane_with_two_maps(3, metres=0.5, mode="REAL_SIZE", uv_map="Fine")
+        # A tile is half a metre whatever map it is placed by; the plane is two metres wide.
+        self._check_picture([[4, 0, 0], [0, 4, 0]])
+
+    def test_a_uv_map_that_is_not_there_is_named(self):
+        self._plane_with_two_maps(3, uv_map="Coarse")
+        self._check_picture([[1, 0, 0], [0, 1, 0]])
+        self.assertTrue(any("no UV map 'Coarse'" in note for note in self._notes()))
+
 
 class Reports(Placed):
     def test_rows_of_a_plane(self):

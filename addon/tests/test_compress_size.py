@@ -180,3 +180,29 @@ def test_what_is_left_of_another_fit_is_ignored(folder, btf):
     checkpoint.write_bytes(b"v/1\x01" + os.urandom(500))
     report = velour("compress", btf, "-o", path, "--bytes", BYTES // 4, "--resume", "--json").json
     assert len(report["warnings"]) == 1
+
+
+SHEET = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
+
+
+@pytest.mark.parametrize(("tile", "shared"), [("sheet", True), ("net", False)])
+def test_a_side_that_looks_as_another_costs_nothing(folder, tile, shared):
+    (folder / "sheet.obj").write_text(SHEET)
+    source = folder / "sheet.obj" if tile == "sheet" else tile
+    common = ["--texels", 8, "--views", 12, "--lights", 12, "--samples", 4, "--sides", "two", "--quiet"]
+    assert velour("capture", source, *common, "-o", folder / f"{tile}.btf").status == 0
+    model = folder / f"{tile}.velour"
+    done = velour("compress", folder / f"{tile}.btf", "-o", model, "--bytes", 8000, "--quiet")
+    assert done.status == 0, done.err
+    info = velour("info", model, "--json").json
+    above, below = (
+        next(side for side in info["sides"] if side["view"] == side["light"] == name)
+        for name in ("above", "below")
+    )
+    assert above["as"] is None
+    assert below["as"] == (0 if shared else None)
+    assert (below["parameter_bytes"] == 0) == shared
+    assert sum(side["parameter_bytes"] for side in info["sides"]) == info["parameter_bytes"]
+    with Model.load(model) as loaded:
+        wl = np.array([[0, 0.6, -0.8]], np.float32)
+        assert loaded.eval((0.28, 0, -0.96), wl)[0].max() > 0

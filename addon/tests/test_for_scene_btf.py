@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from command_line import velour
 from inputs import write_merl
-from velour.native import Model, Observation, images
+from velour.native import Btf, Model, Observation, compress_job, images
 
 # A plane of 3 x 3 tiles of 32 texels, seen over 24 pixels: 4 texels a pixel. Half as far: 2.
 FAR = "0,0.001,100,0,0,0,1.71861"
@@ -141,3 +141,16 @@ def test_what_makes_no_sense_is_refused(folder, arguments, word):
     assert done.status not in (0, 2)
     assert word in done.err
     assert not (folder / "no.velour").exists()
+
+
+def test_the_fit_of_the_full_model_is_not_all_of_the_progress(folder):
+    """The reduction that follows still has its part of it."""
+    shown = []
+    with Btf.load(folder / "btf") as btf, Observation.load(folder / "far.json") as seen:
+        with compress_job(btf, method="svd", bytes=60000, for_scene=seen) as job:
+            job.start()
+            while not job.wait(timeout=0.001):
+                shown.append(job.poll())
+    fits = [state for state in shown if state.running and state.stage != "scene"]
+    assert fits
+    assert max(state.fraction for state in fits) < 0.99

@@ -16,10 +16,19 @@ class MeshArrays(NamedTuple):
     material_slots: np.ndarray
 
 
-def object_arrays(obj):
-    """MeshArrays of an evaluated object; None where it has no face."""
+def object_arrays(obj, uv_maps=()):
+    """MeshArrays of an evaluated object; None where it has no face.
+
+    `uv_maps`: for each material slot, of which the last stands for all beyond, the UV map of its faces. Empty,
+    or where there is none of that name: the one that renders.
+    """
     with _mesh_of(obj) as mesh:
-        return mesh_arrays(mesh) if mesh else None
+        return mesh_arrays(mesh, uv_maps) if mesh else None
+
+
+def has_uv_map(obj, name):
+    with _mesh_of(obj) as mesh:
+        return mesh is not None and name in mesh.uv_layers
 
 
 def triangle_faces(obj):
@@ -40,21 +49,22 @@ def _mesh_of(obj):
             obj.to_mesh_clear()
 
 
-def mesh_arrays(mesh):
+def mesh_arrays(mesh, uv_maps=()):
     """`mesh` in its local space, split into Blender's own triangles; None where it has no face."""
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
     if count == 0:
         return None
     corners = _read(mesh.loop_triangles, "loops", count * 3, np.int32).reshape(count, 3)
+    slots = _read(mesh.loop_triangles, "material_index", count, np.int32).astype(np.uint32)
     return MeshArrays(
         positions=_read(mesh.vertices, "co", len(mesh.vertices) * 3).reshape(-1, 3),
         triangles=_read(mesh.loop_triangles, "vertices", count * 3, np.int32)
         .astype(np.uint32)
         .reshape(count, 3),
         corner_normals=_corner_normals(mesh)[corners],
-        corner_uvs=_corner_uvs(mesh, corners),
-        material_slots=_read(mesh.loop_triangles, "material_index", count, np.int32).astype(np.uint32),
+        corner_uvs=_corner_uvs(mesh, corners, slots, uv_maps),
+        material_slots=slots,
     )
 
 
@@ -75,10 +85,19 @@ def _corner_normals(mesh):
     return normals
 
 
-def _corner_uvs(mesh, corners):
-    """[triangles x 3 x 2] of the UV map that renders, or None."""
-    layer = next((uv for uv in mesh.uv_layers if uv.active_render), None)
-    if layer is None:
+def _corner_uvs(mesh, corners, slots, uv_maps):
+    """[triangles x 3 x 2] of the UV map that renders, or of that of a triangle's slot; None without maps."""
+    rendered = next((uv for uv in mesh.uv_layers if uv.active_render), None)
+    if rendered is None:
         return None
-    uvs = _read(layer.data, "uv", len(mesh.loops) * 2).reshape(-1, 2)
-    return uvs[corners]
+    uvs = _layer_uvs(mesh, rendered)[corners]
+    for slot, name in enumerate(uv_maps):
+        layer = mesh.uv_layers.get(name) if name else None
+        if layer is not None:
+            shown = np.minimum(slots, len(uv_maps) - 1) == slot  # beyond the last slot the last one shows
+            uvs[shown] = _layer_uvs(mesh, layer)[corners[shown]]
+    return uvs
+
+
+def _layer_uvs(mesh, layer):
+    return _read(layer.data, "uv", len(mesh.loops) * 2).reshape(-1, 2)

@@ -4,9 +4,10 @@ import numpy as np
 
 from .axes import affine
 from .lights import add_light
-from .meshes import object_arrays
+from .meshes import has_uv_map, object_arrays
 from .placement import Placements
 from .units import metres_per_unit
+from .uv_maps import missing_map, uv_map_names
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
@@ -61,25 +62,29 @@ class ObjectExport:
                 self._note_unsupported(instance.object)
 
     def _add_geometry(self, instance, override, metres):
-        mesh, slots = self._mesh(instance.object)
+        mesh, slots = self._mesh(instance.object, override)
         if mesh is None:
             return
-        slots = [override] * len(slots) if override else slots
         numbers = [self._materials.number(material) for material in slots]
         placements = self._placements.of(instance, mesh, slots, metres)
         matrix = instance.matrix_world if self._to_scene is None else self._to_scene @ instance.matrix_world
         self._scene.add_instance(mesh, affine(matrix), numbers, placements)
 
-    def _mesh(self, obj):
+    def _mesh(self, obj, override):
         """The mesh's number in the scene (None: there is nothing to see) and the materials of its slots."""
-        key = (obj.type, obj.data.as_pointer()) if obj.data else (obj.type, obj.as_pointer())
+        uv_maps = uv_map_names([override] if override else all_materials(obj))
+        key = (obj.type, (obj.data or obj).as_pointer(), uv_maps)
         if key not in self._meshes:
-            self._meshes[key] = self._add_mesh(obj)
-        number, slots = self._meshes[key]
-        return number, slot_materials(obj, slots)
+            self._meshes[key] = self._add_mesh(obj, uv_maps)
+        number, count = self._meshes[key]
+        slots = [override] * count if override else slot_materials(obj, count)
+        for material, name in zip(slots, uv_map_names(slots), strict=False):
+            if name and not has_uv_map(obj, name):
+                self._notes.add(missing_map(obj, name, material.name))
+        return number, slots
 
-    def _add_mesh(self, obj):
-        arrays = object_arrays(obj)
+    def _add_mesh(self, obj, uv_maps):
+        arrays = object_arrays(obj, uv_maps)
         if arrays is None:
             return None, 0
         number, dropped = self._scene.add_mesh(**arrays._asdict())
@@ -95,11 +100,16 @@ class ObjectExport:
             self._notes.add(f"Object '{obj.name}': {kind} are not supported; left out.")
 
 
-def slot_materials(obj, count):
-    """The materials of slots 0..count-1; a face beyond the last slot shows the last one, as in Blender."""
+def all_materials(obj):
+    """Of the slots of an object; at least one, which may be None."""
     own = [slot.material for slot in obj.material_slots]
     of_data = list(obj.data.materials) if hasattr(obj.data, "materials") else []
     # Instanced geometry of geometry nodes carries its own materials under an object with fewer slots.
     materials = own if len(own) >= len(of_data) else own + of_data[len(own) :]
-    materials = materials or [None]
+    return materials or [None]
+
+
+def slot_materials(obj, count):
+    """The materials of slots 0..count-1; a face beyond the last slot shows the last one, as in Blender."""
+    materials = all_materials(obj)
     return [materials[min(slot, len(materials) - 1)] for slot in range(count)]

@@ -9,6 +9,7 @@ from ..core.placement import LARGEST_STRETCH, Lie, Surface, UvMetric, lie_of, te
 from .meshes import object_arrays
 from .nodes import velour_node
 from .notes import ExportError
+from .uv_maps import uv_map_names
 
 
 class Tile(NamedTuple):
@@ -135,17 +136,17 @@ class Placements:
         maps, is_placed = [], False
         for material in slots:
             same = tuple(slot for slot, other in enumerate(slots) if other == material)
-            uv_map = self._map(instance, material, (key, same), metres_per_unit)
+            uv_map = self._map(instance, slots, material, (key, same), metres_per_unit)
             is_placed = is_placed or uv_map is not None
             maps.append(texture_map((1, 1)) if uv_map is None else uv_map)
         return maps if is_placed else None
 
-    def _map(self, instance, material, key, metres_per_unit):
+    def _map(self, instance, slots, material, key, metres_per_unit):
         if not self._materials.needs_coordinates(material):
             return None
         obj, tile = instance.object, self._materials.tile(material)
         if key not in self._surfaces:
-            self._surfaces[key] = surface_of(object_arrays(obj), key[1])
+            self._surfaces[key] = surface_of(object_arrays(obj, uv_map_names(slots)), key[1])
         surface = self._surfaces[key]
         placed = None
         if surface is not None and tile is not None:

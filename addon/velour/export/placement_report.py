@@ -9,7 +9,7 @@ from ..core.placement import LARGEST_STRETCH
 from .camera_texels import texels_per_pixel
 from .meshes import object_arrays, triangle_faces
 from .notes import ExportError
-from .objects import slot_materials
+from .objects import all_materials, slot_materials
 from .placement import (
     Metrics,
     lie_on,
@@ -19,6 +19,7 @@ from .placement import (
     tile_map,
 )
 from .units import metres_per_unit
+from .uv_maps import uv_map_names
 
 _SAME = 0.005  # of real size: nobody sees that
 
@@ -32,7 +33,7 @@ class PlacementReport(NamedTuple):
 def report_on(depsgraph, obj, material, tile):
     """Of an object of the .blend that shows `material`, whose Tile is `tile`."""
     evaluated = obj.evaluated_get(depsgraph)
-    arrays = object_arrays(evaluated)
+    arrays = object_arrays(evaluated, uv_map_names(all_materials(evaluated)))
     slots = _slots(evaluated, arrays, material)
     surface = surface_of(arrays, slots)
     metres = metres_per_unit(depsgraph.scene)

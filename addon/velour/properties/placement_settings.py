@@ -1,7 +1,7 @@
 """Where the tiles of a BTF lie on the objects that show it."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty
+from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
@@ -65,6 +65,12 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         min=0.0,
         max=1e9,
         precision=3,
+        update=_changed,
+        override=_OVERRIDE,
+    )
+    uv_map: StringProperty(
+        name="UV Map",
+        description="Of the objects that show the material. Empty: the one that renders",
         update=_changed,
         override=_OVERRIDE,
     )

@@ -31,10 +31,19 @@ class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
             layout.column().prop(settings, "repeats")
         else:
             _draw_real_size(layout, settings, model_summary(node.image)["tile_metres"])
+        _draw_uv_map(layout, settings, context.object)
         layout.prop(settings, "rotation")
         layout.column().prop(settings, "offset")
         layout.prop(settings, settings.scale_property)
         _draw_report(context, layout, placement_report(context, context.material))
+
+
+def _draw_uv_map(layout, settings, obj):
+    """To be chosen where there is something to choose from."""
+    if obj.type == "MESH":
+        layout.prop_search(settings, "uv_map", obj.data, "uv_layers", icon="GROUP_UVS")
+    else:
+        layout.prop(settings, "uv_map")
 
 
 def _draw_real_size(layout, settings, own_metres):
