@@ -12,7 +12,7 @@ import pytest
 from command_line import command, environment, refused, velour
 from velour.native import Model
 
-BYTES = 50000
+BYTES = 20000
 
 
 @pytest.fixture(scope="module")
@@ -20,19 +20,29 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("size")
 
 
+def capture(path, texels, directions):
+    size = ["--texels", texels, "--views", directions, "--lights", directions]
+    done = velour("capture", "corduroy", *size, "--samples", 16, "--sides", "one", "-o", path, "--quiet")
+    assert done.status == 0, done.err
+    return path
+
+
 @pytest.fixture(scope="module")
 def btf(folder):
-    path = folder / "ribs"
-    options = ["--texels", 16, "--views", 24, "--lights", 24, "--samples", 16, "--sides", "one", "--quiet"]
-    assert velour("capture", "corduroy", *options, "-o", path).status == 0
-    return path
+    return capture(folder / "ribs", 12, 16)
+
+
+@pytest.fixture(scope="module")
+def large(folder):
+    """Enough points and pairs for a fit to take what it usually takes."""
+    return capture(folder / "large", 16, 24)
 
 
 @pytest.fixture(scope="module", params=["srbf", "svd"])
 def within(request, folder, btf):
     """A method, the error that was asked for, the report and the model."""
     path = folder / f"{request.param}.velour"
-    asked = {"srbf": 0.2, "svd": 0.1}[request.param]
+    asked = {"srbf": 0.25, "svd": 0.15}[request.param]
     arguments = ["--method", request.param, "--tolerance", asked, "--json"]
     return request.param, asked, velour("compress", btf, "-o", path, *arguments).json, path
 
@@ -106,10 +116,10 @@ def peak_megabytes(*arguments):
     return used.ru_maxrss * 1024 / 1e6
 
 
-def test_memory_is_kept_to(folder, btf):
+def test_memory_is_kept_to(folder, large):
     """What the fit holds beside the program, which has the library loaded."""
-    program = peak_megabytes("info", btf, "--quiet")
-    arguments = ["compress", btf, "-o", folder / "memory.velour", "--bytes", BYTES // 4, "--quiet"]
+    program = peak_megabytes("info", large, "--quiet")
+    arguments = ["compress", large, "-o", folder / "memory.velour", "--bytes", BYTES // 4, "--quiet"]
     assert peak_megabytes(*arguments, "--memory", 256_000_000) - program < 256
     assert peak_megabytes(*arguments, "--memory", 100_000_000) - program < 100
     assert peak_megabytes(*arguments) - program > 120  # the control: what it takes when it may
@@ -203,6 +213,3 @@ def test_a_side_that_looks_as_another_costs_nothing(folder, tile, shared):
     assert below["as"] == (0 if shared else None)
     assert (below["parameter_bytes"] == 0) == shared
     assert sum(side["parameter_bytes"] for side in info["sides"]) == info["parameter_bytes"]
-    with Model.load(model) as loaded:
-        wl = np.array([[0, 0.6, -0.8]], np.float32)
-        assert loaded.eval((0.28, 0, -0.96), wl)[0].max() > 0

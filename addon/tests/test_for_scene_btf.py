@@ -146,11 +146,14 @@ def test_what_makes_no_sense_is_refused(folder, arguments, word):
 def test_the_fit_of_the_full_model_is_not_all_of_the_progress(folder):
     """The reduction that follows still has its part of it."""
     shown = []
-    with Btf.load(folder / "btf") as btf, Observation.load(folder / "far.json") as seen:
-        with compress_job(btf, method="svd", bytes=60000, for_scene=seen) as job:
-            job.start()
-            while not job.wait(timeout=0.001):
-                shown.append(job.poll())
+    with (
+        Btf.load(folder / "btf") as btf,
+        Observation.load(folder / "far.json") as seen,
+        compress_job(btf, method="svd", bytes=60000, for_scene=seen) as job,
+    ):
+        job.start()
+        while not job.wait(timeout=0.001):
+            shown.append(job.poll())
     fits = [state for state in shown if state.running and state.stage != "scene"]
     assert fits
     assert max(state.fraction for state in fits) < 0.99

@@ -19,8 +19,8 @@ class MeshArrays(NamedTuple):
 def object_arrays(obj, uv_maps=()):
     """MeshArrays of an evaluated object; None where it has no face.
 
-    `uv_maps`: for each material slot, of which the last stands for all beyond, the UV map of its faces. Empty,
-    or where there is none of that name: the one that renders.
+    `uv_maps`: for each material slot, of which the last stands for all beyond, the UV map of its faces.
+    Empty, or where there is none of that name: the one that renders.
     """
     with _mesh_of(obj) as mesh:
         return mesh_arrays(mesh, uv_maps) if mesh else None

@@ -1,6 +1,7 @@
 """Make a material from a BTF: in the background of a window, or at once without one."""
 
 import contextlib
+import hashlib
 import os
 
 import bpy
@@ -62,14 +63,16 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
             btf = opened.enter_context(Btf.load(path))
             held_out = self._held_out(tile, opened)
             self._digest = btf.info()["sha256"]
+            asked = {
+                "tolerance": self._asked(tile, "tolerance"),
+                "bytes": int(self._asked(tile, "megabytes") * 1e6),
+            }
             self._job = compress_job(
                 btf,
-                tolerance=self._asked(tile, "tolerance"),
-                bytes=int(self._asked(tile, "megabytes") * 1e6),
                 threads=context.scene.render.threads,
-                # Of this session: a fit that was cancelled goes on where it stopped when it is started again.
-                checkpoint=os.path.join(bpy.app.tempdir, f"velour-fit-{self._digest[:32]}"),
+                checkpoint=_checkpoint(self._digest, asked),
                 resume=1,
+                **asked,
                 **held_out,
             ).start()
 
@@ -115,3 +118,9 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
             + ("." if unseen is None else f"; {unseen:.1f} dB at pairs that it has not seen."),
         )
         return {"FINISHED"}
+
+
+def _checkpoint(digest, asked):
+    """Of this session: a fit that was cancelled goes on when the same one is started again."""
+    name = hashlib.sha256(repr((digest, asked)).encode()).hexdigest()
+    return os.path.join(bpy.app.tempdir, f"velour-fit-{name[:32]}")
