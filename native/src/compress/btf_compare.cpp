@@ -13,7 +13,7 @@ namespace {
 float srgb(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f; }
 
 struct Sums {
-  double squares = 0, error = 0, energy = 0;
+  double squares = 0, error = 0, energy = 0, measured = 0, modelled = 0;
   uint64_t values = 0;
 };
 
@@ -28,6 +28,8 @@ Sums compare_images(std::span<const float> truth, std::span<const float> model, 
     sums.squares += static_cast<double>(seen * seen);
     sums.error += difference * difference;
     sums.energy += value * value;
+    sums.measured += value;
+    sums.modelled += value - difference;
     ++sums.values;
   }
   return sums;
@@ -80,11 +82,14 @@ BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, doub
     all.squares += s.squares;
     all.error += s.error;
     all.energy += s.energy;
+    all.measured += s.measured;
+    all.modelled += s.modelled;
     all.values += s.values;
   }
-  BtfErrors errors{0, 0, pairs};
+  BtfErrors errors{0, 0, 0, pairs};
   if (all.values > 0) errors.psnr = -10 * std::log10(std::max(all.squares / static_cast<double>(all.values), 1e-30));
   if (all.energy > 0) errors.ser = all.error / all.energy;
+  if (all.measured > 0) errors.brightness = all.modelled / all.measured;
   return errors;
 }
 

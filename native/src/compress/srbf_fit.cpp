@@ -5,6 +5,7 @@
 #include <string>
 
 #include "btf/bilinear_texels.h"
+#include "compress/brightening.h"
 #include "compress/relief_pyramid.h"
 #include "compress/shared_lobes.h"
 #include "compress/texel_solver.h"
@@ -119,10 +120,12 @@ class SideFitter {
       const auto after_step = [&](int step) { progress_.update(from + (to - from) * (step + 1) / steps); };
       const RowMatrix value = solver[l]->solve(start, steps, after_step);
       progress_.update(to);  // it may have settled early
+      const RowMatrix bright =
+          value * brightening(options_.companding, solver[l]->measured(), solver[l]->modelled(value));
       solver[l].reset();
       side.levels[l] = {relief.width(), relief.height(),
                         halves_of(relief.heights(), size_t{relief.width()} * relief.height()),
-                        halves_of(value, static_cast<size_t>(value.size()))};
+                        halves_of(bright, static_cast<size_t>(bright.size()))};
       if (l > 0) start = refined(value, relief.width(), relief.height(), relief_[l - 1]);
     }
     return side;

@@ -57,7 +57,8 @@ BtfFrame read_btf_frame(const ModelFields& fields) {
   return {index.layout, index.grid, companding_named(fields), read_axes(fields)};
 }
 
-const Tensor& shaped_tensor(const ModelFields& fields, const std::string& part, const std::vector<uint64_t>& shape) {
+const Tensor& shaped_tensor(const ModelFields& fields, std::string_view name, std::vector<uint64_t> shape) {
+  const std::string part(name);
   const Tensor& tensor = fields.tensor(part);
   if (tensor.shape == shape) return tensor;
   std::string text;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "btf/factored_btf.h"
@@ -22,7 +23,7 @@ void write_btf_frame(const BtfFrame& frame, TensorFile& file);
 BtfFrame read_btf_frame(const ModelFields& fields);
 
 /// The tensor `part`, of this shape.
-const Tensor& shaped_tensor(const ModelFields& fields, const std::string& part, const std::vector<uint64_t>& shape);
+const Tensor& shaped_tensor(const ModelFields& fields, std::string_view part, std::vector<uint64_t> shape);
 /// The same as half floats, all finite.
 std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string& part,
                                     const std::vector<uint64_t>& shape);
