@@ -8,7 +8,7 @@
 
 #include "compress/brightening.h"
 #include "compress/side_views.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "image/half_image.h"
 #include "job/error.h"
 #include "sphere/random.h"

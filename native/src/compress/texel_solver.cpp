@@ -5,7 +5,7 @@
 #include "btf/bilinear_texels.h"
 #include "btf/srbf_btf.h"
 #include "compress/row_products.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "srbf/aligned_array.h"
 
 namespace velour {

@@ -7,7 +7,7 @@
 
 #include "brdf/parametric_limits.h"
 #include "fit/fit_report.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "fit/view_grid.h"
 #include "material/parametric_material.h"
 

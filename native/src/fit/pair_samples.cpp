@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "fit/evaluate.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "fit/view_grid.h"
 
 namespace velour {

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "brdf/held_out.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "fit/view_grid.h"
 
 namespace velour {
