@@ -14,16 +14,18 @@ constexpr Index kSide = 1024;  // of a matrix of products that is decomposed
 constexpr Index kOversampling = 10;
 constexpr int kPowers = 3;
 
-/// The unfolding as a matrix in memory: the mode, then the others.
-DenseTensor unfolded(const TensorView& view, size_t mode) {
+/// The unfolding as a tensor of two modes: where it lies, or else in `storage`.
+TensorView unfolded(const TensorView& view, size_t mode, DenseTensor& storage) {
+  const Unfolding unfolding(view, mode);
+  if (unfolding.blocks() == 1) {
+    return {view.data(), {unfolding.rows(), unfolding.columns()}, {unfolding.row_stride(), unfolding.column_stride()}};
+  }
   std::vector<size_t> order{mode};
   for (size_t k = 0; k < view.order(); ++k) {
     if (k != mode) order.push_back(k);
   }
-  DenseTensor matrix = copied(view.permuted(order));
-  const Index rows = view.extent(mode);
-  matrix.extent = {rows, view.size() / std::max<Index>(rows, 1)};
-  return matrix;
+  storage = copied(view.permuted(order));
+  return {storage.data.data(), {unfolding.rows(), view.size() / unfolding.rows()}};
 }
 
 /// Of symmetric `products`, the strongest first.
@@ -48,8 +50,8 @@ RowMatrix orthonormal(const RowMatrix& m) {
 
 RowMatrix random_range(const TensorView& view, size_t mode, Index columns, int powers, const TensorOptions& options,
                        const Progress& progress) {
-  const DenseTensor matrix = unfolded(view, mode);
-  const TensorView a = matrix.view();
+  DenseTensor storage{{}};
+  const TensorView a = unfolded(view, mode, storage);
   RowMatrix random(columns, a.extent(1));
   for (Index c = 0; c < random.cols(); ++c) {
     RandomStream numbers(options.seed, static_cast<uint64_t>(c), mode);
@@ -76,12 +78,13 @@ RowMatrix leading_vectors(const TensorView& view, size_t mode, Index rank, const
   const Index rows = view.extent(mode), columns = view.size() / std::max<Index>(rows, 1);
   if (rows <= kSide) return eigenvectors(slice_products(view, mode, options.threads, progress), rank);
   if (columns <= kSide) {
-    const DenseTensor matrix = unfolded(view, mode);
-    const RowMatrix right =
-        eigenvectors(slice_products(matrix.view(), 1, options.threads, progress), std::min(rank, columns));
-    RowMatrix left = RowMatrix::Zero(rows, rank);  // beyond the columns any direction does
-    left.leftCols(right.cols()) = Eigen::Map<const RowMatrix>(matrix.data.data(), rows, columns) * right;
-    return orthonormal(left);
+    DenseTensor storage{{}};
+    const TensorView matrix = unfolded(view, mode, storage);
+    const RowMatrix right = eigenvectors(slice_products(matrix, 1, options.threads, progress), std::min(rank, columns));
+    const DenseTensor left = mode_product(matrix, 1, right.transpose(), options.threads, progress);
+    RowMatrix all = RowMatrix::Zero(rows, rank);  // beyond the columns any direction does
+    all.leftCols(right.cols()) = Eigen::Map<const RowMatrix>(left.data.data(), rows, right.cols());
+    return orthonormal(all);
   }
   const Index wide = std::min({rank + kOversampling, rows, columns});
   const RowMatrix basis = random_range(view, mode, wide, kPowers, options, progress);
