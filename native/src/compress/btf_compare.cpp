@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -17,9 +17,10 @@ struct Sums {
   uint64_t values = 0;
 };
 
-Sums compare_images(std::span<const float> truth, std::span<const float> model, float p99, double cosine) {
+Sums compare_images(std::span<const float> truth, std::span<const float> model, float p99, const DirectionPair& pair) {
   Sums sums;
   const float scale = 1 / p99;
+  const auto cosine = static_cast<double>(std::abs(pair.wl.z)), seen_cosine = static_cast<double>(std::abs(pair.wv.z));
   for (size_t i = 0; i < truth.size(); ++i) {
     if (!std::isfinite(truth[i])) continue;
     const float seen = srgb(std::clamp(truth[i] * scale, 0.0f, 1.0f)) - srgb(std::clamp(model[i] * scale, 0.0f, 1.0f));
@@ -28,8 +29,8 @@ Sums compare_images(std::span<const float> truth, std::span<const float> model, 
     sums.squares += static_cast<double>(seen * seen);
     sums.error += difference * difference;
     sums.energy += value * value;
-    sums.measured += value;
-    sums.modelled += value - difference;
+    sums.measured += value * seen_cosine;
+    sums.modelled += (value - difference) * seen_cosine;
     ++sums.values;
   }
   return sums;
@@ -74,8 +75,7 @@ BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, doub
     halves_to_floats(halves, measured);
     const DirectionPair directions = truth.layout().directions(pair);
     images(directions, modelled);
-    const auto cosine = static_cast<double>(std::abs(directions.wl.z));
-    sums[pair] = compare_images(measured, modelled, static_cast<float>(p99), cosine);
+    sums[pair] = compare_images(measured, modelled, static_cast<float>(p99), directions);
   });
   Sums all;
   for (const Sums& s : sums) {

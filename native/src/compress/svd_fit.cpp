@@ -8,9 +8,9 @@
 
 #include "compress/brightening.h"
 #include "compress/side_views.h"
-#include "fit/parallel.h"
 #include "image/half_image.h"
 #include "job/error.h"
+#include "job/parallel.h"
 #include "sphere/random.h"
 
 namespace velour {
@@ -168,7 +168,7 @@ class SvdSolver {
   struct Level {
     uint32_t width, height;
     RowMatrix value;      // texel x component
-    double measured = 0;  // sum of the squares of companded images, times their lights' cosines
+    double measured = 0;  // sum of the squares of companded images, times both cosines
   };
 
   /// Coefficients of every level: products of the functions with the filtered measurement.
@@ -218,11 +218,13 @@ class SvdSolver {
     return {first - btf_.axis.begin(), last - first};
   }
 
+  /// Of the light times that of the view.
   double cosine(Eigen::Index pair) const {
-    return static_cast<double>(std::abs(measurement_.layout().directions(static_cast<uint64_t>(pair)).wl.z));
+    const DirectionPair directions = measurement_.layout().directions(static_cast<uint64_t>(pair));
+    return static_cast<double>(std::abs(directions.wl.z * directions.wv.z));
   }
 
-  /// Sum of the squares of what the components make of a level, times the lights' cosines.
+  /// Sum of the squares of what the components make of a level, times both cosines.
   double modelled(const RowMatrix& value) const {
     Eigen::VectorXf weight(function_.rows());
     for (Eigen::Index pair = 0; pair < weight.size(); ++pair) weight[pair] = static_cast<float>(cosine(pair));

@@ -5,7 +5,7 @@
 #include "btf/bilinear_texels.h"
 #include "btf/srbf_btf.h"
 #include "compress/row_products.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "srbf/aligned_array.h"
 
 namespace velour {
@@ -140,7 +140,7 @@ void TexelSolver::add_view(size_t view, const LevelImages& images) {
     for (size_t l = 0; l < side_.light.size(); ++l) {
       for (const RowMatrix& image : images.value) {
         const float value = image(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(l));
-        measured_ += static_cast<double>(side_.light[l].z * value * value);
+        measured_ += static_cast<double>(side_.light[l].z * side_.view[view].z * value * value);
       }
     }
   }
@@ -157,7 +157,7 @@ double TexelSolver::modelled(const RowMatrix& solution) const {
       spread(blended(solution, place[t]).data(), padded.data());
       rows_times(rows.data(), lights, stride_, padded.data(), values.data());
       for (size_t i = 0; i < values.size(); ++i) {
-        sum += static_cast<double>(side_.light[i / 3].z * values.data()[i] * values.data()[i]);
+        sum += static_cast<double>(side_.light[i / 3].z * side_.view[v].z * values.data()[i] * values.data()[i]);
       }
     }
   }

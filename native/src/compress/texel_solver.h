@@ -24,8 +24,8 @@ class TexelSolver {
   /// [texel][coefficient], from a start of the same shape.
   RowMatrix solve(const RowMatrix& start, int steps, const std::function<void(int)>& after_step);
 
-  /// Sums of squares over sampled texels of every view and all lights, times the lights' cosines: of the data, and of
-  /// what a solution makes of them.
+  /// Sums of squares over sampled texels of every view and all lights, times both cosines: of the data, and of what
+  /// a solution makes of them.
   double measured() const { return measured_; }
   double modelled(const RowMatrix& solution) const;
 
