@@ -286,7 +286,7 @@ VLR_API void vlr_compress_options_init(vlr_compress_options* options);
  * of vlr_fit_create_job, but with full_texels [x, y] and surface (vlr_observation_info_json) in place of errors; psnr,
  * ser and speed are then those of the full model. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
-/* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, relative_l2, p99, pairs. */
+/* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, relative_l2, brightness, p99, pairs. */
 VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);
 /* The same of another BTF of the same texels, interpolated between its own pairs; white is its own 99th percentile. */
 VLR_API vlr_status vlr_btf_compare_btf_create_job(const vlr_btf* btf, const vlr_btf* other, vlr_job** out);

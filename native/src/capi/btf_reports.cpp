@@ -81,6 +81,7 @@ std::string btf_errors_json(const BtfErrors& errors, double p99) {
   return text({{"psnr", errors.psnr},
                {"ser", errors.ser},
                {"relative_l2", errors.relative_l2},
+               {"brightness", errors.brightness},
                {"p99", p99},
                {"pairs", errors.pairs}});
 }

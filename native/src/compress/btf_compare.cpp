@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -13,14 +13,16 @@ namespace {
 float srgb(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f; }
 
 struct Sums {
-  double squares = 0, error = 0, energy = 0;
+  double squares = 0, error = 0, energy = 0, measured = 0, modelled = 0;
   double companded_error = 0, companded_energy = 0;
   uint64_t values = 0;
 };
 
-Sums compare_images(std::span<const float> truth, std::span<const float> model, const BtfJudgement& by, double cosine) {
+Sums compare_images(std::span<const float> truth, std::span<const float> model, const BtfJudgement& by,
+                    const DirectionPair& pair) {
   Sums sums;
   const float scale = 1 / static_cast<float>(by.p99);
+  const auto cosine = static_cast<double>(std::abs(pair.wl.z)), seen_cosine = static_cast<double>(std::abs(pair.wv.z));
   for (size_t i = 0; i < truth.size(); ++i) {
     if (!std::isfinite(truth[i])) continue;
     const float seen = srgb(std::clamp(truth[i] * scale, 0.0f, 1.0f)) - srgb(std::clamp(model[i] * scale, 0.0f, 1.0f));
@@ -33,6 +35,8 @@ Sums compare_images(std::span<const float> truth, std::span<const float> model, 
     const double off = stored - static_cast<double>(companded(by.companding, model[i]));
     sums.companded_error += off * off;
     sums.companded_energy += stored * stored;
+    sums.measured += value * seen_cosine;
+    sums.modelled += (value - difference) * seen_cosine;
     ++sums.values;
   }
   return sums;
@@ -77,8 +81,7 @@ BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, cons
     halves_to_floats(halves, measured);
     const DirectionPair directions = truth.layout().directions(pair);
     images(directions, modelled);
-    const auto cosine = static_cast<double>(std::abs(directions.wl.z));
-    sums[pair] = compare_images(measured, modelled, by, cosine);
+    sums[pair] = compare_images(measured, modelled, by, directions);
   });
   Sums all;
   for (const Sums& s : sums) {
@@ -87,12 +90,15 @@ BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, cons
     all.energy += s.energy;
     all.companded_error += s.companded_error;
     all.companded_energy += s.companded_energy;
+    all.measured += s.measured;
+    all.modelled += s.modelled;
     all.values += s.values;
   }
-  BtfErrors errors{0, 0, 0, pairs};
+  BtfErrors errors{.pairs = pairs};
   if (all.values > 0) errors.psnr = -10 * std::log10(std::max(all.squares / static_cast<double>(all.values), 1e-30));
   if (all.energy > 0) errors.ser = all.error / all.energy;
   if (all.companded_energy > 0) errors.relative_l2 = std::sqrt(all.companded_error / all.companded_energy);
+  if (all.measured > 0) errors.brightness = all.modelled / all.measured;
   return errors;
 }
 

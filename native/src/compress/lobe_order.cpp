@@ -4,7 +4,7 @@
 
 #include "btf/srbf_btf.h"
 #include "compress/lobe_values.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "sphere/random.h"
 
 namespace velour {

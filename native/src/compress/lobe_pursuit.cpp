@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {

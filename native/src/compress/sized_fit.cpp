@@ -13,13 +13,14 @@ constexpr double kFitting = 0.85;    // of a trial's progress; the rest measures
 std::string stage_of(size_t point) { return "fit." + std::to_string(point) + ".errors"; }
 
 std::optional<BtfErrors> kept_errors(const FitCheckpoint& checkpoint, size_t point) {
-  const auto kept = checkpoint.numbers(stage_of(point), 4);
-  if (!kept || kept->size() != 4 || !((*kept)[2] >= 0)) return std::nullopt;
-  return BtfErrors{(*kept)[0], (*kept)[1], (*kept)[2], static_cast<uint64_t>(std::max(0.0, (*kept)[3]))};
+  const auto kept = checkpoint.numbers(stage_of(point), 5);
+  if (!kept || kept->size() != 5 || !((*kept)[2] >= 0)) return std::nullopt;
+  return BtfErrors{(*kept)[0], (*kept)[1], (*kept)[2], (*kept)[3], static_cast<uint64_t>(std::max(0.0, (*kept)[4]))};
 }
 
 void keep_errors(FitCheckpoint& checkpoint, size_t point, const BtfErrors& errors) {
-  const double numbers[] = {errors.psnr, errors.ser, errors.relative_l2, static_cast<double>(errors.pairs)};
+  const double numbers[] = {errors.psnr, errors.ser, errors.relative_l2, errors.brightness,
+                            static_cast<double>(errors.pairs)};
   checkpoint.keep_numbers(stage_of(point), numbers);
   checkpoint.write();
 }

@@ -160,7 +160,8 @@ ModelBody SrbfFitter::fit(size_t point) {
     const std::string stage = "fit." + std::to_string(point) + "." + side_stage(s);
     const SharedLobes lobes = lobes_of(s, count[s], stage + ".lobes");
     progress_.stage("texels", kLobes, 1);
-    const TexelLevelsInput input{measurement_.grid(), side.directions, side.relief, lobes, options_.threads};
+    const TexelLevelsInput input{measurement_.grid(), side.directions, side.relief, lobes,
+                                 options_.companding, options_.threads};
     btf.sides.push_back({side.directions.view_below, side.directions.light_below, lobes.lobes, lobes.tile_lobes,
                          lobes.lobe, solve_levels(views_, input, checkpoint_, stage + ".level.", progress_)});
   }

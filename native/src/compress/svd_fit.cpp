@@ -5,11 +5,12 @@
 #include <Eigen/QR>
 #include <string>
 
+#include "compress/brightening.h"
 #include "compress/fit_memory.h"
 #include "compress/side_views.h"
-#include "fit/parallel.h"
 #include "image/half_image.h"
 #include "job/error.h"
+#include "job/parallel.h"
 #include "job/threads.h"
 #include "sphere/random.h"
 
@@ -37,6 +38,12 @@ void for_blocks(Eigen::Index extent, Eigen::Index step, int threads, const Progr
 void orthonormalise(RowMatrix& m) {
   const Eigen::HouseholderQR<Eigen::MatrixXf> qr{Eigen::MatrixXf(m)};
   m = qr.householderQ() * Eigen::MatrixXf::Identity(m.rows(), m.cols());
+}
+
+/// The first component of an axis and their number.
+std::pair<Eigen::Index, Eigen::Index> components_of(const FactoredBtf& btf, size_t axis) {
+  const auto [first, last] = std::equal_range(btf.axis.begin(), btf.axis.end(), axis);
+  return {first - btf.axis.begin(), last - first};
 }
 
 /// Turns the response into orthonormal functions of the pair, the strongest first.
@@ -252,6 +259,7 @@ void SvdFitter::project(FactoredBtf& btf) {
     progress_.update(static_cast<double>(v + 1) / views_.views());
   }
   for (Level& level : levels) {
+    level.value *= brightening(options_.companding, level.measured, modelled(btf, level.value));
     TexelLevel stored{level.width, level.height, std::vector<HalfBits>(static_cast<size_t>(level.value.size()))};
     floats_to_halves({level.value.data(), stored.value.size()}, stored.value);
     btf.levels.push_back(std::move(stored));
@@ -261,16 +269,38 @@ void SvdFitter::project(FactoredBtf& btf) {
 void SvdFitter::project(const FactoredBtf& btf, uint32_t view, Level& level) {
   views_.planes(f_, static_cast<uint64_t>(level.value.rows()), planes_);
   const auto first = static_cast<Eigen::Index>(measurement_.layout().first(view));
-  for (size_t a = 0, begin = 0; a < 3; ++a) {
-    const auto end = static_cast<size_t>(std::upper_bound(btf.axis.begin(), btf.axis.end(), a) - btf.axis.begin());
-    const auto column = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
-    begin = end;
+  for (size_t a = 0; a < 3; ++a) {
+    for (Eigen::Index light = 0; light < planes_[a].rows(); ++light) {
+      level.measured += cosine(first + light) * static_cast<double>(planes_[a].row(light).squaredNorm());
+    }
+    const auto [column, count] = components_of(btf, a);
     if (count == 0) continue;
     const RowMatrix functions = function_.block(first, column, planes_[a].rows(), count);
     for_blocks(level.value.rows(), kColumns, options_.threads, progress_, [&](Eigen::Index t, Eigen::Index n) {
       level.value.block(t, column, n, count).noalias() += planes_[a].middleCols(t, n).transpose() * functions;
     });
   }
+}
+
+/// Of the light times that of the view.
+double SvdFitter::cosine(Eigen::Index pair) const {
+  const DirectionPair directions = measurement_.layout().directions(static_cast<uint64_t>(pair));
+  return static_cast<double>(std::abs(directions.wl.z * directions.wv.z));
+}
+
+/// Sum of the squares of what the components make of a level, times both cosines.
+double SvdFitter::modelled(const FactoredBtf& btf, const RowMatrix& value) const {
+  Eigen::VectorXf weight(function_.rows());
+  for (Eigen::Index pair = 0; pair < weight.size(); ++pair) weight[pair] = static_cast<float>(cosine(pair));
+  double sum = 0;
+  for (size_t a = 0; a < 3; ++a) {
+    const auto [column, count] = components_of(btf, a);
+    const auto function = function_.middleCols(column, count);
+    const Eigen::MatrixXf gram = function.transpose() * weight.asDiagonal() * function;
+    const auto values = value.middleCols(column, count);
+    sum += static_cast<double>((values * gram).cwiseProduct(values).sum());
+  }
+  return sum;
 }
 
 }  // namespace velour

@@ -35,7 +35,8 @@ class SvdFitter final : public BtfFitter {
   };
   struct Level {
     uint32_t width, height;
-    RowMatrix value;  // texel x component
+    RowMatrix value;      // texel x component
+    double measured = 0;  // sum of the squares of companded images, times both cosines
   };
 
   uint64_t most_components(uint64_t bytes) const;
@@ -50,6 +51,8 @@ class SvdFitter final : public BtfFitter {
   void choose(size_t components, FactoredBtf& btf);
   void project(FactoredBtf& btf);
   void project(const FactoredBtf& btf, uint32_t view, Level& level);
+  double cosine(Eigen::Index pair) const;
+  double modelled(const FactoredBtf& btf, const RowMatrix& value) const;
 
   const BtfMeasurement& measurement_;
   const BtfFitOptions options_;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "btf/bilinear_texels.h"
+#include "compress/brightening.h"
 #include "compress/texel_solver.h"
 
 namespace velour {
@@ -41,18 +42,39 @@ size_t coefficients_of(const SharedLobes& lobes) {
   return lobes.lobe[0].size() + lobes.lobe[1].size() + lobes.lobe[2].size();
 }
 
-/// Coefficients of each level, the finest first; those of the coarser ones may have been kept.
-using LevelValues = std::vector<std::optional<RowMatrix>>;
+/// Coefficients of a level as they were solved for, and what makes them as bright as the data.
+struct Solution {
+  RowMatrix value;
+  double brightening = 1;
+};
 
-LevelValues kept_levels(const TexelLevelsInput& input, const FitCheckpoint& checkpoint, const std::string& stage) {
-  LevelValues values(input.relief.size());
-  for (size_t l = values.size(); l-- > 0;) {
-    values[l] =
-        checkpoint.matrix(stage + std::to_string(l), Eigen::Index{input.relief[l].width()} * input.relief[l].height(),
-                          static_cast<Eigen::Index>(coefficients_of(input.lobes)));
-    if (!values[l]) break;  // finer ones were solved from it
+/// Of each level, the finest first; those of the coarser ones may have been kept.
+using Solutions = std::vector<std::optional<Solution>>;
+
+constexpr char kBrightening[] = ".brightening";
+
+std::optional<Solution> kept_level(const TexelLevelsInput& input, const FitCheckpoint& checkpoint,
+                                   const std::string& stage, const Relief& relief) {
+  auto value = checkpoint.matrix(stage, Eigen::Index{relief.width()} * relief.height(),
+                                 static_cast<Eigen::Index>(coefficients_of(input.lobes)));
+  const auto factor = checkpoint.numbers(stage + kBrightening, 1);
+  if (!value || !factor || factor->size() != 1) return std::nullopt;
+  return Solution{std::move(*value), (*factor)[0]};
+}
+
+Solutions kept_levels(const TexelLevelsInput& input, const FitCheckpoint& checkpoint, const std::string& stage) {
+  Solutions levels(input.relief.size());
+  for (size_t l = levels.size(); l-- > 0;) {
+    levels[l] = kept_level(input, checkpoint, stage + std::to_string(l), input.relief[l]);
+    if (!levels[l]) break;  // finer ones were solved from it
   }
-  return values;
+  return levels;
+}
+
+void keep_level(const Solution& level, const std::string& stage, FitCheckpoint& checkpoint) {
+  checkpoint.keep(stage, level.value);
+  checkpoint.keep_numbers(stage + kBrightening, {&level.brightening, 1});
+  checkpoint.write();
 }
 
 using Solvers = std::vector<std::unique_ptr<TexelSolver>>;
@@ -75,7 +97,8 @@ Solvers read_data(CompandedViews& views, const TexelLevelsInput& input, size_t l
   return solver;
 }
 
-RowMatrix solved(TexelSolver& solver, const RowMatrix& start, size_t level, Progress& progress) {
+Solution solved(const TexelLevelsInput& input, TexelSolver& solver, const RowMatrix& start, size_t level,
+                Progress& progress) {
   const int steps = level == 0 ? kSteps : kCoarseSteps;
   // A level costs four times the one before: the finest takes three quarters of the time.
   const double from = kReading + (1 - kReading) * std::pow(0.25, static_cast<double>(level + 1));
@@ -83,34 +106,36 @@ RowMatrix solved(TexelSolver& solver, const RowMatrix& start, size_t level, Prog
   const auto after_step = [&](int step) { progress.update(from + (to - from) * (step + 1) / steps); };
   RowMatrix value = solver.solve(start, steps, after_step);
   progress.update(to);  // it may have settled early
-  return value;
+  const float factor = brightening(input.companding, solver.measured(), solver.modelled(value));
+  return {std::move(value), static_cast<double>(factor)};
 }
 
-SrbfLevel stored(const Relief& relief, const RowMatrix& value) {
+SrbfLevel stored(const Relief& relief, const Solution& level) {
+  const RowMatrix bright = level.value * static_cast<float>(level.brightening);
   return {relief.width(), relief.height(), halves_of(relief.heights(), size_t{relief.width()} * relief.height()),
-          halves_of(value, static_cast<size_t>(value.size()))};
+          halves_of(bright, static_cast<size_t>(bright.size()))};
 }
 
 }  // namespace
 
 std::vector<SrbfLevel> solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheckpoint& checkpoint,
                                     const std::string& stage, Progress& progress) {
-  LevelValues value = kept_levels(input, checkpoint, stage);
-  const auto missing = static_cast<size_t>(std::count(value.begin(), value.end(), std::nullopt));
+  Solutions solution = kept_levels(input, checkpoint, stage);
+  const auto missing =
+      static_cast<size_t>(std::count_if(solution.begin(), solution.end(), [](const auto& s) { return !s; }));
   Solvers solver = read_data(views, input, missing, progress);
-  std::vector<SrbfLevel> levels(value.size());
+  std::vector<SrbfLevel> levels(solution.size());
   RowMatrix start = RowMatrix::Zero(1, static_cast<Eigen::Index>(coefficients_of(input.lobes)));
   for (size_t l = levels.size(); l-- > 0;) {
     const Relief& relief = input.relief[l];
-    if (!value[l]) {
-      value[l] = solved(*solver[l], start, l, progress);
+    if (!solution[l]) {
+      solution[l] = solved(input, *solver[l], start, l, progress);
       solver[l].reset();
-      checkpoint.keep(stage + std::to_string(l), *value[l]);
-      checkpoint.write();
+      keep_level(*solution[l], stage + std::to_string(l), checkpoint);
     }
-    levels[l] = stored(relief, *value[l]);
-    if (l > 0) start = refined(*value[l], relief.width(), relief.height(), input.relief[l - 1]);
-    value[l].reset();
+    levels[l] = stored(relief, *solution[l]);
+    if (l > 0) start = refined(solution[l]->value, relief.width(), relief.height(), input.relief[l - 1]);
+    solution[l].reset();
   }
   return levels;
 }

@@ -13,6 +13,7 @@ struct TexelLevelsInput {
   const SideDirections& side;
   const std::vector<Relief>& relief;  // of each level, the finest first
   const SharedLobes& lobes;
+  Companding companding;
   int threads;
 };
 

@@ -56,7 +56,8 @@ void read_lobes(const ModelFields& fields, const SideParts& part, SrbfSide& side
   for (const float* v = lobes.data.data(); side.lobes.size() < count; v += 9) {
     side.lobes.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}});
   }
-  const Tensor& frames = shaped_tensor(fields, part.frames(), {count});
+  const Tensor& frames = fields.tensor(part.frames());
+  expect_shape(fields, part.frames(), frames, {count});
   for (size_t j = 0; j < count; ++j) {
     const float frame = frames.data[j];
     if (frame != 0 && frame != 1) fields.fail_at(part.frames(), j, frame, "0 (tile) or 1 (texel)");

@@ -23,6 +23,7 @@ TEST(BtfCompare, MeasuresAKnownDifference) {
   EXPECT_NEAR(errors.relative_l2, 1 - std::sqrt(0.5), 1e-6);
   EXPECT_NEAR(compare_btf(btf, darker, {.p99 = 0.5, .companding = Companding::none}, 1, progress).relative_l2, 0.5,
               1e-12);
+  EXPECT_NEAR(errors.brightness, 0.5, 1e-12);
   const double seen = 1.0 - (1.055 * std::pow(0.5, 1 / 2.4) - 0.055);
   EXPECT_NEAR(errors.psnr, -20 * std::log10(seen), 1e-4);
   EXPECT_EQ(errors.pairs, 12u);
@@ -34,7 +35,9 @@ TEST(BtfCompare, LeavesOutWhatIsNotFinite) {
                             [&](const DirectionPair&, uint32_t x, uint32_t) { return x == 0 ? Rgb(nan) : Rgb(0.5f); });
   const auto same = [](const DirectionPair&, std::vector<float>& rgb) { rgb.assign(kGrid.texels() * 3, 0.5f); };
   Progress progress;
-  EXPECT_EQ(compare_btf(btf, same, {.p99 = 0.5}, 1, progress).ser, 0.0);
+  const BtfErrors errors = compare_btf(btf, same, {.p99 = 0.5}, 1, progress);
+  EXPECT_EQ(errors.ser, 0.0);
+  EXPECT_EQ(errors.brightness, 1.0);
 }
 
 TEST(BtfCompare, FindsThePercentile) {
