@@ -37,7 +37,9 @@ Json reduced_json(const SceneRecord& scene) {
   if (scene.full_texels[0] > 0) {
     json["full_texels"] = scene.full_texels;
     json["surface"] = surface_json(scene.domain.surface);
-  } else {
+    json["seen_views_alone"] = scene.seen_views_alone;
+  }
+  if (scene.full_texels[0] == 0 || scene.seen_views_alone) {
     json["picture_error"] = scene.picture_error;
     json["full_picture_error"] = scene.full_picture_error;
   }

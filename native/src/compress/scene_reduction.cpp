@@ -1,6 +1,7 @@
 #include "compress/scene_reduction.h"
 
 #include "compress/scene_levels.h"
+#include "compress/scene_refit.h"
 #include "job/error.h"
 
 namespace velour {
@@ -42,8 +43,24 @@ Model full_model(const BtfMeasurement& measurement, const CompressOptions& optio
   return compress_btf(measurement, options, progress);
 }
 
-uint64_t bytes_of(const Model& model) {
-  return std::visit([](const auto& body) { return body.parameter_bytes(); }, model.body);
+uint64_t bytes_of(const ModelBody& model) {
+  return std::visit([](const auto& body) { return body.parameter_bytes(); }, model);
+}
+
+/// By a fit of its own where that serves the scenes, else by leaving out the `count` finest levels.
+void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptions& options, Model& model,
+            SceneRecord& record, Progress& progress) {
+  if (count == 0) return;
+  ModelBody levels = without_finest(model.body, count);
+  auto refit = refit_for_scene(measurement, model.body, levels, options, progress);
+  if (!refit || bytes_of(refit->body) > bytes_of(levels)) {
+    model.body = std::move(levels);
+    return;
+  }
+  record.picture_error = refit->error;
+  record.full_picture_error = refit->full_error;
+  record.seen_views_alone = true;
+  model.body = std::move(refit->body);
 }
 
 }  // namespace
@@ -54,10 +71,10 @@ Model compress_for_scene(const BtfMeasurement& measurement, const CompressOption
   progress.stage("scene", options.full_model ? 0 : kFitting, 1.0);
   SceneRecord record;
   record.domain = observation.domain;
-  record.full_parameter_bytes = bytes_of(model);
+  record.full_parameter_bytes = bytes_of(model.body);
   record.full_texels = {grid_of(model)->width, grid_of(model)->height};
   const size_t count = unresolved_levels(model.body, observation.domain.surface);
-  model.body = without_finest(model.body, count);
+  reduce(measurement, count, options, model, record, progress);
   if (count == 0) model.btf->warnings.push_back("the scene resolves the finest texels: it needs all of the full model");
   model.scene = std::move(record);
   progress.update(1.0);

@@ -16,9 +16,12 @@ namespace velour {
 /// of 170.
 double out_of_domain(const SceneDomain& domain, const ViewRange& range, const SceneObservation& frame);
 
-/// The same of a model of a BTF whose finest level has `texels` along the longer side of the tile, which holds for all
-/// views and lights: the share of the weight that would look up a finer level. From all hits; 1 for a frame that shows
-/// the material, but says nothing of footprints.
+/// Of that the share of the weight that is seen at views outside `range`.
+double out_of_views(const ViewRange& range, const SceneObservation& frame);
+
+/// The same of a model of a BTF whose finest level has `texels` along the longer side of the tile: the share of the
+/// weight that would look up a finer level. From all hits; 1 for a frame that shows the material, but says nothing of
+/// footprints.
 double out_of_resolution(uint32_t texels, const SceneObservation& frame);
 
 }  // namespace velour

@@ -34,6 +34,7 @@ Json weights_json(const auto& weights) {
 /// What a BTF's record has beside that of a BRDF.
 void write_surface(const SceneRecord& record, Json& json) {
   json["full_texels"] = record.full_texels;
+  if (record.seen_views_alone) json["seen_views_alone"] = true;
   json["footprint_weights"] = weights_json(record.domain.surface.footprint);
   json["tile_weights"] = weights_json(record.domain.surface.tile);
 }
@@ -63,6 +64,10 @@ class Reader {
       fail("view_weights", "a list of at most " + std::to_string(domain.view.size()) + " weights from 'first_view' on");
     }
     for (size_t i = 0; i < weights.size(); ++i) domain.view[first + i] = number_of(weights[i], "view_weights");
+  }
+  bool flag(const char* key) const {
+    if (!at(key).is_boolean()) fail(key, "true or false");
+    return at(key).get<bool>();
   }
   bool has(const char* key) const { return json_.contains(key); }
   void weights(const char* key, auto& to) const {
@@ -127,6 +132,7 @@ SceneRecord parse_scene_record(const std::string& text, const std::string& where
   record.full_parameter_bytes = reader.whole("full_parameter_bytes");
   if (!reader.has("full_texels")) return record;
   record.full_texels = reader.texels("full_texels");
+  record.seen_views_alone = reader.has("seen_views_alone") && reader.flag("seen_views_alone");
   reader.weights("footprint_weights", record.domain.surface.footprint);
   reader.weights("tile_weights", record.domain.surface.tile);
   return record;

@@ -56,6 +56,13 @@ TEST(SceneRecordOfABtf, TexelsThatCannotBeAreNamed) {
   }
 }
 
+TEST(SceneRecordOfABtf, WhetherItKnowsSeenViewsAlone) {
+  EXPECT_EQ(complaint("seen_views_alone", true), "");
+  for (const char* bad : {"1", "null", "\"yes\""}) {
+    expect_named(complaint("seen_views_alone", Json::parse(bad)), "seen_views_alone");
+  }
+}
+
 TEST(SceneRecordOfABtf, WeightsThatCannotBeAreNamed) {
   for (const char* key : {"footprint_weights", "tile_weights"}) {
     expect_named(complaint(key, Json::array({1, 2})), key);

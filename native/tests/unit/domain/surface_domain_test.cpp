@@ -84,5 +84,14 @@ TEST(OutOfResolution, AFrameWithoutTheMaterialIsNowhereOutside) {
   EXPECT_EQ(out_of_resolution(2, frame), 1);
 }
 
+TEST(OutOfViews, IsTheShareSeenFromElsewhere) {
+  SceneObservation frame;
+  EXPECT_EQ(out_of_views({0, 4}, frame), 0);
+  frame.domain.view[3] = 1;
+  frame.domain.view[70] = 3;
+  EXPECT_EQ(out_of_views({0, 4}, frame), 0.75);
+  EXPECT_EQ(out_of_views({0, 90}, frame), 0);
+}
+
 }  // namespace
 }  // namespace velour
