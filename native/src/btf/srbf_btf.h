@@ -11,11 +11,16 @@
 
 namespace velour {
 
+/// What a coefficient's bytes stand for: least + step * byte.
+struct ByteScale {
+  float least = 0, step = 0;
+};
+
 /// One level of the pyramid over the tile.
 struct SrbfLevel {
   uint32_t width = 0, height = 0;
   std::vector<HalfBits> relief;  // [row][column]: over the reference plane, widths of the tile
-  std::vector<HalfBits> value;   // [row][column][coefficient], row 0 at the bottom
+  std::vector<uint8_t> value;    // [row][column][coefficient], row 0 at the bottom: SrbfSide::scale
 };
 
 /// What is seen from one side of the reference plane under light from one side: both are looked at in the frame of the
@@ -30,7 +35,12 @@ struct SrbfSide {
   std::vector<MultivariateLobe> lobes;
   uint32_t tile_lobes = 0;
   std::array<std::vector<uint16_t>, 3> lobe;  // of each axis' coefficients: of axis 0 every lobe in order
+  std::vector<ByteScale> scale;               // of each coefficient, on all levels
   std::vector<SrbfLevel> levels;              // the finest first; each half of the one before, down to one texel
+
+  /// Sets the values of all levels, finest first, [texel][coefficient]: bytes from the least to the largest of each
+  /// coefficient, to the nearest.
+  void set_values(const std::vector<std::vector<float>>& levels);
 
   size_t coefficients() const { return lobe[0].size() + lobe[1].size() + lobe[2].size(); }
   /// Of all coefficients, heights and lobes as they are stored.

@@ -22,7 +22,7 @@ constexpr uint64_t kUsualRatio = 200, kUsualLeast = 16;
 /// Coefficients of a texel that fit when the sides share the bytes evenly.
 size_t coefficients_within(uint64_t asked, const BtfMeasurement& measurement, size_t sides) {
   const uint64_t texels = pyramid_texels(measurement.grid());
-  const uint64_t one = sides * (texels * sizeof(HalfBits) + sizeof(MultivariateLobe) + sizeof(uint16_t));
+  const uint64_t one = sides * (texels + sizeof(MultivariateLobe) + sizeof(uint16_t) + sizeof(ByteScale));
   const uint64_t relief = sides * texels * sizeof(HalfBits);
   const uint64_t bytes =
       asked > 0 ? asked : std::max(measurement.raw_bytes() / kUsualRatio, kUsualLeast * one + relief);
@@ -53,10 +53,9 @@ RowMatrix refined(const RowMatrix& coarse, uint32_t width, uint32_t height, cons
   return out;
 }
 
-template <class Values>
-std::vector<HalfBits> halves_of(const Values& values, size_t count) {
-  std::vector<HalfBits> halves(count);
-  floats_to_halves({values.data(), count}, halves);
+std::vector<HalfBits> halves_of(const std::vector<float>& floats) {
+  std::vector<HalfBits> halves(floats.size());
+  floats_to_halves(floats, halves);
   return halves;
 }
 
@@ -108,8 +107,9 @@ class SideFitter {
 
   /// Level by level, from one texel to the finest, each from the one before.
   SrbfSide solved(const SharedLobes& lobes, std::vector<std::unique_ptr<TexelSolver>>& solver) {
-    SrbfSide side{side_.view_below, side_.light_below, lobes.lobes, lobes.tile_lobes, lobes.lobe, {}};
+    SrbfSide side{side_.view_below, side_.light_below, lobes.lobes, lobes.tile_lobes, lobes.lobe, {}, {}};
     side.levels.resize(relief_.size());
+    std::vector<std::vector<float>> values(relief_.size());
     RowMatrix start = RowMatrix::Zero(1, static_cast<Eigen::Index>(side.coefficients()));
     for (size_t l = relief_.size(); l-- > 0;) {
       const Relief& relief = relief_[l];
@@ -120,11 +120,11 @@ class SideFitter {
       const RowMatrix value = solver[l]->solve(start, steps, after_step);
       progress_.update(to);  // it may have settled early
       solver[l].reset();
-      side.levels[l] = {relief.width(), relief.height(),
-                        halves_of(relief.heights(), size_t{relief.width()} * relief.height()),
-                        halves_of(value, static_cast<size_t>(value.size()))};
+      side.levels[l] = {relief.width(), relief.height(), halves_of(relief.heights()), {}};
+      values[l].assign(value.data(), value.data() + value.size());
       if (l > 0) start = refined(value, relief.width(), relief.height(), relief_[l - 1]);
     }
+    side.set_values(values);
     return side;
   }
 

@@ -64,14 +64,14 @@ void TexelSolver::accumulate(size_t view, const Values& values_of, RowMatrix& su
   const std::vector<Place> place = places(view);
   const auto lights = static_cast<uint32_t>(side_.light.size());
   std::vector<LobeArguments> pair;
-  AlignedFloats tile_rows(size_t{lights} * stride_);
+  AlignedArray<float> tile_rows(size_t{lights} * stride_);
   for (uint32_t l = 0; l < lights; ++l) {
     pair.emplace_back(DirectionPair{side_.light[l], side_.view[view]});
     tile_.values(pair[l], tile_rows.data() + size_t{l} * stride_);
   }
   RowMatrix moment(static_cast<Eigen::Index>(place.size()), sums.cols());
   parallel_pieces((place.size() + kTexels - 1) / kTexels, threads_, progress_, [&](size_t block) {
-    AlignedFloats rows(size_t{lights} * stride_), values(size_t{lights} * 3), sum(size_t{3} * stride_);
+    AlignedArray<float> rows(size_t{lights} * stride_), values(size_t{lights} * 3), sum(size_t{3} * stride_);
     std::copy_n(tile_rows.data(), size_t{lights} * stride_, rows.data());
     for (size_t t = block * kTexels; t < std::min(place.size(), (block + 1) * kTexels); ++t) {
       for (uint32_t l = 0; l < lights; ++l) {
@@ -119,7 +119,7 @@ RowMatrix TexelSolver::normal_product(const RowMatrix& coefficient) const {
   const auto blended = [&](size_t, const Place& place, const float* rows, float* values) {
     Eigen::RowVectorXf compact = Eigen::RowVectorXf::Zero(coefficient.cols());
     for (size_t i = 0; i < 4; ++i) compact += place.texels.weight[i] * coefficient.row(place.texels.index[i]);
-    AlignedFloats padded(size_t{3} * stride_);
+    AlignedArray<float> padded(size_t{3} * stride_);
     spread(compact.data(), padded.data());
     rows_times(rows, lights, stride_, padded.data(), values);
   };
@@ -142,7 +142,7 @@ void TexelSolver::gather(const float* padded, float* compact) const {
 /// From the mean of the products of any two lobes over sampled texels and pairs.
 void TexelSolver::set_coordinates() {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(stride_, stride_);
-  AlignedFloats values(stride_);
+  AlignedArray<float> values(stride_);
   const Eigen::Map<const Eigen::VectorXf> value(values.data(), stride_);
   uint64_t count = 0;
   for (size_t v = 0; v < side_.view.size(); ++v) {

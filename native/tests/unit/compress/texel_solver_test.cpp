@@ -146,9 +146,9 @@ TEST(TexelSolver, OfNoCoefficientsHasNone) {
 
 TEST(RowProducts, AreThoseOfMatrices) {
   constexpr uint32_t kCount = 7, kStride = 48;
-  AlignedFloats rows(kCount * kStride), coefficient(3 * kStride), value(3 * kCount), sum(3 * kStride);
+  AlignedArray<float> rows(kCount * kStride), coefficient(3 * kStride), value(3 * kCount), sum(3 * kStride);
   RandomStream random(14, 0, 0);
-  const auto fill = [&](AlignedFloats& floats, uint32_t count) {
+  const auto fill = [&](AlignedArray<float>& floats, uint32_t count) {
     for (uint32_t i = 0; i < count; ++i) floats.data()[i] = random.next() - 0.5f;
   };
   fill(rows, kCount * kStride);

@@ -85,7 +85,8 @@ TEST(SrbfBtfModel, OfOneBlackLobeSurvives) {
   side.lobes.resize(1);
   side.tile_lobes = 1;
   side.lobe = {{{0}, {}, {}}};
-  for (SrbfLevel& level : side.levels) level.value.assign(size_t{level.width} * level.height, HalfBits{0});
+  side.scale = {{0, 0}};
+  for (SrbfLevel& level : side.levels) level.value.assign(size_t{level.width} * level.height, 0);
   Model model = test::example_srbf_model();
   model.body = btf;
   const Model back = after_a_round_trip(model);
