@@ -23,6 +23,8 @@ class Relief {
   /// (wv.z > 0) meets the relief first, coming from outside: the point below or above which it does, in tiles, not
   /// wrapped. Continuous in both arguments where the relief hides nothing of itself.
   Vec2 seen(const Vec2& place, const Vec3& wv) const;
+  /// The same in texels, from the centre of the first one.
+  Vec2 seen_texel(const Vec2& place, const Vec3& wv) const;
 
   /// (-dz/dx, -dz/dy) at the centre of a texel, over two texels: the normal is along (x, y, 1). Steeper than
   /// kSteepest is cut to that.

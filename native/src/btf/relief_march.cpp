@@ -18,6 +18,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 constexpr float kMostLines = 1024;
+constexpr float kLong = 24;
 constexpr float kShortest = 1e-6f;  // way that is told from none
 constexpr size_t kMostLanes = 16;
 using Lanes = hn::CappedTag<float, kMostLanes>;
@@ -30,7 +31,7 @@ struct Lines {
     // Without branches: whether a ray goes up or down an axis nobody can foretell.
     step = std::copysign(1.0f, way);
     line = step * std::floor(step * from);
-    const float rate = std::max(std::abs(way), kShortest);
+    rate = std::max(std::abs(way), kShortest);
     period = 1 / rate;
     first = std::abs(line - from) * -period;
     last = std::ceil((1 - first) * std::abs(way)) + 1;
@@ -39,10 +40,13 @@ struct Lines {
   void take_every(float n) {
     step *= n;
     period *= n;
+    rate /= n;
   }
+  /// Of the last line before a time when the ray is known to be above the surface.
+  float number_before(float when) const { return std::max(std::floor((when - first) * rate - 1e-2f), 0.0f); }
 
   float line, step, from_along, way_along;
-  float first, period;  // times
+  float first, period, rate;  // times, and lines a unit of time
   float last;           // number of a line behind the end
   const Period &across, &along;
 };
@@ -69,6 +73,13 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> whole(D d, V number) {
   const hn::RebindToSigned<D> di;
   return hn::Sub(hn::BitCast(di, hn::Add(number, hn::Set(d, 8388608.0f))), hn::Set(di, 0x4b000000));
+}
+
+/// The number of lanes where there is none.
+template <class D, class M>
+HWY_INLINE size_t first_true(D d, M mask) {
+  const intptr_t first = hn::FindFirstTrue(d, mask);
+  return first < 0 ? hn::Lanes(d) : static_cast<size_t>(first);
 }
 
 /// The same place of the period, in [0, extent].
@@ -106,10 +117,7 @@ HWY_INLINE void cross(const Lines& lines, const HeightWords& heights, float numb
   hn::Store(gap, d, crossings.gap + Crossings::kFirst);
   crossings.when[Crossings::kFirst + count] = lines.first + (number + static_cast<float>(count)) * lines.period;
   crossings.gap[Crossings::kFirst + count] = 0;
-  uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, hn::Le(gap, hn::Zero(d)), bits);
-  const uint32_t met = bits[0] | uint32_t{bits[1]} << 8 | 1u << count;
-  crossings.met = Crossings::kFirst + static_cast<size_t>(std::countr_zero(met));
+  crossings.met = Crossings::kFirst + first_true(d, hn::Le(gap, hn::Zero(d)));
 }
 
 /// The same at the next lines.
@@ -122,6 +130,26 @@ HWY_INLINE void cross_next(const Lines& lines, const HeightWords& heights, float
   cross<kAlongX>(lines, heights, number, crossings);
 }
 
+/// A time until which the ray is above all that lies about it.
+HWY_INLINE float clear_until(const HeightWords& heights, const ReliefMarch& m) {
+  const Lanes d;
+  const hn::RebindToSigned<Lanes> di;
+  constexpr auto kCells = static_cast<float>(HeightWords::kBlock);
+  const float step = kCells / std::max({std::abs(m.way.x), std::abs(m.way.y), kShortest});
+  const auto when = hn::Mul(hn::Iota(d, 0.0f), hn::Set(d, step));
+  const auto block = [&](float from, float way, const Period& period) {
+    const auto at = wrapped(d, hn::MulAdd(when, hn::Set(d, way), hn::Set(d, from)), period);
+    return whole(d, hn::Floor(hn::Mul(hn::Min(at, hn::Set(d, period.extent - 1)), hn::Set(d, 1 / kCells))));
+  };
+  const auto x = block(m.from.x, m.way.x, heights.columns), y = block(m.from.y, m.way.y, heights.rows);
+  const auto index = hn::Add(hn::Mul(y, hn::Set(di, static_cast<int32_t>(heights.blocks))), x);
+  const auto lid = hn::GatherIndex(d, heights.lid.data(), index);
+  // At the end of each step.
+  const auto ray = hn::NegMulAdd(hn::Add(when, hn::Set(d, step)), hn::Set(d, float{kHeightRange}),
+                                 hn::Set(d, float{kHeightRange}));
+  return static_cast<float>(first_true(d, hn::Le(ray, lid))) * step;
+}
+
 /// Between the last crossing of either kind above the surface and the first one that is not.
 HWY_INLINE float meeting_between(const Crossings (&at)[2], size_t next) {
   const float end = at[next].end(), below = at[next].gap[at[next].met];
@@ -131,7 +159,7 @@ HWY_INLINE float meeting_between(const Crossings (&at)[2], size_t next) {
   return std::max(start + (end - start) * (above / (above - below)), 0.0f);
 }
 
-float meeting(const HeightWords& heights, const ReliefMarch& m) {
+HWY_FLATTEN Vec2 meeting(const HeightWords& heights, const ReliefMarch& m) {
   const Lines columns(m.from.x, m.way.x, m.from.y, m.way.y, heights.columns, heights.rows);
   const Lines rows(m.from.y, m.way.y, m.from.x, m.way.x, heights.rows, heights.columns);
   Crossings at[2];
@@ -140,13 +168,14 @@ float meeting(const HeightWords& heights, const ReliefMarch& m) {
     a.when[Crossings::kFirst - 1] = -1;
     a.gap[Crossings::kFirst - 1] = 1;
   }
-  float column = 0, row = 0;
+  const float clear = m.high && std::max(columns.rate, rows.rate) > kLong ? clear_until(heights, m) : 0.0f;
+  float column = columns.number_before(clear), row = rows.number_before(clear);
   cross<false>(columns, heights, column, at[0]);
   cross<true>(rows, heights, row, at[1]);
   for (;;) {
     // A number, not a branch: which it is nobody can foretell.
     const size_t next = at[1].end() < at[0].end();
-    if (!at[next].none_met() || !std::isfinite(at[next].end())) return meeting_between(at, next);
+    if (!at[next].none_met() || !std::isfinite(at[next].end())) return m.from + meeting_between(at, next) * m.way;
     if (next == 0) {
       cross_next<false>(columns, heights, column, at[0]);
     } else {
@@ -165,16 +194,28 @@ namespace velour {
 HWY_EXPORT(meeting);
 
 HeightWords::HeightWords(uint32_t width, uint32_t height, const std::vector<float>& part)
-    : columns(width), rows(height), stride(width + 1) {
+    : columns(width), rows(height), stride(width + 1), blocks((width + kBlock - 1) / kBlock) {
   const auto at = [&](uint32_t x, uint32_t y) {
     return static_cast<uint32_t>(std::lround(part[size_t{y % height} * width + x % width] * kHeightRange));
   };
   for (uint32_t y = 0; y <= height; ++y) {
     for (uint32_t x = 0; x <= width; ++x) word.push_back(at(x, y) | at(x + 1, y) << 10 | at(x, y + 1) << 20);
   }
+  for (uint32_t y = 0; y < height; y += kBlock) {
+    for (uint32_t x = 0; x < width; x += kBlock) {
+      uint32_t greatest = 0;
+      // A step away and a cell on.
+      for (uint32_t j = 0; j <= 3 * kBlock; ++j) {
+        for (uint32_t i = 0; i <= 3 * kBlock; ++i) {
+          greatest = std::max(greatest, at(x + i + kBlock * (width - 1), y + j + kBlock * (height - 1)));
+        }
+      }
+      lid.push_back(static_cast<float>(greatest));
+    }
+  }
 }
 
-float first_meeting(const HeightWords& heights, const ReliefMarch& march) {
+Vec2 first_meeting(const HeightWords& heights, const ReliefMarch& march) {
   return VELOUR_SIMD_DISPATCH(meeting)(heights, march);
 }
 

@@ -45,12 +45,4 @@ float tile_aspect(const TexelGrid& grid) {
   return static_cast<float>(grid.height) / static_cast<float>(grid.width);
 }
 
-Mat3 to_normal(const Vec3& normal) {
-  // Rodrigues' formula about (n.y, -n.x, 0), whose length is the sine.
-  const float a = 1 / (1 + normal.z);
-  const float xy = -a * normal.x * normal.y;
-  return {Vec3(1 - a * normal.x * normal.x, xy, normal.x), Vec3(xy, 1 - a * normal.y * normal.y, normal.y),
-          Vec3(-normal.x, -normal.y, normal.z)};
-}
-
 }  // namespace velour

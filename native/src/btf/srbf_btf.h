@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -62,9 +63,14 @@ struct SrbfBtf {
 /// The tile's extent along y over that along x; square texels where its size is not known.
 float tile_aspect(const TexelGrid& grid);
 
-/// The rotation that takes unit `normal` (z > 0) to +z the shortest way.
-Mat3 to_normal(const Vec3& normal);
-/// Unit normal of Relief::slope().
-inline Vec3 normal_of(const Vec2& slope) { return glm::normalize(Vec3(slope, 1.0f)); }
+/// The rotation that takes the normal of a Relief::slope() to +z the shortest way: Rodrigues' formula about
+/// (n.y, -n.x, 0), whose length is the sine. One division, because evaluation waits for it.
+inline Mat3 to_normal(const Vec2& slope) {
+  const float square = 1 + glm::dot(slope, slope), length = std::sqrt(square);
+  const float one = 1 / (square + length), z = one * (length + 1), a = one * square;  // a = 1 / (1 + z)
+  const Vec3 n(slope * z, z);
+  const float xy = -a * n.x * n.y;
+  return {Vec3(1 - a * n.x * n.x, xy, n.x), Vec3(xy, 1 - a * n.y * n.y, n.y), Vec3(-n.x, -n.y, n.z)};
+}
 
 }  // namespace velour

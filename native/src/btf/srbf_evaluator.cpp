@@ -129,18 +129,21 @@ void SrbfEvaluator::add(const Vec2& uv, float level, float weight, SrbfPoint& po
   const float part = place - static_cast<float>(fine);
   const Vec2 inside = std::isfinite(uv.x + uv.y) ? uv - glm::floor(uv) : Vec2(0.0f);
   // Once for both levels: where the finer relief is met.
-  const Vec2 seen = side.levels[fine].relief.seen(inside, point.wv);
-  const auto add_level = [&](const Level& from, float w) {
+  const Vec2 seen = side.levels[fine].relief.seen_texel(inside, point.wv);
+  const auto add_level = [&](const Level& from, const Vec2& texel, float w) {
     const ByteTexels texels{from.record.data(), from.relief.width(), from.relief.height(), side.stride};
-    add_bilinear_bytes(texels, seen, w, side.step.data(), point.record);
+    add_bilinear_bytes(texels, texel, w, side.step.data(), point.record);
   };
-  add_level(side.levels[fine], weight * (1 - part));
-  if (part > 0) add_level(side.levels[fine + 1], weight * part);
+  add_level(side.levels[fine], seen, weight * (1 - part));
+  if (part == 0) return;
+  const Level &from = side.levels[fine], &to = side.levels[fine + 1];
+  const Vec2 ratio = Vec2(to.relief.width(), to.relief.height()) / Vec2(from.relief.width(), from.relief.height());
+  add_level(to, (seen + 0.5f) * ratio - 0.5f, weight * part);
 }
 
 void SrbfEvaluator::finish(SrbfPoint& point) const {
   const float* const s = point.record + sides_[point.side].slope();
-  point.to_normal = to_normal(normal_of({s[0] + s[1], s[2] + s[3]}));
+  point.to_normal = to_normal(Vec2(s[0] + s[1], s[2] + s[3]));
 }
 
 Rgb SrbfEvaluator::value(const SrbfPoint& point, const Vec3& wl) const {

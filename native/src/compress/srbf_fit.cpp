@@ -17,7 +17,7 @@ constexpr uint32_t kMostPoints = 400, kLeastPoints = 24, kPairs = 900;  // that 
 constexpr uint64_t kTexelsOfAPoint = 4;  // few texels have little to say: their lobes take less time
 constexpr int kRefinements = 100;
 constexpr int kSteps = 20, kCoarseSteps = 12;  // of the texels' solve: finest level, coarser ones
-constexpr uint64_t kUsualRatio = 200, kUsualLeast = 16;
+constexpr uint64_t kUsualRatio = 300, kUsualLeast = 16;
 
 /// Coefficients of a texel that fit when the sides share the bytes evenly.
 size_t coefficients_within(uint64_t asked, const BtfMeasurement& measurement, size_t sides) {

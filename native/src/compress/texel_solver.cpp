@@ -51,7 +51,7 @@ std::vector<TexelSolver::Place> TexelSolver::places(size_t view) const {
                        (static_cast<float>(row) + 0.5f) / static_cast<float>(height));
       Place& at = places[row * width + x];
       at.texels = bilinear_texels(relief_.seen(place, side_.view[view]), width, height);
-      at.to_normal = to_normal(normal_of(relief_.slope(at.texels)));
+      at.to_normal = to_normal(relief_.slope(at.texels));
     }
   });
   return places;

@@ -88,7 +88,7 @@ inline Rgb defined_value(const SrbfBtf& btf, const SrbfSide& side, size_t level,
   for (size_t i = 0; i < 4; ++i) {
     slope += texels.weight[i] * relief.slope(texels.index[i] % of.width, texels.index[i] / of.width);
   }
-  const LobeArguments tile(pair), turned = tile.turned(to_normal(normal_of(slope)));
+  const LobeArguments tile(pair), turned = tile.turned(to_normal(slope));
   Vec3d sum(0.0);
   size_t k = 0;
   for (int a = 0; a < 3; ++a) {

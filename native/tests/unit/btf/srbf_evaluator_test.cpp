@@ -30,7 +30,7 @@ Rgb value_at(const SrbfEvaluator& evaluator, uint32_t side, const Vec2& uv, floa
 
 TEST(ToNormal, IsTheShortestRotationThatTakesTheNormalUp) {
   for (const Vec3& normal : hemisphere_fibonacci(100)) {
-    const Mat3 turn = to_normal(normal);
+    const Mat3 turn = to_normal(Vec2(normal) / normal.z);
     EXPECT_NEAR(glm::distance(turn * normal, Vec3(0, 0, 1)), 0.0f, 1e-5f);
     EXPECT_NEAR(glm::determinant(turn), 1.0f, 1e-5f);
     const Mat3 identity = turn * glm::transpose(turn);
@@ -39,7 +39,7 @@ TEST(ToNormal, IsTheShortestRotationThatTakesTheNormalUp) {
     const Vec3 axis(normal.y, -normal.x, 0);
     EXPECT_NEAR(glm::distance(turn * axis, axis), 0.0f, 1e-5f);
   }
-  EXPECT_EQ(to_normal({0, 0, 1}), Mat3(1.0f));
+  EXPECT_EQ(to_normal(Vec2(0.0f)), Mat3(1.0f));
 }
 
 TEST(SrbfEvaluator, IsTheDefinition) {
@@ -55,7 +55,7 @@ TEST(SrbfEvaluator, IsTheDefinition) {
         const DirectionPair pair = random_pair(i);
         const Rgb found = value_at(evaluator, side, uv, static_cast<float>(level), pair);
         const Rgb expected = test::defined_value(btf, btf.sides[side], level, uv, pair);
-        EXPECT_NEAR(glm::distance(found, expected), 0.0f, 1e-3f) << i;  // the normal is rounded to half floats
+        EXPECT_NEAR(glm::distance(found, expected), 0.0f, 1e-4f) << i;  // slopes are rounded to sixteen bits
       }
     });
   }

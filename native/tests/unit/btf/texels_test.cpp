@@ -43,25 +43,27 @@ TEST(BilinearTexels, AreInsideAndWeighOne) {
   }
 }
 
-TEST(ByteRows, AddWhatTheyWeighInSteps) {
-  constexpr uint32_t kCount = 3 * kByteRowPadding;
+TEST(ByteTexels, AddWhatTheyWeighInSteps) {
+  constexpr uint32_t kWidth = 5, kHeight = 3, kStride = 3 * kByteRowPadding;
   RandomStream random(2, 0, 0);
-  std::vector<uint8_t> bytes(4 * kCount);
+  std::vector<uint8_t> bytes(size_t{kWidth} * kHeight * kStride);
   for (uint8_t& b : bytes) b = static_cast<uint8_t>(256 * random.next());
   bytes[7] = 255;
-  AlignedArray<float> step(kCount), to(kCount);
-  for (uint32_t k = 0; k < kCount; ++k) step.data()[k] = 0.01f * random.next();
-  const float weight[] = {0.5f, 0.25f, -0.125f, 0.0f};
-  std::array<WeightedBytes, 4> rows;
-  for (size_t i = 0; i < 4; ++i) rows[i] = {bytes.data() + i * kCount, weight[i]};
+  AlignedArray<float> step(kStride), to(kStride);
+  for (uint32_t k = 0; k < kStride; ++k) step.data()[k] = 0.01f * random.next();
   test::on_every_simd_target([&] {
-    std::fill_n(to.data(), kCount, 7.0f);
-    add_byte_rows(rows, kCount, step.data(), to.data());
-    for (uint32_t k = 0; k < kCount; ++k) {
-      double expected = 0;
-      for (size_t i = 0; i < 4; ++i) expected += static_cast<double>(weight[i]) * bytes[i * kCount + k];
-      expected = 7 + static_cast<double>(step.data()[k]) * expected;
-      EXPECT_NEAR(static_cast<double>(to.data()[k]), expected, 1e-5);
+    for (const Vec2& texel : {Vec2(-0.3f, 2.4f), Vec2(1.7f, 0.2f), Vec2(-7.0f, 30.5f)}) {
+      std::fill_n(to.data(), kStride, 7.0f);
+      add_bilinear_bytes({bytes.data(), kWidth, kHeight, kStride}, texel, 0.75f, step.data(), to.data());
+      const BilinearTexels corner = bilinear_at(texel, kWidth, kHeight);
+      for (uint32_t k = 0; k < kStride; ++k) {
+        double mean = 0;
+        for (size_t i = 0; i < 4; ++i) {
+          mean += static_cast<double>(corner.weight[i]) * bytes[size_t{corner.index[i]} * kStride + k];
+        }
+        const double expected = 7 + 0.75 * static_cast<double>(step.data()[k]) * mean;
+        EXPECT_NEAR(static_cast<double>(to.data()[k]), expected, 1e-5);
+      }
     }
   });
 }

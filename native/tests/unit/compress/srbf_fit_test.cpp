@@ -59,7 +59,7 @@ class MemoryBtfWithRelief final : public BtfMeasurement {
 TexelGrid small_grid() { return {12, 8, Vec2(0.003f, 0.002f)}; }
 
 /// Smooth over the tile, which repeats.
-std::vector<HalfBits> smooth_halves(const SrbfLevel& level, size_t channels, float mean, float swing) {
+std::vector<float> smooth(const SrbfLevel& level, size_t channels, float mean, float swing) {
   std::vector<float> value;
   for (size_t t = 0; t < size_t{level.width} * level.height; ++t) {
     const float x = 2 * kPi * static_cast<float>(t % level.width) / static_cast<float>(level.width);
@@ -69,9 +69,7 @@ std::vector<HalfBits> smooth_halves(const SrbfLevel& level, size_t channels, flo
       value.push_back(mean + swing * std::sin(x + phase) * std::cos(y - 2 * phase));
     }
   }
-  std::vector<HalfBits> bits(value.size());
-  floats_to_halves(value, bits);
-  return bits;
+  return value;
 }
 
 /// A model over a plane, or over hills of `high` widths of the tile, 12 x 8 texels.
@@ -82,10 +80,12 @@ SrbfBtf true_model(float high, bool two_sided = false) {
   for (SrbfSide& side : btf.sides) {
     const bool below = side.view_below;
     side = test::example_side(12, 8, below);
+    std::vector<std::vector<float>> values;
     for (SrbfLevel& level : side.levels) {
-      level.relief = smooth_halves(level, 1, 0, high);
-      level.value = smooth_halves(level, side.coefficients(), below ? 0.2f : 0.3f, 0.2f);
+      floats_to_halves(smooth(level, 1, 0, high), level.relief);
+      values.push_back(smooth(level, side.coefficients(), below ? 0.2f : 0.3f, 0.2f));
     }
+    side.set_values(values);
   }
   return btf;
 }

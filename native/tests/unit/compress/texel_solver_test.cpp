@@ -51,7 +51,7 @@ LevelImages images_of(const SideDirections& side, const SharedLobes& shared, con
       slope += at.weight[i] * relief.slope(at.index[i] % relief.width(), at.index[i] / relief.width());
       value += static_cast<double>(at.weight[i]) * coefficient.row(at.index[i]).cast<double>();
     }
-    const Mat3 turn = to_normal(normal_of(slope));
+    const Mat3 turn = to_normal(slope);
     for (Eigen::Index l = 0; l < lights; ++l) {
       const LobeArguments tile({side.light[static_cast<size_t>(l)], side.view[view]}), turned = tile.turned(turn);
       Eigen::Index k = 0;

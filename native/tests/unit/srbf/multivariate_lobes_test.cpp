@@ -82,22 +82,23 @@ TEST(MultivariateLobes, AreOneAtTheirPeak) {
   EXPECT_NEAR(values.data()[1], 1.0f, 1e-4f);
 }
 
-/// Of two groups of lobes, each at arguments of its own.
+/// Of two groups of lobes, the second in a frame that is turned.
 TEST(MultivariateLobes, SumsAreThoseOfCoefficientsTimesColoursTimesValues) {
   for (const uint32_t second : {0u, 5u, 30u}) {
     const MultivariateLobes first(random_lobes(40)), other(random_lobes(second));
     const uint32_t padded = first.padded() + other.padded();
     AlignedArray<float> coefficient(padded), color(size_t{3} * padded), values(padded);
     RandomStream random(6, 0, 0);
+    const Mat3 turn(Vec3(0.6f, 0, 0.8f), Vec3(0, 1, 0), Vec3(-0.8f, 0, 0.6f));
     // What stands behind the lobes is multiplied by nothing.
     for (uint32_t i = 0; i < padded; ++i) coefficient.data()[i] = random.next() - 0.5f;
     for (uint32_t i = 0; i < 3 * padded; ++i) color.data()[i] = random.next() - 0.5f;
     test::on_every_simd_target([&] {
       for (uint64_t i = 0; i < 20; ++i) {
-        const LobeArguments at = random_arguments(i), turned = random_arguments(i + 100);
+        const LobeArguments at = random_arguments(i);
         first.values(at, values.data());
-        other.values(turned, values.data() + first.padded());
-        const Vec3 sums = lobe_sums({{{&first, at}, {&other, turned}}}, coefficient.data(), color.data());
+        other.values(at.turned(turn), values.data() + first.padded());
+        const Vec3 sums = lobe_sums({first, other, color.data()}, {at.wl, at.wv}, turn, coefficient.data());
         for (uint32_t c = 0; c < 3; ++c) {
           double expected = 0;
           for (uint32_t k = 0; k < padded; ++k) {
