@@ -61,6 +61,28 @@ TEST(SrbfEvaluator, IsTheDefinition) {
   }
 }
 
+/// Bytes span what each coefficient takes on all levels.
+TEST(SrbfSide, RoundsItsValuesToTheNearestOf256) {
+  SrbfSide side = test::example_side(6, 4, false);
+  const size_t count = side.coefficients();
+  std::vector<std::vector<float>> values;
+  RandomStream random(15, 0, 0);
+  for (const SrbfLevel& level : side.levels) {
+    auto& of_level = values.emplace_back(level.value.size());
+    for (size_t i = 0; i < of_level.size(); ++i) of_level[i] = static_cast<float>(i % count) * (random.next() - 0.4f);
+  }
+  side.set_values(values);
+  for (size_t l = 0; l < values.size(); ++l) {
+    for (size_t i = 0; i < values[l].size(); ++i) {
+      const ByteScale& scale = side.scale[i % count];
+      const float stored = scale.least + scale.step * side.levels[l].value[i];
+      EXPECT_NEAR(stored, values[l][i], 0.501f * scale.step + 1e-7f);
+      EXPECT_LE(scale.step, static_cast<float>(i % count) / 255 * 1.0001f);
+    }
+  }
+  EXPECT_EQ(side.scale[0].step, 0.0f);  // of a coefficient that is the same everywhere
+}
+
 TEST(SrbfEvaluator, KnowsItsSides) {
   const SrbfEvaluator one(shared(test::example_srbf())), two(shared(test::example_srbf(true)));
   EXPECT_EQ(one.side(false, false), 0u);
