@@ -132,8 +132,8 @@ HWY_INLINE void cross_next(const Lines& lines, const HeightWords& heights, float
 
 /// A time until which the ray is above all that lies about it.
 HWY_INLINE float clear_until(const HeightWords& heights, const ReliefMarch& m) {
-  const Lanes d;
-  const hn::RebindToSigned<Lanes> di;
+  const hn::CappedTag<float, 8> d;
+  const hn::RebindToSigned<decltype(d)> di;
   constexpr auto kCells = static_cast<float>(HeightWords::kBlock);
   const float step = kCells / std::max({std::abs(m.way.x), std::abs(m.way.y), kShortest});
   const auto when = hn::Mul(hn::Iota(d, 0.0f), hn::Set(d, step));
