@@ -1,6 +1,7 @@
 // The four texels about a place of a tile that repeats.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -14,24 +15,33 @@ struct BilinearTexels {
   std::array<float, 4> weight;    // sum 1
 };
 
-/// `place` in tiles, of any size.
-inline BilinearTexels bilinear_texels(const Vec2& place, uint32_t width, uint32_t height) {
-  const Vec2 texel = (place - glm::floor(place)) * Vec2(width, height) - 0.5f, low = glm::floor(texel);
-  const Vec2 part = texel - low;
-  // From -1 to the size: rounding may give the whole tile.
-  const auto wrapped = [](int i, uint32_t size) {
-    const int n = static_cast<int>(size);
-    return static_cast<uint32_t>(i < 0 ? i + n : (i >= n ? i - n : i));
-  };
-  BilinearTexels texels;
-  for (int corner = 0; corner < 4; ++corner) {
-    const int dx = corner & 1, dy = corner >> 1;
-    const auto i = static_cast<size_t>(corner);
-    texels.index[i] =
-        wrapped(static_cast<int>(low.y) + dy, height) * width + wrapped(static_cast<int>(low.x) + dx, width);
-    texels.weight[i] = (dx ? part.x : 1 - part.x) * (dy ? part.y : 1 - part.y);
+/// A place between texels, and its neighbours on an axis of `size` texels that repeats.
+struct LinearTexels {
+  LinearTexels(float texel, uint32_t size) {
+    const auto extent = static_cast<float>(size);
+    // Rounding may leave either end of the period.
+    const float inside = std::max(texel - std::floor(texel * (1 / extent)) * extent, 0.0f);
+    const float whole = std::floor(inside);
+    part = inside - whole;
+    const auto at = static_cast<uint32_t>(static_cast<int32_t>(whole));
+    low = at < size ? at : 0;
+    high = low + 1 < size ? low + 1 : 0;
   }
-  return texels;
+  uint32_t low, high;
+  float part;
+};
+
+/// `texel`: in texels from the centre of the first one, of any size below 2^24.
+inline BilinearTexels bilinear_at(const Vec2& texel, uint32_t width, uint32_t height) {
+  const LinearTexels x(texel.x, width), y(texel.y, height);
+  const uint32_t low = y.low * width, high = y.high * width;
+  return {{low + x.low, low + x.high, high + x.low, high + x.high},
+          {(1 - x.part) * (1 - y.part), x.part * (1 - y.part), (1 - x.part) * y.part, x.part * y.part}};
+}
+
+/// `place` in tiles.
+inline BilinearTexels bilinear_texels(const Vec2& place, uint32_t width, uint32_t height) {
+  return bilinear_at(place * Vec2(width, height) - 0.5f, width, height);
 }
 
 }  // namespace velour

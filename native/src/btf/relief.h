@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "btf/bilinear_texels.h"
+#include "btf/relief_march.h"
 #include "sphere/vec.h"
 
 namespace velour {
@@ -22,6 +23,8 @@ class Relief {
   /// (wv.z > 0) meets the relief first, coming from outside: the point below or above which it does, in tiles, not
   /// wrapped. Continuous in both arguments where the relief hides nothing of itself.
   Vec2 seen(const Vec2& place, const Vec3& wv) const;
+  /// The same in texels, from the centre of the first one.
+  Vec2 seen_texel(const Vec2& place, const Vec3& wv) const;
 
   /// (-dz/dx, -dz/dy) at the centre of a texel, over two texels: the normal is along (x, y, 1). Steeper than
   /// kSteepest is cut to that.
@@ -33,15 +36,16 @@ class Relief {
   uint32_t width() const { return width_; }
   uint32_t height() const { return rows_; }
   /// At the centre of a texel.
-  float height_of(uint32_t x, uint32_t y) const { return padded_[size_t{y} * (width_ + 1) + x]; }
+  float height_of(uint32_t x, uint32_t y) const { return heights_[size_t{y} * width() + x]; }
   /// [row][column].
-  std::vector<float> heights() const;
+  const std::vector<float>& heights() const { return heights_; }
   bool flat() const { return top_ == bottom_; }
 
  private:
   uint32_t width_, rows_;
-  std::vector<float> padded_;  // [height + 1][width + 1]: ReliefMarch
-  float aspect_, top_, bottom_;
+  std::vector<float> heights_;
+  float aspect_, bottom_, top_;
+  HeightWords words_;  // what seen() looks at
 };
 
 }  // namespace velour

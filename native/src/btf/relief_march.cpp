@@ -2,6 +2,8 @@
 #include "btf/relief_march.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "btf/relief_march.cpp"
@@ -15,91 +17,170 @@ namespace velour {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-constexpr float kShortest = 1.0f / 1024;
-using Lanes = hn::CappedTag<float, 16>;
+constexpr float kMostLines = 1024;
+constexpr float kLong = 24;
+constexpr float kShortest = 1e-6f;  // way that is told from none
+constexpr size_t kMostLanes = 16;
+using Lanes = hn::CappedTag<float, kMostLanes>;
 
-/// A coordinate on the grid: the texel at or below it and how far it is to the next.
-template <class D>
-struct Place {
-  hn::Vec<hn::RebindToSigned<D>> texel;
-  hn::Vec<D> part;
+/// The lines of the grid that a ray crosses in one direction, from the last one before it starts. `across` counts
+/// them, `along` is the coordinate on them.
+struct Lines {
+  Lines(float from, float way, float start_along, float way_along_, const Period& across_, const Period& along_)
+      : from_along(start_along), way_along(way_along_), across(across_), along(along_) {
+    // Without branches: whether a ray goes up or down an axis nobody can foretell.
+    step = std::copysign(1.0f, way);
+    line = step * std::floor(step * from);
+    rate = std::max(std::abs(way), kShortest);
+    period = 1 / rate;
+    first = std::abs(line - from) * -period;
+    last = std::ceil((1 - first) * std::abs(way)) + 1;
+    if (rate > kMostLines) take_every(std::ceil(rate * (1 / kMostLines)));
+  }
+  void take_every(float n) {
+    step *= n;
+    period *= n;
+    rate /= n;
+  }
+  /// Of the last line before a time when the ray is known to be above the surface.
+  float number_before(float when) const { return std::max(std::floor((when - first) * rate - 1e-2f), 0.0f); }
+
+  float line, step, from_along, way_along;
+  float first, period, rate;  // times, and lines a unit of time
+  float last;           // number of a line behind the end
+  const Period &across, &along;
 };
 
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE Place<D> place_of(D d, V coordinate, float size) {
-  const V n = hn::Set(d, size);
-  const V periods = hn::Floor(hn::Mul(coordinate, hn::Set(d, 1 / size)));
-  // Rounding may leave the ends of the period: the last texel then, and a part of 0 or 1.
-  const V inside = hn::Max(hn::NegMulAdd(periods, n, coordinate), hn::Zero(d));
-  const V texel = hn::Min(hn::Floor(inside), hn::Set(d, size - 1));
-  return {hn::ConvertTo(hn::RebindToSigned<D>(), texel), hn::Sub(inside, texel)};
-}
+/// What a ray finds at as many lines as there are lanes, and at the last one before those.
+struct Crossings {
+  static constexpr size_t kFirst = kMostLanes;  // so that vectors are aligned
 
-template <class V>
-HWY_INLINE V between(V a, V b, V part) {
-  return hn::MulAdd(hn::Sub(b, a), part, a);
-}
+  bool none_met() const { return met == kFirst + hn::Lanes(Lanes()); }
+  float end() const { return when[met]; }
+  size_t before(float end) const {
+    const Lanes d;
+    return kFirst - 1 + hn::CountTrue(d, hn::Lt(hn::Load(d, when + kFirst), hn::Set(d, end)));
+  }
 
-/// Of the surface at `when`.
+  // The last: the first line that is not looked at.
+  HWY_ALIGN float when[2 * kMostLanes + 1];
+  HWY_ALIGN float gap[2 * kMostLanes + 1];  // how far the ray is above the surface
+  size_t met;  // place of the first crossing that is not above it; where all are, the one behind the last
+};
+
+/// A whole number in [0, 2^22] as an integer.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V surface_at(D d, const ReliefMarch& m, V when) {
+HWY_INLINE hn::Vec<hn::RebindToSigned<D>> whole(D d, V number) {
   const hn::RebindToSigned<D> di;
-  const auto along = [&](float from, float way) { return hn::MulAdd(when, hn::Set(d, way), hn::Set(d, from)); };
-  const auto x = place_of(d, along(m.from.x, m.way.x), static_cast<float>(m.width));
-  const auto y = place_of(d, along(m.from.y, m.way.y), static_cast<float>(m.height));
-  const auto index = hn::Add(hn::Mul(y.texel, hn::Set(di, static_cast<int32_t>(m.width + 1))), x.texel);
-  const float* above = m.heights + m.width + 1;
-  const V low = between(hn::GatherIndex(d, m.heights, index), hn::GatherIndex(d, m.heights + 1, index), x.part);
-  const V high = between(hn::GatherIndex(d, above, index), hn::GatherIndex(d, above + 1, index), x.part);
-  return between(low, high, y.part);
+  return hn::Sub(hn::BitCast(di, hn::Add(number, hn::Set(d, 8388608.0f))), hn::Set(di, 0x4b000000));
 }
 
-/// A time and how far the ray is above the surface then.
-struct Sounding {
-  float when, gap;
-};
-
-/// The first is above the surface, the second is not. Where their chord meets it, once more: a step may cross the edges
-/// of texels, at which the surface bends.
-HWY_INLINE float refined(const ReliefMarch& m, Sounding above, Sounding below) {
-  const hn::CappedTag<float, 1> d;
-  const auto chord = [&] { return above.when + (below.when - above.when) * (above.gap / (above.gap - below.gap)); };
-  const float when = chord();
-  const float surface = hn::GetLane(surface_at(d, m, hn::Set(d, when)));
-  const Sounding between_them{when, m.top - when * m.fall - surface};
-  (between_them.gap > 0 ? above : below) = between_them;
-  return chord();
+/// The number of lanes where there is none.
+template <class D, class M>
+HWY_INLINE size_t first_true(D d, M mask) {
+  const intptr_t first = hn::FindFirstTrue(d, mask);
+  return first < 0 ? hn::Lanes(d) : static_cast<size_t>(first);
 }
 
-float meeting(const ReliefMarch& m) {
+/// The same place of the period, in [0, extent].
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V wrapped(D d, V at, const Period& period) {
+  const V extent = hn::Set(d, period.extent), periods = hn::Floor(hn::Mul(at, hn::Set(d, period.inverse)));
+  return hn::Min(hn::Max(hn::NegMulAdd(periods, extent, at), hn::Zero(d)), extent);
+}
+
+/// At the lines from `number` on. `kAlongX`: they run along x.
+template <bool kAlongX>
+HWY_INLINE void cross(const Lines& lines, const HeightWords& heights, float number, Crossings& crossings) {
   const Lanes d;
-  const auto lanes = static_cast<float>(hn::Lanes(d));
-  // Rays along the plane would take for ever.
-  const float step = std::max(1 / std::max({std::abs(m.way.x), std::abs(m.way.y), 1e-3f}), kShortest);
-  HWY_ALIGN float gaps[16];
-  float gap_before = 0, earlier = 0;
-  for (float first = 0;; first += lanes) {
-    // The last step ends where the ray does.
-    const auto when =
-        hn::Min(hn::Mul(hn::Set(d, step), hn::Add(hn::Iota(d, 0.0f), hn::Set(d, first))), hn::Set(d, 1.0f));
-    const auto ray = hn::NegMulAdd(when, hn::Set(d, m.fall), hn::Set(d, m.top));
-    const auto gap = hn::Sub(ray, surface_at(d, m, when));
-    const intptr_t met = hn::FindFirstTrue(d, hn::Le(gap, hn::Zero(d)));
-    hn::Store(gap, d, gaps);
-    if (met >= 0) {
-      const float gap_met = gaps[met];
-      if (met > 0) {
-        gap_before = gaps[met - 1];
-        earlier = step * (first + static_cast<float>(met - 1));
-      }
-      const float now = std::min(step * (first + static_cast<float>(met)), 1.0f);
-      if (!(gap_before > 0)) return now;  // at the start
-      return refined(m, {earlier, gap_before}, {now, gap_met});
+  const hn::RebindToUnsigned<Lanes> du;
+  const hn::RebindToSigned<Lanes> di;
+  // Lines behind the end are looked at only once: what they show is clear, but must be read.
+  const auto n = hn::Min(hn::Add(hn::Iota(d, 0.0f), hn::Set(d, number)), hn::Set(d, lines.last));
+  const auto when = hn::MulAdd(n, hn::Set(d, lines.period), hn::Set(d, lines.first));
+  const auto line = wrapped(d, hn::MulAdd(n, hn::Set(d, lines.step), hn::Set(d, lines.line)), lines.across);
+  const auto along =
+      wrapped(d, hn::MulAdd(when, hn::Set(d, lines.way_along), hn::Set(d, lines.from_along)), lines.along);
+  // At the end of the period the last corner, and a part of 1.
+  const auto corner = hn::Min(hn::Floor(along), hn::Set(d, lines.along.extent - 1));
+  const auto stride = hn::Set(di, static_cast<int32_t>(heights.stride));
+  const auto across = whole(d, line), place = whole(d, corner);
+  const auto index = kAlongX ? hn::Add(hn::Mul(across, stride), place) : hn::Add(hn::Mul(place, stride), across);
+  const auto word = hn::BitCast(di, hn::GatherIndex(du, heights.word.data(), index));
+  const auto mask = hn::Set(di, kHeightRange);
+  const auto low = hn::ConvertTo(d, hn::And(word, mask));
+  const auto high = hn::ConvertTo(d, hn::And(hn::ShiftRight<kAlongX ? 10 : 20>(word), mask));
+  const auto surface = hn::MulAdd(hn::Sub(high, low), hn::Sub(along, corner), low);
+  const auto gap = hn::Sub(hn::NegMulAdd(when, hn::Set(d, float{kHeightRange}), hn::Set(d, float{kHeightRange})), surface);
+  const size_t count = hn::Lanes(d);
+  hn::Store(when, d, crossings.when + Crossings::kFirst);
+  hn::Store(gap, d, crossings.gap + Crossings::kFirst);
+  crossings.when[Crossings::kFirst + count] = lines.first + (number + static_cast<float>(count)) * lines.period;
+  crossings.gap[Crossings::kFirst + count] = 0;
+  crossings.met = Crossings::kFirst + first_true(d, hn::Le(gap, hn::Zero(d)));
+}
+
+/// The same at the next lines.
+template <bool kAlongX>
+HWY_INLINE void cross_next(const Lines& lines, const HeightWords& heights, float& number, Crossings& crossings) {
+  const size_t count = hn::Lanes(Lanes()), last = Crossings::kFirst + count - 1;
+  crossings.when[Crossings::kFirst - 1] = crossings.when[last];
+  crossings.gap[Crossings::kFirst - 1] = crossings.gap[last];
+  number += static_cast<float>(count);
+  cross<kAlongX>(lines, heights, number, crossings);
+}
+
+/// A time until which the ray is above all that lies about it.
+HWY_INLINE float clear_until(const HeightWords& heights, const ReliefMarch& m) {
+  const hn::CappedTag<float, 8> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  constexpr auto kCells = static_cast<float>(HeightWords::kBlock);
+  const float step = kCells / std::max({std::abs(m.way.x), std::abs(m.way.y), kShortest});
+  const auto when = hn::Mul(hn::Iota(d, 0.0f), hn::Set(d, step));
+  const auto block = [&](float from, float way, const Period& period) {
+    const auto at = wrapped(d, hn::MulAdd(when, hn::Set(d, way), hn::Set(d, from)), period);
+    return whole(d, hn::Floor(hn::Mul(hn::Min(at, hn::Set(d, period.extent - 1)), hn::Set(d, 1 / kCells))));
+  };
+  const auto x = block(m.from.x, m.way.x, heights.columns), y = block(m.from.y, m.way.y, heights.rows);
+  const auto index = hn::Add(hn::Mul(y, hn::Set(di, static_cast<int32_t>(heights.blocks))), x);
+  const auto lid = hn::GatherIndex(d, heights.lid.data(), index);
+  // At the end of each step.
+  const auto ray = hn::NegMulAdd(hn::Add(when, hn::Set(d, step)), hn::Set(d, float{kHeightRange}),
+                                 hn::Set(d, float{kHeightRange}));
+  return static_cast<float>(first_true(d, hn::Le(ray, lid))) * step;
+}
+
+/// Between the last crossing of either kind above the surface and the first one that is not.
+HWY_INLINE float meeting_between(const Crossings (&at)[2], size_t next) {
+  const float end = at[next].end(), below = at[next].gap[at[next].met];
+  const size_t place[] = {at[0].before(end), at[1].before(end)};
+  const size_t last = at[1].when[place[1]] > at[0].when[place[0]];
+  const float start = at[last].when[place[last]], above = at[last].gap[place[last]];
+  return std::max(start + (end - start) * (above / (above - below)), 0.0f);
+}
+
+HWY_FLATTEN Vec2 meeting(const HeightWords& heights, const ReliefMarch& m) {
+  const Lines columns(m.from.x, m.way.x, m.from.y, m.way.y, heights.columns, heights.rows);
+  const Lines rows(m.from.y, m.way.y, m.from.x, m.way.x, heights.rows, heights.columns);
+  Crossings at[2];
+  // Before the first line, should rounding put that below the surface.
+  for (Crossings& a : at) {
+    a.when[Crossings::kFirst - 1] = -1;
+    a.gap[Crossings::kFirst - 1] = 1;
+  }
+  const float clear = m.high && std::max(columns.rate, rows.rate) > kLong ? clear_until(heights, m) : 0.0f;
+  float column = columns.number_before(clear), row = rows.number_before(clear);
+  cross<false>(columns, heights, column, at[0]);
+  cross<true>(rows, heights, row, at[1]);
+  for (;;) {
+    // A number, not a branch: which it is nobody can foretell.
+    const size_t next = at[1].end() < at[0].end();
+    if (!at[next].none_met() || !std::isfinite(at[next].end())) return m.from + meeting_between(at, next) * m.way;
+    if (next == 0) {
+      cross_next<false>(columns, heights, column, at[0]);
+    } else {
+      cross_next<true>(rows, heights, row, at[1]);
     }
-    const float last = first + lanes - 1;
-    if (step * last >= 1) return 1;
-    gap_before = gaps[static_cast<size_t>(lanes) - 1];
-    earlier = step * last;
   }
 }
 
@@ -112,7 +193,31 @@ namespace velour {
 
 HWY_EXPORT(meeting);
 
-float first_meeting(const ReliefMarch& march) { return VELOUR_SIMD_DISPATCH(meeting)(march); }
+HeightWords::HeightWords(uint32_t width, uint32_t height, const std::vector<float>& part)
+    : columns(width), rows(height), stride(width + 1), blocks((width + kBlock - 1) / kBlock) {
+  const auto at = [&](uint32_t x, uint32_t y) {
+    return static_cast<uint32_t>(std::lround(part[size_t{y % height} * width + x % width] * kHeightRange));
+  };
+  for (uint32_t y = 0; y <= height; ++y) {
+    for (uint32_t x = 0; x <= width; ++x) word.push_back(at(x, y) | at(x + 1, y) << 10 | at(x, y + 1) << 20);
+  }
+  for (uint32_t y = 0; y < height; y += kBlock) {
+    for (uint32_t x = 0; x < width; x += kBlock) {
+      uint32_t greatest = 0;
+      // A step away and a cell on.
+      for (uint32_t j = 0; j <= 3 * kBlock; ++j) {
+        for (uint32_t i = 0; i <= 3 * kBlock; ++i) {
+          greatest = std::max(greatest, at(x + i + kBlock * (width - 1), y + j + kBlock * (height - 1)));
+        }
+      }
+      lid.push_back(static_cast<float>(greatest));
+    }
+  }
+}
+
+Vec2 first_meeting(const HeightWords& heights, const ReliefMarch& march) {
+  return VELOUR_SIMD_DISPATCH(meeting)(heights, march);
+}
 
 }  // namespace velour
 #endif

@@ -1,12 +1,36 @@
 #include "btf/srbf_btf.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace velour {
 
+void SrbfSide::set_values(const std::vector<std::vector<float>>& values) {
+  const size_t count = coefficients();
+  scale.assign(count, {});
+  for (size_t k = 0; k < count; ++k) {
+    float least = values[0][k], most = least;
+    for (const std::vector<float>& level : values) {
+      for (size_t i = k; i < level.size(); i += count) {
+        least = std::min(least, level[i]);
+        most = std::max(most, level[i]);
+      }
+    }
+    scale[k] = {least, (most - least) / 255};
+  }
+  for (size_t l = 0; l < levels.size(); ++l) {
+    levels[l].value.resize(values[l].size());
+    for (size_t i = 0; i < values[l].size(); ++i) {
+      const ByteScale& s = scale[i % count];
+      const float steps = s.step > 0 ? (values[l][i] - s.least) / s.step : 0.0f;
+      levels[l].value[i] = static_cast<uint8_t>(std::lround(std::clamp(steps, 0.0f, 255.0f)));
+    }
+  }
+}
+
 uint64_t SrbfSide::parameter_bytes() const {
-  uint64_t bytes = lobes.size() * sizeof(MultivariateLobe) + coefficients() * sizeof(uint16_t);
-  for (const SrbfLevel& level : levels) bytes += (level.value.size() + level.relief.size()) * sizeof(HalfBits);
+  uint64_t bytes = lobes.size() * sizeof(MultivariateLobe) + coefficients() * (sizeof(uint16_t) + sizeof(ByteScale));
+  for (const SrbfLevel& level : levels) bytes += level.value.size() + level.relief.size() * sizeof(HalfBits);
   return bytes;
 }
 
@@ -19,14 +43,6 @@ uint64_t SrbfBtf::parameter_bytes() const {
 float tile_aspect(const TexelGrid& grid) {
   if (grid.tile_metres) return grid.tile_metres->y / grid.tile_metres->x;
   return static_cast<float>(grid.height) / static_cast<float>(grid.width);
-}
-
-Mat3 to_normal(const Vec3& normal) {
-  // Rodrigues' formula about (n.y, -n.x, 0), whose length is the sine.
-  const float a = 1 / (1 + normal.z);
-  const float xy = -a * normal.x * normal.y;
-  return {Vec3(1 - a * normal.x * normal.x, xy, normal.x), Vec3(xy, 1 - a * normal.y * normal.y, normal.y),
-          Vec3(-normal.x, -normal.y, normal.z)};
 }
 
 }  // namespace velour

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -11,11 +12,16 @@
 
 namespace velour {
 
+/// What a coefficient's bytes stand for: least + step * byte.
+struct ByteScale {
+  float least = 0, step = 0;
+};
+
 /// One level of the pyramid over the tile.
 struct SrbfLevel {
   uint32_t width = 0, height = 0;
   std::vector<HalfBits> relief;  // [row][column]: over the reference plane, widths of the tile
-  std::vector<HalfBits> value;   // [row][column][coefficient], row 0 at the bottom
+  std::vector<uint8_t> value;    // [row][column][coefficient], row 0 at the bottom: SrbfSide::scale
 };
 
 /// What is seen from one side of the reference plane under light from one side: both are looked at in the frame of the
@@ -30,7 +36,12 @@ struct SrbfSide {
   std::vector<MultivariateLobe> lobes;
   uint32_t tile_lobes = 0;
   std::array<std::vector<uint16_t>, 3> lobe;  // of each axis' coefficients: of axis 0 every lobe in order
+  std::vector<ByteScale> scale;               // of each coefficient, on all levels
   std::vector<SrbfLevel> levels;              // the finest first; each half of the one before, down to one texel
+
+  /// Sets the values of all levels, finest first, [texel][coefficient]: bytes from the least to the largest of each
+  /// coefficient, to the nearest.
+  void set_values(const std::vector<std::vector<float>>& levels);
 
   size_t coefficients() const { return lobe[0].size() + lobe[1].size() + lobe[2].size(); }
   /// Of all coefficients, heights and lobes as they are stored.
@@ -59,9 +70,14 @@ struct SrbfBtf {
 /// The tile's extent along y over that along x; square texels where its size is not known.
 float tile_aspect(const TexelGrid& grid);
 
-/// The rotation that takes unit `normal` (z > 0) to +z the shortest way.
-Mat3 to_normal(const Vec3& normal);
-/// Unit normal of Relief::slope().
-inline Vec3 normal_of(const Vec2& slope) { return glm::normalize(Vec3(slope, 1.0f)); }
+/// The rotation that takes the normal of a Relief::slope() to +z the shortest way: Rodrigues' formula about
+/// (n.y, -n.x, 0), whose length is the sine. One division, because evaluation waits for it.
+inline Mat3 to_normal(const Vec2& slope) {
+  const float square = 1 + glm::dot(slope, slope), length = std::sqrt(square);
+  const float one = 1 / (square + length), z = one * (length + 1), a = one * square;  // a = 1 / (1 + z)
+  const Vec3 n(slope * z, z);
+  const float xy = -a * n.x * n.y;
+  return {Vec3(1 - a * n.x * n.x, xy, n.x), Vec3(xy, 1 - a * n.y * n.y, n.y), Vec3(-n.x, -n.y, n.z)};
+}
 
 }  // namespace velour

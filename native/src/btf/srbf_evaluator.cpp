@@ -8,13 +8,43 @@
 namespace velour {
 namespace {
 
-uint32_t padded(size_t count) {
-  return static_cast<uint32_t>((count + kHalfRowPadding - 1) / kHalfRowPadding * kHalfRowPadding);
+constexpr float kSlopeStep = Relief::kSteepest / 32767;  // of the slopes' lower bytes
+constexpr uint32_t kBlock = MultivariateLobes::kPadding;
+
+/// A coefficient of texels, by its number, and what it multiplies.
+struct Term {
+  size_t coefficient;
+  int axis;
+  MultivariateLobe lobe;
+};
+
+/// Those of lobes in the tile's frame, or in that of the normal.
+std::vector<Term> terms(const SrbfSide& side, bool tile) {
+  std::vector<Term> terms;
+  size_t coefficient = 0;
+  for (size_t a = 0; a < 3; ++a) {
+    for (const uint16_t lobe : side.lobe[a]) {
+      if ((lobe < side.tile_lobes) == tile) terms.push_back({coefficient, static_cast<int>(a), side.lobes[lobe]});
+      ++coefficient;
+    }
+  }
+  return terms;
 }
 
-std::span<const MultivariateLobe> tile_lobes(const SrbfSide& side) { return {side.lobes.data(), side.tile_lobes}; }
-std::span<const MultivariateLobe> texel_lobes(const SrbfSide& side) {
-  return std::span(side.lobes).subspan(side.tile_lobes);
+MultivariateLobes lobes_of(const std::vector<Term>& terms) {
+  std::vector<MultivariateLobe> lobes;
+  for (const Term& term : terms) lobes.push_back(term.lobe);
+  return MultivariateLobes(lobes);
+}
+
+uint32_t padded(size_t count) {
+  return static_cast<uint32_t>((count + kByteRowPadding - 1) / kByteRowPadding * kByteRowPadding);
+}
+
+AlignedArray<float> zeros(size_t count) {
+  AlignedArray<float> floats(count);
+  std::fill_n(floats.data(), count, 0.0f);
+  return floats;
 }
 
 Relief relief_of(const SrbfBtf& btf, const SrbfLevel& level) {
@@ -23,35 +53,54 @@ Relief relief_of(const SrbfBtf& btf, const SrbfLevel& level) {
   return {level.width, level.height, heights, tile_aspect(btf.grid)};
 }
 
-}  // namespace
-
-SrbfEvaluator::Side::Side(const SrbfBtf& btf, const SrbfSide& side) : tile(tile_lobes(side)), texel(texel_lobes(side)) {
-  axis1 = tile.padded() + texel.padded();
-  slope = axis1 + static_cast<uint32_t>(side.lobe[1].size() + side.lobe[2].size());
-  stride = padded(slope + 2);
-  for (size_t a = 0; a < 2; ++a) {
-    for (const uint16_t lobe : side.lobe[a + 1]) scatter[a].push_back(place_of(lobe));
-  }
-  const size_t coefficients = side.coefficients(), first = side.lobe[0].size();
-  for (const SrbfLevel& level : side.levels) {
-    const size_t texels = size_t{level.width} * level.height;
-    Level& to = levels.emplace_back(Level{relief_of(btf, level), AlignedArray<HalfBits>(texels * stride)});
-    std::fill_n(to.record.data(), to.record.size(), HalfBits{0});
-    for (size_t t = 0; t < texels; ++t) {
-      const HalfBits* const from = level.value.data() + t * coefficients;
-      HalfBits* const record = to.record.data() + t * stride;
-      for (size_t k = 0; k < first; ++k) record[place_of(static_cast<uint16_t>(k))] = from[k];
-      std::copy(from + first, from + coefficients, record + axis1);
-      const Vec2 slopes =
-          to.relief.slope(static_cast<uint32_t>(t % level.width), static_cast<uint32_t>(t / level.width));
-      const float values[] = {slopes.x, slopes.y};
-      floats_to_halves(values, {record + slope, 2});
-    }
+void write_slope(const Vec2& slope, uint8_t* to) {
+  for (int i = 0; i < 2; ++i) {
+    const auto steps = static_cast<uint32_t>(std::lround(slope[i] / kSlopeStep) + 32768);
+    *to++ = static_cast<uint8_t>(steps >> 8);
+    *to++ = static_cast<uint8_t>(steps & 0xff);
   }
 }
 
-uint32_t SrbfEvaluator::Side::place_of(uint16_t lobe) const {
-  return lobe < tile.size() ? lobe : tile.padded() + lobe - tile.size();
+}  // namespace
+
+SrbfEvaluator::Side::Side(const SrbfBtf& btf, const SrbfSide& side)
+    : tile(lobes_of(terms(side, true))),
+      texel(lobes_of(terms(side, false))),
+      stride(padded(tile.padded() + texel.size() + 4)),
+      least(zeros(stride)),
+      step(zeros(stride)),
+      color(zeros(size_t{3} * (tile.padded() + texel.padded()))) {
+  std::vector<uint32_t> place(side.coefficients());
+  uint32_t next = 0;
+  for (const bool in_tile : {true, false}) {
+    for (const Term& term : terms(side, in_tile)) {
+      place[term.coefficient] = next;
+      least.data()[next] = side.scale[term.coefficient].least;
+      step.data()[next] = side.scale[term.coefficient].step;
+      float* const first = color.data() + next / kBlock * 3 * kBlock + next % kBlock;
+      for (int c = 0; c < 3; ++c) first[static_cast<uint32_t>(c) * kBlock] = btf.axes[term.axis][c];
+      ++next;
+    }
+    next = tile.padded();
+  }
+  for (const uint32_t s : {slope(), slope() + 2}) {
+    least.data()[s] = -32768 * kSlopeStep;
+    step.data()[s] = 256 * kSlopeStep;
+    step.data()[s + 1] = kSlopeStep;
+  }
+  for (const SrbfLevel& level : side.levels) add_level(relief_of(btf, level), level, place);
+}
+
+void SrbfEvaluator::Side::add_level(Relief relief, const SrbfLevel& from, const std::vector<uint32_t>& place) {
+  const size_t texels = from.relief.size(), coefficients = place.size();
+  Level& to = levels.emplace_back(Level{std::move(relief), AlignedArray<uint8_t>(texels * stride)});
+  std::fill_n(to.record.data(), to.record.size(), uint8_t{0});
+  for (size_t t = 0; t < texels; ++t) {
+    uint8_t* const record = to.record.data() + t * stride;
+    for (size_t k = 0; k < coefficients; ++k) record[place[k]] = from.value[t * coefficients + k];
+    const auto x = static_cast<uint32_t>(t % from.width), y = static_cast<uint32_t>(t / from.width);
+    write_slope(to.relief.slope(x, y), record + slope());
+  }
 }
 
 SrbfEvaluator::SrbfEvaluator(std::shared_ptr<const SrbfBtf> btf) : btf_(std::move(btf)) {
@@ -72,7 +121,8 @@ std::optional<uint32_t> SrbfEvaluator::side(bool view_below, bool light_below) c
 void SrbfEvaluator::begin(uint32_t side, const Vec3& wv, SrbfPoint& point) const {
   point.side = side;
   point.wv = wv;
-  std::fill_n(point.record, sides_[side].stride, 0.0f);
+  // What bytes of 0 stand for: those of the places are added to it.
+  std::copy_n(sides_[side].least.data(), sides_[side].stride, point.record);
 }
 
 void SrbfEvaluator::add(const Vec2& uv, float level, float weight, SrbfPoint& point) const {
@@ -82,37 +132,27 @@ void SrbfEvaluator::add(const Vec2& uv, float level, float weight, SrbfPoint& po
   const float part = place - static_cast<float>(fine);
   const Vec2 inside = std::isfinite(uv.x + uv.y) ? uv - glm::floor(uv) : Vec2(0.0f);
   // Once for both levels: where the finer relief is met.
-  const Vec2 seen = side.levels[fine].relief.seen(inside, point.wv);
-  add_bilinear(side.levels[fine], side.stride, seen, weight * (1 - part), point);
-  if (part > 0) add_bilinear(side.levels[fine + 1], side.stride, seen, weight * part, point);
-}
-
-void SrbfEvaluator::add_bilinear(const Level& level, uint32_t stride, const Vec2& place, float weight,
-                                 SrbfPoint& point) const {
-  std::array<WeightedHalves, 4> corner;
-  const BilinearTexels texels = bilinear_texels(place, level.relief.width(), level.relief.height());
-  for (size_t i = 0; i < 4; ++i) {
-    corner[i] = {level.record.data() + size_t{texels.index[i]} * stride, weight * texels.weight[i]};
-  }
-  add_half_rows(corner, stride, point.record);
+  const Vec2 seen = side.levels[fine].relief.seen_texel(inside, point.wv);
+  const auto add_level = [&](const Level& from, const Vec2& texel, float w) {
+    const ByteTexels texels{from.record.data(), from.relief.width(), from.relief.height(), side.stride};
+    add_bilinear_bytes(texels, texel, w, side.step.data(), point.record);
+  };
+  add_level(side.levels[fine], seen, weight * (1 - part));
+  if (part == 0) return;
+  const Level &from = side.levels[fine], &to = side.levels[fine + 1];
+  const Vec2 ratio = Vec2(to.relief.width(), to.relief.height()) / Vec2(from.relief.width(), from.relief.height());
+  add_level(to, (seen + 0.5f) * ratio - 0.5f, weight * part);
 }
 
 void SrbfEvaluator::finish(SrbfPoint& point) const {
-  const Side& side = sides_[point.side];
-  const float* value = point.record + side.axis1;
-  for (size_t a = 0; a < 2; ++a) {
-    std::fill_n(point.color[a], side.axis1, 0.0f);
-    for (const uint32_t place : side.scatter[a]) point.color[a][place] = *value++;
-  }
-  point.to_normal = to_normal(normal_of({point.record[side.slope], point.record[side.slope + 1]}));
+  const float* const s = point.record + sides_[point.side].slope();
+  point.to_normal = to_normal(Vec2(s[0] + s[1], s[2] + s[3]));
 }
 
 Rgb SrbfEvaluator::value(const SrbfPoint& point, const Vec3& wl) const {
   const Side& side = sides_[point.side];
-  const LobeArguments at({wl, point.wv});
-  const Vec3 sum = lobe_sums({LobesAt{&side.tile, at}, LobesAt{&side.texel, at.turned(point.to_normal)}},
-                             {point.record, point.color[0], point.color[1]});
-  const Vec3 color = btf_->axes * sum;
+  const Vec3 color =
+      lobe_sums({side.tile, side.texel, side.color.data()}, {wl, point.wv}, point.to_normal, point.record);
   return {expanded(btf_->companding, color.r), expanded(btf_->companding, color.g),
           expanded(btf_->companding, color.b)};
 }

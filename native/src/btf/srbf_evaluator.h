@@ -32,23 +32,24 @@ class SrbfEvaluator {
   Rgb value(const SrbfPoint& point, const Vec3& wl) const;
 
  private:
-  /// A texel is a record of halves: coefficients of axis 0 by padded lobe (tile's, then texels'), those of axes 1 and 2
-  /// one after the other, the slope of the relief; padded.
+  /// A texel is a record of bytes: its coefficients, those of lobes in the tile's frame first, each part padded, then
+  /// the slope of the relief, x and y in sixteen bits each. A lobe stands there once for each axis that it has a
+  /// coefficient of.
   struct Level {
     Relief relief;
-    AlignedArray<HalfBits> record;  // [row][column][record], whole cache lines
+    AlignedArray<uint8_t> record;  // [row][column][record]
   };
   struct Side {
     Side(const SrbfBtf& btf, const SrbfSide& side);
-    uint32_t place_of(uint16_t lobe) const;
+    void add_level(Relief relief, const SrbfLevel& from, const std::vector<uint32_t>& place);
+    uint32_t slope() const { return stride - 4; }  // its place in a record
 
     MultivariateLobes tile, texel;
-    uint32_t axis1 = 0, slope = 0, stride = 0;     // places in a record
-    std::array<std::vector<uint32_t>, 2> scatter;  // of axes 1, 2: the padded lobe of each coefficient
+    uint32_t stride;            // of records
+    AlignedArray<float> least, step;  // of a record's bytes
+    AlignedArray<float> color;        // of its lobes, in linear Rec. 709: lobe_sums
     std::vector<Level> levels;
   };
-
-  void add_bilinear(const Level& level, uint32_t stride, const Vec2& place, float weight, SrbfPoint& point) const;
 
   std::shared_ptr<const SrbfBtf> btf_;
   std::vector<Side> sides_;

@@ -3,18 +3,16 @@
 
 #include <cstdint>
 
-#include "btf/half_rows.h"
+#include "btf/byte_rows.h"
 #include "btf/srbf_btf.h"
 
 namespace velour {
 
 /// Scratch memory of SrbfEvaluator, reused from hit to hit. Directions are those of the side, z > 0.
 struct SrbfPoint {
-  static constexpr uint32_t kMostLobes = SrbfBtf::kMaxLobes + 2 * MultivariateLobes::kPadding;
-  static constexpr uint32_t kMostRecord = 3 * kMostLobes + kHalfRowPadding;
+  static constexpr uint32_t kMostRecord = 3 * SrbfBtf::kMaxLobes + 3 * kByteRowPadding;
 
-  alignas(64) float record[kMostRecord];   // blended over texels; it begins with axis 0: see SrbfEvaluator
-  alignas(64) float color[2][kMostLobes];  // coefficients of axes 1, 2, by padded lobe as those of axis 0
+  alignas(64) float record[kMostRecord];  // blended over texels: see SrbfEvaluator
   Vec3 wv;
   Mat3 to_normal;
   uint32_t side;

@@ -7,9 +7,8 @@
 #include "btf/pair_interpolation.h"
 #include "btf/srbf_evaluator.h"
 #include "compress/evaluation_rate.h"
+#include "compress/make_fitter.h"
 #include "compress/sized_fit.h"
-#include "compress/srbf_fit.h"
-#include "compress/svd_fit.h"
 #include "job/error.h"
 #include "model/model_material.h"
 
@@ -58,14 +57,6 @@ class ModelImages {
 };
 
 const char* name_of(CompressMethod method) { return method == CompressMethod::svd ? "svd" : "srbf"; }
-
-std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const CompressOptions& options,
-                                       FitCheckpoint& checkpoint, Progress& progress) {
-  if (options.method == CompressMethod::svd) {
-    return std::make_unique<SvdFitter>(measurement, options, checkpoint, progress);
-  }
-  return std::make_unique<SrbfFitter>(measurement, options, checkpoint, progress);
-}
 
 /// Names the measurement and all that the bits of the fit depend on. Whatever changes a fit's numbers changes
 /// kFitVersion.

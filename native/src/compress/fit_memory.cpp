@@ -41,7 +41,7 @@ uint64_t texel_bytes(const FitExtent& e) {
 
 /// The model and its evaluator, and images of each thread.
 uint64_t judging_bytes(const FitExtent& e) {
-  return 3 * e.pyramid_texels * e.coefficients * kHalf + e.threads * e.texels * 3 * (kHalf + 2 * kFloat);
+  return 3 * e.pyramid_texels * e.coefficients * kFloat + e.threads * e.texels * 3 * (kHalf + 2 * kFloat);
 }
 
 std::string megabytes(uint64_t bytes) { return std::to_string((bytes + 999999) / 1000000) + " MB"; }

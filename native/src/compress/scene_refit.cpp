@@ -1,5 +1,6 @@
 #include "compress/scene_refit.h"
 
+#include "compress/make_fitter.h"
 #include "compress/scene_btf.h"
 #include "compress/seen_pictures.h"
 #include "compress/side_views.h"
@@ -33,6 +34,8 @@ class Refit {
         progress_(progress),
         pictures_(seen, *options.for_scene, progress) {
     options_.companding = companding_of(full);
+    options_.method = std::holds_alternative<FactoredBtf>(full) ? CompressMethod::svd : CompressMethod::srbf;
+    options_.tolerance = 0;
   }
 
   /// Better than `levels`, or nothing.
@@ -65,8 +68,9 @@ class Refit {
   std::optional<ModelBody> fitted(uint64_t divisor) {
     options_.bytes = bytes_of(full_) / divisor;
     try {
-      if (std::holds_alternative<FactoredBtf>(full_)) return fit_svd(seen_, options_, progress_).btf;
-      return fit_srbf(seen_, options_, progress_).btf;
+      FitCheckpoint none;
+      const auto fitter = make_fitter(seen_, options_, none, progress_);
+      return fitter->fit(fitter->largest());
     } catch (const Error& error) {
       if (error.status() == Status::invalid_argument) return std::nullopt;
       throw;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "btf/half_floats.h"
+#include "btf/srbf_btf.h"
 
 namespace velour {
 namespace {
@@ -14,8 +14,8 @@ double left(const SideDemand& side, size_t count) { return side.energy * side.or
 }  // namespace
 
 uint64_t srbf_side_bytes(uint64_t texels, size_t coefficients, size_t lobes) {
-  return texels * (coefficients + 1) * sizeof(HalfBits) + lobes * sizeof(MultivariateLobe) +
-         coefficients * sizeof(uint16_t);
+  return texels * (coefficients + sizeof(HalfBits)) + lobes * sizeof(MultivariateLobe) +
+         coefficients * (sizeof(uint16_t) + sizeof(ByteScale));
 }
 
 SideShares::SideShares(const std::vector<SideDemand>& sides, uint64_t texels) : sides_(sides.size()) {

@@ -31,7 +31,7 @@ class SideShares {
   OrderCurve curve_;
 };
 
-/// Of a side of SRBFs, as they are stored: coefficients and a height a texel, and lobes.
+/// Of a side of SRBFs, as they are stored: a byte a coefficient and a height a texel, scales and lobes.
 uint64_t srbf_side_bytes(uint64_t texels, size_t coefficients, size_t lobes);
 
 }  // namespace velour

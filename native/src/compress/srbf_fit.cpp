@@ -18,7 +18,7 @@ namespace {
 constexpr uint32_t kMostPoints = 400, kLeastPoints = 24, kPairs = 900;  // that lobes are refined by
 constexpr uint64_t kTexelsOfAPoint = 4;  // few texels have little to say: their lobes take less time
 constexpr int kRefinements = 100;
-constexpr uint64_t kUsualRatio = 200, kUsualLeast = 16;
+constexpr uint64_t kUsualRatio = 300, kUsualLeast = 16;
 constexpr size_t kMostCoefficients = 2 * SrbfBtf::kMaxLobes;
 // Errors over all texels and pairs are larger than those that the points' order leaves: 1.3 to 1.9 times of captured
 // weaves and gravels. Fits correct this guess.
@@ -162,8 +162,9 @@ ModelBody SrbfFitter::fit(size_t point) {
     progress_.stage("texels", kLobes, 1);
     const TexelLevelsInput input{measurement_.grid(), side.directions, side.relief, lobes,
                                  options_.companding, options_.threads};
-    btf.sides.push_back({side.directions.view_below, side.directions.light_below, lobes.lobes, lobes.tile_lobes,
-                         lobes.lobe, solve_levels(views_, input, checkpoint_, stage + ".level.", progress_)});
+    SrbfSide& fitted = btf.sides.emplace_back(SrbfSide{
+        side.directions.view_below, side.directions.light_below, lobes.lobes, lobes.tile_lobes, lobes.lobe, {}, {}});
+    solve_levels(views_, input, checkpoint_, stage + ".level.", progress_, fitted);
   }
   return btf;
 }

@@ -28,7 +28,7 @@ class PointSampler {
       SurfacePoint& point = points_[i];
       point.place = random.next2();
       const BilinearTexels texels = texels_at(point.place);
-      point.to_normal = to_normal(normal_of(relief.slope(texels)));
+      point.to_normal = to_normal(relief.slope(texels));
       height_.push_back(interpolated_height(relief, texels));
     }
   }

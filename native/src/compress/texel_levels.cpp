@@ -31,10 +31,9 @@ RowMatrix refined(const RowMatrix& coarse, uint32_t width, uint32_t height, cons
   return out;
 }
 
-template <class Values>
-std::vector<HalfBits> halves_of(const Values& values, size_t count) {
-  std::vector<HalfBits> halves(count);
-  floats_to_halves({values.data(), count}, halves);
+std::vector<HalfBits> halves_of(const std::vector<float>& floats) {
+  std::vector<HalfBits> halves(floats.size());
+  floats_to_halves(floats, halves);
   return halves;
 }
 
@@ -110,34 +109,36 @@ Solution solved(const TexelLevelsInput& input, TexelSolver& solver, const RowMat
   return {std::move(value), static_cast<double>(factor)};
 }
 
-SrbfLevel stored(const Relief& relief, const Solution& level) {
+/// As many as there are texels times coefficients, as bright as the data.
+std::vector<float> bright_values(const Solution& level) {
   const RowMatrix bright = level.value * static_cast<float>(level.brightening);
-  return {relief.width(), relief.height(), halves_of(relief.heights(), size_t{relief.width()} * relief.height()),
-          halves_of(bright, static_cast<size_t>(bright.size()))};
+  return {bright.data(), bright.data() + bright.size()};
 }
 
 }  // namespace
 
-std::vector<SrbfLevel> solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheckpoint& checkpoint,
-                                    const std::string& stage, Progress& progress) {
+void solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheckpoint& checkpoint,
+                  const std::string& stage, Progress& progress, SrbfSide& side) {
   Solutions solution = kept_levels(input, checkpoint, stage);
   const auto missing =
       static_cast<size_t>(std::count_if(solution.begin(), solution.end(), [](const auto& s) { return !s; }));
   Solvers solver = read_data(views, input, missing, progress);
-  std::vector<SrbfLevel> levels(solution.size());
+  side.levels.resize(solution.size());
+  std::vector<std::vector<float>> values(solution.size());
   RowMatrix start = RowMatrix::Zero(1, static_cast<Eigen::Index>(coefficients_of(input.lobes)));
-  for (size_t l = levels.size(); l-- > 0;) {
+  for (size_t l = values.size(); l-- > 0;) {
     const Relief& relief = input.relief[l];
     if (!solution[l]) {
       solution[l] = solved(input, *solver[l], start, l, progress);
       solver[l].reset();
       keep_level(*solution[l], stage + std::to_string(l), checkpoint);
     }
-    levels[l] = stored(relief, *solution[l]);
+    side.levels[l] = {relief.width(), relief.height(), halves_of(relief.heights()), {}};
+    values[l] = bright_values(*solution[l]);
     if (l > 0) start = refined(solution[l]->value, relief.width(), relief.height(), input.relief[l - 1]);
     solution[l].reset();
   }
-  return levels;
+  side.set_values(values);
 }
 
 }  // namespace velour

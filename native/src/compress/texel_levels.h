@@ -17,9 +17,9 @@ struct TexelLevelsInput {
   int threads;
 };
 
-/// From one texel to the finest level, each from the one before. Reads every view once, unless the checkpoint has kept
-/// all levels under `stage`. Progress covers the stage.
-std::vector<SrbfLevel> solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheckpoint& checkpoint,
-                                    const std::string& stage, Progress& progress);
+/// The levels of `side`, whose lobes are the input's: from one texel to the finest level, each from the one before.
+/// Reads every view once, unless the checkpoint has kept all levels under `stage`. Progress covers the stage.
+void solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheckpoint& checkpoint,
+                  const std::string& stage, Progress& progress, SrbfSide& side);
 
 }  // namespace velour

@@ -51,7 +51,7 @@ std::vector<TexelSolver::Place> TexelSolver::places(size_t view) const {
                        (static_cast<float>(row) + 0.5f) / static_cast<float>(height));
       Place& at = places[row * width + x];
       at.texels = bilinear_texels(relief_.seen(place, side_.view[view]), width, height);
-      at.to_normal = to_normal(normal_of(relief_.slope(at.texels)));
+      at.to_normal = to_normal(relief_.slope(at.texels));
     }
   });
   return places;
@@ -89,14 +89,14 @@ void TexelSolver::accumulate(size_t view, const Values& values_of, RowMatrix& su
   const std::vector<Place> place = places(view);
   const auto lights = static_cast<uint32_t>(side_.light.size());
   std::vector<LobeArguments> pair;
-  AlignedFloats tile_rows(size_t{lights} * stride_);
+  AlignedArray<float> tile_rows(size_t{lights} * stride_);
   for (uint32_t l = 0; l < lights; ++l) {
     pair.emplace_back(DirectionPair{side_.light[l], side_.view[view]});
     tile_.values(pair[l], tile_rows.data() + size_t{l} * stride_);
   }
   RowMatrix moment(static_cast<Eigen::Index>(place.size()), sums.cols());
   parallel_pieces((place.size() + kTexels - 1) / kTexels, threads_, progress_, [&](size_t block) {
-    AlignedFloats rows(size_t{lights} * stride_), values(size_t{lights} * 3), sum(size_t{3} * stride_);
+    AlignedArray<float> rows(size_t{lights} * stride_), values(size_t{lights} * 3), sum(size_t{3} * stride_);
     std::copy_n(tile_rows.data(), size_t{lights} * stride_, rows.data());
     for (size_t t = block * kTexels; t < std::min(place.size(), (block + 1) * kTexels); ++t) {
       for (uint32_t l = 0; l < lights; ++l) {
@@ -148,7 +148,7 @@ void TexelSolver::add_view(size_t view, const LevelImages& images) {
 
 double TexelSolver::modelled(const RowMatrix& solution) const {
   const auto lights = static_cast<uint32_t>(side_.light.size());
-  AlignedFloats rows(size_t{lights} * stride_), values(size_t{lights} * 3), padded(size_t{3} * stride_);
+  AlignedArray<float> rows(size_t{lights} * stride_), values(size_t{lights} * 3), padded(size_t{3} * stride_);
   double sum = 0;
   for (size_t v = 0; v < side_.view.size(); ++v) {
     const std::vector<Place> place = places(v);
@@ -168,7 +168,7 @@ RowMatrix TexelSolver::normal_product(const RowMatrix& coefficient) const {
   RowMatrix product = RowMatrix::Zero(coefficient.rows(), coefficient.cols());
   const auto lights = static_cast<uint32_t>(side_.light.size());
   const auto modelled = [&](size_t, const Place& place, const float* rows, float* values) {
-    AlignedFloats padded(size_t{3} * stride_);
+    AlignedArray<float> padded(size_t{3} * stride_);
     spread(blended(coefficient, place).data(), padded.data());
     rows_times(rows, lights, stride_, padded.data(), values);
   };
@@ -191,7 +191,7 @@ void TexelSolver::gather(const float* padded, float* compact) const {
 /// From the mean of the products of any two lobes over sampled texels and pairs.
 void TexelSolver::set_coordinates() {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(stride_, stride_);
-  AlignedFloats values(side_.light.size() * stride_);
+  AlignedArray<float> values(side_.light.size() * stride_);
   const Eigen::Map<const Eigen::MatrixXf> rows(values.data(), stride_, static_cast<Eigen::Index>(side_.light.size()));
   uint64_t count = 0;
   for (size_t v = 0; v < side_.view.size(); ++v) {

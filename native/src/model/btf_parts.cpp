@@ -29,17 +29,6 @@ Mat3 read_axes(const ModelFields& fields) {
   return axes;
 }
 
-/// [from][to] to [to][from].
-template <class Value>
-std::vector<Value> transposed(const std::vector<Value>& values, size_t to) {
-  std::vector<Value> out(values.size());
-  const size_t from = values.size() / to;
-  for (size_t f = 0; f < from; ++f) {
-    for (size_t t = 0; t < to; ++t) out[t * from + f] = values[f * to + t];
-  }
-  return out;
-}
-
 }  // namespace
 
 void write_btf_frame(const BtfFrame& frame, TensorFile& file) {

@@ -30,6 +30,17 @@ std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string
 /// A part of half floats.
 Tensor tensor_of(const std::vector<HalfBits>& halves, const std::vector<uint64_t>& shape);
 
+/// [from][to] to [to][from].
+template <class Value>
+std::vector<Value> transposed(const std::vector<Value>& values, size_t to) {
+  std::vector<Value> out(values.size());
+  const size_t from = values.size() / to;
+  for (size_t f = 0; f < from; ++f) {
+    for (size_t t = 0; t < to; ++t) out[t * from + f] = values[f * to + t];
+  }
+  return out;
+}
+
 /// Values [texel][coefficient] as a part of pictures, one a coefficient, and back.
 Tensor maps_tensor(const std::vector<HalfBits>& values, uint64_t coefficients, uint32_t width, uint32_t height);
 std::vector<HalfBits> read_maps(const ModelFields& fields, const std::string& part, uint64_t coefficients,

@@ -16,7 +16,7 @@
 namespace velour {
 namespace {
 
-constexpr char kFormatVersion[] = "1.4";
+constexpr char kFormatVersion[] = "1.5";
 constexpr int kMajorVersion = 1;
 constexpr char kKind[] = "model";
 constexpr char kScene[] = "velour.scene", kBtf[] = "velour.btf.record";

@@ -17,9 +17,21 @@ struct SideParts {
   std::string frames() const { return prefix + "frames"; }
   std::string coefficients() const { return prefix + "coefficients"; }
   std::string relief(size_t level) const { return prefix + "relief." + std::to_string(level); }
+  std::string scales() const { return prefix + "scales"; }
+  std::string bytes(size_t level) const { return prefix + "bytes." + std::to_string(level); }
+  /// In files before 1.5.
   std::string texels(size_t level) const { return prefix + "texels." + std::to_string(level); }
   std::string prefix;
 };
+
+/// Pictures that a viewer shows: a byte over 256 is exact as a half float.
+constexpr float kOfByte = 1.0f / 256;
+
+Tensor bytes_tensor(const SrbfLevel& level, size_t coefficients) {
+  Tensor tensor{{coefficients, level.height, level.width}, {}, true};
+  for (const uint8_t byte : transposed(level.value, coefficients)) tensor.data.push_back(byte * kOfByte);
+  return tensor;
+}
 
 void write_side(const SrbfSide& side, const SideParts& part, TensorFile& file) {
   Tensor& lobes = file.tensors[part.lobes()] = {{side.lobes.size(), 9}, {}, false};
@@ -35,10 +47,12 @@ void write_side(const SrbfSide& side, const SideParts& part, TensorFile& file) {
       coefficients.data.insert(coefficients.data.end(), {static_cast<float>(a), static_cast<float>(lobe)});
     }
   }
+  Tensor& scales = file.tensors[part.scales()] = {{side.coefficients(), 2}, {}, false};
+  for (const ByteScale& s : side.scale) scales.data.insert(scales.data.end(), {s.least, s.step});
   for (size_t l = 0; l < side.levels.size(); ++l) {
     const SrbfLevel& level = side.levels[l];
     file.tensors[part.relief(l)] = tensor_of(level.relief, {level.height, level.width});
-    file.tensors[part.texels(l)] = maps_tensor(level.value, side.coefficients(), level.width, level.height);
+    file.tensors[part.bytes(l)] = bytes_tensor(level, side.coefficients());
   }
 }
 
@@ -86,17 +100,61 @@ void read_coefficients(const ModelFields& fields, const SideParts& part, SrbfSid
   if (side.lobe[0].size() != side.lobes.size()) fields.fail(part.coefficients() + " leaves out lobes of axis 0.");
 }
 
+void read_scales(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
+  const Tensor& tensor = fields.tensor(part.scales());
+  expect_shape(fields, part.scales(), tensor, {side.coefficients(), 2});
+  for (size_t i = 0; i < tensor.data.size(); ++i) {
+    const float value = tensor.data[i];
+    if (!(std::abs(value) <= kLargestHalf && (i % 2 == 0 || value >= 0))) {
+      fields.fail_at(part.scales(), i, value, i % 2 == 0 ? "at most 65504" : "from 0 to 65504");
+    }
+  }
+  for (size_t k = 0; k < side.coefficients(); ++k) side.scale.push_back({tensor.data[2 * k], tensor.data[2 * k + 1]});
+}
+
+std::vector<uint8_t> read_bytes(const ModelFields& fields, const std::string& part, const SrbfLevel& level,
+                                size_t coefficients) {
+  const Tensor& tensor = fields.tensor(part);
+  expect_shape(fields, part, tensor, {coefficients, level.height, level.width});
+  std::vector<uint8_t> bytes;
+  for (size_t i = 0; i < tensor.data.size(); ++i) {
+    const float byte = tensor.data[i] / kOfByte;
+    if (!(byte >= 0 && byte <= 255 && byte == std::floor(byte))) {
+      fields.fail_at(part, i, tensor.data[i], "0 to 255 over 256");
+    }
+    bytes.push_back(static_cast<uint8_t>(byte));
+  }
+  return transposed(bytes, size_t{level.width} * level.height);
+}
+
+/// Files before 1.5 have half floats in place of bytes; they become bytes here.
+void read_half_values(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
+  std::vector<std::vector<float>> values;
+  for (size_t l = 0; l < side.levels.size(); ++l) {
+    const SrbfLevel& level = side.levels[l];
+    const auto halves = read_maps(fields, part.texels(l), side.coefficients(), level.width, level.height);
+    halves_to_floats(halves, values.emplace_back(halves.size()));
+  }
+  side.set_values(values);
+}
+
 SrbfSide read_side(const ModelFields& fields, const SideParts& part, const TexelGrid& grid) {
   SrbfSide side;
   read_lobes(fields, part, side);
   read_coefficients(fields, part, side);
-  uint32_t width = grid.width, height = grid.height;
-  for (;; width = half_of(width), height = half_of(height)) {
-    const size_t l = side.levels.size();
-    side.levels.push_back({width, height, shaped_halves(fields, part.relief(l), {height, width}),
-                           read_maps(fields, part.texels(l), side.coefficients(), width, height)});
-    if (width == 1 && height == 1) return side;
+  for (uint32_t width = grid.width, height = grid.height;; width = half_of(width), height = half_of(height)) {
+    side.levels.push_back({width, height, shaped_halves(fields, part.relief(side.levels.size()), {height, width}), {}});
+    if (width == 1 && height == 1) break;
   }
+  if (fields.has(part.texels(0))) {
+    read_half_values(fields, part, side);
+    return side;
+  }
+  read_scales(fields, part, side);
+  for (size_t l = 0; l < side.levels.size(); ++l) {
+    side.levels[l].value = read_bytes(fields, part.bytes(l), side.levels[l], side.coefficients());
+  }
+  return side;
 }
 
 std::vector<SharedSide> read_shared(const ModelFields& fields, size_t sides) {

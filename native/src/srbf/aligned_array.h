@@ -27,6 +27,4 @@ class AlignedArray {
   std::unique_ptr<T, Free> data_;
 };
 
-using AlignedFloats = AlignedArray<float>;
-
 }  // namespace velour

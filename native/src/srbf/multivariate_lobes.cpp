@@ -1,6 +1,8 @@
 // Highway compiles this file once for each instruction set.
 #include "srbf/multivariate_lobes.h"
 
+#include <array>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "srbf/multivariate_lobes.cpp"
 #include <hwy/foreach_target.h>
@@ -25,16 +27,16 @@ struct Broadcast {
   float value[9];
 };
 
-/// Of the lobes from `k` on.
+constexpr uint32_t kBlock = MultivariateLobes::kPadding, kRows = 10;
+
+/// Of as many lobes of a block as there are lanes.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V lobe_values(D d, const Broadcast& at, const float* exponent, uint32_t padded, uint32_t k) {
+HWY_INLINE V lobe_values(D d, const Broadcast& at, const float* exponent) {
+  const auto row = [&](uint32_t i) { return hn::Load(d, exponent + i * kBlock); };
   // Two chains of sums, so that one need not wait for the other.
-  V even = hn::LoadU(d, exponent + 9 * padded + k), odd = hn::Zero(d);
-  for (uint32_t i = 0; i < 8; i += 2) {
-    even = hn::MulAdd(hn::Set(d, at.value[i]), hn::LoadU(d, exponent + i * padded + k), even);
-    odd = hn::MulAdd(hn::Set(d, at.value[i + 1]), hn::LoadU(d, exponent + (i + 1) * padded + k), odd);
-  }
-  even = hn::MulAdd(hn::Set(d, at.value[8]), hn::LoadU(d, exponent + 8 * padded + k), even);
+  V even = row(9), odd = hn::Mul(hn::Set(d, at.value[1]), row(1));
+  for (uint32_t i = 0; i < 9; i += 2) even = hn::MulAdd(hn::Set(d, at.value[i]), row(i), even);
+  for (uint32_t i = 3; i < 9; i += 2) odd = hn::MulAdd(hn::Set(d, at.value[i]), row(i), odd);
   // Rounding may leave a peak a little above 2^0: exp2_nonpositive takes that.
   return exp2_nonpositive(d, hn::Add(even, odd));
 }
@@ -42,29 +44,44 @@ HWY_INLINE V lobe_values(D d, const Broadcast& at, const float* exponent, uint32
 void write_values(const LobeArguments& at, const float* exponent, uint32_t padded, float* values) {
   const Lanes d;
   const Broadcast broadcast(at);
-  for (uint32_t k = 0; k < padded; k += static_cast<uint32_t>(hn::Lanes(d))) {
-    hn::Store(lobe_values(d, broadcast, exponent, padded, k), d, values + k);
+  for (uint32_t block = 0; block < padded; block += kBlock, exponent += kRows * kBlock) {
+    for (uint32_t k = 0; k < kBlock; k += static_cast<uint32_t>(hn::Lanes(d))) {
+      hn::Store(lobe_values(d, broadcast, exponent + k), d, values + block + k);
+    }
   }
 }
 
-void write_sums(const std::array<LobesAt, 2>& lobes, const std::array<const float*, 2>& exponent,
-                std::array<const float*, 3> coefficient, float* sums) {
+struct Sums {
+  hn::Vec<Lanes> r, g, b;
+};
+
+/// `blocks`: of lobes, coefficients and colours that begin at these addresses; both of the latter are moved on.
+HWY_INLINE void add_sums(const LobeArguments& at, const float* exponent, uint32_t padded, const float*& coefficient,
+                         const float*& color, Sums& sums) {
   const Lanes d;
-  auto x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
-  for (size_t i = 0; i < 2; ++i) {
-    const Broadcast broadcast(lobes[i].at);
-    const uint32_t padded = lobes[i].lobes->padded();
-    for (uint32_t k = 0; k < padded; k += static_cast<uint32_t>(hn::Lanes(d))) {
-      const auto value = lobe_values(d, broadcast, exponent[i], padded, k);
-      x = hn::MulAdd(value, hn::Load(d, coefficient[0] + k), x);
-      y = hn::MulAdd(value, hn::Load(d, coefficient[1] + k), y);
-      z = hn::MulAdd(value, hn::Load(d, coefficient[2] + k), z);
+  const Broadcast broadcast(at);
+  for (uint32_t block = 0; block < padded; block += kBlock, exponent += kRows * kBlock) {
+    for (uint32_t k = 0; k < kBlock; k += static_cast<uint32_t>(hn::Lanes(d))) {
+      const auto value = hn::Mul(lobe_values(d, broadcast, exponent + k), hn::Load(d, coefficient + k));
+      sums.r = hn::MulAdd(value, hn::Load(d, color + k), sums.r);
+      sums.g = hn::MulAdd(value, hn::Load(d, color + kBlock + k), sums.g);
+      sums.b = hn::MulAdd(value, hn::Load(d, color + 2 * kBlock + k), sums.b);
     }
-    for (const float*& c : coefficient) c += padded;
+    coefficient += kBlock;
+    color += 3 * kBlock;
   }
-  sums[0] = hn::GetLane(hn::SumOfLanes(d, x));
-  sums[1] = hn::GetLane(hn::SumOfLanes(d, y));
-  sums[2] = hn::GetLane(hn::SumOfLanes(d, z));
+}
+
+HWY_FLATTEN void write_sums(const ColoredLobes& lobes, const std::array<const float*, 2>& exponents,
+                            const DirectionPair& pair, const Mat3& turn, const float* coefficient, float* to) {
+  Sums sums{hn::Zero(Lanes()), hn::Zero(Lanes()), hn::Zero(Lanes())};
+  const LobeArguments at(pair);
+  const float* color = lobes.color;
+  add_sums(at, exponents[0], lobes.lobes.padded(), coefficient, color, sums);
+  add_sums(at.turned(turn), exponents[1], lobes.turned.padded(), coefficient, color, sums);
+  to[0] = hn::GetLane(hn::SumOfLanes(Lanes(), sums.r));
+  to[1] = hn::GetLane(hn::SumOfLanes(Lanes(), sums.g));
+  to[2] = hn::GetLane(hn::SumOfLanes(Lanes(), sums.b));
 }
 
 }  // namespace HWY_NAMESPACE
@@ -77,12 +94,6 @@ namespace velour {
 HWY_EXPORT(write_values);
 HWY_EXPORT(write_sums);
 
-Vec3 half_vector(const DirectionPair& pair) {
-  const Vec3 sum = pair.wl + pair.wv;
-  const float length_sq = glm::dot(sum, sum);
-  return length_sq > 1e-12f ? sum / std::sqrt(length_sq) : Vec3(0, 0, 1);
-}
-
 MultivariateLobes::MultivariateLobes(std::span<const MultivariateLobe> lobes)
     : size_(static_cast<uint32_t>(lobes.size())),
       padded_((size_ + kPadding - 1) / kPadding * kPadding),
@@ -90,14 +101,15 @@ MultivariateLobes::MultivariateLobes(std::span<const MultivariateLobe> lobes)
   constexpr float kPowersOf2 = 1.44269504f;
   constexpr float kNothing = -1000.0f;  // 2^-1000 is 0
   for (uint32_t k = 0; k < padded_; ++k) {
-    float* const at = exponent_.data() + k;
-    at[size_t{9} * padded_] = kNothing;
+    float* const at = exponent_.data() + size_t{k / kPadding} * 10 * kPadding + k % kPadding;
+    for (size_t i = 0; i < 9; ++i) at[i * kPadding] = 0;
+    at[9 * kPadding] = kNothing;
     if (k >= size_) continue;
     const Vec3* const vectors[] = {&lobes[k].light, &lobes[k].view, &lobes[k].half};
     float peak = 0;
-    for (size_t i = 0; i < 9; ++i) at[i * padded_] = kPowersOf2 * (*vectors[i / 3])[static_cast<int>(i % 3)];
+    for (size_t i = 0; i < 9; ++i) at[i * kPadding] = kPowersOf2 * (*vectors[i / 3])[static_cast<int>(i % 3)];
     for (const Vec3* v : vectors) peak += glm::length(*v);
-    at[size_t{9} * padded_] = -kPowersOf2 * peak;
+    at[9 * kPadding] = -kPowersOf2 * peak;
   }
 }
 
@@ -105,10 +117,10 @@ void MultivariateLobes::values(const LobeArguments& at, float* values) const {
   VELOUR_SIMD_DISPATCH(write_values)(at, exponent_.data(), padded_, values);
 }
 
-Vec3 lobe_sums(const std::array<LobesAt, 2>& lobes, const std::array<const float*, 3>& coefficient) {
+Vec3 lobe_sums(const ColoredLobes& lobes, const DirectionPair& pair, const Mat3& turn, const float* coefficient) {
   float sums[3];
   const auto write = VELOUR_SIMD_DISPATCH(write_sums);
-  write(lobes, {lobes[0].lobes->exponent_.data(), lobes[1].lobes->exponent_.data()}, coefficient, sums);
+  write(lobes, {lobes.lobes.exponent_.data(), lobes.turned.exponent_.data()}, pair, turn, coefficient, sums);
   return {sums[0], sums[1], sums[2]};
 }
 

@@ -1,12 +1,12 @@
 // Products of spherical Gaussians of the light, the view and the half vector: the lobes of BTFs.
 #pragma once
 
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "sphere/vec.h"
+#include "srbf/aligned_array.h"
 
 namespace velour {
 
@@ -17,10 +17,14 @@ struct MultivariateLobe {
   Vec3 light{0.0f}, view{0.0f}, half{0.0f};
 };
 
-struct LobesAt;
+struct ColoredLobes;
 
 /// The unit half vector; the normal where wl = -wv leaves it undefined.
-Vec3 half_vector(const DirectionPair& pair);
+inline Vec3 half_vector(const DirectionPair& pair) {
+  const Vec3 sum = pair.wl + pair.wv;
+  const float length_sq = glm::dot(sum, sum);
+  return length_sq > 1e-12f ? sum / std::sqrt(length_sq) : Vec3(0, 0, 1);
+}
 
 /// The arguments of a lobe.
 struct LobeArguments {
@@ -50,20 +54,22 @@ class MultivariateLobes {
   void values(const LobeArguments& at, float* values) const;
 
  private:
-  friend Vec3 lobe_sums(const std::array<LobesAt, 2>& lobes, const std::array<const float*, 3>& coefficient);
+  friend Vec3 lobe_sums(const ColoredLobes& lobes, const DirectionPair& pair, const Mat3& turn,
+                        const float* coefficient);
 
   uint32_t size_, padded_;
-  std::vector<float> exponent_;  // [10][padded]: components of light, view, half and the constant, for powers of 2
+  // [block of 16][10][16]: components of light, view, half and the constant, for powers of 2.
+  AlignedArray<float> exponent_;
 };
 
-/// Lobes and what they are evaluated at.
-struct LobesAt {
-  const MultivariateLobes* lobes;
-  LobeArguments at;
+/// Lobes in the frame of their arguments, then others in a frame that is turned.
+struct ColoredLobes {
+  const MultivariateLobes &lobes, &turned;
+  const float* color;  // of both with their padding: [block of 16][3][16], aligned to 64 bytes
 };
 
-/// For each of three arrays of coefficients - of the first lobes' padded() ones, then of the second's; aligned to 64
-/// bytes -, the sum of coefficient times value.
-Vec3 lobe_sums(const std::array<LobesAt, 2>& lobes, const std::array<const float*, 3>& coefficient);
+/// The sum of coefficient times colour times value. `turn` leads to the turned frame; `coefficient` of all lobes with
+/// their padding, aligned to 64 bytes. Run-time dispatched SIMD.
+Vec3 lobe_sums(const ColoredLobes& lobes, const DirectionPair& pair, const Mat3& turn, const float* coefficient);
 
 }  // namespace velour

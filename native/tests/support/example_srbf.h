@@ -18,9 +18,18 @@ inline std::vector<HalfBits> waving_halves(size_t count, float mean, float swing
   return bits;
 }
 
+/// Bytes without an order.
+inline std::vector<uint8_t> waving_bytes(size_t count, float phase) {
+  std::vector<uint8_t> bytes(count);
+  for (size_t i = 0; i < count; ++i) {
+    bytes[i] = static_cast<uint8_t>(127.5f + 127.5f * std::sin(phase + 1.7f * static_cast<float>(i)));
+  }
+  return bytes;
+}
+
 /// Five lobes, two of them in the frame of the normal, eight coefficients, over a relief of a tenth of the tile.
 inline SrbfSide example_side(uint32_t width, uint32_t height, bool below) {
-  SrbfSide side{below, below, {}, 3, {}, {}};
+  SrbfSide side{below, below, {}, 3, {}, {}, {}};
   const float other = below ? 0.6f : 1.0f;
   side.lobes = {{},
                 {Vec3(1.5f, 0.5f, 2.0f) * other, Vec3(0.0f), Vec3(0.0f)},
@@ -28,10 +37,14 @@ inline SrbfSide example_side(uint32_t width, uint32_t height, bool below) {
                 {Vec3(0.0f), Vec3(0.0f), Vec3(0.0f, 0.5f, 12.0f) * other},
                 {Vec3(0.0f, 2.0f, 3.0f), Vec3(0.0f), Vec3(0.0f, 0.0f, 4.0f)}};
   side.lobe = {{{0, 1, 2, 3, 4}, {3, 1}, {4}}};
+  for (size_t k = 0; k < side.coefficients(); ++k) {
+    const auto swing = 0.001f * static_cast<float>(k);
+    side.scale.push_back({0.06f - swing, (0.38f + 2 * swing) / 255});
+  }
   for (;; width = half_of(width), height = half_of(height)) {
     const size_t texels = size_t{width} * height;
     side.levels.push_back({width, height, waving_halves(texels, 0.01f, width > 1 ? 0.05f : 0.0f, 0.5f),
-                           waving_halves(texels * side.coefficients(), 0.25f, 0.2f, below ? 0.9f : 0.1f)});
+                           waving_bytes(texels * side.coefficients(), below ? 0.9f : 0.1f)});
     if (width == 1 && height == 1) return side;
   }
 }
@@ -75,15 +88,17 @@ inline Rgb defined_value(const SrbfBtf& btf, const SrbfSide& side, size_t level,
   for (size_t i = 0; i < 4; ++i) {
     slope += texels.weight[i] * relief.slope(texels.index[i] % of.width, texels.index[i] / of.width);
   }
-  const LobeArguments tile(pair), turned = tile.turned(to_normal(normal_of(slope)));
+  const LobeArguments tile(pair), turned = tile.turned(to_normal(slope));
   Vec3d sum(0.0);
   size_t k = 0;
   for (int a = 0; a < 3; ++a) {
     for (const uint16_t j : side.lobe[static_cast<size_t>(a)]) {
       double value = 0;
       for (size_t i = 0; i < 4; ++i) {
-        const HalfBits bits = of.value[texels.index[i] * side.coefficients() + k];
-        value += static_cast<double>(texels.weight[i]) * static_cast<double>(finite_half_to_float(bits));
+        const uint8_t byte = of.value[texels.index[i] * side.coefficients() + k];
+        const ByteScale& scale = side.scale[k];
+        value += static_cast<double>(texels.weight[i]) *
+                 (static_cast<double>(scale.least) + static_cast<double>(scale.step) * byte);
       }
       sum[a] += value * lobe_value(side.lobes[j], j < side.tile_lobes ? tile : turned);
       ++k;

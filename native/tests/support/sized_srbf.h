@@ -24,11 +24,15 @@ inline SrbfBtf sized_srbf(TexelGrid grid) {
     floats_to_halves(floats, bits);
     return bits;
   };
+  side.scale.assign(side.coefficients(), {0.1f, 0.6f / 255});
   for (uint32_t width = grid.width, height = grid.height;; width = half_of(width), height = half_of(height)) {
     const size_t texels = size_t{width} * height;
     const auto phase = static_cast<float>(width);
-    side.levels.push_back(
-        {width, height, halves(texels, phase, 0.0f, 0.01f), halves(texels * side.coefficients(), phase, 0.4f, 0.3f)});
+    SrbfLevel& level = side.levels.emplace_back(SrbfLevel{width, height, halves(texels, phase, 0.0f, 0.01f), {}});
+    for (size_t i = 0; i < texels * side.coefficients(); ++i) {
+      const float wave = std::sin(phase + 1.7f * static_cast<float>(i));
+      level.value.push_back(static_cast<uint8_t>(127.5f + 127.5f * wave));
+    }
     if (width == 1 && height == 1) return btf;
   }
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "btf/bilinear_texels.h"
-#include "btf/half_rows.h"
+#include "btf/byte_rows.h"
 #include "sphere/random.h"
 #include "srbf/aligned_array.h"
 #include "support/simd_targets.h"
@@ -43,27 +43,27 @@ TEST(BilinearTexels, AreInsideAndWeighOne) {
   }
 }
 
-TEST(HalfRows, AddWhatTheyWeigh) {
-  constexpr uint32_t kCount = 3 * kHalfRowPadding;
+TEST(ByteTexels, AddWhatTheyWeighInSteps) {
+  constexpr uint32_t kWidth = 5, kHeight = 3, kStride = 3 * kByteRowPadding;
   RandomStream random(2, 0, 0);
-  std::vector<float> value(4 * kCount);
-  for (float& v : value) v = random.next() * 100 - 50;
-  value[5] = 1e-7f;  // below the least normal half
-  std::vector<HalfBits> halves(value.size());
-  floats_to_halves(value, halves);
-  halves_to_floats(halves, value);
-  const float weight[] = {0.5f, 0.25f, -0.125f, 0.0f};
-  std::array<WeightedHalves, 4> rows;
-  for (size_t i = 0; i < 4; ++i) rows[i] = {halves.data() + i * kCount, weight[i]};
+  std::vector<uint8_t> bytes(size_t{kWidth} * kHeight * kStride);
+  for (uint8_t& b : bytes) b = static_cast<uint8_t>(256 * random.next());
+  bytes[7] = 255;
+  AlignedArray<float> step(kStride), to(kStride);
+  for (uint32_t k = 0; k < kStride; ++k) step.data()[k] = 0.01f * random.next();
   test::on_every_simd_target([&] {
-    AlignedFloats to(kCount);
-    std::fill_n(to.data(), kCount, 7.0f);
-    add_half_rows(rows, kCount, to.data());
-    for (uint32_t k = 0; k < kCount; ++k) {
-      double expected = 7;
-      for (size_t i = 0; i < 4; ++i)
-        expected += static_cast<double>(weight[i]) * static_cast<double>(value[i * kCount + k]);
-      EXPECT_NEAR(static_cast<double>(to.data()[k]), expected, 1e-5);
+    for (const Vec2& texel : {Vec2(-0.3f, 2.4f), Vec2(1.7f, 0.2f), Vec2(-7.0f, 30.5f)}) {
+      std::fill_n(to.data(), kStride, 7.0f);
+      add_bilinear_bytes({bytes.data(), kWidth, kHeight, kStride}, texel, 0.75f, step.data(), to.data());
+      const BilinearTexels corner = bilinear_at(texel, kWidth, kHeight);
+      for (uint32_t k = 0; k < kStride; ++k) {
+        double mean = 0;
+        for (size_t i = 0; i < 4; ++i) {
+          mean += static_cast<double>(corner.weight[i]) * bytes[size_t{corner.index[i]} * kStride + k];
+        }
+        const double expected = 7 + 0.75 * static_cast<double>(step.data()[k]) * mean;
+        EXPECT_NEAR(static_cast<double>(to.data()[k]), expected, 1e-5);
+      }
     }
   });
 }

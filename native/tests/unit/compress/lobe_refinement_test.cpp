@@ -27,7 +27,7 @@ std::vector<SurfacePoint> points_of(const std::vector<MultivariateLobe>& lobes) 
   for (size_t i = 0; i < points.size(); ++i) {
     RandomStream random(9, i, 0);
     SurfacePoint& point = points[i];
-    point.to_normal = to_normal(normal_of((random.next2() - 0.5f) * 2.0f));
+    point.to_normal = to_normal((random.next2() - 0.5f) * 2.0f);
     for (int pair = 0; pair < 80; ++pair) {
       const Vec3 wl = sample_cosine_hemisphere(random.next2());
       point.pair.emplace_back(DirectionPair{wl, sample_cosine_hemisphere(random.next2())});

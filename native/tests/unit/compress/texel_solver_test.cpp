@@ -51,7 +51,7 @@ LevelImages images_of(const SideDirections& side, const SharedLobes& shared, con
       slope += at.weight[i] * relief.slope(at.index[i] % relief.width(), at.index[i] / relief.width());
       value += static_cast<double>(at.weight[i]) * coefficient.row(at.index[i]).cast<double>();
     }
-    const Mat3 turn = to_normal(normal_of(slope));
+    const Mat3 turn = to_normal(slope);
     for (Eigen::Index l = 0; l < lights; ++l) {
       const LobeArguments tile({side.light[static_cast<size_t>(l)], side.view[view]}), turned = tile.turned(turn);
       Eigen::Index k = 0;
@@ -146,9 +146,9 @@ TEST(TexelSolver, OfNoCoefficientsHasNone) {
 
 TEST(RowProducts, AreThoseOfMatrices) {
   constexpr uint32_t kCount = 7, kStride = 48;
-  AlignedFloats rows(kCount * kStride), coefficient(3 * kStride), value(3 * kCount), sum(3 * kStride);
+  AlignedArray<float> rows(kCount * kStride), coefficient(3 * kStride), value(3 * kCount), sum(3 * kStride);
   RandomStream random(14, 0, 0);
-  const auto fill = [&](AlignedFloats& floats, uint32_t count) {
+  const auto fill = [&](AlignedArray<float>& floats, uint32_t count) {
     for (uint32_t i = 0; i < count; ++i) floats.data()[i] = random.next() - 0.5f;
   };
   fill(rows, kCount * kStride);

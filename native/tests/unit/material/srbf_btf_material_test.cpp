@@ -79,9 +79,7 @@ TEST(SrbfBtfMaterial, ShowsItsOtherSideFromBehind) {
 TEST(SrbfBtfMaterial, IsBlackBelowTheHorizonAndNeverNegative) {
   SrbfBtf btf = test::example_srbf(false, Companding::none);
   btf.axes = Mat3(1.0f);
-  for (SrbfLevel& level : btf.sides[0].levels) {
-    for (HalfBits& h : level.value) h |= 0x8000;  // all sums negative
-  }
+  for (ByteScale& scale : btf.sides[0].scale) scale = {-scale.least, -scale.step};  // all sums negative
   Evaluator negative(btf), f(test::example_srbf());
   for (const Vec3& wl : sphere_fibonacci(200)) {
     EXPECT_EQ(negative(at(0.2f, 0.2f), {0, 0, 1}, wl), Rgb(0.0f));

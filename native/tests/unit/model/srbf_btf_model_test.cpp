@@ -109,7 +109,8 @@ TEST(SrbfBtfModel, OfOneBlackLobeSurvives) {
   side.lobes.resize(1);
   side.tile_lobes = 1;
   side.lobe = {{{0}, {}, {}}};
-  for (SrbfLevel& level : side.levels) level.value.assign(size_t{level.width} * level.height, HalfBits{0});
+  side.scale = {{0, 0}};
+  for (SrbfLevel& level : side.levels) level.value.assign(size_t{level.width} * level.height, 0);
   Model model = test::example_srbf_model();
   model.body = btf;
   const Model back = after_a_round_trip(model);
@@ -118,7 +119,7 @@ TEST(SrbfBtfModel, OfOneBlackLobeSurvives) {
 
 TEST(SrbfBtfModel, MissingOrMisshapenPartsAreNamed) {
   for (const char* part : {"btf.sides", "btf.axes", "btf.side.0.lobes", "btf.side.0.frames", "btf.side.0.coefficients",
-                           "btf.side.1.relief.0", "btf.side.1.texels.2"}) {
+                           "btf.side.0.scales", "btf.side.1.relief.0", "btf.side.1.bytes.2"}) {
     expect_refused([part](TensorFile& f) { f.tensors.erase(part); }, part);
     expect_refused([part](TensorFile& f) { f.tensors[part] = {{3, 5}, std::vector<float>(15, 0.0f)}; }, part);
   }
@@ -131,8 +132,8 @@ TEST(SrbfBtfModel, MissingOrMisshapenPartsAreNamed) {
 TEST(SrbfBtfModel, LevelsHaveTheShapeOfTheTile) {
   expect_refused([](TensorFile& f) { std::swap(f.tensors["btf.side.0.relief.0"], f.tensors["btf.side.0.relief.1"]); },
                  "btf.side.0.relief.0");
-  expect_refused([](TensorFile& f) { std::swap(f.tensors["btf.side.0.texels.0"], f.tensors["btf.side.0.texels.1"]); },
-                 "btf.side.0.texels.0");
+  expect_refused([](TensorFile& f) { std::swap(f.tensors["btf.side.0.bytes.0"], f.tensors["btf.side.0.bytes.1"]); },
+                 "btf.side.0.bytes.0");
 }
 
 TEST(SrbfBtfModel, ValuesThatAreNoNumbersAreNamed) {
@@ -142,7 +143,9 @@ TEST(SrbfBtfModel, ValuesThatAreNoNumbersAreNamed) {
     expect_refused(set("btf.side.0.frames", 2, bad), "btf.side.0.frames[2]");
     expect_refused(set("btf.side.0.coefficients", 3, bad), "btf.side.0.coefficients[3]");
     expect_refused(set("btf.side.1.relief.0", 7, bad), "btf.side.1.relief.0[7]");
-    expect_refused(set("btf.side.1.texels.1", 9, bad), "btf.side.1.texels.1[9]");
+    expect_refused(set("btf.side.1.scales", 4, bad), "btf.side.1.scales[4]");
+    expect_refused(set("btf.side.1.scales", 5, bad), "btf.side.1.scales[5]");
+    expect_refused(set("btf.side.1.bytes.1", 9, bad), "btf.side.1.bytes.1[9]");
     expect_refused(set("btf.sides", 1, bad), "btf.sides[1]");
     expect_refused(set("btf.axes", 4, bad), "btf.axes[4]");
   }
@@ -151,7 +154,66 @@ TEST(SrbfBtfModel, ValuesThatAreNoNumbersAreNamed) {
 
 TEST(SrbfBtfModel, FiniteValuesThatNoHalfFloatHoldsAreNamed) {
   expect_refused(set("btf.side.0.relief.0", 3, 1e6f), "btf.side.0.relief.0[3]");
-  expect_refused(set("btf.side.0.texels.0", 3, -1e6f), "btf.side.0.texels.0[3]");
+  expect_refused(set("btf.side.0.scales", 2, -1e6f), "btf.side.0.scales[2]");
+  expect_refused(set("btf.side.0.scales", 3, -1e-3f), "btf.side.0.scales[3]");
+}
+
+TEST(SrbfBtfModel, ValuesThatAreNoBytesAreNamed) {
+  for (const float bad : {-1.0f / 256, 1.0f, 0.5f / 256}) {
+    expect_refused(set("btf.side.1.bytes.0", 5, bad), "btf.side.1.bytes.0[5]");
+  }
+}
+
+/// As 1.4 wrote it: half floats, without scales.
+TensorFile older_file(const SrbfBtf& btf) {
+  Model model = test::example_srbf_model();
+  model.body = btf;
+  TensorFile file = decode_tensors(encode_model(model), "test.velour");
+  file.attributes["velour.format_version"] = "1.4";
+  file.tensors.erase("btf.side.0.scales");
+  const std::vector<ByteScale>& scale = btf.sides[0].scale;
+  for (size_t l = 0; l < btf.sides[0].levels.size(); ++l) {
+    const std::string number = std::to_string(l);
+    Tensor tensor = file.tensors.at("btf.side.0.bytes." + number);
+    const size_t texels = tensor.data.size() / scale.size();
+    for (size_t i = 0; i < tensor.data.size(); ++i) {
+      const ByteScale& s = scale[i / texels];
+      tensor.data[i] = rounded_to_half(s.least + s.step * 256 * tensor.data[i]);
+    }
+    file.tensors.erase("btf.side.0.bytes." + number);
+    file.tensors["btf.side.0.texels." + number] = tensor;
+  }
+  return file;
+}
+
+TEST(SrbfBtfModel, OfTheVersionBeforeIsReadWithinHalfAStep) {
+  const SrbfBtf btf = test::example_srbf();
+  const TensorFile file = older_file(btf);
+  const SrbfSide& then = btf.sides[0];
+  const Model back = decode_model(encode_tensors(file), "test.velour");
+  const SrbfSide& now = std::get<SrbfBtf>(back.body).sides[0];
+  ASSERT_EQ(now.levels.size(), then.levels.size());
+  const size_t count = then.coefficients();
+  for (size_t l = 0; l < then.levels.size(); ++l) {
+    ASSERT_EQ(now.levels[l].value.size(), then.levels[l].value.size());
+    for (size_t i = 0; i < then.levels[l].value.size(); ++i) {
+      const ByteScale &a = then.scale[i % count], &b = now.scale[i % count];
+      const float before = a.least + a.step * then.levels[l].value[i];
+      EXPECT_NEAR(b.least + b.step * now.levels[l].value[i], before, 0.51f * b.step + 3e-4f);
+    }
+  }
+}
+
+TEST(SrbfBtfModel, OfTheVersionBeforeNamesValuesThatAreNoNumbers) {
+  TensorFile file = older_file(test::example_srbf());
+  file.tensors.at("btf.side.0.texels.1").half = false;
+  file.tensors.at("btf.side.0.texels.1").data[3] = std::numeric_limits<float>::infinity();
+  try {
+    decode_model(encode_tensors(file), "test.velour");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("btf.side.0.texels.1[3]"), std::string::npos) << error.what();
+  }
 }
 
 TEST(SrbfBtfModel, FramesAreThoseOfTheTileFirst) {

@@ -48,7 +48,7 @@ TEST(MultivariateLobes, AreTheProductsOfTheirThreeGaussians) {
     const MultivariateLobes prepared(lobes);
     EXPECT_EQ(prepared.size(), count);
     EXPECT_EQ(prepared.padded() % MultivariateLobes::kPadding, 0u);
-    AlignedFloats values(prepared.padded());
+    AlignedArray<float> values(prepared.padded());
     test::on_every_simd_target([&] {
       for (uint64_t i = 0; i < 50; ++i) {
         const LobeArguments at = random_arguments(i);
@@ -66,7 +66,7 @@ TEST(MultivariateLobes, AreTheProductsOfTheirThreeGaussians) {
 TEST(MultivariateLobes, PaddingIsZero) {
   const MultivariateLobes lobes(random_lobes(17));
   ASSERT_EQ(lobes.padded(), 32u);
-  AlignedFloats values(32);
+  AlignedArray<float> values(32);
   test::on_every_simd_target([&] {
     lobes.values(random_arguments(1), values.data());
     for (uint32_t k = 17; k < 32; ++k) EXPECT_EQ(values.data()[k], 0.0f);
@@ -76,34 +76,37 @@ TEST(MultivariateLobes, PaddingIsZero) {
 TEST(MultivariateLobes, AreOneAtTheirPeak) {
   const Vec3 peak = glm::normalize(Vec3(0.3f, -0.5f, 0.7f));
   const MultivariateLobes lobes(std::vector<MultivariateLobe>{{}, {peak * 400.0f, peak * 20.0f, peak * 3.0f}});
-  AlignedFloats values(lobes.padded());
+  AlignedArray<float> values(lobes.padded());
   lobes.values(LobeArguments({peak, peak}), values.data());
   EXPECT_EQ(values.data()[0], 1.0f);
   EXPECT_NEAR(values.data()[1], 1.0f, 1e-4f);
 }
 
-/// Of two groups of lobes, each at arguments of its own.
-TEST(MultivariateLobes, SumsAreThoseOfCoefficientsTimesValues) {
+/// Of two groups of lobes, the second in a frame that is turned.
+TEST(MultivariateLobes, SumsAreThoseOfCoefficientsTimesColoursTimesValues) {
   for (const uint32_t second : {0u, 5u, 30u}) {
     const MultivariateLobes first(random_lobes(40)), other(random_lobes(second));
     const uint32_t padded = first.padded() + other.padded();
-    AlignedFloats coefficient(size_t{3} * padded), values(padded);
+    AlignedArray<float> coefficient(padded), color(size_t{3} * padded), values(padded);
     RandomStream random(6, 0, 0);
+    const Mat3 turn(Vec3(0.6f, 0, 0.8f), Vec3(0, 1, 0), Vec3(-0.8f, 0, 0.6f));
     // What stands behind the lobes is multiplied by nothing.
-    for (uint32_t i = 0; i < 3 * padded; ++i) coefficient.data()[i] = random.next() - 0.5f;
-    const float* const axis = coefficient.data();
+    for (uint32_t i = 0; i < padded; ++i) coefficient.data()[i] = random.next() - 0.5f;
+    for (uint32_t i = 0; i < 3 * padded; ++i) color.data()[i] = random.next() - 0.5f;
     test::on_every_simd_target([&] {
       for (uint64_t i = 0; i < 20; ++i) {
-        const LobeArguments at = random_arguments(i), turned = random_arguments(i + 100);
+        const LobeArguments at = random_arguments(i);
         first.values(at, values.data());
-        other.values(turned, values.data() + first.padded());
-        const Vec3 sums = lobe_sums({{{&first, at}, {&other, turned}}}, {axis, axis + padded, axis + 2 * padded});
-        for (uint32_t a = 0; a < 3; ++a) {
+        other.values(at.turned(turn), values.data() + first.padded());
+        const Vec3 sums = lobe_sums({first, other, color.data()}, {at.wl, at.wv}, turn, coefficient.data());
+        for (uint32_t c = 0; c < 3; ++c) {
           double expected = 0;
           for (uint32_t k = 0; k < padded; ++k) {
-            expected += static_cast<double>(values.data()[k]) * static_cast<double>(axis[a * padded + k]);
+            const float weight = color.data()[k / 16 * 48 + 16 * c + k % 16];
+            expected += static_cast<double>(values.data()[k]) * static_cast<double>(coefficient.data()[k]) *
+                        static_cast<double>(weight);
           }
-          EXPECT_NEAR(static_cast<double>(sums[static_cast<int>(a)]), expected, 1e-5);
+          EXPECT_NEAR(static_cast<double>(sums[static_cast<int>(c)]), expected, 1e-5);
         }
       }
     });

@@ -1,0 +1,16 @@
+// The fits of BTFs by method.
+#pragma once
+
+#include <memory>
+
+#include "compress/btf_fitter.h"
+#include "compress/compress_btf.h"
+#include "compress/fit_checkpoint.h"
+
+namespace velour {
+
+/// All arguments must outlive it. Throws what SvdFitter and SrbfFitter do.
+std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const CompressOptions& options,
+                                       FitCheckpoint& checkpoint, Progress& progress);
+
+}  // namespace velour
