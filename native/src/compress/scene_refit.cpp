@@ -1,9 +1,14 @@
 #include "compress/scene_refit.h"
 
+#include <tbb/task_arena.h>
+
+#include <cmath>
+
 #include "compress/scene_btf.h"
 #include "compress/seen_pictures.h"
 #include "compress/side_views.h"
 #include "job/error.h"
+#include "job/threads.h"
 
 namespace velour {
 namespace {
@@ -29,16 +34,16 @@ class Refit {
   Refit(const BtfMeasurement& seen, const ModelBody& full, const CompressOptions& options, Progress& progress)
       : seen_(seen),
         full_(full),
-        options_(options),
+        options_{.companding = companding_of(full), .seed = options.seed, .threads = options.threads},
         progress_(progress),
-        pictures_(seen, *options.for_scene, progress) {
-    options_.companding = companding_of(full);
-  }
+        arena_(arena_concurrency(options.threads)),
+        pictures_(seen, *options.for_scene, progress) {}
 
   /// Better than `levels`, or nothing.
   std::optional<SceneRefit> best(const ModelBody& levels) {
     if (pictures_.empty()) return std::nullopt;
-    const double full_error = pictures_.error(full_, progress_), most = kMoreError * full_error;
+    const double full_error = error(full_), most = kMoreError * full_error;
+    if (!std::isfinite(full_error)) return std::nullopt;  // the BTF has entries that are not
     std::optional<SceneRefit> found = refit(kFirst, full_error);
     if (found && found->error <= most) {
       for (uint64_t divisor = 2 * kFirst; divisor <= kMost; divisor *= 2) {
@@ -50,15 +55,19 @@ class Refit {
     }
     auto larger = refit(kFirst / 2, full_error);
     if (larger && larger->error <= most) return larger;
-    return found && found->error < pictures_.error(levels, progress_) ? std::move(found) : std::nullopt;
+    return found && found->error < error(levels) ? std::move(found) : std::nullopt;
   }
 
  private:
+  double error(const ModelBody& body) {
+    return arena_.execute([&] { return pictures_.error(body, progress_); });
+  }
+
   std::optional<SceneRefit> refit(uint64_t divisor, double full_error) {
     auto body = fitted(divisor);
     if (!body) return std::nullopt;
-    const double error = pictures_.error(*body, progress_);
-    return SceneRefit{*std::move(body), error, full_error};
+    const double own_error = error(*body);
+    return SceneRefit{*std::move(body), own_error, full_error};
   }
 
   /// Nothing where so few bytes hold no model.
@@ -67,16 +76,17 @@ class Refit {
     try {
       if (std::holds_alternative<FactoredBtf>(full_)) return fit_svd(seen_, options_, progress_).btf;
       return fit_srbf(seen_, options_, progress_).btf;
-    } catch (const Error& error) {
-      if (error.status() == Status::invalid_argument) return std::nullopt;
+    } catch (const Error& refused) {
+      if (refused.status() == Status::invalid_argument) return std::nullopt;
       throw;
     }
   }
 
   const BtfMeasurement& seen_;
   const ModelBody& full_;
-  CompressOptions options_;
+  BtfFitOptions options_;
   Progress& progress_;
+  tbb::task_arena arena_;
   const SeenPictures pictures_;
 };
 
