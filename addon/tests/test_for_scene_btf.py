@@ -11,6 +11,7 @@ from velour.native import Btf, Model, Observation, compress_job, images
 # A plane of 3 x 3 tiles of 32 texels, seen over 24 pixels: 4 texels a pixel. Half as far: 2.
 FAR = "0,0.001,100,0,0,0,1.71861"
 NEAR = "0,0.001,50,0,0,0,1.71861"
+OBLIQUE = "0,-70.7,70.7,0,0,0,1.71861"
 
 
 @pytest.fixture(scope="module")
@@ -115,6 +116,16 @@ def test_a_nearer_camera_takes_the_full_model_and_says_so(folder, method):
     assert np.array_equal(pixels, picture(folder, full, camera=NEAR)[1])
     done, _ = picture(folder, small, camera=NEAR)
     assert "--full-model" in done.err
+
+
+@pytest.mark.parametrize("method", ["srbf", "svd"])
+def test_other_views_take_the_full_model_of_a_fit_to_those_seen(folder, method):
+    small, report = reduce(folder, method)
+    assert report["scene"]["seen_views_alone"]
+    assert report["scene"]["picture_error"] > 0
+    done, _ = picture(folder, small, "--full-model", folder / f"{method}.velour", camera=OBLIQUE)
+    assert done.json["out_of_domain"] > 0.9
+    assert "the full model is used" in done.err
 
 
 def test_frames_from_near_and_far_need_what_the_nearest_needs(folder):

@@ -67,7 +67,11 @@ def _rows_of_btf(info):
     scene, (width, height) = info["scene"], info["texels"]
     full_width, full_height = scene["full_texels"]
     finest = scene["surface"]["finest"] * max(full_width, full_height)
-    return (
+    rows = (
         ("Texels", f"{width} x {height}, full model {full_width} x {full_height}"),
         ("Pixels", f"from {finest:.1f} of those on, {scene['frames']} pictures"),
     )
+    if not scene["seen_views_alone"]:
+        return rows
+    errors = f"{scene['picture_error']:.3g}, full model {scene['full_picture_error']:.3g}"
+    return (*rows, ("Picture error", errors))

@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-constexpr double kFitting = 0.98;  // of the progress, where the full model is fitted first
+constexpr double kFitting = 0.7;  // of the progress, where the full model is fitted first
 
 const SceneObservation& checked(const CompressOptions& options) {
   if (options.for_scene->hits.empty()) {
@@ -68,7 +68,8 @@ void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptio
 Model compress_for_scene(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
   const SceneObservation& observation = checked(options);
   Model model = full_model(measurement, options, progress);
-  progress.stage("scene", options.full_model ? 0 : kFitting, 1.0);
+  const Progress::Span reducing(progress, options.full_model ? 0 : kFitting, 1.0);
+  progress.stage("scene", 0, 1);
   SceneRecord record;
   record.domain = observation.domain;
   record.full_parameter_bytes = bytes_of(model.body);
