@@ -21,7 +21,9 @@ HWY_FLATTEN void add_bytes(const ByteTexels& texels, const Vec2& texel, float we
   const BilinearTexels corner = bilinear_at(texel, texels.width, texels.height);
   const uint8_t* row[4];
   for (size_t i = 0; i < 4; ++i) row[i] = texels.bytes + size_t{corner.index[i]} * texels.stride;
-  const auto bytes = [&](size_t i, uint32_t k) { return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(du, row[i] + k))); };
+  const auto bytes = [&](size_t i, uint32_t k) {
+    return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(du, row[i] + k)));
+  };
   const auto w = [&](size_t i) { return hn::Set(d, weight * corner.weight[i]); };
   for (uint32_t k = 0; k < texels.stride; k += static_cast<uint32_t>(hn::Lanes(d))) {
     const auto low = hn::MulAdd(bytes(1, k), w(1), hn::Mul(bytes(0, k), w(0)));

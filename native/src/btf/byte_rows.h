@@ -15,8 +15,8 @@ struct ByteTexels {
   uint32_t width, height, stride;
 };
 
-/// to[i] += step[i] times the bilinear mean of bytes i at `texel` (bilinear_at), times `weight`, for i < stride, which is
-/// a multiple of kByteRowPadding; `step` and `to` are aligned to 64 bytes. Run-time dispatched SIMD.
+/// to[i] += step[i] times the bilinear mean of bytes i at `texel` (bilinear_at), times `weight`, for i < stride, which
+/// is a multiple of kByteRowPadding; `step` and `to` are aligned to 64 bytes. Run-time dispatched SIMD.
 void add_bilinear_bytes(const ByteTexels& texels, const Vec2& texel, float weight, const float* step, float* to);
 
 }  // namespace velour

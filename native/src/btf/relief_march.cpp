@@ -47,7 +47,7 @@ struct Lines {
 
   float line, step, from_along, way_along;
   float first, period, rate;  // times, and lines a unit of time
-  float last;           // number of a line behind the end
+  float last;                 // number of a line behind the end
   const Period &across, &along;
 };
 
@@ -109,9 +109,10 @@ HWY_INLINE void cross(const Lines& lines, const HeightWords& heights, float numb
   const auto word = hn::BitCast(di, hn::GatherIndex(du, heights.word.data(), index));
   const auto mask = hn::Set(di, kHeightRange);
   const auto low = hn::ConvertTo(d, hn::And(word, mask));
-  const auto high = hn::ConvertTo(d, hn::And(hn::ShiftRight<kAlongX ? 10 : 20>(word), mask));
+  const auto high = hn::ConvertTo(d, hn::And(hn::ShiftRight < kAlongX ? 10 : 20 > (word), mask));
   const auto surface = hn::MulAdd(hn::Sub(high, low), hn::Sub(along, corner), low);
-  const auto gap = hn::Sub(hn::NegMulAdd(when, hn::Set(d, float{kHeightRange}), hn::Set(d, float{kHeightRange})), surface);
+  const auto gap =
+      hn::Sub(hn::NegMulAdd(when, hn::Set(d, float{kHeightRange}), hn::Set(d, float{kHeightRange})), surface);
   const size_t count = hn::Lanes(d);
   hn::Store(when, d, crossings.when + Crossings::kFirst);
   hn::Store(gap, d, crossings.gap + Crossings::kFirst);
@@ -145,8 +146,8 @@ HWY_INLINE float clear_until(const HeightWords& heights, const ReliefMarch& m) {
   const auto index = hn::Add(hn::Mul(y, hn::Set(di, static_cast<int32_t>(heights.blocks))), x);
   const auto lid = hn::GatherIndex(d, heights.lid.data(), index);
   // At the end of each step.
-  const auto ray = hn::NegMulAdd(hn::Add(when, hn::Set(d, step)), hn::Set(d, float{kHeightRange}),
-                                 hn::Set(d, float{kHeightRange}));
+  const auto ray =
+      hn::NegMulAdd(hn::Add(when, hn::Set(d, step)), hn::Set(d, float{kHeightRange}), hn::Set(d, float{kHeightRange}));
   return static_cast<float>(first_true(d, hn::Le(ray, lid))) * step;
 }
 

@@ -45,7 +45,7 @@ class SrbfEvaluator {
     uint32_t slope() const { return stride - 4; }  // its place in a record
 
     MultivariateLobes tile, texel;
-    uint32_t stride;            // of records
+    uint32_t stride;                  // of records
     AlignedArray<float> least, step;  // of a record's bytes
     AlignedArray<float> color;        // of its lobes, in linear Rec. 709: lobe_sums
     std::vector<Level> levels;
