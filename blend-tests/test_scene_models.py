@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 
 from support import inputs, scenes
-from support.blender import BlenderTest, run_blender
+from support.blender import run_blender
+from support.scene_models import SceneModelTest
 
 WIDTH, HEIGHT = 64, 48
 TILT = math.radians(40)
@@ -21,7 +22,7 @@ def place_camera(camera, angle):
     camera.rotation_euler = (angle, 0, 0)
 
 
-class SceneModelTest(BlenderTest):
+class PaintedPlane(SceneModelTest):
     """A glossy plane under a constant world, seen at 30 to 50 degrees."""
 
     def setUp(self):
@@ -51,32 +52,6 @@ class SceneModelTest(BlenderTest):
         obj.location = (0.3, 0.5, 2)
         self.scene.collection.objects.link(obj)
 
-    @property
-    def node(self):
-        return scenes.velour_node(bpy.data.materials["Paint"])
-
-    @property
-    def settings(self):
-        return self.node.velour
-
-    def _info(self, image):
-        with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
-            return model.info()
-
-    def _render(self, name="picture"):
-        """The picture, and what was said."""
-        said = io.StringIO()
-        with contextlib.redirect_stdout(said):
-            pixels = scenes.render(self.folder, name)
-        return pixels, said.getvalue()
-
-    def _full_picture(self):
-        self.settings.use_scene_model = False
-        try:
-            return self._render("full")[0]
-        finally:
-            self.settings.use_scene_model = True
-
     def _refused(self, *words, **arguments):
         """... and nothing has changed."""
         before = self._state()
@@ -97,7 +72,7 @@ class SceneModelTest(BlenderTest):
         )
 
 
-class Fits(SceneModelTest):
+class Fits(PaintedPlane):
     def test_smaller_model_beside_the_full_one(self):
         full = self.node.image
         self.scene.frame_set(7, subframe=0.25)
@@ -105,9 +80,9 @@ class Fits(SceneModelTest):
             self.assertEqual(bpy.ops.velour.fit_for_scene(), {"FINISHED"})
         self.assertEqual(self.node.image, full)
         self.assertTrue(self.settings.use_scene_model)
-        info = self._info(self.settings.scene_model)
-        self.assertLess(info["parameter_bytes"], self._info(full)["parameter_bytes"])
-        self.assertEqual(info["scene"]["full_parameter_bytes"], self._info(full)["parameter_bytes"])
+        info = self.info(self.settings.scene_model)
+        self.assertLess(info["parameter_bytes"], self.info(full)["parameter_bytes"])
+        self.assertEqual(info["scene"]["full_parameter_bytes"], self.info(full)["parameter_bytes"])
         self.assertLessEqual(info["scene"]["picture_error"], info["scene"]["full_picture_error"])
         self.assertGreater(info["view_range"][0], 25)
         self.assertLess(info["view_range"][1], 55)
@@ -118,9 +93,9 @@ class Fits(SceneModelTest):
 
     def test_picture_close_to_the_full_one(self):
         bpy.ops.velour.fit_for_scene()
-        pixels, said = self._render()
+        pixels, said = self.render()
         self.assertIn("rendered with that model", said)
-        full = self._full_picture()
+        full = self.full_picture()
         self.assertGreater(np.abs(pixels - full).max(), 0, "the full model was rendered")
         np.testing.assert_allclose(scenes.middle(pixels), scenes.middle(full), rtol=0.02)
 
@@ -136,26 +111,26 @@ class Fits(SceneModelTest):
         self.scene.frame_set(3)
         location = self.camera.location.copy()
         bpy.ops.velour.fit_for_scene()
-        info = self._info(self.settings.scene_model)
+        info = self.info(self.settings.scene_model)
         self.assertEqual(info["scene"]["frames"], 6)
         self.assertLess(info["view_range"][0], math.degrees(0.4))
         self.assertGreater(info["view_range"][1], math.degrees(1.0))
         self.assertEqual(self.camera.location, location, "animated values stay those of the current frame")
         bpy.ops.velour.fit_for_scene(current_frame=True)
-        info = self._info(self.settings.scene_model)
+        info = self.info(self.settings.scene_model)
         self.assertEqual(info["scene"]["frames"], 2)
         self.assertGreater(info["view_range"][0], math.degrees(0.4))
 
     def test_covers_what_only_renders_show(self):
         """Another plane, seen flat, hidden in the viewport but not in renders."""
         bpy.ops.velour.fit_for_scene()
-        narrow = self._info(self.settings.scene_model)["view_range"][1]
+        narrow = self.info(self.settings.scene_model)["view_range"][1]
         other = scenes.add_plane(bpy.data.materials["Paint"], size=1.0)
         other.rotation_euler.x = math.radians(-30)
         other.location.z = 0.4
         other.hide_viewport = True
         bpy.ops.velour.fit_for_scene(material="Paint")
-        self.assertGreater(self._info(self.settings.scene_model)["view_range"][1], narrow + 10)
+        self.assertGreater(self.info(self.settings.scene_model)["view_range"][1], narrow + 10)
 
     def test_covers_instances(self):
         """An empty that instances a collection outside of the scene."""
@@ -169,7 +144,7 @@ class Fits(SceneModelTest):
         empty.location.z = 0.4
         self.scene.collection.objects.link(empty)
         bpy.ops.velour.fit_for_scene(material="Paint")
-        self.assertGreater(self._info(self.settings.scene_model)["view_range"][1], 60)
+        self.assertGreater(self.info(self.settings.scene_model)["view_range"][1], 60)
 
     def test_without_a_window(self):
         """`blender -b` with a script: the report is printed, the .blend keeps both models."""
@@ -185,8 +160,8 @@ class Fits(SceneModelTest):
         words = r"Fitted 'Paint' for scene 'Scene', 1 frames, in .* picture error \(relmse\)"
         self.assertRegex(child.stdout, words)
         bpy.ops.wm.open_mainfile(filepath=str(blend))
-        info = self._info(self.settings.scene_model)
-        self.assertLess(info["parameter_bytes"], self._info(self.node.image)["parameter_bytes"])
+        info = self.info(self.settings.scene_model)
+        self.assertLess(info["parameter_bytes"], self.info(self.node.image)["parameter_bytes"])
 
     def test_save_and_load(self):
         bpy.ops.velour.fit_for_scene()
@@ -221,11 +196,11 @@ class Fits(SceneModelTest):
         """With persistent data Blender evaluates only what has changed."""
         self.scene.render.use_persistent_data = True
         bpy.ops.velour.fit_for_scene()
-        self.assertIn("rendered with that model", self._render()[1])
+        self.assertIn("rendered with that model", self.render()[1])
         self.settings.use_scene_model = False
-        self.assertNotIn("Paint", self._render()[1])
+        self.assertNotIn("Paint", self.render()[1])
         self.settings.use_scene_model = True
-        self.assertIn("rendered with that model", self._render()[1])
+        self.assertIn("rendered with that model", self.render()[1])
 
     def test_a_new_fit_switches_it_off(self):
         bpy.ops.velour.fit_for_scene()
@@ -250,7 +225,7 @@ class Fits(SceneModelTest):
         self.assertEqual(self._state(), before)
 
 
-class Frames(SceneModelTest):
+class Frames(PaintedPlane):
     """Frames that show the material otherwise take the full model, bit by bit, and say so."""
 
     def setUp(self):
@@ -258,9 +233,9 @@ class Frames(SceneModelTest):
         bpy.ops.velour.fit_for_scene()
 
     def _takes_the_full_model(self):
-        pixels, said = self._render()
+        pixels, said = self.render()
         self.assertRegex(said, r"Material 'Paint', frame 1: .*more than 0\.1%: rendered with the full model")
-        np.testing.assert_array_equal(pixels, self._full_picture())
+        np.testing.assert_array_equal(pixels, self.full_picture())
 
     def test_moved_camera(self):
         place_camera(self.camera, 0.05)
@@ -273,7 +248,7 @@ class Frames(SceneModelTest):
     def test_brighter_world_is_no_other_light(self):
         """Negative control: the domain is of directions, not of brightness."""
         scenes.set_world((3, 3, 3))
-        self.assertIn("rendered with that model", self._render()[1])
+        self.assertIn("rendered with that model", self.render()[1])
 
     def test_order_of_frames(self):
         """Frame 3 alone, and after frames 1 and 2, one of which takes the full model."""
@@ -282,13 +257,13 @@ class Frames(SceneModelTest):
             self.camera.keyframe_insert("location", frame=frame)
             self.camera.keyframe_insert("rotation_euler", frame=frame)
         self.scene.frame_set(3)
-        alone, said = self._render("alone")
+        alone, said = self.render("alone")
         self.assertIn("rendered with that model", said)
         for frame, words in ((1, "rendered with that model"), (2, "rendered with the full model")):
             self.scene.frame_set(frame)
-            self.assertIn(words, self._render()[1])
+            self.assertIn(words, self.render()[1])
         self.scene.frame_set(3)
-        np.testing.assert_array_equal(self._render("after")[0], alone)
+        np.testing.assert_array_equal(self.render("after")[0], alone)
 
     def test_render_region_takes_what_the_frame_takes(self):
         """A corner where the plane is seen as before, of a frame with another plane that is not."""
@@ -301,7 +276,7 @@ class Frames(SceneModelTest):
         self._takes_the_full_model()
 
     def test_stamp(self):
-        pixels_said = self._render()
+        pixels_said = self.render()
         self.assertEqual(pixels_said[0].shape[:2], (HEIGHT, WIDTH))
         header = (self.folder / "picture.exr").read_bytes()[:4096]
         self.assertIn(b"velour.ViewLayer.Paint", header)
@@ -310,7 +285,7 @@ class Frames(SceneModelTest):
     def test_missing_full_model(self):
         place_camera(self.camera, 0.05)
         self.node.image = None
-        pixels, said = self._render()
+        pixels, said = self.render()
         self.assertIn("the full model is missing", said)
         self.assertGreater(scenes.middle(pixels).min(), 0)
 
@@ -325,7 +300,7 @@ class Frames(SceneModelTest):
             self.assertEqual([entry.has_full for entry in materials.reduced], [True])
 
 
-class Refusals(SceneModelTest):
+class Refusals(PaintedPlane):
     def test_shared_object(self):
         other = bpy.data.scenes.new("Other")
         other.collection.objects.link(self.obj)

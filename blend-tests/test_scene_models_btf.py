@@ -1,20 +1,19 @@
 """Fit for this scene of materials made from BTFs: fewer texels, and frames from closer."""
 
-import contextlib
-import io
-
 import bpy
 import numpy as np
 
 from support import inputs, scenes
-from support.blender import BlenderTest
+from support.scene_models import SceneModelTest
 
 _SMALL = {"texels": 16, "views": 24, "lights": 24, "samples": 4, "bounces": 0, "sides": "ONE"}
 _SIZE = 32  # pixels
 
 
-class SceneModelsOfBtfs(BlenderTest):
+class SceneModelsOfBtfs(SceneModelTest):
     """A plane of 8 x 8 tiles of 16 texels over 32 pixels: four texels a pixel."""
+
+    material = "ribs"
 
     def setUp(self):
         super().setUp()
@@ -46,64 +45,38 @@ class SceneModelsOfBtfs(BlenderTest):
         node.velour.measurement = measured.measurement_image(path, digest)
         measured.assign(bpy.context, material)
 
-    @property
-    def node(self):
-        return scenes.velour_node(bpy.data.materials["ribs"])
-
-    @property
-    def settings(self):
-        return self.node.velour
-
-    def _info(self, image):
-        with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
-            return model.info()
-
-    def _render(self, name="picture"):
-        """The picture, and what was said."""
-        said = io.StringIO()
-        with contextlib.redirect_stdout(said):
-            pixels = scenes.render(self.folder, name)
-        return pixels, said.getvalue()
-
-    def _full_picture(self):
-        self.settings.use_scene_model = False
-        try:
-            return self._render("full")[0]
-        finally:
-            self.settings.use_scene_model = True
-
     def test_fewer_texels_beside_the_full_model(self):
         full = self.node.image
         self.assertEqual(bpy.ops.velour.fit_for_scene(), {"FINISHED"})
         self.assertEqual(self.node.image, full)
         self.assertTrue(self.settings.use_scene_model)
-        info = self._info(self.settings.scene_model)
+        info = self.info(self.settings.scene_model)
         self.assertEqual((info["texels"], info["scene"]["full_texels"]), ([8, 8], [16, 16]))
-        self.assertEqual(info["scene"]["full_parameter_bytes"], self._info(full)["parameter_bytes"])
-        self.assertLess(1.3 * info["parameter_bytes"], self._info(full)["parameter_bytes"])
+        self.assertEqual(info["scene"]["full_parameter_bytes"], self.info(full)["parameter_bytes"])
+        self.assertLess(1.3 * info["parameter_bytes"], self.info(full)["parameter_bytes"])
 
     def test_the_picture_stays(self):
         bpy.ops.velour.fit_for_scene()
-        pixels, said = self._render()
+        pixels, said = self.render()
         self.assertIn("rendered with that model", said)
-        full = self._full_picture()
+        full = self.full_picture()
         self.assertGreater(np.abs(pixels - full).max(), 0, "the full model was rendered")
         np.testing.assert_allclose(pixels.mean(), full.mean(), rtol=0.02)
 
     def test_a_closer_camera_takes_the_full_model(self):
         bpy.ops.velour.fit_for_scene()
         self.camera.data.ortho_scale = 1
-        pixels, said = self._render()
+        pixels, said = self.render()
         self.assertRegex(
             said, r"Material 'ribs', frame 1: 100.*more than 0\.1%: rendered with the full model"
         )
-        np.testing.assert_array_equal(pixels, self._full_picture())
+        np.testing.assert_array_equal(pixels, self.full_picture())
 
     def test_a_missing_full_model_is_said(self):
         bpy.ops.velour.fit_for_scene()
         self.camera.data.ortho_scale = 1
         self.node.image = None
-        self.assertIn("the full model is missing", self._render()[1])
+        self.assertIn("the full model is missing", self.render()[1])
 
     def test_a_scene_that_needs_all_texels_keeps_nothing(self):
         self.camera.data.ortho_scale = 0.25

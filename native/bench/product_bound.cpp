@@ -21,9 +21,10 @@
 #include "material/material.h"
 #include "render/combination.h"
 #include "render/lighting.h"
+#include "render/lights_part.h"
 #include "render/sky_proposals.h"
 #include "render/vertex.h"
-#include "scene/sky_mixture.h"
+#include "scene/sky_misfit.h"
 #include "sphere/random.h"
 
 namespace {
@@ -125,13 +126,19 @@ Moments moments(const std::vector<Place>& places, const double (&share)[kDensiti
   return {integral, second};
 }
 
+SkyProposals proposals(const Environment& environment, const Progress& progress) {
+  const SkyMixture sky = sky_mixture(environment, {}, "", progress);
+  return SkyProposals(sky, sky_misfit(environment, sky));
+}
+
 class Study {
  public:
   explicit Study(const Arguments& a)
       : product_share_(std::stod(a["share"])),
         lighting_(prepare(a)),
         random_(std::stoull(a["seed"]), 0, 0),
-        sky_(sky_mixture(scene_.environment(), {}, "", progress_)) {
+        sky_(proposals(scene_.environment(), progress_)),
+        lights_part_(lights_parts(scene_, sky_)) {
     for (size_t hits = std::stoul(a["hits"]); hits_.size() < hits;) visit();
   }
 
@@ -166,16 +173,16 @@ class Study {
         material.proposal_lobes(prepared_, lobes) && sky_.propose(lobes, vertex.frame, scratch_, product_);
     if (proposed) lobes_ += product_.count;
     const double both = proposed ? product_share_ : 0;
-    const double sun = sky_.has_sun() ? static_cast<double>(kSunPart) * both : 0;
-    add(Tabulation(scene_, lighting_, vertex, prepared_, proposed ? &product_ : nullptr).take(), both - sun, sun);
+    const double lights = static_cast<double>(lights_part_[point.material]) * both;
+    add(Tabulation(scene_, lighting_, vertex, prepared_, proposed ? &product_ : nullptr).take(), both - lights, lights);
   }
 
-  void add(const std::vector<Place>& places, double product, double sun) {
+  void add(const std::vector<Place>& places, double product, double instead) {
     double exact = 0;
     for (const Place& place : places) exact += place.weight * place.pdf[kExact];
     if (!(exact > 0)) return;  // unlit
-    const double rest = 0.5 * (1 - product - sun);
-    const double shares[kCases][kDensities] = {{0, 0.5, 0.5, 0}, {product, rest, rest + sun, 0}, {0, 0, 0, 1}};
+    const double rest = 0.5 * (1 - product - instead);
+    const double shares[kCases][kDensities] = {{0, 0.5, 0.5, 0}, {product, rest, rest + instead, 0}, {0, 0, 0, 1}};
     std::vector<Place> normalized = places;
     for (Place& place : normalized) place.pdf[kExact] /= exact;
     Hits& of = hits_.emplace_back();
@@ -202,6 +209,7 @@ class Study {
   const Lighting lighting_;
   RandomStream random_;
   const SkyProposals sky_;
+  const std::vector<float> lights_part_;
   PreparedBrdf prepared_;
   LobeProducts scratch_;
   LobeMixture product_;

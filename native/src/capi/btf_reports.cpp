@@ -73,7 +73,11 @@ std::string compression_json(const Model& model, uint64_t file_bytes) {
 }
 
 std::string btf_errors_json(const BtfErrors& errors, double p99) {
-  return text({{"psnr", errors.psnr}, {"ser", errors.ser}, {"p99", p99}, {"pairs", errors.pairs}});
+  return text({{"psnr", errors.psnr},
+               {"ser", errors.ser},
+               {"brightness", errors.brightness},
+               {"p99", p99},
+               {"pairs", errors.pairs}});
 }
 
 }  // namespace velour::capi

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -13,13 +13,14 @@ namespace {
 float srgb(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f; }
 
 struct Sums {
-  double squares = 0, error = 0, energy = 0;
+  double squares = 0, error = 0, energy = 0, measured = 0, modelled = 0;
   uint64_t values = 0;
 };
 
-Sums compare_images(std::span<const float> truth, std::span<const float> model, float p99, double cosine) {
+Sums compare_images(std::span<const float> truth, std::span<const float> model, float p99, const DirectionPair& pair) {
   Sums sums;
   const float scale = 1 / p99;
+  const auto cosine = static_cast<double>(std::abs(pair.wl.z)), seen_cosine = static_cast<double>(std::abs(pair.wv.z));
   for (size_t i = 0; i < truth.size(); ++i) {
     if (!std::isfinite(truth[i])) continue;
     const float seen = srgb(std::clamp(truth[i] * scale, 0.0f, 1.0f)) - srgb(std::clamp(model[i] * scale, 0.0f, 1.0f));
@@ -28,6 +29,8 @@ Sums compare_images(std::span<const float> truth, std::span<const float> model, 
     sums.squares += static_cast<double>(seen * seen);
     sums.error += difference * difference;
     sums.energy += value * value;
+    sums.measured += value * seen_cosine;
+    sums.modelled += (value - difference) * seen_cosine;
     ++sums.values;
   }
   return sums;
@@ -72,19 +75,21 @@ BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, doub
     halves_to_floats(halves, measured);
     const DirectionPair directions = truth.layout().directions(pair);
     images(directions, modelled);
-    const auto cosine = static_cast<double>(std::abs(directions.wl.z));
-    sums[pair] = compare_images(measured, modelled, static_cast<float>(p99), cosine);
+    sums[pair] = compare_images(measured, modelled, static_cast<float>(p99), directions);
   });
   Sums all;
   for (const Sums& s : sums) {
     all.squares += s.squares;
     all.error += s.error;
     all.energy += s.energy;
+    all.measured += s.measured;
+    all.modelled += s.modelled;
     all.values += s.values;
   }
-  BtfErrors errors{0, 0, pairs};
+  BtfErrors errors{0, 0, 0, pairs};
   if (all.values > 0) errors.psnr = -10 * std::log10(std::max(all.squares / static_cast<double>(all.values), 1e-30));
   if (all.energy > 0) errors.ser = all.error / all.energy;
+  if (all.measured > 0) errors.brightness = all.modelled / all.measured;
   return errors;
 }
 

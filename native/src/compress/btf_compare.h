@@ -10,8 +10,9 @@
 namespace velour {
 
 struct BtfErrors {
-  double psnr = 0;  // dB, of sRGB(clamp(f / p99, 0, 1))
-  double ser = 0;   // sum of squared errors of f cos(theta_l) over the sum of its squares
+  double psnr = 0;        // dB, of sRGB(clamp(f / p99, 0, 1))
+  double ser = 0;         // sum of squared errors of f cos(theta_l) over the sum of its squares
+  double brightness = 0;  // sum of the modelled f cos(theta_l) cos(theta_v) over that of the measured
   uint64_t pairs = 0;
 };
 

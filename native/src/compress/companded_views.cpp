@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "btf/mended_image.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <array>
-#include <Eigen/Core>
 #include <vector>
 
 #include "btf/factored_btf.h"
 #include "job/progress.h"
+#include "tensor/row_matrix.h"
 
 namespace velour {
-
-using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Reads views one by one. Entries that are not finite are replaced by the mean of their image, so that they pull at
 /// nothing; they are counted. Negative f is companded as 0 by roots.

@@ -1,6 +1,6 @@
 #include "compress/lobe_pursuit.h"
 
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {

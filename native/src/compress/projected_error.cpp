@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 
 #include "compress/lobe_values.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {

@@ -7,7 +7,7 @@
 #include "compress/lobe_pursuit.h"
 #include "compress/lobe_refinement.h"
 #include "compress/lobe_values.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "sphere/random.h"
 
 namespace velour {

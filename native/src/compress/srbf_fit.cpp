@@ -5,6 +5,7 @@
 #include <string>
 
 #include "btf/bilinear_texels.h"
+#include "compress/brightening.h"
 #include "compress/relief_pyramid.h"
 #include "compress/shared_lobes.h"
 #include "compress/texel_solver.h"
@@ -17,7 +18,7 @@ constexpr uint32_t kMostPoints = 400, kLeastPoints = 24, kPairs = 900;  // that 
 constexpr uint64_t kTexelsOfAPoint = 4;  // few texels have little to say: their lobes take less time
 constexpr int kRefinements = 100;
 constexpr int kSteps = 20, kCoarseSteps = 12;  // of the texels' solve: finest level, coarser ones
-constexpr uint64_t kUsualRatio = 300, kUsualLeast = 16;
+constexpr uint64_t kUsualRatio = 400, kUsualLeast = 16;
 
 /// Coefficients of a texel that fit when the sides share the bytes evenly.
 size_t coefficients_within(uint64_t asked, const BtfMeasurement& measurement, size_t sides) {
@@ -119,9 +120,11 @@ class SideFitter {
       const auto after_step = [&](int step) { progress_.update(from + (to - from) * (step + 1) / steps); };
       const RowMatrix value = solver[l]->solve(start, steps, after_step);
       progress_.update(to);  // it may have settled early
+      const RowMatrix bright =
+          value * brightening(options_.companding, solver[l]->measured(), solver[l]->modelled(value));
       solver[l].reset();
       side.levels[l] = {relief.width(), relief.height(), halves_of(relief.heights()), {}};
-      values[l].assign(value.data(), value.data() + value.size());
+      values[l].assign(bright.data(), bright.data() + bright.size());
       if (l > 0) start = refined(value, relief.width(), relief.height(), relief_[l - 1]);
     }
     side.set_values(values);

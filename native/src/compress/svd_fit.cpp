@@ -6,10 +6,11 @@
 #include <numeric>
 #include <string>
 
+#include "compress/brightening.h"
 #include "compress/side_views.h"
-#include "fit/parallel.h"
 #include "image/half_image.h"
 #include "job/error.h"
+#include "job/parallel.h"
 #include "sphere/random.h"
 
 namespace velour {
@@ -166,7 +167,8 @@ class SvdSolver {
 
   struct Level {
     uint32_t width, height;
-    RowMatrix value;  // texel x component
+    RowMatrix value;      // texel x component
+    double measured = 0;  // sum of the squares of companded images, times both cosines
   };
 
   /// Coefficients of every level: products of the functions with the filtered measurement.
@@ -187,6 +189,7 @@ class SvdSolver {
       progress_.update(static_cast<double>(v + 1) / views_.views());
     }
     for (Level& level : levels) {
+      level.value *= brightening(options_.companding, level.measured, modelled(level.value));
       TexelLevel stored{level.width, level.height, std::vector<HalfBits>(static_cast<size_t>(level.value.size()))};
       floats_to_halves({level.value.data(), stored.value.size()}, stored.value);
       btf_.levels.push_back(std::move(stored));
@@ -196,16 +199,44 @@ class SvdSolver {
   void project(uint32_t view, Level& level) {
     views_.planes(f_, static_cast<uint64_t>(level.value.rows()), planes_);
     const auto first = static_cast<Eigen::Index>(measurement_.layout().first(view));
-    for (size_t a = 0, begin = 0; a < 3; ++a) {
-      const auto end = static_cast<size_t>(std::upper_bound(btf_.axis.begin(), btf_.axis.end(), a) - btf_.axis.begin());
-      const auto column = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
-      begin = end;
+    for (size_t a = 0; a < 3; ++a) {
+      for (Eigen::Index light = 0; light < planes_[a].rows(); ++light) {
+        level.measured += cosine(first + light) * static_cast<double>(planes_[a].row(light).squaredNorm());
+      }
+      const auto [column, count] = components_of(a);
       if (count == 0) continue;
       const RowMatrix functions = function_.block(first, column, planes_[a].rows(), count);
       for_blocks(level.value.rows(), kColumns, options_.threads, progress_, [&](Eigen::Index t, Eigen::Index n) {
         level.value.block(t, column, n, count).noalias() += planes_[a].middleCols(t, n).transpose() * functions;
       });
     }
+  }
+
+  /// The first component of an axis and their number.
+  std::pair<Eigen::Index, Eigen::Index> components_of(size_t axis) const {
+    const auto [first, last] = std::equal_range(btf_.axis.begin(), btf_.axis.end(), axis);
+    return {first - btf_.axis.begin(), last - first};
+  }
+
+  /// Of the light times that of the view.
+  double cosine(Eigen::Index pair) const {
+    const DirectionPair directions = measurement_.layout().directions(static_cast<uint64_t>(pair));
+    return static_cast<double>(std::abs(directions.wl.z * directions.wv.z));
+  }
+
+  /// Sum of the squares of what the components make of a level, times both cosines.
+  double modelled(const RowMatrix& value) const {
+    Eigen::VectorXf weight(function_.rows());
+    for (Eigen::Index pair = 0; pair < weight.size(); ++pair) weight[pair] = static_cast<float>(cosine(pair));
+    double sum = 0;
+    for (size_t a = 0; a < 3; ++a) {
+      const auto [column, count] = components_of(a);
+      const auto function = function_.middleCols(column, count);
+      const Eigen::MatrixXf gram = function.transpose() * weight.asDiagonal() * function;
+      const auto values = value.middleCols(column, count);
+      sum += static_cast<double>((values * gram).cwiseProduct(values).sum());
+    }
+    return sum;
   }
 
   const BtfMeasurement& measurement_;

@@ -5,16 +5,16 @@
 #include "btf/bilinear_texels.h"
 #include "btf/srbf_btf.h"
 #include "compress/row_products.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "srbf/aligned_array.h"
 
 namespace velour {
 namespace {
 
-constexpr double kRidge = 1e-4;      // of coefficients, relative to a lobe of value 1 everywhere
-constexpr double kSettled = 1e-12;   // of the rest's square: floats hold no better, and less would become 0 / 0
-constexpr size_t kTexels = 64;       // of a block of work: fixed, so that sums do not depend on threads
-constexpr size_t kGramTexels = 170;  // of a view that the mean Gram matrix is taken over, about
+constexpr double kRidge = 1e-4;     // of coefficients, relative to a lobe of value 1 everywhere
+constexpr double kSettled = 1e-12;  // of the rest's square: floats hold no better, and less would become 0 / 0
+constexpr size_t kTexels = 64;      // of a block of work: fixed, so that sums do not depend on threads
+constexpr size_t kSampled = 170;    // texels of a view that means are taken over, about
 
 }  // namespace
 
@@ -55,6 +55,31 @@ std::vector<TexelSolver::Place> TexelSolver::places(size_t view) const {
     }
   });
   return places;
+}
+
+/// Texels of a view that stand for all.
+std::vector<size_t> TexelSolver::sample(size_t view) const {
+  const size_t texels = size_t{relief_.width()} * relief_.height(), step = std::max<size_t>(1, texels / kSampled);
+  std::vector<size_t> sample;
+  for (size_t t = view % step; t < texels; t += step) sample.push_back(t);
+  return sample;
+}
+
+/// The coefficients of a place.
+Eigen::RowVectorXf TexelSolver::blended(const RowMatrix& coefficient, const Place& place) {
+  Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(coefficient.cols());
+  for (size_t i = 0; i < 4; ++i) sum += place.texels.weight[i] * coefficient.row(place.texels.index[i]);
+  return sum;
+}
+
+/// Of every light a row of lobes.
+void TexelSolver::write_rows(size_t view, const Place& place, float* rows) const {
+  for (const Vec3& wl : side_.light) {
+    const LobeArguments at({wl, side_.view[view]});
+    tile_.values(at, rows);
+    texel_.values(at.turned(place.to_normal), rows + tile_.padded());
+    rows += stride_;
+  }
 }
 
 /// `sums` += for every texel of the view, its lobes' moments with values_of(texel, place, rows, values), at the texels
@@ -111,21 +136,45 @@ void TexelSolver::add_view(size_t view, const LevelImages& images) {
     }
   };
   accumulate(view, take, data_);
+  for (const size_t t : sample(view)) {
+    for (size_t l = 0; l < side_.light.size(); ++l) {
+      for (const RowMatrix& image : images.value) {
+        const float value = image(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(l));
+        measured_ += static_cast<double>(side_.light[l].z * side_.view[view].z * value * value);
+      }
+    }
+  }
+}
+
+double TexelSolver::modelled(const RowMatrix& solution) const {
+  const auto lights = static_cast<uint32_t>(side_.light.size());
+  AlignedArray<float> rows(size_t{lights} * stride_), values(size_t{lights} * 3), padded(size_t{3} * stride_);
+  double sum = 0;
+  for (size_t v = 0; v < side_.view.size(); ++v) {
+    const std::vector<Place> place = places(v);
+    for (const size_t t : sample(v)) {
+      write_rows(v, place[t], rows.data());
+      spread(blended(solution, place[t]).data(), padded.data());
+      rows_times(rows.data(), lights, stride_, padded.data(), values.data());
+      for (size_t i = 0; i < values.size(); ++i) {
+        sum += static_cast<double>(side_.light[i / 3].z * side_.view[v].z * values.data()[i] * values.data()[i]);
+      }
+    }
+  }
+  return sum;
 }
 
 RowMatrix TexelSolver::normal_product(const RowMatrix& coefficient) const {
   RowMatrix product = RowMatrix::Zero(coefficient.rows(), coefficient.cols());
   const auto lights = static_cast<uint32_t>(side_.light.size());
-  const auto blended = [&](size_t, const Place& place, const float* rows, float* values) {
-    Eigen::RowVectorXf compact = Eigen::RowVectorXf::Zero(coefficient.cols());
-    for (size_t i = 0; i < 4; ++i) compact += place.texels.weight[i] * coefficient.row(place.texels.index[i]);
+  const auto modelled = [&](size_t, const Place& place, const float* rows, float* values) {
     AlignedArray<float> padded(size_t{3} * stride_);
-    spread(compact.data(), padded.data());
+    spread(blended(coefficient, place).data(), padded.data());
     rows_times(rows, lights, stride_, padded.data(), values);
   };
   for (size_t v = 0; v < side_.view.size(); ++v) {
     progress_.check();
-    accumulate(v, blended, product);
+    accumulate(v, modelled, product);
   }
   return product;
 }
@@ -142,20 +191,13 @@ void TexelSolver::gather(const float* padded, float* compact) const {
 /// From the mean of the products of any two lobes over sampled texels and pairs.
 void TexelSolver::set_coordinates() {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(stride_, stride_);
-  AlignedArray<float> values(stride_);
-  const Eigen::Map<const Eigen::VectorXf> value(values.data(), stride_);
+  AlignedArray<float> values(side_.light.size() * stride_);
+  const Eigen::Map<const Eigen::MatrixXf> rows(values.data(), stride_, static_cast<Eigen::Index>(side_.light.size()));
   uint64_t count = 0;
   for (size_t v = 0; v < side_.view.size(); ++v) {
     const std::vector<Place> place = places(v);
-    const size_t step = std::max<size_t>(1, place.size() / kGramTexels);
-    Eigen::MatrixXf rows(stride_, static_cast<Eigen::Index>(side_.light.size()));
-    for (size_t t = v % step; t < place.size(); t += step) {
-      for (size_t l = 0; l < side_.light.size(); ++l) {
-        const LobeArguments at({side_.light[l], side_.view[v]});
-        tile_.values(at, values.data());
-        texel_.values(at.turned(place[t].to_normal), values.data() + tile_.padded());
-        rows.col(static_cast<Eigen::Index>(l)) = value;
-      }
+    for (const size_t t : sample(v)) {
+      write_rows(v, place[t], values.data());
       sum += (rows * rows.transpose()).cast<double>();
       count += side_.light.size();
     }

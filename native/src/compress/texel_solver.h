@@ -24,9 +24,17 @@ class TexelSolver {
   /// [texel][coefficient], from a start of the same shape.
   RowMatrix solve(const RowMatrix& start, int steps, const std::function<void(int)>& after_step);
 
+  /// Sums of squares over sampled texels of every view and all lights, times both cosines: of the data, and of what
+  /// a solution makes of them.
+  double measured() const { return measured_; }
+  double modelled(const RowMatrix& solution) const;
+
  private:
   struct Place;  // where texels of a view are seen
   std::vector<Place> places(size_t view) const;
+  std::vector<size_t> sample(size_t view) const;
+  static Eigen::RowVectorXf blended(const RowMatrix& coefficient, const Place& place);
+  void write_rows(size_t view, const Place& place, float* rows) const;
   template <class Values>
   void accumulate(size_t view, const Values& values_of, RowMatrix& sums) const;
   RowMatrix normal_product(const RowMatrix& coefficient) const;
@@ -45,6 +53,7 @@ class TexelSolver {
   std::vector<uint32_t> column_;           // of each coefficient in [axis][padded lobe]
   std::array<Eigen::MatrixXf, 3> whiten_;  // symmetric: inverse roots of the axes' Gram matrices
   RowMatrix data_;                         // moments of the data with each coefficient's function
+  double measured_ = 0;
 };
 
 }  // namespace velour

@@ -7,8 +7,8 @@
 
 #include "brdf/parametric_limits.h"
 #include "fit/fit_report.h"
-#include "fit/parallel.h"
 #include "fit/view_grid.h"
+#include "job/parallel.h"
 #include "material/parametric_material.h"
 
 namespace velour {

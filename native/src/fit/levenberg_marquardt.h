@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 

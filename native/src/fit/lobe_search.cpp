@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {

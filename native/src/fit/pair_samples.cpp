@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "fit/evaluate.h"
-#include "fit/parallel.h"
 #include "fit/view_grid.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {

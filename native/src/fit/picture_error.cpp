@@ -6,7 +6,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "brdf/parametric_limits.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {

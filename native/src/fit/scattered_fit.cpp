@@ -8,7 +8,7 @@
 #include "fit/fit_report.h"
 #include "fit/fitted_slices.h"
 #include "fit/order_of_slices.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 #include "material/scattered_material.h"
 #include "srbf/lobe_mixture.h"
 

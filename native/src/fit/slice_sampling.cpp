@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "brdf/held_out.h"
-#include "fit/parallel.h"
 #include "fit/view_grid.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "brdf/held_out.h"
-#include "fit/parallel.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {

@@ -18,7 +18,8 @@ Companding companding_named(const ModelFields& fields) {
 }
 
 Mat3 read_axes(const ModelFields& fields) {
-  const Tensor& tensor = shaped_tensor(fields, kAxes, {3, 3});
+  const Tensor& tensor = fields.tensor(kAxes);
+  expect_shape(fields, kAxes, tensor, {3, 3});
   Mat3 axes;
   for (size_t i = 0; i < 9; ++i) {
     const float value = tensor.data[i];
@@ -46,9 +47,9 @@ BtfFrame read_btf_frame(const ModelFields& fields) {
   return {index.layout, index.grid, companding_named(fields), read_axes(fields)};
 }
 
-const Tensor& shaped_tensor(const ModelFields& fields, const std::string& part, const std::vector<uint64_t>& shape) {
-  const Tensor& tensor = fields.tensor(part);
-  if (tensor.shape == shape) return tensor;
+void expect_shape(const ModelFields& fields, const std::string& part, const Tensor& tensor,
+                  const std::vector<uint64_t>& shape) {
+  if (tensor.shape == shape) return;
   std::string text;
   for (const uint64_t extent : shape) text += (text.empty() ? "[" : ", ") + std::to_string(extent);
   fields.fail("the part " + part + " must have the shape " + text + "].");
@@ -56,7 +57,8 @@ const Tensor& shaped_tensor(const ModelFields& fields, const std::string& part, 
 
 std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string& part,
                                     const std::vector<uint64_t>& shape) {
-  const Tensor& tensor = shaped_tensor(fields, part, shape);
+  const Tensor& tensor = fields.tensor(part);
+  expect_shape(fields, part, tensor, shape);
   for (size_t i = 0; i < tensor.data.size(); ++i) {
     if (!(std::abs(tensor.data[i]) <= kLargestHalf)) fields.fail_at(part, i, tensor.data[i], "finite as a half float");
   }

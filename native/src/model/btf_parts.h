@@ -21,9 +21,10 @@ void write_btf_frame(const BtfFrame& frame, TensorFile& file);
 /// Refuses layouts that leave out pairs.
 BtfFrame read_btf_frame(const ModelFields& fields);
 
-/// The tensor `part`, of this shape.
-const Tensor& shaped_tensor(const ModelFields& fields, const std::string& part, const std::vector<uint64_t>& shape);
-/// The same as half floats, all finite.
+/// Refuses `tensor`, a part of the file, unless it has this shape.
+void expect_shape(const ModelFields& fields, const std::string& part, const Tensor& tensor,
+                  const std::vector<uint64_t>& shape);
+/// A part of this shape as half floats, all finite.
 std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string& part,
                                     const std::vector<uint64_t>& shape);
 /// A part of half floats.

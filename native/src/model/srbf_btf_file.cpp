@@ -70,7 +70,8 @@ void read_lobes(const ModelFields& fields, const SideParts& part, SrbfSide& side
   for (const float* v = lobes.data.data(); side.lobes.size() < count; v += 9) {
     side.lobes.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}});
   }
-  const Tensor& frames = shaped_tensor(fields, part.frames(), {count});
+  const Tensor& frames = fields.tensor(part.frames());
+  expect_shape(fields, part.frames(), frames, {count});
   for (size_t j = 0; j < count; ++j) {
     const float frame = frames.data[j];
     if (frame != 0 && frame != 1) fields.fail_at(part.frames(), j, frame, "0 (tile) or 1 (texel)");
@@ -100,7 +101,8 @@ void read_coefficients(const ModelFields& fields, const SideParts& part, SrbfSid
 }
 
 void read_scales(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
-  const Tensor& tensor = shaped_tensor(fields, part.scales(), {side.coefficients(), 2});
+  const Tensor& tensor = fields.tensor(part.scales());
+  expect_shape(fields, part.scales(), tensor, {side.coefficients(), 2});
   for (size_t i = 0; i < tensor.data.size(); ++i) {
     const float value = tensor.data[i];
     if (!(std::abs(value) <= kLargestHalf && (i % 2 == 0 || value >= 0))) {
@@ -112,7 +114,8 @@ void read_scales(const ModelFields& fields, const SideParts& part, SrbfSide& sid
 
 std::vector<uint8_t> read_bytes(const ModelFields& fields, const std::string& part, const SrbfLevel& level,
                                 size_t coefficients) {
-  const Tensor& tensor = shaped_tensor(fields, part, {coefficients, level.height, level.width});
+  const Tensor& tensor = fields.tensor(part);
+  expect_shape(fields, part, tensor, {coefficients, level.height, level.width});
   std::vector<uint8_t> bytes;
   for (size_t i = 0; i < tensor.data.size(); ++i) {
     const float byte = tensor.data[i] / kOfByte;

@@ -25,23 +25,20 @@ inline float effective_density(Heuristic heuristic, const float (&q)[3], Drawer 
 /// Of `product`, where the sky gives all light: lamps take from it. Six of eight directions; what is left defends
 /// against light and shadow that no lobe tells of.
 inline constexpr float kProductShare = 0.75f;
-/// Of that, what goes to the lights under a sky with a sun (SkyProposals). The same at every vertex: the points of a
-/// sequence stay evenly spread only where all vertices deal them alike.
-inline constexpr float kSunPart = 0.5f;
 
 /// Shares of a strategy, by Drawer.
 struct Shares {
   float product = 0, surface = 0, lights = 0;
 };
 
-/// The shares at a vertex where `product` of the directions come from products and `sun` from the lights in their place
-/// (both 0 for all strategies but `product`): mixed strategies share the rest between surface and lights, the others
-/// have one density.
-inline Shares shares(const RenderOptions& options, float product, float sun = 0) {
+/// The shares at a vertex where `product` of the directions come from products and `instead` from the lights in their
+/// place (both 0 for all strategies but `product`): mixed strategies share the rest between surface and lights, the
+/// others have one density.
+inline Shares shares(const RenderOptions& options, float product, float instead = 0) {
   const float lights =
       is_mixed(options.strategy) ? options.light_share : (options.strategy == Strategy::light ? 1.0f : 0.0f);
-  const float rest = 1.0f - product - sun;
-  return {product, rest * (1.0f - lights), rest * lights + sun};
+  const float rest = 1.0f - product - instead;
+  return {product, rest * (1.0f - lights), rest * lights + instead};
 }
 
 }  // namespace velour

@@ -44,8 +44,8 @@ Shares DirectLight::shares_at(const Vertex& vertex, Work& work) {
   const bool proposed = vertex.surface->material->proposal_lobes(work.prepared, lobes) &&
                         sky_->propose(lobes, vertex.frame, products_, work.product);
   if (!proposed) return shares(options_, 0.0f);
-  const float both = kProductShare * lighting_.environment_share(), sun = sky_->has_sun() ? kSunPart * both : 0.0f;
-  return shares(options_, both - sun, sun);
+  const float both = kProductShare * lighting_.environment_share(), lights = lights_part(vertex) * both;
+  return shares(options_, both - lights, lights);
 }
 
 void DirectLight::make_points(std::span<const Receiver> receivers) {

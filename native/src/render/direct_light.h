@@ -29,13 +29,16 @@ struct Receiver {
 /// of directions: memory and vectors serve all of them, while their lobes stay in the cache.
 class DirectLight {
  public:
-  /// `sky` serves `product` and is null for the others.
-  DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkyProposals* sky)
+  /// `sky` and `lights_part` (by material, lights_part.h) serve `product`; null and empty for the others.
+  DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkyProposals* sky,
+              std::span<const float> lights_part)
       : working_space_(scene.rec709_to_working()),
+        materials_(scene.materials()),
         lighting_(lighting),
         options_(options),
         sampling_(surface_sampling(options.strategy)),
-        sky_(sky) {}
+        sky_(sky),
+        lights_part_(lights_part) {}
 
   /// How many vertices of up to `directions` each gather() takes.
   static size_t receivers_of(int directions) {
@@ -84,6 +87,9 @@ class DirectLight {
   void make_points(std::span<const Receiver> receivers);
   /// Makes the products of the vertex, if it has any.
   Shares shares_at(const Vertex& vertex, Work& work);
+  float lights_part(const Vertex& vertex) const {
+    return lights_part_[static_cast<size_t>(vertex.surface - materials_.data())];
+  }
   void draw_towards_lights(std::span<const Receiver> receivers);
   void draw_towards_products(std::span<const Receiver> receivers);
   void draw_from_surface(const Receiver& receiver, const Work& work);
@@ -99,10 +105,12 @@ class DirectLight {
   Rgb reflectance(const Vertex& vertex, int direction) const;
 
   const std::optional<Mat3>& working_space_;
+  const std::vector<SurfaceMaterial>& materials_;
   const Lighting& lighting_;
   const RenderOptions& options_;
   const SurfaceSampling sampling_;
   const SkyProposals* sky_;
+  const std::span<const float> lights_part_;
 
   Work work_[kReceivers];
   // Of all vertices.

@@ -16,7 +16,7 @@ enum class Strategy : int {  // values of velour.h
   mis = 5,                   // some from the material, some from the lights: light_share, heuristic
   ggx = 6,                   // a GGX lobe over a diffuse base fitted to the material
   mis_ggx = 7,               // as mis, with that lobe in the material's place
-  product = 8,               // three quarters from BRDF times sky, the rest as mis
+  product = 8,               // three quarters or less from BRDF times sky, the rest from lights and BRDF
 };
 
 /// Some directions from the surface side, some from the lights.

@@ -10,9 +10,11 @@
 
 #include "fit/ggx_fit.h"
 #include "job/threads.h"
+#include "render/lights_part.h"
 #include "render/noise_target.h"
 #include "render/ray_share.h"
 #include "render/tile_renderer.h"
+#include "scene/sky_misfit.h"
 
 namespace velour {
 namespace {
@@ -74,7 +76,7 @@ class Renderer {
         film_(film),
         progress_(progress),
         arena_(arena_concurrency(options_.threads)),
-        context_{scene, options_, Lighting(scene), {}, {}, nullptr},
+        context_{scene, options_, Lighting(scene), {}, {}, nullptr, {}},
         target_(options_.noise, blocks_of(options_.width, options_.height)) {}
 
   RenderReport run() {
@@ -124,7 +126,8 @@ class Renderer {
     stage("sky", 0.0, kPreparation, [&] {
       arena_.execute([&] {
         const SkyMixture sky = sky_mixture(environment, {}, options_.cache_folder, progress_);
-        context_.sky = std::make_unique<const SkyProposals>(sky);
+        context_.sky = std::make_unique<const SkyProposals>(sky, sky_misfit(environment, sky));
+        context_.lights_part = lights_parts(context_.scene, *context_.sky);
         report_.sky = RenderReport::Sky{sky.size(), sky.relative_l2, sky.seconds, sky.cached};
       });
     });

@@ -18,6 +18,7 @@ constexpr float kLeastProduct = 0.0025f;  // of a product's mass
 /// Times as sharp as the BRDF's lobe is a sun of the lights: its disk then is a point to the lobe.
 constexpr float kSunSharpness = 16;
 constexpr double kSunEnergy = 0.6;  // of the sky's
+constexpr double kBlurred = 0.2;    // misfit: 0.3 to 0.4 of small lamps in a studio, 0.1 of a square by day
 
 int level_of(float bandwidth, int levels) {
   const int level = static_cast<int>(std::lround(0.5f * std::log2(std::max(bandwidth, 1.0f))));
@@ -34,7 +35,7 @@ GaussianLobes lobes_of(const SkyMixture& sky) {
 
 }  // namespace
 
-SkyProposals::SkyProposals(const SkyMixture& sky) {
+SkyProposals::SkyProposals(const SkyMixture& sky, double misfit) : blurs_edges_(misfit > kBlurred) {
   constexpr size_t kLists = static_cast<size_t>(kSide) * kSide * kLevels;
   for (auto* values : {&lists_.x, &lists_.y, &lists_.z, &lists_.bandwidth, &lists_.amplitude}) {
     values->assign(kLists * kListed, values == &lists_.z || values == &lists_.bandwidth ? 1.0f : 0.0f);

@@ -18,10 +18,11 @@ namespace velour {
 /// One exception: a sun, a narrow lobe with most of the sky's energy. Its disk has an edge and a Gaussian has
 /// none, so many draws from its products miss it, while the density of the lights draws its texels exactly and is
 /// mostly about it. Where the BRDF's lobe is far broader than the sun, their product is left to the lights, which get a
-/// larger share under such a sky (kSunPart).
+/// larger share under such a sky (lights_part.h).
 class SkyProposals {
  public:
-  explicit SkyProposals(const SkyMixture& sky);
+  /// `misfit`: of the mixture to its sky (sky_misfit.h).
+  explicit SkyProposals(const SkyMixture& sky, double misfit = 0);
   static constexpr int kListed = 32;  // nodes of a cut
 
   /// The density, in the world frame, of the products of `brdf` (in `frame`) with the sky; its cosine part counts as
@@ -29,6 +30,8 @@ class SkyProposals {
   bool propose(const ProposalLobes& brdf, const Frame& frame, LobeProducts& scratch, LobeMixture& density) const;
 
   bool has_sun() const { return sun_.size() > 0; }
+  /// Whether lamps have edges that the mixture has not.
+  bool blurs_edges() const { return blurs_edges_; }
 
  private:
   void fill_list(size_t list, const LobeTree& tree);
@@ -37,8 +40,9 @@ class SkyProposals {
   static constexpr int kSide = 32;   // cells of five degrees or so
   static constexpr int kLevels = 9;  // bandwidths 1, 4, ... 4^8
 
-  GaussianLobes lists_;          // kListed places a list, by cell, then level; of amplitude 0 where a list is shorter
-  GaussianLobes sun_;            // kLanes places, or none without a sun
+  GaussianLobes lists_;  // kListed places a list, by cell, then level; of amplitude 0 where a list is shorter
+  GaussianLobes sun_;    // kLanes places, or none without a sun
+  const bool blurs_edges_;
   std::vector<uint8_t> listed_;  // of each list, a multiple of LobeProducts::kLanes
 };
 

@@ -18,7 +18,7 @@ TileRenderer::TileRenderer(const RenderContext& context)
     : context_(context),
       pixel_(context.scene, context.options.width, context.options.height, context.camera_rays()),
       visible_(context.scene),
-      light_(context.scene, context.lighting, context.options, context.sky.get()) {}
+      light_(context.scene, context.lighting, context.options, context.sky.get(), context.lights_part) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
                           const Progress& progress) {

@@ -22,6 +22,7 @@ struct RenderContext {
   std::vector<std::unique_ptr<const TableSampler>> tables;
   std::vector<std::unique_ptr<const GgxSampler>> ggx;
   std::unique_ptr<const SkyProposals> sky;  // null unless the strategy needs it
+  std::vector<float> lights_part;           // by material, with `sky`
 
   int camera_rays() const { return (options.spp + options.split - 1) / options.split; }
   /// Light directions of camera ray `index`: the last one takes what is left of spp.

@@ -1,6 +1,8 @@
 // The products of a material's lobes with a sky: samples against the density, and the whole strategy where the answer
 // is known.
+#include "render/lights_part.h"
 #include "render/sky_proposals.h"
+#include "scene/sky_misfit.h"
 #include "support/lobe_cells.h"
 #include "support/proof_materials.h"
 #include "support/renders.h"
@@ -112,6 +114,25 @@ TEST(ProductSampling, LeavesASunToTheLights) {
   EXPECT_FALSE(SkyProposals(sky).has_sun());
 }
 
+TEST(ProductSampling, ASkyOfBadFitBlursEdges) {
+  const SkyMixture sky = sky_of(20, 100);
+  EXPECT_FALSE(SkyProposals(sky, 0.1).blurs_edges());
+  EXPECT_TRUE(SkyProposals(sky, 0.3).blurs_edges());
+  EXPECT_TRUE(SkyProposals(sky, std::numeric_limits<double>::infinity()).blurs_edges());
+}
+
+// Of a diffuse material that is: a highlight blurs edges itself.
+TEST(ProductSampling, LightsTakeOverWhereTheMaterialIsBroad) {
+  const auto part = [](float bandwidth, double misfit) {
+    Scene scene;
+    scene.add_material({test::highlight_material(bandwidth), Rgb(0.0f), true});
+    return lights_parts(scene, SkyProposals(sky_of(20, 100), misfit)).at(0);
+  };
+  EXPECT_EQ(part(2, 0.1), 0.0f);
+  EXPECT_EQ(part(2, 0.3), 0.5f);
+  EXPECT_EQ(part(200, 0.3), 0.0f);
+}
+
 TEST(ProductSampling, NothingToProposeBelowTheHorizon) {
   SkyMixture sky;
   sky.center = {-kFrame.z};
@@ -124,10 +145,10 @@ TEST(ProductSampling, NothingToProposeBelowTheHorizon) {
 }
 
 /// Two spheres that shade each other, of a material that has lobes, under an uneven sky and a lamp.
-Scene pair(Environment environment, bool lamp) {
+Scene pair(Environment environment, bool lamp, float bandwidth = 50) {
   Scene scene;
   scene.add_mesh(test::sphere(24));
-  scene.add_material({test::highlight_material(50), Rgb(0.0f), true});
+  scene.add_material({test::highlight_material(bandwidth), Rgb(0.0f), true});
   scene.add_instance(0, {}, {0});
   scene.add_instance(0, test::shift({1.2f, 0.4f, 0.9f}, Vec3(0.5f)), {0});
   scene.set_environment(std::move(environment));
@@ -149,6 +170,18 @@ Environment uneven(float strength) {
   RandomStream random(3, 3, 3);
   for (float& p : pixels) p = std::pow(random.next(), 6.0f);
   return Environment::image({32, 16, 3, pixels}, strength, Mat3(1.0f));
+}
+
+/// Small lamps with edges, which the fitted mixture blurs.
+Environment softboxes() {
+  constexpr size_t kWidth = 256;
+  std::vector<float> pixels(3 * kWidth * kWidth / 2, 0.02f);
+  for (size_t y = 36; y < 44; ++y) {
+    for (size_t x = 0; x < kWidth; x += 32) {
+      std::fill_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * (kWidth * y + x)), 3 * 8, 30.0f);
+    }
+  }
+  return Environment::image({kWidth, kWidth / 2, 3, pixels}, 1, Mat3(1.0f));
 }
 
 class ProductStrategy : public ::testing::Test {
@@ -174,6 +207,18 @@ TEST_F(ProductStrategy, AgreesWithMisForEverySplit) {
       compare(std::string(lamp ? "lamp " : "") + std::to_string(split), measure(scene, Strategy::product, split), mis,
               tests);
     }
+  }
+  EXPECT_TRUE(tests.agree());
+}
+
+TEST_F(ProductStrategy, AgreesUnderSoftboxesThatTheLightsDraw) {
+  const Progress progress;
+  const SkyMixture sky = sky_mixture(softboxes(), {}, "", progress);
+  const Scene scene = pair(softboxes(), false, 2.0f);
+  ASSERT_GT(lights_parts(scene, SkyProposals(sky, sky_misfit(softboxes(), sky))).at(0), 0.0f);
+  test::ZTests tests;
+  for (const int split : {1, 8}) {
+    compare(std::to_string(split), measure(scene, Strategy::product, split), measure(scene, Strategy::mis), tests);
   }
   EXPECT_TRUE(tests.agree());
 }

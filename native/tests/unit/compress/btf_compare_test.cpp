@@ -20,6 +20,7 @@ TEST(BtfCompare, MeasuresAKnownDifference) {
   Progress progress;
   const BtfErrors errors = compare_btf(btf, darker, 0.5, 1, progress);
   EXPECT_NEAR(errors.ser, 0.25, 1e-12);
+  EXPECT_NEAR(errors.brightness, 0.5, 1e-12);
   const double seen = 1.0 - (1.055 * std::pow(0.5, 1 / 2.4) - 0.055);
   EXPECT_NEAR(errors.psnr, -20 * std::log10(seen), 1e-4);
   EXPECT_EQ(errors.pairs, 12u);
@@ -31,7 +32,9 @@ TEST(BtfCompare, LeavesOutWhatIsNotFinite) {
                             [&](const DirectionPair&, uint32_t x, uint32_t) { return x == 0 ? Rgb(nan) : Rgb(0.5f); });
   const auto same = [](const DirectionPair&, std::vector<float>& rgb) { rgb.assign(kGrid.texels() * 3, 0.5f); };
   Progress progress;
-  EXPECT_EQ(compare_btf(btf, same, 0.5, 1, progress).ser, 0.0);
+  const BtfErrors errors = compare_btf(btf, same, 0.5, 1, progress);
+  EXPECT_EQ(errors.ser, 0.0);
+  EXPECT_EQ(errors.brightness, 1.0);
 }
 
 TEST(BtfCompare, FindsThePercentile) {

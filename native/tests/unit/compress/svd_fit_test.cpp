@@ -23,12 +23,14 @@ SvdFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
   return fit_svd(btf, options, progress);
 }
 
-double error_of(const FactoredBtf& model, const BtfMeasurement& btf) {
+BtfErrors errors_of(const FactoredBtf& model, const BtfMeasurement& btf) {
   const FactoredImages images(model);
   const auto decode = [&](const DirectionPair& pair, std::vector<float>& rgb) { images.image(pair, rgb); };
   Progress progress;
-  return compare_btf(btf, decode, 1.0, 2, progress).ser;
+  return compare_btf(btf, decode, 1.0, 2, progress);
 }
+
+double error_of(const FactoredBtf& model, const BtfMeasurement& btf) { return errors_of(model, btf).ser; }
 
 /// Square of a sum of three products, one colour: three components of one axis.
 Rgb squared_products(const DirectionPair& pair, uint32_t x, uint32_t y) {
@@ -51,6 +53,14 @@ TEST(SvdFit, RecoversAProductsSquareToTheRoundingOfHalves) {
   EXPECT_LT(error_of(found.btf, btf), 1e-6);
   // The control: three products are not two.
   EXPECT_GT(error_of(fit(btf, {.bytes = 2 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid))}).btf, btf), 1e-4);
+}
+
+TEST(SvdFit, IsAsBrightAsWhatItLeavesOut) {
+  const test::MemoryBtf btf(small_layout(), kGrid, noise);
+  const uint64_t bytes = 6 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid));
+  const BtfErrors errors = errors_of(fit(btf, {.bytes = bytes}).btf, btf);
+  EXPECT_NEAR(errors.brightness, 1, 2e-3);
+  EXPECT_GT(errors.ser, 0.1) << "the control: most of the spread of the roots, a ninth of their mean square, is lost";
 }
 
 TEST(SvdFit, LosesNoMoreThanTheExactDecomposition) {

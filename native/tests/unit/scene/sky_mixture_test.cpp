@@ -10,6 +10,7 @@
 #include "job/error.h"
 #include "scene/environment.h"
 #include "scene/equirectangular.h"
+#include "scene/sky_misfit.h"
 #include "srbf/kernel.h"
 #include "support/test_data.h"
 
@@ -69,6 +70,37 @@ TEST(SkyMixture, FindsAKnownMixture) {
     norm += static_cast<double>(glm::dot(two_lobes(w), two_lobes(w)));
   }
   EXPECT_LT(std::sqrt(error / norm), 0.06);
+}
+
+SkyMixture even() {
+  SkyMixture sky;
+  sky.center = {{0, 0, 1}};
+  sky.bandwidth = {0};
+  sky.coefficient = {Rgb(1.0f)};
+  return sky;
+}
+
+TEST(SkyMisfit, IsChiSquare) {
+  const auto cap = [](float z) { return image_of([z](const Vec3& w) { return Rgb(w.z > z ? 1.0f : 0.0f); }); };
+  EXPECT_NEAR(sky_misfit(Environment::constant(Rgb(2.0f)), even()), 0, 1e-5);
+  EXPECT_NEAR(sky_misfit(cap(0), even()), 1, 0.01);     // half of the sphere
+  EXPECT_NEAR(sky_misfit(cap(0.5f), even()), 3, 0.03);  // a quarter
+}
+
+TEST(SkyMisfit, TellsEdgesFromSlopes) {
+  const Environment soft = image_of(two_lobes);
+  EXPECT_LT(sky_misfit(soft, fitted(soft)), 0.03);
+  const Environment lamps = image_of([](const Vec3& w) {
+    const float phi = 8 * std::atan2(w.y, w.x) / kPi;  // sixteen of them around
+    const bool lit = std::abs(phi - std::round(phi)) < 0.2f && std::abs(w.z - 0.5f) < 0.06f;
+    return Rgb(lit ? 50.0f : 0.05f);
+  });
+  EXPECT_GT(sky_misfit(lamps, fitted(lamps)), 0.2);
+  SkyMixture dimmed = fitted(soft);
+  for (size_t k = 0; k < dimmed.size(); ++k) {
+    if (glm::dot(dimmed.center[k], kSecond) > 0.5f) dimmed.coefficient[k] *= 0.01f;
+  }
+  EXPECT_GT(sky_misfit(soft, dimmed), 1);  // light that the mixture hardly has
 }
 
 TEST(SkyMixture, KeepsTheEnergyOfEveryChannelAndIsNeverNegative) {

@@ -1,0 +1,212 @@
+#include "tensor/cluster_fit.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include "job/error.h"
+#include "tensor/cluster_choice.h"
+#include "tensor/cluster_start.h"
+
+namespace velour {
+namespace {
+
+/// A new cluster's first slices: so many would be its share.
+Index fair_share(Index slices, Index clusters) { return std::max<Index>(1, slices / (2 * clusters)); }
+
+class ClusterSolver {
+ public:
+  ClusterSolver(const TensorView& slices, const ClusterOptions& options, uint64_t seed, const Progress& progress)
+      : view_(slices),
+        matrix_(slices.data(), {slices.extent(0), slices.size() / slices.extent(0)}),
+        options_(options),
+        progress_(progress) {
+    tensor_.extent = slices.extents();
+    options_.tensor.seed = seed;
+    for (Index i = 0; i < matrix_.extent(0); ++i) {
+      const Eigen::Map<const Eigen::VectorXf> slice(matrix_.data() + i * matrix_.extent(1), matrix_.extent(1));
+      square_.push_back(static_cast<double>(slice.squaredNorm()));
+    }
+  }
+
+  double square() const { return std::accumulate(square_.begin(), square_.end(), 0.0); }
+
+  void start() {
+    tensor_.cluster.resize(static_cast<size_t>(options_.clusters));
+    basis_.resize(tensor_.cluster.size());
+    const Index rank = std::min<Index>({2 * options_.ranks[0], matrix_.extent(0), matrix_.extent(1)});
+    std::vector<uint32_t> of =
+        options_.start == ClusterStart::random
+            ? clusters_at_random(matrix_.extent(0), options_.clusters, options_.tensor.seed)
+            : clusters_by_direction(matrix_, options_.clusters, rank, options_.tensor, progress_);
+    for (uint32_t c = 0; c < tensor_.cluster.size(); ++c) {
+      std::vector<Index> mine;
+      for (size_t i = 0; i < of.size(); ++i) {
+        if (of[i] == c) mine.push_back(static_cast<Index>(i));
+      }
+      if (mine.empty()) mine.push_back(static_cast<Index>(c) % matrix_.extent(0));
+      fit_cluster(c, mine);
+    }
+  }
+
+  /// With one more member a slice than before; `error` after every step.
+  void alternate(Index members, std::vector<double>& error) {
+    tensor_.members = members;
+    tensor_.coefficient.resize(0, 0);
+    error.push_back(square() - choose().after);
+    for (int i = 0; i < options_.iterations; ++i) {
+      const double before = error.back();
+      for (uint32_t c = 0; c < tensor_.cluster.size(); ++c) {
+        progress_.check();
+        update(c);
+      }
+      const KeptSquares kept = choose();
+      error.push_back(square() - kept.before);
+      error.push_back(square() - kept.after);
+      if (!(before - error.back() > options_.tolerance * square())) break;
+    }
+  }
+
+  ClusteredTensor take() { return std::move(tensor_); }
+
+ private:
+  KeptSquares choose() {
+    return choose_members(ClusterProducts(matrix_, basis_, options_.tensor, progress_), tensor_, options_.tensor,
+                          progress_);
+  }
+
+  /// None before the first choice.
+  std::span<uint32_t> members_of(Index slice) {
+    if (tensor_.member.empty()) return {};
+    const auto members = static_cast<size_t>(tensor_.members);
+    return {tensor_.member.data() + static_cast<size_t>(slice) * members, members};
+  }
+
+  auto coefficient(Index slice, Index k) {
+    return tensor_.coefficient.row(slice).segment(k * tensor_.rank(), tensor_.rank());
+  }
+
+  /// Of a slice, what its clusters but `but` leave.
+  Eigen::RowVectorXf rest_of(Index slice, uint32_t but) {
+    Eigen::RowVectorXf rest =
+        Eigen::Map<const Eigen::RowVectorXf>(matrix_.data() + slice * matrix_.extent(1), matrix_.extent(1));
+    const std::span<uint32_t> member = members_of(slice);
+    for (size_t k = 0; k < member.size(); ++k) {
+      if (member[k] != but) rest -= coefficient(slice, static_cast<Index>(k)) * basis_[member[k]];
+    }
+    return rest;
+  }
+
+  void update(uint32_t c) {
+    std::vector<Index> mine;
+    for (Index i = 0; i < matrix_.extent(0); ++i) {
+      const std::span<uint32_t> member = members_of(i);
+      if (std::find(member.begin(), member.end(), c) != member.end()) mine.push_back(i);
+    }
+    if (mine.empty()) {
+      tensor_.cluster[c].factor.clear();
+      return fit_cluster(c, worst_off());
+    }
+    fit_cluster(c, mine);
+    for (const Index i : mine) {
+      const std::span<uint32_t> member = members_of(i);
+      const Index k = std::find(member.begin(), member.end(), c) - member.begin();
+      coefficient(i, k) = rest_of(i, c) * basis_[c].transpose();
+    }
+  }
+
+  std::vector<Index> worst_off() {
+    std::vector<Index> all(square_.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    std::vector<double> error;
+    for (const Index i : all) {
+      error.push_back(static_cast<double>(rest_of(i, static_cast<uint32_t>(basis_.size())).squaredNorm()));
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [&](Index a, Index b) { return error[static_cast<size_t>(a)] > error[static_cast<size_t>(b)]; });
+    all.resize(static_cast<size_t>(fair_share(matrix_.extent(0), options_.clusters)));
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  DenseTensor gathered(uint32_t c, const std::vector<Index>& mine) {
+    std::vector<Index> extent = tensor_.extent;
+    extent[0] = static_cast<Index>(mine.size());
+    DenseTensor gathered(extent);
+    for (size_t i = 0; i < mine.size(); ++i) {
+      const Eigen::RowVectorXf rest = rest_of(mine[i], c);
+      std::copy_n(rest.data(), rest.size(), gathered.data.begin() + static_cast<Index>(i) * rest.size());
+    }
+    return gathered;
+  }
+
+  void fit_cluster(uint32_t c, const std::vector<Index>& mine) {
+    TensorCluster& cluster = tensor_.cluster[c];
+    const DenseTensor data = gathered(c, mine);
+    std::vector<Index> ranks;
+    for (size_t mode = 0; mode < data.extent.size(); ++mode) {
+      ranks.push_back(std::min(options_.ranks[mode], data.extent[mode]));
+    }
+    Tucker tucker;
+    if (cluster.factor.empty()) {
+      tucker = truncated_hosvd(data.view(), ranks, options_.tensor, progress_);
+    } else {
+      tucker.factor = cluster.factor;
+      // The sweep begins with this one: its number of columns is all that counts.
+      tucker.factor.insert(tucker.factor.begin(), RowMatrix::Zero(ranks[0], ranks[0]));
+      hooi_sweep(data.view(), tucker, options_.tensor, progress_);
+    }
+    const Index others = static_cast<Index>(tucker.core.data.size()) / ranks[0];
+    const RowMatrix core = Eigen::Map<const RowMatrix>(tucker.core.data.data(), ranks[0], others);
+    cluster.factor.assign(tucker.factor.begin() + 1, tucker.factor.end());
+    cluster.core = RowMatrix::Zero(options_.ranks[0], others);  // rows that few slices cannot fill stay 0
+    cluster.core.topRows(ranks[0]) = orthonormal(core.transpose()).transpose();
+    basis_[c] = cluster.basis(options_.tensor, progress_);
+  }
+
+  TensorView view_, matrix_;
+  ClusterOptions options_;
+  const Progress& progress_;
+  ClusteredTensor tensor_;
+  std::vector<RowMatrix> basis_;
+  std::vector<double> square_;  // of each slice
+};
+
+void check(const TensorView& slices, const ClusterOptions& options) {
+  const auto wrong = [](const std::string& what) { throw Error(Status::invalid_argument, what); };
+  if (options.ranks.size() != slices.order()) wrong("A rank is needed for every mode of a tensor.");
+  Index others = 1;
+  for (size_t mode = 1; mode < slices.order(); ++mode) {
+    others *= std::min(options.ranks[mode], slices.extent(mode));
+  }
+  if (options.ranks[0] > others) {
+    wrong("Slices of rank " + std::to_string(options.ranks[0]) + " cannot be made of " + std::to_string(others) +
+          " numbers; ask for larger ranks of the other modes.");
+  }
+  if (options.clusters < 1 || options.members < 1 || options.members > options.clusters) {
+    wrong(std::to_string(options.members) + " members of " + std::to_string(options.clusters) +
+          " clusters: it takes at least one of each, and no more members than clusters.");
+  }
+}
+
+}  // namespace
+
+ClusterFit fit_clusters(const TensorView& slices, const ClusterOptions& options, Progress& progress) {
+  check(slices, options);
+  ClusterFit best;
+  for (int i = 0; i < options.restarts; ++i) {
+    ClusterSolver solver(slices, options, options.tensor.seed + static_cast<uint64_t>(i), progress);
+    solver.start();
+    std::vector<double> error;
+    for (Index members = 1; members <= options.members; ++members) solver.alternate(members, error);
+    progress.update(static_cast<double>(i + 1) / options.restarts);
+    best.start_error.push_back(error.back());
+    if (!best.error.empty() && best.error.back() <= error.back()) continue;
+    best.tensor = solver.take();
+    best.square = solver.square();
+    best.error = std::move(error);
+  }
+  return best;
+}
+
+}  // namespace velour

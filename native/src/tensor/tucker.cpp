@@ -1,0 +1,85 @@
+#include "tensor/tucker.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "tensor/mode_product.h"
+
+namespace velour {
+namespace {
+
+/// Modes, those first that shrink most.
+std::vector<size_t> by_shrinking(const std::vector<Index>& extents, const std::vector<Index>& ranks) {
+  std::vector<size_t> order(extents.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return ranks[a] * extents[b] < ranks[b] * extents[a]; });
+  return order;
+}
+
+}  // namespace
+
+DenseTensor projected(const TensorView& view, const std::vector<RowMatrix>& factor, size_t but,
+                      const TensorOptions& options, const Progress& progress) {
+  std::vector<Index> ranks;
+  for (size_t mode = 0; mode < view.order(); ++mode) {
+    ranks.push_back(factor[mode].size() > 0 ? factor[mode].cols() : view.extent(mode));
+  }
+  DenseTensor result{{}};
+  bool begun = false;
+  for (const size_t mode : by_shrinking(view.extents(), ranks)) {
+    if (mode == but || factor[mode].size() == 0) continue;
+    result = mode_product(begun ? result.view() : view, mode, factor[mode].transpose(), options.threads, progress);
+    begun = true;
+  }
+  return begun ? std::move(result) : copied(view);
+}
+
+Tucker truncated_hosvd(const TensorView& view, const std::vector<Index>& ranks, const TensorOptions& options,
+                       const Progress& progress) {
+  Tucker tucker;
+  tucker.factor.resize(view.order());
+  tucker.core = copied(view);
+  for (const size_t mode : by_shrinking(view.extents(), ranks)) {
+    tucker.factor[mode] = leading_vectors(tucker.core.view(), mode, ranks[mode], options, progress);
+    tucker.core = mode_product(tucker.core.view(), mode, tucker.factor[mode].transpose(), options.threads, progress);
+  }
+  return tucker;
+}
+
+void hooi_sweep(const TensorView& view, Tucker& tucker, const TensorOptions& options, const Progress& progress) {
+  for (size_t mode = 0; mode < view.order(); ++mode) {
+    const Index rank = tucker.factor[mode].cols();
+    const DenseTensor rest = projected(view, tucker.factor, mode, options, progress);
+    tucker.factor[mode] = leading_vectors(rest.view(), mode, rank, options, progress);
+    if (mode + 1 < view.order()) continue;
+    tucker.core = mode_product(rest.view(), mode, tucker.factor[mode].transpose(), options.threads, progress);
+  }
+}
+
+Tucker fit_tucker(const TensorView& view, const std::vector<Index>& ranks, int sweeps, double tolerance,
+                  const TensorOptions& options, const Progress& progress) {
+  Tucker tucker = truncated_hosvd(view, ranks, options, progress);
+  const double square = copied(view).squared_norm();
+  double kept = tucker.core.squared_norm();
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    progress.check();
+    Tucker next = tucker;
+    hooi_sweep(view, next, options, progress);
+    const double now = next.core.squared_norm();
+    if (now > kept) tucker = std::move(next);
+    if (!(now - kept > tolerance * square)) break;
+    kept = now;
+  }
+  return tucker;
+}
+
+DenseTensor expanded(const Tucker& tucker, const TensorOptions& options, const Progress& progress) {
+  DenseTensor tensor = tucker.core;
+  for (size_t mode = 0; mode < tucker.factor.size(); ++mode) {
+    tensor = mode_product(tensor.view(), mode, tucker.factor[mode], options.threads, progress);
+  }
+  return tensor;
+}
+
+}  // namespace velour

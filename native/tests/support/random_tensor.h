@@ -1,0 +1,44 @@
+// Tensors of random numbers, and what definitions say of them.
+#pragma once
+
+#include "sphere/random.h"
+#include "tensor/tucker.h"
+
+namespace velour::test {
+
+inline DenseTensor random_tensor(std::vector<Index> extents, uint64_t seed) {
+  DenseTensor tensor(std::move(extents));
+  uint64_t entry = 0;
+  for (float& x : tensor.data) x = RandomStream(seed, entry++, 0).next() - 0.5f;
+  return tensor;
+}
+
+inline RowMatrix random_matrix(Index rows, Index columns, uint64_t seed) {
+  const DenseTensor tensor = random_tensor({rows, columns}, seed);
+  return Eigen::Map<const RowMatrix>(tensor.data.data(), rows, columns);
+}
+
+/// Of the given ranks exactly.
+inline DenseTensor random_tucker(const std::vector<Index>& extents, const std::vector<Index>& ranks, uint64_t seed) {
+  Tucker tucker{{}, random_tensor(ranks, seed)};
+  for (size_t mode = 0; mode < extents.size(); ++mode) {
+    tucker.factor.push_back(random_matrix(extents[mode], ranks[mode], seed + 1 + mode));
+  }
+  return expanded(tucker, {}, Progress());
+}
+
+inline double squared_distance(const DenseTensor& a, const DenseTensor& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.data.size(); ++i) {
+    const double d = static_cast<double>(a.data[i]) - static_cast<double>(b.data[i]);
+    sum += d * d;
+  }
+  return sum;
+}
+
+/// Of orthonormal columns: how far their products are from those.
+inline float orthonormality_error(const RowMatrix& m) {
+  return (m.transpose() * m - RowMatrix::Identity(m.cols(), m.cols())).cwiseAbs().maxCoeff();
+}
+
+}  // namespace velour::test
