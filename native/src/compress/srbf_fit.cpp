@@ -18,7 +18,7 @@ namespace {
 constexpr uint32_t kMostPoints = 400, kLeastPoints = 24, kPairs = 900;  // that lobes are refined by
 constexpr uint64_t kTexelsOfAPoint = 4;  // few texels have little to say: their lobes take less time
 constexpr int kRefinements = 100;
-constexpr uint64_t kUsualRatio = 300, kUsualLeast = 16;
+constexpr uint64_t kUsualRatio = 400, kUsualLeast = 16;
 constexpr size_t kMostCoefficients = 2 * SrbfBtf::kMaxLobes;
 // Errors over all texels and pairs are larger than those that the points' order leaves: 1.3 to 1.9 times of captured
 // weaves and gravels. Fits correct this guess.
