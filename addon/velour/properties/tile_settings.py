@@ -112,7 +112,7 @@ class VelourTileSettings(bpy.types.PropertyGroup):
     )
     megabytes: FloatProperty(
         name="Largest Size (MB)",
-        description="Of the material, at most. 0: a two-hundredth of the BTF; with a largest error, whatever"
+        description="Of the material, at most. 0: a four-hundredth of the BTF; with a largest error, whatever"
         " it takes",
         min=0.0,
         default=0.0,

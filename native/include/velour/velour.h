@@ -260,7 +260,7 @@ typedef struct vlr_compress_options {
   int32_t method;     /* VLR_COMPRESS_*; SRBF */
   int32_t companding; /* VLR_COMPAND_*: sums of f itself, or of its square root (errors count about as they are seen) */
   uint32_t threads;   /* 0: all */
-  uint64_t bytes;     /* of all coefficients at most; 0: a two-hundredth of the BTF as half floats, or a few; with a
+  uint64_t bytes;     /* of all coefficients at most; 0: 1:400 of the BTF as half floats (SVD: 1:200), or a few; with a
                        * tolerance: whatever that takes */
   uint64_t seed;
   const vlr_btf* held_out; /* pairs that no fit has seen, of the same texels; NULL: none */

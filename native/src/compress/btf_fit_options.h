@@ -8,8 +8,8 @@
 namespace velour {
 
 struct BtfFitOptions {
-  /// Of all that is fitted, at most; 0: a two-hundredth of the measurement, or the method's least - with a tolerance,
-  /// whatever that takes.
+  /// Of all that is fitted, at most; 0: the method's usual part of the measurement (SRBFs 1:400, singular values
+  /// 1:200), or its least - with a tolerance, whatever that takes.
   uint64_t bytes = 0;
   double tolerance = 0;  // relative L2 error of companded values that is looked for (BtfErrors); 0: none, all bytes
   Companding companding = Companding::root;

@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     size = parser.add_mutually_exclusive_group()
     size.add_argument(
         "--bytes", type=numbers.whole(1, 2**63), metavar="N",
-        help="of all coefficients; a two-hundredth of the BTF, or a few components",
+        help="of all coefficients; 1:400 of the BTF as half floats (svd: 1:200), or a few",
     )  # fmt: skip
     size.add_argument(
         "--ratio", type=numbers.real(1, 1e9), metavar="R", help="the same: an R-th of the BTF as half floats"
