@@ -38,8 +38,8 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
     )
     megabytes: FloatProperty(
         name="Megabytes",
-        description="Of all coefficients at most; 0: a four-hundredth of the BTF (SVD: twice that), or a few; with a"
-        " largest error, whatever it takes",
+        description="Of all coefficients at most; 0: a four-hundredth of the BTF (SVD: twice that), or a few;"
+        " with a largest error, whatever it takes",
         min=0.0,
         options={"SKIP_SAVE"},
     )

@@ -282,9 +282,9 @@ VLR_API void vlr_compress_options_init(vlr_compress_options* options);
  * psnr, psnr_held_out (null without held_out), ser, relative_l2, p99, evaluations_per_second, seconds, warnings,
  * tolerance, order as of vlr_fit_create_job (lobes: coefficients of a texel, or components; worst: relative_l2 over the
  * tolerance, or relative_l2 without one), search [{coefficients, parameter_bytes, expected, relative_l2}], the fits in
- * their order; components of an SVD; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest that are left, and scene, as
- * of vlr_fit_create_job, but with full_texels [x, y] and surface (vlr_observation_info_json) in place of errors; psnr,
- * ser and speed are then those of the full model. */
+ * their order; components of an SVD; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest
+ * that are left, and scene, as of vlr_fit_create_job, but with full_texels [x, y] and surface
+ * (vlr_observation_info_json) in place of errors; psnr, ser and speed are then those of the full model. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
 /* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, relative_l2, brightness, p99, pairs. */
 VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);
