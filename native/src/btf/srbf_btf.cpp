@@ -5,7 +5,12 @@
 
 namespace velour {
 
-void SrbfSide::set_values(const std::vector<std::vector<float>>& values) {
+uint8_t ByteScale::nearest(float value) const {
+  const float steps = step > 0 ? (value - least) / step : 0.0f;
+  return static_cast<uint8_t>(std::lround(std::clamp(steps, 0.0f, 255.0f)));
+}
+
+void SrbfSide::set_scale(const std::vector<std::vector<float>>& values) {
   const size_t count = coefficients();
   scale.assign(count, {});
   for (size_t k = 0; k < count; ++k) {
@@ -18,13 +23,12 @@ void SrbfSide::set_values(const std::vector<std::vector<float>>& values) {
     }
     scale[k] = {least, (most - least) / 255};
   }
+}
+
+void SrbfSide::set_values(const std::vector<std::vector<float>>& values) {
   for (size_t l = 0; l < levels.size(); ++l) {
     levels[l].value.resize(values[l].size());
-    for (size_t i = 0; i < values[l].size(); ++i) {
-      const ByteScale& s = scale[i % count];
-      const float steps = s.step > 0 ? (values[l][i] - s.least) / s.step : 0.0f;
-      levels[l].value[i] = static_cast<uint8_t>(std::lround(std::clamp(steps, 0.0f, 255.0f)));
-    }
+    for (size_t i = 0; i < values[l].size(); ++i) levels[l].value[i] = scale[i % scale.size()].nearest(values[l][i]);
   }
 }
 

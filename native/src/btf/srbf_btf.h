@@ -15,6 +15,9 @@ namespace velour {
 /// What a coefficient's bytes stand for: least + step * byte.
 struct ByteScale {
   float least = 0, step = 0;
+
+  uint8_t nearest(float value) const;
+  float value(uint8_t byte) const { return least + step * static_cast<float>(byte); }
 };
 
 /// One level of the pyramid over the tile.
@@ -39,8 +42,10 @@ struct SrbfSide {
   std::vector<ByteScale> scale;               // of each coefficient, on all levels
   std::vector<SrbfLevel> levels;              // the finest first; each half of the one before, down to one texel
 
-  /// Sets the values of all levels, finest first, [texel][coefficient]: bytes from the least to the largest of each
-  /// coefficient, to the nearest.
+  /// Sets what bytes stand for: from the least to the largest value of each coefficient, `levels` finest first,
+  /// [texel][coefficient].
+  void set_scale(const std::vector<std::vector<float>>& levels);
+  /// Sets the values of all levels: the nearest bytes.
   void set_values(const std::vector<std::vector<float>>& levels);
 
   size_t coefficients() const { return lobe[0].size() + lobe[1].size() + lobe[2].size(); }

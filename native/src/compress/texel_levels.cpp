@@ -7,6 +7,7 @@
 
 #include "btf/bilinear_texels.h"
 #include "compress/brightening.h"
+#include "compress/byte_rounding.h"
 #include "compress/texel_solver.h"
 
 namespace velour {
@@ -138,7 +139,9 @@ void solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheck
     if (l > 0) start = refined(solution[l]->value, relief.width(), relief.height(), input.relief[l - 1]);
     solution[l].reset();
   }
-  side.set_values(values);
+  // Of the finest level, whether its solver was needed or not.
+  const TexelSolver finest(input.side, input.lobes, input.relief[0], input.threads, progress);
+  set_rounded(finest.products(), std::move(values), side);
 }
 
 }  // namespace velour

@@ -212,6 +212,7 @@ void TexelSolver::set_coordinates() {
       }
     }
     gram.diagonal().array() += kRidge;
+    products_[a] = gram.cast<float>();
     whiten_[a] = n > 0 ? Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram).operatorInverseSqrt().cast<float>().eval()
                        : Eigen::MatrixXf();
     k += static_cast<size_t>(n);

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "btf/relief.h"
+#include "compress/byte_rounding.h"
 #include "compress/shared_lobes.h"
 #include "compress/side_views.h"
 
@@ -23,6 +24,9 @@ class TexelSolver {
 
   /// [texel][coefficient], from a start of the same shape.
   RowMatrix solve(const RowMatrix& start, int steps, const std::function<void(int)>& after_step);
+
+  /// Of this level's places.
+  const LobeProductMeans& products() const { return products_; }
 
   /// Sums of squares over sampled texels of every view and all lights, times both cosines: of the data, and of what
   /// a solution makes of them.
@@ -51,6 +55,7 @@ class TexelSolver {
   MultivariateLobes tile_, texel_;
   uint32_t stride_;                        // of a row of lobes, padded
   std::vector<uint32_t> column_;           // of each coefficient in [axis][padded lobe]
+  LobeProductMeans products_;              // with a ridge
   std::array<Eigen::MatrixXf, 3> whiten_;  // symmetric: inverse roots of the axes' Gram matrices
   RowMatrix data_;                         // moments of the data with each coefficient's function
   double measured_ = 0;

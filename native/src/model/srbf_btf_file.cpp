@@ -135,6 +135,7 @@ void read_half_values(const ModelFields& fields, const SideParts& part, SrbfSide
     const auto halves = read_maps(fields, part.texels(l), side.coefficients(), level.width, level.height);
     halves_to_floats(halves, values.emplace_back(halves.size()));
   }
+  side.set_scale(values);
   side.set_values(values);
 }
 

@@ -71,6 +71,7 @@ TEST(SrbfSide, RoundsItsValuesToTheNearestOf256) {
     auto& of_level = values.emplace_back(level.value.size());
     for (size_t i = 0; i < of_level.size(); ++i) of_level[i] = static_cast<float>(i % count) * (random.next() - 0.4f);
   }
+  side.set_scale(values);
   side.set_values(values);
   for (size_t l = 0; l < values.size(); ++l) {
     for (size_t i = 0; i < values[l].size(); ++i) {

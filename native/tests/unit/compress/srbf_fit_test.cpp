@@ -103,6 +103,7 @@ SrbfBtf true_model(float high, bool two_sided = false) {
       floats_to_halves(smooth(level, 1, 0, high), level.relief);
       values.push_back(smooth(level, side.coefficients(), below ? 0.2f : 0.3f, 0.2f));
     }
+    side.set_scale(values);
     side.set_values(values);
   }
   return btf;
