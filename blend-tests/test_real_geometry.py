@@ -57,7 +57,9 @@ class RealGeometry(BlenderTest):
         (geometry, btf, model), error = self._pictures("cylinder")
         self.assert_close(error(btf, geometry).mean, 1, 0.03)
         self.assertLess(error(btf, geometry).blocks, 0.05)
-        self.assertLess(error(model, geometry).blocks, 0.12)
+        # Many pairs at once: what single ones are off by cancels.
+        self.assertLess(error(model, geometry).blocks, 0.06)
+        self.assert_close(error(model, geometry).mean, 1, 0.03)
 
     def test_the_report_has_seconds_and_bytes(self):
         folder, _ = self._taken()
