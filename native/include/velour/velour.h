@@ -98,10 +98,12 @@ VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_
  * by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds, seed,
  * all_data, warnings, order (as of a fit), source {name, format, sha256}. Scattered: also views, max_lobes_per_view.
  * Parametric: also cells, view_range [from, to] in degrees, spaces {light, half}, the lobes of each, and scene (as of
- * a fit) when it was reduced. Of BTFs (model "factored-btf" or "srbf-btf") instead: method, psnr, psnr_held_out, ser,
- * p99, raw_bytes, evaluations_per_second (of one thread, null in older files), seconds, seed, warnings, texels,
- * tile_metres, views, lights, companding; components, or lobes and coefficients (of the side that has most) and sides:
- * view and light ("above", "below"), lobes {tile, texel}, parameter_bytes. */
+ * a fit) when it was reduced. Of BTFs (model "factored-btf", "srbf-btf" or "tensor-btf") instead: method, psnr,
+ * psnr_held_out, ser, p99, raw_bytes, evaluations_per_second (of one thread, null in older files), seconds, seed,
+ * warnings, texels, tile_metres, views, lights, companding; components, or coefficients (of the side that has most), of
+ * SRBFs lobes, and sides: view and light ("above", "below"), parameter_bytes, as (null, or the number of the side that
+ * serves this one, whose own fields are null) and lobes {tile, texel}, or clusters, members, ranks {texel, view, light,
+ * color}, relief. */
 VLR_API vlr_status vlr_model_info_json(vlr_model* model, const char** json);
 /* As vlr_measurement_eval; also the density of the model's own sampler when `pdf` [count] is not NULL. */
 VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t count, const float* wl, float* f,

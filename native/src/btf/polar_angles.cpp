@@ -76,4 +76,13 @@ std::vector<PolarAngles> below(const std::vector<PolarAngles>& directions) {
   return set;
 }
 
+std::vector<Vec3> directions_on_side(const std::vector<PolarAngles>& set, bool below) {
+  std::vector<Vec3> directions;
+  for (const PolarAngles& d : set) {
+    const Vec3 w = unit_direction(d);
+    if ((w.z < 0) == below) directions.emplace_back(w.x, w.y, std::abs(w.z));
+  }
+  return directions;
+}
+
 }  // namespace velour

@@ -29,5 +29,7 @@ std::vector<PolarAngles> capture_directions();
 std::vector<PolarAngles> even_directions(int count);
 /// The mirror images of `directions` below the plane.
 std::vector<PolarAngles> below(const std::vector<PolarAngles>& directions);
+/// Those of a set that lie on one side of the plane, in its order, as unit vectors mirrored to z > 0.
+std::vector<Vec3> directions_on_side(const std::vector<PolarAngles>& set, bool below);
 
 }  // namespace velour

@@ -8,6 +8,7 @@
 
 #include "btf/btf_measurement.h"
 #include "btf/factored_btf.h"
+#include "btf/sides.h"
 #include "srbf/multivariate_lobes.h"
 
 namespace velour {
@@ -51,12 +52,6 @@ struct SrbfSide {
   size_t coefficients() const { return lobe[0].size() + lobe[1].size() + lobe[2].size(); }
   /// Of all coefficients, heights and lobes as they are stored.
   uint64_t parameter_bytes() const;
-};
-
-/// A side that looks as another one does, within the measurement's noise, and takes no bytes of its own.
-struct SharedSide {
-  bool view_below = false, light_below = false;
-  uint32_t side = 0;  // of `sides`
 };
 
 struct SrbfBtf {

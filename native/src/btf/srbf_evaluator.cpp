@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "btf/bilinear_texels.h"
+#include "btf/seen_levels.h"
 
 namespace velour {
 namespace {
@@ -108,14 +109,7 @@ SrbfEvaluator::SrbfEvaluator(std::shared_ptr<const SrbfBtf> btf) : btf_(std::mov
 }
 
 std::optional<uint32_t> SrbfEvaluator::side(bool view_below, bool light_below) const {
-  for (uint32_t i = 0; i < btf_->sides.size(); ++i) {
-    const SrbfSide& side = btf_->sides[i];
-    if (side.view_below == view_below && side.light_below == light_below) return i;
-  }
-  for (const SharedSide& shared : btf_->shared) {
-    if (shared.view_below == view_below && shared.light_below == light_below) return shared.side;
-  }
-  return std::nullopt;
+  return serving_side(*btf_, view_below, light_below);
 }
 
 void SrbfEvaluator::begin(uint32_t side, const Vec3& wv, SrbfPoint& point) const {
@@ -127,21 +121,13 @@ void SrbfEvaluator::begin(uint32_t side, const Vec3& wv, SrbfPoint& point) const
 
 void SrbfEvaluator::add(const Vec2& uv, float level, float weight, SrbfPoint& point) const {
   const Side& side = sides_[point.side];
-  const float place = std::clamp(level, 0.0f, static_cast<float>(side.levels.size() - 1));
-  const auto fine = static_cast<size_t>(place);
-  const float part = place - static_cast<float>(fine);
-  const Vec2 inside = std::isfinite(uv.x + uv.y) ? uv - glm::floor(uv) : Vec2(0.0f);
-  // Once for both levels: where the finer relief is met.
-  const Vec2 seen = side.levels[fine].relief.seen_texel(inside, point.wv);
+  const SeenLevels seen = seen_levels(side.levels, uv, level, point.wv);
   const auto add_level = [&](const Level& from, const Vec2& texel, float w) {
     const ByteTexels texels{from.record.data(), from.relief.width(), from.relief.height(), side.stride};
     add_bilinear_bytes(texels, texel, w, side.step.data(), point.record);
   };
-  add_level(side.levels[fine], seen, weight * (1 - part));
-  if (part == 0) return;
-  const Level &from = side.levels[fine], &to = side.levels[fine + 1];
-  const Vec2 ratio = Vec2(to.relief.width(), to.relief.height()) / Vec2(from.relief.width(), from.relief.height());
-  add_level(to, (seen + 0.5f) * ratio - 0.5f, weight * part);
+  add_level(side.levels[seen.fine], seen.texel, weight * (1 - seen.part));
+  if (seen.part > 0) add_level(side.levels[seen.fine + 1], seen.coarse, weight * seen.part);
 }
 
 void SrbfEvaluator::finish(SrbfPoint& point) const {

@@ -15,6 +15,8 @@ namespace velour {
 /// Immutable; calls are thread-safe and do not allocate.
 class SrbfEvaluator {
  public:
+  using Point = SrbfPoint;
+
   explicit SrbfEvaluator(std::shared_ptr<const SrbfBtf> btf);
 
   const SrbfBtf& btf() const { return *btf_; }
@@ -30,12 +32,19 @@ class SrbfEvaluator {
   void finish(SrbfPoint& point) const;
   /// f of a finished point, never negative. `wl` as wv: in the frame of its side.
   Rgb value(const SrbfPoint& point, const Vec3& wl) const;
+  /// What can be prepared of a direction that many points are asked for: nothing.
+  using Light = Vec3;
+  Light light(uint32_t /*side*/, const Vec3& wl) const { return wl; }
+  /// Of the relief that is seen, blended over its places.
+  Vec3 normal(const SrbfPoint& point) const { return glm::transpose(point.to_normal) * Vec3(0, 0, 1); }
 
  private:
   /// A texel is a record of bytes: its coefficients, those of lobes in the tile's frame first, each part padded, then
   /// the slope of the relief, x and y in sixteen bits each. A lobe stands there once for each axis that it has a
   /// coefficient of.
   struct Level {
+    Vec2 texels() const { return {relief.width(), relief.height()}; }
+    Vec2 seen_texel(const Vec2& place, const Vec3& wv) const { return relief.seen_texel(place, wv); }
     Relief relief;
     AlignedArray<uint8_t> record;  // [row][column][record]
   };

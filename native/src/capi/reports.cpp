@@ -76,6 +76,15 @@ Json count_json(const SrbfBtf& btf) {
   return {{"lobes", lobes}, {"coefficients", coefficients}};
 }
 
+/// Of the side of most coefficients: a texel's.
+Json count_json(const TensorBtf& btf) {
+  size_t coefficients = 0;
+  for (const TensorSide& side : btf.sides) {
+    coefficients = std::max(coefficients, size_t{side.members} * side.rank.texel);
+  }
+  return {{"coefficients", coefficients}};
+}
+
 }  // namespace
 
 Json size_json(const Model& model, uint64_t file_bytes) {
@@ -121,25 +130,44 @@ Json btf_own_json(const Btf& btf) {
 
 Json own_json(const FactoredBtf& btf) { return btf_own_json(btf); }
 
-Json own_json(const SrbfBtf& btf) {
-  Json json = btf_own_json(btf);
-  json["sides"] = Json::array();
-  for (const SrbfSide& side : btf.sides) {
-    json["sides"].push_back({{"view", side.view_below ? "below" : "above"},
-                             {"light", side.light_below ? "below" : "above"},
-                             {"lobes", {{"tile", side.tile_lobes}, {"texel", side.lobes.size() - side.tile_lobes}}},
-                             {"parameter_bytes", side.parameter_bytes()},
-                             {"as", nullptr}});
+const char* where(bool below) { return below ? "below" : "above"; }
+
+/// What only one kind of side has to say.
+Json own_side_json(const SrbfSide& side) {
+  return {{"lobes", {{"tile", side.tile_lobes}, {"texel", side.lobes.size() - side.tile_lobes}}}};
+}
+Json own_side_json(const TensorSide& side) {
+  const TensorSide::Ranks& rank = side.rank;
+  return {{"clusters", side.clusters.size()},
+          {"members", side.members},
+          {"ranks", {{"texel", rank.texel}, {"view", rank.view}, {"light", rank.light}, {"color", rank.color}}},
+          {"relief", !side.levels.at(0).relief.empty()}};
+}
+
+/// The sides of a BTF, then those that another one serves; these have the same fields.
+template <class Btf>
+Json sided_json(const Btf& btf) {
+  Json json = btf_own_json(btf), sides = Json::array();
+  for (const auto& side : btf.sides) {
+    Json& row = sides.emplace_back(Json{{"view", where(side.view_below)}, {"light", where(side.light_below)}});
+    row.update(own_side_json(side));
+    row.update(Json{{"parameter_bytes", side.parameter_bytes()}, {"as", nullptr}});
   }
   for (const SharedSide& shared : btf.shared) {
-    json["sides"].push_back({{"view", shared.view_below ? "below" : "above"},
-                             {"light", shared.light_below ? "below" : "above"},
-                             {"lobes", nullptr},
-                             {"parameter_bytes", 0},
-                             {"as", shared.side}});
+    Json row = sides.at(shared.side);
+    for (auto& [key, value] : row.items()) value = nullptr;
+    row.update(Json{{"view", where(shared.view_below)},
+                    {"light", where(shared.light_below)},
+                    {"parameter_bytes", 0},
+                    {"as", shared.side}});
+    sides.push_back(row);
   }
+  json["sides"] = std::move(sides);
   return json;
 }
+
+Json own_json(const SrbfBtf& btf) { return sided_json(btf); }
+Json own_json(const TensorBtf& btf) { return sided_json(btf); }
 
 /// What the fit found out, of a BRDF.
 Json record_json(const FitRecord& fit) {

@@ -6,8 +6,10 @@
 
 #include "btf/pair_interpolation.h"
 #include "btf/srbf_evaluator.h"
+#include "btf/tensor_evaluator.h"
 #include "compress/evaluation_rate.h"
 #include "compress/make_fitter.h"
+#include "compress/model_images.h"
 #include "compress/sized_fit.h"
 #include "job/error.h"
 #include "model/model_material.h"
@@ -24,44 +26,19 @@ void require_same_texels(const TexelGrid& a, const TexelGrid& b) {
                                             std::to_string(b.height) + "; they must be the same.");
 }
 
-/// The images of a model of a BTF.
-class ModelImages {
- public:
-  explicit ModelImages(const ModelBody& body) {
-    if (const auto* factored = std::get_if<FactoredBtf>(&body)) {
-      grid_ = factored->grid;
-      companding_ = factored->companding;
-      images_ = [images = std::make_shared<FactoredImages>(*factored)](
-                    const DirectionPair& pair, std::vector<float>& rgb) { images->image(pair, rgb); };
-    } else {
-      const auto& srbf = std::get<SrbfBtf>(body);
-      grid_ = srbf.grid;
-      companding_ = srbf.companding;
-      images_ = [evaluator = std::make_shared<SrbfEvaluator>(unowned(srbf))](
-                    const DirectionPair& pair, std::vector<float>& rgb) { srbf_image(*evaluator, pair, rgb); };
-    }
-  }
-
-  BtfErrors compare(const BtfMeasurement& truth, double p99, int threads, Progress& progress) const {
-    require_same_texels(truth.grid(), grid_);
-    return compare_btf(truth, images_, {p99, companding_}, threads, progress);
-  }
-
- private:
-  /// The body outlives the images.
-  static std::shared_ptr<const SrbfBtf> unowned(const SrbfBtf& btf) { return {std::shared_ptr<const void>(), &btf}; }
-
-  TexelGrid grid_;
-  Companding companding_ = Companding::root;
-  BtfImages images_;
-};
+BtfErrors compare_body(const BtfMeasurement& truth, const ModelBody& body, double p99, int threads,
+                       Progress& progress) {
+  with_btf(body, [&](const auto& btf) { require_same_texels(truth.grid(), btf.grid); });
+  const Companding companding = with_btf(body, [](const auto& btf) { return btf.companding; });
+  return compare_btf(truth, images_of(body), {p99, companding}, threads, progress);
+}
 
 const char* name_of(CompressMethod method) { return method == CompressMethod::svd ? "svd" : "srbf"; }
 
 /// Names the measurement and all that the bits of the fit depend on. Whatever changes a fit's numbers changes
 /// kFitVersion.
 std::string checkpoint_key(const BtfMeasurement& measurement, const CompressOptions& options) {
-  constexpr int kFitVersion = 1;
+  constexpr int kFitVersion = 2;
   std::ostringstream key;
   key << kFitVersion << ' ' << measurement.provenance().sha256 << ' ' << measurement.raw_bytes() << ' '
       << name_of(options.method) << ' ' << static_cast<int>(options.companding) << ' ' << options.bytes << ' '
@@ -70,16 +47,25 @@ std::string checkpoint_key(const BtfMeasurement& measurement, const CompressOpti
   return key.str();
 }
 
+/// f of what has sides, without what a material prepares for samples.
+template <typename Evaluator>
+BtfValue value_by(std::shared_ptr<const Evaluator> evaluator) {
+  return
+      [evaluator, point = std::make_shared<typename Evaluator::Point>()](const Vec2& place, const DirectionPair& pair) {
+        evaluator->begin(0, pair.wv, *point);
+        evaluator->add(place, 0, 1, *point);
+        evaluator->finish(*point);
+        return evaluator->value(*point, pair.wl);
+      };
+}
+
 /// f of a model of a BTF.
 BtfValue value_of(const std::shared_ptr<const Model>& model) {
   if (const auto* srbf = std::get_if<SrbfBtf>(&model->body)) {
-    const auto evaluator = std::make_shared<SrbfEvaluator>(std::shared_ptr<const SrbfBtf>(model, srbf));
-    return [evaluator, point = std::make_shared<SrbfPoint>()](const Vec2& place, const DirectionPair& pair) {
-      evaluator->begin(0, pair.wv, *point);
-      evaluator->add(place, 0, 1, *point);
-      evaluator->finish(*point);
-      return evaluator->value(*point, pair.wl);
-    };
+    return value_by(std::make_shared<const SrbfEvaluator>(std::shared_ptr<const SrbfBtf>(model, srbf)));
+  }
+  if (const auto* tensors = std::get_if<TensorBtf>(&model->body)) {
+    return value_by(std::make_shared<const TensorEvaluator>(std::shared_ptr<const TensorBtf>(model, tensors)));
   }
   return [material = make_material(model, 0), point = std::make_shared<PreparedBrdf>()](const Vec2& place,
                                                                                         const DirectionPair& pair) {
@@ -104,7 +90,7 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
   SizedFit found = [&] {
     const Progress::Span fits(progress, kSetup, kFits);
     const auto errors_of = [&](const ModelBody& body, Progress& p) {
-      return ModelImages(body).compare(measurement, record.p99, options.threads, p);
+      return compare_body(measurement, body, record.p99, options.threads, p);
     };
     return fit_at_size(*fitter, errors_of, {options.tolerance, checkpoint}, progress);
   }();
@@ -127,8 +113,7 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
   record.search = std::move(found.trials);
   progress.stage("unseen pairs", kFits, 1.0);
   if (options.held_out) {
-    const ModelImages images(model->body);
-    record.psnr_held_out = images.compare(*options.held_out, record.p99, options.threads, progress).psnr;
+    record.psnr_held_out = compare_body(*options.held_out, model->body, record.p99, options.threads, progress).psnr;
   }
   record.evaluations_per_second = evaluation_rate(value_of(model));
   const Provenance& source = measurement.provenance();
@@ -140,7 +125,7 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
 }
 
 BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, Progress& progress) {
-  return ModelImages(model.body).compare(truth, model.btf.value().p99, threads, progress);
+  return compare_body(truth, model.body, model.btf.value().p99, threads, progress);
 }
 
 BtfErrors compare_with_table(const BtfMeasurement& truth, const BtfMeasurement& table, double p99, int threads,

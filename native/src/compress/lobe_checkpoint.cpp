@@ -49,11 +49,13 @@ void keep_order(FitCheckpoint& checkpoint, const std::string& stage, const LobeO
 
 bool take_kept_lobes(const FitCheckpoint& checkpoint, const std::string& stage, SharedLobes& lobes) {
   const size_t count = lobes.lobes.size();
-  const auto vectors = checkpoint.matrix(stage + ".vectors", static_cast<Eigen::Index>(count), 9);
+  const auto vectors =
+      checkpoint.matrix(stage + ".vectors", static_cast<Eigen::Index>(count), MultivariateLobe::kNumbers);
   if (!vectors) return false;
   for (size_t j = 0; j < count; ++j) {
-    const float* v = vectors->row(static_cast<Eigen::Index>(j)).data();
-    lobes.lobes[j] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}};
+    for (int k = 0; k < MultivariateLobe::kNumbers; ++k) {
+      lobes.lobes[j][k] = (*vectors)(static_cast<Eigen::Index>(j), k);
+    }
   }
   for (size_t a = 1; a < 3; ++a) {
     const auto numbers = checkpoint.wholes(of_axis(stage + ".axis", a), count, count - 1);
@@ -64,11 +66,11 @@ bool take_kept_lobes(const FitCheckpoint& checkpoint, const std::string& stage, 
 }
 
 void keep_lobes(FitCheckpoint& checkpoint, const std::string& stage, const SharedLobes& lobes) {
-  RowMatrix vectors(static_cast<Eigen::Index>(lobes.lobes.size()), 9);
+  RowMatrix vectors(static_cast<Eigen::Index>(lobes.lobes.size()), MultivariateLobe::kNumbers);
   for (size_t j = 0; j < lobes.lobes.size(); ++j) {
-    const MultivariateLobe& lobe = lobes.lobes[j];
-    const Vec3* const of_lobe[] = {&lobe.light, &lobe.view, &lobe.half};
-    for (int k = 0; k < 9; ++k) vectors(static_cast<Eigen::Index>(j), k) = (*of_lobe[k / 3])[k % 3];
+    for (int k = 0; k < MultivariateLobe::kNumbers; ++k) {
+      vectors(static_cast<Eigen::Index>(j), k) = lobes.lobes[j][k];
+    }
   }
   checkpoint.keep(stage + ".vectors", vectors);
   for (size_t a = 1; a < 3; ++a) {

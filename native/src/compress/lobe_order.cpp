@@ -1,6 +1,7 @@
 #include "compress/lobe_order.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "btf/srbf_btf.h"
 #include "compress/lobe_values.h"
@@ -10,15 +11,20 @@
 namespace velour {
 namespace {
 
-/// A direction with z in [least_z, 1] times a bandwidth, evenly distributed by area and logarithm.
+/// Evenly distributed by logarithm.
+float random_bandwidth(RandomStream& random, float narrowest, float widest) {
+  return narrowest * std::pow(widest / narrowest, random.next());
+}
+
+/// A direction with z in [least_z, 1] times a bandwidth, evenly distributed by area.
 Vec3 random_vector(RandomStream& random, float least_z, float narrowest, float widest) {
   const float z = std::lerp(least_z, 1.0f, random.next()), phi = 2 * kPi * random.next(), s = std::sqrt(1 - z * z);
-  return Vec3(s * std::cos(phi), s * std::sin(phi), z) * (narrowest * std::pow(widest / narrowest, random.next()));
+  return Vec3(s * std::cos(phi), s * std::sin(phi), z) * random_bandwidth(random, narrowest, widest);
 }
 
 MultivariateLobe random_lobe(RandomStream& random, bool texel) {
   MultivariateLobe lobe;
-  const int kind = static_cast<int>(random.next() * 8);
+  const int kind = static_cast<int>(random.next() * 9);
   // Highlights of texels stand about their normals.
   const float half_z = texel ? 0.97f : 0.2f;
   if (kind < 3) {
@@ -31,6 +37,9 @@ MultivariateLobe random_lobe(RandomStream& random, bool texel) {
   } else if (kind == 6) {
     lobe.half = random_vector(random, half_z, 4, 400);
     lobe.light = random_vector(random, 0, 0.7f, 20);
+  } else if (kind == 7) {
+    lobe.phase = random_bandwidth(random, 0.7f, 15);
+    if (random.next() < 0.5f) lobe.light = random_vector(random, 0, 0.7f, 20);
   } else {
     lobe.view = random_vector(random, 0.1f, 0.5f, 20);
   }

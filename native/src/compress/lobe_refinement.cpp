@@ -1,27 +1,30 @@
 #include "compress/lobe_refinement.h"
 
+#include <algorithm>
+
 #include "compress/projected_error.h"
 #include "fit/lbfgs.h"
 
 namespace velour {
 namespace {
 
-/// Vectors of lobes as the parameters of a descent, each measured by its length at the start, so that broad and narrow
-/// lobes move alike.
+/// The numbers of lobes as the parameters of a descent, those of each argument measured by their length at the start,
+/// so that broad and narrow lobes move alike.
 class LobeVectors {
  public:
   explicit LobeVectors(std::vector<MultivariateLobe> lobes) : lobes_(std::move(lobes)) {
     for (MultivariateLobe& lobe : lobes_) {
-      for (Vec3* v : {&lobe.light, &lobe.view, &lobe.half}) {
-        // A vector of no length has no slope to leave by.
-        if (glm::length(*v) == 0) *v = Vec3(0, 0, kBroadest);
-        unit_.push_back(1 + static_cast<double>(glm::length(*v)));
+      for (int a = 0; a < MultivariateLobe::kArguments; ++a) {
+        // What has no length has no slope to leave by.
+        const int last = std::min(3 * a + 2, MultivariateLobe::kNumbers - 1);
+        if (lobe.length(a) == 0) lobe[last] = kBroadest;
+        for (int i = 3 * a; i <= last; ++i) unit_.push_back(1 + static_cast<double>(lobe.length(a)));
       }
     }
   }
 
   Eigen::VectorXd start() {
-    Eigen::VectorXd x(static_cast<Eigen::Index>(3 * unit_.size()));
+    Eigen::VectorXd x(static_cast<Eigen::Index>(unit_.size()));
     for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = static_cast<double>(component(lobes_, i)) / unit(i);
     return x;
   }
@@ -38,15 +41,14 @@ class LobeVectors {
 
  private:
   static constexpr float kBroadest = 0.05f;
-  double unit(Eigen::Index i) const { return unit_[static_cast<size_t>(i) / 3]; }
+  double unit(Eigen::Index i) const { return unit_[static_cast<size_t>(i)]; }
   static float& component(std::vector<MultivariateLobe>& lobes, Eigen::Index i) {
-    MultivariateLobe& lobe = lobes[static_cast<size_t>(i) / 9];
-    Vec3* const vectors[] = {&lobe.light, &lobe.view, &lobe.half};
-    return (*vectors[i / 3 % 3])[static_cast<int>(i % 3)];
+    const auto number = static_cast<int>(i);
+    return lobes[static_cast<size_t>(number / MultivariateLobe::kNumbers)][number % MultivariateLobe::kNumbers];
   }
 
   std::vector<MultivariateLobe> lobes_;
-  std::vector<double> unit_;
+  std::vector<double> unit_;  // of each number
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ constexpr float kRidge = 1e-5f;  // of coefficients, relative to a lobe of value
 
 struct ProjectedError::Part {
   double error = 0;
-  Eigen::MatrixXf slope;  // 9 x lobe
+  Eigen::MatrixXf slope;  // number x lobe
 };
 
 ProjectedError::ProjectedError(const std::vector<SurfacePoint>& points, uint32_t tile_lobes, int threads,
@@ -23,11 +23,12 @@ ProjectedError::ProjectedError(const std::vector<SurfacePoint>& points, uint32_t
   for (const SurfacePoint& point : points) {
     auto& of_point = argument_.emplace_back();
     for (size_t frame = 0; frame < 2; ++frame) {
-      of_point[frame].resize(9, static_cast<Eigen::Index>(point.pair.size()));
+      of_point[frame].resize(MultivariateLobe::kNumbers, static_cast<Eigen::Index>(point.pair.size()));
       for (size_t i = 0; i < point.pair.size(); ++i) {
         const LobeArguments at = frame == 0 ? point.pair[i] : point.pair[i].turned(point.to_normal);
-        const Vec3* const vectors[] = {&at.wl, &at.wv, &at.half};
-        for (int k = 0; k < 9; ++k) of_point[frame](k, static_cast<Eigen::Index>(i)) = (*vectors[k / 3])[k % 3];
+        for (int k = 0; k < MultivariateLobe::kNumbers; ++k) {
+          of_point[frame](k, static_cast<Eigen::Index>(i)) = at[k];
+        }
       }
     }
   }
@@ -37,7 +38,7 @@ double ProjectedError::operator()(const std::vector<MultivariateLobe>& lobes, Ei
   const LobeValues values(lobes, tile_lobes_);
   std::vector<Part> part(points_.size());
   parallel_pieces(points_.size(), threads_, progress_, [&](size_t i) { part[i] = of_point(i, lobes, values); });
-  slope.setZero(9, static_cast<Eigen::Index>(lobes.size()));
+  slope.setZero(MultivariateLobe::kNumbers, static_cast<Eigen::Index>(lobes.size()));
   double error = 0;
   for (const Part& p : part) {  // in order: the same bits for any number of threads
     error += p.error;
@@ -50,7 +51,7 @@ ProjectedError::Part ProjectedError::of_point(size_t number, const std::vector<M
                                               const LobeValues& values) const {
   const SurfacePoint& point = points_[number];
   const auto count = static_cast<Eigen::Index>(lobes.size());
-  Part part{0, Eigen::MatrixXf::Zero(9, count)};
+  Part part{0, Eigen::MatrixXf::Zero(MultivariateLobe::kNumbers, count)};
   if (point.pair.empty()) return part;
   const Eigen::MatrixXf column = values.at(point, point.pair.size());
   const Eigen::Map<const Eigen::VectorXf> truth(point.value[0].data(), column.rows());
@@ -70,11 +71,9 @@ ProjectedError::Part ProjectedError::of_point(size_t number, const std::vector<M
   for (Eigen::Index j = 0; j < count; ++j) {
     const float total = weight.col(j).sum();
     const MultivariateLobe& lobe = lobes[static_cast<size_t>(j)];
-    const Vec3* const vectors[] = {&lobe.light, &lobe.view, &lobe.half};
-    for (int v = 0; v < 3; ++v) {
-      const float length = glm::length(*vectors[v]);
-      if (!(length > 0)) continue;
-      for (int k = 0; k < 3; ++k) part.slope(3 * v + k, j) -= total * (*vectors[v])[k] / length;
+    for (int k = 0; k < MultivariateLobe::kNumbers; ++k) {
+      const float length = lobe.length(k / 3);
+      if (length > 0) part.slope(k, j) -= total * lobe[k] / length;
     }
     part.slope.col(j) *= -2 * coefficient[j];
   }

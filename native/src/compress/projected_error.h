@@ -30,7 +30,8 @@ class ProjectedError {
   uint32_t tile_lobes_;
   int threads_;
   const Progress& progress_;
-  std::vector<std::array<Eigen::Matrix<float, 9, Eigen::Dynamic>, 2>> argument_;  // of each point, in both frames
+  std::vector<std::array<Eigen::Matrix<float, MultivariateLobe::kNumbers, Eigen::Dynamic>, 2>>
+      argument_;  // of each point, in both frames
 };
 
 }  // namespace velour

@@ -5,24 +5,21 @@
 namespace velour {
 namespace {
 
-/// Calls `use` with a BTF's body.
-template <typename Use>
-auto with_btf(const ModelBody& body, const Use& use) {
-  if (const auto* factored = std::get_if<FactoredBtf>(&body)) return use(*factored);
-  return use(std::get<SrbfBtf>(body));
-}
-
 const std::vector<TexelLevel>& levels_of(const FactoredBtf& btf) { return btf.levels; }
 /// Those of all sides have the same sizes.
-const std::vector<SrbfLevel>& levels_of(const SrbfBtf& btf) { return btf.sides.at(0).levels; }
+template <typename Btf>
+const auto& levels_of(const Btf& btf) {
+  return btf.sides.at(0).levels;
+}
 
-template <typename Level>
-void leave_out(std::vector<Level>& levels, size_t count) {
+template <typename Levels>
+void leave_out_of(Levels& levels, size_t count) {
   levels.erase(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(count));
 }
-void leave_out(FactoredBtf& btf, size_t count) { leave_out(btf.levels, count); }
-void leave_out(SrbfBtf& btf, size_t count) {
-  for (SrbfSide& side : btf.sides) leave_out(side.levels, count);
+void leave_out(FactoredBtf& btf, size_t count) { leave_out_of(btf.levels, count); }
+template <typename Btf>
+void leave_out(Btf& btf, size_t count) {
+  for (auto& side : btf.sides) leave_out_of(side.levels, count);
 }
 
 /// Whether a tile keeps its shape with the texels of `level`.
@@ -30,16 +27,17 @@ bool keeps_shape(const TexelGrid& grid, const auto& level) {
   return grid.tile_metres || uint64_t{level.width} * grid.height == uint64_t{level.height} * grid.width;
 }
 
-bool shows_nothing(const ModelBody& body) {
-  const auto* srbf = std::get_if<SrbfBtf>(&body);
-  return srbf && srbf->sides.empty();
+bool shows_nothing(const FactoredBtf&) { return false; }
+template <typename Btf>
+bool shows_nothing(const Btf& btf) {
+  return btf.sides.empty();
 }
 
 }  // namespace
 
 size_t unresolved_levels(const ModelBody& body, const SurfaceDomain& seen) {
-  if (shows_nothing(body)) return 0;
   return with_btf(body, [&](const auto& btf) {
+    if (shows_nothing(btf)) return size_t{0};
     const auto& levels = levels_of(btf);
     size_t count = 0;
     while (count + 1 < levels.size()) {

@@ -21,14 +21,13 @@ uint64_t bytes_of(const ModelBody& body) {
   return std::visit([](const auto& b) { return b.parameter_bytes(); }, body);
 }
 
-Companding companding_of(const ModelBody& body) {
-  if (const auto* factored = std::get_if<FactoredBtf>(&body)) return factored->companding;
-  return std::get<SrbfBtf>(body).companding;
+size_t levels_in(const FactoredBtf& btf) { return btf.levels.size(); }
+template <typename Btf>
+size_t levels_in(const Btf& btf) {
+  return btf.sides.at(0).levels.size();
 }
-
-size_t levels_in(const ModelBody& body) {
-  if (const auto* factored = std::get_if<FactoredBtf>(&body)) return factored->levels.size();
-  return std::get<SrbfBtf>(body).sides.at(0).levels.size();
+size_t levels_of(const ModelBody& body) {
+  return with_btf(body, [](const auto& btf) { return levels_in(btf); });
 }
 
 class Refit {
@@ -40,7 +39,7 @@ class Refit {
         progress_(progress),
         arena_(arena_concurrency(options.threads)),
         pictures_(seen, *options.for_scene, progress) {
-    options_.companding = companding_of(full);
+    options_.companding = with_btf(full, [](const auto& btf) { return btf.companding; });
     options_.tolerance = 0;
     options_.method = std::holds_alternative<FactoredBtf>(full) ? CompressMethod::svd : CompressMethod::srbf;
   }
@@ -109,8 +108,8 @@ class Refit {
 
 std::optional<SceneRefit> refit_for_scene(const BtfMeasurement& measurement, const ModelBody& full,
                                           const ModelBody& levels, const CompressOptions& options, Progress& progress) {
-  if (sides_of(measurement.layout()).size() != 1) return std::nullopt;
-  const auto halvings = static_cast<uint32_t>(levels_in(full) - levels_in(levels));
+  if (std::holds_alternative<TensorBtf>(full) || sides_of(measurement.layout()).size() != 1) return std::nullopt;
+  const auto halvings = static_cast<uint32_t>(levels_of(full) - levels_of(levels));
   const auto seen =
       scene_btf(measurement, halvings, views_around(measurement.layout(), view_range(options.for_scene->domain)));
   return Refit(*seen, full, options, progress).best(levels);

@@ -17,7 +17,7 @@ struct SceneRefit {
 /// with a half of that and so on while the error of the pictures stays within kMoreError of that of `full`; with a
 /// quarter where an eighth is too little. Where a quarter is, too: the eighth, if it errs less than `levels`. Else
 /// nothing; nor where the observation tells no light, the BTF has entries that are not finite, or the BTF has two
-/// sides, since an observation does not say which it saw.
+/// sides, since an observation does not say which it saw; nor of clustered tensors, whose levels alone are left out.
 std::optional<SceneRefit> refit_for_scene(const BtfMeasurement& measurement, const ModelBody& full,
                                           const ModelBody& levels, const CompressOptions& options, Progress& progress);
 

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <numeric>
 
 #include "btf/pair_interpolation.h"
-#include "btf/srbf_evaluator.h"
-#include "compress/btf_compare.h"
+#include "compress/model_images.h"
 #include "compress/scene_btf.h"
 
 namespace velour {
@@ -63,23 +61,6 @@ std::vector<float> true_radiance(const BtfMeasurement& truth, const std::map<uin
   return halved_image(std::move(sum), truth.grid(), 3, 1);
 }
 
-BtfImages images_of(const ModelBody& body) {
-  if (const auto* factored = std::get_if<FactoredBtf>(&body)) {
-    return [images = std::make_shared<FactoredImages>(*factored)](const DirectionPair& pair, std::vector<float>& rgb) {
-      images->image(pair, rgb);
-    };
-  }
-  const std::shared_ptr<const SrbfBtf> unowned(std::shared_ptr<const void>(), &std::get<SrbfBtf>(body));
-  return [evaluator = std::make_shared<SrbfEvaluator>(unowned)](const DirectionPair& pair, std::vector<float>& rgb) {
-    srbf_image(*evaluator, pair, rgb);
-  };
-}
-
-const TexelGrid& grid_of_body(const ModelBody& body) {
-  if (const auto* factored = std::get_if<FactoredBtf>(&body)) return factored->grid;
-  return std::get<SrbfBtf>(body).grid;
-}
-
 /// How often `grid` must be halved to have `width` texels.
 uint32_t halvings_to(const TexelGrid& grid, uint32_t width) {
   uint32_t halvings = 0;
@@ -116,7 +97,7 @@ SeenPictures::SeenPictures(const BtfMeasurement& truth, const SceneObservation& 
 
 double SeenPictures::error(const ModelBody& body, const Progress& progress) const {
   const BtfImages images = images_of(body);
-  const TexelGrid& grid = grid_of_body(body);
+  const TexelGrid grid = with_btf(body, [](const auto& btf) { return btf.grid; });
   std::vector<double> errors(pictures_.size());
   tbb::parallel_for(size_t{0}, pictures_.size(), [&](size_t p) {
     const Picture& picture = pictures_[p];

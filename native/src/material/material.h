@@ -5,6 +5,7 @@
 #include <span>
 
 #include "btf/srbf_point.h"
+#include "btf/tensor_point.h"
 #include "material/btf_table_point.h"
 #include "material/factored_point.h"
 #include "material/ggx_sampler.h"
@@ -29,6 +30,7 @@ struct PreparedBrdf {
   PrincipledLobes principled;  // textured Principled materials: those of the site
   FactoredPoint factored;      // BTFs as sums of products: those of the site and the view
   SrbfPoint srbf;              // BTFs of multivariate SRBFs: the same
+  TensorPoint tensor;          // BTFs of clustered tensors: the same
   BtfTablePoint btf_table;     // BTFs themselves: what is blended at the site for the view
 };
 

@@ -11,6 +11,7 @@
 #include "brdf/scattered_brdf.h"
 #include "btf/factored_btf.h"
 #include "btf/srbf_btf.h"
+#include "btf/tensor_btf.h"
 #include "model/btf_record.h"
 #include "model/order_curve.h"
 #include "model/scene_record.h"
@@ -42,7 +43,7 @@ struct SourceRecord {
 };
 
 /// Kinds of model; a new kind is appended.
-using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf, FactoredBtf, SrbfBtf>;
+using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf, FactoredBtf, SrbfBtf, TensorBtf>;
 
 struct Model {
   ModelBody body;
@@ -61,10 +62,33 @@ bool is_reduced(const Model& model);
 /// Whether it is of a BTF, with a BtfRecord, instead of a BRDF.
 bool is_btf(const Model& model);
 
+/// Whether a kind of body is of a BTF.
+template <typename Body>
+concept BtfBody = requires(const Body& body) {
+  body.layout;
+  body.grid;
+  body.companding;
+};
+
+/// Calls `use` with the body of a BTF's model, whatever its kind. Throws std::bad_variant_access for a BRDF's.
+template <typename Use>
+auto with_btf(const ModelBody& body, const Use& use) {
+  using Result = decltype(use(std::get<FactoredBtf>(body)));
+  return std::visit(
+      [&]<typename Body>(const Body& b) -> Result {
+        if constexpr (BtfBody<Body>) {
+          return use(b);
+        } else {
+          throw std::bad_variant_access();
+        }
+      },
+      body);
+}
+
 /// The texels of a BTF's model; null of a BRDF's.
 const TexelGrid* grid_of(const Model& model);
 
-/// "scattered", "parametric", "factored-btf", "srbf-btf".
+/// "scattered", "parametric", "factored-btf", "srbf-btf", "tensor-btf".
 const char* model_kind(const Model& model);
 
 }  // namespace velour

@@ -12,11 +12,12 @@
 #include "model/scattered_file.h"
 #include "model/scene_json.h"
 #include "model/srbf_btf_file.h"
+#include "model/tensor_btf_file.h"
 
 namespace velour {
 namespace {
 
-constexpr char kFormatVersion[] = "1.5";
+constexpr char kFormatVersion[] = "1.6";
 constexpr int kMajorVersion = 1;
 constexpr char kKind[] = "model";
 constexpr char kScene[] = "velour.scene", kBtf[] = "velour.btf.record";
@@ -25,16 +26,18 @@ constexpr uint64_t kMaxFileBytes = uint64_t{1} << 30;
 // One overload a kind of model.
 
 constexpr char kScattered[] = "scattered", kParametric[] = "parametric", kFactored[] = "factored-btf",
-               kSrbf[] = "srbf-btf";
+               kSrbf[] = "srbf-btf", kTensor[] = "tensor-btf";
 const char* kind_of(const ScatteredBrdf&) { return kScattered; }
 const char* kind_of(const ParametricBrdf&) { return kParametric; }
 const char* kind_of(const FactoredBtf&) { return kFactored; }
 const char* kind_of(const SrbfBtf&) { return kSrbf; }
+const char* kind_of(const TensorBtf&) { return kTensor; }
 
 void write_body(const ScatteredBrdf& brdf, TensorFile& file) { write_scattered(brdf, file); }
 void write_body(const ParametricBrdf& brdf, TensorFile& file) { write_parametric(brdf, file); }
 void write_body(const FactoredBtf& btf, TensorFile& file) { write_factored(btf, file); }
 void write_body(const SrbfBtf& btf, TensorFile& file) { write_srbf_btf(btf, file); }
+void write_body(const TensorBtf& btf, TensorFile& file) { write_tensor_btf(btf, file); }
 
 ModelBody read_body(const ModelFields& fields) {
   const std::string& kind = fields.attribute("velour.model");
@@ -42,6 +45,7 @@ ModelBody read_body(const ModelFields& fields) {
   if (kind == kParametric) return read_parametric(fields);
   if (kind == kFactored) return read_factored(fields);
   if (kind == kSrbf) return read_srbf_btf(fields);
+  if (kind == kTensor) return read_tensor_btf(fields);
   throw Error(Status::unsupported, fields.name() + ": velour.model is '" + kind +
                                        "', a kind of model that this Velour does not know. Use a newer one.");
 }
@@ -67,13 +71,12 @@ const char* model_kind(const Model& model) {
 }
 
 bool is_btf(const Model& model) {
-  return std::holds_alternative<FactoredBtf>(model.body) || std::holds_alternative<SrbfBtf>(model.body);
+  return std::visit([]<typename Body>(const Body&) { return BtfBody<Body>; }, model.body);
 }
 
 const TexelGrid* grid_of(const Model& model) {
-  if (const auto* factored = std::get_if<FactoredBtf>(&model.body)) return &factored->grid;
-  const auto* srbf = std::get_if<SrbfBtf>(&model.body);
-  return srbf ? &srbf->grid : nullptr;
+  if (!is_btf(model)) return nullptr;
+  return with_btf(model.body, [](const auto& btf) { return &btf.grid; });
 }
 
 bool is_reduced(const Model& model) {

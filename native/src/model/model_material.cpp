@@ -5,6 +5,7 @@
 #include "material/parametric_material.h"
 #include "material/scattered_material.h"
 #include "material/srbf_btf_material.h"
+#include "material/tensor_btf_material.h"
 
 namespace velour {
 namespace {
@@ -21,6 +22,7 @@ using Scattered = std::shared_ptr<const ScatteredBrdf>;
 using Parametric = std::shared_ptr<const ParametricBrdf>;
 using Factored = std::shared_ptr<const FactoredBtf>;
 using Srbf = std::shared_ptr<const SrbfBtf>;
+using Tensors = std::shared_ptr<const TensorBtf>;
 
 template <typename... Makes>
 struct Either : Makes... {
@@ -33,7 +35,8 @@ std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>
   return made_of_body(model, Either{[&](const Scattered& body) { return make_scattered_material(body, neighbors); },
                                     [&](const Parametric& body) { return make_parametric_material(body); },
                                     [&](const Factored& body) { return make_factored_material(body); },
-                                    [&](const Srbf& body) { return make_srbf_btf_material(body); }});
+                                    [&](const Srbf& body) { return make_srbf_btf_material(body); },
+                                    [&](const Tensors& body) { return make_tensor_btf_material(body); }});
 }
 
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,

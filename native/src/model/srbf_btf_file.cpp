@@ -3,16 +3,14 @@
 #include <cmath>
 
 #include "image/half_image.h"
-#include "model/btf_parts.h"
+#include "model/btf_sides.h"
 
 namespace velour {
 namespace {
 
-constexpr char kSides[] = "btf.sides", kShared[] = "btf.shared";
-
 /// Names of the parts of side `number`.
 struct SideParts {
-  explicit SideParts(size_t number) : prefix("btf.side." + std::to_string(number) + ".") {}
+  explicit SideParts(size_t number) : prefix(side_prefix(number)) {}
   std::string lobes() const { return prefix + "lobes"; }
   std::string frames() const { return prefix + "frames"; }
   std::string coefficients() const { return prefix + "coefficients"; }
@@ -24,21 +22,12 @@ struct SideParts {
   std::string prefix;
 };
 
-/// Pictures that a viewer shows: a byte over 256 is exact as a half float.
-constexpr float kOfByte = 1.0f / 256;
-
-Tensor bytes_tensor(const SrbfLevel& level, size_t coefficients) {
-  Tensor tensor{{coefficients, level.height, level.width}, {}, true};
-  for (const uint8_t byte : transposed(level.value, coefficients)) tensor.data.push_back(byte * kOfByte);
-  return tensor;
-}
-
 void write_side(const SrbfSide& side, const SideParts& part, TensorFile& file) {
-  Tensor& lobes = file.tensors[part.lobes()] = {{side.lobes.size(), 9}, {}, false};
+  Tensor& lobes = file.tensors[part.lobes()] = {{side.lobes.size(), MultivariateLobe::kNumbers}, {}, false};
   Tensor& frames = file.tensors[part.frames()] = {{side.lobes.size()}, {}, true};
   for (size_t j = 0; j < side.lobes.size(); ++j) {
     const MultivariateLobe& lobe = side.lobes[j];
-    for (const Vec3& v : {lobe.light, lobe.view, lobe.half}) lobes.data.insert(lobes.data.end(), {v.x, v.y, v.z});
+    for (int i = 0; i < MultivariateLobe::kNumbers; ++i) lobes.data.push_back(lobe[i]);
     frames.data.push_back(j < side.tile_lobes ? 0.0f : 1.0f);
   }
   Tensor& coefficients = file.tensors[part.coefficients()] = {{side.coefficients(), 2}, {}, true};
@@ -47,19 +36,25 @@ void write_side(const SrbfSide& side, const SideParts& part, TensorFile& file) {
       coefficients.data.insert(coefficients.data.end(), {static_cast<float>(a), static_cast<float>(lobe)});
     }
   }
-  Tensor& scales = file.tensors[part.scales()] = {{side.coefficients(), 2}, {}, false};
-  for (const ByteScale& s : side.scale) scales.data.insert(scales.data.end(), {s.least, s.step});
+  file.tensors[part.scales()] = scales_tensor(side.scale, {side.coefficients()});
   for (size_t l = 0; l < side.levels.size(); ++l) {
     const SrbfLevel& level = side.levels[l];
     file.tensors[part.relief(l)] = tensor_of(level.relief, {level.height, level.width});
-    file.tensors[part.bytes(l)] = bytes_tensor(level, side.coefficients());
+    file.tensors[part.bytes(l)] = byte_maps(level.value, side.coefficients(), level.width, level.height);
   }
+}
+
+/// Of a lobe; files before 1.6 have none of the phase.
+size_t lobe_numbers(const Tensor& lobes) {
+  constexpr size_t kBefore = 9;
+  return lobes.shape.size() == 2 && lobes.shape[1] == kBefore ? kBefore : size_t{MultivariateLobe::kNumbers};
 }
 
 void read_lobes(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
   constexpr float kSharpest = 1e6f;  // bandwidths of any use are far below
-  const Tensor& lobes = fields.rows(part.lobes(), 9);
-  const size_t count = lobes.data.size() / 9;
+  const size_t numbers = lobe_numbers(fields.tensor(part.lobes()));
+  const Tensor& lobes = fields.rows(part.lobes(), numbers);
+  const size_t count = lobes.data.size() / numbers;
   if (count > SrbfBtf::kMaxLobes) {
     fields.fail(part.lobes() + " has " + std::to_string(count) + " lobes; a model has at most " +
                 std::to_string(SrbfBtf::kMaxLobes) + ".");
@@ -67,8 +62,9 @@ void read_lobes(const ModelFields& fields, const SideParts& part, SrbfSide& side
   for (size_t i = 0; i < lobes.data.size(); ++i) {
     if (!(std::abs(lobes.data[i]) <= kSharpest)) fields.fail_at(part.lobes(), i, lobes.data[i], "at most 1e6");
   }
-  for (const float* v = lobes.data.data(); side.lobes.size() < count; v += 9) {
-    side.lobes.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}});
+  side.lobes.resize(count);
+  for (size_t i = 0; i < lobes.data.size(); ++i) {
+    side.lobes[i / numbers][static_cast<int>(i % numbers)] = lobes.data[i];
   }
   const Tensor& frames = fields.tensor(part.frames());
   expect_shape(fields, part.frames(), frames, {count});
@@ -100,33 +96,6 @@ void read_coefficients(const ModelFields& fields, const SideParts& part, SrbfSid
   if (side.lobe[0].size() != side.lobes.size()) fields.fail(part.coefficients() + " leaves out lobes of axis 0.");
 }
 
-void read_scales(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
-  const Tensor& tensor = fields.tensor(part.scales());
-  expect_shape(fields, part.scales(), tensor, {side.coefficients(), 2});
-  for (size_t i = 0; i < tensor.data.size(); ++i) {
-    const float value = tensor.data[i];
-    if (!(std::abs(value) <= kLargestHalf && (i % 2 == 0 || value >= 0))) {
-      fields.fail_at(part.scales(), i, value, i % 2 == 0 ? "at most 65504" : "from 0 to 65504");
-    }
-  }
-  for (size_t k = 0; k < side.coefficients(); ++k) side.scale.push_back({tensor.data[2 * k], tensor.data[2 * k + 1]});
-}
-
-std::vector<uint8_t> read_bytes(const ModelFields& fields, const std::string& part, const SrbfLevel& level,
-                                size_t coefficients) {
-  const Tensor& tensor = fields.tensor(part);
-  expect_shape(fields, part, tensor, {coefficients, level.height, level.width});
-  std::vector<uint8_t> bytes;
-  for (size_t i = 0; i < tensor.data.size(); ++i) {
-    const float byte = tensor.data[i] / kOfByte;
-    if (!(byte >= 0 && byte <= 255 && byte == std::floor(byte))) {
-      fields.fail_at(part, i, tensor.data[i], "0 to 255 over 256");
-    }
-    bytes.push_back(static_cast<uint8_t>(byte));
-  }
-  return transposed(bytes, size_t{level.width} * level.height);
-}
-
 /// Files before 1.5 have half floats in place of bytes; they become bytes here.
 void read_half_values(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
   std::vector<std::vector<float>> values;
@@ -151,62 +120,32 @@ SrbfSide read_side(const ModelFields& fields, const SideParts& part, const Texel
     read_half_values(fields, part, side);
     return side;
   }
-  read_scales(fields, part, side);
+  side.scale = read_scales(fields, part.scales(), {side.coefficients()});
   for (size_t l = 0; l < side.levels.size(); ++l) {
-    side.levels[l].value = read_bytes(fields, part.bytes(l), side.levels[l], side.coefficients());
+    SrbfLevel& level = side.levels[l];
+    level.value = read_byte_maps(fields, part.bytes(l), side.coefficients(), level.width, level.height);
   }
   return side;
-}
-
-std::vector<SharedSide> read_shared(const ModelFields& fields, size_t sides) {
-  std::vector<SharedSide> shared;
-  if (!fields.has(kShared)) return shared;
-  const Tensor& tensor = fields.rows(kShared, 3);
-  if (tensor.data.size() > 9) fields.fail(std::string(kShared) + " has more than three rows.");
-  for (size_t i = 0; i < tensor.data.size(); ++i) {
-    const float value = tensor.data[i], most = i % 3 == 2 ? static_cast<float>(sides) - 1 : 1.0f;
-    if (!(value >= 0 && value <= most && value == std::floor(value))) {
-      fields.fail_at(kShared, i, value, "0 (above) or 1 (below), and the number of a side");
-    }
-  }
-  for (const float* v = tensor.data.data(); shared.size() < tensor.data.size() / 3; v += 3) {
-    shared.push_back({v[0] != 0, v[1] != 0, static_cast<uint32_t>(v[2])});
-  }
-  return shared;
 }
 
 }  // namespace
 
 void write_srbf_btf(const SrbfBtf& btf, TensorFile& file) {
   write_btf_frame({btf.layout, btf.grid, btf.companding, btf.axes}, file);
-  Tensor& sides = file.tensors[kSides] = {{btf.sides.size(), 2}, {}, true};
-  for (size_t s = 0; s < btf.sides.size(); ++s) {
-    const SrbfSide& side = btf.sides[s];
-    sides.data.insert(sides.data.end(), {side.view_below ? 1.0f : 0.0f, side.light_below ? 1.0f : 0.0f});
-    write_side(side, SideParts(s), file);
-  }
-  if (btf.shared.empty()) return;
-  Tensor& shared = file.tensors[kShared] = {{btf.shared.size(), 3}, {}, true};
-  for (const SharedSide& s : btf.shared) {
-    shared.data.insert(shared.data.end(),
-                       {s.view_below ? 1.0f : 0.0f, s.light_below ? 1.0f : 0.0f, static_cast<float>(s.side)});
-  }
+  write_side_table(side_table(btf), file);
+  for (size_t s = 0; s < btf.sides.size(); ++s) write_side(btf.sides[s], SideParts(s), file);
 }
 
 SrbfBtf read_srbf_btf(const ModelFields& fields) {
   const BtfFrame frame = read_btf_frame(fields);
   SrbfBtf btf{frame.layout, frame.grid, frame.companding, frame.axes, {}};
-  const Tensor& sides = fields.rows(kSides, 2);
-  if (sides.data.size() > 8) fields.fail(std::string(kSides) + " has more than four rows.");
-  for (size_t i = 0; i < sides.data.size(); ++i) {
-    if (sides.data[i] != 0 && sides.data[i] != 1) fields.fail_at(kSides, i, sides.data[i], "0 (above) or 1 (below)");
+  SideTable table = read_side_table(fields);
+  for (const SideTable::Place& place : table.sides) {
+    SrbfSide& side = btf.sides.emplace_back(read_side(fields, SideParts(btf.sides.size()), btf.grid));
+    side.view_below = place.view_below;
+    side.light_below = place.light_below;
   }
-  for (size_t s = 0; 2 * s < sides.data.size(); ++s) {
-    SrbfSide& side = btf.sides.emplace_back(read_side(fields, SideParts(s), btf.grid));
-    side.view_below = sides.data[2 * s] != 0;
-    side.light_below = sides.data[2 * s + 1] != 0;
-  }
-  btf.shared = read_shared(fields, btf.sides.size());
+  btf.shared = std::move(table.shared);
   return btf;
 }
 

@@ -18,25 +18,26 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::CappedTag<float, MultivariateLobes::kPadding>;
 
-/// The nine components of the arguments, in all lanes.
+constexpr uint32_t kNumbers = MultivariateLobe::kNumbers;
+
+/// The arguments' numbers, in all lanes.
 struct Broadcast {
   explicit Broadcast(const LobeArguments& at) {
-    const Vec3* const arguments[] = {&at.wl, &at.wv, &at.half};
-    for (int i = 0; i < 9; ++i) value[i] = (*arguments[i / 3])[i % 3];
+    for (uint32_t i = 0; i < kNumbers; ++i) value[i] = at[static_cast<int>(i)];
   }
-  float value[9];
+  float value[kNumbers];
 };
 
-constexpr uint32_t kBlock = MultivariateLobes::kPadding, kRows = 10;
+constexpr uint32_t kBlock = MultivariateLobes::kPadding, kRows = kNumbers + 1;
 
 /// Of as many lobes of a block as there are lanes.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V lobe_values(D d, const Broadcast& at, const float* exponent) {
   const auto row = [&](uint32_t i) { return hn::Load(d, exponent + i * kBlock); };
   // Two chains of sums, so that one need not wait for the other.
-  V even = row(9), odd = hn::Mul(hn::Set(d, at.value[1]), row(1));
-  for (uint32_t i = 0; i < 9; i += 2) even = hn::MulAdd(hn::Set(d, at.value[i]), row(i), even);
-  for (uint32_t i = 3; i < 9; i += 2) odd = hn::MulAdd(hn::Set(d, at.value[i]), row(i), odd);
+  V even = row(kNumbers), odd = hn::Mul(hn::Set(d, at.value[1]), row(1));
+  for (uint32_t i = 0; i < kNumbers; i += 2) even = hn::MulAdd(hn::Set(d, at.value[i]), row(i), even);
+  for (uint32_t i = 3; i < kNumbers; i += 2) odd = hn::MulAdd(hn::Set(d, at.value[i]), row(i), odd);
   // Rounding may leave a peak a little above 2^0: exp2_nonpositive takes that.
   return exp2_nonpositive(d, hn::Add(even, odd));
 }
@@ -97,19 +98,17 @@ HWY_EXPORT(write_sums);
 MultivariateLobes::MultivariateLobes(std::span<const MultivariateLobe> lobes)
     : size_(static_cast<uint32_t>(lobes.size())),
       padded_((size_ + kPadding - 1) / kPadding * kPadding),
-      exponent_(size_t{10} * padded_) {
+      exponent_(size_t{MultivariateLobe::kNumbers + 1} * padded_) {
   constexpr float kPowersOf2 = 1.44269504f;
   constexpr float kNothing = -1000.0f;  // 2^-1000 is 0
   for (uint32_t k = 0; k < padded_; ++k) {
-    float* const at = exponent_.data() + size_t{k / kPadding} * 10 * kPadding + k % kPadding;
-    for (size_t i = 0; i < 9; ++i) at[i * kPadding] = 0;
-    at[9 * kPadding] = kNothing;
-    if (k >= size_) continue;
-    const Vec3* const vectors[] = {&lobes[k].light, &lobes[k].view, &lobes[k].half};
+    constexpr int kNumbers = MultivariateLobe::kNumbers;
+    float* const block = exponent_.data() + size_t{k / kPadding} * (kNumbers + 1) * kPadding;
+    const auto at = [&](int i) -> float& { return block[static_cast<uint32_t>(i) * kPadding + k % kPadding]; };
+    for (int i = 0; i < kNumbers; ++i) at(i) = k < size_ ? kPowersOf2 * lobes[k][i] : 0.0f;
     float peak = 0;
-    for (size_t i = 0; i < 9; ++i) at[i * kPadding] = kPowersOf2 * (*vectors[i / 3])[static_cast<int>(i % 3)];
-    for (const Vec3* v : vectors) peak += glm::length(*v);
-    at[9 * kPadding] = -kPowersOf2 * peak;
+    for (int a = 0; k < size_ && a < MultivariateLobe::kArguments; ++a) peak += lobes[k].length(a);
+    at(kNumbers) = k < size_ ? -kPowersOf2 * peak : kNothing;
   }
 }
 

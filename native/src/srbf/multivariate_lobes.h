@@ -1,4 +1,4 @@
-// Products of spherical Gaussians of the light, the view and the half vector: the lobes of BTFs.
+// Products of spherical Gaussians of the light, the view, the half vector and the phase angle: the lobes of BTFs.
 #pragma once
 
 #include <cmath>
@@ -10,11 +10,23 @@
 
 namespace velour {
 
-/// g(wl, wv) = G(wl) G(wv) G(h) with G(w) = exp(bandwidth (w . center - 1)) and h the half vector: a multivariate SRBF
-/// with three arguments [T11]. Exponents add, so it takes one exponential. Each vector is center times bandwidth; a
-/// zero vector leaves its argument out. Values in (0, 1].
+/// g(wl, wv) = G(wl) G(wv) G(h) P(wl . wv) with G(w) = exp(bandwidth (w . center - 1)) and h the half vector, a
+/// multivariate SRBF with three arguments [T11], and P(c) = exp(phase c - |phase|) for what shadows do when the light
+/// stands behind the viewer: they hide behind what casts them (the opposition effect [H86]). Exponents add, so it takes
+/// one exponential. Each vector is center times bandwidth; a zero leaves its argument out. Values in (0, 1].
 struct MultivariateLobe {
   Vec3 light{0.0f}, view{0.0f}, half{0.0f};
+  float phase = 0;
+
+  /// All of it as numbers: the vectors' components, then the phase's.
+  static constexpr int kNumbers = 10;
+  float& operator[](int i) { return i == 9 ? phase : (i < 3 ? light : i < 6 ? view : half)[i % 3]; }
+  float operator[](int i) const { return const_cast<MultivariateLobe&>(*this)[i]; }
+  /// Arguments, of which number i belongs to i / 3: what their peaks are 1 for.
+  static constexpr int kArguments = 4;
+  float length(int argument) const {
+    return argument == 3 ? std::abs(phase) : glm::length(argument == 0 ? light : argument == 1 ? view : half);
+  }
 };
 
 struct ColoredLobes;
@@ -28,7 +40,10 @@ inline Vec3 half_vector(const DirectionPair& pair) {
 
 /// The arguments of a lobe.
 struct LobeArguments {
-  explicit LobeArguments(const DirectionPair& pair) : wl(pair.wl), wv(pair.wv), half(half_vector(pair)) {}
+  explicit LobeArguments(const DirectionPair& pair)
+      : wl(pair.wl), wv(pair.wv), half(half_vector(pair)), phase(glm::dot(pair.wl, pair.wv)) {}
+  /// By the numbers that a lobe weighs them with.
+  float operator[](int i) const { return i == 9 ? phase : (i < 3 ? wl : i < 6 ? wv : half)[i % 3]; }
   /// In a frame that `turn` leads to.
   LobeArguments turned(const Mat3& turn) const {
     LobeArguments at = *this;
@@ -38,6 +53,7 @@ struct LobeArguments {
     return at;
   }
   Vec3 wl, wv, half;
+  float phase;  // cosine of the angle between both, in any frame
 };
 
 /// Lobes in the order they are given, as arrays that are padded to whole vectors by lobes of value 0. Immutable.
@@ -58,7 +74,7 @@ class MultivariateLobes {
                         const float* coefficient);
 
   uint32_t size_, padded_;
-  // [block of 16][10][16]: components of light, view, half and the constant, for powers of 2.
+  // [block of 16][11][16]: the numbers of the lobes and the constant, for powers of 2.
   AlignedArray<float> exponent_;
 };
 

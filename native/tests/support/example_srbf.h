@@ -33,9 +33,9 @@ inline SrbfSide example_side(uint32_t width, uint32_t height, bool below) {
   const float other = below ? 0.6f : 1.0f;
   side.lobes = {{},
                 {Vec3(1.5f, 0.5f, 2.0f) * other, Vec3(0.0f), Vec3(0.0f)},
-                {Vec3(-1.0f, 0.0f, 1.0f), Vec3(0.5f, 0.5f, 1.0f), Vec3(0.0f)},
+                {Vec3(-1.0f, 0.0f, 1.0f), Vec3(0.5f, 0.5f, 1.0f), Vec3(0.0f), 0.6f},
                 {Vec3(0.0f), Vec3(0.0f), Vec3(0.0f, 0.5f, 12.0f) * other},
-                {Vec3(0.0f, 2.0f, 3.0f), Vec3(0.0f), Vec3(0.0f, 0.0f, 4.0f)}};
+                {Vec3(0.0f, 2.0f, 3.0f), Vec3(0.0f), Vec3(0.0f, 0.0f, 4.0f), -0.2f}};
   side.lobe = {{{0, 1, 2, 3, 4}, {3, 1}, {4}}};
   for (size_t k = 0; k < side.coefficients(); ++k) {
     const auto swing = 0.001f * static_cast<float>(k);
@@ -65,7 +65,8 @@ inline SrbfBtf example_srbf(bool two_sided = false, Companding companding = Comp
 }
 
 inline double lobe_value(const MultivariateLobe& lobe, const LobeArguments& at) {
-  double exponent = 0;
+  double exponent =
+      static_cast<double>(lobe.phase) * static_cast<double>(at.phase) - static_cast<double>(std::abs(lobe.phase));
   for (const auto& [v, w] : {std::pair(lobe.light, at.wl), {lobe.view, at.wv}, {lobe.half, at.half}}) {
     exponent += glm::dot(Vec3d(v), Vec3d(w)) - glm::length(Vec3d(v));
   }

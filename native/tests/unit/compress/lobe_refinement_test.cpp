@@ -14,10 +14,10 @@ namespace {
 constexpr uint32_t kTileLobes = 3;
 
 std::vector<MultivariateLobe> true_lobes() {
-  return {{Vec3(1, 0.5f, 2), Vec3(0.2f, 0.1f, 0.3f), Vec3(0.1f, 0, 0.2f)},
-          {Vec3(-2, 1, 3), Vec3(0.4f, -0.5f, 1), Vec3(0, 0.3f, 0.4f)},
-          {Vec3(0.3f, 0, 0.5f), Vec3(-1, 0.6f, 2), Vec3(0.2f, 0, 0.1f)},
-          {Vec3(0.2f, 0.3f, 0.4f), Vec3(0.1f, 0, 0.3f), Vec3(0.5f, 0, 15)}};
+  return {{Vec3(1, 0.5f, 2), Vec3(0.2f, 0.1f, 0.3f), Vec3(0.1f, 0, 0.2f), 0.4f},
+          {Vec3(-2, 1, 3), Vec3(0.4f, -0.5f, 1), Vec3(0, 0.3f, 0.4f), -0.3f},
+          {Vec3(0.3f, 0, 0.5f), Vec3(-1, 0.6f, 2), Vec3(0.2f, 0, 0.1f), 0.2f},
+          {Vec3(0.2f, 0.3f, 0.4f), Vec3(0.1f, 0, 0.3f), Vec3(0.5f, 0, 15), 1}};
 }
 
 /// Points with normals and coefficients of their own: sums of the true lobes.
@@ -44,8 +44,9 @@ std::vector<SurfacePoint> points_of(const std::vector<MultivariateLobe>& lobes) 
 std::vector<MultivariateLobe> perturbed(std::vector<MultivariateLobe> lobes, float by) {
   RandomStream random(10, 0, 0);
   for (MultivariateLobe& lobe : lobes) {
-    for (Vec3* v : {&lobe.light, &lobe.view, &lobe.half}) {
-      for (int k = 0; k < 3; ++k) (*v)[k] += by * (1 + glm::length(*v)) * (random.next() - 0.5f);
+    const MultivariateLobe from = lobe;
+    for (int i = 0; i < MultivariateLobe::kNumbers; ++i) {
+      lobe[i] += by * (1 + from.length(i / 3)) * (random.next() - 0.5f);
     }
   }
   return lobes;
@@ -71,13 +72,12 @@ TEST(ProjectedError, HasTheSlopeOfItsDifferences) {
   Eigen::MatrixXd slope, unused;
   error(lobes, slope);
   for (size_t j = 0; j < lobes.size(); ++j) {
-    for (int i = 0; i < 9; ++i) {
+    for (int i = 0; i < MultivariateLobe::kNumbers; ++i) {
       const float step = 0.02f;
       double value[2];
       for (const int side : {0, 1}) {
         auto moved = lobes;
-        Vec3* const vectors[] = {&moved[j].light, &moved[j].view, &moved[j].half};
-        (*vectors[i / 3])[i % 3] += side ? step : -step;
+        moved[j][i] += side ? step : -step;
         value[side] = error(moved, unused);
       }
       const double expected = (value[1] - value[0]) / (2.0 * static_cast<double>(step));

@@ -8,6 +8,7 @@
 #include "model/model_file.h"
 #include "model/model_material.h"
 #include "sphere/directions.h"
+#include "support/example_tensor.h"
 #include "support/sized_srbf.h"
 #include "support/striped_btf.h"
 
@@ -43,6 +44,13 @@ FactoredBtf square_factored() {
   return btf;
 }
 
+TensorBtf square_tensors() {
+  TensorBtf btf = test::example_tensor();
+  btf.grid = {16, 16};
+  btf.sides = {test::random_side(btf.layout, btf.grid, false, {})};
+  return btf;
+}
+
 Rgb value(const ModelBody& body, const Vec2& uv, float width, const Vec3& wl, const Vec3& wv) {
   const auto material = make_material(std::make_shared<const Model>(Model{body, {}, {}}), 0);
   const auto point = std::make_unique<PreparedBrdf>();
@@ -51,7 +59,8 @@ Rgb value(const ModelBody& body, const Vec2& uv, float width, const Vec3& wl, co
 }
 
 TEST(SceneLevels, LeaveTwoTexelsALookUp) {
-  for (const ModelBody& body : {ModelBody(test::example_factored()), ModelBody(test::sized_srbf({16, 16}))}) {
+  for (const ModelBody& body : {ModelBody(test::example_factored()), ModelBody(test::sized_srbf({16, 16})),
+                                ModelBody(test::example_tensor())}) {
     const uint32_t texels = longest(body);
     EXPECT_EQ(unresolved_levels(body, seen_at(2.0 / texels)), 0u) << "two texels are all there are";
     EXPECT_EQ(unresolved_levels(body, seen_at(0.1 / texels)), 0u);
@@ -73,7 +82,8 @@ TEST(SceneLevels, AFarPlaneIsServedByFewerBytes) {
 
 TEST(SceneLevels, KeptLevelsAreLookedUpAsBefore) {
   const Vec3 wl = direction(0.5f, 1), wv = direction(0.7f, 4);
-  for (const ModelBody& body : {ModelBody(test::sized_srbf({16, 16})), ModelBody(square_factored())}) {
+  for (const ModelBody& body :
+       {ModelBody(test::sized_srbf({16, 16})), ModelBody(square_factored()), ModelBody(square_tensors())}) {
     for (const size_t count : {1u, 2u}) {
       const ModelBody reduced = without_finest(body, count);
       for (const float texels : {1.0f, 1.3f, 2.0f, 3.7f}) {

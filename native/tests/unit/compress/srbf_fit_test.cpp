@@ -161,12 +161,20 @@ TEST(SrbfFit, RecoversABtfThatIsAModelOverAPlane) {
   EXPECT_LT(errors_of(fit(btf, {.bytes = 600}).btf, btf).psnr, 30);
 }
 
+/// As few lobes as find a relief's model do not find what depends on the phase angle as well.
+SrbfBtf without_phases(SrbfBtf btf) {
+  for (SrbfSide& side : btf.sides) {
+    for (MultivariateLobe& lobe : side.lobes) lobe.phase = 0;
+  }
+  return btf;
+}
+
 TEST(SrbfFit, RecoversABtfThatIsAModelOverARelief) {
   constexpr float kHigh = 0.09f;  // a ray at 60 degrees is displaced by up to two texels
-  const MemoryBtfWithRelief btf = with_relief(true_model(kHigh));
+  const MemoryBtfWithRelief btf = with_relief(without_phases(true_model(kHigh)));
   EXPECT_GT(errors_of(fit(btf, {.bytes = 3050}).btf, btf).psnr, 35);
   // The control: the same without its relief.
-  const test::MemoryBtf flat = images_of(true_model(kHigh));
+  const test::MemoryBtf flat = images_of(without_phases(true_model(kHigh)));
   EXPECT_LT(errors_of(fit(flat, {.bytes = 3050}).btf, flat).psnr, 26);
 }
 

@@ -8,6 +8,7 @@
 #include "sphere/directions.h"
 #include "support/example_btf.h"
 #include "support/example_srbf.h"
+#include "support/example_tensor.h"
 
 namespace velour::test {
 
@@ -98,6 +99,12 @@ inline Model example_btf_model(bool two_sided = false) {
 inline Model example_srbf_model(bool two_sided = false) {
   Model model{example_srbf(two_sided), {}, {"gravel", "velour-btf", std::string(64, 'c')}};
   model.btf = BtfRecord{"srbf", 24.5, std::nullopt, 0.02, 0.25, 654321, 2.5, 3e6, 7, {}, 0, 0, {}, {}};
+  return model;
+}
+
+inline Model example_tensor_model(bool two_sided = false) {
+  Model model{example_tensor(two_sided), {}, {"net", "velour-btf", std::string(64, 'd')}};
+  model.btf = BtfRecord{"kcta", 25.5, 24.5, 0.03, 0.75, 765432, 3.5, 4e6, 9, {}, 0.25, 0, {}, {}};
   return model;
 }
 

@@ -1,50 +1,24 @@
 // Files that lie, end early, or were damaged.
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "example_model.h"
-#include "image/exr_tensors.h"
-#include "job/error.h"
-#include "model/model_file.h"
 #include "model/model_material.h"
 #include "sphere/random.h"
+#include "unit/model/refusals.h"
 
 namespace velour {
 namespace {
 
-using Change = std::function<void(TensorFile&)>;
-
-/// What decode_model says to `model` with `change` made to its file; "" when it accepts it.
-std::string complaint_of(const Model& model, const Change& change) {
-  TensorFile file = decode_tensors(encode_model(model), "example");
-  change(file);
-  try {
-    decode_model(encode_tensors(file), "metal.velour");
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
-}
+using test::expect_named;
+using Change = test::FileChange;
+const auto complaint_of = test::refusal_of;
+const auto set = test::set_value;
 
 std::string complaint(const Change& change, Kernel kernel = Kernel::gaussian) {
   return complaint_of(test::example_model(kernel), change);
 }
 
 std::string parametric_complaint(const Change& change) { return complaint_of(test::example_parametric(), change); }
-
-void expect_named(const std::string& complaint, const std::string& field) {
-  EXPECT_EQ(complaint.find("metal.velour"), 0u) << complaint;
-  EXPECT_NE(complaint.find(field), std::string::npos) << complaint << " should name " << field;
-}
-
-/// As a float, so that values reach the file that no half float holds.
-auto set(const std::string& part, size_t i, float value) {
-  return [=](TensorFile& file) {
-    file.tensors.at(part).half = false;
-    file.tensors.at(part).data.at(i) = value;
-  };
-}
 
 auto attribute(const std::string& key, const std::string& value) {
   return [=](TensorFile& file) { file.attributes[key] = value; };
@@ -223,8 +197,8 @@ TEST(HostileModel, ANewerFormatIsRefusedWithASentence) {
 }
 
 std::vector<Model> examples() {
-  return {test::example_model(), test::example_parametric(), test::example_reduced(), test::example_btf_model(),
-          test::example_srbf_model()};
+  return {test::example_model(),     test::example_parametric(), test::example_reduced(),
+          test::example_btf_model(), test::example_srbf_model(), test::example_tensor_model()};
 }
 
 TEST(HostileModel, TruncatedFilesAreRefused) {
@@ -258,6 +232,15 @@ void expect_sound(const SrbfBtf& btf) {
     ASSERT_EQ(side.levels.back().value.size(), side.coefficients());
     for (const auto& axis : side.lobe) {
       for (const uint16_t lobe : axis) ASSERT_LT(lobe, side.lobes.size());
+    }
+  }
+}
+
+void expect_sound(const TensorBtf& btf) {
+  for (const TensorSide& side : btf.sides) {
+    ASSERT_EQ(side.levels.back().value.size(), side.members * side.rank.texel);
+    for (const TensorLevel& level : side.levels) {
+      for (const uint8_t member : level.member) ASSERT_LT(member, side.clusters.size());
     }
   }
 }

@@ -24,6 +24,7 @@ std::vector<MultivariateLobe> random_lobes(uint32_t count) {
     if (k & 1) lobes[k].light = random_vector(random, 40);
     if (k & 2) lobes[k].view = random_vector(random, 20);
     if (k & 4) lobes[k].half = random_vector(random, 300);
+    if (k & 8) lobes[k].phase = 20 * (random.next() - 0.3f);
   }
   return lobes;
 }
@@ -35,14 +36,15 @@ LobeArguments random_arguments(uint64_t i) {
 }
 
 double value_of(const MultivariateLobe& lobe, const LobeArguments& at) {
-  double exponent = 0;
+  double exponent =
+      static_cast<double>(lobe.phase) * static_cast<double>(at.phase) - static_cast<double>(std::abs(lobe.phase));
   for (const auto& [vector, w] : {std::pair(lobe.light, at.wl), {lobe.view, at.wv}, {lobe.half, at.half}}) {
     exponent += glm::dot(Vec3d(vector), Vec3d(w)) - glm::length(Vec3d(vector));
   }
   return std::exp(exponent);
 }
 
-TEST(MultivariateLobes, AreTheProductsOfTheirThreeGaussians) {
+TEST(MultivariateLobes, AreTheProductsOfTheirArguments) {
   for (const uint32_t count : {1u, 15u, 16u, 17u, 70u}) {
     const auto lobes = random_lobes(count);
     const MultivariateLobes prepared(lobes);

@@ -1,9 +1,8 @@
-#include "material/srbf_btf_draws.h"
+#include "material/btf_draws.h"
 
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "sphere/random.h"
 #include "sphere/warp.h"
@@ -15,7 +14,7 @@ namespace {
 // By the variance of even light over places and views of a glossy weave and of gravel: of 6 to 13, 45 to 60 degrees,
 // the least or next to it for both. Nineteen lobes gain a tenth more and cost three times the evaluations.
 constexpr float kBandwidth = 8.0f, kTilt = 0.85f;
-constexpr int kBroad = 7, kHalf = kBroad, kLobes = kBroad + 1;
+constexpr int kBroad = BtfLook::kBroad, kHalf = kBroad, kLobes = kBroad + 1;
 constexpr float kLeastCosine = 0.05f;  // of the view to the relief's normal: below it there is no highlight to speak of
 
 struct BroadLobes {
@@ -39,13 +38,6 @@ const BroadLobes kBroadLobes;
 
 float integral(float bandwidth) { return static_cast<float>(kernel_integral(Kernel::gaussian, bandwidth)); }
 
-/// f cos of luminance.
-float radiance(const SrbfEvaluator& evaluator, const SrbfPoint& point, const Vec3& wl) {
-  return wl.z > 0 ? luminance(evaluator.value(point, wl)) * wl.z : 0.0f;
-}
-
-Vec3 normal_at(const SrbfPoint& point) { return glm::transpose(point.to_normal) * Vec3(0, 0, 1); }
-
 void set_lobe(WarpedMixture& m, int j, const Vec3& center, float bandwidth, bool half) {
   m.half[j] = half ? 1.0f : 0.0f;
   m.s_xx[j] = m.s_yy[j] = 1;
@@ -59,115 +51,98 @@ void set_lobe(WarpedMixture& m, int j, const Vec3& center, float bandwidth, bool
 }
 
 /// How much light each lobe brings, by estimates.
-std::array<float, kLobes> masses(const SrbfEvaluator& evaluator, const SrbfPoint& point, float half_bandwidth) {
+std::array<float, kLobes> masses(const BtfLook& look, float half_bandwidth) {
   std::array<float, kLobes> mass;
-  const Vec3 normal = normal_at(point);
-  const float cosine = glm::dot(point.wv, normal);
-  const Vec3 mirror = 2 * cosine * normal - point.wv;
+  const Vec3 mirror = BtfDraws::mirror(look.wv, look.normal);
   float broad = 0;
   const float broad_integral = 2 * kPi / kBandwidth;
   for (size_t i = 0; i < kBroad; ++i) {
-    const float strength = kBroadLobes.share[i] * radiance(evaluator, point, kBroadLobes.center[i]);
+    const float strength = kBroadLobes.share[i] * look.broad[i];
     broad += strength * BroadLobes::kernel(kBroadLobes.center[i], mirror);
     mass[i] = strength * broad_integral;
   }
   mass[kHalf] = 0;
+  const float cosine = glm::dot(look.wv, look.normal);
   if (half_bandwidth > 0 && cosine > kLeastCosine) {
-    const float beyond = std::max(radiance(evaluator, point, mirror) - broad, 0.0f);
+    const float beyond = std::max(look.mirror - broad, 0.0f);
     mass[kHalf] = beyond * 4 * cosine * (2 * kPi / half_bandwidth);  // method of half-vector lobes: docs/equations.md
   }
   return mass;
 }
 
-void fill_mixture(const SrbfPoint& point, const std::array<float, kLobes>& mass, float half_bandwidth,
-                  float cosine_share, WarpedMixture& m) {
+void fill_mixture(const BtfLook& look, const std::array<float, kLobes>& mass, float half_bandwidth, float cosine_share,
+                  WarpedMixture& m) {
   float all = 0;
   for (const float x : mass) all += x;
   m.count = kLobes;
   m.padded = WarpedMixture::padded_of(kLobes);
   m.turn_cos = 1;
   m.turn_sin = 0;
-  m.wv = point.wv;
+  m.wv = look.wv;
   m.list_all();
   // Where nothing is seen under any of the lights asked for, the cosine alone.
   const float cosine = all > 0 ? cosine_share : 1.0f;
   m.sums[WarpedMixture::kSums - 2] = 0;
   m.sums[WarpedMixture::kSums - 1] = cosine;
-  const Vec3 normal = normal_at(point);
   const float bandwidth = std::max(half_bandwidth, 1.0f), half_integral = integral(bandwidth);
   static const float broad_integral = integral(kBandwidth);
   float sum = cosine;
   for (int j = 0; j < m.padded; ++j) {
     const bool broad = j < kBroad;
     const float probability = j < kLobes && all > 0 ? (1 - cosine) * mass[static_cast<size_t>(j)] / all : 0.0f;
-    set_lobe(m, j, broad ? kBroadLobes.center[static_cast<size_t>(j)] : normal, broad ? kBandwidth : bandwidth, !broad);
+    set_lobe(m, j, broad ? kBroadLobes.center[static_cast<size_t>(j)] : look.normal, broad ? kBandwidth : bandwidth,
+             !broad);
     m.density[j] = probability / (broad ? broad_integral : half_integral);
     m.sums[WarpedMixture::kSums + j] = sum += probability;
   }
 }
 
-/// Variance of a sample of even light over the square of its mean, plus 1, with a bandwidth.
-class EvenLight {
- public:
-  EvenLight(const SrbfEvaluator& evaluator, uint32_t side) : evaluator_(evaluator) {
-    for (uint32_t i = 0; i < kLights; ++i) {
-      RandomStream random(0, i, 1);
-      light_.push_back(sample_cosine_hemisphere(random.next2()));
+std::vector<Vec3> spread_by_cosine() {
+  constexpr uint32_t kLights = 256;
+  std::vector<Vec3> lights;
+  for (uint32_t i = 0; i < kLights; ++i) {
+    RandomStream random(0, i, 1);
+    lights.push_back(sample_cosine_hemisphere(random.next2()));
+  }
+  return lights;
+}
+
+/// Variance of a sample of even light over the square of its mean, plus 1; its logarithm, summed over the examples.
+double cost_of(const std::vector<BtfDraws::Example>& examples, float half_bandwidth, float cosine_share) {
+  const std::vector<Vec3>& lights = BtfDraws::even_lights();
+  double cost = 0;
+  for (const BtfDraws::Example& example : examples) {
+    WarpedMixture mixture;
+    fill_mixture(example.look, masses(example.look, half_bandwidth), half_bandwidth, cosine_share, mixture);
+    double first = 0, second = 0;
+    for (size_t l = 0; l < lights.size(); ++l) {
+      Rgb none;
+      float pdf;
+      eval_warped(mixture, lights[l], none, pdf);
+      const double cosine = static_cast<double>(pdf_cosine_hemisphere(lights[l])),
+                   f = static_cast<double>(example.f[l]);
+      first += f / cosine;
+      second += f * f / (cosine * static_cast<double>(pdf));
     }
-    for (uint32_t i = 0; i < kPlaces; ++i) add_place(side, i);
+    if (first > 0) cost += std::log(second * static_cast<double>(lights.size()) / (first * first));
   }
-
-  double cost(float half_bandwidth, float cosine_share) const {
-    double cost = 0;
-    for (const Place& place : places_) {
-      const auto mass = masses(evaluator_, *place.point, half_bandwidth);
-      WarpedMixture mixture;
-      fill_mixture(*place.point, mass, half_bandwidth, cosine_share, mixture);
-      double first = 0, second = 0;
-      for (size_t l = 0; l < light_.size(); ++l) {
-        Rgb none;
-        float pdf;
-        eval_warped(mixture, light_[l], none, pdf);
-        const double cosine = static_cast<double>(pdf_cosine_hemisphere(light_[l])),
-                     f = static_cast<double>(place.f[l]);
-        first += f / cosine;
-        second += f * f / (cosine * static_cast<double>(pdf));
-      }
-      if (first > 0) cost += std::log(second * static_cast<double>(light_.size()) / (first * first));
-    }
-    return cost;
-  }
-
- private:
-  static constexpr uint32_t kPlaces = 48, kLights = 256;
-  struct Place {
-    std::unique_ptr<SrbfPoint> point;
-    std::vector<float> f;  // f cos of each light
-  };
-
-  void add_place(uint32_t side, uint32_t number) {
-    RandomStream random(0, number, 2);
-    Place& place = places_.emplace_back(Place{std::make_unique<SrbfPoint>(), {}});
-    const Vec2 uv = random.next2();
-    evaluator_.begin(side, sample_cosine_hemisphere(random.next2()), *place.point);
-    evaluator_.add(uv, 0, 1, *place.point);
-    evaluator_.finish(*place.point);
-    for (const Vec3& wl : light_) place.f.push_back(radiance(evaluator_, *place.point, wl));
-  }
-
-  const SrbfEvaluator& evaluator_;
-  std::vector<Vec3> light_;
-  std::vector<Place> places_;
-};
+  return cost;
+}
 
 }  // namespace
 
-SrbfBtfDraws::SrbfBtfDraws(const SrbfEvaluator& evaluator, uint32_t side) {
-  const EvenLight even(evaluator, side);
+const std::vector<Vec3>& BtfDraws::even_lights() {
+  static const std::vector<Vec3> lights = spread_by_cosine();
+  return lights;
+}
+
+const std::array<Vec3, BtfLook::kBroad>& BtfDraws::centers() { return kBroadLobes.center; }
+
+BtfDraws::BtfDraws(const std::vector<Example>& examples) {
   double least = std::numeric_limits<double>::infinity();
   for (const float bandwidth : {0.0f, 15.0f, 30.0f, 60.0f, 120.0f, 240.0f, 480.0f}) {
     for (const float share : {1.0f, 0.7f, 0.4f, 0.2f, 0.1f}) {
-      const double cost = even.cost(bandwidth, share);
+      const double cost = cost_of(examples, bandwidth, share);
       if (!(cost < least)) continue;
       least = cost;
       half_bandwidth_ = bandwidth;
@@ -176,13 +151,17 @@ SrbfBtfDraws::SrbfBtfDraws(const SrbfEvaluator& evaluator, uint32_t side) {
   }
 }
 
-void SrbfBtfDraws::fill(const SrbfEvaluator& evaluator, const SrbfPoint& point, WarpedMixture& mixture) const {
-  std::array<float, kLobes> mass{};  // of the cosine alone nothing needs to be asked
-  if (cosine_share_ < 1) mass = masses(evaluator, point, half_bandwidth_);
-  fill_mixture(point, mass, half_bandwidth_, cosine_share_, mixture);
+bool BtfDraws::asks_mirror(const Vec3& wv, const Vec3& normal) const {
+  return asks() && half_bandwidth_ > 0 && glm::dot(wv, normal) > kLeastCosine;
 }
 
-void SrbfBtfDraws::propose(const WarpedMixture& mixture, ProposalLobes& lobes) {
+void BtfDraws::fill(const BtfLook& look, WarpedMixture& mixture) const {
+  std::array<float, kLobes> mass{};
+  if (asks()) mass = masses(look, half_bandwidth_);
+  fill_mixture(look, mass, half_bandwidth_, cosine_share_, mixture);
+}
+
+void BtfDraws::propose(const WarpedMixture& mixture, ProposalLobes& lobes) {
   static_assert(kLobes <= ProposalLobes::kCapacity);
   lobes.cosine = mixture.cosine() / kPi;
   lobes.count = 0;

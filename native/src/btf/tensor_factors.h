@@ -1,0 +1,22 @@
+// The factors of clustered tensors as floats.
+#pragma once
+
+#include <vector>
+
+#include "btf/tensor_btf.h"
+
+namespace velour {
+
+/// Of one cluster; what TensorBtfCluster holds as half floats, colours in linear Rec. 709 instead of along the axes.
+struct TensorFactors {
+  TensorFactors(const TensorBtf& btf, const TensorBtfCluster& cluster);
+  std::vector<float> view;   // [view][rank]
+  std::vector<float> light;  // [light][rank]
+  std::vector<float> color;  // [channel][rank]
+  std::vector<float> core;   // [texels'][views'][lights'][colours' rank]
+};
+
+/// Heights of a level, which has some.
+std::vector<float> heights_of(const TensorLevel& level);
+
+}  // namespace velour

@@ -1,0 +1,196 @@
+// Highway compiles this file once for each instruction set.
+#include "btf/tensor_sums.h"
+
+#include <algorithm>
+
+#include "btf/bilinear_texels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "btf/tensor_sums.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "srbf/simd_dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace velour {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Block = hn::CappedTag<float, kRankPadding>;
+
+/// The number of a cluster among those met.
+HWY_INLINE uint32_t number_of(uint8_t cluster, uint32_t padded, TensorPoint& point) {
+  if (point.met[cluster] != TensorPoint::kNotMet) return point.met[cluster];
+  const uint32_t number = point.count++;
+  point.met[cluster] = static_cast<uint16_t>(number);
+  point.cluster[number] = cluster;
+  point.share[number] = 0;
+  std::fill_n(point.coefficient + number * padded, padded, 0.0f);
+  return number;
+}
+
+/// Behind the rank bytes of what follows are added as well: nothing multiplies them.
+HWY_INLINE void add_bytes(const uint8_t* bytes, uint32_t padded, float weight, float* to) {
+  const Block d;
+  const hn::RebindToSigned<Block> di;
+  const hn::Rebind<uint8_t, Block> du;
+  const auto w = hn::Set(d, weight);
+  for (uint32_t r = 0; r < padded; r += static_cast<uint32_t>(hn::Lanes(d))) {
+    const auto values = hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(du, bytes + r)));
+    hn::Store(hn::MulAdd(values, w, hn::Load(d, to + r)), d, to + r);
+  }
+}
+
+HWY_FLATTEN void add_texels(const TensorTexels& texels, const Vec2& texel, float weight, TensorPoint& point) {
+  const BilinearTexels corners = bilinear_at(texel, texels.width, texels.height);
+  const uint32_t padded = padded_rank(texels.rank);
+  for (size_t i = 0; i < 4; ++i) {
+    const uint8_t* const member = texels.records + size_t{corners.index[i]} * texels.stride();
+    const uint8_t* const bytes = member + texels.members;
+    const float w = weight * corners.weight[i];
+    for (uint32_t k = 0; k < texels.members; ++k) {
+      const uint32_t number = number_of(member[k], padded, point);
+      point.share[number] += w;
+      add_bytes(bytes + k * texels.rank, padded, w, point.coefficient + number * padded);
+    }
+  }
+}
+
+/// Which entries of the table's first index are summed, and their weights.
+struct Nodes {
+  uint32_t count = 0;
+  uint32_t index[TensorBtf::kMaxRank];
+  float weight[TensorBtf::kMaxRank];
+
+  void add(uint32_t node, float w) {
+    index[count] = node;
+    weight[count++] = w;
+  }
+};
+
+/// Views: the same for all clusters.
+HWY_INLINE void take_views(const DirectionMesh::Weights& view, Nodes& nodes) {
+  for (size_t i = 0; i < 3; ++i) {
+    if (view.weight[i] > 0) nodes.add(view.index[i], view.weight[i]);
+  }
+}
+
+/// Ranks of the views, whose weights are the cluster's factor between views.
+HWY_INLINE void take_ranks(const TensorTables& t, const DirectionMesh::Weights& view, uint32_t cluster, Nodes& nodes) {
+  nodes.count = 0;
+  for (uint32_t i = 0; i < t.view_rank; ++i) {
+    float w = 0;
+    for (size_t v = 0; v < 3; ++v) {
+      w += view.weight[v] * t.view[(size_t{view.index[v]} * t.clusters + cluster) * t.view_rank + i];
+    }
+    nodes.add(i, w);
+  }
+}
+
+/// Bytes to coefficients.
+HWY_INLINE void scale(const TensorTables& t, uint32_t cluster, float share, float* coefficient) {
+  const Block d;
+  const uint32_t padded = padded_rank(t.rank);
+  const float *least = t.least + cluster * padded, *step = t.step + cluster * padded;
+  const auto all = hn::Set(d, share);
+  for (uint32_t r = 0; r < padded; r += static_cast<uint32_t>(hn::Lanes(d))) {
+    const auto constant = hn::Mul(all, hn::Load(d, least + r));
+    hn::Store(hn::MulAdd(hn::Load(d, coefficient + r), hn::Load(d, step + r), constant), d, coefficient + r);
+  }
+}
+
+/// A block of the rank of the lights, `table` from there on: summed over nodes and the texels' rank.
+HWY_INLINE hn::Vec<Block> block_sum(const TensorTables& t, const Nodes& nodes, const float* coefficient,
+                                    const float* table) {
+  const Block d;
+  auto sum = hn::Zero(d);
+  for (uint32_t n = 0; n < nodes.count; ++n) {
+    const float* row = table + nodes.index[n] * t.table_node();
+    auto of_node = hn::Zero(d);
+    for (uint32_t r = 0; r < t.rank; ++r, row += t.table_row()) {
+      of_node = hn::MulAdd(hn::Set(d, coefficient[r]), hn::Load(d, row), of_node);
+    }
+    sum = hn::MulAdd(of_node, hn::Set(d, nodes.weight[n]), sum);
+  }
+  return sum;
+}
+
+/// A cluster's rows of the three channels.
+HWY_INLINE void contract_cluster(const TensorTables& t, const Nodes& nodes, uint32_t cluster, const float* coefficient,
+                                 float* row) {
+  const Block d;
+  const float* const table = t.table + cluster * t.table_cluster();
+  const float* const color = t.color + size_t{cluster} * 3 * t.color_rank;
+  for (uint32_t j = 0; j < t.light_rank; j += static_cast<uint32_t>(hn::Lanes(d))) {
+    auto red = hn::Zero(d), green = red, blue = red;
+    for (uint32_t k = 0; k < t.color_rank; ++k) {
+      const auto sum = block_sum(t, nodes, coefficient, table + k * t.light_rank + j);
+      red = hn::MulAdd(sum, hn::Set(d, color[k]), red);
+      green = hn::MulAdd(sum, hn::Set(d, color[t.color_rank + k]), green);
+      blue = hn::MulAdd(sum, hn::Set(d, color[2 * t.color_rank + k]), blue);
+    }
+    hn::Store(red, d, row + j);
+    hn::Store(green, d, row + t.light_rank + j);
+    hn::Store(blue, d, row + 2 * t.light_rank + j);
+  }
+}
+
+HWY_FLATTEN void with_view(const TensorTables& t, const DirectionMesh::Weights& view, TensorPoint& point) {
+  Nodes nodes;
+  if (!t.view) take_views(view, nodes);
+  for (uint32_t m = 0; m < point.count; ++m) {
+    const uint32_t cluster = point.cluster[m];
+    if (t.view) take_ranks(t, view, cluster, nodes);
+    float* const coefficient = point.coefficient + m * padded_rank(t.rank);
+    scale(t, cluster, point.share[m], coefficient);
+    contract_cluster(t, nodes, cluster, coefficient, point.row + m * 3 * t.light_rank);
+  }
+}
+
+HWY_FLATTEN Vec3 under_light(const TensorTables& t, const DirectionMesh::Weights& light, const TensorPoint& point) {
+  const Block d;
+  const float* from[3];
+  for (size_t i = 0; i < 3; ++i) from[i] = t.light + size_t{light.index[i]} * t.clusters * t.light_rank;
+  const auto w0 = hn::Set(d, light.weight[0]), w1 = hn::Set(d, light.weight[1]), w2 = hn::Set(d, light.weight[2]);
+  auto red = hn::Zero(d), green = red, blue = red;
+  for (uint32_t m = 0; m < point.count; ++m) {
+    const size_t first = size_t{point.cluster[m]} * t.light_rank;
+    const float* const row = point.row + m * 3 * t.light_rank;
+    for (uint32_t j = 0; j < t.light_rank; j += static_cast<uint32_t>(hn::Lanes(d))) {
+      const auto at = [&](size_t i) { return hn::Load(d, from[i] + first + j); };
+      const auto factor = hn::MulAdd(at(2), w2, hn::MulAdd(at(1), w1, hn::Mul(at(0), w0)));
+      red = hn::MulAdd(factor, hn::Load(d, row + j), red);
+      green = hn::MulAdd(factor, hn::Load(d, row + t.light_rank + j), green);
+      blue = hn::MulAdd(factor, hn::Load(d, row + 2 * t.light_rank + j), blue);
+    }
+  }
+  const auto total = [&](auto sum) { return hn::GetLane(hn::SumOfLanes(d, sum)); };
+  return {total(red), total(green), total(blue)};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace velour
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace velour {
+
+HWY_EXPORT(add_texels);
+HWY_EXPORT(with_view);
+HWY_EXPORT(under_light);
+
+void add_tensor_texels(const TensorTexels& texels, const Vec2& texel, float weight, TensorPoint& point) {
+  VELOUR_SIMD_DISPATCH(add_texels)(texels, texel, weight, point);
+}
+
+void contract_view(const TensorTables& tables, const DirectionMesh::Weights& view, TensorPoint& point) {
+  VELOUR_SIMD_DISPATCH(with_view)(tables, view, point);
+}
+
+Vec3 contract_light(const TensorTables& tables, const DirectionMesh::Weights& light, const TensorPoint& point) {
+  return VELOUR_SIMD_DISPATCH(under_light)(tables, light, point);
+}
+
+}  // namespace velour
+#endif

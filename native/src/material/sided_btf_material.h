@@ -1,0 +1,152 @@
+// A model of a BTF that is made of sides, as a material: whatever its evaluator.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "material/btf_draws.h"
+#include "material/footprint_taps.h"
+#include "material/material.h"
+#include "sphere/random.h"
+#include "sphere/warp.h"
+
+namespace velour {
+
+/// Looks at one side of a BTF for BtfDraws.
+template <typename Evaluator>
+class BtfLooks {
+ public:
+  BtfLooks(const Evaluator& evaluator, uint32_t side) {
+    for (size_t i = 0; i < BtfLook::kBroad; ++i) broad_[i] = evaluator.light(side, BtfDraws::centers()[i]);
+  }
+
+  /// At a finished point; of `draws`, what it asks for.
+  BtfLook operator()(const Evaluator& evaluator, const typename Evaluator::Point& point, const BtfDraws& draws) const {
+    BtfLook look{point.wv, evaluator.normal(point), {}, 0};
+    if (draws.asks()) look_at_broad(evaluator, point, look);
+    if (draws.asks_mirror(look.wv, look.normal)) look_at_mirror(evaluator, point, look);
+    return look;
+  }
+
+  /// Random places and views of `side`.
+  std::vector<BtfDraws::Example> examples(const Evaluator& evaluator, uint32_t side) const {
+    constexpr uint32_t kPlaces = 48;
+    std::vector<BtfDraws::Example> examples;
+    const auto point = std::make_unique<typename Evaluator::Point>();
+    for (uint32_t i = 0; i < kPlaces; ++i) {
+      RandomStream random(0, i, 2);
+      const Vec2 uv = random.next2();
+      evaluator.begin(side, sample_cosine_hemisphere(random.next2()), *point);
+      evaluator.add(uv, 0, 1, *point);
+      evaluator.finish(*point);
+      BtfDraws::Example& example =
+          examples.emplace_back(BtfDraws::Example{{point->wv, evaluator.normal(*point), {}, 0}, {}});
+      look_at_broad(evaluator, *point, example.look);
+      look_at_mirror(evaluator, *point, example.look);
+      for (const Vec3& wl : BtfDraws::even_lights()) example.f.push_back(radiance(evaluator, *point, wl));
+    }
+    return examples;
+  }
+
+ private:
+  void look_at_broad(const Evaluator& evaluator, const typename Evaluator::Point& point, BtfLook& look) const {
+    for (size_t i = 0; i < BtfLook::kBroad; ++i) {
+      look.broad[i] = luminance(evaluator.value(point, broad_[i])) * BtfDraws::centers()[i].z;
+    }
+  }
+  static void look_at_mirror(const Evaluator& evaluator, const typename Evaluator::Point& point, BtfLook& look) {
+    look.mirror = radiance(evaluator, point, BtfDraws::mirror(look.wv, look.normal));
+  }
+  /// f cos of luminance.
+  static float radiance(const Evaluator& evaluator, const typename Evaluator::Point& point, const Vec3& wl) {
+    return wl.z > 0 ? luminance(evaluator.value(point, wl)) * wl.z : 0.0f;
+  }
+
+  std::array<typename Evaluator::Light, BtfLook::kBroad> broad_;
+};
+
+/// `Evaluator`: SrbfEvaluator or one of the same members; `kPoint`: where its points are. Texture coordinates are in
+/// tiles: the BTF repeats with every whole number.
+template <typename Evaluator, typename Evaluator::Point PreparedBrdf::*kPoint>
+class SidedBtfMaterial final : public Material {
+ public:
+  template <typename Btf>
+  explicit SidedBtfMaterial(std::shared_ptr<const Btf> btf) : evaluator_(std::move(btf)) {
+    for (const bool below : {false, true}) {
+      const auto side = evaluator_.side(below, below);
+      if (side) sides_[below].emplace(evaluator_, *side);
+    }
+  }
+
+  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
+    point.wv = wv;
+    typename Evaluator::Point& p = point.*kPoint;
+    const auto& side = side_of(site);
+    p.seen = side.has_value();
+    if (!p.seen) return;
+    evaluator_.begin(side->number, wv, p);
+    const FootprintTaps taps = footprint_taps(site.footprint, evaluator_.texels());
+    for (int i = 0; i < taps.count; ++i) {
+      evaluator_.add(taps.place(site.uv, i), taps.level, 1.0f / static_cast<float>(taps.count), p);
+    }
+    evaluator_.finish(p);
+    side->draws.fill(side->looks(evaluator_, p, side->draws), point.warped);
+  }
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    if (!(point.*kPoint).seen) return eval_unseen(wl, f, pdf);
+    eval_warped(point.warped, wl, f, pdf);  // its value, 0, is overwritten
+    for (int i = 0; i < wl.count; ++i) f.set(i, value(point, wl.get(i)));
+  }
+
+  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
+    if (!(point.*kPoint).seen) return {Rgb(0.0f), pdf_cosine_hemisphere(wl)};
+    Reflection result;
+    eval_warped(point.warped, wl, result.f, result.pdf);
+    result.f = value(point, wl);
+    return result;
+  }
+
+  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    if ((point.*kPoint).seen) return sample_warped(point.warped, u, wl);
+    wl.fill(u, [](const Vec2& v) { return sample_cosine_hemisphere(v); });
+  }
+
+  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
+    if (!(point.*kPoint).seen) return false;
+    BtfDraws::propose(point.warped, lobes);
+    return true;
+  }
+
+  bool varies() const override { return true; }
+  Vec2 texels() const override { return evaluator_.texels(); }
+  bool isotropic() const override { return false; }
+
+ private:
+  struct Side {
+    Side(const Evaluator& evaluator, uint32_t side)
+        : number(side), looks(evaluator, side), draws(looks.examples(evaluator, side)) {}
+    uint32_t number;
+    BtfLooks<Evaluator> looks;
+    BtfDraws draws;
+  };
+
+  /// A BTF of one side shows it from behind as well.
+  const std::optional<Side>& side_of(const SurfaceSite& site) const { return sides_[site.back && sides_[1]]; }
+
+  Rgb value(const PreparedBrdf& point, const Vec3& wl) const {
+    return wl.z > 0 ? evaluator_.value(point.*kPoint, wl) : Rgb(0.0f);
+  }
+
+  static void eval_unseen(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
+    for (int i = 0; i < wl.count; ++i) {
+      f.set(i, Rgb(0.0f));
+      pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
+    }
+  }
+
+  Evaluator evaluator_;
+  std::array<std::optional<Side>, 2> sides_;  // seen and lit from the front, from behind
+};
+
+}  // namespace velour

@@ -1,0 +1,14 @@
+// A BTF as clustered tensors, as a material.
+#pragma once
+
+#include <memory>
+
+#include "btf/tensor_btf.h"
+#include "material/material.h"
+
+namespace velour {
+
+/// Texture coordinates are in tiles: the BTF repeats with every whole number.
+std::shared_ptr<const Material> make_tensor_btf_material(std::shared_ptr<const TensorBtf> btf);
+
+}  // namespace velour

@@ -1,0 +1,13 @@
+// Clustered tensors of BTFs as named parts of model files: docs/formats.md.
+#pragma once
+
+#include "btf/tensor_btf.h"
+#include "model/model_fields.h"
+
+namespace velour {
+
+void write_tensor_btf(const TensorBtf& btf, TensorFile& file);
+/// Checks every shape and range; what it returns can be evaluated as it is.
+TensorBtf read_tensor_btf(const ModelFields& fields);
+
+}  // namespace velour

@@ -1,0 +1,92 @@
+#include "btf/tensor_evaluator.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "btf/tensor_images.h"
+#include "sphere/directions.h"
+#include "support/example_tensor.h"
+#include "support/simd_targets.h"
+
+namespace velour {
+namespace {
+
+std::shared_ptr<const TensorBtf> shared(TensorBtf btf) { return std::make_shared<const TensorBtf>(std::move(btf)); }
+
+DirectionPair random_pair(uint64_t i) {
+  RandomStream random(11, i, 0);
+  const Vec3 wl = direction(1.5f * random.next(), 2 * kPi * random.next());
+  return {wl, direction(1.4f * random.next(), 2 * kPi * random.next())};
+}
+
+Rgb value_at(const TensorEvaluator& evaluator, uint32_t side, const Vec2& uv, float level, const DirectionPair& pair) {
+  const auto point = std::make_unique<TensorPoint>();
+  evaluator.begin(side, pair.wv, *point);
+  evaluator.add(uv, level, 1, *point);
+  evaluator.finish(*point);
+  return evaluator.value(*point, pair.wl);
+}
+
+void expect_same(const Rgb& a, const Rgb& b, float tolerance, uint64_t i) {
+  EXPECT_NEAR(glm::distance(a, b), 0.0f, tolerance) << i << ": " << a.r << ' ' << a.g << ' ' << a.b << " / " << b.r;
+}
+
+void expect_defined(const TensorBtf& btf) {
+  const TensorEvaluator evaluator(shared(btf));
+  test::on_every_simd_target([&] {
+    for (uint64_t i = 0; i < 200; ++i) {
+      RandomStream random(12, i, 0);
+      const Vec2 uv = random.next2();
+      const auto level = static_cast<size_t>(random.next() * 3);
+      const auto side = static_cast<uint32_t>(random.next() * static_cast<float>(btf.sides.size()));
+      const DirectionPair pair = random_pair(i);
+      const Rgb found = value_at(evaluator, side, uv, static_cast<float>(level), pair);
+      expect_same(found, test::defined_value(btf, btf.sides[side], level, uv, pair), 2e-5f, i);
+    }
+  });
+}
+
+TEST(TensorEvaluator, IsTheDefinition) {
+  for (const Companding companding : {Companding::none, Companding::root}) {
+    expect_defined(test::example_tensor(true, companding));
+  }
+}
+
+TEST(TensorEvaluator, OfAllShapesIsTheDefinition) {
+  expect_defined(test::example_tensor(false, Companding::root, {1, 1, {1, 1, 1, 1}, false}));
+  expect_defined(test::example_tensor(false, Companding::root, {1, 1, {33, 3, 17, 3}, true}));  // Tucker
+  expect_defined(test::example_tensor(false, Companding::root, {5, 1, {16, 6, 16, 1}, false}));
+  expect_defined(test::example_tensor(false, Companding::root, {256, 8, {2, 2, 2, 1}, true}));
+}
+
+TEST(TensorImages, HaveTheSideOfTheirPair) {
+  const TensorBtf btf = test::example_tensor(true);
+  const TensorImages images(btf);
+  const DirectionPair up = random_pair(8), down{-up.wl, -up.wv};
+  std::vector<float> rgb;
+  for (const DirectionPair& pair : {up, down}) {
+    images.image(pair, rgb);
+    const DirectionPair at{{pair.wl.x, pair.wl.y, std::abs(pair.wl.z)}, {pair.wv.x, pair.wv.y, std::abs(pair.wv.z)}};
+    const TensorSide& side = btf.sides[pair.wv.z < 0 ? 1 : 0];
+    for (uint32_t t = 0; t < 24; ++t) {
+      const Vec2 uv((static_cast<float>(t % 6) + 0.5f) / 6, (static_cast<float>(t / 6) + 0.5f) / 4);
+      expect_same({rgb[3 * t], rgb[3 * t + 1], rgb[3 * t + 2]}, test::defined_value(btf, side, 0, uv, at), 2e-5f, t);
+    }
+  }
+  images.image({up.wl, down.wv}, rgb);
+  for (const float f : rgb) EXPECT_EQ(f, 0.0f);
+}
+
+TEST(TensorImages, OfASharedSideAreThoseOfTheOneThatServesIt) {
+  TensorBtf btf = test::example_tensor();
+  btf.shared = {{true, true, 0}};
+  const DirectionPair up = random_pair(9);
+  std::vector<float> above, below;
+  TensorImages(btf).image(up, above);
+  TensorImages(btf).image({{up.wl.x, up.wl.y, -up.wl.z}, {up.wv.x, up.wv.y, -up.wv.z}}, below);
+  EXPECT_EQ(above, below);
+}
+
+}  // namespace
+}  // namespace velour
