@@ -24,7 +24,7 @@ from .errors import VelourError
 JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
 MODELS = ("scattered", "parametric")
-COMPRESS_METHODS = ("svd", "srbf")  # by number
+COMPRESS_METHODS = ("svd", "srbf", "tucker", "cta", "kcta", "svd-view")  # by number
 COMPANDINGS = ("none", "root")  # by number
 BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
 BTF_COLORS = ("rec709", "xyz")

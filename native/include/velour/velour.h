@@ -255,14 +255,15 @@ VLR_API vlr_status vlr_microsurface_create_job(const vlr_microsurface_options* o
 
 /* ---- compression of BTFs ------------------------------------------------------------------------------------- */
 
-enum { VLR_COMPRESS_SVD = 0, VLR_COMPRESS_SRBF = 1 };
+/* Truncated singular values; multivariate SRBFs over a relief; singular values of each view for itself. */
+enum { VLR_COMPRESS_SVD = 0, VLR_COMPRESS_SRBF = 1, VLR_COMPRESS_SVD_VIEW = 5 };
 enum { VLR_COMPAND_NONE = 0, VLR_COMPAND_ROOT = 1 };
 typedef struct vlr_compress_options {
   uint32_t struct_size;
   int32_t method;     /* VLR_COMPRESS_*; SRBF */
   int32_t companding; /* VLR_COMPAND_*: sums of f itself, or of its square root (errors count about as they are seen) */
   uint32_t threads;   /* 0: all */
-  uint64_t bytes;     /* of all coefficients at most; 0: 1:400 of the BTF as half floats (SVD: 1:200), or a few; with a
+  uint64_t bytes;     /* of all coefficients at most; 0: 1:400 of the BTF as half floats (SVDs: 1:200), or a few; with a
                        * tolerance: whatever that takes */
   uint64_t seed;
   const vlr_btf* held_out; /* pairs that no fit has seen, of the same texels; NULL: none */
@@ -284,7 +285,7 @@ VLR_API void vlr_compress_options_init(vlr_compress_options* options);
  * psnr, psnr_held_out (null without held_out), ser, relative_l2, p99, evaluations_per_second, seconds, warnings,
  * tolerance, order as of vlr_fit_create_job (lobes: coefficients of a texel, or components; worst: relative_l2 over the
  * tolerance, or relative_l2 without one), search [{coefficients, parameter_bytes, expected, relative_l2}], the fits in
- * their order; components of an SVD; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest
+ * their order; components of SVDs; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest
  * that are left, and scene, as of vlr_fit_create_job, but with full_texels [x, y] and surface
  * (vlr_observation_info_json) in place of errors; psnr, ser and speed are then those of the full model. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);

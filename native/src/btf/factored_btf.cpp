@@ -1,5 +1,8 @@
 #include "btf/factored_btf.h"
 
+#include <algorithm>
+
+#include "btf/component_ranges.h"
 #include "btf/pair_interpolation.h"
 
 namespace velour {
@@ -24,27 +27,39 @@ uint64_t pyramid_texels(const TexelGrid& grid) {
 struct FactoredImages::Impl {
   const FactoredBtf& btf;
   PairInterpolation between;
-  std::vector<float> pair_value, texel_value;  // [pair][component], [texel][component]
+  ComponentRanges ranges;
+  std::vector<float> pair_value, texel_value;  // [row of functions][component], [texel][component]
 
-  /// The functions of the pair, by component; false where there are none.
-  bool components_at(const DirectionPair& pair, std::vector<float>& sums) const {
+  /// The functions of the pair, by component, and the groups of components that are not all 0.
+  struct Functions {
+    std::vector<float> value;
+    std::vector<size_t> group;
+  };
+  Functions functions_at(const DirectionPair& pair) const {
+    Functions found{std::vector<float>(btf.components(), 0.0f), {}};
     const auto view = between.view(pair.wv), light = between.light(pair.wl);
-    sums.assign(btf.components(), 0.0f);
-    if (!view || !light) return false;
+    if (!view || !light) return found;
     for (size_t v = 0; v < 3; ++v) {
+      if (view->weight[v] == 0) continue;
+      const size_t group = ranges.groups() > 1 ? view->index[v] : 0;
+      if (std::find(found.group.begin(), found.group.end(), group) == found.group.end()) found.group.push_back(group);
       for (size_t l = 0; l < 3; ++l) {
-        const float weight = view->weight[v] * light->weight[l];
-        if (weight == 0) continue;
-        const float* row = pair_value.data() + (btf.layout.first(view->index[v]) + light->index[l]) * sums.size();
-        for (size_t k = 0; k < sums.size(); ++k) sums[k] += weight * row[k];
+        add_row(view->index[v], light->index[l], view->weight[v] * light->weight[l], found.value);
       }
     }
-    return true;
+    return found;
+  }
+
+  void add_row(size_t view, uint32_t light, float weight, std::vector<float>& sums) const {
+    if (weight == 0) return;
+    const float* row = pair_value.data() + (btf.first_row(view) + light) * btf.components();
+    const auto [begin, end] = ranges.of(view);
+    for (uint32_t k = begin; k < end; ++k) sums[k] += weight * row[k];
   }
 };
 
 FactoredImages::FactoredImages(const FactoredBtf& btf) {
-  auto impl = std::make_unique<Impl>(Impl{btf, PairInterpolation(btf.layout), {}, {}});
+  auto impl = std::make_unique<Impl>(Impl{btf, PairInterpolation(btf.layout), ComponentRanges(btf), {}, {}});
   impl->pair_value.resize(btf.pair_value.size());
   impl->texel_value.resize(btf.levels.at(0).value.size());
   halves_to_floats(btf.pair_value, impl->pair_value);
@@ -57,13 +72,15 @@ FactoredImages::~FactoredImages() = default;
 void FactoredImages::image(const DirectionPair& pair, std::vector<float>& rgb) const {
   const FactoredBtf& btf = impl_->btf;
   rgb.assign(btf.grid.texels() * 3, 0.0f);
-  std::vector<float> function;
-  if (!impl_->components_at(pair, function)) return;
-  const size_t components = function.size();
+  const Impl::Functions functions = impl_->functions_at(pair);
+  if (functions.group.empty()) return;
   for (uint64_t texel = 0; texel < btf.grid.texels(); ++texel) {
     Vec3 sum(0.0f);
-    const float* value = impl_->texel_value.data() + texel * components;
-    for (size_t k = 0; k < components; ++k) sum[btf.axis[k]] += value[k] * function[k];
+    const float* value = impl_->texel_value.data() + texel * btf.components();
+    for (const size_t group : functions.group) {
+      const auto [begin, end] = impl_->ranges.of(group);
+      for (uint32_t k = begin; k < end; ++k) sum[btf.axis[k]] += value[k] * functions.value[k];
+    }
     const Vec3 color = btf.axes * sum;
     for (int c = 0; c < 3; ++c) rgb[texel * 3 + static_cast<size_t>(c)] = expanded(btf.companding, color[c]);
   }

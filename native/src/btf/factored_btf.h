@@ -37,21 +37,30 @@ struct TexelLevel {
 
 /// With a = the colour axis of component k, the sum of axis a at texel x is
 ///   s_a = sum over k of axis a of value_k(x) pair_value_k(wl, wv),
-/// between pairs and between texels by interpolation of the factors, and f = expanded(axes (s_0, s_1, s_2)).
+/// between pairs and between texels by interpolation of the factors, and f = expanded(axes (s_0, s_1, s_2)). A
+/// component may serve one view alone: then its function is of the light, it is 0 at all other views, and between views
+/// the functions of the pair are interpolated as always.
 struct FactoredBtf {
   PairLayout layout;  // complete
   TexelGrid grid;
   Companding companding = Companding::root;
   Mat3 axes{1.0f};                   // columns: orthonormal directions in RGB
-  std::vector<uint8_t> axis;         // of each component: 0, 1, 2, rising
-  std::vector<HalfBits> pair_value;  // [pair][component]
+  std::vector<uint8_t> axis;         // of each component: 0, 1, 2, rising (of each view)
+  std::vector<HalfBits> pair_value;  // [pair][component]; [light][component] where components serve a view
   std::vector<TexelLevel> levels;    // the finest first; each half of the one before, down to one texel
+  std::vector<uint16_t> view = {};   // that each component serves, rising; empty: all serve all
 
   size_t components() const { return axis.size(); }
+  bool by_view() const { return !view.empty(); }
+  /// Rows of pair_value.
+  uint64_t function_rows() const { return by_view() ? layout.lights().size() : layout.pairs(); }
+  /// The row of the first light of a view.
+  uint64_t first_row(size_t of_view) const { return by_view() ? 0 : layout.first(of_view); }
   /// Of all coefficients as they are stored.
   uint64_t parameter_bytes() const;
 
   static constexpr size_t kMaxComponents = 512;
+  static constexpr size_t kMaxOfView = 160, kMaxOfViews = 16384;  // where components serve a view: of one, of all
 };
 
 /// How many texels all levels of a pyramid have.

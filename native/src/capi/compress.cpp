@@ -18,8 +18,12 @@ void vlr_compress_options_init(vlr_compress_options* options) {
 
 namespace {
 
+bool is_method(int32_t number) {
+  return number == VLR_COMPRESS_SVD || number == VLR_COMPRESS_SRBF || number == VLR_COMPRESS_SVD_VIEW;
+}
+
 CompressOptions converted(const vlr_compress_options& given) {
-  if (given.method != VLR_COMPRESS_SVD && given.method != VLR_COMPRESS_SRBF) {
+  if (!is_method(given.method)) {
     throw Error(Status::invalid_argument,
                 "vlr_compress_options.method is " + std::to_string(given.method) + ", not a VLR_COMPRESS value.");
   }

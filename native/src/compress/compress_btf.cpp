@@ -33,7 +33,17 @@ BtfErrors compare_body(const BtfMeasurement& truth, const ModelBody& body, doubl
   return compare_btf(truth, images_of(body), {p99, companding}, threads, progress);
 }
 
-const char* name_of(CompressMethod method) { return method == CompressMethod::svd ? "svd" : "srbf"; }
+const char* name_of(CompressMethod method) {
+  switch (method) {
+    case CompressMethod::svd:
+      return "svd";
+    case CompressMethod::svd_view:
+      return "svd-view";
+    case CompressMethod::srbf:
+      break;
+  }
+  return "srbf";
+}
 
 /// Names the measurement and all that the bits of the fit depend on. Whatever changes a fit's numbers changes
 /// kFitVersion.

@@ -60,6 +60,16 @@ uint64_t svd_bytes(const FitExtent& e) {
   return kLibraries + reading_bytes(e) + sketches + std::max(turning, projecting) + judging_bytes(e);
 }
 
+/// Functions of all views, products of one view's images, what is projected.
+uint64_t view_svd_bytes(const FitExtent& e) {
+  const uint64_t columns = std::min<uint64_t>(e.lights, FactoredBtf::kMaxOfView / 3);
+  const uint64_t functions = 3 * e.pairs * columns * kFloat + 5 * e.lights * e.lights * sizeof(double);
+  const uint64_t projecting = e.coefficients * (2 * e.lights + 2 * e.pyramid_texels) * kFloat;
+  return kLibraries + reading_bytes(e) + functions + projecting + judging_bytes(e);
+}
+
+uint64_t factored_bytes(const FitExtent& e) { return e.by_view ? view_svd_bytes(e) : svd_bytes(e); }
+
 }  // namespace
 
 uint32_t search_points_within(uint64_t memory, const FitExtent& extent) {
@@ -75,16 +85,16 @@ uint32_t search_points_within(uint64_t memory, const FitExtent& extent) {
 }
 
 void require_components(uint64_t memory, const FitExtent& extent) {
-  const uint64_t bytes = svd_bytes(extent);
+  const uint64_t bytes = factored_bytes(extent);
   if (bytes > memory) refuse(memory, bytes, std::to_string(extent.coefficients) + " components");
 }
 
 uint64_t components_within(uint64_t memory, FitExtent extent) {
   const uint64_t most = extent.coefficients;
-  while (extent.coefficients > 1 && svd_bytes(extent) > memory) --extent.coefficients;
-  if (svd_bytes(extent) <= memory) return std::min(most, extent.coefficients);
+  while (extent.coefficients > 1 && factored_bytes(extent) > memory) --extent.coefficients;
+  if (factored_bytes(extent) <= memory) return std::min(most, extent.coefficients);
   refuse(
-      memory, svd_bytes(extent),
+      memory, factored_bytes(extent),
       "one component of " + std::to_string(extent.texels) + " texels and " + std::to_string(extent.pairs) + " pairs");
 }
 

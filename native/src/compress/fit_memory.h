@@ -16,6 +16,7 @@ struct FitExtent {
   uint64_t points = 0, point_pairs = 0;  // that lobes are refined by: of a side, of a point
   uint64_t coefficients = 0;             // of a texel, or components
   uint64_t threads = 1;
+  bool by_view = false;  // components: of a view each
 };
 
 /// The number of points that the order of SRBFs is chosen by, between the least and the usual one, which keeps the fit

@@ -2,6 +2,7 @@
 
 #include "compress/srbf_fit.h"
 #include "compress/svd_fit.h"
+#include "compress/view_svd_fit.h"
 
 namespace velour {
 
@@ -9,6 +10,9 @@ std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const 
                                        FitCheckpoint& checkpoint, Progress& progress) {
   if (options.method == CompressMethod::svd) {
     return std::make_unique<SvdFitter>(measurement, options, checkpoint, progress);
+  }
+  if (options.method == CompressMethod::svd_view) {
+    return std::make_unique<ViewSvdFitter>(measurement, options, checkpoint, progress);
   }
   return std::make_unique<SrbfFitter>(measurement, options, checkpoint, progress);
 }

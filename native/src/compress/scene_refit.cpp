@@ -17,6 +17,12 @@ namespace {
 constexpr uint64_t kFirst = 8, kMost = 64;  // parts of the full model's bytes
 constexpr double kSetup = 0.3;              // of a trial's progress
 
+CompressMethod method_of(const ModelBody& full) {
+  const auto* factored = std::get_if<FactoredBtf>(&full);
+  if (!factored) return CompressMethod::srbf;
+  return factored->by_view() ? CompressMethod::svd_view : CompressMethod::svd;
+}
+
 uint64_t bytes_of(const ModelBody& body) {
   return std::visit([](const auto& b) { return b.parameter_bytes(); }, body);
 }
@@ -41,7 +47,7 @@ class Refit {
         pictures_(seen, *options.for_scene, progress) {
     options_.companding = with_btf(full, [](const auto& btf) { return btf.companding; });
     options_.tolerance = 0;
-    options_.method = std::holds_alternative<FactoredBtf>(full) ? CompressMethod::svd : CompressMethod::srbf;
+    options_.method = method_of(full);
   }
 
   /// Better than `levels`, or nothing.

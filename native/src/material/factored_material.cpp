@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "btf/pair_interpolation.h"
+#include "material/cosine_btf_material.h"
 #include "material/factored_sums.h"
 #include "material/texel_taps.h"
-#include "sphere/warp.h"
+#include "material/view_factored_material.h"
 
 namespace velour {
 namespace {
@@ -15,7 +16,7 @@ uint32_t padded(size_t count) {
   return static_cast<uint32_t>((count + kFactoredPadding - 1) / kFactoredPadding * kFactoredPadding);
 }
 
-class FactoredMaterial final : public Material {
+class FactoredMaterial final : public CosineBtfMaterial {
  public:
   explicit FactoredMaterial(std::shared_ptr<const FactoredBtf> btf)
       : btf_(std::move(btf)), between_(btf_->layout), two_sided_(between_.has_lower_side()) {
@@ -45,24 +46,9 @@ class FactoredMaterial final : public Material {
     });
   }
 
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    for (int i = 0; i < wl.count; ++i) {
-      f.set(i, value(point, wl.get(i)));
-      pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
-    }
-  }
-
-  void sample(const PreparedBrdf& /*point*/, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    wl.fill(u, [](const Vec2& v) { return sample_cosine_hemisphere(v); });
-  }
-
-  bool varies() const override { return true; }
   Vec2 texels() const override { return Vec2(btf_->grid.width, btf_->grid.height); }
-  bool isotropic() const override { return false; }
 
  private:
-  static Vec3 turned(const Vec3& w, bool back) { return {w.x, w.y, back ? -w.z : w.z}; }
-
   /// Components of an axis stand together; each axis begins at a whole vector.
   void place_components() {
     uint32_t begin = 0;
@@ -81,7 +67,7 @@ class FactoredMaterial final : public Material {
     for (size_t k = 0; k < components; ++k) floats[number * end_[2] + place_[k]] = row[k];
   }
 
-  Rgb value(const PreparedBrdf& point, const Vec3& wl) const {
+  Rgb value(const PreparedBrdf& point, const Vec3& wl) const override {
     const FactoredPoint& p = point.factored;
     if (!(wl.z > 0) || p.weight[0] + p.weight[1] + p.weight[2] == 0) return Rgb(0.0f);
     const auto lights = between_.light(turned(wl, p.back));
@@ -112,6 +98,7 @@ class FactoredMaterial final : public Material {
 }  // namespace
 
 std::shared_ptr<const Material> make_factored_material(std::shared_ptr<const FactoredBtf> btf) {
+  if (btf->by_view()) return make_view_factored_material(std::move(btf));
   return std::make_shared<FactoredMaterial>(std::move(btf));
 }
 

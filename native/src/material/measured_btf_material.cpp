@@ -1,14 +1,12 @@
 #include "material/measured_btf_material.h"
 
+#include "material/cosine_btf_material.h"
 #include "material/texel_taps.h"
-#include "sphere/warp.h"
 
 namespace velour {
 namespace {
 
-Vec3 turned(const Vec3& w, bool back) { return {w.x, w.y, back ? -w.z : w.z}; }
-
-class MeasuredBtfMaterial final : public Material {
+class MeasuredBtfMaterial final : public CosineBtfMaterial {
  public:
   explicit MeasuredBtfMaterial(std::shared_ptr<const BtfTable> table)
       : table_(std::move(table)), two_sided_(table_->between.has_lower_side()) {}
@@ -28,23 +26,11 @@ class MeasuredBtfMaterial final : public Material {
     });
   }
 
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    for (int i = 0; i < wl.count; ++i) {
-      f.set(i, value(point.btf_table, wl.get(i)));
-      pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
-    }
-  }
-
-  void sample(const PreparedBrdf& /*point*/, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    wl.fill(u, [](const Vec2& v) { return sample_cosine_hemisphere(v); });
-  }
-
-  bool varies() const override { return true; }
   Vec2 texels() const override { return Vec2(table_->levels[0].width, table_->levels[0].height); }
-  bool isotropic() const override { return false; }
 
  private:
-  Rgb value(const BtfTablePoint& p, const Vec3& wl) const {
+  Rgb value(const PreparedBrdf& point, const Vec3& wl) const override {
+    const BtfTablePoint& p = point.btf_table;
     const auto lights = wl.z > 0 ? table_->between.light(turned(wl, p.back)) : std::nullopt;
     if (!lights) return Rgb(0.0f);
     Rgb sum(0.0f);

@@ -7,8 +7,19 @@
 
 namespace velour::test {
 
-/// Five components over two axes; 6 x 4 texels; views and lights on one side, or on both.
-inline FactoredBtf example_factored(bool two_sided = false, Companding companding = Companding::root) {
+/// Components that serve a view each: of view v, v % 4 of axis 0 and one of axis 2; the last view has none.
+inline void serve_views(FactoredBtf& btf) {
+  btf.axis.clear();
+  for (uint16_t v = 0; v + 1u < btf.layout.views().size(); ++v) {
+    for (int k = 0; k < v % 4; ++k) btf.axis.push_back(0);
+    btf.axis.push_back(2);
+    btf.view.resize(btf.axis.size(), v);
+  }
+}
+
+/// Five components over two axes, or components of views; 6 x 4 texels; views and lights on one side, or on both.
+inline FactoredBtf example_factored(bool two_sided = false, Companding companding = Companding::root,
+                                    bool by_view = false) {
   std::vector<PolarAngles> views = ring_directions(30, 5), lights = ring_directions(50, 6);
   views.push_back({0, 0});
   if (two_sided) {
@@ -24,7 +35,8 @@ inline FactoredBtf example_factored(bool two_sided = false, Companding compandin
     floats_to_halves(floats, bits);
     return bits;
   };
-  btf.pair_value = halves(btf.layout.pairs() * btf.components(), 0.1f);
+  if (by_view) serve_views(btf);
+  btf.pair_value = halves(btf.function_rows() * btf.components(), 0.1f);
   for (uint32_t width = 6, height = 4;; width = half_of(width), height = half_of(height)) {
     btf.levels.push_back({width, height, halves(size_t{width} * height * btf.components(), 0.3f)});
     if (width == 1 && height == 1) return btf;

@@ -8,7 +8,8 @@ import contextlib
 from ...native import Btf, compress_job, table
 from . import btf_options, later, numbers, output, scene_options
 
-_METHODS = (*table.COMPRESS_METHODS, "svd-view", "tucker", "cta", "kcta")
+_LATER = ("tucker", "cta", "kcta")
+METHODS = tuple(name for name in table.COMPRESS_METHODS if name not in _LATER)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -16,8 +17,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="MODEL", required=True, help="the model to write")
     parser.add_argument(
         "--method",
-        choices=_METHODS,
-        help="srbf: multivariate SRBFs over a relief (default); svd: truncated singular values",
+        choices=table.COMPRESS_METHODS,
+        help="srbf: multivariate SRBFs over a relief (default); svd: truncated singular values;"
+        " svd-view: of each view for itself",
     )
     parser.add_argument(
         "--companding", choices=table.COMPANDINGS, help="sums of f itself or of its root; root"
@@ -58,7 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> dict:
-    later.only("--method", args.method or "srbf", table.COMPRESS_METHODS)
+    later.only("--method", args.method or "srbf", METHODS)
     output.check_writable(args.output)
     names = ("method", "companding", "tolerance", "bytes", "memory", "seed", "threads")
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}

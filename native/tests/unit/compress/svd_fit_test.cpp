@@ -3,38 +3,21 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <Eigen/SVD>
 #include <limits>
 
-#include "compress/btf_compare.h"
 #include "job/error.h"
-#include "sphere/random.h"
-#include "support/memory_btf.h"
+#include "unit/compress/factored_fits.h"
 
 namespace velour {
 namespace {
 
-const TexelGrid kGrid{12, 10};
+using test::errors_of;
+using test::kGrid;
+using test::noise;
+using test::small_layout;
 
-PairLayout small_layout() { return {ring_directions(30, 5), ring_directions(50, 7)}; }
-
-struct SvdFit {
-  FactoredBtf btf;
-  uint64_t not_finite;
-};
-
-SvdFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
-  Progress progress;
-  FitCheckpoint none;
-  SvdFitter fitter(btf, options, none, progress);
-  return {std::get<FactoredBtf>(fitter.fit(fitter.largest())), fitter.not_finite()};
-}
-
-BtfErrors errors_of(const FactoredBtf& model, const BtfMeasurement& btf) {
-  const FactoredImages images(model);
-  const auto decode = [&](const DirectionPair& pair, std::vector<float>& rgb) { images.image(pair, rgb); };
-  Progress progress;
-  return compare_btf(btf, decode, {}, 2, progress);
+test::FactoredFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
+  return test::fit<SvdFitter>(btf, options);
 }
 
 double error_of(const FactoredBtf& model, const BtfMeasurement& btf) { return errors_of(model, btf).ser; }
@@ -46,16 +29,9 @@ Rgb squared_products(const DirectionPair& pair, uint32_t x, uint32_t y) {
   return 0.1f * sum * sum * Rgb(1.0f, 0.5f, 0.25f);
 }
 
-/// Every entry its own.
-Rgb noise(const DirectionPair& pair, uint32_t x, uint32_t y) {
-  RandomStream random(static_cast<uint64_t>(pair.wl.x * 1e6f + pair.wv.y * 1e3f + 2e6f), x, y);
-  const float r = random.next(), g = random.next();
-  return {r, g, random.next()};
-}
-
 TEST(SvdFit, RecoversAProductsSquareToTheRoundingOfHalves) {
   const test::MemoryBtf btf(small_layout(), kGrid, squared_products);
-  const SvdFit found = fit(btf, {.bytes = 4 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid))});
+  const test::FactoredFit found = fit(btf, {.bytes = 4 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid))});
   EXPECT_EQ(found.btf.components(), 4u);
   EXPECT_LT(error_of(found.btf, btf), 1e-6);
   // The control: three products are not two.
@@ -74,47 +50,22 @@ TEST(SvdFit, LosesNoMoreThanTheExactDecomposition) {
   const test::MemoryBtf btf(small_layout(), kGrid, noise);
   const auto pairs = static_cast<Eigen::Index>(btf.layout().pairs());
   const auto texels = static_cast<Eigen::Index>(kGrid.texels());
-  const SvdFit found =
+  const test::FactoredFit found =
       fit(btf, {.bytes = 30 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid)), .companding = Companding::none});
-  std::vector<HalfBits> halves(static_cast<size_t>(pairs * texels) * 3);
-  std::vector<float> f(halves.size());
-  btf.read_pairs(0, btf.layout().pairs(), halves);
-  halves_to_floats(halves, f);
+  const std::vector<float> f = test::values_of(btf);
   std::vector<double> energy;
-  double total = 0;
   for (int a = 0; a < 3; ++a) {
-    Eigen::MatrixXd matrix(pairs, texels);
-    for (Eigen::Index p = 0; p < pairs; ++p) {
-      for (Eigen::Index t = 0; t < texels; ++t) {
-        const float* rgb = f.data() + (p * texels + t) * 3;
-        matrix(p, t) = static_cast<double>(glm::dot(found.btf.axes[a], Vec3(rgb[0], rgb[1], rgb[2])));
-      }
-    }
-    const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
-    for (const double x : s) energy.push_back(x * x);
-    total += matrix.squaredNorm();
-  }
-  std::sort(energy.rbegin(), energy.rend());
-  double kept = 0;
-  for (size_t k = 0; k < 30; ++k) kept += energy[k];
-  const FactoredImages images(found.btf);
-  double error = 0;
-  std::vector<float> image;
-  for (Eigen::Index p = 0; p < pairs; ++p) {
-    images.image(btf.layout().directions(static_cast<uint64_t>(p)), image);
-    for (size_t i = 0; i < image.size(); ++i) {
-      error += std::pow(static_cast<double>(image[i] - f[static_cast<size_t>(p) * image.size() + i]), 2);
-    }
+    test::add_energies(test::plane_of(f, found.btf.axes[a], 0, pairs, texels), energy);
   }
   // Noise has the slowest spectrum there is; clamping at 0 only helps.
-  EXPECT_LT(error, 1.03 * (total - kept));
+  EXPECT_LT(test::squared_error(found.btf, btf), 1.03 * test::left_out(energy, 30));
 }
 
 TEST(SvdFit, CoarseLevelsKeepTheMeanOfWhatIsSquared) {
   const test::MemoryBtf btf(small_layout(), {8, 8}, [](const DirectionPair&, uint32_t x, uint32_t y) {
     return Rgb((x + y) % 2 == 0 ? 0.8f : 0.0f);
   });
-  const SvdFit found = fit(btf, {.bytes = 2000});
+  const test::FactoredFit found = fit(btf, {.bytes = 2000});
   ASSERT_EQ(found.btf.levels.size(), 4u);
   FactoredBtf coarse = found.btf;
   coarse.levels = {found.btf.levels[1]};
@@ -132,7 +83,7 @@ TEST(SvdFit, KeepsToItsBytes) {
 
 TEST(SvdFit, IsTheSameForAnyNumberOfThreads) {
   const test::MemoryBtf btf(small_layout(), kGrid, noise);
-  const SvdFit one = fit(btf, {.bytes = 3000, .threads = 1}), two = fit(btf, {.bytes = 3000, .threads = 2});
+  const test::FactoredFit one = fit(btf, {.bytes = 3000, .threads = 1}), two = fit(btf, {.bytes = 3000, .threads = 2});
   EXPECT_EQ(one.btf.pair_value, two.btf.pair_value);
   EXPECT_EQ(one.btf.levels[0].value, two.btf.levels[0].value);
 }
@@ -142,7 +93,7 @@ TEST(SvdFit, IsNotPulledByEntriesThatAreNotFinite) {
   const test::MemoryBtf btf(small_layout(), kGrid, [&](const DirectionPair& pair, uint32_t x, uint32_t y) {
     return x == 3 && y == 4 && pair.wl.x > 0 ? Rgb(nan) : squared_products(pair, x, y);
   });
-  const SvdFit found = fit(btf, {.bytes = 6000});
+  const test::FactoredFit found = fit(btf, {.bytes = 6000});
   EXPECT_GT(found.not_finite, 0u);
   EXPECT_LT(error_of(found.btf, btf), 1e-3);
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
+#include <numeric>
 
 #include "sphere/directions.h"
 #include "support/example_btf.h"
@@ -29,8 +31,9 @@ void expect_same(const Rgb& a, const Rgb& b, float tolerance) {
 }
 
 TEST(FactoredMaterial, IsTheStoredImageAtTexelsAndPairs) {
-  for (const Companding companding : {Companding::none, Companding::root}) {
-    const FactoredBtf btf = test::example_factored(false, companding);
+  for (const auto& [companding, by_view] :
+       {std::pair(Companding::none, false), {Companding::root, false}, {Companding::root, true}}) {
+    const FactoredBtf btf = test::example_factored(false, companding, by_view);
     const FactoredImages images(btf);
     std::vector<float> image;
     test::on_every_simd_target([&] {
@@ -47,6 +50,49 @@ TEST(FactoredMaterial, IsTheStoredImageAtTexelsAndPairs) {
         }
       }
     });
+  }
+}
+
+/// Components that serve a view, as components of all pairs that are 0 at other views.
+FactoredBtf of_all_views(const FactoredBtf& of_views) {
+  FactoredBtf btf = of_views;
+  const size_t components = btf.components();
+  btf.view.clear();
+  btf.pair_value.assign(btf.layout.pairs() * components, 0);
+  std::vector<size_t> order(components);
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return btf.axis[a] < btf.axis[b]; });
+  for (size_t k = 0; k < components; ++k) {
+    const size_t from = order[k];
+    btf.axis[k] = of_views.axis[from];
+    for (size_t l = 0; l < btf.layout.lights().size(); ++l) {
+      btf.pair_value[(btf.layout.first(of_views.view[from]) + l) * components + k] =
+          of_views.pair_value[l * components + from];
+    }
+    for (size_t level = 0; level < btf.levels.size(); ++level) {
+      for (size_t t = 0; t < btf.levels[level].value.size(); t += components) {
+        btf.levels[level].value[t + k] = of_views.levels[level].value[t + from];
+      }
+    }
+  }
+  return btf;
+}
+
+TEST(FactoredMaterial, OfViewsIsThatOfAllPairsWithZerosElsewhere) {
+  for (const bool two_sided : {false, true}) {
+    const FactoredBtf of_views = test::example_factored(two_sided, Companding::root, true);
+    Evaluator f(of_views), g(of_all_views(of_views));
+    float largest = 0;
+    for (const Vec3& wv : sphere_fibonacci(60)) {
+      if (wv.z <= 0.05f) continue;
+      for (const Vec3& wl : {Vec3(0, 0, 1), direction(0.9f, 1.0f), direction(1.3f, 4.0f)}) {
+        SurfaceSite site = at(0.3f + wv.x, 0.7f * wv.y, Mat2(0.3f * wv.z));
+        site.back = wv.y > 0;
+        expect_same(f(site, wv, wl), g(site, wv, wl), 2e-5f);
+        largest = std::max(largest, f(site, wv, wl).r);
+      }
+    }
+    EXPECT_GT(largest, 0.05f);
   }
 }
 

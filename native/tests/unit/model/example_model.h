@@ -96,6 +96,13 @@ inline Model example_btf_model(bool two_sided = false) {
   return model;
 }
 
+inline Model example_view_svd_model() {
+  Model model = example_btf_model();
+  model.body = example_factored(false, Companding::root, true);
+  model.btf->method = "svd-view";
+  return model;
+}
+
 inline Model example_srbf_model(bool two_sided = false) {
   Model model{example_srbf(two_sided), {}, {"gravel", "velour-btf", std::string(64, 'c')}};
   model.btf = BtfRecord{"srbf", 24.5, std::nullopt, 0.02, 0.25, 654321, 2.5, 3e6, 7, {}, 0, 0, {}, {}};

@@ -14,8 +14,8 @@ Model after_a_round_trip(const Model& model) { return decode_model(encode_model(
 
 /// The sentence that refuses a model after `change`.
 template <class Change>
-std::string refusal(const Change& change) {
-  TensorFile file = decode_tensors(encode_model(test::example_btf_model()), "test.velour");
+std::string refusal(const Change& change, const Model& model = test::example_btf_model()) {
+  TensorFile file = decode_tensors(encode_model(model), "test.velour");
   change(file);
   try {
     decode_model(encode_tensors(file), "test.velour");
@@ -40,6 +40,35 @@ TEST(FactoredModel, SurvivesItsFile) {
     for (size_t l = 0; l < a.levels.size(); ++l) EXPECT_EQ(a.levels[l].value, b.levels[l].value);
     EXPECT_EQ(encode_model(model), encode_model(back));
   }
+}
+
+TEST(FactoredModel, OfViewsSurvivesItsFile) {
+  const Model model = test::example_view_svd_model(), back = after_a_round_trip(model);
+  const auto &a = std::get<FactoredBtf>(model.body), &b = std::get<FactoredBtf>(back.body);
+  EXPECT_TRUE(b.by_view());
+  EXPECT_EQ(a.view, b.view);
+  EXPECT_EQ(a.axis, b.axis);
+  EXPECT_EQ(a.pair_value, b.pair_value);
+  EXPECT_EQ(a.levels[0].value, b.levels[0].value);
+  EXPECT_EQ(encode_model(model), encode_model(back));
+}
+
+TEST(FactoredModel, OfViewsRefusesADamagedFileByItsField) {
+  const auto complaint = [](const auto& change) { return refusal(change, test::example_view_svd_model()); };
+  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  EXPECT_EQ(complaint([](TensorFile&) {}), "");
+  EXPECT_PRED2(has, complaint([](TensorFile& f) { f.tensors["btf.view"].data[3] = 0; }), "btf.view[3]");
+  EXPECT_PRED2(has, complaint([](TensorFile& f) { f.tensors["btf.view"].data[0] = 0.5f; }), "btf.view[0]");
+  EXPECT_PRED2(has, complaint([](TensorFile& f) { f.tensors["btf.view"].data[10] = 6; }), "btf.view[10]");
+  EXPECT_PRED2(has, complaint([](TensorFile& f) { f.tensors["btf.axis"].data[1] = 3; }), "btf.axis[1]");
+  EXPECT_PRED2(has, complaint([](TensorFile& f) { f.tensors["btf.axis"] = {{2}, {0, 1}}; }), "btf.axis");
+  EXPECT_PRED2(has, complaint([](TensorFile& f) { f.tensors.erase("btf.lights"); }), "btf.lights");
+  EXPECT_PRED2(has, complaint([](TensorFile& f) { f.tensors["btf.lights"].shape = {11, 6}; }), "btf.lights");
+  EXPECT_PRED2(has, complaint([](TensorFile& f) { f.tensors.erase("btf.view"); }), "btf.axis[1]");
+  EXPECT_PRED2(has, complaint([](TensorFile& f) {
+                 f.tensors["btf.view"] = {{200}, std::vector<float>(200)};
+               }),
+               "btf.view[160]");
 }
 
 TEST(FactoredModel, KeepsItsRecord) {

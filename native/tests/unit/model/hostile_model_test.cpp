@@ -1,6 +1,7 @@
 // Files that lie, end early, or were damaged.
 #include <gtest/gtest.h>
 
+#include "btf/component_ranges.h"
 #include "example_model.h"
 #include "model/model_material.h"
 #include "sphere/random.h"
@@ -197,8 +198,9 @@ TEST(HostileModel, ANewerFormatIsRefusedWithASentence) {
 }
 
 std::vector<Model> examples() {
-  return {test::example_model(),     test::example_parametric(), test::example_reduced(),
-          test::example_btf_model(), test::example_srbf_model(), test::example_tensor_model()};
+  return {test::example_model(),         test::example_parametric(), test::example_reduced(),
+          test::example_btf_model(),     test::example_srbf_model(), test::example_tensor_model(),
+          test::example_view_svd_model()};
 }
 
 TEST(HostileModel, TruncatedFilesAreRefused) {
@@ -222,7 +224,11 @@ void expect_sound(const ParametricBrdf& brdf) {
 }
 
 void expect_sound(const FactoredBtf& btf) {
-  ASSERT_EQ(btf.pair_value.size(), btf.layout.pairs() * btf.components());
+  ASSERT_EQ(btf.pair_value.size(), btf.function_rows() * btf.components());
+  ASSERT_EQ(ComponentRanges(btf).of(btf.layout.views().size() - 1).end, btf.components());
+  if (btf.by_view()) {
+    ASSERT_EQ(btf.view.size(), btf.components());
+  }
   ASSERT_EQ(btf.levels.back().value.size(), btf.components());
 }
 

@@ -1,0 +1,34 @@
+// What materials of BTFs that know no lobes share: their samples have the density of the cosine.
+#pragma once
+
+#include "material/material.h"
+#include "sphere/warp.h"
+
+namespace velour {
+
+/// A material that varies over a tile and gives f of one direction after the other.
+class CosineBtfMaterial : public Material {
+ public:
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const final {
+    for (int i = 0; i < wl.count; ++i) {
+      f.set(i, value(point, wl.get(i)));
+      pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
+    }
+  }
+
+  void sample(const PreparedBrdf& /*point*/, std::span<const Vec2> u, DirectionBatch& wl) const final {
+    wl.fill(u, [](const Vec2& v) { return sample_cosine_hemisphere(v); });
+  }
+
+  bool varies() const final { return true; }
+  bool isotropic() const final { return false; }
+
+ protected:
+  /// f, 0 where wl.z <= 0.
+  virtual Rgb value(const PreparedBrdf& point, const Vec3& wl) const = 0;
+
+  /// As a BTF with two sides, seen from below, knows it.
+  static Vec3 turned(const Vec3& w, bool back) { return {w.x, w.y, back ? -w.z : w.z}; }
+};
+
+}  // namespace velour
