@@ -9,9 +9,10 @@
 namespace velour::test {
 
 /// The material's sampler for one view.
-inline Sampler material_sampler(std::shared_ptr<const Material> material, const Vec3& wv) {
+inline Sampler material_sampler(std::shared_ptr<const Material> material, const Vec3& wv,
+                                const SurfaceSite& site = SurfaceSite::everywhere()) {
   auto point = std::make_shared<PreparedBrdf>();
-  material->prepare(wv, *point);
+  material->prepare(wv, site, *point);
   return {[material, point](const Vec2& u) { return material->sample_one(*point, u); },
           [material, point](const Vec3& wl) { return static_cast<double>(eval_one(*material, *point, wl).pdf); }};
 }

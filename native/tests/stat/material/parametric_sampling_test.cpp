@@ -4,7 +4,7 @@
 #include "sphere/random.h"
 #include "support/parametric_models.h"
 #include "support/plain_lobes.h"
-#include "support/proof_materials.h"
+#include "support/warped_sampler.h"
 
 namespace velour {
 namespace {
@@ -14,30 +14,7 @@ using test::Sampler;
 
 /// Cells about the sharpest lobe that the density has at `wv`.
 Sampler sampler_of(const ParametricBrdf& brdf, const Vec3& wv) {
-  const auto material = make_parametric_material(std::make_shared<ParametricBrdf>(brdf));
-  PreparedBrdf point;
-  material->prepare(wv, point);
-  const WarpedMixture& m = point.warped;
-  const auto sharpest = std::max_element(m.draw_bandwidth, m.draw_bandwidth + m.count) - m.draw_bandwidth;
-  const bool half = m.half[sharpest] > 0;
-  const WarpedLobe lobe{half ? LobeSpace::half : LobeSpace::light,
-                        {m.s_xx[sharpest], m.s_xy[sharpest], m.s_yy[sharpest]},
-                        Vec3d(m.x[sharpest], m.y[sharpest], m.z[sharpest])};
-  const auto axis = unwarped(lobe, lobe.center, Vec3d(m.wv));
-  Sampler sampler = test::material_sampler(material, wv);
-  sampler.may_fail = true;
-  sampler.sample = [draw = sampler.sample](const Vec2& u) {
-    const Vec3 wl = draw(u);
-    return wl == Vec3(0, 0, -1) ? Vec3(0) : wl;
-  };
-  if (!axis || m.draw_bandwidth[sharpest] < 10) return sampler;
-  const Vec3 turned(m.turn_cos * axis->x - m.turn_sin * axis->y, m.turn_sin * axis->x + m.turn_cos * axis->y, axis->z);
-  const float across = half ? 2 * std::max(wv.z, 0.01f) : 1;
-  sampler.axis = turned;
-  // Against the view, where half vectors are normal to it, the density grows without bound.
-  if (half) sampler.refinements = {2, 9};
-  sampler.concentration = m.draw_bandwidth[sharpest] / (across * across);
-  return sampler;
+  return test::warped_sampler(make_parametric_material(std::make_shared<ParametricBrdf>(brdf)), wv);
 }
 
 struct SamplingCase {
