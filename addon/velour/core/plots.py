@@ -24,6 +24,13 @@ COLORS = {
     "scattered": "#d55e00",
     "parametric": "#0072b2",
     "principled": "#009e73",
+    "svd": "#999999",
+    "svd-view": "#56b4e9",
+    "tucker": "#f0e442",
+    "cta": "#e69f00",
+    "kcta 2": "#cc79a7",
+    "kcta 3": "#0072b2",
+    "kcta 4": "#000000",
 }
 
 
@@ -113,6 +120,37 @@ def curves_by_panel(
     axes.flat[0].legend(fontsize="small")
     figure.supxlabel(axes_names[0])
     figure.supylabel(axes_names[1])
+    save(figure, path)
+
+
+def grid(
+    path: str | os.PathLike,
+    panels: Mapping[tuple[str, str], Mapping[str, Sequence[tuple[float, float]]]],
+    x_name: str,
+) -> None:
+    """Panels by (what is drawn, of what): a row for each of the first, a column for each of the second.
+    x is logarithmic."""
+    rows = list(dict.fromkeys(row for row, _ in panels))
+    columns = list(dict.fromkeys(column for _, column in panels))
+    figure, axes = _pyplot().subplots(
+        len(rows),
+        len(columns),
+        figsize=(3.2 * len(columns) + 1, 2.7 * len(rows)),
+        squeeze=False,
+        sharex=True,
+        layout="constrained",
+    )
+    for (row, column), curves in panels.items():
+        cell = axes[rows.index(row), columns.index(column)]
+        for curve, points in curves.items():
+            if points:
+                cell.plot(*np.transpose(points), "o-", color=COLORS.get(curve), label=curve, markersize=4)
+        cell.set(
+            xscale="log", title=column if row == rows[0] else "", ylabel=row if column == columns[0] else ""
+        )
+        cell.grid(which="both", alpha=0.25)
+    axes[0, -1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
+    figure.supxlabel(x_name)
     save(figure, path)
 
 

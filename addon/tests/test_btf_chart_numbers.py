@@ -1,0 +1,125 @@
+"""The arithmetic of scripts/chart --btf: each against what is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from btf_chart import methods
+from btf_chart_numbers import HEADERS, Entry, Results, relative_error, verdicts, widest_spread, within
+
+
+class Fits:
+    """Files of a fixed overhead that pack what is fitted, of whole units."""
+
+    def __init__(self, overhead: int, packed: float, unit: int):
+        self.overhead, self.packed, self.unit, self.asked = overhead, packed, unit, []
+
+    def __call__(self, size: int) -> dict | None:
+        self.asked.append(size)
+        units = size // self.unit
+        if units == 0:
+            return None
+        fitted = units * self.unit
+        return {"parameter_bytes": fitted, "bytes": int(self.overhead + self.packed * fitted)}
+
+
+@pytest.mark.parametrize("packed", [0.7, 1.0, 1.2])
+@pytest.mark.parametrize("overhead", [2000, HEADERS, 25000])
+def test_the_file_is_filled_but_not_overfilled(packed, overhead):
+    fits = Fits(overhead, packed, 1)
+    report = within(100_000, fits)
+    assert 95_000 < report["bytes"] <= 100_000
+    assert len(fits.asked) <= 4
+
+
+def test_no_unit_more_would_fit_and_none_is_tried_in_vain():
+    fits = Fits(HEADERS, 1.0, 30_000)
+    assert within(100_000, fits)["parameter_bytes"] == 90_000
+    assert len(fits.asked) == 1
+
+
+def test_what_is_refused_or_too_large_is_nothing():
+    assert within(100_000, Fits(HEADERS, 1.0, 200_000)) is None
+    assert within(20_000, Fits(25_000, 1.0, 100)) is None
+
+
+def test_the_error_of_a_picture_is_relative():
+    reference = np.full((4, 5, 3), 0.5)
+    assert relative_error(1.1 * reference, reference) == pytest.approx(0.1)
+    assert relative_error(reference, reference) == 0
+
+
+def test_the_window_holds_what_differs():
+    pictures = [np.full((30, 40, 3), 0.3) for _ in range(3)]
+    pictures[1][12:15, 20:24] = 0.6
+    pictures[2][2, 2:4] = 50  # clipped: as different as white is, and few pixels
+    row, column = widest_spread(pictures, 8)
+    assert row <= 12 <= 15 <= row + 8
+    assert column <= 20 <= 24 <= column + 8
+
+
+def _entry(method: str, psnr: float, *, tile="weave", ratio=500, unseen=None, rate=2e6) -> Entry:
+    return Entry(tile, method, ratio, 1000, 1.0, 2.0, psnr, 0.1, 1.0, rate, unseen)
+
+
+def test_results_are_compared_at_equal_bytes():
+    results = Results(
+        [_entry("svd", 20), _entry("cta", 21, unseen=19), _entry("cta", 15, ratio=1000), _entry("tucker", 22)]
+    )
+    assert results.best("weave", 500) == "tucker"
+    assert results.best("weave", 500, "psnr_unseen") == "cta"
+    assert results.gain("weave", 500, "cta", "svd") == 1
+    assert results.gain("weave", 1000, "cta", "svd") is None
+    assert results.gain("weave", 500, "cta", "svd", "psnr_unseen") is None
+    assert results.ratios() == [500, 1000]
+
+
+def _found(entries: list[Entry]) -> dict:
+    return {(v.target.split(",")[-1].strip(), v.where): v.met for v in verdicts(Results(entries))}
+
+
+def test_targets_are_judged_where_they_are_missed_most():
+    entries = [_entry("tucker", 20), _entry("cta", 21), _entry("tucker", 18, ratio=1000)]
+    entries += [_entry("svd", 19, unseen=20), _entry("kcta 2", 20.6, unseen=19.9), _entry("kcta 3", 20.4)]
+    found = _found([*entries, _entry("cta", 17.9, ratio=1000)])
+    assert found["CTA at least as good as Tucker (fitted)", "weave"] is False
+    assert found["K-CTA at least as good as CTA (fitted)", "weave"] is False
+    assert found["fitted", "weave"] is True  # 1.6 dB, by the best K
+    assert found["unseen", "weave"] is False
+    assert _found(entries)["CTA at least as good as Tucker (fitted)", "weave"] is True
+    assert _found([_entry("svd", 19)])["fitted", "weave"] is None
+
+
+def test_the_slowest_evaluation_counts():
+    target = "a million evaluations a second and core"
+    assert _found([_entry("cta", 1), _entry("cta", 1, ratio=50, rate=9e5)])[target, "cta"] is False
+    assert _found([_entry("cta", 1)])[target, "cta"] is True
+
+
+def test_methods_that_the_library_does_not_know_are_left_out():
+    assert [m.name for m in methods(("srbf", "svd"))] == ["svd", "srbf"]
+    all_of_them = methods(("svd", "srbf", "tucker", "cta", "kcta", "svd-view", "future"))
+    assert [m.name for m in all_of_them][-4:] == ["kcta 2", "kcta 3", "kcta 4", "future"]
+    assert dict(all_of_them[-2].options) == {"method": "kcta", "members": 4}
+    assert [m.name for m in methods(("svd", "kcta"), ["kcta 3", "svd"])] == ["svd", "kcta 3"]
+
+
+def test_the_sheet_keeps_lengths(tmp_path):
+    import btf_chart_scene
+
+    lines = [
+        line.split() for line in btf_chart_scene.write_sheet(tmp_path / "sheet.obj").read_text().splitlines()
+    ]
+    v, vn, vt = (
+        np.array([line[1:] for line in lines if line[0] == kind], float) for kind in ("v", "vn", "vt")
+    )
+    np.testing.assert_allclose((v[:, 1:] * vn[:, 1:]).sum(axis=1), 1, atol=1e-5)
+    arc = np.linalg.norm(v[1] - v[0]) / (vt[1, 1] - vt[0, 1])
+    axis = (v[:, 0].max() - v[:, 0].min()) / (vt[:, 0].max() - vt[:, 0].min())
+    assert arc == pytest.approx(axis, rel=1e-3)
+    face = (
+        np.array([corner.split("/")[0] for corner in next(line for line in lines if line[0] == "f")[1:]], int)
+        - 1
+    )
+    normal = np.cross(v[face[1]] - v[face[0]], v[face[2]] - v[face[0]])
+    assert normal @ vn[face[0]] > 0

@@ -1,0 +1,171 @@
+"""The arithmetic of scripts/chart --btf: which fit has the bytes, what is better than what, the targets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+HEADERS = 6000  # bytes of a model's file besides what is fitted, about
+_CLOSE = 0.03  # of the bytes that may be left unused where a further fit could use them
+_TRIES = 4
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to compress, as it is called and as the command line takes it."""
+
+    name: str
+    options: tuple[tuple[str, object], ...]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What is known of a method at one number of bytes."""
+
+    tile: str
+    method: str
+    ratio: int
+    bytes: int  # of the model's file
+    seconds: float  # of the fit
+    processor_seconds: float  # of the whole call, all threads
+    psnr: float
+    ser: float
+    brightness: float
+    evaluations: float  # a second and thread
+    psnr_unseen: float | None = None
+    ser_unseen: float | None = None
+    picture: float | None = None  # relative error of the rendered picture
+    flip: float | None = None
+    render_seconds: float | None = None  # of a processor, to the chart's level of noise
+
+
+def within(target: int, fit: Callable[[int], dict | None]) -> dict | None:
+    """The report of the largest file within `target` bytes. `fit` takes the bytes of all that is fitted and
+    says what became of them, or refuses with None; files hold more than that, and less where they pack."""
+    best, tried, size = None, [], max(target - HEADERS, 1)
+    for _ in range(_TRIES):
+        report = fit(size)
+        if report is None:
+            break
+        if report["bytes"] <= target and (best is None or report["bytes"] > best["bytes"]):
+            best = report
+        tried.append((report["parameter_bytes"], report["bytes"]))
+        following = _next(target, tried)
+        if best is report and following < (1 + _CLOSE) * size:
+            break
+        size = following
+    return best
+
+
+def _next(target: int, tried: list[tuple[int, int]]) -> int:
+    """What would fill the file, on a line through what was tried last: (bytes fitted, bytes of the file)."""
+    fitted, size = tried[-1]
+    slope = 1.0
+    if len(tried) > 1 and tried[-2][0] != fitted:
+        slope = min(max((size - tried[-2][1]) / (fitted - tried[-2][0]), 0.5), 2.0)
+    return max(int(fitted + (target - size) / slope), fitted // 3, 1)
+
+
+def relative_error(picture: np.ndarray, reference: np.ndarray) -> float:
+    """Root mean square of the difference over that of the reference."""
+    return float(np.sqrt(((picture - reference) ** 2).mean() / (reference**2).mean()))
+
+
+def widest_spread(pictures: list[np.ndarray], side: int) -> tuple[int, int]:
+    """The top left corner of the window of side x side pixels in which pictures differ most from one another,
+    by how they are looked at: the root of each channel, clipped at 1."""
+    shown = np.sqrt(np.clip(np.stack(pictures), 0, 1))
+    spread = shown.var(axis=0).sum(axis=-1)
+    sums = np.pad(spread.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+    windows = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
+    row, column = np.unravel_index(windows.argmax(), windows.shape)
+    return int(row), int(column)
+
+
+class Results:
+    """All entries, found by tile, method and ratio."""
+
+    def __init__(self, entries: list[Entry]):
+        self._entries = {(e.tile, e.method, e.ratio): e for e in entries}
+
+    def all(self) -> list[Entry]:
+        return list(self._entries.values())
+
+    def get(self, tile: str, method: str, ratio: int) -> Entry | None:
+        return self._entries.get((tile, method, ratio))
+
+    def tiles(self) -> list[str]:
+        return list(dict.fromkeys(e.tile for e in self.all()))
+
+    def methods(self) -> list[str]:
+        return list(dict.fromkeys(e.method for e in self.all()))
+
+    def ratios(self) -> list[int]:
+        return sorted({e.ratio for e in self.all()})
+
+    def best(self, tile: str, ratio: int, value: str = "psnr") -> str | None:
+        """The method of the largest `value`."""
+        known = [
+            e for e in self.all() if e.tile == tile and e.ratio == ratio and getattr(e, value) is not None
+        ]
+        return max(known, key=lambda e: getattr(e, value)).method if known else None
+
+    def gain(self, tile: str, ratio: int, method: str, other: str, value: str = "psnr") -> float | None:
+        """Of `method` over `other`, at equal bytes."""
+        a, b = self.get(tile, method, ratio), self.get(tile, other, ratio)
+        if a is None or b is None or getattr(a, value) is None or getattr(b, value) is None:
+            return None
+        return getattr(a, value) - getattr(b, value)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    target: str
+    where: str
+    measured: str
+    met: bool | None
+
+
+def verdicts(results: Results) -> Iterator[Verdict]:
+    kcta = [name for name in results.methods() if name.startswith("kcta")]
+    yield from _at_least(results, "CTA at least as good as Tucker (fitted)", ["cta"], "tucker")
+    yield from _at_least(results, "K-CTA at least as good as CTA (fitted)", kcta, "cta")
+    for value, least, words in (
+        ("psnr", 1.5, "1.5 dB better, fitted"),
+        ("psnr_unseen", 0.0, "no worse, unseen"),
+    ):
+        target = f"K-CTA against singular values at 1:500, weave: {words}"
+        gain = _largest([results.gain("weave", 500, name, "svd", value) for name in kcta])
+        yield Verdict(target, "weave", _decibels(gain), None if gain is None else gain >= least)
+    for name in ("cta", *kcta):
+        rates = [e.evaluations for e in results.all() if e.method == name]
+        slowest = min(rates) if rates else None
+        measured = "-" if slowest is None else f"{slowest / 1e6:.1f} million"
+        met = None if slowest is None else slowest >= 1e6
+        yield Verdict("a million evaluations a second and core", name, measured, met)
+
+
+def _at_least(results: Results, target: str, methods: list[str], other: str) -> Iterator[Verdict]:
+    """The best of `methods` against the other, at the ratio of each tile where it gains least."""
+    for tile in results.tiles():
+        gains = {
+            ratio: _largest([results.gain(tile, ratio, name, other) for name in methods])
+            for ratio in results.ratios()
+        }
+        known = {ratio: gain for ratio, gain in gains.items() if gain is not None}
+        if not known:
+            yield Verdict(target, tile, "-", None)
+            continue
+        worst = min(known, key=known.get)
+        measured = f"{_decibels(known[worst])} at 1:{worst}, {_decibels(max(known.values()))} at best"
+        yield Verdict(target, tile, measured, known[worst] >= 0)
+
+
+def _largest(gains: list[float | None]) -> float | None:
+    return max((gain for gain in gains if gain is not None), default=None)
+
+
+def _decibels(gain: float | None) -> str:
+    return "-" if gain is None else f"{gain:+.2f} dB"
