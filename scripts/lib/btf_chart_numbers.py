@@ -10,6 +10,7 @@ import numpy as np
 HEADERS = 6000  # bytes of a model's file besides what is fitted, about
 _CLOSE = 0.03  # of the bytes that may be left unused where a further fit could use them
 _TRIES = 4
+_MARGIN = 0.99  # of what is tried first
 
 
 @dataclass(frozen=True)
@@ -32,19 +33,25 @@ class Entry:
     processor_seconds: float  # of the whole call, all threads
     psnr: float
     ser: float
-    brightness: float
     evaluations: float  # a second and thread
     psnr_unseen: float | None = None
     ser_unseen: float | None = None
     picture: float | None = None  # relative error of the rendered picture
     flip: float | None = None
     render_seconds: float | None = None  # of a processor, to the chart's level of noise
+    brightness: float | None = None  # the model's mean light over the BTF's
 
 
-def within(target: int, fit: Callable[[int], dict | None]) -> dict | None:
+def packing(report: dict) -> float:
+    """Bytes of the file for each that is fitted."""
+    return max(report["bytes"] - HEADERS, 1) / report["parameter_bytes"]
+
+
+def within(target: int, fit: Callable[[int], dict | None], packed: float = 1.0) -> dict | None:
     """The report of the largest file within `target` bytes. `fit` takes the bytes of all that is fitted and
-    says what became of them, or refuses with None; files hold more than that, and less where they pack."""
-    best, tried, size = None, [], max(target - HEADERS, 1)
+    says what became of them, or refuses with None; files hold more than that, and less where they pack.
+    `packed`: the packing that is expected."""
+    best, tried, size = None, [], max(int(_MARGIN * (target - HEADERS) / packed), 1)
     for _ in range(_TRIES):
         report = fit(size)
         if report is None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from velour.core import files
 
-CAMERA = "0,-2.6,1.9,0,0,0.62,36"
+CAMERA = "0,-2.6,1.9,0,0,0.307,28"
 TILES = 6.0  # along the arc and along the axis of the sheet
 _STRIPS = 96
 _HALF_ANGLE = np.radians(80)
