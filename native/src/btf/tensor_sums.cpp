@@ -100,39 +100,54 @@ HWY_INLINE void scale(const TensorTables& t, uint32_t cluster, float share, floa
   }
 }
 
-/// A block of the rank of the lights, `table` from there on: summed over nodes and the texels' rank.
-HWY_INLINE hn::Vec<Block> block_sum(const TensorTables& t, const Nodes& nodes, const float* coefficient,
-                                    const float* table) {
+/// A piece of the table's rows of `kVectors` vectors, `table` from there on: summed over nodes and the texels' rank.
+template <size_t kVectors>
+HWY_INLINE void sum_piece(const TensorTables& t, const Nodes& nodes, const float* coefficient, const float* table,
+                          float* to) {
   const Block d;
-  auto sum = hn::Zero(d);
+  const size_t lanes = hn::Lanes(d);
+  hn::Vec<Block> sum[kVectors], of_node[kVectors];
+  for (size_t i = 0; i < kVectors; ++i) sum[i] = hn::Zero(d);
   for (uint32_t n = 0; n < nodes.count; ++n) {
     const float* row = table + nodes.index[n] * t.table_node();
-    auto of_node = hn::Zero(d);
+    for (size_t i = 0; i < kVectors; ++i) of_node[i] = hn::Zero(d);
     for (uint32_t r = 0; r < t.rank; ++r, row += t.table_row()) {
-      of_node = hn::MulAdd(hn::Set(d, coefficient[r]), hn::Load(d, row), of_node);
+      const auto c = hn::Set(d, coefficient[r]);
+      for (size_t i = 0; i < kVectors; ++i) of_node[i] = hn::MulAdd(c, hn::Load(d, row + i * lanes), of_node[i]);
     }
-    sum = hn::MulAdd(of_node, hn::Set(d, nodes.weight[n]), sum);
+    const auto weight = hn::Set(d, nodes.weight[n]);
+    for (size_t i = 0; i < kVectors; ++i) sum[i] = hn::MulAdd(of_node[i], weight, sum[i]);
   }
-  return sum;
+  for (size_t i = 0; i < kVectors; ++i) hn::Store(sum[i], d, to + i * lanes);
+}
+
+/// Whole rows, [rank of the colours][padded rank of the lights], in pieces as wide as there are registers for: memory
+/// is read in order, and a coefficient once a piece.
+HWY_INLINE void sum_rows(const TensorTables& t, const Nodes& nodes, const float* coefficient, const float* table,
+                         float* to) {
+  const size_t lanes = hn::Lanes(Block()), row = t.table_row();
+  size_t j = 0;
+  for (; j + 4 * lanes <= row; j += 4 * lanes) sum_piece<4>(t, nodes, coefficient, table + j, to + j);
+  for (; j + 2 * lanes <= row; j += 2 * lanes) sum_piece<2>(t, nodes, coefficient, table + j, to + j);
+  for (; j < row; j += lanes) sum_piece<1>(t, nodes, coefficient, table + j, to + j);
 }
 
 /// A cluster's rows of the three channels.
 HWY_INLINE void contract_cluster(const TensorTables& t, const Nodes& nodes, uint32_t cluster, const float* coefficient,
                                  float* row) {
   const Block d;
-  const float* const table = t.table + cluster * t.table_cluster();
+  HWY_ALIGN float sums[3 * TensorBtf::kMaxRank];
+  sum_rows(t, nodes, coefficient, t.table + cluster * t.table_cluster(), sums);
   const float* const color = t.color + size_t{cluster} * 3 * t.color_rank;
-  for (uint32_t j = 0; j < t.light_rank; j += static_cast<uint32_t>(hn::Lanes(d))) {
-    auto red = hn::Zero(d), green = red, blue = red;
-    for (uint32_t k = 0; k < t.color_rank; ++k) {
-      const auto sum = block_sum(t, nodes, coefficient, table + k * t.light_rank + j);
-      red = hn::MulAdd(sum, hn::Set(d, color[k]), red);
-      green = hn::MulAdd(sum, hn::Set(d, color[t.color_rank + k]), green);
-      blue = hn::MulAdd(sum, hn::Set(d, color[2 * t.color_rank + k]), blue);
+  for (uint32_t c = 0; c < 3; ++c, row += t.light_rank) {
+    for (uint32_t j = 0; j < t.light_rank; j += static_cast<uint32_t>(hn::Lanes(d))) {
+      auto sum = hn::Zero(d);
+      for (uint32_t k = 0; k < t.color_rank; ++k) {
+        const auto factor = hn::Set(d, color[c * t.color_rank + k]);
+        sum = hn::MulAdd(hn::Load(d, sums + k * t.light_rank + j), factor, sum);
+      }
+      hn::Store(sum, d, row + j);
     }
-    hn::Store(red, d, row + j);
-    hn::Store(green, d, row + t.light_rank + j);
-    hn::Store(blue, d, row + 2 * t.light_rank + j);
   }
 }
 

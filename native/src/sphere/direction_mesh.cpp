@@ -86,23 +86,36 @@ void DirectionMesh::find_outline() {
 }
 
 void DirectionMesh::fill_grid() {
-  cells_.resize(size_t{kGrid} * kGrid);
-  const auto cell = [](double x) { return std::clamp(static_cast<int>((x + 1) * 0.5 * kGrid), 0, kGrid - 1); };
-  for (uint32_t i = 0; i < triangles_.size(); ++i) {
-    const Triangle& t = triangles_[i];
-    const Vec2d low = glm::min(points_[t[0]], glm::min(points_[t[1]], points_[t[2]]));
-    const Vec2d high = glm::max(points_[t[0]], glm::max(points_[t[1]], points_[t[2]]));
-    for (int y = cell(low.y); y <= cell(high.y); ++y) {
-      for (int x = cell(low.x); x <= cell(high.x); ++x) cells_[static_cast<size_t>(y * kGrid + x)].push_back(i);
+  for (const Triangle& t : triangles_) {
+    corners_.push_back({{points_[t[0]], points_[t[1]], points_[t[2]]}, t});
+    corners_.back().whole = area(points_[t[0]], points_[t[1]], points_[t[2]]);
+  }
+  std::vector<std::vector<uint32_t>> cells(size_t{kGrid} * kGrid);
+  for (uint32_t i = 0; i < corners_.size(); ++i) {
+    const auto& p = corners_[i].point;
+    const Vec2d low = glm::min(p[0], glm::min(p[1], p[2])), high = glm::max(p[0], glm::max(p[1], p[2]));
+    for (int y = cell_of(low.y); y <= cell_of(high.y); ++y) {
+      for (int x = cell_of(low.x); x <= cell_of(high.x); ++x) cells[static_cast<size_t>(y * kGrid + x)].push_back(i);
     }
   }
+  for (size_t i = 0; i < cells.size(); ++i) {
+    const Vec2d middle = (Vec2d(i % kGrid, i / kGrid) + 0.5) * (2.0 / kGrid) - 1.0;
+    std::array<double, 3> weight;
+    // Most of a cell is in the triangle of its middle.
+    std::stable_partition(cells[i].begin(), cells[i].end(),
+                          [&](uint32_t t) { return inside(corners_[t], middle, weight); });
+    first_.push_back(static_cast<uint32_t>(meeting_.size()));
+    meeting_.insert(meeting_.end(), cells[i].begin(), cells[i].end());
+  }
+  first_.push_back(static_cast<uint32_t>(meeting_.size()));
 }
 
-bool DirectionMesh::inside(const Triangle& t, const Vec2d& p, std::array<double, 3>& weight) const {
-  const Vec2d &a = points_[t[0]], &b = points_[t[1]], &c = points_[t[2]];
-  const double whole = area(a, b, c);
-  weight = {area(b, c, p) / whole, area(c, a, p) / whole, area(a, b, p) / whole};
-  return std::min({weight[0], weight[1], weight[2]}) >= -1e-9;
+int DirectionMesh::cell_of(double x) { return std::clamp(static_cast<int>((x + 1) * 0.5 * kGrid), 0, kGrid - 1); }
+
+bool DirectionMesh::inside(const Corners& t, const Vec2d& p, std::array<double, 3>& weight) {
+  const auto& [a, b, c] = t.point;
+  weight = {area(b, c, p), area(c, a, p), area(a, b, p)};
+  return std::min({weight[0], weight[1], weight[2]}) >= -1e-9 * t.whole;
 }
 
 DirectionMesh::Weights DirectionMesh::on_outline(const Vec2d& p) const {
@@ -122,14 +135,15 @@ DirectionMesh::Weights DirectionMesh::on_outline(const Vec2d& p) const {
 
 DirectionMesh::Weights DirectionMesh::at(const Vec3& direction) const {
   const Vec2d p = stereographic(direction);
-  const auto cell = [](double x) { return std::clamp(static_cast<int>((x + 1) * 0.5 * kGrid), 0, kGrid - 1); };
+  const auto cell = static_cast<size_t>(cell_of(p.y) * kGrid + cell_of(p.x));
   std::array<double, 3> w;
-  for (const uint32_t i : cells_[static_cast<size_t>(cell(p.y) * kGrid + cell(p.x))]) {
-    if (!inside(triangles_[i], p, w)) continue;
+  for (uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
+    const Corners& corners = corners_[meeting_[i]];
+    if (!inside(corners, p, w)) continue;
     for (double& x : w) x = std::max(x, 0.0);
-    const double sum = w[0] + w[1] + w[2];
-    return {triangles_[i],
-            {static_cast<float>(w[0] / sum), static_cast<float>(w[1] / sum), static_cast<float>(w[2] / sum)}};
+    const double scale = 1 / (w[0] + w[1] + w[2]);
+    return {corners.index,
+            {static_cast<float>(w[0] * scale), static_cast<float>(w[1] * scale), static_cast<float>(w[2] * scale)}};
   }
   return on_outline(p);
 }

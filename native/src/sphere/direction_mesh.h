@@ -33,14 +33,23 @@ class DirectionMesh {
   void triangulate();
   void find_outline();
   void fill_grid();
-  bool inside(const Triangle& triangle, const glm::dvec2& p, std::array<double, 3>& weight) const;
+  /// A triangle with all that a look asks of it.
+  struct Corners {
+    std::array<glm::dvec2, 3> point;
+    Triangle index;
+    double whole = 0;  // twice the area
+  };
+  static int cell_of(double x);
+  /// `weight`: times `whole`.
+  static bool inside(const Corners& triangle, const glm::dvec2& p, std::array<double, 3>& weight);
   Weights on_outline(const glm::dvec2& p) const;
 
-  static constexpr int kGrid = 32;  // cells along a side of the plane's square [-1, 1]^2
+  static constexpr int kGrid = 64;  // cells along a side of the plane's square [-1, 1]^2
   std::vector<glm::dvec2> points_;
   std::vector<Triangle> triangles_;
   std::vector<std::array<uint32_t, 2>> outline_;  // edges
-  std::vector<std::vector<uint32_t>> cells_;      // triangles that meet a cell
+  std::vector<Corners> corners_;                  // of the triangles
+  std::vector<uint32_t> first_, meeting_;         // triangles that meet a cell, [first_[cell], first_[cell + 1])
 };
 
 }  // namespace velour
