@@ -27,10 +27,9 @@ def _command(name: str, folder, *more) -> list[str]:
     ]
 
 
-def _run(name: str, folder, **env) -> str:
-    done = subprocess.run(
-        _command(name, folder), capture_output=True, text=True, timeout=900, env=environment(**env)
-    )
+def _run(name: str, folder, *more, **env) -> str:
+    command = _command(name, folder, *more)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900, env=environment(**env))
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -40,7 +39,7 @@ def _rows(path) -> list[dict]:
         return list(csv.DictReader(file))
 
 
-@pytest.mark.parametrize("name", ["figures", "chart"])
+@pytest.mark.parametrize("name", ["figures", "chart", "btf_chart"])
 def test_without_data_a_sentence(name, tmp_path):
     assert "there is no test data" in _run(name, tmp_path, VELOUR_DATA=str(tmp_path / "none"))
 
@@ -140,3 +139,34 @@ def test_the_sun_survives_the_mixture(chart):
     assert int(count) >= 1
     assert 0.4 < float(across) < 0.8
     assert float(share) == pytest.approx(90, abs=2)
+
+
+@pytest.fixture(scope="module")
+def btf_chart(data_folder, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("btf_chart")
+    _run("btf_chart", folder, "--methods=svd,svd-view", VELOUR_DATA=str(data_folder))
+    return folder
+
+
+def test_ways_to_compress_are_compared_at_equal_bytes(btf_chart):
+    rows = [row for row in _rows(btf_chart / "out/chart_btf.csv") if row["tile"] == "weave"]
+    assert {row["method"] for row in rows} == {"svd", "svd-view"}
+    for row in rows:
+        assert int(row["bytes"]) * int(row["ratio"]) <= 12 * 12 * 37 * 37 * 6
+        assert 0 < float(row["picture"]) < 1
+        assert 5 < float(row["psnr_unseen"]) < 60
+    assert any(float(row["render_seconds"] or 0) > 0 for row in rows)
+
+
+def test_the_page_of_btfs_shows_what_was_measured(btf_chart):
+    page = (btf_chart / "out/chart_btf.md").read_text()
+    for words in ("## Targets", "## weave", "## Costs at 1:20", "`svd-view`", "commit", "seed 1"):
+        assert words in page
+    for name in ("chart_btf.png", "chart_btf_weave.png"):
+        assert f"images/{name}" in page
+        assert (btf_chart / "out/images" / name).stat().st_size > 5000
+
+
+def test_what_was_fitted_is_kept(btf_chart, data_folder):
+    said = _run("btf_chart", btf_chart, "--methods=svd,svd-view", VELOUR_DATA=str(data_folder))
+    assert all("kept" in line for line in said.splitlines() if line.startswith("["))

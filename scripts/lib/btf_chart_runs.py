@@ -44,8 +44,8 @@ class Extent:
 
 
 QUICK = Extent(
-    texels=12, ratios=(50, 200), tiles=("weave",), directions=37, held_out=8, size=(48, 36), spp=16,
-    speed_ratio=200, speed_size=(24, 18), speed_spp=(8, 16), speed_reference=64,
+    texels=12, ratios=(10, 20), tiles=("weave",), directions=37, held_out=8, size=(48, 36), spp=16,
+    speed_ratio=20, speed_size=(24, 18), speed_spp=(8, 16), speed_reference=64,
 )  # fmt: skip
 
 
