@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "job/error.h"
 #include "unit/compress/factored_fits.h"
 
 namespace velour {
@@ -61,33 +60,6 @@ TEST(SvdFit, LosesNoMoreThanTheExactDecomposition) {
   EXPECT_LT(test::squared_error(found.btf, btf), 1.03 * test::left_out(energy, 30));
 }
 
-TEST(SvdFit, CoarseLevelsKeepTheMeanOfWhatIsSquared) {
-  const test::MemoryBtf btf(small_layout(), {8, 8}, [](const DirectionPair&, uint32_t x, uint32_t y) {
-    return Rgb((x + y) % 2 == 0 ? 0.8f : 0.0f);
-  });
-  const test::FactoredFit found = fit(btf, {.bytes = 2000});
-  ASSERT_EQ(found.btf.levels.size(), 4u);
-  FactoredBtf coarse = found.btf;
-  coarse.levels = {found.btf.levels[1]};
-  coarse.grid = {4, 4};
-  std::vector<float> image;
-  FactoredImages(coarse).image(btf.layout().directions(3), image);
-  for (const float f : image) EXPECT_NEAR(f, 0.4f, 2e-3f);  // filtered coefficients would give 0.2
-}
-
-TEST(SvdFit, KeepsToItsBytes) {
-  const test::MemoryBtf btf(small_layout(), kGrid, noise);
-  EXPECT_LE(fit(btf, {.bytes = 3000}).btf.parameter_bytes(), 3000u);
-  EXPECT_THROW(fit(btf, {.bytes = 100}), Error);
-}
-
-TEST(SvdFit, IsTheSameForAnyNumberOfThreads) {
-  const test::MemoryBtf btf(small_layout(), kGrid, noise);
-  const test::FactoredFit one = fit(btf, {.bytes = 3000, .threads = 1}), two = fit(btf, {.bytes = 3000, .threads = 2});
-  EXPECT_EQ(one.btf.pair_value, two.btf.pair_value);
-  EXPECT_EQ(one.btf.levels[0].value, two.btf.levels[0].value);
-}
-
 TEST(SvdFit, IsNotPulledByEntriesThatAreNotFinite) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const test::MemoryBtf btf(small_layout(), kGrid, [&](const DirectionPair& pair, uint32_t x, uint32_t y) {
@@ -96,11 +68,6 @@ TEST(SvdFit, IsNotPulledByEntriesThatAreNotFinite) {
   const test::FactoredFit found = fit(btf, {.bytes = 6000});
   EXPECT_GT(found.not_finite, 0u);
   EXPECT_LT(error_of(found.btf, btf), 1e-3);
-}
-
-TEST(SvdFit, NeedsEveryPair) {
-  const PairLayout holes(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}});
-  EXPECT_THROW(fit(test::MemoryBtf(holes, kGrid, noise), {}), Error);
 }
 
 }  // namespace

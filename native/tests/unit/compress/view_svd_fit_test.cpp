@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "job/error.h"
 #include "unit/compress/factored_fits.h"
 
 namespace velour {
@@ -87,45 +86,12 @@ TEST(ViewSvdFit, EachViewIsAsBrightAsWhatItLeavesOut) {
   EXPECT_NEAR(errors_of(found.btf, btf).brightness, 1, 2e-3);
 }
 
-TEST(ViewSvdFit, CoarseLevelsKeepTheMeanOfWhatIsSquared) {
-  const test::MemoryBtf btf(small_layout(), {8, 8}, [](const DirectionPair&, uint32_t x, uint32_t y) {
-    return Rgb((x + y) % 2 == 0 ? 0.8f : 0.0f);
-  });
-  const test::FactoredFit found = fit(btf, {.bytes = 2000});
-  ASSERT_EQ(found.btf.levels.size(), 4u);
-  FactoredBtf coarse = found.btf;
-  coarse.levels = {found.btf.levels[1]};
-  coarse.grid = {4, 4};
-  std::vector<float> image;
-  FactoredImages(coarse).image(btf.layout().directions(3), image);
-  for (const float f : image) EXPECT_NEAR(f, 0.4f, 2e-3f);  // filtered coefficients would give 0.2
-}
-
-TEST(ViewSvdFit, KeepsToItsBytes) {
-  const test::MemoryBtf btf(small_layout(), kGrid, noise);
-  EXPECT_LE(fit(btf, {.bytes = 3000}).btf.parameter_bytes(), 3000u);
-  EXPECT_THROW(fit(btf, {.bytes = 100}), Error);
-  EXPECT_THROW(fit(btf, {.bytes = 3000, .memory = 1000}), Error);
-}
-
-TEST(ViewSvdFit, IsTheSameForAnyNumberOfThreads) {
-  const test::MemoryBtf btf(small_layout(), kGrid, noise);
-  const test::FactoredFit one = fit(btf, {.bytes = 9000, .threads = 1}), two = fit(btf, {.bytes = 9000, .threads = 2});
-  EXPECT_EQ(one.btf.pair_value, two.btf.pair_value);
-  EXPECT_EQ(one.btf.levels[0].value, two.btf.levels[0].value);
-}
-
 TEST(ViewSvdFit, OfABlackBtfIsBlack) {
   const test::MemoryBtf btf(small_layout(), kGrid, [](const DirectionPair&, uint32_t, uint32_t) { return Rgb(0.0f); });
   const test::FactoredFit found = fit(btf, {.bytes = 9000});
   std::vector<float> image;
   FactoredImages(found.btf).image(btf.layout().directions(3), image);
   for (const float f : image) EXPECT_EQ(f, 0.0f);
-}
-
-TEST(ViewSvdFit, NeedsEveryPair) {
-  const PairLayout holes(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}});
-  EXPECT_THROW(fit(test::MemoryBtf(holes, kGrid, noise), {}), Error);
 }
 
 }  // namespace
