@@ -137,9 +137,23 @@ def _btf_terms(info):
     """What a texel is a sum of, and of which sides of the surface."""
     if "components" in info:
         return (("Components", str(info["components"])),)
+    first = _lobe_terms(info) if "lobes" in info else _cluster_terms(info["sides"][0])
     return (
-        ("Lobes", f"{info['lobes']}, {info['coefficients']} coefficients a texel"),
+        *first,
         *(("Side", _side_text(side, info["sides"])) for side in info["sides"]),
+    )
+
+
+def _lobe_terms(info):
+    return (("Lobes", f"{info['lobes']}, {info['coefficients']} coefficients a texel"),)
+
+
+def _cluster_terms(side):
+    """Of clustered tensors; the side above is the first where there is one."""
+    ranks, members = side["ranks"], side["members"]
+    return (
+        ("Clusters", f"{side['clusters']}, of which a texel has {members}"),
+        ("Ranks", f"texel {ranks['texel']}, view {ranks['view']}, light {ranks['light']}, color {ranks['color']}"),
     )
 
 

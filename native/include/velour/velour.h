@@ -103,7 +103,8 @@ VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_
  * warnings, texels, tile_metres, views, lights, companding; components, or coefficients (of the side that has most), of
  * SRBFs lobes, and sides: view and light ("above", "below"), parameter_bytes, as (null, or the number of the side that
  * serves this one, whose own fields are null) and lobes {tile, texel}, or clusters, members, ranks {texel, view, light,
- * color}, relief. */
+ * color}, relief (whether there is one) and bytes of each part {coefficients, members, relief, factors, cores, scales},
+ * which add up to parameter_bytes. */
 VLR_API vlr_status vlr_model_info_json(vlr_model* model, const char** json);
 /* As vlr_measurement_eval; also the density of the model's own sampler when `pdf` [count] is not NULL. */
 VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t count, const float* wl, float* f,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "btf/tensor_bytes.h"
 #include "capi/json_text.h"
 #include "capi/scene_reports.h"
 #include "domain/hash_text.h"
@@ -138,10 +139,18 @@ Json own_side_json(const SrbfSide& side) {
 }
 Json own_side_json(const TensorSide& side) {
   const TensorSide::Ranks& rank = side.rank;
+  const TensorBytes bytes = bytes_of(side);
   return {{"clusters", side.clusters.size()},
           {"members", side.members},
           {"ranks", {{"texel", rank.texel}, {"view", rank.view}, {"light", rank.light}, {"color", rank.color}}},
-          {"relief", !side.levels.at(0).relief.empty()}};
+          {"relief", !side.levels.at(0).relief.empty()},
+          {"bytes",
+           {{"coefficients", bytes.coefficients},
+            {"members", bytes.members},
+            {"relief", bytes.relief},
+            {"factors", bytes.factors},
+            {"cores", bytes.cores},
+            {"scales", bytes.scales}}}};
 }
 
 /// The sides of a BTF, then those that another one serves; these have the same fields.

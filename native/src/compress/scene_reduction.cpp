@@ -51,6 +51,11 @@ uint64_t bytes_of(const ModelBody& model) {
 void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptions& options, Model& model,
             SceneRecord& record, Progress& progress) {
   if (count == 0) return;
+  if (std::holds_alternative<TensorBtf>(model.body)) {
+    model.btf->warnings.push_back(
+        "of clustered tensors the finest levels were left out, and no more: they are not "
+        "fitted anew to what the scene shows");
+  }
   ModelBody levels = without_finest(model.body, count);
   auto refit = refit_for_scene(measurement, model.body, levels, options, progress);
   if (!refit || bytes_of(refit->body) > bytes_of(levels)) {

@@ -168,6 +168,21 @@ TEST_F(SceneReduction, TheGivenFullModelIsWhatIsReduced) {
   EXPECT_EQ(model.scene->full_parameter_bytes, full.parameter_bytes());
 }
 
+TEST_F(SceneReduction, OfTensorsLevelsAreLeftOutAndNoMore) {
+  Model full{square_tensors(), {}, {.sha256 = btf_.provenance().sha256}};
+  full.btf = BtfRecord{};
+  options_.full_model = std::make_shared<const Model>(full);
+  const Model model = reduced();
+  const auto &small = std::get<TensorBtf>(model.body), &whole = std::get<TensorBtf>(full.body);
+  EXPECT_EQ(small.grid.width, 2u);
+  ASSERT_EQ(small.sides.size(), 1u);
+  EXPECT_EQ(small.sides[0].clusters.size(), whole.sides[0].clusters.size());
+  EXPECT_EQ(small.sides[0].levels[0].value, whole.sides[0].levels[3].value);
+  EXPECT_TRUE(is_reduced(model));
+  ASSERT_FALSE(model.btf->warnings.empty());
+  EXPECT_NE(model.btf->warnings.back().find("no more"), std::string::npos);
+}
+
 TEST_F(SceneReduction, ASceneThatResolvesAllTexelsGetsTheFullModel) {
   scene_.domain.surface = seen_at(0.5 / 16);
   const Model model = reduced();

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "btf/tensor_bytes.h"
 #include "unit/model/example_model.h"
 #include "unit/model/refusals.h"
 
@@ -63,6 +64,20 @@ TEST(TensorBtfModel, SurvivesItsFile) {
     EXPECT_EQ(encode_model(model), encode_model(back));
     EXPECT_EQ(back.btf->method, "kcta");
   }
+}
+
+TEST(TensorBtfModel, PartsCostWhatTheyHold) {
+  const TensorBtf btf = test::example_tensor();  // 3 clusters, 2 a texel, ranks 5, 4, 3, 2; 6 views and lights
+  const TensorBytes bytes = bytes_of(btf.sides[0]);
+  constexpr uint64_t kTexels = 6 * 4 + 3 * 2 + 2 * 1 + 1;
+  EXPECT_EQ(bytes.coefficients, kTexels * 2 * 5);
+  EXPECT_EQ(bytes.members, kTexels * 2);
+  EXPECT_EQ(bytes.relief, kTexels * 2);
+  EXPECT_EQ(bytes.factors, 3u * (6 * 4 + 6 * 3 + 3 * 2) * 2);
+  EXPECT_EQ(bytes.cores, 3u * 5 * 4 * 3 * 2 * 2);
+  EXPECT_EQ(bytes.scales, 3u * 5 * 8);
+  EXPECT_EQ(btf.parameter_bytes(),
+            bytes.coefficients + bytes.members + bytes.relief + bytes.factors + bytes.cores + bytes.scales);
 }
 
 TEST(TensorBtfModel, KeepsSidesThatAnotherOneServes) {
