@@ -169,7 +169,7 @@ TEST_F(SceneReduction, TheGivenFullModelIsWhatIsReduced) {
 }
 
 TEST_F(SceneReduction, OfTensorsLevelsAreLeftOutAndNoMore) {
-  Model full{square_tensors(), {}, {.sha256 = btf_.provenance().sha256}};
+  Model full{square_tensors(), {}, {"", "", btf_.provenance().sha256}};
   full.btf = BtfRecord{};
   options_.full_model = std::make_shared<const Model>(full);
   const Model model = reduced();
