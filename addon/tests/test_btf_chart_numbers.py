@@ -9,6 +9,8 @@ from btf_chart_numbers import (
     HEADERS,
     Entry,
     Results,
+    fills,
+    largest_within,
     packing,
     relative_error,
     verdicts,
@@ -46,6 +48,15 @@ def test_a_packing_that_is_known_saves_tries():
     fits = Fits(HEADERS, 0.7, 1)
     assert within(300_000, fits, packing(first))["bytes"] == pytest.approx(300_000, rel=0.02)
     assert len(fits.asked) == 1
+
+
+def test_fits_that_are_there_are_taken():
+    reports = [{"bytes": n} for n in (80_000, 95_000, 101_000)]
+    assert largest_within(100_000, reports) == {"bytes": 95_000}
+    assert fills(100_000, reports[1])
+    assert not fills(100_000, reports[0])
+    assert largest_within(10, reports) is None
+    assert not fills(10, None)
 
 
 def test_no_unit_more_would_fit_and_none_is_tried_in_vain():

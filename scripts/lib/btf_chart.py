@@ -20,6 +20,10 @@ from velour.core.cli.compress import METHODS
 from velour_cli import ROOT
 
 MEMBERS = (2, 3, 4)  # of K-CTA
+SWITCHES = {
+    "btf": "this chart",
+    "kept": "writes what the fits say that are there, and makes no others",
+}
 _ORDER = ("svd", "svd-view", "srbf", "tucker", "cta", "kcta")
 
 
@@ -37,10 +41,10 @@ def methods(known: tuple[str, ...], wanted: list[str] | None = None) -> list[Met
 
 
 def main() -> int:
-    args = script.arguments("chart", ROOT / "docs", _add_arguments, part="btf", btf="the chart of BTFs")
+    args = script.arguments("chart", ROOT / "docs", _add_arguments, part="btf", **SWITCHES)
     extent = _extent(args)
     run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
-    study = Study(run.renders, extent, run.data)
+    study = Study(run.renders, extent, run.data, args.kept)
     contenders = methods(METHODS, args.methods)
     study.announce(len(extent.tiles) + len(args.btf_set), len(contenders))
     tiles = [study.captured(kind) for kind in extent.tiles] + [study.measured(path) for path in args.btf_set]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 HEADERS = 6000  # bytes of a model's file besides what is fitted, about
-_CLOSE = 0.03  # of the bytes that may be left unused where a further fit could use them
+_CLOSE = 0.08  # of the bytes that may be left unused where a further fit could use them
 _TRIES = 4
 _MARGIN = 0.99  # of what is tried first
 
@@ -45,6 +45,15 @@ class Entry:
 def packing(report: dict) -> float:
     """Bytes of the file for each that is fitted."""
     return max(report["bytes"] - HEADERS, 1) / report["parameter_bytes"]
+
+
+def largest_within(target: int, reports: Iterable[dict]) -> dict | None:
+    return max((r for r in reports if r["bytes"] <= target), key=lambda r: r["bytes"], default=None)
+
+
+def fills(target: int, report: dict | None) -> bool:
+    """Whether a further fit would hardly use more of the bytes."""
+    return report is not None and report["bytes"] >= (1 - _CLOSE) * target
 
 
 def within(target: int, fit: Callable[[int], dict | None], packed: float = 1.0) -> dict | None:

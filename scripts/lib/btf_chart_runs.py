@@ -11,17 +11,17 @@ from pathlib import Path
 import btf_chart_scene
 import data_files
 import numpy as np
-from btf_chart_numbers import Entry, Method, packing, relative_error, within
+from btf_chart_numbers import Entry, Method, fills, largest_within, packing, relative_error, within
 from curve import Curve
 from flip_metric import NoFlipError, display, exposure, flip_map
-from renders import Picture, Renders, flags
+from renders import Picture, Renders, flags, key
 from scenes import Scene
 from velour.core import files
 from velour_cli import velour, velour_to_file
 
 WORLD = "potsdamer_platz"
 # How files of methods pack, about: headers of many parts, or maps that deflate. Others: as they are fitted.
-_PACKED = {"srbf": 1.08, "svd-view": 0.75}
+_PACKED = {"srbf": 1.4, "svd-view": 0.85, "tucker": 1.3, "cta": 1.3, "kcta": 1.3}
 _CAPTURE_COST, _FIT_COST = 4e7, 6e7  # in samples
 
 
@@ -58,10 +58,12 @@ class Tile:
 
 
 class Study:
-    def __init__(self, renders: Renders, extent: Extent, data: Path):
+    def __init__(self, renders: Renders, extent: Extent, data: Path, only_kept: bool = False):
+        """`only_kept`: no new fits."""
+        self._only_kept = only_kept
         self._renders, self._extent = renders, extent
         self._world = data_files.world(data, WORLD)
-        self._packed = dict(_PACKED)
+        self._packed: dict[str, float] = {}
         self._found: dict[tuple[str, str, int], dict | None] = {}
         self._sheet = renders.settings.folder / "sheet.obj"
         if not self._sheet.is_file():
@@ -132,22 +134,39 @@ class Study:
         return Path(report["file"]) if report else None
 
     def _sized(self, tile: Tile, method: Method, ratio: int) -> dict | None:
-        """How the method's files pack is taken from its fit before: that saves most second tries."""
-        expected = self._packed.get(method.name, 1.0)
-        report = within(tile.raw_bytes // ratio, lambda size: self._fit(tile, method, size), expected)
+        """What fits there are come first; then how files pack is taken from the method's fit before."""
+        target = tile.raw_bytes // ratio
+        report = largest_within(target, self._kept_fits(tile, method))
+        if not self._only_kept and not fills(target, report):
+            usual = _PACKED.get(method.name.split()[0], 1.0)
+            expected = self._packed.get(method.name, usual)
+            report = within(target, lambda size: self._fit(tile, method, size), expected)
         if report:
             self._packed[method.name] = packing(report)
         self._found[tile.name, method.name, ratio] = report
         return report
 
+    def _series(self, tile: Tile, method: Method) -> dict:
+        """All that a fit depends on but its size."""
+        return {"btf": tile.btf, **dict(method.options), "seed": self._renders.settings.seed}
+
+    def _kept_fits(self, tile: Tile, method: Method) -> list[dict]:
+        wanted, found = key(self._series(tile, method)), []
+        for path in sorted(self._renders.settings.folder.glob("compress-*.json")):
+            report = json.loads(path.read_text(encoding="utf-8"))
+            if report.get("series") == wanted and "refused" not in report:
+                found.append({**report, "file": str(path.with_suffix(".velour"))})
+        return found
+
     def _fit(self, tile: Tile, method: Method, size: int) -> dict | None:
         """The report of a fit, with the processor's seconds and the file; None where it was refused."""
-        options = {**dict(method.options), "bytes": size, "seed": self._renders.settings.seed}
-        parameters = {"btf": tile.btf, **options}
+        series = self._series(tile, method)
+        parameters = {**series, "bytes": size}
         out = self._renders.stem("compress", parameters).with_suffix(".velour")
+        options = {name: value for name, value in parameters.items() if name != "btf"} | self._threads()
 
         def run(report: Path) -> dict:
-            return _reported(report, "compress", tile.btf, "-o", out, *flags(options | self._threads()))
+            return _reported(report, key(series), "compress", tile.btf, "-o", out, *flags(options))
 
         label = f"{method.name} of {tile.name}, {size} bytes"
         found = self._renders.keep(label, "compress", parameters, run, _FIT_COST)
@@ -195,8 +214,8 @@ def flip(picture: np.ndarray, reference: np.ndarray) -> float | None:
         return None
 
 
-def _reported(report: Path, *arguments) -> dict:
-    """Of a call that may be refused; with the seconds that processors spent on it."""
+def _reported(report: Path, series: str, *arguments) -> dict:
+    """Of a call that may be refused; with what it belongs to and the seconds that processors spent on it."""
     beside = report.with_suffix(".partial")
     before = _processor_seconds()
     try:
@@ -205,7 +224,7 @@ def _reported(report: Path, *arguments) -> dict:
         if error.returncode != 1:
             raise
         found = {"refused": True}
-    found["processor_seconds"] = _processor_seconds() - before
+    found |= {"series": series, "processor_seconds": _processor_seconds() - before}
     beside.unlink(missing_ok=True)
     files.write_json(report, found)
     return found
