@@ -176,7 +176,7 @@ class Study:
         def run(report: Path) -> dict:
             return velour_to_file(report, "compare", btf, other)
 
-        return self._renders.keep(f"errors of {other.name}", "compare", {"btf": btf, "other": other}, run, 0)
+        return self._renders.keep(f"errors of {other.name}", "compare", {"btf": btf, "other": other}, run)
 
     def picture(self, tile: Tile, material: Path) -> Picture:
         """Directions of the light alone: the same for every material, so noise is nearly the same too."""

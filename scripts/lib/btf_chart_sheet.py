@@ -5,12 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from btf_chart_numbers import Results, widest_spread
+from btf_chart_numbers import Results, relative_error, widest_spread
 from display import display
 from flip_metric import exposure
 from velour.core import plots
 
 _CELL, _COLUMNS = 2.0, 5  # inches of a picture's width, at 100 dots an inch
+_FAR = 0.5  # error of pictures that differ everywhere: they do not choose the crop
 _CROP = 28  # pixels of the reference picture along a crop
 
 
@@ -20,7 +21,8 @@ def draw(path: Path, tile, pictures: dict[str, np.ndarray], results: Results, ra
     reference = pictures[names[0]]
     scale = exposure(reference, np.ones(reference.shape[:2], bool))
     side = min(_CROP, *reference.shape[:2])
-    top, left = widest_spread([scale * p for p in pictures.values()], side)
+    close = [p for p in pictures.values() if relative_error(p, reference) < _FAR]
+    top, left = widest_spread([scale * p for p in close], side)
     rows = -(-len(names) // _COLUMNS)
     sheet, axes = plots.sheet(2 * rows, _COLUMNS, (_CELL * _COLUMNS, rows * _CELL * 1.95))
     for i, name in enumerate(names):

@@ -148,7 +148,10 @@ def grid(
         cell.set(
             xscale="log", title=column if row == rows[0] else "", ylabel=row if column == columns[0] else ""
         )
-        cell.grid(which="both", alpha=0.25)
+        ticks = sorted({x for curve in curves.values() for x, _ in curve})
+        cell.set_xticks(ticks, [f"{x:g}" for x in ticks])
+        cell.set_xticks([], minor=True)
+        cell.grid(alpha=0.25)
     axes[0, -1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
     figure.supxlabel(x_name)
     save(figure, path)
