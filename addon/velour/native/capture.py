@@ -51,6 +51,26 @@ def capture_job(tile, path: str | os.PathLike, **options) -> Job:
     return Job._create("vlr_capture_create_job", tile.pointer, byref(raw), path_bytes(path))
 
 
+def votf_job(tile, model, **options) -> Job:
+    """Adds to a copy of a Model what a committed Scene, repeated by its period, lets rays through.
+
+    Surfaces with the result, a Model, show its outline and its holes.
+
+    Options: texels (along x), origin and period (pairs, the scene's units; no period: the bounding box),
+    metres_per_unit (0: not known), surface (the scene's z that lies on what carries the structure),
+    reference_height (the scene's z; none: chosen), source (a name), check_views, seed, threads.
+    """
+    raw = table.VotfOptions()
+    library.load().vlr_votf_options_init(byref(raw))
+    for name in ("origin", "period"):
+        if name in options:
+            options[name] = _PAIRS[name](*np.broadcast_to(options[name], 2).tolist())
+    if "source" in options:
+        options["source"] = options["source"].encode()
+    set_fields(raw, options)
+    return Job._create("vlr_votf_create_job", tile.pointer, model.pointer, byref(raw))
+
+
 def _angles(angles) -> np.ndarray:
     return np.ascontiguousarray(angles, np.float64).reshape(-1, 2)
 

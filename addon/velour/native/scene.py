@@ -103,6 +103,10 @@ class Scene(Handle):
         """Puts a model in the place of a material. A committed scene stays so; no job may run on it."""
         self._lib.vlr_scene_set_model_material(self.pointer, material, model.pointer, neighbors)
 
+    def set_shell_tile(self, material: int, metres: float) -> None:
+        """How wide a tile of the material's shell (VOTF) is; 0: as the texture coordinates say."""
+        self._lib.vlr_scene_set_shell_tile(self.pointer, material, metres)
+
     def add_measurement_material(
         self, measurement: Measurement, proposal: Model | None = None, neighbors: int = 0
     ) -> int:

@@ -145,6 +145,22 @@ class CaptureOptions(Struct):
     ]
 
 
+class VotfOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("texels", c_uint32),
+        ("threads", c_uint32),
+        ("check_views", c_uint32),
+        ("seed", c_uint64),
+        ("origin", c_double * 2),
+        ("period", c_double * 2),
+        ("metres_per_unit", c_double),
+        ("surface", c_double),
+        ("reference_height", c_double),
+        ("source", c_char_p),
+    ]
+
+
 class MeshDesc(Struct):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -276,6 +292,7 @@ STRUCTS = {
     "vlr_compress_options": CompressOptions,
     "vlr_microsurface_options": MicrosurfaceOptions,
     "vlr_capture_options": CaptureOptions,
+    "vlr_votf_options": VotfOptions,
     "vlr_mesh_desc": MeshDesc,
     "vlr_principled_desc": PrincipledDesc,
     "vlr_tile_options": TileOptions,
@@ -331,11 +348,13 @@ STATUS_CALLS = {
     "vlr_microsurface_create_job": [POINTER(MicrosurfaceOptions), c_char_p, _out_handle],
     "vlr_directions": [c_char_p, POINTER(c_double), POINTER(c_uint64)],
     "vlr_capture_create_job": [_handle, POINTER(CaptureOptions), c_char_p, _out_handle],
+    "vlr_votf_create_job": [_handle, _handle, POINTER(VotfOptions), _out_handle],
     "vlr_scene_create": [_out_handle],
     "vlr_scene_set_working_space": [_handle, _floats],
     "vlr_scene_add_mesh": [_handle, POINTER(MeshDesc), _number, _number],
     "vlr_scene_load_mesh": [_handle, c_char_p, _number],
     "vlr_scene_add_model_material": [_handle, _handle, c_uint32, _number],
+    "vlr_scene_set_shell_tile": [_handle, c_uint32, c_float],
     "vlr_scene_set_model_material": [_handle, c_uint32, _handle, c_uint32],
     "vlr_scene_add_measurement_material": [_handle, _handle, _handle, c_uint32, _number],
     "vlr_scene_add_btf_material": [_handle, _handle, c_uint64, _number],
@@ -403,6 +422,7 @@ PLAIN_CALLS = {
     "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
     "vlr_microsurface_options_init": (None, [POINTER(MicrosurfaceOptions)]),
     "vlr_capture_options_init": (None, [POINTER(CaptureOptions)]),
+    "vlr_votf_options_init": (None, [POINTER(VotfOptions)]),
     "vlr_tile_options_init": (None, [POINTER(TileOptions)]),
     "vlr_principled_desc_init": (None, [POINTER(PrincipledDesc)]),
     "vlr_texture_options_init": (None, [POINTER(TextureOptions)]),

@@ -153,7 +153,10 @@ def _cluster_terms(side):
     ranks, members = side["ranks"], side["members"]
     return (
         ("Clusters", f"{side['clusters']}, of which a texel has {members}"),
-        ("Ranks", f"texel {ranks['texel']}, view {ranks['view']}, light {ranks['light']}, color {ranks['color']}"),
+        (
+            "Ranks",
+            f"texel {ranks['texel']}, view {ranks['view']}, light {ranks['light']}, color {ranks['color']}",
+        ),
     )
 
 

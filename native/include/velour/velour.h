@@ -324,6 +324,9 @@ VLR_API vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint3
 /* Materials are numbered in the order of adding. */
 VLR_API vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model, uint32_t neighbors,
                                                 uint32_t* material);
+/* How wide, in metres, a tile of the material's shell (VOTF) is, which scales its height; 0: as the texture coordinates
+ * say, on average over each instance. Only of materials with a shell. */
+VLR_API vlr_status vlr_scene_set_shell_tile(vlr_scene* scene, uint32_t material, float metres);
 /* Puts a model in the place of material number `material`, of whatever kind it was. A committed scene stays committed;
  * no job of the scene may run meanwhile. */
 VLR_API vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t material, const vlr_model* model,
@@ -514,6 +517,29 @@ VLR_API vlr_status vlr_directions(const char* name, double* angles, uint64_t* co
  * the job is there. */
 VLR_API vlr_status vlr_capture_create_job(const vlr_scene* tile, const vlr_capture_options* options, const char* path,
                                           vlr_job** out);
+
+/* ---- occlusion of tiles (VOTF) --------------------------------------------------------------------------------- */
+
+typedef struct vlr_votf_options {
+  uint32_t struct_size;
+  uint32_t texels;         /* along x; y and the height are as fine */
+  uint32_t threads;        /* 0: all */
+  uint32_t check_views;    /* random views up to 75 degrees that the result is compared with rays under; 0: none */
+  uint64_t seed;           /* of those */
+  double origin[2];        /* of the cell, in the scene's units */
+  double period[2];        /* both 0: the bounding box of the geometry, its origin included */
+  double metres_per_unit;  /* 0: not known */
+  double surface;          /* scene's z that lies on the surfaces which will carry the structure */
+  double reference_height; /* scene's z of the plane of a BTF's texels; NaN: as vlr_capture_options chooses it */
+  const char* source;      /* name of what is captured */
+} vlr_votf_options;
+VLR_API void vlr_votf_options_init(vlr_votf_options* options);
+/* Adds to a copy of `model` what the committed scene `tile`, repeated by the period, lets rays through: surfaces with
+ * the result show its outline and its holes. What `model` had of it is replaced. The result is a
+ * model. JSON: seconds, bytes, texels, points [x, y, z], heights [lowest, highest] (widths of the tile), closed,
+ * coverage, wrong (both null without check_views), warnings. The scene must not change while the job is there. */
+VLR_API vlr_status vlr_votf_create_job(const vlr_scene* tile, const vlr_model* model, const vlr_votf_options* options,
+                                       vlr_job** out);
 
 /* ---- render -------------------------------------------------------------------------------------------------- */
 

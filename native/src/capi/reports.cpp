@@ -241,6 +241,31 @@ std::string measurement_json(const Measurement& measurement) {
   return text(json);
 }
 
+namespace {
+
+Json shell_json(const ModelShell& shell) {
+  const OcclusionVolume& v = *shell.volume;
+  const auto of_errors = [&](double OcclusionErrors::*value) {
+    return shell.errors ? Json((*shell.errors).*value) : Json();
+  };
+  return {{"source", shell.source},
+          {"bytes", v.parameter_bytes()},
+          {"points", {v.width, v.height, v.depth}},
+          {"heights", {v.bottom, v.top}},
+          {"tile_width", v.tile_width > 0 ? Json(v.tile_width) : Json()},
+          {"closed", v.closed},
+          {"coverage", of_errors(&OcclusionErrors::coverage)},
+          {"wrong", of_errors(&OcclusionErrors::wrong)}};
+}
+
+}  // namespace
+
+std::string votf_json(const ModelShell& shell, double seconds, const std::vector<std::string>& warnings) {
+  Json json = shell_json(shell);
+  json.update(Json{{"seconds", seconds}, {"warnings", warnings}});
+  return text(json);
+}
+
 std::string model_json(const Model& model, uint64_t file_bytes) {
   Json json = {{"kind", "model"}, {"model", model_kind(model)}};
   json.update(std::visit([](const auto& brdf) { return own_json(brdf); }, model.body));
@@ -248,6 +273,7 @@ std::string model_json(const Model& model, uint64_t file_bytes) {
   json.update(model.btf ? record_json(*model.btf) : record_json(model.fit));
   json["source"] = {{"name", model.source.name}, {"format", model.source.format}, {"sha256", model.source.sha256}};
   if (model.scene) json["scene"] = reduced_json(*model.scene);
+  if (model.shell) json["shell"] = shell_json(*model.shell);
   return text(json);
 }
 

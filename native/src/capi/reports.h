@@ -23,6 +23,7 @@ std::string fit_json(const Model& model, uint64_t file_bytes);
 std::string comparison_json(const Comparison& comparison);
 std::string peer_json(const PeerFit& fit);
 std::string capture_json(const BtfCaptureReport& report);
+std::string votf_json(const ModelShell& shell, double seconds, const std::vector<std::string>& warnings);
 std::string microsurface_json(const MicrosurfaceReport& report);
 std::string scene_json(const Scene& scene);
 std::string render_json(const RenderReport& report);

@@ -63,6 +63,14 @@ std::shared_ptr<const Model> coarse_proposal(const Measurement& measurement) {
   return std::make_shared<const Model>(fit_scattered(measurement, options, unwatched));
 }
 
+SurfaceMaterial surface_of(const std::shared_ptr<const Model>& model, uint32_t neighbors) {
+  SurfaceMaterial surface{.material = make_material(model, static_cast<int>(neighbors))};
+  if (!model->shell) return surface;
+  surface.shell = std::make_shared<const ShellField>(model->shell->volume);
+  surface.shell_shaded = !is_btf(*model);
+  return surface;
+}
+
 Light converted(const vlr_light_desc& desc) {
   if (desc.type < VLR_LIGHT_SUN || desc.type > VLR_LIGHT_DISK) {
     throw Error(Status::invalid_argument,
@@ -122,7 +130,7 @@ vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model
     require(scene, "scene");
     require(model, "model");
     require(material, "material");
-    *material = scene->scene->add_material({.material = make_material(model->model, static_cast<int>(neighbors))});
+    *material = scene->scene->add_material(surface_of(model->model, neighbors));
   });
 }
 
@@ -131,7 +139,14 @@ vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t material, con
   return guard([&] {
     require(scene, "scene");
     require(model, "model");
-    scene->scene->set_material(material, {.material = make_material(model->model, static_cast<int>(neighbors))});
+    scene->scene->set_material(material, surface_of(model->model, neighbors));
+  });
+}
+
+vlr_status vlr_scene_set_shell_tile(vlr_scene* scene, uint32_t material, float metres) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->set_shell_tile(material, metres);
   });
 }
 

@@ -36,16 +36,6 @@ void check_counts(const BtfCaptureOptions& options) {
   check(options.sampling.bounces, 0, kMostBounces, "bounces");
 }
 
-/// The place with what was left open filled in from the geometry.
-TilePlace place_of(const Scene& scene, const TilePlace& given) {
-  if (!scene.committed()) throw Error(Status::invalid_state, "The tile's scene is not committed.");
-  if (scene.bounds().empty()) {
-    throw Error(Status::invalid_argument, "The tile is empty: it has no triangle that a ray could meet.");
-  }
-  if (given.period.x != 0 || given.period.y != 0) return given;
-  return {Vec2(scene.bounds().low), Vec2(scene.bounds().high - scene.bounds().low)};
-}
-
 std::vector<PolarAngles> with_mirror_images(std::vector<PolarAngles> set) {
   const std::vector<PolarAngles> mirrored = below(set);
   set.insert(set.end(), mirrored.begin(), mirrored.end());

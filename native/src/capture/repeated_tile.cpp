@@ -23,7 +23,7 @@ void check_period(float period, char axis) {
 
 Bounds bounds_of(const Scene& scene, const Scene::Instance& instance, const Progress& progress) {
   constexpr size_t kPiece = 1 << 18;
-  const Mesh& mesh = scene.meshes()[instance.mesh];
+  const Mesh& mesh = scene.traced_mesh(instance);
   Bounds bounds;
   for (size_t i = 0; i < mesh.triangles().size(); ++i) {
     if (i % kPiece == 0) progress.check();
@@ -39,6 +39,15 @@ Affine moved(Affine map, const Vec2& by) {
 }
 
 }  // namespace
+
+TilePlace place_of(const Scene& scene, const TilePlace& given) {
+  if (!scene.committed()) throw Error(Status::invalid_state, "The tile's scene is not committed.");
+  if (scene.bounds().empty()) {
+    throw Error(Status::invalid_argument, "The tile is empty: it has no triangle that a ray could meet.");
+  }
+  if (given.period.x != 0 || given.period.y != 0) return given;
+  return {Vec2(scene.bounds().low), Vec2(scene.bounds().high - scene.bounds().low)};
+}
 
 RepeatedTile::RepeatedTile(const Scene& scene, const TilePlace& place, int threads, const Progress& progress)
     : scene_(scene), place_(place) {
@@ -97,7 +106,7 @@ void RepeatedTile::add_instances() {
     for (int y = first_y; y <= last_y; ++y) {
       for (int x = first_x; x <= last_x; ++x) {
         const Vec2 by = Vec2(static_cast<float>(x), static_cast<float>(y)) * period() - place_.origin;
-        rays_.add_instance(instance.mesh, moved(instance.object_to_world, by));
+        rays_.add_instance(instance.traced, moved(instance.object_to_world, by));
         source_.push_back(i);
       }
     }

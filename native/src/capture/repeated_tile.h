@@ -16,6 +16,10 @@ struct TilePlace {
   Vec2 period{0, 0};
 };
 
+/// The place with a period of 0 filled in from the geometry's bounding box. Throws Error(invalid_state) for a scene
+/// that is not committed, Error(invalid_argument) for one that is empty.
+TilePlace place_of(const Scene& scene, const TilePlace& given);
+
 /// Local coordinates: the scene's, with the place's origin at 0. The centre cell is [0, period); what sticks out of it
 /// is there as well, and repeats. Immutable, thread-safe.
 ///

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -15,6 +16,7 @@
 #include "model/btf_record.h"
 #include "model/order_curve.h"
 #include "model/scene_record.h"
+#include "votf/occlusion_volume.h"
 
 namespace velour {
 
@@ -45,6 +47,13 @@ struct SourceRecord {
 /// Kinds of model; a new kind is appended.
 using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf, FactoredBtf, SrbfBtf, TensorBtf>;
 
+/// Structure that lies over the surfaces of a material, and what is known of it.
+struct ModelShell {
+  std::shared_ptr<const OcclusionVolume> volume;
+  std::string source;                                    // name of what was captured
+  std::optional<OcclusionErrors> errors = std::nullopt;  // none: they were not looked for
+};
+
 struct Model {
   ModelBody body;
   FitRecord fit;
@@ -53,6 +62,7 @@ struct Model {
   std::optional<SceneRecord> scene = std::nullopt;
   /// Of a BTF, whose `fit` says nothing.
   std::optional<BtfRecord> btf = std::nullopt;
+  std::optional<ModelShell> shell = std::nullopt;
 };
 
 /// Whether the model holds for some scenes alone. One that was fitted for scenes which need all of the full model is

@@ -11,13 +11,14 @@
 #include "model/parametric_file.h"
 #include "model/scattered_file.h"
 #include "model/scene_json.h"
+#include "model/shell_file.h"
 #include "model/srbf_btf_file.h"
 #include "model/tensor_btf_file.h"
 
 namespace velour {
 namespace {
 
-constexpr char kFormatVersion[] = "1.6";
+constexpr char kFormatVersion[] = "1.7";
 constexpr int kMajorVersion = 1;
 constexpr char kKind[] = "model";
 constexpr char kScene[] = "velour.scene", kBtf[] = "velour.btf.record";
@@ -96,6 +97,7 @@ std::vector<uint8_t> encode_model(const Model& model) {
                      {"velour.source.sha256", model.source.sha256}};
   if (model.scene) file.attributes[kScene] = scene_record_json(*model.scene);
   if (model.btf) file.attributes[kBtf] = btf_record_json(*model.btf);
+  if (model.shell) write_shell(*model.shell, file);
   std::visit([&](const auto& brdf) { write_body(brdf, file); }, model.body);
   return encode_tensors(file);
 }
@@ -117,6 +119,7 @@ Model decode_model(std::span<const uint8_t> bytes, const std::string& name) {
   const std::string scene = fields.attribute_or_empty(kScene);
   if (!scene.empty()) model.scene = parse_scene_record(scene, name + ": " + kScene);
   if (is_btf(model)) model.btf = parse_btf_record(fields.attribute(kBtf), name + ": " + kBtf);
+  model.shell = read_shell(fields);
   const TexelGrid* grid = model.scene ? grid_of(model) : nullptr;
   if (grid && (model.scene->full_texels[0] < grid->width || model.scene->full_texels[1] < grid->height)) {
     fields.fail(std::string(kScene) + ": full_texels are fewer than the model's own.");

@@ -38,7 +38,7 @@ void IndirectLight::meet_surfaces() {
   for (size_t i = 0; i < paths_.size(); ++i) {
     if (hits_[i].instance == kNoHit) continue;
     Path& path = paths_[i];
-    const Vertex vertex(scene_, scene_.surface(hits_[i]), rays_[i], hits_[i], path.cone, nullptr);
+    const Vertex vertex = Vertex::seen(scene_, rays_[i], hits_[i], path.cone, nullptr);
     samples_[path.sample].radiance += path.throughput * vertex.surface->emission;
     receivers_.emplace_back(vertex, &path.numbers, path.throughput, path.sample, kDirections, kDirections);
   }

@@ -103,10 +103,10 @@ void TileRenderer::follow(size_t index, int depth) {
     if (depth == 0) missed_.push_back({path.sample, rays_[index].direction});
     return;
   }
-  const SurfacePoint point = context_.scene.surface(hit);
-  Vertex vertex(context_.scene, point, rays_[index], hit, path.cone, depth == 0 ? &pixel_ : nullptr);
-  if (!context_.tables.empty()) vertex.table = context_.tables[point.material].get();
-  if (!context_.ggx.empty()) vertex.ggx = context_.ggx[point.material].get();
+  Vertex vertex = Vertex::seen(context_.scene, rays_[index], hit, path.cone, depth == 0 ? &pixel_ : nullptr);
+  const auto material = static_cast<size_t>(vertex.surface - context_.scene.materials().data());
+  if (!context_.tables.empty()) vertex.table = context_.tables[material].get();
+  if (!context_.ggx.empty()) vertex.ggx = context_.ggx[material].get();
   if (depth == 0) {
     sample.alpha = 1.0f;
     sample.normal = vertex.frame.z;

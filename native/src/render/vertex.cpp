@@ -1,6 +1,7 @@
 #include "render/vertex.h"
 
 #include "material/material.h"
+#include "render/shell_crossing.h"
 
 namespace velour {
 namespace {
@@ -32,13 +33,27 @@ Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world)
   wv = frame.to_local(wv_world);
 }
 
-Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const Ray& ray, const Hit& hit,
-               const RayCone& cone_at_origin, const PixelFootprint* pixel)
+Vertex Vertex::seen(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
+                    const PixelFootprint* pixel) {
+  const SurfacePoint point = scene.surface(hit);
+  const SurfaceMaterial& surface = scene.materials()[point.material];
+  if (surface.shell && scene.has_shell(hit)) {
+    const ShellCrossing crossing(scene, ray, hit);
+    const bool shaded = surface.shell_shaded;
+    // Whoever did not ask the shell sees its top.
+    if (crossing.meets()) return {scene, crossing.surface(point, shaded), &crossing, ray, hit, cone_at_origin, pixel};
+  }
+  return {scene, point, nullptr, ray, hit, cone_at_origin, pixel};
+}
+
+Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossing* crossing, const Ray& ray,
+               const Hit& hit, const RayCone& cone_at_origin, const PixelFootprint* pixel)
     : Vertex(point, -ray.direction) {
   surface = &scene.materials()[point.material];
   cone = cone_at_origin.at(hit.distance);
   if (!surface->material->varies()) return;
-  find_site(point, scene.texture(hit), ray.direction,
+  const TexturePoint texture = scene.texture(hit);
+  find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction,
             pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction));
 }
 

@@ -8,6 +8,7 @@
 namespace velour {
 
 class GgxSampler;
+class ShellCrossing;
 class TableSampler;
 
 /// Surfaces are two-sided: both normals are turned to the viewer's side of the geometric surface. Where interpolation
@@ -37,13 +38,20 @@ struct Vertex {
   /// The same with its surface and, where that varies, its site; `cone` at the origin of `ray`. `pixel`: of a camera
   /// ray, null of others.
   Vertex(const Scene& scene, const SurfacePoint& point, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
-         const PixelFootprint* pixel);
+         const PixelFootprint* pixel)
+      : Vertex(scene, point, nullptr, ray, hit, cone_at_origin, pixel) {}
+  /// The same of a hit of the scene's own; where the surface has a shell, at what the ray meets there.
+  static Vertex seen(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
+                     const PixelFootprint* pixel);
 
   Ray ray(const Vec3& direction_world, float far) const {
     return {position + offset * geometric_normal, 0.0f, direction_world, far};
   }
 
  private:
+  /// `crossing`: null, or what `point`, on the top of a shell, stands for.
+  Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossing* crossing, const Ray& ray, const Hit& hit,
+         const RayCone& cone_at_origin, const PixelFootprint* pixel);
   void find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
 };
 

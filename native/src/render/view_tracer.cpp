@@ -43,8 +43,8 @@ void ViewTracer::start(uint64_t first, uint64_t end) {
 
 void ViewTracer::meet(size_t path, int depth, SeenWeights& seen) {
   if (hits_[path].instance == kNoHit) return;
-  const SurfacePoint point = scene_.surface(hits_[path]);
-  const Vertex vertex(scene_, point, rays_[path], hits_[path], paths_[path].cone, depth == 0 ? &pixel_ : nullptr);
+  const Vertex vertex =
+      Vertex::seen(scene_, rays_[path], hits_[path], paths_[path].cone, depth == 0 ? &pixel_ : nullptr);
   if (vertex.surface == &material_) see(vertex, paths_[path], depth, seen);
   if (depth < options_.bounces) go_on(vertex, paths_[path]);
 }

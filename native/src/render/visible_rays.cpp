@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "material/material.h"
+#include "render/shell_crossing.h"
 #include "sphere/random.h"
 
 namespace velour {
@@ -21,9 +22,9 @@ float number_of(const Ray& ray, const Hit& hit) {
 }  // namespace
 
 VisibleRays::VisibleRays(const Scene& scene)
-    : scene_(scene),
-      all_opaque_(
-          std::ranges::all_of(scene.materials(), [](const SurfaceMaterial& m) { return m.material->opaque(); })) {}
+    : scene_(scene), all_opaque_(std::ranges::all_of(scene.materials(), [](const SurfaceMaterial& m) {
+        return m.material->opaque() && !m.shell;
+      })) {}
 
 void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits) const {
   scene_.rays().intersect(rays, hits);
@@ -48,7 +49,9 @@ void VisibleRays::occluded(std::span<const Ray> rays, uint8_t* blocked) const {
 }
 
 bool VisibleRays::meets(const Ray& ray, const Hit& hit) const {
-  const Material& material = *scene_.materials()[scene_.material(hit)].material;
+  const SurfaceMaterial& surface = scene_.materials()[scene_.material(hit)];
+  if (surface.shell && scene_.has_shell(hit) && !ShellCrossing(scene_, ray, hit).meets()) return false;
+  const Material& material = *surface.material;
   if (material.opaque()) return true;
   // At a point: what a footprint would average, the rays of a pixel do.
   const Vec2 uv = material.varies() ? scene_.texture(hit).uv : Vec2(0.0f);

@@ -7,8 +7,8 @@ namespace velour {
 
 /// As EmbreeScene's, but a ray meets a surface of a material that is not opaque with the probability of its alpha
 /// there, and goes on straight otherwise: right on average, for camera, bounce and shadow rays alike. Whether it does
-/// is drawn with bits of ray and triangle, so that it depends on neither threads nor order. Thread-safe; scenes without
-/// such materials are traced as they are.
+/// is drawn with bits of ray and triangle, so that it depends on neither threads nor order. A shell is met where its
+/// structure is (shell_crossing.h). Thread-safe; scenes without such materials are traced as they are.
 class VisibleRays {
  public:
   /// `scene` is committed, and its materials stay.

@@ -26,6 +26,11 @@ class Mesh {
   /// Copies. Throws Error(invalid_argument) when lengths disagree or a triangle names a vertex that is not there.
   explicit Mesh(const MeshArrays& arrays);
 
+  /// The surface that lies over this one: every vertex of the triangles of slot s is moved along its normal - the mean
+  /// of its corners' in such slots - until it is `height[s]` higher in the world, where the map from the object to the
+  /// world has `metric`, its transpose times itself. Slots of height 0 and those beyond stay, and part from the others.
+  Mesh lifted(std::span<const float> height, const Mat3& metric) const;
+
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const glm::uvec3> triangles() const { return triangles_; }
   /// How many triangles of the input were left out.
@@ -41,6 +46,10 @@ class Mesh {
   /// The same sum over absolute coordinates: what the rounding error of position() is proportional to.
   Vec3 position_magnitude(uint32_t triangle, const Vec2& uv) const;
   Vec3 shading_normal(uint32_t triangle, const Vec2& uv) const;
+  /// Unit.
+  std::span<const Vec3, 3> corner_normals(uint32_t triangle) const {
+    return std::span<const Vec3, 3>(&normals_[3 * static_cast<size_t>(triangle)], 3);
+  }
   /// Along d position / d (first coordinate of `map` times the texture coordinates); zero without uvs or where they are
   /// degenerate.
   Vec3 tangent(uint32_t triangle, const Mat2& map = Mat2(1.0f)) const;

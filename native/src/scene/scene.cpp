@@ -54,6 +54,7 @@ uint32_t Scene::add_material(SurfaceMaterial material) {
 
 void Scene::set_material(uint32_t number, SurfaceMaterial material) {
   if (number >= materials_.size()) refuse("There is no material " + std::to_string(number) + " to replace.");
+  if (materials_[number].shell != material.shell) changed();
   materials_[number] = std::move(material);
 }
 
@@ -110,22 +111,25 @@ void Scene::set_working_space(const Mat3& rec709_to_working) {
 void Scene::commit(int threads) {
   changed();
   const auto start = std::chrono::steady_clock::now();
+  lift_shells();
   auto rays = std::make_unique<EmbreeScene>();
   for (const Mesh& mesh : meshes_) rays->add_mesh(mesh.positions(), mesh.triangles());
-  for (const Instance& i : instances_) rays->add_instance(i.mesh, i.object_to_world);
+  for (const Mesh& mesh : lifted_) rays->add_mesh(mesh.positions(), mesh.triangles());
+  for (const Instance& i : instances_) rays->add_instance(i.traced, i.object_to_world);
   rays->commit(threads);
+  rays_ = std::move(rays);
   bounds_ = bounds_of_instances();
   info_ = count();
-  info_.bytes += rays->bytes();
+  info_.bytes += rays_->bytes();
   info_.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  rays_ = std::move(rays);
 }
 
 Bounds Scene::bounds_of_instances() const {
   Bounds bounds;
   for (const Instance& i : instances_) {
-    for (const glm::uvec3& t : meshes_[i.mesh].triangles()) {
-      for (int k = 0; k < 3; ++k) bounds.add(i.object_to_world.point(meshes_[i.mesh].positions()[t[k]]));
+    const Mesh& mesh = committed() ? traced_mesh(i) : meshes_[i.mesh];
+    for (const glm::uvec3& t : mesh.triangles()) {
+      for (int k = 0; k < 3; ++k) bounds.add(i.object_to_world.point(mesh.positions()[t[k]]));
     }
   }
   return bounds;
@@ -139,6 +143,7 @@ SceneInfo Scene::count() const {
   info.materials = materials_.size();
   info.bytes = environment_.bytes();
   for (const Instance& i : instances_) info.triangles += meshes_[i.mesh].triangles().size();
+  for (const Mesh& mesh : lifted_) info.bytes += mesh.bytes();
   for (size_t m = 0; m < meshes_.size(); ++m) {
     info.bytes += meshes_[m].bytes();
     if (meshes_[m].dropped() == 0) continue;
@@ -148,13 +153,18 @@ SceneInfo Scene::count() const {
   if (flat_instances_ > 0) {
     info.warnings.push_back(std::to_string(flat_instances_) + " instances have a zero scale and are left out.");
   }
+  if (unlifted_ > 0) {
+    info.warnings.push_back(std::to_string(unlifted_) +
+                            " instances have a material with a shell (VOTF) and no texture coordinates that cover "
+                            "their surface; they are shown without it.");
+  }
   if (environment_.black() && lights_.empty()) info.warnings.push_back(kNoLightWarning);
   return info;
 }
 
 uint32_t Scene::slot(const Hit& hit) const {
   const Instance& instance = instances_[hit.instance];
-  const uint32_t slot = meshes_[instance.mesh].material_slot(hit.triangle);
+  const uint32_t slot = traced_mesh(instance).material_slot(hit.triangle);
   return std::min<uint32_t>(slot, static_cast<uint32_t>(instance.materials.size() - 1));
 }
 
@@ -176,7 +186,7 @@ TexturePoint Scene::texture(const Hit& hit) const {
 
 TexturePoint Scene::texture_of_mesh(const Hit& hit) const {
   const Instance& instance = instances_[hit.instance];
-  const Mesh& mesh = meshes_[instance.mesh];
+  const Mesh& mesh = traced_mesh(instance);
   if (!mesh.has_uvs()) return {};
   const glm::uvec3& corner = mesh.triangles()[hit.triangle];
   const std::span<const Vec2, 3> uv = mesh.corner_uvs(hit.triangle);
@@ -199,7 +209,7 @@ TexturePoint Scene::texture_of_mesh(const Hit& hit) const {
 
 SurfacePoint Scene::surface(const Hit& hit) const {
   const Instance& instance = instances_[hit.instance];
-  const Mesh& mesh = meshes_[instance.mesh];
+  const Mesh& mesh = traced_mesh(instance);
   const Vec2 uv(hit.u, hit.v);
   const Vec3 local = mesh.position(hit.triangle, uv);
   const Affine& map = instance.object_to_world;

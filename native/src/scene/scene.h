@@ -1,6 +1,7 @@
 // Everything that a picture is made of, as plain arrays.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "scene/environment.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
+#include "votf/shell_field.h"
 
 namespace velour {
 
@@ -22,6 +24,13 @@ struct SurfaceMaterial {
   std::shared_ptr<const Material> material;
   Rgb emission{0.0f};         // radiance of both sides, working space
   bool rec709_colors = true;  // f is Rec. 709 (measured) and is taken to the working space; false: already there
+  /// Structure that lies over the surface and lets rays through; null: none. Needs texture coordinates.
+  std::shared_ptr<const ShellField> shell = nullptr;
+  /// The structure's own surface is what is shaded and shadowed; false: f says how the structure looks over its plane,
+  /// as a BTF does.
+  bool shell_shaded = false;
+  float shell_tile =
+      0;  // metres that a tile is wide, which scale the shell's height; 0: as the texture coordinates say
 };
 
 /// A hit, resolved to what shading needs. World space.
@@ -53,6 +62,15 @@ struct SceneInfo {
   std::vector<std::string> warnings;
 };
 
+/// What bends a shell at a hit, world space.
+struct ShellFrame {
+  const ShellField* field;
+  Vec3 normal;       // unit, interpolated, towards the mesh's front
+  float scale;       // widths of the tile that a metre along the normal covers
+  float curvature;   // normal curvature along the direction that was asked for, 1 / metres
+  Vec3 normal_turn;  // what the normal changes by along it, 1 / metres
+};
+
 /// Fill, commit, render. Every change after commit() needs another commit(). Reading a committed scene is thread-safe.
 class Scene {
  public:
@@ -60,8 +78,11 @@ class Scene {
   /// Error(invalid_argument).
   uint32_t add_mesh(Mesh mesh);
   uint32_t add_material(SurfaceMaterial material);
-  /// Puts another material in the place of one. A committed scene stays committed; nothing may read it meanwhile.
+  /// Puts another material in the place of one. A committed scene stays committed, unless one of the two has a shell;
+  /// nothing may read it meanwhile.
   void set_material(uint32_t number, SurfaceMaterial material);
+  /// SurfaceMaterial::shell_tile. Throws Error(invalid_argument) for a material without a shell.
+  void set_shell_tile(uint32_t material, float metres);
   /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a
   /// zero scale) is left out and counted in the warnings. `placements[s]` takes the mesh's texture coordinates to those
   /// that slot s is shown with, and with them its footprints and its tangents; none: they are the same.
@@ -85,10 +106,19 @@ class Scene {
     Mat3 normal_to_world;
     std::vector<uint32_t> materials;
     std::vector<TextureMap> placements;  // as many, or none
+    /// Set by commit(), where a material has a shell: the mesh's number with its top (traced_mesh), else `mesh`; and
+    /// how wide a tile of each slot's shell is, in metres.
+    uint32_t traced = 0;
+    std::vector<float> tile_width = {};
   };
   const std::vector<Mesh>& meshes() const { return meshes_; }
   /// Hit::instance counts these.
   const std::vector<Instance>& instances() const { return instances_; }
+
+  /// What rays() has of an instance: its mesh, or the top of its shell.
+  const Mesh& traced_mesh(const Instance& i) const {
+    return i.traced < meshes_.size() ? meshes_[i.traced] : lifted_[i.traced - meshes_.size()];
+  }
 
   const EmbreeScene& rays() const { return *rays_; }
   SurfacePoint surface(const Hit& hit) const;
@@ -96,6 +126,13 @@ class Scene {
   uint32_t material(const Hit& hit) const;
   /// Apart from surface(): most materials are uniform.
   TexturePoint texture(const Hit& hit) const;
+  /// Whether a hit is on the top of a shell.
+  bool has_shell(const Hit& hit) const {
+    const Instance& instance = instances_[hit.instance];
+    return !instance.tile_width.empty() && instance.tile_width[slot(hit)] > 0;
+  }
+  /// Of such a hit, along unit `direction` as far as it lies in the surface.
+  ShellFrame shell(const Hit& hit, const Vec3& direction) const;
 
   const Camera& camera() const { return camera_; }
   const Environment& environment() const { return environment_; }
@@ -109,6 +146,10 @@ class Scene {
 
  private:
   void changed();
+  void lift_shells();
+  /// `tops`: the traced meshes so far, by all that they depend on.
+  void lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& tops);
+  float tile_width(const Instance& instance, uint32_t slot) const;
   uint32_t slot(const Hit& hit) const;
   /// Null where texture coordinates are the mesh's own.
   const TextureMap* placement(const Hit& hit) const;
@@ -117,6 +158,7 @@ class Scene {
   SceneInfo count() const;
 
   std::vector<Mesh> meshes_;
+  std::vector<Mesh> lifted_;  // tops of shells, of a committed scene
   std::vector<Instance> instances_;
   std::vector<SurfaceMaterial> materials_;
   std::vector<Light> lights_;
@@ -124,6 +166,7 @@ class Scene {
   Environment environment_;
   Camera camera_;
   std::optional<Mat3> rec709_to_working_;
+  uint64_t unlifted_ = 0;  // instances whose shells lack texture coordinates
   std::unique_ptr<EmbreeScene> rays_;
   Bounds bounds_;
   SceneInfo info_;

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
-from ...native import Scene, Tile, capture_job, directions, microsurface_job
+from ...native import Scene, capture_job, directions, microsurface_job
 from ...native.errors import refuse
-from . import numbers, output
+from . import numbers, output, subject
 
-# What is up in the file is +z here; (x, y, z) -> (x, -z, y) as Blender's OBJ import does it.
-_UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
 _MESOSTRUCTURE = (
     "texels", "views", "lights", "held_out", "samples", "bounces", "sides", "memory", "resume", "period",
     "origin", "metres_per_unit", "up", "base_color", "metallic", "ray_share",
@@ -19,12 +16,7 @@ _MICROSURFACE = ("metal", "anisotropy", "base_albedo", "base_share", "rays")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "subject",
-        metavar="TILE|MESH",
-        nargs="?",
-        help="weave, twill, net, chainmail, gravel, corduroy; or OBJ, PLY",
-    )
+    parser.add_argument("subject", metavar="TILE|MESH", nargs="?", help=subject.HELP)
     parser.add_argument(
         "-o", "--output", metavar="BTF|FILE", required=True, help="the folder or file to write"
     )
@@ -62,16 +54,7 @@ def _add_mesostructure(group) -> None:
         help="of a view's images, beyond it in a file",
     )
     group.add_argument("--resume", action="store_true", help="goes on with the views that are there")
-    group.add_argument(
-        "--period", type=numbers.reals(2, 0), metavar="X,Y", help="of a mesh; its bounding box"
-    )
-    group.add_argument(
-        "--origin", type=numbers.reals(2), metavar="X,Y", help="of the cell, with --period (0,0)"
-    )
-    group.add_argument("--up", choices=tuple(_UP), help="axis of a mesh that the surface faces (z)")
-    group.add_argument(
-        "--metres-per-unit", type=numbers.real(0), metavar="M", help="of a mesh (1); 0: not known"
-    )
+    subject.add_place_arguments(group)
     group.add_argument("--base-color", type=numbers.reals(3, 0, 1), metavar="R,G,B", help="of a mesh")
     group.add_argument("--metallic", type=numbers.real(0, 1), metavar="M", help="of a mesh")
     group.add_argument(
@@ -105,51 +88,26 @@ def run(args: argparse.Namespace) -> dict:
     return _capture_microsurface(args) if args.microsurface else _capture_tile(args)
 
 
-def _given(args: argparse.Namespace, *names: str) -> dict:
-    return {name: getattr(args, name) for name in names if getattr(args, name) is not None}
-
-
 def _capture_microsurface(args: argparse.Namespace) -> dict:
     output.check_writable(args.output)
-    with microsurface_job(args.output, **_given(args, *_MICROSURFACE, "roughness", "seed", "threads")) as job:
+    with microsurface_job(
+        args.output, **subject.given(args, *_MICROSURFACE, "roughness", "seed", "threads")
+    ) as job:
         return job.run(output.progress_of(args))
 
 
 def _capture_tile(args: argparse.Namespace) -> dict:
     if args.held_out and (args.views or args.lights):
         raise refuse("--held-out has directions of its own; leave --views and --lights away.")
-    options = _given(args, "texels", "held_out", "samples", "bounces", "sides", "seed", "threads")
+    options = subject.given(args, "texels", "held_out", "samples", "bounces", "sides", "seed", "threads")
     for name in ("views", "lights"):
         if getattr(args, name):
             options[name] = directions(getattr(args, name))
     if args.memory is not None:
         options["memory_limit"] = args.memory
     with Scene() as scene:
-        place = _add_subject(scene, args)
+        place = subject.add_to(scene, args)
         scene.commit()
         options.update(place, resume=int(args.resume), measure_ray_share=int(args.ray_share))
         with capture_job(scene, args.output, source=args.subject, **options) as job:
             return job.run(output.progress_of(args))
-
-
-def _add_subject(scene: Scene, args: argparse.Namespace) -> dict:
-    """Where it lies: options of capture_job."""
-    if Path(args.subject).suffix.lower() in (".obj", ".ply"):
-        return _add_mesh(scene, args)
-    of_mesh = ("period", "origin", "metres_per_unit", "up", "base_color", "roughness", "metallic")
-    for name in of_mesh:
-        if getattr(args, name) is not None:
-            raise refuse(f"--{name.replace('_', '-')} is for meshes; the tile {args.subject} has its own.")
-    with Tile.create(args.subject) as tile:
-        mesh, materials = tile.add_to(scene)
-        scene.add_instance(mesh, _UP["z"], materials)
-        return {"origin": (0, 0), "period": tile.info()["period"]}
-
-
-def _add_mesh(scene: Scene, args: argparse.Namespace) -> dict:
-    mesh = scene.load_mesh(args.subject)
-    material = scene.add_principled_material(**_given(args, "base_color", "roughness", "metallic"))
-    scene.add_instance(mesh, _UP[args.up or "z"], [material])
-    if args.origin and not args.period:
-        raise refuse("--origin needs --period: without them the cell is the mesh's bounding box.")
-    return _given(args, "period", "origin", "metres_per_unit")

@@ -9,7 +9,7 @@ import sys
 from ...native import library
 from ...native.errors import VelourError
 from ...native.version import version_text
-from . import capture, compare, compress, export, fit, info, later, observe, output, render, tile
+from . import capture, compare, compress, export, fit, info, later, observe, output, render, tile, votf
 
 _VERBS = {
     "info": (info, "what a measurement, BTF, model or observation holds"),
@@ -18,6 +18,7 @@ _VERBS = {
     "render": (render, "render a mesh with a measured material under a world"),
     "observe": (observe, "learn under which views and lights a scene shows its material"),
     "capture": (capture, "make a measurement of a modelled surface"),
+    "votf": (votf, "add to a model the outline and the holes of a modelled surface"),
     "tile": (tile, "make a procedural tile of mesostructure as a mesh"),
     "export": (export, "write a BTF as a folder of pictures"),
     "compress": (compress, "fit a model to a BTF"),

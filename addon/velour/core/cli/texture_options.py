@@ -25,6 +25,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--texture-offset", type=numbers.reals(2), metavar="U,V",
         help="texture coordinates of the first tile's lower left corner (0,0)",
     )  # fmt: skip
+    group.add_argument(
+        "--shell-tile", type=numbers.real(0), metavar="METRES",
+        help="width of a tile, which the height of its shell goes with (as the texture coordinates say)",
+    )  # fmt: skip
 
 
 def scale(text: str) -> tuple[float, ...]:
@@ -41,7 +45,7 @@ def placements(args: argparse.Namespace) -> list | None:
     given = {name: v for name in names if (v := getattr(args, f"texture_{name}")) is not None}
     if not given:
         return None
-    if "texels" not in library.file_info(args.material):
+    if not {"texels", "shell"} & library.file_info(args.material).keys():
         flags = " and ".join(f"--texture-{name}" for name in given)
         raise refuse(f"{args.material} has no texture that could be placed; leave {flags} out.")
     turn = math.radians(given.get("rotation", 0.0))

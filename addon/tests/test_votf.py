@@ -1,0 +1,90 @@
+"""velour votf: a model gets the outline and the holes of a tile, and keeps them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from command_line import refused, velour
+from velour.native import Model, Scene, Tile, render_job, votf_job
+
+_UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
+
+
+@pytest.fixture(scope="module")
+def net(tmp_path_factory, model_file):
+    path = tmp_path_factory.mktemp("votf") / "net.velour"
+    report = velour("votf", "net", "--material", model_file, "--texels", 96, "-o", path, "--json").json
+    assert 0.3 < report["coverage"] < 0.8
+    assert report["wrong"] < 0.01
+    assert not report["closed"]
+    assert report["warnings"] == []
+    return path
+
+
+def test_info_tells_of_it(net, model_file):
+    shell = velour("info", net, "--json").json["shell"]
+    assert shell["source"] == "net"
+    assert shell["points"][:2] == [96, 96]
+    assert shell["heights"][0] < 0 < shell["heights"][1]
+    assert shell["bytes"] == np.prod(shell["points"])
+    assert "shell" not in velour("info", model_file, "--json").json
+
+
+def test_the_model_itself_stays(net, model_file):
+    up = (0.0, 0.0, 1.0)
+    wl = np.array([[0.6, 0, 0.8]], np.float32)
+    with Model.load(net) as with_shell, Model.load(model_file) as without:
+        np.testing.assert_array_equal(with_shell.eval(up, wl)[0], without.eval(up, wl)[0])
+
+
+def _coverage(material: Model) -> float:
+    """Of a large square that is seen from far above."""
+    with Scene() as scene:
+        mesh, _ = scene.add_mesh(
+            np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32),
+            np.array([[0, 1, 2], [0, 2, 3]], np.uint32),
+            corner_uvs=np.array([[[0, 0], [9, 0], [9, 9]], [[0, 0], [9, 9], [0, 9]]], np.float32),
+        )
+        scene.add_instance(mesh, _UNMOVED, [scene.add_model_material(material)])
+        scene.set_world_color((1, 1, 1))
+        scene.look_at((0, 0, 50), (0, 1e-6, 0), 0.038, 1.0)
+        scene.commit()
+        with render_job(scene, width=64, height=64, spp=16, split=1, transparent=1) as job:
+            job.run()
+            return float(job.read_pass("Combined")[..., 3].mean())
+
+
+def test_a_picture_shows_its_holes(net, model_file):
+    with Tile.create("net") as tile:
+        solid = 1 - tile.info()["open_area"]
+    with Model.load(net) as with_shell, Model.load(model_file) as without:
+        assert _coverage(with_shell) == pytest.approx(solid, abs=0.01)
+        assert _coverage(without) == 1
+
+
+def test_bits_do_not_depend_on_threads(model_file):
+    with Scene() as scene, Model.load(model_file) as model, Tile.create("gravel") as tile:
+        mesh, materials = tile.add_to(scene)
+        scene.add_instance(mesh, _UNMOVED, materials)
+        scene.commit()
+        period, found = tile.info()["period"], []
+        for threads in (1, 2):
+            with votf_job(
+                scene, model, texels=24, origin=(0, 0), period=period, check_views=0, threads=threads
+            ) as job:
+                report = job.run()
+                found.append(job.result_model().bytes())
+    assert found[0] == found[1]
+    assert report["closed"]
+    assert report["coverage"] is None
+
+
+def test_what_is_wrong_is_said(model_file, tmp_path):
+    out = tmp_path / "x.velour"
+    for expected, arguments in {
+        "none.velour": ("net", "--material", tmp_path / "none.velour"),
+        "burlap": ("burlap", "--material", model_file),
+        "--period": ("net", "--material", model_file, "--period", "1,1"),
+    }.items():
+        assert expected in refused("votf", *arguments, "-o", out)
+    assert not out.exists()

@@ -1,0 +1,55 @@
+"""The tile or mesh that a verb takes: how it is named, and where it lies."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ...native import Scene, Tile
+from ...native.errors import refuse
+from . import numbers
+
+HELP = "weave, twill, net, chainmail, gravel, corduroy; or OBJ, PLY"
+# What is up in the file is +z here; (x, y, z) -> (x, -z, y) as Blender's OBJ import does it.
+_UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
+UPS = tuple(_UP)
+
+
+def add_place_arguments(group) -> None:
+    group.add_argument(
+        "--period", type=numbers.reals(2, 0), metavar="X,Y", help="of a mesh; its bounding box"
+    )
+    group.add_argument(
+        "--origin", type=numbers.reals(2), metavar="X,Y", help="of the cell, with --period (0,0)"
+    )
+    group.add_argument("--up", choices=UPS, help="axis of a mesh that the surface faces (z)")
+    group.add_argument(
+        "--metres-per-unit", type=numbers.real(0), metavar="M", help="of a mesh (1); 0: not known"
+    )
+
+
+def given(args: argparse.Namespace, *names: str) -> dict:
+    return {name: getattr(args, name) for name in names if getattr(args, name, None) is not None}
+
+
+def add_to(scene: Scene, args: argparse.Namespace) -> dict:
+    """Where it lies: options of capture_job."""
+    if Path(args.subject).suffix.lower() in (".obj", ".ply"):
+        return _add_mesh(scene, args)
+    of_mesh = ("period", "origin", "metres_per_unit", "up", "base_color", "roughness", "metallic")
+    for name in of_mesh:
+        if getattr(args, name, None) is not None:
+            raise refuse(f"--{name.replace('_', '-')} is for meshes; the tile {args.subject} has its own.")
+    with Tile.create(args.subject) as tile:
+        mesh, materials = tile.add_to(scene)
+        scene.add_instance(mesh, _UP["z"], materials)
+        return {"origin": (0, 0), "period": tile.info()["period"]}
+
+
+def _add_mesh(scene: Scene, args: argparse.Namespace) -> dict:
+    mesh = scene.load_mesh(args.subject)
+    material = scene.add_principled_material(**given(args, "base_color", "roughness", "metallic"))
+    scene.add_instance(mesh, _UP[args.up or "z"], [material])
+    if args.origin and not args.period:
+        raise refuse("--origin needs --period: without them the cell is the mesh's bounding box.")
+    return given(args, "period", "origin", "metres_per_unit")

@@ -1,0 +1,90 @@
+#include "render/shell_crossing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace velour {
+namespace {
+
+/// Beyond, a BTF's texels would be looked for ever farther away.
+constexpr float kLeastCosine = 0.15f;
+/// Pitches: where rays start from a structure, so that they do not meet it again at once.
+constexpr float kOffStructure = 0.3f;
+
+Vec3 downwards(const Ray& ray, const Hit& hit) {
+  return glm::dot(ray.direction, hit.geometric_normal) > 0 ? -ray.direction : ray.direction;
+}
+
+}  // namespace
+
+ShellCrossing::ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit)
+    : direction_(downwards(ray, hit)),
+      leaving_(direction_ != ray.direction),
+      crossing_(ray.origin + hit.distance * ray.direction),
+      frame_(scene.shell(hit, direction_)),
+      texture_(scene.texture(hit)) {
+  const float aspect = frame_.field->volume().aspect, cosine = -glm::dot(direction_, frame_.normal);
+  const Vec3 along = direction_ + cosine * frame_.normal;
+  const float sine = glm::length(along);
+  const Vec3 unit = sine > 0 ? along / sine : Vec3(0.0f);
+  ray_ = {.place = texture_.uv * Vec2(1, aspect),
+          .along = Vec2(glm::dot(texture_.u_gradient, unit), aspect * glm::dot(texture_.v_gradient, unit)),
+          .cosine = std::min(cosine, 1.0f),
+          .curvature = frame_.curvature,
+          .scale = frame_.scale};
+  // Beside the outline of the smooth surface the ray passes, whatever its triangles are.
+  if (cosine > 0) find(hit);
+}
+
+void ShellCrossing::find(const Hit& hit) {
+  const ShellSpan span = span_of(ray_, frame_.field->volume());
+  if (!leaving_) {
+    hit_ = trace_shell(*frame_.field, ray_, 0, span.end);
+  } else if (span.through_bottom || hit.distance < span.end) {
+    hit_ = trace_shell(*frame_.field, ray_, std::min(span.end, hit.distance), 0);
+  }
+}
+
+Vec3 ShellCrossing::normal() const {
+  const float sine = std::sqrt(std::max(0.0f, 1 - ray_.cosine * ray_.cosine));
+  return glm::normalize(frame_.normal + hit_->s * sine * frame_.normal_turn);
+}
+
+/// Of the structure, in the world: its gradient's parts along the texture coordinates and the normal.
+Vec3 ShellCrossing::structure_normal(const Vec3& up) const {
+  const float aspect = frame_.field->volume().aspect;
+  const Vec3 slope = frame_.field->gradient(hit_->place);
+  const Vec3 n = slope.x * texture_.u_gradient + slope.y * aspect * texture_.v_gradient + slope.z * frame_.scale * up;
+  const float square = glm::dot(n, n);
+  return square > 0 ? n / std::sqrt(square) : up;
+}
+
+SurfacePoint ShellCrossing::surface(SurfacePoint top, bool shaded) const {
+  const OcclusionVolume& volume = frame_.field->volume();
+  const Vec3 up = normal(), place = crossing_ + hit_->s * direction_;
+  if (!shaded) {
+    const float height = leaving_ ? volume.bottom : volume.top;
+    top.position = place + up * ((height - hit_->place.z) / frame_.scale);
+    top.shading_normal = up;
+    return top;
+  }
+  const Vec3 own = structure_normal(up);
+  top.position = place + own * (kOffStructure * volume.pitch() / frame_.scale);
+  // Light from below the smooth surface counts as nothing, so no normal may look there.
+  const float height = glm::dot(own, leaving_ ? -up : up);
+  top.shading_normal = height < 0 ? glm::normalize(own - glm::dot(own, up) * up) : own;
+  return top;
+}
+
+TexturePoint ShellCrossing::texture(TexturePoint top) const {
+  const OcclusionVolume& volume = frame_.field->volume();
+  const Vec3 up = normal(), wv = -direction_;
+  const float cosine = std::max(glm::dot(wv, up), kLeastCosine);
+  // From the hit along the ray to the plane of the texels.
+  const Vec3 to_plane = (wv - glm::dot(wv, up) * up) * ((volume.reference - hit_->place.z) / (frame_.scale * cosine));
+  top.uv = Vec2(hit_->place) / Vec2(1, volume.aspect) +
+           Vec2(glm::dot(top.u_gradient, to_plane), glm::dot(top.v_gradient, to_plane));
+  return top;
+}
+
+}  // namespace velour

@@ -1,0 +1,42 @@
+// Rays at the tops of shells.
+#pragma once
+
+#include <optional>
+
+#include "scene/scene.h"
+#include "votf/shell_trace.h"
+
+namespace velour {
+
+/// What a ray does that crosses the top of a shell: it comes from outside and goes down, or it leaves after its way up
+/// through the shell. A way that goes in and out through the top is decided where it goes in.
+class ShellCrossing {
+ public:
+  /// `hit` is on the top of a shell (Scene::has_shell).
+  ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit);
+
+  /// Whether the ray meets the structure on this side of the surface.
+  bool meets() const { return hit_.has_value(); }
+
+  /// The place where it does so, in place of the top's. Only when it meets. `shaded` (SurfaceMaterial::shell_shaded):
+  /// the structure's own surface, a little off it; else the smooth surface there, where rays leave the shell.
+  SurfacePoint surface(SurfacePoint top, bool shaded) const;
+  /// The place's texture coordinates: those of the plane that a BTF of the structure has its texels on, where the ray
+  /// crosses it.
+  TexturePoint texture(TexturePoint top) const;
+
+ private:
+  void find(const Hit& hit);
+  Vec3 normal() const;
+  Vec3 structure_normal(const Vec3& up) const;
+
+  const Vec3 direction_;  // of the ray, downwards through the shell
+  bool leaving_;
+  Vec3 crossing_;  // of the top
+  ShellFrame frame_;
+  TexturePoint texture_;
+  ShellRay ray_;
+  std::optional<ShellHit> hit_;
+};
+
+}  // namespace velour

@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "job/error.h"
+#include "scene/scene.h"
+
+namespace velour {
+namespace {
+
+/// The map's transpose times itself: lengths of the object in the world.
+Mat3 metric_of(const Affine& map) {
+  const Vec3 x = map.vector({1, 0, 0}), y = map.vector({0, 1, 0}), z = map.vector({0, 0, 1});
+  return {{glm::dot(x, x), glm::dot(x, y), glm::dot(x, z)},
+          {glm::dot(x, y), glm::dot(y, y), glm::dot(y, z)},
+          {glm::dot(x, z), glm::dot(y, z), glm::dot(z, z)}};
+}
+
+}  // namespace
+
+void Scene::set_shell_tile(uint32_t material, float metres) {
+  if (material >= materials_.size() || !materials_[material].shell) {
+    throw Error(Status::invalid_argument, "Material " + std::to_string(material) + " has no shell (VOTF) to scale.");
+  }
+  if (!(metres >= 0 && std::isfinite(metres))) {
+    throw Error(Status::invalid_argument, "The tile of a shell cannot be " + std::to_string(metres) + " metres wide.");
+  }
+  changed();
+  materials_[material].shell_tile = metres;
+}
+
+void Scene::lift_shells() {
+  lifted_.clear();
+  unlifted_ = 0;
+  std::map<std::vector<uint32_t>, uint32_t> tops;
+  for (Instance& instance : instances_) {
+    instance.traced = instance.mesh;
+    instance.tile_width.clear();
+    const bool any =
+        std::ranges::any_of(instance.materials, [&](uint32_t m) { return materials_[m].shell != nullptr; });
+    if (!any) continue;
+    lift(instance, tops);
+    if (std::ranges::none_of(instance.tile_width, [](float width) { return width > 0; })) ++unlifted_;
+  }
+}
+
+void Scene::lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& tops) {
+  std::vector<float> height(instance.materials.size(), 0.0f);
+  instance.tile_width.assign(instance.materials.size(), 0.0f);
+  for (uint32_t s = 0; s < height.size(); ++s) {
+    const auto& shell = materials_[instance.materials[s]].shell;
+    if (!shell) continue;
+    const float given = materials_[instance.materials[s]].shell_tile, covered = tile_width(instance, s);
+    instance.tile_width[s] = given > 0 && covered > 0 ? given : covered;
+    height[s] = shell->volume().top * instance.tile_width[s];
+  }
+  // Instances alike but for their place share their top.
+  const Mat3 metric = metric_of(instance.object_to_world);
+  std::vector<uint32_t> key{instance.mesh};
+  for (const float h : height) key.push_back(std::bit_cast<uint32_t>(h));
+  for (int i = 0; i < 9; ++i) key.push_back(std::bit_cast<uint32_t>(metric[i / 3][i % 3]));
+  const auto [entry, is_new] = tops.emplace(std::move(key), static_cast<uint32_t>(meshes_.size() + lifted_.size()));
+  instance.traced = entry->second;
+  if (is_new) lifted_.push_back(meshes_[instance.mesh].lifted(height, metric));
+}
+
+/// Of a tile that covers one unit of the texture coordinates, on average over the slot's triangles; 0 where they have
+/// no area.
+float Scene::tile_width(const Instance& instance, uint32_t slot) const {
+  const Mesh& mesh = meshes_[instance.mesh];
+  const ShellField& shell = *materials_[instance.materials[slot]].shell;
+  const Mat2 map = instance.placements.empty() ? Mat2(1.0f) : instance.placements[slot].map;
+  if (!mesh.has_uvs()) return 0;
+  const auto last = static_cast<uint32_t>(instance.materials.size() - 1);
+  double area = 0, tiles = 0;
+  for (uint32_t t = 0; t < mesh.triangles().size(); ++t) {
+    if (std::min(mesh.material_slot(t), last) != slot) continue;
+    const glm::uvec3& corner = mesh.triangles()[t];
+    const auto edge = [&](int k) {
+      return Vec3d(instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]));
+    };
+    const auto uv = mesh.corner_uvs(t);
+    const Vec2 d1 = map * (uv[1] - uv[0]), d2 = map * (uv[2] - uv[0]);
+    const double covered = std::abs(static_cast<double>(d1.x * d2.y - d1.y * d2.x));
+    if (!std::isfinite(covered)) continue;
+    area += glm::length(glm::cross(edge(1), edge(2)));
+    tiles += covered;
+  }
+  return tiles > 0 ? static_cast<float>(std::sqrt(area / tiles / static_cast<double>(shell.volume().aspect))) : 0.0f;
+}
+
+ShellFrame Scene::shell(const Hit& hit, const Vec3& direction) const {
+  const Instance& instance = instances_[hit.instance];
+  const Mesh& mesh = traced_mesh(instance);
+  const glm::uvec3& corner = mesh.triangles()[hit.triangle];
+  const std::span<const Vec3, 3> local = mesh.corner_normals(hit.triangle);
+  Vec3 normal[3];
+  for (size_t k = 0; k < 3; ++k) normal[k] = glm::normalize(instance.normal_to_world * local[k]);
+  const auto edge = [&](int k) {
+    return instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]);
+  };
+  ShellFrame frame;
+  frame.field = materials_[material(hit)].shell.get();
+  frame.scale = 1 / instance.tile_width[slot(hit)];
+  const Vec3 mean = (1 - hit.u - hit.v) * normal[0] + hit.u * normal[1] + hit.v * normal[2];
+  frame.normal = glm::normalize(glm::dot(mean, mean) > 0 ? mean : normal[0]);
+  // The normal's change along the edges, and the direction in terms of them.
+  const Vec3 e1 = edge(1), e2 = edge(2), across = glm::cross(e1, e2);
+  const Vec3 along = direction - glm::dot(direction, frame.normal) * frame.normal;
+  const float length = glm::length(along), square = glm::dot(across, across);
+  frame.normal_turn = Vec3(0.0f);
+  if (length > 0 && square > 0) {
+    const Vec3 unit = along / length;
+    const float a = glm::dot(glm::cross(unit, e2), across) / square,
+                b = glm::dot(glm::cross(e1, unit), across) / square;
+    frame.normal_turn = a * (normal[1] - normal[0]) + b * (normal[2] - normal[0]);
+    frame.curvature = glm::dot(frame.normal_turn, unit);
+  } else {
+    frame.curvature = 0;
+  }
+  return frame;
+}
+
+}  // namespace velour

@@ -1,0 +1,182 @@
+// Shells in pictures: what is seen, what is seen through, what throws a shadow.
+#include <gtest/gtest.h>
+
+#include "render/visible_rays.h"
+#include "sphere/directions.h"
+#include "sphere/random.h"
+#include "support/example_shell.h"
+#include "support/test_scene.h"
+
+namespace velour {
+namespace {
+
+constexpr float kRadius = 0.2f;  // of wires a tile apart
+
+std::shared_ptr<const ShellField> field_of(std::shared_ptr<const OcclusionVolume> volume) {
+  return std::make_shared<const ShellField>(std::move(volume));
+}
+
+/// A floor at half the height over the surface.
+std::shared_ptr<const ShellField> closed_field() {
+  auto volume = test::shell_of(16, 0, 0.5f, [](const Vec3& p) { return p.z - 0.25f; });
+  volume->closed = true;
+  return field_of(std::move(volume));
+}
+
+SurfaceMaterial shelled(std::shared_ptr<const ShellField> field, float albedo = 0.5f) {
+  return {.material = std::make_shared<test::Lambert>(albedo), .shell = std::move(field)};
+}
+
+/// Square of side 2 in the plane z = 0; `tiles` along its sides.
+Mesh tiled_square(float tiles) {
+  const std::vector<Vec3> p = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  const std::vector<glm::uvec3> t = {{0, 1, 2}, {0, 2, 3}};
+  const std::vector<Vec2> uv = {{0, 0}, {tiles, 0}, {tiles, tiles}, {0, 0}, {tiles, tiles}, {0, tiles}};
+  return Mesh({.positions = p, .triangles = t, .corner_uvs = uv});
+}
+
+/// The unit sphere with `tiles` of them from pole to pole.
+Mesh tiled_sphere(uint32_t n, float tiles) {
+  const Mesh plain = test::sphere(n);
+  std::vector<Vec2> uv;
+  std::vector<Vec3> normals;
+  for (const glm::uvec3& t : plain.triangles()) {
+    const uint32_t row = 2 * n + 1;
+    for (int k = 0; k < 3; ++k) {
+      uv.push_back(Vec2(t[k] % row, t[k] / row) * (tiles / static_cast<float>(n)));
+      normals.push_back(plain.positions()[t[k]]);
+    }
+  }
+  return Mesh(
+      {.positions = plain.positions(), .triangles = plain.triangles(), .corner_normals = normals, .corner_uvs = uv});
+}
+
+struct Shot {
+  explicit Shot(Mesh mesh, SurfaceMaterial material, const Affine& place = {}) {
+    scene.add_material(std::move(material));
+    scene.add_instance(scene.add_mesh(std::move(mesh)), place, {0});
+    scene.set_environment(Environment::constant(Rgb(1.0f)));
+  }
+  /// Of the middle `half` metres, seen from above.
+  double alpha(float half, int side = 64) {
+    scene.set_camera(test::camera_above(half));
+    scene.commit(1);
+    RenderOptions options = test::small_options(Strategy::cosine, 16);
+    options.width = options.height = side;
+    options.split = 1;
+    options.transparent = true;
+    return test::mean_of(test::rendered(scene, options), 3);
+  }
+  Scene scene;
+};
+
+TEST(ShellRender, OneSeesThroughBetweenWires) {
+  // From above wires cover their width; perspective adds what it shows of their sides, within a percent here.
+  Shot wires(tiled_square(64), shelled(field_of(test::wires(64, kRadius))));
+  EXPECT_NEAR(wires.alpha(0.25f), 2 * kRadius, 0.004);
+  Shot solid(tiled_square(64), {.material = std::make_shared<test::Lambert>(0.5f)});
+  EXPECT_EQ(solid.alpha(0.25f), 1.0);
+}
+
+TEST(ShellRender, AClosedShellOnAFlatSurfaceHidesAllBehind) {
+  Shot closed(tiled_square(8), shelled(closed_field()));
+  EXPECT_EQ(closed.alpha(0.5f), 1.0);
+}
+
+TEST(ShellRender, HasTheOutlineThatItsStructureHas) {
+  // Four tiles from pole to pole are pi / 4 wide at the equator: the floor lies a quarter of that over the sphere.
+  const float tile = kPi / 4, height = 0.25f * tile;
+  const double area = kPiD * std::pow(1.0 + static_cast<double>(height), 2) / 16;
+  Shot shell(tiled_sphere(64, 4), shelled(closed_field()));
+  shell.scene.set_shell_tile(0, tile);
+  shell.scene.set_camera(Camera::look_at({100, 0, 0}, {0, 0, 0}, {0, 0, 1}, 2 * std::atan(2.0f / 100), 1));
+  shell.scene.commit(1);
+  RenderOptions options = test::small_options(Strategy::cosine, 64);
+  options.width = options.height = 64;
+  options.split = 1;
+  options.transparent = true;
+  // The sphere of the floor's height; the smooth sphere is 30 % smaller, the shell's top 36 % larger.
+  EXPECT_NEAR(test::mean_of(test::rendered(shell.scene, options), 3) / area, 1.0, 0.01);
+  // All 32 tiles that the coordinates count are smaller on average than those of the equator.
+  shell.scene.set_shell_tile(0, 0);
+  shell.scene.commit(1);
+  const double lower = std::pow(1.0 + 0.25 * std::sqrt(kPiD / 8), 2) / std::pow(1.0 + static_cast<double>(height), 2);
+  EXPECT_NEAR(test::mean_of(test::rendered(shell.scene, options), 3) / area, lower, 0.01);
+  EXPECT_THROW(shell.scene.set_shell_tile(1, 1), Error);
+  EXPECT_THROW(shell.scene.set_shell_tile(0, -1), Error);
+}
+
+TEST(ShellRender, LightFallsThroughItsHolesAlone) {
+  const auto lit = [](bool with_shell) {
+    Scene scene;
+    scene.add_material(with_shell ? shelled(field_of(test::wires(64, kRadius)))
+                                  : SurfaceMaterial{.material = std::make_shared<test::Lambert>(0.5f)});
+    scene.add_material({.material = std::make_shared<test::Lambert>(1.0f)});
+    scene.add_instance(scene.add_mesh(tiled_square(64)), test::shift({0, 0, 1}), {0});
+    scene.add_instance(scene.add_mesh(test::square(1)), {}, {1});
+    // Straight down from a small far sun; the camera looks from below the wires at the floor's middle.
+    Light sun;
+    sun.color = Rgb(kPi);
+    sun.angle = 0.2f;
+    scene.add_light(sun);
+    scene.set_camera(Camera::look_at({0, 0.01f, 0.9f}, {0, 0, 0}, {0, 1, 0}, 0.2f, 1));
+    scene.commit(1);
+    return test::mean_of(test::rendered(scene, test::small_options(Strategy::light, 4096)));
+  };
+  EXPECT_EQ(lit(false), 0.0);
+  EXPECT_NEAR(lit(true), 1 - 2 * static_cast<double>(kRadius), 0.02);
+}
+
+TEST(ShellRender, FromInsideTheSameLinesAreBlocked) {
+  Shot wires(tiled_square(64), shelled(field_of(test::wires(64, kRadius))));
+  wires.scene.commit(1);
+  const VisibleRays visible(wires.scene);
+  int blocked = 0;
+  for (int i = 0; i < 2000; ++i) {
+    RandomStream numbers(3, static_cast<uint64_t>(i), 0);
+    const Vec3 w = direction(radians_from(60.0f) * numbers.next(), 2 * kPi * numbers.next());
+    const Vec3 at(0.4f * numbers.next() - 0.2f, 0.4f * numbers.next() - 0.2f, 0);
+    const bool from_above = visible.occluded({at + w, 0, -w}), from_below = visible.occluded({at - w, 0, w});
+    EXPECT_EQ(from_above, from_below) << i;
+    blocked += from_above ? 1 : 0;
+  }
+  EXPECT_GT(blocked, 600);
+  EXPECT_LT(blocked, 1700);
+}
+
+TEST(ShellRender, RaysFromItsSurfaceAreNotBlockedByTheFloorThatTheyLeave) {
+  Shot closed(tiled_square(8), shelled(closed_field(), 1.0f));
+  for (const bool shaded : {false, true}) {
+    SurfaceMaterial material = shelled(closed_field(), 1.0f);
+    material.shell_shaded = shaded;
+    closed.scene.set_material(0, material);
+    closed.scene.set_camera(test::camera_above(0.2f));
+    closed.scene.commit(1);
+    // White under white is white: a furnace without acne.
+    EXPECT_NEAR(test::mean_of(test::rendered(closed.scene, test::small_options(Strategy::cosine, 256))), 1.0, 2e-3)
+        << shaded;
+  }
+}
+
+TEST(ShellRender, WithoutTextureCoordinatesTheSurfaceStaysAndSaysSo) {
+  Shot bare(test::square(1), shelled(field_of(test::wires(16, kRadius))));
+  EXPECT_EQ(bare.alpha(0.5f), 1.0);
+  ASSERT_EQ(bare.scene.info().warnings.size(), 1u);
+  EXPECT_NE(bare.scene.info().warnings[0].find("shell (VOTF)"), std::string::npos);
+}
+
+TEST(ShellRender, ItsHeightIsTheSameInTheWorldWhateverTheScaleOfTheObject) {
+  // Squeezed along its normal: tiles are as wide as before, and so is the shell as high.
+  const auto top_of = [](const Affine& place) {
+    Shot shot(tiled_square(4), shelled(closed_field()), place);
+    shot.scene.commit(1);
+    return shot.scene.bounds().high.z;
+  };
+  EXPECT_NEAR(top_of({}), 0.25f, 1e-6f);  // half of a tile of 1/2
+  EXPECT_NEAR(top_of(test::shift({0, 0, 0}, {1, 1, 0.1f})), 0.25f, 1e-6f);
+  EXPECT_NEAR(top_of(test::shift({0, 0, 0}, {2, 2, 1})), 0.5f, 1e-6f);
+  EXPECT_NEAR(top_of(test::shift({0, 0, 0}, {-1, 1, 1})), 0.25f, 1e-6f) << "mirrored";
+}
+
+}  // namespace
+}  // namespace velour

@@ -1,0 +1,132 @@
+#include "votf/shell_trace.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sphere/directions.h"
+#include "sphere/random.h"
+#include "support/example_shell.h"
+
+namespace velour {
+namespace {
+
+/// Where a straight ray is over a circle of `radius` (0: a line), from the top of it down at `cosine`: how far along
+/// the circle, and how high over it.
+Vec2 over_circle(float radius, float cosine, float s) {
+  const double sine = std::sqrt(1.0 - double{cosine} * double{cosine});
+  if (radius == 0) return {sine * double{s}, -double{cosine} * double{s}};
+  const double x = sine * double{s}, y = double{radius} - double{cosine} * double{s};
+  const double sign = radius < 0 ? -1 : 1;
+  return {double{radius} * std::atan2(sign * x, sign * y), sign * std::hypot(x, y) - double{radius}};
+}
+
+TEST(ShellRay, IsAStraightRayOverACircle) {
+  for (const float radius : {0.0f, 1.0f, 5.0f, -1.0f, -5.0f}) {
+    for (const float cosine : {1.0f, 0.9f, 0.5f, 0.2f, 0.01f}) {
+      const ShellRay ray{{0.25f, 0.5f}, {0, 2}, cosine, radius == 0 ? 0 : 1 / radius, 3};
+      for (const float s : {-0.1f, 0.0f, 0.05f, 0.3f}) {
+        const Vec2 expected = over_circle(radius, cosine, s);
+        const Vec3 found = ray.at(s).place;
+        EXPECT_NEAR(found.x, 0.25f, 1e-6f);
+        EXPECT_NEAR(found.y, 0.5f + 2 * expected.x, 1e-4f) << radius << ' ' << cosine << ' ' << s;
+        EXPECT_NEAR(found.z, 3 * expected.y, 1e-5f) << radius << ' ' << cosine << ' ' << s;
+      }
+    }
+  }
+}
+
+TEST(ShellRay, EndsAtTheBottomOrAtTheTop) {
+  OcclusionVolume volume;
+  volume.bottom = -0.1f;
+  volume.top = 0.1f;
+  for (const float curvature : {0.0f, 0.2f, 1.0f, -0.5f}) {
+    for (const float cosine : {1.0f, 0.7f, 0.5f, 0.3f, 0.05f}) {
+      const ShellRay ray{{0, 0}, {1, 0}, cosine, curvature, 1};
+      const ShellSpan span = span_of(ray, volume);
+      EXPECT_GT(span.end, 0);
+      EXPECT_NEAR(ray.at(span.end).place.z, span.through_bottom ? -0.2f : 0.0f, 1e-4f) << curvature << ' ' << cosine;
+      if (!span.through_bottom) {
+        EXPECT_GT(ray.at(span.end / 2).place.z, -0.2f);
+      }
+    }
+  }
+  EXPECT_FALSE(span_of({{0, 0}, {1, 0}, 0.3f, 1.0f, 1}, volume).through_bottom);
+  EXPECT_TRUE(span_of({{0, 0}, {1, 0}, 0.3f, 0.1f, 1}, volume).through_bottom);
+}
+
+/// A line through x = `place` of the plane z = 0 passes the wires' axes at |x - axis| cos.
+bool meets_wires(const Vec2& place, const Vec3& w, float radius) {
+  const float cosine = w.z / std::hypot(w.x, w.z);
+  float nearest = 1;
+  for (int i = -30; i <= 30; ++i) nearest = std::min(nearest, std::abs(place.x - (0.5f + static_cast<float>(i))));
+  return nearest * cosine < radius;
+}
+
+TEST(LineMeets, KnowsASlabOfParallelWires) {
+  constexpr float kRadius = 0.15f;
+  const ShellField field(test::wires(64, kRadius));
+  int wrong = 0, wrong_of_thicker = 0;
+  constexpr int kLines = 20000;
+  for (int i = 0; i < kLines; ++i) {
+    RandomStream numbers(7, static_cast<uint64_t>(i), 0);
+    const Vec2 place = numbers.next2();
+    const Vec3 w = direction(radians_from(80.0f) * numbers.next(), 2 * kPi * numbers.next());
+    const bool met = line_meets(field, place, w);
+    EXPECT_EQ(met, line_meets(field, place + Vec2(3, -2), w)) << "periodic";
+    EXPECT_EQ(met, line_meets(field, place, -w)) << "the same line from below";
+    wrong += met != meets_wires(place, w, kRadius) ? 1 : 0;
+    wrong_of_thicker += met != meets_wires(place, w, 1.1f * kRadius) ? 1 : 0;
+  }
+  // A wire's outline lies within a twentieth of a texel.
+  EXPECT_LT(wrong, kLines * 0.003);
+  EXPECT_GT(wrong_of_thicker, kLines * 0.01) << "a tenth of the radius would be noticed";
+}
+
+TEST(LineMeets, NothingInAnEmptyShellAndAllOfAFullOne) {
+  const ShellField empty(test::shell_of(8, 0, 0.5f, [](const Vec3&) { return 1.0f; }));
+  const ShellField full(test::shell_of(8, 0, 0.5f, [](const Vec3& p) { return p.z - 0.2f; }));
+  for (const float theta : {0.0f, 30.0f, 75.0f, 89.9f}) {
+    const Vec3 w = direction(radians_from(theta), 1.0f);
+    EXPECT_FALSE(line_meets(empty, {0.3f, 0.4f}, w)) << theta;
+    EXPECT_TRUE(line_meets(full, {0.3f, 0.4f}, w)) << theta;
+  }
+}
+
+TEST(TraceShell, LeavesThroughTheTopOfABentShellOverWhatItWouldMeetOnAFlatOne) {
+  // A floor at half the height.
+  const ShellField field(test::shell_of(32, 0, 0.5f, [](const Vec3& p) { return p.z - 0.25f; }));
+  const auto meets = [&](float cosine, float curvature) {
+    const ShellRay ray{{0, 0}, {1, 0}, cosine, curvature, 1};
+    return trace_shell(field, ray, 0, span_of(ray, field.volume()).end);
+  };
+  // Down to cosine^2 / (2 curvature), about.
+  EXPECT_TRUE(meets(0.3f, 0.0f));
+  EXPECT_TRUE(meets(0.3f, 0.12f));
+  EXPECT_FALSE(meets(0.3f, 0.25f));
+  const auto hit = meets(0.8f, 0.0f);
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->place.z, 0.25f, 1e-2f);
+  EXPECT_NEAR(hit->s, 0.25f / 0.8f, 1e-2f);
+}
+
+TEST(TraceShell, FromTheBottomUpFindsTheOtherSide) {
+  const ShellField field(test::wires(64, 0.2f));
+  const ShellRay ray{{0.5f, 0.5f}, {1, 0}, 1.0f, 0.0f, 1};
+  const float end = span_of(ray, field.volume()).end;
+  const auto above = trace_shell(field, ray, 0, end), below = trace_shell(field, ray, end, 0);
+  ASSERT_TRUE(above && below);
+  EXPECT_NEAR(above->place.z, 0.2f, 5e-3f);
+  EXPECT_NEAR(below->place.z, -0.2f, 5e-3f);
+}
+
+TEST(ShellField, HasTheOutwardNormalAsItsGradient) {
+  const ShellField field(test::wires(64, 0.2f));
+  const Vec3 normal = glm::normalize(field.gradient({0.5f + 0.14f, 0.3f, 0.14f}));
+  EXPECT_NEAR(normal.x, std::sqrt(0.5f), 0.02f);
+  EXPECT_NEAR(normal.y, 0, 0.02f);
+  EXPECT_NEAR(normal.z, std::sqrt(0.5f), 0.02f);
+}
+
+}  // namespace
+}  // namespace velour
