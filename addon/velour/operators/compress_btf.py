@@ -5,9 +5,10 @@ import hashlib
 import os
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from ..native import Btf, compress_job
+from ..properties.tile_settings import METHODS
 from . import measured
 from .background_job import OneJob
 from .tiles import find_tile, held_out_folder, tile_folder
@@ -29,6 +30,7 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
         name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}
     )
     # Where given these replace the settings of the tile, where there is one.
+    method: EnumProperty(name="Method", items=METHODS, default="SRBF", options={"SKIP_SAVE"})
     tolerance: FloatProperty(
         name="Largest Error",
         description="Relative L2 error of the roots of values; the smallest model within it. 0: none",
@@ -64,6 +66,7 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
             held_out = self._held_out(tile, opened)
             self._digest = btf.info()["sha256"]
             asked = {
+                "method": self._asked(tile, "method").lower().replace("_", "-"),
                 "tolerance": self._asked(tile, "tolerance"),
                 "bytes": int(self._asked(tile, "megabytes") * 1e6),
             }

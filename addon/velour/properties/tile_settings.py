@@ -16,6 +16,12 @@ SIDES = (
     ("ONE", "Front", "Seen and lit from above alone", 1),
     ("TWO", "Both", "Seen and lit from above and from below", 2),
 )
+# Numbers and, in lower case with hyphens, names are the library's.
+METHODS = (
+    ("SRBF", "SRBF", "Lobes of light and view over a relief: smallest, and smooth between directions", 1),
+    ("SVD", "SVD", "Truncated singular values", 0),
+    ("SVD_VIEW", "SVD by View", "Singular values of each view for itself", 5),
+)
 _OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 
@@ -99,6 +105,13 @@ class VelourTileSettings(bpy.types.PropertyGroup):
     )
 
     # What a material is asked for.
+    method: EnumProperty(
+        name="Method",
+        description="What the BTF is turned into",
+        items=METHODS,
+        default="SRBF",
+        override=_OVERRIDABLE,
+    )
     tolerance: FloatProperty(
         name="Largest Error",
         description="The smallest material that differs from the BTF by no more than this part: 0.1 is about"

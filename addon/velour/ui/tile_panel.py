@@ -39,6 +39,7 @@ class TilePanel:
     def _draw_material(self, layout, settings, collection_name):
         """What a material of the capture is asked for, and what the last one was."""
         column = layout.column(align=True)
+        column.prop(settings, "method")
         column.prop(settings, "tolerance")
         column.prop(settings, "megabytes")
         operator = layout.operator(VELOUR_OT_compress_btf.bl_idname, icon="MATERIAL")

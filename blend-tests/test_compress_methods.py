@@ -1,0 +1,31 @@
+"""Materials made from BTFs, by every method."""
+
+import bpy
+
+from support import inputs
+from support.blender import BlenderTest
+
+
+class CompressMethods(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        bpy.ops.velour.add_mesostructure(type="CORDUROY", count=2, resolution=8)
+        bpy.ops.velour.capture_btf(
+            directory=str(self.folder / "ribs.btf"),
+            texels=8, views=12, lights=12, samples=4, bounces=0, sides="ONE",
+        )  # fmt: skip
+
+    def _info_of(self, image):
+        with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
+            return model.info()
+
+    def test_each_method_makes_its_own_model(self):
+        tile = bpy.context.object
+        for method, kind in (("SVD", "factored-btf"), ("SVD_VIEW", "factored-btf"), ("SRBF", "srbf-btf")):
+            with self.subTest(method=method):
+                bpy.ops.velour.compress_btf(method=method, megabytes=0.03)
+                self.assertEqual(tile.velour.method, method)  # the tile keeps what was given
+                info = self._info_of(tile.velour.model)
+                self.assertEqual((info["model"], info["method"]), (kind, method.lower().replace("_", "-")))
+        bpy.ops.velour.compress_btf()
+        self.assertEqual(self._info_of(tile.velour.model)["model"], "srbf-btf")
