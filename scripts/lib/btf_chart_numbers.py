@@ -9,6 +9,7 @@ import numpy as np
 
 HEADERS = 6000  # bytes of a model's file besides what is fitted, about
 _CLOSE = 0.08  # of the bytes that may be left unused where a further fit could use them
+_SLACK = 1.01
 _TRIES = 4
 _MARGIN = 0.99  # of what is tried first
 
@@ -48,7 +49,8 @@ def packing(report: dict) -> float:
 
 
 def largest_within(target: int, reports: Iterable[dict]) -> dict | None:
-    return max((r for r in reports if r["bytes"] <= target), key=lambda r: r["bytes"], default=None)
+    """Within, and a hundredth: less than errors feel, and often a fit."""
+    return max((r for r in reports if r["bytes"] <= _SLACK * target), key=lambda r: r["bytes"], default=None)
 
 
 def fills(target: int, report: dict | None) -> bool:
@@ -65,8 +67,7 @@ def within(target: int, fit: Callable[[int], dict | None], packed: float = 1.0) 
         report = fit(size)
         if report is None:
             break
-        if report["bytes"] <= target and (best is None or report["bytes"] > best["bytes"]):
-            best = report
+        best = largest_within(target, [report, best] if best else [report])
         tried.append((report["parameter_bytes"], report["bytes"]))
         following = _next(target, tried)
         if best is report and following < (1 + _CLOSE) * size:
