@@ -43,11 +43,11 @@ seconds and rates do.
 
 Captures of {side} x {side} texels under {extent.directions} x {extent.directions} directions, one side;
 unseen pairs: `--held-out {extent.held_out}`. A ratio of 1:R allows the model's file, headers and all, an
-R-th of the BTF's half floats; a method gets the most bytes with which its file is within that and a hundredth, of a few
-tries, and "-" stands where it has no model of so few. PSNR in dB and squared error ratio as
-[conventions.md](conventions.md) has them. Picture error: root mean square of the difference over that of
-the reference, of a bent sheet of {tiles} x {tiles} tiles under `{WORLD}`, {width}x{height} pixels,
-{extent.spp} directions of the light each, the same for both pictures.
+R-th of the BTF's half floats. A method gets the most bytes with which its file is within that and a
+hundredth, of a few tries that stop where it fills 92 %; "-" stands where no model was fitted, or none is
+so small. PSNR in dB and squared error ratio as [conventions.md](conventions.md) has them. Picture error:
+root mean square of the difference over that of the reference, of a bent sheet of {tiles} x {tiles} tiles
+under `{WORLD}`, {width}x{height} pixels, {extent.spp} directions of the light each, the same for both.
 """
 
 
