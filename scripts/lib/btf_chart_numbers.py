@@ -53,9 +53,9 @@ def largest_within(target: int, reports: Iterable[dict]) -> dict | None:
     return max((r for r in reports if r["bytes"] <= _SLACK * target), key=lambda r: r["bytes"], default=None)
 
 
-def fills(target: int, report: dict | None) -> bool:
-    """Whether a further fit would hardly use more of the bytes."""
-    return report is not None and report["bytes"] >= (1 - _CLOSE) * target
+def fills(target: int, report: dict | None, least: float = 1 - _CLOSE) -> bool:
+    """Whether so much of the bytes is used; by default: so much that a further fit would hardly use more."""
+    return report is not None and report["bytes"] >= least * target
 
 
 def within(target: int, fit: Callable[[int], dict | None], packed: float = 1.0) -> dict | None:

@@ -22,6 +22,7 @@ from velour_cli import velour, velour_to_file
 WORLD = "potsdamer_platz"
 # How files of methods pack, about: headers of many parts, or maps that deflate. Others: as they are fitted.
 _PACKED = {"srbf": 1.4, "svd-view": 0.85, "tucker": 1.3, "cta": 1.3, "kcta": 1.3}
+_HALF = 0.55  # of the bytes: fits that fill less were made for fewer
 _CAPTURE_COST, _FIT_COST = 4e7, 6e7  # in samples
 
 
@@ -137,7 +138,9 @@ class Study:
         """What fits there are come first; then how files pack is taken from the method's fit before."""
         target = tile.raw_bytes // ratio
         report = largest_within(target, self._kept_fits(tile, method))
-        if not self._only_kept and not fills(target, report):
+        if self._only_kept:
+            report = report if fills(target, report, _HALF) else None
+        elif not fills(target, report):
             usual = _PACKED.get(method.name.split()[0], 1.0)
             expected = self._packed.get(method.name, usual)
             report = within(target, lambda size: self._fit(tile, method, size), expected)
