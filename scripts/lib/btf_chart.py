@@ -58,7 +58,7 @@ def main() -> int:
             images / f"chart_btf_{tile.name}.png", tile, pictures, results, extent.speed_ratio
         )
     interpolated = {tile.name: study.interpolated(tile) for tile in tiles}
-    btf_chart_text.write(args.output, results, interpolated, run.conditions, extent)
+    btf_chart_text.write(args.output, results, interpolated, run.conditions | {"note": args.note}, extent)
     print(args.output / "chart_btf.md")
     return 0
 
@@ -68,6 +68,7 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--texels", metavar="N", type=int)
     parser.add_argument("--tiles", metavar="NAME,...", type=_words)
     parser.add_argument("--ratios", metavar="R,...", type=lambda text: [int(r) for r in text.split(",")])
+    parser.add_argument("--note", metavar="TEXT", default="", help="what the page's reader must know")
     parser.add_argument("--methods", metavar="NAME,...", type=_words)
 
 

@@ -39,7 +39,7 @@ Written by `scripts/chart --btf`; what the methods are, and which to use where: 
 All numbers are also in [chart_btf.csv](chart_btf.csv).
 {provenance.sentence(conditions)}
 Other programs may have used the processors at the same time: processor seconds feel that little,
-seconds and rates do.
+seconds and rates do. {conditions["note"]}
 
 Captures of {side} x {side} texels under {extent.directions} x {extent.directions} directions, one side;
 unseen pairs: `--held-out {extent.held_out}`. A ratio of 1:R allows the model's file, headers and all, an
