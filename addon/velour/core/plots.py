@@ -152,7 +152,10 @@ def grid(
         cell.set_xticks(ticks, [f"{x:g}" for x in ticks])
         cell.set_xticks([], minor=True)
         cell.grid(alpha=0.25)
-    axes[0, -1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
+    lines = {line.get_label(): line for cell in axes.flat for line in cell.get_lines()}
+    axes[0, -1].legend(
+        lines.values(), lines.keys(), loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small"
+    )
     figure.supxlabel(x_name)
     save(figure, path)
 
