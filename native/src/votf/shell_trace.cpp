@@ -6,11 +6,21 @@
 namespace velour {
 namespace {
 
-constexpr float kNear = 0.02f;    // pitches: nearer than this is within
+constexpr float kNear = 0.03f;    // pitches: nearer than this is within
 constexpr float kLeast = 0.1f;    // pitches: no step is shorter
+constexpr float kStride = 1.6f;   // distances that a step is long [KSK14]
 constexpr int kMostSteps = 4096;  // a ray that glides along a surface for so long has met it
 
 float squared(float x) { return x * x; }
+
+/// Widths that a ray within the shell covers a metre, at most.
+float fastest(const ShellRay& ray, const OcclusionVolume& volume) {
+  const float across = glm::length(ray.along) * std::sqrt(std::max(0.0f, 1.0f - squared(ray.cosine)));
+  const float down = ray.scale * (ray.curvature < 0 ? 1.0f : ray.cosine);  // a hollow's rays steepen
+  // Towards the centre of the curvature the same way covers more of the surface; not beyond a third of the radius.
+  const float radius = 1 - std::max(0.0f, ray.curvature) * (volume.top - volume.bottom) / ray.scale;
+  return std::sqrt(squared(across / squared(std::max(radius, 1.0f / 3))) + squared(down));
+}
 
 /// Angle / tangent for angles up to about 1: the series of the arc tangent.
 float arc_over_tangent(float tangent) {
@@ -18,18 +28,21 @@ float arc_over_tangent(float tangent) {
   return 1.0f - t2 * (1.0f / 3 - t2 * (0.2f - t2 * (1.0f / 7)));
 }
 
+Vec3 place_on(const ShellRay& ray, float sine, float s) {
+  const float a = s * sine;
+  if (ray.curvature == 0) return {ray.place + ray.along * a, -ray.scale * s * ray.cosine};
+  // In radii of the top: `bent` across and `b` up from the centre. A ray that passes beside the centre further than 84
+  // degrees on is held there.
+  const float bent = ray.curvature * a;
+  const float b = std::max(1.0f - ray.curvature * s * ray.cosine, 0.1f * std::abs(bent));
+  const float deeper = s * (ray.curvature * s - 2 * ray.cosine) / (1 + std::sqrt(b * b + bent * bent));
+  const float across = b > 0 ? a / b * arc_over_tangent(std::min(1.0f, std::abs(bent) / b)) : 0.0f;
+  return {ray.place + ray.along * across, ray.scale * deeper};
+}
+
 }  // namespace
 
-ShellRay::Point ShellRay::at(float s) const {
-  const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
-  // In radii of the top: `a` across and `b` up from the centre. A ray that passes beside the centre further than 84
-  // degrees on is held there.
-  const float a = s * sine, b = std::max(1.0f - curvature * s * cosine, 0.1f * std::abs(curvature * a));
-  const float square = b * b + curvature * curvature * a * a, radius = std::sqrt(square);
-  const float deeper = s * (curvature * s - 2 * cosine) / (1 + radius);
-  const float across = b > 0 ? a / b * arc_over_tangent(std::min(1.0f, std::abs(curvature * a) / b)) : 0.0f;
-  return {{place + along * across, scale * deeper}, square};
-}
+Vec3 ShellRay::at(float s) const { return place_on(*this, std::sqrt(std::max(0.0f, 1.0f - squared(cosine))), s); }
 
 ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume) {
   // Radii r with 1 - r^2 = curvature * fall: s^2 curvature - 2 s cosine + fall = 0.
@@ -42,22 +55,34 @@ ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume) {
 
 std::optional<ShellHit> trace_shell(const ShellField& field, const ShellRay& ray, float begin, float end) {
   const OcclusionVolume& volume = field.volume();
-  const float pitch = volume.pitch(), way = end < begin ? -1.0f : 1.0f;
-  const float across = glm::length(ray.along) * std::sqrt(std::max(0.0f, 1.0f - ray.cosine * ray.cosine));
-  const float down = ray.scale * (ray.curvature < 0 ? 1.0f : ray.cosine);  // a hollow's rays steepen
-  float s = begin;
+  const float pitch = volume.pitch(), way = end < begin ? -1.0f : 1.0f, speed = fastest(ray, volume);
+  const float sine = std::sqrt(std::max(0.0f, 1.0f - squared(ray.cosine)));
+  const auto place_at = [&](float s) { return place_on(ray, sine, s) + Vec3(0, 0, volume.top); };
+  float s = begin, free = 0, step = 0;  // the last look was `step` before, in widths, and `free` of any surface
   for (int i = 0; i < kMostSteps; ++i) {
-    ShellRay::Point point = ray.at(s);
-    point.place.z += volume.top;
-    const float distance = field.distance(point.place);
-    if (distance <= kNear * pitch) return ShellHit{s, point.place};
-    // Widths a metre; it grows towards the centre of the curvature, by less than a tenth from one step to the next.
-    const float speed = std::sqrt(squared(1.1f * across / point.slower) + down * down);
-    s += way * std::max(distance, kLeast * pitch) / speed;
-    if ((s - end) * way >= 0) return std::nullopt;
+    const Vec3 place = place_at(s);
+    const float distance = field.distance(place);
+    if (distance <= kNear * pitch) {
+      if (step == 0) return ShellHit{s, place};
+      // Between the two looks, where the distance falls to nothing.
+      s -= way * step / speed * std::min(1.0f, distance / (distance - free));
+      return ShellHit{s, place_at(s)};
+    }
+    if (free + distance < step) {  // between the two there may be something: back to what is free for certain
+      s -= way * (step - free) / speed;
+      step = free;
+      continue;
+    }
+    free = std::max(distance, kLeast * pitch);
+    step = kStride * free;
+    s += way * step / speed;
+    if ((s - end) * way >= 0) {
+      if ((s - way * (step - free) / speed - end) * way >= 0) return std::nullopt;
+      step -= std::abs(s - end) * speed;
+      s = end;
+    }
   }
-  ShellRay::Point point = ray.at(s);
-  return ShellHit{s, {point.place.x, point.place.y, point.place.z + volume.top}};
+  return ShellHit{s, place_at(s)};
 }
 
 bool line_meets(const ShellField& field, const Vec2& place, const Vec3& w) {

@@ -17,12 +17,8 @@ struct ShellRay {
   float curvature;  // of the top in its plane, 1 / metres; positive: convex
   float scale;      // widths that a metre along the normal covers
 
-  struct Point {
-    Vec3 place;    // widths
-    float slower;  // metres of the top surface below a metre across, at this height, squared: (r / radius)^2
-  };
-  /// `s` metres behind the crossing; before it where s is negative.
-  Point at(float s) const;
+  /// Where it is, in widths from the top, `s` metres behind the crossing; before it where s is negative.
+  Vec3 at(float s) const;
 };
 
 /// Where a ray is within the shell.
@@ -38,7 +34,7 @@ struct ShellHit {
 };
 
 /// The first place on the way from `begin` to `end`, metres behind the crossing, either before the other, where the ray
-/// is within the structure. By sphere tracing [Har96].
+/// is within the structure. By sphere tracing [Har96] with long steps [KSK14].
 std::optional<ShellHit> trace_shell(const ShellField& field, const ShellRay& ray, float begin, float end);
 
 /// Whether the line through `place` (widths) of the reference plane of a flat shell along unit `w`, w.z not 0, meets

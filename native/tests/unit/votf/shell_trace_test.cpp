@@ -27,7 +27,7 @@ TEST(ShellRay, IsAStraightRayOverACircle) {
       const ShellRay ray{{0.25f, 0.5f}, {0, 2}, cosine, radius == 0 ? 0 : 1 / radius, 3};
       for (const float s : {-0.1f, 0.0f, 0.05f, 0.3f}) {
         const Vec2 expected = over_circle(radius, cosine, s);
-        const Vec3 found = ray.at(s).place;
+        const Vec3 found = ray.at(s);
         EXPECT_NEAR(found.x, 0.25f, 1e-6f);
         EXPECT_NEAR(found.y, 0.5f + 2 * expected.x, 1e-4f) << radius << ' ' << cosine << ' ' << s;
         EXPECT_NEAR(found.z, 3 * expected.y, 1e-5f) << radius << ' ' << cosine << ' ' << s;
@@ -45,9 +45,9 @@ TEST(ShellRay, EndsAtTheBottomOrAtTheTop) {
       const ShellRay ray{{0, 0}, {1, 0}, cosine, curvature, 1};
       const ShellSpan span = span_of(ray, volume);
       EXPECT_GT(span.end, 0);
-      EXPECT_NEAR(ray.at(span.end).place.z, span.through_bottom ? -0.2f : 0.0f, 1e-4f) << curvature << ' ' << cosine;
+      EXPECT_NEAR(ray.at(span.end).z, span.through_bottom ? -0.2f : 0.0f, 1e-4f) << curvature << ' ' << cosine;
       if (!span.through_bottom) {
-        EXPECT_GT(ray.at(span.end / 2).place.z, -0.2f);
+        EXPECT_GT(ray.at(span.end / 2).z, -0.2f);
       }
     }
   }
