@@ -8,12 +8,16 @@ from command_line import refused, velour
 from inputs import write_octahedron
 from velour.native import Btf, Model, images
 
-COUNTS = {"srbf": ["lobes", "coefficients"], "svd": ["components"], "svd-view": ["components"]}
+TENSORS = ("tucker", "cta", "kcta")
+COUNTS = {
+    "srbf": ["lobes", "coefficients"], "svd": ["components"], "svd-view": ["components"],
+    **{name: ["coefficients"] for name in TENSORS},
+}  # fmt: skip
 COMPRESS_KEYS = [
     "bytes", "parameter_bytes", "ratio", "psnr", "psnr_held_out", "ser", "relative_l2", "p99",
     "evaluations_per_second", "seconds", "warnings", "tolerance", "order", "search",
 ]  # fmt: skip
-BYTES = {"srbf": 12000, "svd": 60000, "svd-view": 60000}
+BYTES = {"srbf": 12000, "svd": 60000, "svd-view": 60000, **dict.fromkeys(TENSORS, 20000)}
 LIGHTS = 40
 
 
@@ -38,7 +42,7 @@ def held_out(folder):
     return capture(folder / "held-out", 9, 2)
 
 
-@pytest.fixture(scope="module", params=["srbf", "svd", "svd-view"])
+@pytest.fixture(scope="module", params=["srbf", "svd", "svd-view", *TENSORS])
 def judged(request, folder, btf, held_out):
     """The method, its model and what compress reports of it."""
     method, path = request.param, folder / f"{request.param}.velour"
@@ -55,12 +59,13 @@ def model(judged):
 
 def test_report_and_held_out_pairs(judged, held_out):
     method, path, report = judged
-    assert list(report) == ["method", *COUNTS[method], *COMPRESS_KEYS]
+    shapes = ["shapes"] if method in TENSORS else []
+    assert list(report) == ["method", *COUNTS[method], *COMPRESS_KEYS, *shapes]
     assert report["method"] == method
     assert report["parameter_bytes"] <= BYTES[method]
     assert report["bytes"] == path.stat().st_size
     assert report["ratio"] == pytest.approx(30 * LIGHTS * 144 * 6 / report["bytes"])
-    assert report["psnr"] > (19 if method == "srbf" else 25)
+    assert report["psnr"] > (25 if method.startswith("svd") else 19)
     assert report["psnr_held_out"] > 15
     assert report["evaluations_per_second"] > 1e4
     same = velour("compare", held_out, path, "--json").json
@@ -97,7 +102,7 @@ def test_a_btf_interpolated_is_itself_at_its_own_pairs(btf, held_out):
 def test_info_of_the_model(judged):
     method, path, compressed = judged
     report = velour("info", path, "--json").json
-    kind = "srbf-btf" if method == "srbf" else "factored-btf"
+    kind = {"srbf": "srbf-btf", **{name: "tensor-btf" for name in TENSORS}}.get(method, "factored-btf")
     assert (report["kind"], report["model"], report["method"]) == ("model", kind, method)
     assert report["texels"] == [12, 12]
     assert (report["views"], report["lights"], report["companding"]) == (30, LIGHTS, "root")
@@ -107,9 +112,26 @@ def test_info_of_the_model(judged):
         assert report[key] == compressed[key]
 
 
+def test_info_tells_the_shapes_of_tensors(judged):
+    method, path, compressed = judged
+    report = velour("info", path, "--json").json
+    if method not in TENSORS:
+        assert report["shapes"] == []
+        return
+    (side,) = report["sides"]
+    assert report["shapes"] == compressed["shapes"]
+    assert report["coefficients"] == side["members"] * side["ranks"]["texel"]
+    assert side["clusters"] == 1 or method != "tucker"
+    assert side["members"] == 1 or method == "kcta"
+    tried = {(s["clusters"], s["members"], s["texel_rank"]) for s in report["shapes"]}
+    assert (side["clusters"], side["members"], side["ranks"]["texel"]) in tried
+
+
 def test_info_counts_the_sides_of_srbfs(judged):
     method, path, _ = judged
     report = velour("info", path, "--json").json
+    if method in TENSORS:
+        return
     if method != "srbf":
         assert "sides" not in report
         return
@@ -176,8 +198,11 @@ def test_the_model_evaluates_over_the_whole_tile(model):
     ("arguments", "word"),
     [
         (["--bytes", 100], "ask for more"),
-        (["--method", "kcta"], "yet"),
-        (["--clusters", 3], "yet"),
+        (["--clusters", 3], "kcta"),
+        (["--no-relief"], "kcta"),
+        (["--method", "tucker", "--clusters", 2], "one cluster"),
+        (["--method", "cta", "--members", 2], "too many"),
+        (["--method", "kcta", "--clusters", 2, "--members", 3], "too many"),
     ],
 )
 def test_what_cannot_be_is_refused_with_a_sentence(folder, btf, arguments, word):

@@ -16,7 +16,7 @@ import script
 from btf_chart_numbers import Method, Results
 from btf_chart_runs import QUICK, Extent, Study, Tile
 from renders import Settings
-from velour.core.cli.compress import METHODS
+from velour.native.table import COMPRESS_METHODS
 from velour_cli import ROOT
 
 MEMBERS = (2, 3, 4)  # of K-CTA
@@ -45,7 +45,7 @@ def main() -> int:
     extent = _extent(args)
     run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
     study = Study(run.renders, extent, run.data, args.kept)
-    contenders = methods(METHODS, args.methods)
+    contenders = methods(COMPRESS_METHODS, args.methods)
     study.announce(len(extent.tiles) + len(args.btf_set), len(contenders))
     tiles = [study.captured(kind) for kind in extent.tiles] + [study.measured(path) for path in args.btf_set]
     results = Results([e for e in _entries(study, tiles, contenders, extent) if e])

@@ -103,6 +103,9 @@ class CompressOptions(Struct):
         ("memory", c_uint64),
         ("checkpoint", c_char_p),
         ("resume", c_int32),
+        ("clusters", c_uint32),
+        ("members", c_uint32),
+        ("no_relief", c_int32),
     ]
 
 

@@ -256,8 +256,14 @@ VLR_API vlr_status vlr_microsurface_create_job(const vlr_microsurface_options* o
 
 /* ---- compression of BTFs ------------------------------------------------------------------------------------- */
 
-/* Truncated singular values; multivariate SRBFs over a relief; singular values of each view for itself. */
-enum { VLR_COMPRESS_SVD = 0, VLR_COMPRESS_SRBF = 1, VLR_COMPRESS_SVD_VIEW = 5 };
+enum {
+  VLR_COMPRESS_SVD = 0,     /* truncated singular values */
+  VLR_COMPRESS_SRBF = 1,    /* multivariate SRBFs over a relief */
+  VLR_COMPRESS_TUCKER = 2,  /* clustered tensors: of one cluster, ... */
+  VLR_COMPRESS_CTA = 3,     /* ... of some, each texel in one of them, ... */
+  VLR_COMPRESS_KCTA = 4,    /* ... or in a few */
+  VLR_COMPRESS_SVD_VIEW = 5 /* singular values of each view for itself */
+};
 enum { VLR_COMPAND_NONE = 0, VLR_COMPAND_ROOT = 1 };
 typedef struct vlr_compress_options {
   uint32_t struct_size;
@@ -280,15 +286,22 @@ typedef struct vlr_compress_options {
    * the bits of a fit that was not interrupted; a file of anything else is replaced, with a warning. */
   const char* checkpoint;
   int32_t resume;
+  /* Of clustered tensors: clusters of a side (up to 256; TUCKER: 1), and how many of them a texel is made of (up to 8;
+   * TUCKER, CTA: 1). 0: what leaves least within the bytes is looked for. */
+  uint32_t clusters;
+  uint32_t members;
+  int32_t no_relief; /* texels are of the reference plane, not of the structure's surface */
 } vlr_compress_options;
 VLR_API void vlr_compress_options_init(vlr_compress_options* options);
 /* Fits a model to a BTF; vlr_job_result_model gives it. JSON: bytes, parameter_bytes, ratio (raw half floats / bytes),
  * psnr, psnr_held_out (null without held_out), ser, relative_l2, p99, evaluations_per_second, seconds, warnings,
  * tolerance, order as of vlr_fit_create_job (lobes: coefficients of a texel, or components; worst: relative_l2 over the
  * tolerance, or relative_l2 without one), search [{coefficients, parameter_bytes, expected, relative_l2}], the fits in
- * their order; components of SVDs; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest
- * that are left, and scene, as of vlr_fit_create_job, but with full_texels [x, y] and surface
- * (vlr_observation_info_json) in place of errors; psnr, ser and speed are then those of the full model. */
+ * their order; of clustered tensors shapes [{clusters, members, texel_rank, view_rank, light_rank, color_rank,
+ * parameter_bytes, expected}], those that were tried before the fit; components of SVDs; lobes and coefficients of
+ * SRBFs. With for_scene also texels [x, y], the finest that are left, and scene, as of vlr_fit_create_job, but with
+ * full_texels [x, y] and surface (vlr_observation_info_json) in place of errors; psnr, ser and speed are then those of
+ * the full model. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
 /* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, relative_l2, brightness, p99, pairs. */
 VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);

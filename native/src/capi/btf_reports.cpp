@@ -70,6 +70,7 @@ std::string compression_json(const Model& model, uint64_t file_bytes) {
                    {"tolerance", record.tolerance},
                    {"order", order_json(record.order)},
                    {"search", trials_json(record.search)}});
+  if (!record.shapes.empty()) json["shapes"] = shapes_json(record.shapes);
   if (model.scene) {
     json["texels"] = {grid_of(model)->width, grid_of(model)->height};
     json["scene"] = reduced_json(*model.scene);

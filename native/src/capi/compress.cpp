@@ -18,12 +18,8 @@ void vlr_compress_options_init(vlr_compress_options* options) {
 
 namespace {
 
-bool is_method(int32_t number) {
-  return number == VLR_COMPRESS_SVD || number == VLR_COMPRESS_SRBF || number == VLR_COMPRESS_SVD_VIEW;
-}
-
 CompressOptions converted(const vlr_compress_options& given) {
-  if (!is_method(given.method)) {
+  if (given.method < VLR_COMPRESS_SVD || given.method > VLR_COMPRESS_SVD_VIEW) {
     throw Error(Status::invalid_argument,
                 "vlr_compress_options.method is " + std::to_string(given.method) + ", not a VLR_COMPRESS value.");
   }
@@ -46,6 +42,9 @@ CompressOptions converted(const vlr_compress_options& given) {
   options.bytes = given.bytes;
   options.seed = given.seed;
   options.threads = static_cast<int>(given.threads);
+  options.clusters = given.clusters;
+  options.members = given.members;
+  options.relief = given.no_relief == 0;
   if (given.held_out) options.held_out = given.held_out->btf;
   if (given.for_scene) options.for_scene = given.for_scene->observation;
   if (given.full_model) options.full_model = given.full_model->model;

@@ -211,7 +211,8 @@ Json record_json(const BtfRecord& btf) {
           {"relative_l2", measured ? Json(btf.relative_l2) : Json()},
           {"tolerance", btf.tolerance},
           {"order", order_json(btf.order)},
-          {"search", trials_json(btf.search)}};
+          {"search", trials_json(btf.search)},
+          {"shapes", shapes_json(btf.shapes)}};
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ class BtfFitter {
   size_t largest() const { return largest_; }
   /// Of the model at a point. Deterministic; the same bits for any number of threads.
   virtual ModelBody fit(size_t point) = 0;
+  /// Shapes of clustered tensors that were tried.
+  const std::vector<ShapeTrial>& shapes() const { return shapes_; }
   /// Entries of the measurement that were left out.
   uint64_t not_finite() const { return not_finite_; }
 
@@ -29,6 +31,7 @@ class BtfFitter {
 
   OrderCurve curve_;
   size_t largest_ = 0;
+  std::vector<ShapeTrial> shapes_;
   uint64_t not_finite_ = 0;
 };
 

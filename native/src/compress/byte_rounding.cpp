@@ -7,8 +7,9 @@ namespace {
 
 constexpr double kRidge = 1e-6;  // of the mean square of a lobe
 
-/// Upper triangular: row k, from k on, is how the error of coefficient k moves the later ones, over its own share.
-Eigen::MatrixXf moves_of(const Eigen::MatrixXf& products) {
+}  // namespace
+
+Eigen::MatrixXf rounding_moves(const Eigen::MatrixXf& products) {
   Eigen::MatrixXd ridged = products.cast<double>();
   ridged.diagonal().array() += kRidge * ridged.diagonal().mean();
   const auto n = ridged.rows();
@@ -18,8 +19,6 @@ Eigen::MatrixXf moves_of(const Eigen::MatrixXf& products) {
   return upper.cast<float>();
 }
 
-}  // namespace
-
 void set_rounded(const LobeProductMeans& products, std::vector<std::vector<float>> values, SrbfSide& side) {
   side.set_scale(values);
   const size_t count = side.coefficients();
@@ -27,7 +26,7 @@ void set_rounded(const LobeProductMeans& products, std::vector<std::vector<float
   for (size_t a = 0; a < 3; ++a) {
     const size_t end = first + side.lobe[a].size();
     if (end == first) continue;
-    const Eigen::MatrixXf moves = moves_of(products[a]);
+    const Eigen::MatrixXf moves = rounding_moves(products[a]);
     for (std::vector<float>& level : values) {
       for (size_t texel = 0; texel < level.size(); texel += count) {
         float* const value = level.data() + texel;

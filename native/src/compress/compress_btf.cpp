@@ -34,15 +34,8 @@ BtfErrors compare_body(const BtfMeasurement& truth, const ModelBody& body, doubl
 }
 
 const char* name_of(CompressMethod method) {
-  switch (method) {
-    case CompressMethod::svd:
-      return "svd";
-    case CompressMethod::svd_view:
-      return "svd-view";
-    case CompressMethod::srbf:
-      break;
-  }
-  return "srbf";
+  constexpr const char* kNames[] = {"svd", "srbf", "tucker", "cta", "kcta", "svd-view"};
+  return kNames[static_cast<size_t>(method)];
 }
 
 /// Names the measurement and all that the bits of the fit depend on. Whatever changes a fit's numbers changes
@@ -52,7 +45,8 @@ std::string checkpoint_key(const BtfMeasurement& measurement, const CompressOpti
   std::ostringstream key;
   key << kFitVersion << ' ' << measurement.provenance().sha256 << ' ' << measurement.raw_bytes() << ' '
       << name_of(options.method) << ' ' << static_cast<int>(options.companding) << ' ' << options.bytes << ' '
-      << std::hexfloat << options.tolerance << ' ' << options.seed << ' ' << options.memory;
+      << std::hexfloat << options.tolerance << ' ' << options.seed << ' ' << options.memory << ' ' << options.clusters
+      << ' ' << options.members << ' ' << options.relief;
   for (const auto& [name, value] : measurement.details()) key << '\n' << name << '=' << value;
   return key.str();
 }
@@ -121,6 +115,7 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
   record.tolerance = options.tolerance;
   record.order = std::move(found.order);
   record.search = std::move(found.trials);
+  record.shapes = fitter->shapes();
   progress.stage("unseen pairs", kFits, 1.0);
   if (options.held_out) {
     record.psnr_held_out = compare_body(*options.held_out, model->body, record.p99, options.threads, progress).psnr;

@@ -10,7 +10,7 @@
 
 namespace velour {
 
-enum class CompressMethod : uint8_t { svd = 0, srbf = 1, svd_view = 5 };
+enum class CompressMethod : uint8_t { svd = 0, srbf = 1, tucker = 2, cta = 3, kcta = 4, svd_view = 5 };
 
 struct CompressOptions : BtfFitOptions {
   CompressMethod method = CompressMethod::srbf;

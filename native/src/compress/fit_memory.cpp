@@ -10,6 +10,8 @@ namespace {
 
 constexpr uint64_t kFloat = sizeof(float), kHalf = sizeof(HalfBits);
 constexpr uint32_t kUsualPoints = 64, kLeastPoints = 8;
+constexpr uint64_t kSliceCopies = 4;
+constexpr uint32_t kLeastFunctions = 40, kLeastSlices = 384;
 constexpr uint64_t kLibraries = 8 << 20;  // threads' stacks and pools, and what is small
 
 /// A view: halves, values, planes along the axes, all levels of them by texel, and the next level's values.
@@ -70,7 +72,38 @@ uint64_t view_svd_bytes(const FitExtent& e) {
 
 uint64_t factored_bytes(const FitExtent& e) { return e.by_view ? view_svd_bytes(e) : svd_bytes(e); }
 
+/// Slices, copies of a cluster's and what they are projected on, or points with what they are filled from.
+uint64_t clustering_bytes(const FitExtent& e, const TensorAllowance& allowance, uint64_t entries) {
+  const uint64_t slices = std::min<uint64_t>(allowance.slices, e.texels) * entries * kFloat;
+  return std::max(kSliceCopies * slices, slices + reading_bytes(e) + 2 * allowance.point_floats * kFloat);
+}
+
+/// Moments of all levels, a view's, and products of functions.
+uint64_t tensor_texel_bytes(const FitExtent& e, uint64_t functions) {
+  return (2 * e.pyramid_texels + 2 * e.texels) * functions * kFloat +
+         e.pairs / e.lights * (functions * functions * kFloat + e.pyramid_texels * (sizeof(Vec2) + 1));
+}
+
 }  // namespace
+
+TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint64_t entries) {
+  TensorAllowance allowance;
+  if (memory == 0) return allowance;
+  const auto held = [&] {
+    return kLibraries + std::max(clustering_bytes(extent, allowance, entries),
+                                 reading_bytes(extent) + tensor_texel_bytes(extent, allowance.functions));
+  };
+  while (held() > memory && allowance.functions > kLeastFunctions) allowance.functions /= 2;
+  while (held() > memory && allowance.slices > kLeastSlices) {
+    allowance.slices /= 2;
+    allowance.point_floats /= 2;
+  }
+  if (held() > memory)
+    refuse(
+        memory, held(),
+        "one view of " + std::to_string(extent.texels) + " texels under " + std::to_string(extent.lights) + " lights");
+  return allowance;
+}
 
 uint32_t search_points_within(uint64_t memory, const FitExtent& extent) {
   const uint64_t held = kLibraries + point_bytes(extent);

@@ -30,4 +30,15 @@ void require_components(uint64_t memory, const FitExtent& extent);
 /// Error(unsupported) with the least that would do.
 uint64_t components_within(uint64_t memory, FitExtent extent);
 
+/// What a fit of clustered tensors may hold.
+struct TensorAllowance {
+  size_t point_floats = 16 << 20;  // that bases of the directions are found by
+  size_t slices = 6144;            // texels that clusters are sought for
+  uint32_t functions = 640;        // of all clusters: whose products of each view the texels are solved for by
+};
+
+/// The most that keeps the fit within `memory` bytes (0: no limit); `entries`: of a slice. Throws Error(unsupported)
+/// with the least that would do.
+TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint64_t entries);
+
 }  // namespace velour

@@ -1,13 +1,60 @@
 #include "compress/make_fitter.h"
 
+#include <algorithm>
+#include <string>
+
 #include "compress/srbf_fit.h"
 #include "compress/svd_fit.h"
+#include "compress/tensor_fit.h"
 #include "compress/view_svd_fit.h"
+#include "job/error.h"
 
 namespace velour {
+namespace {
+
+constexpr uint32_t kMostClusters = 64, kMostMembers = 4;  // that are tried
+
+/// Throws Error(invalid_argument) for numbers that the method has not.
+ShapeRange shapes_of(const CompressOptions& options) {
+  ShapeRange range;
+  if (options.method != CompressMethod::tucker) range.most_clusters = kMostClusters;
+  if (options.method == CompressMethod::kcta) range.most_members = kMostMembers;
+  if (options.clusters > 0) {
+    if (options.method == CompressMethod::tucker && options.clusters > 1) {
+      throw Error(Status::invalid_argument, "A Tucker decomposition has one cluster, not " +
+                                                std::to_string(options.clusters) + "; cta and kcta have more.");
+    }
+    if (options.clusters > TensorBtf::kMaxClusters) {
+      throw Error(Status::invalid_argument, std::to_string(options.clusters) + " clusters are too many; up to " +
+                                                std::to_string(TensorBtf::kMaxClusters) + " can be stored.");
+    }
+    range.least_clusters = range.most_clusters = options.clusters;
+  }
+  if (options.members > 0) {
+    const size_t most = options.method == CompressMethod::kcta ? TensorBtf::kMaxMembers : 1;
+    if (options.members > most || (options.clusters > 0 && options.members > options.clusters)) {
+      throw Error(Status::invalid_argument,
+                  std::to_string(options.members) + " members are too many; a texel has " +
+                      (most == 1 ? std::string("one, but with kcta.")
+                                 : "up to " + std::to_string(most) + ", and no more than there are clusters."));
+    }
+    range.least_members = range.most_members = options.members;
+    range.least_clusters = std::max(range.least_clusters, options.members);
+  }
+  return range;
+}
+
+}  // namespace
 
 std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const CompressOptions& options,
                                        FitCheckpoint& checkpoint, Progress& progress) {
+  const bool tensors = options.method == CompressMethod::tucker || options.method == CompressMethod::cta ||
+                       options.method == CompressMethod::kcta;
+  if (!tensors && (options.clusters > 0 || options.members > 0 || !options.relief)) {
+    throw Error(Status::invalid_argument,
+                "Clusters, members and a relief to leave out are of the methods tucker, cta and kcta.");
+  }
+  if (tensors) return std::make_unique<TensorFitter>(measurement, options, shapes_of(options), checkpoint, progress);
   if (options.method == CompressMethod::svd) {
     return std::make_unique<SvdFitter>(measurement, options, checkpoint, progress);
   }

@@ -9,7 +9,8 @@
 
 namespace velour {
 
-/// All arguments must outlive it. Throws what SvdFitter and SrbfFitter do.
+/// All arguments must outlive it. Throws what the fitters do, and Error(invalid_argument) for clusters
+/// and members that the method has not.
 std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const CompressOptions& options,
                                        FitCheckpoint& checkpoint, Progress& progress);
 

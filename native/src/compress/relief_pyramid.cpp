@@ -28,23 +28,37 @@ std::vector<float> heights_of(const BtfMeasurement& measurement, const SideDirec
   return heights;
 }
 
-}  // namespace
-
-std::vector<Relief> relief_pyramid(const BtfMeasurement& measurement, const SideDirections& side) {
+/// All levels of heights on the finest one.
+std::vector<Relief> pyramid_of(const TexelGrid& grid, std::vector<float> heights) {
   std::vector<Relief> pyramid;
-  std::vector<float> heights = heights_of(measurement, side);
-  uint32_t width = measurement.grid().width, height = measurement.grid().height;
+  uint32_t width = grid.width, height = grid.height;
   for (;;) {
     std::vector<HalfBits> halves(heights.size());
     floats_to_halves(heights, halves);
     std::vector<float> stored(heights.size());
     halves_to_floats(halves, stored);
-    pyramid.emplace_back(width, height, stored, tile_aspect(measurement.grid()));
+    pyramid.emplace_back(width, height, stored, tile_aspect(grid));
     if (width == 1 && height == 1) return pyramid;
     heights = half_image(heights, width, height, 1);
     width = half_of(width);
     height = half_of(height);
   }
+}
+
+}  // namespace
+
+std::vector<Relief> relief_pyramid(const BtfMeasurement& measurement, const SideDirections& side) {
+  return pyramid_of(measurement.grid(), heights_of(measurement, side));
+}
+
+std::vector<Relief> plane_pyramid(const TexelGrid& grid) {
+  return pyramid_of(grid, std::vector<float>(grid.texels(), 0.0f));
+}
+
+std::vector<HalfBits> stored_heights(const Relief& relief) {
+  std::vector<HalfBits> halves(relief.heights().size());
+  floats_to_halves(relief.heights(), halves);
+  return halves;
 }
 
 }  // namespace velour

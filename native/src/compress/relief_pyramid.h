@@ -13,5 +13,9 @@ namespace velour {
 /// normal, averaged over texels. Where it meets nothing, the lowest point of the shell. Flat, on the reference plane,
 /// for a BTF without structure.
 std::vector<Relief> relief_pyramid(const BtfMeasurement& measurement, const SideDirections& side);
+/// The reference plane, as large.
+std::vector<Relief> plane_pyramid(const TexelGrid& grid);
+
+std::vector<HalfBits> stored_heights(const Relief& relief);
 
 }  // namespace velour

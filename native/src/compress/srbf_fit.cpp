@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "compress/equal_sides.h"
 #include "compress/fit_memory.h"
+#include "compress/fitted_sides.h"
 #include "compress/lobe_checkpoint.h"
 #include "compress/relief_pyramid.h"
 #include "compress/texel_levels.h"
@@ -26,7 +26,6 @@ constexpr double kHeight = 1.4;
 // The curve goes on to models of twice the size, or to a third of the error that is looked for.
 constexpr size_t kBeyond = 2;
 constexpr double kBelow = 0.3;
-constexpr double kUnlike = 0.1;                                 // of energies, relative
 constexpr double kColours = 0.2, kPoints = 0.1, kLobes = 0.45;  // where parts of the progress end
 
 uint32_t points_for(const TexelGrid& grid) {
@@ -76,29 +75,14 @@ SrbfFitter::SrbfFitter(const BtfMeasurement& measurement, const BtfFitOptions& o
   bound(all ? ~uint64_t{0} : bytes, "The least model");
 }
 
-/// Without those that no light goes through to: what no side shows is black. And without those that another one
-/// serves.
 void SrbfFitter::find_sides(const ColourAxes& colours) {
-  for (SideDirections& side : sides_of(measurement_.layout())) {
-    const double energy = colours.energy_of(side.view_number, side.light_number);
-    if (side.view_below != side.light_below && energy == 0) continue;
-    if (const auto same = side_like(side, energy)) {
-      demand_[*same].energy += energy;
-      shared_.push_back({side.view_below, side.light_below, static_cast<uint32_t>(*same)});
-      continue;
-    }
-    std::vector<Relief> relief = relief_pyramid(measurement_, side);
-    sides_.push_back({std::move(side), std::move(relief), {}});
-    demand_.push_back({{}, energy});
+  FittedSides found = fitted_sides(measurement_, colours, progress_);
+  shared_ = std::move(found.shared);
+  for (FittedSide& side : found.sides) {
+    std::vector<Relief> relief = relief_pyramid(measurement_, side.directions);
+    sides_.push_back({std::move(side.directions), std::move(relief), {}});
+    demand_.push_back({{}, side.energy});
   }
-}
-
-std::optional<size_t> SrbfFitter::side_like(const SideDirections& side, double energy) const {
-  for (size_t s = 0; s < sides_.size(); ++s) {
-    if (std::abs(energy - demand_[s].energy) > kUnlike * energy) continue;  // without a look at their images
-    if (sides_are_equal(measurement_, sides_[s].directions, side, progress_)) return s;
-  }
-  return std::nullopt;
 }
 
 void SrbfFitter::find_orders(uint64_t bytes, bool all) {

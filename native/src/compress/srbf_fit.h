@@ -30,8 +30,6 @@ class SrbfFitter final : public BtfFitter {
     std::vector<SurfacePoint> points;  // none while all that is made of them was kept
   };
   void find_sides(const ColourAxes& colours);
-  /// The number of a side that looks like this one.
-  std::optional<size_t> side_like(const SideDirections& side, double energy) const;
   void find_orders(uint64_t bytes, bool all);
   uint32_t search_points(size_t most) const;
   const std::vector<SurfacePoint>& points_of(size_t side);

@@ -47,10 +47,9 @@ class PointSampler {
   void add_view(size_t view, const LevelImages& images, uint32_t i) {
     SurfacePoint& point = points_[i];
     const Vec3& wv = side_.view[view];
-    const Vec2 shift = height_[i] / wv.z * Vec2(wv.x, wv.y / tile_aspect(grid_));
-    const Vec2 on_plane = point.place - shift, size(grid_.width, grid_.height);
-    if (glm::length((relief_.seen(on_plane, wv) - point.place) * size) > kSeenWithin) return;
-    const BilinearTexels texels = texels_at(on_plane);
+    const std::optional<Vec2> shown = shown_at(relief_, point.place, height_[i], tile_aspect(grid_), wv);
+    if (!shown) return;
+    const BilinearTexels texels = texels_at(*shown);
     RandomStream random(options_.seed, i, 1 + view);
     for (size_t l = 0; l < side_.light.size(); ++l) {
       if (random.next() >= share_) continue;
@@ -75,6 +74,13 @@ class PointSampler {
 };
 
 }  // namespace
+
+std::optional<Vec2> shown_at(const Relief& relief, const Vec2& place, float height, float aspect, const Vec3& wv) {
+  const Vec2 on_plane = place - height / wv.z * Vec2(wv.x, wv.y / aspect);
+  const Vec2 size(relief.width(), relief.height());
+  if (glm::length((relief.seen(on_plane, wv) - place) * size) > kSeenWithin) return std::nullopt;
+  return on_plane;
+}
 
 std::vector<SurfacePoint> surface_points(CompandedViews& views, const TexelGrid& grid, const SideDirections& side,
                                          const Relief& relief, const SurfacePointOptions& options, Progress& progress) {

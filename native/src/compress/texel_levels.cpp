@@ -8,6 +8,7 @@
 #include "btf/bilinear_texels.h"
 #include "compress/brightening.h"
 #include "compress/byte_rounding.h"
+#include "compress/relief_pyramid.h"
 #include "compress/texel_solver.h"
 
 namespace velour {
@@ -30,12 +31,6 @@ RowMatrix refined(const RowMatrix& coarse, uint32_t width, uint32_t height, cons
     }
   }
   return out;
-}
-
-std::vector<HalfBits> halves_of(const std::vector<float>& floats) {
-  std::vector<HalfBits> halves(floats.size());
-  floats_to_halves(floats, halves);
-  return halves;
 }
 
 size_t coefficients_of(const SharedLobes& lobes) {
@@ -134,7 +129,7 @@ void solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheck
       solver[l].reset();
       keep_level(*solution[l], stage + std::to_string(l), checkpoint);
     }
-    side.levels[l] = {relief.width(), relief.height(), halves_of(relief.heights()), {}};
+    side.levels[l] = {relief.width(), relief.height(), stored_heights(relief), {}};
     values[l] = bright_values(*solution[l]);
     if (l > 0) start = refined(solution[l]->value, relief.width(), relief.height(), input.relief[l - 1]);
     solution[l].reset();

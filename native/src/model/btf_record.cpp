@@ -10,7 +10,7 @@ using Json = JsonFields::Json;
 
 namespace {
 
-constexpr size_t kMostTrials = 100;
+constexpr size_t kMostTrials = 100, kMostShapes = 1000;
 
 std::vector<SizeTrial> parse_trials(const Json& json, const JsonFields& record, const JsonSource& source) {
   if (!json.is_array() || json.size() > kMostTrials) record.fail("search", "a list of at most 100 fits");
@@ -25,7 +25,38 @@ std::vector<SizeTrial> parse_trials(const Json& json, const JsonFields& record, 
   return trials;
 }
 
+std::vector<ShapeTrial> parse_shapes(const Json& json, const JsonFields& record, const JsonSource& source) {
+  if (!json.is_array() || json.size() > kMostShapes) record.fail("shapes", "a list of at most 1000 shapes");
+  std::vector<ShapeTrial> shapes;
+  for (const Json& entry : json) {
+    if (!entry.is_object()) record.fail("shapes", "a list of shapes");
+    const JsonFields fields(entry, source, "shapes.");
+    const auto number = [&](const char* key) { return static_cast<uint32_t>(fields.whole(key, 1u << 16)); };
+    shapes.push_back({number("clusters"),
+                      number("members"),
+                      {number("texel_rank"), number("view_rank"), number("light_rank"), number("color_rank")},
+                      fields.whole("parameter_bytes", uint64_t{1} << 53),
+                      fields.number("expected")});
+  }
+  return shapes;
+}
+
 }  // namespace
+
+nlohmann::ordered_json shapes_json(const std::vector<ShapeTrial>& shapes) {
+  Json json = Json::array();
+  for (const ShapeTrial& s : shapes) {
+    json.push_back({{"clusters", s.clusters},
+                    {"members", s.members},
+                    {"texel_rank", s.rank[0]},
+                    {"view_rank", s.rank[1]},
+                    {"light_rank", s.rank[2]},
+                    {"color_rank", s.rank[3]},
+                    {"parameter_bytes", s.parameter_bytes},
+                    {"expected", four_digits(s.expected)}});
+  }
+  return json;
+}
 
 nlohmann::ordered_json trials_json(const std::vector<SizeTrial>& trials) {
   Json json = Json::array();
@@ -53,6 +84,7 @@ std::string btf_record_json(const BtfRecord& record) {
   json["tolerance"] = record.tolerance;
   if (!record.order.points.empty()) json["order"] = order_json(record.order);
   if (!record.search.empty()) json["search"] = trials_json(record.search);
+  if (!record.shapes.empty()) json["shapes"] = shapes_json(record.shapes);
   return json.dump();
 }
 
@@ -75,6 +107,7 @@ BtfRecord parse_btf_record(const std::string& text, const std::string& where) {
   if (fields.has("tolerance")) record.tolerance = fields.number("tolerance");
   if (fields.has("order")) record.order = parse_order(fields.at("order"), where + ": 'order'");
   if (fields.has("search")) record.search = parse_trials(fields.at("search"), fields, source);
+  if (fields.has("shapes")) record.shapes = parse_shapes(fields.at("shapes"), fields, source);
   for (const Json& warning : fields.at("warnings")) {
     if (!warning.is_string()) fields.fail("warnings", "a list of sentences");
     record.warnings.push_back(warning.get<std::string>());

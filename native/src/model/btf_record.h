@@ -1,6 +1,7 @@
 // How well a fitted BTF agrees with what it was made of.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -21,8 +22,18 @@ struct SizeTrial {
   bool operator==(const SizeTrial&) const = default;
 };
 
+/// A shape of clustered tensors that was tried before the fit.
+struct ShapeTrial {
+  uint32_t clusters = 0, members = 0;
+  std::array<uint32_t, 4> rank{};  // of texels, views, lights, colours
+  uint64_t parameter_bytes = 0;
+  double expected = 0;  // relative L2 error, of the texels that it was judged by
+
+  bool operator==(const ShapeTrial&) const = default;
+};
+
 struct BtfRecord {
-  std::string method;                                  // "svd", "srbf"
+  std::string method;                                  // "svd", "srbf", "tucker", "cta", "kcta"
   double psnr = 0;                                     // dB, over all pairs that were fitted (docs/conventions.md)
   std::optional<double> psnr_held_out = std::nullopt;  // of pairs that no fit has seen
   double ser = 0;                                      // squared error of f cos(theta_l) over its squares
@@ -36,10 +47,14 @@ struct BtfRecord {
   double tolerance = 0;               // of relative_l2 that was asked for; 0: none
   OrderCurve order;                   // error against size: `lobes` are coefficients of a texel, or components
   std::vector<SizeTrial> search;      // in the order of the fits
+  std::vector<ShapeTrial> shapes;     // of clustered tensors, in the order of the trials
 };
 
 /// [{"coefficients", "parameter_bytes", "expected", "relative_l2"}, ...], errors with four digits.
 nlohmann::ordered_json trials_json(const std::vector<SizeTrial>& trials);
+
+/// [{"clusters", "members", "texel_rank", "view_rank", "light_rank", "color_rank", "parameter_bytes", "expected"}, ...]
+nlohmann::ordered_json shapes_json(const std::vector<ShapeTrial>& shapes);
 
 /// JSON, for an attribute of the model file.
 std::string btf_record_json(const BtfRecord& record);

@@ -6,10 +6,7 @@ import argparse
 import contextlib
 
 from ...native import Btf, compress_job, table
-from . import btf_options, later, numbers, output, scene_options
-
-_LATER = ("tucker", "cta", "kcta")
-METHODS = tuple(name for name in table.COMPRESS_METHODS if name not in _LATER)
+from . import btf_options, numbers, output, scene_options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,8 +15,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--method",
         choices=table.COMPRESS_METHODS,
-        help="srbf: multivariate SRBFs over a relief (default); svd: truncated singular values;"
-        " svd-view: of each view for itself",
+        help="srbf: multivariate SRBFs over a relief (default); kcta: clustered tensors, of which a texel"
+        " has a few; cta: one; tucker: one for all; svd: truncated singular values; svd-view: of each view"
+        " for itself",
     )
     parser.add_argument(
         "--companding", choices=table.COMPANDINGS, help="sums of f itself or of its root; root"
@@ -54,17 +52,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
-    for flag in ("--clusters", "--k"):
-        later.add_later(parser, flag, "--bytes bounds the model", "V")
+    tensors = parser.add_argument_group("clustered tensors")
+    tensors.add_argument(
+        "--clusters", type=numbers.whole(1, 256), metavar="C",
+        help="cta, kcta; what leaves least within the bytes",
+    )  # fmt: skip
+    tensors.add_argument(
+        "--members", type=numbers.whole(1, 8), metavar="K", help="kcta: clusters of a texel; the same"
+    )
+    tensors.add_argument(
+        "--no-relief",
+        action="store_true",
+        help="texels of the reference plane, not of the structure's surface",
+    )
     btf_options.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> dict:
-    later.only("--method", args.method or "srbf", METHODS)
     output.check_writable(args.output)
-    names = ("method", "companding", "tolerance", "bytes", "memory", "seed", "threads")
+    names = ("method", "companding", "tolerance", "bytes", "memory", "seed", "threads", "clusters", "members")
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
     options |= {"checkpoint": f"{args.output}.checkpoint", "resume": int(args.resume)}
+    if args.no_relief:
+        options["no_relief"] = 1
     with contextlib.ExitStack() as handles:
         btf = handles.enter_context(btf_options.load(args.input, args))
         if args.ratio:

@@ -14,6 +14,7 @@
 #include "job/error.h"
 #include "sphere/random.h"
 #include "support/example_srbf.h"
+#include "support/relief_btf.h"
 #include "support/striped_btf.h"
 
 namespace velour {
@@ -44,35 +45,6 @@ SrbfFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
 }
 
 std::shared_ptr<const SrbfBtf> shared(SrbfBtf btf) { return std::make_shared<const SrbfBtf>(std::move(btf)); }
-
-/// A BTF in memory with heights of its own.
-class MemoryBtfWithRelief final : public BtfMeasurement {
- public:
-  /// Nothing is met where a height is not finite.
-  MemoryBtfWithRelief(test::MemoryBtf values, std::vector<float> heights, Shell shell)
-      : values_(std::move(values)), heights_(std::move(heights)) {
-    layout_ = values_.layout();
-    grid_ = values_.grid();
-    shell_ = shell;
-  }
-  void read_pairs(uint64_t first, uint64_t count, std::span<HalfBits> values) const override {
-    values_.read_pairs(first, count, values);
-  }
-  bool has_structure() const override { return true; }
-  std::optional<ViewStructure> read_structure(uint32_t) const override {
-    ViewStructure structure;
-    for (const float height : heights_) {
-      structure.coverage.push_back(std::isfinite(height) ? 1.0f : 0.0f);
-      structure.height_mean.push_back(std::isfinite(height) ? height : 0.0f);
-      structure.height_spread.push_back(0);
-    }
-    return structure;
-  }
-
- private:
-  test::MemoryBtf values_;
-  std::vector<float> heights_;
-};
 
 TexelGrid small_grid() { return {12, 8, Vec2(0.003f, 0.002f)}; }
 
@@ -120,7 +92,7 @@ test::MemoryBtf images_of(const SrbfBtf& model) {
           }};
 }
 
-MemoryBtfWithRelief with_relief(const SrbfBtf& model, bool hole = false) {
+test::MemoryBtfWithRelief with_relief(const SrbfBtf& model, bool hole = false) {
   // Heights over the lowest point of a shell whose middle is the reference plane, in metres.
   std::vector<float> heights(model.grid.texels());
   halves_to_floats(model.sides[0].levels[0].relief, heights);
@@ -171,7 +143,7 @@ SrbfBtf without_phases(SrbfBtf btf) {
 
 TEST(SrbfFit, RecoversABtfThatIsAModelOverARelief) {
   constexpr float kHigh = 0.09f;  // a ray at 60 degrees is displaced by up to two texels
-  const MemoryBtfWithRelief btf = with_relief(without_phases(true_model(kHigh)));
+  const test::MemoryBtfWithRelief btf = with_relief(without_phases(true_model(kHigh)));
   EXPECT_GT(errors_of(fit(btf, {.bytes = 3050}).btf, btf).psnr, 35);
   // The control: the same without its relief.
   const test::MemoryBtf flat = images_of(without_phases(true_model(kHigh)));
@@ -236,7 +208,7 @@ TEST(SrbfFit, IsFlatWithoutStructure) {
 
 TEST(SrbfFit, HasTheReliefOfTheStructure) {
   const SrbfBtf truth = true_model(0.05f);
-  const MemoryBtfWithRelief btf = with_relief(truth, true);
+  const test::MemoryBtfWithRelief btf = with_relief(truth, true);
   const std::vector<Relief> pyramid = relief_pyramid(btf, sides_of(btf.layout()).at(0));
   ASSERT_EQ(pyramid.size(), 4u);  // 12 x 8, 6 x 4, 3 x 2, 1 x 1
   std::vector<float> expected(truth.grid.texels());

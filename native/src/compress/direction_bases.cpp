@@ -1,0 +1,110 @@
+#include "compress/direction_bases.h"
+
+#include <algorithm>
+#include <Eigen/Eigenvalues>
+#include <numeric>
+
+#include "btf/srbf_btf.h"
+#include "job/parallel.h"
+#include "sphere/random.h"
+#include "tensor/mode_product.h"
+
+namespace velour {
+namespace {
+
+constexpr double kNothing = 1e-10;  // of the strongest energy: rounding
+
+/// The strongest eigenvectors of mean products.
+DirectionBasis basis_of(const Eigen::MatrixXd& products, Index rank) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(products);
+  const Eigen::VectorXd energy = solver.eigenvalues().reverse().cwiseMax(0.0);
+  Index count = 1;
+  while (count < std::min(rank, energy.size()) && energy[count] > kNothing * energy[0]) ++count;
+  DirectionBasis basis;
+  basis.vector = solver.eigenvectors().rowwise().reverse().leftCols(count).cast<float>();
+  basis.energy = energy.head(count);
+  basis.rest = energy.tail(energy.size() - count).sum() / static_cast<double>(energy.size());
+  return basis;
+}
+
+/// Of every view the others, the nearest first.
+std::vector<std::vector<Index>> neighbours(const std::vector<Vec3>& views) {
+  std::vector<std::vector<Index>> order(views.size());
+  for (size_t v = 0; v < views.size(); ++v) {
+    order[v].resize(views.size());
+    std::iota(order[v].begin(), order[v].end(), Index{0});
+    const auto nearness = [&](Index i) { return glm::dot(views[v], views[static_cast<size_t>(i)]); };
+    std::stable_sort(order[v].begin(), order[v].end(), [&](Index a, Index b) { return nearness(a) > nearness(b); });
+  }
+  return order;
+}
+
+/// What hides from a view is taken to look there as from the nearest view that shows it.
+void fill_hidden(const std::vector<Vec3>& views, const RowMatrix& shown, DenseTensor& values) {
+  const auto order = neighbours(views);
+  const Index of_views = shown.cols(), row = static_cast<Index>(values.data.size()) / shown.size();
+  for (Index i = 0; i < shown.rows(); ++i) {
+    for (Index v = 0; v < of_views; ++v) {
+      if (shown(i, v) > 0) continue;
+      const auto& near = order[static_cast<size_t>(v)];
+      const auto from = std::find_if(near.begin(), near.end(), [&](Index other) { return shown(i, other) > 0; });
+      if (from == near.end()) continue;
+      std::copy_n(values.data.begin() + (i * of_views + *from) * row, row,
+                  values.data.begin() + (i * of_views + v) * row);
+    }
+  }
+}
+
+/// What points show: [point][view][light][axis].
+DenseTensor values_of_points(CompandedViews& views, const TensorSource& source, const std::vector<uint32_t>& texels,
+                             Progress& progress) {
+  const auto count = static_cast<Index>(texels.size()), lights = static_cast<Index>(source.side.light.size()),
+             of_views = static_cast<Index>(source.side.view.size());
+  DenseTensor values({count, of_views, lights, 3});
+  RowMatrix shows = RowMatrix::Zero(count, of_views);
+  std::vector<LevelImages> images;
+  for (Index v = 0; v < of_views; ++v) {
+    progress.check();
+    read_side_view(views, source.grid, source.side, static_cast<size_t>(v), 1, images);
+    const auto shown = shown_texels(source.relief[0], texels, source.side.view[static_cast<size_t>(v)],
+                                    tile_aspect(source.grid), source.threads, progress);
+    for (Index i = 0; i < count; ++i) {
+      if (!shown[static_cast<size_t>(i)].shown) continue;
+      shows(i, v) = 1;
+      Eigen::Map<RowMatrix> target(values.data.data() + (i * of_views + v) * lights * 3, lights, 3);
+      for (Index a = 0; a < 3; ++a) {
+        target.col(a) = blended(images[0].value[static_cast<size_t>(a)], shown[static_cast<size_t>(i)].at).transpose();
+      }
+    }
+    progress.update(static_cast<double>(v + 1) / static_cast<double>(of_views));
+  }
+  fill_hidden(source.side.view, shows, values);
+  return values;
+}
+
+}  // namespace
+
+double DirectionBasis::rest_share() const {
+  const double left = rest * static_cast<double>(vector.rows()), all = left + energy.sum();
+  return all > 0 ? left / all : 0.0;
+}
+
+std::vector<uint32_t> random_texels(uint64_t texels, size_t count, uint64_t seed) {
+  std::vector<uint32_t> all(texels);
+  std::iota(all.begin(), all.end(), 0u);
+  const auto key = [&](uint32_t t) { return std::pair(mix64(mix64(seed + 1) + t), t); };
+  std::sort(all.begin(), all.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+  all.resize(std::min<uint64_t>(count, texels));
+  return all;
+}
+
+DirectionBases direction_bases(CompandedViews& views, const TensorSource& source, Index rank, size_t points,
+                               Progress& progress) {
+  const std::vector<uint32_t> texels = random_texels(source.grid.texels(), points, source.seed);
+  const DenseTensor values = values_of_points(views, source, texels, progress);
+  const auto count = static_cast<double>(texels.size());
+  return {basis_of(slice_products(values.view(), 1, source.threads, progress) / count, rank),
+          basis_of(slice_products(values.view(), 2, source.threads, progress) / count, rank)};
+}
+
+}  // namespace velour

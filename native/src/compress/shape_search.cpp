@@ -1,0 +1,176 @@
+#include "compress/shape_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include "job/error.h"
+#include "tensor/cluster_choice.h"
+#include "tensor/cluster_fit.h"
+
+namespace velour {
+namespace {
+
+constexpr Index kFitted = 1000, kJudged = 500;  // slices
+constexpr int kIterations = 3;                  // of a fit that a shape is judged by
+constexpr double kTolerance = 2e-3;
+constexpr size_t kMostTrials = 24;
+constexpr double kShareStep = 0.12, kLeastShare = 0.12, kMostShare = 0.96;
+constexpr uint32_t kUsualClusters = 8, kUsualMembers = 2;
+
+class ShapeSearch {
+ public:
+  ShapeSearch(const TensorView& slices, const ShapeSearchOptions& options, Progress& progress)
+      : options_(options),
+        progress_(progress),
+        fitted_(slices.range(0, 0, few(slices) ? slices.extent(0) : kFitted)),
+        judged_(few(slices) ? fitted_ : slices.range(0, kFitted, kJudged)) {}
+
+  FoundShape run() {
+    std::optional<ShapeChoice> best;
+    for (const ShapeChoice& start : starts()) {
+      const ShapeChoice end = walk(start, found_.trials.size() + kMostTrials / 2);
+      if (!best || error(end) < error(*best)) best = end;
+    }
+    found_.choice = *best;
+    found_.view_rank = options_.extent.view_rank;
+    found_.light_rank = options_.extent.light_rank;
+    found_.shape = *largest_shape(*best, options_.extent, options_.bytes);
+    found_.error = error(*best);
+    progress_.update(1.0);
+    return std::move(found_);
+  }
+
+ private:
+  static bool few(const TensorView& slices) { return slices.extent(0) < kFitted + kJudged; }
+
+  /// To the best that is found in so many trials.
+  ShapeChoice walk(ShapeChoice best, size_t most) {
+    double least = error(best);
+    for (bool better = true; better;) {
+      better = false;
+      for (const ShapeChoice& next : neighbours(best)) {
+        if (best.clusters == 1 && next.clusters > 1) continue;  // more of them have a walk of their own
+        if (found_.trials.size() >= most) return best;
+        if (!(error(next) < least)) continue;
+        best = next;
+        least = error(next);
+        better = true;
+      }
+    }
+    return best;
+  }
+
+  /// One cluster, and a usual number of them.
+  std::vector<ShapeChoice> starts() const {
+    std::vector<ShapeChoice> starts;
+    for (const uint32_t clusters : {1u, kUsualClusters}) {
+      const auto start = start_of(std::clamp(clusters, options_.range.least_clusters, options_.range.most_clusters));
+      if (start && (starts.empty() || starts[0].clusters != start->clusters)) starts.push_back(*start);
+    }
+    if (!starts.empty()) return starts;
+    throw Error(Status::invalid_argument, "No model of clustered tensors is within " + std::to_string(options_.bytes) +
+                                              " bytes; ask for more bytes, or for fewer clusters and members.");
+  }
+
+  /// Of so many clusters, or of fewer where these are not within the bytes.
+  std::optional<ShapeChoice> start_of(uint32_t clusters) const {
+    const ShapeRange& range = options_.range;
+    for (;; clusters = std::max(clusters / 2, range.least_clusters)) {
+      const uint32_t most = std::min({kUsualMembers, range.most_members, clusters});
+      for (uint32_t members = std::max(most, range.least_members); members >= range.least_members; --members) {
+        for (const double share : {0.6, 0.36, 0.84, 0.96}) {
+          for (const uint32_t colors : {2u, 1u}) {
+            const ShapeChoice choice{clusters, members, colors, share};
+            if (members <= clusters && largest_shape(choice, options_.extent, options_.bytes)) return choice;
+          }
+        }
+      }
+      if (clusters <= range.least_clusters) return std::nullopt;
+    }
+  }
+
+  std::vector<ShapeChoice> neighbours(const ShapeChoice& of) const {
+    std::vector<ShapeChoice> next;
+    const auto add = [&](uint32_t clusters, uint32_t members, uint32_t colors, double share) {
+      const ShapeRange& range = options_.range;
+      if (clusters < range.least_clusters || clusters > range.most_clusters) return;
+      members = std::min(members, clusters);
+      if (members < range.least_members || members > range.most_members) return;
+      if (colors < 1 || colors > 3 || share < kLeastShare || share > kMostShare) return;
+      next.push_back({clusters, members, colors, share});
+    };
+    add(of.clusters, of.members, of.colors, of.texel_share + kShareStep);
+    add(of.clusters, of.members, of.colors, of.texel_share - kShareStep);
+    add(2 * of.clusters, of.members, of.colors, of.texel_share);
+    add(of.clusters / 2, of.members, of.colors, of.texel_share);
+    add(of.clusters, of.members + 1, of.colors, of.texel_share);
+    add(of.clusters, of.members - 1, of.colors, of.texel_share);
+    add(of.clusters, of.members, of.colors + 1, of.texel_share);
+    add(of.clusters, of.members, of.colors - 1, of.texel_share);
+    return next;
+  }
+
+  /// Of a choice, tried once; more than all where it is not within the bytes.
+  double error(const ShapeChoice& choice) {
+    const auto key = std::tuple(choice.clusters, choice.members, choice.colors, std::lround(100 * choice.texel_share));
+    const auto known = errors_.find(key);
+    if (known != errors_.end()) return known->second;
+    const auto shape = largest_shape(choice, options_.extent, options_.bytes);
+    return errors_[key] = shape ? tried(*shape) : 2.0;
+  }
+
+  double tried(const TensorShape& shape) {
+    const double error = error_of(shape);
+    found_.trials.push_back({shape.clusters,
+                             shape.members,
+                             {shape.rank.texel, shape.rank.view, shape.rank.light, shape.rank.color},
+                             tensor_bytes(shape, options_.extent),
+                             error});
+    return error;
+  }
+
+  double error_of(const TensorShape& shape) {
+    const TensorOptions tensor{options_.seed, options_.threads};
+    const ClusterOptions fit{.clusters = shape.clusters,
+                             .members = shape.members,
+                             .ranks = {shape.rank.texel, shape.rank.view, shape.rank.light, shape.rank.color},
+                             .iterations = kIterations,
+                             .tolerance = kTolerance,
+                             .tensor = tensor};
+    const double done = static_cast<double>(found_.trials.size()) / kMostTrials;
+    const Progress::Span trial(progress_, done, std::min(1.0, done + 1.0 / kMostTrials));
+    progress_.stage("shapes", 0, 1);
+    ClusteredTensor found = fit_clusters(fitted_, fit, progress_).tensor;
+    return relative_error(found, tensor);
+  }
+
+  /// Of the judged slices.
+  double relative_error(ClusteredTensor& tensor, const TensorOptions& options) const {
+    std::vector<RowMatrix> basis;
+    for (const TensorCluster& cluster : tensor.cluster) basis.push_back(cluster.basis(options, progress_));
+    const Index slices = judged_.extent(0), entries = judged_.size() / slices;
+    tensor.coefficient.resize(0, 0);
+    const ClusterProducts products(TensorView(judged_.data(), {slices, entries}), basis, options, progress_);
+    const double kept = choose_members(products, tensor, options, progress_).after;
+    const double all = Eigen::Map<const Eigen::VectorXf>(judged_.data(), judged_.size()).cast<double>().squaredNorm();
+    return all > 0 ? std::sqrt(std::max(0.0, all - kept) / all) : 0.0;
+  }
+
+  const ShapeSearchOptions& options_;
+  Progress& progress_;
+  TensorView fitted_, judged_;
+  FoundShape found_;
+  std::map<std::tuple<uint32_t, uint32_t, uint32_t, long>, double> errors_;
+};
+
+}  // namespace
+
+FoundShape search_shape(const TensorView& slices, const ShapeSearchOptions& options, Progress& progress) {
+  return ShapeSearch(slices, options, progress).run();
+}
+
+}  // namespace velour

@@ -1,0 +1,42 @@
+// Which shape of clustered tensors leaves least within a number of bytes.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "compress/tensor_shape.h"
+#include "job/progress.h"
+#include "model/btf_record.h"
+#include "tensor/tensor_view.h"
+
+namespace velour {
+
+/// What may be tried.
+struct ShapeRange {
+  uint32_t least_clusters = 1, most_clusters = 1;
+  uint32_t least_members = 1, most_members = 1;
+};
+
+struct ShapeSearchOptions {
+  ShapeRange range;
+  TensorExtent extent;
+  uint64_t bytes = 0;  // at most
+  uint64_t seed = 0;
+  int threads = 0;
+};
+
+struct FoundShape {
+  ShapeChoice choice;
+  TensorShape shape;                       // of the bytes
+  uint32_t view_rank = 0, light_rank = 0;  // at most: of the extent
+  double error = 0;                        // relative L2 of the slices that it was judged by
+  std::vector<ShapeTrial> trials;          // in their order
+};
+
+/// Walks from one cluster, and from a usual number of them, to better neighbours - twice or half the clusters, a member
+/// more or fewer, another share of texels, another rank of colours - until none is. A shape is judged by short fits to
+/// some slices, [slice][view] [light][colour], and by what it leaves of others, which the fit has not seen; few slices
+/// are all fitted and judged. Throws Error(invalid_argument) when no shape is within the bytes.
+FoundShape search_shape(const TensorView& slices, const ShapeSearchOptions& options, Progress& progress);
+
+}  // namespace velour

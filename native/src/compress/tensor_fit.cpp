@@ -1,0 +1,237 @@
+#include "compress/tensor_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "compress/relief_pyramid.h"
+#include "compress/tensor_checkpoint.h"
+#include "compress/tensor_functions.h"
+#include "compress/tensor_levels.h"
+#include "job/error.h"
+#include "tensor/cluster_fit.h"
+
+namespace velour {
+namespace {
+
+constexpr Index kDirections = 64;                       // of views, of lights: what clusters are sought in
+constexpr size_t kLeastPoints = 64, kMostPoints = 700;  // that bases are found by
+constexpr int kIterations = 30;
+constexpr double kTolerance = 1e-4;
+constexpr uint64_t kUsualRatio = 400, kUsualTexel = 16, kUsualCluster = 20000;
+constexpr double kFinest = 20;    // of the measurement: the largest model that a tolerance is looked for with
+constexpr double kStep = 1.2;     // from a size to the next
+constexpr double kFall = 0.3;     // errors fall as the bytes to this power, about
+constexpr double kShare = 0.625;  // sides share the bytes by this power of their energies: then 2 kFall is best
+constexpr double kColours = 0.15, kBases = 0.15, kReduced = 0.4, kClusters = 0.5;  // where parts of the progress end
+
+std::string side_stage(size_t side) { return "side." + std::to_string(side); }
+
+}  // namespace
+
+TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, const ShapeRange& range,
+                           FitCheckpoint& checkpoint, Progress& progress)
+    : measurement_(measurement),
+      options_(options),
+      checkpoint_(checkpoint),
+      progress_(progress),
+      views_(measurement, options.companding, options.threads, progress) {
+  if (!measurement.layout().complete()) {
+    throw Error(Status::unsupported, "A model needs every view under every light; the BTF has " +
+                                         std::to_string(measurement.layout().pairs()) + " pairs alone.");
+  }
+  const FitExtent of_fit{.texels = measurement.grid().texels(),
+                         .pyramid_texels = pyramid_texels(measurement.grid()),
+                         .pairs = measurement.layout().pairs(),
+                         .lights = measurement.layout().lights().size()};
+  const auto rank = [](size_t directions) { return std::min<uint64_t>(directions, kDirections); };
+  allowance_ =
+      tensor_allowance(options.memory, of_fit, rank(measurement.layout().views().size()) * rank(of_fit.lights) * 3);
+  progress.stage("colours", 0, kColours);
+  const ColourAxes colours = find_colours(views_, measurement.layout(), checkpoint);
+  axes_ = colours.axes;
+  not_finite_ = colours.not_finite;
+  find_sides(colours);
+  const uint64_t texels = pyramid_texels(measurement.grid());
+  const uint64_t usual =
+      std::max<uint64_t>(measurement.raw_bytes() / kUsualRatio, sides_.size() * (texels * kUsualTexel + kUsualCluster));
+  const uint64_t bytes = options.bytes > 0 ? options.bytes : usual;
+  uint64_t least = 0;
+  for (size_t s = 0; s < sides_.size(); ++s) least += tensor_bytes({}, extent(s));
+  curve_.points = {{1, least, 0, 1}};
+  bound(bytes, "The least model");
+  const double share = (1 - kColours) / static_cast<double>(sides_.size());
+  for (size_t s = 0; s < sides_.size(); ++s) {
+    const Progress::Span of_side(progress_, kColours + share * static_cast<double>(s),
+                                 kColours + share * static_cast<double>(s + 1));
+    find_shape(s, side_bytes(s, bytes), range);
+    shapes_.insert(shapes_.end(), sides_[s].found.trials.begin(), sides_[s].found.trials.end());
+  }
+  set_curve(bytes);
+  bound(options.bytes == 0 && options.tolerance > 0 ? ~uint64_t{0} : bytes, "The least model");
+}
+
+void TensorFitter::find_sides(const ColourAxes& colours) {
+  FittedSides found = fitted_sides(measurement_, colours, progress_);
+  shared_ = std::move(found.shared);
+  for (FittedSide& side : found.sides) {
+    std::vector<Relief> relief =
+        options_.relief ? relief_pyramid(measurement_, side.directions) : plane_pyramid(measurement_.grid());
+    sides_.push_back({std::move(side.directions), side.energy, std::move(relief), {}, 0, {}, {}});
+  }
+}
+
+TensorSource TensorFitter::source(size_t side) const {
+  const Side& of = sides_[side];
+  return {measurement_.grid(), of.directions, of.relief, options_.seed, options_.threads};
+}
+
+TensorExtent TensorFitter::extent(size_t side) const {
+  const Side& of = sides_[side];
+  const auto rank = [](size_t directions) { return static_cast<uint32_t>(std::min<size_t>(directions, kDirections)); };
+  TensorExtent extent{
+      pyramid_texels(measurement_.grid()), measurement_.grid().texels(), of.directions.view.size(),
+      of.directions.light.size(),          !is_plane(of.relief[0]),      rank(of.directions.view.size()),
+      rank(of.directions.light.size()),    allowance_.functions};
+  if (of.found.view_rank > 0) {
+    extent.view_rank = of.found.view_rank;
+    extent.light_rank = of.found.light_rank;
+  } else if (of.bases) {
+    extent.view_rank = static_cast<uint32_t>(of.bases->view.vector.cols());
+    extent.light_rank = static_cast<uint32_t>(of.bases->light.vector.cols());
+  }
+  return extent;
+}
+
+/// The least that a side takes, and of the rest its share.
+uint64_t TensorFitter::side_bytes(size_t side, uint64_t bytes) const {
+  double all = 0;
+  uint64_t least = 0;
+  for (size_t s = 0; s < sides_.size(); ++s) {
+    all += std::pow(sides_[s].energy, kShare);
+    least += tensor_bytes({}, extent(s));
+  }
+  const double share = all > 0 ? std::pow(sides_[side].energy, kShare) / all : 1 / static_cast<double>(sides_.size());
+  const double rest = bytes > least ? static_cast<double>(bytes - least) : 0.0;
+  return tensor_bytes({}, extent(side)) + static_cast<uint64_t>(share * rest);
+}
+
+/// What clusters are sought in.
+void TensorFitter::reduce(size_t side) {
+  Side& of = sides_[side];
+  if (of.reduced) return;
+  const size_t a_point = of.directions.view.size() * of.directions.light.size() * 3;
+  const size_t points = std::clamp(allowance_.point_floats / a_point, kLeastPoints, kMostPoints);
+  progress_.stage("directions", 0, kBases);
+  of.bases = direction_bases(views_, source(side), kDirections, points, progress_);
+  progress_.stage("texels in common", kBases, kReduced);
+  std::vector<uint32_t> texels =
+      random_texels(measurement_.grid().texels(), allowance_.slices / sides_.size(), options_.seed);
+  of.reduced = reduced_texels(views_, source(side), *of.bases, std::move(texels), progress_);
+}
+
+void TensorFitter::find_shape(size_t side, uint64_t bytes, const ShapeRange& range) {
+  Side& of = sides_[side];
+  of.found_bytes = bytes;
+  if (auto kept = kept_shape(checkpoint_, side_stage(side) + ".shape")) {
+    of.found = std::move(*kept);
+    return;
+  }
+  reduce(side);
+  const Progress::Span shapes(progress_, kReduced, 1);
+  of.found =
+      search_shape(of.reduced->slices.view(), {range, extent(side), bytes, options_.seed, options_.threads}, progress_);
+  keep_shape(checkpoint_, side_stage(side) + ".shape", of.found);
+}
+
+/// Of other sizes the found shape, with twice the clusters for four times the bytes.
+std::optional<TensorShape> TensorFitter::shape_of(size_t side, uint64_t bytes) const {
+  const Side& of = sides_[side];
+  if (bytes == of.found_bytes) return of.found.shape;
+  ShapeChoice choice = of.found.choice;
+  for (double ratio = static_cast<double>(of.found_bytes) / static_cast<double>(bytes); ratio >= 4; ratio /= 4) {
+    if (options_.clusters == 0) choice.clusters = std::max((choice.clusters + 1) / 2, choice.members);
+  }
+  return largest_shape(choice, extent(side), bytes);
+}
+
+/// One size where none is looked for; otherwise a ladder of them.
+void TensorFitter::set_curve(uint64_t bytes) {
+  double left = 0, all = 0;
+  for (const Side& of : sides_) {
+    left += of.energy * of.found.error * of.found.error;
+    all += of.energy;
+  }
+  const double error = all > 0 ? std::sqrt(left / all) : 0.0;
+  std::vector<uint64_t> ladder{bytes};
+  if (options_.tolerance > 0) {
+    const double most = options_.bytes > 0 ? static_cast<double>(bytes)
+                                           : std::max(static_cast<double>(bytes),
+                                                      static_cast<double>(measurement_.raw_bytes()) / kFinest);
+    for (double b = static_cast<double>(bytes) / kStep; b >= static_cast<double>(curve_.points[0].parameter_bytes);
+         b /= kStep) {
+      ladder.insert(ladder.begin(), static_cast<uint64_t>(b));
+    }
+    for (double b = static_cast<double>(bytes) * kStep; b <= most; b *= kStep)
+      ladder.push_back(static_cast<uint64_t>(b));
+  }
+  curve_ = {};
+  for (const uint64_t size : ladder) {
+    OrderPoint point;
+    bool sound = true;
+    for (size_t s = 0; s < sides_.size() && sound; ++s) {
+      const auto shape = shape_of(s, side_bytes(s, size));
+      sound = shape.has_value();
+      if (!sound) break;
+      point.lobes = std::max(point.lobes, static_cast<int>(shape->coefficients()));
+      point.parameter_bytes += tensor_bytes(*shape, extent(s));
+    }
+    if (!sound || (!curve_.points.empty() && point.parameter_bytes <= curve_.points.back().parameter_bytes)) continue;
+    point.relative_l2 = error * std::pow(static_cast<double>(size) / static_cast<double>(bytes), -kFall);
+    curve_.points.push_back(point);
+    bytes_.push_back(size);
+  }
+}
+
+ModelBody TensorFitter::fit(size_t point) {
+  TensorBtf btf{measurement_.layout(), measurement_.grid(), options_.companding, axes_, {}, shared_};
+  const double share = 1.0 / static_cast<double>(sides_.size());
+  for (size_t s = 0; s < sides_.size(); ++s) {
+    const Progress::Span of_side(progress_, share * static_cast<double>(s), share * static_cast<double>(s + 1));
+    const TensorShape shape = shape_of(s, side_bytes(s, bytes_[point])).value();
+    const std::string stage = "fit." + std::to_string(point) + "." + side_stage(s);
+    const SideDirections& directions = sides_[s].directions;
+    TensorSide& fitted = btf.sides.emplace_back(
+        TensorSide{directions.view_below, directions.light_below, shape.rank, shape.members, {}, {}});
+    fitted.clusters.resize(shape.clusters);
+    set_clusters(s, stage + ".cluster.", fitted);
+    progress_.stage("texels", kClusters, 1);
+    solve_tensor_levels(views_, source(s), options_.companding, checkpoint_, stage + ".level.", progress_, fitted);
+  }
+  return btf;
+}
+
+void TensorFitter::set_clusters(size_t side, const std::string& stage, TensorSide& fitted) {
+  Side& of = sides_[side];
+  if (take_kept_clusters(checkpoint_, stage, of.directions, fitted)) return;
+  {
+    const Progress::Span reading(progress_, 0, kClusters / 2);
+    reduce(side);
+  }
+  progress_.stage("clusters", kClusters / 2, kClusters);
+  const TensorSide::Ranks& rank = fitted.rank;
+  const ClusterFit found = fit_clusters(of.reduced->slices.view(),
+                                        {.clusters = static_cast<Index>(fitted.clusters.size()),
+                                         .members = fitted.members,
+                                         .ranks = {rank.texel, rank.view, rank.light, rank.color},
+                                         .iterations = kIterations,
+                                         .tolerance = kTolerance,
+                                         .tensor = {options_.seed, options_.threads}},
+                                        progress_);
+  fitted.clusters = stored_clusters(found.tensor, *of.bases);
+  keep_clusters(checkpoint_, stage, fitted);
+  if (options_.tolerance > 0) return;  // another size may follow
+  of.reduced.reset();
+}
+
+}  // namespace velour
