@@ -1,5 +1,7 @@
 """Materials made from BTFs, by every method."""
 
+import importlib
+
 import bpy
 
 from support import inputs
@@ -29,3 +31,19 @@ class CompressMethods(BlenderTest):
                 self.assertEqual((info["model"], info["method"]), (kind, method.lower().replace("_", "-")))
         bpy.ops.velour.compress_btf()
         self.assertEqual(self._info_of(tile.velour.model)["model"], "srbf-btf")
+
+    def test_clustered_tensors_have_the_clusters_that_were_asked_for(self):
+        tile = bpy.context.object
+        tile.velour.members = 2
+        panel = importlib.import_module(f"{inputs.ADDON}.ui.material_panel")
+        for method, members in (("TUCKER", 1), ("CTA", 1), ("KCTA", 2)):
+            with self.subTest(method=method):
+                bpy.ops.velour.compress_btf(method=method, clusters=3, megabytes=0.03)
+                info = self._info_of(tile.velour.model)
+                self.assertEqual((info["model"], info["method"]), ("tensor-btf", method.lower()))
+                (side,) = info["sides"]
+                self.assertEqual(side["clusters"], 1 if method == "TUCKER" else 3)
+                self.assertEqual(side["members"], members)
+                self.assertEqual(sum(side["bytes"].values()), side["parameter_bytes"])
+                rows = dict(panel._btf_rows(info))
+                self.assertIn(f"of which a texel has {members}", rows["Clusters"])

@@ -5,10 +5,10 @@ import hashlib
 import os
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..native import Btf, compress_job
-from ..properties.tile_settings import METHODS
+from ..properties.tile_settings import METHODS, SHAPE_OF
 from . import measured
 from .background_job import OneJob
 from .tiles import find_tile, held_out_folder, tile_folder
@@ -31,6 +31,20 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
     )
     # Where given these replace the settings of the tile, where there is one.
     method: EnumProperty(name="Method", items=METHODS, default="SRBF", options={"SKIP_SAVE"})
+    clusters: IntProperty(
+        name="Clusters",
+        description="Of CTA and K-CTA; 0: what serves best",
+        min=0,
+        max=256,
+        options={"SKIP_SAVE"},
+    )
+    members: IntProperty(
+        name="Clusters of a Texel",
+        description="Of K-CTA; 0: what serves best",
+        min=0,
+        max=8,
+        options={"SKIP_SAVE"},
+    )
     tolerance: FloatProperty(
         name="Largest Error",
         description="Relative L2 error of the roots of values; the smallest model within it. 0: none",
@@ -66,7 +80,7 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
             held_out = self._held_out(tile, opened)
             self._digest = btf.info()["sha256"]
             asked = {
-                "method": self._asked(tile, "method").lower().replace("_", "-"),
+                **self._asked_method(tile),
                 "tolerance": self._asked(tile, "tolerance"),
                 "bytes": int(self._asked(tile, "megabytes") * 1e6),
             }
@@ -85,6 +99,12 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
             return {}
         folder = held_out_folder(tile)
         return {"held_out": opened.enter_context(Btf.load(folder))} if os.path.isdir(folder) else {}
+
+    def _asked_method(self, tile):
+        """The method, and of clusters and members what it takes."""
+        method = self._asked(tile, "method")
+        taken = {name: self._asked(tile, name) for name in SHAPE_OF.get(method, ())}
+        return {"method": method.lower().replace("_", "-"), **taken}
 
     def _asked(self, tile, name):
         """What was given, or what the tile asks for."""

@@ -19,9 +19,13 @@ SIDES = (
 # Numbers and, in lower case with hyphens, names are the library's.
 METHODS = (
     ("SRBF", "SRBF", "Lobes of light and view over a relief: smallest, and smooth between directions", 1),
+    ("KCTA", "K-CTA", "Clustered tensors, of which a texel has a few", 4),
+    ("CTA", "CTA", "Clustered tensors, of which a texel has one", 3),
+    ("TUCKER", "Tucker", "One tensor decomposition for all texels", 2),
     ("SVD", "SVD", "Truncated singular values", 0),
     ("SVD_VIEW", "SVD by View", "Singular values of each view for itself", 5),
 )
+SHAPE_OF = {"CTA": ("clusters",), "KCTA": ("clusters", "members")}  # settings that a method takes
 _OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 
@@ -110,6 +114,20 @@ class VelourTileSettings(bpy.types.PropertyGroup):
         description="What the BTF is turned into",
         items=METHODS,
         default="SRBF",
+        override=_OVERRIDABLE,
+    )
+    clusters: IntProperty(
+        name="Clusters",
+        description="Of texels that look alike in how they turn with view and light. 0: what serves best",
+        min=0,
+        max=256,
+        override=_OVERRIDABLE,
+    )
+    members: IntProperty(
+        name="Clusters of a Texel",
+        description="How many a texel is made of. 0: what serves best",
+        min=0,
+        max=8,
         override=_OVERRIDABLE,
     )
     tolerance: FloatProperty(

@@ -7,6 +7,7 @@ from ..export.objects import GEOMETRY
 from ..operators.capture_btf import VELOUR_OT_capture_btf
 from ..operators.compress_btf import VELOUR_OT_compress_btf
 from ..operators.repeat_tile import VELOUR_OT_repeat_tile, is_repeated
+from ..properties.tile_settings import SHAPE_OF
 from .progress import draw_progress
 from .size_curve import draw_size_curve
 from .summaries import model_summary
@@ -39,7 +40,8 @@ class TilePanel:
     def _draw_material(self, layout, settings, collection_name):
         """What a material of the capture is asked for, and what the last one was."""
         column = layout.column(align=True)
-        column.prop(settings, "method")
+        for name in ("method", *SHAPE_OF.get(settings.method, ())):
+            column.prop(settings, name)
         column.prop(settings, "tolerance")
         column.prop(settings, "megabytes")
         operator = layout.operator(VELOUR_OT_compress_btf.bl_idname, icon="MATERIAL")
