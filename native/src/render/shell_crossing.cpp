@@ -70,7 +70,12 @@ SurfacePoint ShellCrossing::surface(SurfacePoint top, bool shaded) const {
   }
   const Vec3 own = structure_normal(up);
   top.position = place + own * (kOffStructure * volume.pitch() / frame_.scale);
-  // Light from below the smooth surface counts as nothing, so no normal may look there.
+  if (!volume.closed) {
+    top.geometric_normal = top.shading_normal = own;
+    return top;
+  }
+  // What is solid below is no surface of the ray tracer's: light from there counts as nothing, so no normal may look
+  // there.
   const float height = glm::dot(own, leaving_ ? -up : up);
   top.shading_normal = height < 0 ? glm::normalize(own - glm::dot(own, up) * up) : own;
   return top;
