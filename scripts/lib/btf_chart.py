@@ -58,7 +58,9 @@ def main() -> int:
             images / f"chart_btf_{tile.name}.png", tile, pictures, results, extent.speed_ratio
         )
     interpolated = {tile.name: study.interpolated(tile) for tile in tiles}
-    btf_chart_text.write(args.output, results, interpolated, run.conditions | {"note": args.note}, extent)
+    btf_chart_text.write(
+        args.output, results, interpolated, run.conditions | {"note": args.note, "kept": args.kept}, extent
+    )
     print(args.output / "chart_btf.md")
     return 0
 

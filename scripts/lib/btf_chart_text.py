@@ -16,6 +16,16 @@ from velour.core import files
 _WORDS = {True: "met", False: "missed", None: "not measured"}
 
 
+def _origin(conditions: dict) -> str:
+    """Where the numbers come from: a page of kept results is of as many runs as those were."""
+    sentence = provenance.sentence(conditions)
+    if not conditions["kept"]:
+        return sentence
+    return sentence.replace(
+        "All numbers come from one run:", "Written from kept results of several runs; this page:"
+    )
+
+
 def write(
     folder: Path, results: Results, interpolated: dict[str, dict | None], conditions: dict, extent: Extent
 ) -> None:
@@ -37,7 +47,7 @@ def _head(conditions: dict, extent: Extent) -> str:
 
 Written by `scripts/chart --btf`; what the methods are, and which to use where: [btf.md](btf.md).
 All numbers are also in [chart_btf.csv](chart_btf.csv).
-{provenance.sentence(conditions)}
+{_origin(conditions)}
 Other programs may have used the processors at the same time: processor seconds feel that little,
 seconds and rates do. {conditions["note"]}
 

@@ -91,8 +91,12 @@ class MaterialTable:
                 f"{owner}: node '{node.name}' has no model; press Fit, or choose a model as its image."
             )
         with files.read_model(node.image, owner) as model:
-            self._tiles[_key(material)] = Tile.of(material, model.info())
-            return self._scene.add_model_material(model, settings.neighbors)
+            info = model.info()
+            self._tiles[_key(material)] = Tile.of(material, info)
+            number = self._scene.add_model_material(model, settings.neighbors)
+            if "shell" in info and settings.outline_width > 0:
+                self._scene.set_shell_tile(number, settings.outline_width)
+            return number
 
     def _add_pair(self, material, node, owner):
         reduced = files.read_model(node.velour.scene_model, owner)

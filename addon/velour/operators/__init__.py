@@ -5,6 +5,7 @@ import bpy
 from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
 from .add_mesostructure import VELOUR_OT_add_mesostructure
+from .add_votf import VELOUR_OT_add_votf
 from .capture_btf import VELOUR_OT_capture_btf
 from .compress_btf import VELOUR_OT_compress_btf
 from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
@@ -26,6 +27,7 @@ CLASSES = (
     VELOUR_OT_repeat_tile,
     VELOUR_OT_capture_btf,
     VELOUR_OT_compress_btf,
+    VELOUR_OT_add_votf,
     VELOUR_OT_describe_placement,
     VELOUR_OT_keep_uv_density,
 )

@@ -21,6 +21,11 @@ def find_tile(context, collection_name):
     return object_tile(context.object, depsgraph)
 
 
+def tile_of(context, obj):
+    """The TileSource of an object."""
+    return object_tile(obj, context.evaluated_depsgraph_get())
+
+
 def tile_folder(tile):
     """Where its BTF is or will be; absolute."""
     chosen = tile.owner.velour.directory

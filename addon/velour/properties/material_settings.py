@@ -124,6 +124,29 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         update=_changed,
         override=_OVERRIDE,
     )
+    structure: PointerProperty(
+        name="Structure",
+        description="The object that is one tile of structure, whose outline and holes the material shows",
+        type=bpy.types.Object,
+    )
+    outline_texels: IntProperty(
+        name="Texels",
+        description="Of the structure's outline along the tile; its height is as fine",
+        default=128,
+        min=4,
+        max=4096,
+        override=_OVERRIDE,
+    )
+    outline_width: FloatProperty(
+        name="Tile Width",
+        description="How wide a tile lies on the object, in metres; the height of its structure goes with it."
+        " 0: as the texture coordinates say, on average",
+        default=0.0,
+        min=0.0,
+        subtype="DISTANCE",
+        update=_changed,
+        override=_OVERRIDE,
+    )
     placement: PointerProperty(
         name="Placement",
         description="Where the tiles of a BTF lie on objects",

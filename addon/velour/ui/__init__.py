@@ -6,6 +6,7 @@ from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_notes,
+    VELOUR_MATERIAL_PT_outline,
     VELOUR_MATERIAL_PT_surface,
 )
 from .placement_panel import VELOUR_MATERIAL_PT_placement
@@ -24,6 +25,7 @@ CLASSES = (
     VELOUR_MATERIAL_PT_placement,
     VELOUR_MATERIAL_PT_scene_model,
     VELOUR_MATERIAL_PT_model,
+    VELOUR_MATERIAL_PT_outline,
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_surface,
     VELOUR_OBJECT_PT_tile,

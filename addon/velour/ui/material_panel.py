@@ -8,6 +8,7 @@ from ..export.notes import Notes
 from ..export.principled import principled_values
 from ..operators.accept_file import VELOUR_OT_accept_file
 from ..operators.add_material import VELOUR_OT_add_material
+from ..operators.add_votf import VELOUR_OT_add_votf
 from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.save_model import VELOUR_OT_save_model
@@ -100,6 +101,40 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
         for warning in info["warnings"]:
             draw_sentence(context, self.layout, warning, icon="INFO")
         self.layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT")
+
+
+class VELOUR_MATERIAL_PT_outline(MaterialPanel, bpy.types.Panel):
+    bl_label = "Outline (VOTF)"
+    bl_parent_id = "VELOUR_MATERIAL_PT_measured"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return VELOUR_MATERIAL_PT_model.poll(context)
+
+    def draw(self, context):
+        layout, settings = self.layout, velour_node(context.material).velour
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column(align=True)
+        for name in ("structure", "outline_texels"):
+            column.prop(settings, name)
+        if not draw_progress(context, layout):
+            layout.operator(VELOUR_OT_add_votf.bl_idname, icon="MESH_GRID")
+        info = model_summary(velour_node(context.material).image)
+        if isinstance(info, dict) and "shell" in info:
+            layout.prop(settings, "outline_width")
+            draw_rows(layout, outline_rows(info["shell"]))
+
+
+def outline_rows(shell):
+    wrong, (low, high) = shell["wrong"], shell["heights"]
+    return (
+        ("Structure", shell["source"]),
+        ("Size", f"{shell['bytes'] / 1e6:.2f} MB, {' x '.join(map(str, shell['points']))} points"),
+        ("Height", f"{low:.3g} to {high:.3g} of the tile's width"),
+        ("Rays wrong", "not measured" if wrong is None else f"{wrong:.2%}"),
+    )
 
 
 def _draw_numbers(layout, info):

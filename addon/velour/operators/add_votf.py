@@ -1,0 +1,95 @@
+"""Give a material's model the outline and the holes of a tile: in the background of a window, or at once."""
+
+import bpy
+from bpy.props import IntProperty, StringProperty
+
+from ..export import ExportError
+from ..export.files import read_model
+from ..export.nodes import velour_node
+from ..export.tiles import export_tile
+from ..native import votf_job
+from . import measured
+from .background_job import OneJob
+from .tiles import find_tile, tile_of
+
+
+class VELOUR_OT_add_votf(OneJob, bpy.types.Operator):
+    bl_idname = "velour.add_votf"
+    bl_label = "Add Outline"
+    bl_description = (
+        "Give the material's model the outline and the holes of the structure (VOTF). The model before it is"
+        " not touched"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    structure: StringProperty(
+        name="Structure",
+        description="The object that is the tile; empty: the one that the material names",
+        options={"SKIP_SAVE"},
+    )
+    collection: StringProperty(
+        name="Collection", description="The tile, in place of an object", options={"SKIP_SAVE"}
+    )
+    texels: IntProperty(name="Texels", min=4, max=4096, default=128, options={"SKIP_SAVE"})
+
+    _what = "Adding the outline"
+
+    def _begin(self, context):
+        material = measured.find_material(context, self.material)
+        if material is None:
+            raise ExportError(
+                f"There is no material {self.material!r}." if self.material else "No active material."
+            )
+        owner = f"Material '{material.name}'"
+        node = velour_node(material)
+        if node is None or node.image is None:
+            raise ExportError(f"{owner} has no model; fit one, or choose one as its image.")
+        # Names, not pointers: undo may replace any datablock before the job is done.
+        self._material_name, self._node_name = material.name, node.name
+        self._subject = material.name
+        tile = self._tile(context, node.velour, owner)
+        if self.properties.is_property_set("texels"):
+            node.velour.outline_texels = self.texels
+        scene, place, self._notes = export_tile(tile, context.evaluated_depsgraph_get(), approximate=True)
+        with scene, read_model(node.image, owner) as model:
+            self._job = votf_job(
+                scene,
+                model,
+                origin=place.origin,
+                period=place.period,
+                source=tile.owner.name,
+                texels=node.velour.outline_texels,
+                threads=context.scene.render.threads,
+            ).start()
+
+    def _tile(self, context, settings, owner):
+        if self.collection:
+            return find_tile(context, self.collection)
+        if self.structure:
+            settings.structure = bpy.data.objects.get(self.structure)
+            if settings.structure is None:
+                raise ExportError(f"There is no object {self.structure!r} to take as a tile.")
+        if settings.structure is None:
+            raise ExportError(f"{owner}: choose the object that is the structure.")
+        return tile_of(context, settings.structure)
+
+    def _finish(self):
+        with self._job, self._job.result_model() as model:
+            data, report = model.bytes(), self._job.report()
+        material = bpy.data.materials.get(self._material_name)
+        image = measured.packed_model(data, self._material_name)
+        node = material.node_tree.nodes.get(self._node_name) if material and material.node_tree else None
+        if node is None:
+            image.use_fake_user = True
+            self.report({"WARNING"}, f"The material is gone; its model is kept as image '{image.name}'.")
+            return {"FINISHED"}
+        node.image = image
+        for sentence in (*self._notes, *report["warnings"]):
+            self.report({"WARNING"}, sentence)
+        self.report(
+            {"INFO"},
+            f"'{material.name}' has the outline of '{report['source']}': {report['bytes'] / 1e6:.2f} MB,"
+            f" {report['wrong']:.2%} of rays wrong.",
+        )
+        return {"FINISHED"}

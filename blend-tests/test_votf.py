@@ -1,0 +1,74 @@
+"""Materials with the outline and the holes of a tile."""
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+
+class Outline(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        scenes.use_engine(samples=64)
+        bpy.context.scene.render.film_transparent = True
+        bpy.ops.velour.add_mesostructure(type="NET", count=2, resolution=8)
+        self.tile = bpy.context.object
+        self.tile.hide_render = True
+        self.material = scenes.measured_material(
+            inputs.model_bytes(inputs.lambert_measurement((0.5, 0.5, 0.5)))
+        )
+        bpy.ops.mesh.primitive_plane_add(size=2)
+        plane = bpy.context.object.data
+        plane.materials.append(self.material)
+        for corner in plane.uv_layers.active.data:  # tiles a quarter of a metre wide
+            corner.uv *= 8
+        scenes.add_camera(ortho_scale=1)
+        bpy.context.scene.camera.location = (0, 0, 5)
+        bpy.context.scene.camera.rotation_euler = (0, 0, 0)
+        scenes.set_world()
+
+    def _info(self):
+        image = scenes.velour_node(self.material).image
+        with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
+            return model.info()
+
+    def _alpha(self, name):
+        return float(scenes.render(self.folder, name)[..., 3].mean())
+
+    def test_holes_let_the_background_through(self):
+        self.assertEqual(self._alpha("before"), 1.0)
+        before = scenes.velour_node(self.material).image
+        result = bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=48)
+        self.assertEqual(result, {"FINISHED"})
+        node = scenes.velour_node(self.material)
+        self.assertNotEqual(node.image, before)
+        self.assertIsNotNone(before.packed_file)  # the model before it stays
+        self.assertEqual((node.velour.structure, node.velour.outline_texels), (self.tile, 48))
+        shell = self._info()["shell"]
+        self.assertEqual(shell["source"], self.tile.name)
+        self.assertEqual(shell["points"][0], 48)
+        with inputs.native().Tile.create("net", count=2, resolution=8) as tile:
+            solid = 1 - tile.info()["open_area"]
+        self.assertAlmostEqual(self._alpha("after"), solid, delta=0.03)
+
+    def test_a_wider_tile_has_a_higher_outline(self):
+        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=32)
+        camera, angle = bpy.context.scene.camera, np.radians(70)
+        camera.location = (0, -5 * np.sin(angle), 5 * np.cos(angle))
+        camera.rotation_euler = (angle, 0, 0)
+        camera.data.ortho_scale = 0.5
+        low = self._alpha("low")
+        scenes.velour_node(self.material).velour.outline_width = 0.5  # twice what the coordinates say
+        self.assertGreater(self._alpha("high"), low + 0.05)
+
+    def test_what_is_missing_is_said(self):
+        with self.assertRaisesRegex(RuntimeError, "choose the object"):
+            bpy.ops.velour.add_votf(material=self.material.name)
+        with self.assertRaisesRegex(RuntimeError, "nothing of that name"):
+            bpy.ops.velour.add_votf(material=self.material.name, structure="nothing of that name")
+        with self.assertRaisesRegex(RuntimeError, "no material 'none'"):
+            bpy.ops.velour.add_votf(material="none")
+        bare = bpy.data.materials.new("bare")
+        with self.assertRaisesRegex(RuntimeError, "has no model"):
+            bpy.ops.velour.add_votf(material=bare.name, structure=self.tile.name)
