@@ -24,9 +24,10 @@ class ShellField {
   std::shared_ptr<const OcclusionVolume> volume_;
   // [y][x][z]: what a look-up needs of a column lies side by side. One more of each side, repeated.
   std::vector<uint8_t> column_;
-  float per_step_;  // points of z a width
-  float unit_;      // widths a unit of the bytes
-  size_t row_;      // of column_
+  float per_step_;    // points of z a width
+  float per_aspect_;  // periods along y a width
+  float unit_;        // widths a unit of the bytes
+  size_t row_;        // of column_
 };
 
 }  // namespace velour
