@@ -5,6 +5,7 @@
 #include "support/captured.h"
 #include "support/materials.h"
 #include "tile/tile.h"
+#include "votf/shell_trace.h"
 
 namespace velour {
 namespace {
@@ -31,11 +32,58 @@ class OfTiles : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(OfTiles, SeesWhatRaysSee) {
   const OcclusionCapture c = captured(GetParam(), 128);
-  printf("%s: %u x %u x %u = %zu bytes, coverage %.4f wrong %.5f, %.2f s, closed %d\n", GetParam(), c.volume.width,
-         c.volume.height, c.volume.depth, c.volume.distance.size(), c.errors->coverage, c.errors->wrong, c.seconds,
-         c.volume.closed);
-  for (const auto& w : c.warnings) printf("  %s\n", w.c_str());
+  EXPECT_TRUE(c.warnings.empty());
   EXPECT_LT(c.errors->wrong, 0.01);
+}
+
+TEST(OcclusionCapture, ANetCoversFromAboveWhatItsClosedFormSays) {
+  const Tile tile = make_tile({.kind = "net"});
+  const OcclusionCapture c = captured("net", 128);
+  const ShellField field(std::make_shared<const OcclusionVolume>(c.volume));
+  constexpr int kSide = 256;
+  int met = 0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const Vec2 place((static_cast<float>(i % kSide) + 0.5f) / kSide, (static_cast<float>(i / kSide) + 0.5f) / kSide);
+    met += line_meets(field, place, {0, 0, 1}) ? 1 : 0;
+  }
+  EXPECT_FALSE(c.volume.closed);
+  EXPECT_NEAR(static_cast<double>(met) / (kSide * kSide), 1 - *tile.parts.open_area, 0.005);
+}
+
+TEST(OcclusionCapture, AClosedTileIsMetFromEverywhere) {
+  const OcclusionCapture c = captured("corduroy", 32);
+  EXPECT_TRUE(c.volume.closed);
+  EXPECT_EQ(c.errors->coverage, 1.0);
+  EXPECT_EQ(c.errors->wrong, 0.0);
+}
+
+TEST(OcclusionCapture, ASheetWithAHoleBecomesThinWithAWarning) {
+  const auto scene = test::tile_of(test::Corners().rectangle(0, 0, 1, 0.5f, 0.3f).rectangle(0, 0.9f, 0.1f, 1).mesh(),
+                                   std::make_shared<test::Lambert>(0.5f));
+  Progress progress;
+  OcclusionCaptureOptions options;
+  options.place.period = {1, 1};
+  options.texels = 32;
+  options.reference_height = 0.3;
+  const OcclusionCapture c = capture_occlusion(*scene, options, progress);
+  ASSERT_FALSE(c.warnings.empty());  // of the seam as well
+  EXPECT_NE(c.warnings.back().find("no inside"), std::string::npos);
+  const ShellField field(std::make_shared<const OcclusionVolume>(c.volume));
+  EXPECT_TRUE(line_meets(field, {0.5f, 0.25f}, {0, 0, 1}));
+  EXPECT_FALSE(line_meets(field, {0.5f, 0.75f}, {0, 0, 1}));
+  EXPECT_GT(field.distance({0.5f, 0.25f, 0.1f}), 0) << "nothing is solid under it";
+}
+
+TEST(OcclusionCapture, SizesThatMakeNoGridAreRefused) {
+  const auto scene = test::tile_of(test::sawtooth(), std::make_shared<test::Lambert>(0.5f));
+  Progress progress;
+  for (const uint32_t texels : {0u, 3u, 5000u}) {
+    EXPECT_THROW(capture_occlusion(*scene, {.place = {}, .texels = texels}, progress), Error) << texels;
+  }
+  const auto tower =
+      test::tile_of(test::Corners().rectangle(0, 0, 1, 1).quad({0, 0, 0}, {0, 1, 0}, {0, 1, 500}, {0, 0, 500}).mesh(),
+                    std::make_shared<test::Lambert>(0.5f));
+  EXPECT_THROW(capture_occlusion(*tower, {.place = {{0, 0}, {1, 1}}, .texels = 128}, progress), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(OcclusionCapture, OfTiles,

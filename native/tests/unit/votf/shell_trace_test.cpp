@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "sphere/directions.h"
 #include "sphere/random.h"
@@ -118,6 +119,16 @@ TEST(TraceShell, FromTheBottomUpFindsTheOtherSide) {
   ASSERT_TRUE(above && below);
   EXPECT_NEAR(above->place.z, 0.2f, 5e-3f);
   EXPECT_NEAR(below->place.z, -0.2f, 5e-3f);
+}
+
+TEST(ShellField, AnswersWhereverItIsAsked) {
+  const ShellField field(test::wires(16, 0.2f));
+  const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  for (const float far : {-0.0f, -1e-9f, 1.0f - 0x1p-24f, -7.5f, 1e9f, -1e30f, infinity, nan}) {
+    EXPECT_LE(std::abs(field.distance({far, far, 0})), field.volume().reach * 1.01f) << far;
+    EXPECT_LE(std::abs(field.distance({0, 0, far == far ? far : 0})), field.volume().reach * 1.01f) << far;
+  }
+  EXPECT_NEAR(field.distance({0.5f, 0.3f, 0}), field.distance({-6.5f, 12.3f, 0}), 1e-4f);
 }
 
 TEST(ShellField, HasTheOutwardNormalAsItsGradient) {
