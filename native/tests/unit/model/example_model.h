@@ -90,7 +90,7 @@ inline Model example_reduced() {
 
 inline Model example_btf_model(bool two_sided = false) {
   Model model{example_factored(two_sided), {}, {"weave", "velour-btf", std::string(64, 'b')}};
-  model.btf = BtfRecord{"svd", 23.5, 21.25, 0.01, 0.5, 123456, 1.5, 2e6, 42, {"a sentence"}, 0.125, 0.25, {}, {}};
+  model.btf = BtfRecord{"svd", 23.5, 21.25, 0.01, 0.5, 123456, 1.5, 2e6, 42, {"a sentence"}, 0.125, 0.25, {}, {}, {}};
   model.btf->order = {{{1, 100, 1.5, 0.375}, {3, 300, 0.5, 0.125}}, 1};
   model.btf->search = {{3, 300, 0.25, 0.125}};
   return model;
@@ -105,13 +105,13 @@ inline Model example_view_svd_model() {
 
 inline Model example_srbf_model(bool two_sided = false) {
   Model model{example_srbf(two_sided), {}, {"gravel", "velour-btf", std::string(64, 'c')}};
-  model.btf = BtfRecord{"srbf", 24.5, std::nullopt, 0.02, 0.25, 654321, 2.5, 3e6, 7, {}, 0, 0, {}, {}};
+  model.btf = BtfRecord{"srbf", 24.5, std::nullopt, 0.02, 0.25, 654321, 2.5, 3e6, 7, {}, 0, 0, {}, {}, {}};
   return model;
 }
 
 inline Model example_tensor_model(bool two_sided = false) {
   Model model{example_tensor(two_sided), {}, {"net", "velour-btf", std::string(64, 'd')}};
-  model.btf = BtfRecord{"kcta", 25.5, 24.5, 0.03, 0.75, 765432, 3.5, 4e6, 9, {}, 0.25, 0, {}, {}};
+  model.btf = BtfRecord{"kcta", 25.5, 24.5, 0.03, 0.75, 765432, 3.5, 4e6, 9, {}, 0.25, 0, {}, {}, {}};
   return model;
 }
 
