@@ -11,10 +11,9 @@
 #include "capture/shell_columns.h"
 #include "capture/surface_distance.h"
 #include "capture/tile_checks.h"
+#include "capture/traced_mask.h"
 #include "job/threads.h"
 #include "material/material.h"
-#include "sphere/random.h"
-#include "votf/shell_trace.h"
 
 namespace velour {
 namespace {
@@ -59,6 +58,7 @@ class Capture {
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     progress_.stage("checking", 0.6, 1);
     if (options_.check_views > 0) result_.errors = errors();
+    result_.ray_share = share_.measure(tile_.rays(), progress_);
     return std::move(result_);
   }
 
@@ -99,26 +99,20 @@ class Capture {
     v.reference = in_widths(reference);
   }
 
-  Vec2 place(uint32_t x, uint32_t y) const {
-    const OcclusionVolume& v = result_.volume;
-    return {(static_cast<float>(x) + 0.5f) / static_cast<float>(v.width),
-            (static_cast<float>(y) + 0.5f) / static_cast<float>(v.height) * v.aspect};
-  }
+  TileTexels texels() const { return {result_.volume.width, result_.volume.height, result_.volume.aspect}; }
 
   void fill() {
     OcclusionVolume& v = volume();
     const DistanceGrid grid{v.width,
                             v.height,
                             v.depth,
-                            Vec3(place(0, 0), v.bottom),
+                            Vec3(texels().centre(0), v.bottom),
                             {v.pitch(), v.aspect / static_cast<float>(v.height), v.step()}};
     const std::vector<float> distance = surface_distances(triangles_of(tile_, options_.surface), grid, progress_);
     progress_.update(0.7);
     std::vector<Vec2> places;
-    for (uint32_t y = 0; y < v.height; ++y) {
-      for (uint32_t x = 0; x < v.width; ++x) places.push_back(tile_.period().x * place(x, y));
-    }
-    const ShellColumns columns(tile_, places, 0.5f * v.pitch() * tile_.period().x, v.closed);
+    for (size_t i = 0; i < texels().size(); ++i) places.push_back(tile_.period().x * texels().centre(i));
+    const ShellColumns columns(tile_, places, 0.5f * v.pitch() * tile_.period().x, v.closed, share_);
     const bool sheets = !v.closed && columns.unclosed() > 0;
     if (sheets) {
       result_.warnings.push_back(std::to_string(columns.unclosed()) + " of " + std::to_string(places.size()) +
@@ -137,48 +131,26 @@ class Capture {
     });
   }
 
-  /// Rays through all texel centres at the reference plane, under one view.
-  struct Seen {
-    uint64_t blocked = 0, wrong = 0;
-  };
-  Seen compare(const ShellField& field, const Vec3& wv) const {
-    const OcclusionVolume& v = result_.volume;
-    const Vec3 up = wv / wv.z;
-    const float reference = v.reference * tile_.period().x + static_cast<float>(options_.surface);
-    TileRays rays(tile_);
-    std::vector<Ray> row(v.width);
-    std::vector<Hit> hits(v.width);
-    Seen seen;
-    for (uint32_t y = 0; y < v.height; ++y) {
-      for (uint32_t x = 0; x < v.width; ++x) {
-        const Vec2 from = tile_.period().x * place(x, y) + Vec2(up) * (tile_.top() - reference);
-        row[x] = {Vec3(tile_.into_cell(from), tile_.top() + 1e-4f * tile_.period().x), 0, -wv};
-      }
-      rays.intersect(row, hits, nullptr);
-      for (uint32_t x = 0; x < v.width; ++x) {
-        const bool blocked = hits[x].instance != kNoHit;
-        seen.blocked += blocked ? 1 : 0;
-        seen.wrong += blocked != line_meets(field, place(x, y), wv) ? 1 : 0;
-      }
-    }
-    return seen;
-  }
-
   OcclusionErrors errors() {
     // Shares the volume, which stays where it is.
     const ShellField field(std::shared_ptr<const OcclusionVolume>(std::shared_ptr<void>(), &volume()));
-    std::vector<Seen> seen(options_.check_views);
+    const float reference = volume().reference * tile_.period().x + static_cast<float>(options_.surface);
+    std::vector<std::pair<int64_t, int64_t>> seen(options_.check_views);  // texels that are covered, and wrong
     tbb::parallel_for(0u, options_.check_views, [&](uint32_t i) {
       progress_.check();
-      RandomStream numbers(options_.seed, i, 0);
-      const float cosine = 1 - numbers.next() * (1 - std::cos(radians_from(75.0f)));
-      seen[i] = compare(field, direction(std::acos(cosine), 2 * kPi * numbers.next()));
+      const Vec3 wv = check_view(options_.seed, i);
+      std::vector<uint8_t> truth;
+      share_.record(i, {0, 0, static_cast<int>(texels().width), static_cast<int>(texels().height)}, 1,
+                    [&](RayLog* log) { truth = traced_mask(tile_, texels(), reference, wv, log); });
+      const auto found = visibility_mask(field, texels(), wv);
+      seen[i].first = std::ranges::count(truth, 1);
+      for (size_t t = 0; t < truth.size(); ++t) seen[i].second += truth[t] != found[t] ? 1 : 0;
     });
-    const double all = static_cast<double>(options_.check_views) * volume().width * volume().height;
+    const double all = static_cast<double>(options_.check_views) * static_cast<double>(texels().size());
     OcclusionErrors errors;
-    for (const Seen& s : seen) {
-      errors.coverage += static_cast<double>(s.blocked) / all;
-      errors.wrong += static_cast<double>(s.wrong) / all;
+    for (const auto& [covered, wrong] : seen) {
+      errors.coverage += static_cast<double>(covered) / all;
+      errors.wrong += static_cast<double>(wrong) / all;
     }
     return errors;
   }
@@ -186,6 +158,7 @@ class Capture {
   const OcclusionCaptureOptions& options_;
   Progress& progress_;
   const RepeatedTile tile_;
+  RayShare share_{options_.measure_ray_share, 8};
   OcclusionCapture result_;
 };
 

@@ -20,12 +20,14 @@ struct OcclusionCaptureOptions {
   uint32_t check_views = 64;                 // random views that the volume is compared with rays under; 0: not at all
   uint64_t seed = 0;                         // of those
   int threads = 0;                           // 0: all
+  bool measure_ray_share = false;
 };
 
 struct OcclusionCapture {
   OcclusionVolume volume;
   std::optional<OcclusionErrors> errors;
   double seconds = 0;
+  std::optional<double> ray_share;  // of the bare Embree rate for the same rays, those of the checks included
   std::vector<std::string> warnings;
 };
 

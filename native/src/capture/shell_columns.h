@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "capture/repeated_tile.h"
+#include "render/ray_share.h"
 
 namespace velour {
 
@@ -13,7 +14,7 @@ class ShellColumns {
   /// Lines through `places`, local coordinates. One that does not end as all others of its tile do - with nothing left
   /// to come out of where the tile is open, within it where that is closed - is tried again a little to the side,
   /// `aside` at most.
-  ShellColumns(const RepeatedTile& tile, const std::vector<Vec2>& places, float aside, bool closed);
+  ShellColumns(const RepeatedTile& tile, const std::vector<Vec2>& places, float aside, bool closed, RayShare& share);
 
   /// Whether `height` of a line is inside. A line of an open tile that never comes out has met a sheet, which has no
   /// inside.
@@ -26,12 +27,15 @@ class ShellColumns {
     float height;
     int depth;  // below it
   };
-  std::vector<Crossing> follow(TileRays& rays, const Vec2& place) const;
-  bool ends_well(const std::vector<Crossing>& line) const;
+  using Line = std::vector<Crossing>;
+  /// Lines that lie side by side, a batch of rays for each of their crossings.
+  void follow(std::span<const Vec2> places, float aside, std::span<Line> lines, RayLog* log) const;
+  std::vector<Line> followed(TileRays& rays, std::span<const Vec2> places, RayLog* log) const;
+  bool ends_well(const Line& line) const;
 
   const RepeatedTile& tile_;
   const bool closed_;
-  std::vector<std::vector<Crossing>> lines_;
+  std::vector<Line> lines_;
   size_t unclosed_ = 0;
 };
 

@@ -21,11 +21,14 @@ class NearestVectors {
         to_(square_.size(), Vec3(0.0f)) {}
 
   void splat(std::span<const Triangle> triangles, uint32_t z);
+  /// Points beside a change of sign, to where it is.
+  void start(std::span<const float> level);
   bool spread();
   std::vector<float> distances() const;
 
  private:
   void splat(const Triangle& triangle, uint32_t z);
+  void start(std::span<const float> level, const glm::uvec3& at);
   bool take(size_t point, size_t neighbour, const Vec3& step);
   /// Along one axis, onwards and back; `stride` between its points, `count` of them.
   bool spread_line(size_t first, size_t stride, uint32_t count, const Vec3& step, bool periodic);
@@ -65,6 +68,41 @@ void NearestVectors::splat(const Triangle& t, uint32_t z) {
       to_[point] = to;
     }
   }
+}
+
+void NearestVectors::start(std::span<const float> level) {
+  tbb::parallel_for(0u, grid_.depth, [&](uint32_t z) {
+    for (uint32_t y = 0; y < grid_.height; ++y) {
+      for (uint32_t x = 0; x < grid_.width; ++x) start(level, {x, y, z});
+    }
+  });
+}
+
+void NearestVectors::start(std::span<const float> level, const glm::uvec3& at) {
+  const glm::uvec3 extent(grid_.width, grid_.height, grid_.depth);
+  const auto index = [&](const glm::uvec3& p) { return p.z * layer_ + size_t{p.y} * grid_.width + p.x; };
+  const size_t point = index(at);
+  const float here = level[point];
+  Vec3 inverse(0.0f);   // 1 / the way along each axis, signed
+  bool beyond = false;  // a neighbour is on the other side
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool onwards : {false, true}) {
+      const uint32_t border = onwards ? extent[axis] - 1 : 0;
+      if (at[axis] == border && (axis == 2 || extent[axis] == 1)) continue;
+      glm::uvec3 beside = at;
+      beside[axis] = at[axis] == border ? extent[axis] - 1 - border : onwards ? at[axis] + 1 : at[axis] - 1;
+      const float there = level[index(beside)];
+      beyond |= (here < 0) != (there < 0);
+      const float share = here / (here - there);  // of the step, more than 1 where the surface is behind the neighbour
+      if (!(share >= 0) || !std::isfinite(share)) continue;
+      const float way = std::max(share, 1e-3f) * grid_.step[axis];
+      if (1 / way > std::abs(inverse[axis])) inverse[axis] = (onwards ? 1.0f : -1.0f) / way;
+    }
+  }
+  const float square = glm::dot(inverse, inverse);
+  if (!beyond && square * 2.25f * grid_.step.x * grid_.step.x < 1) return;
+  to_[point] = inverse / square;
+  square_[point] = 1 / square;
 }
 
 bool NearestVectors::take(size_t point, size_t neighbour, const Vec3& step) {
@@ -139,6 +177,13 @@ std::vector<float> surface_distances(std::span<const Triangle> triangles, const 
     progress.check();
     nearest.splat(triangles, z);
   });
+  while (nearest.spread()) progress.check();
+  return nearest.distances();
+}
+
+std::vector<float> level_distances(std::span<const float> level, const DistanceGrid& grid, Progress& progress) {
+  NearestVectors nearest(grid);
+  nearest.start(level);
   while (nearest.spread()) progress.check();
   return nearest.distances();
 }

@@ -24,6 +24,10 @@ struct DistanceGrid {
 /// Call it in the arena that shall do the work; the same bits for any number of threads. Throws Error(cancelled).
 std::vector<float> surface_distances(std::span<const Triangle> triangles, const DistanceGrid& grid, Progress& progress);
 
+/// To where `level`, a number for every point, positive outside, changes its sign between neighbours; beside it as from
+/// the plane through the places where it does along the axes, beyond as above. Infinite where the sign never changes.
+std::vector<float> level_distances(std::span<const float> level, const DistanceGrid& grid, Progress& progress);
+
 /// The point of a triangle that is nearest to `p` [Eri05].
 Vec3 nearest_point(const Triangle& triangle, const Vec3& p);
 

@@ -73,6 +73,62 @@ TEST(SurfaceDistance, IsThatOfTheNearestTriangleOfAllPeriods) {
   EXPECT_LT(worst, 0.1f * grid.step.x) << "handed on from neighbour to neighbour";
 }
 
+float worst_distance(const Vec3& normal, const std::vector<float>& level, const std::vector<float>& found) {
+  float worst = 0;
+  for (size_t i = 0; i < level.size(); ++i) {
+    worst = std::max(worst, std::abs(found[i] - std::abs(level[i]) / glm::length(normal)));
+  }
+  return worst;
+}
+
+TEST(SurfaceDistance, OfALevelIsThatOfThePlaneThatItIsZeroOn) {
+  const DistanceGrid grid{24, 24, 24, Vec3(0), {0.04f, 0.05f, 0.03f}};
+  Progress progress;
+  for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 0, -3)}) {
+    std::vector<float> level;
+    for (uint32_t i = 0; i < 24 * 24 * 24; ++i) {
+      level.push_back(glm::dot(Vec3(i % 24, i / 24 % 24, i / 576) * grid.step - 0.37f, normal));
+    }
+    EXPECT_LT(worst_distance(normal, level, level_distances(level, grid, progress)), 1e-5f);
+  }
+}
+
+TEST(SurfaceDistance, OfALevelGoesOnAcrossThePeriodButNotAlongZ) {
+  const DistanceGrid grid{16, 1, 8, Vec3(0), Vec3(1.0f)};
+  Progress progress;
+  std::vector<float> level(16 * 8, 1.0f);
+  for (size_t z = 0; z < 8; ++z) level[z * 16] = -1;  // a wall at x = 0, and so at 16
+  const std::vector<float> found = level_distances(level, grid, progress);
+  for (size_t z = 0; z < 8; ++z) {
+    EXPECT_NEAR(found[z * 16 + 1], 0.5f, 1e-6f);
+    EXPECT_NEAR(found[z * 16 + 15], 0.5f, 1e-6f);
+    EXPECT_NEAR(found[z * 16 + 12], 3.5f, 1e-6f);
+  }
+  level.assign(level.size(), 1.0f);
+  for (size_t x = 0; x < 16; ++x) level[x] = -1;  // a floor
+  EXPECT_NEAR(level_distances(level, grid, progress)[7 * 16], 6.5f, 1e-6f);
+  level.assign(level.size(), 1.0f);
+  EXPECT_TRUE(std::isinf(level_distances(level, grid, progress)[0]));
+}
+
+TEST(SurfaceDistance, OfASphereIsThatOfItsTangentPlanes) {
+  const DistanceGrid grid{32, 32, 32, Vec3(-0.5f + 1.0f / 64), Vec3(1.0f / 32)};
+  Progress progress;
+  std::vector<float> level;
+  for (uint32_t i = 0; i < 32 * 32 * 32; ++i) {
+    level.push_back(glm::length(grid.first + Vec3(i % 32, i / 32 % 32, i / 1024) * grid.step) - 0.3f);
+  }
+  const std::vector<float> found = level_distances(level, grid, progress);
+  float near = 0, beyond = 0;  // worst errors up to a step from the sphere, and up to three
+  for (size_t i = 0; i < found.size(); ++i) {
+    const float truth = std::abs(level[i]) / grid.step.x, error = std::abs(found[i] / grid.step.x - truth);
+    if (truth < 1) near = std::max(near, error);
+    if (truth < 3) beyond = std::max(beyond, error);
+  }
+  EXPECT_LT(near, 0.06f);
+  EXPECT_LT(beyond, 0.4f) << "handed on from neighbour to neighbour";
+}
+
 TEST(SurfaceDistance, CanBeCancelled) {
   Progress progress;
   progress.cancel();

@@ -1,0 +1,32 @@
+// Which texels of a tile a view finds covered.
+#pragma once
+
+#include <vector>
+
+#include "votf/shell_field.h"
+
+namespace velour {
+
+/// Texels over one period of a tile, [row][column]; row 0 is at y = 0.
+struct TileTexels {
+  uint32_t width, height;
+  float aspect;  // of the tile
+
+  size_t size() const { return size_t{width} * height; }
+  /// Widths of the tile.
+  Vec2 centre(uint32_t x, uint32_t y) const {
+    return {(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+            (static_cast<float>(y) + 0.5f) / static_cast<float>(height) * aspect};
+  }
+  Vec2 centre(size_t texel) const {
+    return centre(static_cast<uint32_t>(texel % width), static_cast<uint32_t>(texel / width));
+  }
+};
+
+/// View `i` of those that a volume is checked under: uniform by solid angle up to 75 degrees.
+Vec3 check_view(uint64_t seed, uint32_t i);
+
+/// V of the texels' centres under a view: 1 where the line through the centre along `wv` meets the structure.
+std::vector<uint8_t> visibility_mask(const ShellField& field, const TileTexels& texels, const Vec3& wv);
+
+}  // namespace velour
