@@ -1,8 +1,6 @@
 // Highway compiles this file once for each instruction set.
 #include "bench/arithmetic_peak.h"
 
-#include <time.h>
-
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
@@ -10,6 +8,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "job/thread_seconds.h"
 #include "srbf/simd_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -61,12 +60,6 @@ namespace velour {
 namespace {
 
 HWY_EXPORT(run_simd);
-
-double thread_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double measure() {
   double best = 1;

@@ -1,18 +1,18 @@
 // What evaluating a BTF of clustered tensors costs: nanoseconds of processor time, of a random place, view and light.
 //
+//   tensor_rate MODEL
 //   tensor_rate CLUSTERS MEMBERS TEXEL_RANK VIEW_RANK LIGHT_RANK COLOR_RANK [TEXELS]
 //
-// Random numbers in 128 x 128 texels, or others, of which patches share their clusters, under the 81 x 81 directions of
-// the Bonn sets, with a relief. A line
-// for each instruction set, the least of several runs: the whole, evaluations a second, and the part of it that looking
-// up both directions takes.
+// A model's first side; or random numbers in 128 x 128 texels, or others, of which patches share their clusters, under
+// the 81 x 81 directions of the Bonn sets, with a relief. A line for each instruction set: the whole, evaluations a
+// second, and the parts of it that the place, the view and the light take. A look is what looking up one direction
+// costs.
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <limits>
 
 #include "btf/tensor_evaluator.h"
-#include "sphere/warp.h"
+#include "compress/evaluation_rate.h"
+#include "model/model_file.h"
 #include "srbf/simd_target.h"
 #include "support/example_tensor.h"
 
@@ -20,45 +20,7 @@ namespace {
 
 using namespace velour;
 
-constexpr uint32_t kQueries = 20000;
-constexpr int kRuns = 7;
 constexpr uint32_t kPatch = 4;  // texels along a side that share their clusters
-
-struct Query {
-  Vec2 place;
-  DirectionPair pair;
-};
-
-std::vector<Query> random_queries() {
-  std::vector<Query> queries;
-  for (uint32_t i = 0; i < kQueries; ++i) {
-    RandomStream random(0, i, 0);
-    const Vec2 place = random.next2();
-    queries.push_back({place, {sample_cosine_hemisphere(random.next2()), sample_cosine_hemisphere(random.next2())}});
-  }
-  return queries;
-}
-
-double seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// Nanoseconds of `use` a query; keeps what it returns from being left out.
-template <typename Use>
-double cost(const std::vector<Query>& queries, const Use& use) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int run = 0; run < kRuns; ++run) {
-    const double start = seconds();
-    for (const Query& query : queries) {
-      const auto result = use(query);
-      asm volatile("" : : "r"(&result) : "memory");
-    }
-    least = std::min(least, (seconds() - start) / kQueries * 1e9);
-  }
-  return least;
-}
 
 TensorBtf random_btf(const test::TensorShape& shape, uint32_t texels) {
   TensorBtf btf{PairLayout(bonn_directions(), bonn_directions()),
@@ -80,34 +42,49 @@ TensorBtf random_btf(const test::TensorShape& shape, uint32_t texels) {
   return btf;
 }
 
-}  // namespace
+TensorBtf tensors_of(const char* path) {
+  Model model = load_model(path);
+  if (auto* btf = std::get_if<TensorBtf>(&model.body)) return std::move(*btf);
+  std::fprintf(stderr, "%s is no model of clustered tensors\n", path);
+  std::exit(2);
+}
 
-int main(int count, char** arguments) {
+TensorBtf asked_for(int count, char** arguments) {
+  if (count == 2) return tensors_of(arguments[1]);
   if (count < 7) {
-    std::fprintf(stderr, "usage: tensor_rate CLUSTERS MEMBERS TEXEL_RANK VIEW_RANK LIGHT_RANK COLOR_RANK [TEXELS]\n");
-    return 2;
+    std::fprintf(stderr,
+                 "usage: tensor_rate MODEL | CLUSTERS MEMBERS TEXEL_RANK VIEW_RANK LIGHT_RANK COLOR_RANK [TEXELS]\n");
+    std::exit(2);
   }
   const auto number = [&](int i) { return static_cast<uint32_t>(std::atoi(arguments[i])); };
   const test::TensorShape shape{number(1), number(2), {number(3), number(4), number(5), number(6)}, true};
-  const TensorEvaluator evaluator(std::make_shared<const TensorBtf>(random_btf(shape, count > 7 ? number(7) : 128)));
-  const DirectionMesh directions(directions_on_side(bonn_directions(), false));
-  const std::vector<Query> queries = random_queries();
+  return random_btf(shape, count > 7 ? number(7) : 128);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const TensorEvaluator evaluator(std::make_shared<const TensorBtf>(asked_for(count, arguments)));
+  const PairLayout& layout = evaluator.btf().layout;
+  const DirectionMesh directions(directions_on_side(layout.views(), evaluator.btf().sides[0].view_below));
+  const std::vector<BtfQuery> queries = random_queries();
   const auto point = std::make_unique<TensorPoint>();
+  const auto nanoseconds = [&](const auto& use) { return 1e9 * seconds_a_query(queries, use); };
+  const auto at_place = [&](const BtfQuery& query) {
+    evaluator.begin(0, query.pair.wv, *point);
+    evaluator.add(query.place, 0, 1, *point);
+    return point->count;
+  };
   for (const std::string& target : simd_targets()) {
     select_simd_target(target.c_str());
-    const double whole = cost(queries, [&](const Query& query) {
-      evaluator.begin(0, query.pair.wv, *point);
-      evaluator.add(query.place, 0, 1, *point);
+    const double whole = nanoseconds([&](const BtfQuery& query) {
+      at_place(query);
       evaluator.finish(*point);
       return evaluator.value(*point, query.pair.wl);
     });
-    const double light = cost(queries, [&](const Query& query) { return evaluator.value(*point, query.pair.wl); });
-    const double places = cost(queries, [&](const Query& query) {
-      evaluator.begin(0, query.pair.wv, *point);
-      evaluator.add(query.place, 0, 1, *point);
-      return point->count;
-    });
-    const double look = cost(queries, [&](const Query& query) { return directions.at(query.pair.wv); });
+    const double light = nanoseconds([&](const BtfQuery& query) { return evaluator.value(*point, query.pair.wl); });
+    const double places = nanoseconds(at_place);
+    const double look = nanoseconds([&](const BtfQuery& query) { return directions.at(query.pair.wv); });
     std::printf("%-10s %7.1f ns, %.2f M/s; place %.1f, view %.1f, light %.1f; a look %.1f\n", target.c_str(), whole,
                 1e3 / whole, places, whole - places - light, light, look);
   }

@@ -54,13 +54,12 @@ std::string checkpoint_key(const BtfMeasurement& measurement, const CompressOpti
 /// f of what has sides, without what a material prepares for samples.
 template <typename Evaluator>
 BtfValue value_by(std::shared_ptr<const Evaluator> evaluator) {
-  return
-      [evaluator, point = std::make_shared<typename Evaluator::Point>()](const Vec2& place, const DirectionPair& pair) {
-        evaluator->begin(0, pair.wv, *point);
-        evaluator->add(place, 0, 1, *point);
-        evaluator->finish(*point);
-        return evaluator->value(*point, pair.wl);
-      };
+  return [evaluator, point = std::make_shared<typename Evaluator::Point>()](const BtfQuery& query) {
+    evaluator->begin(0, query.pair.wv, *point);
+    evaluator->add(query.place, 0, 1, *point);
+    evaluator->finish(*point);
+    return evaluator->value(*point, query.pair.wl);
+  };
 }
 
 /// f of a model of a BTF.
@@ -71,10 +70,9 @@ BtfValue value_of(const std::shared_ptr<const Model>& model) {
   if (const auto* tensors = std::get_if<TensorBtf>(&model->body)) {
     return value_by(std::make_shared<const TensorEvaluator>(std::shared_ptr<const TensorBtf>(model, tensors)));
   }
-  return [material = make_material(model, 0), point = std::make_shared<PreparedBrdf>()](const Vec2& place,
-                                                                                        const DirectionPair& pair) {
-    material->prepare(pair.wv, {.uv = place}, *point);
-    return material->eval_one(*point, pair.wl).f;
+  return [material = make_material(model, 0), point = std::make_shared<PreparedBrdf>()](const BtfQuery& query) {
+    material->prepare(query.pair.wv, {.uv = query.place}, *point);
+    return material->eval_one(*point, query.pair.wl).f;
   };
 }
 

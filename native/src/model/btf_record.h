@@ -40,7 +40,7 @@ struct BtfRecord {
   double p99 = 0;                     // the 99th percentile of the measurement's f, 1/sr: white of `psnr`
   uint64_t raw_bytes = 0;             // of the measurement as half floats
   double seconds = 0;                 // wall clock of the fit
-  double evaluations_per_second = 0;  // of one thread, random places and directions; 0: nobody measured
+  double evaluations_per_second = 0;  // of processor time of one thread, random places, directions; 0: nobody measured
   uint64_t seed = 0;
   std::vector<std::string> warnings;  // sentences
   double relative_l2 = 0;             // of companded values over all pairs that were fitted; 0: nobody measured

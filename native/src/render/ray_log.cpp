@@ -1,16 +1,8 @@
 #include "render/ray_log.h"
 
-#include <time.h>
-
 #include <algorithm>
 
 namespace velour {
-
-double thread_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 void RayLog::add(std::span<const Ray> rays, Kind kind) {
   const double start = thread_seconds();

@@ -4,12 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "job/thread_seconds.h"
 #include "scene/embree_scene.h"
 
 namespace velour {
-
-/// Seconds of processor time of the calling thread: a share of two of them does not feel other programs.
-double thread_seconds();
 
 class RayLog {
  public:
