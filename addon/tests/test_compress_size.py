@@ -61,6 +61,18 @@ def test_the_smallest_model_within_a_tolerance(folder, btf, within):
     assert smaller["relative_l2"] > asked
 
 
+def test_tensors_within_a_tolerance(folder, btf):
+    """Sizes go in steps, and clusters are sought for one of them: not quite the smallest."""
+    path, asked = folder / "tensors.velour", 0.15
+    arguments = ["compress", btf, "-o", path, "--method", "kcta", "--json"]
+    report = velour(*arguments, "--tolerance", asked).json
+    assert report["relative_l2"] <= asked
+    assert not report["warnings"]
+    assert 1 <= len(report["search"]) <= 6
+    # The control: with half of its bytes it is not within.
+    assert velour(*arguments, "--bytes", report["parameter_bytes"] // 2).json["relative_l2"] > asked
+
+
 def test_the_curve_is_stored_with_the_model(within):
     _, asked, report, path = within
     info = velour("info", path, "--json").json
@@ -132,8 +144,14 @@ def test_memory_is_kept_to(folder, large):
     assert peak_megabytes(*arguments) - program > 120  # the control: what it takes when it may
 
 
+def test_tensors_keep_to_memory(folder, large):
+    program = peak_megabytes("info", large, "--quiet")
+    size = ["--method", "kcta", "--bytes", BYTES, "--memory", 64_000_000]
+    assert peak_megabytes("compress", large, "-o", folder / "tensors.velour", *size, "--quiet") - program < 64
+
+
 def test_too_little_memory_is_refused_with_the_least_that_would_do(folder, btf):
-    for method in ("srbf", "svd"):
+    for method in ("srbf", "svd", "kcta"):
         sentence = refused(
             "compress",
             btf,
@@ -161,12 +179,12 @@ def parameters(path):
         return model.eval((0.28, 0, 0.96), wl)[0].tobytes()
 
 
-def killed(btf, path, *arguments):
-    """Ends a fit hard as soon as its checkpoint holds lobes."""
+def killed(btf, path, *arguments, kept=b".lobes."):
+    """Ends a fit hard as soon as its checkpoint holds such a stage: lobes."""
     checkpoint = path.with_name(path.name + ".checkpoint")
     process = subprocess.Popen(command("compress", btf, "-o", path, *arguments, "--quiet"), env=environment())
     while process.poll() is None:
-        if checkpoint.is_file() and b".lobes." in checkpoint.read_bytes():
+        if checkpoint.is_file() and kept in checkpoint.read_bytes():
             process.send_signal(signal.SIGKILL)
             process.wait()
         time.sleep(0.002)
@@ -175,11 +193,12 @@ def killed(btf, path, *arguments):
     return checkpoint
 
 
-def test_a_killed_fit_goes_on(folder, btf):
-    arguments = ["--bytes", BYTES, "--seed", 5]
-    whole, path = folder / "whole.velour", folder / "killed.velour"
+@pytest.mark.parametrize(("method", "kept"), [("srbf", b".lobes."), ("kcta", b".shape")])
+def test_a_killed_fit_goes_on(folder, btf, method, kept):
+    arguments = ["--method", method, "--bytes", BYTES, "--seed", 5]
+    whole, path = folder / f"whole-{method}.velour", folder / f"killed-{method}.velour"
     assert velour("compress", btf, "-o", whole, *arguments, "--quiet").status == 0
-    checkpoint = killed(btf, path, *arguments)
+    checkpoint = killed(btf, path, *arguments, kept=kept)
     report = velour("compress", btf, "-o", path, *arguments, "--resume", "--json").json
     assert not report["warnings"]
     assert parameters(path) == parameters(whole)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compress/function_refit.h"
 #include "compress/lobe_order.h"
 #include "job/error.h"
 
@@ -84,6 +85,15 @@ uint64_t tensor_texel_bytes(const FitExtent& e, uint64_t functions) {
          e.pairs / e.lights * (functions * functions * kFloat + e.pyramid_texels * (sizeof(Vec2) + 1));
 }
 
+/// Moments of all views, what a view's texels see, and systems of the factors' ranks.
+uint64_t tensor_refit_bytes(const FitExtent& e, uint64_t functions) {
+  const uint64_t views = e.pairs / e.lights;
+  const uint64_t moments = views * (functions + 3 * e.lights) * functions * kFloat;
+  const uint64_t seen =
+      (2 * e.pyramid_texels + e.texels) * functions * kFloat + views * e.pyramid_texels * sizeof(Vec2);
+  return moments + seen + 2 * kMomentGroups * uint64_t{kMostJointRanks} * kMostJointRanks * sizeof(double);
+}
+
 }  // namespace
 
 TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint64_t entries) {
@@ -91,7 +101,8 @@ TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint6
   if (memory == 0) return allowance;
   const auto held = [&] {
     return kLibraries + std::max(clustering_bytes(extent, allowance, entries),
-                                 reading_bytes(extent) + tensor_texel_bytes(extent, allowance.functions));
+                                 reading_bytes(extent) + std::max(tensor_texel_bytes(extent, allowance.functions),
+                                                                  tensor_refit_bytes(extent, allowance.functions)));
   };
   while (held() > memory && allowance.functions > kLeastFunctions) allowance.functions /= 2;
   while (held() > memory && allowance.slices > kLeastSlices) {

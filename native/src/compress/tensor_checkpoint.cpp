@@ -1,5 +1,6 @@
 #include "compress/tensor_checkpoint.h"
 
+#include <cmath>
 #include <string>
 
 namespace velour {
@@ -100,6 +101,41 @@ void keep_clusters(FitCheckpoint& checkpoint, const std::string& stage, const Te
     }
     checkpoint.keep(stage + std::to_string(c), row);
   }
+  checkpoint.write();
+}
+
+/// Members and values, as one matrix: [texel][members, values].
+std::optional<SolvedLevel> kept_level(const FitCheckpoint& checkpoint, const std::string& stage, const Relief& relief,
+                                      const TensorSide& side) {
+  const Index members = side.members, values = members * side.rank.texel;
+  const auto kept = checkpoint.matrix(stage, Index{relief.width()} * relief.height(), members + values);
+  const auto measured = checkpoint.numbers(stage + ".measured", 1);
+  if (!kept || !measured || measured->size() != 1) return std::nullopt;
+  SolvedLevel level{{{}, kept->rightCols(values)}, measured->front()};
+  for (Index t = 0; t < kept->rows(); ++t) {
+    for (Index k = 0; k < members; ++k) {
+      const float member = (*kept)(t, k);
+      if (!(member >= 0 && member < static_cast<float>(side.clusters.size()) && member == std::floor(member))) {
+        return std::nullopt;
+      }
+      level.values.member.push_back(static_cast<uint32_t>(member));
+    }
+  }
+  return level;
+}
+
+void keep_level(const SolvedLevel& level, const std::string& stage, FitCheckpoint& checkpoint) {
+  const TensorTexelValues& from = level.values;
+  const Index members = from.members();
+  RowMatrix kept(from.value.rows(), members + from.value.cols());
+  for (Index t = 0; t < kept.rows(); ++t) {
+    for (Index k = 0; k < members; ++k) {
+      kept(t, k) = static_cast<float>(from.member[static_cast<size_t>(t * members + k)]);
+    }
+  }
+  kept.rightCols(from.value.cols()) = from.value;
+  checkpoint.keep(stage, kept);
+  checkpoint.keep_numbers(stage + ".measured", std::vector<double>{level.measured});
   checkpoint.write();
 }
 

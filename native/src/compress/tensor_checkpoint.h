@@ -1,8 +1,9 @@
-// Shapes and clusters of tensors in a fit's checkpoint, checked as they are read.
+// Shapes, clusters and texels of tensors in a fit's checkpoint, checked as they are read.
 #pragma once
 
 #include "btf/tensor_btf.h"
 #include "compress/fit_checkpoint.h"
+#include "compress/seen_texels.h"
 #include "compress/shape_search.h"
 #include "compress/side_views.h"
 
@@ -15,5 +16,15 @@ void keep_shape(FitCheckpoint& checkpoint, const std::string& stage, const Found
 bool take_kept_clusters(const FitCheckpoint& checkpoint, const std::string& stage, const SideDirections& directions,
                         TensorSide& side);
 void keep_clusters(FitCheckpoint& checkpoint, const std::string& stage, const TensorSide& side);
+
+/// Texels of a level, solved for, and TensorTexels::measured().
+struct SolvedLevel {
+  TensorTexelValues values;
+  double measured;
+};
+
+std::optional<SolvedLevel> kept_level(const FitCheckpoint& checkpoint, const std::string& stage, const Relief& relief,
+                                      const TensorSide& side);
+void keep_level(const SolvedLevel& level, const std::string& stage, FitCheckpoint& checkpoint);
 
 }  // namespace velour

@@ -205,7 +205,7 @@ ModelBody TensorFitter::fit(size_t point) {
         TensorSide{directions.view_below, directions.light_below, shape.rank, shape.members, {}, {}});
     fitted.clusters.resize(shape.clusters);
     set_clusters(s, stage + ".cluster.", fitted);
-    progress_.stage("texels", kClusters, 1);
+    const Progress::Span texels(progress_, kClusters, 1);
     solve_tensor_levels(views_, source(s), options_.companding, checkpoint_, stage + ".level.", progress_, fitted);
   }
   return btf;

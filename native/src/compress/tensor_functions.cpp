@@ -22,22 +22,50 @@ RowMatrix matrix_of(const std::vector<HalfBits>& halves, Index columns) {
 std::vector<TensorBtfCluster> stored_clusters(const ClusteredTensor& tensor, const DirectionBases& bases) {
   std::vector<TensorBtfCluster> stored;
   for (const TensorCluster& cluster : tensor.cluster) {
-    stored.push_back({halves_of(bases.view.vector * cluster.factor[0]),
-                      halves_of(bases.light.vector * cluster.factor[1]),
-                      halves_of(cluster.factor[2]),
-                      halves_of(cluster.core),
-                      {}});
+    store({bases.view.vector * cluster.factor[0], bases.light.vector * cluster.factor[1], cluster.factor[2],
+           cluster.core},
+          stored.emplace_back());
   }
   return stored;
 }
 
-TensorFunctions::TensorFunctions(const TensorSide& side, int threads, const Progress& progress)
-    : rank_(static_cast<Index>(side.rank.texel)) {
+std::vector<DirectionCluster> direction_clusters(const TensorSide& side) {
+  std::vector<DirectionCluster> clusters;
   for (const TensorBtfCluster& c : side.clusters) {
-    cluster_.push_back({matrix_of(c.view, side.rank.view), matrix_of(c.light, side.rank.light),
+    clusters.push_back({matrix_of(c.view, side.rank.view), matrix_of(c.light, side.rank.light),
                         matrix_of(c.color, side.rank.color),
                         matrix_of(c.core, Index{side.rank.light} * side.rank.color)});
   }
+  return clusters;
+}
+
+void store(const DirectionCluster& cluster, TensorBtfCluster& to) {
+  to.view = halves_of(cluster.view);
+  to.light = halves_of(cluster.light);
+  to.color = halves_of(cluster.color);
+  to.core = halves_of(cluster.core);
+}
+
+FunctionsOfView functions_of_view(const std::vector<DirectionCluster>& clusters, Index view) {
+  const Index rank = clusters[0].rank(), count = static_cast<Index>(clusters.size()) * rank;
+  FunctionsOfView functions;
+  for (RowMatrix& f : functions) f.resize(count, clusters[0].light.rows());
+  for (size_t c = 0; c < clusters.size(); ++c) {
+    const DirectionCluster& cluster = clusters[c];
+    const Index views = cluster.view.cols(), lights = cluster.light.cols(), colors = cluster.color.cols();
+    for (Index r = 0; r < rank; ++r) {
+      const Eigen::RowVectorXf mixed = cluster.view.row(view) * cluster.core.middleRows(r * views, views);
+      const Eigen::Map<const RowMatrix> core(mixed.data(), lights, colors);
+      const RowMatrix values = cluster.color * (cluster.light * core).transpose();
+      for (size_t a = 0; a < 3; ++a)
+        functions[a].row(static_cast<Index>(c) * rank + r) = values.row(static_cast<Index>(a));
+    }
+  }
+  return functions;
+}
+
+TensorFunctions::TensorFunctions(const TensorSide& side, int threads, const Progress& progress)
+    : cluster_(direction_clusters(side)), rank_(static_cast<Index>(side.rank.texel)) {
   const auto views = static_cast<size_t>(cluster_.at(0).view.rows());
   products_.resize(views);
   parallel_pieces(views, threads, progress, [&](size_t v) {
@@ -46,22 +74,6 @@ TensorFunctions::TensorFunctions(const TensorSide& side, int threads, const Prog
   });
   all_ = RowMatrix::Zero(count(), count());
   for (const RowMatrix& product : products_) all_ += product;
-}
-
-TensorFunctions::OfView TensorFunctions::of_view(Index view) const {
-  OfView functions;
-  for (RowMatrix& f : functions) f.resize(count(), cluster_[0].light.rows());
-  for (Index c = 0; c < clusters(); ++c) {
-    const Cluster& cluster = cluster_[static_cast<size_t>(c)];
-    const Index views = cluster.view.cols(), lights = cluster.light.cols(), colors = cluster.color.cols();
-    for (Index r = 0; r < rank_; ++r) {
-      const Eigen::RowVectorXf mixed = cluster.view.row(view) * cluster.core.middleRows(r * views, views);
-      const Eigen::Map<const RowMatrix> core(mixed.data(), lights, colors);
-      const RowMatrix values = cluster.color * (cluster.light * core).transpose();
-      for (Index a = 0; a < 3; ++a) functions[static_cast<size_t>(a)].row(c * rank_ + r) = values.row(a);
-    }
-  }
-  return functions;
 }
 
 RowMatrix TensorFunctions::weighed_products(Index view, const Eigen::VectorXf& weight) const {

@@ -2,114 +2,205 @@
 
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "compress/brightening.h"
+#include "compress/function_refit.h"
 #include "compress/relief_pyramid.h"
+#include "compress/tensor_checkpoint.h"
 #include "compress/tensor_rounding.h"
+#include "compress/tensor_texels.h"
 
 namespace velour {
 namespace {
 
-constexpr double kReading = 0.4;  // of the progress
+constexpr double kReading = 0.4, kMoments = 0.7;  // of a stage's progress
+constexpr double kFirst = 0.35, kRefitted = 0.5, kSecond = 0.85;
+constexpr int kRounds = 2;
 
-using Levels = std::vector<std::optional<TensorTexelValues>>;
-
-/// Members and values, as one matrix: [texel][members, values].
-std::optional<TensorTexelValues> kept_level(const FitCheckpoint& checkpoint, const std::string& stage,
-                                            const Relief& relief, const TensorSide& side) {
-  const Index members = side.members, values = members * side.rank.texel;
-  const auto kept = checkpoint.matrix(stage, Index{relief.width()} * relief.height(), members + values);
-  if (!kept) return std::nullopt;
-  TensorTexelValues level{{}, kept->rightCols(values)};
-  for (Index t = 0; t < kept->rows(); ++t) {
-    for (Index k = 0; k < members; ++k) {
-      const float member = (*kept)(t, k);
-      if (!(member >= 0 && member < static_cast<float>(side.clusters.size()) && member == std::floor(member))) {
-        return std::nullopt;
-      }
-      level.member.push_back(static_cast<uint32_t>(member));
-    }
+/// What bytes stand for.
+TensorTexelValues stored_values(const TensorSide& side, const TensorLevel& level) {
+  const size_t rank = side.rank.texel;
+  TensorTexelValues values{
+      {level.member.begin(), level.member.end()},
+      RowMatrix(static_cast<Index>(level.member.size() / side.members), static_cast<Index>(side.members * rank))};
+  for (size_t i = 0; i < level.value.size(); ++i) {
+    values.value.data()[i] = side.clusters[level.member[i / rank]].scale[i % rank].value(level.value[i]);
   }
-  return level;
+  return values;
 }
 
-void keep_level(const TensorTexelValues& level, const std::string& stage, FitCheckpoint& checkpoint) {
-  const Index rows = level.value.rows(), members = static_cast<Index>(level.member.size()) / rows;
-  RowMatrix kept(rows, members + level.value.cols());
-  for (Index t = 0; t < rows; ++t) {
-    for (Index k = 0; k < members; ++k)
-      kept(t, k) = static_cast<float>(level.member[static_cast<size_t>(t * members + k)]);
+/// A side's levels on their way.
+class LevelFit {
+ public:
+  LevelFit(CompandedViews& views, const TensorSource& source, Companding companding, FitCheckpoint& checkpoint,
+           Progress& progress, TensorSide& side)
+      : views_(views),
+        source_(source),
+        companding_(companding),
+        checkpoint_(checkpoint),
+        progress_(progress),
+        side_(side),
+        bright_(source.relief.size(), 1.0f) {
+    for (size_t l = 0; l < source.relief.size(); ++l) seen_.emplace_back(source, l, progress);
   }
-  kept.rightCols(level.value.cols()) = level.value;
-  checkpoint.keep(stage, kept);
-  checkpoint.write();
-}
 
-using Solvers = std::vector<std::unique_ptr<TensorTexels>>;
+  /// Texels of every level, for the clusters as they are, under `stage`.
+  void solve(const TensorFunctions& functions, const std::string& stage);
+  /// Scaled so that the levels are as bright as their images.
+  void brighten(const TensorFunctions& functions);
+  void round(const TensorFunctions& functions);
+  /// The clusters, for the texels as they are.
+  void refit();
+  /// The finest level of what is stored as bright as its images.
+  void mend_brightness();
+
+ private:
+  using Solvers = std::vector<std::unique_ptr<TensorTexels>>;
+  Solvers read_images(const TensorFunctions& functions, const std::vector<bool>& kept);
+  TensorTexelValues solved(const TensorTexels& solver, size_t level);
+  std::vector<ViewMoments> moments();
+
+  CompandedViews& views_;
+  const TensorSource& source_;
+  Companding companding_;
+  FitCheckpoint& checkpoint_;
+  Progress& progress_;
+  TensorSide& side_;
+  std::vector<SeenTexels> seen_;
+  std::vector<TensorTexelValues> values_;
+  std::vector<double> measured_;  // of each level
+  std::vector<float> bright_;     // of each level
+};
+
+void LevelFit::solve(const TensorFunctions& functions, const std::string& stage) {
+  const size_t levels = seen_.size();
+  values_.assign(levels, {});
+  measured_.assign(levels, 0);
+  std::vector<bool> kept(levels);
+  for (size_t l = 0; l < levels; ++l) {
+    auto level = kept_level(checkpoint_, stage + std::to_string(l), source_.relief[l], side_);
+    if (!level) continue;
+    kept[l] = true;
+    values_[l] = std::move(level->values);
+    measured_[l] = level->measured;
+  }
+  Solvers solver = read_images(functions, kept);
+  for (size_t l = levels; l-- > 0;) {
+    if (kept[l]) continue;
+    measured_[l] = solver[l]->measured();
+    values_[l] = solved(*solver[l], l);
+    solver[l].reset();
+    keep_level({values_[l], measured_[l]}, stage + std::to_string(l), checkpoint_);
+  }
+}
 
 /// Of the levels that were not kept, all images.
-Solvers read_images(CompandedViews& views, const TensorSource& source, const TensorFunctions& functions,
-                    const Levels& kept, Progress& progress) {
+LevelFit::Solvers LevelFit::read_images(const TensorFunctions& functions, const std::vector<bool>& kept) {
   Solvers solver(kept.size());
   size_t most = 0;
   for (size_t l = 0; l < kept.size(); ++l) {
     if (kept[l]) continue;
-    solver[l] = std::make_unique<TensorTexels>(source, l, functions, progress);
+    solver[l] = std::make_unique<TensorTexels>(source_, seen_[l], functions, progress_);
     most = l + 1;
   }
   if (most == 0) return solver;
   std::vector<LevelImages> images;
-  for (size_t v = 0; v < source.side.view.size(); ++v) {
-    progress.check();
-    read_side_view(views, source.grid, source.side, v, most, images);
-    const TensorFunctions::OfView of_view = functions.of_view(static_cast<Index>(v));
+  for (size_t v = 0; v < source_.side.view.size(); ++v) {
+    progress_.check();
+    read_side_view(views_, source_.grid, source_.side, v, most, images);
+    const FunctionsOfView of_view = functions.of_view(static_cast<Index>(v));
     for (size_t l = 0; l < most; ++l) {
       if (solver[l]) solver[l]->add_view(static_cast<Index>(v), images[l], of_view);
     }
-    progress.update(kReading * static_cast<double>(v + 1) / static_cast<double>(source.side.view.size()));
+    progress_.update(kReading * static_cast<double>(v + 1) / static_cast<double>(source_.side.view.size()));
   }
   return solver;
 }
 
-/// As bright as the images.
-TensorTexelValues solved(const TensorTexels& solver, const TensorSide& side, Companding companding, size_t level,
-                         Progress& progress) {
+TensorTexelValues LevelFit::solved(const TensorTexels& solver, size_t level) {
   // A level costs four times the one after it: the finest takes three quarters of the time.
   const double from = kReading + (1 - kReading) * std::pow(0.25, static_cast<double>(level + 1));
   const double to = kReading + (1 - kReading) * std::pow(0.25, static_cast<double>(level));
-  TensorTexelValues values =
-      solver.solve(side.members, [&](double part) { progress.update(from + (to - from) * part); });
-  values.value *= brightening(companding, solver.measured(), solver.modelled(values));
-  return values;
+  return solver.solve(side_.members, [&](double part) { progress_.update(from + (to - from) * part); });
+}
+
+void LevelFit::brighten(const TensorFunctions& functions) {
+  for (size_t l = 0; l < values_.size(); ++l) {
+    const double modelled = modelled_squares(source_, seen_[l], functions, values_[l], progress_);
+    bright_[l] = brightening(companding_, measured_[l], modelled);
+    values_[l].value *= bright_[l];
+  }
+}
+
+void LevelFit::round(const TensorFunctions& functions) {
+  set_rounded(functions, values_, side_);
+  for (size_t l = 0; l < values_.size(); ++l) values_[l] = stored_values(side_, side_.levels[l]);
+}
+
+std::vector<ViewMoments> LevelFit::moments() {
+  std::vector<ViewMoments> moments;
+  std::vector<LevelImages> images;
+  for (size_t v = 0; v < source_.side.view.size(); ++v) {
+    progress_.check();
+    read_side_view(views_, source_.grid, source_.side, v, seen_.size(), images);
+    moments.emplace_back(static_cast<Index>(side_.clusters.size()) * side_.rank.texel,
+                         static_cast<Index>(source_.side.light.size()));
+    for (size_t l = 0; l < seen_.size(); ++l) {
+      add_level(seen_[l], static_cast<Index>(v), images[l], values_[l], bright_[l], source_.threads, progress_,
+                moments.back());
+    }
+    progress_.update(kMoments * static_cast<double>(v + 1) / static_cast<double>(source_.side.view.size()));
+  }
+  return moments;
+}
+
+void LevelFit::refit() {
+  std::vector<DirectionCluster> clusters = direction_clusters(side_);
+  refit_functions(moments(), {kRounds, source_.threads}, progress_, clusters);
+  for (size_t c = 0; c < clusters.size(); ++c) store(clusters[c], side_.clusters[c]);
+}
+
+void LevelFit::mend_brightness() {
+  const TensorFunctions functions(side_, source_.threads, progress_);
+  const double modelled = modelled_squares(source_, seen_[0], functions, values_[0], progress_);
+  const float factor = brightening(companding_, measured_[0], modelled);
+  std::vector<DirectionCluster> clusters = direction_clusters(side_);
+  for (size_t c = 0; c < clusters.size(); ++c) {
+    clusters[c].core *= factor;
+    store(clusters[c], side_.clusters[c]);
+  }
 }
 
 }  // namespace
 
 void solve_tensor_levels(CompandedViews& views, const TensorSource& source, Companding companding,
                          FitCheckpoint& checkpoint, const std::string& stage, Progress& progress, TensorSide& side) {
-  const TensorFunctions functions(side, source.threads, progress);
-  Levels values(source.relief.size());
-  for (size_t l = 0; l < values.size(); ++l) {
-    values[l] = kept_level(checkpoint, stage + std::to_string(l), source.relief[l], side);
-  }
-  Solvers solver = read_images(views, source, functions, values, progress);
-  std::vector<TensorTexelValues> levels(values.size());
-  for (size_t l = values.size(); l-- > 0;) {
-    if (!values[l]) {
-      values[l] = solved(*solver[l], side, companding, l, progress);
-      solver[l].reset();
-      keep_level(*values[l], stage + std::to_string(l), checkpoint);
-    }
-    levels[l] = std::move(*values[l]);
-  }
   side.levels.clear();
   for (const Relief& relief : source.relief) {
     side.levels.push_back({relief.width(), relief.height(), {}, {}, {}});
     if (!is_plane(source.relief[0])) side.levels.back().relief = stored_heights(relief);
   }
-  set_rounded(functions, std::move(levels), side);
+  LevelFit fit(views, source, companding, checkpoint, progress, side);
+  if (!take_kept_clusters(checkpoint, stage + "refit.", source.side, side)) {
+    progress.stage("texels", 0, kFirst);
+    fit.solve(TensorFunctions(side, source.threads, progress), stage + "first.");
+    progress.stage("functions", kFirst, kRefitted);
+    fit.refit();
+    checkpoint.forget(stage + "first.");
+    keep_clusters(checkpoint, stage + "refit.", side);
+  }
+  progress.stage("texels", kRefitted, kSecond);
+  {
+    const TensorFunctions functions(side, source.threads, progress);
+    fit.solve(functions, stage);
+    fit.brighten(functions);
+    fit.round(functions);
+  }
+  progress.stage("functions", kSecond, 1);
+  fit.refit();
+  fit.mend_brightness();
+  progress.update(1);
 }
 
 }  // namespace velour

@@ -54,13 +54,6 @@ double dot(const RowMatrix& a, const RowMatrix& b) {
 
 }  // namespace
 
-/// Texels of a view by those that they see, so that threads do not meet and sums have one order.
-struct TensorTexels::Sources {
-  std::vector<uint32_t> first;   // of each texel
-  std::vector<uint32_t> source;  // texels of the view
-  std::vector<float> weight;
-};
-
 /// Products of functions over the views that show one texel.
 class TensorTexels::OfTexel {
  public:
@@ -89,26 +82,13 @@ class TensorTexels::OfTexel {
   std::vector<Eigen::MatrixXf> block_;
 };
 
-TensorTexels::TensorTexels(const TensorSource& source, size_t level, const TensorFunctions& functions,
+TensorTexels::TensorTexels(const TensorSource& source, const SeenTexels& seen, const TensorFunctions& functions,
                            const Progress& progress)
-    : source_(source),
-      relief_(source.relief[level]),
-      functions_(functions),
-      progress_(progress),
-      plane_(is_plane(relief_)) {
+    : source_(source), seen_(seen), functions_(functions), progress_(progress) {
   const auto rows = static_cast<Index>(texels());
   shows_ = RowMatrix::Zero(rows, functions.count());
   shown_.assign(texels() * source.side.view.size(), 0);
-  if (plane_) return;
-  data_ = RowMatrix::Zero(rows, functions.count());
-  seen_.resize(shown_.size());
-  for (size_t v = 0; v < source.side.view.size(); ++v) {
-    pieces([&](size_t t) {
-      const Vec2 place =
-          (Vec2(t % relief_.width(), t / relief_.width()) + 0.5f) / Vec2(relief_.width(), relief_.height());
-      seen_[v * texels() + t] = relief_.seen_texel(place, source.side.view[v]);
-    });
-  }
+  if (!seen.plane()) data_ = RowMatrix::Zero(rows, functions.count());
 }
 
 template <class Work>
@@ -118,33 +98,7 @@ void TensorTexels::pieces(const Work& work) const {
   });
 }
 
-BilinearTexels TensorTexels::seen(Index view, size_t texel) const {
-  return bilinear_at(seen_[static_cast<size_t>(view) * texels() + texel], relief_.width(), relief_.height());
-}
-
-TensorTexels::Sources TensorTexels::sources(Index view) const {
-  Sources sources;
-  sources.first.resize(texels() + 1);
-  std::vector<BilinearTexels> at;
-  for (size_t t = 0; t < texels(); ++t) {
-    at.push_back(seen(view, t));
-    for (const uint32_t i : at.back().index) ++sources.first[i + 1];
-  }
-  std::partial_sum(sources.first.begin(), sources.first.end(), sources.first.begin());
-  sources.source.resize(4 * texels());
-  sources.weight.resize(4 * texels());
-  std::vector<uint32_t> next = sources.first;
-  for (uint32_t t = 0; t < at.size(); ++t) {
-    for (size_t i = 0; i < 4; ++i) {
-      const uint32_t to = next[at[t].index[i]]++;
-      sources.source[to] = t;
-      sources.weight[to] = at[t].weight[i];
-    }
-  }
-  return sources;
-}
-
-void TensorTexels::add_view(Index view, const LevelImages& images, const TensorFunctions::OfView& functions) {
+void TensorTexels::add_view(Index view, const LevelImages& images, const FunctionsOfView& functions) {
   RowMatrix moments(shows_.rows(), shows_.cols());
   parallel_pieces((texels() + kTexels - 1) / kTexels, source_.threads, progress_, [&](size_t piece) {
     const auto first = static_cast<Index>(piece * kTexels);
@@ -156,8 +110,8 @@ void TensorTexels::add_view(Index view, const LevelImages& images, const TensorF
   });
   std::vector<uint32_t> all(texels());
   std::iota(all.begin(), all.end(), 0u);
-  const auto shown = shown_texels(relief_, all, source_.side.view[static_cast<size_t>(view)], tile_aspect(source_.grid),
-                                  source_.threads, progress_);
+  const auto shown = shown_texels(seen_.relief(), all, source_.side.view[static_cast<size_t>(view)],
+                                  tile_aspect(source_.grid), source_.threads, progress_);
   pieces([&](size_t t) {
     if (!shown[t].shown) return;
     shows_.row(static_cast<Index>(t)) += blended(moments, shown[t].at);
@@ -170,8 +124,8 @@ void TensorTexels::add_view(Index view, const LevelImages& images, const TensorF
       measured_ += static_cast<double>(cosine * source_.side.light[l].z * square);
     }
   }
-  if (plane_) return;
-  const Sources from = sources(view);
+  if (seen_.plane()) return;
+  const SeenTexels::Sources from = seen_.sources(view);
   pieces([&](size_t t) {
     for (uint32_t i = from.first[t]; i < from.first[t + 1]; ++i) {
       data_.row(static_cast<Index>(t)) += from.weight[i] * moments.row(from.source[i]);
@@ -183,8 +137,8 @@ TensorTexelValues TensorTexels::solve(Index members, const std::function<void(do
   TensorTexelValues values{std::vector<uint32_t>(texels() * static_cast<size_t>(members)),
                            RowMatrix(shows_.rows(), members * functions_.rank())};
   pieces([&](size_t t) { choose(t, values); });
-  after_step(plane_ ? 1.0 : 0.2);
-  if (!plane_) refine(values, [&](double part) { after_step(0.2 + 0.8 * part); });
+  after_step(seen_.plane() ? 1.0 : 0.2);
+  if (!seen_.plane()) refine(values, [&](double part) { after_step(0.2 + 0.8 * part); });
   return values;
 }
 
@@ -230,38 +184,16 @@ void TensorTexels::choose(size_t texel, TensorTexelValues& values) const {
   values.value.row(static_cast<Index>(texel)) = solution.transpose();
 }
 
-/// What texels first ... end - 1 of a view see: texel x function.
-RowMatrix TensorTexels::spread(Index view, size_t first, size_t end, const TensorTexelValues& values) const {
-  const Index rank = functions_.rank();
-  const size_t members = values.member.size() / texels();
-  RowMatrix spread = RowMatrix::Zero(static_cast<Index>(end - first), functions_.count());
-  const auto add = [&](size_t t, uint32_t from, float weight) {
-    for (size_t k = 0; k < members; ++k) {
-      spread.row(static_cast<Index>(t - first)).segment(values.member[from * members + k] * rank, rank) +=
-          weight * values.value.row(from).segment(static_cast<Index>(k) * rank, rank);
-    }
-  };
-  for (size_t t = first; t < end; ++t) {
-    if (plane_) {
-      add(t, static_cast<uint32_t>(t), 1);
-      continue;
-    }
-    const BilinearTexels at = seen(view, t);
-    for (size_t i = 0; i < 4; ++i) add(t, at.index[i], at.weight[i]);
-  }
-  return spread;
-}
-
 void TensorTexels::add_products(Index view, const TensorTexelValues& values, RowMatrix& sums) const {
   RowMatrix moments(shows_.rows(), shows_.cols());
   parallel_pieces((texels() + kTexels - 1) / kTexels, source_.threads, progress_, [&](size_t piece) {
     const size_t first = piece * kTexels, end = std::min(texels(), first + kTexels);
     moments.middleRows(static_cast<Index>(first), static_cast<Index>(end - first)).noalias() =
-        spread(view, first, end, values) * functions_.products(view);
+        seen_.spread(view, first, end, values, functions_.count()) * functions_.products(view);
   });
   const Index rank = functions_.rank();
-  const size_t members = values.member.size() / texels();
-  const Sources from = sources(view);
+  const auto members = static_cast<size_t>(values.members());
+  const SeenTexels::Sources from = seen_.sources(view);
   pieces([&](size_t t) {
     for (uint32_t i = from.first[t]; i < from.first[t + 1]; ++i) {
       for (size_t k = 0; k < members; ++k) {
@@ -284,7 +216,7 @@ RowMatrix TensorTexels::normal_product(const TensorTexelValues& values) const {
 void TensorTexels::refine(TensorTexelValues& values, const std::function<void(double)>& after_step) const {
   const MemberInverses inverse(functions_, values, texels());
   const Index rank = functions_.rank();
-  const size_t members = values.member.size() / texels();
+  const auto members = static_cast<size_t>(values.members());
   RowMatrix rest = -normal_product(values);
   for (size_t t = 0; t < texels(); ++t) {
     for (size_t k = 0; k < members; ++k) {
@@ -309,19 +241,20 @@ void TensorTexels::refine(TensorTexelValues& values, const std::function<void(do
   }
 }
 
-double TensorTexels::modelled(const TensorTexelValues& values) const {
-  Eigen::VectorXf cosine(static_cast<Index>(source_.side.light.size()));
-  for (Index l = 0; l < cosine.size(); ++l) cosine[l] = source_.side.light[static_cast<size_t>(l)].z;
+double modelled_squares(const TensorSource& source, const SeenTexels& seen, const TensorFunctions& functions,
+                        const TensorTexelValues& values, const Progress& progress) {
+  Eigen::VectorXf cosine(static_cast<Index>(source.side.light.size()));
+  for (Index l = 0; l < cosine.size(); ++l) cosine[l] = source.side.light[static_cast<size_t>(l)].z;
   double sum = 0;
-  for (Index v = 0; v < functions_.views(); ++v) {
-    const RowMatrix products = functions_.weighed_products(v, cosine);
-    std::vector<double> part((texels() + kTexels - 1) / kTexels);
-    parallel_pieces(part.size(), source_.threads, progress_, [&](size_t piece) {
-      const size_t first = piece * kTexels, end = std::min(texels(), first + kTexels);
-      const RowMatrix rows = spread(v, first, end, values);
+  for (Index v = 0; v < functions.views(); ++v) {
+    const RowMatrix products = functions.weighed_products(v, cosine);
+    std::vector<double> part((seen.texels() + kTexels - 1) / kTexels);
+    parallel_pieces(part.size(), source.threads, progress, [&](size_t piece) {
+      const size_t first = piece * kTexels, end = std::min(seen.texels(), first + kTexels);
+      const RowMatrix rows = seen.spread(v, first, end, values, functions.count());
       part[piece] = dot(rows, rows * products);
     });
-    sum += static_cast<double>(source_.side.view[static_cast<size_t>(v)].z) *
+    sum += static_cast<double>(source.side.view[static_cast<size_t>(v)].z) *
            std::accumulate(part.begin(), part.end(), 0.0);
   }
   return sum;

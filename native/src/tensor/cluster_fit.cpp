@@ -1,6 +1,7 @@
 #include "tensor/cluster_fit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -10,6 +11,8 @@
 
 namespace velour {
 namespace {
+
+[[noreturn]] void wrong(const std::string& what) { throw Error(Status::invalid_argument, what); }
 
 /// A new cluster's first slices: so many would be its share.
 Index fair_share(Index slices, Index clusters) { return std::max<Index>(1, slices / (2 * clusters)); }
@@ -26,6 +29,9 @@ class ClusterSolver {
     for (Index i = 0; i < matrix_.extent(0); ++i) {
       const Eigen::Map<const Eigen::VectorXf> slice(matrix_.data() + i * matrix_.extent(1), matrix_.extent(1));
       square_.push_back(static_cast<double>(slice.squaredNorm()));
+      if (!std::isfinite(square_.back())) {
+        wrong("Slice " + std::to_string(i) + " holds what is no number, or too large; leave it out or mend it.");
+      }
     }
   }
 
@@ -173,7 +179,6 @@ class ClusterSolver {
 };
 
 void check(const TensorView& slices, const ClusterOptions& options) {
-  const auto wrong = [](const std::string& what) { throw Error(Status::invalid_argument, what); };
   if (options.ranks.size() != slices.order()) wrong("A rank is needed for every mode of a tensor.");
   Index others = 1;
   for (size_t mode = 1; mode < slices.order(); ++mode) {

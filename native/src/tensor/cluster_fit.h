@@ -29,7 +29,7 @@ struct ClusterFit {
 /// decomposed anew, beginning with its factors as they are (hooi_sweep), so the error never rises; one that nobody has
 /// is begun anew with the slices that are worst off. Members: choose_members. With several members first one is fitted,
 /// then two, and so on. Mode 0 of `slices` is clustered; row-major. The same for any number of threads.
-/// Throws Error(invalid_argument) for counts that do not fit each other.
+/// Throws Error(invalid_argument) for counts that do not fit each other, and for slices that are not finite.
 ClusterFit fit_clusters(const TensorView& slices, const ClusterOptions& options, Progress& progress);
 
 }  // namespace velour

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 
@@ -118,7 +119,24 @@ Outcome compress(const BtfMeasurement& btf, const CompressOptions& options, uint
   }
 }
 
+bool same_bits(const TensorSide& a, const TensorSide& b) {
+  if (a.clusters.size() != b.clusters.size() || a.levels.size() != b.levels.size()) return false;
+  for (size_t c = 0; c < a.clusters.size(); ++c) {
+    const TensorBtfCluster &one = a.clusters[c], &two = b.clusters[c];
+    if (one.view != two.view || one.light != two.light || one.color != two.color || one.core != two.core) return false;
+  }
+  for (size_t l = 0; l < a.levels.size(); ++l) {
+    if (a.levels[l].member != b.levels[l].member || a.levels[l].value != b.levels[l].value) return false;
+  }
+  return true;
+}
+
 bool same_bits(const ModelBody& a, const ModelBody& b) {
+  if (const auto* one = std::get_if<TensorBtf>(&a)) {
+    const auto& two = std::get<TensorBtf>(b);
+    return std::equal(one->sides.begin(), one->sides.end(), two.sides.begin(), two.sides.end(),
+                      [](const TensorSide& s, const TensorSide& t) { return same_bits(s, t); });
+  }
   if (const auto* one = std::get_if<FactoredBtf>(&a)) {
     return one->pair_value == std::get<FactoredBtf>(b).pair_value &&
            one->levels[0].value == std::get<FactoredBtf>(b).levels[0].value;
@@ -133,6 +151,16 @@ bool same_bits(const ModelBody& a, const ModelBody& b) {
   return true;
 }
 
+/// That several fits are tried for.
+CompressOptions options_of(CompressMethod method) {
+  CompressOptions options;
+  options.method = method;
+  const bool tensors = method == CompressMethod::tucker || method == CompressMethod::kcta;
+  options.bytes = method == CompressMethod::srbf ? 1200 : tensors ? 6000 : 40000;
+  options.tolerance = method == CompressMethod::srbf ? 0.2 : tensors ? 0.12 : 0.08;
+  return options;
+}
+
 class Resumed : public testing::TestWithParam<CompressMethod> {};
 
 /// Wherever a fit is stopped, it ends with the bits of one that was not, and reads less.
@@ -140,10 +168,7 @@ TEST_P(Resumed, HasTheBitsOfAFitThatWasNotStopped) {
   const std::string path = testing::TempDir() + "velour-resumed-" + std::to_string(static_cast<int>(GetParam()));
   std::filesystem::remove(path);
   const test::MemoryBtf btf = test::striped_btf({6, 4}, GetParam() == CompressMethod::srbf);
-  CompressOptions options;
-  options.bytes = GetParam() == CompressMethod::srbf ? 1200 : 40000;
-  options.tolerance = GetParam() == CompressMethod::srbf ? 0.2 : 0.08;
-  options.method = GetParam();
+  CompressOptions options = options_of(GetParam());
   options.threads = 2;
   const Outcome whole = compress(btf, options, 0);
   ASSERT_TRUE(whole.model);
@@ -166,7 +191,8 @@ TEST_P(Resumed, HasTheBitsOfAFitThatWasNotStopped) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Resumed,
-                         testing::Values(CompressMethod::svd, CompressMethod::srbf, CompressMethod::svd_view));
+                         testing::Values(CompressMethod::svd, CompressMethod::srbf, CompressMethod::svd_view,
+                                         CompressMethod::tucker, CompressMethod::kcta));
 
 }  // namespace
 }  // namespace velour

@@ -57,5 +57,36 @@ TEST(FitMemory, OfComponentsGrowsWithThem) {
   EXPECT_THROW(components_within(1'000'000, extent), Error);
 }
 
+constexpr uint64_t kEntries = 64 * 64 * 3;  // of a slice
+
+std::string tensor_refusal(uint64_t memory) {
+  try {
+    tensor_allowance(memory, usual_extent(), kEntries);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::unsupported);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FitMemory, OfTensorsTakesFewerFunctionsThenFewerTexels) {
+  const TensorAllowance all = tensor_allowance(0, usual_extent(), kEntries);
+  const TensorAllowance some = tensor_allowance(uint64_t{1} << 30, usual_extent(), kEntries);
+  const TensorAllowance least = tensor_allowance(uint64_t{256} << 20, usual_extent(), kEntries);
+  EXPECT_LT(some.functions, all.functions);
+  EXPECT_LE(least.functions, some.functions);
+  EXPECT_LT(least.slices, all.slices);
+  EXPECT_LT(least.point_floats, all.point_floats);
+}
+
+TEST(FitMemory, OfTensorsNamesTheLeastThatWouldDo) {
+  const std::string sentence = tensor_refusal(50'000'000);
+  const size_t at = sentence.find("holds ");
+  ASSERT_NE(at, std::string::npos) << sentence;
+  const auto least = std::stoull(sentence.substr(at + 6)) * 1'000'000;
+  EXPECT_EQ(tensor_refusal(least), "");
+  EXPECT_NE(tensor_refusal(least - 2'000'000), "");
+}
+
 }  // namespace
 }  // namespace velour

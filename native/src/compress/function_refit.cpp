@@ -1,0 +1,206 @@
+#include "compress/function_refit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <numeric>
+
+#include "compress/core_refit.h"
+#include "job/parallel.h"
+
+namespace velour {
+namespace {
+
+constexpr double kRidge = 1e-5;  // of the mean diagonal
+
+Eigen::MatrixXd sum_of(std::vector<Eigen::MatrixXd>& groups) {
+  for (size_t g = 1; g < groups.size(); ++g) groups[0] += groups[g];
+  return std::move(groups[0]);
+}
+
+/// x of A x = b for a symmetric A that may have no inverse: it is near `start` where A says nothing.
+Eigen::MatrixXd solved_near(Eigen::MatrixXd matrix, const Eigen::MatrixXd& right, const Eigen::MatrixXd& start) {
+  const double ridge = kRidge * matrix.trace() / static_cast<double>(matrix.rows());
+  if (!(ridge > 0)) return start;
+  matrix.diagonal().array() += ridge;
+  return matrix.llt().solve(right + ridge * start);
+}
+
+/// Makes columns orthonormal; what turns the new ones into the old.
+RowMatrix orthonormalised(RowMatrix& factor) {
+  const Index count = factor.cols();
+  const Eigen::HouseholderQR<Eigen::MatrixXf> qr(factor);
+  factor = qr.householderQ() * Eigen::MatrixXf::Identity(factor.rows(), count);
+  return qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+}
+
+class FunctionRefit {
+ public:
+  FunctionRefit(const std::vector<ViewMoments>& moments, int threads, const Progress& progress,
+                std::vector<DirectionCluster>& clusters)
+      : moments_(moments), threads_(threads), progress_(progress), cluster_(clusters), rank_(clusters[0].rank()) {}
+
+  double value() const {
+    std::vector<double> part(moments_.size());
+    parallel_pieces(part.size(), threads_, progress_, [&](size_t v) {
+      const FunctionsOfView f = functions_of_view(cluster_, static_cast<Index>(v));
+      for (size_t a = 0; a < 3; ++a) {
+        const RowMatrix half = 0.5f * (moments_[v].products * f[a]) - moments_[v].images[a];
+        part[v] += 2 * f[a].cast<double>().cwiseProduct(half.cast<double>()).sum();
+      }
+    });
+    return std::accumulate(part.begin(), part.end(), 0.0);
+  }
+
+  void solve_lights();
+  void solve_views();
+  void make_orthonormal();
+
+ private:
+  Index count() const { return static_cast<Index>(cluster_.size()) * rank_; }
+  RowMatrix of_lights(Index view, size_t axis) const;
+  std::vector<RowMatrix> of_view_ranks() const;
+  Eigen::VectorXd solved_view(size_t view, const std::vector<RowMatrix>& parts) const;
+
+  const std::vector<ViewMoments>& moments_;
+  int threads_;
+  const Progress& progress_;
+  std::vector<DirectionCluster>& cluster_;
+  Index rank_;
+};
+
+/// Functions of a view are this times the rows of the lights: [cluster, rank] x [cluster, rank of the lights].
+RowMatrix FunctionRefit::of_lights(Index view, size_t axis) const {
+  const Index lights = cluster_[0].light.cols(), colors = cluster_[0].color.cols(), views = cluster_[0].view.cols();
+  RowMatrix all = RowMatrix::Zero(count(), static_cast<Index>(cluster_.size()) * lights);
+  for (size_t c = 0; c < cluster_.size(); ++c) {
+    const DirectionCluster& of = cluster_[c];
+    for (Index r = 0; r < rank_; ++r) {
+      const Eigen::RowVectorXf mixed = of.view.row(view) * of.core.middleRows(r * views, views);
+      all.row(static_cast<Index>(c) * rank_ + r).segment(static_cast<Index>(c) * lights, lights) =
+          (Eigen::Map<const RowMatrix>(mixed.data(), lights, colors) *
+           of.color.row(static_cast<Index>(axis)).transpose())
+              .transpose();
+    }
+  }
+  return all;
+}
+
+/// All lights have the same matrix.
+void FunctionRefit::solve_lights() {
+  const Index ranks = cluster_[0].light.cols(), all = static_cast<Index>(cluster_.size()) * ranks,
+              lights = cluster_[0].light.rows();
+  if (all > kMostJointRanks) return;
+  std::vector<Eigen::MatrixXd> matrix(kMomentGroups, Eigen::MatrixXd::Zero(all, all)),
+      right(kMomentGroups, Eigen::MatrixXd::Zero(all, lights));
+  parallel_pieces(kMomentGroups, threads_, progress_, [&](size_t g) {
+    for (size_t v = g; v < moments_.size(); v += kMomentGroups) {
+      for (size_t a = 0; a < 3; ++a) {
+        const RowMatrix of = of_lights(static_cast<Index>(v), a);
+        matrix[g] += (of.transpose() * (moments_[v].products * of)).cast<double>();
+        right[g] += (of.transpose() * moments_[v].images[a]).cast<double>();
+      }
+    }
+  });
+  Eigen::MatrixXd start(all, lights);
+  for (size_t c = 0; c < cluster_.size(); ++c) {
+    start.middleRows(static_cast<Index>(c) * ranks, ranks) = cluster_[c].light.transpose().cast<double>();
+  }
+  const Eigen::MatrixXd solution = solved_near(sum_of(matrix), sum_of(right), start);
+  for (size_t c = 0; c < cluster_.size(); ++c) {
+    cluster_[c].light = solution.middleRows(static_cast<Index>(c) * ranks, ranks).transpose().cast<float>();
+  }
+}
+
+/// Functions of a view are sums over ranks of the views of these times rows of their factor: of a cluster and rank,
+/// [rank of the texels] x [axis, light].
+std::vector<RowMatrix> FunctionRefit::of_view_ranks() const {
+  const Index views = cluster_[0].view.cols(), lights = cluster_[0].light.rows();
+  std::vector<RowMatrix> parts(cluster_.size() * static_cast<size_t>(views), RowMatrix(rank_, 3 * lights));
+  parallel_pieces(parts.size(), threads_, progress_, [&](size_t n) {
+    const DirectionCluster& of = cluster_[n / static_cast<size_t>(views)];
+    for (Index r = 0; r < rank_; ++r) {
+      const Eigen::RowVectorXf row = of.core.row(r * views + static_cast<Index>(n) % views);
+      const Eigen::Map<const RowMatrix> core(row.data(), of.light.cols(), of.color.cols());
+      const RowMatrix values = of.color * (of.light * core).transpose();
+      parts[n].row(r) = Eigen::Map<const Eigen::RowVectorXf>(values.data(), values.size());
+    }
+  });
+  return parts;
+}
+
+/// Rows of all clusters' factors.
+Eigen::VectorXd FunctionRefit::solved_view(size_t view, const std::vector<RowMatrix>& parts) const {
+  const ViewMoments& moments = moments_[view];
+  const Index views = cluster_[0].view.cols(), lights = cluster_[0].light.rows(),
+              all = static_cast<Index>(parts.size());
+  Eigen::MatrixXd matrix(all, all);
+  Eigen::VectorXd right(all), start(all);
+  for (Index n = 0; n < all; ++n) {
+    const Index c = n / views;
+    const RowMatrix& part = parts[static_cast<size_t>(n)];
+    start[n] = static_cast<double>(cluster_[static_cast<size_t>(c)].view(static_cast<Index>(view), n % views));
+    right[n] = 0;
+    for (Index a = 0; a < 3; ++a) {
+      const RowMatrix& images = moments.images[static_cast<size_t>(a)];
+      right[n] += static_cast<double>(
+          images.middleRows(c * rank_, rank_).cwiseProduct(part.middleCols(a * lights, lights)).sum());
+    }
+    for (Index d = 0; d <= c; ++d) {
+      const RowMatrix turned = moments.products.block(d * rank_, c * rank_, rank_, rank_) * part;
+      for (Index m = d * views; m < (d + 1) * views; ++m) {
+        const float product = turned.cwiseProduct(parts[static_cast<size_t>(m)]).sum();
+        matrix(n, m) = matrix(m, n) = static_cast<double>(product);
+      }
+    }
+  }
+  return solved_near(matrix, right, start);
+}
+
+void FunctionRefit::solve_views() {
+  const Index views = cluster_[0].view.cols();
+  if (static_cast<Index>(cluster_.size()) * views > kMostJointRanks) return;
+  const std::vector<RowMatrix> parts = of_view_ranks();
+  std::vector<Eigen::VectorXd> solution(moments_.size());
+  parallel_pieces(moments_.size(), threads_, progress_, [&](size_t v) { solution[v] = solved_view(v, parts); });
+  for (size_t v = 0; v < moments_.size(); ++v) {
+    for (size_t c = 0; c < cluster_.size(); ++c) {
+      cluster_[c].view.row(static_cast<Index>(v)) =
+          solution[v].segment(static_cast<Index>(c) * views, views).transpose().cast<float>();
+    }
+  }
+}
+
+/// What that takes out of the factors goes into the cores.
+void FunctionRefit::make_orthonormal() {
+  for (DirectionCluster& of : cluster_) {
+    const Index views = of.view.cols(), lights = of.light.cols(), colors = of.color.cols();
+    const RowMatrix view = orthonormalised(of.view), light = orthonormalised(of.light);
+    for (Index r = 0; r < rank_; ++r) {
+      of.core.middleRows(r * views, views) = view * of.core.middleRows(r * views, views);
+    }
+    for (Index r = 0; r < of.core.rows(); ++r) {
+      Eigen::Map<RowMatrix> core(of.core.row(r).data(), lights, colors);
+      core = light * RowMatrix(core);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<double> refit_functions(const std::vector<ViewMoments>& moments, const RefitOptions& options,
+                                    const Progress& progress, std::vector<DirectionCluster>& clusters) {
+  FunctionRefit refit(moments, options.threads, progress, clusters);
+  std::vector<double> value{refit.value()};
+  for (int round = 0; round < options.rounds; ++round) {
+    refit.solve_lights();
+    value.push_back(refit.value());
+    refit.solve_views();
+    value.push_back(refit.value());
+    refit.make_orthonormal();
+    refit_cores(moments, options.threads, progress, clusters);
+    value.push_back(refit.value());
+  }
+  return value;
+}
+
+}  // namespace velour
