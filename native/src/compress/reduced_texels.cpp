@@ -3,13 +3,15 @@
 #include <Eigen/Cholesky>
 
 #include "btf/srbf_btf.h"
+#include "compress/relief_gap.h"
 #include "job/parallel.h"
 
 namespace velour {
 namespace {
 
-constexpr size_t kTexels = 64;        // of a piece of work
-constexpr Index kViews = 9;           // that are added at once
+constexpr size_t kTexels = 64;  // of a piece of work
+constexpr Index kViews = 9;     // that are added at once
+constexpr size_t kGapPixels = 1000;
 constexpr double kLeastNoise = 1e-3;  // of the mean energy of a view
 
 class Reduction {
@@ -21,8 +23,10 @@ class Reduction {
         progress_(progress),
         reduced_{
             {},
-            DenseTensor({static_cast<Index>(texels.size()), bases.view.vector.cols(), bases.light.vector.cols(), 3})},
+            DenseTensor({static_cast<Index>(texels.size()), bases.view.vector.cols(), bases.light.vector.cols(), 3}),
+            0},
         row_(3 * bases.light.vector.cols()),
+        gap_(source, kGapPixels, progress),
         shown_(RowMatrix::Zero(static_cast<Index>(texels.size()), bases.view.vector.rows())) {
     reduced_.texel = std::move(texels);
   }
@@ -41,11 +45,13 @@ class Reduction {
       for (Index a = 0; a < 3; ++a) target.col(a) = blended(projected[static_cast<size_t>(a)], from.at).transpose();
     });
     if (++held_ == kViews) add_held(view);
+    gap_.add_view(view, images);
   }
 
   ReducedTexels take() {
     if (held_ > 0) add_held(bases_.view.vector.rows() - 1);
     pieces([&](Index i) { fill(i); });
+    reduced_.relief_share = gap_.share();
     return std::move(reduced_);
   }
 
@@ -91,7 +97,8 @@ class Reduction {
   const DirectionBases& bases_;
   const Progress& progress_;
   ReducedTexels reduced_;
-  Index row_;          // entries of a view: [light basis][axis]
+  Index row_;  // entries of a view: [light basis][axis]
+  ReliefGap gap_;
   RowMatrix shown_;    // texel x view: 1 or 0
   RowMatrix waiting_;  // texel x [view][entry]
   Index held_ = 0;     // views that wait

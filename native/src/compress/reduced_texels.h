@@ -8,6 +8,7 @@ namespace velour {
 struct ReducedTexels {
   std::vector<uint32_t> texel;  // of the finest level
   DenseTensor slices;           // [texel][view basis][light basis][axis]
+  double relief_share;          // ReliefGap::share()
 };
 
 /// What views show of `texels`, projected on the bases. Of a texel that some views do not show, least squares over

@@ -20,7 +20,8 @@ struct ShapeRange {
 struct ShapeSearchOptions {
   ShapeRange range;
   TensorExtent extent;
-  uint64_t bytes = 0;  // at most
+  uint64_t bytes = 0;       // at most
+  double relief_share = 0;  // ReliefGap::share()
   uint64_t seed = 0;
   int threads = 0;
 };
@@ -29,14 +30,16 @@ struct FoundShape {
   ShapeChoice choice;
   TensorShape shape;                       // of the bytes
   uint32_t view_rank = 0, light_rank = 0;  // at most: of the extent
-  double error = 0;                        // relative L2 of the slices that it was judged by
+  double error = 0;                        // relative L2 that is expected of the images
+  double relief_error = 0;                 // of it the part, squared, that is the same for all shapes
   std::vector<ShapeTrial> trials;          // in their order
 };
 
 /// Walks from one cluster, and from a usual number of them, to better neighbours - twice or half the clusters, a member
 /// more or fewer, another share of texels, another rank of colours - until none is. A shape is judged by short fits to
 /// some slices, [slice][view] [light][colour], and by what it leaves of others, which the fit has not seen; few slices
-/// are all fitted and judged. Throws Error(invalid_argument) when no shape is within the bytes.
+/// are all fitted and judged. To that comes what the relief leaves of the images, which is the same for all shapes.
+/// Throws Error(invalid_argument) when no shape is within the bytes.
 FoundShape search_shape(const TensorView& slices, const ShapeSearchOptions& options, Progress& progress);
 
 }  // namespace velour

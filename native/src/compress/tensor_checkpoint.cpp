@@ -6,7 +6,7 @@
 namespace velour {
 namespace {
 
-constexpr size_t kShapeNumbers = 10, kTrialNumbers = 8;
+constexpr size_t kShapeNumbers = 11, kTrialNumbers = 8;
 constexpr size_t kMostTrials = 64;
 
 void append(const TensorShape& shape, std::vector<double>& numbers) {
@@ -41,6 +41,8 @@ std::optional<FoundShape> kept_shape(const FitCheckpoint& checkpoint, const std:
   if (found.shape.clusters == 0) return std::nullopt;
   found.choice = {found.shape.clusters, found.shape.members, found.shape.rank.color, at[6]};
   found.error = at[7];
+  found.relief_error = at[10];
+  if (!(found.relief_error >= 0)) return std::nullopt;
   const auto is_rank = [](double n) { return n >= 1 && n <= static_cast<double>(TensorBtf::kMaxRank); };
   if (!is_rank(at[8]) || !is_rank(at[9])) return std::nullopt;
   found.view_rank = static_cast<uint32_t>(at[8]);
@@ -61,7 +63,7 @@ void keep_shape(FitCheckpoint& checkpoint, const std::string& stage, const Found
   std::vector<double> numbers;
   append(found.shape, numbers);
   numbers.insert(numbers.end(), {found.choice.texel_share, found.error, static_cast<double>(found.view_rank),
-                                 static_cast<double>(found.light_rank)});
+                                 static_cast<double>(found.light_rank), found.relief_error});
   for (const ShapeTrial& trial : found.trials) {
     append({trial.clusters, trial.members, {trial.rank[0], trial.rank[1], trial.rank[2], trial.rank[3]}}, numbers);
     numbers.insert(numbers.end(), {static_cast<double>(trial.parameter_bytes), trial.expected});

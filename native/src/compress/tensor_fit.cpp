@@ -140,7 +140,8 @@ void TensorFitter::find_shape(size_t side, uint64_t bytes, const ShapeRange& ran
   reduce(side);
   const Progress::Span shapes(progress_, kReduced, 1);
   of.found =
-      search_shape(of.reduced->slices.view(), {range, extent(side), bytes, options_.seed, options_.threads}, progress_);
+      search_shape(of.reduced->slices.view(),
+                   {range, extent(side), bytes, of.reduced->relief_share, options_.seed, options_.threads}, progress_);
   keep_shape(checkpoint_, side_stage(side) + ".shape", of.found);
 }
 
@@ -157,12 +158,16 @@ std::optional<TensorShape> TensorFitter::shape_of(size_t side, uint64_t bytes) c
 
 /// One size where none is looked for; otherwise a ladder of them.
 void TensorFitter::set_curve(uint64_t bytes) {
-  double left = 0, all = 0;
+  double left = 0, relief = 0, all = 0;
   for (const Side& of : sides_) {
-    left += of.energy * of.found.error * of.found.error;
+    left += of.energy * std::max(of.found.error * of.found.error - of.found.relief_error, 0.0);
+    relief += of.energy * of.found.relief_error;
     all += of.energy;
   }
-  const double error = all > 0 ? std::sqrt(left / all) : 0.0;
+  const auto expected = [&](uint64_t size) {
+    const double ratio = static_cast<double>(size) / static_cast<double>(bytes);
+    return all > 0 ? std::sqrt((left * std::pow(ratio, -2 * kFall) + relief) / all) : 0.0;
+  };
   std::vector<uint64_t> ladder{bytes};
   if (options_.tolerance > 0) {
     const double most = options_.bytes > 0 ? static_cast<double>(bytes)
@@ -187,7 +192,7 @@ void TensorFitter::set_curve(uint64_t bytes) {
       point.parameter_bytes += tensor_bytes(*shape, extent(s));
     }
     if (!sound || (!curve_.points.empty() && point.parameter_bytes <= curve_.points.back().parameter_bytes)) continue;
-    point.relative_l2 = error * std::pow(static_cast<double>(size) / static_cast<double>(bytes), -kFall);
+    point.relative_l2 = expected(size);
     curve_.points.push_back(point);
     bytes_.push_back(size);
   }
