@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "compress/equal_sides.h"
+#include "job/error.h"
 
 namespace velour {
 namespace {
@@ -35,6 +37,12 @@ FittedSides fitted_sides(const BtfMeasurement& measurement, const ColourAxes& co
     found.sides.push_back({std::move(side), energy});
   }
   return found;
+}
+
+void require_complete(const PairLayout& layout) {
+  if (layout.complete()) return;
+  throw Error(Status::unsupported, "A model needs every view under every light; the BTF has " +
+                                       std::to_string(layout.pairs()) + " pairs alone.");
 }
 
 }  // namespace velour

@@ -21,4 +21,7 @@ struct FittedSides {
 /// serves (sides_are_equal).
 FittedSides fitted_sides(const BtfMeasurement& measurement, const ColourAxes& colours, const Progress& progress);
 
+/// Throws Error(unsupported) for a layout in which a view lacks a light.
+void require_complete(const PairLayout& layout);
+
 }  // namespace velour

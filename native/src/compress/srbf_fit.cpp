@@ -54,10 +54,7 @@ SrbfFitter::SrbfFitter(const BtfMeasurement& measurement, const BtfFitOptions& o
       checkpoint_(checkpoint),
       progress_(progress),
       views_(measurement, options.companding, options.threads, progress) {
-  if (!measurement.layout().complete()) {
-    throw Error(Status::unsupported, "A model needs every view under every light; the BTF has " +
-                                         std::to_string(measurement.layout().pairs()) + " pairs alone.");
-  }
+  require_complete(measurement.layout());
   progress.stage("colours", 0, kColours);
   const ColourAxes colours = find_colours(views_, measurement.layout(), checkpoint);
   axes_ = colours.axes;

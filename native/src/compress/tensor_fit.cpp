@@ -8,7 +8,6 @@
 #include "compress/tensor_checkpoint.h"
 #include "compress/tensor_functions.h"
 #include "compress/tensor_levels.h"
-#include "job/error.h"
 #include "tensor/cluster_fit.h"
 
 namespace velour {
@@ -36,10 +35,7 @@ TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOption
       checkpoint_(checkpoint),
       progress_(progress),
       views_(measurement, options.companding, options.threads, progress) {
-  if (!measurement.layout().complete()) {
-    throw Error(Status::unsupported, "A model needs every view under every light; the BTF has " +
-                                         std::to_string(measurement.layout().pairs()) + " pairs alone.");
-  }
+  require_complete(measurement.layout());
   const FitExtent of_fit{.texels = measurement.grid().texels(),
                          .pyramid_texels = pyramid_texels(measurement.grid()),
                          .pairs = measurement.layout().pairs(),

@@ -11,10 +11,9 @@
 #include "compress/btf_compare.h"
 #include "compress/relief_pyramid.h"
 #include "image/half_image.h"
-#include "job/error.h"
 #include "sphere/random.h"
 #include "support/example_srbf.h"
-#include "support/relief_btf.h"
+#include "support/fitted_btfs.h"
 #include "support/striped_btf.h"
 
 namespace velour {
@@ -83,23 +82,14 @@ SrbfBtf true_model(float high, bool two_sided = false) {
 
 test::MemoryBtf images_of(const SrbfBtf& model) {
   const SrbfEvaluator evaluator(shared(model));
-  DirectionPair of{Vec3(0.0f), Vec3(0.0f)};
-  std::vector<float> rgb;
-  return {model.layout, model.grid, [&](const DirectionPair& pair, uint32_t x, uint32_t y) {
-            if (pair.wl != of.wl || pair.wv != of.wv) srbf_image(evaluator, of = pair, rgb);
-            const size_t i = 3 * (size_t{y} * model.grid.width + x);
-            return Rgb(rgb[i], rgb[i + 1], rgb[i + 2]);
-          }};
+  return test::shown_by(model.layout, model.grid,
+                        [&](const DirectionPair& pair, std::vector<float>& rgb) { srbf_image(evaluator, pair, rgb); });
 }
 
 test::MemoryBtfWithRelief with_relief(const SrbfBtf& model, bool hole = false) {
-  // Heights over the lowest point of a shell whose middle is the reference plane, in metres.
   std::vector<float> heights(model.grid.texels());
   halves_to_floats(model.sides[0].levels[0].relief, heights);
-  const double width = static_cast<double>(model.grid.tile_metres->x);
-  for (float& h : heights) h = static_cast<float>(width * (static_cast<double>(h) + 0.1));
-  if (hole) heights[0] = std::numeric_limits<float>::infinity();
-  return {images_of(model), heights, {0.2 * width, 0.1 * width}};
+  return test::over_relief(images_of(model), heights, hole);
 }
 
 BtfErrors errors_of(const SrbfBtf& model, const BtfMeasurement& btf) {
@@ -169,24 +159,14 @@ TEST(SrbfFit, IsAsBrightAsWhatItLeavesOut) {
 }
 
 TEST(SrbfFit, RefusesTooFewBytesWithASentence) {
-  try {
-    fit(test::striped_btf(small_grid()), {.bytes = 100});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.status(), Status::invalid_argument);
-    EXPECT_NE(std::string(error.what()).find("100 were asked for"), std::string::npos) << error.what();
-  }
+  test::expect_refused(Status::invalid_argument, "100 were asked for",
+                       [] { fit(test::striped_btf(small_grid()), {.bytes = 100}); });
 }
 
 TEST(SrbfFit, NeedsEveryPair) {
   const PairLayout holes(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}});
-  try {
-    fit(test::MemoryBtf(holes, small_grid(), test::striped), {});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.status(), Status::unsupported);
-    EXPECT_NE(std::string(error.what()).find("3 pairs"), std::string::npos) << error.what();
-  }
+  test::expect_refused(Status::unsupported, "3 pairs",
+                       [&] { fit(test::MemoryBtf(holes, small_grid(), test::striped), {}); });
 }
 
 TEST(SrbfFit, IsTheSameForAnyNumberOfThreads) {
@@ -322,12 +302,7 @@ TEST(SrbfFit, ReportsRisingProgressAndEndsAtACancel) {
     while (cancelled.fraction() < 0.1) std::this_thread::yield();
     cancelled.cancel();
   });
-  try {
-    fit(btf, {.bytes = kBytes}, cancelled);
-    ADD_FAILURE() << "not cancelled";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.status(), Status::cancelled);
-  }
+  test::expect_refused(Status::cancelled, "Cancelled", [&] { fit(btf, {.bytes = kBytes}, cancelled); });
   asks.join();
   EXPECT_LT(cancelled.fraction(), 1);
 }

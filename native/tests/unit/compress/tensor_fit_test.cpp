@@ -8,9 +8,8 @@
 
 #include "btf/tensor_images.h"
 #include "compress/btf_compare.h"
-#include "job/error.h"
 #include "support/example_tensor.h"
-#include "support/relief_btf.h"
+#include "support/fitted_btfs.h"
 #include "support/striped_btf.h"
 
 namespace velour {
@@ -53,13 +52,8 @@ BtfErrors errors_of(const TensorBtf& model, const BtfMeasurement& btf) {
 /// What a model shows.
 test::MemoryBtf images_of(const TensorBtf& model) {
   const TensorImages images(model);
-  DirectionPair of{Vec3(0.0f), Vec3(0.0f)};
-  std::vector<float> rgb;
-  return {model.layout, model.grid, [&](const DirectionPair& pair, uint32_t x, uint32_t y) {
-            if (pair.wl != of.wl || pair.wv != of.wv) images.image(of = pair, rgb);
-            const size_t i = 3 * (size_t{y} * model.grid.width + x);
-            return Rgb(rgb[i], rgb[i + 1], rgb[i + 2]);
-          }};
+  return test::shown_by(model.layout, model.grid,
+                        [&](const DirectionPair& pair, std::vector<float>& rgb) { images.image(pair, rgb); });
 }
 
 TexelGrid small_grid() { return {12, 8, Vec2(0.003f, 0.002f)}; }
@@ -80,11 +74,7 @@ TensorBtf true_model(float high) {
 }
 
 test::MemoryBtfWithRelief with_relief(const TensorBtf& model) {
-  // Heights over the lowest point of a shell whose middle is the reference plane, in metres.
-  std::vector<float> heights = heights_of(model.sides[0].levels[0]);
-  const double width = static_cast<double>(model.grid.tile_metres->x);
-  for (float& h : heights) h = static_cast<float>(width * (static_cast<double>(h) + 0.1));
-  return {images_of(model), heights, {0.2 * width, 0.1 * width}};
+  return test::over_relief(images_of(model), heights_of(model.sides[0].levels[0]));
 }
 
 void expect_same(const TensorBtf& a, const TensorBtf& b) {
@@ -159,13 +149,8 @@ TEST(TensorFit, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(TensorFit, RefusesTooFewBytesWithASentence) {
-  try {
-    fit(test::striped_btf(small_grid()), {.bytes = 100});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.status(), Status::invalid_argument);
-    EXPECT_NE(std::string(error.what()).find("100 were asked for"), std::string::npos) << error.what();
-  }
+  test::expect_refused(Status::invalid_argument, "100 were asked for",
+                       [] { fit(test::striped_btf(small_grid()), {.bytes = 100}); });
 }
 
 TEST(TensorFit, IsAsBrightAsWhatItLeavesOut) {
@@ -233,13 +218,8 @@ TEST(TensorFit, OfTwoSidesFitsBothAndThoseThatLightGoesThroughTo) {
 
 TEST(TensorFit, NeedsEveryPair) {
   const PairLayout holes(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}});
-  try {
-    fit(test::MemoryBtf(holes, small_grid(), test::striped), {});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.status(), Status::unsupported);
-    EXPECT_NE(std::string(error.what()).find("3 pairs"), std::string::npos) << error.what();
-  }
+  test::expect_refused(Status::unsupported, "3 pairs",
+                       [&] { fit(test::MemoryBtf(holes, small_grid(), test::striped), {}); });
 }
 
 /// Every level under every light has the mean of the measurement, in f itself.
@@ -274,12 +254,7 @@ TEST(TensorFit, ReportsRisingProgressAndEndsAtACancel) {
     while (cancelled.fraction() < 0.3) std::this_thread::yield();
     cancelled.cancel();
   });
-  try {
-    fit(btf, {.bytes = kBytes}, kThree, cancelled, none);
-    ADD_FAILURE() << "not cancelled";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.status(), Status::cancelled);
-  }
+  test::expect_refused(Status::cancelled, "Cancelled", [&] { fit(btf, {.bytes = kBytes}, kThree, cancelled, none); });
   asks.join();
   EXPECT_LT(cancelled.fraction(), 1);
 }
