@@ -23,39 +23,42 @@ _PROGRAM = ROOT / "build/release/native/bench/occlusion_tables"
 
 
 @dataclasses.dataclass(frozen=True)
-class Extent:
-    texels: int = 256
-    views: int = 300
-    unseen: int = 64
-    # Name and irregularity. The net as it comes repeats itself in its tile, which suits tables.
-    tiles: tuple[tuple[str, float], ...] = (("net", 0.0), ("net", 0.5), ("chainmail", 0.0))
+class Case:
+    """The net as it comes repeats itself in its tile, which suits tables; the irregular one does not."""
+
+    tile: str
+    irregularity: float
+    texels: int
+    views: int
+    unseen: int
 
 
-QUICK = Extent(texels=64, views=100, unseen=16)
+SMALL = (Case("net", 0.5, 64, 100, 16), Case("chainmail", 0, 64, 100, 16))
+WHOLE = (Case("net", 0, 256, 300, 64), *SMALL)
+QUICK = (Case("net", 0, 64, 100, 16), *SMALL)
 
 
 def main() -> int:
     args = script.arguments("votf_tables", ROOT / "docs")
-    extent = QUICK if args.quick else Extent()
     args.output.mkdir(parents=True, exist_ok=True)
     progress = Progress()
     results = []
-    for tile, irregularity in extent.tiles:
-        with progress.work(f"{tile}, irregularity {irregularity:g}", extent.texels**2 * extent.views):
-            results.append(_compared(tile, irregularity, extent, args))
+    for case in QUICK if args.quick else WHOLE:
+        with progress.work(f"{case.tile}, irregularity {case.irregularity:g}", case.texels**2 * case.views):
+            results.append(_compared(case, args))
     votf_tables_text.write(args.output, results, provenance.conditions(args.seed, threads()))
     print(args.output / "votf_tables.md")
     return 0
 
 
-def _compared(tile: str, irregularity: float, extent: Extent, args) -> dict:
-    folder = args.work / f"{tile}-{irregularity:g}-{args.seed}"
+def _compared(case: Case, args) -> dict:
+    words = [*dataclasses.astuple(case), args.seed]
+    folder = args.work / "-".join(map(str, words))
     kept = folder / "result.json"
     if kept.exists() and not args.fresh:
         return json.loads(kept.read_text(encoding="utf-8"))
     folder.mkdir(parents=True, exist_ok=True)
-    sizes = extent.texels, extent.views, extent.unseen, args.seed
-    command = [_PROGRAM, tile, irregularity, *sizes, folder]
+    command = [_PROGRAM, *words, folder]
     output = subprocess.run([str(c) for c in command], check=True, stdout=subprocess.PIPE).stdout
     result = json.loads(output)
     for i, candidate in enumerate(result["candidates"]):

@@ -42,16 +42,14 @@ def write(folder: Path, results: list[dict], conditions: dict) -> None:
 
 
 def _page(results: list[dict], conditions: dict) -> str:
-    first = results[0]
-    side, views, unseen = first["texels"], first["views"], first["unseen"]
     return f"""# Tables of occlusion beside distances in the shell
 
 By `scripts/votf_tables`. {provenance.sentence(conditions)}
 All rows: [votf_tables.csv](votf_tables.csv).
 
 V(t, wv) says whether the line through the centre of texel t along wv meets the structure
-([votf.md](votf.md)). Ways to keep it, of {side} x {side} texels and {views} views up to 80 degrees,
-evenly over solid angle, made by rays:
+([votf.md](votf.md)). Ways to keep it, of texels and views up to 80 degrees, evenly over solid angle, made by
+rays:
 
 - *V, whole*: a bit for every texel and view. *Signed distance, whole*: in every view's picture, to the
   nearest border of what is covered, in a byte, at most 4 texels. Between views both are linear
@@ -62,8 +60,8 @@ evenly over solid angle, made by rays:
   descent, thresholded; a byte a number. They know all views.
 - *distances in the shell*: what Velour keeps. They know all views, too.
 
-Wrong: share of texels whose visibility is not what a ray finds, under the stored views and under
-{unseen} unseen ones (random, up to 75 degrees). Border: how far the places between a covered and an open
+Wrong: share of texels whose visibility is not what a ray finds, under the stored views and under unseen
+ones (random, up to 75 degrees). Border: how far the places between a covered and an open
 texel are from the nearest such place of the truth, and the other way round, mean, at most 8 texels.
 Deflated: by zlib, as files hold them. Nanoseconds: of processor time, of random texels under a stored
 view, under any view, and of texels in their order under one view. Seconds: of processor time, to make it
@@ -76,9 +74,11 @@ tables and deflating; the irregular one does not.
 def _section(result: dict) -> str:
     irregular = f", irregularity {result['irregularity']:g}" if result["irregularity"] else ""
     rows = [_row(c) for c in result["candidates"]]
+    side, views, unseen = result["texels"], result["views"], result["unseen"]
     return f"""## {result["tile"].capitalize()}{irregular}
 
-Mean V {result["mean"]:.2f}. The rays of the table took {result["ray_seconds"]:.1f} seconds of processor time.
+{side} x {side} texels, {views} views, {unseen} unseen ones; mean V {result["mean"]:.2f}. The rays of the
+table took {result["ray_seconds"]:.1f} seconds of processor time.
 
 {table(_HEADER, rows)}
 {_verdict(result)}
