@@ -24,7 +24,7 @@ ClusterFit fit(const DenseTensor& tensor, const ClusterOptions& options) {
   }
   for (const TensorCluster& cluster : found.tensor.cluster) {
     EXPECT_TRUE(cluster.core.allFinite());
-    for (const RowMatrix& factor : cluster.factor) EXPECT_LT(test::orthonormality_error(factor), 2e-6f);
+    for (const RowMatrix& factor : cluster.factor) EXPECT_LT(test::orthonormality_error(factor), 1e-6f);
   }
   EXPECT_TRUE(found.tensor.coefficient.allFinite());
   return found;
