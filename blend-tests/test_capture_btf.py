@@ -175,6 +175,48 @@ class Refusals(BlenderTest):
         self.assertEqual(result, {"FINISHED"})
         self.assertTrue((path / "btf.json").is_file())
 
+    def _textured(self, sockets, values):
+        """A plane of a Principled material with an image at the first of `sockets` that there is."""
+        image = bpy.data.images.new("Picture", 2, 2, float_buffer=True)
+        image.pixels.foreach_set(np.repeat(np.array(values, np.float32), 4))
+        material = bpy.data.materials.new("Painted")
+        material.use_nodes = True
+        tree = material.node_tree
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image = image
+        node = tree.nodes["Principled BSDF"]
+        socket = next(node.inputs[name] for name in sockets if name in node.inputs)
+        tree.links.new(texture.outputs[0], socket)
+        return scenes.add_plane(material), socket.name
+
+    def test_textures_of_what_is_not_textured_are_named(self):
+        for sockets in (
+            ("Specular IOR Level", "Specular"),
+            ("Coat Weight", "Clearcoat"),
+            ("Emission Color", "Emission"),
+            ("Emission Strength",),
+            ("Specular Tint",),
+            ("Sheen Weight", "Sheen"),
+        ):
+            obj, socket = self._textured(sockets, (0.2, 0.4, 0.6, 0.8))
+            bpy.context.view_layer.objects.active = obj
+            self._refused(["Material 'Painted", f"'{socket}'", "Approximate"])
+        path = self.folder / "approximate.btf"
+        arguments = {**_SMALL, "directory": str(path), "use_approximate": True}
+        self.assertEqual(bpy.ops.velour.capture_btf(**arguments), {"FINISHED"})
+
+    def test_textured_alpha_is_captured(self):
+        hashes = []
+        for number, values in enumerate(((1, 1, 1, 1), (0, 1, 1, 0), (0, 0, 0, 0.5))):
+            obj, _ = self._textured(("Alpha",), values)
+            bpy.context.view_layer.objects.active = obj
+            path = self.folder / f"alpha{number}.btf"
+            bpy.ops.velour.capture_btf(**_SMALL, directory=str(path))
+            index = json.loads((path / "btf.json").read_text())
+            hashes.append(tuple(file["sha256"] for file in index["content"]["files"]))
+            bpy.data.objects.remove(obj)
+        self.assertEqual(len(set(hashes)), 3)
+
     def test_a_copy_is_not_the_tile(self):
         scenes.add_plane()
         bpy.ops.velour.repeat_tile()

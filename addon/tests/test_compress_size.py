@@ -172,6 +172,27 @@ def test_too_little_memory_is_refused_with_the_least_that_would_do(folder, btf):
         assert done.status == 0
 
 
+def test_memory_that_makes_another_model_says_so_and_what_would_not(folder, btf):
+    def compressed(*memory):
+        out = folder / "memory.velour"
+        done = velour("compress", btf, "-o", out, "--bytes", BYTES, *memory, "--json", "--quiet")
+        assert done.status == 0, done.err
+        return done.json["warnings"], parameters(out)
+
+    sentence = refused("compress", btf, "-o", path_of(folder), "--bytes", BYTES, "--memory", 1_000_000)
+    least = int(sentence.split("holds ")[1].split(" MB")[0]) * 1_000_000
+    no_warnings, unlimited = compressed()
+    warnings, other = compressed("--memory", least)
+    assert not any("another model" in w for w in no_warnings)
+    said = [w for w in warnings if "another model" in w]
+    assert len(said) == 1
+    assert other != unlimited
+    enough = int(said[0].split("; ")[1].split(" MB")[0]) * 1_000_000
+    warnings, same = compressed("--memory", enough)
+    assert not any("another model" in w for w in warnings)
+    assert same == unlimited
+
+
 def parameters(path):
     """Values that the model gives, which its record of seconds and rates is no part of."""
     with Model.load(path) as model:

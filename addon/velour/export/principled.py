@@ -141,9 +141,12 @@ def _note_link(socket, node, owner, notes, reason=""):
 def _note_ignored(node, owner, notes):
     for name, harmless in _IGNORED.items():
         socket = node.inputs.get(name)
-        if socket is None or not isinstance(socket.default_value, float):
+        if socket is None:
             continue
-        if source(socket) or abs(socket.default_value - harmless) > 1e-6:
+        value = socket.default_value
+        # Newer tints are colours, of which white makes no difference.
+        off = abs(value - harmless) if isinstance(value, float) else max(abs(c - 1.0) for c in value[:3])
+        if source(socket) or off > 1e-6:
             notes.add(f"{owner}: node '{node.name}': '{name}' is not supported; ignored.")
     for name in _LINK_ONLY:
         if name in node.inputs and source(node.inputs[name]):

@@ -17,3 +17,9 @@ def draw_sentence(context, layout, text, icon="NONE"):
     """`draw_wrapped` to the width of the region that is being drawn."""
     width = context.region.width if context.region else 600
     draw_wrapped(layout, text, icon, width, context.preferences.system.ui_scale)
+
+
+def data_size(count):
+    """Bytes in the largest unit of which they are at least ten, or in the smallest."""
+    unit, factor = ("MB", 1e6) if count >= 1e7 else ("kB", 1e3)
+    return f"{count / factor:,.0f} {unit}"

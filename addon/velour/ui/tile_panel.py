@@ -11,6 +11,7 @@ from ..properties.tile_settings import SHAPE_OF
 from .progress import draw_progress
 from .size_curve import draw_size_curve
 from .summaries import model_summary
+from .text import data_size
 
 
 class TilePanel:
@@ -79,9 +80,5 @@ class VELOUR_COLLECTION_PT_tile(TilePanel, bpy.types.Panel):
 def _size(settings):
     """What is written: half floats, three channels; of two sides all four pairs of hemispheres."""
     front = 6 * settings.texels**2 * settings.views * settings.lights
-    both = f"{4 * front / 1e6:,.0f} MB"
-    return {
-        "ONE": f"{front / 1e6:,.0f} MB",
-        "TWO": both,
-        "AUTOMATIC": f"{front / 1e6:,.0f} MB, with holes {both}",
-    }[settings.sides]
+    one, both = data_size(front), data_size(4 * front)
+    return {"ONE": one, "TWO": both, "AUTOMATIC": f"{one}, with holes {both}"}[settings.sides]

@@ -290,7 +290,7 @@ typedef struct vlr_compress_options {
    * TUCKER, CTA: 1). 0: what leaves least within the bytes is looked for. */
   uint32_t clusters;
   uint32_t members;
-  int32_t no_relief; /* texels are of the reference plane, not of the structure's surface */
+  int32_t no_relief; /* not of SVDs: texels are of the reference plane, not of the structure's surface */
 } vlr_compress_options;
 VLR_API void vlr_compress_options_init(vlr_compress_options* options);
 /* Fits a model to a BTF; vlr_job_result_model gives it. JSON: bytes, parameter_bytes, ratio (raw half floats / bytes),

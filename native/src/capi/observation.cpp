@@ -124,7 +124,7 @@ double outside(const Model& model, const SceneObservation& frame) {
   if (!is_reduced(model)) return 0.0;
   if (const TexelGrid* grid = grid_of(model)) {
     const double finer = out_of_resolution(std::max(grid->width, grid->height), frame);
-    const double views = model.scene->seen_views_alone ? out_of_views(view_range(model.scene->domain), frame) : 0.0;
+    const double views = model.scene->seen_views_alone ? out_of_views(model.scene->domain, frame) : 0.0;
     return std::max(finer, views);
   }
   return out_of_domain(model.scene->domain, std::get<ParametricBrdf>(model.body).views, frame);

@@ -16,10 +16,11 @@ struct BtfFitOptions {
   uint64_t seed = 0;
   int threads = 0;      // 0: all
   uint64_t memory = 0;  // bytes that the fit may hold at once; 0: no limit
+  bool relief = true;   // texels are of the structure's surface, where the BTF knows it, or of the reference plane;
+                        // singular values know none
   // Of clustered tensors:
   uint32_t clusters = 0;  // of a side; 0: what leaves least (shape_search.h)
   uint32_t members = 0;   // clusters that a texel is made of; 0: the same
-  bool relief = true;     // texels are of the structure's surface, where the BTF knows it, or of the reference plane
 };
 
 }  // namespace velour

@@ -1,6 +1,9 @@
 // A fit of a BTF that can be made at many sizes.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "compress/btf_fit_options.h"
 #include "job/progress.h"
 #include "model/model.h"
@@ -24,6 +27,8 @@ class BtfFitter {
   const std::vector<ShapeTrial>& shapes() const { return shapes_; }
   /// Entries of the measurement that were left out.
   uint64_t not_finite() const { return not_finite_; }
+  /// What else is to be said of the models.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
  protected:
   /// Sets largest(). Throws Error(invalid_argument), with what `one` takes, when not even the first point is within.
@@ -33,6 +38,7 @@ class BtfFitter {
   size_t largest_ = 0;
   std::vector<ShapeTrial> shapes_;
   uint64_t not_finite_ = 0;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace velour

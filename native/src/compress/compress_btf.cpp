@@ -105,6 +105,7 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
     record.warnings.push_back(std::to_string(fitter->not_finite()) +
                               " entries of the BTF are not finite; the mean of their image stands in for them.");
   }
+  for (const std::string& warning : fitter->warnings()) record.warnings.push_back(warning);
   for (const std::string& warning : checkpoint.warnings()) record.warnings.push_back(warning);
   if (!found.shortfall.empty()) record.warnings.push_back(found.shortfall);
   record.psnr = found.errors.psnr;

@@ -47,8 +47,6 @@ uint64_t judging_bytes(const FitExtent& e) {
   return 3 * e.pyramid_texels * e.coefficients * kFloat + e.threads * e.texels * 3 * (kHalf + 2 * kFloat);
 }
 
-std::string megabytes(uint64_t bytes) { return std::to_string((bytes + 999999) / 1000000) + " MB"; }
-
 [[noreturn]] void refuse(uint64_t memory, uint64_t least, const std::string& of_what) {
   throw Error(Status::unsupported, "The fit holds " + megabytes(least) + " at least, for " + of_what +
                                        "; the limit is " + megabytes(memory) +
@@ -94,7 +92,16 @@ uint64_t tensor_refit_bytes(const FitExtent& e, uint64_t functions) {
   return moments + seen + 2 * kMomentGroups * uint64_t{kMostJointRanks} * kMostJointRanks * sizeof(double);
 }
 
+/// Of a fit of SRBFs whose order is chosen by `points`.
+uint64_t search_bytes(const FitExtent& e, uint64_t points) {
+  return kLibraries + point_bytes(e) +
+         std::max({reading_bytes(e) + texel_bytes(e), refinement_bytes(e), judging_bytes(e),
+                   points * search_point_bytes(e)});
+}
+
 }  // namespace
+
+std::string megabytes(uint64_t bytes) { return std::to_string((bytes + 999999) / 1000000) + " MB"; }
 
 TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint64_t entries) {
   TensorAllowance allowance;
@@ -117,16 +124,17 @@ TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint6
 }
 
 uint32_t search_points_within(uint64_t memory, const FitExtent& extent) {
-  const uint64_t held = kLibraries + point_bytes(extent);
-  const uint64_t rest = std::max({reading_bytes(extent) + texel_bytes(extent), refinement_bytes(extent),
-                                  judging_bytes(extent), kLeastPoints * search_point_bytes(extent)});
-  if (held + rest > memory) {
-    refuse(memory, held + rest,
+  const uint64_t least = search_bytes(extent, kLeastPoints);
+  if (least > memory) {
+    refuse(memory, least,
            "one view of " + std::to_string(extent.texels) + " texels under " + std::to_string(extent.lights) +
                " lights and " + std::to_string(extent.coefficients) + " coefficients a texel");
   }
+  const uint64_t held = kLibraries + point_bytes(extent);
   return static_cast<uint32_t>(std::min<uint64_t>(kUsualPoints, (memory - held) / search_point_bytes(extent)));
 }
+
+uint64_t memory_for_all_points(const FitExtent& extent) { return search_bytes(extent, kUsualPoints); }
 
 void require_components(uint64_t memory, const FitExtent& extent) {
   const uint64_t bytes = factored_bytes(extent);

@@ -22,6 +22,11 @@ struct FitExtent {
 /// The number of points that the order of SRBFs is chosen by, between the least and the usual one, which keeps the fit
 /// within `memory` bytes. Throws Error(unsupported) with the least that would do.
 uint32_t search_points_within(uint64_t memory, const FitExtent& extent);
+/// The least limit that leaves it all of the points, and so the model that it makes without one.
+uint64_t memory_for_all_points(const FitExtent& extent);
+
+/// Whole ones, rounded up: "17 MB".
+std::string megabytes(uint64_t bytes);
 
 /// Throws Error(unsupported), with what would do, where a truncated SVD of so many components holds more than `memory`.
 void require_components(uint64_t memory, const FitExtent& extent);

@@ -50,9 +50,11 @@ std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const 
                                        FitCheckpoint& checkpoint, Progress& progress) {
   const bool tensors = options.method == CompressMethod::tucker || options.method == CompressMethod::cta ||
                        options.method == CompressMethod::kcta;
-  if (!tensors && (options.clusters > 0 || options.members > 0 || !options.relief)) {
-    throw Error(Status::invalid_argument,
-                "Clusters, members and a relief to leave out are of the methods tucker, cta and kcta.");
+  if (!tensors && (options.clusters > 0 || options.members > 0)) {
+    throw Error(Status::invalid_argument, "Clusters and members are of the methods tucker, cta and kcta.");
+  }
+  if (!tensors && options.method != CompressMethod::srbf && !options.relief) {
+    throw Error(Status::invalid_argument, "A relief to leave out is of the methods srbf, tucker, cta and kcta.");
   }
   if (tensors) return std::make_unique<TensorFitter>(measurement, options, shapes_of(options), checkpoint, progress);
   if (options.method == CompressMethod::svd) {

@@ -1,34 +1,52 @@
 #include "compress/scene_btf.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 
 #include "image/half_image.h"
 
 namespace velour {
 namespace {
 
-/// The largest angle, in radians, between a direction and the one nearest to it.
+/// The largest angle, in radians, between a direction and the one nearest to it on its side.
 double widest_gap(const std::vector<Vec3>& directions) {
   double widest = 0;
   for (const Vec3& a : directions) {
     float nearest = -1;
     for (const Vec3& b : directions) {
-      if (a != b) nearest = std::max(nearest, glm::dot(a, b));
+      if (a != b && a.z * b.z > 0) nearest = std::max(nearest, glm::dot(a, b));
     }
     widest = std::max(widest, std::acos(std::clamp(static_cast<double>(nearest), -1.0, 1.0)));
   }
   return widest;
 }
 
+std::vector<PolarAngles> chosen(const std::vector<PolarAngles>& set, const std::vector<uint32_t>& numbers) {
+  std::vector<PolarAngles> angles;
+  for (const uint32_t number : numbers) angles.push_back(set[number]);
+  return angles;
+}
+
+bool any_below(const std::vector<PolarAngles>& set) {
+  return std::ranges::any_of(set, [](const PolarAngles& angles) { return unit_direction(angles).z < 0; });
+}
+
+/// The number of the view nearest to the normal of a side.
+size_t most_upright(const std::vector<Vec3>& directions, bool below) {
+  size_t best = 0;
+  for (size_t v = 1; v < directions.size(); ++v) {
+    const float sign = below ? -1.0f : 1.0f;
+    if (sign * directions[v].z > sign * directions[best].z) best = v;
+  }
+  return best;
+}
+
 class SceneBtf final : public BtfMeasurement {
  public:
-  SceneBtf(const BtfMeasurement& fine, uint32_t halvings, std::vector<uint32_t> views)
-      : fine_(fine), halvings_(halvings), view_(std::move(views)) {
-    std::vector<PolarAngles> angles;
-    for (const uint32_t view : view_) angles.push_back(fine.layout().views()[view]);
-    layout_ = PairLayout(std::move(angles), fine.layout().lights());
+  SceneBtf(const BtfMeasurement& fine, uint32_t halvings, SeenPairs pairs)
+      : fine_(fine), halvings_(halvings), pairs_(std::move(pairs)) {
+    layout_ = PairLayout(chosen(fine.layout().views(), pairs_.views), chosen(fine.layout().lights(), pairs_.lights));
     grid_ = fine.grid();
     shell_ = fine.shell();
     provenance_ = fine.provenance();
@@ -45,7 +63,9 @@ class SceneBtf final : public BtfMeasurement {
     std::vector<float> floats(fine);
     for (uint64_t i = 0; i < count; ++i) {
       const uint64_t pair = first + i;
-      fine_.read_pairs(fine_.layout().first(view_[layout_->view_of(pair)]) + layout_->light_of(pair), 1, halves);
+      fine_.read_pairs(
+          fine_.layout().first(pairs_.views[layout_->view_of(pair)]) + pairs_.lights[layout_->light_of(pair)], 1,
+          halves);
       halves_to_floats(halves, floats);
       floats_to_halves(halved_image(floats, fine_.grid(), 3, halvings_), values.subspan(i * coarse, coarse));
     }
@@ -54,7 +74,7 @@ class SceneBtf final : public BtfMeasurement {
   bool has_structure() const override { return fine_.has_structure(); }
   /// Heights are those of what is there: holes count nothing.
   std::optional<ViewStructure> read_structure(uint32_t view) const override {
-    auto structure = fine_.read_structure(view_[view]);
+    auto structure = fine_.read_structure(pairs_.views[view]);
     if (structure) coarsen(*structure);
     return structure;
   }
@@ -78,26 +98,37 @@ class SceneBtf final : public BtfMeasurement {
 
   const BtfMeasurement& fine_;
   const uint32_t halvings_;
-  const std::vector<uint32_t> view_;
+  const SeenPairs pairs_;
 };
 
 }  // namespace
 
-std::vector<uint32_t> views_around(const PairLayout& layout, const ViewRange& range) {
+bool has_lower_side(const PairLayout& layout) { return any_below(layout.views()) && any_below(layout.lights()); }
+
+SeenPairs pairs_around(const PairLayout& layout, const ViewWeights& seen) {
   std::vector<Vec3> directions;
   for (const PolarAngles& angles : layout.views()) directions.push_back(unit_direction(angles));
-  const double gap = 2 * widest_gap(directions) + 1e-3;
-  std::vector<uint32_t> views;
+  const auto least = static_cast<float>(std::cos(std::min(kPiD, 2 * widest_gap(directions) + kBinRadius)));
+  const std::vector<Vec3> counted = counted_views(has_lower_side(layout) ? seen : from_both_sides(seen));
+  const auto near = [&](const Vec3& view) {
+    return std::ranges::any_of(counted, [&](const Vec3& w) { return w.z * view.z > 0 && dot(w, view) >= least; });
+  };
+  SeenPairs pairs;
+  std::array<bool, 2> side{};
+  for (const Vec3& w : counted) side[w.z < 0] = true;
+  const std::array<size_t, 2> upright{most_upright(directions, false), most_upright(directions, true)};
   for (uint32_t v = 0; v < directions.size(); ++v) {
-    const double theta = std::acos(std::min(1.0, std::abs(static_cast<double>(directions[v].z))));
-    if (range.whole() || (theta >= range.first() - gap && theta <= range.last() + gap)) views.push_back(v);
+    const bool below = directions[v].z < 0;
+    if (near(directions[v]) || (side[below] && v == upright[below])) pairs.views.push_back(v);
   }
-  return views;
+  for (uint32_t l = 0; l < layout.lights().size(); ++l) {
+    if (side[unit_direction(layout.lights()[l]).z < 0]) pairs.lights.push_back(l);
+  }
+  return pairs;
 }
 
-std::unique_ptr<const BtfMeasurement> scene_btf(const BtfMeasurement& fine, uint32_t halvings,
-                                                std::vector<uint32_t> views) {
-  return std::make_unique<const SceneBtf>(fine, halvings, std::move(views));
+std::unique_ptr<const BtfMeasurement> scene_btf(const BtfMeasurement& fine, uint32_t halvings, SeenPairs pairs) {
+  return std::make_unique<const SceneBtf>(fine, halvings, std::move(pairs));
 }
 
 std::vector<float> halved_image(std::vector<float> image, TexelGrid grid, uint32_t channels, uint32_t halvings) {

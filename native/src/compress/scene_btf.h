@@ -5,20 +5,28 @@
 #include <vector>
 
 #include "btf/btf_measurement.h"
-#include "sphere/view_range.h"
+#include "domain/view_weights.h"
 
 namespace velour {
 
-/// Numbers of the views whose polar angle (from either side) lies within `range`, or no farther from it than twice
-/// what views lie apart from their nearest neighbours at most: with those around them, which keep a fit from following
-/// single views. All views where the range is whole.
-std::vector<uint32_t> views_around(const PairLayout& layout, const ViewRange& range);
+/// Numbers of a layout's views and lights.
+struct SeenPairs {
+  std::vector<uint32_t> views, lights;
+};
 
-/// `views` of `fine` (complete), at the level of its pyramid that lies `halvings` below the finest: values and
+/// Of a complete layout: the views no farther from those that count (counted_views) than twice what views lie apart
+/// from their nearest neighbours at most: with those around them, which keep a fit from following single views; and the
+/// one nearest to the normal, whose heights make the relief. Of a side that nobody saw, neither views nor lights: light
+/// does not go through a surface that is rendered. What is seen of a BTF of one side from behind is its front.
+SeenPairs pairs_around(const PairLayout& layout, const ViewWeights& seen);
+
+/// Whether it has views, and lights, from below.
+bool has_lower_side(const PairLayout& layout);
+
+/// `pairs` of `fine` (complete), at the level of its pyramid that lies `halvings` below the finest: values and
 /// structure are means over the areas that its texels cover (half_image.h). Read from `fine`, image by image, whenever
 /// it is asked for; `fine` outlives it. The provenance is that of `fine`, values that are not finite stay so.
-std::unique_ptr<const BtfMeasurement> scene_btf(const BtfMeasurement& fine, uint32_t halvings,
-                                                std::vector<uint32_t> views);
+std::unique_ptr<const BtfMeasurement> scene_btf(const BtfMeasurement& fine, uint32_t halvings, SeenPairs pairs);
 
 /// An image of `grid`, [row][column][channel], at the level `halvings` below it.
 std::vector<float> halved_image(std::vector<float> image, TexelGrid grid, uint32_t channels, uint32_t halvings);

@@ -1,5 +1,6 @@
 #include "compress/scene_reduction.h"
 
+#include "compress/scene_btf.h"
 #include "compress/scene_levels.h"
 #include "compress/scene_refit.h"
 #include "job/error.h"
@@ -65,6 +66,9 @@ void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptio
   record.picture_error = refit->error;
   record.full_picture_error = refit->full_error;
   record.seen_views_alone = true;
+  if (!has_lower_side(measurement.layout())) {  // its front is what it shows from behind
+    record.domain.surface.views = from_both_sides(record.domain.directions());
+  }
   model.body = std::move(refit->body);
 }
 

@@ -2,20 +2,23 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "compress/least_size.h"
 #include "compress/make_fitter.h"
 #include "compress/scene_btf.h"
 #include "compress/seen_pictures.h"
-#include "compress/side_views.h"
 #include "job/error.h"
 #include "job/threads.h"
 
 namespace velour {
 namespace {
 
-constexpr uint64_t kFirst = 8, kMost = 64;  // parts of the full model's bytes
-constexpr double kSetup = 0.3;              // of a trial's progress
+constexpr uint64_t kMost = 64;  // parts of the full model's bytes
+constexpr double kSetup = 0.3;  // of the progress
+constexpr size_t kJudged = 15;  // the size that tells whether a relief helps
+constexpr int kMostTrials = 9;  // of least_size: doublings from kMost on, and two more
 
 CompressMethod method_of(const ModelBody& full) {
   const auto* factored = std::get_if<FactoredBtf>(&full);
@@ -53,20 +56,14 @@ class Refit {
   /// Better than `levels`, or nothing.
   std::optional<SceneRefit> best(const ModelBody& levels) {
     if (pictures_.empty()) return std::nullopt;
-    const double full_error = error(full_), most = kMoreError * full_error;
-    if (!std::isfinite(full_error)) return std::nullopt;  // the BTF has entries that are not
-    std::optional<SceneRefit> found = refit(kFirst, full_error);
-    if (found && found->error <= most) {
-      for (uint64_t divisor = 2 * kFirst; divisor <= kMost; divisor *= 2) {
-        auto smaller = refit(divisor, full_error);
-        if (!smaller || !(smaller->error <= most)) break;
-        found = std::move(smaller);
-      }
-      return found;
-    }
-    auto larger = refit(kFirst / 2, full_error);
-    if (larger && larger->error <= most) return larger;
-    return found && found->error < error(levels) ? std::move(found) : std::nullopt;
+    full_error_ = error(full_);
+    if (!std::isfinite(full_error_)) return std::nullopt;  // the BTF has entries that are not
+    auto fitter = fitter_within(bytes_of(levels));
+    if (!fitter) return std::nullopt;
+    if (options_.method == CompressMethod::srbf && seen_.has_structure()) fitter = better_of(std::move(fitter));
+    least_size(fitter->largest() + 1, [&](size_t size) { return is_good(*fitter, size); });
+    if (good_) return std::move(good_);
+    return last_ && last_->error < error(levels) ? std::move(last_) : std::nullopt;
   }
 
  private:
@@ -74,38 +71,54 @@ class Refit {
     return arena_.execute([&] { return pictures_.error(body, progress_); });
   }
 
-  std::optional<SceneRefit> refit(uint64_t divisor, double full_error) {
-    auto body = fitted(divisor);
-    if (!body) return std::nullopt;
-    const double own_error = error(*body);
-    return SceneRefit{*std::move(body), own_error, full_error};
+  /// With the relief or without: its heights are as coarse as the texels, and of views that lie close together some
+  /// tiles are shown better as a plane. A fit of a size that does not depend on what is asked for tells.
+  std::unique_ptr<BtfFitter> better_of(std::unique_ptr<BtfFitter> over_relief) {
+    const double begin = done_;
+    done_ = kSetup;
+    const Progress::Span setups(progress_, begin, done_);
+    const size_t size = std::min(kJudged, over_relief->largest());
+    const double with_relief = error(over_relief->fit(size));
+    options_.relief = false;
+    auto on_plane = fitter_within(options_.bytes);
+    if (on_plane && error(on_plane->fit(size)) < with_relief) return on_plane;
+    options_.relief = true;
+    return over_relief;
   }
 
   /// Nothing where so few bytes hold no model.
-  std::optional<ModelBody> fitted(uint64_t divisor) {
-    options_.bytes = bytes_of(full_) / divisor;
-    const double begin = done_;
-    done_ = (1 + begin) / 2;  // nobody knows how many trials there will be
-    const Progress::Span trial(progress_, begin, done_);
+  std::unique_ptr<BtfFitter> fitter_within(uint64_t bytes) {
+    options_.bytes = bytes;
+    const Progress::Span setup(progress_, 0, kSetup / 3);
     try {
-      FitCheckpoint none;
-      const auto fitter = [&] {
-        const Progress::Span setup(progress_, 0, kSetup);
-        return make_fitter(seen_, options_, none, progress_);
-      }();
-      const Progress::Span fit(progress_, kSetup, 1);
-      return fitter->fit(fitter->largest());
+      return make_fitter(seen_, options_, none_, progress_);
     } catch (const Error& refused) {
-      if (refused.status() == Status::invalid_argument) return std::nullopt;
+      if (refused.status() == Status::invalid_argument) return nullptr;
       throw;
     }
+  }
+
+  /// Fits it, unless it is smaller than any that is tried. The smallest good one is kept, else the largest.
+  bool is_good(BtfFitter& fitter, size_t size) {
+    if (fitter.curve().points[size].parameter_bytes < bytes_of(full_) / kMost) return false;
+    const double begin = done_;
+    done_ = std::min(1.0, begin + (1 - kSetup) / kMostTrials);
+    const Progress::Span trial(progress_, begin, done_);
+    SceneRefit refit{fitter.fit(size), 0, full_error_};
+    refit.error = error(refit.body);
+    const bool good = refit.error <= kMoreError * full_error_;
+    (good ? good_ : last_) = std::move(refit);
+    return good;
   }
 
   const BtfMeasurement& seen_;
   const ModelBody& full_;
   CompressOptions options_;
   Progress& progress_;
-  double done_ = 0;  // of the progress
+  FitCheckpoint none_;
+  double done_ = kSetup / 3;  // of the progress
+  double full_error_ = 0;
+  std::optional<SceneRefit> good_, last_;
   tbb::task_arena arena_;
   const SeenPictures pictures_;
 };
@@ -114,10 +127,11 @@ class Refit {
 
 std::optional<SceneRefit> refit_for_scene(const BtfMeasurement& measurement, const ModelBody& full,
                                           const ModelBody& levels, const CompressOptions& options, Progress& progress) {
-  if (std::holds_alternative<TensorBtf>(full) || sides_of(measurement.layout()).size() != 1) return std::nullopt;
+  if (std::holds_alternative<TensorBtf>(full)) return std::nullopt;
   const auto halvings = static_cast<uint32_t>(levels_of(full) - levels_of(levels));
-  const auto seen =
-      scene_btf(measurement, halvings, views_around(measurement.layout(), view_range(options.for_scene->domain)));
+  SeenPairs pairs = pairs_around(measurement.layout(), options.for_scene->domain.directions());
+  if (pairs.views.empty() || pairs.lights.empty()) return std::nullopt;
+  const auto seen = scene_btf(measurement, halvings, std::move(pairs));
   return Refit(*seen, full, options, progress).best(levels);
 }
 

@@ -76,7 +76,8 @@ void SrbfFitter::find_sides(const ColourAxes& colours) {
   FittedSides found = fitted_sides(measurement_, colours, progress_);
   shared_ = std::move(found.shared);
   for (FittedSide& side : found.sides) {
-    std::vector<Relief> relief = relief_pyramid(measurement_, side.directions);
+    std::vector<Relief> relief =
+        options_.relief ? relief_pyramid(measurement_, side.directions) : plane_pyramid(measurement_.grid());
     sides_.push_back({std::move(side.directions), std::move(relief), {}});
     demand_.push_back({{}, side.energy});
   }
@@ -106,19 +107,29 @@ void SrbfFitter::find_orders(uint64_t bytes, bool all) {
   }
 }
 
-uint32_t SrbfFitter::search_points(size_t most) const {
-  if (options_.memory == 0) return LobeOrderOptions().points;
+/// Fewer than usual make another model, and say so.
+uint32_t SrbfFitter::search_points(size_t most) {
+  const uint32_t usual = LobeOrderOptions().points;
+  if (options_.memory == 0) return usual;
   const PairLayout& layout = measurement_.layout();
   const uint64_t pairs = sides_[0].directions.view.size() * sides_[0].directions.light.size();
-  return search_points_within(options_.memory, {.texels = measurement_.grid().texels(),
-                                                .pyramid_texels = pyramid_texels(measurement_.grid()),
-                                                .pairs = layout.pairs(),
-                                                .lights = layout.lights().size(),
-                                                .sides = sides_.size(),
-                                                .points = points_for(measurement_.grid()),
-                                                .point_pairs = std::min<uint64_t>(kPairs, pairs),
-                                                .coefficients = most,
-                                                .threads = static_cast<uint64_t>(arena_concurrency(options_.threads))});
+  const FitExtent extent{.texels = measurement_.grid().texels(),
+                         .pyramid_texels = pyramid_texels(measurement_.grid()),
+                         .pairs = layout.pairs(),
+                         .lights = layout.lights().size(),
+                         .sides = sides_.size(),
+                         .points = points_for(measurement_.grid()),
+                         .point_pairs = std::min<uint64_t>(kPairs, pairs),
+                         .coefficients = most,
+                         .threads = static_cast<uint64_t>(arena_concurrency(options_.threads))};
+  const uint32_t points = search_points_within(options_.memory, extent);
+  if (points < usual) {
+    warnings_.push_back("within the memory allowed lobes are chosen by " + std::to_string(points) +
+                        " places in place of " + std::to_string(usual) +
+                        ", which makes another model, as a rule a worse one; " +
+                        megabytes(memory_for_all_points(extent)) + " would leave them all");
+  }
+  return points;
 }
 
 /// Read when they are asked for first.

@@ -31,7 +31,7 @@ class SrbfFitter final : public BtfFitter {
   };
   void find_sides(const ColourAxes& colours);
   void find_orders(uint64_t bytes, bool all);
-  uint32_t search_points(size_t most) const;
+  uint32_t search_points(size_t most);
   const std::vector<SurfacePoint>& points_of(size_t side);
   SharedLobes lobes_of(size_t side, size_t coefficients, const std::string& stage);
 

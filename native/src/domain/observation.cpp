@@ -13,7 +13,7 @@ void append(SceneObservation& into, const SceneObservation& from, const Observed
   into.wl.insert(into.wl.end(), wl, wl_end);
   into.light.insert(into.light.end(), light, light_end);
   into.hits.push_back({hit.key, hit.wv, first, first + (hit.middle - hit.first), static_cast<uint32_t>(into.wl.size()),
-                       hit.light_density});
+                       hit.light_density, hit.back});
 }
 
 void merge(SceneDomain& into, const SceneDomain& other) {

@@ -18,6 +18,7 @@ struct ObservedHit {
   Vec3 wv;       // local frame
   uint32_t first, middle, last;
   float light_density = 0;  // 1/sr: of this hit what SceneDomain::light_density is of all
+  bool back = false;        // SurfaceSite::back: z of wv and of the terms is that of the other side
 };
 
 /// Hits are chosen with probability proportional to their weight (SceneDomain), so each counts the same.

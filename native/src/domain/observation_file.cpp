@@ -26,7 +26,7 @@ constexpr uint64_t kMostTerms = kMostBytes / sizeof(Vec3);
 constexpr uint64_t kMostRays = uint64_t{1} << 62;  // so that sums of a few stay whole numbers
 
 template <typename T>
-std::string base64_of(const std::vector<T>& values) {
+std::string base64_of(const T& values) {
   const auto bytes = std::as_bytes(std::span(values));
   return base64({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
 }
@@ -36,26 +36,42 @@ Json hits_json(const std::vector<ObservedHit>& hits) {
   std::vector<Vec3> wv;
   std::vector<float> light_density;
   std::vector<uint32_t> terms;
+  std::vector<uint8_t> back;
   for (const ObservedHit& hit : hits) {
     key.push_back(hit.key);
     wv.push_back(hit.wv);
     light_density.push_back(hit.light_density);
     terms.insert(terms.end(), {hit.middle - hit.first, hit.last - hit.middle});
+    back.push_back(hit.back);
   }
-  return {{"count", hits.size()},
-          {"key", base64_of(key)},
-          {"wv", base64_of(wv)},
-          {"light_density", base64_of(light_density)},
-          {"terms", base64_of(terms)}};
+  Json json = {{"count", hits.size()},
+               {"key", base64_of(key)},
+               {"wv", base64_of(wv)},
+               {"light_density", base64_of(light_density)},
+               {"terms", base64_of(terms)}};
+  if (std::ranges::count(back, 1) > 0) json["back"] = base64_of(back);
+  return json;
 }
 
-Json surface_json(const SurfaceDomain& surface) { return {{"footprint", surface.footprint}, {"tile", surface.tile}}; }
+Json surface_json(const SurfaceDomain& surface) {
+  Json json = {{"footprint", surface.footprint}, {"tile", surface.tile}};
+  if (surface.views.sum() > 0) json["views"] = base64_of(surface.views.weight);
+  return json;
+}
+
+void read_directions(const JsonFields& fields, ViewWeights& views) {
+  const auto weights = fields.values<double>("views", views.weight.size());
+  std::ranges::copy(weights, views.weight.begin());
+  const bool good = std::ranges::all_of(weights, [](double w) { return w >= 0; });
+  if (!good || !std::isfinite(views.sum())) fields.fail("views", "numbers of at least 0 of a finite sum");
+}
 
 SurfaceDomain read_surface(const JsonFields& fields) {
   SurfaceDomain surface;
   std::ranges::copy(fields.numbers("footprint", surface.footprint.size()), surface.footprint.begin());
   std::ranges::copy(fields.numbers("tile", surface.tile.size()), surface.tile.begin());
   if (!std::isfinite(surface.weight())) fields.fail("footprint", "a list of numbers of a finite sum");
+  if (fields.has("views")) read_directions(fields, surface.views);
   return surface;
 }
 
@@ -91,6 +107,12 @@ void read_term_counts(const JsonFields& fields, uint64_t total, std::vector<Obse
   }
 }
 
+void read_sides(const JsonFields& fields, std::vector<ObservedHit>& hits) {
+  const auto back = fields.values<uint8_t>("back", hits.size());
+  if (!std::ranges::all_of(back, [](uint8_t b) { return b <= 1; })) fields.fail("back", "bytes of 0 or 1");
+  for (size_t i = 0; i < hits.size(); ++i) hits[i].back = back[i] == 1;
+}
+
 std::vector<ObservedHit> read_hits(const JsonFields& fields, uint64_t terms) {
   std::vector<ObservedHit> hits(fields.whole("count", SceneObservation::kHits));
   const auto key = fields.values<uint64_t>("key", hits.size());
@@ -102,6 +124,7 @@ std::vector<ObservedHit> read_hits(const JsonFields& fields, uint64_t terms) {
     fields.fail("light_density", "numbers of at least 0");
   }
   for (size_t i = 0; i < hits.size(); ++i) hits[i] = {key[i], wv[i], 0, 0, 0, light_density[i]};
+  if (fields.has("back")) read_sides(fields, hits);
   read_term_counts(fields, terms, hits);
   return hits;
 }

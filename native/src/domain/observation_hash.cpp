@@ -19,12 +19,12 @@ void append(std::vector<uint8_t>& bytes, std::span<const T> values) {
 struct PackedHit {
   uint64_t key;
   float wv[3], light_density;
-  uint32_t first, middle, last, zero;
+  uint32_t first, middle, last, back;
 };
 static_assert(sizeof(PackedHit) == 40);
 
 PackedHit packed(const ObservedHit& hit) {
-  return {hit.key, {hit.wv.x, hit.wv.y, hit.wv.z}, hit.light_density, hit.first, hit.middle, hit.last, 0};
+  return {hit.key, {hit.wv.x, hit.wv.y, hit.wv.z}, hit.light_density, hit.first, hit.middle, hit.last, hit.back};
 }
 
 }  // namespace
@@ -38,6 +38,7 @@ std::array<uint64_t, 4> content_hash(const SceneObservation& observation) {
   if (observation.domain.surface.weight() > 0) {  // of uniform materials hashes are what they were without it
     append(bytes, std::span<const double>(observation.domain.surface.footprint));
     append(bytes, std::span<const double>(observation.domain.surface.tile));
+    append(bytes, std::span<const double>(observation.domain.surface.views.weight));
   }
   append(bytes, std::span<const PackedHit>(hits));
   append(bytes, std::span<const Vec3>(observation.wl));

@@ -29,8 +29,8 @@ double out_of_domain(const SceneDomain& domain, const ViewRange& range, const Sc
   return std::min(1.0, share_of_views_outside(range, frame.domain) + by_light);
 }
 
-double out_of_views(const ViewRange& range, const SceneObservation& frame) {
-  return frame.domain.weight() > 0.0 ? share_of_views_outside(range, frame.domain) : 0.0;
+double out_of_views(const SceneDomain& domain, const SceneObservation& frame) {
+  return share_from_elsewhere(domain.directions(), frame.domain.directions());
 }
 
 double out_of_resolution(uint32_t texels, const SceneObservation& frame) {

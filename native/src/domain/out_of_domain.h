@@ -16,8 +16,9 @@ namespace velour {
 /// of 170.
 double out_of_domain(const SceneDomain& domain, const ViewRange& range, const SceneObservation& frame);
 
-/// Of that the share of the weight that is seen at views outside `range`.
-double out_of_views(const ViewRange& range, const SceneObservation& frame);
+/// Of a model of a BTF that knows the views of `domain` alone: the share of the weight that is seen from elsewhere
+/// (share_from_elsewhere).
+double out_of_views(const SceneDomain& domain, const SceneObservation& frame);
 
 /// The same of a model of a BTF whose finest level has `texels` along the longer side of the tile: the share of the
 /// weight that would look up a finer level. From all hits; 1 for a frame that shows the material, but says nothing of

@@ -7,6 +7,8 @@ namespace velour {
 
 double SceneDomain::weight() const { return std::accumulate(view.begin(), view.end(), 0.0); }
 
+ViewWeights SceneDomain::directions() const { return surface.views.sum() > 0 ? surface.views : all_around(view); }
+
 ViewRange view_range(const SceneDomain& domain) {
   const double outside = kOutside * domain.weight();
   int begin = 0, end = SceneDomain::kViewBins;

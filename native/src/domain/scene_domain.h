@@ -27,6 +27,8 @@ struct SceneDomain {
   SurfaceDomain surface;
 
   double weight() const;
+  /// surface.views; where they are not known, as in files of earlier versions, what `view` says of them.
+  ViewWeights directions() const;
 };
 
 /// The shortest range of whole bins that leaves out at most `kOutside` of the weight at either end, widened by a

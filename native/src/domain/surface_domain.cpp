@@ -36,6 +36,7 @@ void add_seen(SurfaceDomain& domain, float level, const Vec2& uv, double weight)
 void merge(SurfaceDomain& into, const SurfaceDomain& other) {
   for (size_t i = 0; i < into.footprint.size(); ++i) into.footprint[i] += other.footprint[i];
   for (size_t i = 0; i < into.tile.size(); ++i) into.tile[i] += other.tile[i];
+  merge(into.views, other.views);
 }
 
 double finest_footprint(const SurfaceDomain& domain) {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "sphere/vec.h"
+#include "domain/view_weights.h"
 
 namespace velour {
 
@@ -19,6 +19,8 @@ struct SurfaceDomain {
   std::array<double, kBins> footprint{};
   /// By place on the tile: kTileCells x kTileCells cells, row by row from the bottom.
   std::array<double, kTileCells * kTileCells> tile{};
+  /// By direction; all zero where nobody knows (SceneDomain::directions).
+  ViewWeights views;
 
   double weight() const;
 };

@@ -1,5 +1,6 @@
 #include "model/scene_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -31,12 +32,24 @@ Json weights_json(const auto& weights) {
   return json;
 }
 
+/// The bins that were seen.
+void write_directions(const ViewWeights& views, Json& json) {
+  Json bins = Json::array(), weights = Json::array();
+  for (size_t i = 0; i < views.weight.size(); ++i) {
+    if (views.weight[i] == 0) continue;
+    bins.push_back(i);
+    weights.push_back(four_digits(views.weight[i]));
+  }
+  if (!bins.empty()) json.update({{"direction_bins", bins}, {"direction_weights", weights}});
+}
+
 /// What a BTF's record has beside that of a BRDF.
 void write_surface(const SceneRecord& record, Json& json) {
   json["full_texels"] = record.full_texels;
   if (record.seen_views_alone) json["seen_views_alone"] = true;
   json["footprint_weights"] = weights_json(record.domain.surface.footprint);
   json["tile_weights"] = weights_json(record.domain.surface.tile);
+  write_directions(record.domain.surface.views, json);
 }
 
 /// Reads keys and names what is wrong with them; none may be missing.
@@ -64,6 +77,20 @@ class Reader {
       fail("view_weights", "a list of at most " + std::to_string(domain.view.size()) + " weights from 'first_view' on");
     }
     for (size_t i = 0; i < weights.size(); ++i) domain.view[first + i] = number_of(weights[i], "view_weights");
+  }
+  void directions(ViewWeights& views) const {
+    const Json& bins = at("direction_bins");
+    const auto good = [&](const Json& bin) { return bin.is_number_unsigned() && bin < views.weight.size(); };
+    if (!bins.is_array() || !std::ranges::all_of(bins, good)) {
+      fail("direction_bins", "a list of numbers below " + std::to_string(views.weight.size()));
+    }
+    const Json& weights = at("direction_weights");
+    if (!weights.is_array() || weights.size() != bins.size()) {
+      fail("direction_weights", "a list of as many weights as 'direction_bins' has numbers");
+    }
+    for (size_t i = 0; i < bins.size(); ++i) {
+      views.weight[bins[i].get<size_t>()] = number_of(weights[i], "direction_weights");
+    }
   }
   bool flag(const char* key) const {
     if (!at(key).is_boolean()) fail(key, "true or false");
@@ -135,6 +162,7 @@ SceneRecord parse_scene_record(const std::string& text, const std::string& where
   record.seen_views_alone = reader.has("seen_views_alone") && reader.flag("seen_views_alone");
   reader.weights("footprint_weights", record.domain.surface.footprint);
   reader.weights("tile_weights", record.domain.surface.tile);
+  if (reader.has("direction_bins")) reader.directions(record.domain.surface.views);
   return record;
 }
 

@@ -107,15 +107,16 @@ class Observer {
       const SeenHit& hit = kept[i].item;
       light[i] = estimators_.local().estimate(hit.vertex, hit.bounces, kept[i].key);
     });
-    for (size_t i = 0; i < kept.size(); ++i) append(kept[i].key, kept[i].item.vertex.wv, light[i]);
+    for (size_t i = 0; i < kept.size(); ++i) append(kept[i].key, kept[i].item.vertex, light[i]);
   }
 
-  void append(uint64_t key, const Vec3& wv, const HitLight& found) {
+  void append(uint64_t key, const Vertex& vertex, const HitLight& found) {
     auto& [domain, hits, wl, light] = observation_;
     const auto first = static_cast<uint32_t>(wl.size());
     wl.insert(wl.end(), found.wl.begin(), found.wl.end());
     light.insert(light.end(), found.light.begin(), found.light.end());
-    hits.push_back({key, wv, first, first + found.middle, static_cast<uint32_t>(wl.size()), found.light_density});
+    hits.push_back({key, vertex.wv, first, first + found.middle, static_cast<uint32_t>(wl.size()), found.light_density,
+                    vertex.site.back});
     domain.light_density = std::max(domain.light_density, static_cast<double>(found.light_density));
   }
 

@@ -53,17 +53,19 @@ void ViewTracer::see(const Vertex& vertex, const Path& path, int depth, SeenWeig
   const double weight = static_cast<double>(luminance(path.throughput));
   if (!(weight > 0.0)) return;
   seen.view[view_bin(vertex.wv)] += weight;
-  if (material_.material->varies()) see_surface(vertex.site, weight, seen.surface);
+  if (material_.material->varies()) see_surface(vertex, weight, seen.surface);
   // The place counts, too, so that frames of one seed draw on their own.
   auto place = static_cast<uint64_t>(depth);
   for (int i = 0; i < 3; ++i) place = mix64(place + std::bit_cast<uint32_t>(vertex.position[i]));
   draws_.add({vertex, options_.bounces - depth}, weight, RandomStream(options_.seed, path.cell, place));
 }
 
-void ViewTracer::see_surface(const SurfaceSite& site, double weight, SurfaceDomain& surface) const {
+void ViewTracer::see_surface(const Vertex& vertex, double weight, SurfaceDomain& surface) const {
   // On a tile of so many texels that no footprint is smaller than one of them.
   const Vec2 finest = tile_ * (kFinestTexels / std::max(tile_.x, tile_.y));
-  add_seen(surface, footprint_taps(site.footprint, finest).level, site.uv, weight);
+  add_seen(surface, footprint_taps(vertex.site.footprint, finest).level, vertex.site.uv, weight);
+  const Vec3& wv = vertex.wv;
+  add_view(surface.views, {wv.x, wv.y, vertex.site.back ? -wv.z : wv.z}, weight);
 }
 
 void ViewTracer::go_on(const Vertex& vertex, const Path& path) {

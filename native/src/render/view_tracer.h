@@ -60,7 +60,7 @@ class ViewTracer {
   void start(uint64_t first, uint64_t end);
   void meet(size_t path, int depth, SeenWeights& seen);
   void see(const Vertex& vertex, const Path& path, int depth, SeenWeights& seen);
-  void see_surface(const SurfaceSite& site, double weight, SurfaceDomain& surface) const;
+  void see_surface(const Vertex& vertex, double weight, SurfaceDomain& surface) const;
   void go_on(const Vertex& vertex, const Path& path);
 
   const Scene& scene_;

@@ -36,6 +36,12 @@ TEST(FitMemory, TakesFewerPointsWhereThereIsLess) {
   EXPECT_GE(fewer, 8u);
 }
 
+TEST(FitMemory, KnowsWhatAllPointsTake) {
+  const uint64_t all = memory_for_all_points(usual_extent());
+  EXPECT_EQ(search_points_within(all, usual_extent()), 64u);
+  EXPECT_EQ(search_points_within(all - 1, usual_extent()), 63u);
+}
+
 /// The least that a refusal names is enough.
 TEST(FitMemory, NamesTheLeastThatWouldDo) {
   const std::string sentence = refusal(50'000'000, usual_extent());

@@ -63,6 +63,21 @@ TEST(SceneRecordOfABtf, WhetherItKnowsSeenViewsAlone) {
   }
 }
 
+TEST(SceneRecordOfABtf, DirectionsSurviveARoundTrip) {
+  Model model = reduced();
+  add_view(model.scene->domain.surface.views, direction(0.7f, 2), 0.125);
+  add_view(model.scene->domain.surface.views, direction(2.5f, 5), 3);
+  const Model back = decode_model(encode_model(model), "test.velour");
+  EXPECT_EQ(back.scene->domain.surface.views.weight, model.scene->domain.surface.views.weight);
+}
+
+TEST(SceneRecordOfABtf, DirectionsThatCannotBeAreNamed) {
+  for (const char* bad : {"[2592]", "[-1]", "[0.5]", "\"all\"", "[[1]]"}) {
+    expect_named(complaint("direction_bins", Json::parse(bad)), "direction_bins");
+  }
+  expect_named(complaint("direction_bins", Json::array({1})), "direction_weights");
+}
+
 TEST(SceneRecordOfABtf, WeightsThatCannotBeAreNamed) {
   for (const char* key : {"footprint_weights", "tile_weights"}) {
     expect_named(complaint(key, Json::array({1, 2})), key);

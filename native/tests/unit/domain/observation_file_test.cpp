@@ -77,7 +77,9 @@ SceneObservation example_on_a_surface() {
   SceneObservation o = test::example_observation(6);
   for (int i = 0; i < 6; ++i) {
     add_seen(o.domain.surface, 2.3f * static_cast<float>(i), Vec2(0.15f * static_cast<float>(i)), 1);
+    add_view(o.domain.surface.views, direction(0.2f * static_cast<float>(i), 1), 0.1);
   }
+  o.hits[2].back = true;
   return o;
 }
 
@@ -86,6 +88,9 @@ TEST(ObservationFile, FootprintsSurviveARoundTrip) {
   const auto read = decode_observation(bytes_of(encode_observation(written)), "SCENE.json");
   EXPECT_EQ(read.domain.surface.footprint, written.domain.surface.footprint);
   EXPECT_EQ(read.domain.surface.tile, written.domain.surface.tile);
+  EXPECT_EQ(read.domain.surface.views.weight, written.domain.surface.views.weight);
+  EXPECT_TRUE(read.hits[2].back);
+  EXPECT_FALSE(read.hits[1].back);
   EXPECT_EQ(content_hash(read), content_hash(written));
   EXPECT_NE(content_hash(read), content_hash(test::example_observation(6)));
 }
@@ -105,6 +110,23 @@ TEST(ObservationFile, DamagedFootprintsAreNamed) {
   }
   expect_named(damaged([](Json& json) { json["footprint"] = std::vector<double>(128, 1e308); }), "surface.footprint");
   expect_named(damaged([](Json& json) { json = 3; }), "surface");
+}
+
+TEST(ObservationFile, DirectionsMayBeMissingButNotDamaged) {
+  const auto damaged = [](const std::function<void(Json&)>& change) {
+    Json json = Json::parse(encode_observation(example_on_a_surface()));
+    change(json);
+    return complaint_of(json.dump());
+  };
+  EXPECT_EQ(damaged([](Json& json) { json["surface"].erase("views"); }), "");  // as earlier versions write them
+  EXPECT_EQ(damaged([](Json& json) { json["hits"].erase("back"); }), "");
+  expect_named(damaged([](Json& json) { json["surface"]["views"] = "AAAA"; }), "surface.views");
+  expect_named(damaged([](Json& json) { json["surface"]["views"] = 7; }), "surface.views");
+  SceneObservation negative = example_on_a_surface();
+  negative.domain.surface.views.weight[7] = -0.1;
+  expect_named(complaint_of(encode_observation(negative)), "surface.views");
+  expect_named(damaged([](Json& json) { json["hits"]["back"] = "AAAAAAAC"; }), "hits.back");
+  expect_named(damaged([](Json& json) { json["hits"]["back"] = "AAAA"; }), "hits.back");
 }
 
 TEST(ObservationFile, OfNoFrameIsAFileToo) {

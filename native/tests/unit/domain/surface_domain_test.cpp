@@ -85,12 +85,15 @@ TEST(OutOfResolution, AFrameWithoutTheMaterialIsNowhereOutside) {
 }
 
 TEST(OutOfViews, IsTheShareSeenFromElsewhere) {
+  SceneDomain domain;
   SceneObservation frame;
-  EXPECT_EQ(out_of_views({0, 4}, frame), 0);
+  domain.view[3] = 1;
+  EXPECT_EQ(out_of_views(domain, frame), 0);
   frame.domain.view[3] = 1;
   frame.domain.view[70] = 3;
-  EXPECT_EQ(out_of_views({0, 4}, frame), 0.75);
-  EXPECT_EQ(out_of_views({0, 90}, frame), 0);
+  EXPECT_NEAR(out_of_views(domain, frame), 0.75, 1e-12);
+  domain.view[68] = 1;
+  EXPECT_EQ(out_of_views(domain, frame), 0);
 }
 
 }  // namespace
