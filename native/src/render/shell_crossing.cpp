@@ -41,7 +41,9 @@ void ShellCrossing::find(const Hit& hit) {
   if (!leaving_) {
     hit_ = trace_shell(*frame_.field, ray_, 0, span.end);
   } else if (span.through_bottom || hit.distance < span.end) {
-    hit_ = trace_shell(*frame_.field, ray_, std::min(span.end, hit.distance), 0);
+    const bool within = hit.distance < span.end;
+    const float begin = within ? off_structure(*frame_.field, ray_, hit.distance, 0) : span.end;
+    hit_ = trace_shell(*frame_.field, ray_, begin, 0);
   }
 }
 

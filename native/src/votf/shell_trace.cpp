@@ -9,6 +9,7 @@ namespace {
 constexpr float kNear = 0.03f;    // pitches: nearer than this is within
 constexpr float kLeast = 0.1f;    // pitches: no step is shorter
 constexpr float kStride = 1.6f;   // distances that a step is long [KSK14]
+constexpr float kOwnDepth = 2;    // pitches: how deep within the structure a ray may seem to start that starts on it
 constexpr int kMostSteps = 4096;  // a ray that glides along a surface for so long has met it
 
 float squared(float x) { return x * x; }
@@ -40,9 +41,11 @@ Vec3 place_on(const ShellRay& ray, float sine, float s) {
   return {ray.place + ray.along * across, ray.scale * deeper};
 }
 
+float sine_of(const ShellRay& ray) { return std::sqrt(std::max(0.0f, 1.0f - squared(ray.cosine))); }
+
 }  // namespace
 
-Vec3 ShellRay::at(float s) const { return place_on(*this, std::sqrt(std::max(0.0f, 1.0f - squared(cosine))), s); }
+Vec3 ShellRay::at(float s) const { return place_on(*this, sine_of(*this), s); }
 
 ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume) {
   // Radii r with 1 - r^2 = curvature * fall: s^2 curvature - 2 s cosine + fall = 0.
@@ -56,7 +59,7 @@ ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume) {
 std::optional<ShellHit> trace_shell(const ShellField& field, const ShellRay& ray, float begin, float end) {
   const OcclusionVolume& volume = field.volume();
   const float pitch = volume.pitch(), way = end < begin ? -1.0f : 1.0f, speed = fastest(ray, volume);
-  const float sine = std::sqrt(std::max(0.0f, 1.0f - squared(ray.cosine)));
+  const float sine = sine_of(ray);
   const auto place_at = [&](float s) { return place_on(ray, sine, s) + Vec3(0, 0, volume.top); };
   float s = begin, free = 0, step = 0;  // the last look was `step` before, in widths, and `free` of any surface
   for (int i = 0; i < kMostSteps; ++i) {
@@ -83,6 +86,18 @@ std::optional<ShellHit> trace_shell(const ShellField& field, const ShellRay& ray
     }
   }
   return ShellHit{s, place_at(s)};
+}
+
+float off_structure(const ShellField& field, const ShellRay& ray, float begin, float end) {
+  const OcclusionVolume& volume = field.volume();
+  const float pitch = volume.pitch(), speed = fastest(ray, volume), sine = sine_of(ray);
+  const float way = end < begin ? -1.0f : 1.0f, most = std::min(std::abs(end - begin), kOwnDepth * pitch / speed);
+  for (float on = 0; on < most;) {
+    const float s = begin + way * on, distance = field.distance(place_on(ray, sine, s) + Vec3(0, 0, volume.top));
+    if (distance > kNear * pitch) return s;
+    on += std::max(std::abs(distance), kLeast * pitch) / speed;
+  }
+  return begin;
 }
 
 bool line_meets(const ShellField& field, const Vec2& place, const Vec3& w) {

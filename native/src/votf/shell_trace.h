@@ -37,6 +37,10 @@ struct ShellHit {
 /// is within the structure. By sphere tracing [Har96] with long steps [KSK14].
 std::optional<ShellHit> trace_shell(const ShellField& field, const ShellRay& ray, float begin, float end);
 
+/// Where a ray that starts on the structure, at `begin`, is outside of it, on the way to `end`. The place where it
+/// starts was found along another ray, and arcs agree about it to a pitch or so only; `begin`, if it is deeper inside.
+float off_structure(const ShellField& field, const ShellRay& ray, float begin, float end);
+
 /// Whether the line through `place` (widths) of the reference plane of a flat shell along unit `w`, w.z not 0, meets
 /// the structure: V of a point.
 bool line_meets(const ShellField& field, const Vec2& place, const Vec3& w);
