@@ -7,6 +7,7 @@
 #include "capi/reports.h"
 #include "capi/texture_maps.h"
 #include "fit/scattered_fit.h"
+#include "material/holed_btf_material.h"
 #include "material/measured_btf_material.h"
 #include "material/principled_lobes.h"
 #include "model/model_material.h"
@@ -68,6 +69,7 @@ SurfaceMaterial surface_of(const std::shared_ptr<const Model>& model, uint32_t n
   if (!model->shell) return surface;
   surface.shell = std::make_shared<const ShellField>(model->shell->volume);
   surface.shell_shaded = !is_btf(*model);
+  if (surface.holed()) surface.material = std::make_shared<const HoledBtfMaterial>(surface.material);
   return surface;
 }
 

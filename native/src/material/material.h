@@ -21,17 +21,19 @@ namespace velour {
 /// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it
 /// needs; the struct is scratch memory of the thread, reused from hit to hit.
 struct PreparedBrdf {
-  Vec3 wv;                     // local, unit, wv.z > 0
-  LobeMixture lobes;           // SRBF materials: the value
-  LobeMixture draws;           // materials that sample lobes: what they draw from, and its density
-  WarpedMixture warped;        // parametric models: value and density
-  float parameter[8];          // analytic materials: what they derive from wv
-  GgxPoint ggx;                // of the fitted GGX lobe, where one is the material or draws its samples
-  PrincipledLobes principled;  // textured Principled materials: those of the site
-  FactoredPoint factored;      // BTFs as sums of products: those of the site and the view
-  SrbfPoint srbf;              // BTFs of multivariate SRBFs: the same
-  TensorPoint tensor;          // BTFs of clustered tensors: the same
-  BtfTablePoint btf_table;     // BTFs themselves: what is blended at the site for the view
+  Vec3 wv;                               // local, unit, wv.z > 0
+  LobeMixture lobes;                     // SRBF materials: the value
+  LobeMixture draws;                     // materials that sample lobes: what they draw from, and its density
+  WarpedMixture warped;                  // parametric models: value and density
+  float parameter[8];                    // analytic materials: what they derive from wv
+  GgxPoint ggx;                          // of the fitted GGX lobe, where one is the material or draws its samples
+  PrincipledLobes principled;            // textured Principled materials: those of the site
+  FactoredPoint factored;                // BTFs as sums of products: those of the site and the view
+  SrbfPoint srbf;                        // BTFs of multivariate SRBFs: the same
+  TensorPoint tensor;                    // BTFs of clustered tensors: the same
+  std::unique_ptr<PreparedBrdf> beyond;  // BTFs of open structure: the same beyond its outline, where `folded`
+  bool folded = false;
+  BtfTablePoint btf_table;  // BTFs themselves: what is blended at the site for the view
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.

@@ -11,6 +11,9 @@ struct SurfaceSite {
   /// Columns: the sides of the parallelogram about `uv` that the ray stands for, in texture coordinates. Zero: a point.
   /// Seen at a grazing angle it is long, but finite.
   Mat2 footprint{0.0f};
+  /// Of BTFs of open structure whose outlines rays find for themselves (HoledBtfMaterial): from `uv` to its mirror
+  /// image at an outline that is near enough for texels to reach over it; else zero.
+  Vec2 beyond_outline{0.0f};
   bool back =
       false;  // seen from the side that the mesh's normal does not point to; uv and +x, +y are those of the front
 

@@ -39,12 +39,30 @@ ShellCrossing::ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit)
 void ShellCrossing::find(const Hit& hit) {
   const ShellSpan span = span_of(ray_, frame_.field->volume());
   if (!leaving_) {
-    hit_ = trace_shell(*frame_.field, ray_, 0, span.end);
-  } else if (span.through_bottom || hit.distance < span.end) {
-    const bool within = hit.distance < span.end;
-    const float begin = within ? off_structure(*frame_.field, ray_, hit.distance, 0) : span.end;
-    hit_ = trace_shell(*frame_.field, ray_, begin, 0);
-  }
+    end_ = span.end;
+  } else if (hit.distance < span.end) {
+    begin_ = off_structure(*frame_.field, ray_, hit.distance, 0);
+  } else if (span.through_bottom) {
+    begin_ = span.end;
+  }  // else it came in through the top, and is decided there
+  if (begin_ != end_) hit_ = trace_shell(*frame_.field, ray_, begin_, end_);
+}
+
+Vec2 ShellCrossing::beyond_outline(const Vec2& texels) const {
+  const OcclusionVolume& volume = frame_.field->volume();
+  const Vec2 texel = Vec2(1, volume.aspect) / texels;
+  // Half of what a texel's mean and the look-up between texels reach over.
+  const float most = std::min(1.5f * std::max(texel.x, texel.y), 0.9f * volume.reach);
+  const ShellDepth inside = depth_behind(*frame_.field, ray_, hit_->s, end_, most);
+  const Vec2 across(inside.normal);
+  const float square = glm::dot(across, across);
+  if (!(inside.depth < std::min(most, 1.5f * glm::length(across * texel))) || !(square > 0)) return Vec2(0.0f);
+  const Vec2 over = across * (2 * inside.depth / square);
+  // Where other structure lies behind, there is no outline.
+  ShellRay beside = ray_;
+  beside.place += over;
+  if (trace_shell(*frame_.field, beside, begin_, end_)) return Vec2(0.0f);
+  return over / Vec2(1, volume.aspect);
 }
 
 Vec3 ShellCrossing::normal() const {

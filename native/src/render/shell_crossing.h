@@ -24,6 +24,9 @@ class ShellCrossing {
   /// The place's texture coordinates: those of the plane that a BTF of the structure has its texels on, where the ray
   /// crosses it.
   TexturePoint texture(TexturePoint top) const;
+  /// From there to its mirror image at the outline that the structure has along the ray, in texture coordinates; zero
+  /// where no outline is near in terms of so many `texels` a tile (SurfaceSite::beyond_outline).
+  Vec2 beyond_outline(const Vec2& texels) const;
 
  private:
   void find(const Hit& hit);
@@ -36,6 +39,7 @@ class ShellCrossing {
   ShellFrame frame_;
   TexturePoint texture_;
   ShellRay ray_;
+  float begin_ = 0, end_ = 0;  // of the ray's way through the shell, metres behind the crossing
   std::optional<ShellHit> hit_;
 };
 

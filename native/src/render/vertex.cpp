@@ -53,6 +53,9 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   cone = cone_at_origin.at(hit.distance);
   if (!surface->material->varies()) return;
   const TexturePoint texture = scene.texture(hit);
+  if (crossing != nullptr && surface->holed()) {
+    site.beyond_outline = crossing->beyond_outline(surface->material->texels());
+  }
   find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction,
             pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction));
 }

@@ -29,6 +29,8 @@ struct SurfaceMaterial {
   /// The structure's own surface is what is shaded and shadowed; false: f says how the structure looks over its plane,
   /// as a BTF does.
   bool shell_shaded = false;
+  /// Whether f is of a BTF whose values are means with the holes of its structure; rays find those for themselves.
+  bool holed() const { return shell && !shell_shaded && !shell->volume().closed; }
   float shell_tile =
       0;  // metres that a tile is wide, which scale the shell's height; 0: as the texture coordinates say
 };

@@ -10,6 +10,7 @@ constexpr float kNear = 0.03f;    // pitches: nearer than this is within
 constexpr float kLeast = 0.1f;    // pitches: no step is shorter
 constexpr float kStride = 1.6f;   // distances that a step is long [KSK14]
 constexpr float kOwnDepth = 2;    // pitches: how deep within the structure a ray may seem to start that starts on it
+constexpr int kMostLooks = 64;    // for the deepest place of a ray within the structure
 constexpr int kMostSteps = 4096;  // a ray that glides along a surface for so long has met it
 
 float squared(float x) { return x * x; }
@@ -98,6 +99,29 @@ float off_structure(const ShellField& field, const ShellRay& ray, float begin, f
     on += std::max(std::abs(distance), kLeast * pitch) / speed;
   }
   return begin;
+}
+
+ShellDepth depth_behind(const ShellField& field, const ShellRay& ray, float s, float end, float most) {
+  const OcclusionVolume& volume = field.volume();
+  const float pitch = volume.pitch(), speed = fastest(ray, volume), way = end < s ? -1.0f : 1.0f, sine = sine_of(ray);
+  ShellDepth deepest{0, Vec3(0.0f)};
+  Vec3 place = place_on(ray, sine, s);
+  for (int i = 0; i < kMostLooks && (end - s) * way > 0 && deepest.depth < most; ++i) {
+    const Vec3 at = place_on(ray, sine, s);
+    const float depth = -field.distance(at + Vec3(0, 0, volume.top));
+    if (depth > deepest.depth) {
+      deepest.depth = depth;
+      place = at;
+    }
+    s += way * std::max(std::abs(depth), 0.5f * pitch) / speed;
+  }
+  deepest.depth = std::min(deepest.depth, most);
+  const Vec3 slope = field.gradient(place + Vec3(0, 0, volume.top)),
+             along = glm::normalize(place_on(ray, sine, s) - place);
+  const Vec3 across = slope - glm::dot(slope, along) * along;
+  const float length = glm::length(across);
+  if (length > 0) deepest.normal = across / length;
+  return deepest;
 }
 
 bool line_meets(const ShellField& field, const Vec2& place, const Vec3& w) {

@@ -41,6 +41,13 @@ std::optional<ShellHit> trace_shell(const ShellField& field, const ShellRay& ray
 /// starts was found along another ray, and arcs agree about it to a pitch or so only; `begin`, if it is deeper inside.
 float off_structure(const ShellField& field, const ShellRay& ray, float begin, float end);
 
+/// How deep within the structure, widths, a ray comes that meets it at `s`, on its way to `end`; not more than `most`.
+struct ShellDepth {
+  float depth;
+  Vec3 normal;  // tile: towards the nearest outside, across the ray
+};
+ShellDepth depth_behind(const ShellField& field, const ShellRay& ray, float s, float end, float most);
+
 /// Whether the line through `place` (widths) of the reference plane of a flat shell along unit `w`, w.z not 0, meets
 /// the structure: V of a point.
 bool line_meets(const ShellField& field, const Vec2& place, const Vec3& w);
