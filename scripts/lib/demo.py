@@ -1,4 +1,4 @@
-"""The demonstration: measurement, fit, two pictures through Blender, difference, plot, report; then a BTF."""
+"""The demonstration: measurement, fit, pictures through Blender, difference, plot, report; then a BTF. Or shells."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import demo_blender
 import demo_btf
 import demo_capture
+import demo_votf
 import headless_blender
 from demo_difference import write_difference
 from velour.core import files, plots
@@ -27,8 +28,11 @@ def main() -> int:
     try:
         for source, folder in _tasks(args):
             folder.mkdir(parents=True, exist_ok=True)
-            demonstrate(source, folder, args.fresh)
-        if not args.files:
+            if args.votf:
+                _demonstrate_votf(source, folder / "votf", args.fresh)
+            else:
+                demonstrate(source, folder, args.fresh)
+        if not args.files and not args.votf:
             demo_btf.demonstrate(OUT / "btf")
     except KeyboardInterrupt:
         return 130
@@ -41,6 +45,7 @@ def main() -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="demo")
     parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--votf", action="store_true")
     parser.add_argument("files", metavar="FILE", nargs="*", type=Path)
     return parser
 
@@ -85,6 +90,14 @@ def demonstrate(source: Path | None, folder: Path, fresh: bool) -> None:
     }
     files.write_json(folder / "report.json", report)
     _tell(folder, report, fit["warnings"])
+
+
+def _demonstrate_votf(source: Path | None, folder: Path, fresh: bool) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    metal = folder / "metal.velour"
+    with Measurement.load(source or demo_capture.default_measurement(fresh).path) as measurement:
+        _fit(measurement, metal)
+    demo_votf.demonstrate(folder, metal)
 
 
 def _fit(measurement: Measurement, path: Path) -> dict:

@@ -158,6 +158,7 @@ SceneInfo Scene::count() const {
                             " instances have a material with a shell (VOTF) and no texture coordinates that cover "
                             "their surface; they are shown without it.");
   }
+  info.warnings.insert(info.warnings.end(), shell_warnings_.begin(), shell_warnings_.end());
   if (environment_.black() && lights_.empty()) info.warnings.push_back(kNoLightWarning);
   return info;
 }

@@ -151,6 +151,8 @@ class Scene {
   void lift_shells();
   /// `tops`: the traced meshes so far, by all that they depend on.
   void lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& tops);
+  /// A warning where the slot's shell is higher than the surface's radius of curvature.
+  void find_folds(const Instance& instance, uint32_t slot);
   float tile_width(const Instance& instance, uint32_t slot) const;
   uint32_t slot(const Hit& hit) const;
   /// Null where texture coordinates are the mesh's own.
@@ -169,6 +171,7 @@ class Scene {
   Camera camera_;
   std::optional<Mat3> rec709_to_working_;
   uint64_t unlifted_ = 0;  // instances whose shells lack texture coordinates
+  std::vector<std::string> shell_warnings_;
   std::unique_ptr<EmbreeScene> rays_;
   Bounds bounds_;
   SceneInfo info_;

@@ -243,6 +243,73 @@ TEST(ShellRender, WithoutTextureCoordinatesTheSurfaceStaysAndSaysSo) {
   EXPECT_NE(bare.scene.info().warnings[0].find("shell (VOTF)"), std::string::npos);
 }
 
+TEST(ShellRender, AShellHigherThanTheSurfaceBendsSaysSo) {
+  const auto warnings = [](float tile, bool inside_out) {
+    const Mesh outside = tiled_sphere(16, 4);
+    std::vector<glm::uvec3> turned;
+    std::vector<Vec3> normals;
+    std::vector<Vec2> uvs;
+    for (uint32_t t = 0; t < outside.triangles().size(); ++t) {
+      const glm::uvec3& c = outside.triangles()[t];
+      turned.push_back({c.x, c.z, c.y});
+      const auto uv = outside.corner_uvs(t);
+      for (const uint32_t k : {0u, 2u, 1u}) {
+        normals.push_back(-outside.positions()[c[static_cast<int>(k)]]);
+        uvs.push_back(uv[k]);
+      }
+    }
+    Mesh hollow({.positions = outside.positions(), .triangles = turned, .corner_normals = normals, .corner_uvs = uvs});
+    Shot shot(inside_out ? std::move(hollow) : tiled_sphere(16, 4), shelled(closed_field()));
+    shot.scene.set_shell_tile(0, tile);
+    shot.scene.commit(1);
+    return shot.scene.info().warnings;
+  };
+  // Half a tile high, over a unit sphere.
+  EXPECT_TRUE(warnings(4.0f, false).empty()) << "over the outside there is room";
+  EXPECT_TRUE(warnings(1.8f, true).empty());
+  const auto folded = warnings(2.2f, true);
+  ASSERT_EQ(folded.size(), 1u);
+  EXPECT_NE(folded[0].find("radii down to 1 m"), std::string::npos) << folded[0];
+  EXPECT_NE(folded[0].find("they are 2.2 m wide"), std::string::npos) << folded[0];
+}
+
+TEST(ShellRender, StaysSaneWhereItHasNoMeaning) {
+  struct Case {
+    const char* name;
+    Vec3 eye;
+    float tile;
+  };
+  const Case cases[] = {{"from within", {0.1f, 0.2f, 0}, 0.5f},
+                        {"tiles larger than the object", {0, -6, 0}, 20.0f},
+                        {"no height", {0, -6, 0}, 1e-6f},
+                        {"from within the shell", {0, -1.05f, 0}, 0.5f}};
+  for (const Case& c : cases) {
+    for (const bool open : {false, true}) {
+      Shot shot(tiled_sphere(32, 4), shelled(open ? field_of(test::wires(16, kRadius)) : closed_field()));
+      shot.scene.set_shell_tile(0, c.tile);
+      shot.scene.set_camera(Camera::look_at(c.eye, {0, 0, 0.01f}, {0, 0, 1}, 0.6f, 1));
+      shot.scene.commit(1);
+      RenderOptions options = test::small_options(Strategy::cosine, 16);
+      options.bounces = 2;
+      const std::vector<float> pixels = test::rendered(shot.scene, options);
+      for (const float v : pixels) ASSERT_TRUE(v >= 0 && v < 1.01f) << c.name << " " << open << " " << v;
+    }
+  }
+}
+
+TEST(ShellRender, At89DegreesAClosedTileHidesAll) {
+  for (const float degrees : {80.0f, 89.0f, 89.9f}) {
+    // Low enough for the rays to come in through its top.
+    Shot closed(tiled_square(1024), shelled(closed_field()));
+    closed.scene.set_camera(
+        Camera::look_at(direction(radians_from(degrees), 0.3f) * 10.0f, {0, 0, 0}, {0, 0, 1}, 1e-4f, 1));
+    closed.scene.commit(1);
+    RenderOptions options = test::small_options(Strategy::cosine, 16);
+    options.transparent = true;
+    EXPECT_EQ(test::mean_of(test::rendered(closed.scene, options), 3), 1.0) << degrees;
+  }
+}
+
 TEST(ShellRender, ItsHeightIsTheSameInTheWorldWhateverTheScaleOfTheObject) {
   // Squeezed along its normal: tiles are as wide as before, and so is the shell as high.
   const auto top_of = [](const Affine& place) {
