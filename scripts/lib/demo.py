@@ -1,4 +1,4 @@
-"""The demonstration: measurement, fit, pictures through Blender, difference, report; then a BTF. Or shells."""
+"""The demonstration: measurement, fit, picture through Blender, difference, report; then a BTF; or shells."""
 
 from __future__ import annotations
 
