@@ -1,5 +1,7 @@
 #include "fit/lobe_growth.h"
 
+#include <algorithm>
+
 #include "fit/lobe_search.h"
 
 namespace velour {
@@ -7,7 +9,8 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr int kSteps = 20;
+// Both spaces take the first steps, the better one the rest.
+constexpr int kFirstSteps = 3, kSteps = 20;
 constexpr double kLeast = 3e-3;
 
 TrackedLobes without_lobe(const TrackedLobes& lobes, Index lobe) {
@@ -25,16 +28,19 @@ TrackedLobes without_lobe(const TrackedLobes& lobes, Index lobe) {
 }  // namespace
 
 bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const LobeSpace> spaces) {
-  const TrackedLobes before = lobes;
+  problem.evaluate(lobes.model, lobes.x);  // its residuals are what the search looks at
+  std::vector<TrackedLobes> trials;
   for (const LobeSpace space : spaces) {
-    problem.evaluate(before.model, before.x);  // its residuals are what the search looks at
-    auto trial = with_best_lobe(problem, before, space);
-    if (!trial) continue;
-    refine(problem, *trial, kSteps, kLeast);
-    if (trial->cost < lobes.cost) lobes = std::move(*trial);
+    if (auto trial = with_best_lobe(problem, lobes, space)) trials.push_back(std::move(*trial));
   }
+  for (TrackedLobes& trial : trials) refine(problem, trial, kFirstSteps, kLeast);
+  const auto best =
+      std::min_element(trials.begin(), trials.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+  if (best != trials.end()) refine(problem, *best, kSteps - kFirstSteps, kLeast);
+  const bool better = best != trials.end() && best->cost < lobes.cost;
+  if (better) lobes = std::move(*best);
   problem.evaluate(lobes.model, lobes.x);
-  return lobes.model.lobe_count() > before.model.lobe_count();
+  return better;
 }
 
 bool exchange_lobe(TrackedProblem& problem, TrackedLobes& lobes) {

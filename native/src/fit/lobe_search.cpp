@@ -16,6 +16,10 @@ constexpr double kChannel[3] = {0.2126, 0.7152, 0.0722};
 constexpr size_t kStride = 4;  // of the blocks of samples that the search looks at
 // A start below the best coefficient leaves room for the lobes that are there; none starts at nothing.
 constexpr double kShare = 0.7, kFloor = 1e-3;
+// So many of the candidates are fitted alone before one is chosen.
+constexpr size_t kTried = 3;
+constexpr int kTrySteps = 10;
+constexpr double kTryLeast = 3e-3;
 
 /// A lobe over all views, before the fit bends it.
 struct Candidate {
@@ -144,6 +148,31 @@ TrackedLobes with_lobe(const TrackedLobes& lobes, LobeSpace space, const Eigen::
   return out;
 }
 
+/// A lobe alone, of the given space and control values.
+TrackedLobes alone(const TrackedLobes& lobes, LobeSpace space, const Eigen::MatrixXd& control) {
+  TrackedLobes none = lobes;
+  none.model.space.clear();
+  return with_lobe(none, space, control);
+}
+
+/// The candidates that gain most, best first, one of each bandwidth and way to follow.
+std::vector<size_t> most_promising(const std::vector<Candidate>& all, const std::vector<double>& gain) {
+  std::vector<size_t> best;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (!(gain[i] > 0)) continue;
+    const auto same = std::find_if(best.begin(), best.end(), [&](size_t b) {
+      return all[b].log_bandwidth == all[i].log_bandwidth && all[b].follows == all[i].follows;
+    });
+    if (same == best.end())
+      best.push_back(i);
+    else if (gain[i] > gain[*same])
+      *same = i;
+  }
+  std::stable_sort(best.begin(), best.end(), [&](size_t a, size_t b) { return gain[a] > gain[b]; });
+  best.resize(std::min(best.size(), kTried));
+  return best;
+}
+
 }  // namespace
 
 std::optional<TrackedLobes> with_best_lobe(const TrackedProblem& problem, const TrackedLobes& lobes, LobeSpace space) {
@@ -153,9 +182,16 @@ std::optional<TrackedLobes> with_best_lobe(const TrackedProblem& problem, const 
   parallel_pieces(all.size(), problem.threads(), problem.progress(), [&](size_t i) {
     for (const TrackedView& v : problem.views()) gain[i] += start_at(space, all[i], v).gain;
   });
-  const size_t best = static_cast<size_t>(std::max_element(gain.begin(), gain.end()) - gain.begin());
-  if (!(gain[best] > 0)) return std::nullopt;
-  return with_lobe(lobes, space, control_values(space, all[best], problem.views(), lobes.model));
+  TrackedProblem remainder = problem.remainder();
+  std::optional<TrackedLobes> best;
+  for (const size_t i : most_promising(all, gain)) {
+    TrackedLobes trial = alone(lobes, space, control_values(space, all[i], problem.views(), lobes.model));
+    refine(remainder, trial, kTrySteps, kTryLeast);
+    if (!best || trial.cost < best->cost) best = std::move(trial);
+  }
+  if (!best) return std::nullopt;
+  const Index parameters = lobes.model.parameter_count();
+  return with_lobe(lobes, space, best->x.reshaped<Eigen::RowMajor>(best->x.size() / parameters, parameters));
 }
 
 }  // namespace velour

@@ -1,5 +1,6 @@
 #include "fit/parametric_fit.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "fit/albedo_limit.h"
@@ -14,10 +15,22 @@ namespace {
 // Splines over the view: of tables, and of scattered samples, which are too few to hold more.
 constexpr int kTableCells = 10, kSampleCells = 4;
 
+// A control value that fewer scattered samples tell follows their noise; two or three lobes are a material's least.
+constexpr size_t kSamplesPerValue = 5;
+constexpr int kLeastLobes = 3;
+
 // Interpolated samples are few and slow to look up: no more of them than they can tell apart.
 SliceGrid grid_for(const Measurement& measurement) {
   if (!measurement.samples().empty()) return {32, 24, measurement.isotropic()};
   return {64, 32, measurement.isotropic()};
+}
+
+/// The lobes that scattered samples can tell apart.
+int most_lobes(const Measurement& measurement, int cells) {
+  const ViewSpline spline(measurement.isotropic(), cells);
+  const auto parameters = static_cast<size_t>(ParametricBrdf::parameters_of(measurement.isotropic()));
+  const size_t values = static_cast<size_t>(spline.node_count()) * parameters;
+  return std::max(kLeastLobes, static_cast<int>(measurement.samples().size() / (kSamplesPerValue * values)));
 }
 
 }  // namespace
@@ -32,6 +45,9 @@ TrackedFitOptions tracked_options(const Measurement& measurement, const FitOptio
   tracked.isotropic = measurement.isotropic();
   tracked.cells = measurement.samples().empty() ? kTableCells : kSampleCells;
   tracked.max_lobes = options.max_lobes;
+  if (!measurement.samples().empty()) {
+    tracked.max_lobes = std::min(tracked.max_lobes, most_lobes(measurement, tracked.cells));
+  }
   tracked.tolerance = options.tolerance;
   tracked.threads = options.threads;
   return tracked;

@@ -109,15 +109,16 @@ class SceneSearch {
   /// The fewest lobes that are enough, if that makes a smaller model than the best so far. From below: small fits are
   /// fast, and a fit that ended with fewer lobes than it might have had ends the same with more.
   void try_lobes() {
+    tracked_.max_lobes = ParametricBrdf::kMaxLobes;
+    TrackedGrowth growth(slices_, tracked_, progress_);
     for (int lobes = 1; lobes <= ParametricBrdf::kMaxLobes && bytes_of(lobes) < least_bytes_; lobes += 1 + lobes / 5) {
-      if (enough(lobes) || tried_lobes_ < lobes) return;
+      if (enough(growth, lobes) || tried_lobes_ < lobes) return;
     }
   }
 
   /// Whether a fit of at most `lobes` makes pictures as good as the full model's; then it is the best so far.
-  bool enough(int lobes) {
-    tracked_.max_lobes = lobes;
-    TrackedFit fit = fit_tracked(slices_, tracked_, progress_);
+  bool enough(TrackedGrowth& growth, int lobes) {
+    TrackedFit fit = growth.fit(lobes);
     tried_lobes_ = fit.brdf.lobe_count();
     judge_.refine_colors(fit.brdf);
     if (limit_) limit_albedo(fit.brdf, tracked_.threads, progress_);

@@ -42,6 +42,10 @@ class SliceSamples {
   /// Multiplies the weights by `factors`, one a sample. The energies stay those of the weights that were given.
   void scale_weights(std::span<const float> factors);
 
+  /// Takes `values`, one a sample and multiplied by the square root of its weight, in place of what channel `c`
+  /// measured. The energies stay.
+  void replace_target(int c, const AlignedFloats& values) { target_[c] = values; }
+
   /// Sum of weight x luminance(f cos)^2.
   double luminance_energy() const { return luminance_energy_; }
   /// Relative L2 of the luminance that is left when every channel is fitted exactly but for its negative values, which

@@ -37,20 +37,30 @@ void keep_one_side(LightGrid& grid) {
   grid = std::move(half);
 }
 
+/// f of lights and of their mirror images, as measured.
+struct MirrorPairs {
+  std::vector<Rgb> f, image;
+  std::vector<uint8_t> valid, image_valid;
+};
+
 /// f of `lights` for a view on the meridian, each the mean of what is valid of it and its mirror image.
-void eval_folded(const Measurement& source, const Vec3& wv, const std::vector<Vec3>& lights, std::vector<Rgb>& f,
-                 std::vector<uint8_t>& valid) {
-  source.eval(wv, lights, f, valid);
+MirrorPairs eval_folded(const Measurement& source, const Vec3& wv, const std::vector<Vec3>& lights, std::vector<Rgb>& f,
+                        std::vector<uint8_t>& valid) {
   std::vector<Vec3> mirrored = lights;
   for (Vec3& wl : mirrored) wl.y = -wl.y;
-  std::vector<Rgb> other(f.size(), Rgb(0));
-  std::vector<uint8_t> other_valid(f.size(), 0);
-  source.eval(wv, mirrored, other, other_valid);
+  const std::vector<Rgb> nothing(f.size(), Rgb(0));
+  const std::vector<uint8_t> none(f.size(), 0);
+  MirrorPairs measured{nothing, nothing, none, none};
+  source.eval(wv, lights, measured.f, measured.valid);
+  source.eval(wv, mirrored, measured.image, measured.image_valid);
   for (size_t i = 0; i < f.size(); ++i) {
-    if (!other_valid[i] || !usable(other[i])) continue;
-    f[i] = valid[i] && usable(f[i]) ? 0.5f * (f[i] + other[i]) : other[i];
-    valid[i] = 1;
+    measured.valid[i] &= usable(measured.f[i]);
+    measured.image_valid[i] &= usable(measured.image[i]);
+    valid[i] = measured.valid[i] | measured.image_valid[i];
+    if (measured.valid[i]) f[i] = measured.f[i];
+    if (measured.image_valid[i]) f[i] = measured.valid[i] ? 0.5f * (f[i] + measured.image[i]) : measured.image[i];
   }
+  return measured;
 }
 
 /// For a view along the normal, where an isotropic f depends on theta_l alone: the mean of every ring.
@@ -63,6 +73,21 @@ void average_rings(const LightGrid& grid, std::vector<Rgb>& f, std::span<const u
     }
     for (size_t i = begin; i < end && count > 0; ++i) f[i] = Rgb(sum / static_cast<double>(count));
   }
+}
+
+/// Relative L2 between what was measured and the folded `f`.
+double fold_of(const LightGrid& grid, const MirrorPairs& measured, const std::vector<Rgb>& f) {
+  double hidden = 0, energy = 0;
+  const auto add = [&](size_t i, const Rgb& value) {
+    const double y = luminance(value) * grid.wl[i].z, folded = luminance(f[i]) * grid.wl[i].z;
+    hidden += static_cast<double>(grid.weight[i]) * (y - folded) * (y - folded);
+    energy += static_cast<double>(grid.weight[i]) * y * y;
+  };
+  for (size_t i = 0; i < f.size(); ++i) {
+    if (measured.valid[i]) add(i, measured.f[i]);
+    if (measured.image_valid[i]) add(i, measured.image[i]);
+  }
+  return energy > 0 ? std::sqrt(hidden / energy) : 0;
 }
 
 /// Sum of weight x luminance(f cos)^2.
@@ -108,13 +133,14 @@ MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const Slic
     redistribute_weights(grid, kept);
   }
   std::vector<Rgb> f(n, Rgb(0));
+  MeasuredSlice slice{.wv = wv, .samples = {}};
   if (size.folded) {
-    eval_folded(source, wv, grid.wl, f, valid);
+    const MirrorPairs measured = eval_folded(source, wv, grid.wl, f, valid);
     if (wv.x == 0) average_rings(grid, f, valid);
+    slice.fold = fold_of(grid, measured, f);
   } else {
     source.eval(wv, grid.wl, f, valid);
   }
-  MeasuredSlice slice{.wv = wv, .samples = {}};
   for (size_t i = 0; i < n; ++i) {
     if (!kept[i] || !valid[i] || !usable(f[i])) continue;
     check_size(source, f[i]);

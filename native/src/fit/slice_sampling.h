@@ -15,6 +15,7 @@ struct MeasuredSlice {
   std::vector<SliceSample> samples;
   double weight = 1;          // of the view's squared error in a fit of all views together
   double energy = 0;          // sum of weight x luminance(f cos)^2 that errors are measured by; 0: that of the samples
+  double fold = 0;            // relative L2 of what folding took from it (SliceGrid::folded)
   bool interpolated = false;  // between scattered samples that the fit reads themselves as well
   size_t out_of_gamut = 0;    // samples with a negative channel: kept, though no model of ours can follow them
 };

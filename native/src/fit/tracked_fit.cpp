@@ -109,61 +109,6 @@ void polish(TrackedProblem& problem, TrackedLobes& lobes) {
   round_to_half(problem, lobes);
 }
 
-class Growth {
- public:
-  Growth(TrackedProblem& problem, const TrackedFitOptions& options, Progress& progress)
-      : problem_(problem), options_(options), progress_(progress) {
-    lobes_.model.isotropic = options.isotropic;
-    lobes_.model.cells = options.cells;
-    lobes_.model.views = options.views;
-    lobes_.cost = problem.evaluate(lobes_.model, lobes_.x);
-  }
-
-  /// Adds lobes of `spaces` until there are `most`, or until no view asks for more. False when no more are wanted.
-  bool grow(std::span<const LobeSpace> spaces, int most) {
-    while (lobes_.model.lobe_count() < most) {
-      const double before = lobes_.cost;
-      if (!add_lobe(problem_, lobes_, spaces)) return false;
-      // A lobe that gains next to nothing: perhaps another stands in the wrong place.
-      if (lobes_.cost > (1 - kLeastGain) * before) exchange_lobe(problem_, lobes_);
-      points_.push_back(order_point(problem_, lobes_));
-      progress_.update(static_cast<double>(lobes_.model.lobe_count()) / options_.max_lobes);
-      if (points_.back().worst <= kGoalShare * kEnough || lobes_.cost > (1 - kLeastGain) * before) return false;
-    }
-    return true;
-  }
-
-  TrackedLobes& lobes() { return lobes_; }
-  std::vector<OrderPoint>& points() { return points_; }
-
- private:
-  TrackedProblem& problem_;
-  const TrackedFitOptions& options_;
-  Progress& progress_;
-  TrackedLobes lobes_;
-  std::vector<OrderPoint> points_;
-};
-
-/// Greed may begin in the wrong space and never mend it, so the first lobes are tried in half space alone as well.
-Growth grown(TrackedProblem& problem, const TrackedFitOptions& options, Progress& progress) {
-  constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light}, kHalf[] = {LobeSpace::half};
-  const int first = std::min(kFirstLobes, options.max_lobes);
-  Growth both(problem, options, progress), half(problem, options, progress);
-  bool more = both.grow(kBoth, first), more_half = half.grow(kHalf, first);
-  const bool by_half = half.lobes().cost < both.lobes().cost;
-  Growth best = by_half ? std::move(half) : std::move(both);
-  problem.evaluate(best.lobes().model, best.lobes().x);
-  if (by_half ? more_half : more) best.grow(kBoth, options.max_lobes);
-  return best;
-}
-
-TrackedProblem problem_of(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options,
-                          const Progress& progress) {
-  const auto goal = [&options](double theta_v) { return kGoalShare * tolerance_at(options.tolerance, theta_v); };
-  const ViewSpline spline(options.isotropic, options.cells, options.views);
-  return {slices, spline, goal, options.seen_evenly, options.threads, progress};
-}
-
 void record_errors(const TrackedProblem& problem, TrackedFit& fit) {
   fit.views.clear();
   fit.error.clear();
@@ -174,16 +119,106 @@ void record_errors(const TrackedProblem& problem, TrackedFit& fit) {
   }
 }
 
+class Growth {
+ public:
+  Growth(TrackedProblem& problem, const TrackedFitOptions& options, Progress& progress)
+      : problem_(problem), options_(options), progress_(progress) {
+    lobes_.model.isotropic = options.isotropic;
+    lobes_.model.cells = options.cells;
+    lobes_.model.views = options.views;
+    lobes_.cost = problem.evaluate(lobes_.model, lobes_.x);
+  }
+
+  /// Adds lobes of `spaces` until there are `most`, or until no view asks for more.
+  void grow(std::span<const LobeSpace> spaces, int most) {
+    problem_.evaluate(lobes_.model, lobes_.x);
+    while (!done_ && lobes_.model.lobe_count() < most) {
+      const double before = lobes_.cost;
+      done_ = !add_lobe(problem_, lobes_, spaces);
+      if (done_) return;
+      // A lobe that gains next to nothing: perhaps another stands in the wrong place.
+      if (lobes_.cost > (1 - kLeastGain) * before) exchange_lobe(problem_, lobes_);
+      points_.push_back(order_point(problem_, lobes_));
+      progress_.update(static_cast<double>(lobes_.model.lobe_count()) / options_.max_lobes);
+      done_ = points_.back().worst <= kGoalShare * kEnough || lobes_.cost > (1 - kLeastGain) * before;
+    }
+  }
+
+  const TrackedLobes& lobes() const { return lobes_; }
+  const std::vector<OrderPoint>& points() const { return points_; }
+
+ private:
+  TrackedProblem& problem_;
+  const TrackedFitOptions& options_;
+  Progress& progress_;
+  TrackedLobes lobes_;
+  std::vector<OrderPoint> points_;
+  bool done_ = false;  // no more lobes are wanted
+};
+
+/// What a symmetric model may err by against the folded values of a view, so that against what was measured it errs by
+/// `tolerance`, or, where that is more, by what mirror images differ by: sqrt(2) times `fold` (fit/noise.h). Never more
+/// than `tolerance`.
+double beside_fold(double tolerance, double fold) {
+  const double allowed = std::max(tolerance, std::sqrt(2.0) * fold);
+  return std::min(tolerance, std::sqrt(allowed * allowed - fold * fold));
+}
+
+TrackedProblem problem_of(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options,
+                          const Progress& progress) {
+  const auto goal = [&options](const MeasuredSlice& slice) {
+    const double theta_v = std::acos(std::clamp(Vec3d(slice.wv).z, -1.0, 1.0));
+    return kGoalShare * beside_fold(tolerance_at(options.tolerance, theta_v), slice.fold);
+  };
+  const ViewSpline spline(options.isotropic, options.cells, options.views);
+  return {slices, spline, goal, options.seen_evenly, options.threads, progress};
+}
+
 }  // namespace
 
-TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress) {
-  TrackedProblem problem = problem_of(slices, options, progress);
-  Growth growth = grown(problem, options, progress);
-  TrackedLobes& lobes = growth.lobes();
+/// Greed may begin in the wrong space and never mend it, so the first lobes are tried in half space alone as well.
+struct TrackedGrowth::State {
+  TrackedFitOptions options;
+  TrackedProblem problem;
+  Growth both, half;
+
+  State(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& wanted, Progress& progress)
+      : options(wanted),
+        problem(problem_of(slices, options, progress)),
+        both(problem, options, progress),
+        half(problem, options, progress) {}
+
+  const Growth& grown(int most) {
+    constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light}, kHalf[] = {LobeSpace::half};
+    const int first = std::min(kFirstLobes, most);
+    if (both.lobes().model.lobe_count() <= kFirstLobes && half.lobes().model.lobe_count() <= kFirstLobes) {
+      both.grow(kBoth, first);
+      half.grow(kHalf, first);
+      by_half = half.lobes().cost < both.lobes().cost;
+    }
+    Growth& best = by_half ? half : both;
+    best.grow(kBoth, most);
+    return best;
+  }
+
+ private:
+  bool by_half = false;
+};
+
+TrackedGrowth::TrackedGrowth(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options,
+                             Progress& progress)
+    : state_(std::make_unique<State>(slices, options, progress)) {}
+TrackedGrowth::~TrackedGrowth() = default;
+
+TrackedFit TrackedGrowth::fit(int most) {
+  const Growth& growth = state_->grown(most);
+  TrackedLobes lobes = growth.lobes();
   TrackedFit fit;
-  fit.order.points = std::move(growth.points());
+  fit.order.points = growth.points();
+  TrackedProblem problem = state_->problem;  // weights change from here on
+  problem.evaluate(lobes.model, lobes.x);
   if (lobes.model.lobe_count() > 0) {
-    grow_for_pictures(problem, lobes, options.max_lobes, fit.order.points);
+    grow_for_pictures(problem, lobes, most, fit.order.points);
     polish(problem, lobes);
     // What the growth ends with takes the place of its last point.
     fit.order.points.back() = order_point(problem, lobes);
@@ -193,6 +228,10 @@ TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFi
   for (const double v : lobes.x) fit.brdf.control.push_back(static_cast<float>(v));
   record_errors(problem, fit);
   return fit;
+}
+
+TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress) {
+  return TrackedGrowth(slices, options, progress).fit(options.max_lobes);
 }
 
 void judge_again(const std::vector<MeasuredSlice>& slices, TrackedFitOptions options, TrackedFit& fit,

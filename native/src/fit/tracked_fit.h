@@ -1,6 +1,7 @@
 // From the slices of a measurement to a parametric model: growth, refinement, rounding.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "brdf/parametric_brdf.h"
@@ -25,6 +26,21 @@ struct TrackedFit {
   std::vector<Vec3d> views;
   std::vector<double> error;  // relative L2 of each view, channels weighted as in luminance
   OrderCurve order;           // the growth, and what it became
+};
+
+/// Fits with more and more lobes that share their growth: each is what fit_tracked() makes with that many at most.
+class TrackedGrowth {
+ public:
+  /// Of `options`, max_lobes only scales the progress.
+  TrackedGrowth(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);
+  ~TrackedGrowth();
+
+  /// With at most `most` lobes, no fewer than were asked for before.
+  TrackedFit fit(int most);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);

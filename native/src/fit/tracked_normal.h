@@ -2,15 +2,13 @@
 //
 // A view touches three nodes of the spline (nine of a hemisphere's), so the matrix is a sum of small ones, one a view.
 // Conjugate gradients with the nodes' own blocks as preconditioner solve it: neighbouring nodes of a quadratic spline
-// are coupled weakly, so some twenty steps do, whatever the condition inside a block.
+// are coupled weakly, so some twenty steps do, whatever the condition inside a block. In floats, which hold the
+// residuals as well: a step is judged by the cost that it leads to, not by its last digits.
 #pragma once
 
 #include "fit/tracked_problem.h"
 
 namespace velour {
-
-/// Which unknowns move.
-enum class Free { all, colors };
 
 class TrackedNormal {
  public:
@@ -18,20 +16,24 @@ class TrackedNormal {
   TrackedNormal(const ParametricBrdf& model, const std::vector<TrackedView>& views, std::vector<LocalNormal> local,
                 const Eigen::VectorXd& x);
 
-  /// Solves (H + damping diag H) step = -gradient.
-  Eigen::VectorXd step(double damping, Free free) const;
+  /// Solves (H + damping diag H) step = -gradient for the unknowns where `free` is 1; where it is 0 they stay.
+  Eigen::VectorXd step(double damping, const Eigen::VectorXd& free) const;
+  /// By how much the quadratic model says that a step lowers the cost.
+  double promised(const Eigen::VectorXd& step) const;
   /// Half the gradient of the cost.
   const Eigen::VectorXd& gradient() const { return gradient_; }
 
  private:
-  Eigen::VectorXd product(const Eigen::VectorXd& x, const Eigen::VectorXd& added, const Eigen::VectorXd& mask) const;
-  Eigen::VectorXd mask(Free free) const;
+  class Preconditioner;
+  Eigen::VectorXf product(const Eigen::VectorXf& x) const;
 
   const ParametricBrdf& model_;
   const std::vector<TrackedView>& views_;
-  std::vector<LocalNormal> local_;
-  std::vector<Eigen::MatrixXd> block_;  // of each node
-  Eigen::VectorXd gradient_, diagonal_;
+  std::vector<LocalNormal> local_;       // matrices in units of the cost
+  std::vector<Eigen::VectorXf> weight_;  // of the taps of all views, [parameter][lobe]
+  std::vector<Eigen::MatrixXf> block_;   // of each node
+  Eigen::VectorXd gradient_;
+  Eigen::VectorXf diagonal_;
 };
 
 }  // namespace velour

@@ -109,7 +109,7 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
   Eigen::MatrixXd weighted = beta;  // channel weight x coefficient
   for (int c = 0; c < 3; ++c) weighted.col(c) *= kChannel[c];
   const Eigen::MatrixXd mixed = weighted * beta.transpose();
-  LocalNormal out{Eigen::MatrixXd::Zero(model.parameter_count() * lobes, model.parameter_count() * lobes),
+  LocalNormal out{Eigen::MatrixXf::Zero(model.parameter_count() * lobes, model.parameter_count() * lobes),
                   Eigen::VectorXd::Zero(model.parameter_count() * lobes)};
   const auto slope_row = [&](Index j, int a) { return lobes + j * slopes + a; };
   for (Index j = 0; j < lobes; ++j) {
@@ -118,10 +118,11 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
       out.gradient[row] = -moments.row(slope_row(j, a)).dot(weighted.row(j));
       for (Index k = 0; k < lobes; ++k) {
         for (int b = 0; b < slopes; ++b) {
-          out.hessian(row, kShape[b] * lobes + k) = mixed(j, k) * products(slope_row(j, a), slope_row(k, b));
+          out.hessian(row, kShape[b] * lobes + k) =
+              static_cast<float>(mixed(j, k) * products(slope_row(j, a), slope_row(k, b)));
         }
         for (int c = 0; c < 3; ++c) {
-          const double entry = weighted(j, c) * beta(k, c) * products(slope_row(j, a), k);
+          const auto entry = static_cast<float>(weighted(j, c) * beta(k, c) * products(slope_row(j, a), k));
           out.hessian(row, kColor[c] * lobes + k) = out.hessian(kColor[c] * lobes + k, row) = entry;
         }
       }
@@ -130,7 +131,7 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
       const Index row = kColor[c] * lobes + j;
       out.gradient[row] = -moments(j, c) * weighted(j, c);
       for (Index k = 0; k < lobes; ++k) {
-        out.hessian(row, kColor[c] * lobes + k) = weighted(j, c) * beta(k, c) * products(j, k);
+        out.hessian(row, kColor[c] * lobes + k) = static_cast<float>(weighted(j, c) * beta(k, c) * products(j, k));
       }
     }
   }
@@ -139,14 +140,14 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
     if (!(linear.excess[j] > 0)) continue;
     const Index row = P::kLogBandwidth * lobes + j;
     out.gradient[row] += linear.excess[j] / view.scale();
-    out.hessian(row, row) += 1 / view.scale();
+    out.hessian(row, row) += static_cast<float>(1 / view.scale());
   }
   // The stretch that the view sees is the faded one.
   for (const int p : {static_cast<int>(P::kStretchA), static_cast<int>(P::kStretchB)}) {
     if (p >= model.parameter_count()) continue;
     out.gradient.segment(p * lobes, lobes) *= view.fade;
-    out.hessian.middleRows(p * lobes, lobes) *= view.fade;
-    out.hessian.middleCols(p * lobes, lobes) *= view.fade;
+    out.hessian.middleRows(p * lobes, lobes) *= static_cast<float>(view.fade);
+    out.hessian.middleCols(p * lobes, lobes) *= static_cast<float>(view.fade);
   }
   return out;
 }
@@ -193,12 +194,11 @@ void TrackedView::weigh_for_pictures() {
 }
 
 TrackedProblem::TrackedProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
-                               const std::function<double(double)>& goal, bool seen_evenly, int threads,
+                               const std::function<double(const MeasuredSlice&)>& goal, bool seen_evenly, int threads,
                                const Progress& progress)
     : threads_(threads), progress_(progress) {
   for (const MeasuredSlice& slice : slices) {
-    const double wanted = goal(std::acos(std::clamp(Vec3d(slice.wv).z, -1.0, 1.0)));
-    TrackedView view(slice, spline, wanted / std::sqrt(slice.weight));
+    TrackedView view(slice, spline, goal(slice) / std::sqrt(slice.weight));
     if (!(view.energy > 0)) continue;
     // Samples of a goniometer weigh one each, and nobody measured what lies between.
     if (seen_evenly && !slice.interpolated && !(slice.energy > 0)) {
@@ -220,6 +220,14 @@ double TrackedProblem::cost(const ParametricBrdf& model, const Eigen::VectorXd& 
 
 void TrackedProblem::weigh_for_pictures() {
   for (TrackedView& v : views_) v.weigh_for_pictures();
+}
+
+TrackedProblem TrackedProblem::remainder() const {
+  TrackedProblem out = *this;
+  for (TrackedView& v : out.views_) {
+    for (int c = 0; c < 3; ++c) v.samples.replace_target(c, v.residual[c]);
+  }
+  return out;
 }
 
 double TrackedProblem::evaluate(const ParametricBrdf& model, const Eigen::VectorXd& x) {

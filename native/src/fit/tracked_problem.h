@@ -55,7 +55,7 @@ inline constexpr double kSmoothness = 1e-4;
 /// Gauss-Newton matrix and half the gradient of a view's squared residuals (channels weighted as in luminance) by the
 /// lobes' parameters there, [parameter][lobe].
 struct LocalNormal {
-  Eigen::MatrixXd hessian;
+  Eigen::MatrixXf hessian;
   Eigen::VectorXd gradient;
 };
 
@@ -64,11 +64,12 @@ struct LocalNormal {
 /// are the control values of a model, in its own order (ParametricBrdf::index).
 class TrackedProblem {
  public:
-  /// `goal` of a view's polar angle (radians). Views without light are left out. `threads` 0: all. `seen_evenly`: the
+  /// `goal` of a view. Views without light are left out. `threads` 0: all. `seen_evenly`: the
   /// samples of tables weigh their solid angle and no more, so that what pictures show can be told from it, and how
   /// narrow a lobe may be.
   TrackedProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
-                 const std::function<double(double)>& goal, bool seen_evenly, int threads, const Progress& progress);
+                 const std::function<double(const MeasuredSlice&)>& goal, bool seen_evenly, int threads,
+                 const Progress& progress);
 
   std::vector<TrackedView>& views() { return views_; }
   const std::vector<TrackedView>& views() const { return views_; }
@@ -79,6 +80,8 @@ class TrackedProblem {
 
   /// The cost; leaves error and residuals in the views. `model` gives the lobes' spaces and the order of x.
   double evaluate(const ParametricBrdf& model, const Eigen::VectorXd& x);
+  /// The problem of what its lobes leave, as evaluate() or linearise() found it last.
+  TrackedProblem remainder() const;
   /// The same for all views, with their matrices.
   double linearise(const ParametricBrdf& model, const Eigen::VectorXd& x, std::vector<LocalNormal>& local);
 

@@ -1,6 +1,7 @@
 #include "fit/tracked_solver.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace velour {
 namespace {
@@ -8,7 +9,8 @@ namespace {
 using Index = Eigen::Index;
 using P = ParametricBrdf;
 
-constexpr double kFirstDamping = 1e-2, kLeastDamping = 1e-6;
+constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-6;
+constexpr double kFastestFall = 0.2, kSlowestRise = 2;  // of the damping after a step that was taken
 constexpr int kTrials = 6;
 constexpr double kMaxStep = 1;  // of a control value: a factor e, a radian
 
@@ -22,6 +24,39 @@ Eigen::VectorXd stepped(const TrackedLobes& lobes, const Eigen::VectorXd& step) 
   }
   return x;
 }
+
+/// 1 where an unknown may move: 0 as well at a bound that the cost pushes it against, or the step of the others would
+/// count on what the bound takes back.
+Eigen::VectorXd free_to_move(const TrackedLobes& lobes, const Eigen::VectorXd& gradient, Free free) {
+  Eigen::VectorXd out = Eigen::VectorXd::Ones(lobes.x.size());
+  for (Index i = 0; i < out.size(); ++i) {
+    const int p = parameter_of(lobes.model, i);
+    const bool color = p >= P::kLogRed && p <= P::kLogBlue;
+    const bool held =
+        (lobes.x[i] <= lower_bound(p) && gradient[i] > 0) || (lobes.x[i] >= upper_bound(p) && gradient[i] < 0);
+    if (held || (free == Free::colors && !color)) out[i] = 0;
+  }
+  return out;
+}
+
+/// How much a step is damped, by what the steps before it brought of what they promised [Nie99].
+class Damping {
+ public:
+  double value() const { return value_; }
+  void taken(double share) {
+    const double factor = 1 - std::pow(2 * share - 1, 3);
+    value_ = std::max(value_ * std::clamp(factor, kFastestFall, kSlowestRise), kLeastDamping);
+    rise_ = kFirstRise;
+  }
+  void refused() {
+    value_ *= rise_;
+    rise_ *= 2;
+  }
+
+ private:
+  static constexpr double kFirstRise = 4;
+  double value_ = kFirstDamping, rise_ = kFirstRise;
+};
 
 }  // namespace
 
@@ -56,17 +91,22 @@ double upper_bound(int parameter) {
 }
 
 void refine(TrackedProblem& problem, TrackedLobes& lobes, int most, double least, Free free) {
-  double damping = kFirstDamping;
+  Damping damping;
   std::vector<LocalNormal> local;
   for (int step = 0; step < most; ++step) {
     lobes.cost = problem.linearise(lobes.model, lobes.x, local);
     const TrackedNormal normal(lobes.model, problem.views(), std::move(local), lobes.x);
+    const Eigen::VectorXd moving = free_to_move(lobes, normal.gradient(), free);
     const double before = lobes.cost;
     for (int trial = 0; trial < kTrials && lobes.cost == before; ++trial) {
-      const Eigen::VectorXd x = stepped(lobes, normal.step(damping, free));
+      const Eigen::VectorXd x = stepped(lobes, normal.step(damping.value(), moving));
       const double cost = problem.evaluate(lobes.model, x);
-      damping = cost < before ? std::max(damping / 4, kLeastDamping) : damping * 4;
-      if (cost < before) lobes.x = x, lobes.cost = cost;
+      if (cost < before) {
+        damping.taken((before - cost) / std::max(normal.promised(x - lobes.x), 1e-12 * before));
+        lobes.x = x, lobes.cost = cost;
+      } else {
+        damping.refused();
+      }
     }
     if (before - lobes.cost < least * before) break;
   }

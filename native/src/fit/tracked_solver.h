@@ -12,6 +12,9 @@ struct TrackedLobes {
   double cost = 0;
 };
 
+/// Which unknowns move.
+enum class Free { all, colors };
+
 /// Steps until one lowers the cost by less than `least` of it, or `most` of them. Never worse than the start.
 /// Deterministic for any thread count.
 void refine(TrackedProblem& problem, TrackedLobes& lobes, int most, double least, Free free = Free::all);

@@ -129,5 +129,42 @@ TEST(ParametricFit, RefusesSenselessOptions) {
   EXPECT_THROW(fitted(AnalyticMeasurement(test::lambert), options), Error);
 }
 
+TEST(SliceSampling, TheFoldIsWhatMirrorImagesDifferBy) {
+  constexpr float kSkew = 0.1f;
+  const auto skewed = [](float skew) {
+    return AnalyticMeasurement([skew](const DirectionPair& p) {
+      const float side = p.wv.x * p.wl.y - p.wv.y * p.wl.x;
+      return Rgb(1 + (side > 0 ? skew : -skew));
+    });
+  };
+  Progress progress;
+  const SliceGrid grid{16, 16, true};
+  for (const float skew : {0.0f, kSkew}) {
+    for (const MeasuredSlice& s : sample_slices(skewed(skew), grid, true, 1, progress).slices) {
+      if (s.wv.x < 0.1f) continue;  // about the normal there is no plane of incidence
+      const double expected = skew / std::sqrt(1 + skew * skew);
+      EXPECT_NEAR(s.fold, expected, 0.02 * expected + 1e-6);
+    }
+  }
+}
+
+TEST(TrackedGrowth, FitsThatShareTheirGrowthAreThoseOfTheirOwn) {
+  Progress progress;
+  const SliceGrid grid{16, 16, true};
+  const std::vector<MeasuredSlice> slices =
+      sample_slices(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), grid, true, 1, progress).slices;
+  TrackedFitOptions options;
+  options.cells = 2;
+  options.tolerance = 0.002;
+  TrackedGrowth growth(slices, options, progress);
+  for (const int most : {1, 3, 5, 6}) {
+    options.max_lobes = most;
+    const TrackedFit shared = growth.fit(most), own = fit_tracked(slices, options, progress);
+    EXPECT_EQ(shared.brdf.lobe_count(), most);
+    EXPECT_EQ(shared.brdf.control, own.brdf.control);
+    EXPECT_EQ(shared.order, own.order);
+  }
+}
+
 }  // namespace
 }  // namespace velour

@@ -66,7 +66,8 @@ class Tracked : public testing::TestWithParam<bool> {
  protected:
   Lobes truth_ = two_lobes(GetParam(), 0.0), start_ = two_lobes(GetParam(), 0.3);
   Progress progress_;
-  TrackedProblem problem_{slices_of(truth_), truth_.model.spline(), [](double) { return 0.02; }, true, 1, progress_};
+  TrackedProblem problem_{slices_of(truth_), truth_.model.spline(), [](const MeasuredSlice&) { return 0.02; }, true, 1,
+                          progress_};
 };
 
 TEST_P(Tracked, TheTruthHasNoErrorButThePenalty) {
@@ -79,7 +80,7 @@ TEST_P(Tracked, TheStepSolvesTheNormalEquationsOfTheCost) {
   std::vector<LocalNormal> local;
   const double here = problem_.linearise(start_.model, start_.x, local);
   const TrackedNormal normal(start_.model, problem_.views(), local, start_.x);
-  const Eigen::VectorXd step = normal.step(1e-3, Free::all);
+  const Eigen::VectorXd step = normal.step(1e-3, Eigen::VectorXd::Ones(start_.x.size()));
   // Gauss-Newton predicts the cost along its step: half the gradient's drop twice, plus the curvature.
   const double slope = (problem_.evaluate(start_.model, start_.x + 1e-4 * step) -
                         problem_.evaluate(start_.model, start_.x - 1e-4 * step)) /
@@ -138,7 +139,13 @@ TEST_P(Tracked, TheGradientIsThatOfTheCost) {
 TEST_P(Tracked, HeldParametersDoNotMove) {
   std::vector<LocalNormal> local;
   problem_.linearise(start_.model, start_.x, local);
-  const Eigen::VectorXd step = TrackedNormal(start_.model, problem_.views(), local, start_.x).step(1e-3, Free::colors);
+  Eigen::VectorXd free = Eigen::VectorXd::Zero(start_.x.size());
+  for (int node = 0; node < start_.model.spline().node_count(); ++node) {
+    for (int k = P::kLogRed; k <= P::kLogBlue; ++k) {
+      for (int j = 0; j < 2; ++j) free[static_cast<Eigen::Index>(start_.model.index(node, k, j))] = 1;
+    }
+  }
+  const Eigen::VectorXd step = TrackedNormal(start_.model, problem_.views(), local, start_.x).step(1e-3, free);
   double moved = 0;
   for (int node = 0; node < start_.model.spline().node_count(); ++node) {
     for (int k = 0; k < start_.model.parameter_count(); ++k) {
@@ -150,6 +157,55 @@ TEST_P(Tracked, HeldParametersDoNotMove) {
     }
   }
   EXPECT_GT(moved, 0);
+}
+
+TEST_P(Tracked, TheStepKeepsItsPromise) {
+  std::vector<LocalNormal> local;
+  const double here = problem_.linearise(start_.model, start_.x, local);
+  const TrackedNormal normal(start_.model, problem_.views(), local, start_.x);
+  const Eigen::VectorXd step = 1e-3 * normal.step(1e-3, Eigen::VectorXd::Ones(start_.x.size()));
+  const double gained = here - problem_.evaluate(start_.model, start_.x + step);
+  EXPECT_GT(gained, 0);
+  EXPECT_NEAR(gained, normal.promised(step), 0.05 * gained);
+}
+
+TEST_P(Tracked, OnlyColorsMoveWhenAsked) {
+  TrackedLobes lobes{start_.model, start_.x, 0};
+  refine(problem_, lobes, 3, 0, Free::colors);
+  for (Eigen::Index i = 0; i < lobes.x.size(); ++i) {
+    const int k = static_cast<int>(i / 2) % start_.model.parameter_count();
+    const bool color = k >= P::kLogRed && k <= P::kLogBlue;
+    EXPECT_TRUE(color || lobes.x[i] == start_.x[i]);
+  }
+  EXPECT_NE(lobes.x, start_.x);
+}
+
+TEST_P(Tracked, ValuesAtABoundStayWithinIt) {
+  TrackedLobes lobes{start_.model, start_.x, 0};
+  for (int node = 0; node < lobes.model.spline().node_count(); ++node) {
+    lobes.x[static_cast<Eigen::Index>(lobes.model.index(node, P::kTiltX, 0))] = upper_bound(P::kTiltX);
+  }
+  const double before = problem_.evaluate(lobes.model, lobes.x);
+  refine(problem_, lobes, 10, 0);
+  EXPECT_LT(lobes.cost, before);
+  for (Eigen::Index i = 0; i < lobes.x.size(); ++i) {
+    const int k = static_cast<int>(i / 2) % lobes.model.parameter_count();
+    EXPECT_LE(lobes.x[i], upper_bound(k));
+    EXPECT_GE(lobes.x[i], lower_bound(k));
+  }
+}
+
+TEST_P(Tracked, TheRemainderIsWhatTheLobesLeave) {
+  problem_.evaluate(start_.model, start_.x);
+  const std::vector<TrackedView> left = problem_.views();
+  TrackedProblem remainder = problem_.remainder();
+  P nothing = start_.model;
+  nothing.space.clear();
+  remainder.evaluate(nothing, Eigen::VectorXd());
+  for (size_t i = 0; i < left.size(); ++i) {
+    EXPECT_NEAR(remainder.views()[i].error, left[i].error, 1e-6 * left[i].error);
+    EXPECT_EQ(remainder.views()[i].residual[1], left[i].residual[1]);
+  }
 }
 
 TEST_P(Tracked, RefinementFindsTheTruthAgain) {
@@ -173,7 +229,7 @@ TEST(SplineThrough, PassesNearSmoothValues) {
   const Lobes lobes = two_lobes(true, 0);
   Progress progress;
   const TrackedProblem problem(
-      slices_of(lobes), ViewSpline(true, 4), [](double) { return 0.02; }, true, 1, progress);
+      slices_of(lobes), ViewSpline(true, 4), [](const MeasuredSlice&) { return 0.02; }, true, 1, progress);
   std::vector<double> wanted;
   for (const TrackedView& v : problem.views()) wanted.push_back(std::cos(std::acos(v.wv.z)));
   const Eigen::VectorXd control = spline_through(problem.views(), ViewSpline(true, 4), wanted, false);
