@@ -4,7 +4,9 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 
@@ -29,7 +31,9 @@ uint8_t srgb_byte(float linear) {
   return static_cast<uint8_t>(std::lround(v * 255.0f));
 }
 
-std::string input_error(const std::string& path, const std::string& detail) {
+/// Readers may say several sentences, a line each.
+std::string input_error(const std::string& path, std::string detail) {
+  std::ranges::replace(detail, '\n', ' ');
   return path + ": cannot be read as a picture" + (detail.empty() ? "." : ": " + detail);
 }
 
@@ -45,8 +49,38 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec) {
     throw Error(Status::bad_data, path + ": the header says " + size + ", more than the file can hold.");
 }
 
+/// OpenEXR makes tables for all rows that a header claims when it opens a file, before anyone can ask how many.
+void check_exr_rows(const std::string& path) {
+  constexpr size_t kMostHeader = 65536, kBegin = 8;
+  const auto head = read_file_head(path, kMostHeader);
+  const std::string text(head.begin(), head.end());
+  if (!text.starts_with("\x76\x2f\x31\x01")) return;
+  for (size_t at = kBegin; at < text.size() && text[at] != 0;) {  // name, type, size, value
+    const std::string name = text.c_str() + at;
+    at += name.size() + 1;
+    at = text.find('\0', at);
+    uint32_t size = 0;
+    if (at == std::string::npos || text.size() - at < 1 + sizeof size) return;
+    std::memcpy(&size, text.data() + at + 1, sizeof size);
+    at += 1 + sizeof size;
+    if (size > std::filesystem::file_size(path) - at) throw Error(Status::bad_data, path + ": its header is damaged.");
+    if (size > text.size() - at) return;
+    std::array<int32_t, 4> window{};  // least x, y, most x, y
+    if (name == "dataWindow" && size == sizeof window) {
+      std::memcpy(window.data(), text.data() + at, sizeof window);
+      const int64_t rows = int64_t{window[3]} - window[1] + 1;
+      if (rows > static_cast<int64_t>(kMaxValuesPerByte * std::filesystem::file_size(path))) {
+        throw Error(Status::bad_data,
+                    path + ": the header says " + std::to_string(rows) + " rows, more than the file can hold.");
+      }
+    }
+    at += size;
+  }
+}
+
 std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path) {
   read_file_head(path, 1);  // says plainly what is wrong with the path
+  check_exr_rows(path);
   OIIO::ImageSpec request;
   request.attribute("oiio:UnassociatedAlpha",
                     1);  // channels as stored: no product with alpha before the sRGB curve

@@ -100,6 +100,37 @@ TEST(Picture, LyingSizeIsNotAllocated) {
   EXPECT_NE(refusal([&] { read_picture(path); }).find("60000 x 60000"), std::string::npos);
 }
 
+/// OpenEXR itself would make a table of a gigabyte for them.
+TEST(Picture, RowsThatAnExrClaimsAreNotAllocated) {
+  const std::string path = test::scratch_folder() / "tall.exr";
+  write_picture(path, gradient(4, 4, 3));
+  std::vector<uint8_t> bytes = read_file(path);
+  const std::string name = "dataWindow";
+  const auto at = std::ranges::search(bytes, name).begin();
+  ASSERT_NE(at, bytes.end());
+  const auto most_y = at + static_cast<std::ptrdiff_t>(name.size() + 1 + std::string("box2i").size() + 1 + 4 + 12);
+  ASSERT_EQ(*most_y, 3);
+  most_y[3] = 0x3f;
+  write_file(path, bytes);
+  const std::string complaint = refusal([&] { read_picture_header(path); });
+  EXPECT_NE(complaint.find("1056964612 rows, more than the file can hold"), std::string::npos) << complaint;
+}
+
+TEST(Picture, RefusalsAreOneLine) {
+  const std::string path = test::scratch_folder() / "cut.png";
+  write_picture(path, gradient(8, 8, 3));
+  const std::vector<uint8_t> bytes = read_file(path);
+  int refused = 0;
+  for (size_t size = 9; size < bytes.size(); size += 5) {
+    write_file(path, std::span(bytes).first(size));
+    const std::string complaint = refusal([&] { read_picture(path); });
+    EXPECT_TRUE(complaint.empty() || complaint.starts_with(path));  // its last words are not missed
+    refused += !complaint.empty();
+    EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
+  }
+  EXPECT_GT(refused, 5);
+}
+
 TEST(Picture, ReadsRadianceHdr) {
   VELOUR_NEED_DATA(path, "hdr/studio_small_03_1k.hdr");
   const Picture picture = read_picture(path);
