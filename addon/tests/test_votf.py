@@ -88,3 +88,39 @@ def test_what_is_wrong_is_said(model_file, tmp_path):
     }.items():
         assert expected in refused("votf", *arguments, "-o", out)
     assert not out.exists()
+
+
+@pytest.fixture(scope="module")
+def captured_net(tmp_path_factory):
+    path = tmp_path_factory.mktemp("votf") / "net.capture"
+    options = ("--texels", 48, "--views", 60, "--lights", 2, "--samples", 8, "--sides", "one")
+    velour("capture", "net", *options, "-o", path)
+    return path
+
+
+def test_a_capture_tells_what_its_geometry_would(captured_net, model_file, tmp_path):
+    found = velour("votf", captured_net, "--material", model_file, "-o", tmp_path / "x.velour", "--json").json
+    known = velour(
+        "votf", "net", "--texels", 48, "--material", model_file, "-o", tmp_path / "y.velour", "--json"
+    ).json
+    assert found["points"] == known["points"]
+    assert not found["closed"]
+    assert found["wrong"] < 0.06
+    assert found["tile_width"] == known["tile_width"]
+    assert found["heights"][0] == pytest.approx(-1 / 48)  # its lowest point lies on the surface
+    with Tile.create("net") as tile:
+        solid = 1 - tile.info()["open_area"]
+    with Model.load(tmp_path / "x.velour") as model:
+        assert _coverage(model) == pytest.approx(solid, abs=0.04)
+
+
+def test_of_a_btf_what_does_not_fit_is_refused(captured_net, model_file, tmp_path):
+    out = tmp_path / "x.velour"
+    velour("export", captured_net, "-o", tmp_path / "plain")
+    for expected, arguments in {
+        "alpha": (tmp_path / "plain",),
+        "--period": (captured_net, "--period", "1,1"),
+        "--seed": (captured_net, "--seed", "3"),
+    }.items():
+        assert expected in refused("votf", *arguments, "--material", model_file, "-o", out)
+    assert not out.exists()

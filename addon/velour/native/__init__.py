@@ -2,7 +2,7 @@
 
 from . import images, library
 from .btf import Btf, compare_btf_job, compress_job, export_btf_job
-from .capture import capture_job, directions, votf_job
+from .capture import capture_job, directions, votf_data_job, votf_job
 from .errors import LibraryError, Status, VelourError
 from .job import (
     Job,
@@ -48,5 +48,6 @@ __all__ = [
     "microsurface_job",
     "observe_job",
     "render_job",
+    "votf_data_job",
     "votf_job",
 ]

@@ -60,15 +60,30 @@ def votf_job(tile, model, **options) -> Job:
     metres_per_unit (0: not known), surface (the scene's z that lies on what carries the structure),
     reference_height (the scene's z; none: chosen), source (a name), check_views, seed, threads.
     """
-    raw = table.VotfOptions()
-    library.load().vlr_votf_options_init(byref(raw))
     for name in ("origin", "period"):
         if name in options:
             options[name] = _PAIRS[name](*np.broadcast_to(options[name], 2).tolist())
+    return Job._create("vlr_votf_create_job", tile.pointer, model.pointer, _votf_options(options))
+
+
+def votf_data_job(btf, model, **options) -> Job:
+    """The same from what the views of a Btf show: coverage and heights of a capture, or alpha.
+
+    Options: texels (those of the data), surface (its height over the structure's lowest point, metres, or
+    widths of the tile), source (a name), check_views (of the data's own), threads.
+    """
+    return Job._create(
+        "vlr_votf_data_create_job", btf.pointer, model.pointer, _votf_options({"texels": 0, **options})
+    )
+
+
+def _votf_options(options: dict):
+    raw = table.VotfOptions()
+    library.load().vlr_votf_options_init(byref(raw))
     if "source" in options:
         options["source"] = options["source"].encode()
     set_fields(raw, options)
-    return Job._create("vlr_votf_create_job", tile.pointer, model.pointer, byref(raw))
+    return byref(raw)
 
 
 def _angles(angles) -> np.ndarray:

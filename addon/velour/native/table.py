@@ -352,6 +352,7 @@ STATUS_CALLS = {
     "vlr_directions": [c_char_p, POINTER(c_double), POINTER(c_uint64)],
     "vlr_capture_create_job": [_handle, POINTER(CaptureOptions), c_char_p, _out_handle],
     "vlr_votf_create_job": [_handle, _handle, POINTER(VotfOptions), _out_handle],
+    "vlr_votf_data_create_job": [_handle, _handle, POINTER(VotfOptions), _out_handle],
     "vlr_scene_create": [_out_handle],
     "vlr_scene_set_working_space": [_handle, _floats],
     "vlr_scene_add_mesh": [_handle, POINTER(MeshDesc), _number, _number],

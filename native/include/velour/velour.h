@@ -553,6 +553,13 @@ VLR_API void vlr_votf_options_init(vlr_votf_options* options);
  * coverage, wrong (both null without check_views), warnings. The scene must not change while the job is there. */
 VLR_API vlr_status vlr_votf_create_job(const vlr_scene* tile, const vlr_model* model, const vlr_votf_options* options,
                                        vlr_job** out);
+/* The same from what the views of a BTF show, without the geometry: coverage and heights of a capture, or the alpha of
+ * pictures. Of `options` texels (0: those of the data), threads, check_views (of the data's own, evenly spread; `wrong`
+ * is the mean difference of coverage there), surface (its height over the structure's lowest point, metres, or widths
+ * of the tile where its size is not known) and source count. Fails with VLR_UNSUPPORTED where the data do not say what
+ * the structure covers. */
+VLR_API vlr_status vlr_votf_data_create_job(const vlr_btf* btf, const vlr_model* model, const vlr_votf_options* options,
+                                            vlr_job** out);
 
 /* ---- render -------------------------------------------------------------------------------------------------- */
 

@@ -31,12 +31,16 @@ struct LinearTexels {
   float part;
 };
 
-/// `texel`: in texels from the centre of the first one, of any size below 2^24.
-inline BilinearTexels bilinear_at(const Vec2& texel, uint32_t width, uint32_t height) {
-  const LinearTexels x(texel.x, width), y(texel.y, height);
+/// `width`: of a row.
+inline BilinearTexels bilinear_between(const LinearTexels& x, const LinearTexels& y, uint32_t width) {
   const uint32_t low = y.low * width, high = y.high * width;
   return {{low + x.low, low + x.high, high + x.low, high + x.high},
           {(1 - x.part) * (1 - y.part), x.part * (1 - y.part), (1 - x.part) * y.part, x.part * y.part}};
+}
+
+/// `texel`: in texels from the centre of the first one, of any size below 2^24.
+inline BilinearTexels bilinear_at(const Vec2& texel, uint32_t width, uint32_t height) {
+  return bilinear_between({texel.x, width}, {texel.y, height}, width);
 }
 
 /// `place` in tiles.

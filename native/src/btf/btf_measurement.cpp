@@ -13,6 +13,11 @@ void BtfMeasurement::check_range(uint64_t first, uint64_t count) const {
                                             std::to_string(first) + " on are not among them.");
 }
 
+std::optional<std::vector<float>> BtfMeasurement::read_coverage(uint32_t view) const {
+  auto structure = read_structure(view);
+  return structure ? std::optional(std::move(structure->coverage)) : std::nullopt;
+}
+
 CountedPairs count_values(const BtfMeasurement& btf) {
   const uint64_t pairs = btf.layout().pairs();
   if (const auto counts = btf.all_counts()) return {pairs, *counts};

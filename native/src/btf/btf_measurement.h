@@ -59,9 +59,14 @@ class BtfMeasurement {
   /// Nothing where it was not captured.
   virtual std::optional<ViewStructure> read_structure(uint32_t /*view*/) const { return std::nullopt; }
 
-  /// Whether read_errors() and read_structure() give something.
+  /// The coverage of the texels alone: of the structure, or the alpha of the view's first picture. Throws as
+  /// read_pairs(); nothing where it is not known.
+  virtual std::optional<std::vector<float>> read_coverage(uint32_t view) const;
+
+  /// Whether read_errors(), read_structure() and read_coverage() give something.
   virtual bool has_errors() const { return false; }
   virtual bool has_structure() const { return false; }
+  virtual bool has_coverage() const { return has_structure(); }
 
   /// Of all values, where they were counted when the set was made; elsewhere they are counted in a sample of pairs.
   virtual std::optional<ValueCounts> all_counts() const { return std::nullopt; }

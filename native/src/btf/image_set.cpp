@@ -111,6 +111,7 @@ class ImageSet : public BtfMeasurement {
     check_sizes();
     grid_.tile_metres = tile_of(options, paths_[0]);
     name_source(source);
+    has_alpha_ = has_alpha(read_picture_header(paths_[0]));
   }
 
   void read_pairs(uint64_t first, uint64_t count, std::span<HalfBits> values) const override {
@@ -119,6 +120,23 @@ class ImageSet : public BtfMeasurement {
     tbb::parallel_for(uint64_t{0}, count,
                       [&](uint64_t i) { read_picture_of(first + i, values.subspan(i * image, image)); });
   }
+
+  std::optional<std::vector<float>> read_coverage(uint32_t view) const override {
+    const uint64_t first = layout().first(view);
+    if (!has_alpha_ || first == layout().first(view + 1)) return std::nullopt;
+    const Picture picture = read_picture(paths_[first], options_.curve);
+    check_size(picture, first);
+    if (!has_alpha(picture)) {
+      throw Error(Status::bad_data, paths_[first] + ": has no alpha, which " + paths_[0] + " has.");
+    }
+    const auto channels = static_cast<size_t>(picture.channels);
+    std::vector<float> coverage;
+    for (size_t i = channels; i <= picture.pixels.size(); i += channels) {
+      coverage.push_back(std::clamp(picture.pixels[i - 1], 0.0f, 1.0f));
+    }
+    return coverage;
+  }
+  bool has_coverage() const override { return has_alpha_; }
 
   std::vector<std::pair<std::string, std::string>> details() const override {
     return {{"values", scale_.text()},
@@ -131,6 +149,8 @@ class ImageSet : public BtfMeasurement {
   std::string colors_text() const {
     return options_.colors == BtfColors::xyz ? "CIE XYZ, made linear Rec. 709" : "linear Rec. 709";
   }
+
+  static bool has_alpha(const Picture& picture) { return picture.channels == 2 || picture.channels == 4; }
 
   void check_sizes() {
     const Picture first = read_picture_header(paths_[0]);
@@ -188,6 +208,7 @@ class ImageSet : public BtfMeasurement {
   BtfLoadOptions options_;
   ValueScale scale_;
   std::vector<std::string> paths_;
+  bool has_alpha_ = false;  // of the first picture
 };
 
 }  // namespace

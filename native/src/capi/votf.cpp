@@ -3,6 +3,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/reports.h"
+#include "capture/data_occlusion.h"
 #include "capture/occlusion_capture.h"
 
 using namespace velour;
@@ -26,6 +27,29 @@ OcclusionCaptureOptions converted(const vlr_votf_options& given) {
   return options;
 }
 
+DataOcclusionOptions of_data(const vlr_votf_options& given) {
+  return {.texels = given.texels,
+          .surface = given.surface,
+          .check_views = given.check_views,
+          .threads = static_cast<int>(given.threads)};
+}
+
+/// A job that adds what `find`(progress) finds to a copy of `model`.
+template <typename Find>
+vlr_job* shell_job(const vlr_model* model, const char* source, Find find) {
+  auto output = std::make_shared<JobOutput>();
+  const auto task = [output, base = model->model, source = std::string(source ? source : ""),
+                     find = std::move(find)](Progress& progress) {
+    OcclusionCapture captured = find(progress);
+    auto result = std::make_shared<Model>(*base);
+    result->shell =
+        ModelShell{std::make_shared<const OcclusionVolume>(std::move(captured.volume)), source, captured.errors};
+    captured.volume = {};
+    output->set(votf_json(*result->shell, captured.seconds, captured.warnings), result);
+  };
+  return new vlr_job(output, task);
+}
+
 }  // namespace
 
 void vlr_votf_options_init(vlr_votf_options* options) {
@@ -46,16 +70,21 @@ vlr_status vlr_votf_create_job(const vlr_scene* tile, const vlr_model* model, co
     require(model, "model");
     require(out, "out");
     const auto given = read_options(options, vlr_votf_options_init, "vlr_votf_options");
-    auto output = std::make_shared<JobOutput>();
-    const auto task = [output, scene = tile->scene, base = model->model, capture = converted(given),
-                       source = std::string(given.source ? given.source : "")](Progress& progress) {
-      OcclusionCapture captured = capture_occlusion(*scene, capture, progress);
-      auto result = std::make_shared<Model>(*base);
-      result->shell =
-          ModelShell{std::make_shared<const OcclusionVolume>(std::move(captured.volume)), source, captured.errors};
-      captured.volume = {};
-      output->set(votf_json(*result->shell, captured.seconds, captured.warnings), result);
-    };
-    *out = new vlr_job(output, task);
+    *out = shell_job(model, given.source, [scene = tile->scene, capture = converted(given)](Progress& progress) {
+      return capture_occlusion(*scene, capture, progress);
+    });
+  });
+}
+
+vlr_status vlr_votf_data_create_job(const vlr_btf* btf, const vlr_model* model, const vlr_votf_options* options,
+                                    vlr_job** out) {
+  return guard([&] {
+    require(btf, "btf");
+    require(model, "model");
+    require(out, "out");
+    const auto given = read_options(options, vlr_votf_options_init, "vlr_votf_options");
+    *out = shell_job(model, given.source, [data = btf->btf, capture = of_data(given)](Progress& progress) {
+      return occlusion_of_data(*data, capture, progress);
+    });
   });
 }

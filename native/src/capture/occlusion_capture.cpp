@@ -9,6 +9,7 @@
 
 #include "capture/reference_plane.h"
 #include "capture/shell_columns.h"
+#include "capture/shell_grid.h"
 #include "capture/surface_distance.h"
 #include "capture/tile_checks.h"
 #include "capture/traced_mask.h"
@@ -18,11 +19,7 @@
 namespace velour {
 namespace {
 
-constexpr float kReach = 8;     // of distances, pitches
 constexpr float kSheet = 0.6f;  // half the thickness of a sheet, pitches: a look-up between points finds it
-constexpr uint32_t kLeastTexels = 4;
-
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(Status::invalid_argument, sentence); }
 
 /// Triangles of the tile in its own coordinates, in widths.
 std::vector<Triangle> triangles_of(const RepeatedTile& tile, double surface) {
@@ -77,20 +74,10 @@ class Capture {
 
   void measure() {
     OcclusionVolume& v = volume();
-    v.width = options_.texels;
-    v.aspect = tile_.period().y / tile_.period().x;
-    v.height = std::max(1u, static_cast<uint32_t>(std::lround(static_cast<float>(v.width) * v.aspect)));
-    // A point beyond the structure at both ends: a ray begins and ends outside.
-    v.bottom = in_widths(static_cast<double>(tile_.bottom())) - v.pitch();
-    v.top = in_widths(static_cast<double>(tile_.top())) + v.pitch();
-    const double cells = std::ceil(static_cast<double>((v.top - v.bottom) / v.pitch()));
-    if (v.height > OcclusionVolume::kMaxSide || cells + 1 > OcclusionVolume::kMaxDepth ||
-        uint64_t{v.width} * v.height * static_cast<uint64_t>(cells + 1) > OcclusionVolume::kMaxPoints) {
-      refuse("A shell of " + std::to_string(v.width) + " x " + std::to_string(v.height) + " x " +
-             std::to_string(static_cast<uint64_t>(cells) + 1) + " points is too large; give fewer texels.");
-    }
-    v.depth = static_cast<uint32_t>(cells) + 1;
-    v.reach = kReach * v.pitch();
+    const bool closed = v.closed;
+    v = empty_shell(options_.texels, tile_.period().y / tile_.period().x,
+                    in_widths(static_cast<double>(tile_.bottom())), in_widths(static_cast<double>(tile_.top())));
+    v.closed = closed;
     v.tile_width = static_cast<float>(options_.metres_per_unit) * tile_.period().x;
     progress_.stage("reference plane", 0, 0.1);
     const double reference = options_.reference_height
@@ -103,12 +90,7 @@ class Capture {
 
   void fill() {
     OcclusionVolume& v = volume();
-    const DistanceGrid grid{v.width,
-                            v.height,
-                            v.depth,
-                            Vec3(texels().centre(0), v.bottom),
-                            {v.pitch(), v.aspect / static_cast<float>(v.height), v.step()}};
-    const std::vector<float> distance = surface_distances(triangles_of(tile_, options_.surface), grid, progress_);
+    const std::vector<float> distance = surface_distances(triangles_of(tile_, options_.surface), grid_of(v), progress_);
     progress_.update(0.7);
     std::vector<Vec2> places;
     for (size_t i = 0; i < texels().size(); ++i) places.push_back(tile_.period().x * texels().centre(i));
@@ -165,10 +147,6 @@ class Capture {
 }  // namespace
 
 OcclusionCapture capture_occlusion(const Scene& scene, const OcclusionCaptureOptions& options, Progress& progress) {
-  if (options.texels < kLeastTexels || options.texels > OcclusionVolume::kMaxSide) {
-    refuse("A shell cannot have " + std::to_string(options.texels) + " texels along x; it takes " +
-           std::to_string(kLeastTexels) + " to " + std::to_string(OcclusionVolume::kMaxSide) + ".");
-  }
   OcclusionCapture capture;
   tbb::task_arena arena(arena_concurrency(options.threads));
   arena.execute([&] { capture = Capture(scene, options, progress).run(); });

@@ -13,6 +13,7 @@ HELP = "weave, twill, net, chainmail, gravel, corduroy; or OBJ, PLY"
 # What is up in the file is +z here; (x, y, z) -> (x, -z, y) as Blender's OBJ import does it.
 _UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
 UPS = tuple(_UP)
+MESHES = (".obj", ".ply")
 
 
 def add_place_arguments(group) -> None:
@@ -34,7 +35,7 @@ def given(args: argparse.Namespace, *names: str) -> dict:
 
 def add_to(scene: Scene, args: argparse.Namespace) -> dict:
     """Where it lies: options of capture_job."""
-    if Path(args.subject).suffix.lower() in (".obj", ".ply"):
+    if Path(args.subject).suffix.lower() in MESHES:
         return _add_mesh(scene, args)
     of_mesh = ("period", "origin", "metres_per_unit", "up", "base_color", "roughness", "metallic")
     for name in of_mesh:

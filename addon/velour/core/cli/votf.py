@@ -1,31 +1,42 @@
-"""velour votf TILE|MESH --material MODEL -o MODEL"""
+"""velour votf TILE|MESH|BTF --material MODEL -o MODEL"""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
+from pathlib import Path
 
-from ...native import Model, Scene, votf_job
+from ...native import Btf, Model, Scene, votf_data_job, votf_job
+from ...native.errors import refuse
 from . import numbers, output, subject
+
+_OF_GEOMETRY = ("period", "origin", "up", "metres_per_unit", "seed")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("subject", metavar="TILE|MESH", help=subject.HELP)
+    parser.add_argument(
+        "subject",
+        metavar="TILE|MESH|BTF",
+        help=subject.HELP + "; or a captured BTF, or pictures of one with alpha",
+    )
     parser.add_argument(
         "--material", metavar="MODEL", required=True, help="what the structure is made of; of a BRDF or a BTF"
     )
     parser.add_argument("-o", "--output", metavar="MODEL", required=True, help="the model file to write")
-    parser.add_argument("--texels", type=numbers.whole(4, 4096), metavar="N", help="along x (128)")
+    parser.add_argument(
+        "--texels", type=numbers.whole(4, 4096), metavar="N", help="along x (128; of a BTF its own)"
+    )
     parser.add_argument(
         "--surface",
         type=numbers.real(),
         metavar="Z",
-        help="height in the tile that lies on the surface (0), its units",
+        help="height in the tile that lies on the surface (0), its units; of a BTF over the lowest point",
     )
     parser.add_argument(
         "--check-views",
         type=numbers.whole(0, 65536),
         metavar="N",
-        help="random views that the result is compared with rays under (64)",
+        help="random views that the result is compared with rays under (64); of a BTF its own",
     )
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
@@ -34,12 +45,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> dict:
     output.check_writable(args.output)
-    options = subject.given(args, "texels", "surface", "check_views", "seed", "threads")
-    with Scene() as scene, Model.load(args.material) as model:
-        options.update(subject.add_to(scene, args))
-        scene.commit()
-        with votf_job(scene, model, source=args.subject, **options) as job:
-            report = job.run(output.progress_of(args))
-            with job.result_model() as result:
-                result.save(args.output)
+    with contextlib.ExitStack() as handles:
+        model = handles.enter_context(Model.load(args.material))
+        job = handles.enter_context(_job(args, model, handles))
+        report = job.run(output.progress_of(args))
+        with job.result_model() as result:
+            result.save(args.output)
     return report
+
+
+def _job(args: argparse.Namespace, model: Model, handles: contextlib.ExitStack):
+    given = {
+        "source": args.subject,
+        **subject.given(args, "texels", "surface", "check_views", "seed", "threads"),
+    }
+    if _is_data(args.subject):
+        for name in _OF_GEOMETRY:
+            if getattr(args, name) is not None:
+                raise refuse(f"--{name.replace('_', '-')} is for tiles and meshes; {args.subject} is a BTF.")
+        return votf_data_job(handles.enter_context(Btf.load(args.subject)), model, **given)
+    scene = handles.enter_context(Scene())
+    place = subject.add_to(scene, args)
+    scene.commit()
+    return votf_job(scene, model, **given, **place)
+
+
+def _is_data(name: str) -> bool:
+    """A file or folder that is no mesh."""
+    return Path(name).exists() and Path(name).suffix.lower() not in subject.MESHES
