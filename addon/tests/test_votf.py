@@ -93,7 +93,7 @@ def test_what_is_wrong_is_said(model_file, tmp_path):
 @pytest.fixture(scope="module")
 def captured_net(tmp_path_factory):
     path = tmp_path_factory.mktemp("votf") / "net.capture"
-    options = ("--texels", 48, "--views", 60, "--lights", 2, "--samples", 8, "--sides", "one")
+    options = ("--texels", 96, "--views", 60, "--lights", 1, "--samples", 16, "--sides", "one")
     velour("capture", "net", *options, "-o", path)
     return path
 
@@ -101,17 +101,17 @@ def captured_net(tmp_path_factory):
 def test_a_capture_tells_what_its_geometry_would(captured_net, model_file, tmp_path):
     found = velour("votf", captured_net, "--material", model_file, "-o", tmp_path / "x.velour", "--json").json
     known = velour(
-        "votf", "net", "--texels", 48, "--material", model_file, "-o", tmp_path / "y.velour", "--json"
+        "votf", "net", "--texels", 96, "--material", model_file, "-o", tmp_path / "y.velour", "--json"
     ).json
     assert found["points"] == known["points"]
     assert not found["closed"]
     assert found["wrong"] < 0.06
     assert found["tile_width"] == known["tile_width"]
-    assert found["heights"][0] == pytest.approx(-1 / 48)  # its lowest point lies on the surface
+    assert found["heights"][0] == pytest.approx(-1 / 96)  # its lowest point lies on the surface
     with Tile.create("net") as tile:
         solid = 1 - tile.info()["open_area"]
     with Model.load(tmp_path / "x.velour") as model:
-        assert _coverage(model) == pytest.approx(solid, abs=0.04)
+        assert _coverage(model) == pytest.approx(solid, abs=0.05)
 
 
 def test_of_a_btf_what_does_not_fit_is_refused(captured_net, model_file, tmp_path):

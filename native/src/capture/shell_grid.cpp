@@ -29,6 +29,7 @@ OcclusionVolume empty_shell(uint32_t texels, float aspect, float lowest, float h
   v.bottom = lowest - v.pitch();
   v.top = highest + v.pitch();
   const double cells = std::ceil(static_cast<double>((v.top - v.bottom) / v.pitch()));
+  if (!std::isfinite(cells)) refuse("The heights of a shell must be finite numbers.");
   if (v.height > OcclusionVolume::kMaxSide || cells + 1 > OcclusionVolume::kMaxDepth ||
       uint64_t{v.width} * v.height * static_cast<uint64_t>(cells + 1) > OcclusionVolume::kMaxPoints) {
     refuse("A shell of " + std::to_string(v.width) + " x " + std::to_string(v.height) + " x " +
