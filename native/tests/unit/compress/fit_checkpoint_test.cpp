@@ -158,6 +158,8 @@ CompressOptions options_of(CompressMethod method) {
   const bool tensors = method == CompressMethod::tucker || method == CompressMethod::kcta;
   options.bytes = method == CompressMethod::srbf ? 1200 : tensors ? 6000 : 40000;
   options.tolerance = method == CompressMethod::srbf ? 0.2 : tensors ? 0.12 : 0.08;
+  // Its search for a size is Tucker's; the shapes of one size are several fits, too.
+  if (method == CompressMethod::kcta) options.tolerance = 0;
   return options;
 }
 
@@ -169,7 +171,7 @@ TEST_P(Resumed, HasTheBitsOfAFitThatWasNotStopped) {
   std::filesystem::remove(path);
   const test::MemoryBtf btf = test::striped_btf({6, 4}, GetParam() == CompressMethod::srbf);
   CompressOptions options = options_of(GetParam());
-  options.threads = 2;
+  options.threads = 1;  // that threads change no bits is tested of every method
   const Outcome whole = compress(btf, options, 0);
   ASSERT_TRUE(whole.model);
   options.checkpoint = path;
