@@ -77,14 +77,9 @@ class VELOUR_OT_add_votf(OneJob, bpy.types.Operator):
     def _finish(self):
         with self._job, self._job.result_model() as model:
             data, report = model.bytes(), self._job.report()
-        material = bpy.data.materials.get(self._material_name)
-        image = measured.packed_model(data, self._material_name)
-        node = material.node_tree.nodes.get(self._node_name) if material and material.node_tree else None
+        material, node = measured.put_model(data, self._material_name, self._node_name, self.report)
         if node is None:
-            image.use_fake_user = True
-            self.report({"WARNING"}, f"The material is gone; its model is kept as image '{image.name}'.")
             return {"FINISHED"}
-        node.image = image
         for sentence in (*self._notes, *report["warnings"]):
             self.report({"WARNING"}, sentence)
         self.report(

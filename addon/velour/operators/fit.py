@@ -67,20 +67,11 @@ class VELOUR_OT_fit(OneJob, bpy.types.Operator):
         return node.velour
 
     def _finish(self):
-        """Puts the model into a new image: the one before it is untouched, so undo brings it back."""
         with self._job, self._job.result_model() as model:
             data, info = model.bytes(), model.info()
-        material = bpy.data.materials.get(self._material_name)
-        image = measured.packed_model(data, self._material_name)
-        node = material.node_tree.nodes.get(self._node_name) if material and material.node_tree else None
+        material, node = measured.put_model(data, self._material_name, self._node_name, self.report)
         if node is None:
-            image.use_fake_user = True
-            self.report({"WARNING"}, f"The material is gone; its model is kept as image '{image.name}'.")
             return {"FINISHED"}
-        node.image = image
-        if node.velour.use_scene_model:
-            node.velour.use_scene_model = False
-            self.report({"INFO"}, "The model for the scene is of the fit before, and is switched off.")
         node.velour.measurement.velour.sha256 = self._digest
         for warning in info["warnings"]:
             self.report({"WARNING"}, f"Material '{material.name}': {warning}")

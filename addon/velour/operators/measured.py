@@ -66,6 +66,24 @@ def packed_model(data, name):
     return image
 
 
+def put_model(data, material_name, node_name, report):
+    """Puts a model into a new image of the node: the one before it is untouched, so undo brings it back.
+
+    The material and the node; (None, None) where they are gone, and the image is kept."""
+    material = bpy.data.materials.get(material_name)
+    image = packed_model(data, material_name)
+    node = material.node_tree.nodes.get(node_name) if material and material.node_tree else None
+    if node is None:
+        image.use_fake_user = True
+        report({"WARNING"}, f"The material is gone; its model is kept as image '{image.name}'.")
+        return None, None
+    node.image = image
+    if node.velour.use_scene_model:
+        node.velour.use_scene_model = False
+        report({"INFO"}, "The model for the scene is of the model before, and is switched off.")
+    return material, node
+
+
 def linked_model(path, data):
     """A new image datablock that names a model file on disk, whose content is `data`."""
     image = file_image(path)

@@ -9,18 +9,19 @@ namespace velour {
 
 /// f of what is there, from a BTF whose values are means with what is not. What its texels hold beyond an outline is
 /// light of the structure inside: it is folded back over the outline, so that the rays that meet the structure gather
-/// all of it and no more. The BTF is looked up at points: a footprint would average the holes in, and a pixel's rays do
-/// that.
+/// all of it and no more.
 class HoledBtfMaterial final : public Material {
  public:
   explicit HoledBtfMaterial(std::shared_ptr<const Material> btf) : btf_(std::move(btf)) {}
 
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    btf_->prepare(wv, {.uv = site.uv, .back = site.back}, point);
+    btf_->prepare(wv, site, point);
     point.folded = site.beyond_outline != Vec2(0.0f);
     if (!point.folded) return;
     if (!point.beyond) point.beyond = std::make_unique<PreparedBrdf>();
-    btf_->prepare(wv, {.uv = site.uv + site.beyond_outline, .back = site.back}, *point.beyond);
+    SurfaceSite beyond = site;
+    beyond.uv += site.beyond_outline;
+    btf_->prepare(wv, beyond, *point.beyond);
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {

@@ -53,11 +53,13 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   cone = cone_at_origin.at(hit.distance);
   if (!surface->material->varies()) return;
   const TexturePoint texture = scene.texture(hit);
-  if (crossing != nullptr && surface->holed()) {
-    site.beyond_outline = crossing->beyond_outline(surface->material->texels());
-  }
   find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction,
             pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction));
+  if (crossing != nullptr && surface->holed()) {
+    // At a point: a footprint would average the holes in, which the rays of a pixel do.
+    site.footprint = Mat2(0.0f);
+    site.beyond_outline = crossing->beyond_outline(surface->material->texels());
+  }
 }
 
 void Vertex::find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction,

@@ -4,6 +4,7 @@
 #include "btf/bilinear_texels.h"
 #include "material/holed_btf_material.h"
 #include "render/shell_crossing.h"
+#include "render/vertex.h"
 #include "render/visible_rays.h"
 #include "sphere/directions.h"
 #include "sphere/frame.h"
@@ -205,6 +206,25 @@ TEST(ShellRender, ABtfThatHoldsTheHolesIsAsBrightWithThem) {
   const auto btf = std::make_shared<const CoveredTexels>();
   EXPECT_NEAR(brightness(std::make_shared<const HoledBtfMaterial>(btf)), 2 * kRadius, 0.01 * 2 * kRadius);
   EXPECT_LT(brightness(btf), 0.96 * 2 * kRadius) << "what lies beyond the outline is lost";
+}
+
+TEST(ShellRender, ABtfThatHoldsTheHolesIsLookedUpAtPoints) {
+  // Whoever asks which of its texels a picture needs must hear of the finest.
+  const auto footprint = [](bool shaded) {
+    SurfaceMaterial material{.material = std::make_shared<CoveredTexels>(),
+                             .shell = field_of(test::wires(64, kRadius))};
+    material.shell_shaded = shaded;
+    Shot wires(tiled_square(64), std::move(material));
+    wires.scene.commit(1);
+    const Ray ray{{1.0f / 64, 0.3f / 64, 2}, 0, {0, 0, -1}};  // onto the middle of a wire
+    Hit hit;
+    VisibleRays(wires.scene).intersect({&ray, 1}, &hit);
+    EXPECT_NE(hit.instance, kNoHit);
+    const Mat2 sides = Vertex::seen(wires.scene, ray, hit, {0, 0.01f}, nullptr).site.footprint;
+    return glm::length(sides[0]) + glm::length(sides[1]);
+  };
+  EXPECT_EQ(footprint(false), 0.0f);
+  EXPECT_GT(footprint(true), 0.0f);
 }
 
 TEST(ShellRender, StructureOnASphereDoesNotBlockItsOwnRays) {
