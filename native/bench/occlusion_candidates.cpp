@@ -106,6 +106,13 @@ class OfShell : public OcclusionCandidate {
 
   bool covered(size_t texel, uint32_t view) const override { return covered(texel, views_[view]); }
   bool covered(size_t texel, const Vec3& wv) const override { return line_meets(field_, texels_.centre(texel), wv); }
+  void covered(std::span<const OcclusionQuery> queries, uint8_t* found) const override {
+    std::vector<ShellWay> ways;
+    for (const auto& q : queries) ways.push_back(line_through(field_.volume(), texels_.centre(q.texel), q.wv));
+    std::vector<ShellHit> hits(ways.size());
+    trace_shells(field_, ways, hits.data());
+    for (size_t i = 0; i < hits.size(); ++i) found[i] = hits[i].met ? 1 : 0;
+  }
 
  private:
   const ShellField field_;

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,20 @@ struct LevelTable {
   size_t texels() const { return level.size() / views.size(); }
 };
 
+struct OcclusionQuery {
+  size_t texel;
+  Vec3 wv;
+};
+
 class OcclusionCandidate {
  public:
   virtual ~OcclusionCandidate() = default;
   virtual bool covered(size_t texel, uint32_t view) const = 0;
   virtual bool covered(size_t texel, const Vec3& wv) const = 0;
+  /// The same of many, for those that are faster together.
+  virtual void covered(std::span<const OcclusionQuery> queries, uint8_t* found) const {
+    for (size_t i = 0; i < queries.size(); ++i) found[i] = covered(queries[i].texel, queries[i].wv) ? 1 : 0;
+  }
 
   std::string name;
   std::vector<uint8_t> stored;  // all that it would keep in a file

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "btf/srbf_btf.h"
 #include "capture/shell_fusion.h"
@@ -147,12 +148,13 @@ class DataOcclusion {
   float met(const ShellField& field, size_t texel, const Vec3& wv) const {
     const Vec2 texel_size(1 / static_cast<float>(texels_.width), texels_.aspect / static_cast<float>(texels_.height));
     const Vec2 corner = texels_.centre(texel) - 0.5f * texel_size;
-    int blocked = 0;
+    Vec2 place[kLines * kLines];
     for (uint32_t i = 0; i < kLines * kLines; ++i) {
-      const Vec2 part = (Vec2(i % kLines, i / kLines) + 0.5f) / static_cast<float>(kLines);
-      blocked += line_meets(field, corner + part * texel_size, wv) ? 1 : 0;
+      place[i] = corner + (Vec2(i % kLines, i / kLines) + 0.5f) / static_cast<float>(kLines) * texel_size;
     }
-    return static_cast<float>(blocked) / (kLines * kLines);
+    uint8_t meets[kLines * kLines];
+    lines_meet(field, place, wv, meets);
+    return static_cast<float>(std::accumulate(meets, meets + kLines * kLines, 0)) / (kLines * kLines);
   }
 
   OcclusionErrors errors() {

@@ -23,68 +23,71 @@ ShellCrossing::ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit)
       crossing_(ray.origin + hit.distance * ray.direction),
       frame_(scene.shell(hit, direction_)),
       texture_(scene.texture(hit)) {
-  const float aspect = frame_.field->volume().aspect, cosine = -glm::dot(direction_, frame_.normal);
+  const float aspect = field().volume().aspect, cosine = -glm::dot(direction_, frame_.normal);
   const Vec3 along = direction_ + cosine * frame_.normal;
   const float sine = glm::length(along);
   const Vec3 unit = sine > 0 ? along / sine : Vec3(0.0f);
-  ray_ = {.place = texture_.uv * Vec2(1, aspect),
-          .along = Vec2(glm::dot(texture_.u_gradient, unit), aspect * glm::dot(texture_.v_gradient, unit)),
-          .cosine = std::min(cosine, 1.0f),
-          .curvature = frame_.curvature,
-          .scale = frame_.scale};
+  const ShellRay in_shell{
+      .place = texture_.uv * Vec2(1, aspect),
+      .along = Vec2(glm::dot(texture_.u_gradient, unit), aspect * glm::dot(texture_.v_gradient, unit)),
+      .cosine = std::clamp(cosine, 0.0f, 1.0f),
+      .curvature = frame_.curvature,
+      .scale = frame_.scale};
   // Beside the outline of the smooth surface the ray passes, whatever its triangles are.
-  if (cosine > 0) find(hit);
+  way_ = cosine > 0 ? way_behind(in_shell, hit) : ShellWay(in_shell, field().volume(), 0, 0);
 }
 
-void ShellCrossing::find(const Hit& hit) {
-  const ShellSpan span = span_of(ray_, frame_.field->volume());
-  if (!leaving_) {
-    end_ = span.end;
-  } else if (hit.distance < span.end) {
-    begin_ = off_structure(*frame_.field, ray_, hit.distance, 0);
-  } else if (span.through_bottom) {
-    begin_ = span.end;
-  }  // else it came in through the top, and is decided there
-  if (begin_ != end_) hit_ = trace_shell(*frame_.field, ray_, begin_, end_);
+ShellWay ShellCrossing::way_behind(const ShellRay& ray, const Hit& hit) const {
+  const OcclusionVolume& volume = field().volume();
+  const ShellSpan span = span_of(ray, volume);
+  if (!leaving_) return {ray, volume, 0, span.end};
+  if (hit.distance < span.end) return {ray, volume, hit.distance, 0, true};
+  // A ray that came in through the top is decided there.
+  return {ray, volume, span.through_bottom ? span.end : 0, 0};
+}
+
+bool ShellCrossing::find() {
+  hit_.met = false;
+  if (!way_.empty()) hit_ = trace_shell(field(), way_);
+  return hit_.met;
 }
 
 Vec2 ShellCrossing::beyond_outline(const Vec2& texels) const {
-  const OcclusionVolume& volume = frame_.field->volume();
+  const OcclusionVolume& volume = field().volume();
   const Vec2 texel = Vec2(1, volume.aspect) / texels;
   // Half of what a texel's mean and the look-up between texels reach over.
   const float most = std::min(1.5f * std::max(texel.x, texel.y), 0.9f * volume.reach);
-  const ShellDepth inside = depth_behind(*frame_.field, ray_, hit_->s, end_, most);
+  const ShellDepth inside = depth_behind(field(), way_, hit_.s, most);
   const Vec2 across(inside.normal);
   const float square = glm::dot(across, across);
   if (!(inside.depth < std::min(most, 1.5f * glm::length(across * texel))) || !(square > 0)) return Vec2(0.0f);
   const Vec2 over = across * (2 * inside.depth / square);
   // Where other structure lies behind, there is no outline.
-  ShellRay beside = ray_;
-  beside.place += over;
-  if (trace_shell(*frame_.field, beside, begin_, end_)) return Vec2(0.0f);
+  ShellWay beside = way_;
+  beside.ray.place += over;
+  beside.begin = hit_.begin;
+  beside.own = 0;
+  if (trace_shell(field(), beside)) return Vec2(0.0f);
   return over / Vec2(1, volume.aspect);
 }
 
-Vec3 ShellCrossing::normal() const {
-  const float sine = std::sqrt(std::max(0.0f, 1 - ray_.cosine * ray_.cosine));
-  return glm::normalize(frame_.normal + hit_->s * sine * frame_.normal_turn);
-}
+Vec3 ShellCrossing::normal() const { return glm::normalize(frame_.normal + hit_.s * way_.sine * frame_.normal_turn); }
 
 /// Of the structure, in the world: its gradient's parts along the texture coordinates and the normal.
 Vec3 ShellCrossing::structure_normal(const Vec3& up) const {
-  const float aspect = frame_.field->volume().aspect;
-  const Vec3 slope = frame_.field->gradient(hit_->place);
+  const float aspect = field().volume().aspect;
+  const Vec3 slope = field().gradient(hit_.place);
   const Vec3 n = slope.x * texture_.u_gradient + slope.y * aspect * texture_.v_gradient + slope.z * frame_.scale * up;
   const float square = glm::dot(n, n);
   return square > 0 ? n / std::sqrt(square) : up;
 }
 
 SurfacePoint ShellCrossing::surface(SurfacePoint top, bool shaded) const {
-  const OcclusionVolume& volume = frame_.field->volume();
-  const Vec3 up = normal(), place = crossing_ + hit_->s * direction_;
+  const OcclusionVolume& volume = field().volume();
+  const Vec3 up = normal(), place = crossing_ + hit_.s * direction_;
   if (!shaded) {
     const float height = leaving_ ? volume.bottom : volume.top;
-    top.position = place + up * ((height - hit_->place.z) / frame_.scale);
+    top.position = place + up * ((height - hit_.place.z) / frame_.scale);
     top.shading_normal = up;
     return top;
   }
@@ -102,12 +105,12 @@ SurfacePoint ShellCrossing::surface(SurfacePoint top, bool shaded) const {
 }
 
 TexturePoint ShellCrossing::texture(TexturePoint top) const {
-  const OcclusionVolume& volume = frame_.field->volume();
+  const OcclusionVolume& volume = field().volume();
   const Vec3 up = normal(), wv = -direction_;
   const float cosine = std::max(glm::dot(wv, up), kLeastCosine);
   // From the hit along the ray to the plane of the texels.
-  const Vec3 to_plane = (wv - glm::dot(wv, up) * up) * ((volume.reference - hit_->place.z) / (frame_.scale * cosine));
-  top.uv = Vec2(hit_->place) / Vec2(1, volume.aspect) +
+  const Vec3 to_plane = (wv - glm::dot(wv, up) * up) * ((volume.reference - hit_.place.z) / (frame_.scale * cosine));
+  top.uv = Vec2(hit_.place) / Vec2(1, volume.aspect) +
            Vec2(glm::dot(top.u_gradient, to_plane), glm::dot(top.v_gradient, to_plane));
   return top;
 }

@@ -1,8 +1,6 @@
 // Rays at the tops of shells.
 #pragma once
 
-#include <optional>
-
 #include "scene/scene.h"
 #include "votf/shell_trace.h"
 
@@ -15,11 +13,16 @@ class ShellCrossing {
   /// `hit` is on the top of a shell (Scene::has_shell).
   ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit);
 
-  /// Whether the ray meets the structure on this side of the surface.
-  bool meets() const { return hit_.has_value(); }
+  const ShellField& field() const { return *frame_.field; }
+  /// Where the ray could meet the structure on this side of the surface; nowhere when it is empty, from where it begins
+  /// to its end.
+  const ShellWay& way() const { return way_; }
+  /// Whether it does.
+  bool find();
 
-  /// The place where it does so, in place of the top's. Only when it meets. `shaded` (SurfaceMaterial::shell_shaded):
-  /// the structure's own surface, a little off it; else the smooth surface there, where rays leave the shell.
+  /// The place where it does so, in place of the top's. This and what follows only after find() said so. `shaded`
+  /// (SurfaceMaterial::shell_shaded): the structure's own surface, a little off it; else the smooth surface there,
+  /// where rays leave the shell.
   SurfacePoint surface(SurfacePoint top, bool shaded) const;
   /// The place's texture coordinates: those of the plane that a BTF of the structure has its texels on, where the ray
   /// crosses it.
@@ -29,7 +32,7 @@ class ShellCrossing {
   Vec2 beyond_outline(const Vec2& texels) const;
 
  private:
-  void find(const Hit& hit);
+  ShellWay way_behind(const ShellRay& ray, const Hit& hit) const;
   Vec3 normal() const;
   Vec3 structure_normal(const Vec3& up) const;
 
@@ -38,9 +41,8 @@ class ShellCrossing {
   Vec3 crossing_;  // of the top
   ShellFrame frame_;
   TexturePoint texture_;
-  ShellRay ray_;
-  float begin_ = 0, end_ = 0;  // of the ray's way through the shell, metres behind the crossing
-  std::optional<ShellHit> hit_;
+  ShellWay way_;
+  ShellHit hit_;
 };
 
 }  // namespace velour

@@ -38,10 +38,10 @@ Vertex Vertex::seen(const Scene& scene, const Ray& ray, const Hit& hit, const Ra
   const SurfacePoint point = scene.surface(hit);
   const SurfaceMaterial& surface = scene.materials()[point.material];
   if (surface.shell && scene.has_shell(hit)) {
-    const ShellCrossing crossing(scene, ray, hit);
+    ShellCrossing crossing(scene, ray, hit);
     const bool shaded = surface.shell_shaded;
     // Whoever did not ask the shell sees its top.
-    if (crossing.meets()) return {scene, crossing.surface(point, shaded), &crossing, ray, hit, cone_at_origin, pixel};
+    if (crossing.find()) return {scene, crossing.surface(point, shaded), &crossing, ray, hit, cone_at_origin, pixel};
   }
   return {scene, point, nullptr, ray, hit, cone_at_origin, pixel};
 }

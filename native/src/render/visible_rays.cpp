@@ -11,6 +11,8 @@
 namespace velour {
 namespace {
 
+constexpr size_t kTogether = 128;
+
 float number_of(const Ray& ray, const Hit& hit) {
   uint64_t key = mix64((static_cast<uint64_t>(hit.instance) << 32) + hit.triangle);
   for (const Vec3& v : {ray.origin, ray.direction}) {
@@ -19,16 +21,77 @@ float number_of(const Ray& ray, const Hit& hit) {
   return unit_float(key);
 }
 
+/// Ways through shells that are traced together, as long as they are of one field.
+class ShellWays {
+ public:
+  explicit ShellWays(bool* met) : met_(met) {}
+
+  void add(const ShellCrossing& crossing, size_t number) {
+    if (field_ != &crossing.field()) trace();
+    field_ = &crossing.field();
+    way_[count_] = crossing.way();
+    number_[count_++] = static_cast<uint8_t>(number);
+  }
+  /// Says which of them meet what is there.
+  void trace() {
+    if (count_ > 0) trace_shells(*field_, {way_, count_}, hit_);
+    for (size_t i = 0; i < count_; ++i) met_[number_[i]] = hit_[i].met;
+    count_ = 0;
+  }
+
+ private:
+  bool* met_;
+  const ShellField* field_ = nullptr;
+  size_t count_ = 0;
+  ShellWay way_[kTogether];
+  ShellHit hit_[kTogether];
+  uint8_t number_[kTogether];
+};
+
 }  // namespace
 
+/// Rays on their way, with the nearest surface that each has come to.
+struct VisibleRays::Pending {
+  size_t count = 0;
+  Ray ray[kTogether];
+  Hit hit[kTogether];
+  Hit passed[kTogether];  // before
+  uint8_t number[kTogether];
+
+  void add(const Ray& r, const Hit& h, size_t n) {
+    ray[count] = r;
+    hit[count] = h;
+    passed[count] = Hit{};
+    number[count++] = static_cast<uint8_t>(n);
+  }
+  void move(size_t from, size_t to) {
+    ray[to] = ray[from];
+    hit[to] = hit[from];
+    passed[to] = passed[from];
+    number[to] = number[from];
+  }
+  /// Lets a ray go on behind its hit.
+  void pass(size_t i) {
+    constexpr float kStep = 0x1p-20f;  // of the distance: the ray tracer's own error
+    passed[i] = hit[i];
+    ray[i].near = std::nextafter(hit[i].distance * (1.0f + kStep), ray[i].far);
+  }
+  /// A ray crosses a triangle once; what is found again is the same crossing, by rounding.
+  bool again(size_t i) const { return hit[i].instance == passed[i].instance && hit[i].triangle == passed[i].triangle; }
+};
+
 VisibleRays::VisibleRays(const Scene& scene)
-    : scene_(scene), all_opaque_(std::ranges::all_of(scene.materials(), [](const SurfaceMaterial& m) {
-        return m.material->opaque() && !m.shell;
-      })) {}
+    : scene_(scene),
+      shells_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.shell != nullptr; })),
+      all_opaque_(!shells_ && std::ranges::all_of(scene.materials(),
+                                                  [](const SurfaceMaterial& m) { return m.material->opaque(); })) {}
 
 void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits) const {
   scene_.rays().intersect(rays, hits);
-  for (size_t i = 0; i < rays.size() && !all_opaque_; ++i) pass_on(rays[i], hits[i]);
+  if (all_opaque_) return;
+  for (size_t done = 0; done < rays.size(); done += kTogether) {
+    pass_on(rays.subspan(done, std::min(kTogether, rays.size() - done)), hits + done);
+  }
 }
 
 bool VisibleRays::occluded(const Ray& ray) const {
@@ -38,36 +101,77 @@ bool VisibleRays::occluded(const Ray& ray) const {
 }
 
 void VisibleRays::occluded(std::span<const Ray> rays, uint8_t* blocked) const {
-  scene_.rays().occluded(rays, blocked);
-  for (size_t i = 0; i < rays.size() && !all_opaque_; ++i) {
-    if (blocked[i] == 0) continue;
-    Hit hit;
-    scene_.rays().intersect(rays[i], hit);
-    pass_on(rays[i], hit);
-    blocked[i] = hit.instance != kNoHit;
+  if (all_opaque_) return scene_.rays().occluded(rays, blocked);
+  for (size_t done = 0; done < rays.size(); done += kTogether) {
+    occluded_some(rays.subspan(done, std::min(kTogether, rays.size() - done)), blocked + done);
   }
 }
 
-bool VisibleRays::meets(const Ray& ray, const Hit& hit) const {
-  const SurfaceMaterial& surface = scene_.materials()[scene_.material(hit)];
-  if (surface.shell && scene_.has_shell(hit) && !ShellCrossing(scene_, ray, hit).meets()) return false;
-  const Material& material = *surface.material;
+void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked) const {
+  Ray asked[kTogether];
+  Hit hit[kTogether];
+  uint8_t number[kTogether];
+  // Rays that leave a shell come to its top in any case, and are spared the question whether there is something.
+  if (shells_) {
+    std::fill_n(blocked, rays.size(), uint8_t{1});
+  } else {
+    scene_.rays().occluded(rays, blocked);
+  }
+  size_t count = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (blocked[i] == 0) continue;
+    asked[count] = rays[i];
+    number[count++] = static_cast<uint8_t>(i);
+  }
+  intersect({asked, count}, hit);
+  for (size_t i = 0; i < count; ++i) blocked[number[i]] = hit[i].instance != kNoHit;
+}
+
+bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit) const {
+  const Material& material = *scene_.materials()[scene_.material(hit)].material;
   if (material.opaque()) return true;
   // At a point: what a footprint would average, the rays of a pixel do.
   const Vec2 uv = material.varies() ? scene_.texture(hit).uv : Vec2(0.0f);
   return number_of(ray, hit) < material.alpha({.uv = uv});
 }
 
-void VisibleRays::pass_on(Ray ray, Hit& hit) const {
-  constexpr float kStep = 0x1p-20f;  // of the distance: the ray tracer's own error
-  Hit passed{};
-  while (hit.instance != kNoHit) {
-    // A ray crosses a triangle once; what is found again is the same crossing, by rounding.
-    const bool again = hit.instance == passed.instance && hit.triangle == passed.triangle;
-    if (!again && meets(ray, hit)) return;
-    passed = hit;
-    ray.near = std::nextafter(hit.distance * (1.0f + kStep), ray.far);
-    scene_.rays().intersect(ray, hit);
+void VisibleRays::decide(const Pending& pending, bool* met) const {
+  ShellWays ways(met);
+  for (size_t i = 0; i < pending.count; ++i) {
+    const Hit& hit = pending.hit[i];
+    met[i] = !pending.again(i) && meets_surface(pending.ray[i], hit);
+    if (!met[i] || !shells_ || !scene_.has_shell(hit)) continue;
+    const ShellCrossing crossing(scene_, pending.ray[i], hit);
+    met[i] = false;
+    if (!crossing.way().empty()) ways.add(crossing, i);
+  }
+  ways.trace();
+}
+
+void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits) const {
+  Pending pending;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].instance != kNoHit) pending.add(rays[i], hits[i], i);
+  }
+  bool met[kTogether];
+  while (pending.count > 0) {
+    decide(pending, met);
+    size_t left = 0;
+    for (size_t i = 0; i < pending.count; ++i) {
+      hits[pending.number[i]] = pending.hit[i];
+      if (met[i]) continue;
+      pending.pass(i);
+      pending.move(i, left++);
+    }
+    scene_.rays().intersect({pending.ray, left}, pending.hit);
+    pending.count = 0;
+    for (size_t i = 0; i < left; ++i) {
+      if (pending.hit[i].instance == kNoHit) {
+        hits[pending.number[i]].instance = kNoHit;
+      } else {
+        pending.move(i, pending.count++);
+      }
+    }
   }
 }
 

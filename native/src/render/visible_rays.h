@@ -21,11 +21,16 @@ class VisibleRays {
   void occluded(std::span<const Ray> rays, uint8_t* blocked) const;
 
  private:
-  bool meets(const Ray& ray, const Hit& hit) const;
-  /// Replaces `hit`, the nearest one of `ray`, by the nearest that the ray meets.
-  void pass_on(Ray ray, Hit& hit) const;
+  struct Pending;
+  /// Replaces `hits`, the nearest ones of at most as many `rays` as Pending holds, by the nearest that they meet.
+  void pass_on(std::span<const Ray> rays, Hit* hits) const;
+  /// Which of the pending rays meet what they have come to.
+  void decide(const Pending& pending, bool* met) const;
+  bool meets_surface(const Ray& ray, const Hit& hit) const;
+  void occluded_some(std::span<const Ray> rays, uint8_t* blocked) const;
 
   const Scene& scene_;
+  const bool shells_;
   const bool all_opaque_;
 };
 

@@ -1,7 +1,8 @@
 // Rays through the shell of a curved surface.
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <span>
 
 #include "votf/shell_field.h"
 
@@ -28,28 +29,57 @@ struct ShellSpan {
 };
 ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume);
 
-struct ShellHit {
-  float s;     // metres behind the crossing
-  Vec3 place;  // widths
+/// Of the ray's angle with the normal.
+float sine_of(const ShellRay& ray);
+
+/// Where along a ray the structure is looked for.
+struct ShellWay {
+  /// From `begin` to `end`, metres behind the crossing, either before the other. A ray that `starts_on` the structure
+  /// may seem to begin within it, because the place was found along another ray, and arcs agree about it to a pitch or
+  /// so only: such a one is looked for from where it comes out; from `begin`, if it is deeper inside.
+  ShellWay() = default;
+  ShellWay(const ShellRay& ray, const OcclusionVolume& volume, float begin, float end, bool starts_on = false);
+
+  bool empty() const { return begin == end; }
+
+  ShellRay ray;
+  float begin, end;
+  float sine;   // of the ray's angle with the normal
+  float speed;  // widths that the ray covers a metre, at most
+  float own;    // metres of the way that may lie in the structure it starts on
 };
 
-/// The first place on the way from `begin` to `end`, metres behind the crossing, either before the other, where the ray
-/// is within the structure. By sphere tracing [Har96] with long steps [KSK14].
-std::optional<ShellHit> trace_shell(const ShellField& field, const ShellRay& ray, float begin, float end);
+/// The first place on a way where the ray is within the structure.
+struct ShellHit {
+  bool met;     // false: there is none, and `s` and `place` mean nothing
+  float begin;  // ShellWay::begin, or where the ray came out of what it started on
+  float s;      // metres behind the crossing
+  Vec3 place;   // widths
+  explicit operator bool() const { return met; }
+};
 
-/// Where a ray that starts on the structure, at `begin`, is outside of it, on the way to `end`. The place where it
-/// starts was found along another ray, and arcs agree about it to a pitch or so only; `begin`, if it is deeper inside.
-float off_structure(const ShellField& field, const ShellRay& ray, float begin, float end);
+/// By sphere tracing [Har96] with long steps [KSK14], as many rays side by side as the processor has lanes. One `hit` a
+/// way; what becomes of a way does not depend on the others.
+void trace_shells(const ShellField& field, std::span<const ShellWay> ways, ShellHit* hits);
+ShellHit trace_shell(const ShellField& field, const ShellWay& way);
 
-/// How deep within the structure, widths, a ray comes that meets it at `s`, on its way to `end`; not more than `most`.
+inline constexpr float kWithinShell = 0.03f;    // pitches: nearer to the structure than this is within
+inline constexpr float kLeastShellStep = 0.1f;  // pitches: no step is shorter
+inline constexpr float kShellStride = 1.6f;     // distances that a step is long [KSK14]
+inline constexpr int kMostShellLooks = 4096;    // a ray that glides along a surface for so long has met it
+
+/// How deep within the structure, widths, a ray comes that meets it at `s` on its way; not more than `most`.
 struct ShellDepth {
   float depth;
   Vec3 normal;  // tile: towards the nearest outside, across the ray
 };
-ShellDepth depth_behind(const ShellField& field, const ShellRay& ray, float s, float end, float most);
+ShellDepth depth_behind(const ShellField& field, const ShellWay& way, float s, float most);
 
-/// Whether the line through `place` (widths) of the reference plane of a flat shell along unit `w`, w.z not 0, meets
-/// the structure: V of a point.
+/// The line through `place` (widths) of the reference plane of a flat shell along unit `w`, w.z not 0.
+ShellWay line_through(const OcclusionVolume& volume, const Vec2& place, const Vec3& w);
+
+/// Whether the lines through `places` along `w` meet the structure: V of points, 0 or 1 each.
+void lines_meet(const ShellField& field, std::span<const Vec2> places, const Vec3& w, uint8_t* meets);
 bool line_meets(const ShellField& field, const Vec2& place, const Vec3& w);
 
 }  // namespace velour

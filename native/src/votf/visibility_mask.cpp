@@ -14,8 +14,10 @@ Vec3 check_view(uint64_t seed, uint32_t i) {
 }
 
 std::vector<uint8_t> visibility_mask(const ShellField& field, const TileTexels& texels, const Vec3& wv) {
-  std::vector<uint8_t> mask(texels.size());
-  for (size_t i = 0; i < mask.size(); ++i) mask[i] = line_meets(field, texels.centre(i), wv) ? 1 : 0;
+  std::vector<Vec2> places(texels.size());
+  for (size_t i = 0; i < places.size(); ++i) places[i] = texels.centre(i);
+  std::vector<uint8_t> mask(places.size());
+  lines_meet(field, places, wv, mask.data());
   return mask;
 }
 

@@ -99,7 +99,7 @@ TEST(TraceShell, LeavesThroughTheTopOfABentShellOverWhatItWouldMeetOnAFlatOne) {
   const ShellField field(test::shell_of(32, 0, 0.5f, [](const Vec3& p) { return p.z - 0.25f; }));
   const auto meets = [&](float cosine, float curvature) {
     const ShellRay ray{{0, 0}, {1, 0}, cosine, curvature, 1};
-    return trace_shell(field, ray, 0, span_of(ray, field.volume()).end);
+    return trace_shell(field, {ray, field.volume(), 0, span_of(ray, field.volume()).end});
   };
   // Down to cosine^2 / (2 curvature), about.
   EXPECT_TRUE(meets(0.3f, 0.0f));
@@ -107,18 +107,19 @@ TEST(TraceShell, LeavesThroughTheTopOfABentShellOverWhatItWouldMeetOnAFlatOne) {
   EXPECT_FALSE(meets(0.3f, 0.25f));
   const auto hit = meets(0.8f, 0.0f);
   ASSERT_TRUE(hit);
-  EXPECT_NEAR(hit->place.z, 0.25f, 1e-2f);
-  EXPECT_NEAR(hit->s, 0.25f / 0.8f, 1e-2f);
+  EXPECT_NEAR(hit.place.z, 0.25f, 1e-2f);
+  EXPECT_NEAR(hit.s, 0.25f / 0.8f, 1e-2f);
 }
 
 TEST(TraceShell, FromTheBottomUpFindsTheOtherSide) {
   const ShellField field(test::wires(64, 0.2f));
   const ShellRay ray{{0.5f, 0.5f}, {1, 0}, 1.0f, 0.0f, 1};
   const float end = span_of(ray, field.volume()).end;
-  const auto above = trace_shell(field, ray, 0, end), below = trace_shell(field, ray, end, 0);
+  const ShellHit above = trace_shell(field, {ray, field.volume(), 0, end}),
+                 below = trace_shell(field, {ray, field.volume(), end, 0});
   ASSERT_TRUE(above && below);
-  EXPECT_NEAR(above->place.z, 0.2f, 5e-3f);
-  EXPECT_NEAR(below->place.z, -0.2f, 5e-3f);
+  EXPECT_NEAR(above.place.z, 0.2f, 5e-3f);
+  EXPECT_NEAR(below.place.z, -0.2f, 5e-3f);
 }
 
 TEST(ShellField, AnswersWhereverItIsAsked) {
