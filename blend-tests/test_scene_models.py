@@ -99,6 +99,24 @@ class Fits(PaintedPlane):
         self.assertGreater(np.abs(pixels - full).max(), 0, "the full model was rendered")
         np.testing.assert_allclose(scenes.middle(pixels), scenes.middle(full), rtol=0.02)
 
+    def test_keeps_the_outline_of_the_full_model(self):
+        bpy.ops.velour.add_mesostructure(type="NET", count=2, resolution=8)
+        tile = bpy.context.object
+        tile.hide_render = True
+        self.scene.render.film_transparent = True
+        bpy.ops.velour.fit_for_scene(material="Paint")
+        bpy.ops.velour.add_votf(material="Paint", structure=tile.name, texels=32)
+        self.assertFalse(self.settings.use_scene_model, "it has no outline")
+        full = self.node.image
+        bpy.ops.velour.fit_for_scene(material="Paint")
+        info = self.info(self.settings.scene_model)
+        self.assertLess(info["parameter_bytes"], self.info(full)["parameter_bytes"])
+        self.assertEqual(info["shell"], self.info(full)["shell"])
+        pixels, said = self.render()
+        self.assertIn("rendered with that model", said)
+        alpha = pixels[..., 3].mean()
+        self.assertAlmostEqual(alpha, self.full_picture()[..., 3].mean(), delta=1e-3)
+
     def test_covers_frames_and_view_layers(self):
         """Frames 1, 3 and 5 of a moving camera, in two view layers of three."""
         self.scene.view_layers.new("Second")

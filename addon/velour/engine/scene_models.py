@@ -28,6 +28,7 @@ def choose_models(native_scene, reduced, view, depsgraph, notes, check_break):
             f" what its model for the scene was fitted to; {words}."
         )
         stamps[entry.name] = f"{share:.2%} outside of its model's domain; {words}"
+    native_scene.commit()  # a model may have another outline than the one that it replaces
     return stamps
 
 

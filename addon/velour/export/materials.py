@@ -93,18 +93,22 @@ class MaterialTable:
         with files.read_model(node.image, owner) as model:
             info = model.info()
             self._tiles[_key(material)] = Tile.of(material, info)
-            number = self._scene.add_model_material(model, settings.neighbors)
-            if "shell" in info and settings.outline_width > 0:
-                self._scene.set_shell_tile(number, settings.outline_width)
-            return number
+            return self._add_model(model, info, settings)
 
     def _add_pair(self, material, node, owner):
         reduced = files.read_model(node.velour.scene_model, owner)
         has_full = files.is_there(node.image)
         model = files.read_model(node.image, owner) if has_full else reduced
-        self._tiles[_key(material)] = Tile.of(material, model.info())
-        number = self._scene.add_model_material(model, node.velour.neighbors)
+        info = model.info()
+        self._tiles[_key(material)] = Tile.of(material, info)
+        number = self._add_model(model, info, node.velour)
         self.reduced.append(Reduced(number, material.name, reduced, node.velour.neighbors, has_full))
+        return number
+
+    def _add_model(self, model, info, settings):
+        number = self._scene.add_model_material(model, settings.neighbors)
+        if "shell" in info and settings.outline_width > 0:
+            self._scene.set_shell_tile(number, settings.outline_width)
         return number
 
     def _add_reference(self, material, node, owner):

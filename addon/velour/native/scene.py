@@ -100,7 +100,9 @@ class Scene(Handle):
         return self._numbered("vlr_scene_add_model_material", model.pointer, neighbors)
 
     def set_model_material(self, material: int, model: Model, neighbors: int = 0) -> None:
-        """Puts a model in the place of a material. A committed scene stays so; no job may run on it."""
+        """Puts a model in the place of a material; a shell keeps the width of its tile.
+
+        A committed scene stays so, unless their shells differ in their heights. No job may run on it."""
         self._lib.vlr_scene_set_model_material(self.pointer, material, model.pointer, neighbors)
 
     def set_shell_tile(self, material: int, metres: float) -> None:

@@ -71,6 +71,11 @@ class SceneFit:
             return job.start()
 
     def _fit_job(self, full, settings, threads):
+        if full.info()["model"] != "parametric" and "shell" in full.info():
+            raise ExportError(
+                f"Material '{self.material_name}': only a parametric model hands its outline (VOTF) on to a"
+                " model for the scene; fit one, and add the outline to it."
+            )
         # A model of another kind is no measure of a parametric one: without one the fit makes it first.
         measure = {"full_model": full} if full.info()["model"] == "parametric" else {}
         return fit_job(

@@ -194,6 +194,7 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
   if (search.best()) {
     judge_again(slices, tracked, *search.best(), progress);  // colours have moved
     model = parametric_model(measurement, *search.best(), options, progress);
+    model.shell = full.shell;
   } else {
     model.fit.warnings.push_back("the scene needs all of the full model: nothing smaller makes pictures as good");
   }

@@ -36,6 +36,13 @@ void require_placements(const std::vector<TextureMap>& placements, size_t materi
   }
 }
 
+/// Whether shells of the two make the same tops of meshes, and fold where the others do.
+bool have_same_tops(const SurfaceMaterial& a, const SurfaceMaterial& b) {
+  if (!a.shell || !b.shell) return !a.shell && !b.shell;
+  const OcclusionVolume &one = a.shell->volume(), &other = b.shell->volume();
+  return one.top == other.top && one.bottom == other.bottom && one.aspect == other.aspect;
+}
+
 }  // namespace
 
 void Scene::changed() { rays_.reset(); }
@@ -54,8 +61,10 @@ uint32_t Scene::add_material(SurfaceMaterial material) {
 
 void Scene::set_material(uint32_t number, SurfaceMaterial material) {
   if (number >= materials_.size()) refuse("There is no material " + std::to_string(number) + " to replace.");
-  if (materials_[number].shell != material.shell) changed();
-  materials_[number] = std::move(material);
+  SurfaceMaterial& place = materials_[number];
+  if (!have_same_tops(place, material)) changed();
+  if (material.shell && place.shell) material.shell_tile = place.shell_tile;
+  place = std::move(material);
 }
 
 void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
@@ -109,7 +118,7 @@ void Scene::set_working_space(const Mat3& rec709_to_working) {
 }
 
 void Scene::commit(int threads) {
-  changed();
+  if (committed()) return;
   const auto start = std::chrono::steady_clock::now();
   lift_shells();
   auto rays = std::make_unique<EmbreeScene>();

@@ -80,8 +80,8 @@ class Scene {
   /// Error(invalid_argument).
   uint32_t add_mesh(Mesh mesh);
   uint32_t add_material(SurfaceMaterial material);
-  /// Puts another material in the place of one. A committed scene stays committed, unless one of the two has a shell;
-  /// nothing may read it meanwhile.
+  /// Puts another material in the place of one. A committed scene stays committed, unless one of the two has a shell
+  /// and the other none of the same heights; nothing may read it meanwhile. The shell's tile stays as wide as it was.
   void set_material(uint32_t number, SurfaceMaterial material);
   /// SurfaceMaterial::shell_tile. Throws Error(invalid_argument) for a material without a shell.
   void set_shell_tile(uint32_t material, float metres);
@@ -98,7 +98,7 @@ class Scene {
   /// Takes Rec. 709 colours to the space of all other colours of the scene and of the film.
   void set_working_space(const Mat3& rec709_to_working);
 
-  /// Checks the scene and builds the hierarchy with at most `threads` threads (0: all).
+  /// Checks the scene and builds the hierarchy with at most `threads` threads (0: all); nothing, if it is committed.
   void commit(int threads = 0);
   bool committed() const { return rays_ != nullptr; }
 

@@ -9,6 +9,7 @@
 #include "fit/parametric_fit.h"
 #include "fit/picture_error.h"
 #include "support/analytic_measurement.h"
+#include "support/example_shell.h"
 #include "support/parametric_models.h"
 #include "support/soft_light.h"
 
@@ -129,6 +130,17 @@ TEST_F(SceneFit, ShrinksAModelThatIsSeenUnderSoftLightFromFewViews) {
   const PictureError judge(metal, lobes_of(*full_), other, 0, progress_);
   const double of_full = PictureError::estimate(judge.shares(lobes_of(*full_))).relmse;
   EXPECT_LE(PictureError::estimate(judge.shares(small)).relmse, 1.1 * of_full);
+}
+
+TEST_F(SceneFit, KeepsTheShellOfTheFullModel) {
+  const AnalyticMeasurement metal(test::ggx(0.2f, 0.2f));
+  Model with_shell = *full(metal);
+  with_shell.shell = ModelShell{test::wires(16, 0.2f), "wires"};
+  full_ = std::make_shared<const Model>(with_shell);
+  const Model model = reduced(metal, soft_scene());
+  EXPECT_LT(lobes_of(model).parameter_bytes(), lobes_of(*full_).parameter_bytes());
+  ASSERT_TRUE(model.shell);
+  EXPECT_EQ(model.shell->volume, with_shell.shell->volume);
 }
 
 TEST_F(SceneFit, MoreViewsTakeMoreBytes) {

@@ -163,6 +163,20 @@ TEST(ShellRender, RaysFromItsSurfaceAreNotBlockedByTheFloorThatTheyLeave) {
   }
 }
 
+TEST(ShellRender, AMaterialInThePlaceOfOneWithTheSameShellNeedsNoNewHierarchy) {
+  Shot wires(tiled_square(64), shelled(field_of(test::wires(64, kRadius))));
+  wires.scene.set_shell_tile(0, 0.25f);
+  wires.scene.commit(1);
+  wires.scene.set_material(0, shelled(field_of(test::wires(64, kRadius))));
+  EXPECT_TRUE(wires.scene.committed());
+  EXPECT_EQ(wires.scene.materials()[0].shell_tile, 0.25f);
+  wires.scene.set_material(0, shelled(field_of(test::wires(64, 2 * kRadius))));
+  EXPECT_FALSE(wires.scene.committed());
+  wires.scene.commit(1);
+  wires.scene.set_material(0, {.material = std::make_shared<test::Lambert>(0.5f)});
+  EXPECT_FALSE(wires.scene.committed());
+}
+
 /// White structure as a BTF has it: texels hold the share that wires of kRadius about the middle cover of them.
 class CoveredTexels : public test::Lambert {
  public:
