@@ -62,6 +62,36 @@ class Outline(BlenderTest):
         scenes.velour_node(self.material).velour.outline_width = 0.5  # twice what the coordinates say
         self.assertGreater(self._alpha("high"), low + 0.05)
 
+    def test_a_soft_edge_fades_and_keeps_what_is_covered(self):
+        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=48)
+        bpy.context.scene.camera.data.ortho_scale = 0.125  # half a tile
+        hard = scenes.render(self.folder, "hard")[..., 3]
+        scenes.velour_node(self.material).velour.outline_softness = 0.05
+        soft = scenes.render(self.folder, "soft")[..., 3]
+        self.assertAlmostEqual(float(soft.mean()), float(hard.mean()), delta=0.03)
+        self.assertGreater(np.mean((soft > 0.1) & (soft < 0.9)), 1.5 * np.mean((hard > 0.1) & (hard < 0.9)))
+
+    def test_its_height_is_told_in_radii_of_the_surface(self):
+        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=32)
+        bpy.ops.mesh.primitive_cylinder_add(radius=0.5, depth=2, vertices=256, end_fill_type="NOTHING")
+        cylinder = bpy.context.object
+        bpy.ops.object.shade_smooth()
+        cylinder.data.materials.append(self.material)
+        shell = self._info()["shell"]
+
+        def report(width):
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+            outline = __import__(f"{inputs.ADDON}.export.outline_report", fromlist=["outline_report"])
+            return outline.outline_report_on(depsgraph, cylinder, self.material, shell, None, width)
+
+        low, _high = shell["heights"]
+        flat, expected = report(0.1), -low * 0.1 / 0.5
+        self.assertAlmostEqual(flat.share, expected, delta=0.05 * expected)
+        self.assertEqual(flat.warnings, ())
+        folded = report(1.2 * 0.5 / -low)
+        self.assertIn("folds", folded.warnings[0])
+        self.assertEqual(dict(folded.rows)["Of the least radius"], "120%")
+
     def test_what_is_missing_is_said(self):
         with self.assertRaisesRegex(RuntimeError, "choose the object"):
             bpy.ops.velour.add_votf(material=self.material.name)

@@ -43,15 +43,8 @@ def _report():
     for _ in range(_TURNS):
         yield 0.1
         if summary._is_fresh and summary._report is not None:
-            return summary._report
+            return summary._report.placement
     raise AssertionError("nothing was measured")
-
-
-def _scroll_down():
-    area = max(window.first().screen.areas, key=lambda a: a.width * a.height)
-    region = next(region for region in area.regions if region.type == "WINDOW")
-    with bpy.context.temp_override(window=window.first(), area=area, region=region):
-        bpy.ops.view2d.scroll_down(deltay=600)
 
 
 def model_rows(folder):
@@ -73,7 +66,7 @@ def model_rows(folder):
     assert float(rows["PSNR"].removesuffix(" dB")) > 40, rows  # four greys: a constant holds them
     assert rows["Unseen pairs"] == "not measured", rows
     yield from _report()
-    _scroll_down()
+    window.scroll_down(600)
     yield 0.3
     window.screenshot(folder, "model-rows")
 

@@ -75,6 +75,14 @@ def show_properties(tab):
     yield 0.7
 
 
+def scroll_down(pixels):
+    """The largest editor."""
+    area = max(first().screen.areas, key=lambda a: a.width * a.height)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(window=first(), area=area, region=region):
+        bpy.ops.view2d.scroll_down(deltay=pixels)
+
+
 def screenshot(folder, name):
     """[height x width x 3] of what the window shows; a picture of nothing fails."""
     path = folder / f"{name}.png"

@@ -107,8 +107,10 @@ class MaterialTable:
 
     def _add_model(self, model, info, settings):
         number = self._scene.add_model_material(model, settings.neighbors)
-        if "shell" in info and settings.outline_width > 0:
-            self._scene.set_shell_tile(number, settings.outline_width)
+        if "shell" in info:
+            if settings.outline_width > 0:
+                self._scene.set_shell_tile(number, settings.outline_width)
+            self._scene.set_shell_softness(number, settings.outline_softness)
         return number
 
     def _add_reference(self, material, node, owner):

@@ -113,3 +113,11 @@ def slot_materials(obj, count):
     """The materials of slots 0..count-1; a face beyond the last slot shows the last one, as in Blender."""
     materials = all_materials(obj)
     return [materials[min(slot, len(materials) - 1)] for slot in range(count)]
+
+
+def slots_of(obj, arrays, material):
+    """The slots of an evaluated object's MeshArrays that show a material of the .blend."""
+    if arrays is None:
+        return ()
+    shown = slot_materials(obj, int(np.max(arrays.material_slots)) + 1)
+    return tuple(slot for slot, other in enumerate(shown) if other and other.original == material.original)

@@ -9,7 +9,7 @@ from ..core.placement import LARGEST_STRETCH
 from .camera_texels import texels_per_pixel
 from .meshes import object_arrays, triangle_faces
 from .notes import ExportError
-from .objects import all_materials, slot_materials
+from .objects import all_materials, slots_of
 from .placement import (
     Metrics,
     lie_on,
@@ -34,7 +34,7 @@ def report_on(depsgraph, obj, material, tile):
     """Of an object of the .blend that shows `material`, whose Tile is `tile`."""
     evaluated = obj.evaluated_get(depsgraph)
     arrays = object_arrays(evaluated, uv_map_names(all_materials(evaluated)))
-    slots = _slots(evaluated, arrays, material)
+    slots = slots_of(evaluated, arrays, material)
     surface = surface_of(arrays, slots)
     metres = metres_per_unit(depsgraph.scene)
     metrics = None if surface is None else Metrics.of(surface, evaluated.matrix_world, metres)
@@ -51,13 +51,6 @@ def report_on(depsgraph, obj, material, tile):
     rows += [_camera_row(depsgraph, obj, of_faces), _stretch_row(lie)]
     warnings = (stretch_sentence(obj, tile, lie, surface),) if lie.is_stretched else ()
     return PlacementReport(tuple(rows), warnings, density)
-
-
-def _slots(obj, arrays, material):
-    if arrays is None:
-        return ()
-    shown = slot_materials(obj, int(np.max(arrays.material_slots)) + 1)
-    return tuple(slot for slot, other in enumerate(shown) if other and other.original == material.original)
 
 
 def _of_faces(obj, arrays, slots, values):

@@ -100,10 +100,14 @@ class Scene(Handle):
         return self._numbered("vlr_scene_add_model_material", model.pointer, neighbors)
 
     def set_model_material(self, material: int, model: Model, neighbors: int = 0) -> None:
-        """Puts a model in the place of a material; a shell keeps the width of its tile.
+        """Puts a model in the place of a material; a shell keeps tile and softness.
 
         A committed scene stays so, unless their shells differ in their heights. No job may run on it."""
         self._lib.vlr_scene_set_model_material(self.pointer, material, model.pointer, neighbors)
+
+    def set_shell_softness(self, material: int, widths: float) -> None:
+        """Over what share of the tile's width the edge of a shell fades out, from 0 (hard) to below 1."""
+        self._lib.vlr_scene_set_shell_softness(self.pointer, material, widths)
 
     def set_shell_tile(self, material: int, metres: float) -> None:
         """How wide a tile of the material's shell (VOTF) is; 0: as the texture coordinates say."""

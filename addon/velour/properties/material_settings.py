@@ -147,6 +147,17 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         update=_changed,
         override=_OVERRIDE,
     )
+    outline_softness: FloatProperty(
+        name="Edge Softness",
+        description="Share of a tile's width over which the outline fades out, as fuzz does; 0: a hard edge",
+        default=0.0,
+        min=0.0,
+        max=0.99,
+        soft_max=0.1,
+        precision=3,
+        update=_changed,
+        override=_OVERRIDE,
+    )
     placement: PointerProperty(
         name="Placement",
         description="Where the tiles of a BTF lie on objects",

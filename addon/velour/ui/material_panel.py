@@ -13,6 +13,7 @@ from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.save_model import VELOUR_OT_save_model
 from .order_preview import order_icon
+from .placement_summary import measured
 from .progress import draw_progress
 from .size_curve import draw_size_curve
 from .summaries import model_summary
@@ -123,8 +124,22 @@ class VELOUR_MATERIAL_PT_outline(MaterialPanel, bpy.types.Panel):
             layout.operator(VELOUR_OT_add_votf.bl_idname, icon="MESH_GRID")
         info = model_summary(velour_node(context.material).image)
         if isinstance(info, dict) and "shell" in info:
-            layout.prop(settings, "outline_width")
+            column = layout.column(align=True)
+            for name in ("outline_width", "outline_softness"):
+                column.prop(settings, name)
             draw_rows(layout, outline_rows(info["shell"]))
+            _draw_outline_here(context, layout)
+
+
+def _draw_outline_here(context, layout):
+    report = measured(context, context.material)
+    if report is None or report.outline is None:
+        return
+    box = layout.box()
+    box.label(text=f"On '{context.object.name}'")
+    draw_rows(box, report.outline.rows)
+    for sentence in report.outline.warnings:
+        draw_sentence(context, layout, sentence, icon="ERROR")
 
 
 def outline_rows(shell):

@@ -5,7 +5,7 @@ import bpy
 from ..export.nodes import velour_node
 from ..operators.placement import VELOUR_OT_keep_uv_density
 from .material_panel import MaterialPanel, draw_rows
-from .placement_summary import placement_report
+from .placement_summary import measured
 from .summaries import model_summary
 from .text import draw_sentence
 
@@ -35,7 +35,8 @@ class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
         layout.prop(settings, "rotation")
         layout.column().prop(settings, "offset")
         layout.prop(settings, settings.scale_property)
-        _draw_report(context, layout, placement_report(context, context.material))
+        report = measured(context, context.material)
+        _draw_report(context, layout, report and report.placement)
 
 
 def _draw_uv_map(layout, settings, obj):

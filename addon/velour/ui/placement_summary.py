@@ -1,16 +1,26 @@
-"""What the Placement panel shows, measured between redraws (engine/write_lock.py says why)."""
+"""What panels show of a material on the active object, measured between redraws.
+
+engine/write_lock.py says why."""
 
 import time
+from typing import NamedTuple
 
 import bpy
 from bpy.app.handlers import persistent
 
 from ..export.nodes import velour_node
+from ..export.outline_report import OutlineReport, outline_report_on
 from ..export.placement import Tile
-from ..export.placement_report import report_on
+from ..export.placement_report import PlacementReport, report_on
 from .summaries import model_summary
 
 _QUIET_SECONDS = 0.3  # while something is dragged nothing is measured
+
+
+class Measured(NamedTuple):
+    placement: PlacementReport | None = None  # of a material with tiles
+    outline: OutlineReport | None = None  # of one with an outline, on an object with texture coordinates
+
 
 _key = None  # of what was drawn last
 _report = None  # of _key, perhaps of a moment ago
@@ -18,8 +28,8 @@ _is_fresh = False
 _changed = 0.0  # time.monotonic() of the last change
 
 
-def placement_report(context, material):
-    """The PlacementReport of the active object; None while there is none yet."""
+def measured(context, material):
+    """Of the active object; None while there is nothing yet."""
     global _key, _report, _is_fresh
     key = (context.object.name_full, material.name_full, context.scene.name_full, context.scene.frame_current)
     if key != _key:
@@ -73,4 +83,8 @@ def _report_of(obj, material, scene):
     if obj is None or not isinstance(info, dict) or depsgraph.scene != scene:
         return None
     tile = Tile.of(material, info)
-    return report_on(depsgraph, obj, material, tile) if tile is not None else None
+    placement = report_on(depsgraph, obj, material, tile) if tile is not None else None
+    if "shell" not in info:
+        return Measured(placement)
+    width = node.velour.outline_width
+    return Measured(placement, outline_report_on(depsgraph, obj, material, info["shell"], tile, width))

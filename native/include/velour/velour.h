@@ -340,9 +340,12 @@ VLR_API vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_mode
 /* How wide, in metres, a tile of the material's shell (VOTF) is, which scales its height; 0: as the texture coordinates
  * say, on average over each instance. Only of materials with a shell. */
 VLR_API vlr_status vlr_scene_set_shell_tile(vlr_scene* scene, uint32_t material, float metres);
-/* Puts a model in the place of material number `material`, of whatever kind it was; a shell's tile stays as wide as it
- * was. A committed scene stays committed, unless one of the two has a shell and the other none of the same heights; no
- * job of the scene may run meanwhile. */
+/* Over what share of the tile's width the edge of the material's shell (VOTF) fades out, from 0 (hard) to below 1: each
+ * ray finds it elsewhere. */
+VLR_API vlr_status vlr_scene_set_shell_softness(vlr_scene* scene, uint32_t material, float widths);
+/* Puts a model in the place of material number `material`, of whatever kind it was; a shell keeps tile and softness. A
+ * committed scene stays committed, unless one of the two has a shell and the other none of the same heights; no job of
+ * the scene may run meanwhile. */
 VLR_API vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t material, const vlr_model* model,
                                                 uint32_t neighbors);
 /* Reference mode: f comes from the raw measurement. `proposal` (may be NULL) is the model whose lobes draw samples;

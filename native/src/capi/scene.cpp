@@ -152,6 +152,13 @@ vlr_status vlr_scene_set_shell_tile(vlr_scene* scene, uint32_t material, float m
   });
 }
 
+vlr_status vlr_scene_set_shell_softness(vlr_scene* scene, uint32_t material, float widths) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->set_shell_softness(material, widths);
+  });
+}
+
 vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,
                                               const vlr_model* proposal, uint32_t neighbors, uint32_t* material) {
   return guard([&] {

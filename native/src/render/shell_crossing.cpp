@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/ray_number.h"
+
 namespace velour {
 namespace {
 
@@ -34,16 +36,18 @@ ShellCrossing::ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit)
       .curvature = frame_.curvature,
       .scale = frame_.scale};
   // Beside the outline of the smooth surface the ray passes, whatever its triangles are.
-  way_ = cosine > 0 ? way_behind(in_shell, hit) : ShellWay(in_shell, field().volume(), 0, 0);
+  ShellEdge edge{frame_.softness};
+  if (edge.softness > 0) edge.offset = edge.softness * (ray_number(ray, hit, RayDecision::shell_edge) - 0.5f);
+  way_ = cosine > 0 ? way_behind(in_shell, hit, edge) : ShellWay(in_shell, field().volume(), 0, 0);
 }
 
-ShellWay ShellCrossing::way_behind(const ShellRay& ray, const Hit& hit) const {
+ShellWay ShellCrossing::way_behind(const ShellRay& ray, const Hit& hit, const ShellEdge& edge) const {
   const OcclusionVolume& volume = field().volume();
   const ShellSpan span = span_of(ray, volume);
-  if (!leaving_) return {ray, volume, 0, span.end};
-  if (hit.distance < span.end) return {ray, volume, hit.distance, 0, true};
+  if (!leaving_) return {ray, volume, 0, span.end, false, edge};
+  if (hit.distance < span.end) return {ray, volume, hit.distance, 0, true, edge};
   // A ray that came in through the top is decided there.
-  return {ray, volume, span.through_bottom ? span.end : 0, 0};
+  return {ray, volume, span.through_bottom ? span.end : 0, 0, false, edge};
 }
 
 bool ShellCrossing::find() {

@@ -32,7 +32,7 @@ class ShellCrossing {
   Vec2 beyond_outline(const Vec2& texels) const;
 
  private:
-  ShellWay way_behind(const ShellRay& ray, const Hit& hit) const;
+  ShellWay way_behind(const ShellRay& ray, const Hit& hit, const ShellEdge& edge) const;
   Vec3 normal() const;
   Vec3 structure_normal(const Vec3& up) const;
 

@@ -1,25 +1,16 @@
 #include "render/visible_rays.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "material/material.h"
+#include "render/ray_number.h"
 #include "render/shell_crossing.h"
-#include "sphere/random.h"
 
 namespace velour {
 namespace {
 
 constexpr size_t kTogether = 128;
-
-float number_of(const Ray& ray, const Hit& hit) {
-  uint64_t key = mix64((static_cast<uint64_t>(hit.instance) << 32) + hit.triangle);
-  for (const Vec3& v : {ray.origin, ray.direction}) {
-    for (int i = 0; i < 3; ++i) key = mix64(key + std::bit_cast<uint32_t>(v[i]));
-  }
-  return unit_float(key);
-}
 
 /// Ways through shells that are traced together, as long as they are of one field.
 class ShellWays {
@@ -132,7 +123,7 @@ bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit) const {
   if (material.opaque()) return true;
   // At a point: what a footprint would average, the rays of a pixel do.
   const Vec2 uv = material.varies() ? scene_.texture(hit).uv : Vec2(0.0f);
-  return number_of(ray, hit) < material.alpha({.uv = uv});
+  return ray_number(ray, hit, RayDecision::alpha) < material.alpha({.uv = uv});
 }
 
 void VisibleRays::decide(const Pending& pending, bool* met) const {

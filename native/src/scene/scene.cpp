@@ -63,7 +63,10 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
   if (number >= materials_.size()) refuse("There is no material " + std::to_string(number) + " to replace.");
   SurfaceMaterial& place = materials_[number];
   if (!have_same_tops(place, material)) changed();
-  if (material.shell && place.shell) material.shell_tile = place.shell_tile;
+  if (material.shell && place.shell) {
+    material.shell_tile = place.shell_tile;
+    material.shell_softness = place.shell_softness;
+  }
   place = std::move(material);
 }
 

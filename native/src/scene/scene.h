@@ -31,8 +31,10 @@ struct SurfaceMaterial {
   bool shell_shaded = false;
   /// Whether f is of a BTF whose values are means with the holes of its structure; rays find those for themselves.
   bool holed() const { return shell && !shell_shaded && !shell->volume().closed; }
-  float shell_tile =
-      0;  // metres that a tile is wide, which scale the shell's height; 0: as the texture coordinates say
+  /// Metres that a tile is wide, which scale the shell's height; 0: as the texture coordinates say.
+  float shell_tile = 0;
+  /// Widths of the tile over which the structure's edge fades out (ShellEdge); 0: hard.
+  float shell_softness = 0;
 };
 
 /// A hit, resolved to what shading needs. World space.
@@ -67,6 +69,7 @@ struct SceneInfo {
 /// What bends a shell at a hit, world space.
 struct ShellFrame {
   const ShellField* field;
+  float softness;    // of its edge, widths
   Vec3 normal;       // unit, interpolated, towards the mesh's front
   float scale;       // widths of the tile that a metre along the normal covers
   float curvature;   // normal curvature along the direction that was asked for, 1 / metres
@@ -81,10 +84,12 @@ class Scene {
   uint32_t add_mesh(Mesh mesh);
   uint32_t add_material(SurfaceMaterial material);
   /// Puts another material in the place of one. A committed scene stays committed, unless one of the two has a shell
-  /// and the other none of the same heights; nothing may read it meanwhile. The shell's tile stays as wide as it was.
+  /// and the other none of the same heights; nothing may read it meanwhile. A shell keeps tile and softness.
   void set_material(uint32_t number, SurfaceMaterial material);
   /// SurfaceMaterial::shell_tile. Throws Error(invalid_argument) for a material without a shell.
   void set_shell_tile(uint32_t material, float metres);
+  /// SurfaceMaterial::shell_softness, below 1. As above. A committed scene stays committed.
+  void set_shell_softness(uint32_t material, float widths);
   /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a
   /// zero scale) is left out and counted in the warnings. `placements[s]` takes the mesh's texture coordinates to those
   /// that slot s is shown with, and with them its footprints and its tangents; none: they are the same.
@@ -148,6 +153,7 @@ class Scene {
 
  private:
   void changed();
+  SurfaceMaterial& with_shell(uint32_t material, const char* to_what);
   void lift_shells();
   /// `tops`: the traced meshes so far, by all that they depend on.
   void lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& tops);

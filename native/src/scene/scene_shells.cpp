@@ -51,15 +51,28 @@ std::string in_metres(float length) {
 
 }  // namespace
 
+SurfaceMaterial& Scene::with_shell(uint32_t material, const char* to_what) {
+  if (material < materials_.size() && materials_[material].shell) return materials_[material];
+  throw Error(Status::invalid_argument,
+              "Material " + std::to_string(material) + " has no shell (VOTF) to " + to_what + ".");
+}
+
 void Scene::set_shell_tile(uint32_t material, float metres) {
-  if (material >= materials_.size() || !materials_[material].shell) {
-    throw Error(Status::invalid_argument, "Material " + std::to_string(material) + " has no shell (VOTF) to scale.");
-  }
+  SurfaceMaterial& surface = with_shell(material, "scale");
   if (!(metres >= 0 && std::isfinite(metres))) {
     throw Error(Status::invalid_argument, "The tile of a shell cannot be " + std::to_string(metres) + " metres wide.");
   }
   changed();
-  materials_[material].shell_tile = metres;
+  surface.shell_tile = metres;
+}
+
+void Scene::set_shell_softness(uint32_t material, float widths) {
+  SurfaceMaterial& surface = with_shell(material, "soften");
+  if (!(widths >= 0 && widths < 1)) {
+    throw Error(Status::invalid_argument, "The edge of a shell cannot fade out over " + std::to_string(widths) +
+                                              " of the tile's width; give a share from 0 to below 1.");
+  }
+  surface.shell_softness = widths;
 }
 
 void Scene::lift_shells() {
@@ -163,7 +176,9 @@ ShellFrame Scene::shell(const Hit& hit, const Vec3& direction) const {
     return instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]);
   };
   ShellFrame frame;
-  frame.field = materials_[material(hit)].shell.get();
+  const SurfaceMaterial& surface = materials_[material(hit)];
+  frame.field = surface.shell.get();
+  frame.softness = surface.shell_softness;
   frame.scale = 1 / instance.tile_width[slot(hit)];
   const Vec3 mean = (1 - hit.u - hit.v) * normal[0] + hit.u * normal[1] + hit.v * normal[2];
   frame.normal = glm::normalize(glm::dot(mean, mean) > 0 ? mean : normal[0]);

@@ -110,6 +110,7 @@ struct Marches {
     kCosine,
     kCurvature,
     kScale,
+    kOffset,
     kWay,
     kPerSpeed,
     kEnd,
@@ -135,6 +136,7 @@ struct Marches {
                                    ray.cosine,
                                    ray.curvature,
                                    ray.scale,
+                                   from.offset,
                                    way,
                                    way / from.speed,
                                    from.end,
@@ -255,11 +257,11 @@ HWY_INLINE size_t march_some(D d, const ShellTable& t, Marches& all, size_t at, 
              of(Marches::kFree),          of(Marches::kStep),
              of(Marches::kSkipped),       valid,
              hn::MaskFromVec(hn::Zero(d))};
-  const auto top = hn::Set(d, t.top);
+  const auto top = hn::Set(d, t.top), offset = of(Marches::kOffset);
   for (int i = 0; i < kLooks && !hn::AllFalse(d, m.active); ++i) {
     PlaceLanes<D> place = place_on(d, rays, m.s);
     place.z = hn::Add(place.z, top);
-    m.look(d, t, distance_at(d, t, place));
+    m.look(d, t, hn::Sub(distance_at(d, t, place), offset));
   }
   if (last) {  // what they have glided along for so long, they have met
     m.met = hn::Or(m.met, m.active);

@@ -38,9 +38,16 @@ ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume) {
   return {2 * ray.cosine / ray.curvature, false};
 }
 
-ShellWay::ShellWay(const ShellRay& along, const OcclusionVolume& volume, float from, float to, bool starts_on)
-    : ray(along), begin(from), end(to), sine(sine_of(along)), speed(fastest(along, sine, volume)), own(0) {
-  if (starts_on) own = std::min(std::abs(end - begin), kOwnDepth * volume.pitch() / speed);
+ShellWay::ShellWay(const ShellRay& along, const OcclusionVolume& volume, float from, float to, bool starts_on,
+                   const ShellEdge& edge)
+    : ray(along),
+      begin(from),
+      end(to),
+      sine(sine_of(along)),
+      speed(fastest(along, sine, volume)),
+      own(0),
+      offset(edge.offset) {
+  if (starts_on) own = std::min(std::abs(end - begin), (kOwnDepth * volume.pitch() + edge.softness) / speed);
 }
 
 void trace_shells(const ShellField& field, std::span<const ShellWay> ways, ShellHit* hits) {
@@ -63,7 +70,7 @@ ShellDepth depth_behind(const ShellField& field, const ShellWay& way, float s, f
   Vec3 place = way.ray.at(s);
   for (int i = 0; i < kMostLooks && (way.end - s) * sign > 0 && deepest.depth < most; ++i) {
     const Vec3 at = way.ray.at(s);
-    const float depth = -field.distance(at + top);
+    const float depth = way.offset - field.distance(at + top);
     if (depth > deepest.depth) {
       deepest.depth = depth;
       place = at;

@@ -32,21 +32,29 @@ ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume);
 /// Of the ray's angle with the normal.
 float sine_of(const ShellRay& ray);
 
+/// A structure whose edge each ray finds elsewhere, at an offset of its own, uniform over `softness` widths about it.
+struct ShellEdge {
+  float softness = 0;
+  float offset = 0;  // positive: outwards
+};
+
 /// Where along a ray the structure is looked for.
 struct ShellWay {
   /// From `begin` to `end`, metres behind the crossing, either before the other. A ray that `starts_on` the structure
   /// may seem to begin within it, because the place was found along another ray, and arcs agree about it to a pitch or
   /// so only: such a one is looked for from where it comes out; from `begin`, if it is deeper inside.
   ShellWay() = default;
-  ShellWay(const ShellRay& ray, const OcclusionVolume& volume, float begin, float end, bool starts_on = false);
+  ShellWay(const ShellRay& ray, const OcclusionVolume& volume, float begin, float end, bool starts_on = false,
+           const ShellEdge& edge = {});
 
   bool empty() const { return begin == end; }
 
   ShellRay ray;
   float begin, end;
-  float sine;   // of the ray's angle with the normal
-  float speed;  // widths that the ray covers a metre, at most
-  float own;    // metres of the way that may lie in the structure it starts on
+  float sine;    // of the ray's angle with the normal
+  float speed;   // widths that the ray covers a metre, at most
+  float own;     // metres of the way that may lie in the structure it starts on
+  float offset;  // of the edge
 };
 
 /// The first place on a way where the ray is within the structure.

@@ -69,8 +69,8 @@ def fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) 
 
 def _add_material(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> int:
     kind = library.file_info(args.material)["kind"]
-    if args.shell_tile is not None and kind != "model":
-        raise refuse(f"{args.material} is no model and has no shell; leave --shell-tile out.")
+    if kind != "model" and (given := texture_options.given_shell(args)):
+        raise refuse(f"{args.material} is no model and has no shell; leave {' and '.join(given)} out.")
     if kind in _OWN_SAMPLES and args.proposal:
         what = _OWN_SAMPLES[kind]
         raise refuse(f"{args.material} is {what} and draws its own samples; leave --proposal out.")
@@ -80,8 +80,7 @@ def _add_material(scene: Scene, args: argparse.Namespace, handles: contextlib.Ex
     if kind == "model":
         model = handles.enter_context(Model.load(args.material))
         material = scene.add_model_material(model, args.neighbors)
-        if args.shell_tile is not None:
-            scene.set_shell_tile(material, args.shell_tile)
+        texture_options.set_shell(scene, material, args)
         return material
     measurement = handles.enter_context(Measurement.load(args.material))
     proposal = handles.enter_context(Model.load(args.proposal)) if args.proposal else None

@@ -29,6 +29,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--shell-tile", type=numbers.real(0), metavar="METRES",
         help="width of a tile, which the height of its shell goes with (as the texture coordinates say)",
     )  # fmt: skip
+    group.add_argument(
+        "--shell-softness", type=numbers.real(0, 0.99), metavar="SHARE",
+        help="of a tile's width, over which the edge of its shell fades out (0: hard)",
+    )  # fmt: skip
+
+
+def given_shell(args: argparse.Namespace) -> list[str]:
+    """The options given that only a model with a shell has a use for."""
+    return [
+        f"--{name.replace('_', '-')}"
+        for name in ("shell_tile", "shell_softness")
+        if getattr(args, name) is not None
+    ]
+
+
+def set_shell(scene: Scene, material: int, args: argparse.Namespace) -> None:
+    if args.shell_tile is not None:
+        scene.set_shell_tile(material, args.shell_tile)
+    if args.shell_softness is not None:
+        scene.set_shell_softness(material, args.shell_softness)
 
 
 def scale(text: str) -> tuple[float, ...]:

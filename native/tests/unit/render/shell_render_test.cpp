@@ -177,6 +177,34 @@ TEST(ShellRender, AMaterialInThePlaceOfOneWithTheSameShellNeedsNoNewHierarchy) {
   EXPECT_FALSE(wires.scene.committed());
 }
 
+TEST(ShellRender, ASoftEdgeIsFoundElsewhereByEachRay) {
+  constexpr float kSoftness = 0.1f;
+  constexpr int kRays = 4000;
+  Shot wires(tiled_square(64), shelled(field_of(test::wires(128, kRadius))));
+  wires.scene.commit(1);
+  // Straight down, `beyond` widths beside a wire.
+  const auto share = [&](float beyond) {
+    int met = 0;
+    for (int i = 0; i < kRays; ++i) {
+      const float y = static_cast<float>(i) / kRays - 0.5f;
+      met += VisibleRays(wires.scene).occluded({{(0.5f + kRadius + beyond) / 32, y, 2}, 0, {0, 0, -1}}) ? 1 : 0;
+    }
+    return static_cast<float>(met) / kRays;
+  };
+  EXPECT_EQ(share(-0.03f), 1);
+  EXPECT_EQ(share(0.03f), 0);
+  wires.scene.set_shell_softness(0, kSoftness);
+  EXPECT_TRUE(wires.scene.committed());
+  for (const float beyond : {-0.06f, -0.03f, 0.0f, 0.03f, 0.06f}) {
+    const float expected = std::clamp(0.5f - beyond / kSoftness, 0.0f, 1.0f);
+    // What counts as within, and the grid's distances, are off by up to 0.005 widths.
+    EXPECT_NEAR(share(beyond), expected, 4 * 0.5 / std::sqrt(kRays) + 0.005 / kSoftness) << beyond;
+  }
+  EXPECT_THROW(wires.scene.set_shell_softness(0, 1), Error);
+  EXPECT_THROW(wires.scene.set_shell_softness(0, -0.1f), Error);
+  EXPECT_THROW(wires.scene.set_shell_softness(1, 0), Error);
+}
+
 /// White structure as a BTF has it: texels hold the share that wires of kRadius about the middle cover of them.
 class CoveredTexels : public test::Lambert {
  public:

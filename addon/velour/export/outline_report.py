@@ -1,0 +1,84 @@
+"""How high the structure of a material stands on one object, for the panel and for scripts."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.curvature import curvature_range
+from .meshes import object_arrays
+from .notes import ExportError
+from .objects import all_materials, slots_of
+from .placement import Metrics, surface_of, tile_map
+from .units import metres_per_unit
+from .uv_maps import uv_map_names
+
+
+class OutlineReport(NamedTuple):
+    rows: tuple[tuple[str, str], ...]  # name and value, for people
+    warnings: tuple[str, ...]
+    share: float  # of the least radius of curvature that height or depth has; from 1 on the shell folds
+
+
+def outline_report_on(depsgraph, obj, material, shell, tile, width=0.0):
+    """Of an object of the .blend that shows `material`, whose model has `shell` in its info.
+
+    `tile`: the material's Tile; None where it has no texture. `width`: of a tile, metres; 0: as the
+    coordinates say. None where nothing can be said: without texture coordinates.
+    """
+    evaluated = obj.evaluated_get(depsgraph)
+    arrays = object_arrays(evaluated, uv_map_names(all_materials(evaluated)))
+    slots = slots_of(evaluated, arrays, material)
+    surface = surface_of(arrays, slots)
+    metres = metres_per_unit(depsgraph.scene)
+    metrics = None if surface is None else Metrics.of(surface, evaluated.matrix_world, metres)
+    if metrics is None or metrics.world.is_flat:
+        return None
+    try:
+        width = width or _tile_width(metrics, tile, shell)
+    except ExportError:  # the placement says why
+        return None
+    low, high = (width * height for height in shell["heights"])
+    share = _share(_bends(evaluated, arrays, slots, metres), low, high)
+    rows = (
+        ("Tile here", f"{_metres(width)} wide"),
+        ("Structure here", f"{_metres(low)} to {_metres(high)}"),
+        ("Of the least radius", f"{share:.0%}"),
+    )
+    return OutlineReport(rows, _warnings(obj, share), share)
+
+
+def _metres(length):
+    return f"{length:.3g} m" if abs(length) >= 1 else f"{1e3 * length:.3g} mm"
+
+
+def _tile_width(metrics, tile, shell):
+    """Metres, of a tile that covers one unit of the coordinates that it is shown with."""
+    placed = metrics.world if tile is None else metrics.world.placed(tile_map(tile, metrics))
+    width, height = shell["points"][:2]
+    return 1 / math.sqrt(math.prod(placed.density()) * height / width)
+
+
+def _bends(obj, arrays, slots, metres):
+    """Least and largest curvature of the slots' surface in the world, 1/m."""
+    shown = np.isin(arrays.material_slots, slots)
+    matrix = np.array(obj.matrix_world, float)[:3, :3]
+    corners = arrays.positions[arrays.triangles[shown]] @ matrix.T * metres
+    normals = arrays.corner_normals[shown].reshape(-1, 3, 3) @ np.linalg.inv(matrix)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        normals = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+    return curvature_range(corners, normals)
+
+
+def _share(bends, low, high):
+    return max(0.0, *(-bend * height for bend in bends for height in (low, high)))
+
+
+def _warnings(obj, share):
+    if share < 1:
+        return ()
+    sentence = (
+        f"Object '{obj.name}': the structure reaches farther than the surface's least radius of curvature and"
+        " folds over itself there; make the tiles smaller, or the surface smoother."
+    )
+    return (sentence,)
