@@ -11,7 +11,8 @@ namespace velour {
 struct OrderPoint {
   int lobes = 0;  // scattered: of the view that has most; parametric: in all
   uint64_t parameter_bytes = 0;
-  double worst = 0;        // largest relative L2 over tolerance of a fitted view: at most 1 where the fit holds
+  double worst = 0;  // of a fitted view: largest relative L2 over the tolerance, less what the fold took of that; at
+                     // most 1 where the fit holds
   double relative_l2 = 0;  // mean over the fitted views, weighted as the fit does
 
   bool operator==(const OrderPoint&) const = default;
