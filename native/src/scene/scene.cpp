@@ -125,8 +125,13 @@ void Scene::commit(int threads) {
   const auto start = std::chrono::steady_clock::now();
   lift_shells();
   auto rays = std::make_unique<EmbreeScene>();
-  for (const Mesh& mesh : meshes_) rays->add_mesh(mesh.positions(), mesh.triangles());
-  for (const Mesh& mesh : lifted_) rays->add_mesh(mesh.positions(), mesh.triangles());
+  std::vector<bool> traced(meshes_.size() + lifted_.size());
+  for (const Instance& i : instances_) traced[i.traced] = true;
+  for (size_t m = 0; m < traced.size(); ++m) {
+    const Mesh& mesh = m < meshes_.size() ? meshes_[m] : lifted_[m - meshes_.size()];
+    // Meshes that are traced as the tops of their shells alone keep their number.
+    traced[m] ? rays->add_mesh(mesh.positions(), mesh.triangles()) : rays->add_mesh({}, {});
+  }
   for (const Instance& i : instances_) rays->add_instance(i.traced, i.object_to_world);
   rays->commit(threads);
   rays_ = std::move(rays);
