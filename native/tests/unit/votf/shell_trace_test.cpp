@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "sphere/directions.h"
 #include "sphere/random.h"
@@ -120,6 +121,47 @@ TEST(TraceShell, FromTheBottomUpFindsTheOtherSide) {
   ASSERT_TRUE(above && below);
   EXPECT_NEAR(above.place.z, 0.2f, 5e-3f);
   EXPECT_NEAR(below.place.z, -0.2f, 5e-3f);
+}
+
+TEST(TraceShells, DoesWithEachRayWhatItDoesWithItAlone) {
+  const ShellField field(test::wires(32, 0.2f));
+  std::vector<ShellWay> ways;
+  for (uint64_t i = 0; i < 700; ++i) {  // more than go together
+    RandomStream numbers(7, i, 0);
+    const Vec2 place = numbers.next2(), turn = numbers.next2();
+    const ShellRay ray{place, Vec2(std::cos(6 * turn.x), std::sin(6 * turn.x)), 0.05f + 0.95f * turn.y,
+                       i % 3 == 0 ? 0.0f : 2 * numbers.next() - 1, 1};
+    const float end = span_of(ray, field.volume()).end;
+    if (i % 2 == 0) {
+      ways.emplace_back(ray, field.volume(), 0, end);
+    } else {
+      ways.emplace_back(ray, field.volume(), 0.6f * end, 0, true, ShellEdge{0.05f, 0.05f * (numbers.next() - 0.5f)});
+    }
+  }
+  std::vector<ShellHit> hits(ways.size());
+  trace_shells(field, ways, hits.data());
+  int met = 0;
+  for (size_t i = 0; i < ways.size(); ++i) {
+    const ShellHit alone = trace_shell(field, ways[i]);
+    ASSERT_EQ(hits[i].met, alone.met) << i;
+    EXPECT_EQ(hits[i].begin, alone.begin) << i;
+    if (!alone) continue;
+    EXPECT_EQ(hits[i].s, alone.s) << i;
+    EXPECT_EQ(hits[i].place, alone.place) << i;
+    ++met;
+  }
+  EXPECT_GT(met, 150);
+  EXPECT_LT(met, 550);
+}
+
+TEST(TraceShell, ARayThatStartsOnTheStructureLeavesItFirst) {
+  const ShellField field(test::wires(64, 0.2f));
+  const OcclusionVolume& volume = field.volume();
+  const ShellRay ray{{0.5f, 0.5f}, {1, 0}, 1.0f, 0.0f, 1};
+  const float surface = volume.top - 0.2f, pitch = volume.pitch();
+  EXPECT_FALSE(trace_shell(field, {ray, volume, surface + pitch, 0, true}));
+  EXPECT_TRUE(trace_shell(field, {ray, volume, surface + pitch, 0, false}));
+  EXPECT_TRUE(trace_shell(field, {ray, volume, surface + 6 * pitch, 0, true})) << "deeper than arcs disagree";
 }
 
 TEST(ShellField, AnswersWhereverItIsAsked) {
