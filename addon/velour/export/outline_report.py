@@ -6,12 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.curvature import curvature_range
-from .meshes import object_arrays
 from .notes import ExportError
-from .objects import all_materials, slots_of
-from .placement import Metrics, surface_of, tile_map
-from .units import metres_per_unit
-from .uv_maps import uv_map_names
+from .placement import tile_map
+from .shown_surface import ShownSurface
 
 
 class OutlineReport(NamedTuple):
@@ -26,20 +23,15 @@ def outline_report_on(depsgraph, obj, material, shell, tile, width=0.0):
     `tile`: the material's Tile; None where it has no texture. `width`: of a tile, metres; 0: as the
     coordinates say. None where nothing can be said: without texture coordinates.
     """
-    evaluated = obj.evaluated_get(depsgraph)
-    arrays = object_arrays(evaluated, uv_map_names(all_materials(evaluated)))
-    slots = slots_of(evaluated, arrays, material)
-    surface = surface_of(arrays, slots)
-    metres = metres_per_unit(depsgraph.scene)
-    metrics = None if surface is None else Metrics.of(surface, evaluated.matrix_world, metres)
-    if metrics is None or metrics.world.is_flat:
+    shown = ShownSurface.of(depsgraph, obj, material)
+    if shown.metrics is None:
         return None
     try:
-        width = width or _tile_width(metrics, tile, shell)
+        width = width or _tile_width(shown.metrics, tile, shell)
     except ExportError:  # the placement says why
         return None
     low, high = (width * height for height in shell["heights"])
-    share = _share(_bends(evaluated, arrays, slots, metres), low, high)
+    share = _share(_bends(shown), low, high)
     rows = (
         ("Tile here", f"{_metres(width)} wide"),
         ("Structure here", f"{_metres(low)} to {_metres(high)}"),
@@ -59,12 +51,13 @@ def _tile_width(metrics, tile, shell):
     return 1 / math.sqrt(math.prod(placed.density()) * height / width)
 
 
-def _bends(obj, arrays, slots, metres):
-    """Least and largest curvature of the slots' surface in the world, 1/m."""
-    shown = np.isin(arrays.material_slots, slots)
-    matrix = np.array(obj.matrix_world, float)[:3, :3]
-    corners = arrays.positions[arrays.triangles[shown]] @ matrix.T * metres
-    normals = arrays.corner_normals[shown].reshape(-1, 3, 3) @ np.linalg.inv(matrix)
+def _bends(shown):
+    """Least and largest curvature of a ShownSurface in the world, 1/m."""
+    arrays = shown.arrays
+    triangles = np.isin(arrays.material_slots, shown.slots)
+    matrix = np.array(shown.obj.matrix_world, float)[:3, :3]
+    corners = arrays.positions[arrays.triangles[triangles]] @ matrix.T * shown.metres
+    normals = arrays.corner_normals[triangles].reshape(-1, 3, 3) @ np.linalg.inv(matrix)
     with np.errstate(divide="ignore", invalid="ignore"):
         normals = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
     return curvature_range(corners, normals)

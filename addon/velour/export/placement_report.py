@@ -7,19 +7,15 @@ import numpy as np
 
 from ..core.placement import LARGEST_STRETCH
 from .camera_texels import texels_per_pixel
-from .meshes import object_arrays, triangle_faces
+from .meshes import triangle_faces
 from .notes import ExportError
-from .objects import all_materials, slots_of
 from .placement import (
-    Metrics,
     lie_on,
     missing_coordinates,
     stretch_sentence,
-    surface_of,
     tile_map,
 )
-from .units import metres_per_unit
-from .uv_maps import uv_map_names
+from .shown_surface import ShownSurface
 
 _SAME = 0.005  # of real size: nobody sees that
 
@@ -32,13 +28,9 @@ class PlacementReport(NamedTuple):
 
 def report_on(depsgraph, obj, material, tile):
     """Of an object of the .blend that shows `material`, whose Tile is `tile`."""
-    evaluated = obj.evaluated_get(depsgraph)
-    arrays = object_arrays(evaluated, uv_map_names(all_materials(evaluated)))
-    slots = slots_of(evaluated, arrays, material)
-    surface = surface_of(arrays, slots)
-    metres = metres_per_unit(depsgraph.scene)
-    metrics = None if surface is None else Metrics.of(surface, evaluated.matrix_world, metres)
-    if metrics is None or metrics.world.is_flat:
+    shown = ShownSurface.of(depsgraph, obj, material)
+    metrics = shown.metrics
+    if metrics is None:
         return PlacementReport((), (missing_coordinates(obj, material.name),))
     rows, density = [_density_row(metrics)], metrics.local.density()
     try:
@@ -47,17 +39,17 @@ def report_on(depsgraph, obj, material, tile):
         return PlacementReport(tuple(rows), (str(error),), density)
     tiles, lie = metrics.world.placed(uv_map), lie_on(tile, metrics, uv_map)
     rows += [_size_row(tile, tiles), _spread_row(lie), _texel_row(tile, lie)]
-    of_faces = _of_faces(evaluated, arrays, slots, tiles.scales() * metres * _texels(tile))
+    of_faces = _of_faces(shown, tiles.scales() * shown.metres * _texels(tile))
     rows += [_camera_row(depsgraph, obj, of_faces), _stretch_row(lie)]
-    warnings = (stretch_sentence(obj, tile, lie, surface),) if lie.is_stretched else ()
+    warnings = (stretch_sentence(obj, tile, lie, shown.surface),) if lie.is_stretched else ()
     return PlacementReport(tuple(rows), warnings, density)
 
 
-def _of_faces(obj, arrays, slots, values):
-    """Values of the slots' triangles as values of the object's faces; NaN of other slots."""
-    faces = triangle_faces(obj)
+def _of_faces(shown, values):
+    """Values of a ShownSurface's triangles as values of the object's faces; NaN of other slots."""
+    faces = triangle_faces(shown.obj)
     found = np.full(int(faces.max()) + 1, np.nan)
-    found[faces[np.isin(arrays.material_slots, slots)]] = values
+    found[faces[np.isin(shown.arrays.material_slots, shown.slots)]] = values
     return found
 
 

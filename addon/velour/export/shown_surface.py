@@ -1,0 +1,33 @@
+"""What one object shows of one material."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..core.placement import Surface
+from .meshes import MeshArrays, object_arrays
+from .objects import all_materials, slots_of
+from .placement import Metrics, surface_of
+from .units import metres_per_unit
+from .uv_maps import uv_map_names
+
+
+class ShownSurface(NamedTuple):
+    obj: Any  # evaluated
+    arrays: MeshArrays | None
+    slots: tuple[int, ...]  # that show it
+    surface: Surface | None  # of those
+    metres: float  # a unit of the scene
+    metrics: Metrics | None  # None where texture coordinates are missing or have no extent
+
+    @classmethod
+    def of(cls, depsgraph, obj, material) -> ShownSurface:
+        """Of an object of the .blend."""
+        evaluated = obj.evaluated_get(depsgraph)
+        arrays = object_arrays(evaluated, uv_map_names(all_materials(evaluated)))
+        slots = slots_of(evaluated, arrays, material)
+        surface = surface_of(arrays, slots)
+        metres = metres_per_unit(depsgraph.scene)
+        metrics = None if surface is None else Metrics.of(surface, evaluated.matrix_world, metres)
+        has_extent = metrics is not None and not metrics.world.is_flat
+        return cls(evaluated, arrays, slots, surface, metres, metrics if has_extent else None)
