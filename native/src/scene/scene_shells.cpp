@@ -178,7 +178,8 @@ ShellFrame Scene::shell(const Hit& hit, const Vec3& direction) const {
   ShellFrame frame;
   const SurfaceMaterial& surface = materials_[material(hit)];
   frame.field = surface.shell.get();
-  frame.softness = surface.shell_softness;
+  // Distances end at the reach: an edge farther out would fill the shell.
+  frame.softness = std::min(surface.shell_softness, 1.8f * frame.field->volume().reach);
   frame.scale = 1 / instance.tile_width[slot(hit)];
   const Vec3 mean = (1 - hit.u - hit.v) * normal[0] + hit.u * normal[1] + hit.v * normal[2];
   frame.normal = glm::normalize(glm::dot(mean, mean) > 0 ? mean : normal[0]);

@@ -200,6 +200,8 @@ TEST(ShellRender, ASoftEdgeIsFoundElsewhereByEachRay) {
     // What counts as within, and the grid's distances, are off by up to 0.005 widths.
     EXPECT_NEAR(share(beyond), expected, 4 * 0.5 / std::sqrt(kRays) + 0.005 / kSoftness) << beyond;
   }
+  wires.scene.set_shell_softness(0, 0.9f);  // farther than distances are stored
+  EXPECT_EQ(share(0.3f), 0) << "the middle between two wires stays open";
   EXPECT_THROW(wires.scene.set_shell_softness(0, 1), Error);
   EXPECT_THROW(wires.scene.set_shell_softness(0, -0.1f), Error);
   EXPECT_THROW(wires.scene.set_shell_softness(1, 0), Error);
