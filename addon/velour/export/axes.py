@@ -11,12 +11,14 @@ def affine(matrix):
     return np.array([row[:] for row in matrix[:3]], np.float32)
 
 
-def rigid(matrix):
-    """`affine` without scale and shear, which Blender's cameras and lights do not obey."""
-    location, rotation, _scale = matrix.decompose()
-    out = np.empty((3, 4), np.float32)
-    out[:, :3] = np.array(rotation.to_matrix(), np.float32)
-    out[:, 3] = location
+def unscaled(matrix):
+    """`affine` with axes of length 1, as Blender's cameras and lights stand: mirrored, sheared, unscaled."""
+    out = affine(matrix)
+    lengths = np.linalg.norm(out[:, :3], axis=0)
+    if lengths.min() > 0:
+        out[:, :3] /= lengths
+    else:
+        out[:, :3] = np.array(matrix.to_quaternion().to_matrix(), np.float32)
     return out
 
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .axes import rigid
+from .axes import unscaled
 from .notes import ExportError
 
 
@@ -47,12 +47,13 @@ def final_view(depsgraph, notes, whole=False):
     if not whole:
         window, size = _inside_border(window, size, scene.render)
     kind = "perspective" if lens.type == "PERSP" else "orthographic"
-    return View(kind, rigid(camera.matrix_world), window, lens.clip_start, lens.clip_end, *size)
+    return View(kind, unscaled(camera.matrix_world), window, lens.clip_start, lens.clip_end, *size)
 
 
 def _full_size(render):
-    scale = render.resolution_percentage / 100
-    return max(1, int(render.resolution_x * scale)), max(1, int(render.resolution_y * scale))
+    """In whole numbers: 100 times 0.57 is a little less than 57."""
+    percentage = render.resolution_percentage
+    return tuple(max(1, side * percentage // 100) for side in (render.resolution_x, render.resolution_y))
 
 
 def _projection(camera, depsgraph, render, size):

@@ -2,7 +2,7 @@
 
 import math
 
-from .axes import column_lengths, rigid
+from .axes import column_lengths, unscaled
 
 # Blender's area lamps emit pi/4 of their nominal power: their radiance is P / (4 A), a Lambert emitter's
 # would be P / (pi A).
@@ -36,7 +36,7 @@ def add_light(scene, obj, matrix, notes):
         return
     kind, factor, values = _DESCRIBE[lamp.type](lamp, matrix)
     color = [lamp.energy * factor * c for c in lamp.color]
-    scene.add_light(kind, color, rigid(matrix), casts_shadow=_casts_shadow(lamp), **values)
+    scene.add_light(kind, color, unscaled(matrix), casts_shadow=_casts_shadow(lamp), **values)
 
 
 def _sun(lamp, _matrix):

@@ -25,13 +25,13 @@ struct Bounds {
 struct Camera {
   enum class Type : int { perspective = 0, orthographic = 1 };  // values of velour.h
   Type type = Type::perspective;
-  Affine camera_to_world;                        // rigid
+  Affine camera_to_world;                        // axes of length 1, else any: mirrored, sheared
   float window[4] = {-0.5f, 0.5f, -0.5f, 0.5f};  // left, right, bottom, top; at distance 1, or in metres
   float clip_start = 0.0f, clip_end = std::numeric_limits<float>::infinity();  // along -z
 
   /// Ray through `picture`, (0, 0) the lower left corner of the picture and (1, 1) the upper right. World, unit.
   Ray ray(const Vec2& picture) const;
-  /// Distance of `world` from the camera along its line of sight: what a depth pass holds.
+  /// Distance of `world` from the camera along its line of sight: what a depth pass holds. As if there were no shear.
   float depth(const Vec3& world) const;
 
   /// Perspective camera at `eye`; `fov` is the vertical angle of view, `aspect` width / height. Up is world `up`.

@@ -1,0 +1,50 @@
+"""The base of parity tests."""
+
+import json
+
+import addon_utils
+
+from support import blender
+
+from . import engines
+from .judge import judge
+
+
+class ParityTest(blender.BlenderTest):
+    """Starts from an empty file set up for both engines."""
+
+    bounces = 0
+
+    def setUp(self):
+        super().setUp()
+        addon_utils.enable("cycles")
+        self.scene = engines.set_up(self.bounces)
+
+    def pictures(self, engine, samples=1, first_seed=0):
+        return engines.pictures(engine, self.folder, samples, first_seed)
+
+    def verdict(self, samples=1):
+        theirs = self.pictures("CYCLES", samples)
+        self.assertGreater(float(theirs[..., :3].std(axis=(1, 2)).max()), 0.0, "The scene shows nothing.")
+        return judge(self.pictures("VELOUR", samples), theirs)
+
+    def assert_parity(self, feature, samples=1):
+        """Both engines render the scene as it is; no block may differ by more than chance."""
+        verdict = self.verdict(samples)
+        record(feature, verdict, "honoured")
+        self.assertTrue(verdict.agrees, f"{feature}: {verdict}")
+
+    def assert_approximate(self, feature, most_percent, samples=1):
+        """A known mismatch, which may not grow."""
+        verdict = self.verdict(samples)
+        record(feature, verdict, "approximated")
+        self.assertFalse(verdict.agrees, f"{feature} is exact by now: say so. {verdict}")
+        self.assertLessEqual(verdict.percent, most_percent, f"{feature}: {verdict}")
+
+
+def record(feature, verdict, word):
+    """A line for the table of docs/blender_support.md."""
+    path = blender.folder().parent / "rows.jsonl"
+    row = {"feature": feature, "verdict": word, "percent": verdict.percent, "z": verdict.z}
+    with path.open("a") as file:
+        file.write(json.dumps(row) + "\n")

@@ -1,0 +1,42 @@
+"""One scene through either engine, set so that both are asked for the same picture."""
+
+import bpy
+import numpy as np
+
+from support import scenes
+
+SEEDS = 4
+SAMPLES = {"CYCLES": 32, "VELOUR": 64}  # a pixel and seed
+WIDTH, HEIGHT = 128, 96
+
+
+def set_up(bounces=0):
+    """Both engines: a small picture, no clamping, no denoising, one box a pixel."""
+    scene = bpy.context.scene
+    render = scene.render
+    render.resolution_x, render.resolution_y, render.resolution_percentage = WIDTH, HEIGHT, 100
+    scene.view_settings.view_transform = "Standard"
+    _set_up_cycles(scene.cycles, bounces)
+    velour = scene.velour
+    velour.bounces, velour.split = bounces, 1  # every direction has its own place in the pixel
+    return scene
+
+
+def _set_up_cycles(cycles, bounces):
+    cycles.use_denoising = cycles.use_adaptive_sampling = False
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+    cycles.light_sampling_threshold = 0.0
+    cycles.pixel_filter_type = "BOX"
+
+
+def pictures(engine, folder, samples=1, first_seed=0):
+    """[seeds x height x width x 4] of independent seeds, linear. `samples`: times the usual number."""
+    scene = bpy.context.scene
+    scene.render.engine = engine
+    scene.cycles.samples = scene.velour.samples = int(SAMPLES[engine] * samples)
+    found = []
+    for seed in range(first_seed, first_seed + SEEDS):
+        scene.cycles.seed = scene.velour.seed = seed
+        found.append(scenes.render(folder, f"{engine.lower()}{seed}"))
+    return np.stack(found)

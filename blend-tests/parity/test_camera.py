@@ -1,0 +1,155 @@
+"""Cameras: where things fall in the picture, and how sharp."""
+
+import math
+import unittest
+
+from parity import stage
+from parity.case import ParityTest
+
+
+class Camera(ParityTest):
+    def setUp(self):
+        super().setUp()
+        stage.town()
+        stage.sharp_sun()
+        self.camera = stage.camera()
+        self.lens = self.camera.data
+
+    def test_perspective(self):
+        self.assert_parity("Camera: perspective")
+
+    def test_focal_length(self):
+        self.lens.lens = 21
+        self.assert_parity("Camera: focal length")
+
+    def test_sensor_fit(self):
+        for fit in ("HORIZONTAL", "VERTICAL"):
+            with self.subTest(fit):
+                self.lens.sensor_fit = fit
+                self.lens.sensor_width, self.lens.sensor_height = 40, 18
+                self.assert_parity(f"Camera: sensor fit {fit.lower()}")
+
+    def test_upright_picture(self):
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 96, 128
+        self.assert_parity("Camera: upright picture")
+
+    def test_shift(self):
+        self.lens.shift_x, self.lens.shift_y = 0.2, -0.15
+        self.assert_parity("Camera: shift")
+
+    def test_orthographic(self):
+        self.lens.type, self.lens.ortho_scale, self.lens.shift_x = "ORTHO", 5.0, 0.1
+        self.assert_parity("Camera: orthographic scale and shift")
+
+    def test_clipping(self):
+        self.lens.clip_start, self.lens.clip_end = 8.0, 12.0
+        for kind in ("PERSP", "ORTHO"):
+            with self.subTest(kind):
+                self.lens.type = kind
+                self.assert_parity(f"Camera: clipping, {kind.lower()}")
+
+    def test_pixel_aspect(self):
+        self.scene.render.pixel_aspect_x = 1.6
+        self.assert_parity("Camera: pixel aspect wide")
+        self.scene.render.pixel_aspect_x, self.scene.render.pixel_aspect_y = 1.0, 1.4
+        self.assert_parity("Camera: pixel aspect high")
+
+    def test_scaled_camera(self):
+        self.camera.scale = (2, 0.5, 3)
+        self.assert_parity("Camera: scale of its object")
+
+    def test_mirrored_camera(self):
+        self.camera.scale = (-1, 1, 1)
+        self.assert_parity("Camera: mirrored")
+
+    def test_parented_camera(self):
+        parent = stage.link(stage.bpy.data.objects.new("Parent", None))
+        parent.rotation_euler, parent.scale = (0.1, 0.05, -0.2), (1.1, 1.2, 0.9)
+        self.camera.parent = parent
+        self.assert_parity("Camera: parent with scale and shear")
+
+    def test_resolution_percentage(self):
+        self.scene.render.resolution_x, self.scene.render.resolution_percentage = 200, 57
+        self.assert_parity("Camera: resolution percentage")
+
+
+class DepthOfField(ParityTest):
+    def setUp(self):
+        super().setUp()
+        stage.town()
+        stage.sharp_sun()
+        self.camera = stage.camera()
+        self.lens = self.camera.data
+        self.dof = self.lens.dof
+        self.dof.use_dof, self.dof.focus_distance, self.dof.aperture_fstop = True, 9.0, 0.1
+
+    @unittest.expectedFailure  # not built yet
+    def test_distance(self):
+        self.assert_parity("Depth of field: f-stop and distance")
+
+    @unittest.expectedFailure  # not built yet
+    def test_focus_object(self):
+        focus = stage.link(stage.bpy.data.objects.new("Focus", None))
+        focus.location = (2.0, -2.0, 0.5)
+        self.dof.focus_object = focus
+        self.assert_parity("Depth of field: focus on an object")
+
+    @unittest.expectedFailure  # not built yet
+    def test_blades(self):
+        self.dof.aperture_fstop, self.dof.aperture_blades, self.dof.aperture_rotation = 0.05, 3, 0.4
+        self.assert_parity("Depth of field: blades and rotation")
+
+    @unittest.expectedFailure  # not built yet
+    def test_ratio(self):
+        self.dof.aperture_fstop, self.dof.aperture_ratio = 0.05, 2.0
+        self.assert_parity("Depth of field: anamorphic ratio")
+
+    @unittest.expectedFailure  # not built yet
+    def test_orthographic(self):
+        self.lens.type, self.lens.ortho_scale, self.dof.aperture_fstop = "ORTHO", 6.0, 2.0
+        self.assert_parity("Depth of field: orthographic")
+
+
+class Border(ParityTest):
+    def setUp(self):
+        super().setUp()
+        stage.town()
+        stage.sharp_sun()
+        stage.camera()
+        render = self.scene.render
+        render.use_border = True
+        render.border_min_x, render.border_max_x = 0.206, 0.754  # no whole pixels
+        render.border_min_y, render.border_max_y = 0.104, 0.857
+
+    def test_whole_film(self):
+        self.assert_parity("Render border without crop")
+
+    def test_crop(self):
+        self.scene.render.use_crop_to_border = True
+        self.assert_parity("Render border with crop")
+
+    def test_percentage(self):
+        self.scene.render.resolution_percentage = 87
+        self.scene.render.use_crop_to_border = True
+        self.assert_parity("Render border at a resolution percentage")
+
+
+class Film(ParityTest):
+    def setUp(self):
+        super().setUp()
+        stage.sphere()
+        stage.sharp_sun()
+        stage.world((0.2, 0.3, 0.4))
+        stage.camera((0, -6, 0), (math.pi / 2, 0, 0))
+
+    def test_opaque(self):
+        self.assert_parity("Film: background")
+
+    def test_transparent(self):
+        self.scene.render.film_transparent = True
+        self.assert_parity("Film: transparent")
+
+    @unittest.expectedFailure  # not built yet
+    def test_exposure(self):
+        self.scene.cycles.film_exposure = 1.7
+        self.assert_parity("Film: exposure")

@@ -1,0 +1,132 @@
+"""Geometry: normals, transforms, what is visible."""
+
+import math
+import unittest
+
+import bpy
+import numpy as np
+
+from parity import stage
+from parity.case import ParityTest
+
+
+class Geometry(ParityTest):
+    def setUp(self):
+        super().setUp()
+        stage.camera((0, -6, 0), (math.pi / 2, 0, 0))
+        stage.lamp("SUN", 3.0, rotation=(1.2, 0.3, 0.2), angle=0.0)
+        stage.world((0.3, 0.3, 0.3))
+
+    def test_flat(self):
+        stage.sphere(smooth=False)
+        self.assert_parity("Normals: flat")
+
+    def test_smooth(self):
+        stage.sphere(segments=32, rings=16)
+        self.assert_parity("Normals: smooth, fine mesh")
+
+    def test_coarse_smooth(self):
+        """Velour bends normals that face away from the viewer, Cycles bends none of a diffuse surface."""
+        stage.sphere(segments=10, rings=6)
+        self.assert_approximate("Normals: smooth, coarse mesh", 0.7)
+
+    def test_auto_smooth(self):
+        obj = stage.sphere(segments=16, rings=6)
+        obj.data.use_auto_smooth, obj.data.auto_smooth_angle = True, math.radians(28)
+        self.assert_parity("Normals: auto smooth")
+
+    def test_sharp_edges(self):
+        obj = stage.sphere(segments=16, rings=8)
+        obj.data.use_auto_smooth, obj.data.auto_smooth_angle = True, math.pi
+        for i, edge in enumerate(obj.data.edges):
+            edge.use_edge_sharp = i % 3 == 0
+        self.assert_parity("Normals: sharp edges")
+
+    def test_custom(self):
+        obj = stage.sphere(segments=24, rings=12)
+        obj.data.use_auto_smooth = True
+        normals = np.array([v.normal[:] for v in obj.data.vertices]) + np.array((0.3, -0.2, 0.4))
+        obj.data.normals_split_custom_set_from_vertices([tuple(n / np.linalg.norm(n)) for n in normals])
+        self.assert_parity("Normals: custom")
+
+    def test_scale(self):
+        """Cycles interpolates the normals of a mesh with one user in the world, of others before."""
+        obj = stage.sphere(segments=32, rings=16)
+        obj.scale = (1.5, 1, 0.4)
+        self.assert_approximate("Scale: not uniform", 1.0)
+        stage.twin(obj)
+        self.assert_parity("Scale: not uniform, several users")
+
+    def test_negative_scale(self):
+        obj = stage.sphere(segments=32, rings=16)
+        obj.scale, obj.rotation_euler = (-1.4, 0.8, 1), (0.3, 0.2, 0.1)
+        stage.twin(obj)
+        self.assert_parity("Scale: negative")
+
+    @unittest.expectedFailure  # not built yet
+    def test_zero_scale(self):
+        stage.sphere(segments=32, rings=16).scale = (1, 0, 1)
+        self.assert_parity("Scale: zero along one axis")
+
+    def test_parent(self):
+        parent = stage.link(bpy.data.objects.new("Parent", None))
+        parent.scale, parent.rotation_euler = (1.6, 1, -0.6), (0, 0.3, 0)
+        obj = stage.sphere(segments=32, rings=16)
+        obj.rotation_euler, obj.parent = (0.5, 0.4, 0.3), parent
+        stage.twin(obj)
+        self.assert_parity("Parent with scale: shear")
+
+    def test_seen_from_inside(self):
+        stage.sphere(3.0, segments=32, rings=16).location = (0, -4, 0)
+        stage.lamp("POINT", 100, (0.5, -3.0, 0.8), shadow_soft_size=0.0)
+        self.assert_parity("Back faces")
+
+    def test_instances(self):
+        stage.sphere(0.5)
+        group = bpy.data.collections.new("Group")
+        obj = bpy.context.object
+        group.objects.link(obj)
+        self.scene.collection.objects.unlink(obj)
+        for x in (-1.2, 0, 1.2):
+            empty = stage.link(bpy.data.objects.new("Instance", None))
+            empty.instance_type, empty.instance_collection = "COLLECTION", group
+            empty.location, empty.scale, empty.rotation_euler = (x, x, 0), (1, 1.5 + x, 1), (x, 0.3, 0)
+        self.assert_parity("Instances of a collection")
+
+    def test_scene_units(self):
+        self.scene.unit_settings.scale_length = 0.01
+        stage.sphere()
+        self.assert_parity("Unit scale")
+
+    def test_far_from_the_origin(self):
+        stage.sphere()
+        for obj in self.scene.objects:
+            obj.location.x += 5000
+        self.assert_parity("5 km from the origin")
+
+
+class Visibility(ParityTest):
+    def setUp(self):
+        super().setUp()
+        stage.ground(12)
+        self.sphere = stage.sphere(0.8)
+        self.sphere.location.z = 1
+        stage.camera()
+        stage.sharp_sun()
+        stage.world((0.3, 0.3, 0.3))
+
+    @unittest.expectedFailure  # not built yet
+    def test_camera(self):
+        self.sphere.visible_camera = False
+        self.assert_parity("Object: hidden from the camera")
+
+    @unittest.expectedFailure  # not built yet
+    def test_shadow(self):
+        self.sphere.visible_shadow = False
+        self.assert_parity("Object: casts no shadow")
+
+    @unittest.expectedFailure  # not built yet
+    def test_holdout(self):
+        self.sphere.is_holdout = True
+        self.scene.render.film_transparent = True
+        self.assert_parity("Object: holdout")

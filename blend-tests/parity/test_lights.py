@@ -1,0 +1,136 @@
+"""Lights: how much arrives where, and how soft."""
+
+import math
+import unittest
+
+from parity import stage
+from parity.case import ParityTest
+
+
+class Lights(ParityTest):
+    """A wall of greys, seen from above; the lamp is out of the picture."""
+
+    def setUp(self):
+        super().setUp()
+        stage.ground(12, 0.6)
+        stage.box((-0.6, -0.4, 0.3), (0.2, 0.3, 0.9), 0.8)
+        stage.camera((0, 0, 9), (0, 0, 0), 50)
+
+    def test_sun(self):
+        stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=0.0)
+        self.assert_parity("Sun: sharp")
+
+    def test_sun_angle(self):
+        stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=0.2)
+        self.assert_parity("Sun: angle 11 degrees")
+
+    @unittest.expectedFailure  # not built yet
+    def test_wide_sun(self):
+        stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=math.radians(90))
+        self.assert_parity("Sun: angle 90 degrees")
+
+    def test_color(self):
+        stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=0.0, color=(1.0, 0.5, 0.2))
+        self.assert_parity("Light: colour")
+
+    def test_point(self):
+        stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=0.0)
+        self.assert_parity("Point: sharp")
+
+    @unittest.expectedFailure  # not built yet
+    def test_point_size(self):
+        stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=0.2)
+        self.assert_parity("Point: radius 0.2 m at 3 m")
+
+    @unittest.expectedFailure  # not built yet
+    def test_large_point(self):
+        stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=1.0)
+        self.assert_parity("Point: radius 1 m at 3 m")
+
+    @unittest.expectedFailure  # not built yet
+    def test_spot(self):
+        stage.lamp(
+            "SPOT", 300, (1, 0.5, 4), (0.3, 0.2, 0), shadow_soft_size=0.0, spot_size=0.9, spot_blend=0.0
+        )
+        self.assert_parity("Spot: size")
+
+    @unittest.expectedFailure  # not built yet
+    def test_spot_blend(self):
+        stage.lamp(
+            "SPOT", 300, (1, 0.5, 4), (0.3, 0.2, 0), shadow_soft_size=0.0, spot_size=1.2, spot_blend=0.6
+        )
+        self.assert_parity("Spot: blend")
+
+    @unittest.expectedFailure  # not built yet
+    def test_spot_radius(self):
+        stage.lamp(
+            "SPOT", 300, (1, 0.5, 4), (0.3, 0.2, 0), shadow_soft_size=0.3, spot_size=1.2, spot_blend=0.3
+        )
+        self.assert_parity("Spot: radius 0.3 m at 4 m")
+
+    @unittest.expectedFailure  # not built yet
+    def test_scaled_spot(self):
+        spot = stage.lamp("SPOT", 300, (1, 0.5, 4), shadow_soft_size=0.0, spot_size=0.9, spot_blend=0.5)
+        spot.scale = (2, 1, 1)
+        self.assert_parity("Spot: scale of its object")
+
+    def test_square(self):
+        stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=1.0)
+        self.assert_parity("Area: square")
+
+    def test_rectangle(self):
+        lamp = stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0.4), shape="RECTANGLE", size=2.0, size_y=0.3)
+        lamp.scale = (0.7, 1.5, 1)
+        self.assert_parity("Area: rectangle, scaled")
+
+    def test_disk(self):
+        stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="DISK", size=1.0)
+        self.assert_parity("Area: disk")
+
+    def test_ellipse(self):
+        stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0.4), shape="ELLIPSE", size=2.0, size_y=0.5)
+        self.assert_parity("Area: ellipse")
+
+    @unittest.expectedFailure  # not built yet
+    def test_spread(self):
+        stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=0.5, spread=math.radians(60))
+        self.assert_parity("Area: spread 60 degrees")
+
+    @unittest.expectedFailure  # not built yet
+    def test_narrow_spread(self):
+        stage.lamp("AREA", 100, (0, 0, 3), shape="DISK", size=1.5, spread=math.radians(10))
+        self.assert_parity("Area: spread 10 degrees")
+
+    def test_mirrored_area(self):
+        lamp = stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=1.0)
+        lamp.scale = (-1, 1, 1)
+        self.assert_parity("Area: mirrored")
+
+    @unittest.expectedFailure  # not built yet
+    def test_no_shadow(self):
+        lamp = stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=0.2)
+        lamp.data.cycles.cast_shadow = False
+        self.assert_parity("Light: casts no shadow")
+
+    def test_many(self):
+        for i in range(12):
+            x, y = 2.5 * math.cos(i), 2.0 * math.sin(2 * i)
+            stage.lamp("POINT", 20 + 5 * i, (x, y, 1.5), shadow_soft_size=0.0)
+        self.assert_parity("Light: twelve points")
+
+
+class LightsInView(ParityTest):
+    """The camera looks at the lamp itself, and sees nothing of it."""
+
+    def setUp(self):
+        super().setUp()
+        stage.ground(12, 0.6)
+        stage.camera((0, -8, 2), (math.radians(80), 0, 0), 50)
+
+    def test_area(self):
+        stage.lamp("AREA", 50, (0, 0, 1.5), (-1.2, 0, 0), shape="RECTANGLE", size=2.0, size_y=1.0)
+        self.assert_parity("Light before the camera: area")
+
+    def test_sun(self):
+        stage.lamp("SUN", 1.0, rotation=(math.radians(-85), 0, 0), angle=0.15)
+        self.assert_parity("Light before the camera: sun")

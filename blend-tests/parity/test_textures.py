@@ -1,0 +1,64 @@
+"""UV maps and pictures on surfaces."""
+
+import math
+import unittest
+
+import bpy
+import numpy as np
+
+from parity import stage
+from parity.case import ParityTest
+
+
+class UvMaps(ParityTest):
+    """A wall with two UV maps, one turned and twice as dense."""
+
+    def setUp(self):
+        super().setUp()
+        stage.camera((0, -6, 0), (math.pi / 2, 0, 0))
+        stage.world()
+        self.material = stage.grey(0.5)
+        self.wall = stage.mesh(
+            [(-1.5, 0, -1), (1.5, 0, -1), (1.5, 0, 1), (-1.5, 0, 1)], [(0, 1, 2, 3)], self.material
+        )
+        uv = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
+        for name, values in (("first", uv), ("second", 2 * uv[:, ::-1] + 0.25)):
+            layer = self.wall.data.uv_layers.new(name=name)
+            layer.data.foreach_set("uv", values.ravel())
+
+    def _picture(self, interpolation="Linear", space="Non-Color"):
+        image = bpy.data.images.new("checker", 8, 8, float_buffer=True)
+        pixels = np.random.default_rng(2).uniform(0.1, 0.9, (8, 8, 4)).astype(np.float32)
+        pixels[..., 3] = 1
+        image.pixels.foreach_set(pixels.ravel())
+        image.pack()
+        tree = self.material.node_tree
+        node = tree.nodes.new("ShaderNodeTexImage")
+        node.image, node.interpolation = image, interpolation
+        shader = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfDiffuse")
+        tree.links.new(node.outputs[0], shader.inputs["Color"])
+        return node
+
+    def _uv_map(self, node, name):
+        tree = self.material.node_tree
+        source = tree.nodes.new("ShaderNodeUVMap")
+        source.uv_map = name
+        tree.links.new(source.outputs[0], node.inputs["Vector"])
+
+    def test_active(self):
+        self._picture("Closest")
+        self.assert_parity("UV maps: the one that renders")
+
+    def test_second_renders(self):
+        self._picture("Closest")
+        self.wall.data.uv_layers["second"].active_render = True
+        self.assert_parity("UV maps: another one renders")
+
+    @unittest.expectedFailure  # not built yet
+    def test_named(self):
+        self._uv_map(self._picture("Closest"), "second")
+        self.assert_parity("UV maps: chosen by a UV Map node")
+
+    def test_linear(self):
+        self._picture()
+        self.assert_parity("Image Texture: linear")
