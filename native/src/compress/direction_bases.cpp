@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "btf/srbf_btf.h"
+#include "compress/shown_views.h"
 #include "job/parallel.h"
 #include "sphere/random.h"
 #include "tensor/mode_product.h"
@@ -27,21 +28,9 @@ DirectionBasis basis_of(const Eigen::MatrixXd& products, Index rank) {
   return basis;
 }
 
-/// Of every view the others, the nearest first.
-std::vector<std::vector<Index>> neighbours(const std::vector<Vec3>& views) {
-  std::vector<std::vector<Index>> order(views.size());
-  for (size_t v = 0; v < views.size(); ++v) {
-    order[v].resize(views.size());
-    std::iota(order[v].begin(), order[v].end(), Index{0});
-    const auto nearness = [&](Index i) { return glm::dot(views[v], views[static_cast<size_t>(i)]); };
-    std::stable_sort(order[v].begin(), order[v].end(), [&](Index a, Index b) { return nearness(a) > nearness(b); });
-  }
-  return order;
-}
-
 /// What hides from a view is taken to look there as from the nearest view that shows it.
 void fill_hidden(const std::vector<Vec3>& views, const RowMatrix& shown, DenseTensor& values) {
-  const auto order = neighbours(views);
+  const auto order = nearest_first(views);
   const Index of_views = shown.cols(), row = static_cast<Index>(values.data.size()) / shown.size();
   for (Index i = 0; i < shown.rows(); ++i) {
     for (Index v = 0; v < of_views; ++v) {

@@ -77,18 +77,22 @@ uint64_t clustering_bytes(const FitExtent& e, const TensorAllowance& allowance, 
   return std::max(kSliceCopies * slices, slices + reading_bytes(e) + 2 * allowance.point_floats * kFloat);
 }
 
-/// Moments of all levels, a view's, and products of functions.
+/// What views show of texels: where, what stands in, and of one view the values.
+uint64_t shown_bytes(const FitExtent& e) {
+  return e.pairs / e.lights * e.pyramid_texels * (sizeof(Vec2) + sizeof(int32_t)) + 3 * e.texels * e.lights * kFloat;
+}
+
+/// Moments of all levels, a view's, functions of all views and their products.
 uint64_t tensor_texel_bytes(const FitExtent& e, uint64_t functions) {
-  return (2 * e.pyramid_texels + 2 * e.texels) * functions * kFloat +
-         e.pairs / e.lights * (functions * functions * kFloat + e.pyramid_texels * (sizeof(Vec2) + 1));
+  return (3 * e.pyramid_texels + 2 * e.texels) * functions * kFloat + shown_bytes(e) +
+         e.pairs / e.lights * (functions + 3 * e.lights) * functions * kFloat;
 }
 
 /// Moments of all views, what a view's texels see, and systems of the factors' ranks.
 uint64_t tensor_refit_bytes(const FitExtent& e, uint64_t functions) {
   const uint64_t views = e.pairs / e.lights;
   const uint64_t moments = views * (functions + 3 * e.lights) * functions * kFloat;
-  const uint64_t seen =
-      (2 * e.pyramid_texels + e.texels) * functions * kFloat + views * e.pyramid_texels * sizeof(Vec2);
+  const uint64_t seen = (2 * e.pyramid_texels + e.texels) * functions * kFloat + shown_bytes(e);
   return moments + seen + 2 * kMomentGroups * uint64_t{kMostJointRanks} * kMostJointRanks * sizeof(double);
 }
 

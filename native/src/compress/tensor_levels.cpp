@@ -42,7 +42,10 @@ class LevelFit {
         progress_(progress),
         side_(side),
         bright_(source.relief.size(), 1.0f) {
-    for (size_t l = 0; l < source.relief.size(); ++l) seen_.emplace_back(source, l, progress);
+    for (size_t l = 0; l < source.relief.size(); ++l) {
+      seen_.emplace_back(source, l, progress);
+      shown_.emplace_back(source, l, progress);
+    }
   }
 
   /// Texels of every level, for the clusters as they are, under `stage`.
@@ -68,6 +71,7 @@ class LevelFit {
   Progress& progress_;
   TensorSide& side_;
   std::vector<SeenTexels> seen_;
+  std::vector<ShownViews> shown_;
   std::vector<TensorTexelValues> values_;
   std::vector<double> measured_;  // of each level
   std::vector<float> bright_;     // of each level
@@ -101,17 +105,18 @@ LevelFit::Solvers LevelFit::read_images(const TensorFunctions& functions, const 
   size_t most = 0;
   for (size_t l = 0; l < kept.size(); ++l) {
     if (kept[l]) continue;
-    solver[l] = std::make_unique<TensorTexels>(source_, seen_[l], functions, progress_);
+    solver[l] = std::make_unique<TensorTexels>(source_, seen_[l], shown_[l], functions, progress_);
     most = l + 1;
   }
   if (most == 0) return solver;
+  std::vector<FunctionsOfView> of_views;
+  for (Index v = 0; v < functions.views(); ++v) of_views.push_back(functions.of_view(v));
   std::vector<LevelImages> images;
   for (size_t v = 0; v < source_.side.view.size(); ++v) {
     progress_.check();
     read_side_view(views_, source_.grid, source_.side, v, most, images);
-    const FunctionsOfView of_view = functions.of_view(static_cast<Index>(v));
     for (size_t l = 0; l < most; ++l) {
-      if (solver[l]) solver[l]->add_view(static_cast<Index>(v), images[l], of_view);
+      if (solver[l]) solver[l]->add_view(static_cast<Index>(v), images[l], of_views);
     }
     progress_.update(kReading * static_cast<double>(v + 1) / static_cast<double>(source_.side.view.size()));
   }
@@ -139,16 +144,18 @@ void LevelFit::round(const TensorFunctions& functions) {
 }
 
 std::vector<ViewMoments> LevelFit::moments() {
-  std::vector<ViewMoments> moments;
+  std::vector<ViewMoments> moments(source_.side.view.size(),
+                                   ViewMoments(static_cast<Index>(side_.clusters.size()) * side_.rank.texel,
+                                               static_cast<Index>(source_.side.light.size())));
   std::vector<LevelImages> images;
   for (size_t v = 0; v < source_.side.view.size(); ++v) {
     progress_.check();
     read_side_view(views_, source_.grid, source_.side, v, seen_.size(), images);
-    moments.emplace_back(static_cast<Index>(side_.clusters.size()) * side_.rank.texel,
-                         static_cast<Index>(source_.side.light.size()));
     for (size_t l = 0; l < seen_.size(); ++l) {
       add_level(seen_[l], static_cast<Index>(v), images[l], values_[l], bright_[l], source_.threads, progress_,
-                moments.back());
+                moments[v]);
+      add_hidden(shown_[l], static_cast<Index>(v), images[l], values_[l], bright_[l], source_.threads, progress_,
+                 moments);
     }
     progress_.update(kMoments * static_cast<double>(v + 1) / static_cast<double>(source_.side.view.size()));
   }

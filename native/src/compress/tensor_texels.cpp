@@ -54,40 +54,40 @@ double dot(const RowMatrix& a, const RowMatrix& b) {
 
 }  // namespace
 
-/// Products of functions over the views that show one texel.
+/// Products of functions over the views, as one texel is shown or hidden.
 class TensorTexels::OfTexel {
  public:
-  OfTexel(const TensorFunctions& functions, const uint8_t* shown) : functions_(functions) {
+  OfTexel(const TensorFunctions& functions, const ShownViews& shown, size_t texel) : functions_(functions) {
     for (Index v = 0; v < functions.views(); ++v) {
-      if (shown[v] != 0) shown_.push_back(v);
+      if (!shown.shown(texel, v)) hidden_.push_back(v);
     }
-    all_ = static_cast<Index>(shown_.size()) == functions.views();
-    if (!all_) block_.resize(static_cast<size_t>(functions.clusters() * functions.clusters()));
+    if (!hidden_.empty()) block_.resize(static_cast<size_t>(functions.clusters() * functions.clusters()));
   }
 
   Eigen::MatrixXf block(uint32_t c, uint32_t d) {
     const Index rank = functions_.rank();
-    if (all_) return functions_.products().block(c * rank, d * rank, rank, rank);
+    if (hidden_.empty()) return functions_.products().block(c * rank, d * rank, rank, rank);
     Eigen::MatrixXf& block = block_[static_cast<size_t>(c * functions_.clusters() + d)];
     if (block.size() > 0) return block;
-    block = Eigen::MatrixXf::Zero(rank, rank);
-    for (const Index v : shown_) block += functions_.products(v).block(c * rank, d * rank, rank, rank);
+    block = functions_.products().block(c * rank, d * rank, rank, rank);
+    for (const Index v : hidden_) {
+      block -= (1 - ShownViews::kHidden) * functions_.products(v).block(c * rank, d * rank, rank, rank);
+    }
     return block;
   }
 
  private:
   const TensorFunctions& functions_;
-  std::vector<Index> shown_;
-  bool all_;
+  std::vector<Index> hidden_;
   std::vector<Eigen::MatrixXf> block_;
 };
 
-TensorTexels::TensorTexels(const TensorSource& source, const SeenTexels& seen, const TensorFunctions& functions,
-                           const Progress& progress)
-    : source_(source), seen_(seen), functions_(functions), progress_(progress) {
+TensorTexels::TensorTexels(const TensorSource& source, const SeenTexels& seen, const ShownViews& shown,
+                           const TensorFunctions& functions, const Progress& progress)
+    : source_(source), seen_(seen), shown_(shown), functions_(functions), progress_(progress) {
   const auto rows = static_cast<Index>(texels());
   shows_ = RowMatrix::Zero(rows, functions.count());
-  shown_.assign(texels() * source.side.view.size(), 0);
+  if (!shown.all()) hidden_ = RowMatrix::Zero(rows, functions.count());
   if (!seen.plane()) data_ = RowMatrix::Zero(rows, functions.count());
 }
 
@@ -98,14 +98,15 @@ void TensorTexels::pieces(const Work& work) const {
   });
 }
 
-void TensorTexels::add_view(Index view, const LevelImages& images, const FunctionsOfView& functions) {
+void TensorTexels::add_view(Index view, const LevelImages& images, const std::vector<FunctionsOfView>& functions) {
   RowMatrix moments(shows_.rows(), shows_.cols());
   parallel_pieces((texels() + kTexels - 1) / kTexels, source_.threads, progress_, [&](size_t piece) {
     const auto first = static_cast<Index>(piece * kTexels);
     auto rows = moments.middleRows(first, std::min<Index>(kTexels, moments.rows() - first));
     rows.setZero();
     for (size_t a = 0; a < 3; ++a) {
-      rows.noalias() += images.value[a].middleRows(first, rows.rows()) * functions[a].transpose();
+      rows.noalias() +=
+          images.value[a].middleRows(first, rows.rows()) * functions[static_cast<size_t>(view)][a].transpose();
     }
   });
   std::vector<uint32_t> all(texels());
@@ -115,8 +116,8 @@ void TensorTexels::add_view(Index view, const LevelImages& images, const Functio
   pieces([&](size_t t) {
     if (!shown[t].shown) return;
     shows_.row(static_cast<Index>(t)) += blended(moments, shown[t].at);
-    shown_[t * source_.side.view.size() + static_cast<size_t>(view)] = 1;
   });
+  if (!shown_.all()) add_hidden(view, images, functions);
   const float cosine = source_.side.view[static_cast<size_t>(view)].z;
   for (size_t l = 0; l < source_.side.light.size(); ++l) {
     for (const RowMatrix& image : images.value) {
@@ -129,6 +130,20 @@ void TensorTexels::add_view(Index view, const LevelImages& images, const Functio
   pieces([&](size_t t) {
     for (uint32_t i = from.first[t]; i < from.first[t + 1]; ++i) {
       data_.row(static_cast<Index>(t)) += from.weight[i] * moments.row(from.source[i]);
+    }
+  });
+}
+
+/// What the view shows, for those that it stands in for.
+void TensorTexels::add_hidden(Index view, const LevelImages& images, const std::vector<FunctionsOfView>& functions) {
+  const ShownViews::Values values = shown_.values(view, images, progress_);
+  pieces([&](size_t t) {
+    for (Index v = 0; v < shown_.views(); ++v) {
+      if (v == view || shown_.stand_in(t, v) != view) continue;
+      for (size_t a = 0; a < 3; ++a) {
+        hidden_.row(static_cast<Index>(t)).noalias() += ShownViews::kHidden * values[a].row(static_cast<Index>(t)) *
+                                                        functions[static_cast<size_t>(v)][a].transpose();
+      }
     }
   });
 }
@@ -146,8 +161,9 @@ TensorTexelValues TensorTexels::solve(Index members, const std::function<void(do
 void TensorTexels::choose(size_t texel, TensorTexelValues& values) const {
   const Index rank = functions_.rank();
   const auto members = values.value.cols() / rank;
-  OfTexel of(functions_, shown_.data() + texel * source_.side.view.size());
-  const auto moments = shows_.row(static_cast<Index>(texel));
+  OfTexel of(functions_, shown_, texel);
+  Eigen::RowVectorXf moments = shows_.row(static_cast<Index>(texel));
+  if (!shown_.all()) moments += hidden_.row(static_cast<Index>(texel));
   std::vector<uint32_t> chosen;
   Eigen::VectorXf solution;
   while (static_cast<Index>(chosen.size()) < members) {
@@ -201,6 +217,11 @@ void TensorTexels::add_products(Index view, const TensorTexelValues& values, Row
             from.weight[i] * moments.row(from.source[i]).segment(values.member[t * members + k] * rank, rank);
       }
     }
+    if (shown_.shown(t, view)) return;
+    const std::vector<uint32_t> set(values.member.begin() + static_cast<ptrdiff_t>(t * members),
+                                    values.member.begin() + static_cast<ptrdiff_t>((t + 1) * members));
+    sums.row(static_cast<Index>(t)).noalias() += ShownViews::kHidden * values.value.row(static_cast<Index>(t)) *
+                                                 TensorFunctions::of_members(functions_.products(view), rank, set, 0);
   });
 }
 
@@ -217,11 +238,12 @@ void TensorTexels::refine(TensorTexelValues& values, const std::function<void(do
   const MemberInverses inverse(functions_, values, texels());
   const Index rank = functions_.rank();
   const auto members = static_cast<size_t>(values.members());
+  const RowMatrix wanted = shown_.all() ? data_ : RowMatrix(data_ + hidden_);
   RowMatrix rest = -normal_product(values);
   for (size_t t = 0; t < texels(); ++t) {
     for (size_t k = 0; k < members; ++k) {
       rest.row(static_cast<Index>(t)).segment(static_cast<Index>(k) * rank, rank) +=
-          data_.row(static_cast<Index>(t)).segment(values.member[t * members + k] * rank, rank);
+          wanted.row(static_cast<Index>(t)).segment(values.member[t * members + k] * rank, rank);
     }
   }
   RowMatrix turned = inverse.times(rest);

@@ -37,4 +37,30 @@ void add_level(const SeenTexels& seen, Index view, const LevelImages& images, co
   });
 }
 
+void add_hidden(const ShownViews& shown, Index view, const LevelImages& images, const TensorTexelValues& values,
+                float brightness, int threads, const Progress& progress, std::vector<ViewMoments>& moments) {
+  if (shown.all()) return;
+  const ShownViews::Values of_view = shown.values(view, images, progress);
+  const auto members = static_cast<size_t>(values.members());
+  const Index rank = values.rank();
+  parallel_pieces(moments.size(), threads, progress, [&](size_t v) {
+    const auto hiding = static_cast<Index>(v);
+    for (size_t t = 0; t < shown.texels(); ++t) {
+      if (hiding == view || shown.stand_in(t, hiding) != view) continue;
+      const auto row = static_cast<Index>(t);
+      for (size_t k = 0; k < members; ++k) {
+        const auto own = ShownViews::kHidden * values.value.row(row).segment(static_cast<Index>(k) * rank, rank);
+        const Index first = values.member[t * members + k] * rank;
+        for (size_t j = 0; j < members; ++j) {
+          moments[v].products.block(first, values.member[t * members + j] * rank, rank, rank).noalias() +=
+              own.transpose() * values.value.row(row).segment(static_cast<Index>(j) * rank, rank);
+        }
+        for (size_t a = 0; a < 3; ++a) {
+          moments[v].images[a].middleRows(first, rank).noalias() += brightness * own.transpose() * of_view[a].row(row);
+        }
+      }
+    }
+  });
+}
+
 }  // namespace velour

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "compress/seen_texels.h"
+#include "compress/shown_views.h"
 
 namespace velour {
 
@@ -22,5 +23,9 @@ inline constexpr size_t kMomentGroups = 4;
 /// Adds a level, whose images are taken to be `brightness` times as bright. The same bits for any number of threads.
 void add_level(const SeenTexels& seen, Index view, const LevelImages& images, const TensorTexelValues& values,
                float brightness, int threads, const Progress& progress, ViewMoments& moments);
+
+/// Adds to the moments of all views what those views hide of a level's texels and `view` shows in their stead.
+void add_hidden(const ShownViews& shown, Index view, const LevelImages& images, const TensorTexelValues& values,
+                float brightness, int threads, const Progress& progress, std::vector<ViewMoments>& moments);
 
 }  // namespace velour
