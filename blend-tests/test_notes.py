@@ -62,10 +62,44 @@ class Notes(BlenderTest):
                 node.inputs["Anisotropic"].default_value = 0.5
         self._said("Material 'Glass'", "'Anisotropic'")
 
-    def test_spot(self):
+    def test_object_visibility(self):
+        obj = scenes.add_sphere()
+        self.assertEqual(self._notes(), [])
+        obj.visible_camera = obj.visible_shadow = False
+        obj.is_shadow_catcher = True
+        self._said("Object 'Sphere'", "hidden from the camera and shadow rays")
+        self._said("Object 'Sphere'", "a shadow catcher")
+
+    def test_light_visibility(self):
         lamp = bpy.data.objects.new("Spot", bpy.data.lights.new("Spot", "SPOT"))
         bpy.context.scene.collection.objects.link(lamp)
-        self._said("Light 'Spot'", "left out")
+        lamp.visible_camera = False  # it never is
+        self.assertEqual(self._notes(), [])
+        lamp.visible_glossy = False
+        self._said("Light 'Spot'", "hidden from glossy rays")
+
+    def test_holdout_and_indirect_only_collections(self):
+        group = bpy.data.collections.new("Group")
+        bpy.context.scene.collection.children.link(group)
+        obj = scenes.add_sphere()
+        bpy.context.scene.collection.objects.unlink(obj)
+        group.objects.link(obj)
+        layer = bpy.context.view_layer.layer_collection.children["Group"]
+        layer.holdout = True
+        self._said("Object 'Sphere'", "a holdout")
+        layer.holdout, layer.indirect_only = False, True
+        self._said("Object 'Sphere'", "indirect only")
+
+    def test_several_uv_maps_of_a_material(self):
+        material = self._material("ShaderNodeBsdfPrincipled")
+        tree = material.node_tree
+        shader = next(n for n in tree.nodes if "Metallic" in n.inputs and n.outputs[0].is_linked)
+        for socket, uv_map in (("Base Color", "first"), ("Metallic", "second")):
+            node, source = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeUVMap")
+            node.image, source.uv_map = bpy.data.images.new(uv_map, 4, 4), uv_map
+            tree.links.new(source.outputs[0], node.inputs["Vector"])
+            tree.links.new(node.outputs[0], shader.inputs[socket])
+        self._said("Material 'Glass'", "several UV maps", "'first'")
 
     def test_light_factors(self):
         lamp = bpy.data.objects.new("Fill", bpy.data.lights.new("Fill", "POINT"))
@@ -74,10 +108,8 @@ class Notes(BlenderTest):
         lamp.data.specular_factor = 0.0
         self._said("Light 'Fill'", "specular")
 
-    def test_depth_of_field_and_motion_blur(self):
-        bpy.context.scene.camera.data.dof.use_dof = True
+    def test_motion_blur(self):
         bpy.context.scene.render.use_motion_blur = True
-        self._said("Camera 'Camera'", "depth of field")
         self._said("motion blur")
 
     def test_volume(self):

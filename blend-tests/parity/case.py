@@ -1,5 +1,7 @@
 """The base of parity tests."""
 
+import contextlib
+import io
 import json
 
 import addon_utils
@@ -40,6 +42,16 @@ class ParityTest(blender.BlenderTest):
         record(feature, verdict, "approximated")
         self.assertFalse(verdict.agrees, f"{feature} is exact by now: say so. {verdict}")
         self.assertLessEqual(verdict.percent, most_percent, f"{feature}: {verdict}")
+
+    def assert_ignored(self, feature, sentence):
+        """What Velour leaves out, and says so before it renders."""
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            ours = self.pictures("VELOUR")
+        verdict = judge(ours, self.pictures("CYCLES"))
+        record(feature, verdict, "ignored with a warning")
+        self.assertFalse(verdict.agrees, f"{feature} makes no difference here. {verdict}")
+        self.assertIn(sentence, said.getvalue())
 
 
 def record(feature, verdict, word):

@@ -1,7 +1,6 @@
 """UV maps and pictures on surfaces."""
 
 import math
-import unittest
 
 import bpy
 import numpy as np
@@ -54,7 +53,6 @@ class UvMaps(ParityTest):
         self.wall.data.uv_layers["second"].active_render = True
         self.assert_parity("UV maps: another one renders")
 
-    @unittest.expectedFailure  # not built yet
     def test_named(self):
         self._uv_map(self._picture("Closest"), "second")
         self.assert_parity("UV maps: chosen by a UV Map node")

@@ -8,6 +8,7 @@ import bpy
 from ..core.cache import user_cache_folder
 from ..export import ExportError, Notes, export_scene
 from ..export.camera import final_view
+from ..export.film import film_exposure, hides_world
 from ..native import render_job
 from .passes import add_passes, write_passes
 from .scene_models import choose_models
@@ -44,7 +45,7 @@ def render_final(engine, depsgraph):
             _say(notes)
         options = _options(scene, view, engine.is_preview)
         with render_job(native_scene, **options) as job:
-            _render_layer(engine, depsgraph.view_layer_eval, job, view, options["spp"])
+            _render_layer(engine, depsgraph, job, view, options["spp"])
         _stamp(engine, depsgraph.view_layer_eval.name, stamps)
 
 
@@ -66,6 +67,7 @@ def _options(scene, view, is_preview):
         "time_limit": settings.time_limit,
         "cache_folder": _cache_folder() if settings.use_cache else "",
         "transparent": int(scene.render.film_transparent),
+        "hide_world": int(hides_world(scene.world)),
     }
 
 
@@ -78,21 +80,22 @@ def _cache_folder():
         return user_cache_folder()
 
 
-def _render_layer(engine, layer, job, view, spp):
+def _render_layer(engine, depsgraph, job, view, spp):
+    layer, exposure = depsgraph.view_layer_eval, film_exposure(depsgraph.scene_eval)
     add_passes(engine, layer)
     result = engine.begin_result(0, 0, view.width, view.height, layer=layer.name)
     complete = False
     try:
         job.start()
-        _follow(engine, job, result, spp)
-        write_passes(job, result)
+        _follow(engine, job, result, spp, exposure)
+        write_passes(job, result, exposure)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)
     _say_report(engine, job)
 
 
-def _follow(engine, job, result, spp):
+def _follow(engine, job, result, spp, exposure):
     """Until the job ends: Esc, progress, statistics, and with a window pictures in between."""
     statistics = _Clock(_STATISTICS_SECONDS)
     pictures = _Clock(_FIRST_PICTURE_SECONDS, growth=_PICTURE_GROWTH)
@@ -105,7 +108,7 @@ def _follow(engine, job, result, spp):
             engine.update_stats("Velour", _statistics(state, spp))
             engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20)
         if not bpy.app.background and pictures.rings():
-            write_passes(job, result, names=("Combined",))
+            write_passes(job, result, exposure, names=("Combined",))
             engine.update_result(result)
 
 

@@ -22,11 +22,17 @@ def add_passes(engine, layer):
         engine.add_pass(SAMPLE_COUNT, 1, "X", layer=layer.name)
 
 
-def write_passes(job, result, names=None):
-    """Copies the film into `result`: the passes in `names`, or all that both sides know."""
+def write_passes(job, result, exposure, names=None):
+    """Copies the film into `result`: the passes in `names`, or all that both sides know.
+
+    `exposure`: what light is multiplied by.
+    """
     for target in result.layers[0].passes:
         if target.name in PASS_CHANNELS and (names is None or target.name in names):
-            _fill(target.rect, job.read_pass(target.name).reshape(-1, target.channels))
+            pixels = job.read_pass(target.name).reshape(-1, target.channels)
+            if target.name == "Combined":
+                pixels[:, :3] *= exposure
+            _fill(target.rect, pixels)
 
 
 def _fill(rect, pixels):

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .aperture import aperture
 from .axes import unscaled
 from .notes import ExportError
 
@@ -18,11 +19,11 @@ class View(NamedTuple):
     clip_end: float
     width: int
     height: int
+    lens: dict  # keywords of the aperture; empty: all is sharp
 
     def add_to(self, scene):
-        scene.set_camera(
-            self.kind, self.camera_to_world, self.window, clip_start=self.clip_start, clip_end=self.clip_end
-        )
+        clips = {"clip_start": self.clip_start, "clip_end": self.clip_end}
+        scene.set_camera(self.kind, self.camera_to_world, self.window, **clips, **self.lens)
 
 
 def final_view(depsgraph, notes, whole=False):
@@ -40,14 +41,13 @@ def final_view(depsgraph, notes, whole=False):
     lens = camera.data
     if lens.type not in _WINDOWS:
         raise ExportError(f"Camera '{camera.name}': {lens.type.lower()} cameras are not supported.")
-    if lens.dof.use_dof:
-        notes.add(f"Camera '{camera.name}': depth of field is not supported yet; all is sharp.")
     size = _full_size(scene.render)
     window = _WINDOWS[lens.type](_projection(camera, depsgraph, scene.render, size))
     if not whole:
         window, size = _inside_border(window, size, scene.render)
     kind = "perspective" if lens.type == "PERSP" else "orthographic"
-    return View(kind, unscaled(camera.matrix_world), window, lens.clip_start, lens.clip_end, *size)
+    matrix, clips = unscaled(camera.matrix_world), (lens.clip_start, lens.clip_end)
+    return View(kind, matrix, window, *clips, *size, aperture(camera, depsgraph))
 
 
 def _full_size(render):

@@ -2,7 +2,6 @@
 
 from typing import NamedTuple
 
-import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
@@ -20,6 +19,7 @@ class Picture(NamedTuple):
     wrap: str
     filter: str
     uv_map: np.ndarray  # [2 x 3]: (u, v, 1) of the mesh to the picture's coordinates
+    coordinates: str  # name of the mesh's UV map; empty: the one that renders
 
 
 class UnsupportedError(Exception):
@@ -41,7 +41,7 @@ def picture_of(socket):
         output(socket).name == "Alpha",
         _WRAPS[node.extension],
         "closest" if node.interpolation == "Closest" else "linear",
-        _uv_map(node.inputs["Vector"]),
+        *_uv_map(node.inputs["Vector"]),
     )
 
 
@@ -55,24 +55,24 @@ def _check(node):
 
 
 def _uv_map(vector):
-    """[2 x 3] of what is linked to an Image Texture's vector; nothing: the mesh's texture coordinates."""
+    """`uv_map` and `coordinates` of what is linked to an Image Texture's vector; nothing: the mesh's own."""
     node = source(vector)
     if node is None:
-        return np.eye(2, 3, dtype=np.float32)
+        return np.eye(2, 3, dtype=np.float32), ""
     if node.bl_idname != "ShaderNodeMapping":
-        _check_coordinates(vector)
-        return np.eye(2, 3, dtype=np.float32)
+        return np.eye(2, 3, dtype=np.float32), _coordinates(vector)
     if source(node.inputs["Vector"]) is None:
         raise UnsupportedError(f"'{node.name}' has no coordinates linked to it")
-    _check_coordinates(node.inputs["Vector"])
-    return _mapping_matrix(node)
+    return _mapping_matrix(node), _coordinates(node.inputs["Vector"])
 
 
-def _check_coordinates(vector):
+def _coordinates(vector):
     node = source(vector)
-    is_uv = node.bl_idname == "ShaderNodeTexCoord" and output(vector).name == "UV"
-    if not is_uv and node.bl_idname != "ShaderNodeUVMap":
+    if node.bl_idname == "ShaderNodeUVMap":
+        return node.uv_map
+    if node.bl_idname != "ShaderNodeTexCoord" or output(vector).name != "UV":
         raise UnsupportedError(f"the coordinates of '{node.name}' are not texture coordinates")
+    return ""
 
 
 def _mapping_matrix(node):
@@ -92,10 +92,7 @@ def _mapping_matrix(node):
     return np.ascontiguousarray(matrix[:2][:, (0, 1, 3)])  # texture coordinates have no z
 
 
-def other_uv_maps(tree):
-    """Names of UV maps that nodes ask for where no mesh of the .blend renders with that one."""
-    names = {node.uv_map for node in tree.nodes if node.bl_idname == "ShaderNodeUVMap" and node.uv_map}
-    if not names:
-        return []
-    rendered = {layer.name for mesh in bpy.data.meshes for layer in mesh.uv_layers if layer.active_render}
-    return sorted(names - rendered)
+def named_uv_maps(tree):
+    """Names of the UV maps that nodes linked to something ask for."""
+    nodes = [node for node in tree.nodes if node.bl_idname == "ShaderNodeUVMap" and node.outputs[0].is_linked]
+    return sorted({node.uv_map for node in nodes if node.uv_map})

@@ -2,6 +2,8 @@
 
 import math
 
+import bpy
+
 from .axes import column_lengths, unscaled
 
 # Blender's area lamps emit pi/4 of their nominal power: their radiance is P / (4 A), a Lambert emitter's
@@ -26,14 +28,13 @@ def _is_plain(tree):
 def add_light(scene, obj, matrix, notes):
     """`obj`: an evaluated lamp object, `matrix`: where this instance of it stands."""
     lamp = obj.data
+    if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
+        return  # no lamp: it only shows Cycles where the sky comes in
     owner = f"Light '{obj.name}'"
     if lamp.use_nodes and lamp.node_tree and not _is_plain(lamp.node_tree):
         notes.add(f"{owner}: shader nodes of lights are ignored; its colour and power are used.")
     if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):
         notes.add(f"{owner}: its diffuse, specular and volume factors are ignored.")
-    if lamp.type == "SPOT":
-        notes.add(f"{owner}: spot lights are not supported yet; left out.")
-        return
     kind, factor, values = _DESCRIBE[lamp.type](lamp, matrix)
     color = [lamp.energy * factor * c for c in lamp.color]
     scene.add_light(kind, color, unscaled(matrix), casts_shadow=_casts_shadow(lamp), **values)
@@ -55,17 +56,25 @@ def _sun_factor(angle):
 
 
 def _point(lamp, _matrix):
-    return "point", 1.0, {"size": (lamp.shadow_soft_size, 0.0)}
+    # Before soft falloff became a choice all were disks that face what they light.
+    sphere = not getattr(lamp, "use_soft_falloff", True)
+    return "point", 1.0, {"size": (lamp.shadow_soft_size, 0.0), "sphere": int(sphere)}
+
+
+def _spot(lamp, matrix):
+    _kind, factor, values = _point(lamp, matrix)
+    values.update(angle=lamp.spot_size, blend=lamp.spot_blend, cosine=int(bpy.app.version < (3, 5)))
+    return "spot", factor, values
 
 
 def _area(lamp, matrix):
     x, y, _z = column_lengths(matrix)
     height = lamp.size if lamp.shape in ("SQUARE", "DISK") else lamp.size_y
     kind = "rectangle" if lamp.shape in ("SQUARE", "RECTANGLE") else "disk"
-    return kind, _AREA_POWER, {"size": (lamp.size * x, height * y)}
+    return kind, _AREA_POWER, {"size": (lamp.size * x, height * y), "spread": lamp.spread}
 
 
-_DESCRIBE = {"SUN": _sun, "POINT": _point, "AREA": _area}
+_DESCRIBE = {"SUN": _sun, "POINT": _point, "SPOT": _spot, "AREA": _area}
 
 
 def _casts_shadow(lamp):

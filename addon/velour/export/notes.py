@@ -5,6 +5,11 @@ class ExportError(RuntimeError):
     """The scene cannot be rendered as it is. One sentence: owner, file, remedy."""
 
 
+def listed(words):
+    """'a', 'a and b', 'a, b and c'."""
+    return " and ".join((", ".join(words[:-1]), words[-1])) if len(words) > 1 else words[0]
+
+
 class Notes:
     """Sentences on what is ignored or approximated, in the order found, each once."""
 

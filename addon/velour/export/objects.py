@@ -8,6 +8,7 @@ from .meshes import has_uv_map, object_arrays
 from .placement import Placements
 from .units import metres_per_unit
 from .uv_maps import missing_map, uv_map_names
+from .visibility import note_visibility
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
@@ -42,6 +43,7 @@ class ObjectExport:
             # The instance is only valid within this turn of the loop.
             if not instance.show_self:
                 continue
+            note_visibility(instance.object, depsgraph.view_layer, self._notes)
             if instance.object.type in GEOMETRY:
                 self._add_geometry(instance, override, metres)
             elif instance.object.type == "LIGHT":

@@ -1,6 +1,6 @@
 """The analytic stand-in of materials that are not measured."""
 
-from .image_nodes import UnsupportedError, other_uv_maps, picture_of
+from .image_nodes import UnsupportedError, named_uv_maps, picture_of
 from .nodes import active_output, first_input, source
 
 DEFAULT = {"base_color": (0.8, 0.8, 0.8), "metallic": 0.0, "roughness": 0.5, "specular": 0.5}
@@ -113,9 +113,9 @@ def _pictures(sockets, node, owner, notes):
             continue
         if picture:
             found[name] = picture
-    if found:
-        for uv_map in other_uv_maps(node.id_data):
-            notes.add(f"{owner}: UV map '{uv_map}' is not the mesh's active one for renders, which is used.")
+    if len({picture.coordinates for picture in found.values()}) > 1:
+        shown = named_uv_maps(node.id_data)[0]
+        notes.add(f"{owner}: its pictures ask for several UV maps; all are shown by '{shown}'.")
     return found
 
 

@@ -1,5 +1,6 @@
-"""Which UV map a measured material is shown by."""
+"""Which UV map a material is shown by."""
 
+from .image_nodes import named_uv_maps
 from .nodes import velour_node
 
 
@@ -11,7 +12,10 @@ def uv_map_names(materials):
 
 def _name(material):
     node = velour_node(material)
-    return node.velour.placement.uv_map if node else ""
+    if node:
+        return node.velour.placement.uv_map
+    named = named_uv_maps(material.node_tree) if material and material.use_nodes else []
+    return named[0] if named else ""
 
 
 def missing_map(obj, name, material_name):

@@ -8,18 +8,29 @@ from mathutils import Matrix
 
 from .color import is_linear_rec709
 from .files import absolute_path
-from .nodes import active_output, source
+from .nodes import active_output, output, source
 from .notes import ExportError
 from .pixels import working_pixels
 
+_RAYS = {"diffuse": "diffuse rays", "glossy": "glossy rays"}
+
 
 def add_world(scene, world, notes):
+    _note_visibility(world, notes)
     if world is None:
         scene.set_world_color((0, 0, 0))
     elif not world.use_nodes or world.node_tree is None:
         scene.set_world_color(tuple(world.color))
     else:
         _add_nodes(scene, world, notes)
+
+
+def _note_visibility(world, notes):
+    """That it is hidden from the camera is rendered (film.py)."""
+    visibility = getattr(world, "cycles_visibility", None)
+    for name, rays in _RAYS.items():
+        if not getattr(visibility, name, True):
+            notes.add(f"World '{world.name}': that it is hidden from {rays} is not supported; ignored.")
 
 
 def _add_nodes(scene, world, notes):
@@ -83,15 +94,26 @@ def _pixels(owner, image, path, notes):
 def _rotation(owner, node, notes):
     """3 x 3 from world directions to the picture's, or None."""
     mapping = source(node.inputs["Vector"])
-    if mapping is None or mapping.bl_idname == "ShaderNodeTexCoord":
-        return None
-    if mapping.bl_idname != "ShaderNodeMapping":
-        notes.add(f"{owner}: node '{mapping.name}' is not a Mapping; ignored.")
+    if mapping is None or mapping.bl_idname != "ShaderNodeMapping":
+        _note_coordinates(owner, node.inputs["Vector"], notes)
         return None
     _note_mapping(owner, mapping, notes)
+    _note_coordinates(owner, mapping.inputs["Vector"], notes)
     rotation = _euler_matrix(mapping.inputs["Rotation"].default_value)
     inverse = mapping.vector_type == "TEXTURE"
     return np.array(rotation.transposed() if inverse else rotation, np.float32)
+
+
+def _note_coordinates(owner, vector, notes):
+    """Only the direction of the ray is rendered, which is what an Environment Texture takes by itself."""
+    node = source(vector)
+    if node is None:
+        return
+    if node.bl_idname != "ShaderNodeTexCoord":
+        notes.add(f"{owner}: node '{node.name}' is not a Mapping; ignored.")
+    elif output(vector).name != "Generated":
+        name = output(vector).name
+        notes.add(f"{owner}: node '{node.name}': {name} coordinates are not supported; Generated are used.")
 
 
 def _euler_matrix(euler):

@@ -145,10 +145,14 @@ class Scene(Handle):
     # ---- light
 
     def add_light(self, kind: str, color, light_to_world, **values) -> None:
-        """`kind`: sun, point, rectangle, disk; shines along its -z.
+        """`kind`: sun, point, rectangle, disk, spot; shines along its -z.
 
         color [3]: a sun's irradiance on a facing plane, W/m^2; the others' power, W. angle: a sun's angular
-        diameter, radians. size [2]: a point's radius, a rectangle's sides, a disk's diameters, metres.
+        diameter or the angle of a spot's cone, radians. size [2]: a point's or spot's radius, a rectangle's
+        sides, a disk's diameters, metres. blend: share of a spot's cone over which it fades out. spread: the
+        angle in which a rectangle or disk shines, radians. sphere: whether a point or spot is a ball or a
+        disk that faces each place it lights. cosine: whether a spot's light falls with the cosine to its
+        axis.
         """
         values = {"type": choice("light", kind, table.LIGHTS), "color": color, **values}
         desc = self._desc(table.LightDesc, "vlr_light_desc_init", values)
@@ -180,7 +184,8 @@ class Scene(Handle):
         """`kind`: perspective, orthographic; looks along its -z, +y up.
 
         window: left, right, bottom, top of the picture at distance 1 (perspective) or in metres
-        (orthographic). clip_start, clip_end in metres.
+        (orthographic). clip_start, clip_end in metres. aperture: radius of the lens, focus: distance of what
+        is sharp, metres; blades, blade_rotation (radians), aperture_ratio (height over width): its shape.
         """
         values = {"type": choice("camera", kind, table.CAMERAS), "window": window, **values}
         desc = self._desc(table.CameraDesc, "vlr_camera_desc_init", values)

@@ -29,7 +29,7 @@ COMPANDINGS = ("none", "root")  # by number
 BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
 BTF_COLORS = ("rec709", "xyz")
 PEERS = ("ggx", "principled")
-LIGHTS = ("sun", "point", "rectangle", "disk")
+LIGHTS = ("sun", "point", "rectangle", "disk", "spot")
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
 SIDES = ("automatic", "one", "two")
@@ -240,6 +240,10 @@ class LightDesc(Struct):
         ("size", c_float * 2),
         ("angle", c_float),
         ("casts_shadow", c_int32),
+        ("blend", c_float),
+        ("spread", c_float),
+        ("sphere", c_int32),
+        ("cosine", c_int32),
     ]
 
 
@@ -251,6 +255,11 @@ class CameraDesc(Struct):
         ("window", c_float * 4),
         ("clip_start", c_float),
         ("clip_end", c_float),
+        ("aperture", c_float),
+        ("focus", c_float),
+        ("blades", c_uint32),
+        ("blade_rotation", c_float),
+        ("aperture_ratio", c_float),
     ]
 
 
@@ -273,6 +282,8 @@ class RenderOptions(Struct):
         ("share", c_double),
         ("noise", c_double),
         ("cache_folder", c_char_p),
+        ("hide_world", c_int32),
+        ("pad", c_uint32),
     ]
 
 

@@ -66,4 +66,7 @@ class VELOUR_RENDER_PT_film(_RenderPanel, bpy.types.Panel):
     def draw(self, context):
         layout = self.layout
         layout.use_property_split = True
+        cycles = getattr(context.scene, "cycles", None)
+        if cycles is not None:
+            layout.prop(cycles, "film_exposure", text="Exposure")
         layout.prop(context.scene.render, "film_transparent", text="Transparent")

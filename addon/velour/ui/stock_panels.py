@@ -24,8 +24,6 @@ _EXCLUDED = {
     "VIEWLAYER_PT_layer_passes",
     "MATERIAL_PT_freestyle",
     "DATA_PT_light",  # the one of EEVEE, borrowed below, shows the same and more
-    "DATA_PT_camera_dof",
-    "DATA_PT_camera_dof_aperture",
 }
 # Panels of other engines that suit Velour as they are.
 _BORROWED = {

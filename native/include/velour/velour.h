@@ -380,15 +380,20 @@ VLR_API vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const
 VLR_API vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
                                                  const uint32_t* materials, const float* placements, uint32_t count);
 
-enum { VLR_LIGHT_SUN = 0, VLR_LIGHT_POINT = 1, VLR_LIGHT_RECTANGLE = 2, VLR_LIGHT_DISK = 3 };
+enum { VLR_LIGHT_SUN = 0, VLR_LIGHT_POINT = 1, VLR_LIGHT_RECTANGLE = 2, VLR_LIGHT_DISK = 3, VLR_LIGHT_SPOT = 4 };
 typedef struct vlr_light_desc {
   uint32_t struct_size;
-  int32_t type;             /* VLR_LIGHT_* */
-  float color[3];           /* working space. Sun: irradiance on a facing plane, W/m^2. Others: power, W */
+  int32_t type;   /* VLR_LIGHT_* */
+  float color[3]; /* working space. Sun: irradiance on a facing plane, W/m^2. Others: power, W; of a spot: were its cone
+                     a sphere */
   float light_to_world[12]; /* 3 x 4 row-major; the light shines along its -z */
-  float size[2];            /* point: radius, -; rectangle: sides; disk: diameters (an ellipse if they differ) */
-  float angle;              /* sun: angular diameter, radians */
+  float size[2];            /* point, spot: radius, -; rectangle: sides; disk: diameters (an ellipse if they differ) */
+  float angle;              /* sun: angular diameter; spot: of its cone; radians */
   int32_t casts_shadow;
+  float blend;    /* spot: share of the cone over which its light fades out, 0..1; 0 */
+  float spread;   /* rectangle, disk: full angle in which it shines, radians; pi: the same radiance everywhere */
+  int32_t sphere; /* point, spot: 1: a ball; 0: a disk that faces each place it lights, as Cycles' soft falloff */
+  int32_t cosine; /* spot: 1: its light also falls with the cosine to the axis, as in Blender before 3.5 */
 } vlr_light_desc;
 VLR_API void vlr_light_desc_init(vlr_light_desc* desc);
 VLR_API vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc);
@@ -409,6 +414,11 @@ typedef struct vlr_camera_desc {
   float camera_to_world[12]; /* 3 x 4 row-major; looks along its -z, +y up */
   float window[4];           /* left, right, bottom, top of the picture: at distance 1 (perspective) or in metres */
   float clip_start, clip_end;
+  float aperture;       /* radius of a thin lens, metres; 0: all is sharp */
+  float focus;          /* metres along -z to the plane that is sharp; 1 */
+  uint32_t blades;      /* sides of the aperture, whose corners lie on the circle; below 3: the circle; 0 */
+  float blade_rotation; /* of that polygon, counter-clockwise as the camera sees it, radians */
+  float aperture_ratio; /* height over width of the aperture; 1 */
 } vlr_camera_desc;
 VLR_API void vlr_camera_desc_init(vlr_camera_desc* desc);
 VLR_API vlr_status vlr_scene_set_camera(vlr_scene* scene, const vlr_camera_desc* desc);
@@ -599,6 +609,8 @@ typedef struct vlr_render_options {
   double share;              /* of VLR_STRATEGY_MIS: share of the directions that the lights draw; 0..1; 0.5 */
   double noise;              /* relative error at which a block of 16 x 16 pixels gets no more samples; 0: off */
   const char* cache_folder;  /* for fits of the environment (product), made when missing; NULL or "": none */
+  int32_t hide_world;        /* 1: rays of the camera that meet nothing are black; `transparent` goes before */
+  uint32_t pad;
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);
 /* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise, spp_mean,

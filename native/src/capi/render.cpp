@@ -46,6 +46,7 @@ RenderOptions converted(const vlr_render_options& given) {
   options.seed = given.seed;
   options.time_limit = given.time_limit;
   options.transparent = given.transparent != 0;
+  options.hide_world = given.hide_world != 0;
   options.measure_ray_share = given.measure_ray_share != 0;
   options.heuristic = static_cast<Heuristic>(given.heuristic);
   options.sequence = static_cast<Sequence>(given.sequence);

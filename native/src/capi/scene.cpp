@@ -74,7 +74,7 @@ SurfaceMaterial surface_of(const std::shared_ptr<const Model>& model, uint32_t n
 }
 
 Light converted(const vlr_light_desc& desc) {
-  if (desc.type < VLR_LIGHT_SUN || desc.type > VLR_LIGHT_DISK) {
+  if (desc.type < VLR_LIGHT_SUN || desc.type > VLR_LIGHT_SPOT) {
     throw Error(Status::invalid_argument,
                 "vlr_light_desc.type is " + std::to_string(desc.type) + ", not a VLR_LIGHT value.");
   }
@@ -83,7 +83,25 @@ Light converted(const vlr_light_desc& desc) {
           .light_to_world = affine_from(desc.light_to_world),
           .size = {desc.size[0], desc.size[1]},
           .angle = desc.angle,
+          .blend = desc.blend,
+          .cosine = desc.cosine != 0,
+          .spread = desc.spread,
+          .sphere = desc.sphere != 0,
           .casts_shadow = desc.casts_shadow != 0};
+}
+
+Aperture aperture_from(const vlr_camera_desc& desc) {
+  constexpr uint32_t kMostBlades = 1024;
+  if (!(desc.aperture >= 0.0f) || !(desc.focus > 0.0f) || !(desc.aperture_ratio > 0.0f) || desc.blades > kMostBlades) {
+    throw Error(Status::invalid_argument,
+                "vlr_camera_desc: aperture must not be negative, focus and aperture_ratio must be positive and blades "
+                "at most 1024.");
+  }
+  return {.radius = desc.aperture,
+          .focus = desc.focus,
+          .blades = static_cast<int>(desc.blades),
+          .rotation = desc.blade_rotation,
+          .ratio = desc.aperture_ratio};
 }
 
 }  // namespace
@@ -224,6 +242,10 @@ void vlr_light_desc_init(vlr_light_desc* desc) {
   desc->size[1] = defaults.size.y;
   desc->angle = defaults.angle;
   desc->casts_shadow = defaults.casts_shadow ? 1 : 0;
+  desc->blend = defaults.blend;
+  desc->cosine = defaults.cosine ? 1 : 0;
+  desc->spread = defaults.spread;
+  desc->sphere = defaults.sphere ? 1 : 0;
 }
 
 vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc) {
@@ -278,6 +300,11 @@ void vlr_camera_desc_init(vlr_camera_desc* desc) {
   std::copy(std::begin(defaults.window), std::end(defaults.window), desc->window);
   desc->clip_start = defaults.clip_start;
   desc->clip_end = defaults.clip_end;
+  desc->aperture = defaults.aperture.radius;
+  desc->focus = defaults.aperture.focus;
+  desc->blades = static_cast<uint32_t>(defaults.aperture.blades);
+  desc->blade_rotation = defaults.aperture.rotation;
+  desc->aperture_ratio = defaults.aperture.ratio;
 }
 
 vlr_status vlr_scene_set_camera(vlr_scene* scene, const vlr_camera_desc* desc) {
@@ -292,7 +319,8 @@ vlr_status vlr_scene_set_camera(vlr_scene* scene, const vlr_camera_desc* desc) {
     Camera camera{.type = static_cast<Camera::Type>(given.type),
                   .camera_to_world = affine_from(given.camera_to_world),
                   .clip_start = given.clip_start,
-                  .clip_end = given.clip_end};
+                  .clip_end = given.clip_end,
+                  .aperture = aperture_from(given)};
     std::copy(std::begin(given.window), std::end(given.window), camera.window);
     scene->scene->set_camera(camera);
   });

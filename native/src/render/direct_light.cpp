@@ -167,7 +167,7 @@ void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
     add(i, terms_.environment.get(i), std::numeric_limits<float>::infinity(), true);
   }
   for (const LampHit& hit : terms_.lamp_hits) {
-    add(hit.direction, hit.lamp->radiance(), hit.distance, hit.lamp->casts_shadow());
+    add(hit.direction, hit.lamp->radiance(terms_.world.get(hit.direction)), hit.distance, hit.lamp->casts_shadow());
   }
 }
 

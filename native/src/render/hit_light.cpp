@@ -102,7 +102,8 @@ void HitLightEstimator::add_lights() {
   for (const LampHit& lamp : lamp_hits_) {
     const Hit& hit = hits_[lamp.direction];
     const bool blocked = hit.instance != kNoHit && hit.distance < lamp.distance;
-    if (!blocked || !lamp.lamp->casts_shadow()) radiance_[lamp.direction] += lamp.lamp->radiance();
+    if (!blocked || !lamp.lamp->casts_shadow())
+      radiance_[lamp.direction] += lamp.lamp->radiance(world_.get(lamp.direction));
   }
   for (int i = 0; i < world_.count; ++i) note_density(light_pdf_.v[i], weight_[i] * radiance_[i]);
 }

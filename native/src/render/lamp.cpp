@@ -28,15 +28,22 @@ float drop_between(const Vec3& a, const Vec3& b) {
   return 0.5f * glm::dot(d, d);
 }
 
+float smooth_step(float t) { return t * t * (3.0f - 2.0f * t); }
+
 }  // namespace
 
-Lamp::Lamp(const Light& light, float scene_radius) : type_(light.type), casts_shadow_(light.casts_shadow) {
+Lamp::Lamp(const Light& light, float scene_radius)
+    : type_(light.type), casts_shadow_(light.casts_shadow), sphere_(light.sphere) {
   switch (type_) {
     case Light::Type::sun:
       set_sun(light, scene_radius);
       break;
     case Light::Type::point:
       set_point(light);
+      break;
+    case Light::Type::spot:
+      set_point(light);
+      set_spot(light);
       break;
     case Light::Type::rectangle:
     case Light::Type::disk:
@@ -71,6 +78,13 @@ void Lamp::set_point(const Light& light) {
   }
 }
 
+void Lamp::set_spot(const Light& light) {
+  axis_ = -glm::normalize(light.light_to_world.column(2));
+  cos_cone_ = std::cos(0.5f * std::clamp(light.angle, 0.0f, 2.0f * kPi));
+  cosine_ = light.cosine;
+  fade_ = std::clamp(light.blend, 0.0f, 1.0f) * (1.0f - cos_cone_);
+}
+
 void Lamp::set_area(const Light& light) {
   const Affine& map = light.light_to_world;
   center_ = map.column(3);
@@ -84,6 +98,28 @@ void Lamp::set_area(const Light& light) {
   if (glm::dot(axis_, map.column(2)) > 0.0f) axis_ = -axis_;
   power_ = luminance(light.color);
   radiance_ = light.color / (kPi * area_);
+  set_spread(light.spread);
+}
+
+/// The integral of (1 - cot(h) tan(x)) cos(x) over the directions within h of the normal is pi (1 - h cot(h)).
+void Lamp::set_spread(float spread) {
+  constexpr float kLeast = 0.5f * kPi / 180.0f;  // as in Blender: one degree in all
+  const float half = std::clamp(0.5f * spread, kLeast, 0.5f * kPi);
+  if (half == 0.5f * kPi) return;
+  cot_spread_ = 1.0f / std::tan(half);
+  focus_ = 1.0f / (1.0f - half * cot_spread_);
+}
+
+float Lamp::falloff(const Vec3& direction) const {
+  const float cosine = -glm::dot(direction, axis_);
+  if (type_ == Light::Type::spot) {
+    if (cosine <= cos_cone_) return 0.0f;
+    const float t = cosine - cos_cone_;
+    return (t < fade_ ? smooth_step(t / fade_) : 1.0f) * (cosine_ ? cosine : 1.0f);
+  }
+  if (cot_spread_ == 0.0f) return 1.0f;
+  const float tangent = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
+  return focus_ * std::max(0.0f, 1.0f - cot_spread_ * tangent);
 }
 
 float Lamp::cone(const Vec3& position, Vec3& axis) const {
@@ -93,47 +129,76 @@ float Lamp::cone(const Vec3& position, Vec3& axis) const {
   }
   const Vec3 to_center = center_ - position;
   const float distance_sq = glm::dot(to_center, to_center);
-  if (!(distance_sq > radius_ * radius_)) return 0.0f;  // inside: the lamp shines outwards
+  const float radius_sq = radius_ * radius_;
+  // Inside of a ball: it shines outwards. Nothing faces the middle of a disk.
+  if (!(distance_sq > (sphere_ ? radius_sq : 0.0f))) return 0.0f;
   axis = to_center / std::sqrt(distance_sq);
-  return one_minus_cos(radius_ * radius_ / distance_sq);
+  return one_minus_cos(radius_sq / (sphere_ ? distance_sq : distance_sq + radius_sq));
 }
 
 Vec3 Lamp::sample(const Vec3& position, const Vec2& u) const {
-  if (type_ == Light::Type::sun || type_ == Light::Type::point) {
+  if (is_round()) {
     Vec3 axis;
     const float extent = cone(position, axis);
     return extent > 0.0f ? sample_cone(axis, extent, u) : Vec3(0.0f);
   }
-  const Vec2 place = type_ == Light::Type::disk ? sample_uniform_disk(u) : 2.0f * u - 1.0f;
-  const Vec3 to_lamp = center_ + place.x * half_x_ + place.y * half_y_ - position;
-  return glm::dot(to_lamp, axis_) < 0.0f ? glm::normalize(to_lamp) : Vec3(0.0f);
+  return sample_area(position, u);
 }
 
 Lamp::Sight Lamp::hit(const Vec3& position, const Vec3& direction) const {
-  if (type_ == Light::Type::sun || type_ == Light::Type::point) {
+  if (is_round()) {
     Vec3 axis;
     const float extent = cone(position, axis);
     const float drop = drop_between(direction, axis);
     if (!(extent > 0.0f) || drop > extent) return {};
     if (type_ == Light::Type::sun) return {std::numeric_limits<float>::infinity(), pdf_cone(extent)};
     const float distance = glm::length(center_ - position);
+    if (!sphere_) return {distance / (1.0f - drop), pdf_cone(extent)};
     const float across_sq = distance * distance * drop * (2.0f - drop);
     const float near_side = std::sqrt(std::max(0.0f, radius_ * radius_ - across_sq));
     return {distance * (1.0f - drop) - near_side, pdf_cone(extent)};
   }
+  return hit_area(position, direction);
+}
+
+Vec2 Lamp::coordinates(const Vec3& place) const {
+  // Half axes that a sheared lamp does not keep perpendicular.
+  const Vec3 normal = glm::cross(half_x_, half_y_);
+  const Vec2 scaled(glm::dot(glm::cross(place, half_y_), normal), glm::dot(glm::cross(half_x_, place), normal));
+  return scaled / glm::dot(normal, normal);
+}
+
+Lamp::Part Lamp::part_seen(const Vec3& position) const {
+  if (cot_spread_ == 0.0f) return {Vec2(-1.0f), Vec2(1.0f), area_};
+  const Vec3 place = position - center_;
+  const float quarter = glm::length(glm::cross(half_x_, half_y_));
+  const float radius = std::max(0.0f, glm::dot(place, axis_)) / cot_spread_;  // of the circle that shines here
+  const Vec2 middle = coordinates(place), extent = radius / quarter * Vec2(glm::length(half_y_), glm::length(half_x_));
+  const Vec2 low = glm::max(middle - extent, Vec2(-1.0f)), high = glm::min(middle + extent, Vec2(1.0f));
+  const Vec2 size = glm::max(high - low, Vec2(0.0f));
+  return {low, high, quarter * size.x * size.y};
+}
+
+Vec3 Lamp::sample_area(const Vec3& position, const Vec2& u) const {
+  const bool disk = type_ == Light::Type::disk;
+  const Part part = part_seen(position);
+  if (!(part.area > 0.0f)) return Vec3(0.0f);
+  const Vec2 place = disk && cot_spread_ == 0.0f ? sample_uniform_disk(u) : glm::mix(part.low, part.high, u);
+  if (disk && glm::dot(place, place) > 1.0f) return Vec3(0.0f);
+  const Vec3 to_lamp = center_ + place.x * half_x_ + place.y * half_y_ - position;
+  return glm::dot(to_lamp, axis_) < 0.0f ? glm::normalize(to_lamp) : Vec3(0.0f);
+}
+
+Lamp::Sight Lamp::hit_area(const Vec3& position, const Vec3& direction) const {
   const float facing = -glm::dot(direction, axis_);
   const float height = glm::dot(position - center_, axis_);
   if (!(facing > 0.0f) || !(height > 0.0f)) return {};
   const float distance = height / facing;
-  const Vec3 place = position + distance * direction - center_;
-  // Coordinates along the half axes, which a sheared lamp does not keep perpendicular.
-  const Vec3 normal = glm::cross(half_x_, half_y_);
-  const float scale = 1.0f / glm::dot(normal, normal);
-  const float x = glm::dot(glm::cross(place, half_y_), normal) * scale;
-  const float y = glm::dot(glm::cross(half_x_, place), normal) * scale;
-  const bool inside = type_ == Light::Type::disk ? x * x + y * y <= 1.0f : std::max(std::abs(x), std::abs(y)) <= 1.0f;
-  if (!inside) return {};
-  return {distance, distance * distance / (facing * area_)};
+  const Vec2 place = coordinates(position + distance * direction - center_);
+  const Part part = part_seen(position);
+  const bool inside = glm::all(glm::lessThanEqual(part.low, place)) && glm::all(glm::lessThanEqual(place, part.high));
+  if (!inside || (type_ == Light::Type::disk && glm::dot(place, place) > 1.0f) || !(part.area > 0.0f)) return {};
+  return {distance, distance * distance / (facing * part.area)};
 }
 
 Lamp::Irradiance Lamp::irradiance(const Vec3& position) const {
@@ -141,7 +206,8 @@ Lamp::Irradiance Lamp::irradiance(const Vec3& position) const {
   const Vec3 to_lamp = center_ - position;
   const float distance_sq = std::max(glm::dot(to_lamp, to_lamp), 1e-30f);
   const float distance = std::sqrt(distance_sq);
-  return {to_lamp / distance, distance, intensity_ / distance_sq};
+  const Vec3 direction = to_lamp / distance;
+  return {direction, distance, falloff(direction) * intensity_ / distance_sq};
 }
 
 }  // namespace velour

@@ -24,8 +24,8 @@ class Lamp {
     float pdf = 0;       // per solid angle, of `sample`; 0: the direction misses the lamp
   };
   Sight hit(const Vec3& position, const Vec3& direction) const;
-  /// Constant over the lamp with extent.
-  const Rgb& radiance() const { return radiance_; }
+  /// Of a lamp with extent, towards where `direction` comes from: unit, to the lamp.
+  Rgb radiance(const Vec3& direction) const { return falloff(direction) * radiance_; }
 
   struct Irradiance {
     Vec3 direction;  // to the lamp, unit
@@ -38,21 +38,40 @@ class Lamp {
  private:
   void set_sun(const Light& light, float scene_radius);
   void set_point(const Light& light);
+  void set_spot(const Light& light);
   void set_area(const Light& light);
+  void set_spread(float spread);
+  /// Of an area lamp, in units of its half axes about the middle.
+  struct Part {
+    Vec2 low, high;
+    float area;  // square metres
+  };
+  /// Where it shines to `position` from: a box about that.
+  Part part_seen(const Vec3& position) const;
+  /// Of where the line through `place` (from the middle) along the normal meets the lamp.
+  Vec2 coordinates(const Vec3& place) const;
+  Vec3 sample_area(const Vec3& position, const Vec2& u) const;
+  Sight hit_area(const Vec3& position, const Vec3& direction) const;
+  /// Seen as a round cone from wherever.
+  bool is_round() const { return type_ != Light::Type::rectangle && type_ != Light::Type::disk; }
+  /// How much of radiance and intensity goes against `direction`.
+  float falloff(const Vec3& direction) const;
   /// Cone that holds the lamp, seen from `position`: its axis and 1 - cos of its half angle; 0: not seen.
   float cone(const Vec3& position, Vec3& axis) const;
 
   Light::Type type_;
-  bool sharp_ = false, casts_shadow_ = true;
+  bool sharp_ = false, casts_shadow_ = true, sphere_ = true, cosine_ = false;
   float power_ = 0;
-  Rgb radiance_{0.0f};   // with extent
+  Rgb radiance_{0.0f};   // with extent, less falloff
   Rgb intensity_{0.0f};  // sharp: irradiance of a sun, W/sr of a point
-  Vec3 center_{0.0f};    // of a point, rectangle, disk
-  Vec3 axis_{0.0f};      // sun: towards it; rectangle, disk: the side that shines
+  Vec3 center_{0.0f};    // but for a sun
+  Vec3 axis_{0.0f};      // sun: towards it; spot, rectangle, disk: where it shines
   Vec3 half_x_{0.0f}, half_y_{0.0f};
   float one_minus_cos_ = 0;  // sun
-  float radius_ = 0;         // point
+  float radius_ = 0;         // point, spot
   float area_ = 0;
+  float cos_cone_ = -1, fade_ = 0;    // spot: cosine where its cone ends, width of the rim in cosines
+  float cot_spread_ = 0, focus_ = 1;  // rectangle, disk: cotangent of half the spread, radiance along the normal
 };
 
 }  // namespace velour

@@ -38,6 +38,7 @@ struct RenderOptions {
   uint64_t seed = 0;
   double time_limit = 0;  // seconds of tracing and shading; 0: none; a render stops at a whole pass
   bool transparent = false;
+  bool hide_world = false;  // camera rays that meet nothing are black
   bool measure_ray_share = false;
   /// Where `product` keeps its fits of skies; empty: nowhere. The picture does not depend on it.
   std::string cache_folder;

@@ -11,7 +11,8 @@
 namespace velour {
 
 /// What numbers at a vertex are for. Each has its own sequence.
-enum class Purpose : uint64_t { camera, side, surface, light, sharp, onward, product_side, product };
+/// `lens` has the number of the next vertex' `camera`, which there is none of.
+enum class Purpose : uint64_t { camera, side, surface, light, sharp, onward, product_side, product, lens };
 
 /// `Sequence::sobol`: for every (seed, pixel, half, vertex of the path, purpose) one scrambled sequence. The camera
 /// rays of a pixel, and the directions of each, take successive points of it. With a noise target even and odd camera

@@ -74,15 +74,22 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
   const Vec2 size(static_cast<float>(o.width), static_cast<float>(o.height));
   const auto pixel_of = [&](size_t path) { return Vec2(run.x0 + static_cast<int>(path) / count, run.y0); };
   rays_.clear();
-  PointBatch points;
+  PointBatch points, lens;
+  const Camera& camera = context_.scene.camera();
+  const bool has_lens = camera.aperture.radius > 0.0f;
   for (size_t first = 0; first < paths_.size(); first += PointBatch::kCapacity) {
     const size_t end = std::min(paths_.size(), first + PointBatch::kCapacity);
-    points.clear();
-    for (size_t i = first; i < end; ++i) paths_[i].numbers.point(Purpose::camera, points);
-    points.resolve();
-    const auto places = points.points(0, points.count());
+    const auto make = [&](Purpose purpose, PointBatch& batch) {
+      batch.clear();
+      for (size_t i = first; i < end; ++i) paths_[i].numbers.point(purpose, batch);
+      batch.resolve();
+      return batch.points(0, batch.count());
+    };
+    const auto places = make(Purpose::camera, points);
+    const auto on_lens = has_lens ? make(Purpose::lens, lens) : places;
     for (size_t i = first; i < end; ++i) {
-      rays_.push_back(context_.scene.camera().ray((pixel_of(i) + places[i - first]) / size));
+      const Vec2 through = has_lens ? camera.aperture.sample(on_lens[i - first]) : Vec2(0.0f);
+      rays_.push_back(camera.ray((pixel_of(i) + places[i - first]) / size, through));
       paths_[i].cone = pixel_.cone(rays_.back().direction);
     }
   }
@@ -141,7 +148,8 @@ void TileRenderer::add_background() {
   DirectionBatch batch;
   RgbBatch radiance;
   ScalarBatch unused;
-  const bool visible = !context_.options.transparent;
+  const RenderOptions& o = context_.options;
+  const bool visible = !o.transparent && !o.hide_world;
   for (size_t start = 0; start < missed_.size() && visible; start += DirectionBatch::kCapacity) {
     const size_t end = std::min(missed_.size(), start + DirectionBatch::kCapacity);
     batch.count = 0;
@@ -153,6 +161,9 @@ void TileRenderer::add_background() {
       sample.radiance = radiance.get(static_cast<int>(i - start));
       sample.alpha = 1.0f;
     }
+  }
+  if (!o.transparent && o.hide_world) {
+    for (const Miss& miss : missed_) samples_[miss.sample].alpha = 1.0f;
   }
   missed_.clear();
 }

@@ -36,7 +36,11 @@ void ViewTracer::start(uint64_t first, uint64_t end) {
   for (uint64_t cell = first; cell < end; ++cell) {
     paths_.push_back({PathNumbers(options_, cell, 0), Rgb(1.0f), cell, {}});
     const Vec2 corner(static_cast<float>(cell % grid_.width), static_cast<float>(cell / grid_.width));
-    rays_.push_back(scene_.camera().ray((corner + paths_.back().numbers.point(Purpose::camera)) / size));
+    const Camera& camera = scene_.camera();
+    const Vec2 place = (corner + paths_.back().numbers.point(Purpose::camera)) / size;
+    const bool has_lens = camera.aperture.radius > 0.0f;
+    const Vec2 lens = has_lens ? camera.aperture.sample(paths_.back().numbers.point(Purpose::lens)) : Vec2(0.0f);
+    rays_.push_back(camera.ray(place, lens));
     paths_.back().cone = pixel_.cone(rays_.back().direction);
   }
 }

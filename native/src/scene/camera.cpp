@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sphere/warp.h"
+
 namespace velour {
 namespace {
 
@@ -12,15 +14,31 @@ Affine rigid(const Vec3& x, const Vec3& y, const Vec3& z, const Vec3& origin) {
 
 }  // namespace
 
-Ray Camera::ray(const Vec2& picture) const {
+Vec2 Aperture::sample(const Vec2& u) const {
+  Vec2 place;
+  if (blades < 3) {
+    place = sample_uniform_disk(u);
+  } else {
+    const float side = 2.0f * kPi / static_cast<float>(blades);
+    const float corner = std::min(std::floor(u.x * static_cast<float>(blades)), static_cast<float>(blades - 1));
+    // Uniform on the triangle of the middle and two neighbouring corners.
+    const float out = std::sqrt(u.x * static_cast<float>(blades) - corner), along = u.y * out;
+    const float first = rotation + (corner - 0.5f) * side, second = first + side;
+    place = (out - along) * Vec2(std::cos(first), std::sin(first)) + along * Vec2(std::cos(second), std::sin(second));
+  }
+  return radius * Vec2(place.x / ratio, place.y);
+}
+
+Ray Camera::ray(const Vec2& picture, const Vec2& lens) const {
   const float x = window[0] + picture.x * (window[1] - window[0]);
   const float y = window[2] + picture.y * (window[3] - window[2]);
-  if (type == Type::orthographic) {
-    return {camera_to_world.point({x, y, 0}), clip_start, glm::normalize(camera_to_world.vector({0, 0, -1})), clip_end};
-  }
-  const float length = std::sqrt(x * x + y * y + 1.0f);  // of the ray from one clip unit to the next
-  return {camera_to_world.column(3), clip_start * length, glm::normalize(camera_to_world.vector({x, y, -1})),
-          clip_end * length};
+  const bool perspective = type == Type::perspective;
+  // From the lens to where the ray through its middle meets the plane in focus; to a depth of 1.
+  const Vec2 slope = (perspective ? Vec2(x, y) : Vec2(0.0f)) - lens / aperture.focus;
+  const Vec3 direction(slope, -1.0f);
+  const float length = glm::length(direction);  // of the ray from one clip unit to the next
+  const Vec3 origin = camera_to_world.point(perspective ? Vec3(lens, 0.0f) : Vec3(Vec2(x, y) + lens, 0.0f));
+  return {origin, clip_start * length, glm::normalize(camera_to_world.vector(direction)), clip_end * length};
 }
 
 float Camera::depth(const Vec3& world) const {

@@ -17,6 +17,8 @@ struct LampCase {
   float angle;   // of a sun
   Vec3 place;    // of the others
   bool sheared;  // axes not perpendicular
+  float spread = kPi;
+  bool sphere = true;
 };
 
 void PrintTo(const LampCase& c, std::ostream* out) { *out << c.name; }
@@ -27,6 +29,8 @@ Light light_of(const LampCase& c, float scale) {
   light.size = scale * c.size;
   light.angle = scale * c.angle;
   light.light_to_world = test::shift(c.place);
+  light.spread = c.spread;
+  light.sphere = c.sphere;
   if (c.sheared) {
     light.light_to_world.m[1] = 0.7f;
     light.light_to_world.m[9] = 0.4f;
@@ -61,7 +65,9 @@ constexpr LampCase kLamps[] = {{"sun of 60 degrees", kSun, {}, 1.05f, {}, false}
                                {"far rectangle", kRectangle, {0.1f, 0.1f}, 0, {50, 60, 100}, false},
                                {"rectangle at grazing view", kRectangle, {1, 1}, 0, {3, 0, 0.3f}, false},
                                {"disk", kDisk, {2, 1}, 0, {0.3f, -0.2f, 2}, false},
-                               {"far disk", kDisk, {0.1f, 0.1f}, 0, {50, 60, 100}, false}};
+                               {"far disk", kDisk, {0.1f, 0.1f}, 0, {50, 60, 100}, false},
+                               {"disk that faces", kSphere, {0.7f, 0}, 0, {0.3f, -0.2f, 2}, false, kPi, false},
+                               {"rectangle, spread", kRectangle, {2, 1}, 0, {0.3f, -0.2f, 2}, false, 0.6f}};
 
 class LampSampling : public ::testing::TestWithParam<LampCase> {};
 

@@ -13,6 +13,8 @@
 namespace velour {
 namespace {
 
+constexpr Vec3 kUp(0, 0, 1);
+
 /// Shines down from `height`.
 Light lamp_above(Light::Type type, const Vec2& size, float height = 2) {
   Light light;
@@ -27,8 +29,17 @@ std::vector<Light> extended_lamps() {
   Light sheared = lamp_above(Light::Type::rectangle, {1, 2});
   sheared.light_to_world.m[1] = 0.7f;  // x axis and y axis not perpendicular
   sheared.light_to_world.m[9] = 0.4f;
-  return {lamp_above(Light::Type::sun, {}), lamp_above(Light::Type::point, {0.7f, 0}),
-          lamp_above(Light::Type::rectangle, {2, 1}), lamp_above(Light::Type::disk, {2, 1}), sheared};
+  Light facing = lamp_above(Light::Type::spot, {0.7f, 0});
+  facing.sphere = false;
+  Light focused = sheared;
+  focused.spread = 0.8f;
+  return {lamp_above(Light::Type::sun, {}),
+          lamp_above(Light::Type::point, {0.7f, 0}),
+          lamp_above(Light::Type::rectangle, {2, 1}),
+          lamp_above(Light::Type::disk, {2, 1}),
+          sheared,
+          facing,
+          focused};
 }
 
 /// Integrals over the lamp, seen from the origin, of functions that tell its parts apart; the first is the irradiance
@@ -74,7 +85,7 @@ Moments moments_by_samples(const Lamp& lamp) {
 }
 
 double irradiance_by_samples(const Lamp& lamp) {
-  return moments_by_samples(lamp)[0] * static_cast<double>(lamp.radiance().g);
+  return moments_by_samples(lamp)[0] * static_cast<double>(lamp.radiance(kUp).g);
 }
 
 TEST(Lamp, SamplesFollowTheDensityOfHits) {
@@ -117,9 +128,64 @@ TEST(Lamp, SphereLightsLikeAPointFromOutside) {
 TEST(Lamp, PowerOfAreaLampsIsWhatTheyEmit) {
   // One side, Lambertian: pi A L.
   const Lamp rectangle(lamp_above(Light::Type::rectangle, {2, 3}), 1);
-  EXPECT_NEAR(rectangle.radiance().r * kPi * 6, 1, 1e-5f);
+  EXPECT_NEAR(rectangle.radiance(kUp).r * kPi * 6, 1, 1e-5f);
   const Lamp disk(lamp_above(Light::Type::disk, {2, 2}), 1);
-  EXPECT_NEAR(disk.radiance().r * kPi * kPi, 1, 1e-5f);
+  EXPECT_NEAR(disk.radiance(kUp).r * kPi * kPi, 1, 1e-5f);
+}
+
+TEST(Lamp, SpreadKeepsThePowerAndEndsAtItsAngle) {
+  for (const float spread : {0.2f, 1.0f, 2.0f, 3.0f}) {
+    Light light = lamp_above(Light::Type::rectangle, {2, 3});
+    const double even = static_cast<double>(Lamp(light, 1).radiance(kUp).g);
+    light.spread = spread;
+    const Lamp lamp(light, 1);
+    const auto radiance = [&](double theta) {
+      return static_cast<double>(lamp.radiance(direction(static_cast<float>(theta), 0.3f)).g);
+    };
+    double power = 0;  // of a square metre over pi: that of even radiance is the radiance
+    const int n = 4000;
+    for (int i = 0; i < n; ++i) {
+      const double theta = 0.5 * kPiD * (i + 0.5) / n;
+      power += radiance(theta) * std::sin(2 * theta) * 0.5 * kPiD / n;
+    }
+    EXPECT_NEAR(power / even, 1, 1e-3) << spread;
+    EXPECT_GT(radiance(0.49 * static_cast<double>(spread)), 0) << spread;
+    EXPECT_EQ(radiance(0.51 * static_cast<double>(spread)), 0) << spread;
+    EXPECT_GT(radiance(0), even) << spread;
+  }
+}
+
+TEST(Lamp, SpotFadesOverItsBlend) {
+  Light light = lamp_above(Light::Type::spot, {0, 0});
+  light.angle = 1.0f;
+  light.blend = 0.5f;
+  const float rim = std::cos(0.5f), inner = rim + 0.5f * (1 - rim);
+  const auto share = [&](float cosine) {
+    const Vec3 at = Vec3(0.3f, -0.2f, 2) - direction(std::acos(cosine), 1.0f);
+    return Lamp(light, 1).irradiance(at).perpendicular.g * 4 * kPi;
+  };
+  EXPECT_NEAR(share(1), 1, 1e-5f);
+  EXPECT_NEAR(share(inner + 0.001f), 1, 1e-5f);
+  EXPECT_NEAR(share(0.5f * (inner + rim)), 0.5f, 1e-3f);  // smooth step
+  EXPECT_EQ(share(rim - 0.001f), 0);
+  light.cosine = true;
+  EXPECT_NEAR(share(inner + 0.001f), inner + 0.001f, 1e-5f);
+}
+
+TEST(Lamp, DiskThatFacesIsSeenUnderItsTangent) {
+  Light light;
+  light.type = Light::Type::point;
+  light.light_to_world = test::shift({0, 0, 3});
+  light.size.x = 1;
+  light.sphere = false;
+  const Lamp disk(light, 1);
+  const auto meets = [&](float tangent) { return disk.hit(Vec3(0.0f), glm::normalize(Vec3(tangent, 0, 1))); };
+  EXPECT_EQ(meets(1.01f / 3).pdf, 0);
+  ASSERT_GT(meets(0.99f / 3).pdf, 0);
+  EXPECT_NEAR(meets(0.3f).distance, 3 * std::sqrt(1.09f), 1e-4f);
+  // The disk itself: radiance x pi sin^2 of the cone.
+  const double expected = 1 / (4 * kPiD * 10);
+  EXPECT_NEAR(irradiance_by_samples(disk) / expected, 1, 5e-3);
 }
 
 TEST(Lamp, DarkSideInsideAndDegenerate) {

@@ -156,6 +156,11 @@ TEST(Render, AlphaDepthAndNormalOfHitsAndMisses) {
   const auto opaque = rendered(scene, options);
   EXPECT_EQ(opaque[1], 3);  // a corner of the picture
   EXPECT_EQ(opaque[3], 1);
+  options.hide_world = true;
+  const auto hidden = rendered(scene, options);
+  EXPECT_EQ(hidden[1], 0);
+  EXPECT_EQ(hidden[3], 1);
+  EXPECT_EQ(hidden[4 * (8 * 4 + 4) + 1], opaque[4 * (8 * 4 + 4) + 1]);  // it lights as before
   options.transparent = true;
   const auto transparent = rendered(scene, options);
   EXPECT_EQ(transparent[1], 0);

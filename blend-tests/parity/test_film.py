@@ -1,0 +1,50 @@
+"""The film: what part of it is rendered, how bright, and what is behind everything."""
+
+import math
+
+from parity import stage
+from parity.case import ParityTest
+
+
+class Border(ParityTest):
+    def setUp(self):
+        super().setUp()
+        stage.town()
+        stage.sharp_sun()
+        stage.camera()
+        render = self.scene.render
+        render.use_border = True
+        render.border_min_x, render.border_max_x = 0.206, 0.754  # no whole pixels
+        render.border_min_y, render.border_max_y = 0.104, 0.857
+
+    def test_whole_film(self):
+        self.assert_parity("Render border without crop")
+
+    def test_crop(self):
+        self.scene.render.use_crop_to_border = True
+        self.assert_parity("Render border with crop")
+
+    def test_percentage(self):
+        self.scene.render.resolution_percentage = 87
+        self.scene.render.use_crop_to_border = True
+        self.assert_parity("Render border at a resolution percentage")
+
+
+class Film(ParityTest):
+    def setUp(self):
+        super().setUp()
+        stage.sphere()
+        stage.sharp_sun()
+        stage.world((0.2, 0.3, 0.4))
+        stage.camera((0, -6, 0), (math.pi / 2, 0, 0))
+
+    def test_opaque(self):
+        self.assert_parity("Film: background")
+
+    def test_transparent(self):
+        self.scene.render.film_transparent = True
+        self.assert_parity("Film: transparent")
+
+    def test_exposure(self):
+        self.scene.cycles.film_exposure = 1.7
+        self.assert_parity("Film: exposure")
