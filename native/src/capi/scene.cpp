@@ -10,6 +10,7 @@
 #include "material/holed_btf_material.h"
 #include "material/measured_btf_material.h"
 #include "material/principled_lobes.h"
+#include "material/through_material.h"
 #include "model/model_material.h"
 #include "scene/mesh_file.h"
 
@@ -65,12 +66,22 @@ std::shared_ptr<const Model> coarse_proposal(const Measurement& measurement) {
 }
 
 SurfaceMaterial surface_of(const std::shared_ptr<const Model>& model, uint32_t neighbors) {
-  SurfaceMaterial surface{.material = make_material(model, static_cast<int>(neighbors))};
+  const bool holed = model->shell && is_btf(*model);  // the shell itself lets light through
+  const auto make = holed ? make_reflecting_material : make_material;
+  SurfaceMaterial surface{.material = make(model, static_cast<int>(neighbors))};
   if (!model->shell) return surface;
   surface.shell = std::make_shared<const ShellField>(model->shell->volume);
   surface.shell_shaded = !is_btf(*model);
   if (surface.holed()) surface.material = std::make_shared<const HoledBtfMaterial>(surface.material);
   return surface;
+}
+
+/// A BTF itself; of two sides, with light that comes through.
+std::shared_ptr<const Material> make_lit_from_both(const std::shared_ptr<const BtfTable>& table) {
+  auto reflecting = make_measured_btf_material(table);
+  if (!table->between.has_lower_side()) return reflecting;
+  return std::make_shared<const ThroughMaterial>(std::move(reflecting),
+                                                 make_measured_btf_material(table, BtfLight::other_side));
 }
 
 Light converted(const vlr_light_desc& desc) {
@@ -195,7 +206,7 @@ vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint
     require(btf, "btf");
     require(material, "material");
     auto table = read_btf_table(*btf->btf, most_bytes != 0 ? most_bytes : kUsualTableBytes);
-    *material = scene->scene->add_material({.material = make_measured_btf_material(std::move(table))});
+    *material = scene->scene->add_material({.material = make_lit_from_both(std::move(table))});
   });
 }
 

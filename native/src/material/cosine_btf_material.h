@@ -1,6 +1,7 @@
 // What materials of BTFs that know no lobes share: their samples have the density of the cosine.
 #pragma once
 
+#include "material/btf_light.h"
 #include "material/material.h"
 #include "sphere/warp.h"
 
@@ -9,6 +10,8 @@ namespace velour {
 /// A material that varies over a tile and gives f of one direction after the other.
 class CosineBtfMaterial : public Material {
  public:
+  explicit CosineBtfMaterial(BtfLight light) : beyond_(light == BtfLight::other_side) {}
+
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const final {
     for (int i = 0; i < wl.count; ++i) {
       f.set(i, value(point, wl.get(i)));
@@ -29,6 +32,11 @@ class CosineBtfMaterial : public Material {
 
   /// As a BTF with two sides, seen from below, knows it.
   static Vec3 turned(const Vec3& w, bool back) { return {w.x, w.y, back ? -w.z : w.z}; }
+  /// The same of a light.
+  Vec3 turned_light(const Vec3& wl, bool back) const { return turned(wl, back != beyond_); }
+
+ private:
+  bool beyond_;
 };
 
 }  // namespace velour

@@ -18,8 +18,8 @@ uint32_t padded(size_t count) {
 
 class FactoredMaterial final : public CosineBtfMaterial {
  public:
-  explicit FactoredMaterial(std::shared_ptr<const FactoredBtf> btf)
-      : btf_(std::move(btf)), between_(btf_->layout), two_sided_(between_.has_lower_side()) {
+  FactoredMaterial(std::shared_ptr<const FactoredBtf> btf, BtfLight light)
+      : CosineBtfMaterial(light), btf_(std::move(btf)), between_(btf_->layout), two_sided_(between_.has_lower_side()) {
     place_components();
     pair_value_.assign(btf_->layout.pairs() * end_[2], 0.0f);
     for (uint64_t pair = 0; pair < btf_->layout.pairs(); ++pair) spread(btf_->pair_value, pair, pair_value_);
@@ -70,7 +70,7 @@ class FactoredMaterial final : public CosineBtfMaterial {
   Rgb value(const PreparedBrdf& point, const Vec3& wl) const override {
     const FactoredPoint& p = point.factored;
     if (!(wl.z > 0) || p.weight[0] + p.weight[1] + p.weight[2] == 0) return Rgb(0.0f);
-    const auto lights = between_.light(turned(wl, p.back));
+    const auto lights = between_.light(turned_light(wl, p.back));
     if (!lights) return Rgb(0.0f);
     std::array<WeightedRow, 9> rows;
     size_t count = 0;
@@ -97,9 +97,9 @@ class FactoredMaterial final : public CosineBtfMaterial {
 
 }  // namespace
 
-std::shared_ptr<const Material> make_factored_material(std::shared_ptr<const FactoredBtf> btf) {
-  if (btf->by_view()) return make_view_factored_material(std::move(btf));
-  return std::make_shared<FactoredMaterial>(std::move(btf));
+std::shared_ptr<const Material> make_factored_material(std::shared_ptr<const FactoredBtf> btf, BtfLight light) {
+  if (btf->by_view()) return make_view_factored_material(std::move(btf), light);
+  return std::make_shared<FactoredMaterial>(std::move(btf), light);
 }
 
 }  // namespace velour

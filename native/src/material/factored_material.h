@@ -4,12 +4,14 @@
 #include <memory>
 
 #include "btf/factored_btf.h"
+#include "material/btf_light.h"
 #include "material/material.h"
 
 namespace velour {
 
 /// Texture coordinates are in tiles: the BTF repeats with every whole number. Samples have the density of the cosine: a
 /// factorisation knows no lobes to draw from.
-std::shared_ptr<const Material> make_factored_material(std::shared_ptr<const FactoredBtf> btf);
+std::shared_ptr<const Material> make_factored_material(std::shared_ptr<const FactoredBtf> btf,
+                                                       BtfLight light = BtfLight::viewers_side);
 
 }  // namespace velour

@@ -33,7 +33,9 @@ struct PreparedBrdf {
   TensorPoint tensor;                    // BTFs of clustered tensors: the same
   std::unique_ptr<PreparedBrdf> beyond;  // BTFs of open structure: the same beyond its outline, where `folded`
   bool folded = false;
-  BtfTablePoint btf_table;  // BTFs themselves: what is blended at the site for the view
+  BtfTablePoint btf_table;                // BTFs themselves: what is blended at the site for the view
+  std::unique_ptr<PreparedBrdf> through;  // where light comes through: the same for light from the other side
+  float through_share = 0;                // of samples that are drawn from it
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.
@@ -57,12 +59,16 @@ class Material {
   /// there.
   virtual float alpha(const SurfaceSite& /*site*/) const { return 1.0f; }
 
-  /// f in 1/sr without cosine (0 at and below the horizon, never negative, never NaN) and the density of `sample`, per
-  /// solid angle, of each direction of the batch. The batch is padded.
+  /// True where f may be above 0 for light from the other side of the surface, wl.z < 0; the cosine is |wl.z|.
+  virtual bool transmits() const { return false; }
+
+  /// f in 1/sr without cosine (0 at the horizon and, unless it transmits, below; never negative, never NaN) and the
+  /// density of `sample`, per solid angle, of each direction of the batch. The batch is padded.
   virtual void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const = 0;
 
   /// Draws a wl for each of up to 64 `u` with the density that `eval` reports as pdf. It may lie below the horizon: a
-  /// zero contribution. The batch is not padded.
+  /// zero contribution unless it transmits, which gives (0, 0, 0) where a draw has no direction. The batch is not
+  /// padded.
   virtual void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const = 0;
 
   /// The same of one direction, without the memory of a batch.

@@ -8,8 +8,8 @@ namespace {
 
 class MeasuredBtfMaterial final : public CosineBtfMaterial {
  public:
-  explicit MeasuredBtfMaterial(std::shared_ptr<const BtfTable> table)
-      : table_(std::move(table)), two_sided_(table_->between.has_lower_side()) {}
+  MeasuredBtfMaterial(std::shared_ptr<const BtfTable> table, BtfLight light)
+      : CosineBtfMaterial(light), table_(std::move(table)), two_sided_(table_->between.has_lower_side()) {}
 
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
     point.wv = wv;
@@ -31,7 +31,7 @@ class MeasuredBtfMaterial final : public CosineBtfMaterial {
  private:
   Rgb value(const PreparedBrdf& point, const Vec3& wl) const override {
     const BtfTablePoint& p = point.btf_table;
-    const auto lights = wl.z > 0 ? table_->between.light(turned(wl, p.back)) : std::nullopt;
+    const auto lights = wl.z > 0 ? table_->between.light(turned_light(wl, p.back)) : std::nullopt;
     if (!lights) return Rgb(0.0f);
     Rgb sum(0.0f);
     for (int i = 0; i < p.count; ++i) {
@@ -52,8 +52,8 @@ class MeasuredBtfMaterial final : public CosineBtfMaterial {
 
 }  // namespace
 
-std::shared_ptr<const Material> make_measured_btf_material(std::shared_ptr<const BtfTable> table) {
-  return std::make_shared<MeasuredBtfMaterial>(std::move(table));
+std::shared_ptr<const Material> make_measured_btf_material(std::shared_ptr<const BtfTable> table, BtfLight light) {
+  return std::make_shared<MeasuredBtfMaterial>(std::move(table), light);
 }
 
 }  // namespace velour

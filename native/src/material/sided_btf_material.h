@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "material/btf_draws.h"
+#include "material/btf_light.h"
 #include "material/footprint_taps.h"
 #include "material/material.h"
 #include "sphere/random.h"
@@ -66,14 +67,15 @@ class BtfLooks {
 };
 
 /// `Evaluator`: SrbfEvaluator or one of the same members; `kPoint`: where its points are. Texture coordinates are in
-/// tiles: the BTF repeats with every whole number.
+/// tiles: the BTF repeats with every whole number. Of light from the other side it is asked with wl.z > 0, as if
+/// mirrored.
 template <typename Evaluator, typename Evaluator::Point PreparedBrdf::*kPoint>
 class SidedBtfMaterial final : public Material {
  public:
   template <typename Btf>
-  explicit SidedBtfMaterial(std::shared_ptr<const Btf> btf) : evaluator_(std::move(btf)) {
+  SidedBtfMaterial(std::shared_ptr<const Btf> btf, BtfLight light) : evaluator_(std::move(btf)), light_(light) {
     for (const bool below : {false, true}) {
-      const auto side = evaluator_.side(below, below);
+      const auto side = evaluator_.side(below, below == (light == BtfLight::viewers_side));
       if (side) sides_[below].emplace(evaluator_, *side);
     }
   }
@@ -132,7 +134,9 @@ class SidedBtfMaterial final : public Material {
   };
 
   /// A BTF of one side shows it from behind as well.
-  const std::optional<Side>& side_of(const SurfaceSite& site) const { return sides_[site.back && sides_[1]]; }
+  const std::optional<Side>& side_of(const SurfaceSite& site) const {
+    return sides_[site.back && (sides_[1] || light_ == BtfLight::other_side)];
+  }
 
   Rgb value(const PreparedBrdf& point, const Vec3& wl) const {
     return wl.z > 0 ? evaluator_.value(point.*kPoint, wl) : Rgb(0.0f);
@@ -146,7 +150,8 @@ class SidedBtfMaterial final : public Material {
   }
 
   Evaluator evaluator_;
-  std::array<std::optional<Side>, 2> sides_;  // seen and lit from the front, from behind
+  BtfLight light_;
+  std::array<std::optional<Side>, 2> sides_;  // seen from the front, from behind
 };
 
 }  // namespace velour

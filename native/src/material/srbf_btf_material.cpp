@@ -5,8 +5,8 @@
 
 namespace velour {
 
-std::shared_ptr<const Material> make_srbf_btf_material(std::shared_ptr<const SrbfBtf> btf) {
-  return std::make_shared<SidedBtfMaterial<SrbfEvaluator, &PreparedBrdf::srbf>>(std::move(btf));
+std::shared_ptr<const Material> make_srbf_btf_material(std::shared_ptr<const SrbfBtf> btf, BtfLight light) {
+  return std::make_shared<SidedBtfMaterial<SrbfEvaluator, &PreparedBrdf::srbf>>(std::move(btf), light);
 }
 
 }  // namespace velour

@@ -5,8 +5,8 @@
 
 namespace velour {
 
-std::shared_ptr<const Material> make_tensor_btf_material(std::shared_ptr<const TensorBtf> btf) {
-  return std::make_shared<SidedBtfMaterial<TensorEvaluator, &PreparedBrdf::tensor>>(std::move(btf));
+std::shared_ptr<const Material> make_tensor_btf_material(std::shared_ptr<const TensorBtf> btf, BtfLight light) {
+  return std::make_shared<SidedBtfMaterial<TensorEvaluator, &PreparedBrdf::tensor>>(std::move(btf), light);
 }
 
 }  // namespace velour

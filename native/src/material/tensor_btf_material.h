@@ -4,11 +4,13 @@
 #include <memory>
 
 #include "btf/tensor_btf.h"
+#include "material/btf_light.h"
 #include "material/material.h"
 
 namespace velour {
 
 /// Texture coordinates are in tiles: the BTF repeats with every whole number.
-std::shared_ptr<const Material> make_tensor_btf_material(std::shared_ptr<const TensorBtf> btf);
+std::shared_ptr<const Material> make_tensor_btf_material(std::shared_ptr<const TensorBtf> btf,
+                                                         BtfLight light = BtfLight::viewers_side);
 
 }  // namespace velour

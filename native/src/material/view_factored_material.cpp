@@ -12,8 +12,12 @@ static_assert(3 * FactoredBtf::kMaxOfView <= FactoredPoint::kMost);
 
 class ViewFactoredMaterial final : public CosineBtfMaterial {
  public:
-  explicit ViewFactoredMaterial(std::shared_ptr<const FactoredBtf> btf)
-      : btf_(std::move(btf)), between_(btf_->layout), ranges_(*btf_), two_sided_(between_.has_lower_side()) {
+  ViewFactoredMaterial(std::shared_ptr<const FactoredBtf> btf, BtfLight light)
+      : CosineBtfMaterial(light),
+        btf_(std::move(btf)),
+        between_(btf_->layout),
+        ranges_(*btf_),
+        two_sided_(between_.has_lower_side()) {
     light_value_.resize(btf_->pair_value.size());
     halves_to_floats(btf_->pair_value, light_value_);
     for (const TexelLevel& level : btf_->levels) {
@@ -55,7 +59,7 @@ class ViewFactoredMaterial final : public CosineBtfMaterial {
   Rgb value(const PreparedBrdf& point, const Vec3& wl) const override {
     const FactoredPoint& p = point.factored;
     if (!(wl.z > 0) || p.weight[0] + p.weight[1] + p.weight[2] == 0) return Rgb(0.0f);
-    const auto lights = between_.light(turned(wl, p.back));
+    const auto lights = between_.light(turned_light(wl, p.back));
     if (!lights) return Rgb(0.0f);
     const float* coefficient = p.value;
     Vec3 sum(0.0f);
@@ -95,8 +99,8 @@ class ViewFactoredMaterial final : public CosineBtfMaterial {
 
 }  // namespace
 
-std::shared_ptr<const Material> make_view_factored_material(std::shared_ptr<const FactoredBtf> btf) {
-  return std::make_shared<ViewFactoredMaterial>(std::move(btf));
+std::shared_ptr<const Material> make_view_factored_material(std::shared_ptr<const FactoredBtf> btf, BtfLight light) {
+  return std::make_shared<ViewFactoredMaterial>(std::move(btf), light);
 }
 
 }  // namespace velour

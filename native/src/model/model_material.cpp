@@ -1,11 +1,13 @@
 #include "model/model_material.h"
 
+#include "btf/pair_interpolation.h"
 #include "job/error.h"
 #include "material/factored_material.h"
 #include "material/parametric_material.h"
 #include "material/scattered_material.h"
 #include "material/srbf_btf_material.h"
 #include "material/tensor_btf_material.h"
+#include "material/through_material.h"
 
 namespace velour {
 namespace {
@@ -29,14 +31,35 @@ struct Either : Makes... {
   using Makes::operator()...;
 };
 
-}  // namespace
-
-std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>& model, int neighbors) {
+/// Of light from one side.
+std::shared_ptr<const Material> lit_from(BtfLight light, const std::shared_ptr<const Model>& model, int neighbors) {
   return made_of_body(model, Either{[&](const Scattered& body) { return make_scattered_material(body, neighbors); },
                                     [&](const Parametric& body) { return make_parametric_material(body); },
-                                    [&](const Factored& body) { return make_factored_material(body); },
-                                    [&](const Srbf& body) { return make_srbf_btf_material(body); },
-                                    [&](const Tensors& body) { return make_tensor_btf_material(body); }});
+                                    [&](const Factored& body) { return make_factored_material(body, light); },
+                                    [&](const Srbf& body) { return make_srbf_btf_material(body, light); },
+                                    [&](const Tensors& body) { return make_tensor_btf_material(body, light); }});
+}
+
+/// Whether it knows of light that comes through.
+template <typename Btf>
+bool knows_through(const Btf& btf) {
+  return serving_side(btf, false, true) || serving_side(btf, true, false);
+}
+bool knows_through(const FactoredBtf& btf) { return PairInterpolation(btf.layout).has_lower_side(); }
+bool knows_through(const ScatteredBrdf&) { return false; }
+bool knows_through(const ParametricBrdf&) { return false; }
+
+}  // namespace
+
+std::shared_ptr<const Material> make_reflecting_material(const std::shared_ptr<const Model>& model, int neighbors) {
+  return lit_from(BtfLight::viewers_side, model, neighbors);
+}
+
+std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>& model, int neighbors) {
+  auto reflecting = make_reflecting_material(model, neighbors);
+  if (!std::visit([](const auto& body) { return knows_through(body); }, model->body)) return reflecting;
+  return std::make_shared<const ThroughMaterial>(std::move(reflecting),
+                                                 lit_from(BtfLight::other_side, model, neighbors));
 }
 
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,

@@ -13,6 +13,9 @@ namespace velour {
 /// default.
 std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>& model, int neighbors);
 
+/// The same for light from the viewer's side alone, where a model of a BTF knows more.
+std::shared_ptr<const Material> make_reflecting_material(const std::shared_ptr<const Model>& model, int neighbors);
+
 /// Reference mode: f of the measurement, samples of the model, unbiased whatever the model's error.
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
                                                        const std::shared_ptr<const Model>& proposal, int neighbors);

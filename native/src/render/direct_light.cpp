@@ -89,7 +89,7 @@ void DirectLight::draw_towards_products(std::span<const Receiver> receivers) {
 
 /// A direction that brings nothing costs nothing further: n counts it, the batch does not hold it.
 void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer) {
-  if (!(wl.z > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return;
+  if (!vertex.receives(wl, wl_world)) return;
   drawer_[world_.count] = drawer;
   local_.push(wl);
   world_.push(wl_world);
@@ -132,7 +132,7 @@ void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) 
   add_terms(receiver, place);
   for (int k = 0; k < sharp_count_; ++k) {
     const int i = world_.count + k;
-    const Rgb reflected = receiver.throughput * reflectance(vertex, i) * local_.z[i];
+    const Rgb reflected = receiver.throughput * reflectance(vertex, i) * std::abs(local_.z[i]);
     const SharpLight& sharp = sharp_[k];
     queue(receiver, sharp.wl_world, reflected * sharp.irradiance, sharp.distance, sharp.lamp->casts_shadow(), output);
   }
@@ -147,7 +147,7 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
   for (int i = 0; i < world_.count; ++i) {
     const int to = terms_.world.count;
     terms_.world.push(world_.get(i));
-    terms_.reflected.set(to, share * reflectance(receiver.vertex, i) * local_.z[i]);
+    terms_.reflected.set(to, share * reflectance(receiver.vertex, i) * std::abs(local_.z[i]));
     terms_.product.v[to] = has_product ? work.shares.product * product_pdf_.v[i] : 0.0f;
     terms_.surface.v[to] = work.shares.surface * surface_pdf_.v[i];
     terms_.light_share.v[to] = work.shares.lights;

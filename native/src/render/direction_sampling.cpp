@@ -2,6 +2,7 @@
 
 #include "material/ggx_sampler.h"
 #include "material/table_sampler.h"
+#include "sphere/mirrored.h"
 #include "sphere/warp.h"
 
 namespace velour {
@@ -30,8 +31,12 @@ void prepare_surface(SurfaceSampling sampling, const Vertex& vertex, PreparedBrd
   if (sampling == SurfaceSampling::ggx) vertex.ggx->prepare(vertex.wv, prepared.ggx);
 }
 
-void sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
-                    std::span<const Vec2> u, DirectionBatch& wl) {
+namespace {
+
+constexpr float kBeyond = 0.5f;  // share of samples of densities that know one side, where light comes through
+
+void sample_one_side(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
+                     std::span<const Vec2> u, DirectionBatch& wl) {
   switch (sampling) {
     case SurfaceSampling::uniform:
       return wl.fill(u, sample_uniform_hemisphere);
@@ -46,8 +51,8 @@ void sample_surface(SurfaceSampling sampling, const Vertex& vertex, const Prepar
   }
 }
 
-void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const DirectionBatch& wl,
-                 const ScalarBatch& material_pdf, ScalarBatch& pdf) {
+void pdf_of_one_side(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
+                     const DirectionBatch& wl, const ScalarBatch& material_pdf, ScalarBatch& pdf) {
   switch (sampling) {
     case SurfaceSampling::uniform:
       for (int i = 0; i < wl.count; ++i) pdf.v[i] = pdf_uniform_hemisphere(wl.get(i));
@@ -65,6 +70,29 @@ void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedB
       pdf = material_pdf;
       return;
   }
+}
+
+}  // namespace
+
+void sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
+                    std::span<const Vec2> u, DirectionBatch& wl) {
+  if (!vertex.transmits || sampling == SurfaceSampling::material) {
+    return sample_one_side(sampling, vertex, prepared, u, wl);
+  }
+  sample_sides(u, kBeyond, wl, [&](bool, std::span<const Vec2> some, DirectionBatch& drawn) {
+    sample_one_side(sampling, vertex, prepared, some, drawn);
+  });
+}
+
+void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const DirectionBatch& wl,
+                 const ScalarBatch& material_pdf, ScalarBatch& pdf) {
+  pdf_of_one_side(sampling, vertex, prepared, wl, material_pdf, pdf);
+  if (!vertex.transmits || sampling == SurfaceSampling::material) return;
+  DirectionBatch beyond = wl;
+  for (int i = 0; i < wl.count; ++i) beyond.z[i] = -wl.z[i];
+  ScalarBatch other;
+  pdf_of_one_side(sampling, vertex, prepared, beyond, material_pdf, other);
+  for (int i = 0; i < wl.count; ++i) pdf.v[i] = (1 - kBeyond) * pdf.v[i] + kBeyond * other.v[i];
 }
 
 }  // namespace velour

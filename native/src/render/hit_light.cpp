@@ -128,6 +128,7 @@ void HitLightEstimator::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
   const int count = find_sharp_light(lighting_, vertex, numbers, sharp);
   for (int i = 0; i < count; ++i) {
     const SharpLight& s = sharp[i];
+    if (!(s.wl.z > 0.0f)) continue;
     if (s.lamp->casts_shadow() && visible_.occluded(vertex.ray(s.wl_world, s.distance))) continue;
     const Rgb light = s.wl.z * s.irradiance;
     note_density(kInfinity, light);

@@ -1,4 +1,4 @@
-// Where the light of one hit comes from: the terms of an ObservedHit.
+// Where the light of one hit comes from on its viewer's side: the terms of an ObservedHit.
 #pragma once
 
 #include <span>

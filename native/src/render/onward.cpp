@@ -1,5 +1,6 @@
 #include "render/onward.h"
 
+#include <cmath>
 #include <limits>
 
 namespace velour {
@@ -11,7 +12,7 @@ std::optional<Continuation> draw_onward(const Vertex& vertex, const PreparedBrdf
   sample_surface(sampling, vertex, prepared, {&u, 1}, wl);
   wl.pad();
   const Vec3 wl_world = vertex.frame.to_world(wl.get(0));
-  if (!(wl.z[0] > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return std::nullopt;
+  if (!vertex.receives(wl.get(0), wl_world)) return std::nullopt;
   RgbBatch f;
   ScalarBatch material_pdf, pdf;
   vertex.surface->material->eval(prepared, wl, f, material_pdf);
@@ -19,7 +20,7 @@ std::optional<Continuation> draw_onward(const Vertex& vertex, const PreparedBrdf
   const Rgb reflected = in_working_space(rec709_to_working, vertex, f.get(0));
   if (reflected == Rgb(0.0f)) return std::nullopt;
   return Continuation{vertex.ray(wl_world, std::numeric_limits<float>::infinity()),
-                      throughput * reflected * (wl.z[0] / pdf.v[0])};
+                      throughput * reflected * (std::abs(wl.z[0]) / pdf.v[0])};
 }
 
 }  // namespace velour

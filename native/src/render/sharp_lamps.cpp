@@ -18,7 +18,7 @@ int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers
     const size_t chosen = all ? i : lighting.choose_sharp(u[i].x, probability);
     const Lamp::Irradiance light = lamps[chosen].irradiance(vertex.position);
     const Vec3 wl = vertex.frame.to_local(light.direction);
-    if (!(wl.z > 0.0f) || !(glm::dot(light.direction, vertex.geometric_normal) > 0.0f)) continue;
+    if (!vertex.receives(wl, light.direction)) continue;
     const float share = all ? 1.0f : 1.0f / (static_cast<float>(room) * probability);
     found[static_cast<size_t>(lit++)] = {&lamps[chosen], light.distance, wl, light.direction,
                                          share * light.perpendicular};

@@ -52,6 +52,7 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   surface = &scene.materials()[point.material];
   cone = cone_at_origin.at(hit.distance);
   if (!surface->material->varies()) return;
+  transmits = surface->material->transmits();
   const TexturePoint texture = scene.texture(hit);
   find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction,
             pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction));

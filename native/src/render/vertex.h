@@ -14,7 +14,7 @@ class TableSampler;
 /// Surfaces are two-sided: both normals are turned to the viewer's side of the geometric surface. Where interpolation
 /// leaves the viewer below the shading horizon, the shading normal is bent towards the viewer until wv.z is
 /// kLeastCosine: continuous, no division by zero, no black rim. Light from below the geometric surface counts as
-/// nothing.
+/// nothing, unless the material transmits: then light from below both horizons counts as well.
 ///
 /// The frame is right-handed: a measured swatch can be turned, not mirrored. Where the material varies, +y is the side
 /// to which the second texture coordinate grows, so that a picture of a surface that is mapped mirrored, or seen from
@@ -32,6 +32,7 @@ struct Vertex {
   const GgxSampler* ggx;      // the same
   RayCone cone;               // of the ray that came here, and of the one that goes on
   SurfaceSite site;           // as good as empty where the material is uniform
+  bool transmits = false;     // Material::transmits()
 
   /// `wv_world`: unit, towards the viewer.
   Vertex(const SurfacePoint& point, const Vec3& wv_world);
@@ -44,8 +45,16 @@ struct Vertex {
   static Vertex seen(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
                      const PixelFootprint* pixel);
 
+  /// Whether light from there can reach the viewer; `wl`: the same in the frame.
+  bool receives(const Vec3& wl, const Vec3& wl_world) const {
+    const float above = glm::dot(wl_world, geometric_normal);
+    return (wl.z > 0.0f && above > 0.0f) || (transmits && wl.z < 0.0f && above < 0.0f);
+  }
+
+  /// From the side of the surface that it goes to.
   Ray ray(const Vec3& direction_world, float far) const {
-    return {position + offset * geometric_normal, 0.0f, direction_world, far};
+    const bool through = transmits && glm::dot(direction_world, geometric_normal) < 0.0f;
+    return {position + (through ? -offset : offset) * geometric_normal, 0.0f, direction_world, far};
   }
 
  private:

@@ -1,0 +1,41 @@
+// Directions on both sides of a surface, made of those of one hemisphere.
+#pragma once
+
+#include <algorithm>
+
+#include "sphere/direction_batch.h"
+
+namespace velour {
+
+/// In the plane z = 0.
+inline Vec3 mirrored(const Vec3& w) { return {w.x, w.y, -w.z}; }
+
+/// Draws a direction for each of `u`: with probability `share` a mirrored one. `draw`(whether they will be mirrored,
+/// numbers, batch to fill) is called at most once for each; its numbers are in [0, 1)^2 again. (0, 0, -1), which
+/// mixtures give where a half vector faces away, would be a direction here; it becomes (0, 0, 0).
+template <typename Draw>
+void sample_sides(std::span<const Vec2> u, float share, DirectionBatch& wl, const Draw& draw) {
+  constexpr float kBelowOne = 0x1.fffffep-1f;
+  Vec2 numbers[2][DirectionBatch::kCapacity];
+  int place[2][DirectionBatch::kCapacity];
+  size_t count[2] = {0, 0};
+  for (size_t i = 0; i < u.size(); ++i) {
+    const bool beyond = u[i].x < share;
+    const float x = beyond ? u[i].x / share : (u[i].x - share) / (1 - share);
+    place[beyond][count[beyond]] = static_cast<int>(i);
+    numbers[beyond][count[beyond]++] = {std::min(x, kBelowOne), u[i].y};
+  }
+  for (const bool beyond : {false, true}) {
+    if (count[beyond] == 0) continue;
+    DirectionBatch drawn;
+    draw(beyond, std::span<const Vec2>(numbers[beyond], count[beyond]), drawn);
+    for (size_t i = 0; i < count[beyond]; ++i) {
+      const Vec3 w = drawn.get(static_cast<int>(i));
+      const bool none = w == Vec3(0, 0, -1);
+      wl.set(place[beyond][i], none ? Vec3(0.0f) : beyond ? mirrored(w) : w);
+    }
+  }
+  wl.count = static_cast<int>(u.size());
+}
+
+}  // namespace velour
