@@ -112,6 +112,18 @@ class Notes(BlenderTest):
         bpy.context.scene.render.use_motion_blur = True
         self._said("motion blur")
 
+    def test_hair(self):
+        obj = scenes.add_sphere()
+        obj.modifiers.new("Fur", "PARTICLE_SYSTEM")
+        obj.particle_systems[0].settings.type = "HAIR"
+        self._said("Object 'Sphere'", "hair")
+
+    def test_adaptive_subdivision(self):
+        if not hasattr(bpy.types.Object, "cycles"):
+            self.skipTest("Cycles is not enabled")
+        scenes.add_sphere().cycles.use_adaptive_subdivision = True
+        self._said("Object 'Sphere'", "adaptive subdivision")
+
     def test_volume(self):
         obj = bpy.data.objects.new("Fog", bpy.data.volumes.new("Fog"))
         bpy.context.scene.collection.objects.link(obj)

@@ -5,6 +5,7 @@ import io
 import json
 
 import addon_utils
+import bpy
 
 from support import blender
 
@@ -56,7 +57,7 @@ class ParityTest(blender.BlenderTest):
 
 def record(feature, verdict, word):
     """A line for the table of docs/blender_support.md."""
-    path = blender.folder().parent / "rows.jsonl"
     row = {"feature": feature, "verdict": word, "percent": verdict.percent, "z": verdict.z}
-    with path.open("a") as file:
+    row["blender"] = bpy.app.version_string
+    with (blender.folder() / "rows.jsonl").open("a") as file:
         file.write(json.dumps(row) + "\n")

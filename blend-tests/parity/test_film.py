@@ -45,6 +45,10 @@ class Film(ParityTest):
         self.scene.render.film_transparent = True
         self.assert_parity("Film: transparent")
 
+    def test_without_sky(self):
+        self.scene.view_layers[0].use_sky = False
+        self.assert_parity("View layer: without sky")
+
     def test_exposure(self):
         self.scene.cycles.film_exposure = 1.7
         self.assert_parity("Film: exposure")

@@ -35,9 +35,20 @@ def add_light(scene, obj, matrix, notes):
         notes.add(f"{owner}: shader nodes of lights are ignored; its colour and power are used.")
     if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):
         notes.add(f"{owner}: its diffuse, specular and volume factors are ignored.")
+    _note_newer(lamp, owner, notes)
     kind, factor, values = _DESCRIBE[lamp.type](lamp, matrix)
     color = [lamp.energy * factor * c for c in lamp.color]
     scene.add_light(kind, color, unscaled(matrix), casts_shadow=_casts_shadow(lamp), **values)
+
+
+def _note_newer(lamp, owner, notes):
+    """Settings of 4.5 and newer."""
+    if getattr(lamp, "use_temperature", False):
+        notes.add(f"{owner}: its temperature is not supported; its colour alone is used.")
+    if getattr(lamp, "exposure", 0.0) != 0.0:
+        notes.add(f"{owner}: its exposure is not supported; ignored.")
+    if not getattr(lamp, "normalize", True):
+        notes.add(f"{owner}: that its power is not normalised is not supported; ignored.")
 
 
 def _sun(lamp, _matrix):

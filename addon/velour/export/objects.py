@@ -64,6 +64,10 @@ class ObjectExport:
                 self._note_unsupported(instance.object)
 
     def _add_geometry(self, instance, override, metres):
+        self._note_extras(instance.object)
+        if instance.matrix_world.to_3x3().determinant() == 0:
+            self._notes.add(f"Object '{instance.object.name}': its scale is zero along an axis; left out.")
+            return
         mesh, slots = self._mesh(instance.object, override)
         if mesh is None:
             return
@@ -95,6 +99,14 @@ class ObjectExport:
                 f"Object '{obj.name}': {dropped} triangles without area or with NaN are left out."
             )
         return number, int(np.max(arrays.material_slots)) + 1
+
+    def _note_extras(self, obj):
+        """What a renderer would add to the evaluated mesh."""
+        for system in obj.particle_systems:
+            if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
+                self._notes.add(f"Object '{obj.name}': hair '{system.name}' is not supported; left out.")
+        if getattr(getattr(obj, "cycles", None), "use_adaptive_subdivision", False):
+            self._notes.add(f"Object '{obj.name}': adaptive subdivision is not supported; ignored.")
 
     def _note_unsupported(self, obj):
         kind = _UNSUPPORTED.get(obj.type)

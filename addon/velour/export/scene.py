@@ -17,7 +17,8 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
         set_working_space(scene)
         materials = MaterialTable(scene, notes, strict)
         ObjectExport(scene, materials, notes, check_break).add_all(depsgraph)
-        add_world(scene, depsgraph.scene_eval.world, notes)
+        has_sky = depsgraph.view_layer_eval.use_sky
+        add_world(scene, depsgraph.scene_eval.world if has_sky else None, notes)
         view.add_to(scene)
         _note_scene(depsgraph.scene_eval, notes)
         check_break()

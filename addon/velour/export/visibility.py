@@ -9,11 +9,18 @@ _RAYS = {"visible_camera": "the camera", **_BOUNCES, "visible_shadow": "shadow r
 
 def note_visibility(obj, layer, notes):
     """Says what of an evaluated object's visibility in a view layer is not rendered."""
+    linking = getattr(obj, "light_linking", None)  # 4.0 and newer
+    if linking is not None and (linking.receiver_collection or linking.blocker_collection):
+        notes.add(f"{_owner(obj)}: light linking is not supported; ignored.")
     if obj.type == "LIGHT":  # the camera never sees a lamp, and no shadow ray meets one
-        _note(f"Light '{obj.name}'", "hidden from ", _hidden(obj, _BOUNCES), notes)
+        _note(_owner(obj), "hidden from ", _hidden(obj, _BOUNCES), notes)
     elif obj.type in _GEOMETRY:
-        _note(f"Object '{obj.name}'", "hidden from ", _hidden(obj, _RAYS), notes)
-        _note(f"Object '{obj.name}'", "", _roles(obj, layer), notes)
+        _note(_owner(obj), "hidden from ", _hidden(obj, _RAYS), notes)
+        _note(_owner(obj), "", _roles(obj, layer), notes)
+
+
+def _owner(obj):
+    return f"{'Light' if obj.type == 'LIGHT' else 'Object'} '{obj.name}'"
 
 
 def _hidden(obj, rays):

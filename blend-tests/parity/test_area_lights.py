@@ -1,0 +1,46 @@
+"""Area lights: shapes, and how far they spread."""
+
+import math
+
+from parity import stage
+from parity.case import ParityTest
+
+
+class AreaLights(ParityTest):
+    """A box on a ground, seen from above; the lamp is out of the picture."""
+
+    def setUp(self):
+        super().setUp()
+        stage.ground(12, 0.6)
+        stage.box((-0.6, -0.4, 0.3), (0.2, 0.3, 0.9), 0.8)
+        stage.camera((0, 0, 9), (0, 0, 0), 50)
+
+    def test_square(self):
+        stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=1.0)
+        self.assert_parity("Area: square")
+
+    def test_rectangle(self):
+        lamp = stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0.4), shape="RECTANGLE", size=2.0, size_y=0.3)
+        lamp.scale = (0.7, 1.5, 1)
+        self.assert_parity("Area: rectangle, scaled")
+
+    def test_disk(self):
+        stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="DISK", size=1.0)
+        self.assert_parity("Area: disk")
+
+    def test_ellipse(self):
+        stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0.4), shape="ELLIPSE", size=2.0, size_y=0.5)
+        self.assert_parity("Area: ellipse")
+
+    def test_spread(self):
+        stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=0.5, spread=math.radians(60))
+        self.assert_parity("Area: spread 60 degrees")
+
+    def test_narrow_spread(self):
+        stage.lamp("AREA", 100, (0, 0, 3), shape="DISK", size=1.5, spread=math.radians(25))
+        self.assert_parity("Area: spread 25 degrees")
+
+    def test_mirrored_area(self):
+        lamp = stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=1.0)
+        lamp.scale = (-1, 1, 1)
+        self.assert_parity("Area: mirrored")

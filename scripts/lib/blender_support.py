@@ -1,0 +1,56 @@
+"""The measured table of docs/blender_support.md, from what the parity tests left."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+
+import provenance
+from generated import replaced
+from markdown_table import table
+from velour.core.machine import threads
+from velour_cli import ROOT
+
+PAGE = ROOT / "docs/blender_support.md"
+ROWS = ROOT / "build/blend-tests/parity"
+HEADER = ["feature", "verdict", "largest block difference, %", "in standard errors"]
+SEED = 0  # of the first of four pictures of each engine
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="blender_support")
+    parser.add_argument("--last", action="store_true", help="of the last run of the tests")
+    if not parser.parse_args().last:
+        status = subprocess.run([ROOT / "blend-tests/run", "parity"], check=False).returncode
+        if status:
+            print("blender_support: tests of parity fail; the table stays as it is.", file=sys.stderr)
+            return status
+    rows = _rows()
+    if not rows:
+        print(f"blender_support: there is no row in {ROWS}; run without --last.", file=sys.stderr)
+        return 1
+    page = PAGE.read_text(encoding="utf-8")
+    PAGE.write_text(replaced(page, "parity", _text(rows), "blender_support"), encoding="utf-8")
+    return 0
+
+
+def _rows() -> list[dict]:
+    files = sorted(ROWS.glob("*/rows.jsonl"))
+    return [json.loads(line) for file in files for line in file.read_text(encoding="utf-8").splitlines()]
+
+
+def _text(rows: list[dict]) -> str:
+    conditions = provenance.sentence(provenance.conditions(SEED, threads()))
+    version = rows[0]["blender"]
+    lines = [[r["feature"], r["verdict"], f"{r['percent']:.2f}", _errors(r["z"])] for r in rows]
+    return f"\n{conditions} Blender and Cycles {version}.\n\n" + table(HEADER, lines) + "\n"
+
+
+def _errors(z: float) -> str:
+    return f"{z:.1f}" if z < 100 else f"{z:.0f}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
