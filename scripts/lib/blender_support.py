@@ -6,10 +6,14 @@ import argparse
 import json
 import subprocess
 import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import provenance
 from generated import replaced
 from markdown_table import table
+from velour.core import files
 from velour.core.machine import threads
 from velour_cli import ROOT
 
@@ -32,13 +36,13 @@ def main() -> int:
         print(f"blender_support: there is no row in {ROWS}; run without --last.", file=sys.stderr)
         return 1
     page = PAGE.read_text(encoding="utf-8")
-    PAGE.write_text(replaced(page, "parity", _text(rows), "blender_support"), encoding="utf-8")
+    files.write_text(PAGE, replaced(page, "parity", _text(rows), "blender_support"))
     return 0
 
 
 def _rows() -> list[dict]:
-    files = sorted(ROWS.glob("*/rows.jsonl"))
-    return [json.loads(line) for file in files for line in file.read_text(encoding="utf-8").splitlines()]
+    lines = [line for file in sorted(ROWS.glob("*/rows.jsonl")) for line in file.open(encoding="utf-8")]
+    return [json.loads(line) for line in lines]
 
 
 def _text(rows: list[dict]) -> str:
