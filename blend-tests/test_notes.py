@@ -66,8 +66,9 @@ class Notes(BlenderTest):
         obj = scenes.add_sphere()
         self.assertEqual(self._notes(), [])
         obj.visible_camera = obj.visible_shadow = False
-        obj.is_shadow_catcher = True
-        self._said("Object 'Sphere'", "hidden from the camera and shadow rays")
+        self.assertEqual(self._notes(), [])
+        obj.visible_glossy, obj.is_shadow_catcher = False, True
+        self._said("Object 'Sphere'", "hidden from glossy rays alone")
         self._said("Object 'Sphere'", "a shadow catcher")
 
     def test_light_visibility(self):
@@ -77,18 +78,6 @@ class Notes(BlenderTest):
         self.assertEqual(self._notes(), [])
         lamp.visible_glossy = False
         self._said("Light 'Spot'", "hidden from glossy rays")
-
-    def test_holdout_and_indirect_only_collections(self):
-        group = bpy.data.collections.new("Group")
-        bpy.context.scene.collection.children.link(group)
-        obj = scenes.add_sphere()
-        bpy.context.scene.collection.objects.unlink(obj)
-        group.objects.link(obj)
-        layer = bpy.context.view_layer.layer_collection.children["Group"]
-        layer.holdout = True
-        self._said("Object 'Sphere'", "a holdout")
-        layer.holdout, layer.indirect_only = False, True
-        self._said("Object 'Sphere'", "indirect only")
 
     def test_several_uv_maps_of_a_material(self):
         material = self._material("ShaderNodeBsdfPrincipled")

@@ -65,6 +65,12 @@ def test_names_of_choices_stand_at_their_numbers(prefix, names):
     assert header.constants(prefix) == expected
 
 
+def test_hidden_bits():
+    bits = {f"VLR_HIDDEN_FROM_{name.upper()}": bit for name, bit in table.HIDDEN.items() if name != "holdout"}
+    assert header.constants("VLR_HIDDEN_FROM_") == bits
+    assert header.constants("VLR_HOLDOUT") == {"VLR_HOLDOUT": table.HIDDEN["holdout"]}
+
+
 def test_status_codes():
     for status in errors.Status:
         assert re.search(rf"\bVLR_{status.name} = {status.value}\b", header.text())

@@ -107,21 +107,47 @@ class Visibility(ParityTest):
     def setUp(self):
         super().setUp()
         stage.ground(12)
-        self.sphere = stage.sphere(0.8)
+        self.sphere = stage.sphere(0.8, smooth=False)
         self.sphere.location.z = 1
         stage.camera()
         stage.sharp_sun()
         stage.world((0.3, 0.3, 0.3))
 
+    def _collection(self):
+        """A collection of the sphere alone, in the view layer."""
+        group = bpy.data.collections.new("Group")
+        self.scene.collection.children.link(group)
+        self.scene.collection.objects.unlink(self.sphere)
+        group.objects.link(self.sphere)
+        return self.scene.view_layers[0].layer_collection.children["Group"]
+
     def test_camera(self):
         self.sphere.visible_camera = False
-        self.assert_ignored("Object: hidden from the camera", "'Sphere': that it is hidden from the camera")
+        self.assert_parity("Object: hidden from the camera")
 
     def test_shadow(self):
+        """Under a sky Cycles mixes rays that see the object with such that do not."""
         self.sphere.visible_shadow = False
-        self.assert_ignored("Object: casts no shadow", "'Sphere': that it is hidden from shadow rays")
+        self.assert_approximate("Object: casts no shadow, under a sky", 12.0)
+        self.scene.world = None
+        self.assert_parity("Object: casts no shadow")
+
+    def test_bounces(self):
+        self.sphere.visible_diffuse = self.sphere.visible_glossy = False
+        self.scene.cycles.max_bounces = self.scene.cycles.diffuse_bounces = self.scene.velour.bounces = 2
+        self.scene.world = None
+        self.assert_parity("Object: hidden from diffuse and glossy rays")
 
     def test_holdout(self):
         self.sphere.is_holdout = True
+        self.assert_parity("Object: holdout")
         self.scene.render.film_transparent = True
-        self.assert_ignored("Object: holdout", "'Sphere': that it is a holdout")
+        self.assert_parity("Object: holdout, transparent film")
+
+    def test_holdout_collection(self):
+        self._collection().holdout = True
+        self.assert_parity("Collection: holdout")
+
+    def test_indirect_only_collection(self):
+        self._collection().indirect_only = True
+        self.assert_parity("Collection: indirect only")

@@ -8,7 +8,7 @@ from .meshes import has_uv_map, object_arrays
 from .placement import Placements
 from .units import metres_per_unit
 from .uv_maps import missing_map, uv_map_names
-from .visibility import note_visibility
+from .visibility import hidden_from, note_visibility
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
@@ -43,9 +43,11 @@ class ObjectExport:
             # The instance is only valid within this turn of the loop.
             if not instance.show_self:
                 continue
-            note_visibility(instance.object, depsgraph.view_layer, self._notes)
+            note_visibility(instance.object, self._notes)
             if instance.object.type in GEOMETRY:
-                self._add_geometry(instance, override, metres)
+                self._add_geometry(
+                    instance, override, metres, hidden_from(instance.object, depsgraph.view_layer)
+                )
             elif instance.object.type == "LIGHT":
                 add_light(self._scene, instance.object, instance.matrix_world, self._notes)
             else:
@@ -63,7 +65,7 @@ class ObjectExport:
             else:
                 self._note_unsupported(instance.object)
 
-    def _add_geometry(self, instance, override, metres):
+    def _add_geometry(self, instance, override, metres, hidden=()):
         self._note_extras(instance.object)
         if instance.matrix_world.to_3x3().determinant() == 0:
             self._notes.add(f"Object '{instance.object.name}': its scale is zero along an axis; left out.")
@@ -74,7 +76,7 @@ class ObjectExport:
         numbers = [self._materials.number(material) for material in slots]
         placements = self._placements.of(instance, mesh, slots, metres)
         matrix = instance.matrix_world if self._to_scene is None else self._to_scene @ instance.matrix_world
-        self._scene.add_instance(mesh, affine(matrix), numbers, placements)
+        self._scene.add_instance(mesh, affine(matrix), numbers, placements, hidden)
 
     def _mesh(self, obj, override):
         """The mesh's number in the scene (None: there is nothing to see) and the materials of its slots."""

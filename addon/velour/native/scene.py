@@ -81,12 +81,15 @@ class Scene(Handle):
         """Reads a Wavefront OBJ file; the mesh's number."""
         return self._numbered("vlr_scene_load_mesh", path_bytes(path))
 
-    def add_instance(self, mesh: int, object_to_world, materials, placements=None) -> None:
+    def add_instance(self, mesh: int, object_to_world, materials, placements=None, hidden=()) -> None:
         """`materials`: the material's number of each slot of the mesh.
 
         placements: of each slot a map [2 x 3] that takes (u, v, 1) of the mesh to the texture coordinates
         that its material is shown with, footprints and tangents included; None: they are the mesh's own.
+        hidden: of "camera", "bounces", "shadows": rays that pass through it; "holdout": the camera sees
+        nothing of it, and nothing behind it.
         """
+        self._lib.vlr_scene_hide_instances(self.pointer, sum(table.HIDDEN[name] for name in set(hidden)))
         numbers = (c_uint32 * len(materials))(*materials)
         matrix = affine("object_to_world", object_to_world)
         if placements is not None:

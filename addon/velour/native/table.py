@@ -30,6 +30,7 @@ BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
 BTF_COLORS = ("rec709", "xyz")
 PEERS = ("ggx", "principled")
 LIGHTS = ("sun", "point", "rectangle", "disk", "spot")
+HIDDEN = {"camera": 1, "bounces": 2, "shadows": 4, "holdout": 8}  # VLR_HIDDEN_FROM_*, VLR_HOLDOUT
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
 SIDES = ("automatic", "one", "two")
@@ -392,6 +393,7 @@ STATUS_CALLS = {
     ],
     "vlr_scene_add_instance": [_handle, c_uint32, _floats, _number, c_uint32],
     "vlr_scene_add_placed_instance": [_handle, c_uint32, _floats, _number, _floats, c_uint32],
+    "vlr_scene_hide_instances": [_handle, c_uint32],
     "vlr_scene_add_light": [_handle, POINTER(LightDesc)],
     "vlr_scene_set_world_color": [_handle, _floats],
     "vlr_scene_set_world_pixels": [_handle, c_uint32, c_uint32, c_uint32, _floats, c_float, _floats],

@@ -380,6 +380,12 @@ VLR_API vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const
 VLR_API vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
                                                  const uint32_t* materials, const float* placements, uint32_t count);
 
+/* Bits: what passes through an instance as if it were not there; of a holdout the camera sees nothing, and nothing
+ * behind it: black, alpha 0. */
+enum { VLR_HIDDEN_FROM_CAMERA = 1, VLR_HIDDEN_FROM_BOUNCES = 2, VLR_HIDDEN_FROM_SHADOWS = 4, VLR_HOLDOUT = 8 };
+/* Of all instances that are added from here on; 0, as at first: of none. */
+VLR_API vlr_status vlr_scene_hide_instances(vlr_scene* scene, uint32_t hidden_from);
+
 enum { VLR_LIGHT_SUN = 0, VLR_LIGHT_POINT = 1, VLR_LIGHT_RECTANGLE = 2, VLR_LIGHT_DISK = 3, VLR_LIGHT_SPOT = 4 };
 typedef struct vlr_light_desc {
   uint32_t struct_size;

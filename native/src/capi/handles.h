@@ -36,6 +36,7 @@ struct vlr_model {
 struct vlr_scene {
   std::shared_ptr<velour::Scene> scene;
   std::string info;
+  uint8_t hidden_from = 0;  // of instances to come
 };
 
 /// One of them.

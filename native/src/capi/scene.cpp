@@ -121,7 +121,7 @@ vlr_status vlr_scene_create(vlr_scene** out) {
   return guard([&] {
     require(out, "out");
     embree_self_test();
-    *out = new vlr_scene{std::make_shared<Scene>(), {}};
+    *out = new vlr_scene{std::make_shared<Scene>(), {}, 0};
   });
 }
 
@@ -238,7 +238,21 @@ vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const 
     require(materials, "materials");
     std::vector<TextureMap> maps;
     for (uint32_t i = 0; placements != nullptr && i < count; ++i) maps.push_back(map_from(placements + 6 * i));
-    scene->scene->add_instance(mesh, affine_from(object_to_world), {materials, materials + count}, std::move(maps));
+    scene->scene->add_instance(mesh, affine_from(object_to_world), {materials, materials + count}, std::move(maps),
+                               scene->hidden_from);
+  });
+}
+
+vlr_status vlr_scene_hide_instances(vlr_scene* scene, uint32_t hidden_from) {
+  return guard([&] {
+    require(scene, "scene");
+    constexpr uint32_t kKnown =
+        VLR_HIDDEN_FROM_CAMERA | VLR_HIDDEN_FROM_BOUNCES | VLR_HIDDEN_FROM_SHADOWS | VLR_HOLDOUT;
+    if ((hidden_from & ~kKnown) != 0) {
+      throw Error(Status::invalid_argument,
+                  "hidden_from is " + std::to_string(hidden_from) + ", which has bits that are no VLR_HIDDEN value.");
+    }
+    scene->hidden_from = static_cast<uint8_t>(hidden_from);
   });
 }
 

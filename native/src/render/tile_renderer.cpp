@@ -41,7 +41,7 @@ void TileRenderer::render(const PixelRect& tile, int first, int count, Film& fil
 void TileRenderer::render_run(const PixelRect& run, int first, int count, PixelSum* sums, RayLog* log) {
   start_paths(run, first, count);
   for (int depth = 0; depth <= context_.options.bounces && !paths_.empty(); ++depth) {
-    trace(log);
+    trace(depth, log);
     receivers_.clear();
     for (size_t i = 0; i < paths_.size(); ++i) follow(i, depth);
     gather(depth);
@@ -95,10 +95,10 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
   }
 }
 
-void TileRenderer::trace(RayLog* log) {
+void TileRenderer::trace(int depth, RayLog* log) {
   hits_.resize(rays_.size());
   if (log != nullptr) log->add(rays_, RayLog::Kind::nearest);
-  visible_.intersect(rays_, hits_.data());
+  visible_.intersect(rays_, hits_.data(), depth == 0 ? hidden::kFromCamera : hidden::kFromBounces);
   ray_count_ += rays_.size();
 }
 
@@ -110,6 +110,7 @@ void TileRenderer::follow(size_t index, int depth) {
     if (depth == 0) missed_.push_back({path.sample, rays_[index].direction});
     return;
   }
+  if (depth == 0 && context_.scene.is_holdout(hit)) return;  // alpha 0, as Cycles has it on an opaque film, too
   Vertex vertex = Vertex::seen(context_.scene, rays_[index], hit, path.cone, depth == 0 ? &pixel_ : nullptr);
   const auto material = static_cast<size_t>(vertex.surface - context_.scene.materials().data());
   if (!context_.tables.empty()) vertex.table = context_.tables[material].get();

@@ -49,7 +49,7 @@ class TileRenderer {
   };
   void start_paths(const PixelRect& run, int first, int count);
   void aim_paths(const PixelRect& run, int count);
-  void trace(RayLog* log);
+  void trace(int depth, RayLog* log);
   void follow(size_t path, int depth);
   void gather(int depth);
   void extend(const Receiver& receiver, size_t place);

@@ -20,7 +20,7 @@ void ViewTracer::follow(uint64_t first, uint64_t end, SeenWeights& seen) {
   start(first, end);
   for (int depth = 0; depth <= options_.bounces && !paths_.empty(); ++depth) {
     hits_.resize(rays_.size());
-    visible_.intersect(rays_, hits_.data());
+    visible_.intersect(rays_, hits_.data(), depth == 0 ? hidden::kFromCamera : hidden::kFromBounces);
     next_.clear();
     next_rays_.clear();
     for (size_t i = 0; i < paths_.size(); ++i) meet(i, depth, seen);
@@ -47,6 +47,7 @@ void ViewTracer::start(uint64_t first, uint64_t end) {
 
 void ViewTracer::meet(size_t path, int depth, SeenWeights& seen) {
   if (hits_[path].instance == kNoHit) return;
+  if (depth == 0 && scene_.is_holdout(hits_[path])) return;
   const Vertex vertex =
       Vertex::seen(scene_, rays_[path], hits_[path], paths_[path].cone, depth == 0 ? &pixel_ : nullptr);
   if (vertex.surface == &material_) see(vertex, paths_[path], depth, seen);

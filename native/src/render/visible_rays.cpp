@@ -75,13 +75,15 @@ VisibleRays::VisibleRays(const Scene& scene)
     : scene_(scene),
       shells_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.shell != nullptr; })),
       all_opaque_(!shells_ && std::ranges::all_of(scene.materials(),
-                                                  [](const SurfaceMaterial& m) { return m.material->opaque(); })) {}
+                                                  [](const SurfaceMaterial& m) { return m.material->opaque(); })) {
+  for (const Scene::Instance& i : scene.instances()) hidden_ |= i.hidden;
+}
 
-void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits) const {
+void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits, uint8_t kind) const {
   scene_.rays().intersect(rays, hits);
-  if (all_opaque_) return;
+  if (sees_all(kind)) return;
   for (size_t done = 0; done < rays.size(); done += kTogether) {
-    pass_on(rays.subspan(done, std::min(kTogether, rays.size() - done)), hits + done);
+    pass_on(rays.subspan(done, std::min(kTogether, rays.size() - done)), hits + done, kind);
   }
 }
 
@@ -92,7 +94,7 @@ bool VisibleRays::occluded(const Ray& ray) const {
 }
 
 void VisibleRays::occluded(std::span<const Ray> rays, uint8_t* blocked) const {
-  if (all_opaque_) return scene_.rays().occluded(rays, blocked);
+  if (sees_all(hidden::kFromShadows)) return scene_.rays().occluded(rays, blocked);
   for (size_t done = 0; done < rays.size(); done += kTogether) {
     occluded_some(rays.subspan(done, std::min(kTogether, rays.size() - done)), blocked + done);
   }
@@ -114,11 +116,12 @@ void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked) con
     asked[count] = rays[i];
     number[count++] = static_cast<uint8_t>(i);
   }
-  intersect({asked, count}, hit);
+  intersect({asked, count}, hit, hidden::kFromShadows);
   for (size_t i = 0; i < count; ++i) blocked[number[i]] = hit[i].instance != kNoHit;
 }
 
-bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit) const {
+bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit, uint8_t kind) const {
+  if ((scene_.instances()[hit.instance].hidden & kind) != 0) return false;
   const Material& material = *scene_.materials()[scene_.material(hit)].material;
   if (material.opaque()) return true;
   // At a point: what a footprint would average, the rays of a pixel do.
@@ -126,11 +129,11 @@ bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit) const {
   return ray_number(ray, hit, RayDecision::alpha) < material.alpha({.uv = uv});
 }
 
-void VisibleRays::decide(const Pending& pending, bool* met) const {
+void VisibleRays::decide(const Pending& pending, uint8_t kind, bool* met) const {
   ShellWays ways(met);
   for (size_t i = 0; i < pending.count; ++i) {
     const Hit& hit = pending.hit[i];
-    met[i] = !pending.again(i) && meets_surface(pending.ray[i], hit);
+    met[i] = !pending.again(i) && meets_surface(pending.ray[i], hit, kind);
     if (!met[i] || !shells_ || !scene_.has_shell(hit)) continue;
     const ShellCrossing crossing(scene_, pending.ray[i], hit);
     met[i] = false;
@@ -139,14 +142,14 @@ void VisibleRays::decide(const Pending& pending, bool* met) const {
   ways.trace();
 }
 
-void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits) const {
+void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind) const {
   Pending pending;
   for (size_t i = 0; i < rays.size(); ++i) {
     if (hits[i].instance != kNoHit) pending.add(rays[i], hits[i], i);
   }
   bool met[kTogether];
   while (pending.count > 0) {
-    decide(pending, met);
+    decide(pending, kind, met);
     size_t left = 0;
     for (size_t i = 0; i < pending.count; ++i) {
       hits[pending.number[i]] = pending.hit[i];

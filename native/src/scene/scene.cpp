@@ -71,7 +71,7 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
 }
 
 void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
-                         std::vector<TextureMap> placements) {
+                         std::vector<TextureMap> placements, uint8_t hidden_from) {
   if (mesh >= meshes_.size()) refuse("There is no mesh " + std::to_string(mesh) + " to instance.");
   require_finite(object_to_world, "an instance");
   if (materials.empty()) refuse("An instance needs at least one material.");
@@ -85,12 +85,13 @@ void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vect
     return;
   }
   instances_.push_back(
-      {mesh, object_to_world, object_to_world.normal_map(), std::move(materials), std::move(placements)});
+      {mesh, object_to_world, object_to_world.normal_map(), std::move(materials), std::move(placements), hidden_from});
 }
 
 uint32_t Scene::add_light(const Light& light) {
   require_finite(light.light_to_world, "a light");
-  const float numbers[] = {light.color.r, light.color.g, light.color.b, light.size.x, light.size.y, light.angle};
+  const float numbers[] = {light.color.r, light.color.g, light.color.b, light.size.x,
+                           light.size.y,  light.angle,   light.blend,   light.spread};
   for (float x : numbers) {
     if (!std::isfinite(x)) refuse("A light's colour, size or angle is not finite.");
   }

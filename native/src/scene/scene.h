@@ -37,6 +37,13 @@ struct SurfaceMaterial {
   float shell_softness = 0;
 };
 
+/// What rays there are to an instance that some of them pass through; bits of Instance::hidden, and values of velour.h.
+namespace hidden {
+inline constexpr uint8_t kFromCamera = 1, kFromBounces = 2, kFromShadows = 4;
+/// Not a kind of ray: the camera sees it as nothing, and nothing behind it.
+inline constexpr uint8_t kHoldout = 8;
+}  // namespace hidden
+
 /// A hit, resolved to what shading needs. World space.
 struct SurfacePoint {
   Vec3 position;
@@ -93,8 +100,9 @@ class Scene {
   /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a
   /// zero scale) is left out and counted in the warnings. `placements[s]` takes the mesh's texture coordinates to those
   /// that slot s is shown with, and with them its footprints and its tangents; none: they are the same.
+  /// `hidden_from`: bits of `hidden`.
   void add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
-                    std::vector<TextureMap> placements = {});
+                    std::vector<TextureMap> placements = {}, uint8_t hidden_from = 0);
   uint32_t add_light(const Light& light);
   void set_environment(Environment environment);
   void set_camera(const Camera& camera);
@@ -113,6 +121,7 @@ class Scene {
     Mat3 normal_to_world;
     std::vector<uint32_t> materials;
     std::vector<TextureMap> placements;  // as many, or none
+    uint8_t hidden;
     /// Set by commit(), where a material has a shell: the mesh's number with its top (traced_mesh), else `mesh`; and
     /// how wide a tile of each slot's shell is, in metres.
     uint32_t traced = 0;
@@ -131,6 +140,7 @@ class Scene {
   SurfacePoint surface(const Hit& hit) const;
   /// Number of the material that was hit.
   uint32_t material(const Hit& hit) const;
+  bool is_holdout(const Hit& hit) const { return (instances_[hit.instance].hidden & hidden::kHoldout) != 0; }
   /// Apart from surface(): most materials are uniform.
   TexturePoint texture(const Hit& hit) const;
   /// Whether a hit is on the top of a shell.

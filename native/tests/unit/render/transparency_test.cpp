@@ -41,6 +41,31 @@ Scene veil(const std::vector<float>& alpha, int layers = 1) {
   return scene;
 }
 
+/// A square of 0.8 over one of 0.4 under a sky of 1, of which something passes through the upper.
+double seen_of_two(uint8_t hidden_from, float& alpha) {
+  Scene scene;
+  const uint32_t upper = scene.add_mesh(test::square(4)), lower = scene.add_mesh(test::square(8));
+  scene.add_instance(upper, test::shift({0, 0, 0.001f}), {scene.add_material(matte(0.8f, {1}))}, {}, hidden_from);
+  scene.add_instance(lower, {}, {scene.add_material(matte(0.4f, {1}))});
+  scene.set_environment(Environment::constant(Rgb(1)));
+  scene.set_camera(test::camera_above(1));
+  scene.commit(1);
+  const auto pixels = test::rendered(scene, options_for(256));
+  alpha = pixels[3];
+  return test::mean_of(pixels);
+}
+
+TEST(Hidden, RaysPassWhatIsHiddenFromTheirKind) {
+  float alpha;
+  EXPECT_NEAR(seen_of_two(0, alpha), 0.8, 5e-3);
+  EXPECT_NEAR(seen_of_two(hidden::kFromShadows, alpha), 0.8, 5e-3);
+  EXPECT_NEAR(seen_of_two(hidden::kFromCamera, alpha), 0, 5e-3);  // in the shadow of what is not seen
+  EXPECT_NEAR(seen_of_two(hidden::kFromCamera | hidden::kFromShadows, alpha), 0.4, 5e-3);
+  EXPECT_EQ(alpha, 1);
+  EXPECT_EQ(seen_of_two(hidden::kHoldout, alpha), 0);
+  EXPECT_EQ(alpha, 0);
+}
+
 TEST(Transparency, APartlyThereSurfaceCoversThatPartOfItsPixels) {
   const Scene scene = veil({0.3f});
   const auto pixels = test::rendered(scene, options_for(16384));
