@@ -68,7 +68,7 @@ def test_names_of_choices_stand_at_their_numbers(prefix, names):
 def test_hidden_bits():
     bits = {f"VLR_HIDDEN_FROM_{name.upper()}": bit for name, bit in table.HIDDEN.items() if name != "holdout"}
     assert header.constants("VLR_HIDDEN_FROM_") == bits
-    assert header.constants("VLR_HOLDOUT") == {"VLR_HOLDOUT": table.HIDDEN["holdout"]}
+    assert header.constants("VLR_HOLD") == {"VLR_HOLDOUT": table.HIDDEN["holdout"]}
 
 
 def test_status_codes():
