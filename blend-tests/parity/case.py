@@ -9,7 +9,7 @@ import bpy
 
 from support import blender
 
-from . import engines
+from . import engines, stage
 from .judge import judge
 
 
@@ -53,6 +53,27 @@ class ParityTest(blender.BlenderTest):
         record(feature, verdict, "ignored with a warning")
         self.assertFalse(verdict.agrees, f"{feature} makes no difference here. {verdict}")
         self.assertIn(sentence, said.getvalue())
+
+
+class TownTest(ParityTest):
+    """Boxes under a sharp sun, seen at an angle."""
+
+    def setUp(self):
+        super().setUp()
+        stage.town()
+        stage.sharp_sun()
+        self.camera = stage.camera()
+        self.lens = self.camera.data
+
+
+class BoxTest(ParityTest):
+    """A box on a ground, seen from above; lamps are out of the picture."""
+
+    def setUp(self):
+        super().setUp()
+        stage.ground(12, 0.6)
+        stage.box((-0.6, -0.4, 0.3), (0.2, 0.3, 0.9), 0.8)
+        stage.camera((0, 0, 9), (0, 0, 0), 50)
 
 
 def record(feature, verdict, word):

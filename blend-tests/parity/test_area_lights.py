@@ -3,18 +3,10 @@
 import math
 
 from parity import stage
-from parity.case import ParityTest
+from parity.case import BoxTest
 
 
-class AreaLights(ParityTest):
-    """A box on a ground, seen from above; the lamp is out of the picture."""
-
-    def setUp(self):
-        super().setUp()
-        stage.ground(12, 0.6)
-        stage.box((-0.6, -0.4, 0.3), (0.2, 0.3, 0.9), 0.8)
-        stage.camera((0, 0, 9), (0, 0, 0), 50)
-
+class AreaLights(BoxTest):
     def test_square(self):
         stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=1.0)
         self.assert_parity("Area: square")

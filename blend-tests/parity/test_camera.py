@@ -1,17 +1,10 @@
 """Cameras: where things fall in the picture."""
 
 from parity import stage
-from parity.case import ParityTest
+from parity.case import TownTest
 
 
-class Camera(ParityTest):
-    def setUp(self):
-        super().setUp()
-        stage.town()
-        stage.sharp_sun()
-        self.camera = stage.camera()
-        self.lens = self.camera.data
-
+class Camera(TownTest):
     def test_perspective(self):
         self.assert_parity("Camera: perspective")
 

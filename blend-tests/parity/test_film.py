@@ -3,15 +3,12 @@
 import math
 
 from parity import stage
-from parity.case import ParityTest
+from parity.case import ParityTest, TownTest
 
 
-class Border(ParityTest):
+class Border(TownTest):
     def setUp(self):
         super().setUp()
-        stage.town()
-        stage.sharp_sun()
-        stage.camera()
         render = self.scene.render
         render.use_border = True
         render.border_min_x, render.border_max_x = 0.206, 0.754  # no whole pixels

@@ -1,16 +1,12 @@
 """Depth of field."""
 
 from parity import stage
-from parity.case import ParityTest
+from parity.case import TownTest
 
 
-class DepthOfField(ParityTest):
+class DepthOfField(TownTest):
     def setUp(self):
         super().setUp()
-        stage.town()
-        stage.sharp_sun()
-        self.camera = stage.camera()
-        self.lens = self.camera.data
         self.dof = self.lens.dof
         self.dof.use_dof, self.dof.focus_distance, self.dof.aperture_fstop = True, 9.0, 0.1
 

@@ -3,18 +3,10 @@
 import math
 
 from parity import stage
-from parity.case import ParityTest
+from parity.case import BoxTest, ParityTest
 
 
-class Lights(ParityTest):
-    """A box on a ground, seen from above; the lamp is out of the picture."""
-
-    def setUp(self):
-        super().setUp()
-        stage.ground(12, 0.6)
-        stage.box((-0.6, -0.4, 0.3), (0.2, 0.3, 0.9), 0.8)
-        stage.camera((0, 0, 9), (0, 0, 0), 50)
-
+class Lights(BoxTest):
     def test_sun(self):
         stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=0.0)
         self.assert_parity("Sun: sharp")
