@@ -23,6 +23,7 @@ constexpr double kShareStep = 0.12, kLeastShare = 0.12, kMostShare = 0.96;
 // 0.30.
 constexpr double kLeftOfRelief = 0.27;
 constexpr uint32_t kUsualClusters = 8, kUsualMembers = 2;
+constexpr double kWorthClusters = 0.99;
 
 class ShapeSearch {
  public:
@@ -37,7 +38,7 @@ class ShapeSearch {
     std::optional<ShapeChoice> best;
     for (const ShapeChoice& start : starts()) {
       const ShapeChoice end = walk(start, found_.trials.size() + kMostTrials / 2);
-      if (!best || error(end) < error(*best)) best = end;
+      if (!best || is_better_shape(end.clusters, error(end), best->clusters, error(*best))) best = end;
     }
     found_.choice = *best;
     found_.view_rank = options_.extent.view_rank;
@@ -173,6 +174,10 @@ class ShapeSearch {
 };
 
 }  // namespace
+
+bool is_better_shape(uint32_t clusters, double error, uint32_t others, double least) {
+  return error < (clusters > others ? kWorthClusters : 1.0) * least;
+}
 
 FoundShape search_shape(const TensorView& slices, const ShapeSearchOptions& options, Progress& progress) {
   return ShapeSearch(slices, options, progress).run();

@@ -122,6 +122,13 @@ TEST(TensorFit, MoreFreedomIsNoWorseAtEqualBytes) {
   EXPECT_LE(kcta, 1.02 * cta);
 }
 
+TEST(TensorFit, MoreClustersHaveToBeBetterByAHundredth) {
+  EXPECT_FALSE(is_better_shape(4, 0.2879, 1, 0.2881));
+  EXPECT_TRUE(is_better_shape(8, 0.2826, 1, 0.2881));
+  EXPECT_TRUE(is_better_shape(1, 0.2879, 4, 0.2881));
+  EXPECT_FALSE(is_better_shape(1, 0.2882, 4, 0.2881));
+}
+
 TEST(TensorFit, OfOneClusterIsTucker) {
   const test::MemoryBtf btf = test::striped_btf(small_grid());
   expect_same(fit(btf, {.bytes = kBytes, .clusters = 1, .members = 1}, kTucker).btf,
