@@ -3,27 +3,17 @@
 #include <algorithm>
 
 #include "fit/lobe_search.h"
+#include "fit/lobe_sets.h"
+#include "fit/lobe_split.h"
 
 namespace velour {
 namespace {
 
 using Index = Eigen::Index;
 
-// Both spaces take the first steps, the better one the rest.
+// All trials take the first steps, the best one the rest.
 constexpr int kFirstSteps = 3, kSteps = 20;
 constexpr double kLeast = 3e-3;
-
-TrackedLobes without_lobe(const TrackedLobes& lobes, Index lobe) {
-  TrackedLobes out = lobes;
-  out.model.space.erase(out.model.space.begin() + lobe);
-  const Index old = lobes.model.lobe_count(), columns = lobes.x.size() / old;  // node x parameter
-  out.x.resize(columns * (old - 1));
-  for (Index c = 0; c < columns; ++c) {
-    out.x.segment(c * (old - 1), lobe) = lobes.x.segment(c * old, lobe);
-    out.x.segment(c * (old - 1) + lobe, old - 1 - lobe) = lobes.x.segment(c * old + lobe + 1, old - 1 - lobe);
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -32,6 +22,9 @@ bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const Lobe
   std::vector<TrackedLobes> trials;
   for (const LobeSpace space : spaces) {
     if (auto trial = with_best_lobe(problem, lobes, space)) trials.push_back(std::move(*trial));
+  }
+  if (problem.dense()) {
+    if (auto trial = with_split_lobe(problem, lobes)) trials.push_back(std::move(*trial));
   }
   for (TrackedLobes& trial : trials) refine(problem, trial, kFirstSteps, kLeast);
   const auto best =
@@ -44,6 +37,7 @@ bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const Lobe
 }
 
 bool exchange_lobe(TrackedProblem& problem, TrackedLobes& lobes) {
+  if (lobes.model.lobe_count() < 2) return false;
   TrackedLobes fewer;
   for (Index j = 0; j < lobes.model.lobe_count(); ++j) {
     TrackedLobes trial = without_lobe(lobes, j);

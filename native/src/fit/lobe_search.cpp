@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "fit/lobe_sets.h"
 #include "job/parallel.h"
 
 namespace velour {
 namespace {
 
-using Index = Eigen::Index;
 using P = ParametricBrdf;
 
 constexpr double kChannel[3] = {0.2126, 0.7152, 0.0722};
@@ -134,25 +134,12 @@ Eigen::MatrixXd control_values(LobeSpace space, const Candidate& candidate, cons
   return out;
 }
 
-/// `lobes` with one more of the given space and control values.
-TrackedLobes with_lobe(const TrackedLobes& lobes, LobeSpace space, const Eigen::MatrixXd& control) {
-  TrackedLobes out = lobes;
-  out.model.space.push_back(space);
-  const Index old = lobes.model.lobe_count();
-  const Index columns = control.rows() * control.cols();
-  out.x.resize(columns * (old + 1));
-  for (Index column = 0; column < columns; ++column) {  // node x parameter
-    if (old > 0) out.x.segment(column * (old + 1), old) = lobes.x.segment(column * old, old);
-    out.x[column * (old + 1) + old] = control(column / control.cols(), column % control.cols());
-  }
-  return out;
-}
-
-/// A lobe alone, of the given space and control values.
+/// A lobe alone, of the given space and control values, in the model of `lobes`.
 TrackedLobes alone(const TrackedLobes& lobes, LobeSpace space, const Eigen::MatrixXd& control) {
-  TrackedLobes none = lobes;
-  none.model.space.clear();
-  return with_lobe(none, space, control);
+  TrackedLobes out = lobes;
+  out.model.space.assign(1, space);
+  out.x = control.reshaped<Eigen::RowMajor>();
+  return out;
 }
 
 /// The candidates that gain most, best first, one of each bandwidth and way to follow.
@@ -190,8 +177,7 @@ std::optional<TrackedLobes> with_best_lobe(const TrackedProblem& problem, const 
     if (!best || trial.cost < best->cost) best = std::move(trial);
   }
   if (!best) return std::nullopt;
-  const Index parameters = lobes.model.parameter_count();
-  return with_lobe(lobes, space, best->x.reshaped<Eigen::RowMajor>(best->x.size() / parameters, parameters));
+  return joined(lobes, *best);
 }
 
 }  // namespace velour

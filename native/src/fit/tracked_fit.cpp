@@ -16,8 +16,8 @@ using Index = Eigen::Index;
 constexpr double kGoalShare = 0.8;
 constexpr int kFirstLobes = 4;
 constexpr int kPolishSteps = 80, kRounds = 4, kRoundSteps = 8;
-// Of the growth: polishing brings the worst view that much nearer.
-constexpr double kEnough = 1.1;
+// A model of few lobes is put in order before it grows on: so often lobes change places.
+constexpr int kExchanges = 4;
 constexpr double kPolishLeast = 3e-4;
 
 // A lobe that lowers the cost by less than this says that lobes are not what is missing.
@@ -140,7 +140,18 @@ class Growth {
       if (lobes_.cost > (1 - kLeastGain) * before) exchange_lobe(problem_, lobes_);
       points_.push_back(order_point(problem_, lobes_));
       progress_.update(static_cast<double>(lobes_.model.lobe_count()) / options_.max_lobes);
-      done_ = points_.back().worst <= kGoalShare * kEnough || lobes_.cost > (1 - kLeastGain) * before;
+      done_ = good_enough() || lobes_.cost > (1 - kLeastGain) * before;
+    }
+  }
+
+  /// Lobes change places while that gains something: greed may have put the first ones where later ones cannot mend it.
+  void put_in_order() {
+    for (int k = 0; k < kExchanges && problem_.dense() && !points_.empty() && !good_enough(); ++k) {
+      const double before = lobes_.cost;
+      if (!exchange_lobe(problem_, lobes_)) return;
+      points_.back() = order_point(problem_, lobes_);
+      if (lobes_.cost > (1 - kLeastGain) * before) return;
+      done_ = good_enough();
     }
   }
 
@@ -148,6 +159,8 @@ class Growth {
   const std::vector<OrderPoint>& points() const { return points_; }
 
  private:
+  bool good_enough() const { return points_.back().worst <= kGoalShare; }
+
   TrackedProblem& problem_;
   const TrackedFitOptions& options_;
   Progress& progress_;
@@ -194,6 +207,7 @@ struct TrackedGrowth::State {
     if (both.lobes().model.lobe_count() <= kFirstLobes && half.lobes().model.lobe_count() <= kFirstLobes) {
       both.grow(kBoth, first);
       half.grow(kHalf, first);
+      for (Growth* growth : {&both, &half}) growth->put_in_order();
       by_half = half.lobes().cost < both.lobes().cost;
     }
     Growth& best = by_half ? half : both;

@@ -3,65 +3,21 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <optional>
 #include <vector>
 
-#include "brdf/parametric_brdf.h"
-#include "fit/picture_weights.h"
-#include "fit/sample_spacing.h"
-#include "fit/slice_samples.h"
 #include "fit/slice_sampling.h"
-#include "fit/warped_columns.h"
+#include "fit/tracked_view.h"
 #include "job/progress.h"
 
 namespace velour {
-
-// Weight of a guide's squared error.
-inline constexpr double kGuideWeight = 0.01;
-
-/// A view of the fit. `error` is the relative L2 of its f cos, channels weighted as in luminance: never below that of
-/// the luminance.
-struct TrackedView {
-  Vec3d wv;
-  ViewTaps taps;
-  double fade;  // of the stretch
-  SliceSamples samples;
-  double energy;      // that errors are measured by
-  double goal;        // the error wanted
-  double weight = 1;  // in the cost
-  double error = 1;
-  double picture_error = 0;   // the same with picture_weights, once the view is weighed for pictures
-  double excess = 0;          // squared, of the lobes' log bandwidths above what the samples can tell
-  bool guide;                 // only to keep lobes in bounds between samples: its error is nobody's goal
-  AlignedFloats residual[3];  // sqrt(weight of the sample) (measured - model)
-  AlignedFloats share;        // of each sample's weight: what it has in `error`, the rest being that of pictures
-  std::vector<float> picture_weight;     // none: pictures are not asked for
-  std::optional<SampleSpacing> spacing;  // none: any bandwidth will do
-
-  TrackedView(const MeasuredSlice& slice, const ViewSpline& spline, double error_goal);
-  /// Adds the picture weights to those of the samples, so that scale() makes weight (error / goal)^2 + (picture_error /
-  /// kPictureGoal)^2 of the residuals. To be called again when `weight` changes.
-  void weigh_for_pictures();
-  /// Picture weight of a sample per plain weight.
-  double picture_share() const { return goal * goal * energy / (weight * kPictureGoal * kPictureGoal); }
-  /// What a sum of squared residuals, channels weighted as in luminance, is worth in the cost.
-  double scale() const { return weight / (goal * goal * energy); }
-};
 
 // Of the second differences of control values. Against errors in units of their goal it matters only where the data
 // leave a value open.
 inline constexpr double kSmoothness = 1e-4;
 
-/// Gauss-Newton matrix and half the gradient of a view's squared residuals (channels weighted as in luminance) by the
-/// lobes' parameters there, [parameter][lobe].
-struct LocalNormal {
-  Eigen::MatrixXf hessian;
-  Eigen::VectorXd gradient;
-};
-
-/// cost(x) = sum over the views of weight (error / goal)^2 + excess + kSmoothness x the squared second differences of
-/// the control values; with weigh_for_pictures() (picture_error / kPictureGoal)^2 of each view as well. The unknowns x
-/// are the control values of a model, in its own order (ParametricBrdf::index).
+/// cost(x) = sum over the views of weight (error / goal)^2 + kHiding excess + kSmoothness x the squared second
+/// differences of the control values; with weigh_for_pictures() (picture_error / kPictureGoal)^2 of each view as well.
+/// The unknowns x are the control values of a model, in its own order (ParametricBrdf::index).
 class TrackedProblem {
  public:
   /// `goal` of a view. Views without light are left out. `threads` 0: all. `seen_evenly`: the
@@ -75,6 +31,8 @@ class TrackedProblem {
   const std::vector<TrackedView>& views() const { return views_; }
   /// From now on; again after weights of views have changed. Nothing happens to views that know no picture weights.
   void weigh_for_pictures();
+  /// Whether samples tell how narrow a lobe may be; of few irregular ones, lobes that are free to search follow noise.
+  bool dense() const { return !views_.empty() && views_.front().spacing.has_value(); }
   int threads() const { return threads_; }
   const Progress& progress() const { return progress_; }
 
@@ -82,6 +40,8 @@ class TrackedProblem {
   double evaluate(const ParametricBrdf& model, const Eigen::VectorXd& x);
   /// The problem of what its lobes leave, as evaluate() or linearise() found it last.
   TrackedProblem remainder() const;
+  /// The same with what the lobes of `x`, some of them, gave.
+  TrackedProblem remainder_with(const ParametricBrdf& model, const Eigen::VectorXd& x) const;
   /// The same for all views, with their matrices.
   double linearise(const ParametricBrdf& model, const Eigen::VectorXd& x, std::vector<LocalNormal>& local);
 
@@ -92,9 +52,6 @@ class TrackedProblem {
   int threads_;
   const Progress& progress_;
 };
-
-/// TrackedView::error of any model: the scalar reference, symmetric ones included.
-double error_of(const ParametricBrdf& brdf, const TrackedView& view);
 
 /// The error of a view as it is reported: of bins that share their energy, all within kHeldOutGroup together.
 double reported_error(const std::vector<TrackedView>& views, const TrackedView& view);

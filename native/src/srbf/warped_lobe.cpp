@@ -45,10 +45,14 @@ Vec3d warped(const WarpedLobe& lobe, const Vec3d& wl, const Vec3d& wv) {
   return glm::normalize(stretched(lobe.stretch, argument(lobe.space, wl, wv)));
 }
 
-std::optional<Vec3d> unwarped(const WarpedLobe& lobe, const Vec3d& psi, const Vec3d& wv) {
+Vec3d argument_at(const WarpedLobe& lobe, const Vec3d& psi) {
   // The inverse of a symmetric matrix of determinant 1.
   const Stretch inverse{lobe.stretch.yy, -lobe.stretch.xy, lobe.stretch.xx};
-  const Vec3d eta = glm::normalize(stretched(inverse, psi));
+  return glm::normalize(stretched(inverse, psi));
+}
+
+std::optional<Vec3d> unwarped(const WarpedLobe& lobe, const Vec3d& psi, const Vec3d& wv) {
+  const Vec3d eta = argument_at(lobe, psi);
   if (lobe.space == LobeSpace::light) return eta;
   const double cosine = glm::dot(eta, wv);
   if (cosine <= 0) return std::nullopt;

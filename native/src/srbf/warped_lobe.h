@@ -51,6 +51,8 @@ struct WarpedLobe {
 
 /// psi of `wl`, unit. For half lobes wl != -wv.
 Vec3d warped(const WarpedLobe& lobe, const Vec3d& wl, const Vec3d& wv);
+/// y / |y| of `psi`: the light direction or half vector where the lobe's argument is psi.
+Vec3d argument_at(const WarpedLobe& lobe, const Vec3d& psi);
 /// The light direction of `psi`; none where psi belongs to a half vector that faces away from wv.
 std::optional<Vec3d> unwarped(const WarpedLobe& lobe, const Vec3d& psi, const Vec3d& wv);
 /// d psi / d wl, ratio of solid angles: 1 / |S y|^3 in light space, |y|^2 / (2 |S y|^3) in half space.

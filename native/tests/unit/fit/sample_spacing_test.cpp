@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fit/picture_weights.h"
@@ -21,13 +22,17 @@ std::vector<SliceSample> lights_of(const Vec3& wv, float peak, float base) {
   return out;
 }
 
+/// A round lobe of light space about the direction (theta in degrees, phi).
+WarpedShape light_lobe(double bandwidth, double theta, double phi) {
+  const double tilt = theta * kPiD / 180;
+  return {LobeSpace::light, std::log(bandwidth), tilt * std::cos(phi), tilt * std::sin(phi)};
+}
+
 TEST(SampleSpacing, HighlightsMayBeSharpAndWhatIsFarFromThemMayNot) {
   const Vec3d wv = Vec3d(direction(radians_from(75.0f), 0.0f));
   const SampleSpacing spacing(lights_of(Vec3(wv), 1, 1), wv);
-  const double at_mirror = spacing.most_log_bandwidth(LobeSpace::half, {0, 0, 1});
-  const double at_retro = spacing.most_log_bandwidth(LobeSpace::light, wv);
-  EXPECT_GT(at_mirror, std::log(1e5));
-  EXPECT_LT(at_retro, std::log(1e3));
+  EXPECT_LT(spacing.excess({LobeSpace::half, std::log(1e5)}), 0);
+  EXPECT_GT(spacing.excess(light_lobe(1e3, 75, 0)), 0);
 }
 
 // Near the mirror direction samples crowd from one degree to the next, and the spacing is that of the finest.
@@ -38,7 +43,7 @@ TEST(SampleSpacing, FarFromTheMirrorDirectionALobeOfTheLeastWidthMeetsSamples) {
   for (const float theta : {10.0f, 30.0f, 60.0f, 80.0f}) {
     for (const float phi : {0.3f, 0.9f, 1.3f, 1.7f}) {
       const Vec3d center = Vec3d(direction(radians_from(theta), phi));
-      const double bandwidth = std::exp(spacing.most_log_bandwidth(LobeSpace::light, center));
+      const double bandwidth = std::exp(-spacing.excess(light_lobe(1, theta, phi)));
       const auto seen = [&](double sharpness) {
         double sum = 0;
         for (const SliceSample& s : samples) {
@@ -51,9 +56,54 @@ TEST(SampleSpacing, FarFromTheMirrorDirectionALobeOfTheLeastWidthMeetsSamples) {
   }
 }
 
+// What such a lobe shows of itself is a rim that falls off within 1 / (bandwidth sin(depth)), with a coefficient that
+// makes up for its depth: a fit put errors of eighty times the material there.
+TEST(SampleSpacing, ALobeBelowTheHorizonMayNotRiseBetweenTheSamplesAndTheHorizon) {
+  const Vec3 wv = direction(radians_from(60.0f), 0.0f);
+  const auto samples = lights_of(wv, 1, 1);
+  const SampleSpacing spacing(samples, Vec3d(wv));
+  EXPECT_GT(spacing.excess(light_lobe(100, 150, 2)), 0);
+  EXPECT_LT(spacing.excess(light_lobe(1, 150, 2)), 0);
+  for (const double theta : {92.0, 100.0, 120.0, 150.0}) {
+    const double bandwidth = std::exp(-spacing.excess(light_lobe(1, theta, 2)));
+    const double rim = 1 / (bandwidth * -std::cos(theta * kPiD / 180));  // radians
+    const auto met = std::count_if(samples.begin(), samples.end(), [&](const SliceSample& s) {
+      const double azimuth = std::atan2(static_cast<double>(s.wl.y), static_cast<double>(s.wl.x));
+      return std::abs(azimuth - 2) < 0.25 && static_cast<double>(s.wl.z) < 2 * rim;
+    });
+    EXPECT_GT(met, 0) << theta;
+  }
+}
+
+TEST(SampleSpacing, IsContinuousAcrossItsCellsAndTheHorizon) {
+  const Vec3 wv = direction(radians_from(60.0f), 0.0f);
+  const SampleSpacing spacing(lights_of(wv, 1, 1), Vec3d(wv));
+  double most = 0;
+  for (double theta = 60; theta < 120; theta += 0.01) {
+    const double step = spacing.excess(light_lobe(30, theta + 0.01, 2)) - spacing.excess(light_lobe(30, theta, 2));
+    most = std::max(most, std::abs(step));
+  }
+  EXPECT_LT(most, 0.02);
+}
+
+TEST(SampleSpacing, SlopesAreThoseOfTheExcess) {
+  const Vec3 wv = direction(radians_from(60.0f), 0.0f);
+  const SampleSpacing spacing(lights_of(wv, 1, 1), Vec3d(wv));
+  WarpedShape shape = light_lobe(50, 100, 2);
+  shape.stretch_a = 0.3, shape.stretch_b = -0.2;
+  Eigen::VectorXd slope(kWarpedSlopes);
+  spacing.slopes(shape, slope);
+  WarpedShape moved = shape;
+  constexpr double kStep = 1e-3;
+  moved.log_bandwidth += kStep, moved.tilt_x -= 2 * kStep, moved.tilt_y += kStep;
+  moved.stretch_a += 3 * kStep, moved.stretch_b -= kStep;
+  const double expected = kStep * (slope[0] - 2 * slope[1] + 3 * slope[2] + slope[3] - slope[4]);
+  EXPECT_NEAR(spacing.excess(moved) - spacing.excess(shape), expected, 0.02 * std::abs(expected));
+}
+
 TEST(SampleSpacing, NothingIsAskedWhereThereAreNoSamples) {
   const Vec3d wv(0, 0, 1);
-  EXPECT_GT(SampleSpacing({}, wv).most_log_bandwidth(LobeSpace::light, wv), 50);
+  EXPECT_LT(SampleSpacing({}, wv).excess({LobeSpace::light, 50}), 0);
 }
 
 TEST(PictureWeights, TakeEveryBrightnessByItsRatio) {
