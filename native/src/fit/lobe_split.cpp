@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "fit/lobe_sets.h"
 
@@ -13,7 +14,9 @@ using P = ParametricBrdf;
 
 // The halves' log bandwidth from that of their lobe, and their distance from its centre in widths.
 constexpr double kNarrower = 0.5, kApart = 0.3;
-constexpr int kSteps = 4;
+// All lobes' halves take one step, those that gained most some more.
+constexpr size_t kKept = 3;
+constexpr int kSteps = 3;
 constexpr double kLeast = 1e-3;
 
 /// The half of `lobe`, one alone, to either `side` (1 or -1) of it.
@@ -32,20 +35,33 @@ TrackedLobes half_of(const TrackedLobes& lobe, double side) {
   return half;
 }
 
+/// A lobe's halves, fitted to what the others leave.
+struct Split {
+  Index lobe;
+  TrackedLobes halves;
+
+  void refine_beside(const TrackedProblem& problem, const TrackedLobes& one, int steps) {
+    TrackedProblem left = problem.remainder_with(one.model, one.x);
+    refine(left, halves, steps, kLeast);
+  }
+};
+
 }  // namespace
 
 std::optional<TrackedLobes> with_split_lobe(const TrackedProblem& problem, const TrackedLobes& lobes) {
-  std::optional<TrackedLobes> best;
-  Index split = 0;
+  const auto cheaper = [](const Split& a, const Split& b) { return a.halves.cost < b.halves.cost; };
+  std::vector<Split> splits;
   for (Index j = 0; j < lobes.model.lobe_count(); ++j) {
     const TrackedLobes one = only_lobe(lobes, j);
-    TrackedProblem left = problem.remainder_with(one.model, one.x);
-    TrackedLobes halves = joined(half_of(one, 1), half_of(one, -1));
-    refine(left, halves, kSteps, kLeast);
-    if (!best || halves.cost < best->cost) best = std::move(halves), split = j;
+    splits.push_back({j, joined(half_of(one, 1), half_of(one, -1))});
+    splits.back().refine_beside(problem, one, 1);
   }
-  if (!best) return std::nullopt;
-  return joined(without_lobe(lobes, split), *best);
+  std::stable_sort(splits.begin(), splits.end(), cheaper);
+  splits.resize(std::min(splits.size(), kKept), {0, lobes});
+  for (Split& split : splits) split.refine_beside(problem, only_lobe(lobes, split.lobe), kSteps);
+  const auto best = std::min_element(splits.begin(), splits.end(), cheaper);
+  if (best == splits.end()) return std::nullopt;
+  return joined(without_lobe(lobes, best->lobe), best->halves);
 }
 
 }  // namespace velour

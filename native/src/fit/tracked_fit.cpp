@@ -22,6 +22,8 @@ constexpr double kPolishLeast = 3e-4;
 
 // A lobe that lowers the cost by less than this says that lobes are not what is missing.
 constexpr double kLeastGain = 0.01;
+// So many of them in turn: one alone may be what the next needs.
+constexpr int kIdleLobes = 2;
 // The same where the growth by the error is over and only pictures ask for more.
 constexpr double kLeastPictureGain = 0.03;
 
@@ -140,7 +142,8 @@ class Growth {
       if (lobes_.cost > (1 - kLeastGain) * before) exchange_lobe(problem_, lobes_);
       points_.push_back(order_point(problem_, lobes_));
       progress_.update(static_cast<double>(lobes_.model.lobe_count()) / options_.max_lobes);
-      done_ = good_enough() || lobes_.cost > (1 - kLeastGain) * before;
+      idle_ = lobes_.cost > (1 - kLeastGain) * before ? idle_ + 1 : 0;
+      done_ = good_enough() || idle_ >= kIdleLobes;
     }
   }
 
@@ -152,6 +155,7 @@ class Growth {
       points_.back() = order_point(problem_, lobes_);
       if (lobes_.cost > (1 - kLeastGain) * before) return;
       done_ = good_enough();
+      idle_ = 0;
     }
   }
 
@@ -166,6 +170,7 @@ class Growth {
   Progress& progress_;
   TrackedLobes lobes_;
   std::vector<OrderPoint> points_;
+  int idle_ = 0;       // lobes in turn that gained next to nothing
   bool done_ = false;  // no more lobes are wanted
 };
 
@@ -204,10 +209,12 @@ struct TrackedGrowth::State {
   const Growth& grown(int most) {
     constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light}, kHalf[] = {LobeSpace::half};
     const int first = std::min(kFirstLobes, most);
-    if (both.lobes().model.lobe_count() <= kFirstLobes && half.lobes().model.lobe_count() <= kFirstLobes) {
+    if (!begun) {
       both.grow(kBoth, first);
       half.grow(kHalf, first);
-      for (Growth* growth : {&both, &half}) growth->put_in_order();
+      // Not the lobes of smaller models: larger ones that share this growth would begin with others than on their own.
+      begun = first == kFirstLobes;
+      if (begun) both.put_in_order(), half.put_in_order();
       by_half = half.lobes().cost < both.lobes().cost;
     }
     Growth& best = by_half ? half : both;
@@ -216,7 +223,7 @@ struct TrackedGrowth::State {
   }
 
  private:
-  bool by_half = false;
+  bool begun = false, by_half = false;
 };
 
 TrackedGrowth::TrackedGrowth(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options,

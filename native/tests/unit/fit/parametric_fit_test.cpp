@@ -157,7 +157,7 @@ TEST(TrackedGrowth, FitsThatShareTheirGrowthAreThoseOfTheirOwn) {
   options.cells = 2;
   options.tolerance = 0.002;
   TrackedGrowth growth(slices, options, progress);
-  for (const int most : {1, 3, 5, 6}) {
+  for (const int most : {1, 3, 4, 5, 6}) {
     options.max_lobes = most;
     const TrackedFit shared = growth.fit(most), own = fit_tracked(slices, options, progress);
     EXPECT_EQ(shared.brdf.lobe_count(), most);
