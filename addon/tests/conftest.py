@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 STAGE = Path(os.environ.get("VELOUR_STAGE", ROOT / "build/release/blender"))
 ADDONS = STAGE / "addons"
-sys.path[:0] = [str(ADDONS), str(ROOT / "scripts/lib"), str(Path(__file__).parent)]
+sys.path[:0] = [str(ADDONS), str(ROOT / "scripts/lib"), str(Path(__file__).parent), str(ROOT / "blend-tests")]
 
 import inputs  # noqa: E402
 

@@ -8,9 +8,9 @@ import addon_utils
 import bpy
 
 from support import blender
+from support.judge import judge_renders
 
 from . import engines, stage
-from .judge import judge
 
 
 class ParityTest(blender.BlenderTest):
@@ -29,7 +29,7 @@ class ParityTest(blender.BlenderTest):
     def verdict(self, samples=1):
         theirs = self.pictures("CYCLES", samples)
         self.assertGreater(float(theirs[..., :3].std(axis=(1, 2)).max()), 0.0, "The scene shows nothing.")
-        return judge(self.pictures("VELOUR", samples), theirs)
+        return judge_renders(self.pictures("VELOUR", samples), theirs)
 
     def assert_parity(self, feature, samples=1):
         """Both engines render the scene as it is; no block may differ by more than chance."""
@@ -49,7 +49,7 @@ class ParityTest(blender.BlenderTest):
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             ours = self.pictures("VELOUR")
-        verdict = judge(ours, self.pictures("CYCLES"))
+        verdict = judge_renders(ours, self.pictures("CYCLES"))
         record(feature, verdict, "ignored with a warning")
         self.assertFalse(verdict.agrees, f"{feature} makes no difference here. {verdict}")
         self.assertIn(sentence, said.getvalue())

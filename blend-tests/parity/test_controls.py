@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from parity import judge, stage
+from parity import stage
 from parity.case import ParityTest
+from support import judge
 
 
 class Controls(ParityTest):
@@ -19,26 +20,26 @@ class Controls(ParityTest):
     def test_other_seeds_pass(self):
         for engine in ("CYCLES", "VELOUR"):
             with self.subTest(engine):
-                verdict = judge.judge(self.pictures(engine), self.pictures(engine, first_seed=100))
+                verdict = judge.judge_renders(self.pictures(engine), self.pictures(engine, first_seed=100))
                 self.assertTrue(verdict.agrees, verdict)
                 self.assertTrue(0.8 < verdict.rms < 1.25, verdict)
 
     def test_one_percent_of_exposure_fails(self):
         theirs = self.pictures("CYCLES")
-        self.assertTrue(judge.judge(self.pictures("VELOUR"), theirs).agrees)
+        self.assertTrue(judge.judge_renders(self.pictures("VELOUR"), theirs).agrees)
         self.sun.data.energy *= 1.01
         self.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value *= 1.01
-        self.assertFalse(judge.judge(self.pictures("VELOUR"), theirs).agrees)
+        self.assertFalse(judge.judge_renders(self.pictures("VELOUR"), theirs).agrees)
 
     def test_half_a_pixel_fails(self):
         theirs = self.pictures("CYCLES")
         self.camera.data.shift_x += 0.5 / self.scene.render.resolution_x
-        self.assertFalse(judge.judge(self.pictures("VELOUR"), theirs).agrees)
+        self.assertFalse(judge.judge_renders(self.pictures("VELOUR"), theirs).agrees)
 
     def test_half_a_lamp_fails(self):
         theirs = self.pictures("CYCLES")
         self.sun.data.energy /= 2
-        self.assertFalse(judge.judge(self.pictures("VELOUR"), theirs).agrees)
+        self.assertFalse(judge.judge_renders(self.pictures("VELOUR"), theirs).agrees)
 
 
 class Scores(ParityTest):
@@ -52,5 +53,5 @@ class Scores(ParityTest):
 
     def test_noiseless_pictures(self):
         flat = np.full((4, 20, 20, 3), 0.5)
-        self.assertTrue(judge.judge(flat, flat).agrees)
-        self.assertFalse(judge.judge(flat * 1.01, flat).agrees)
+        self.assertTrue(judge.judge_renders(flat, flat).agrees)
+        self.assertFalse(judge.judge_renders(flat * 1.01, flat).agrees)

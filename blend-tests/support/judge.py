@@ -1,0 +1,131 @@
+"""Whether two estimates of a picture show the same thing: a z-test for each block of pixels and channel."""
+
+from statistics import NormalDist
+from typing import NamedTuple
+
+import numpy as np
+
+BLOCK = 16  # pixels along a side
+WHOLE = 1 << 30  # a block that holds any picture
+FAMILY_ERROR = 1e-3  # chance of any false alarm in all comparisons of a run of the tests
+MOST_COMPARISONS = 20_000  # of such a run: some 70 scenes of 48 blocks and 4 channels
+ROUNDING = 1e-5  # of the picture's mean: what float32 leaves of a block's mean, as a standard error
+HALF_ROUNDING = 2**-11 / np.sqrt(3)  # relative standard error of a half float
+
+
+def z_limit(comparisons):
+    """Of which one in so many is exceeded by chance with FAMILY_ERROR."""
+    return NormalDist().inv_cdf(1 - FAMILY_ERROR / comparisons / 2)
+
+
+Z_LIMIT = z_limit(MOST_COMPARISONS)
+
+
+class Estimate(NamedTuple):
+    """A picture known from independent renders."""
+
+    mean: np.ndarray  # [height x width x channels] float64
+    variance: np.ndarray  # of the mean, alike
+    seeds: int  # that the variance is estimated from
+    rounding: float = 0.0  # relative standard error of values that were stored
+
+    def channels(self, which):
+        """The same of some channels."""
+        return self._replace(mean=self.mean[..., which], variance=self.variance[..., which])
+
+
+class Verdict(NamedTuple):
+    z: float  # largest of any block and channel, in standard errors of the normal distribution
+    percent: float  # largest difference of two blocks, of the second picture's mean
+    block: tuple  # column, row and channel of the largest z
+    rms: float  # of z over all blocks that vary: 1 where both are the same picture
+    limit: float = Z_LIMIT  # that z may not exceed
+
+    @property
+    def agrees(self):
+        return self.z <= self.limit
+
+
+def estimate(pictures):
+    """Of [seeds x height x width x channels], each seed an independent render."""
+    pictures = np.asarray(pictures, np.float64)
+    return Estimate(pictures.mean(axis=0), pictures.var(axis=0, ddof=1) / len(pictures), len(pictures))
+
+
+def estimate_single(picture, renders):
+    """Of one picture without known errors, beside the Estimate of renders of the same scene.
+
+    It is taken to be noisy where the renders are, in each block so many times as much as the median of
+    (picture - renders)^2 / variance says. Of independent normal noise that is a quantile of Student's t,
+    squared, which is there for the asking; a difference that is more than noise widens the error bars of its
+    own block: one that a whole block of n pixels has in common still is sqrt(n) of them.
+    """
+    picture = np.asarray(picture, np.float64)
+    varies = renders.variance > 0
+    ratio = np.full(picture.shape, np.nan)
+    np.divide((picture - renders.mean) ** 2, renders.variance, out=ratio, where=varies)
+    variance = np.zeros(picture.shape)
+    for rows, columns in _slices(picture.shape):
+        if varies[rows, columns].any():
+            factor = np.nanmedian(ratio[rows, columns]) / student_median_sq(renders.seeds - 1) - 1
+            variance[rows, columns] = max(factor, 0.0) * renders.variance[rows, columns]
+    half = np.array_equal(picture, picture.astype(np.float16).astype(np.float64))
+    return Estimate(picture, variance, renders.seeds, HALF_ROUNDING if half else 0.0)
+
+
+def student_median_sq(freedom):
+    """The median of the square of Student's t: Cornish and Fisher's first term, to 4 % for any freedom."""
+    return (0.67449 * (1 + 0.36374 / (freedom - 0.28))) ** 2
+
+
+def judge(first, second, limit=Z_LIMIT, block=BLOCK):
+    """`first`, `second`: Estimates of the same size.
+
+    The variance of a block's mean is that of its pixels, which are independent. Blocks where few pixels vary
+    have few degrees of freedom [Welch-Satterthwaite].
+    """
+    count = _blocks(np.ones(first.mean.shape), block)
+    difference = np.abs(_blocks(first.mean - second.mean, block)) / count
+    mean = np.abs(second.mean).mean() or 1.0
+    noise, squares = sum(np.array(_variance(side, count, block)) for side in (first, second))
+    stored = _blocks(second.rounding * np.abs(second.mean), block) / count
+    variance = noise + (ROUNDING * mean) ** 2 + stored**2
+    z = normal_score(difference / np.sqrt(variance), variance**2 / np.maximum(squares, 1e-9 * variance**2))
+    worst = np.unravel_index(np.argmax(z), z.shape)
+    noisy = noise > 0
+    return Verdict(
+        float(z.max()),
+        float(100 * difference.max() / mean),
+        (int(worst[1]), int(worst[0]), int(worst[2])),
+        float(np.sqrt((z[noisy] ** 2).mean())) if noisy.any() else 0.0,
+        limit,
+    )
+
+
+def judge_renders(first, second):
+    """`first`, `second`: [seeds x height x width x channels]."""
+    return judge(estimate(first), estimate(second))
+
+
+def _variance(side, count, block):
+    """Of the means of blocks of `count` pixels, and the square that its degrees of freedom go by."""
+    squares = side.variance**2 / (side.seeds - 1)
+    return _blocks(side.variance, block) / count**2, _blocks(squares, block) / count**4
+
+
+def normal_score(t, freedom):
+    """The normal deviate of the same tail as Student's `t`, to two digits or better [Wallace 1959]."""
+    return np.sqrt(freedom * np.log1p(t**2 / freedom)) * (8 * freedom + 1) / (8 * freedom + 3)
+
+
+def _blocks(values, block):
+    """Sums of [height x width x channels] over blocks; the last of a row or column is what is left."""
+    rows, columns = (np.arange(0, size, block) for size in values.shape[:2])
+    return np.add.reduceat(np.add.reduceat(values.astype(np.float64), rows, axis=0), columns, axis=1)
+
+
+def _slices(shape):
+    height, width = shape[:2]
+    for y in range(0, height, BLOCK):
+        for x in range(0, width, BLOCK):
+            yield slice(y, y + BLOCK), slice(x, x + BLOCK)

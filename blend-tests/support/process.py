@@ -1,0 +1,39 @@
+"""A Blender process, run to its end or to a time limit. No Blender is needed to import this."""
+
+import contextlib
+import os
+import signal
+import subprocess
+from pathlib import Path
+
+
+def environment(blender, stage=None):
+    """`stage`: a folder of scripts that Blender takes in place of the user's own."""
+    found = dict(os.environ, PYTHONDONTWRITEBYTECODE="1", LIBGL_ALWAYS_SOFTWARE="1")
+    if stage:
+        found.update(BLENDER_USER_SCRIPTS=str(stage), VELOUR_STAGE=str(stage))
+    # A distribution's Blender looks for its Python along PATH: not a version manager's, please.
+    found["PATH"] = os.pathsep.join((str(Path(blender).resolve().parent), found["PATH"]))
+    return found
+
+
+def execute(command, variables, log, seconds):
+    """The exit status; None when it took too long. All output is in `log`. Its own children go with it."""
+    with log.open("wb") as output:
+        process = subprocess.Popen(
+            command,
+            env=variables,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+        try:
+            return process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            output.write(f"\nkilled after {seconds} s\n".encode())
+            return None
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
