@@ -47,9 +47,13 @@ class Verdict(NamedTuple):
 
 
 def estimate(pictures):
-    """Of [seeds x height x width x channels], each seed an independent render."""
-    pictures = np.asarray(pictures, np.float64)
-    return Estimate(pictures.mean(axis=0), pictures.var(axis=0, ddof=1) / len(pictures), len(pictures))
+    """Of [seeds x height x width x channels], each seed an independent render; read one by one."""
+    mean = squares = np.float64(0)
+    for count, picture in enumerate(pictures, 1):
+        step = picture - mean
+        mean = mean + step / count
+        squares = squares + step * (picture - mean)
+    return Estimate(mean, squares / (count - 1) / count, count)
 
 
 def estimate_single(picture, renders):

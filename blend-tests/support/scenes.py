@@ -1,5 +1,7 @@
 """Small scenes, and their pictures as numpy arrays."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 
@@ -14,6 +16,14 @@ def use_engine(samples=64, bounces=0, size=SIZE):
     scene.velour.samples = samples
     scene.velour.bounces = bounces
     scene.view_settings.view_transform = "Standard"
+    return scene
+
+
+def use_picture(samples, width=80, height=60):
+    """A small picture by Velour; direct light."""
+    scene = use_engine(samples)
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    scene.velour.split = 1  # every direction has its own place in the pixel
     return scene
 
 
@@ -78,6 +88,17 @@ def measured_material(data, name="Paint"):
     material = measured.new_material(name)
     measured.ensure_node(material).image = measured.packed_model(data, name)
     return material
+
+
+def worn_file(path):
+    """A lit ball that wears the model file `path`, which is written; the image that names it."""
+    path.write_bytes((Path(__file__).parent.parent / "scenes/data/paint.velour").read_bytes())
+    use_picture(samples=4)
+    add_camera()
+    set_world()
+    add_sphere()
+    bpy.ops.velour.load_material(filepath=str(path), pack=False)
+    return velour_node(bpy.context.object.active_material).image
 
 
 def velour_node(material):

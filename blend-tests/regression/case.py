@@ -1,0 +1,55 @@
+"""What a check works on, and what comes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from .comparison import Comparison
+
+CHECK_SEEDS, REFERENCE_SEEDS = 4, 16
+FIRST_REFERENCE_SEED = 1_000_000  # added to the file's: no check shares a seed with a reference
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Of all renders of a run."""
+
+    seeds: int | None = None  # None: CHECK_SEEDS, or REFERENCE_SEEDS of a reference
+    samples: int | None = None  # None: as the file says
+    scripts: bool = False  # whether those inside of .blend files run
+
+    def seed_list(self, update: bool) -> list[int]:
+        first = FIRST_REFERENCE_SEED if update else 1
+        return list(range(first, first + (self.seeds or (REFERENCE_SEEDS if update else CHECK_SEEDS))))
+
+
+@dataclass(frozen=True)
+class Case:
+    """A .blend and the pictures that it is to look like."""
+
+    name: str
+    blend: Path
+    references: dict[int | None, Path]  # by frame; None: the one that the file was saved at
+    work: Path  # folder of renders and logs
+    quantity: str = ""  # what is tested
+
+
+@dataclass
+class Outcome:
+    """Of one picture, or of a file that made none."""
+
+    name: str
+    passed: bool
+    sentence: str
+    quantity: str = ""
+    comparison: Comparison | None = None
+    ours: np.ndarray | None = None  # [height x width x channels], linear, row 0 at the bottom
+    reference: np.ndarray | None = None
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def line(self) -> str:
+        return f"{'ok' if self.passed else 'FAILED'}: {self.name}: {self.sentence}"

@@ -1,0 +1,53 @@
+"""A user's .blend files and the pictures beside them: NAME.exr, or NAME_0012.exr of frame 12."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+from .case import Case
+
+
+class FolderError(ValueError):
+    """One sentence."""
+
+
+def cases(paths: Iterable[Path], work: Path, frames: list[int] | None = None) -> list[Case]:
+    """In the order given, each file once. `frames`: that references are to be made of, whatever there is."""
+    blends = list(dict.fromkeys(blend for path in paths for blend in _blends(path)))
+    return [
+        Case(blend.stem, blend, _references(blend, frames), work / f"{number:03d}")
+        for number, blend in enumerate(blends, 1)
+    ]
+
+
+def own_reference(blend: Path) -> Path:
+    """Of the frame that the file was saved at."""
+    return blend.with_suffix(".exr")
+
+
+def _blends(path: Path) -> list[Path]:
+    if path.is_dir():
+        found = sorted(path.resolve().glob("*.blend"))
+        if not found:
+            raise FolderError(f"{path} holds no .blend file; name a folder that does.")
+        return found
+    if path.suffix != ".blend" or not path.is_file():
+        raise FolderError(f"{path} is neither a folder nor a .blend file.")
+    return [path.resolve()]
+
+
+def _references(blend: Path, frames: list[int] | None) -> dict[int | None, Path]:
+    if frames:
+        return {frame: blend.with_name(f"{blend.stem}_{frame:04d}.exr") for frame in frames}
+    found: dict[int | None, Path] = {}
+    if own_reference(blend).is_file():
+        found[None] = own_reference(blend)
+    pattern = re.compile(re.escape(blend.stem) + r"_(\d{4,})\.exr")
+    for path in sorted(blend.parent.iterdir()):
+        match = pattern.fullmatch(path.name)
+        # shot_0012.exr is that of shot_0012.blend, where there is one, not frame 12 of shot.blend.
+        if match and not path.with_suffix(".blend").is_file():
+            found[int(match[1])] = path
+    return found

@@ -1,0 +1,114 @@
+"""A page of reference | new | difference x 10: index.html, its pictures, and report.json in one folder."""
+
+from __future__ import annotations
+
+import html
+import shutil
+from pathlib import Path
+
+import numpy as np
+from velour.core import files
+from velour.native import images
+
+from .case import Outcome
+from .views import GAIN, MAGNIFICATION, MARGIN, crop, views
+
+_TITLES = {"reference": "reference", "new": "new", "difference": f"difference x {GAIN}"}
+_COLUMNS = (
+    "scene",
+    "verdict",
+    "largest block difference, %",
+    "in standard errors",
+    "limit",
+    "sees exposure, %",
+)
+_STYLE = """body { font: 15px/1.4 sans-serif; margin: 2em; background: #222; color: #ddd }
+table { border-collapse: collapse }
+td, th { padding: .2em .8em; text-align: left; border-bottom: 1px solid #444 }
+.failed { color: #ff8a80 } .ok { color: #a5d6a7 } a { color: #90caf9 }
+figure { display: inline-block; margin: 0 1em 1em 0 } figcaption { color: #aaa; font-size: 13px }
+img { image-rendering: pixelated; min-width: 240px; max-width: 32vw; background: #000 }"""
+
+
+class Page:
+    """Takes outcomes one by one, so that pictures need not be held; `finish` writes the rest."""
+
+    def __init__(self, folder: Path, title: str):
+        self._folder, self._title = folder, title
+        self._rows: list[str] = []
+        self._sections: list[str] = []
+        self._records: list[dict] = []
+        self._failed = 0
+        shutil.rmtree(folder / "pictures", ignore_errors=True)
+        (folder / "pictures").mkdir(parents=True)
+
+    def add(self, outcome: Outcome) -> None:
+        number = len(self._rows) + 1
+        self._failed += not outcome.passed
+        self._rows.append(_row(outcome, number))
+        self._sections.append(self._section(outcome, number))
+        self._records.append(_record(outcome))
+
+    def finish(self) -> Path:
+        """The path of index.html."""
+        title = html.escape(self._title)
+        head = f"{len(self._rows) - self._failed} as expected, {self._failed} not"
+        table = _tag("table", _tag("tr", *(_tag("th", name) for name in _COLUMNS)), *self._rows)
+        body = _tag("body", _tag("h1", title), _tag("p", head), table, *self._sections)
+        meta = f'<meta charset="utf-8">{_tag("title", title)}{_tag("style", _STYLE)}'
+        files.write_text(
+            self._folder / "index.html", f'<!doctype html>\n<html lang="en">{meta}{body}</html>\n'
+        )
+        files.write_json(self._folder / "report.json", {"failed": self._failed, "outcomes": self._records})
+        return self._folder / "index.html"
+
+    def _section(self, outcome: Outcome, number: int) -> str:
+        parts = [f'<h2 id="{number}">{html.escape(outcome.name)} {_word(outcome)}</h2>']
+        tested = [f"Tested: {outcome.quantity}"] if outcome.quantity else []
+        parts += [_tag("p", html.escape(text)) for text in (*tested, outcome.sentence, *outcome.notes)]
+        if outcome.ours is not None:
+            parts += self._pictures(outcome, f"{number:03d}")
+        return "\n".join(parts)
+
+    def _pictures(self, outcome: Outcome, stem: str) -> list[str]:
+        made, caption = views(outcome)
+        parts = [self._figures(made, stem)]
+        if not outcome.passed:
+            block = outcome.comparison.block
+            parts.append(
+                _tag("p", f"The worst block and {MARGIN} pixels around it, {MAGNIFICATION} times as large:")
+            )
+            parts.append(
+                self._figures({name: crop(view, block) for name, view in made.items()}, f"{stem}-crop")
+            )
+        return [*parts, _tag("p", _tag("small", caption))]
+
+    def _figures(self, made: dict[str, np.ndarray], stem: str) -> str:
+        text = ""
+        for name, view in made.items():
+            path = f"pictures/{stem}-{name}.png"
+            images.write(self._folder / path, np.ascontiguousarray(view, np.float32))
+            text += _tag("figure", f'<img src="{path}" alt="{name}">', _tag("figcaption", _TITLES[name]))
+        return text
+
+
+def _tag(name: str, *inside: str) -> str:
+    return f"<{name}>{''.join(inside)}</{name}>"
+
+
+def _word(outcome: Outcome) -> str:
+    word = "ok" if outcome.passed else "failed"
+    return f'<span class="{word}">{word}</span>'
+
+
+def _row(outcome: Outcome, number: int) -> str:
+    cells = [f'<a href="#{number}">{html.escape(outcome.name)}</a>', _word(outcome)]
+    found = outcome.comparison
+    if found:
+        cells += [f"{found.percent:.2f}", f"{found.z:.1f}", f"{found.limit:.1f}", f"{found.sees:.2f}"]
+    return _tag("tr", *(_tag("td", cell) for cell in cells))
+
+
+def _record(outcome: Outcome) -> dict:
+    numbers = outcome.comparison._asdict() if outcome.comparison else {}
+    return {"name": outcome.name, "passed": outcome.passed, "sentence": outcome.sentence, **numbers}

@@ -1,0 +1,138 @@
+"""velour-check: a user's .blend files beside their references. See docs/regression.md."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TESTS))
+
+from regression import blender, folder  # noqa: E402
+from regression.case import Case, Outcome, Settings  # noqa: E402
+
+STAGE = TESTS.parent / "build/release/blender"
+SECONDS = 900  # that all renders of a .blend may take
+INTERRUPTED = 130
+PAGE_MARK = "report.json"  # in every folder that velour-check made
+
+
+def main() -> int:
+    arguments = _arguments()
+    output = (arguments.output or _default_output(arguments.path[0])).resolve()
+    try:
+        installation = _installation(arguments)
+        cases = folder.cases(arguments.path, output / "work", arguments.frame)
+        _make_room(output)
+    except (folder.FolderError, blender.BlenderError, OSError) as error:
+        print(f"velour-check: {error}", file=sys.stderr)
+        return 1
+    return _run(arguments, cases, installation, output)
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="velour-check",
+        description="Renders .blend files with Velour and holds each against its NAME.exr, by statistics.",
+    )
+    add = parser.add_argument
+    add("path", nargs="+", type=Path, metavar="FOLDER", help="with .blend files, or a .blend file")
+    add("--update", action="store_true", help="make the references anew: NAME.exr and NAME.error.exr")
+    add("--frame", type=int, action="append", metavar="N", help="of references to make; may be repeated")
+    add("--output", type=Path, metavar="FOLDER", help="of the page (velour-check in the first FOLDER)")
+    add("--seeds", type=int, metavar="N", help="renders of each picture (4; of a reference 16)")
+    add("--samples", type=int, metavar="N", help="directions a pixel (those of the .blend)")
+    add(
+        "--blender",
+        default=shutil.which("blender"),
+        metavar="PATH",
+        help="the Blender to run (on the PATH)",
+    )
+    add("--installed", action="store_true", help="use the add-on that Blender has, not the one built here")
+    add("--scripts", action="store_true", help="let scripts and drivers inside the .blend files run")
+    add("--timeout", type=int, default=SECONDS, metavar="SECONDS", help=f"of a .blend file ({SECONDS})")
+    arguments = parser.parse_intermixed_args()
+    if arguments.seeds is not None and arguments.seeds < 2:
+        parser.error("--seeds: at least 2 are needed to know how noisy they are")
+    if arguments.frame and not arguments.update:
+        parser.error("--frame is for --update; frames are checked where there is a reference of them")
+    return arguments
+
+
+def _default_output(first: Path) -> Path:
+    return (first if first.is_dir() else first.parent) / "velour-check"
+
+
+def _make_room(output: Path) -> None:
+    """An earlier page goes; what is no page is left alone."""
+    if output.is_dir() and any(output.iterdir()) and not (output / PAGE_MARK).is_file():
+        raise folder.FolderError(f"{output} holds something else than a page; name another --output.")
+    shutil.rmtree(output, ignore_errors=True)
+    output.mkdir(parents=True)
+    (output / PAGE_MARK).touch()
+
+
+def _installation(arguments: argparse.Namespace) -> blender.Installation:
+    """Makes the package of the add-on importable as well."""
+    program = shutil.which(arguments.blender or "blender")
+    if program is None:
+        raise blender.BlenderError("There is no Blender; install it, or name one with --blender.")
+    stage = Path(os.environ.get("VELOUR_STAGE", STAGE)).resolve()
+    if not arguments.installed and (stage / "addons/velour").is_dir():
+        blender.use_package(stage / "addons")
+        return blender.Installation(program, stage, arguments.timeout)
+    installed = blender.Installation(program, None, arguments.timeout)
+    with tempfile.TemporaryDirectory(prefix="velour-check-") as temporary:
+        try:
+            addons = installed.run("inside_find.py", {}, Path(temporary))["addons"]
+        except blender.BlenderError as error:
+            sentence = f"{program}: {error}; install the add-on, or build it with scripts/build."
+            raise blender.BlenderError(sentence) from error
+    blender.use_package(Path(addons))
+    return installed
+
+
+def _run(
+    arguments: argparse.Namespace, cases: list[Case], installation: blender.Installation, output: Path
+) -> int:
+    from regression import page  # imports the package
+
+    settings = Settings(arguments.seeds, arguments.samples, arguments.scripts)
+    shown = page.Page(output, "Velour: renders beside their references")
+    pictures = sum(len(case.references) for case in cases) or 1
+    passed = failed = 0
+    for case in cases:
+        for outcome in _outcomes(case, installation, settings, pictures, arguments.update):
+            print(outcome.line, flush=True)
+            shown.add(outcome)
+            passed, failed = passed + outcome.passed, failed + (not outcome.passed)
+    print(f"page: {shown.finish()}")
+    print(f"{passed} as expected, {failed} not")
+    return 1 if failed else 0
+
+
+def _outcomes(
+    case: Case, installation: blender.Installation, settings: Settings, pictures: int, update: bool
+) -> list[Outcome]:
+    from regression import check
+
+    if update:
+        if not case.references:
+            case.references[None] = folder.own_reference(case.blend)
+        return check.update(case, installation, settings)
+    if not case.references:
+        sentence = f"{case.blend.name} has no reference; make {case.blend.stem}.exr with --update."
+        return [Outcome(case.name, False, sentence)]
+    return check.check(case, installation, settings, pictures)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        print("velour-check: stopped.", file=sys.stderr)
+        sys.exit(INTERRUPTED)

@@ -1,0 +1,64 @@
+"""A folder of .blend files, and velour-check run on it as a user does."""
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import bpy
+
+from . import scenes
+from .blender import BlenderTest
+
+ROOT = Path(__file__).resolve().parents[2]
+SAMPLES = 128
+
+
+class CheckFolderTest(BlenderTest):
+    """A ball under a lamp and a sky."""
+
+    def setUp(self):
+        super().setUp()
+        self.scene = scenes.use_picture(SAMPLES, 48, 32)
+        scenes.add_camera()
+        scenes.add_sphere(scenes.diffuse_material((0.8, 0.5, 0.3)))
+        scenes.add_plane(size=6).location.z = -1
+        lamp = bpy.data.lights.new("Lamp", "AREA")
+        lamp.energy, lamp.size = 300, 1
+        self.scene.collection.objects.link(bpy.data.objects.new("Lamp", lamp))
+        bpy.data.objects["Lamp"].location = (2, 1, 4)
+        scenes.set_world(strength=0.4)
+        self.shots = self.folder / "my shots"
+        self.shots.mkdir()
+
+    def save(self, name):
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.shots / f"{name}.blend"), copy=True)
+
+    def references(self, *names):
+        """That of "shot" for other names."""
+        for ending in (".exr", ".error.exr"):
+            for name in names:
+                shutil.copy(self.shots / f"shot{ending}", self.shots / f"{name}{ending}")
+
+    def check(self, *arguments):
+        """The exit status, what was said, and outcomes by name."""
+        command = [ROOT / "scripts/velour-check", self.shots, "--blender", bpy.app.binary_path, *arguments]
+        done = subprocess.run(
+            [str(part) for part in command],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            env=dict(os.environ),
+            text=True,
+            errors="replace",
+            check=False,
+        )
+        report = self.shots / "velour-check/report.json"
+        text = report.read_text() if report.is_file() else ""
+        outcomes = json.loads(text)["outcomes"] if text else []
+        return done.returncode, done.stdout, {outcome["name"]: outcome for outcome in outcomes}
+
+    def update(self, *arguments):
+        status, said, _ = self.check("--update", *arguments)
+        self.assertEqual(status, 0, said)

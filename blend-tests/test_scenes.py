@@ -1,0 +1,90 @@
+"""The runner of regression scenes: what it must refuse, and that one scene that dies leaves the others be."""
+
+import os
+import shutil
+import subprocess
+import unittest
+from pathlib import Path
+
+import bpy
+
+from support.blender import BlenderTest
+
+HERE = Path(__file__).resolve().parent
+_PICTURE = HERE / "scenes/sphere.py"
+_DIE = """QUANTITY = "a crash"
+def build(folder):
+    import os, signal
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+_RAISE = 'QUANTITY = "a mistake"\ndef build(folder):\n    raise RuntimeError("no such thing")\n'
+
+
+class Runner(BlenderTest):
+    """A folder of scenes of its own."""
+
+    def setUp(self):
+        super().setUp()
+        self.scenes = self.folder / "scenes"
+        (self.scenes / "references").mkdir(parents=True)
+
+    def add(self, name, text):
+        """A scene with the reference of the sphere."""
+        (self.scenes / f"{name}.py").write_text(text)
+        for ending in (".exr", ".error.exr"):
+            shutil.copy(
+                HERE / f"scenes/references/sphere{ending}", self.scenes / f"references/{name}{ending}"
+            )
+
+    def run_scenes(self, *arguments):
+        command = [HERE / "run_scenes", "--folder", self.scenes, "--output", self.folder / "page", *arguments]
+        command += ["--blender", bpy.app.binary_path]
+        return subprocess.run(
+            [str(part) for part in command],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            env=dict(os.environ),
+            text=True,
+            check=False,
+        )
+
+    def test_each_scene_stands_alone(self):
+        sphere = _PICTURE.read_text()
+        self.assertIn("400", sphere)
+        self.add("a_crash", _DIE)
+        self.add("b_mistake", _RAISE)
+        self.add("c_brighter", sphere.replace("400", "404"))
+        self.add("d_refused", sphere + '\nREFUSAL = ("never said",)\n')
+        self.add("e_sphere", sphere)
+        done = self.run_scenes()
+        self.assertEqual(done.returncode, 1, done.stdout)
+        for words in (
+            "FAILED: a_crash: it cannot be built: Blender crashed (SIGKILL)",
+            "FAILED: b_mistake: it cannot be built: Blender ended with status 7",
+            "FAILED: c_brighter, frame 1: differs in colour",
+            "FAILED: d_refused: Blender ended with status 0, wrote ['picture_0001.exr']",
+            "ok: e_sphere, frame 1:",
+            "1 passed, 4 failed",
+        ):
+            self.assertIn(words, done.stdout)
+        for name in ("a_crash", "c_brighter", "e_sphere"):
+            self.assertIn(name, (self.folder / "page/index.html").read_text())
+
+    def test_update_makes_what_passes(self):
+        self.add("brighter", _PICTURE.read_text().replace("400", "404"))
+        before = (self.scenes / "references/brighter.exr").read_bytes()
+        self.assertEqual(self.run_scenes("--update", "brighter").returncode, 0)
+        self.assertNotEqual((self.scenes / "references/brighter.exr").read_bytes(), before)
+        done = self.run_scenes("brighter")
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_unknown_name(self):
+        self.add("sphere", _PICTURE.read_text())
+        done = self.run_scenes("spear")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("There is no scene 'spear'; the scenes are sphere.", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

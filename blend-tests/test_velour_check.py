@@ -1,0 +1,114 @@
+"""velour-check: other seeds and samples pass, one per cent of exposure does not."""
+
+import shutil
+import unittest
+
+import bpy
+
+from support import scenes
+from support.check_folder import SAMPLES, CheckFolderTest
+
+
+class VelourCheck(CheckFolderTest):
+    def test_chance_passes_and_one_percent_does_not(self):
+        self.save("shot")
+        self.update()
+        expected = {"shot": True}
+        for name, change in _CHANGES.items():
+            bpy.ops.wm.open_mainfile(filepath=str(self.shots / "shot.blend"))
+            expected[name] = change(bpy.context.scene)
+            self.save(name)
+        self.references(*_CHANGES)
+        # The same for references that nobody wrote errors of: one render, in half floats.
+        for name in ("fewer", "brighter"):
+            shutil.copy(self.shots / f"{name}.blend", self.shots / f"plain {name}.blend")
+            self._render(self.shots / f"plain {name}.exr")
+            expected[f"plain {name}"] = expected[name]
+        status, said, outcomes = self.check()
+        self.assertEqual({name: o["passed"] for name, o in outcomes.items()}, expected, said)
+        self.assertEqual(status, 1, said)
+        self.assertTrue(all(o["sees"] < 1 for o in outcomes.values()), outcomes)
+        self._assert_page(said)
+
+    def _render(self, path):
+        """Of "shot", as a user would."""
+        bpy.ops.wm.open_mainfile(filepath=str(self.shots / "shot.blend"))
+        settings = bpy.context.scene.render.image_settings
+        settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGBA", "16"
+        bpy.context.scene.render.filepath = str(path)
+        bpy.ops.render.render(write_still=True)
+
+    def _assert_page(self, said):
+        """Pictures lie beside it; failing ones have a magnified crop."""
+        page = self.shots / "velour-check"
+        text = (page / "index.html").read_text()
+        pictures = {path.name for path in (page / "pictures").iterdir()}
+        for name in pictures:
+            self.assertIn(f'src="pictures/{name}"', text)
+        crops = [name for name in pictures if "crop" in name]
+        self.assertEqual(len(crops), 3 * said.count("FAILED"))
+        crop = scenes.read(page / "pictures" / crops[0])
+        self.assertGreater(crop.shape[1], 4 * 32)
+
+    def test_two_frames(self):
+        light = bpy.data.lights["Lamp"]
+        for frame, watts in ((1, 100), (20, 400)):
+            light.energy = watts
+            light.keyframe_insert("energy", frame=frame)
+        self.save("shot")
+        self.update("--frame", 2, "--frame", 19)
+        found = sorted(path.name for path in self.shots.glob("*.exr") if "error" not in path.name)
+        self.assertEqual(found, ["shot_0002.exr", "shot_0019.exr"])
+        status, said, outcomes = self.check()
+        self.assertEqual((status, len(outcomes)), (0, 2), said)
+        shutil.copy(self.shots / "shot_0002.exr", self.shots / "shot_0019.exr")
+        status, said, outcomes = self.check()
+        self.assertEqual(status, 1, said)
+        self.assertTrue(outcomes["shot, frame 2"]["passed"])
+        self.assertFalse(outcomes["shot, frame 19"]["passed"])
+
+
+def _seed(scene):
+    scene.velour.seed = 77
+    return True
+
+
+def _keyed_seed(scene):
+    for frame in (1, 100):
+        scene.velour.seed = frame
+        scene.velour.keyframe_insert("seed", frame=frame)
+    return True
+
+
+def _driven_seed(scene):
+    scene.driver_add("velour.seed").driver.expression = "frame"
+    return True
+
+
+def _fewer(scene):
+    scene.velour.samples = SAMPLES // 4
+    return True
+
+
+def _more(scene):
+    scene.velour.samples = 2 * SAMPLES
+    return True
+
+
+def _brighter(scene):
+    scene.cycles.film_exposure *= 1.01
+    return False
+
+
+_CHANGES = {
+    "seed": _seed,
+    "keyed": _keyed_seed,
+    "driven": _driven_seed,
+    "fewer": _fewer,
+    "more": _more,
+    "brighter": _brighter,
+}
+
+
+if __name__ == "__main__":
+    unittest.main()
