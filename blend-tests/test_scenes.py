@@ -1,13 +1,12 @@
 """The runner of regression scenes: what it must refuse, and that one scene that dies leaves the others be."""
 
-import os
 import shutil
-import subprocess
 import unittest
 from pathlib import Path
 
 import bpy
 
+from support import process
 from support.blender import BlenderTest
 
 HERE = Path(__file__).resolve().parent
@@ -39,15 +38,7 @@ class Runner(BlenderTest):
     def run_scenes(self, *arguments):
         command = [HERE / "run_scenes", "--folder", self.scenes, "--output", self.folder / "page", *arguments]
         command += ["--blender", bpy.app.binary_path]
-        return subprocess.run(
-            [str(part) for part in command],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            env=dict(os.environ),
-            text=True,
-            check=False,
-        )
+        return process.run(command)
 
     def test_each_scene_stands_alone(self):
         sphere = _PICTURE.read_text()

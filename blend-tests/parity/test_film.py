@@ -21,6 +21,17 @@ class Border(TownTest):
         self.scene.render.use_crop_to_border = True
         self.assert_parity("Render border with crop")
 
+    def test_border_at_whole_pixels(self):
+        """5/6 of 96 pixels are 80, though the nearest float is less: no row is left empty."""
+        render = self.scene.render
+        render.use_crop_to_border, render.border_max_y = True, 5 / 6
+        self.assertLess(render.border_max_y * 96, 80)
+        render.film_transparent = False
+        for engine in ("CYCLES", "VELOUR"):
+            picture = self.pictures(engine)[0]
+            self.assertEqual(picture.shape[0], 80 - 9, engine)
+            self.assertEqual(picture[..., 3].min(), 1.0, engine)
+
     def test_percentage(self):
         self.scene.render.resolution_percentage = 87
         self.scene.render.use_crop_to_border = True

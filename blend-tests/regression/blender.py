@@ -50,8 +50,9 @@ class Installation:
 def ending(status: int | None, seconds: int) -> str:
     if status is None:
         return f"Blender took longer than {seconds} s; give it more time, or a smaller picture"
-    if status < 0:
-        return f"Blender crashed ({signal.Signals(-status).name})"
+    number = -status if status < 0 else status - 128  # a script around Blender adds 128
+    if number in set(signal.Signals):
+        return f"Blender crashed ({signal.Signals(number).name})"
     return f"Blender ended with status {status}"
 
 

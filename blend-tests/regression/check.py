@@ -71,9 +71,8 @@ def _judged(case: Case, frame: int | None, renders: Estimate, pictures: int) -> 
     path = case.references[frame]
     try:
         known = reference.read(path, renders)
-    except (VelourError, ValueError, OSError) as error:
-        remedy = "render at the size of the reference, or make it anew with --update"
-        return _outcome(case, frame, False, f"{path.name}: {str(error).rstrip('.')}; {remedy}.")
+    except ValueError as error:
+        return _outcome(case, frame, False, f"{path.name}: {error}")
     comparison = compare(renders, known, pictures)
     outcome = _outcome(case, frame, comparison.agrees, describe(comparison))
     outcome.comparison = comparison

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from velour.native import images
+from velour.native import VelourError, images
 
 from support.judge import Estimate, estimate_single
 
 _MEAN_BITS, _ERROR_BITS = 16, 7  # of 23 after the point: what noise makes of the rest cannot be compressed
+_ANEW = "make the reference anew with --update"
 STORED = 2.0 ** -(_MEAN_BITS + 1) / np.sqrt(3)  # relative standard error that is left by this
 
 
@@ -24,20 +25,31 @@ def write(path: Path, estimate: Estimate) -> None:
 
 
 def read(path: Path, renders: Estimate) -> Estimate:
-    """`renders` say how noisy a picture without a standard error is, and how uncertain such errors are."""
-    mean = images.read(path).astype(np.float64)
+    """`renders` say how noisy a picture without a standard error is, and how uncertain such errors are.
+
+    Raises ValueError with what is wrong and the remedy."""
+    mean = _pixels(path)
     if mean.shape[2] == 3:
         renders = renders.channels(slice(0, 3))
     if mean.shape != renders.mean.shape:
-        raise ValueError(f"it is {_size(mean)}, the render {_size(renders.mean)}")
+        sizes = f"it is {_size(mean)}, the render {_size(renders.mean)}"
+        raise ValueError(f"{sizes}; render at its size, or {_ANEW}.")
     if not np.isfinite(mean).all():
-        raise ValueError("it holds numbers that are not finite")
+        raise ValueError(f"it holds numbers that are not finite; {_ANEW}.")
     if not error_path(path).is_file():
         return estimate_single(mean, renders)
-    error = images.read(error_path(path)).astype(np.float64)
+    error = _pixels(error_path(path))
     if error.shape != mean.shape or not np.isfinite(error).all() or (error < 0).any():
-        raise ValueError(f"{error_path(path).name} holds no standard errors of it")
+        raise ValueError(f"{error_path(path).name} holds no standard errors of it; take it away, or {_ANEW}.")
     return Estimate(mean, error**2, renders.seeds, STORED)
+
+
+def _pixels(path: Path) -> np.ndarray:
+    try:
+        return images.read(path).astype(np.float64)
+    except VelourError as error:
+        detail = error.sentence.removeprefix(f"{path}: ").rstrip(".")
+        raise ValueError(f"{detail}; {_ANEW}.") from error
 
 
 def _rounded(values: np.ndarray, bits: int) -> np.ndarray:

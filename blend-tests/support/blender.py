@@ -12,6 +12,8 @@ from pathlib import Path
 import addon_utils
 import bpy
 
+from . import process
+
 ADDON = "velour"
 _folder = Path("/nowhere")
 _CHILD_SECONDS = 60
@@ -44,37 +46,28 @@ def child_command(*arguments, addons=True):
 
 def run_blender(*arguments, addons=True, environment=None):
     """A headless Blender of its own: CompletedProcess with both outputs as one text."""
-    return subprocess.run(
-        child_command(*arguments, addons=addons),
-        env={**os.environ, **(environment or {})},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        timeout=_CHILD_SECONDS,
-        check=False,
-    )
+    return process.run(child_command(*arguments, addons=addons), environment, _CHILD_SECONDS)
 
 
 def interrupt_blender(*arguments, after):
     """As run_blender, but sends Ctrl-C once the output holds `after`. Also says how long the end took."""
-    process = subprocess.Popen(
+    child = subprocess.Popen(
         child_command(*arguments),
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
         errors="replace",
     )
-    watchdog = threading.Timer(_CHILD_SECONDS, process.kill)
+    watchdog = threading.Timer(_CHILD_SECONDS, child.kill)
     watchdog.start()
     lines, sent = [], None
     try:
-        for line in process.stdout:
+        for line in child.stdout:
             lines.append(line)
             if sent is None and after in line:
                 sent = time.monotonic()
-                process.send_signal(signal.SIGINT)
-        return process.wait(), "".join(lines), time.monotonic() - sent if sent else None
+                child.send_signal(signal.SIGINT)
+        return child.wait(), "".join(lines), time.monotonic() - sent if sent else None
     finally:
         watchdog.cancel()
 

@@ -1,14 +1,12 @@
 """A folder of .blend files, and velour-check run on it as a user does."""
 
 import json
-import os
 import shutil
-import subprocess
 from pathlib import Path
 
 import bpy
 
-from . import scenes
+from . import process, scenes
 from .blender import BlenderTest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -44,16 +42,7 @@ class CheckFolderTest(BlenderTest):
     def check(self, *arguments):
         """The exit status, what was said, and outcomes by name."""
         command = [ROOT / "scripts/velour-check", self.shots, "--blender", bpy.app.binary_path, *arguments]
-        done = subprocess.run(
-            [str(part) for part in command],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            env=dict(os.environ),
-            text=True,
-            errors="replace",
-            check=False,
-        )
+        done = process.run(command)
         report = self.shots / "velour-check/report.json"
         text = report.read_text() if report.is_file() else ""
         outcomes = json.loads(text)["outcomes"] if text else []

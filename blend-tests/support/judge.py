@@ -59,10 +59,10 @@ def estimate(pictures):
 def estimate_single(picture, renders):
     """Of one picture without known errors, beside the Estimate of renders of the same scene.
 
-    It is taken to be noisy where the renders are, in each block so many times as much as the median of
-    (picture - renders)^2 / variance says. Of independent normal noise that is a quantile of Student's t,
-    squared, which is there for the asking; a difference that is more than noise widens the error bars of its
-    own block: one that a whole block of n pixels has in common still is sqrt(n) of them.
+    It is taken to be noisy where the renders are, at least as much as one of them, and in each block as
+    much as the median of (picture - renders)^2 / variance says. Of independent normal noise that is the
+    median of Student's t, squared; a difference that is more than noise widens the error bars of its own
+    block: one that a whole block of n pixels has in common still is sqrt(n) of them.
     """
     picture = np.asarray(picture, np.float64)
     varies = renders.variance > 0
@@ -72,7 +72,7 @@ def estimate_single(picture, renders):
     for rows, columns in _slices(picture.shape):
         if varies[rows, columns].any():
             factor = np.nanmedian(ratio[rows, columns]) / student_median_sq(renders.seeds - 1) - 1
-            variance[rows, columns] = max(factor, 0.0) * renders.variance[rows, columns]
+            variance[rows, columns] = max(factor, renders.seeds) * renders.variance[rows, columns]
     half = np.array_equal(picture, picture.astype(np.float16).astype(np.float64))
     return Estimate(picture, variance, renders.seeds, HALF_ROUNDING if half else 0.0)
 

@@ -17,6 +17,21 @@ def environment(blender, stage=None):
     return found
 
 
+def run(command, variables=None, seconds=None):
+    """CompletedProcess with both outputs as one text."""
+    return subprocess.run(
+        [str(part) for part in command],
+        env={**os.environ, **(variables or {})},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        timeout=seconds,
+        check=False,
+    )
+
+
 def execute(command, variables, log, seconds):
     """The exit status; None when it took too long. All output is in `log`. Its own children go with it."""
     with log.open("wb") as output:
