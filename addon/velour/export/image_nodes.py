@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from mathutils import Euler, Matrix
 
-from .nodes import output, source
+from .plugs import fed_by, trees_of
 
 _WRAPS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
 _SOURCES = ("FILE", "GENERATED")
@@ -26,11 +26,9 @@ class UnsupportedError(Exception):
     """Why a node cannot be rendered, as the end of a sentence."""
 
 
-def picture_of(socket):
-    """The Picture linked to `socket`, None where nothing is; raises UnsupportedError of anything else."""
-    node = source(socket)
-    if node is None:
-        return None
+def picture_of(plug):
+    """The Picture at a node's output; raises UnsupportedError of any node but Image Texture."""
+    node = plug.node
     if node.bl_idname != "ShaderNodeTexImage":
         raise UnsupportedError(f"'{node.name}' is not an Image Texture")
     if node.velour.enabled:
@@ -38,10 +36,10 @@ def picture_of(socket):
     _check(node)
     return Picture(
         node.image,
-        output(socket).name == "Alpha",
+        plug.socket.name == "Alpha",
         _WRAPS[node.extension],
         "closest" if node.interpolation == "Closest" else "linear",
-        *_uv_map(node.inputs["Vector"]),
+        *_uv_map(plug.input("Vector")),
     )
 
 
@@ -56,27 +54,29 @@ def _check(node):
 
 def _uv_map(vector):
     """`uv_map` and `coordinates` of what is linked to an Image Texture's vector; nothing: the mesh's own."""
-    node = source(vector)
-    if node is None:
+    fed = fed_by(vector)
+    if fed is None:
         return np.eye(2, 3, dtype=np.float32), ""
-    if node.bl_idname != "ShaderNodeMapping":
-        return np.eye(2, 3, dtype=np.float32), _coordinates(vector)
-    if source(node.inputs["Vector"]) is None:
-        raise UnsupportedError(f"'{node.name}' has no coordinates linked to it")
-    return _mapping_matrix(node), _coordinates(node.inputs["Vector"])
+    if fed.node.bl_idname != "ShaderNodeMapping":
+        return np.eye(2, 3, dtype=np.float32), _coordinates(fed)
+    coordinates = fed_by(fed.input("Vector"))
+    if coordinates is None:
+        raise UnsupportedError(f"'{fed.node.name}' has no coordinates linked to it")
+    return _mapping_matrix(fed), _coordinates(coordinates)
 
 
-def _coordinates(vector):
-    node = source(vector)
+def _coordinates(plug):
+    node = plug.node
     if node.bl_idname == "ShaderNodeUVMap":
         return node.uv_map
-    if node.bl_idname != "ShaderNodeTexCoord" or output(vector).name != "UV":
+    if node.bl_idname != "ShaderNodeTexCoord" or plug.socket.name != "UV":
         raise UnsupportedError(f"the coordinates of '{node.name}' are not texture coordinates")
     return ""
 
 
-def _mapping_matrix(node):
-    if any(source(node.inputs[name]) for name in ("Location", "Rotation", "Scale") if name in node.inputs):
+def _mapping_matrix(plug):
+    node = plug.node
+    if any(fed_by(plug.input(name)) for name in ("Location", "Rotation", "Scale")):
         raise UnsupportedError(f"something is linked to '{node.name}'")
     rotation = Euler(node.inputs["Rotation"].default_value).to_matrix().to_4x4()
     scale = Matrix.Diagonal((*node.inputs["Scale"].default_value, 1.0))
@@ -94,5 +94,6 @@ def _mapping_matrix(node):
 
 def named_uv_maps(tree):
     """Names of the UV maps that nodes linked to something ask for."""
-    nodes = [node for node in tree.nodes if node.bl_idname == "ShaderNodeUVMap" and node.outputs[0].is_linked]
+    all_nodes = [node for each in trees_of(tree) for node in each.nodes]
+    nodes = [node for node in all_nodes if node.bl_idname == "ShaderNodeUVMap" and node.outputs[0].is_linked]
     return sorted({node.uv_map for node in nodes if node.uv_map})

@@ -2,12 +2,12 @@
 
 from typing import NamedTuple
 
-from ..native import Model, VelourError
+from ..native import Model, Shader, VelourError
 from . import files
 from .nodes import velour_node
 from .notes import ExportError
 from .placement import Tile
-from .principled import principled_values
+from .shaders import as_principled, split, surface_layers
 from .textures import TextureTable
 
 
@@ -66,18 +66,35 @@ class MaterialTable:
                 if self.strict:
                     raise
                 self._notes.add(str(error))
-        return self._add_principled(material)
+        return self._add_shader(material)
 
-    def _add_principled(self, material):
-        values = principled_values(material, self._notes)
-        owner = f"Material '{material.name}'" if material else ""
-        slots = {
-            name: self._textures.slot(picture, name == "base_color", owner)
-            for name, picture in values.pop("pictures", {}).items()
-        }
-        if any(slots.values()):
+    def _add_shader(self, material):
+        layers = surface_layers(material, self._notes)
+        plain = as_principled(layers)
+        if plain:
+            return self._scene.add_textured_material(self._slots(plain, material), **plain.values)
+        with Shader.new() as shader:
+            for layer in layers:
+                for part in split(layer):
+                    self._add_layer(shader, part, material)
+            return self._scene.add_shader_material(shader)
+
+    def _add_layer(self, shader, layer, material):
+        shader.add_layer(layer.kind, self._slots(layer, material), **layer.values)
+        for factor in layer.factors:
+            slot = factor.picture and self._slot(factor.picture, False, material)
+            shader.weigh_layer(factor.kind, factor.value, *(slot or ()))
+
+    def _slots(self, layer, material):
+        """TextureSlots of a Layer's pictures that can be read."""
+        slots = {n: self._slot(picture, n == "base_color", material) for n, picture in layer.pictures.items()}
+        return {name: slot for name, slot in slots.items() if slot}
+
+    def _slot(self, picture, is_color, material):
+        slot = self._textures.slot(picture, is_color, f"Material '{material.name}'")
+        if slot:
             self._textured.add(_key(material))
-        return self._scene.add_textured_material({n: s for n, s in slots.items() if s}, **values)
+        return slot
 
     def _add_measured(self, material, node):
         settings = node.velour

@@ -18,6 +18,7 @@ from .measurement import Measurement
 from .model import Model
 from .observation import Observation
 from .scene import Scene
+from .shader import Shader
 from .texture import Texture, TextureSlot
 from .tile import Tile
 
@@ -30,6 +31,7 @@ __all__ = [
     "Model",
     "Observation",
     "Scene",
+    "Shader",
     "Status",
     "Texture",
     "TextureSlot",

@@ -18,9 +18,10 @@ from .errors import refuse
 from .handle import Handle, choice, path_bytes, set_fields
 from .measurement import Measurement
 from .model import Model
+from .shader import Shader, described
 from .texture import TextureSlot
 
-_COLORS = {"base_color": 3, "emission": 3, "color": 3, "size": 2, "window": 4}
+_COLORS = {"color": 3, "size": 2, "window": 4}
 
 
 class Scene(Handle):
@@ -138,12 +139,12 @@ class Scene(Handle):
 
     def add_textured_material(self, textures: dict[str, TextureSlot], **values) -> int:
         """As add_principled_material; textures of base_color, metallic, roughness, alpha go before values."""
-        desc = self._desc(table.PrincipledDesc, "vlr_principled_desc_init", values)
-        pictures = table.PrincipledTextures()
-        self._lib.vlr_principled_textures_init(byref(pictures))
-        for name, slot in textures.items():
-            set_fields(pictures, {name: slot.texture.pointer, f"{name}_map": small("uv_map", slot.uv_map, 6)})
+        desc, pictures = described(self._lib, textures, values)
         return self._numbered("vlr_scene_add_textured_material", byref(desc), byref(pictures))
+
+    def add_shader_material(self, shader: Shader) -> int:
+        """Of the layers that it has by now."""
+        return self._numbered("vlr_scene_add_shader_material", shader.pointer)
 
     # ---- light
 

@@ -37,6 +37,8 @@ SIDES = ("automatic", "one", "two")
 SEQUENCES = ("random", "sobol")
 WRAPS = ("repeat", "extend", "clip", "mirror")
 FILTERS = ("closest", "linear")
+LAYERS = ("principled", "diffuse", "glossy", "transparent", "emission")
+FACTORS = ("share", "rest", "gain")
 STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product")
 
 
@@ -232,6 +234,26 @@ class PrincipledTextures(Struct):
     ]
 
 
+class LayerDesc(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("surface", POINTER(PrincipledDesc)),
+        ("textures", POINTER(PrincipledTextures)),
+    ]
+
+
+class FactorDesc(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("value", c_float),
+        ("pad", c_uint32),
+        ("texture", c_void_p),
+        ("map", c_float * 6),
+    ]
+
+
 class LightDesc(Struct):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -313,6 +335,8 @@ STRUCTS = {
     "vlr_tile_options": TileOptions,
     "vlr_texture_options": TextureOptions,
     "vlr_principled_textures": PrincipledTextures,
+    "vlr_layer_desc": LayerDesc,
+    "vlr_factor_desc": FactorDesc,
     "vlr_light_desc": LightDesc,
     "vlr_camera_desc": CameraDesc,
     "vlr_render_options": RenderOptions,
@@ -385,6 +409,10 @@ STATUS_CALLS = {
         _out_handle,
     ],
     "vlr_texture_load": [c_char_p, POINTER(TextureOptions), _out_handle],
+    "vlr_shader_create": [_out_handle],
+    "vlr_shader_add_layer": [_handle, POINTER(LayerDesc)],
+    "vlr_shader_weigh_layer": [_handle, POINTER(FactorDesc)],
+    "vlr_scene_add_shader_material": [_handle, _handle, _number],
     "vlr_scene_add_textured_material": [
         _handle,
         POINTER(PrincipledDesc),
@@ -432,6 +460,7 @@ PLAIN_CALLS = {
     "vlr_model_free": (None, [_handle]),
     "vlr_job_free": (None, [_handle]),
     "vlr_scene_free": (None, [_handle]),
+    "vlr_shader_free": (None, [_handle]),
     "vlr_texture_free": (None, [_handle]),
     "vlr_observation_free": (None, [_handle]),
     "vlr_tile_free": (None, [_handle]),
@@ -445,6 +474,8 @@ PLAIN_CALLS = {
     "vlr_principled_desc_init": (None, [POINTER(PrincipledDesc)]),
     "vlr_texture_options_init": (None, [POINTER(TextureOptions)]),
     "vlr_principled_textures_init": (None, [POINTER(PrincipledTextures)]),
+    "vlr_layer_desc_init": (None, [POINTER(LayerDesc)]),
+    "vlr_factor_desc_init": (None, [POINTER(FactorDesc)]),
     "vlr_light_desc_init": (None, [POINTER(LightDesc)]),
     "vlr_camera_desc_init": (None, [POINTER(CameraDesc)]),
     "vlr_render_options_init": (None, [POINTER(RenderOptions)]),

@@ -5,7 +5,7 @@ import bpy
 from ..engine.engine import VelourRenderEngine
 from ..export.nodes import active_output, velour_node
 from ..export.notes import Notes
-from ..export.principled import principled_values
+from ..export.shaders import surface_layers
 from ..operators.accept_file import VELOUR_OT_accept_file
 from ..operators.add_material import VELOUR_OT_add_material
 from ..operators.add_votf import VELOUR_OT_add_votf
@@ -311,5 +311,5 @@ class VELOUR_MATERIAL_PT_notes(MaterialPanel, bpy.types.Panel):
 def _notes(material):
     notes = Notes()
     if material is not None and velour_node(material) is None:
-        principled_values(material, notes)
+        surface_layers(material, notes)
     return notes

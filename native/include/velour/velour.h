@@ -53,6 +53,7 @@ typedef struct vlr_btf vlr_btf;
 typedef struct vlr_model vlr_model;
 typedef struct vlr_scene vlr_scene;
 typedef struct vlr_texture vlr_texture;         /* a picture that stands for a number of a material */
+typedef struct vlr_shader vlr_shader;           /* what a material is mixed and added of, being made */
 typedef struct vlr_observation vlr_observation; /* what scenes show of one material */
 typedef struct vlr_tile vlr_tile;               /* procedural mesostructure */
 typedef struct vlr_job vlr_job;
@@ -478,6 +479,46 @@ typedef struct vlr_principled_textures {
 VLR_API void vlr_principled_textures_init(vlr_principled_textures* textures);
 VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principled_desc* desc,
                                                    const vlr_principled_textures* textures, uint32_t* material);
+
+/* ---- shaders: materials that are mixed of others -------------------------------------------------------------- */
+
+enum {
+  VLR_LAYER_PRINCIPLED = 0,
+  VLR_LAYER_DIFFUSE = 1,     /* base_color and roughness: Oren and Nayar's; 0 is Lambert's */
+  VLR_LAYER_GLOSSY = 2,      /* base_color and roughness: GGX that reflects it at every angle */
+  VLR_LAYER_TRANSPARENT = 3, /* base_color: what light that goes straight on is multiplied with */
+  VLR_LAYER_EMISSION = 4     /* base_color: radiance */
+};
+/* A weight is the product of its layer's factors. Of a mix, SHARE is its factor, REST 1 minus that, both within [0, 1];
+ * GAIN is any number that is not negative. */
+enum { VLR_FACTOR_SHARE = 0, VLR_FACTOR_REST = 1, VLR_FACTOR_GAIN = 2 };
+
+typedef struct vlr_layer_desc {
+  uint32_t struct_size;
+  int32_t kind;                            /* VLR_LAYER_* */
+  const vlr_principled_desc* surface;      /* NULL: its defaults; alpha and emission are not looked at */
+  const vlr_principled_textures* textures; /* NULL: none; of what the kind looks at */
+} vlr_layer_desc;
+VLR_API void vlr_layer_desc_init(vlr_layer_desc* desc);
+typedef struct vlr_factor_desc {
+  uint32_t struct_size;
+  int32_t kind; /* VLR_FACTOR_* */
+  float value;  /* 1 */
+  uint32_t pad;
+  const vlr_texture* texture; /* numbers, in the place of value; NULL: none */
+  float map[6];               /* as those of vlr_principled_textures */
+} vlr_factor_desc;
+VLR_API void vlr_factor_desc_init(vlr_factor_desc* desc);
+
+/* The sum of its layers: mixes are layers whose weights add up to 1. */
+VLR_API vlr_status vlr_shader_create(vlr_shader** out);
+VLR_API void vlr_shader_free(vlr_shader* shader);
+/* With a weight of 1. */
+VLR_API vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc);
+/* Multiplies the weight of the layer that was added last. */
+VLR_API vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* desc);
+/* A material of the layers so far; the shader may go, or grow. */
+VLR_API vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* shader, uint32_t* material);
 
 /* ---- tiles: procedural mesostructure ------------------------------------------------------------------------- */
 

@@ -11,7 +11,7 @@
 #include "btf/btf_measurement.h"
 #include "domain/observation.h"
 #include "job/job.h"
-#include "material/texture.h"
+#include "material/shader_layers.h"
 #include "model/model.h"
 #include "render/film.h"
 #include "scene/scene.h"
@@ -43,6 +43,11 @@ struct vlr_scene {
 struct vlr_texture {
   std::shared_ptr<const velour::Texture<velour::Rgb>> color;
   std::shared_ptr<const velour::Texture<float>> number;
+};
+
+struct vlr_shader {
+  velour::ShaderLayers layers;
+  velour::LayerWeight* last = nullptr;  // of the layer that was added last; null: there is none
 };
 
 /// The observation itself never changes: merging puts another in its place, so that jobs keep what they were given.

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "btf/srbf_point.h"
 #include "btf/tensor_point.h"
@@ -17,6 +18,15 @@
 #include "srbf/warped_mixture.h"
 
 namespace velour {
+
+struct PreparedBrdf;
+
+/// One of the layers that a material is mixed of, at a point.
+struct PreparedLayer {
+  std::unique_ptr<PreparedBrdf> point;
+  float weight = 0;  // of its f; 0: it is not there, and `point` is not set up
+  float share = 0;   // of samples that are drawn from it; all add up to 1
+};
 
 /// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it
 /// needs; the struct is scratch memory of the thread, reused from hit to hit.
@@ -36,6 +46,7 @@ struct PreparedBrdf {
   BtfTablePoint btf_table;                // BTFs themselves: what is blended at the site for the view
   std::unique_ptr<PreparedBrdf> through;  // where light comes through: the same for light from the other side
   float through_share = 0;                // of samples that are drawn from it
+  std::vector<PreparedLayer> layers;      // of materials that are mixed of others
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.
@@ -58,6 +69,13 @@ class Material {
   /// The share of `site` that is there, in [0, 1]; through the rest one sees what lies behind. f is that of what is
   /// there.
   virtual float alpha(const SurfaceSite& /*site*/) const { return 1.0f; }
+  /// Whether light that passes through the rest changes: passing() may be other than 1.
+  virtual bool tints() const { return false; }
+  /// What light that passes is multiplied with, in the space that f is in; it may be above 1.
+  virtual Rgb passing(const SurfaceSite& /*site*/) const { return Rgb(1.0f); }
+
+  /// Radiance that what is there sends to every side, in the working space.
+  virtual Rgb emission(const SurfaceSite& /*site*/) const { return Rgb(0.0f); }
 
   /// True where f may be above 0 for light from the other side of the surface, wl.z < 0; the cosine is |wl.z|.
   virtual bool transmits() const { return false; }

@@ -5,21 +5,9 @@
 
 #include "material/material.h"
 #include "material/principled_lobes.h"
-#include "material/texture.h"
-#include "material/texture_map.h"
+#include "material/texture_slot.h"
 
 namespace velour {
-
-/// A picture in the place of a parameter; without one the parameter's own value holds.
-template <class T>
-struct TextureSlot {
-  std::shared_ptr<const Texture<T>> texture{};
-  TextureMap map{};  // of the surface's coordinates to the picture's
-
-  T at(const SurfaceSite& site, const T& otherwise) const {
-    return texture ? texture->look_up(map.point(site.uv), map.map * site.footprint) : otherwise;
-  }
-};
 
 struct PrincipledTextures {
   TextureSlot<Rgb> base_color{};

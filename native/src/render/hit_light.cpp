@@ -91,19 +91,20 @@ void HitLightEstimator::weigh(const Vertex& vertex, Counts counts) {
 void HitLightEstimator::trace(const Vertex& vertex) {
   const auto count = static_cast<size_t>(world_.count);
   for (size_t i = 0; i < count; ++i) rays_[i] = vertex.ray(world_.get(static_cast<int>(i)), kInfinity);
-  visible_.intersect({rays_, count}, hits_);
+  visible_.intersect({rays_, count}, hits_, hidden::kFromBounces, passed_);
 }
 
 /// Radiance of environment and lamps where nothing stands before them.
 void HitLightEstimator::add_lights() {
   for (int i = 0; i < world_.count; ++i) {
-    radiance_[i] = hits_[i].instance == kNoHit ? environment_.get(i) : Rgb(0.0f);
+    radiance_[i] = hits_[i].instance == kNoHit ? passed_[i] * environment_.get(i) : Rgb(0.0f);
   }
   for (const LampHit& lamp : lamp_hits_) {
     const Hit& hit = hits_[lamp.direction];
     const bool blocked = hit.instance != kNoHit && hit.distance < lamp.distance;
-    if (!blocked || !lamp.lamp->casts_shadow())
-      radiance_[lamp.direction] += lamp.lamp->radiance(world_.get(lamp.direction));
+    if (blocked && lamp.lamp->casts_shadow()) continue;
+    const Rgb through = lamp.lamp->casts_shadow() ? passed_[lamp.direction] : Rgb(1.0f);
+    radiance_[lamp.direction] += through * lamp.lamp->radiance(world_.get(lamp.direction));
   }
   for (int i = 0; i < world_.count; ++i) note_density(light_pdf_.v[i], weight_[i] * radiance_[i]);
 }
@@ -120,7 +121,9 @@ void HitLightEstimator::add_surfaces(const RayCone& cone, int bounces, uint64_t 
     indirect.add(rays_[i], cone, hits_[i], numbers);
   }
   indirect.resolve(bounces);
-  for (size_t k = 0; k < indirect.samples().size(); ++k) radiance_[direction[k]] += indirect.samples()[k].radiance;
+  for (size_t k = 0; k < indirect.samples().size(); ++k) {
+    radiance_[direction[k]] += passed_[direction[k]] * indirect.samples()[k].radiance;
+  }
 }
 
 void HitLightEstimator::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
@@ -129,8 +132,9 @@ void HitLightEstimator::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
   for (int i = 0; i < count; ++i) {
     const SharpLight& s = sharp[i];
     if (!(s.wl.z > 0.0f)) continue;
-    if (s.lamp->casts_shadow() && visible_.occluded(vertex.ray(s.wl_world, s.distance))) continue;
-    const Rgb light = s.wl.z * s.irradiance;
+    Rgb passed(1.0f);
+    if (s.lamp->casts_shadow() && visible_.occluded(vertex.ray(s.wl_world, s.distance), &passed)) continue;
+    const Rgb light = s.wl.z * passed * s.irradiance;
     note_density(kInfinity, light);
     add_term(s.wl, light);
   }

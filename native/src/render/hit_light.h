@@ -65,6 +65,7 @@ class HitLightEstimator {
   float weight_[DirectionBatch::kCapacity];  // cos / (n density)
   Ray rays_[DirectionBatch::kCapacity];
   Hit hits_[DirectionBatch::kCapacity];
+  Rgb passed_[DirectionBatch::kCapacity];  // on the way there
   Rgb radiance_[DirectionBatch::kCapacity];
   Vec3 position_[DirectionBatch::kCapacity];
 

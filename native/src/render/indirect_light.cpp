@@ -39,7 +39,7 @@ void IndirectLight::meet_surfaces() {
     if (hits_[i].instance == kNoHit) continue;
     Path& path = paths_[i];
     const Vertex vertex = Vertex::seen(scene_, rays_[i], hits_[i], path.cone, nullptr);
-    samples_[path.sample].radiance += path.throughput * vertex.surface->emission;
+    samples_[path.sample].radiance += path.throughput * vertex.emission();
     receivers_.emplace_back(vertex, &path.numbers, path.throughput, path.sample, kDirections, kDirections);
   }
 }
@@ -64,7 +64,9 @@ void IndirectLight::gather(bool go_on) {
 
 void IndirectLight::trace() {
   hits_.resize(rays_.size());
-  visible_.intersect(rays_, hits_.data());
+  passed_.resize(visible_.tints() ? rays_.size() : 0);
+  visible_.intersect(rays_, hits_.data(), hidden::kFromBounces, visible_.tints() ? passed_.data() : nullptr);
+  for (size_t i = 0; i < passed_.size(); ++i) paths_[i].throughput *= passed_[i];
 }
 
 }  // namespace velour

@@ -41,6 +41,7 @@ class IndirectLight {
   std::vector<Path> paths_, next_;
   std::vector<Ray> rays_, next_rays_;  // of the paths
   std::vector<Hit> hits_;
+  std::vector<Rgb> passed_;  // of the rays, where they change their colour
   std::vector<Receiver> receivers_;
   std::vector<CameraSample> samples_;
 };

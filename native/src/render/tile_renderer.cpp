@@ -12,6 +12,9 @@ constexpr int kRaysInFlight = 128;
 /// pixel average them.
 constexpr int kIndirectDirections = 2;
 
+/// The alpha of what a camera ray has passed that goes on as `throughput`.
+float covered(const Rgb& throughput) { return 1.0f - (throughput.r + throughput.g + throughput.b) / 3.0f; }
+
 }  // namespace
 
 TileRenderer::TileRenderer(const RenderContext& context)
@@ -98,7 +101,10 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
 void TileRenderer::trace(int depth, RayLog* log) {
   hits_.resize(rays_.size());
   if (log != nullptr) log->add(rays_, RayLog::Kind::nearest);
-  visible_.intersect(rays_, hits_.data(), depth == 0 ? hidden::kFromCamera : hidden::kFromBounces);
+  passed_.resize(visible_.tints() ? rays_.size() : 0);
+  visible_.intersect(rays_, hits_.data(), depth == 0 ? hidden::kFromCamera : hidden::kFromBounces,
+                     visible_.tints() ? passed_.data() : nullptr);
+  for (size_t i = 0; i < passed_.size(); ++i) paths_[i].throughput *= passed_[i];
   ray_count_ += rays_.size();
 }
 
@@ -107,10 +113,16 @@ void TileRenderer::follow(size_t index, int depth) {
   const Hit& hit = hits_[index];
   CameraSample& sample = samples_[path.sample];
   if (hit.instance == kNoHit) {
-    if (depth == 0) missed_.push_back({path.sample, rays_[index].direction});
+    if (depth == 0) {
+      sample.alpha = covered(path.throughput);
+      missed_.push_back({path.sample, rays_[index].direction, path.throughput});
+    }
     return;
   }
-  if (depth == 0 && context_.scene.is_holdout(hit)) return;  // alpha 0, as Cycles has it on an opaque film, too
+  if (depth == 0 && context_.scene.is_holdout(hit)) {  // alpha 0, as Cycles has it on an opaque film, too
+    sample.alpha = covered(path.throughput);
+    return;
+  }
   Vertex vertex = Vertex::seen(context_.scene, rays_[index], hit, path.cone, depth == 0 ? &pixel_ : nullptr);
   const auto material = static_cast<size_t>(vertex.surface - context_.scene.materials().data());
   if (!context_.tables.empty()) vertex.table = context_.tables[material].get();
@@ -120,7 +132,7 @@ void TileRenderer::follow(size_t index, int depth) {
     sample.normal = vertex.frame.z;
     sample.depth = context_.scene.camera().depth(vertex.position);
   }
-  sample.radiance += path.throughput * vertex.surface->emission;
+  sample.radiance += path.throughput * vertex.emission();
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);
   receivers_.emplace_back(vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most), most);
 }
@@ -159,7 +171,7 @@ void TileRenderer::add_background() {
     context_.scene.environment().look_up(batch, radiance, unused);
     for (size_t i = start; i < end; ++i) {
       CameraSample& sample = samples_[missed_[i].sample];
-      sample.radiance = radiance.get(static_cast<int>(i - start));
+      sample.radiance = missed_[i].throughput * radiance.get(static_cast<int>(i - start));
       sample.alpha = 1.0f;
     }
   }

@@ -64,11 +64,13 @@ class TileRenderer {
   std::vector<Path> paths_, next_;
   std::vector<Ray> rays_, next_rays_;  // of the paths
   std::vector<Hit> hits_;
+  std::vector<Rgb> passed_;  // of the rays, where they change their colour
   std::vector<Receiver> receivers_;
   std::vector<CameraSample> samples_;
   struct Miss {
     uint32_t sample;
     Vec3 direction;
+    Rgb throughput;
   };
   std::vector<Miss> missed_;  // camera rays that met nothing
   std::vector<PixelSum> pixels_;

@@ -63,6 +63,8 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   }
 }
 
+Rgb Vertex::emission() const { return surface->emission + surface->material->emission(site); }
+
 void Vertex::find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction,
                        const RaySides& sides) {
   site.uv = texture.uv;

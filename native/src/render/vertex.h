@@ -51,6 +51,9 @@ struct Vertex {
     return (wl.z > 0.0f && above > 0.0f) || (transmits && wl.z < 0.0f && above < 0.0f);
   }
 
+  /// Radiance that the surface itself sends to the viewer, in the working space.
+  Rgb emission() const;
+
   /// From the side of the surface that it goes to.
   Ray ray(const Vec3& direction_world, float far) const {
     const bool through = transmits && glm::dot(direction_world, geometric_normal) < 0.0f;

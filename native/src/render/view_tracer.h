@@ -74,6 +74,7 @@ class ViewTracer {
   std::vector<Path> paths_, next_;
   std::vector<Ray> rays_, next_rays_;  // of the paths
   std::vector<Hit> hits_;
+  std::vector<Rgb> passed_;  // of the rays, where they change their colour
   PreparedBrdf prepared_;
 };
 

@@ -12,6 +12,9 @@ namespace {
 
 constexpr size_t kTogether = 128;
 
+/// Place `i` of an array that may be missing.
+Rgb* behind(Rgb* passed, size_t i) { return passed != nullptr ? passed + i : nullptr; }
+
 /// Ways through shells that are traced together, as long as they are of one field.
 class ShellWays {
  public:
@@ -75,34 +78,38 @@ VisibleRays::VisibleRays(const Scene& scene)
     : scene_(scene),
       shells_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.shell != nullptr; })),
       all_opaque_(!shells_ && std::ranges::all_of(scene.materials(),
-                                                  [](const SurfaceMaterial& m) { return m.material->opaque(); })) {
+                                                  [](const SurfaceMaterial& m) { return m.material->opaque(); })),
+      tints_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.material->tints(); })) {
   for (const Scene::Instance& i : scene.instances()) hidden_ |= i.hidden;
 }
 
-void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits, uint8_t kind) const {
+void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed) const {
   scene_.rays().intersect(rays, hits);
+  if (passed != nullptr) std::fill_n(passed, rays.size(), Rgb(1.0f));
   if (sees_all(kind)) return;
   for (size_t done = 0; done < rays.size(); done += kTogether) {
-    pass_on(rays.subspan(done, std::min(kTogether, rays.size() - done)), hits + done, kind);
+    pass_on(rays.subspan(done, std::min(kTogether, rays.size() - done)), hits + done, kind, behind(passed, done));
   }
 }
 
-bool VisibleRays::occluded(const Ray& ray) const {
+bool VisibleRays::occluded(const Ray& ray, Rgb* passed) const {
   uint8_t blocked;
-  occluded({&ray, 1}, &blocked);
+  occluded({&ray, 1}, &blocked, passed);
   return blocked != 0;
 }
 
-void VisibleRays::occluded(std::span<const Ray> rays, uint8_t* blocked) const {
+void VisibleRays::occluded(std::span<const Ray> rays, uint8_t* blocked, Rgb* passed) const {
+  if (passed != nullptr) std::fill_n(passed, rays.size(), Rgb(1.0f));
   if (sees_all(hidden::kFromShadows)) return scene_.rays().occluded(rays, blocked);
   for (size_t done = 0; done < rays.size(); done += kTogether) {
-    occluded_some(rays.subspan(done, std::min(kTogether, rays.size() - done)), blocked + done);
+    occluded_some(rays.subspan(done, std::min(kTogether, rays.size() - done)), blocked + done, behind(passed, done));
   }
 }
 
-void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked) const {
+void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked, Rgb* passed) const {
   Ray asked[kTogether];
   Hit hit[kTogether];
+  Rgb through[kTogether];
   uint8_t number[kTogether];
   // Rays that leave a shell come to its top in any case, and are spared the question whether there is something.
   if (shells_) {
@@ -116,24 +123,29 @@ void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked) con
     asked[count] = rays[i];
     number[count++] = static_cast<uint8_t>(i);
   }
-  intersect({asked, count}, hit, hidden::kFromShadows);
-  for (size_t i = 0; i < count; ++i) blocked[number[i]] = hit[i].instance != kNoHit;
+  intersect({asked, count}, hit, hidden::kFromShadows, passed != nullptr ? through : nullptr);
+  for (size_t i = 0; i < count; ++i) {
+    blocked[number[i]] = hit[i].instance != kNoHit;
+    if (passed != nullptr) passed[number[i]] = through[i];
+  }
 }
 
-bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit, uint8_t kind) const {
+bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit, uint8_t kind, Rgb* passed) const {
   if ((scene_.instances()[hit.instance].hidden & kind) != 0) return false;
   const Material& material = *scene_.materials()[scene_.material(hit)].material;
   if (material.opaque()) return true;
   // At a point: what a footprint would average, the rays of a pixel do.
   const Vec2 uv = material.varies() ? scene_.texture(hit).uv : Vec2(0.0f);
-  return ray_number(ray, hit, RayDecision::alpha) < material.alpha({.uv = uv});
+  if (ray_number(ray, hit, RayDecision::alpha) < material.alpha({.uv = uv})) return true;
+  if (passed != nullptr && material.tints()) *passed *= material.passing({.uv = uv});
+  return false;
 }
 
-void VisibleRays::decide(const Pending& pending, uint8_t kind, bool* met) const {
+void VisibleRays::decide(const Pending& pending, uint8_t kind, bool* met, Rgb* passed) const {
   ShellWays ways(met);
   for (size_t i = 0; i < pending.count; ++i) {
     const Hit& hit = pending.hit[i];
-    met[i] = !pending.again(i) && meets_surface(pending.ray[i], hit, kind);
+    met[i] = !pending.again(i) && meets_surface(pending.ray[i], hit, kind, behind(passed, pending.number[i]));
     if (!met[i] || !shells_ || !scene_.has_shell(hit)) continue;
     const ShellCrossing crossing(scene_, pending.ray[i], hit);
     met[i] = false;
@@ -142,14 +154,14 @@ void VisibleRays::decide(const Pending& pending, uint8_t kind, bool* met) const 
   ways.trace();
 }
 
-void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind) const {
+void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed) const {
   Pending pending;
   for (size_t i = 0; i < rays.size(); ++i) {
     if (hits[i].instance != kNoHit) pending.add(rays[i], hits[i], i);
   }
   bool met[kTogether];
   while (pending.count > 0) {
-    decide(pending, kind, met);
+    decide(pending, kind, met, passed);
     size_t left = 0;
     for (size_t i = 0; i < pending.count; ++i) {
       hits[pending.number[i]] = pending.hit[i];

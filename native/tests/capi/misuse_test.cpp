@@ -1,6 +1,7 @@
 // Every wrong call answers with the right status and a sentence, and changes nothing.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <thread>
 
@@ -33,6 +34,10 @@ TEST(Misuse, NullArgumentsAreNamed) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_texture_create(1, 1, 1, nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_texture_load(nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_add_textured_material(nullptr, nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_create(nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_add_layer(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_weigh_layer(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_add_shader_material(nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_capture_create_job(nullptr, nullptr, "x", nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_directions(nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_observation_create(nullptr));
@@ -54,9 +59,38 @@ TEST(Misuse, FreeingNothingIsFine) {
   vlr_model_free(nullptr);
   vlr_scene_free(nullptr);
   vlr_texture_free(nullptr);
+  vlr_shader_free(nullptr);
   vlr_observation_free(nullptr);
   vlr_tile_free(nullptr);
   vlr_job_free(nullptr);
+}
+
+TEST(Misuse, ShadersAreChecked) {
+  vlr_shader* shader = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_shader_create(&shader));
+  vlr_factor_desc factor;
+  vlr_factor_desc_init(&factor);
+  EXPECT_STATUS(VLR_INVALID_STATE, vlr_shader_weigh_layer(shader, &factor));
+  vlr_layer_desc layer;
+  vlr_layer_desc_init(&layer);
+  layer.kind = VLR_LAYER_EMISSION + 1;
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_add_layer(shader, &layer));
+  EXPECT_NE(std::string(vlr_last_error()).find("vlr_layer_desc.kind is 5"), std::string::npos);
+  ASSERT_EQ(VLR_OK, vlr_shader_add_layer(shader, nullptr));
+  factor.kind = 3;
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_weigh_layer(shader, &factor));
+  factor.kind = VLR_FACTOR_GAIN;
+  factor.value = NAN;
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_weigh_layer(shader, &factor));
+  factor.value = 2;
+  EXPECT_EQ(VLR_OK, vlr_shader_weigh_layer(shader, &factor));
+  vlr_scene* scene = nullptr;
+  uint32_t material = 7;
+  ASSERT_EQ(VLR_OK, vlr_scene_create(&scene));
+  EXPECT_EQ(VLR_OK, vlr_scene_add_shader_material(scene, shader, &material));
+  EXPECT_EQ(0u, material);
+  vlr_shader_free(shader);
+  vlr_scene_free(scene);
 }
 
 TEST(Misuse, MissingFilesAreNamed) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "material/principled_textures.h"
+#include "material/shader_layers.h"
 #include "support/textured_scenes.h"
 
 namespace velour {
@@ -129,6 +130,59 @@ TEST(Transparency, BouncesPass) {
   EXPECT_NEAR(open, 1, 0.01);
   EXPECT_NEAR(lid(0.4f), 0.6 * open, 6e-3);
   EXPECT_EQ(lid(1), 0);
+}
+
+/// Half of it is a matte surface, the rest lets light through that gets `color`.
+SurfaceMaterial pane(const Rgb& color) {
+  const LayerWeight half{{{LayerFactor::Kind::share, 0.5f}}};
+  return {.material = make_layered_material(
+              {.reflecting = {{make_textured_material({.base_color = Rgb(0), .specular = 0}, {}, 1), half}},
+               .transparent = {{color, {}, half}}}),
+          .rec709_colors = false};
+}
+
+/// Of a coloured pane before a sky of 1, by a camera, a shadow or a bounce ray.
+TEST(Transparency, ColoursMultiplyForEveryKindOfRay) {
+  const Rgb color(0.8f, 0.4f, 0.1f);
+  Scene seen, shaded;
+  for (const float z : {0.0f, 0.5f}) add(seen, test::square(5), test::shift({0, 0, -z}), pane(color));
+  seen.set_environment(Environment::constant(Rgb(1)));
+  seen.set_camera(test::camera_above(1));
+  seen.commit(1);
+  RenderOptions options = options_for(16384);
+  const auto clear = test::rendered(seen, options);
+  options.transparent = false;
+  const auto filled = test::rendered(seen, options);
+
+  add(shaded, test::square(0.5f), {}, matte(kAlbedo, {1}));
+  add(shaded, test::square(50), test::shift({0, 0, 2}), pane(color));
+  shaded.set_environment(Environment::constant(Rgb(1)));
+  shaded.set_camera(Camera::look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 0.5f, 1));
+  shaded.commit(1);
+  const auto shadow = test::rendered(shaded, options_for(8192));
+
+  double passed = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double once = 0.5 * static_cast<double>(color[c]);
+    EXPECT_NEAR(test::mean_of(filled, c), once * once, 4e-3) << c;
+    EXPECT_NEAR(test::mean_of(shadow, c), once * static_cast<double>(kAlbedo), 5e-3) << c;
+    passed += once * once / 3;
+  }
+  EXPECT_NEAR(test::mean_of(clear, 3), 1 - passed, 4e-3);
+  EXPECT_EQ(test::mean_of(filled, 3), 1);
+}
+
+TEST(Transparency, BouncesTakeTheColourOfWhatTheyPass) {
+  Scene scene;
+  add(scene, test::square(50), test::shift({0, 0, -1}), {std::make_shared<test::Lambert>(0.0f), Rgb(1.0f), false});
+  add(scene, test::square(50), test::shift({0, 0, -0.5f}), pane({1, 0.5f, 0.2f}));
+  add(scene, test::square(1), {}, {std::make_shared<test::Lambert>(1.0f), Rgb(0.0f), false});
+  scene.set_camera(Camera::look_at({0, 0, -0.2f}, {0, 0, 0}, {0, 1, 0}, 0.5f, 1));
+  scene.commit(1);
+  const auto pixels = test::rendered(scene, options_for(16384, 1));
+  EXPECT_NEAR(test::mean_of(pixels, 0), 0.5, 0.01);
+  EXPECT_NEAR(test::mean_of(pixels, 1), 0.25, 0.01);
+  EXPECT_NEAR(test::mean_of(pixels, 2), 0.1, 0.01);
 }
 
 TEST(Transparency, IsTheSameForAnyNumberOfThreads) {

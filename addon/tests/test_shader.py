@@ -1,0 +1,79 @@
+"""Mixed materials through the wrapper classes: planes whose pixels are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from velour.native import Scene, Shader, Texture, TextureSlot, VelourError, render_job
+
+SIDE = 8
+
+
+def _rendered(shader, transparent=False):
+    with Scene() as scene:
+        positions = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
+        triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
+        uvs = np.ascontiguousarray(0.5 + 0.5 * positions[triangles][..., :2], np.float32)
+        mesh = scene.add_mesh(positions, triangles, corner_uvs=uvs)[0]
+        scene.add_instance(mesh, np.eye(4), [scene.add_shader_material(shader)])
+        scene.set_world_color((1, 1, 1))
+        look_down = np.eye(4)
+        look_down[2, 3] = 5
+        scene.set_camera("orthographic", look_down, (-1, 1, -1, 1))
+        scene.commit()
+        options = {"width": SIDE, "height": SIDE, "spp": 256, "strategy": "cosine"}
+        with render_job(scene, transparent=int(transparent), **options) as job:
+            job.run()
+            return job.read_pass("Combined")
+
+
+def _diffuse(shader, color):
+    shader.add_layer("diffuse", base_color=color, roughness=0.0)
+
+
+def test_layers_are_summed_by_their_weights():
+    with Shader.new() as shader:
+        _diffuse(shader, (1, 0, 0))
+        shader.weigh_layer("share", 0.25)
+        _diffuse(shader, (0, 1, 0))
+        shader.weigh_layer("rest", 0.25)
+        shader.add_layer("emission", base_color=(0, 0, 3))
+        shader.weigh_layer("gain", 2.0)
+        shader.weigh_layer("share", 0.5)
+        pixels = _rendered(shader)
+    np.testing.assert_allclose(pixels.mean(axis=(0, 1)), (0.25, 0.75, 3, 1), atol=2e-3)
+
+
+def test_images_cut_out():
+    mask = np.indices((SIDE, SIDE)).sum(axis=0)[..., None].astype(np.float32) % 2
+    with Shader.new() as shader, Texture.from_pixels(mask, channel=0, filter="closest") as texture:
+        _diffuse(shader, (1, 0.5, 0))
+        shader.weigh_layer("share", texture=texture)
+        shader.add_layer("transparent", base_color=(1, 1, 1))
+        shader.weigh_layer("rest", texture=texture)
+        pixels = _rendered(shader, transparent=True)
+    np.testing.assert_array_equal(pixels[..., 3], mask[..., 0])
+    np.testing.assert_allclose(pixels[..., :2], mask * (1, 0.5), atol=1e-3)
+
+
+def test_panes_have_colours_by_images():
+    colors = np.random.default_rng(1).uniform(0.1, 0.9, (SIDE, SIDE, 3)).astype(np.float32)
+    with Shader.new() as shader, Texture.from_pixels(colors, filter="closest") as texture:
+        shader.add_layer("transparent", {"base_color": TextureSlot(texture)})
+        pixels = _rendered(shader)
+    np.testing.assert_allclose(pixels[..., :3], colors, atol=1e-5)
+
+
+def test_wrong_calls_are_refused_with_a_sentence():
+    with Shader.new() as shader:
+        with pytest.raises(VelourError, match="add a layer before"):
+            shader.weigh_layer("share", 0.5)
+        with pytest.raises(VelourError, match="kind is 'glass'"):
+            shader.add_layer("glass")
+        shader.add_layer("glossy", roughness=0.2)
+        with pytest.raises(VelourError, match="not finite"):
+            shader.weigh_layer("gain", float("nan"))
+        colour = Texture.from_pixels(np.ones((2, 2, 3), np.float32))
+        with pytest.raises(VelourError, match=r"vlr_factor_desc\.texture needs a texture of numbers"):
+            shader.weigh_layer("share", texture=colour)
+        colour.close()

@@ -1,0 +1,6 @@
+"""Shaders of materials that are not measured, as layers."""
+
+from .layer import Layer, as_principled, split
+from .tree import surface_layers
+
+__all__ = ["Layer", "as_principled", "split", "surface_layers"]

@@ -1,0 +1,84 @@
+"""What a surface is the sum of."""
+
+from typing import NamedTuple
+
+DEFAULT = {"base_color": (0.8, 0.8, 0.8), "metallic": 0.0, "roughness": 0.5, "specular": 0.5}
+BLACK = {"base_color": (0.0, 0.0, 0.0), "metallic": 0.0, "roughness": 1.0, "specular": 0.0}
+
+
+class Factor(NamedTuple):
+    kind: str  # share of a mix, its rest, or a gain
+    value: float = 1.0
+    picture: object = None  # image_nodes.Picture in its place
+
+
+class Layer(NamedTuple):
+    """Keywords of Shader.add_layer, pictures in the place of some, and the factors of its weight.
+
+    kind: as Shader.add_layer's. A principled one may hold alpha and what glows until split() takes them out.
+    """
+
+    kind: str
+    values: dict
+    pictures: dict
+    factors: tuple = ()
+    glow: object = None  # an emission Layer that alpha holds of, too
+
+    def weighed(self, factor):
+        return self._replace(factors=(*self.factors, factor))
+
+
+def grey():
+    return Layer("principled", dict(DEFAULT), {})
+
+
+def black():
+    return Layer("principled", dict(BLACK), {})
+
+
+def as_principled(layers):
+    """The Layer of a material that is one Principled node, or as good as one; None: it is mixed."""
+    if len(layers) != 1 or layers[0].factors:
+        return None
+    layer = layers[0]
+    glow = layer if layer.kind == "emission" else layer.glow
+    if glow and (glow.pictures or glow.factors):
+        return None
+    if layer.kind == "emission":
+        layer = black()
+    if glow:
+        layer = layer._replace(values={**layer.values, "emission": glow.values["base_color"]}, glow=None)
+    return layer if layer.kind == "principled" else None
+
+
+def split(layer):
+    """The same as layers of which none has alpha, or glows and reflects."""
+    values, pictures = dict(layer.values), dict(layer.pictures)
+    there = Factor("share", values.pop("alpha", 1.0), pictures.pop("alpha", None))
+    layers = [layer._replace(values=values, pictures=pictures, glow=None)]
+    if layer.glow:
+        layers.append(layer.glow._replace(factors=layer.glow.factors + layer.factors))
+    if there.picture is None and there.value >= 1.0:
+        return layers
+    open_part = Layer("transparent", {"base_color": (1.0, 1.0, 1.0)}, {}, layer.factors)
+    return [part.weighed(there) for part in layers] + [open_part.weighed(there._replace(kind="rest"))]
+
+
+def simplified(layers):
+    """Without factors of 1 and layers of weight 0."""
+    found = []
+    for layer in layers:
+        numbers = [_constant(factor) for factor in layer.factors]
+        if any(number == 0.0 for number in numbers):
+            continue
+        pairs = zip(layer.factors, numbers, strict=True)
+        found.append(layer._replace(factors=tuple(factor for factor, number in pairs if number != 1.0)))
+    return found or [black()]
+
+
+def _constant(factor):
+    """The number of a factor, None of one that a picture gives."""
+    if factor.picture is not None:
+        return None
+    share = min(max(factor.value, 0.0), 1.0)
+    return {"share": share, "rest": 1.0 - share, "gain": max(factor.value, 0.0)}[factor.kind]

@@ -1,0 +1,129 @@
+"""Nodes of shaders as Layers."""
+
+from ..plugs import fed_by
+from .layer import BLACK, Factor, Layer
+
+# Our parameter: the names of Blender's input socket over the versions.
+_PRINCIPLED = {
+    "base_color": ("Base Color",),
+    "metallic": ("Metallic",),
+    "roughness": ("Roughness",),
+    "specular": ("Specular IOR Level", "Specular"),
+    "alpha": ("Alpha",),
+}
+_TEXTURED = ("base_color", "metallic", "roughness", "alpha")
+# Inputs that Velour does not render, and the value at which that makes no difference.
+_IGNORED = {
+    "Subsurface": 0.0,
+    "Subsurface Weight": 0.0,
+    "Specular Tint": 0.0,
+    "Anisotropic": 0.0,
+    "Sheen": 0.0,
+    "Sheen Weight": 0.0,
+    "Clearcoat": 0.0,
+    "Coat Weight": 0.0,
+    "Transmission": 0.0,
+    "Transmission Weight": 0.0,
+}
+_LINK_ONLY = ("Normal", "Clearcoat Normal", "Coat Normal", "Tangent")
+
+
+def _read_principled(plug, reader):
+    values, pictures = {}, {}
+    for name, sockets in _PRINCIPLED.items():
+        socket = plug.input(*sockets)
+        if name in _TEXTURED:
+            values[name], picture = reader.number(socket)
+            pictures |= {name: picture} if picture else {}
+        else:
+            values[name] = reader.value(socket)
+    glow = _glow(plug.input("Emission Color", "Emission"), plug.input("Emission Strength"), reader)
+    _note_ignored(plug, reader)
+    return [Layer("principled", values, pictures, glow=glow)]
+
+
+def _read_diffuse(plug, reader):
+    color, picture = reader.number(plug.input("Color"))
+    roughness, rough = reader.number(plug.input("Roughness"))
+    note_linked(plug, reader, "Normal")
+    pictures = {"base_color": picture} if picture else {}
+    if rough is None and roughness <= 0.0:
+        return [Layer("principled", {**BLACK, "base_color": color}, pictures)]
+    pictures |= {"roughness": rough} if rough else {}
+    return [Layer("diffuse", {"base_color": color, "roughness": roughness}, pictures)]
+
+
+def _read_glossy(plug, reader):
+    color, picture = reader.number(plug.input("Color"))
+    roughness, rough = reader.number(plug.input("Roughness"))
+    if plug.node.distribution == "SHARP":
+        roughness, rough = 0.0, None
+    elif plug.node.distribution != "GGX":
+        reader.note(plug, f"its distribution '{_label(plug.node, 'distribution')}' is shown as GGX.")
+    _note_anisotropy(plug, reader)
+    for name in ("Normal", "Tangent"):
+        note_linked(plug, reader, name)
+    found = {"base_color": picture, "roughness": rough}
+    values = {"base_color": color, "roughness": roughness}
+    return [Layer("glossy", values, {name: p for name, p in found.items() if p})]
+
+
+def _label(node, name):
+    """The name that Blender shows of a choice."""
+    return node.bl_rna.properties[name].enum_items[getattr(node, name)].name
+
+
+def _note_anisotropy(plug, reader):
+    amount = plug.input("Anisotropy")  # 4.0 and newer: of a node of its own before
+    if amount and (fed_by(amount) or abs(amount.socket.default_value) > 1e-6):
+        reader.note(plug, "'Anisotropy' is not supported; ignored.")
+
+
+def _read_emission(plug, reader):
+    glow = _glow(plug.input("Color"), plug.input("Strength"), reader)
+    return [glow or Layer("emission", {"base_color": (0.0, 0.0, 0.0)}, {})]
+
+
+def _glow(color, strength, reader):
+    """An emission Layer; None where nothing glows."""
+    color, picture = reader.number(color)
+    strength, gain = reader.number(strength)
+    if picture is None and gain is None:
+        radiance = tuple(strength * c for c in color)
+        return Layer("emission", {"base_color": radiance}, {}) if max(radiance) > 0.0 else None
+    pictures = {"base_color": picture} if picture else {}
+    return Layer("emission", {"base_color": color}, pictures, (Factor("gain", strength, gain),))
+
+
+def _read_transparent(plug, reader):
+    color, picture = reader.number(plug.input("Color"))
+    return [Layer("transparent", {"base_color": color}, {"base_color": picture} if picture else {})]
+
+
+READERS = {
+    "ShaderNodeBsdfPrincipled": _read_principled,
+    "ShaderNodeBsdfDiffuse": _read_diffuse,
+    "ShaderNodeBsdfGlossy": _read_glossy,
+    "ShaderNodeEmission": _read_emission,
+    "ShaderNodeBsdfTransparent": _read_transparent,
+}
+
+
+def note_linked(plug, reader, name):
+    """Says so of an input whose links are not rendered."""
+    if fed_by(plug.input(name)):
+        reader.note(plug, f"'{name}' is not supported; ignored.")
+
+
+def _note_ignored(plug, reader):
+    for name, harmless in _IGNORED.items():
+        socket = plug.input(name)
+        if socket is None:
+            continue
+        value = socket.socket.default_value
+        # Newer tints are colours, of which white makes no difference.
+        off = abs(value - harmless) if isinstance(value, float) else max(abs(c - 1.0) for c in value[:3])
+        if off > 1e-6 or fed_by(socket):
+            reader.note(plug, f"'{name}' is not supported; ignored.")
+    for name in _LINK_ONLY:
+        note_linked(plug, reader, name)

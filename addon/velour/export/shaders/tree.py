@@ -1,0 +1,74 @@
+"""From the active output of a material to the layers of its surface."""
+
+from ..nodes import active_output
+from ..plugs import Plug, fed_by
+from .layer import Factor, Layer, black, grey, simplified
+from .readers import READERS
+from .values import Reader
+
+_MOST_LAYERS = 64  # of nested mixes that share their shaders
+
+
+def surface_layers(material, notes):
+    """The Layers of a material that is not measured; what is left out of it is said in `notes`."""
+    if material is None:
+        return [grey()]
+    if not material.use_nodes or material.node_tree is None:
+        return [Layer("principled", _without_nodes(material), {})]
+    owner = f"Material '{material.name}'"
+    output = active_output(material.node_tree, "ShaderNodeOutputMaterial")
+    plug = fed_by(Plug(output.inputs["Surface"])) if output else None
+    if plug is None:
+        notes.add(f"{owner}: it has no surface shader; rendered black.")
+        return [black()]
+    for name in ("Volume", "Displacement"):
+        if fed_by(Plug(output.inputs[name])):
+            notes.add(f"{owner}: {name.lower()} is not supported; ignored.")
+    reader = Reader(owner, notes)
+    layers = simplified(_read(plug, reader))
+    if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
+        notes.add(f"{owner}: it is mixed of more than {_MOST_LAYERS} shaders; rendered grey.")
+        return [grey()]
+    reader.note_uv_maps(material.node_tree, layers)
+    return layers
+
+
+def _without_nodes(material):
+    return {
+        "base_color": tuple(material.diffuse_color[:3]),
+        "metallic": material.metallic,
+        "roughness": material.roughness,
+        "specular": material.specular_intensity,
+    }
+
+
+def _read(plug, reader):
+    """Layers of the shader at an output."""
+    if reader.steps_left <= 0:
+        return []
+    reader.steps_left -= 1
+    node = plug.node
+    if node.bl_idname == "ShaderNodeMixShader":
+        return _read_mix(plug, reader)
+    if node.bl_idname == "ShaderNodeAddShader":
+        return [layer for part in _shaders(plug, reader) for layer in part]
+    read = READERS.get(node.bl_idname)
+    if read is None:
+        reader.notes.add(
+            f"{reader.owner}: node '{node.name}' ({node.bl_label}) is not supported; rendered grey."
+        )
+        return [grey()]
+    return read(plug, reader)
+
+
+def _shaders(plug, reader):
+    """Layers of each shader that is mixed or added; nothing linked: none."""
+    fed = [fed_by(shader) for shader in plug.inputs("NodeSocketShader")]
+    return [_read(shader, reader) if shader else [] for shader in fed]
+
+
+def _read_mix(plug, reader):
+    factor = plug.input("Fac", "Factor")
+    value, picture = reader.number(factor)
+    parts = zip(_shaders(plug, reader), ("rest", "share"), strict=False)
+    return [layer.weighed(Factor(kind, value, picture)) for part, kind in parts for layer in part]

@@ -1,0 +1,63 @@
+"""Numbers, colours and pictures of a node's inputs."""
+
+from ..image_nodes import UnsupportedError, named_uv_maps, picture_of
+from ..plugs import followed
+
+_MOST_STEPS = 256
+
+
+class Reader:
+    """Reads inputs of the nodes of one material, and says in `notes` what it leaves out."""
+
+    def __init__(self, owner, notes):
+        self.owner = owner
+        self.notes = notes
+        self.steps_left = _MOST_STEPS  # shaders that may be read
+
+    def number(self, plug):
+        """Of an input that may be a picture: its number or colour, and its Picture or None."""
+        fed = followed(plug) if plug else None
+        if fed is None or not fed.socket.is_output:
+            return own_value((fed or plug).socket, plug.socket) if plug else 0.0, None
+        if fed.node.bl_idname in ("ShaderNodeValue", "ShaderNodeRGB"):
+            return own_value(fed.socket, plug.socket), None
+        try:
+            return own_value(plug.socket), picture_of(fed)
+        except UnsupportedError as reason:
+            self.note_link(plug, f" ({reason})")
+            return own_value(plug.socket), None
+
+    def value(self, plug):
+        """The same of an input whose picture would not be rendered."""
+        value, picture = self.number(plug)
+        if picture is not None:
+            self.note_link(plug)
+        return value
+
+    def note(self, plug, sentence):
+        self.notes.add(f"{self.owner}: node '{plug.node.name}': {sentence}")
+
+    def note_link(self, plug, reason=""):
+        self.note(plug, f"the link to '{plug.socket.name}' is ignored; its own value is used{reason}.")
+
+    def note_uv_maps(self, tree, layers):
+        """Says so where pictures are on several UV maps."""
+        parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
+        pictures = [p for part in parts for p in part.pictures.values()]
+        pictures += [f.picture for part in parts for f in part.factors if f.picture]
+        if len({picture.coordinates for picture in pictures}) > 1:
+            shown = named_uv_maps(tree)[0]
+            self.notes.add(f"{self.owner}: its pictures ask for several UV maps; all are shown by '{shown}'.")
+
+
+def own_value(socket, asked=None):
+    """A number, or three of a colour; of the kind that the socket `asked` has. None, and shaders: 0."""
+    value = getattr(socket, "default_value", 0.0)
+    value = float(value) if isinstance(value, (int, float)) else tuple(value[:3])
+    if asked is None or isinstance(asked.default_value, (int, float)) == isinstance(value, float):
+        return value
+    return (
+        (value,) * 3
+        if isinstance(value, float)
+        else 0.2126 * value[0] + 0.7152 * value[1] + 0.0722 * value[2]
+    )

@@ -1,0 +1,61 @@
+"""Materials that are mixed and added of others."""
+
+from __future__ import annotations
+
+from ctypes import byref, pointer
+
+from . import table
+from .arrays import small
+from .handle import Handle, choice, set_fields
+from .texture import IDENTITY, Texture, TextureSlot
+
+_COLORS = {"base_color": 3, "emission": 3}
+
+
+class Shader(Handle):
+    """The sum of its layers, each with its weight; Scene.add_shader_material makes a material of it."""
+
+    _free_name = "vlr_shader_free"
+
+    @classmethod
+    def new(cls) -> Shader:
+        return cls._create("vlr_shader_create")
+
+    def add_layer(self, kind: str, textures: dict[str, TextureSlot] | None = None, **values) -> None:
+        """`kind`: principled, diffuse, glossy, transparent, emission; the weight is 1.
+
+        textures and values: as of Scene.add_textured_material, without alpha and emission. diffuse and glossy
+        look at base_color and roughness; base_color of transparent is what light that goes straight on is
+        multiplied with, of emission the radiance.
+        """
+        desc = table.LayerDesc()
+        self._lib.vlr_layer_desc_init(byref(desc))
+        surface, pictures = described(self._lib, textures or {}, values)
+        desc.kind = choice("kind", kind, table.LAYERS)
+        desc.surface, desc.textures = pointer(surface), pointer(pictures)
+        self._lib.vlr_shader_add_layer(self.pointer, byref(desc))
+
+    def weigh_layer(
+        self, kind: str, value: float = 1.0, texture: Texture | None = None, uv_map=IDENTITY
+    ) -> None:
+        """Multiplies the weight of the last layer: by `share` of a mix, its `rest` (1 - share), or a `gain`.
+
+        A texture of numbers goes before the value.
+        """
+        desc = table.FactorDesc()
+        self._lib.vlr_factor_desc_init(byref(desc))
+        desc.kind, desc.value = choice("kind", kind, table.FACTORS), value
+        if texture is not None:
+            desc.texture, desc.map = texture.pointer, small("uv_map", uv_map, 6)
+        self._lib.vlr_shader_weigh_layer(self.pointer, byref(desc))
+
+
+def described(lib, textures: dict[str, TextureSlot], values: dict):
+    """PrincipledDesc and PrincipledTextures of these; they borrow the textures."""
+    desc, pictures = table.PrincipledDesc(), table.PrincipledTextures()
+    lib.vlr_principled_desc_init(byref(desc))
+    lib.vlr_principled_textures_init(byref(pictures))
+    set_fields(desc, {n: small(n, v, _COLORS[n]) if n in _COLORS else v for n, v in values.items()})
+    for name, slot in textures.items():
+        set_fields(pictures, {name: slot.texture.pointer, f"{name}_map": small("uv_map", slot.uv_map, 6)})
+    return desc, pictures

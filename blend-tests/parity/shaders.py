@@ -1,0 +1,81 @@
+"""Materials made of shader nodes, and pictures for them."""
+
+import bpy
+import numpy as np
+
+
+class Tree:
+    """A material's nodes, made from the leaves up: every method returns the output to link further."""
+
+    def __init__(self, material):
+        material.use_nodes = True
+        self.nodes = material.node_tree.nodes
+        self.links = material.node_tree.links
+        self.nodes.clear()
+
+    def node(self, idname, output=0, settings=None, **inputs):
+        """`inputs`: numbers, colours or outputs of other nodes; underscores stand for blanks."""
+        node = self.nodes.new(idname)
+        for name, value in (settings or {}).items():
+            setattr(node, name, value)
+        for name, value in inputs.items():
+            self.set(node.inputs[name.replace("_", " ")], value)
+        return node.outputs[output]
+
+    def set(self, socket, value):
+        if isinstance(value, bpy.types.NodeSocket):
+            self.links.new(value, socket)
+        else:
+            socket.default_value = value
+
+    def mix(self, factor, first, second):
+        node = self.nodes.new("ShaderNodeMixShader")
+        for socket, value in zip(node.inputs, (factor, first, second), strict=True):
+            self.set(socket, value)
+        return node.outputs[0]
+
+    def add(self, first, second):
+        node = self.nodes.new("ShaderNodeAddShader")
+        self.links.new(first, node.inputs[0])
+        self.links.new(second, node.inputs[1])
+        return node.outputs[0]
+
+    def end(self, shader):
+        output = self.nodes.new("ShaderNodeOutputMaterial")
+        self.links.new(shader, output.inputs["Surface"])
+
+    def diffuse(self, color=(0.8, 0.8, 0.8), **inputs):
+        return self.node("ShaderNodeBsdfDiffuse", Color=_rgba(color), **inputs)
+
+    def glossy(self, roughness, color=(0.9, 0.7, 0.4), distribution="GGX", **inputs):
+        settings = {"distribution": distribution}
+        return self.node(
+            "ShaderNodeBsdfGlossy", settings=settings, Color=_rgba(color), Roughness=roughness, **inputs
+        )
+
+    def transparent(self, color=(1, 1, 1)):
+        return self.node("ShaderNodeBsdfTransparent", Color=_rgba(color))
+
+    def emission(self, color=(0.5, 0.7, 1), strength=1.0):
+        return self.node("ShaderNodeEmission", Color=_rgba(color), Strength=strength)
+
+    def picture(self, image, output="Color", interpolation="Closest"):
+        node = self.nodes.new("ShaderNodeTexImage")
+        node.image, node.interpolation = image, interpolation
+        return node.outputs[output]
+
+
+def _rgba(color):
+    return color if isinstance(color, bpy.types.NodeSocket) else (*color, 1)
+
+
+def image(seed=2, size=8, low=0.1, high=0.9, alpha=False):
+    """Random texels; `alpha`: that is 0 or 1 at random."""
+    made = bpy.data.images.new(f"random {seed}", size, size, alpha=True, float_buffer=True)
+    random = np.random.default_rng(seed)
+    pixels = random.uniform(low, high, (size, size, 4)).astype(np.float32)
+    pixels[..., 3] = random.integers(0, 2, (size, size)) if alpha else 1
+    made.alpha_mode = "CHANNEL_PACKED"
+    made.pixels.foreach_set(pixels.ravel())
+    made.pack()
+    return made

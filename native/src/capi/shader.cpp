@@ -1,0 +1,99 @@
+#include <cmath>
+
+#include "capi/surfaces.h"
+#include "capi/texture_maps.h"
+#include "material/glossy_material.h"
+#include "material/rough_diffuse_material.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+namespace {
+
+Rgb base_color(const vlr_principled_desc& d) { return {d.base_color[0], d.base_color[1], d.base_color[2]}; }
+
+std::shared_ptr<const Material> reflecting(int32_t kind, vlr_principled_desc desc, PrincipledTextures textures) {
+  if (kind == VLR_LAYER_GLOSSY) {
+    return make_glossy_material({base_color(desc), desc.roughness, textures.base_color, textures.roughness});
+  }
+  if (kind == VLR_LAYER_DIFFUSE) {
+    return make_rough_diffuse_material({base_color(desc), desc.roughness, textures.base_color, textures.roughness});
+  }
+  desc.alpha = 1.0f;
+  textures.alpha = {};
+  return material_of(desc, textures);
+}
+
+LayerWeight& add_layer(ShaderLayers& layers, const vlr_layer_desc& layer) {
+  const auto desc = read_options(layer.surface, vlr_principled_desc_init, "vlr_principled_desc");
+  const PrincipledTextures textures =
+      converted(read_options(layer.textures, vlr_principled_textures_init, "vlr_principled_textures"));
+  if (layer.kind == VLR_LAYER_TRANSPARENT || layer.kind == VLR_LAYER_EMISSION) {
+    auto& to = layer.kind == VLR_LAYER_EMISSION ? layers.glowing : layers.transparent;
+    to.push_back({base_color(desc), textures.base_color});
+    return to.back().weight;
+  }
+  layers.reflecting.push_back({reflecting(layer.kind, desc, textures)});
+  return layers.reflecting.back().weight;
+}
+
+void require_choice(int32_t value, int32_t last, const char* field) {
+  if (value >= 0 && value <= last) return;
+  throw Error(Status::invalid_argument, std::string(field) + " is " + std::to_string(value) + "; it is one of 0 to " +
+                                            std::to_string(last) + ".");
+}
+
+}  // namespace
+
+void vlr_layer_desc_init(vlr_layer_desc* desc) {
+  *desc = {};
+  desc->struct_size = sizeof(vlr_layer_desc);
+}
+
+void vlr_factor_desc_init(vlr_factor_desc* desc) {
+  *desc = {};
+  desc->struct_size = sizeof(vlr_factor_desc);
+  desc->value = desc->map[0] = desc->map[4] = 1.0f;
+}
+
+vlr_status vlr_shader_create(vlr_shader** out) {
+  return guard([&] {
+    require(out, "out");
+    *out = new vlr_shader;
+  });
+}
+
+void vlr_shader_free(vlr_shader* shader) { delete shader; }
+
+vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) {
+  return guard([&] {
+    require(shader, "shader");
+    const auto layer = read_options(desc, vlr_layer_desc_init, "vlr_layer_desc");
+    require_choice(layer.kind, VLR_LAYER_EMISSION, "vlr_layer_desc.kind");
+    shader->last = &add_layer(shader->layers, layer);
+  });
+}
+
+vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* desc) {
+  return guard([&] {
+    require(shader, "shader");
+    const auto factor = read_options(desc, vlr_factor_desc_init, "vlr_factor_desc");
+    require_choice(factor.kind, VLR_FACTOR_GAIN, "vlr_factor_desc.kind");
+    if (!std::isfinite(factor.value)) throw Error(Status::invalid_argument, "vlr_factor_desc.value is not finite.");
+    if (shader->last == nullptr) {
+      throw Error(Status::invalid_state,
+                  "A shader without layers has nothing to weigh; add a layer before its factors.");
+    }
+    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value,
+                                     number_slot(factor.texture, factor.map, "vlr_factor_desc.texture")});
+  });
+}
+
+vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* shader, uint32_t* material) {
+  return guard([&] {
+    require(scene, "scene");
+    require(shader, "shader");
+    require(material, "material");
+    *material = scene->scene->add_material({.material = make_layered_material(shader->layers), .rec709_colors = false});
+  });
+}

@@ -1,0 +1,68 @@
+#include "capi/surfaces.h"
+#include "capi/texture_maps.h"
+#include "material/principled_material.h"
+
+namespace velour::capi {
+
+namespace {
+
+[[noreturn]] void refuse_kind(const char* field, const char* needed) {
+  throw Error(Status::invalid_argument, std::string(field) + " needs a texture of " + needed + ".");
+}
+
+}  // namespace
+
+TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, const char* field) {
+  if (texture != nullptr && !texture->color) refuse_kind(field, "colours (channel -1)");
+  return {texture != nullptr ? texture->color : nullptr, map_from(map)};
+}
+
+TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, const char* field) {
+  if (texture != nullptr && !texture->number) refuse_kind(field, "numbers (a channel)");
+  return {texture != nullptr ? texture->number : nullptr, map_from(map)};
+}
+
+PrincipledTextures converted(const vlr_principled_textures& t) {
+  return {color_slot(t.base_color, t.base_color_map, "vlr_principled_textures.base_color"),
+          number_slot(t.metallic, t.metallic_map, "vlr_principled_textures.metallic"),
+          number_slot(t.roughness, t.roughness_map, "vlr_principled_textures.roughness"),
+          number_slot(t.alpha, t.alpha_map, "vlr_principled_textures.alpha")};
+}
+
+PrincipledParameters parameters_of(const vlr_principled_desc& desc) {
+  return {.base_color = {desc.base_color[0], desc.base_color[1], desc.base_color[2]},
+          .metallic = desc.metallic,
+          .roughness = desc.roughness,
+          .specular = desc.specular};
+}
+
+std::shared_ptr<const Material> material_of(const vlr_principled_desc& desc, const PrincipledTextures& textures) {
+  if (!textures.any() && desc.alpha >= 1.0f) return make_principled_material(parameters_of(desc));
+  return make_textured_material(parameters_of(desc), textures, desc.alpha);
+}
+
+}  // namespace velour::capi
+
+using namespace velour;
+using namespace velour::capi;
+
+void vlr_principled_textures_init(vlr_principled_textures* textures) {
+  *textures = {};
+  textures->struct_size = sizeof(vlr_principled_textures);
+  for (float* map : {textures->base_color_map, textures->metallic_map, textures->roughness_map, textures->alpha_map}) {
+    map[0] = map[4] = 1.0f;
+  }
+}
+
+vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principled_desc* desc,
+                                           const vlr_principled_textures* textures, uint32_t* material) {
+  return guard([&] {
+    require(scene, "scene");
+    require(material, "material");
+    const auto given = read_options(desc, vlr_principled_desc_init, "vlr_principled_desc");
+    const auto pictures = read_options(textures, vlr_principled_textures_init, "vlr_principled_textures");
+    *material = scene->scene->add_material({.material = material_of(given, converted(pictures)),
+                                            .emission = {given.emission[0], given.emission[1], given.emission[2]},
+                                            .rec709_colors = false});
+  });
+}

@@ -1,0 +1,19 @@
+// Principled parameters and their pictures as callers give them.
+#pragma once
+
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "material/principled_textures.h"
+
+namespace velour::capi {
+
+/// These throw Error(invalid_argument), by the name of `field`, for a texture of the other kind.
+TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, const char* field);
+TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, const char* field);
+PrincipledTextures converted(const vlr_principled_textures& textures);
+
+PrincipledParameters parameters_of(const vlr_principled_desc& desc);
+/// A uniform material knows its albedos more cheaply.
+std::shared_ptr<const Material> material_of(const vlr_principled_desc& desc, const PrincipledTextures& textures);
+
+}  // namespace velour::capi

@@ -1,0 +1,55 @@
+#include "material/glossy_material.h"
+
+#include <algorithm>
+
+#include "material/ggx.h"
+
+namespace velour {
+namespace {
+
+enum Parameter { kRed, kGreen, kBlue, kAlpha };
+
+class GlossyMaterial final : public Material {
+ public:
+  explicit GlossyMaterial(const GlossyParameters& p) : p_(p) {}
+
+  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
+    const Rgb color = glm::clamp(p_.color_texture.at(site, p_.color), Rgb(0.0f), Rgb(1.0f));
+    const float roughness = std::clamp(p_.roughness_texture.at(site, p_.roughness), kMinRoughness, 1.0f);
+    point.wv = wv;
+    for (int c = 0; c < 3; ++c) point.parameter[kRed + c] = color[c];
+    point.parameter[kAlpha] = roughness * roughness;
+  }
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    const Rgb color(point.parameter[kRed], point.parameter[kGreen], point.parameter[kBlue]);
+    const Vec2 alpha(point.parameter[kAlpha]);
+    for (int i = 0; i < wl.count; ++i) {
+      const Vec3 l = wl.get(i), h = half_vector(point.wv, l);
+      f.set(i, l.z > 0 ? color * ggx_brdf_without_fresnel(point.wv, l, h, alpha) : Rgb(0.0f));
+      pdf.v[i] = pdf_ggx_reflection(point.wv, h, alpha);
+    }
+  }
+
+  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    const Vec2 alpha(point.parameter[kAlpha]);
+    wl.fill(u, [&](const Vec2& v) {
+      const Vec3 h = sample_ggx_visible_normal(point.wv, alpha, v);
+      return 2 * glm::dot(point.wv, h) * h - point.wv;
+    });
+  }
+
+  bool varies() const override { return p_.color_texture.texture || p_.roughness_texture.texture; }
+  bool isotropic() const override { return true; }
+
+ private:
+  const GlossyParameters p_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> make_glossy_material(const GlossyParameters& parameters) {
+  return std::make_shared<GlossyMaterial>(parameters);
+}
+
+}  // namespace velour

@@ -1,0 +1,21 @@
+// Surfaces of microfacets that reflect one colour at every angle: Blender's Glossy BSDF.
+#pragma once
+
+#include <memory>
+
+#include "material/material.h"
+#include "material/texture_slot.h"
+
+namespace velour {
+
+struct GlossyParameters {
+  Rgb color{0.8f};
+  float roughness = 0.5f;  // alpha of GGX: its square; at least kMinRoughness is rendered
+  TextureSlot<Rgb> color_texture{};
+  TextureSlot<float> roughness_texture{};
+};
+
+/// color G2 D / (4 cos cos), single scattering. Samples are drawn from visible normals.
+std::shared_ptr<const Material> make_glossy_material(const GlossyParameters& parameters);
+
+}  // namespace velour

@@ -1,0 +1,54 @@
+#include "material/rough_diffuse_material.h"
+
+#include <algorithm>
+
+#include "sphere/warp.h"
+
+namespace velour {
+namespace {
+
+enum Parameter { kRed, kGreen, kBlue, kEven, kUneven };
+
+class RoughDiffuseMaterial final : public Material {
+ public:
+  explicit RoughDiffuseMaterial(const RoughDiffuseParameters& p) : p_(p) {}
+
+  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
+    const Rgb color = glm::clamp(p_.color_texture.at(site, p_.color), Rgb(0.0f), Rgb(1.0f));
+    const float roughness = std::clamp(p_.roughness_texture.at(site, p_.roughness), 0.0f, 1.0f);
+    point.wv = wv;
+    for (int c = 0; c < 3; ++c) point.parameter[kRed + c] = color[c];
+    point.parameter[kEven] = 1 / (kPi + (0.5f * kPi - 2.0f / 3) * roughness);
+    point.parameter[kUneven] = roughness * point.parameter[kEven];
+  }
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    const Rgb color(point.parameter[kRed], point.parameter[kGreen], point.parameter[kBlue]);
+    const Vec3& wv = point.wv;
+    for (int i = 0; i < wl.count; ++i) {
+      const Vec3 l = wl.get(i);
+      float s = wv.x * l.x + wv.y * l.y;
+      if (s > 0) s /= std::max(wv.z, l.z);
+      f.set(i, l.z > 0 ? color * (point.parameter[kEven] + point.parameter[kUneven] * s) : Rgb(0.0f));
+      pdf.v[i] = std::max(l.z, 0.0f) / kPi;
+    }
+  }
+
+  void sample(const PreparedBrdf& /*point*/, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    wl.fill(u, sample_cosine_hemisphere);
+  }
+
+  bool varies() const override { return p_.color_texture.texture || p_.roughness_texture.texture; }
+  bool isotropic() const override { return true; }
+
+ private:
+  const RoughDiffuseParameters p_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> make_rough_diffuse_material(const RoughDiffuseParameters& parameters) {
+  return std::make_shared<RoughDiffuseMaterial>(parameters);
+}
+
+}  // namespace velour

@@ -1,0 +1,23 @@
+// A picture in the place of a number or a colour of a material.
+#pragma once
+
+#include <memory>
+
+#include "material/surface_site.h"
+#include "material/texture.h"
+#include "material/texture_map.h"
+
+namespace velour {
+
+/// Without a picture the parameter's own value holds.
+template <class T>
+struct TextureSlot {
+  std::shared_ptr<const Texture<T>> texture{};
+  TextureMap map{};  // of the surface's coordinates to the picture's
+
+  T at(const SurfaceSite& site, const T& otherwise) const {
+    return texture ? texture->look_up(map.point(site.uv), map.map * site.footprint) : otherwise;
+  }
+};
+
+}  // namespace velour

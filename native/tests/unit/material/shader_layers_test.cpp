@@ -1,0 +1,183 @@
+// Materials mixed of layers: values, what passes, what glows; and the lobes of single nodes.
+#include "material/shader_layers.h"
+
+#include <gtest/gtest.h>
+
+#include "material/glossy_material.h"
+#include "material/principled_material.h"
+#include "material/rough_diffuse_material.h"
+#include "sphere/quadrature.h"
+#include "sphere/random.h"
+#include "support/materials.h"
+#include "support/textured_materials.h"
+
+namespace velour {
+namespace {
+
+using Kind = LayerFactor::Kind;
+
+std::shared_ptr<const Material> matte(const Rgb& color) {
+  return make_principled_material({.base_color = color, .specular = 0});
+}
+
+LayerWeight by(Kind kind, float value) { return {{{kind, value}}}; }
+
+/// `share` of red, the rest green.
+ShaderLayers two(float share) {
+  ShaderLayers layers;
+  layers.reflecting = {{matte({1, 0, 0}), by(Kind::share, share)}, {matte({0, 1, 0}), by(Kind::rest, share)}};
+  return layers;
+}
+
+Rgb f_of(const Material& material, const SurfaceSite& site = {}) {
+  PreparedBrdf point;
+  material.prepare(direction(0.5f, 1), site, point);
+  return test::eval_one(material, point, direction(0.7f, 3)).f;
+}
+
+void expect_near(const Rgb& found, const Rgb& expected, float error = 1e-5f) {
+  EXPECT_LT(glm::distance(found, expected), error) << found.r << ' ' << found.g << ' ' << found.b;
+}
+
+TEST(ShaderLayers, AMixIsTheWeightedSum) {
+  expect_near(kPi * f_of(*make_layered_material(two(0.3f))), {0.3f, 0.7f, 0});
+  expect_near(kPi * f_of(*make_layered_material(two(7))), {1, 0, 0});  // factors of mixes stay in [0, 1]
+}
+
+TEST(ShaderLayers, FactorsMultiplyAndVary) {
+  ShaderLayers layers = two(0.5f);
+  layers.reflecting[0].weight.factors.push_back({.kind = Kind::rest, .texture = test::one_texel(0.2f)});
+  layers.reflecting[1].weight.factors.push_back({.kind = Kind::gain, .value = 1.5f});
+  const auto material = make_layered_material(layers);
+  EXPECT_TRUE(material->varies());
+  EXPECT_FALSE(make_layered_material(two(0.5f))->varies());
+  expect_near(kPi * f_of(*material), {0.4f, 0.75f, 0});
+}
+
+/// What is there is as much brighter as there is less of it.
+TEST(ShaderLayers, WhiteMixedInIsAlpha) {
+  ShaderLayers layers;
+  layers.reflecting = {{matte({1, 0.5f, 0}), by(Kind::share, 0.25f)}};
+  layers.transparent = {{Rgb(1), {}, by(Kind::rest, 0.25f)}};
+  const auto material = make_layered_material(layers);
+  EXPECT_FALSE(material->opaque());
+  EXPECT_NEAR(material->alpha({}), 0.25f, 1e-6f);
+  EXPECT_EQ(material->passing({}), Rgb(1.0f));
+  expect_near(kPi * f_of(*material), {1, 0.5f, 0});
+  EXPECT_TRUE(make_layered_material(two(0.5f))->opaque());
+  EXPECT_EQ(make_layered_material(two(0.5f))->alpha({}), 1);
+}
+
+/// Whatever the layers: alpha f is what they reflect, (1 - alpha) passing what they let through, alpha emission what
+/// they send.
+TEST(ShaderLayers, SharesMakeUpForTheProbabilityOfMeeting) {
+  for (const float amount : {0.0f, 0.2f, 0.6f, 1.0f}) {
+    ShaderLayers layers;
+    layers.reflecting = {{matte({1, 0.5f, 0}), by(Kind::share, amount)}, {matte({0, 0, 1}), by(Kind::gain, 2)}};
+    layers.transparent = {{{0.9f, 0.3f, 0.1f}, {}, by(Kind::rest, amount)}, {{0, 0.2f, 0}}};
+    layers.glowing = {{{3, 2, 1}, {}, by(Kind::share, 0.5f)}};
+    const auto material = make_layered_material(layers);
+    const float alpha = material->alpha({}), rest = 1 - amount;
+    EXPECT_GT(alpha, 0);
+    EXPECT_LT(alpha, 1);
+    expect_near(alpha * kPi * f_of(*material), {amount, 0.5f * amount, 2});
+    expect_near((1 - alpha) * material->passing({}), {0.9f * rest, 0.3f * rest + 0.2f, 0.1f * rest});
+    expect_near(alpha * material->emission({}), {1.5f, 1, 0.5f});
+  }
+}
+
+TEST(ShaderLayers, NothingIsBlackAndOpenIsOpen) {
+  PreparedBrdf point;
+  const auto nothing = make_layered_material({});
+  EXPECT_EQ(nothing->alpha({}), 1);
+  expect_near(f_of(*nothing), Rgb(0));
+  const auto open = make_layered_material({.transparent = {{{0.5f, 0.25f, 0}}}});
+  EXPECT_EQ(open->alpha({}), 0);
+  expect_near(open->passing({}), {0.5f, 0.25f, 0});
+  const auto blocked = make_layered_material({.transparent = {{Rgb(0)}}});
+  EXPECT_EQ(blocked->alpha({}), 1);
+  expect_near(f_of(*blocked), Rgb(0));
+}
+
+double albedo(const Material& material, float theta_v) {
+  const Quadrature z = gauss_legendre(120, 0, 1);
+  constexpr int kTurns = 160;
+  PreparedBrdf point;
+  material.prepare(direction(theta_v, 0), point);
+  double sum = 0;
+  for (size_t i = 0; i < z.node.size(); ++i) {
+    const double r = std::sqrt(1 - z.node[i] * z.node[i]);
+    for (int k = 0; k < kTurns; ++k) {
+      const double phi = 2 * kPiD * (k + 0.5) / kTurns;
+      const Vec3 wl(r * std::cos(phi), r * std::sin(phi), z.node[i]);
+      sum += z.weight[i] * z.node[i] * static_cast<double>(test::eval_one(material, point, wl).f.g);
+    }
+  }
+  return sum * 2 * kPiD / kTurns;
+}
+
+/// A furnace: what is reflected and what passes keep all light, or part of it, but never make any.
+TEST(ShaderLayers, AWhiteMixKeepsAllLight) {
+  ShaderLayers layers;
+  layers.reflecting = {{matte(Rgb(1)), by(Kind::share, 0.3f)}};
+  layers.transparent = {{Rgb(1), {}, by(Kind::rest, 0.3f)}};
+  const auto material = make_layered_material(layers);
+  const float alpha = material->alpha({});
+  for (const float theta_v : {0.0f, 0.8f, 1.4f}) {
+    const double passes = static_cast<double>((1 - alpha) * material->passing({}).g);
+    EXPECT_NEAR(static_cast<double>(alpha) * albedo(*material, theta_v) + passes, 1, 1e-3) << theta_v;
+  }
+}
+
+/// Mean of f cos / pdf over samples.
+double sampled_albedo(const Material& material, float theta_v) {
+  PreparedBrdf point;
+  material.prepare(direction(theta_v, 0), point);
+  double sum = 0;
+  constexpr uint64_t kSamples = 100'000;
+  for (uint64_t i = 0; i < kSamples; ++i) {
+    const Vec3 wl = material.sample_one(point, RandomStream(1, 0, i).next2());
+    const auto found = test::eval_one(material, point, wl);
+    sum += static_cast<double>(found.f.g * std::max(wl.z, 0.0f) / found.pdf);
+  }
+  return sum / kSamples;
+}
+
+/// Samples that fall below the horizon, and what facets shade from each other, are lost.
+TEST(GlossyMaterial, SamplesBringItsAlbedo) {
+  double last = 1;
+  for (const float roughness : {0.6f, 0.8f, 1.0f}) {
+    const auto white = make_glossy_material({.color = Rgb(1), .roughness = roughness});
+    for (const float theta_v : {0.0f, 0.8f, 1.4f}) {
+      const double exact = albedo(*white, theta_v);
+      EXPECT_NEAR(sampled_albedo(*white, theta_v), exact, 4e-3) << roughness << ' ' << theta_v;
+      EXPECT_NEAR(albedo(*make_glossy_material({.color = Rgb(0.5f), .roughness = roughness}), theta_v), 0.5 * exact,
+                  1e-4);
+    }
+    EXPECT_LT(albedo(*white, 0), last);
+    last = albedo(*white, 0);
+  }
+}
+
+TEST(RoughDiffuseMaterial, IsLambertWithoutRoughnessAndDarkerWithIt) {
+  const auto albedo_of = [](float roughness, float theta_v) {
+    return albedo(*make_rough_diffuse_material({.color = Rgb(0.8f), .roughness = roughness}), theta_v);
+  };
+  EXPECT_NEAR(albedo_of(0, 0.7f), 0.8, 1e-4);
+  for (const float theta_v : {0.0f, 0.8f, 1.4f}) EXPECT_LT(albedo_of(1, theta_v), 0.8) << theta_v;
+  EXPECT_GT(albedo_of(1, 1.4f), albedo_of(1, 0.2f) + 0.01);  // flat: bright at its rim
+}
+
+/// The value of the formula at directions where it is short.
+TEST(RoughDiffuseMaterial, FollowsItsFormula) {
+  const auto f = [](const Vec3& wl, const Vec3& wv) {
+    return test::eval_one(*make_rough_diffuse_material({.color = Rgb(1), .roughness = 1}), {.wl = wl, .wv = wv}).f.g;
+  };
+  const float a = 1 / (kPi + kPi / 2 - 2.0f / 3);
+  EXPECT_NEAR(f({0, 0, 1}, {0, 0, 1}), a, 1e-6f);
+  EXPECT_NEAR(f(direction(1, 0), direction(1, 0)), a * (1 + std::sin(1.0f) * std::sin(1.0f) / std::cos(1.0f)), 1e-5f);
+  EXPECT_NEAR(f(direction(1, kPi), direction(1, 0)), a * (1 - std::sin(1.0f) * std::sin(1.0f)), 1e-5f);
+}
+
+}  // namespace
+}  // namespace velour
