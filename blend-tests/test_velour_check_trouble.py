@@ -1,6 +1,10 @@
 """velour-check: trouble with one file stops nothing, and is said in a sentence."""
 
+import signal
+import subprocess
+import time
 import unittest
+from pathlib import Path
 
 import bpy
 
@@ -46,6 +50,35 @@ class Trouble(CheckFolderTest):
                 status, said, outcomes = self.check(*arguments)
                 self.assertEqual((status, outcomes), (expected, {}), said)
                 self.assertIn(word, said)
+
+    def test_interrupt(self):
+        self.scene.velour.samples = 1 << 20
+        self.save("shot")
+        command = [str(part) for part in self.command("--update")]
+        child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self._wait_for(self.shots / "velour-check/work/001/inside_render.log", "Sample ")
+        start = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        said, _ = child.communicate(timeout=30)
+        self.assertLess(time.monotonic() - start, 3.0)
+        self.assertEqual(child.returncode, 130, said)
+        self.assertIn("stopped", said)
+        self.assertFalse((self.shots / "shot.exr").exists())
+        left = [path for path in Path("/proc").glob("[0-9]*/cmdline") if self._names_folder(path)]
+        self.assertEqual(left, [], "a Blender goes on")
+
+    def _wait_for(self, log, words):
+        for _ in range(600):
+            if log.is_file() and words in log.read_text(errors="replace"):
+                return
+            time.sleep(0.1)
+        self.fail(f"{log} never said {words!r}")
+
+    def _names_folder(self, path):
+        try:
+            return str(self.shots).encode() in path.read_bytes()
+        except OSError:  # it ended meanwhile
+            return False
 
     def test_strange_folder_is_left_alone(self):
         self.save("shot")

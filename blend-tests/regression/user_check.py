@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
+import signal
 import sys
 import tempfile
 from pathlib import Path
@@ -105,7 +106,8 @@ def _run(
     shown = page.Page(output, "Velour: renders beside their references")
     pictures = sum(len(case.references) for case in cases) or 1
     passed = failed = 0
-    for case in cases:
+    for number, case in enumerate(cases, 1):
+        print(f"{number} of {len(cases)}: {case.blend}", file=sys.stderr, flush=True)
         for outcome in _outcomes(case, installation, settings, pictures, arguments.update):
             print(outcome.line, flush=True)
             shown.add(outcome)
@@ -131,6 +133,7 @@ def _outcomes(
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background of a shell it is ignored
     try:
         sys.exit(main())
     except KeyboardInterrupt:

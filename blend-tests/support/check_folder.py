@@ -39,10 +39,12 @@ class CheckFolderTest(BlenderTest):
             for name in names:
                 shutil.copy(self.shots / f"shot{ending}", self.shots / f"{name}{ending}")
 
+    def command(self, *arguments):
+        return [ROOT / "scripts/velour-check", self.shots, "--blender", bpy.app.binary_path, *arguments]
+
     def check(self, *arguments):
         """The exit status, what was said, and outcomes by name."""
-        command = [ROOT / "scripts/velour-check", self.shots, "--blender", bpy.app.binary_path, *arguments]
-        done = process.run(command)
+        done = process.run(self.command(*arguments))
         report = self.shots / "velour-check/report.json"
         text = report.read_text() if report.is_file() else ""
         outcomes = json.loads(text)["outcomes"] if text else []
