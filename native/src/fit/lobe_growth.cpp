@@ -5,6 +5,7 @@
 #include "fit/lobe_search.h"
 #include "fit/lobe_sets.h"
 #include "fit/lobe_split.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -15,20 +16,29 @@ using Index = Eigen::Index;
 constexpr int kFirstSteps = 3, kSteps = 20;
 constexpr double kLeast = 3e-3;
 
+/// One lobe more of each of the `spaces`, and one split in two, each after its first steps.
+std::vector<TrackedLobes> first_steps(const TrackedProblem& problem, const TrackedLobes& lobes,
+                                      std::span<const LobeSpace> spaces) {
+  std::vector<std::optional<TrackedLobes>> found(spaces.size() + (problem.dense() ? 1 : 0));
+  parallel_pieces(found.size(), problem.threads(), problem.progress(), [&](size_t i) {
+    found[i] = i < spaces.size() ? with_best_lobe(problem, lobes, spaces[i]) : with_split_lobe(problem, lobes);
+    if (!found[i]) return;
+    TrackedProblem own = problem;
+    refine(own, *found[i], kFirstSteps, kLeast);
+  });
+  std::vector<TrackedLobes> out;
+  for (std::optional<TrackedLobes>& trial : found) {
+    if (trial) out.push_back(std::move(*trial));
+  }
+  return out;
+}
+
 }  // namespace
 
 bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const LobeSpace> spaces) {
   problem.evaluate(lobes.model, lobes.x);  // its residuals are what the search looks at
-  std::vector<TrackedLobes> trials;
-  for (const LobeSpace space : spaces) {
-    if (auto trial = with_best_lobe(problem, lobes, space)) trials.push_back(std::move(*trial));
-  }
-  if (problem.dense()) {
-    if (auto trial = with_split_lobe(problem, lobes)) trials.push_back(std::move(*trial));
-  }
-  for (TrackedLobes& trial : trials) refine(problem, trial, kFirstSteps, kLeast);
-  const auto best =
-      std::min_element(trials.begin(), trials.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+  std::vector<TrackedLobes> trials = first_steps(problem, lobes, spaces);
+  const auto best = std::min_element(trials.begin(), trials.end(), costs_less);
   if (best != trials.end()) refine(problem, *best, kSteps - kFirstSteps, kLeast);
   const bool better = best != trials.end() && best->cost < lobes.cost;
   if (better) lobes = std::move(*best);

@@ -169,14 +169,15 @@ std::optional<TrackedLobes> with_best_lobe(const TrackedProblem& problem, const 
   parallel_pieces(all.size(), problem.threads(), problem.progress(), [&](size_t i) {
     for (const TrackedView& v : problem.views()) gain[i] += start_at(space, all[i], v).gain;
   });
-  TrackedProblem remainder = problem.remainder();
-  std::optional<TrackedLobes> best;
-  for (const size_t i : most_promising(all, gain)) {
-    TrackedLobes trial = alone(lobes, space, control_values(space, all[i], problem.views(), lobes.model));
-    refine(remainder, trial, kTrySteps, kTryLeast);
-    if (!best || trial.cost < best->cost) best = std::move(trial);
-  }
-  if (!best) return std::nullopt;
+  const std::vector<size_t> tried = most_promising(all, gain);
+  std::vector<TrackedLobes> trials(tried.size());
+  parallel_pieces(tried.size(), problem.threads(), problem.progress(), [&](size_t t) {
+    TrackedProblem remainder = problem.remainder();
+    trials[t] = alone(lobes, space, control_values(space, all[tried[t]], problem.views(), lobes.model));
+    refine(remainder, trials[t], kTrySteps, kTryLeast);
+  });
+  const auto best = std::min_element(trials.begin(), trials.end(), costs_less);
+  if (best == trials.end()) return std::nullopt;
   return joined(lobes, *best);
 }
 

@@ -5,6 +5,8 @@
 
 namespace velour {
 
+inline bool costs_less(const TrackedLobes& a, const TrackedLobes& b) { return a.cost < b.cost; }
+
 TrackedLobes without_lobe(const TrackedLobes& lobes, Eigen::Index lobe);
 
 /// One of them, alone.

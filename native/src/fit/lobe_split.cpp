@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/lobe_sets.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -49,16 +50,20 @@ struct Split {
 }  // namespace
 
 std::optional<TrackedLobes> with_split_lobe(const TrackedProblem& problem, const TrackedLobes& lobes) {
-  const auto cheaper = [](const Split& a, const Split& b) { return a.halves.cost < b.halves.cost; };
+  const auto cheaper = [](const Split& a, const Split& b) { return costs_less(a.halves, b.halves); };
   std::vector<Split> splits;
   for (Index j = 0; j < lobes.model.lobe_count(); ++j) {
     const TrackedLobes one = only_lobe(lobes, j);
     splits.push_back({j, joined(half_of(one, 1), half_of(one, -1))});
-    splits.back().refine_beside(problem, one, 1);
   }
+  const auto refine_all = [&](int steps) {
+    parallel_pieces(splits.size(), problem.threads(), problem.progress(),
+                    [&](size_t s) { splits[s].refine_beside(problem, only_lobe(lobes, splits[s].lobe), steps); });
+  };
+  refine_all(1);
   std::stable_sort(splits.begin(), splits.end(), cheaper);
   splits.resize(std::min(splits.size(), kKept), {0, lobes});
-  for (Split& split : splits) split.refine_beside(problem, only_lobe(lobes, split.lobe), kSteps);
+  refine_all(kSteps);
   const auto best = std::min_element(splits.begin(), splits.end(), cheaper);
   if (best == splits.end()) return std::nullopt;
   return joined(without_lobe(lobes, best->lobe), best->halves);

@@ -23,6 +23,8 @@ constexpr double kGoalShare = 0.1;
 constexpr double kSure = 2;
 // Pictures may err that much more, in relmse.
 constexpr double kSlack = 0.05;
+// The relmse of a thousandth of the light: where both models err by less, no picture tells them apart.
+constexpr double kUnseen = 1e-6;
 
 // Of the progress: the full model, where it is to be fitted, and the reading of the slices.
 constexpr double kFullShare = 0.5, kReadingShare = 0.1;
@@ -126,7 +128,7 @@ class SceneSearch {
     std::vector<double> excess = judge_.shares(fit.brdf);
     for (size_t i = 0; i < excess.size(); ++i) excess[i] -= (1 + kSlack) * full_shares_[i];
     const PictureErrorEstimate worse = PictureError::estimate(excess);
-    if (!(worse.relmse + kSure * worse.standard_error <= 0)) return false;
+    if (!(worse.relmse + kSure * worse.standard_error <= kUnseen)) return false;
     least_bytes_ = fit.brdf.parameter_bytes();
     best_ = std::move(fit);
     return true;

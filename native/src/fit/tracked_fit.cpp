@@ -6,6 +6,7 @@
 
 #include "fit/fit_report.h"
 #include "fit/lobe_growth.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -197,24 +198,30 @@ TrackedProblem problem_of(const std::vector<MeasuredSlice>& slices, const Tracke
 /// Greed may begin in the wrong space and never mend it, so the first lobes are tried in half space alone as well.
 struct TrackedGrowth::State {
   TrackedFitOptions options;
-  TrackedProblem problem;
+  TrackedProblem problem, problem_of_half;
   Growth both, half;
 
   State(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& wanted, Progress& progress)
       : options(wanted),
         problem(problem_of(slices, options, progress)),
+        problem_of_half(problem),
         both(problem, options, progress),
-        half(problem, options, progress) {}
+        half(problem_of_half, options, progress) {}
 
+  TrackedFit fit(int most);
+
+ private:
   const Growth& grown(int most) {
     constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light}, kHalf[] = {LobeSpace::half};
     const int first = std::min(kFirstLobes, most);
     if (!begun) {
-      both.grow(kBoth, first);
-      half.grow(kHalf, first);
       // Not the lobes of smaller models: larger ones that share this growth would begin with others than on their own.
       begun = first == kFirstLobes;
-      if (begun) both.put_in_order(), half.put_in_order();
+      parallel_pieces(2, options.threads, problem.progress(), [&](size_t i) {
+        Growth& growth = i == 0 ? both : half;
+        growth.grow(i == 0 ? std::span<const LobeSpace>(kBoth) : kHalf, first);
+        if (begun) growth.put_in_order();
+      });
       by_half = half.lobes().cost < both.lobes().cost;
     }
     Growth& best = by_half ? half : both;
@@ -222,7 +229,6 @@ struct TrackedGrowth::State {
     return best;
   }
 
- private:
   bool begun = false, by_half = false;
 };
 
@@ -232,22 +238,28 @@ TrackedGrowth::TrackedGrowth(const std::vector<MeasuredSlice>& slices, const Tra
 TrackedGrowth::~TrackedGrowth() = default;
 
 TrackedFit TrackedGrowth::fit(int most) {
-  const Growth& growth = state_->grown(most);
+  TrackedFit fit;
+  in_one_arena(state_->options.threads, [&] { fit = state_->fit(most); });
+  return fit;
+}
+
+TrackedFit TrackedGrowth::State::fit(int most) {
+  const Growth& growth = grown(most);
   TrackedLobes lobes = growth.lobes();
   TrackedFit fit;
   fit.order.points = growth.points();
-  TrackedProblem problem = state_->problem;  // weights change from here on
-  problem.evaluate(lobes.model, lobes.x);
+  TrackedProblem own = problem;  // weights change from here on
+  own.evaluate(lobes.model, lobes.x);
   if (lobes.model.lobe_count() > 0) {
-    grow_for_pictures(problem, lobes, most, fit.order.points);
-    polish(problem, lobes);
+    grow_for_pictures(own, lobes, most, fit.order.points);
+    polish(own, lobes);
     // What the growth ends with takes the place of its last point.
-    fit.order.points.back() = order_point(problem, lobes);
+    fit.order.points.back() = order_point(own, lobes);
     fit.order.chosen = fit.order.points.size() - 1;
   }
   fit.brdf = lobes.model;
   for (const double v : lobes.x) fit.brdf.control.push_back(static_cast<float>(v));
-  record_errors(problem, fit);
+  record_errors(own, fit);
   return fit;
 }
 

@@ -1,7 +1,10 @@
 #include "fit/tracked_normal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <Eigen/Cholesky>
+
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -16,6 +19,9 @@ constexpr int kMostSteps = 80;
 constexpr float kRidge = 1e-6f;
 // Of a block's diagonal of ones, so that floats can hold its factors.
 constexpr float kBlockRidge = 1e-5f;
+// Of the rows of a view's matrix: the threads share what is larger, in so many runs.
+constexpr Index kLeastShared = 32;
+constexpr size_t kRuns = 8;
 
 Index block_size(const P& model) { return static_cast<Index>(model.parameter_count()) * model.lobe_count(); }
 
@@ -34,45 +40,58 @@ double dot(const Eigen::VectorXf& a, const Eigen::VectorXf& b) { return a.cast<d
 /// The inverse of the nodes' own blocks, each scaled to a diagonal of ones.
 class TrackedNormal::Preconditioner {
  public:
-  Preconditioner(const std::vector<Eigen::MatrixXf>& blocks, const Eigen::VectorXf& diagonal,
-                 const Eigen::VectorXf& added, const Eigen::VectorXf& free)
-      : scale_((diagonal + added).cwiseSqrt().cwiseInverse().cwiseProduct(free)) {
-    const Index size = blocks.front().rows();
-    for (size_t n = 0; n < blocks.size(); ++n) {
+  Preconditioner(const TrackedNormal& normal, const Eigen::VectorXf& added, const Eigen::VectorXf& free)
+      : normal_(normal),
+        scale_((normal.diagonal_ + added).cwiseSqrt().cwiseInverse().cwiseProduct(free)),
+        inverse_(normal.block_.size()) {
+    const Index size = normal.block_.front().rows();
+    normal.for_each(inverse_.size(), [&](size_t n) {
       const Index at = static_cast<Index>(n) * size;
       const Eigen::VectorXf scale = scale_.segment(at, size);
-      Eigen::MatrixXf m = scale.asDiagonal() * blocks[n] * scale.asDiagonal();
+      Eigen::MatrixXf m = scale.asDiagonal() * normal.block_[n] * scale.asDiagonal();
       // What stays is apart from the rest.
       const auto stays = 1 - free.segment(at, size).array();
       m.diagonal().array() += added.segment(at, size).array() * scale.array().square() + kBlockRidge + stays;
-      inverse_.emplace_back(m);
-    }
+      inverse_[n].compute(m);
+    });
   }
 
   Eigen::VectorXf operator()(const Eigen::VectorXf& r) const {
     Eigen::VectorXf z = r.cwiseProduct(scale_);
     const Index size = z.size() / static_cast<Index>(inverse_.size());
-    for (size_t n = 0; n < inverse_.size(); ++n) {
+    normal_.for_each(inverse_.size(), [&](size_t n) {
       auto part = z.segment(static_cast<Index>(n) * size, size);
       inverse_[n].solveInPlace(part);
-    }
+    });
     return z.cwiseProduct(scale_);
   }
 
  private:
+  const TrackedNormal& normal_;
   Eigen::VectorXf scale_;
   std::vector<Eigen::LLT<Eigen::MatrixXf>> inverse_;
 };
 
-TrackedNormal::TrackedNormal(const ParametricBrdf& model, const std::vector<TrackedView>& views,
-                             std::vector<LocalNormal> local, const Eigen::VectorXd& x)
-    : model_(model), views_(views), local_(std::move(local)) {
+template <class Work>
+void TrackedNormal::for_each(size_t count, const Work& work) const {
+  const Index block = block_size(model_);
+  const size_t runs = block < kLeastShared ? 1 : std::min(kRuns, count);
+  parallel_pieces(runs, problem_.threads(), problem_.progress(), [&](size_t run) {
+    for (size_t i = run * count / runs; i < (run + 1) * count / runs; ++i) work(i);
+  });
+}
+
+TrackedNormal::TrackedNormal(const ParametricBrdf& model, const TrackedProblem& problem, std::vector<LocalNormal> local,
+                             const Eigen::VectorXd& x)
+    : model_(model), problem_(problem), local_(std::move(local)) {
+  const std::vector<TrackedView>& views = problem.views();
   const Index block = block_size(model);
   block_.assign(static_cast<size_t>(model.spline().node_count()), Eigen::MatrixXf::Zero(block, block));
   gradient_ = smoothness_gradient(model, x);
   for (size_t v = 0; v < views.size(); ++v) {
     const ViewTaps& taps = views[v].taps;
     local_[v].hessian *= static_cast<float>(views[v].scale());
+    first_tap_.push_back(weight_.size());
     for (int t = 0; t < taps.count; ++t) {
       const Eigen::VectorXf w = tap_weights(model, taps, t);
       gradient_.segment(taps.node[t] * block, block) +=
@@ -91,18 +110,23 @@ TrackedNormal::TrackedNormal(const ParametricBrdf& model, const std::vector<Trac
 }
 
 Eigen::VectorXf TrackedNormal::product(const Eigen::VectorXf& x) const {
+  const std::vector<TrackedView>& views = problem_.views();
   const Index block = block_size(model_);
-  Eigen::VectorXf out = smoothness_gradient(model_, x.cast<double>()).cast<float>();
-  Eigen::VectorXf at_view(block), curved(block);
-  auto weight = weight_.begin();
-  for (size_t v = 0; v < views_.size(); ++v) {
-    const ViewTaps& taps = views_[v].taps;
-    at_view.setZero();
+  Eigen::MatrixXf curved(block, static_cast<Index>(views.size()));
+  for_each(views.size(), [&](size_t v) {
+    const ViewTaps& taps = views[v].taps;
+    const Eigen::VectorXf* weight = &weight_[first_tap_[v]];
+    Eigen::VectorXf at_view = Eigen::VectorXf::Zero(block);
     for (int t = 0; t < taps.count; ++t) at_view += weight[t].cwiseProduct(x.segment(taps.node[t] * block, block));
-    curved.setZero();
-    curved.noalias() += local_[v].hessian * at_view;
-    for (int t = 0; t < taps.count; ++t) out.segment(taps.node[t] * block, block) += weight[t].cwiseProduct(curved);
-    weight += taps.count;
+    curved.col(static_cast<Index>(v)).noalias() = local_[v].hessian * at_view;
+  });
+  Eigen::VectorXf out = smoothness_gradient(model_, x.cast<double>()).cast<float>();
+  auto weight = weight_.begin();
+  for (size_t v = 0; v < views.size(); ++v) {
+    const ViewTaps& taps = views[v].taps;
+    for (int t = 0; t < taps.count; ++t) {
+      out.segment(taps.node[t] * block, block) += (weight++)->cwiseProduct(curved.col(static_cast<Index>(v)));
+    }
   }
   return out;
 }
@@ -111,7 +135,7 @@ Eigen::VectorXd TrackedNormal::step(double damping, const Eigen::VectorXd& free)
   const Eigen::VectorXf allowed = free.cast<float>();
   const float ridge = kRidge * diagonal_.mean() + 1e-12f;
   const Eigen::VectorXf added = (static_cast<float>(damping) * diagonal_).array() + ridge;
-  const Preconditioner preconditioned(block_, diagonal_, added, allowed);
+  const Preconditioner preconditioned(*this, added, allowed);
   Eigen::VectorXf step = Eigen::VectorXf::Zero(gradient_.size());
   Eigen::VectorXf r = -gradient_.cast<float>().cwiseProduct(allowed), z = preconditioned(r), along = z;
   double size = dot(r, z);

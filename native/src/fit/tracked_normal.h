@@ -12,8 +12,8 @@ namespace velour {
 
 class TrackedNormal {
  public:
-  /// At `x`, with the views' matrices there. Keeps references to `model` and `views`.
-  TrackedNormal(const ParametricBrdf& model, const std::vector<TrackedView>& views, std::vector<LocalNormal> local,
+  /// At `x`, with the views' matrices there. Keeps references to `model` and `problem`.
+  TrackedNormal(const ParametricBrdf& model, const TrackedProblem& problem, std::vector<LocalNormal> local,
                 const Eigen::VectorXd& x);
 
   /// Solves (H + damping diag H) step = -gradient for the unknowns where `free` is 1; where it is 0 they stay.
@@ -26,11 +26,15 @@ class TrackedNormal {
  private:
   class Preconditioner;
   Eigen::VectorXf product(const Eigen::VectorXf& x) const;
+  /// Calls `work(i)` for i in [0, count), views or nodes, on the problem's threads.
+  template <class Work>
+  void for_each(size_t count, const Work& work) const;
 
   const ParametricBrdf& model_;
-  const std::vector<TrackedView>& views_;
+  const TrackedProblem& problem_;
   std::vector<LocalNormal> local_;       // matrices in units of the cost
   std::vector<Eigen::VectorXf> weight_;  // of the taps of all views, [parameter][lobe]
+  std::vector<size_t> first_tap_;        // of each view in weight_
   std::vector<Eigen::MatrixXf> block_;   // of each node
   Eigen::VectorXd gradient_;
   Eigen::VectorXf diagonal_;

@@ -95,7 +95,7 @@ void refine(TrackedProblem& problem, TrackedLobes& lobes, int most, double least
   std::vector<LocalNormal> local;
   for (int step = 0; step < most; ++step) {
     lobes.cost = problem.linearise(lobes.model, lobes.x, local);
-    const TrackedNormal normal(lobes.model, problem.views(), std::move(local), lobes.x);
+    const TrackedNormal normal(lobes.model, problem, std::move(local), lobes.x);
     const Eigen::VectorXd moving = free_to_move(lobes, normal.gradient(), free);
     const double before = lobes.cost;
     for (int trial = 0; trial < kTrials && lobes.cost == before; ++trial) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/residual_sums.h"
 #include "fit/slice_columns.h"
 #include "fit/warped_columns.h"
 
@@ -74,31 +75,6 @@ struct Linear {
   }
 };
 
-/// Sums of the squares of a residual: of all, and of each sample's share. In floats over a block, which lanes of the
-/// compiler's choice add up in the same order, then in doubles.
-struct Squares {
-  double all = 0, shared = 0;
-
-  Squares(const AlignedFloats& residual, const AlignedFloats& share) {
-    constexpr size_t kLanes = 16, kBlock = 256;
-    for (size_t begin = 0; begin < residual.size(); begin += kBlock) {
-      const size_t end = std::min(begin + kBlock, residual.size());
-      float every[kLanes] = {}, part[kLanes] = {};
-      for (size_t i = begin; i < end; i += kLanes) {
-        for (size_t lane = 0; lane < kLanes; ++lane) {
-          const float square = residual[i + lane] * residual[i + lane];
-          every[lane] += square;
-          part[lane] += square * share[i + lane];
-        }
-      }
-      for (size_t lane = 0; lane < kLanes; ++lane) {
-        all += static_cast<double>(every[lane]);
-        shared += static_cast<double>(part[lane]);
-      }
-    }
-  }
-};
-
 void leave_residual(const Linear& linear, TrackedView& view) {
   const auto lobes = static_cast<size_t>(linear.coefficient.rows());
   double plain = 0, pictures = 0;
@@ -106,7 +82,7 @@ void leave_residual(const Linear& linear, TrackedView& view) {
     const std::span<const double> coefficients(linear.coefficient.col(c).data(), lobes);
     subtract_columns(linear.columns.first(lobes), coefficients, view.samples.target(c), view.samples.padded(),
                      view.residual[c].data());
-    const Squares squares(view.residual[c], view.share);
+    const ResidualSums squares = residual_sums(view.residual[c], view.share);
     plain += kChannel[c] * squares.shared;
     pictures += kChannel[c] * (squares.all - squares.shared);
   }

@@ -12,18 +12,28 @@
 
 namespace velour {
 
+/// Calls `work()`, whose pieces on as many threads all share one arena: many small loops in turn find its threads
+/// awake.
+template <class Work>
+void in_one_arena(int threads, const Work& work) {
+  if (inside_arena_of(threads)) return work();
+  oneapi::tbb::task_arena(arena_concurrency(threads)).execute(work);
+}
+
 /// Calls `work(i)` for i in [0, count) on `threads` threads (0: all), and stops at a cancel. An exception of any piece
-/// ends the others and comes out of here.
+/// ends the others and comes out of here. Pieces may have pieces of their own: all share the same threads, and a thread
+/// that waits for its own may do any other in the meantime, so a piece that has some must hold no lock.
 template <class Work>
 void parallel_pieces(size_t count, int threads, const Progress& progress, const Work& work) {
-  oneapi::tbb::task_arena arena(arena_concurrency(threads));
-  arena.execute([&] {
-    const auto piece = [&](size_t i) {
-      progress.check();
-      work(i);
-    };
-    oneapi::tbb::parallel_for(size_t{0}, count, piece, oneapi::tbb::simple_partitioner());
-  });
+  const auto piece = [&](size_t i) {
+    progress.check();
+    work(i);
+  };
+  if (count == 1 || arena_concurrency(threads) == 1) {
+    for (size_t i = 0; i < count; ++i) piece(i);
+    return;
+  }
+  in_one_arena(threads, [&] { oneapi::tbb::parallel_for(size_t{0}, count, piece, oneapi::tbb::simple_partitioner()); });
 }
 
 /// Calls `work(i)` for i in [0, count) on `threads` threads (0: all), reports progress and stops at a cancel. An

@@ -108,6 +108,10 @@ class SceneFit : public ::testing::Test {
   std::shared_ptr<const Model> full(const Measurement& measurement) {
     return full_ = std::make_shared<const Model>(fit_parametric(measurement, {}, progress_));
   }
+  double error_in(const SceneObservation& scene, const Measurement& measurement, const ParametricBrdf& brdf) {
+    const PictureError judge(measurement, lobes_of(*full_), scene, 0, progress_);
+    return PictureError::estimate(judge.shares(brdf)).relmse;
+  }
 
   Progress progress_;
   std::shared_ptr<const Model> full_;
@@ -127,9 +131,7 @@ TEST_F(SceneFit, ShrinksAModelThatIsSeenUnderSoftLightFromFewViews) {
   EXPECT_TRUE(model.fit.by_view_angle.at("30"));
   // Judged by other hits under other light of the same kind.
   const SceneObservation other = test::softly_lit(1024, 128, 30, 50, 99);
-  const PictureError judge(metal, lobes_of(*full_), other, 0, progress_);
-  const double of_full = PictureError::estimate(judge.shares(lobes_of(*full_))).relmse;
-  EXPECT_LE(PictureError::estimate(judge.shares(small)).relmse, 1.1 * of_full);
+  EXPECT_LE(error_in(other, metal, small), 1.1 * error_in(other, metal, lobes_of(*full_)));
 }
 
 TEST_F(SceneFit, KeepsTheShellOfTheFullModel) {
@@ -141,6 +143,16 @@ TEST_F(SceneFit, KeepsTheShellOfTheFullModel) {
   EXPECT_LT(lobes_of(model).parameter_bytes(), lobes_of(*full_).parameter_bytes());
   ASSERT_TRUE(model.shell);
   EXPECT_EQ(model.shell->volume, with_shell.shell->volume);
+}
+
+/// The full model is the measurement, so that any other is worse.
+TEST_F(SceneFit, WhatNoPictureShowsTakesNoBytes) {
+  const ParametricBrdf even = lobes_of(*full(AnalyticMeasurement(test::lambert)));
+  const AnalyticMeasurement measurement = measured(even, 1);
+  const Model model = reduced(measurement, soft_scene());
+  EXPECT_LT(2 * lobes_of(model).parameter_bytes(), even.parameter_bytes());
+  EXPECT_LE(error_in(*soft_scene(), measurement, even), 1e-15);
+  EXPECT_LE(error_in(*soft_scene(), measurement, lobes_of(model)), 2e-6);
 }
 
 TEST_F(SceneFit, MoreViewsTakeMoreBytes) {

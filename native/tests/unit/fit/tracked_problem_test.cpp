@@ -79,7 +79,7 @@ TEST_P(Tracked, TheTruthHasNoErrorButThePenalty) {
 TEST_P(Tracked, TheStepSolvesTheNormalEquationsOfTheCost) {
   std::vector<LocalNormal> local;
   const double here = problem_.linearise(start_.model, start_.x, local);
-  const TrackedNormal normal(start_.model, problem_.views(), local, start_.x);
+  const TrackedNormal normal(start_.model, problem_, local, start_.x);
   const Eigen::VectorXd step = normal.step(1e-3, Eigen::VectorXd::Ones(start_.x.size()));
   // Gauss-Newton predicts the cost along its step: half the gradient's drop twice, plus the curvature.
   const double slope = (problem_.evaluate(start_.model, start_.x + 1e-4 * step) -
@@ -132,7 +132,7 @@ TEST_P(Tracked, TheGradientIsThatOfTheCost) {
   const double slope =
       (problem_.evaluate(start_.model, x + kStep * along) - problem_.evaluate(start_.model, x - kStep * along)) /
       (2 * kStep);
-  const Eigen::VectorXd gradient = TrackedNormal(start_.model, problem_.views(), local, x).gradient();
+  const Eigen::VectorXd gradient = TrackedNormal(start_.model, problem_, local, x).gradient();
   EXPECT_NEAR(2 * gradient.dot(along), slope, 2e-3 * std::abs(slope));
 }
 
@@ -145,7 +145,7 @@ TEST_P(Tracked, HeldParametersDoNotMove) {
       for (int j = 0; j < 2; ++j) free[static_cast<Eigen::Index>(start_.model.index(node, k, j))] = 1;
     }
   }
-  const Eigen::VectorXd step = TrackedNormal(start_.model, problem_.views(), local, start_.x).step(1e-3, free);
+  const Eigen::VectorXd step = TrackedNormal(start_.model, problem_, local, start_.x).step(1e-3, free);
   double moved = 0;
   for (int node = 0; node < start_.model.spline().node_count(); ++node) {
     for (int k = 0; k < start_.model.parameter_count(); ++k) {
@@ -162,7 +162,7 @@ TEST_P(Tracked, HeldParametersDoNotMove) {
 TEST_P(Tracked, TheStepKeepsItsPromise) {
   std::vector<LocalNormal> local;
   const double here = problem_.linearise(start_.model, start_.x, local);
-  const TrackedNormal normal(start_.model, problem_.views(), local, start_.x);
+  const TrackedNormal normal(start_.model, problem_, local, start_.x);
   const Eigen::VectorXd step = 1e-3 * normal.step(1e-3, Eigen::VectorXd::Ones(start_.x.size()));
   const double gained = here - problem_.evaluate(start_.model, start_.x + step);
   EXPECT_GT(gained, 0);
