@@ -55,6 +55,40 @@ class Notes(BlenderTest):
         tree.links.new(checker.outputs["Color"], node.inputs["Base Color"])
         self._said("Material 'Glass'", node.name, "Base Color")
 
+    def _linked(self, idname, shader="ShaderNodeBsdfDiffuse", socket="Normal"):
+        """A material of a shader with another node at one of its inputs; both nodes."""
+        tree = self._material(shader).node_tree
+        node = next(n for n in tree.nodes if n.bl_idname == shader and n.outputs[0].is_linked)
+        other = tree.nodes.new(idname)
+        tree.links.new(other.outputs[0], node.inputs[socket])
+        return node, other
+
+    def test_other_normals(self):
+        node, bump = self._linked("ShaderNodeBump")
+        self._said("Material 'Glass'", node.name, "'Normal'", f"'{bump.name}' is not a Normal Map")
+
+    def test_spaces_of_normal_maps(self):
+        _, normal_map = self._linked("ShaderNodeNormalMap", "ShaderNodeBsdfGlossy")
+        self.assertEqual(self._notes(), [])
+        normal_map.space = "WORLD"
+        self._said("Material 'Glass'", normal_map.name, "tangent space")
+
+    def test_distributions(self):
+        tree = self._material("ShaderNodeBsdfGlossy").node_tree
+        node = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfGlossy")
+        node.distribution = "GGX"
+        self.assertEqual(self._notes(), [])
+        node.distribution = "BECKMANN"
+        self._said("Material 'Glass'", node.name, "'Beckmann' is shown as GGX")
+
+    def test_unsupported_part_of_a_mix(self):
+        tree = self._material("ShaderNodeMixShader").node_tree
+        mix = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeMixShader")
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
+        self.assertEqual(self._notes(), [])
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfVelvet").outputs[0], mix.inputs[2])
+        self._said("Material 'Glass'", "Velvet BSDF", "rendered grey")
+
     def test_ignored_input(self):
         material = self._material("ShaderNodeBsdfPrincipled")
         for node in material.node_tree.nodes:

@@ -1,6 +1,7 @@
 """Shaders that are mixed and added: what lets light through, what reflects and what glows."""
 
 import bpy
+import numpy as np
 
 from parity import stage
 from parity.case import ParityTest
@@ -164,6 +165,66 @@ class Groups(ShaderTest):
         settings = {"node_tree": self._group()}
         tree.end(tree.node("ShaderNodeGroup", settings=settings, Amount=0.6, Tint=picture))
         self.assert_parity("Node group with inputs")
+
+
+class NormalMaps(ShaderTest):
+    """The roof has a relief, and is seen and lit from above."""
+
+    def _map(self, strength=1.0, seed=12, size=8, low=0.2, high=0.8, **settings):
+        """A linear picture of random tilts, towards the surface's normal in the mean."""
+        picture = image(seed, size, low, high)
+        pixels = np.array(picture.pixels[:], np.float32).reshape(-1, 4)
+        pixels[:, 2] = 0.5 + 0.5 * pixels[:, 2]
+        picture.pixels.foreach_set(pixels.ravel())
+        picture.pack()
+        color = self.tree.picture(picture)
+        return self.tree.node("ShaderNodeNormalMap", settings=settings, Color=color, Strength=strength)
+
+    def test_diffuse(self):
+        self.tree.end(self.tree.diffuse(Normal=self._map()))
+        self.assert_parity("Normal Map: Diffuse")
+
+    def test_glossy(self):
+        """Steep facets show what a roughness of 1 shows of flat ones."""
+        self.tree.end(self.tree.glossy(0.4, Normal=self._map(low=0.35, high=0.65)))
+        self.assert_approximate("Normal Map: Glossy", 1, samples=4)
+
+    def test_half_strength(self):
+        """Before strength scaled tilt in tangent space, Cycles interpolated the normals themselves."""
+        self.tree.end(self.tree.diffuse(Normal=self._map(0.5)))
+        self.assert_approximate("Normal Map: strength 0.5", 4)
+
+    def test_strong(self):
+        self.tree.end(self.tree.diffuse(Normal=self._map(2.0)))
+        self.assert_approximate("Normal Map: strength 2", 4)
+
+    def test_mirrored(self):
+        layer = self.roof.data.uv_layers["UVMap"]
+        layer.data.foreach_set("uv", [1, 0.2, 0, 0, 0.1, 1, 1, 1])
+        self.tree.end(self.tree.diffuse(Normal=self._map()))
+        self.assert_parity("Normal Map: mirrored and sheared UV map")
+
+    def test_from_behind(self):
+        self.roof.rotation_euler = (3.14159, 0, 0)
+        self.roof.location.z = 2
+        self.tree.end(self.tree.diffuse(Normal=self._map()))
+        self.assert_parity("Normal Map: back faces")
+
+    def test_uneven_scale(self):
+        self.roof.scale = (1.3, 0.7, -1)
+        self.roof.location.z = 2
+        stage.twin(self.roof)
+        self.tree.end(self.tree.diffuse(Normal=self._map()))
+        self.assert_parity("Normal Map: uneven negative scale")
+
+    def test_sphere(self):
+        ball = stage.sphere(1.2, segments=24, rings=12)
+        ball.location.z = 2.2
+        self.roof.hide_render = True
+        ball.data.materials.clear()
+        ball.data.materials.append(self.material)
+        self.tree.end(self.tree.diffuse(Normal=self._map(size=16, low=0.35, high=0.65)))
+        self.assert_parity("Normal Map: smooth sphere")
 
 
 class Reflecting(ShaderTest):

@@ -80,7 +80,11 @@ class MaterialTable:
             return self._scene.add_shader_material(shader)
 
     def _add_layer(self, shader, layer, material):
-        shader.add_layer(layer.kind, self._slots(layer, material), **layer.values)
+        values = dict(layer.values)
+        if layer.relief:
+            values["normal"] = self._slot(layer.relief.picture, True, material)
+            values["normal_strength"] = layer.relief.strength
+        shader.add_layer(layer.kind, self._slots(layer, material), **values)
         for factor in layer.factors:
             slot = factor.picture and self._slot(factor.picture, False, material)
             shader.weigh_layer(factor.kind, factor.value, *(slot or ()))

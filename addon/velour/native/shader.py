@@ -21,18 +21,28 @@ class Shader(Handle):
     def new(cls) -> Shader:
         return cls._create("vlr_shader_create")
 
-    def add_layer(self, kind: str, textures: dict[str, TextureSlot] | None = None, **values) -> None:
+    def add_layer(
+        self,
+        kind: str,
+        textures: dict[str, TextureSlot] | None = None,
+        normal: TextureSlot | None = None,
+        normal_strength: float = 1.0,
+        **values,
+    ) -> None:
         """`kind`: principled, diffuse, glossy, transparent, emission; the weight is 1.
 
         textures and values: as of Scene.add_textured_material, without alpha and emission. diffuse and glossy
         look at base_color and roughness; base_color of transparent is what light that goes straight on is
-        multiplied with, of emission the radiance.
+        multiplied with, of emission the radiance. normal: a normal map, colours, of what reflects.
         """
         desc = table.LayerDesc()
         self._lib.vlr_layer_desc_init(byref(desc))
         surface, pictures = described(self._lib, textures or {}, values)
         desc.kind = choice("kind", kind, table.LAYERS)
         desc.surface, desc.textures = pointer(surface), pointer(pictures)
+        if normal is not None:
+            desc.normal, desc.normal_map = normal.texture.pointer, small("uv_map", normal.uv_map, 6)
+            desc.normal_strength = normal_strength
         self._lib.vlr_shader_add_layer(self.pointer, byref(desc))
 
     def weigh_layer(

@@ -240,6 +240,10 @@ class LayerDesc(Struct):
         ("kind", c_int32),
         ("surface", POINTER(PrincipledDesc)),
         ("textures", POINTER(PrincipledTextures)),
+        ("normal", c_void_p),
+        ("normal_map", c_float * 6),
+        ("normal_strength", c_float),
+        ("pad", c_uint32),
     ]
 
 

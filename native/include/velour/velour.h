@@ -498,6 +498,11 @@ typedef struct vlr_layer_desc {
   int32_t kind;                            /* VLR_LAYER_* */
   const vlr_principled_desc* surface;      /* NULL: its defaults; alpha and emission are not looked at */
   const vlr_principled_textures* textures; /* NULL: none; of what the kind looks at */
+  const vlr_texture* normal; /* what reflects: a normal map, colours; NULL: none. It follows the MikkTSpace tangents of
+                                the mesh's texture coordinates */
+  float normal_map[6];       /* as those of vlr_principled_textures */
+  float normal_strength;     /* of its tilt, not negative; 1 */
+  uint32_t pad;
 } vlr_layer_desc;
 VLR_API void vlr_layer_desc_init(vlr_layer_desc* desc);
 typedef struct vlr_factor_desc {

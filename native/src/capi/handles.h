@@ -47,6 +47,7 @@ struct vlr_texture {
 
 struct vlr_shader {
   velour::ShaderLayers layers;
+  bool relief = false;                  // a layer has a normal map
   velour::LayerWeight* last = nullptr;  // of the layer that was added last; null: there is none
 };
 

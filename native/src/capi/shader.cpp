@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 
 #include "capi/surfaces.h"
 #include "capi/texture_maps.h"
 #include "material/glossy_material.h"
+#include "material/normal_map.h"
 #include "material/rough_diffuse_material.h"
 
 using namespace velour;
@@ -24,6 +26,17 @@ std::shared_ptr<const Material> reflecting(int32_t kind, vlr_principled_desc des
   return material_of(desc, textures);
 }
 
+std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const vlr_layer_desc& layer) {
+  if (layer.normal == nullptr) return material;
+  const DiffusePart diffuse = layer.kind == VLR_LAYER_GLOSSY    ? DiffusePart::none
+                              : layer.kind == VLR_LAYER_DIFFUSE ? DiffusePart::all
+                                                                : DiffusePart::base_of_principled;
+  return make_normal_mapped(
+      std::move(material),
+      {color_slot(layer.normal, layer.normal_map, "vlr_layer_desc.normal"), std::max(layer.normal_strength, 0.0f)},
+      diffuse);
+}
+
 LayerWeight& add_layer(ShaderLayers& layers, const vlr_layer_desc& layer) {
   const auto desc = read_options(layer.surface, vlr_principled_desc_init, "vlr_principled_desc");
   const PrincipledTextures textures =
@@ -33,7 +46,7 @@ LayerWeight& add_layer(ShaderLayers& layers, const vlr_layer_desc& layer) {
     to.push_back({base_color(desc), textures.base_color});
     return to.back().weight;
   }
-  layers.reflecting.push_back({reflecting(layer.kind, desc, textures)});
+  layers.reflecting.push_back({with_normals(reflecting(layer.kind, desc, textures), layer)});
   return layers.reflecting.back().weight;
 }
 
@@ -48,6 +61,7 @@ void require_choice(int32_t value, int32_t last, const char* field) {
 void vlr_layer_desc_init(vlr_layer_desc* desc) {
   *desc = {};
   desc->struct_size = sizeof(vlr_layer_desc);
+  desc->normal_map[0] = desc->normal_map[4] = desc->normal_strength = 1.0f;
 }
 
 void vlr_factor_desc_init(vlr_factor_desc* desc) {
@@ -71,6 +85,7 @@ vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) 
     const auto layer = read_options(desc, vlr_layer_desc_init, "vlr_layer_desc");
     require_choice(layer.kind, VLR_LAYER_EMISSION, "vlr_layer_desc.kind");
     shader->last = &add_layer(shader->layers, layer);
+    shader->relief |= layer.normal != nullptr;
   });
 }
 
@@ -94,6 +109,7 @@ vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* sha
     require(scene, "scene");
     require(shader, "shader");
     require(material, "material");
-    *material = scene->scene->add_material({.material = make_layered_material(shader->layers), .rec709_colors = false});
+    *material = scene->scene->add_material(
+        {.material = make_layered_material(shader->layers), .relief = shader->relief, .rec709_colors = false});
   });
 }

@@ -13,6 +13,7 @@
 #include "material/principled_lobes.h"
 #include "material/surface_site.h"
 #include "sphere/direction_batch.h"
+#include "sphere/frame.h"
 #include "srbf/lobe_mixture.h"
 #include "srbf/lobe_products.h"
 #include "srbf/warped_mixture.h"
@@ -46,6 +47,7 @@ struct PreparedBrdf {
   BtfTablePoint btf_table;                // BTFs themselves: what is blended at the site for the view
   std::unique_ptr<PreparedBrdf> through;  // where light comes through: the same for light from the other side
   float through_share = 0;                // of samples that are drawn from it
+  Frame relief;                           // of materials with a normal map: about the mapped normal
   std::vector<PreparedLayer> layers;      // of materials that are mixed of others
 };
 

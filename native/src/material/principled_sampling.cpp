@@ -82,7 +82,17 @@ void PrincipledSampling::set_up(const PrincipledLobes& lobes, const PrincipledLo
 
 void PrincipledSampling::eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f,
                               ScalarBatch& pdf) const {
-  const PrincipledLobes::View view{point.wv, point.parameter[kDiffuseScale], point.parameter[kThrough]};
+  eval_parts(point, point.parameter[kDiffuseScale], wl, f, pdf);
+}
+
+void PrincipledSampling::eval_specular(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f) const {
+  ScalarBatch pdf;
+  eval_parts(point, 0, wl, f, pdf);
+}
+
+void PrincipledSampling::eval_parts(const PreparedBrdf& point, float diffuse_scale, const DirectionBatch& wl,
+                                    RgbBatch& f, ScalarBatch& pdf) const {
+  const PrincipledLobes::View view{point.wv, diffuse_scale, point.parameter[kThrough]};
   const float diffuse = point.parameter[kDiffuseEnd], end = point.parameter[kSpecularEnd];
   const PrincipledShares shares{diffuse, end - diffuse, 1 - end};
   VELOUR_SIMD_DISPATCH(eval_principled_simd)(lobes(point), view, shares, wl, f, pdf);

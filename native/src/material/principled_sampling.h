@@ -16,6 +16,8 @@ class PrincipledSampling : public Material {
  public:
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const final;
   void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const final;
+  /// f less that of the diffuse base.
+  void eval_specular(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f) const;
   bool isotropic() const final { return true; }
 
  protected:
@@ -24,6 +26,10 @@ class PrincipledSampling : public Material {
                      PreparedBrdf& point);
   /// Those that `point` was set up with.
   virtual const PrincipledLobes& lobes(const PreparedBrdf& point) const = 0;
+
+ private:
+  void eval_parts(const PreparedBrdf& point, float diffuse_scale, const DirectionBatch& wl, RgbBatch& f,
+                  ScalarBatch& pdf) const;
 };
 
 }  // namespace velour

@@ -14,6 +14,10 @@ struct SurfaceSite {
   /// Of BTFs of open structure whose outlines rays find for themselves (HoledBtfMaterial): from `uv` to its mirror
   /// image at an outline that is near enough for texels to reach over it; else zero.
   Vec2 beyond_outline{0.0f};
+  /// Of surfaces with a normal map (SurfaceMaterial::relief), local: tangent, bitangent and normal that the map's
+  /// components are along, not normalised; zero where there are none. And the geometric normal, on the viewer's side.
+  Mat3 relief{0.0f};
+  Vec3 ground{0, 0, 1};
   bool back =
       false;  // seen from the side that the mesh's normal does not point to; uv and +x, +y are those of the front
 

@@ -56,6 +56,7 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   const TexturePoint texture = scene.texture(hit);
   find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction,
             pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction));
+  if (surface->relief) find_relief(scene, hit);
   if (crossing != nullptr && surface->holed()) {
     // At a point: a footprint would average the holes in, which the rays of a pixel do.
     site.footprint = Mat2(0.0f);
@@ -64,6 +65,12 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
 }
 
 Rgb Vertex::emission() const { return surface->emission + surface->material->emission(site); }
+
+void Vertex::find_relief(const Scene& scene, const Hit& hit) {
+  const Mat3 relief = scene.relief(hit);
+  for (int i = 0; i < 3; ++i) site.relief[i] = (site.back ? -1.0f : 1.0f) * frame.to_local(relief[i]);
+  site.ground = frame.to_local(geometric_normal);
+}
 
 void Vertex::find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction,
                        const RaySides& sides) {

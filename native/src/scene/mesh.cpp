@@ -162,9 +162,21 @@ Mesh Mesh::lifted(std::span<const float> height, const Mat3& metric) const {
   return mesh;
 }
 
+void Mesh::make_tangents() {
+  if (uvs_.empty() || has_tangents()) return;
+  tangents_ = corner_tangents(positions_, triangles_, normals_, uvs_);
+}
+
+Mat3 Mesh::relief(uint32_t triangle, const Vec2& uv) const {
+  const CornerTangent* t = &tangents_[3 * static_cast<size_t>(triangle)];
+  const Vec3 normal = shading_normal(triangle, uv);
+  const Vec3 tangent = interpolate(t[0].direction, t[1].direction, t[2].direction, uv);
+  return {tangent, t[0].side * glm::cross(normal, tangent), normal};
+}
+
 uint64_t Mesh::bytes() const {
   return positions_.size() * sizeof(Vec3) + triangles_.size() * sizeof(glm::uvec3) + normals_.size() * sizeof(Vec3) +
-         uvs_.size() * sizeof(Vec2) + slots_.size() * sizeof(uint32_t);
+         uvs_.size() * sizeof(Vec2) + slots_.size() * sizeof(uint32_t) + tangents_.size() * sizeof(CornerTangent);
 }
 
 }  // namespace velour

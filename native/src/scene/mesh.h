@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "scene/corner_tangents.h"
 #include "sphere/vec.h"
 
 namespace velour {
@@ -19,7 +20,8 @@ struct MeshArrays {
   std::span<const uint8_t> smooth{};           // 1 a triangle; used without corner_normals; none: all smooth
 };
 
-/// Immutable. Triangles that a ray cannot hit reliably - a corner that is not finite or out of reach, no area
+/// Immutable but for make_tangents(). Triangles that a ray cannot hit reliably - a corner that is not finite or out of
+/// reach, no area
 /// - are left out. Zero or non-finite shading normals are replaced by the triangle's own.
 class Mesh {
  public:
@@ -54,6 +56,12 @@ class Mesh {
   /// degenerate.
   Vec3 tangent(uint32_t triangle, const Mat2& map = Mat2(1.0f)) const;
   uint32_t material_slot(uint32_t triangle) const { return slots_.empty() ? 0 : slots_[triangle]; }
+  /// Makes what relief() needs, where there are texture coordinates and it is not there yet.
+  void make_tangents();
+  bool has_tangents() const { return !tangents_.empty(); }
+  /// Columns: tangent, bitangent and normal of a normal map, object space, interpolated and not normalised. Only with
+  /// has_tangents(). Turned as normals are, they turn what the map says.
+  Mat3 relief(uint32_t triangle, const Vec2& uv) const;
   uint64_t bytes() const;
 
  private:
@@ -65,6 +73,7 @@ class Mesh {
   std::vector<Vec3> normals_;  // 3 a triangle
   std::vector<Vec2> uvs_;      // 3 a triangle, or none
   std::vector<uint32_t> slots_;
+  std::vector<CornerTangent> tangents_;  // 3 a triangle, or none
   uint32_t dropped_ = 0;
 };
 

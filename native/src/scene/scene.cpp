@@ -124,6 +124,7 @@ void Scene::set_working_space(const Mat3& rec709_to_working) {
 void Scene::commit(int threads) {
   if (committed()) return;
   const auto start = std::chrono::steady_clock::now();
+  make_tangents();
   lift_shells();
   auto rays = std::make_unique<EmbreeScene>();
   std::vector<bool> traced(meshes_.size() + lifted_.size());
@@ -140,6 +141,13 @@ void Scene::commit(int threads) {
   info_ = count();
   info_.bytes += rays_->bytes();
   info_.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Scene::make_tangents() {
+  for (const Instance& i : instances_) {
+    if (std::ranges::any_of(i.materials, [&](uint32_t m) { return materials_[m].relief; }))
+      meshes_[i.mesh].make_tangents();
+  }
 }
 
 Bounds Scene::bounds_of_instances() const {
@@ -224,6 +232,12 @@ TexturePoint Scene::texture_of_mesh(const Hit& hit) const {
   const TexturePoint point{uv[0] + hit.u * d1 + hit.v * d2, gradient(0), gradient(1)};
   const float sum = glm::dot(point.uv, Vec2(1.0f)) + glm::dot(point.u_gradient + point.v_gradient, Vec3(1.0f));
   return std::isfinite(sum) ? point : TexturePoint{};
+}
+
+Mat3 Scene::relief(const Hit& hit) const {
+  const Instance& instance = instances_[hit.instance];
+  const Mesh& mesh = traced_mesh(instance);
+  return mesh.has_tangents() ? instance.normal_to_world * mesh.relief(hit.triangle, {hit.u, hit.v}) : Mat3(0.0f);
 }
 
 SurfacePoint Scene::surface(const Hit& hit) const {

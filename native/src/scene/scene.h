@@ -23,6 +23,7 @@ class Material;
 struct SurfaceMaterial {
   std::shared_ptr<const Material> material;
   Rgb emission{0.0f};         // radiance of both sides, working space
+  bool relief = false;        // it has a normal map: meshes that show it get tangents
   bool rec709_colors = true;  // f is Rec. 709 (measured) and is taken to the working space; false: already there
   /// Structure that lies over the surface and lets rays through; null: none. Needs texture coordinates.
   std::shared_ptr<const ShellField> shell = nullptr;
@@ -143,6 +144,9 @@ class Scene {
   bool is_holdout(const Hit& hit) const { return (instances_[hit.instance].hidden & hidden::kHoldout) != 0; }
   /// Apart from surface(): most materials are uniform.
   TexturePoint texture(const Hit& hit) const;
+  /// What the components of a normal map are along at a hit, world space: tangent, bitangent, normal, towards the
+  /// mesh's front, not normalised. Zero without texture coordinates, or where no material of the mesh has a map.
+  Mat3 relief(const Hit& hit) const;
   /// Whether a hit is on the top of a shell.
   bool has_shell(const Hit& hit) const {
     const Instance& instance = instances_[hit.instance];
@@ -164,6 +168,7 @@ class Scene {
  private:
   void changed();
   SurfaceMaterial& with_shell(uint32_t material, const char* to_what);
+  void make_tangents();
   void lift_shells();
   /// `tops`: the traced meshes so far, by all that they depend on.
   void lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& tops);

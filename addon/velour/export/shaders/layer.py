@@ -12,6 +12,13 @@ class Factor(NamedTuple):
     picture: object = None  # image_nodes.Picture in its place
 
 
+class Relief(NamedTuple):
+    """A normal map."""
+
+    picture: object
+    strength: float
+
+
 class Layer(NamedTuple):
     """Keywords of Shader.add_layer, pictures in the place of some, and the factors of its weight.
 
@@ -22,6 +29,7 @@ class Layer(NamedTuple):
     values: dict
     pictures: dict
     factors: tuple = ()
+    relief: object = None  # Relief of what reflects
     glow: object = None  # an emission Layer that alpha holds of, too
 
     def weighed(self, factor):
@@ -38,7 +46,7 @@ def black():
 
 def as_principled(layers):
     """The Layer of a material that is one Principled node, or as good as one; None: it is mixed."""
-    if len(layers) != 1 or layers[0].factors:
+    if len(layers) != 1 or layers[0].factors or layers[0].relief:
         return None
     layer = layers[0]
     glow = layer if layer.kind == "emission" else layer.glow

@@ -2,6 +2,7 @@
 
 from ..plugs import fed_by
 from .layer import BLACK, Factor, Layer
+from .relief import read_relief
 
 # Our parameter: the names of Blender's input socket over the versions.
 _PRINCIPLED = {
@@ -25,7 +26,7 @@ _IGNORED = {
     "Transmission": 0.0,
     "Transmission Weight": 0.0,
 }
-_LINK_ONLY = ("Normal", "Clearcoat Normal", "Coat Normal", "Tangent")
+_LINK_ONLY = ("Clearcoat Normal", "Coat Normal", "Tangent")
 
 
 def _read_principled(plug, reader):
@@ -39,18 +40,18 @@ def _read_principled(plug, reader):
             values[name] = reader.value(socket)
     glow = _glow(plug.input("Emission Color", "Emission"), plug.input("Emission Strength"), reader)
     _note_ignored(plug, reader)
-    return [Layer("principled", values, pictures, glow=glow)]
+    return [Layer("principled", values, pictures, relief=read_relief(plug, reader), glow=glow)]
 
 
 def _read_diffuse(plug, reader):
     color, picture = reader.number(plug.input("Color"))
     roughness, rough = reader.number(plug.input("Roughness"))
-    note_linked(plug, reader, "Normal")
+    relief = read_relief(plug, reader)
     pictures = {"base_color": picture} if picture else {}
     if rough is None and roughness <= 0.0:
-        return [Layer("principled", {**BLACK, "base_color": color}, pictures)]
+        return [Layer("principled", {**BLACK, "base_color": color}, pictures, relief=relief)]
     pictures |= {"roughness": rough} if rough else {}
-    return [Layer("diffuse", {"base_color": color, "roughness": roughness}, pictures)]
+    return [Layer("diffuse", {"base_color": color, "roughness": roughness}, pictures, relief=relief)]
 
 
 def _read_glossy(plug, reader):
@@ -61,11 +62,11 @@ def _read_glossy(plug, reader):
     elif plug.node.distribution != "GGX":
         reader.note(plug, f"its distribution '{_label(plug.node, 'distribution')}' is shown as GGX.")
     _note_anisotropy(plug, reader)
-    for name in ("Normal", "Tangent"):
-        note_linked(plug, reader, name)
+    note_linked(plug, reader, "Tangent")
     found = {"base_color": picture, "roughness": rough}
     values = {"base_color": color, "roughness": roughness}
-    return [Layer("glossy", values, {name: p for name, p in found.items() if p})]
+    pictures = {name: p for name, p in found.items() if p}
+    return [Layer("glossy", values, pictures, relief=read_relief(plug, reader))]
 
 
 def _label(node, name):

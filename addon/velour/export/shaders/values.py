@@ -44,6 +44,7 @@ class Reader:
         """Says so where pictures are on several UV maps."""
         parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
         pictures = [p for part in parts for p in part.pictures.values()]
+        pictures += [part.relief.picture for part in parts if part.relief]
         pictures += [f.picture for part in parts for f in part.factors if f.picture]
         if len({picture.coordinates for picture in pictures}) > 1:
             shown = named_uv_maps(tree)[0]

@@ -1,11 +1,13 @@
 // Mixed materials and the lobes of single nodes: samples against their density.
 #include "material/glossy_material.h"
+#include "material/normal_map.h"
 #include "material/principled_material.h"
 #include "material/rough_diffuse_material.h"
 #include "material/shader_layers.h"
 #include "sphere/random.h"
 #include "support/proof_materials.h"
 #include "support/statistics.h"
+#include "support/textured_materials.h"
 
 namespace velour {
 namespace {
@@ -23,6 +25,14 @@ std::shared_ptr<const Material> mixed(float share) {
   return make_layered_material(layers);
 }
 
+/// A glossy surface with a normal map, at a place whose relief is turned and tilted.
+std::shared_ptr<const Material> tilted() {
+  return make_normal_mapped(make_glossy_material({.roughness = 0.6f}), {test::one_texel(Rgb(0.8f, 0.4f, 0.8f)), 1},
+                            DiffusePart::none);
+}
+
+const SurfaceSite kSite{.relief = Mat3({0.9f, 0.3f, 0.1f}, {-0.3f, 0.9f, 0.2f}, {0, 0, 1})};
+
 struct LayersCase {
   const char* name;
   std::shared_ptr<const Material> material;
@@ -36,6 +46,7 @@ std::vector<LayersCase> layers_cases() {
       {"glossy", make_glossy_material({.roughness = 0.6f})},
       {"rough diffuse", make_rough_diffuse_material({.roughness = 1})},
       {"mixed", mixed(0.6f)},
+      {"normal map", tilted()},
       {"nothing", make_layered_material({})}};
   std::vector<LayersCase> cases;
   for (const auto& [name, material] : kinds) {
@@ -48,7 +59,7 @@ class ShaderLayersSampling : public ::testing::TestWithParam<LayersCase> {};
 
 TEST_P(ShaderLayersSampling, FollowsItsDensity) {
   const auto& [name, material, degrees] = GetParam();
-  test::expect_proven(test::material_sampler(material, test::view_at(degrees)), name);
+  test::expect_proven(test::material_sampler(material, test::view_at(degrees), kSite), name);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShaderLayersSampling, ::testing::ValuesIn(layers_cases()));

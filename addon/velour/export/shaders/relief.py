@@ -1,0 +1,33 @@
+"""Normal Map nodes."""
+
+from ..plugs import fed_by
+from .layer import Relief
+
+
+def read_relief(plug, reader):
+    """The Relief of a shader node, None of one without; what is linked to its normal besides is noted."""
+    fed = fed_by(plug.input("Normal"))
+    if fed is None:
+        return None
+    if fed.node.bl_idname != "ShaderNodeNormalMap":
+        reader.note_link(plug.input("Normal"), f" ('{fed.node.name}' is not a Normal Map)")
+        return None
+    if fed.node.space != "TANGENT":
+        reader.note(fed, "only normal maps of tangent space are supported; ignored.")
+        return None
+    _, picture = reader.number(fed.input("Color"))
+    strength = max(reader.value(fed.input("Strength")), 0.0)
+    if picture is None or strength == 0.0:
+        return None
+    _note_coordinates(fed, picture, reader)
+    return Relief(picture, strength)
+
+
+def _note_coordinates(fed, picture, reader):
+    """Tangents are those of the UV map that the pictures are on; nothing named may be the same, or not."""
+    named = fed.node.uv_map
+    if named and picture.coordinates and named != picture.coordinates:
+        reader.note(
+            fed,
+            f"the UV map '{named}' is ignored; tangents follow that of the image, '{picture.coordinates}'.",
+        )

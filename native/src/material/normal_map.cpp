@@ -1,0 +1,104 @@
+#include "material/normal_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "material/principled_sampling.h"
+
+namespace velour {
+namespace {
+
+constexpr float kLeastCosine = 1e-6f;  // of the surface's own normal: f is finite
+
+class NormalMappedMaterial final : public Material {
+ public:
+  NormalMappedMaterial(std::shared_ptr<const Material> material, const NormalMap& map, DiffusePart diffuse)
+      : material_(std::move(material)),
+        principled_(diffuse == DiffusePart::base_of_principled
+                        ? dynamic_cast<const PrincipledSampling*>(material_.get())
+                        : nullptr),
+        map_(map),
+        diffuse_(diffuse) {}
+
+  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
+    const Frame frame = Frame::about(normal_at(wv, site));
+    material_->prepare(frame.to_local(wv), site, point);
+    point.relief = frame;
+  }
+
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    DirectionBatch turned;
+    for (int i = 0; i < wl.count; ++i) turned.push(point.relief.to_local(wl.get(i)));
+    turned.pad();
+    material_->eval(point, turned, f, pdf);
+    soften(point, wl, turned, f);
+    for (int i = 0; i < wl.count; ++i) {
+      const bool above = wl.z[i] > 0 && turned.z[i] > 0;
+      f.set(i, above ? f.get(i) * (turned.z[i] / std::max(wl.z[i], kLeastCosine)) : Rgb(0.0f));
+    }
+  }
+
+  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    material_->sample(point, u, wl);
+    for (int i = 0; i < wl.count; ++i) wl.set(i, point.relief.to_world(wl.get(i)));
+  }
+
+  bool varies() const override { return true; }
+  bool isotropic() const override { return false; }
+
+ private:
+  void soften(const PreparedBrdf& point, const DirectionBatch& wl, const DirectionBatch& turned, RgbBatch& f) const {
+    if (diffuse_ == DiffusePart::none) return;
+    RgbBatch specular;
+    if (principled_ != nullptr) principled_->eval_specular(point, turned, specular);
+    for (int i = 0; i < wl.count; ++i) {
+      const Rgb rest = principled_ != nullptr ? specular.get(i) : Rgb(0.0f);
+      f.set(i, rest + (f.get(i) - rest) * terminator_softening(wl.z[i], turned.z[i], point.relief.z.z));
+    }
+  }
+
+  Vec3 normal_at(const Vec3& wv, const SurfaceSite& site) const {
+    constexpr Vec3 kOwn(0, 0, 1);
+    Vec3 map = 2.0f * map_.texture.at(site, Rgb(0.5f, 0.5f, 1.0f)) - 1.0f;
+    map = {map_.strength * map.x, map_.strength * map.y, 1 + (map.z - 1) * std::clamp(map_.strength, 0.0f, 1.0f)};
+    const Vec3 normal = site.relief * map;
+    const float length = glm::length(normal);
+    if (!(length > 0) || !std::isfinite(length)) return kOwn;
+    return with_mirror_above(normal / length, site.ground, wv);
+  }
+
+  const std::shared_ptr<const Material> material_;
+  const PrincipledSampling* const principled_;  // the material, where its base alone is softened
+  const NormalMap map_;
+  const DiffusePart diffuse_;
+};
+
+}  // namespace
+
+/// In the plane of both normals with angle t from `ground`, the mirrored direction's cosine with `ground` is
+/// r cos(2 t - phi), r and phi the polar coordinates of wv's part in that plane: too low beyond the end of an interval
+/// of t that holds 0.
+Vec3 with_mirror_above(const Vec3& normal, const Vec3& ground, const Vec3& wv) {
+  const float up = glm::dot(wv, ground), least = std::min(0.01f, 0.9f * up);
+  if (2 * glm::dot(wv, normal) * glm::dot(normal, ground) - up >= least) return normal;
+  const Vec3 tilt = normal - glm::dot(normal, ground) * ground;
+  const float length = glm::length(tilt);
+  const Vec3 side = length > 1e-6f ? tilt / length : Frame::about(ground).x;
+  const float along = glm::dot(wv, side), r = std::sqrt(up * up + along * along);
+  const float end = 0.5f * (std::atan2(along, up) + std::acos(std::clamp(least / r, -1.0f, 1.0f)));
+  return glm::normalize(std::cos(end) * ground + std::sin(end) * side);
+}
+
+float terminator_softening(float own, float mapped, float tilt) {
+  const float bottom = mapped * tilt;
+  const float g = bottom != 0 ? own / bottom : 0.0f;
+  if (g >= 1) return 1;
+  return g > 0 ? g * (1 + g * (1 - g)) : 0.0f;
+}
+
+std::shared_ptr<const Material> make_normal_mapped(std::shared_ptr<const Material> material, const NormalMap& map,
+                                                   DiffusePart diffuse) {
+  return std::make_shared<NormalMappedMaterial>(std::move(material), map, diffuse);
+}
+
+}  // namespace velour

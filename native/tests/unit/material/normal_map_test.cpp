@@ -1,0 +1,109 @@
+#include "material/normal_map.h"
+
+#include <gtest/gtest.h>
+
+#include "material/principled_material.h"
+#include "sphere/random.h"
+#include "sphere/warp.h"
+#include "support/materials.h"
+#include "support/textured_materials.h"
+
+namespace velour {
+namespace {
+
+std::shared_ptr<const Material> white() { return make_principled_material({.base_color = Rgb(1), .specular = 0}); }
+
+std::shared_ptr<const Material> mapped(const Vec3& normal, float strength = 1) {
+  return make_normal_mapped(white(), {test::one_texel(0.5f + 0.5f * normal), strength}, DiffusePart::none);
+}
+
+float f_of(const Material& material, const Vec3& wv, const Vec3& wl, const Mat3& relief = Mat3(1.0f)) {
+  PreparedBrdf point;
+  material.prepare(wv, {.relief = relief}, point);
+  return kPi * test::eval_one(material, point, wl).f.g;
+}
+
+const Vec3 kView = direction(0.3f, 1);
+
+TEST(NormalMap, FlatOnesChangeNothing) {
+  for (const Vec3& wl : hemisphere_fibonacci(20)) EXPECT_NEAR(f_of(*mapped({0, 0, 1}), kView, wl), 1, 1e-5f);
+}
+
+TEST(NormalMap, ShadesByTheCosineWithTheMappedNormal) {
+  const Vec3 normal = direction(0.5f, 2);
+  int lit = 0;
+  for (const Vec3& wl : hemisphere_fibonacci(100)) {
+    const float expected = std::max(glm::dot(normal, wl), 0.0f);
+    EXPECT_NEAR(f_of(*mapped(normal), kView, wl) * wl.z, expected, 1e-5f);
+    lit += expected > 0;
+  }
+  EXPECT_LT(lit, 100);  // some of it is behind the mapped normal
+  EXPECT_EQ(f_of(*mapped(normal), kView, {0.8f, 0, -0.6f}), 0);
+}
+
+TEST(NormalMap, FollowsTheRelief) {
+  const Vec3 normal = direction(0.5f, 0), wl = direction(0.4f, 0.3f);
+  const Mat3 mirrored({1, 0, 0}, {0, -1, 0}, {0, 0, 1}), turned({0, 2, 0}, {-2, 0, 0}, {0, 0, 2});
+  const auto by = [&](const Mat3& relief, const Vec3& n) { return f_of(*mapped(n), kView, wl, relief) * wl.z; };
+  EXPECT_NEAR(by(turned, normal), glm::dot(direction(0.5f, kPi / 2), wl), 1e-5f);
+  EXPECT_NEAR(by(mirrored, direction(0.5f, 1)), glm::dot(direction(0.5f, -1), wl), 1e-5f);
+  EXPECT_NEAR(by(Mat3(0.0f), normal), wl.z, 1e-5f);  // a mesh without texture coordinates
+}
+
+TEST(NormalMap, StrengthScalesTheTilt) {
+  const Vec3 normal = direction(0.5f, 2), wl = direction(0.4f, 2.5f);
+  EXPECT_NEAR(f_of(*mapped(normal, 0), kView, wl), 1, 1e-5f);
+  const Vec3 half = glm::normalize(Vec3(0.5f * normal.x, 0.5f * normal.y, 0.5f + 0.5f * normal.z));
+  EXPECT_NEAR(f_of(*mapped(normal, 0.5f), kView, wl) * wl.z, glm::dot(half, wl), 1e-5f);
+  const Vec3 more = glm::normalize(Vec3(2 * normal.x, 2 * normal.y, normal.z));
+  EXPECT_NEAR(f_of(*mapped(normal, 2), kView, wl) * wl.z, glm::dot(more, wl), 1e-5f);
+}
+
+TEST(NormalMap, DiffuseLightFadesOutBeforeTheHorizon) {
+  EXPECT_EQ(terminator_softening(0.5f, 0.5f, 1), 1);  // flat
+  EXPECT_EQ(terminator_softening(0.6f, 0.5f, 0.8f), 1);
+  EXPECT_EQ(terminator_softening(-0.1f, 0.5f, 0.8f), 0);
+  EXPECT_NEAR(terminator_softening(0.2f, 0.5f, 0.8f), 0.5f + 0.25f - 0.125f, 1e-6f);
+  const Vec3 normal = direction(0.9f, 0), low = direction(1.5f, 0);
+  const NormalMap map{test::one_texel(0.5f + 0.5f * normal), 1};
+  const auto value = [&](std::shared_ptr<const Material> material, DiffusePart diffuse) {
+    return f_of(*make_normal_mapped(std::move(material), map, diffuse), direction(0.6f, 0), low) * low.z;
+  };
+  const float hard = glm::dot(normal, low), kept = terminator_softening(low.z, hard, normal.z);
+  EXPECT_LT(kept, 0.3f);
+  EXPECT_NEAR(value(white(), DiffusePart::none), hard, 1e-5f);
+  EXPECT_NEAR(value(white(), DiffusePart::all), kept * hard, 1e-5f);
+  EXPECT_NEAR(value(white(), DiffusePart::base_of_principled), kept * hard, 1e-5f);
+  const auto metal = make_principled_material({.base_color = Rgb(1), .metallic = 1, .roughness = 0.7f});
+  EXPECT_NEAR(value(metal, DiffusePart::base_of_principled), value(metal, DiffusePart::none), 1e-5f);
+}
+
+/// Over random normals, grounds and views: what the view's mirror image needs, and no more.
+TEST(NormalMap, MirrorImagesStayAboveTheGround) {
+  int turned = 0;
+  for (uint64_t i = 0; i < 20000; ++i) {
+    RandomStream random(1, 0, i);
+    const Vec3 ground = sample_cosine_hemisphere(random.next2());
+    Vec3 wv = sample_cosine_hemisphere(random.next2());
+    wv = Frame::about(ground).to_world(wv);
+    const Vec3 normal = glm::normalize(Frame::about(ground).to_world(sample_cosine_hemisphere(random.next2())));
+    const Vec3 found = with_mirror_above(normal, ground, wv);
+    const auto height = [&](const Vec3& n) { return 2 * glm::dot(wv, n) * glm::dot(n, ground) - glm::dot(wv, ground); };
+    const float least = std::min(0.01f, 0.9f * glm::dot(wv, ground));
+    ASSERT_NEAR(glm::length(found), 1, 1e-5f);
+    ASSERT_GT(height(found), least - 1e-5f);
+    ASSERT_GT(glm::dot(found, wv), 0);
+    if (height(normal) >= least) {
+      ASSERT_EQ(found, normal);
+    } else {
+      ASSERT_NEAR(height(found), least, 1e-5f);
+      ASSERT_NEAR(glm::dot(found, glm::cross(normal, ground)), 0, 1e-5f);  // between both
+      ASSERT_GT(glm::dot(found, ground), glm::dot(normal, ground));
+      ++turned;
+    }
+  }
+  EXPECT_GT(turned, 1000);
+}
+
+}  // namespace
+}  // namespace velour
