@@ -1,7 +1,10 @@
-"""Materials made of shader nodes, and pictures for them."""
+"""Materials made of shader nodes, pictures for them, and a roof to show them."""
 
 import bpy
 import numpy as np
+
+from . import stage
+from .case import ParityTest
 
 
 class Tree:
@@ -79,3 +82,21 @@ def image(seed=2, size=8, low=0.1, high=0.9, alpha=False):
     made.pixels.foreach_set(pixels.ravel())
     made.pack()
     return made
+
+
+class ShaderTest(ParityTest):
+    """A roof over a coloured ground, seen from above at an angle: camera and shadow rays meet it."""
+
+    def setUp(self):
+        super().setUp()
+        stage.ground(12, 0.6)
+        stage.box((-2.5, 0.5, 0), (-1.5, 1.5, 0.6), 0.3)
+        self.material = bpy.data.materials.new("Roof")
+        self.tree = Tree(self.material)
+        corners = [(-1.5, -1.2, 1), (1.5, -1.2, 1), (1.5, 1.2, 1), (-1.5, 1.2, 1)]
+        self.roof = stage.mesh(corners, [(0, 1, 2, 3)], self.material, "Roof")
+        layer = self.roof.data.uv_layers.new(name="UVMap")
+        layer.data.foreach_set("uv", [0, 0, 1, 0, 1, 1, 0, 1])
+        stage.camera((0, -5, 6), (0.7, 0, 0), 45)
+        stage.sharp_sun()
+        stage.world((0.6, 0.8, 1), 0.4)

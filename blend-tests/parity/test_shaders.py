@@ -1,29 +1,8 @@
-"""Shaders that are mixed and added: what lets light through, what reflects and what glows."""
+"""Shaders that are mixed and added: what lets light through, and what glows."""
 
 import bpy
-import numpy as np
 
-from parity import stage
-from parity.case import ParityTest
-from parity.shaders import Tree, image
-
-
-class ShaderTest(ParityTest):
-    """A roof over a coloured ground, seen from above at an angle: camera and shadow rays meet it."""
-
-    def setUp(self):
-        super().setUp()
-        stage.ground(12, 0.6)
-        stage.box((-2.5, 0.5, 0), (-1.5, 1.5, 0.6), 0.3)
-        self.material = bpy.data.materials.new("Roof")
-        self.tree = Tree(self.material)
-        corners = [(-1.5, -1.2, 1), (1.5, -1.2, 1), (1.5, 1.2, 1), (-1.5, 1.2, 1)]
-        self.roof = stage.mesh(corners, [(0, 1, 2, 3)], self.material, "Roof")
-        layer = self.roof.data.uv_layers.new(name="UVMap")
-        layer.data.foreach_set("uv", [0, 0, 1, 0, 1, 1, 0, 1])
-        stage.camera((0, -5, 6), (0.7, 0, 0), 45)
-        stage.sharp_sun()
-        stage.world((0.6, 0.8, 1), 0.4)
+from parity.shaders import ShaderTest, image
 
 
 class Mixed(ShaderTest):
@@ -54,6 +33,11 @@ class Mixed(ShaderTest):
         diffuse = tree.diffuse(tree.picture(leaf))
         tree.end(tree.mix(tree.picture(leaf, "Alpha"), tree.transparent(), diffuse))
         self.assert_parity("Mix Shader: cut-out by an image's alpha")
+
+    def test_other_factors(self):
+        tree = self.tree
+        tree.end(tree.mix(tree.node("ShaderNodeFresnel"), tree.transparent(), tree.diffuse()))
+        self.assert_ignored("Mix Shader: factor of a Fresnel node", "the link to 'Fac' is ignored")
 
     def test_image_factor(self):
         tree = self.tree
@@ -165,95 +149,3 @@ class Groups(ShaderTest):
         settings = {"node_tree": self._group()}
         tree.end(tree.node("ShaderNodeGroup", settings=settings, Amount=0.6, Tint=picture))
         self.assert_parity("Node group with inputs")
-
-
-class NormalMaps(ShaderTest):
-    """The roof has a relief, and is seen and lit from above."""
-
-    def _map(self, strength=1.0, seed=12, size=8, low=0.2, high=0.8, **settings):
-        """A linear picture of random tilts, towards the surface's normal in the mean."""
-        picture = image(seed, size, low, high)
-        pixels = np.array(picture.pixels[:], np.float32).reshape(-1, 4)
-        pixels[:, 2] = 0.5 + 0.5 * pixels[:, 2]
-        picture.pixels.foreach_set(pixels.ravel())
-        picture.pack()
-        color = self.tree.picture(picture)
-        return self.tree.node("ShaderNodeNormalMap", settings=settings, Color=color, Strength=strength)
-
-    def test_diffuse(self):
-        self.tree.end(self.tree.diffuse(Normal=self._map()))
-        self.assert_parity("Normal Map: Diffuse")
-
-    def test_glossy(self):
-        """Steep facets show what a roughness of 1 shows of flat ones."""
-        self.tree.end(self.tree.glossy(0.4, Normal=self._map(low=0.35, high=0.65)))
-        self.assert_approximate("Normal Map: Glossy", 1, samples=4)
-
-    def test_half_strength(self):
-        """Before strength scaled tilt in tangent space, Cycles interpolated the normals themselves."""
-        self.tree.end(self.tree.diffuse(Normal=self._map(0.5)))
-        self.assert_approximate("Normal Map: strength 0.5", 4)
-
-    def test_strong(self):
-        self.tree.end(self.tree.diffuse(Normal=self._map(2.0)))
-        self.assert_approximate("Normal Map: strength 2", 4)
-
-    def test_mirrored(self):
-        layer = self.roof.data.uv_layers["UVMap"]
-        layer.data.foreach_set("uv", [1, 0.2, 0, 0, 0.1, 1, 1, 1])
-        self.tree.end(self.tree.diffuse(Normal=self._map()))
-        self.assert_parity("Normal Map: mirrored and sheared UV map")
-
-    def test_from_behind(self):
-        self.roof.rotation_euler = (3.14159, 0, 0)
-        self.roof.location.z = 2
-        self.tree.end(self.tree.diffuse(Normal=self._map()))
-        self.assert_parity("Normal Map: back faces")
-
-    def test_uneven_scale(self):
-        self.roof.scale = (1.3, 0.7, -1)
-        self.roof.location.z = 2
-        stage.twin(self.roof)
-        self.tree.end(self.tree.diffuse(Normal=self._map()))
-        self.assert_parity("Normal Map: uneven negative scale")
-
-    def test_sphere(self):
-        ball = stage.sphere(1.2, segments=24, rings=12)
-        ball.location.z = 2.2
-        self.roof.hide_render = True
-        ball.data.materials.clear()
-        ball.data.materials.append(self.material)
-        self.tree.end(self.tree.diffuse(Normal=self._map(size=16, low=0.35, high=0.65)))
-        self.assert_parity("Normal Map: smooth sphere")
-
-
-class Reflecting(ShaderTest):
-    def test_glossy(self):
-        self.tree.end(self.tree.glossy(0.5))
-        self.assert_parity("Glossy BSDF: GGX, roughness 0.5")
-
-    def test_glossy_image(self):
-        self.tree.end(self.tree.glossy(self.tree.picture(image(4, low=0.1, high=0.6))))
-        self.assert_parity("Glossy BSDF: roughness by an image")
-
-    def test_roughest(self):
-        """Before 3.5, Cycles masks incoming and outgoing light as if their shadows were independent."""
-        self.tree.end(self.tree.glossy(1.0))
-        self.assert_approximate("Glossy BSDF: GGX, roughness 1", 2)
-
-    def test_sharp(self):
-        self.tree.end(self.tree.glossy(0.0, distribution="SHARP"))
-        self.assert_parity("Glossy BSDF: sharp")
-
-    def test_beckmann(self):
-        self.tree.end(self.tree.glossy(0.5, distribution="BECKMANN"))
-        self.assert_approximate("Glossy BSDF: Beckmann", 20)
-
-    def test_rough_diffuse(self):
-        self.tree.end(self.tree.diffuse(Roughness=1.0))
-        self.assert_parity("Diffuse BSDF: roughness 1")
-
-    def test_principled(self):
-        """Before 4.0, Blender's base is brighter at grazing angles, as Disney's is."""
-        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", Roughness=0.9, Specular=0.0))
-        self.assert_approximate("Principled BSDF: base, roughness 0.9", 6)

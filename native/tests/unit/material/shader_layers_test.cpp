@@ -6,8 +6,8 @@
 #include "material/glossy_material.h"
 #include "material/principled_material.h"
 #include "material/rough_diffuse_material.h"
-#include "sphere/quadrature.h"
 #include "sphere/random.h"
+#include "support/albedo.h"
 #include "support/materials.h"
 #include "support/textured_materials.h"
 
@@ -99,22 +99,7 @@ TEST(ShaderLayers, NothingIsBlackAndOpenIsOpen) {
   expect_near(f_of(*blocked), Rgb(0));
 }
 
-double albedo(const Material& material, float theta_v) {
-  const Quadrature z = gauss_legendre(120, 0, 1);
-  constexpr int kTurns = 160;
-  PreparedBrdf point;
-  material.prepare(direction(theta_v, 0), point);
-  double sum = 0;
-  for (size_t i = 0; i < z.node.size(); ++i) {
-    const double r = std::sqrt(1 - z.node[i] * z.node[i]);
-    for (int k = 0; k < kTurns; ++k) {
-      const double phi = 2 * kPiD * (k + 0.5) / kTurns;
-      const Vec3 wl(r * std::cos(phi), r * std::sin(phi), z.node[i]);
-      sum += z.weight[i] * z.node[i] * static_cast<double>(test::eval_one(material, point, wl).f.g);
-    }
-  }
-  return sum * 2 * kPiD / kTurns;
-}
+double albedo(const Material& material, float theta_v) { return test::albedo(material, direction(theta_v, 0)); }
 
 /// A furnace: what is reflected and what passes keep all light, or part of it, but never make any.
 TEST(ShaderLayers, AWhiteMixKeepsAllLight) {

@@ -2,7 +2,7 @@
 
 #include "material/principled_material.h"
 #include "material/principled_table.h"
-#include "sphere/quadrature.h"
+#include "support/albedo.h"
 #include "support/materials.h"
 #include "support/textured_materials.h"
 
@@ -77,28 +77,11 @@ TEST(TexturedMaterial, IsThePrincipledMaterialOfItsTexels) {
   }
 }
 
-double albedo(const Material& material, const Vec3& wv) {
-  const Quadrature z = gauss_legendre(120, 0, 1);
-  constexpr int kTurns = 160;
-  PreparedBrdf point;
-  material.prepare(wv, point);
-  double sum = 0;
-  for (size_t i = 0; i < z.node.size(); ++i) {
-    const double r = std::sqrt(1 - z.node[i] * z.node[i]);
-    for (int k = 0; k < kTurns; ++k) {
-      const double phi = 2 * kPiD * (k + 0.5) / kTurns;
-      const Vec3 wl(r * std::cos(phi), r * std::sin(phi), z.node[i]);
-      sum += z.weight[i] * z.node[i] * static_cast<double>(eval_one(material, point, wl).f.g);
-    }
-  }
-  return sum * 2 * kPiD / kTurns;
-}
-
 TEST(TexturedMaterial, AWhiteBaseReflectsAllLight) {
   for (const float roughness : {0.37f, 0.52f, 0.71f, 0.98f}) {
     const auto material = test::textured({.base_color = Rgb(1), .roughness = roughness});
     for (const float theta_v : {0.0f, 0.8f, 1.3f}) {
-      EXPECT_NEAR(albedo(*material, direction(theta_v, 0)), 1, 3e-3) << roughness << ' ' << theta_v;
+      EXPECT_NEAR(test::albedo(*material, direction(theta_v, 0)), 1, 3e-3) << roughness << ' ' << theta_v;
     }
   }
 }

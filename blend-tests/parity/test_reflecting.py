@@ -1,0 +1,118 @@
+"""What a single shader reflects, and its relief."""
+
+import numpy as np
+
+from parity import stage
+from parity.shaders import ShaderTest, image
+
+
+class NormalMaps(ShaderTest):
+    """The roof has a relief, and is seen and lit from above."""
+
+    def _map(self, strength=1.0, seed=12, size=8, low=0.2, high=0.8, **settings):
+        """A linear picture of random tilts, towards the surface's normal in the mean."""
+        picture = image(seed, size, low, high)
+        pixels = np.array(picture.pixels[:], np.float32).reshape(-1, 4)
+        pixels[:, 2] = 0.5 + 0.5 * pixels[:, 2]
+        picture.pixels.foreach_set(pixels.ravel())
+        picture.pack()
+        color = self.tree.picture(picture)
+        return self.tree.node("ShaderNodeNormalMap", settings=settings, Color=color, Strength=strength)
+
+    def test_diffuse(self):
+        self.tree.end(self.tree.diffuse(Normal=self._map()))
+        self.assert_parity("Normal Map: Diffuse")
+
+    def test_glossy(self):
+        """Steep facets show what a roughness of 1 shows of flat ones."""
+        self.tree.end(self.tree.glossy(0.4, Normal=self._map(low=0.35, high=0.65)))
+        self.assert_approximate("Normal Map: Glossy", 1, samples=4)
+
+    def test_leaf(self):
+        """What foliage is made of; but for the Principled itself."""
+        tree = self.tree
+        leaf = image(alpha=True)
+        relief = self._map(low=0.35, high=0.65)
+        inputs = {"Base_Color": tree.picture(leaf), "Roughness": 0.6, "Normal": relief}
+        principled = tree.node("ShaderNodeBsdfPrincipled", **inputs)
+        tree.end(tree.mix(tree.picture(leaf, "Alpha"), tree.transparent(), principled))
+        self.assert_approximate("Principled BSDF: cut-out, base colour and normal map by images", 5)
+
+    def test_half_strength(self):
+        """Before strength scaled tilt in tangent space, Cycles interpolated the normals themselves."""
+        self.tree.end(self.tree.diffuse(Normal=self._map(0.5)))
+        self.assert_approximate("Normal Map: strength 0.5", 4)
+
+    def test_strong(self):
+        self.tree.end(self.tree.diffuse(Normal=self._map(2.0)))
+        self.assert_approximate("Normal Map: strength 2", 4)
+
+    def test_mirrored(self):
+        layer = self.roof.data.uv_layers["UVMap"]
+        layer.data.foreach_set("uv", [1, 0.2, 0, 0, 0.1, 1, 1, 1])
+        self.tree.end(self.tree.diffuse(Normal=self._map()))
+        self.assert_parity("Normal Map: mirrored and sheared UV map")
+
+    def test_from_behind(self):
+        self.roof.rotation_euler = (3.14159, 0, 0)
+        self.roof.location.z = 2
+        self.tree.end(self.tree.diffuse(Normal=self._map()))
+        self.assert_parity("Normal Map: back faces")
+
+    def test_uneven_scale(self):
+        self.roof.scale = (1.3, 0.7, -1)
+        self.roof.location.z = 2
+        stage.twin(self.roof)
+        self.tree.end(self.tree.diffuse(Normal=self._map()))
+        self.assert_parity("Normal Map: uneven negative scale")
+
+    def test_sphere(self):
+        ball = stage.sphere(1.2, segments=24, rings=12)
+        ball.location.z = 2.2
+        self.roof.hide_render = True
+        ball.data.materials.clear()
+        ball.data.materials.append(self.material)
+        self.tree.end(self.tree.diffuse(Normal=self._map(size=16, low=0.35, high=0.65)))
+        self.assert_parity("Normal Map: smooth sphere")
+
+
+class Reflecting(ShaderTest):
+    def test_glossy(self):
+        self.tree.end(self.tree.glossy(0.5))
+        self.assert_parity("Glossy BSDF: GGX, roughness 0.5")
+
+    def test_glossy_image(self):
+        self.tree.end(self.tree.glossy(self.tree.picture(image(4, low=0.1, high=0.6))))
+        self.assert_parity("Glossy BSDF: roughness by an image")
+
+    def test_roughest(self):
+        """Before 3.5, Cycles masks incoming and outgoing light as if their shadows were independent."""
+        self.tree.end(self.tree.glossy(1.0))
+        self.assert_approximate("Glossy BSDF: GGX, roughness 1", 2)
+
+    def test_sharp(self):
+        self.tree.end(self.tree.glossy(0.0, distribution="SHARP"))
+        self.assert_parity("Glossy BSDF: sharp")
+
+    def test_beckmann(self):
+        self.tree.end(self.tree.glossy(0.5, distribution="BECKMANN"))
+        self.assert_approximate("Glossy BSDF: Beckmann", 20)
+
+    def test_rough_diffuse(self):
+        self.tree.end(self.tree.diffuse(Roughness=1.0))
+        self.assert_parity("Diffuse BSDF: roughness 1")
+
+    def test_principled(self):
+        """Before 4.0, Blender's base is brighter at grazing angles, as Disney's is."""
+        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", Roughness=0.9, Specular=0.0))
+        self.assert_approximate("Principled BSDF: base, roughness 0.9", 6)
+
+    def test_principled_default(self):
+        """Specular, too: Blender's base keeps the light that the layer over it reflects."""
+        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled"))
+        self.assert_approximate("Principled BSDF: as it comes", 7)
+
+    def test_metal(self):
+        inputs = {"Base_Color": (0.9, 0.6, 0.3, 1), "Metallic": 1.0, "Roughness": 0.4}
+        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", **inputs))
+        self.assert_approximate("Principled BSDF: metal, roughness 0.4", 2)
