@@ -110,6 +110,6 @@ vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* sha
     require(shader, "shader");
     require(material, "material");
     *material = scene->scene->add_material(
-        {.material = make_layered_material(shader->layers), .relief = shader->relief, .rec709_colors = false});
+        {.material = make_layered_material(shader->layers), .rec709_colors = false, .relief = shader->relief});
   });
 }

@@ -23,8 +23,8 @@ class Material;
 struct SurfaceMaterial {
   std::shared_ptr<const Material> material;
   Rgb emission{0.0f};         // radiance of both sides, working space
-  bool relief = false;        // it has a normal map: meshes that show it get tangents
   bool rec709_colors = true;  // f is Rec. 709 (measured) and is taken to the working space; false: already there
+  bool relief = false;        // it has a normal map: meshes that show it get tangents
   /// Structure that lies over the surface and lets rays through; null: none. Needs texture coordinates.
   std::shared_ptr<const ShellField> shell = nullptr;
   /// The structure's own surface is what is shaded and shadowed; false: f says how the structure looks over its plane,

@@ -16,8 +16,8 @@ SurfaceMaterial white(const std::vector<Vec3>& normals, int side) {
       std::make_shared<const Texture<Rgb>>(side, side, texels, TextureOptions{.filter = TextureFilter::closest});
   return {.material = make_normal_mapped(make_principled_material({.base_color = Rgb(1), .specular = 0}),
                                          {{texture, {}}, 1}, DiffusePart::none),
-          .relief = true,
-          .rec709_colors = false};
+          .rec709_colors = false,
+          .relief = true};
 }
 
 /// From where it shines, without a shadow: what stops light is the surface alone.
