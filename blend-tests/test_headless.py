@@ -77,7 +77,9 @@ class Headless(BlenderTest):
 
     def test_notes_on_the_console(self):
         material = scenes.diffuse_material()
-        material.node_tree.nodes["Diffuse BSDF"].inputs["Roughness"].default_value = 0.5
+        tree = material.node_tree
+        glass = tree.nodes.new("ShaderNodeBsdfGlass")
+        tree.links.new(glass.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
         scenes.add_sphere(material)
         self._save()
         self.assertIn("Velour: Material 'Diffuse'", self._render("-f", 1))

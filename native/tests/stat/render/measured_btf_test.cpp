@@ -1,8 +1,7 @@
 // Pictures of uncompressed BTFs: all strategies have the same expectation, and no light is lost or made.
 #include <gtest/gtest.h>
 
-#include "support/btf_scenes.h"
-#include "support/significance.h"
+#include "support/strategy_agreement.h"
 #include "support/striped_btf.h"
 
 namespace velour {
@@ -13,24 +12,11 @@ using Shared = std::shared_ptr<const Material>;
 Shared striped_material() { return make_measured_btf_material(read_btf_table(test::striped_btf({12, 8}))); }
 
 TEST(MeasuredBtf, AllStrategiesHaveTheSameExpectation) {
-  const Scene scene = test::two_objects(striped_material());
-  const auto expected = test::strategy_means(scene, {"mis", Strategy::mis}, 8, 1'000'000);
-  test::ZTests tests(0.01);
-  for (const test::NamedStrategy& s : test::all_strategies())
-    compare(s.name, test::strategy_means(scene, s), expected, tests);
-  EXPECT_TRUE(tests.agree());
-  for (const test::NamedStrategy& s : test::all_strategies()) {
-    EXPECT_LT(tests.smallest_bias(s.name + " whole"), 0.05) << s.name;
-  }
+  test::expect_strategies_agree(test::two_objects(striped_material()), 0.05);
 }
 
 TEST(MeasuredBtf, ControlLightFivePercentTooBrightIsSeen) {
-  const auto expected =
-      test::strategy_means(test::two_objects(striped_material()), {"mis", Strategy::mis}, 8, 1'000'000);
-  test::ZTests tests;
-  compare("brighter", test::strategy_means(test::two_objects(striped_material(), 1.05f), {"mis", Strategy::mis}),
-          expected, tests);
-  EXPECT_TRUE(tests.differ());
+  test::expect_a_difference(test::two_objects(striped_material()), test::two_objects(striped_material(), 1.05f));
 }
 
 /// The mean pixel of a sphere of f = albedo / pi that fills the picture, under an even sky of 1.

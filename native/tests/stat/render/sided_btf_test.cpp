@@ -2,9 +2,8 @@
 // made.
 #include <gtest/gtest.h>
 
-#include "support/btf_scenes.h"
 #include "support/sided_btfs.h"
-#include "support/significance.h"
+#include "support/strategy_agreement.h"
 
 namespace velour {
 namespace {
@@ -23,23 +22,11 @@ Scene finest_level(float light = 1) {
 }
 
 TYPED_TEST(SidedBtf, AllStrategiesHaveTheSameExpectation) {
-  const Scene scene = finest_level<TypeParam>();
-  const auto expected = test::strategy_means(scene, {"mis", Strategy::mis}, 8, 1'000'000);
-  test::ZTests tests(0.01);
-  for (const test::NamedStrategy& s : test::all_strategies()) {
-    compare(s.name, test::strategy_means(scene, s), expected, tests);
-  }
-  EXPECT_TRUE(tests.agree());
-  for (const test::NamedStrategy& s : test::all_strategies()) {
-    EXPECT_LT(tests.smallest_bias(s.name + " whole"), 0.05) << s.name;
-  }
+  test::expect_strategies_agree(finest_level<TypeParam>(), 0.05);
 }
 
 TYPED_TEST(SidedBtf, ControlLightFivePercentTooBrightIsSeen) {
-  const auto expected = test::strategy_means(finest_level<TypeParam>(), {"mis", Strategy::mis}, 8, 1'000'000);
-  test::ZTests tests;
-  compare("brighter", test::strategy_means(finest_level<TypeParam>(1.05f), {"mis", Strategy::mis}), expected, tests);
-  EXPECT_TRUE(tests.differ());
+  test::expect_a_difference(finest_level<TypeParam>(), finest_level<TypeParam>(1.05f));
 }
 
 /// Without products `product` is `mis` bit for bit, so a pixel that differs has them.

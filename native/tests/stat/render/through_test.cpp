@@ -4,9 +4,8 @@
 
 #include "material/measured_btf_material.h"
 #include "sphere/frame.h"
-#include "support/btf_scenes.h"
 #include "support/captured.h"
-#include "support/significance.h"
+#include "support/strategy_agreement.h"
 #include "support/through_btfs.h"
 
 namespace velour {
@@ -24,23 +23,11 @@ Scene finest_level(float light = 1) {
 }
 
 TYPED_TEST(Through, AllStrategiesHaveTheSameExpectation) {
-  const Scene scene = finest_level<TypeParam>();
-  const auto expected = test::strategy_means(scene, {"mis", Strategy::mis}, 8, 1'000'000);
-  test::ZTests tests(0.01);
-  for (const test::NamedStrategy& s : test::all_strategies()) {
-    compare(s.name, test::strategy_means(scene, s), expected, tests);
-  }
-  EXPECT_TRUE(tests.agree());
-  for (const test::NamedStrategy& s : test::all_strategies()) {
-    EXPECT_LT(tests.smallest_bias(s.name + " whole"), 0.06) << s.name;
-  }
+  test::expect_strategies_agree(finest_level<TypeParam>(), 0.06);
 }
 
 TYPED_TEST(Through, ControlLightFivePercentTooBrightIsSeen) {
-  const auto expected = test::strategy_means(finest_level<TypeParam>(), {"mis", Strategy::mis}, 8, 1'000'000);
-  test::ZTests tests;
-  compare("brighter", test::strategy_means(finest_level<TypeParam>(1.05f), {"mis", Strategy::mis}), expected, tests);
-  EXPECT_TRUE(tests.differ());
+  test::expect_a_difference(finest_level<TypeParam>(), finest_level<TypeParam>(1.05f));
 }
 
 /// The mean pixel of a sheet under an even sky of 1 all around it, of which `reflected` comes back and `through` comes
