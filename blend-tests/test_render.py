@@ -404,6 +404,28 @@ class Objects(BlenderTest):
         for x, y, color in ((-1, 1, (0, 1, 0)), (0, 1, (0, 1, 0)), (1, 1, (1, 1, 1)), (-1, -1, (1, 1, 1))):
             np.testing.assert_allclose(self._pixel(pixels, x, y), color, atol=0.05)
 
+    def test_instances_show_the_slots_of_their_objects(self):
+        """Two objects of one mesh, each with a material of its own, in one instanced collection."""
+        group = bpy.data.collections.new("Group")
+        first = scenes.add_plane(scenes.diffuse_material((1, 1, 0)), size=0.5)
+        for x, color in ((-1, (1, 0, 0)), (1, (0, 0, 1))):
+            obj = bpy.data.objects.new("Half", first.data)
+            obj.location.x = x
+            obj.material_slots[0].link = "OBJECT"
+            obj.material_slots[0].material = scenes.diffuse_material(color)
+            group.objects.link(obj)
+        bpy.data.objects.remove(first)
+        for y in (-1, 1):
+            empty = bpy.data.objects.new("Instance", None)
+            empty.instance_type, empty.instance_collection, empty.location = "COLLECTION", group, (0, y, 0)
+            bpy.context.scene.collection.objects.link(empty)
+        bpy.context.scene.world = None
+        scenes.set_world((1, 1, 1))
+        pixels = scenes.render(self.folder)
+        for y in (-1, 1):
+            np.testing.assert_allclose(self._pixel(pixels, -1, y), (1, 0, 0), atol=0.05)
+            np.testing.assert_allclose(self._pixel(pixels, 1, y), (0, 0, 1), atol=0.05)
+
     def test_other_geometry(self):
         """Text, curves, surfaces and metaballs are meshes to a renderer."""
         makers = (

@@ -148,6 +148,41 @@ def _octahedron():
     return positions, triangles
 
 
+def test_instances_at_once_are_as_one_by_one():
+    matrices = np.zeros((3, 3, 4), np.float32)
+    for i, matrix in enumerate(matrices):
+        matrix[:, :3], matrix[:, 3] = (0.5 + 0.2 * i) * np.eye(3), (2 * i, i, 0)
+    pictures = []
+    for at_once in (True, False):
+        with Scene() as scene:
+            mesh, _ = scene.add_mesh(*_octahedron(), smooth=np.zeros(8, np.uint8))
+            materials = [scene.add_principled_material(base_color=(0.8, 0.4, 0.2))]
+            if at_once:
+                scene.add_instances(mesh, matrices, materials, hidden=("shadows",))
+            else:
+                for matrix in matrices:
+                    scene.add_instance(mesh, matrix, materials, hidden=("shadows",))
+            scene.set_world_color((1, 1, 1))
+            scene.frame_camera(1.0)
+            scene.commit()
+            assert scene.info()["instances"] == 3
+            with render_job(scene, width=16, height=16, spp=8) as job:
+                job.run()
+                pictures.append(job.read_pass("Combined"))
+    assert pictures[0][..., 3].max() == 1
+    np.testing.assert_array_equal(*pictures)
+
+
+def test_instances_that_are_no_matrices_are_refused():
+    with Scene() as scene:
+        mesh, _ = scene.add_mesh(*_octahedron())
+        material = scene.add_principled_material()
+        with pytest.raises(VelourError, match="n x 3 x 4 is needed"):
+            scene.add_instances(mesh, np.zeros((2, 4, 4), np.float32), [material])
+        with pytest.raises(VelourError, match="not finite"):
+            scene.add_instances(mesh, np.full((2, 3, 4), np.nan, np.float32), [material])
+
+
 def _lit_octahedron(**principled) -> Scene:
     scene = Scene()
     mesh, dropped = scene.add_mesh(*_octahedron(), smooth=np.zeros(8, np.uint8))

@@ -1,4 +1,4 @@
-"""The measured table of docs/blender_support.md, from what the parity tests left."""
+"""The measured tables of docs/blender_support.md: what the parity tests left, and seconds of large scenes."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+import export_seconds
 import provenance
 from generated import replaced
 from markdown_table import table
@@ -36,7 +37,9 @@ def main() -> int:
         print(f"blender_support: there is no row in {ROWS}; run without --last.", file=sys.stderr)
         return 1
     page = PAGE.read_text(encoding="utf-8")
-    files.write_text(PAGE, replaced(page, "parity", _text(rows), "blender_support"))
+    page = replaced(page, "parity", _text(rows), "blender_support")
+    seconds = f"\n{_conditions(rows)}\n\n{export_seconds.measured(ROOT / 'build/export_seconds')}\n"
+    files.write_text(PAGE, replaced(page, "export", seconds, "blender_support"))
     return 0
 
 
@@ -46,10 +49,13 @@ def _rows() -> list[dict]:
 
 
 def _text(rows: list[dict]) -> str:
-    conditions = provenance.sentence(provenance.conditions(SEED, threads()))
-    version = rows[0]["blender"]
     lines = [[r["feature"], r["verdict"], f"{r['percent']:.2f}", _errors(r["z"])] for r in rows]
-    return f"\n{conditions} Blender and Cycles {version}.\n\n" + table(HEADER, lines) + "\n"
+    return f"\n{_conditions(rows)}\n\n" + table(HEADER, lines) + "\n"
+
+
+def _conditions(rows: list[dict]) -> str:
+    sentence = provenance.sentence(provenance.conditions(SEED, threads()))
+    return f"{sentence} Blender and Cycles {rows[0]['blender']}."
 
 
 def _errors(z: float) -> str:

@@ -16,13 +16,13 @@ class BlenderError(RuntimeError):
     pass
 
 
-def run(script: str, task: dict, log: Path) -> None:
-    """`script` lies in this folder and finds `task` as JSON after "--"."""
+def run(script: str, task: dict, log: Path, options: list[str] | None = None) -> None:
+    """`script` lies in this folder and finds `task` as JSON after "--". `options`: more of Blender's own."""
     blender = shutil.which("blender")
     if not blender:
         raise BlenderError("blender is not installed; run scripts/setup")
     # The order matters: what stands before --python-exit-code does not know of it.
-    command = [blender, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "7"]
+    command = [blender, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "7", *(options or [])]
     command += ["--python", str(HERE / script), "--", json.dumps(task)]
     # A distribution's Blender looks for its Python along PATH: not a version manager's, please.
     path = os.pathsep.join((str(Path(blender).resolve().parent), os.environ["PATH"]))

@@ -35,7 +35,7 @@ def triangle_faces(obj):
     """[triangles] The face of an evaluated object that each triangle of object_arrays() is a part of."""
     with _mesh_of(obj) as mesh:
         mesh.calc_loop_triangles()
-        return _read(mesh.loop_triangles, "polygon_index", len(mesh.loop_triangles), np.int32)
+        return _read(mesh.loop_triangles, "polygon_index", len(mesh.loop_triangles), np.uint32)
 
 
 @contextlib.contextmanager
@@ -55,20 +55,28 @@ def mesh_arrays(mesh, uv_maps=()):
     count = len(mesh.loop_triangles)
     if count == 0:
         return None
-    corners = _read(mesh.loop_triangles, "loops", count * 3, np.int32).reshape(count, 3)
-    slots = _read(mesh.loop_triangles, "material_index", count, np.int32).astype(np.uint32)
+    corners = _read(mesh.loop_triangles, "loops", count * 3, np.uint32).reshape(count, 3)
+    slots = _material_slots(mesh, count)
     return MeshArrays(
         positions=_read(mesh.vertices, "co", len(mesh.vertices) * 3).reshape(-1, 3),
-        triangles=_read(mesh.loop_triangles, "vertices", count * 3, np.int32)
-        .astype(np.uint32)
-        .reshape(count, 3),
+        # What triangles say of vertices and materials they look up one by one, many times slower.
+        triangles=_read(mesh.loops, "vertex_index", len(mesh.loops), np.uint32)[corners],
         corner_normals=_corner_normals(mesh)[corners],
         corner_uvs=_corner_uvs(mesh, corners, slots, uv_maps),
         material_slots=slots,
     )
 
 
+def _material_slots(mesh, count):
+    """[triangles]; without an attribute that says otherwise all faces are of the first slot."""
+    if len(mesh.materials) <= 1 and "material_index" not in mesh.attributes:
+        return np.zeros(count, np.uint32)
+    of_faces = _read(mesh.polygons, "material_index", len(mesh.polygons), np.uint32)
+    return of_faces[_read(mesh.loop_triangles, "polygon_index", count, np.uint32)]
+
+
 def _read(collection, attribute, size, dtype=np.float32):
+    """Indices as uint32: what Blender calls unsigned is copied item by item into anything else."""
     values = np.empty(size, dtype)
     collection.foreach_get(attribute, values)
     return values

@@ -1,8 +1,11 @@
 """The objects and instances of an evaluated depsgraph."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from .axes import affine
+from .instances import InstanceGroups
 from .lights import add_light
 from .meshes import has_uv_map, object_arrays
 from .placement import Placements
@@ -21,6 +24,15 @@ _UNSUPPORTED = {
 }
 
 
+class _Shown(NamedTuple):
+    """What all instances of an object have in common."""
+
+    mesh: int | None  # its number in the scene; None: there is nothing to see
+    slots: list
+    look: tuple  # the arguments of Scene.add_instances beside mesh and matrices
+    is_tiled: bool  # how tiles lie may depend on the matrix
+
+
 class ObjectExport:
     """Adds visible objects to `scene`; instances share the geometry of their evaluated datablock.
 
@@ -34,49 +46,70 @@ class ObjectExport:
         self._check_break = check_break  # called once an instance; raises to stop
         self._to_scene = to_scene
         self._meshes = {}
+        self._shown = {}
+        self._groups = InstanceGroups(scene)
         self._placements = Placements(materials, notes)
 
     def add_all(self, depsgraph):
-        override, metres = depsgraph.view_layer_eval.material_override, metres_per_unit(depsgraph.scene)
+        self._add(depsgraph, lambda instance: instance.show_self)
+
+    def add_geometry(self, depsgraph, is_wanted):
+        """Of the instances for which `is_wanted` is true, visible to all; no lights."""
+        self._add(depsgraph, lambda instance: instance.show_self and is_wanted(instance), geometry_alone=True)
+
+    def _add(self, depsgraph, is_wanted, geometry_alone=False):
+        metres = metres_per_unit(depsgraph.scene)
         for instance in depsgraph.object_instances:
             self._check_break()
             # The instance is only valid within this turn of the loop.
-            if not instance.show_self:
+            if not is_wanted(instance):
                 continue
-            note_visibility(instance.object, self._notes)
-            if instance.object.type in GEOMETRY:
-                self._add_geometry(
-                    instance, override, metres, hidden_from(instance.object, depsgraph.view_layer)
-                )
-            elif instance.object.type == "LIGHT":
-                add_light(self._scene, instance.object, instance.matrix_world, self._notes)
-            else:
-                self._note_unsupported(instance.object)
-
-    def add_geometry(self, depsgraph, is_wanted):
-        """Of the instances for which `is_wanted` is true; no lights."""
-        override, metres = depsgraph.view_layer_eval.material_override, metres_per_unit(depsgraph.scene)
-        for instance in depsgraph.object_instances:
-            self._check_break()
-            if not instance.show_self or not is_wanted(instance):
+            obj = instance.object
+            if obj.type == "LIGHT" and not geometry_alone:
+                note_visibility(obj, self._notes)
+                add_light(self._scene, obj, instance.matrix_world, self._notes)
                 continue
-            if instance.object.type in GEOMETRY:
-                self._add_geometry(instance, override, metres)
-            else:
-                self._note_unsupported(instance.object)
+            key = _identity(obj)
+            if key not in self._shown:
+                self._shown[key] = self._look_at(obj, depsgraph, geometry_alone)
+            if self._shown[key]:
+                self._add_instance(instance, self._shown[key], metres)
+        self._groups.add_to_scene()
 
-    def _add_geometry(self, instance, override, metres, hidden=()):
-        self._note_extras(instance.object)
-        if instance.matrix_world.to_3x3().determinant() == 0:
-            self._notes.add(f"Object '{instance.object.name}': its scale is zero along an axis; left out.")
-            return
-        mesh, slots = self._mesh(instance.object, override)
+    def _look_at(self, obj, depsgraph, geometry_alone):
+        """The _Shown of an object; None of what is no geometry."""
+        if not geometry_alone:
+            note_visibility(obj, self._notes)
+        if obj.type not in GEOMETRY:
+            self._note_unsupported(obj)
+            return None
+        self._note_extras(obj)
+        mesh, slots = self._mesh(obj, depsgraph.view_layer_eval.material_override)
         if mesh is None:
+            return None
+        numbers = tuple(self._materials.number(material) for material in slots)
+        hidden = () if geometry_alone else hidden_from(obj, depsgraph.view_layer)
+        is_tiled = any(self._materials.tile(material) for material in slots)
+        if not is_tiled:
+            self._placements.note_missing(obj, mesh, slots)
+        return _Shown(mesh, slots, (numbers, hidden), is_tiled)
+
+    def _add_instance(self, instance, shown, metres):
+        matrix = instance.matrix_world
+        if matrix.to_3x3().determinant() == 0:
+            name = instance.object.name
+            self._notes.add(f"Object '{name}': its scale is zero along an axis; left out.")
             return
-        numbers = [self._materials.number(material) for material in slots]
-        placements = self._placements.of(instance, mesh, slots, metres)
-        matrix = instance.matrix_world if self._to_scene is None else self._to_scene @ instance.matrix_world
-        self._scene.add_instance(mesh, affine(matrix), numbers, placements, hidden)
+        placements = None
+        if shown.is_tiled:
+            placements = self._placements.of(instance, shown.mesh, shown.slots, metres)
+        if self._to_scene is not None:
+            matrix = self._to_scene @ matrix
+        if placements is None:
+            self._groups.add((shown.mesh, *shown.look), matrix)
+        else:
+            numbers, hidden = shown.look
+            self._scene.add_instance(shown.mesh, affine(matrix), numbers, placements, hidden)
 
     def _mesh(self, obj, override):
         """The mesh's number in the scene (None: there is nothing to see) and the materials of its slots."""
@@ -114,6 +147,12 @@ class ObjectExport:
         kind = _UNSUPPORTED.get(obj.type)
         if kind:
             self._notes.add(f"Object '{obj.name}': {kind} are not supported; left out.")
+
+
+def _identity(obj):
+    """What all instances of an evaluated object share; meshes of geometry nodes come under that object."""
+    data = obj.data
+    return obj.original.as_pointer(), data.as_pointer() if data else 0
 
 
 def all_materials(obj):

@@ -135,22 +135,36 @@ class Placements:
             return None
         maps, is_placed = [], False
         for material in slots:
-            same = tuple(slot for slot, other in enumerate(slots) if other == material)
-            uv_map = self._map(instance, slots, material, (key, same), metres_per_unit)
+            uv_map = self._map(instance, slots, material, key, metres_per_unit)
             is_placed = is_placed or uv_map is not None
             maps.append(texture_map((1, 1)) if uv_map is None else uv_map)
         return maps if is_placed else None
+
+    def note_missing(self, obj, key, slots):
+        """Of an object without tiles: says which materials miss the texture coordinates that they look at."""
+        for material in slots:
+            if self._materials.needs_coordinates(material):
+                self._warn(obj, material, None, self._surface(obj, slots, material, key), None)
+
+    def _surface(self, obj, slots, material, mesh):
+        same = tuple(slot for slot, other in enumerate(slots) if other == material)
+        if (mesh, same) not in self._surfaces:
+            self._surfaces[mesh, same] = surface_of(object_arrays(obj, uv_map_names(slots)), same)
+        return self._surfaces[mesh, same]
 
     def _map(self, instance, slots, material, key, metres_per_unit):
         if not self._materials.needs_coordinates(material):
             return None
         obj, tile = instance.object, self._materials.tile(material)
-        if key not in self._surfaces:
-            self._surfaces[key] = surface_of(object_arrays(obj, uv_map_names(slots)), key[1])
-        surface = self._surfaces[key]
+        surface = self._surface(obj, slots, material, key)
         placed = None
         if surface is not None and tile is not None:
-            shape = (key, material.original.as_pointer(), _size_of(instance.matrix_world))
+            shape = (
+                key,
+                slots.index(material),
+                material.original.as_pointer(),
+                _size_of(instance.matrix_world),
+            )
             if shape not in self._placed:
                 self._placed[shape] = self._place(tile, surface, instance.matrix_world, metres_per_unit)
             placed = self._placed[shape]

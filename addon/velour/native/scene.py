@@ -97,6 +97,15 @@ class Scene(Handle):
             placements = small("placements", placements, 6 * len(materials))
         self._lib.vlr_scene_add_placed_instance(self.pointer, mesh, matrix, numbers, placements, len(numbers))
 
+    def add_instances(self, mesh: int, object_to_world: np.ndarray, materials, hidden=()) -> None:
+        """Many that differ in nothing but their matrices, float32 [n x 3 x 4]; else as add_instance."""
+        matrices = checked("object_to_world", object_to_world, (None, 3, 4))
+        self._lib.vlr_scene_hide_instances(self.pointer, sum(table.HIDDEN[name] for name in set(hidden)))
+        numbers = (c_uint32 * len(materials))(*materials)
+        self._lib.vlr_scene_add_instances(
+            self.pointer, mesh, pointer(matrices), len(matrices), numbers, len(numbers)
+        )
+
     # ---- materials: each returns its number
 
     def add_model_material(self, model: Model, neighbors: int = 0) -> int:

@@ -425,6 +425,7 @@ STATUS_CALLS = {
     ],
     "vlr_scene_add_instance": [_handle, c_uint32, _floats, _number, c_uint32],
     "vlr_scene_add_placed_instance": [_handle, c_uint32, _floats, _number, _floats, c_uint32],
+    "vlr_scene_add_instances": [_handle, c_uint32, _floats, c_uint64, _number, c_uint32],
     "vlr_scene_hide_instances": [_handle, c_uint32],
     "vlr_scene_add_light": [_handle, POINTER(LightDesc)],
     "vlr_scene_set_world_color": [_handle, _floats],

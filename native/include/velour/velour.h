@@ -380,6 +380,10 @@ VLR_API vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const
  * anisotropy follows, come with them. NULL: they are the mesh's own. */
 VLR_API vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
                                                  const uint32_t* materials, const float* placements, uint32_t count);
+/* Many that differ in nothing but their matrices: object_to_world [instances x 12]. Those before one that is refused
+ * have been added. */
+VLR_API vlr_status vlr_scene_add_instances(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
+                                           uint64_t instances, const uint32_t* materials, uint32_t count);
 
 /* Bits: what passes through an instance as if it were not there; of a holdout the camera sees nothing, and nothing
  * behind it: black, alpha 0. */

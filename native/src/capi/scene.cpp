@@ -243,6 +243,19 @@ vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const 
   });
 }
 
+vlr_status vlr_scene_add_instances(vlr_scene* scene, uint32_t mesh, const float* object_to_world, uint64_t instances,
+                                   const uint32_t* materials, uint32_t count) {
+  return guard([&] {
+    require(scene, "scene");
+    require(object_to_world, "object_to_world");
+    require(materials, "materials");
+    for (uint64_t i = 0; i < instances; ++i) {
+      scene->scene->add_instance(mesh, affine_from(object_to_world + 12 * i), {materials, materials + count}, {},
+                                 scene->hidden_from);
+    }
+  });
+}
+
 vlr_status vlr_scene_hide_instances(vlr_scene* scene, uint32_t hidden_from) {
   return guard([&] {
     require(scene, "scene");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <string>
+#include <unordered_map>
 
 #include "job/error.h"
 
@@ -41,6 +42,25 @@ bool have_same_tops(const SurfaceMaterial& a, const SurfaceMaterial& b) {
   if (!a.shell || !b.shell) return !a.shell && !b.shell;
   const OcclusionVolume &one = a.shell->volume(), &other = b.shell->volume();
   return one.top == other.top && one.bottom == other.bottom && one.aspect == other.aspect;
+}
+
+Bounds bounds_of(const Mesh& mesh, const Affine& to_world) {
+  Bounds bounds;
+  for (const glm::uvec3& t : mesh.triangles()) {
+    for (int k = 0; k < 3; ++k) bounds.add(to_world.point(mesh.positions()[t[k]]));
+  }
+  return bounds;
+}
+
+/// Of the corners of `box`: never smaller than the bounds of what is in it.
+Bounds box_around(const Bounds& box, const Affine& to_world) {
+  Bounds bounds;
+  for (int corner = 0; corner < 8 && !box.empty(); ++corner) {
+    const Vec3 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                 corner & 4 ? box.high.z : box.low.z);
+    bounds.add(to_world.point(p));
+  }
+  return bounds;
 }
 
 }  // namespace
@@ -151,12 +171,15 @@ void Scene::make_tangents() {
 }
 
 Bounds Scene::bounds_of_instances() const {
+  std::unordered_map<const Mesh*, Bounds> of_mesh;
   Bounds bounds;
   for (const Instance& i : instances_) {
     const Mesh& mesh = committed() ? traced_mesh(i) : meshes_[i.mesh];
-    for (const glm::uvec3& t : mesh.triangles()) {
-      for (int k = 0; k < 3; ++k) bounds.add(i.object_to_world.point(mesh.positions()[t[k]]));
-    }
+    auto found = of_mesh.find(&mesh);
+    if (found == of_mesh.end()) found = of_mesh.emplace(&mesh, bounds_of(mesh, Affine{})).first;
+    // Of a hundred thousand instances few are at the border, and only there do their corners matter.
+    if (bounds.holds(box_around(found->second, i.object_to_world))) continue;
+    bounds.add(bounds_of(mesh, i.object_to_world));
   }
   return bounds;
 }

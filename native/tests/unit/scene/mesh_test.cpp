@@ -9,6 +9,7 @@
 #include "job/error.h"
 #include "scene/obj_file.h"
 #include "scene/scene.h"
+#include "sphere/random.h"
 #include "support/test_data.h"
 #include "support/test_scene.h"
 
@@ -193,6 +194,26 @@ TEST(Scene, SurfaceIsWhereTheRayHits) {
   EXPECT_LT(point.error, 1e-4f);
   EXPECT_LT(glm::dot(point.geometric_normal, ray.direction), -0.5f);
   EXPECT_GT(glm::dot(point.shading_normal, point.geometric_normal), 0.95f);
+}
+
+TEST(Scene, BoundsAreThoseOfAllCorners) {
+  RandomStream random(1, 0, 0);
+  Scene scene;
+  const std::vector<glm::uvec3> t = {{0, 1, 2}, {0, 2, 3}};
+  const uint32_t mesh = scene.add_mesh(Mesh({.positions = kQuad, .triangles = t}));
+  scene.add_material({std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), true});
+  Bounds expected;
+  for (int i = 0; i < 500; ++i) {
+    Affine map;
+    for (float& number : map.m) number = random.next() - 0.5f;
+    scene.add_instance(mesh, map, {0});
+    for (const Vec3& p : kQuad) expected.add(map.point(p));
+  }
+  scene.commit(1);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_FLOAT_EQ(scene.bounds().low[k], expected.low[k]);
+    EXPECT_FLOAT_EQ(scene.bounds().high[k], expected.high[k]);
+  }
 }
 
 TEST(Scene, CountsWhatItHoldsAndWarns) {

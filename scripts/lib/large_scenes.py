@@ -1,0 +1,60 @@
+"""Runs inside Blender: builds a large scene and renders hardly any of it with both engines."""
+
+import json
+import sys
+
+import addon_utils
+import bpy
+
+
+def grid(triangles):
+    """A bumpy plane of one mesh."""
+    side = round((triangles / 2) ** 0.5)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=side, y_subdivisions=side, size=10)
+    bpy.ops.object.shade_smooth()
+    return bpy.context.object
+
+
+def instances(count):
+    """Of a small sphere, at the vertices of a plane."""
+    side = round(count**0.5)
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=0.01)
+    sphere = bpy.context.object
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=side - 1, y_subdivisions=side - 1, size=10)
+    plane = bpy.context.object
+    sphere.parent, plane.instance_type = plane, "VERTS"
+    plane.show_instancer_for_render = False
+
+
+def objects(count):
+    """Each with a mesh of its own."""
+    bpy.ops.mesh.primitive_cube_add(size=0.05)
+    first = bpy.context.object
+    side = round(count**0.5)
+    for i in range(1, count):
+        obj = bpy.data.objects.new("Cube", first.data.copy())
+        obj.location = (i % side / 10, i // side / 10, 0)
+        bpy.context.scene.collection.objects.link(obj)
+
+
+def main():
+    task = json.loads(sys.argv[sys.argv.index("--") + 1])
+    addon_utils.enable("velour", default_set=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    addon_utils.enable("velour", default_set=True)
+    {"grid": grid, "instances": instances, "objects": objects}[task["kind"]](task["count"])
+    scene = bpy.context.scene
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location = (0, 0, 20)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.world = bpy.data.worlds.new("World")
+    scene.render.resolution_x = scene.render.resolution_y = 16
+    scene.velour.samples = scene.cycles.samples = 1
+    scene.cycles.use_denoising = False
+    for engine in ("VELOUR", "CYCLES"):
+        scene.render.engine = engine
+        bpy.ops.render.render()
+
+
+main()
