@@ -193,14 +193,15 @@ class Refusals(BlenderTest):
         for sockets in (
             ("Specular IOR Level", "Specular"),
             ("Coat Weight", "Clearcoat"),
-            ("Emission Color", "Emission"),
-            ("Emission Strength",),
             ("Specular Tint",),
             ("Sheen Weight", "Sheen"),
         ):
             obj, socket = self._textured(sockets, (0.2, 0.4, 0.6, 0.8))
             bpy.context.view_layer.objects.active = obj
             self._refused(["Material 'Painted", f"'{socket}'", "Approximate"])
+        for sockets in (("Emission Color", "Emission"), ("Emission Strength",)):
+            bpy.context.view_layer.objects.active = self._textured(sockets, (0.2, 0.4, 0.6, 0.8))[0]
+            self._refused(["Material 'Painted", "what glows", "Approximate"])
         path = self.folder / "approximate.btf"
         arguments = {**_SMALL, "directory": str(path), "use_approximate": True}
         self.assertEqual(bpy.ops.velour.capture_btf(**arguments), {"FINISHED"})

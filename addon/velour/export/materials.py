@@ -7,7 +7,7 @@ from . import files
 from .nodes import velour_node
 from .notes import ExportError
 from .placement import Tile
-from .shaders import as_principled, split, surface_layers
+from .shaders import as_principled, split, surface_layers, unlike_reflection
 from .textures import TextureTable
 
 
@@ -37,6 +37,7 @@ class MaterialTable:
         self._textured = set()  # of others: those with textures
         self._textures = TextureTable(notes)
         self.reduced = []
+        self.beyond_reflection = []  # sentences: what of mixed materials no BTF can hold
 
     def find(self, material):
         """The number of a material of the .blend; None where nothing shows it."""
@@ -73,6 +74,10 @@ class MaterialTable:
         plain = as_principled(layers)
         if plain:
             return self._scene.add_textured_material(self._slots(plain, material), **plain.values)
+        self.beyond_reflection += [
+            f"Material '{material.name}': {words} is no part of a BTF; left out."
+            for words in unlike_reflection(layers)
+        ]
         with Shader.new() as shader:
             for layer in layers:
                 for part in split(layer):

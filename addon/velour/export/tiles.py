@@ -70,6 +70,8 @@ def export_tile(source, depsgraph, approximate=False):
         to_scene = Matrix.Scale(metres, 4) @ source.to_tile
         export = ObjectExport(scene, materials, notes, lambda: None, to_scene)
         export.add_geometry(depsgraph, lambda instance: is_of_tile(instance, source))
+        for sentence in materials.beyond_reflection:
+            material_notes.add(sentence)
         if len(material_notes) and not approximate:
             sentence = next(iter(material_notes))
             raise ExportError(f"{sentence} Switch on Approximate to capture it all the same.")

@@ -59,6 +59,17 @@ def as_principled(layers):
     return layer if layer.kind == "principled" else None
 
 
+def unlike_reflection(layers):
+    """What of the layers no reflectance can hold, in words."""
+    kinds = []
+    if any(layer.kind == "emission" or layer.glow for layer in layers):
+        kinds.append("what glows")
+    clear = [layer for layer in layers if layer.kind == "transparent"]
+    if any(layer.pictures or min(layer.values["base_color"]) < 1.0 for layer in clear):
+        kinds.append("coloured transparency")
+    return kinds
+
+
 def split(layer):
     """The same as layers of which none has alpha, or glows and reflects."""
     values, pictures = dict(layer.values), dict(layer.pictures)
