@@ -1,6 +1,7 @@
 """Where tiles of BTFs lie on objects: pictures of a tile of four greys, what is measured and what is said."""
 
 import importlib
+import unittest.mock
 
 import bpy
 import numpy as np
@@ -135,6 +136,45 @@ class Pictures(Placed):
         small.location = (-0.5, -0.5, 1e-4)  # no shadow
         self.scene.collection.objects.link(small)
         self._check_picture(((4, 0, 0), (0, 4, 0)))
+
+    def _maps(self):
+        """Of all instances that are exported, as the library gets them."""
+        native = inputs.native()
+        given, add = [], native.Scene.add_instance
+
+        def recorded(scene, mesh, matrix, materials, placements=None, hidden=()):
+            given.append(np.array(placements))
+            add(scene, mesh, matrix, materials, placements, hidden)
+
+        with unittest.mock.patch.object(native.Scene, "add_instance", recorded):
+            scenes.render(self.folder)
+        return given
+
+    def test_slots_of_objects_of_one_mesh_have_densities_of_their_own(self):
+        """Faces of two densities: one object shows the material on both, the other on the first alone."""
+        both = scenes.add_plane(self._material(mode="REAL_SIZE"))
+        bpy.context.view_layer.objects.active = both
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.subdivide()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        for polygon in both.data.polygons[1:]:
+            polygon.material_index = 1
+            for loop in polygon.loop_indices:
+                both.data.uv_layers[0].data[loop].uv *= 5
+        both.data.materials.append(both.data.materials[0])
+        first = bpy.data.objects.new("First", both.data)
+        first.material_slots[1].link = "OBJECT"
+        first.material_slots[1].material = scenes.diffuse_material()
+        self.scene.collection.objects.link(first)
+        together = self._maps()
+        alone = []
+        for obj in (both, first):
+            both.hide_render, first.hide_render = obj is not both, obj is not first
+            alone += self._maps()
+        self.assertEqual((len(together), len(alone)), (2, 2))
+        self.assertGreater(np.abs(alone[0][0] - alone[1][0]).max(), 0.1)
+        for maps in alone:
+            self.assertTrue(any(np.array_equal(maps, other) for other in together), together)
 
     def test_a_density_that_is_kept_does_not_follow_the_mesh(self):
         obj = scenes.add_plane(self._material(mode="REAL_SIZE"), size=1.0)

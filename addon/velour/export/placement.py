@@ -147,10 +147,10 @@ class Placements:
                 self._warn(obj, material, None, self._surface(obj, slots, material, key), None)
 
     def _surface(self, obj, slots, material, mesh):
-        same = tuple(slot for slot, other in enumerate(slots) if other == material)
-        if (mesh, same) not in self._surfaces:
-            self._surfaces[mesh, same] = surface_of(object_arrays(obj, uv_map_names(slots)), same)
-        return self._surfaces[mesh, same]
+        key = (mesh, _slots_that_show(slots, material))
+        if key not in self._surfaces:
+            self._surfaces[key] = surface_of(object_arrays(obj, uv_map_names(slots)), key[1])
+        return self._surfaces[key]
 
     def _map(self, instance, slots, material, key, metres_per_unit):
         if not self._materials.needs_coordinates(material):
@@ -159,12 +159,8 @@ class Placements:
         surface = self._surface(obj, slots, material, key)
         placed = None
         if surface is not None and tile is not None:
-            shape = (
-                key,
-                slots.index(material),
-                material.original.as_pointer(),
-                _size_of(instance.matrix_world),
-            )
+            shown = _slots_that_show(slots, material)
+            shape = (key, shown, material.original.as_pointer(), _size_of(instance.matrix_world))
             if shape not in self._placed:
                 self._placed[shape] = self._place(tile, surface, instance.matrix_world, metres_per_unit)
             placed = self._placed[shape]
@@ -190,6 +186,10 @@ class Placements:
             self._notes.add(missing_coordinates(obj, material.name))
         elif placed is not None and placed.lie.is_stretched:
             self._notes.add(stretch_sentence(obj, tile, placed.lie, surface))
+
+
+def _slots_that_show(slots, material):
+    return tuple(slot for slot, other in enumerate(slots) if other == material)
 
 
 def _size_of(matrix):
