@@ -6,22 +6,26 @@
 
 namespace velour::test {
 
-/// Of green, for lobes that 120 x 160 light directions resolve.
-inline double albedo(const Material& material, const Vec3& wv) {
-  const Quadrature z = gauss_legendre(120, 0, 1);
-  constexpr int kTurns = 160;
-  PreparedBrdf point;
-  material.prepare(wv, point);
+/// Of green, by `polar` x `turns` light directions, as prepared for a view.
+inline double albedo(const Material& material, const PreparedBrdf& point, int polar, int turns) {
+  const Quadrature z = gauss_legendre(polar, 0, 1);
   double sum = 0;
   for (size_t i = 0; i < z.node.size(); ++i) {
     const double r = std::sqrt(1 - z.node[i] * z.node[i]);
-    for (int k = 0; k < kTurns; ++k) {
-      const double phi = 2 * kPiD * (k + 0.5) / kTurns;
+    for (int k = 0; k < turns; ++k) {
+      const double phi = 2 * kPiD * (k + 0.5) / turns;
       const Vec3 wl(r * std::cos(phi), r * std::sin(phi), z.node[i]);
       sum += z.weight[i] * z.node[i] * static_cast<double>(eval_one(material, point, wl).f.g);
     }
   }
-  return sum * 2 * kPiD / kTurns;
+  return sum * 2 * kPiD / turns;
+}
+
+/// The same where the surface does not vary; for lobes that 120 x 160 light directions resolve.
+inline double albedo(const Material& material, const Vec3& wv, int polar = 120, int turns = 160) {
+  PreparedBrdf point;
+  material.prepare(wv, point);
+  return albedo(material, point, polar, turns);
 }
 
 }  // namespace velour::test

@@ -1,8 +1,8 @@
 // Samples over their density against quadrature of the value: the estimator that every render is made of.
+#include "support/albedo.h"
 #include "material/ggx_sampler.h"
 #include "material/parametric_material.h"
 #include "material/principled_material.h"
-#include "sphere/quadrature.h"
 #include "sphere/random.h"
 #include "support/parametric_models.h"
 #include "support/proof_materials.h"
@@ -36,23 +36,6 @@ std::vector<Named> materials() {
   return all;
 }
 
-double albedo_by_quadrature(const Material& material, const Vec3& wv) {
-  const Quadrature z = gauss_legendre(200, 0, 1);
-  constexpr int kTurns = 400;
-  PreparedBrdf point;
-  material.prepare(wv, point);
-  double sum = 0;
-  for (size_t i = 0; i < z.node.size(); ++i) {
-    const double r = std::sqrt(1 - z.node[i] * z.node[i]);
-    for (int k = 0; k < kTurns; ++k) {
-      const double phi = 2 * kPiD * (k + 0.5) / kTurns;
-      const Vec3 wl(r * std::cos(phi), r * std::sin(phi), z.node[i]);
-      sum += z.weight[i] * z.node[i] * eval_one(material, point, wl).f.g;
-    }
-  }
-  return sum * 2 * kPiD / kTurns;
-}
-
 /// Mean of f cos / pdf over samples: the estimator of a constant environment. `error` scales the density, for control.
 test::Estimate albedo_by_sampling(const Material& material, const Vec3& wv, double error = 1) {
   PreparedBrdf point;
@@ -67,7 +50,7 @@ test::Estimate albedo_by_sampling(const Material& material, const Vec3& wv, doub
 }
 
 test::Estimate by_quadrature(const Material& material, const Vec3& wv) {
-  const double value = albedo_by_quadrature(material, wv);
+  const double value = test::albedo(material, wv, 200, 400);
   return {value, 1e-5 * value};
 }
 

@@ -1,8 +1,8 @@
 // What models of BTFs draw: each sampler against its density, and its samples against quadrature of the value; places,
 // levels and views of both sides.
-#include "sphere/quadrature.h"
 #include "sphere/random.h"
 #include "sphere/warp.h"
+#include "support/albedo.h"
 #include "support/sided_btfs.h"
 #include "support/statistics.h"
 #include "support/warped_sampler.h"
@@ -73,18 +73,7 @@ class SidedBtfDraws : public ::testing::Test {
   }
 
   static test::Estimate albedo_by_quadrature(const Material& material, const PreparedBrdf& point) {
-    const Quadrature z = gauss_legendre(100, 0, 1);
-    constexpr int kTurns = 400;
-    double sum = 0;
-    for (size_t i = 0; i < z.node.size(); ++i) {
-      const double r = std::sqrt(1 - z.node[i] * z.node[i]);
-      for (int k = 0; k < kTurns; ++k) {
-        const double phi = 2 * kPiD * (k + 0.5) / kTurns;
-        const Vec3 wl(r * std::cos(phi), r * std::sin(phi), z.node[i]);
-        sum += z.weight[i] * z.node[i] * static_cast<double>(material.eval_one(point, wl).f.g);
-      }
-    }
-    const double albedo = sum * 2 * kPiD / kTurns;
+    const double albedo = test::albedo(material, point, 100, 400);
     return {albedo, 2e-4 * albedo};  // f has creases where its directions are
   }
 
