@@ -22,6 +22,10 @@ class PairInterpolation {
   std::optional<Corners> light(const Vec3& wl) const { return lights_.at(wl); }
   /// Whether it knows what is seen, and lit, from below.
   bool has_lower_side() const { return view({0, 0, -1}) && light({0, 0, -1}); }
+  /// Whether it knows light that comes through to either side.
+  bool knows_through() const {
+    return (view({0, 0, 1}) && light({0, 0, -1})) || (view({0, 0, -1}) && light({0, 0, 1}));
+  }
 
  private:
   /// A set of directions, the lower ones mirrored up into a mesh of their own.

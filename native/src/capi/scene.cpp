@@ -66,9 +66,7 @@ std::shared_ptr<const Model> coarse_proposal(const Measurement& measurement) {
 }
 
 SurfaceMaterial surface_of(const std::shared_ptr<const Model>& model, uint32_t neighbors) {
-  const bool holed = model->shell && is_btf(*model);  // the shell itself lets light through
-  const auto make = holed ? make_reflecting_material : make_material;
-  SurfaceMaterial surface{.material = make(model, static_cast<int>(neighbors))};
+  SurfaceMaterial surface{.material = make_material(model, static_cast<int>(neighbors))};
   if (!model->shell) return surface;
   surface.shell = std::make_shared<const ShellField>(model->shell->volume);
   surface.shell_shaded = !is_btf(*model);
@@ -79,7 +77,7 @@ SurfaceMaterial surface_of(const std::shared_ptr<const Model>& model, uint32_t n
 /// A BTF itself; of two sides, with light that comes through.
 std::shared_ptr<const Material> make_lit_from_both(const std::shared_ptr<const BtfTable>& table) {
   auto reflecting = make_measured_btf_material(table);
-  if (!table->between.has_lower_side()) return reflecting;
+  if (!table->between.knows_through()) return reflecting;
   return std::make_shared<const ThroughMaterial>(std::move(reflecting),
                                                  make_measured_btf_material(table, BtfLight::other_side));
 }

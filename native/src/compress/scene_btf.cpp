@@ -109,7 +109,8 @@ SeenPairs pairs_around(const PairLayout& layout, const ViewWeights& seen) {
   std::vector<Vec3> directions;
   for (const PolarAngles& angles : layout.views()) directions.push_back(unit_direction(angles));
   const auto least = static_cast<float>(std::cos(std::min(kPiD, 2 * widest_gap(directions) + kBinRadius)));
-  const std::vector<Vec3> counted = counted_views(has_lower_side(layout) ? seen : from_both_sides(seen));
+  const bool two_sided = has_lower_side(layout);
+  const std::vector<Vec3> counted = counted_views(two_sided ? seen : from_both_sides(seen));
   const auto near = [&](const Vec3& view) {
     return std::ranges::any_of(counted, [&](const Vec3& w) { return w.z * view.z > 0 && dot(w, view) >= least; });
   };
@@ -122,7 +123,7 @@ SeenPairs pairs_around(const PairLayout& layout, const ViewWeights& seen) {
     if (near(directions[v]) || (side[below] && v == upright[below])) pairs.views.push_back(v);
   }
   for (uint32_t l = 0; l < layout.lights().size(); ++l) {
-    if (side[unit_direction(layout.lights()[l]).z < 0]) pairs.lights.push_back(l);
+    if (two_sided || side[unit_direction(layout.lights()[l]).z < 0]) pairs.lights.push_back(l);
   }
   return pairs;
 }

@@ -16,8 +16,8 @@ struct SeenPairs {
 
 /// Of a complete layout: the views no farther from those that count (counted_views) than twice what views lie apart
 /// from their nearest neighbours at most: with those around them, which keep a fit from following single views; and the
-/// one nearest to the normal, whose heights make the relief. Of a side that nobody saw, neither views nor lights: light
-/// does not go through a surface that is rendered. What is seen of a BTF of one side from behind is its front.
+/// one nearest to the normal, whose heights make the relief. Of a side that nobody saw no views, but its lights, which
+/// may come through. What is seen of a BTF of one side from behind is its front.
 SeenPairs pairs_around(const PairLayout& layout, const ViewWeights& seen);
 
 /// Whether it has views, and lights, from below.

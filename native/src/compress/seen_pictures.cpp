@@ -8,6 +8,7 @@
 
 #include "compress/model_images.h"
 #include "compress/scene_btf.h"
+#include "sphere/mirrored.h"
 
 namespace velour {
 namespace {
@@ -44,27 +45,22 @@ SeenPictures::SeenPictures(const BtfMeasurement& truth, const SceneObservation& 
   const bool two_sided = has_lower_side(truth.layout());
   for (const ObservedHit& hit : observation.hits) {
     if (pictures_.size() == kPictures) return;
-    const bool below = hit.back && two_sided;
-    Picture picture{hit.wv, {half_of_hit(hit, false, observation), half_of_hit(hit, true, observation)}};
-    if (below) mirror(picture);
+    const bool mirrored = hit.back && two_sided;
+    Picture picture{mirrored ? velour::mirrored(hit.wv) : hit.wv,
+                    {half_of_hit(hit, false, observation, mirrored), half_of_hit(hit, true, observation, mirrored)}};
     if (!between_.view(picture.wv) || picture.half[0].light.empty() || picture.half[1].light.empty()) continue;
     for (Half& half : picture.half) half.radiance = true_radiance(picture.wv, half, progress);
     pictures_.push_back(std::move(picture));
   }
 }
 
-void SeenPictures::mirror(Picture& picture) {
-  picture.wv.z = -picture.wv.z;
-  for (Half& half : picture.half) {
-    for (Light& light : half.light) light.wl.z = -light.wl.z;
-  }
-}
-
-SeenPictures::Half SeenPictures::half_of_hit(const ObservedHit& hit, bool second, const SceneObservation& observation) {
+SeenPictures::Half SeenPictures::half_of_hit(const ObservedHit& hit, bool second, const SceneObservation& observation,
+                                             bool mirrored) const {
   Half half;
   for (uint32_t i = second ? hit.middle : hit.first; i < (second ? hit.last : hit.middle); ++i) {
+    const Vec3 wl = mirrored ? velour::mirrored(observation.wl[i]) : observation.wl[i];
     const float amount = luminance(observation.light[i]);
-    if (amount > 0) half.light.push_back({observation.wl[i], amount});
+    if (amount > 0 && between_.light(wl)) half.light.push_back({wl, amount});
   }
   return half;
 }
@@ -74,7 +70,6 @@ std::vector<float> SeenPictures::true_radiance(const Vec3& wv, const Half& half,
   const auto views = between_.view(wv);
   for (const Light& light : half.light) {
     const auto lights = between_.light(light.wl);
-    if (!lights) continue;
     for (size_t v = 0; v < 3; ++v) {
       for (size_t l = 0; l < 3; ++l) {
         const float weight = light.amount * views->weight[v] * lights->weight[l];

@@ -45,9 +45,8 @@ class SeenPictures {
     Vec3 wv;
     std::array<Half, 2> half;
   };
-  static Half half_of_hit(const ObservedHit& hit, bool second, const SceneObservation& observation);
-  /// As seen, and lit, from below.
-  static void mirror(Picture& picture);
+  /// Of the light that the truth knows. `mirrored`: seen from below, so light above the horizon comes from below, too.
+  Half half_of_hit(const ObservedHit& hit, bool second, const SceneObservation& observation, bool mirrored) const;
   std::vector<float> true_radiance(const Vec3& wv, const Half& half, const Progress& progress) const;
   std::vector<float> picture_of(const BtfImages& images, const TexelGrid& grid, const Vec3& wv, const Half& half,
                                 const Progress& progress) const;

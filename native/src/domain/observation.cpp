@@ -5,15 +5,23 @@
 namespace velour {
 namespace {
 
+/// Of the terms of `hit` those that `wanted` says.
+template <typename Wanted>
+void append(SceneObservation& into, const SceneObservation& from, const ObservedHit& hit, const Wanted& wanted) {
+  ObservedHit same = hit;
+  same.first = same.middle = static_cast<uint32_t>(into.wl.size());
+  for (uint32_t i = hit.first; i < hit.last; ++i) {
+    if (!wanted(from.wl[i])) continue;
+    into.wl.push_back(from.wl[i]);
+    into.light.push_back(from.light[i]);
+    if (i < hit.middle) ++same.middle;
+  }
+  same.last = static_cast<uint32_t>(into.wl.size());
+  into.hits.push_back(same);
+}
+
 void append(SceneObservation& into, const SceneObservation& from, const ObservedHit& hit) {
-  const auto first = static_cast<uint32_t>(into.wl.size());
-  const auto range = [&hit](const auto& all) { return std::pair(all.begin() + hit.first, all.begin() + hit.last); };
-  const auto [wl, wl_end] = range(from.wl);
-  const auto [light, light_end] = range(from.light);
-  into.wl.insert(into.wl.end(), wl, wl_end);
-  into.light.insert(into.light.end(), light, light_end);
-  into.hits.push_back({hit.key, hit.wv, first, first + (hit.middle - hit.first), static_cast<uint32_t>(into.wl.size()),
-                       hit.light_density, hit.back});
+  append(into, from, hit, [](const Vec3&) { return true; });
 }
 
 void merge(SceneDomain& into, const SceneDomain& other) {
@@ -26,6 +34,15 @@ void merge(SceneDomain& into, const SceneDomain& other) {
 }
 
 }  // namespace
+
+SceneObservation reflected_part(const SceneObservation& observation) {
+  SceneObservation part;
+  part.domain = observation.domain;
+  for (const ObservedHit& hit : observation.hits) {
+    append(part, observation, hit, [](const Vec3& wl) { return wl.z > 0; });
+  }
+  return part;
+}
 
 void merge(SceneObservation& into, const SceneObservation& other) {
   const SceneObservation before = std::move(into);

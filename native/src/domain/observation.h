@@ -28,12 +28,15 @@ struct SceneObservation {
   SceneDomain domain;
   std::vector<ObservedHit> hits;  // by key
   // The terms of all hits: f(wl) . light summed over the terms of a half estimates the radiance that leaves the hit.
-  std::vector<Vec3> wl;    // local frame
+  std::vector<Vec3> wl;    // local frame; below the horizon where the material lets light through
   std::vector<Rgb> light;  // radiance x cos / density / number of terms, shadows included; Rec. 709 or working space
 };
 
 /// Polar angle of a view above the horizon, radians: what SceneDomain::view is binned by.
 inline double theta_of(const Vec3& wv) { return std::acos(std::min(1.0, static_cast<double>(wv.z))); }
+
+/// The same without light from the other side of the surface: what a material that only reflects can answer.
+SceneObservation reflected_part(const SceneObservation& observation);
 
 /// Adds what another frame or scene saw; of all hits, the kHits with the smallest keys are kept. The result does not
 /// depend on the order of frames.

@@ -89,7 +89,8 @@ SceneDomain read_domain(const JsonFields& fields) {
   return domain;
 }
 
-bool is_above_horizon(const Vec3& w) { return w.z > 0.0f && std::abs(glm::length(w) - 1.0f) < 1e-3f; }
+bool is_unit(const Vec3& w) { return std::abs(glm::length(w) - 1.0f) < 1e-3f; }
+bool is_above_horizon(const Vec3& w) { return w.z > 0.0f && is_unit(w); }
 
 /// Gives each hit the terms that follow those of the hit before.
 void read_term_counts(const JsonFields& fields, uint64_t total, std::vector<ObservedHit>& hits) {
@@ -135,7 +136,7 @@ bool is_finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) &
 void read_terms(const JsonFields& fields, uint64_t count, SceneObservation& observation) {
   observation.wl = fields.values<Vec3>("wl", count);
   observation.light = fields.values<Rgb>("light", count);
-  if (!std::ranges::all_of(observation.wl, is_above_horizon)) fields.fail("wl", "unit directions above the horizon");
+  if (!std::ranges::all_of(observation.wl, is_unit)) fields.fail("wl", "unit directions");
   if (!std::ranges::all_of(observation.light, is_finite)) fields.fail("light", "finite numbers");
 }
 

@@ -151,7 +151,7 @@ Model full_model(const Measurement& measurement, FitOptions options, Progress& p
   return fit_parametric(measurement, options, progress, kFullShare);
 }
 
-const SceneObservation& checked(const Measurement& measurement, const FitOptions& options) {
+SceneObservation checked(const Measurement& measurement, const FitOptions& options) {
   if (!measurement.isotropic()) {
     throw Error(Status::unsupported,
                 "'" + measurement.provenance().path +
@@ -159,7 +159,7 @@ const SceneObservation& checked(const Measurement& measurement, const FitOptions
                     "alone, so a model reduced to it would not know when it is turned. Fit without "
                     "a scene.");
   }
-  if (!options.for_scene->hits.empty()) return *options.for_scene;
+  if (!options.for_scene->hits.empty()) return reflected_part(*options.for_scene);
   throw Error(Status::invalid_argument,
               "The scene shows nothing of the material: no camera ray met it. Check camera, visibility and frames, or "
               "fit without a scene.");
@@ -177,7 +177,7 @@ const ParametricBrdf& parametric_body(const Model& model) {
 
 Model fit_for_scene(const Measurement& measurement, const FitOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const SceneObservation& observation = checked(measurement, options);
+  const SceneObservation observation = checked(measurement, options);
   const Model full = full_model(measurement, options, progress);
   const ParametricBrdf& full_brdf = parametric_body(full);
   const double begin = options.full_model ? 0 : kFullShare;

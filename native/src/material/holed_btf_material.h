@@ -45,6 +45,7 @@ class HoledBtfMaterial final : public Material {
   }
 
   bool varies() const override { return true; }
+  bool transmits() const override { return btf_->transmits(); }
   Vec2 texels() const override { return btf_->texels(); }
   bool isotropic() const override { return btf_->isotropic(); }
 

@@ -45,7 +45,7 @@ template <typename Btf>
 bool knows_through(const Btf& btf) {
   return serving_side(btf, false, true) || serving_side(btf, true, false);
 }
-bool knows_through(const FactoredBtf& btf) { return PairInterpolation(btf.layout).has_lower_side(); }
+bool knows_through(const FactoredBtf& btf) { return PairInterpolation(btf.layout).knows_through(); }
 bool knows_through(const ScatteredBrdf&) { return false; }
 bool knows_through(const ParametricBrdf&) { return false; }
 

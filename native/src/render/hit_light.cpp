@@ -53,16 +53,16 @@ void HitLightEstimator::draw(const Vertex& vertex, Counts counts, PathNumbers& n
     numbers.points(Purpose::light, 0, points);
     std::fill_n(position_, counts.lights, vertex.position);
     lighting_.sample({position_, points.size()}, points, drawn);
-    for (int i = 0; i < drawn.count; ++i) keep_if_above(vertex, vertex.frame.to_local(drawn.get(i)), drawn.get(i));
+    for (int i = 0; i < drawn.count; ++i) keep_if_received(vertex, vertex.frame.to_local(drawn.get(i)), drawn.get(i));
   }
   const std::span<Vec2> points(u, static_cast<size_t>(counts.surface));
   numbers.points(Purpose::surface, 0, points);
   vertex.surface->material->sample(prepared_, points, drawn);
-  for (int i = 0; i < drawn.count; ++i) keep_if_above(vertex, drawn.get(i), vertex.frame.to_world(drawn.get(i)));
+  for (int i = 0; i < drawn.count; ++i) keep_if_received(vertex, drawn.get(i), vertex.frame.to_world(drawn.get(i)));
 }
 
-void HitLightEstimator::keep_if_above(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world) {
-  if (!(wl.z > 0.0f) || !(glm::dot(wl_world, vertex.geometric_normal) > 0.0f)) return;
+void HitLightEstimator::keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world) {
+  if (!vertex.receives(wl, wl_world)) return;
   local_.push(wl);
   world_.push(wl_world);
 }
@@ -84,7 +84,7 @@ void HitLightEstimator::weigh(const Vertex& vertex, Counts counts) {
   for (int i = 0; i < world_.count; ++i) {
     const float density =
         static_cast<float>(counts.lights) * light_pdf_.v[i] + static_cast<float>(counts.surface) * material_pdf_.v[i];
-    weight_[i] = density > 0.0f ? local_.z[i] / density : 0.0f;
+    weight_[i] = density > 0.0f ? std::abs(local_.z[i]) / density : 0.0f;
   }
 }
 
@@ -131,10 +131,9 @@ void HitLightEstimator::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
   const int count = find_sharp_light(lighting_, vertex, numbers, sharp);
   for (int i = 0; i < count; ++i) {
     const SharpLight& s = sharp[i];
-    if (!(s.wl.z > 0.0f)) continue;
     Rgb passed(1.0f);
     if (s.lamp->casts_shadow() && visible_.occluded(vertex.ray(s.wl_world, s.distance), &passed)) continue;
-    const Rgb light = s.wl.z * passed * s.irradiance;
+    const Rgb light = std::abs(s.wl.z) * passed * s.irradiance;
     note_density(kInfinity, light);
     add_term(s.wl, light);
   }

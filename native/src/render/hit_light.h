@@ -1,4 +1,4 @@
-// Where the light of one hit comes from on its viewer's side: the terms of an ObservedHit.
+// Where the light of one hit comes from: the terms of an ObservedHit.
 #pragma once
 
 #include <span>
@@ -39,7 +39,7 @@ class HitLightEstimator {
   };
   Counts counts(int bounces) const;
   void draw(const Vertex& vertex, Counts counts, PathNumbers& numbers);
-  void keep_if_above(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world);
+  void keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world);
   void weigh(const Vertex& vertex, Counts counts);
   void trace(const Vertex& vertex);
   void add_lights();
@@ -57,7 +57,7 @@ class HitLightEstimator {
   PreparedBrdf prepared_;
   HitLight result_;
 
-  // Of one half: directions above both horizons.
+  // Of one half: directions that the vertex receives light from.
   DirectionBatch local_, world_;
   RgbBatch environment_, f_;
   ScalarBatch light_pdf_, material_pdf_;

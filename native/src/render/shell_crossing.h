@@ -14,6 +14,8 @@ class ShellCrossing {
   ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit);
 
   const ShellField& field() const { return *frame_.field; }
+  /// From the shell's bottom to its top, in the world.
+  float height() const { return (field().volume().top - field().volume().bottom) / frame_.scale; }
   /// Where the ray could meet the structure on this side of the surface; nowhere when it is empty, from where it begins
   /// to its end.
   const ShellWay& way() const { return way_; }

@@ -24,6 +24,7 @@ Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world)
       geometric_normal(facing(point.geometric_normal, wv_world)),
       // Twice the bound: one for this point, one for where the ray tracer puts the triangle.
       offset(4.0f * point.error),
+      through_offset(offset),
       surface(nullptr),
       table(nullptr) {
   Vec3 normal = facing(point.shading_normal, geometric_normal);
@@ -60,6 +61,7 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   if (crossing != nullptr && surface->holed()) {
     // At a point: a footprint would average the holes in, which the rays of a pixel do.
     site.footprint = Mat2(0.0f);
+    through_offset += crossing->height();  // what lies between has been captured
     site.beyond_outline = crossing->beyond_outline(surface->material->texels());
   }
 }

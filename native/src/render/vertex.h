@@ -27,6 +27,7 @@ struct Vertex {
   Frame frame;            // shading frame; z on the viewer's side
   Vec3 wv;                // local
   float offset;           // a ray starts this far off the surface, along the geometric normal
+  float through_offset;   // and one to the other side this far against it
   const SurfaceMaterial* surface;
   const TableSampler* table;  // null unless the strategy needs it
   const GgxSampler* ggx;      // the same
@@ -57,7 +58,7 @@ struct Vertex {
   /// From the side of the surface that it goes to.
   Ray ray(const Vec3& direction_world, float far) const {
     const bool through = transmits && glm::dot(direction_world, geometric_normal) < 0.0f;
-    return {position + (through ? -offset : offset) * geometric_normal, 0.0f, direction_world, far};
+    return {position + (through ? -through_offset : offset) * geometric_normal, 0.0f, direction_world, far};
   }
 
  private:

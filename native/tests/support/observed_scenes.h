@@ -3,6 +3,7 @@
 #pragma once
 
 #include "domain/observation.h"
+#include "material/through_material.h"
 #include "render/scene_observer.h"
 #include "sphere/random.h"
 #include "support/proof_materials.h"
@@ -25,6 +26,8 @@ class ScaledGrey final : public Material {
   void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
     material_->sample(point, u, wl);
   }
+  bool varies() const override { return material_->varies(); }
+  bool transmits() const override { return material_->transmits(); }
   bool isotropic() const override { return material_->isotropic(); }
 
  private:
@@ -72,13 +75,19 @@ inline void add_sharp_lamps(Scene& scene) {
   }
 }
 
+/// Of both sides' light.
+inline std::shared_ptr<const Material> translucent_material() {
+  return std::make_shared<const ThroughMaterial>(std::make_shared<Lambert>(0.3f), std::make_shared<Lambert>(0.4f));
+}
+
 /// Committed. Half the floor is a mirror-like neighbour that shines itself.
-inline Scene observed_scene(ObservedLight light, float factor) {
+inline Scene observed_scene(ObservedLight light, float factor,
+                            std::shared_ptr<const Material> observed = highlight_material(10)) {
   Scene scene;
   const auto add = [&scene](Mesh mesh, const Affine& place, SurfaceMaterial material) {
     scene.add_instance(scene.add_mesh(std::move(mesh)), place, {scene.add_material(std::move(material))});
   };
-  add(sphere(24), {}, {std::make_shared<ScaledGrey>(highlight_material(10), factor), Rgb(0.0f), false});
+  add(sphere(24), {}, {std::make_shared<ScaledGrey>(std::move(observed), factor), Rgb(0.0f), false});
   add(square(4), shift({0, 0, -1}), {std::make_shared<Lambert>(0.7f), Rgb(0.0f), false});
   add(square(0.7f), shift({1.2f, -1.2f, -0.9f}), {std::make_shared<Lambert>(0.3f), {1.5f, 2, 1}, false});
   if (light == ObservedLight::sky) add_sky(scene);

@@ -8,15 +8,15 @@ namespace {
 
 using test::ObservedLight;
 
-constexpr uint64_t kRenders = 8, kObservations = 64;
+constexpr uint64_t kRenders = 12, kObservations = 64;
 constexpr float kScales[] = {0, 0.5f, 1.5f, 2};
 constexpr double kStencil[] = {1.0 / 6, -8.0 / 6, 8.0 / 6, -1.0 / 6};  // of the derivative at 1, exact to degree 4
 
 /// How the picture's mean luminance changes with a factor on f, at 1. With b bounces the picture is a polynomial of
 /// degree b + 1 in the factor, so up to three bounces its derivative needs no limit.
-test::Estimate rendered_derivative(ObservedLight light, int bounces) {
+test::Estimate rendered_derivative(ObservedLight light, std::shared_ptr<const Material> material, int bounces) {
   std::vector<Scene> scenes;
-  for (const float scale : kScales) scenes.push_back(test::observed_scene(light, scale));
+  for (const float scale : kScales) scenes.push_back(test::observed_scene(light, scale, material));
   RenderOptions options = test::small_options(Strategy::mis, 64);
   options.width = options.height = 32;
   options.bounces = bounces;
@@ -37,8 +37,8 @@ test::Estimate rendered_derivative(ObservedLight light, int bounces) {
 }
 
 /// The same from observations: each hit with its throughput is one place where f acts.
-test::Estimate observed_derivative(ObservedLight light, int bounces) {
-  const Scene scene = test::observed_scene(light, 1);
+test::Estimate observed_derivative(ObservedLight light, std::shared_ptr<const Material> of, int bounces) {
+  const Scene scene = test::observed_scene(light, 1, std::move(of));
   const Material& material = *scene.materials()[test::kObservedMaterial].material;
   test::RunningMean derivative;
   for (uint64_t seed = 0; seed < kObservations; ++seed) {
@@ -49,18 +49,17 @@ test::Estimate observed_derivative(ObservedLight light, int bounces) {
   return derivative.estimate();
 }
 
-class ObservedPicture : public ::testing::TestWithParam<ObservedLight> {};
-
-TEST_P(ObservedPicture, ChangesWithFAsARenderDoes) {
+void expect_changes_as_a_render(ObservedLight light, const std::shared_ptr<const Material>& material,
+                                int most_bounces) {
   test::ZTests tests(1 - std::pow(1 - 0.01, 1.0 / 3));
   test::Estimate observed[3], rendered[3];
-  for (const int bounces : {0, 1, 2}) {
-    observed[bounces] = observed_derivative(GetParam(), bounces);
-    rendered[bounces] = rendered_derivative(GetParam(), bounces);
+  for (int bounces = 0; bounces <= most_bounces; ++bounces) {
+    observed[bounces] = observed_derivative(light, material, bounces);
+    rendered[bounces] = rendered_derivative(light, material, bounces);
     tests.add("bounces " + std::to_string(bounces), observed[bounces], rendered[bounces]);
   }
   EXPECT_TRUE(tests.agree());
-  for (const int bounces : {0, 1, 2}) {
+  for (int bounces = 0; bounces <= most_bounces; ++bounces) {
     EXPECT_LT(tests.smallest_bias("bounces " + std::to_string(bounces)), 0.05) << "too noisy to prove anything";
   }
   // What an f one tenth too large, and an observation without the bounce of the render, would give.
@@ -69,6 +68,18 @@ TEST_P(ObservedPicture, ChangesWithFAsARenderDoes) {
   EXPECT_TRUE(brighter.differ());
   without_bounce.add("bounce", observed[0], rendered[1]);
   EXPECT_TRUE(without_bounce.differ());
+}
+
+class ObservedPicture : public ::testing::TestWithParam<ObservedLight> {};
+
+TEST_P(ObservedPicture, ChangesWithFAsARenderDoes) {
+  expect_changes_as_a_render(GetParam(), test::highlight_material(10), 2);
+}
+
+TEST(ObservedTranslucency, ChangesWithFAsARenderDoes) {
+  for (const ObservedLight light : {ObservedLight::sky, ObservedLight::sharp_lamps}) {
+    expect_changes_as_a_render(light, test::translucent_material(), 1);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Lights, ObservedPicture,

@@ -11,7 +11,9 @@
 #include "domain/out_of_domain.h"
 #include "job/error.h"
 #include "model/model_file.h"
+#include "model/model_material.h"
 #include "sphere/directions.h"
+#include "sphere/mirrored.h"
 #include "sphere/random.h"
 #include "sphere/warp.h"
 #include "support/striped_btf.h"
@@ -89,13 +91,13 @@ TEST(PairsAround, AreThoseSeenAndTwoRingsMore) {
   EXPECT_GT(pairs_around(layout, domain.directions()).views.size(), 75u);
 }
 
-TEST(PairsAround, ASideThatNobodySawIsLeftOut) {
+TEST(PairsAround, ViewsOfASideThatNobodySawAreLeftOutAndItsLightsAreNot) {
   const PairLayout layout = test::ringed_layout(true);
   const size_t views = layout.views().size() / 2, lights = layout.lights().size() / 2;
   const Vec3 front(0, 0, 1), back(0, 0, -1);
   const SeenPairs one = pairs_around(layout, views_of({back})), both = pairs_around(layout, views_of({front, back}));
   EXPECT_TRUE(std::ranges::all_of(one.views, [&](uint32_t v) { return v >= views; }));
-  EXPECT_EQ(one.lights.size(), lights);
+  EXPECT_EQ(one.lights.size(), 2 * lights);
   EXPECT_EQ(both.views.size(), 2 * one.views.size());
   EXPECT_EQ(both.lights.size(), 2 * lights);
   // A BTF of one side shows it from behind as well.
@@ -185,6 +187,42 @@ TEST_F(Refit, OfTwoSidesTheOneThatIsSeenIsEnough) {
   EXPECT_LE(model.scene->picture_error, kMoreError * model.scene->full_picture_error);
   EXPECT_EQ(out_of_views(model.scene->domain, turned(seen_from(20, 4.0 / 32))), 0);
   EXPECT_EQ(out_of_views(model.scene->domain, turned(seen_from(20, 4.0 / 32), 99)), 15.0 / 16);
+}
+
+/// `scene` with every other light on the other side.
+SceneObservation lit_through(SceneObservation scene) {
+  for (size_t i = 0; i < scene.wl.size(); i += 2) scene.wl[i] = mirrored(scene.wl[i]);
+  return scene;
+}
+
+TEST_F(Refit, LightThatComesThroughIsSeen) {
+  btf_ = test::striped_btf({32, 32}, true);
+  options_.companding = Companding::none;
+  const SceneObservation from_front = lit_through(seen_from(20, 4.0 / 32));
+  for (const SceneObservation& scene : {from_front, turned(from_front)}) {
+    const auto seen = scene_btf(btf_, 1, pairs_around(btf_.layout(), scene.domain.directions()));
+    const SeenPictures pictures(*seen, scene, progress_);
+    Model model = full();
+    EXPECT_LT(pictures.error(model.body, progress_), 1e-3);
+    // The control: a model that shows nothing of it.
+    const auto& layout = btf_.layout();
+    auto& body = std::get<FactoredBtf>(model.body);
+    for (uint64_t pair = 0; pair < layout.pairs(); ++pair) {
+      const DirectionPair directions = layout.directions(pair);
+      if (directions.wl.z * directions.wv.z > 0) continue;
+      std::fill_n(body.pair_value.begin() + static_cast<ptrdiff_t>(pair * body.components()), body.components(),
+                  HalfBits{0});
+    }
+    EXPECT_GT(pictures.error(model.body, progress_), 0.1);
+  }
+}
+
+TEST_F(Refit, ModelsOfAFrontThatIsSeenLetLightThrough) {
+  btf_ = test::striped_btf({32, 32}, true);
+  const Model model = reduced(lit_through(seen_from(20, 4.0 / 32)));
+  ASSERT_TRUE(model.scene->seen_views_alone);
+  EXPECT_TRUE(make_material(std::make_shared<const Model>(model), 0)->transmits());
+  EXPECT_LE(model.scene->picture_error, kMoreError * model.scene->full_picture_error);
 }
 
 TEST_F(Refit, TwoSidesThatAreSeenAreBothFitted) {

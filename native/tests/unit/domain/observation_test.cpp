@@ -60,6 +60,23 @@ TEST(Observation, TheHashTellsEveryPartApart) {
   EXPECT_TRUE(differs([](SceneObservation& o) { o.wl.front().x += 1; }));
 }
 
+TEST(Observation, ItsReflectedPartHasNoLightFromTheOtherSide) {
+  SceneObservation all = test::example_observation(9);
+  const SceneObservation reflected = all;
+  // Behind every term another one from below, at another light.
+  all.wl.clear();
+  all.light.clear();
+  for (size_t i = 0; i < reflected.wl.size(); ++i) {
+    all.wl.insert(all.wl.end(), {reflected.wl[i], -reflected.wl[i]});
+    all.light.insert(all.light.end(), {reflected.light[i], Rgb(7)});
+  }
+  for (ObservedHit& hit : all.hits) {
+    for (uint32_t* i : {&hit.first, &hit.middle, &hit.last}) *i *= 2;
+  }
+  EXPECT_NE(content_hash(all), content_hash(reflected));
+  EXPECT_EQ(content_hash(reflected_part(all)), content_hash(reflected));
+}
+
 TEST(Observation, HashesSurviveTheirText) {
   const auto hash = test::example_observation(1).domain.hash;
   EXPECT_EQ(parse_hash(hash_text(hash)), hash);
