@@ -152,6 +152,17 @@ class CompressBtf(BlenderTest):
             bpy.ops.velour.compress_btf()
         self.assertNotIn("nowhere", bpy.data.materials)
 
-    def test_importing_a_btf_as_a_material_says_what_does_it(self):
-        with self.assertRaisesRegex(RuntimeError, "compress_btf"):
-            bpy.ops.velour.load_material(filepath=str(self._captured()))
+    def test_importing_a_btf_makes_a_material_of_it(self):
+        path = self._captured()
+        bpy.ops.mesh.primitive_cube_add()
+        cube = bpy.context.object
+        for name in ("Front", "Back"):
+            cube.data.materials.append(bpy.data.materials.new(name))
+        bpy.ops.mesh.primitive_plane_add()  # another object is active
+        self.assertEqual(
+            bpy.ops.velour.load_material(filepath=str(path), object=cube.name, slot=1), {"FINISHED"}
+        )
+        self.assertEqual(cube.material_slots[0].material.name, "Front")
+        node = scenes.velour_node(cube.material_slots[1].material)
+        self.assertIsNotNone(node.image.packed_file)
+        self.assertIsNone(bpy.context.object.active_material)

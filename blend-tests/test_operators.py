@@ -1,9 +1,22 @@
 """Every operator, without a window."""
 
 import bpy
+from mathutils import Vector
+from velour.operators.slots import slot_along
 
 from support import inputs, scenes
 from support.blender import BlenderTest
+
+
+def _two_sided_cube():
+    """Materials Below and Above, the latter on the face that looks up."""
+    bpy.ops.mesh.primitive_cube_add()
+    cube = bpy.context.object
+    for name in ("Below", "Above"):
+        cube.data.materials.append(bpy.data.materials.new(name))
+    for polygon in cube.data.polygons:
+        polygon.material_index = int(polygon.normal.z > 0.5)
+    return cube
 
 
 class Operators(BlenderTest):
@@ -101,6 +114,38 @@ class Operators(BlenderTest):
         stems = {name.removesuffix(".binary") for name in names}
         self.assertTrue(stems <= {material.name for material in bpy.data.materials})
         self.assertIn(self.material.name, stems)
+
+    def test_load_into_a_named_slot(self):
+        cube, path = _two_sided_cube(), inputs.lambert_measurement()
+        with bpy.context.temp_override(object=self.obj, active_object=self.obj):
+            bpy.ops.velour.load_material(filepath=str(path), fit=False, object=cube.name, slot=1)
+        self.assertEqual(cube.material_slots[0].material.name, "Below")
+        self.assertIsNotNone(scenes.velour_node(cube.material_slots[1].material).velour.measurement)
+        self.assertIsNone(self.material)
+
+    def test_load_without_a_slot_keeps_the_material(self):
+        bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False, assign=False)
+        self.assertIsNone(self.material)
+        self.assertTrue(bpy.data.materials[inputs.lambert_measurement().stem].use_fake_user)
+
+    def test_a_slot_is_that_of_the_face_that_is_met(self):
+        cube = _two_sided_cube()
+        cube.modifiers.new("Array", "ARRAY").relative_offset_displace = (3, 0, 0)
+        bpy.context.view_layer.update()
+        for x in (0, 6):  # the second is made by the modifier
+            found = [
+                slot_along(bpy.context, Vector((x, 0, side * 9)), Vector((0, 0, -side))) for side in (1, -1)
+            ]
+            self.assertEqual(found, [(cube.name, 1), (cube.name, 0)])
+        self.assertIsNone(slot_along(bpy.context, Vector((50, 0, 9)), Vector((0, 0, -1))))
+
+    def test_a_file_that_is_none_leaves_nothing_behind(self):
+        before = len(bpy.data.materials)
+        names = [inputs.lambert_measurement().name, "nothing.binary"]
+        folder = str(inputs.lambert_measurement().parent)
+        with self.assertRaisesRegex(RuntimeError, "nothing.binary"):
+            bpy.ops.velour.load_material(directory=folder, files=[{"name": name} for name in names])
+        self.assertEqual(len(bpy.data.materials), before)
 
     def test_save_model(self):
         bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)

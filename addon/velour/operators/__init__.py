@@ -45,7 +45,7 @@ def detach():
 
 def _draw_import(menu, _context):
     menu.layout.operator(
-        VELOUR_OT_load_material.bl_idname, text="Measured Material (.velour, .binary, .bsdf, .brdf)"
+        VELOUR_OT_load_material.bl_idname, text="Measured Material (.velour, .binary, .bsdf, .brdf, .btf)"
     )
 
 

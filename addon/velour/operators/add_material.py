@@ -4,6 +4,7 @@ import bpy
 from bpy.props import StringProperty
 
 from . import measured
+from .slots import assign
 
 
 class VELOUR_OT_add_material(bpy.types.Operator):
@@ -18,6 +19,6 @@ class VELOUR_OT_add_material(bpy.types.Operator):
         material = measured.find_material(context, "")
         if material is None:
             material = measured.new_material(self.name)
-            measured.assign(context, material)
+            assign(context, material)
         measured.ensure_node(material)
         return {"FINISHED"}

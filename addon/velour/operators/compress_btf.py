@@ -11,6 +11,7 @@ from ..native import Btf, compress_job
 from ..properties.tile_settings import METHODS, SHAPE_OF
 from . import measured
 from .background_job import OneJob
+from .slots import Slot, assign
 from .tiles import find_tile, held_out_folder, tile_folder
 
 
@@ -61,9 +62,13 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
     )
     assign: BoolProperty(
         name="Assign",
-        description="Put the material into the active slot of the active object",
+        description="Put the material into a slot: the one that is named, or the active one",
         options={"SKIP_SAVE"},
     )
+    object: StringProperty(
+        name="Object", description="Whose slot is meant; empty: the active one", options={"SKIP_SAVE"}
+    )
+    slot: IntProperty(name="Slot", description="Its number, from 0", min=0, options={"SKIP_SAVE"})
 
     _what = "Making the material"
 
@@ -129,7 +134,8 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
         node.image = measured.packed_model(data, self._subject)
         node.velour.measurement = measured.measurement_image(self._path, self._digest)
         self._remember(node.image)
-        if not (self.assign and measured.assign(bpy.context, material)):
+        slot = Slot(self.object, self.slot) if self.object else None
+        if not (self.assign and assign(bpy.context, material, slot)):
             material.use_fake_user = True
         for sentence in report["warnings"]:
             self.report({"WARNING"}, sentence)

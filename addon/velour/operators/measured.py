@@ -38,16 +38,6 @@ def ensure_node(material):
     return node
 
 
-def assign(context, material):
-    """Puts `material` into the active slot of the active object, where there is one that takes materials."""
-    obj = context.object
-    if obj is None or not hasattr(obj.data, "materials"):
-        material.use_fake_user = True  # or it would be gone after saving
-        return False
-    obj.active_material = material
-    return True
-
-
 def file_image(path, name=None):
     """An image datablock that names the file `path`, blend-relative where the .blend has a place."""
     image = bpy.data.images.new(name or os.path.basename(path), 1, 1)

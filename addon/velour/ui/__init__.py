@@ -1,6 +1,6 @@
 """Panels and preferences."""
 
-from . import library_state, order_preview, placement_summary, stock_panels, summaries
+from . import file_handler, library_state, order_preview, placement_summary, stock_panels, summaries
 from .layer_panel import VELOUR_VIEWLAYER_PT_passes
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
@@ -30,6 +30,7 @@ CLASSES = (
     VELOUR_MATERIAL_PT_surface,
     VELOUR_OBJECT_PT_tile,
     VELOUR_COLLECTION_PT_tile,
+    *file_handler.CLASSES,
 )
 
 

@@ -1,0 +1,22 @@
+"""Files that are dropped into a window, where Blender knows of that (4.1 and newer)."""
+
+import bpy
+
+from ..operators.load_material import DROPPED, VELOUR_OT_load_material
+
+CLASSES = ()
+
+if hasattr(bpy.types, "FileHandler"):
+
+    class VELOUR_FH_measured(bpy.types.FileHandler):
+        bl_idname = "VELOUR_FH_measured"
+        bl_label = "Measured Material"
+        bl_import_operator = VELOUR_OT_load_material.bl_idname
+        bl_file_extensions = ";".join(DROPPED)
+
+        @classmethod
+        def poll_drop(cls, context):
+            """Where materials are at home; not an image editor, nor a text."""
+            return context.area is not None and context.area.type in {"VIEW_3D", "PROPERTIES"}
+
+    CLASSES = (VELOUR_FH_measured,)
