@@ -13,7 +13,7 @@ _TURNS_SECONDS = 60
 
 def start(folder):
     """Called by the harness once the window is there."""
-    fits = (fit_and_cancel, fit_and_undo, scene_fit_and_cancel, scene_fit_and_undo, shared_material)
+    fits = (fit_and_cancel, two_fits, fit_and_undo, scene_fit_and_cancel, scene_fit_and_undo, shared_material)
     window.run(folder, (panels, stock_panels, preferences, viewport, *fits, render))
 
 
@@ -99,6 +99,34 @@ def fit_and_cancel(folder):
             break
     assert not bpy.context.window_manager.velour.running, "the fit goes on"
     assert scenes.velour_node(material).image.name == before
+
+
+def two_fits(folder):
+    """The second waits for the first, the status bar tells of both, and a cancel ends the first alone."""
+    material = _measured_cube()
+    other = material.copy()
+    other.name = "Other"
+    scenes.velour_node(other).velour.model = "PARAMETRIC"
+    before = scenes.velour_node(other).image.name
+    yield from window.show_properties("MATERIAL")
+    idle = window.screenshot(folder, "two-fits-before")
+    _start_fit(model="SCATTERED", tolerance=0.0005, max_lobes=64)
+    with window.override():
+        started = bpy.ops.velour.fit("INVOKE_DEFAULT", material="Other", tolerance=0.2, max_lobes=2)
+    assert started == {"RUNNING_MODAL"}, started
+    yield 0.8
+    state = bpy.context.window_manager.velour
+    assert (state.running, state.subject, state.waiting) == (True, "Paint", 1), (state.subject, state.waiting)
+    bar = slice(0, 22)  # rows of the status bar, the lowest first
+    change = np.abs(window.screenshot(folder, "two-fits") - idle)
+    assert change[bar].max() > 0.2, "the status bar shows nothing"
+    bpy.ops.velour.cancel_fit()
+    for _ in range(10 * _TURNS_SECONDS):
+        yield 0.1
+        if not state.running and not state.waiting:
+            break
+    assert scenes.velour_node(other).image.name != before, "the second fit did not run"
+    assert scenes.velour_node(material).image.name == before, "the first one was not cancelled"
 
 
 def fit_and_undo(folder):

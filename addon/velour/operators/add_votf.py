@@ -61,7 +61,7 @@ class VELOUR_OT_add_votf(OneJob, bpy.types.Operator):
                 source=tile.owner.name,
                 texels=node.velour.outline_texels,
                 threads=context.scene.render.threads,
-            ).start()
+            )
 
     def _tile(self, context, settings, owner):
         if self.collection:

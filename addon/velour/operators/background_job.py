@@ -7,57 +7,112 @@ import bpy
 from ..export import ExportError
 from ..native import VelourError
 
+_line = []  # of those that run or wait, the first runs
+
 
 class BackgroundJob:
-    """Mixin: a timer, the progress that panels and the status bar show, Esc and the panel's cross."""
+    """Mixin of a modal operator: a timer, a place in line, progress for panels and status bar, and its end.
+
+    `_start(context)` begins the work when its turn has come; `_step(context)` gives what the operator
+    returns, or None as long as the work goes on; `_stop()` gives that too, or None where a step will tell.
+    """
 
     _timer = None
-
-    def _is_refused(self, context):
-        """One at a time: true, with an error said, while another is running."""
-        running = context.window_manager.velour.running
-        if running:
-            self.report({"ERROR"}, "A fit or a capture is running already; wait for it, or cancel it.")
-        return running
+    _ticket = None
 
     def _enter(self, context, subject):
-        """What `invoke` returns once the work has begun."""
-        state = context.window_manager.velour
-        state.running, state.cancel_requested, state.subject = True, False, subject
+        """What `invoke` returns once the work is ready to begin."""
+        self._shown_as = subject
+        self._ticket = object()
+        _line.append(self._ticket)
+        context.window_manager.velour.waiting = len(_line) - 1
+        try:
+            self._has_turn(context)
+        except (ExportError, VelourError) as error:
+            return self._end(context, self._fail(error))
         self._timer = context.window_manager.event_timer_add(0.1, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def _wants_to_stop(self, context, event):
-        return event.type == "ESC" or context.window_manager.velour.cancel_requested
+    def modal(self, context, event):
+        try:
+            result = self._wants_to_stop(context, event) and self._stop()
+            if not result and event.type == "TIMER" and self._has_turn(context):
+                result = self._step(context)
+        except (ExportError, VelourError) as error:
+            result = self._fail(error)
+        except BaseException:
+            self._leave(context)
+            raise
+        return self._end(context, result) if result else {"PASS_THROUGH"}
 
-    def _show(self, context, stage, fraction):
+    def _has_turn(self, context):
+        """Whether it is the first in line; the work begins when that comes true."""
+        if _line[0] is not self._ticket:
+            return False
+        state = context.window_manager.velour
+        if not state.running:
+            state.running, state.cancel_requested, state.subject = True, False, self._shown_as
+            self._start(context)
+        return True
+
+    def _wants_to_stop(self, context, event):
+        if _line[0] is not self._ticket or not context.window_manager.velour.running:
+            return False
+        escaped = event.type == "ESC" and event.value == "PRESS" and _over_properties(context, event)
+        return escaped or context.window_manager.velour.cancel_requested
+
+    def _show(self, context, stage, fraction, seconds_left=None):
         state = context.window_manager.velour
         state.fraction, state.stage = fraction, stage
-        if context.workspace:
-            context.workspace.status_text_set(f"Velour: {stage} {fraction:.0%}   Esc: Cancel")
-        for window in context.window_manager.windows:
-            for area in window.screen.areas:
-                if area.type == "PROPERTIES":
-                    area.tag_redraw()
+        state.seconds_left = -1.0 if seconds_left is None else seconds_left
+        _redraw(context)
+
+    def _end(self, context, result):
+        self._leave(context)
+        return result
 
     def _leave(self, context):
-        context.window_manager.velour.running = False
+        if self._ticket in _line:
+            if _line.index(self._ticket) == 0:
+                context.window_manager.velour.running = False
+            _line.remove(self._ticket)
+        context.window_manager.velour.waiting = max(0, len(_line) - 1)
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
-        if context.workspace:
-            context.workspace.status_text_set(None)
+        _redraw(context)
+
+
+def _over_properties(context, event):
+    """Esc belongs to whatever the cursor is over: the jobs' progress stands in the Properties editor."""
+    for area in context.window.screen.areas if context.window else ():
+        inside = 0 <= event.mouse_x - area.x < area.width and 0 <= event.mouse_y - area.y < area.height
+        if inside:
+            return area.type == "PROPERTIES"
+    return True  # the status bar, which is no area of the screen
+
+
+def _redraw(context):
+    """The panels and the status bar."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "PROPERTIES":
+                area.tag_redraw()
+        # Makes the bar draw its header, and at once. The public status_text_set would take away what add-ons
+        # append to that header.
+        window.workspace.status_text_set_internal(None)
 
 
 class OneJob(BackgroundJob):
     """Mixin of an operator that is one job of the library, or a few one after the other.
 
-    `_begin(context)` starts `_job` and sets `_subject`, `_finish()` takes the result, `_what` is its name.
+    `_begin(context)` makes `_job`, not yet started, and sets `_subject`; `_finish()` takes the result,
+    `_what` is its name.
     """
 
     def _goes_on(self):
-        """Starts the next job as `_job`, where there is one."""
+        """Makes the next job `_job`, where there is one."""
         return False
 
     def execute(self, context):
@@ -65,7 +120,7 @@ class OneJob(BackgroundJob):
         try:
             self._begin(context)
             while True:
-                self._job.wait(console_progress() if bpy.app.background else None)
+                self._job.start().wait(console_progress() if bpy.app.background else None)
                 result = self._finish()
                 if not self._goes_on():
                     return result
@@ -73,38 +128,34 @@ class OneJob(BackgroundJob):
             return self._fail(error)
 
     def invoke(self, context, _event):
-        """Starts the job and lets the artist go on working; Esc cancels."""
-        if self._is_refused(context):
-            return {"CANCELLED"}
+        """Lets the artist go on working: the job starts when those before it are done."""
         try:
             self._begin(context)
         except (ExportError, VelourError) as error:
             return self._fail(error)
         return self._enter(context, self._subject)
 
-    def modal(self, context, event):
-        if self._wants_to_stop(context, event):
-            self._job.cancel()
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        try:
-            if not self._job.wait(timeout=0.0):
-                state = self._job.poll()
-                self._show(context, state.stage, state.fraction)
-                return {"PASS_THROUGH"}
-            result = self._finish()
-            if self._goes_on():
-                return {"PASS_THROUGH"}
-            self._leave(context)
-            return result
-        except (ExportError, VelourError) as error:
-            self._leave(context)
-            return self._fail(error)
-
     def cancel(self, context):
         """Blender closes the window or loads another file."""
         self._leave(context)
         self._job.close()
+
+    def _start(self, _context):
+        self._job.start()
+
+    def _stop(self):
+        self._job.cancel()
+
+    def _step(self, context):
+        if not self._job.wait(timeout=0.0):
+            state = self._job.poll()
+            self._show(context, state.stage, state.fraction, state.seconds_left)
+            return None
+        result = self._finish()
+        if not self._goes_on():
+            return result
+        self._job.start()
+        return None
 
     def _fail(self, error):
         cancelled = isinstance(error, VelourError) and error.cancelled

@@ -79,7 +79,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
             "resume": self.resume,
         }
         with scene:
-            self._job = capture_job(scene, self._folder, held_out=self.held_out, **options).start()
+            self._job = capture_job(scene, self._folder, held_out=self.held_out, **options)
             if settings.held_out and not self.held_out:
                 folder = held_out_folder(tile)
                 self._later = folder, capture_job(scene, folder, held_out=settings.held_out, **options)
@@ -89,7 +89,6 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         if self._later is None:
             return False
         (self._folder, self._job), self._later = self._later, None
-        self._job.start()
         return True
 
     def _folder_of(self, tile):

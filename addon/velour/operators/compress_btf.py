@@ -96,7 +96,7 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
                 resume=1,
                 **asked,
                 **held_out,
-            ).start()
+            )
 
     def _held_out(self, tile, opened):
         """Pairs to judge by that were captured beside the tile's BTF."""

@@ -58,7 +58,7 @@ class VELOUR_OT_fit(OneJob, bpy.types.Operator):
                 **_model_options(settings),
                 all_data=int(settings.use_all_data),
                 threads=context.scene.render.threads,
-            ).start()
+            )
 
     def _settings(self, node):
         for name in _SETTINGS:

@@ -52,9 +52,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             return self._fail(error)
 
     def invoke(self, context, _event):
-        """Some frames a tick, then the fit in the background; Esc cancels."""
-        if self._is_refused(context):
-            return {"CANCELLED"}
+        """Some frames a tick, then the fit in the background."""
         try:
             self._begin(context)
         except SharedMaterialError as error:
@@ -63,21 +61,6 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         except (ExportError, VelourError) as error:
             return self._fail(error)
         return self._enter(context, self._work.material_name)
-
-    def modal(self, context, event):
-        if self._wants_to_stop(context, event):
-            self._leave(context)
-            return self._cancelled()
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        try:
-            if self._step(context):
-                return {"PASS_THROUGH"}
-            self._leave(context)
-            return self._finish()
-        except (ExportError, VelourError) as error:
-            self._leave(context)
-            return self._fail(error)
 
     def cancel(self, context):
         """Blender closes the window or loads another file."""
@@ -94,20 +77,28 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             raise ExportError("A render is running; wait for it, or cancel it.")
         self._work = SceneFit(material, context.scene, self.current_frame, self.shared)
 
+    def _start(self, context):
+        """Nothing: each step looks at what is next."""
+
+    def _stop(self):
+        return self._cancelled()
+
     def _step(self, context):
-        """Some frames, the start of the fit, or a look at it; False once it is done."""
+        """Some frames, the start of the fit, or a look at it."""
         if self._job is not None:
             state = self._job.poll()
-            self._show(context, state.stage, _OBSERVING + (1 - _OBSERVING) * state.fraction)
-            return not self._job.wait(timeout=0.0)
+            self._show(
+                context, state.stage, _OBSERVING + (1 - _OBSERVING) * state.fraction, state.seconds_left
+            )
+            return self._finish() if self._job.wait(timeout=0.0) else None
         if bpy.app.is_job_running("RENDER"):
-            return True  # its turn first
+            return None  # its turn first
         if not self._observe_some():
             self._start_fit(context)
-            return True
+            return None
         done, count = self._work.done, len(self._work.frames)
         self._show(context, f"frame {self._work.frames[done - 1]}", _OBSERVING * done / count)
-        return True
+        return None
 
     def _observe_some(self):
         """Frames for a tick, one at least; False when none was left."""

@@ -1,7 +1,7 @@
-"""The fit or capture that runs in the background, for the panels to show. Never saved."""
+"""The work that runs in the background, for panels and status bar to show. Never saved."""
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, FloatProperty, IntProperty, StringProperty
 
 
 class VelourJobState(bpy.types.PropertyGroup):
@@ -11,4 +11,6 @@ class VelourJobState(bpy.types.PropertyGroup):
     cancel_requested: BoolProperty(options={"SKIP_SAVE"})
     subject: StringProperty(options={"SKIP_SAVE"})  # name of what it works on
     stage: StringProperty(options={"SKIP_SAVE"})
+    seconds_left: FloatProperty(default=-1.0, options={"SKIP_SAVE"})  # below 0: not known
+    waiting: IntProperty(options={"SKIP_SAVE"})  # how many come after it
     fraction: FloatProperty(name="Progress", subtype="FACTOR", min=0.0, max=1.0, options={"SKIP_SAVE"})

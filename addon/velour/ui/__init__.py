@@ -1,6 +1,6 @@
 """Panels and preferences."""
 
-from . import file_handler, library_state, order_preview, placement_summary, stock_panels, summaries
+from . import file_handler, library_state, order_preview, placement_summary, progress, stock_panels, summaries
 from .layer_panel import VELOUR_VIEWLAYER_PT_passes
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
@@ -36,6 +36,7 @@ CLASSES = (
 
 def attach():
     library_state.refresh()
+    progress.attach()
     placement_summary.attach()
     stock_panels.open_to_engine()
 
@@ -43,5 +44,6 @@ def attach():
 def detach():
     stock_panels.close_to_engine()
     placement_summary.detach()
+    progress.detach()
     summaries.forget()
     order_preview.forget()

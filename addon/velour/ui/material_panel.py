@@ -71,8 +71,8 @@ def _draw_fit_settings(column, settings):
 
 
 def _draw_fit(context, layout):
-    if not draw_progress(context, layout):
-        layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
+    draw_progress(context, layout)
+    layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
 
 
 class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
@@ -120,8 +120,8 @@ class VELOUR_MATERIAL_PT_outline(MaterialPanel, bpy.types.Panel):
         column = layout.column(align=True)
         for name in ("structure", "outline_texels"):
             column.prop(settings, name)
-        if not draw_progress(context, layout):
-            layout.operator(VELOUR_OT_add_votf.bl_idname, icon="MESH_GRID")
+        draw_progress(context, layout)
+        layout.operator(VELOUR_OT_add_votf.bl_idname, icon="MESH_GRID")
         info = model_summary(velour_node(context.material).image)
         if isinstance(info, dict) and "shell" in info:
             column = layout.column(align=True)

@@ -1,19 +1,49 @@
-"""The job that runs in the background."""
+"""The job that runs in the background: in panels and in the status bar."""
+
+import bpy
 
 from ..operators.fit import VELOUR_OT_cancel_fit
 
 
+def attach():
+    bpy.types.STATUSBAR_HT_header.append(_draw_in_status_bar)
+
+
+def detach():
+    bpy.types.STATUSBAR_HT_header.remove(_draw_in_status_bar)
+
+
 def draw_progress(context, layout):
-    """Its name, how far it is, and a cross; False where none runs."""
+    """What runs, how far it is, and a cross; nothing where none does. Operators that are called now wait."""
     job = context.window_manager.velour
     if not job.running:
-        return False
+        return
     row = layout.row(align=True)
-    text = f"{job.subject}: {job.stage} {job.fraction:.0%}"
     if hasattr(row, "progress"):  # 4.0 and newer
-        row.progress(factor=job.fraction, text=text)
+        row.progress(factor=job.fraction, text=_text(job))
     else:
-        row.label(text=text, icon="TIME")
+        row.label(text=_text(job), icon="TIME")
         row.prop(job, "fraction", text="", slider=True)
     row.operator(VELOUR_OT_cancel_fit.bl_idname, text="", icon="CANCEL")
-    return True
+
+
+def _draw_in_status_bar(header, context):
+    if context.window_manager.velour.running:
+        header.layout.separator()
+        draw_progress(context, header.layout)
+
+
+def _text(job):
+    parts = [f"{job.subject}: {job.stage} {job.fraction:.0%}"]
+    if job.seconds_left >= 0:
+        parts.append(time_left(job.seconds_left))
+    if job.waiting:
+        parts.append(f"{job.waiting} waiting")
+    return ", ".join(parts)
+
+
+def time_left(seconds):
+    """As coarse as such an estimate is."""
+    if seconds < 100:
+        return f"{seconds:.0f} s left"
+    return f"{seconds / 60:.0f} min left" if seconds < 6000 else f"{seconds / 3600:.1f} h left"

@@ -33,10 +33,9 @@ class TilePanel:
             column.prop(settings, name)
         column.prop(settings, "use_approximate")
         column.label(text=_size(settings), icon="INFO")
-        if not draw_progress(context, layout):
-            operator = layout.operator(VELOUR_OT_capture_btf.bl_idname, icon="PLAY")
-            operator.collection = collection_name
-            self._draw_material(layout, settings, collection_name)
+        draw_progress(context, layout)
+        layout.operator(VELOUR_OT_capture_btf.bl_idname, icon="PLAY").collection = collection_name
+        self._draw_material(layout, settings, collection_name)
 
     def _draw_material(self, layout, settings, collection_name):
         """What a material of the capture is asked for, and what the last one was."""
