@@ -13,41 +13,83 @@ constexpr float kLeastCosine = 0.15f;
 /// Pitches: where rays start from a structure, so that they do not meet it again at once.
 constexpr float kOffStructure = 0.3f;
 
-Vec3 downwards(const Ray& ray, const Hit& hit) {
-  return glm::dot(ray.direction, hit.geometric_normal) > 0 ? -ray.direction : ray.direction;
+/// Of the radius of the top, what is left of it below.
+constexpr float kLeastRadius = 0.1f;
+
+Vec3 downwards(const Ray& ray, const Hit& top) {
+  return glm::dot(ray.direction, top.geometric_normal) > 0 ? -ray.direction : ray.direction;
 }
+
+bool goes_in(const Ray& ray, const Hit& hit) { return glm::dot(ray.direction, hit.geometric_normal) < 0; }
 
 }  // namespace
 
 ShellCrossing::ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit)
-    : direction_(downwards(ray, hit)),
+    : foot_(scene.shell_foot(hit)),
+      direction_(downwards(ray, foot_.top)),
       leaving_(direction_ != ray.direction),
       crossing_(ray.origin + hit.distance * ray.direction),
-      frame_(scene.shell(hit, direction_)),
-      texture_(scene.texture(hit)) {
+      side_normal_(hit.geometric_normal),
+      frame_(scene.shell(foot_.top, direction_)),
+      texture_(scene.texture(foot_.top)) {
+  // Beside the outline of the smooth surface the ray passes, whatever its triangles are.
+  ShellEdge edge{frame_.softness};
+  if (edge.softness > 0) edge.offset = edge.softness * (ray_number(ray, hit, RayDecision::shell_edge) - 0.5f);
+  way_ = foot_.is_side ? way_at_side(ray, hit, edge) : way_behind(in_shell(), hit, edge);
+  if (!way_.empty() && scene.has_sides(hit)) end_at_sides(scene, ray, hit);
+}
+
+ShellRay ShellCrossing::in_shell() const {
   const float aspect = field().volume().aspect, cosine = -glm::dot(direction_, frame_.normal);
   const Vec3 along = direction_ + cosine * frame_.normal;
   const float sine = glm::length(along);
   const Vec3 unit = sine > 0 ? along / sine : Vec3(0.0f);
-  const ShellRay in_shell{
-      .place = texture_.uv * Vec2(1, aspect),
-      .along = Vec2(glm::dot(texture_.u_gradient, unit), aspect * glm::dot(texture_.v_gradient, unit)),
-      .cosine = std::clamp(cosine, 0.0f, 1.0f),
-      .curvature = frame_.curvature,
-      .scale = frame_.scale};
-  // Beside the outline of the smooth surface the ray passes, whatever its triangles are.
-  ShellEdge edge{frame_.softness};
-  if (edge.softness > 0) edge.offset = edge.softness * (ray_number(ray, hit, RayDecision::shell_edge) - 0.5f);
-  way_ = cosine > 0 ? way_behind(in_shell, hit, edge) : ShellWay(in_shell, field().volume(), 0, 0);
+  return {.place = texture_.uv * Vec2(1, aspect),
+          .along = Vec2(glm::dot(texture_.u_gradient, unit), aspect * glm::dot(texture_.v_gradient, unit)),
+          .cosine = std::clamp(cosine, foot_.is_side ? -1.0f : 0.0f, 1.0f),
+          .curvature = frame_.curvature,
+          .scale = frame_.scale};
 }
 
 ShellWay ShellCrossing::way_behind(const ShellRay& ray, const Hit& hit, const ShellEdge& edge) const {
   const OcclusionVolume& volume = field().volume();
+  if (!(ray.cosine > 0)) return {ray, volume, 0, 0};
   const ShellSpan span = span_of(ray, volume);
   if (!leaving_) return {ray, volume, 0, span.end, false, edge};
   if (hit.distance < span.end) return {ray, volume, hit.distance, 0, true, edge};
   // A ray that came in through the top is decided there.
   return {ray, volume, span.through_bottom ? span.end : 0, 0, false, edge};
+}
+
+ShellWay ShellCrossing::way_at_side(const Ray& ray, const Hit& hit, const ShellEdge& edge) {
+  const OcclusionVolume& volume = field().volume();
+  ShellRay way = in_shell();
+  way.height = -foot_.below * (volume.top - volume.bottom);
+  // Below the top of a bulge its circle is smaller.
+  const float radius = std::max(kLeastRadius, 1 + frame_.curvature * way.height / way.scale);
+  way.along /= radius;
+  way.curvature /= radius;
+  frame_.normal_turn /= radius;
+  const bool in = goes_in(ray, hit);
+  const float travel = leaving_ ? -1.0f : 1.0f;
+  const ShellSpan span = span_from_side(way, volume, in != leaving_);
+  if (in) return {way, volume, 0, travel * span.end, false, edge};
+  if (hit.distance < span.end) return {way, volume, -travel * hit.distance, 0, true, edge};
+  return {way, volume, span.through_bottom ? -travel * span.end : 0, 0, false, edge};
+}
+
+/// A ray that comes out of a side goes on outside; one that came in through a side is decided there.
+void ShellCrossing::end_at_sides(const Scene& scene, const Ray& ray, const Hit& hit) {
+  if (foot_.is_side ? goes_in(ray, hit) : !leaving_) {
+    const float way = way_.end - way_.begin, far = hit.distance + std::abs(way);
+    const float side = scene.next_side(hit, {ray.origin, hit.distance, ray.direction, far}, false);
+    way_.end = side <= far ? std::copysign(side - hit.distance, way) : way_.end;
+    if (!std::isfinite(way_.end)) way_.end = way_.begin;
+  } else {
+    const float from = std::max(0.0f, hit.distance - std::abs(way_.end - way_.begin));
+    const float side = scene.next_side(hit, {ray.origin, from, ray.direction, hit.distance}, true);
+    if (side <= hit.distance) way_.end = way_.begin;
+  }
 }
 
 bool ShellCrossing::find() {
@@ -77,6 +119,14 @@ Vec2 ShellCrossing::beyond_outline(const Vec2& texels) const {
 
 Vec3 ShellCrossing::normal() const { return glm::normalize(frame_.normal + hit_.s * way_.sine * frame_.normal_turn); }
 
+bool ShellCrossing::is_cut() const { return foot_.is_side && way_.begin == 0 && hit_.s == 0; }
+
+/// Towards the viewer.
+Vec3 ShellCrossing::cut_normal() const {
+  const float length = glm::length(side_normal_);
+  return length > 0 ? side_normal_ / length : normal();
+}
+
 /// Of the structure, in the world: its gradient's parts along the texture coordinates and the normal.
 Vec3 ShellCrossing::structure_normal(const Vec3& up) const {
   const float aspect = field().volume().aspect;
@@ -95,7 +145,7 @@ SurfacePoint ShellCrossing::surface(SurfacePoint top, bool shaded) const {
     top.shading_normal = up;
     return top;
   }
-  const Vec3 own = structure_normal(up);
+  const Vec3 own = is_cut() ? cut_normal() : structure_normal(up);
   top.position = place + own * (kOffStructure * volume.pitch() / frame_.scale);
   if (!volume.closed) {
     top.geometric_normal = top.shading_normal = own;

@@ -6,16 +6,19 @@
 
 namespace velour {
 
-/// What a ray does that crosses the top of a shell: it comes from outside and goes down, or it leaves after its way up
-/// through the shell. A way that goes in and out through the top is decided where it goes in.
+/// What a ray does that crosses the top of a shell, or a side where the surface ends: it comes from outside and goes
+/// in, or it leaves after its way through the shell. A way that goes in through the top or a side is decided there, up
+/// to where it leaves through any; one that came in through the bottom, or began within, where it leaves.
 class ShellCrossing {
  public:
-  /// `hit` is on the top of a shell (Scene::has_shell).
+  /// `hit` is on the top or a side of a shell (Scene::has_shell).
   ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit);
 
   const ShellField& field() const { return *frame_.field; }
   /// From the shell's bottom to its top, in the world.
   float height() const { return (field().volume().top - field().volume().bottom) / frame_.scale; }
+  /// The top's point that the crossing belongs to: `hit`, or the point of the border over it.
+  const Hit& top() const { return foot_.top; }
   /// Where the ray could meet the structure on this side of the surface; nowhere when it is empty, from where it begins
   /// to its end.
   const ShellWay& way() const { return way_; }
@@ -34,13 +37,21 @@ class ShellCrossing {
   Vec2 beyond_outline(const Vec2& texels) const;
 
  private:
+  ShellRay in_shell() const;
+  ShellWay way_at_side(const Ray& ray, const Hit& hit, const ShellEdge& edge);
+  void end_at_sides(const Scene& scene, const Ray& ray, const Hit& hit);
+  /// Whether it is met where the side cuts it.
+  bool is_cut() const;
+  Vec3 cut_normal() const;
   ShellWay way_behind(const ShellRay& ray, const Hit& hit, const ShellEdge& edge) const;
   Vec3 normal() const;
   Vec3 structure_normal(const Vec3& up) const;
 
+  const Scene::ShellFoot foot_;
   const Vec3 direction_;  // of the ray, downwards through the shell
   bool leaving_;
-  Vec3 crossing_;  // of the top
+  Vec3 crossing_;     // of the top or side
+  Vec3 side_normal_;  // outwards, not normalised
   ShellFrame frame_;
   TexturePoint texture_;
   ShellWay way_;

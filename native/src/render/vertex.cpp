@@ -36,15 +36,16 @@ Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world)
 
 Vertex Vertex::seen(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
                     const PixelFootprint* pixel) {
-  const SurfacePoint point = scene.surface(hit);
-  const SurfaceMaterial& surface = scene.materials()[point.material];
+  const SurfaceMaterial& surface = scene.materials()[scene.material(hit)];
   if (surface.shell && scene.has_shell(hit)) {
     ShellCrossing crossing(scene, ray, hit);
-    const bool shaded = surface.shell_shaded;
     // Whoever did not ask the shell sees its top.
-    if (crossing.find()) return {scene, crossing.surface(point, shaded), &crossing, ray, hit, cone_at_origin, pixel};
+    if (crossing.find()) {
+      const SurfacePoint place = crossing.surface(scene.surface(crossing.top()), surface.shell_shaded);
+      return {scene, place, &crossing, ray, crossing.top(), cone_at_origin, pixel};
+    }
   }
-  return {scene, point, nullptr, ray, hit, cone_at_origin, pixel};
+  return {scene, scene.surface(hit), nullptr, ray, hit, cone_at_origin, pixel};
 }
 
 Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossing* crossing, const Ray& ray,

@@ -133,35 +133,6 @@ Vec3 Mesh::tangent(uint32_t triangle, const Mat2& map) const {
   return determinant != 0.0f && usable_normal(along) ? along : Vec3(0.0f);
 }
 
-Mesh Mesh::lifted(std::span<const float> height, const Mat3& metric) const {
-  const auto height_of = [&](size_t triangle) {
-    const uint32_t slot = material_slot(static_cast<uint32_t>(triangle));
-    return height.empty() ? 0.0f : height[std::min<size_t>(slot, height.size() - 1)];
-  };
-  Mesh mesh = *this;
-  const auto count = static_cast<uint32_t>(positions_.size());
-  mesh.positions_.insert(mesh.positions_.end(), positions_.begin(), positions_.end());
-  std::vector<Vec3> sums(count, Vec3(0.0f));
-  std::vector<float> heights(count, 0.0f);
-  for (size_t i = 0; i < triangles_.size(); ++i) {
-    const float h = height_of(i);
-    if (h == 0) continue;
-    mesh.triangles_[i] += count;
-    for (int k = 0; k < 3; ++k) {
-      sums[triangles_[i][k]] += normals_[3 * i + static_cast<size_t>(k)];
-      heights[triangles_[i][k]] = h;
-    }
-  }
-  const Mat3 inverse = glm::inverse(metric);
-  for (uint32_t v = 0; v < count; ++v) {
-    // Normals go to the world by the inverse transpose, so what comes back of the unit normal is `inverse` times them.
-    const Vec3 back = inverse * sums[v];
-    const float square = glm::dot(sums[v], back);
-    if (square > 0) mesh.positions_[count + v] += back * (heights[v] / std::sqrt(square));
-  }
-  return mesh;
-}
-
 void Mesh::make_tangents() {
   if (uvs_.empty() || has_tangents()) return;
   tangents_ = corner_tangents(positions_, triangles_, normals_, uvs_);
@@ -176,7 +147,8 @@ Mat3 Mesh::relief(uint32_t triangle, const Vec2& uv) const {
 
 uint64_t Mesh::bytes() const {
   return positions_.size() * sizeof(Vec3) + triangles_.size() * sizeof(glm::uvec3) + normals_.size() * sizeof(Vec3) +
-         uvs_.size() * sizeof(Vec2) + slots_.size() * sizeof(uint32_t) + tangents_.size() * sizeof(CornerTangent);
+         uvs_.size() * sizeof(Vec2) + slots_.size() * sizeof(uint32_t) + tangents_.size() * sizeof(CornerTangent) +
+         sides_.size() * sizeof(BorderEdge);
 }
 
 }  // namespace velour

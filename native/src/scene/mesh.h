@@ -1,10 +1,12 @@
 // A triangle mesh in its own (object) space.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "scene/border_edges.h"
 #include "scene/corner_tangents.h"
 #include "sphere/vec.h"
 
@@ -20,6 +22,11 @@ struct MeshArrays {
   std::span<const uint8_t> smooth{};           // 1 a triangle; used without corner_normals; none: all smooth
 };
 
+/// From where to where a shell reaches over its surface, metres of the world; a surface without one: as low as high.
+struct ShellHeights {
+  float bottom = 0, top = 0;
+};
+
 /// Immutable but for make_tangents(). Triangles that a ray cannot hit reliably - a corner that is not finite or out of
 /// reach, no area
 /// - are left out. Zero or non-finite shading normals are replaced by the triangle's own.
@@ -29,9 +36,23 @@ class Mesh {
   explicit Mesh(const MeshArrays& arrays);
 
   /// The surface that lies over this one: every vertex of the triangles of slot s is moved along its normal - the mean
-  /// of its corners' in such slots - until it is `height[s]` higher in the world, where the map from the object to the
-  /// world has `metric`, its transpose times itself. Slots of height 0 and those beyond stay, and part from the others.
-  Mesh lifted(std::span<const float> height, const Mat3& metric) const;
+  /// of its corners' in such slots - until it is `heights[s].top` higher in the world, where the map from the object to
+  /// the world has `metric`, its transpose times itself. Slots without height and those beyond stay, and part from the
+  /// others. Behind the triangles of this mesh come sides, where what is moved ends: two triangles a border edge, from
+  /// bottom to top, their front outside.
+  Mesh lifted(std::span<const ShellHeights> heights, const Mat3& metric) const;
+
+  bool has_sides() const { return !sides_.empty(); }
+  /// Triangles from here on are sides.
+  uint32_t first_side() const { return static_cast<uint32_t>(triangles_.size() - 2 * sides_.size()); }
+  /// A point of a side: that of the border over it, of one of the other triangles, and how high it lies, from 0 at the
+  /// bottom to 1.
+  struct SidePoint {
+    uint32_t triangle;
+    Vec2 uv;
+    float height;
+  };
+  SidePoint on_side(uint32_t triangle, const Vec2& uv) const;
 
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const glm::uvec3> triangles() const { return triangles_; }
@@ -67,6 +88,8 @@ class Mesh {
  private:
   void keep_good_triangles(const MeshArrays& arrays);
   void compute_normals(std::span<const uint8_t> smooth);
+  /// `quad`: (bottom a, bottom b, top b), (bottom a, top b, top a) over the edge from a to b.
+  void add_side(const BorderEdge& edge, const std::array<glm::uvec3, 2>& quad);
 
   std::vector<Vec3> positions_;
   std::vector<glm::uvec3> triangles_;
@@ -74,6 +97,7 @@ class Mesh {
   std::vector<Vec2> uvs_;      // 3 a triangle, or none
   std::vector<uint32_t> slots_;
   std::vector<CornerTangent> tangents_;  // 3 a triangle, or none
+  std::vector<BorderEdge> sides_;        // of triangles of the top
   uint32_t dropped_ = 0;
 };
 

@@ -157,9 +157,10 @@ void Scene::commit(int threads) {
   for (const Instance& i : instances_) rays->add_instance(i.traced, i.object_to_world);
   rays->commit(threads);
   rays_ = std::move(rays);
+  build_sides(threads);
   bounds_ = bounds_of_instances();
   info_ = count();
-  info_.bytes += rays_->bytes();
+  info_.bytes += rays_->bytes() + (sides_ ? sides_->bytes() : 0);
   info_.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

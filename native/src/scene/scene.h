@@ -127,12 +127,13 @@ class Scene {
     /// how wide a tile of each slot's shell is, in metres.
     uint32_t traced = 0;
     std::vector<float> tile_width = {};
+    uint32_t sides = kNoHit;  // number of the instance of their sides alone; kNoHit: the shell has none
   };
   const std::vector<Mesh>& meshes() const { return meshes_; }
   /// Hit::instance counts these.
   const std::vector<Instance>& instances() const { return instances_; }
 
-  /// What rays() has of an instance: its mesh, or the top of its shell.
+  /// What rays() has of an instance: its mesh, or the top of its shell with the sides.
   const Mesh& traced_mesh(const Instance& i) const {
     return i.traced < meshes_.size() ? meshes_[i.traced] : lifted_[i.traced - meshes_.size()];
   }
@@ -147,12 +148,24 @@ class Scene {
   /// What the components of a normal map are along at a hit, world space: tangent, bitangent, normal, towards the
   /// mesh's front, not normalised. Zero without texture coordinates, or where no material of the mesh has a map.
   Mat3 relief(const Hit& hit) const;
-  /// Whether a hit is on the top of a shell.
+  /// Whether a hit is on the top of a shell, or on a side.
   bool has_shell(const Hit& hit) const {
     const Instance& instance = instances_[hit.instance];
     return !instance.tile_width.empty() && instance.tile_width[slot(hit)] > 0;
   }
-  /// Of such a hit, along unit `direction` as far as it lies in the surface.
+  /// The top's point at such a hit: itself; of a hit on the side of a shell, the point of the border over it.
+  struct ShellFoot {
+    Hit top;
+    bool is_side = false;
+    float below = 0;  // how far below the top the hit is, of the shell's height
+  };
+  ShellFoot shell_foot(const Hit& hit) const;
+  /// Whether the shell ends anywhere, and so has sides.
+  bool has_sides(const Hit& hit) const { return instances_[hit.instance].sides != kNoHit; }
+  /// How far it is to the first of the sides of the shell that is hit which leads into it, or out of it; infinite where
+  /// the ray meets none.
+  float next_side(const Hit& hit, Ray ray, bool inwards) const;
+  /// Of a top's hit, along unit `direction` as far as it lies in the surface.
   ShellFrame shell(const Hit& hit, const Vec3& direction) const;
 
   const Camera& camera() const { return camera_; }
@@ -172,6 +185,7 @@ class Scene {
   void lift_shells();
   /// `tops`: the traced meshes so far, by all that they depend on.
   void lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& tops);
+  void build_sides(int threads);
   /// A warning where the slot's shell is higher than the surface's radius of curvature.
   void find_folds(const Instance& instance, uint32_t slot);
   float tile_width(const Instance& instance, uint32_t slot) const;
@@ -194,6 +208,7 @@ class Scene {
   uint64_t unlifted_ = 0;  // instances whose shells lack texture coordinates
   std::vector<std::string> shell_warnings_;
   std::unique_ptr<EmbreeScene> rays_;
+  std::unique_ptr<EmbreeScene> sides_;  // of shells, for next_side(); null: there are none
   Bounds bounds_;
   SceneInfo info_;
 };

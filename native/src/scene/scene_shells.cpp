@@ -92,19 +92,21 @@ void Scene::lift_shells() {
 }
 
 void Scene::lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& tops) {
-  std::vector<float> height(instance.materials.size(), 0.0f);
+  std::vector<ShellHeights> height(instance.materials.size());
   instance.tile_width.assign(instance.materials.size(), 0.0f);
   for (uint32_t s = 0; s < height.size(); ++s) {
     const auto& shell = materials_[instance.materials[s]].shell;
     if (!shell) continue;
     const float given = materials_[instance.materials[s]].shell_tile, covered = tile_width(instance, s);
     instance.tile_width[s] = given > 0 && covered > 0 ? given : covered;
-    height[s] = shell->volume().top * instance.tile_width[s];
+    height[s] = {shell->volume().bottom * instance.tile_width[s], shell->volume().top * instance.tile_width[s]};
   }
   // Instances alike but for their place share their top.
   const Mat3 metric = metric_of(instance.object_to_world);
   std::vector<uint32_t> key{instance.mesh};
-  for (const float h : height) key.push_back(std::bit_cast<uint32_t>(h));
+  for (const ShellHeights& h : height) {
+    for (const float limit : {h.bottom, h.top}) key.push_back(std::bit_cast<uint32_t>(limit));
+  }
   for (int i = 0; i < 9; ++i) key.push_back(std::bit_cast<uint32_t>(metric[i / 3][i % 3]));
   const auto [entry, is_new] = tops.emplace(std::move(key), static_cast<uint32_t>(meshes_.size() + lifted_.size()));
   instance.traced = entry->second;

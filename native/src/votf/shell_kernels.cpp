@@ -33,6 +33,7 @@ struct Marches {
     kCosine,
     kCurvature,
     kScale,
+    kHeight,
     kOffset,
     kWay,
     kPerSpeed,
@@ -59,6 +60,7 @@ struct Marches {
                                    ray.cosine,
                                    ray.curvature,
                                    ray.scale,
+                                   ray.height,
                                    from.offset,
                                    way,
                                    way / from.speed,
@@ -77,8 +79,8 @@ struct Marches {
 template <class D>
 HWY_INLINE RayLanes<D> rays_of(D d, const Marches& m, size_t at) {
   const auto of = [&](Marches::Field k) HWY_ATTR { return hn::LoadU(d, m.field[k] + at); };
-  return {of(Marches::kX),    of(Marches::kY),      of(Marches::kAlongX),    of(Marches::kAlongY),
-          of(Marches::kSine), of(Marches::kCosine), of(Marches::kCurvature), of(Marches::kScale)};
+  return {of(Marches::kX),      of(Marches::kY),         of(Marches::kAlongX), of(Marches::kAlongY), of(Marches::kSine),
+          of(Marches::kCosine), of(Marches::kCurvature), of(Marches::kScale),  of(Marches::kHeight)};
 }
 
 constexpr int kLooks = 4;  // of all rays before those that have ended make room
@@ -180,10 +182,11 @@ void distances_simd(const ShellTable& table, const Vec3* places, size_t count, f
 Vec3 place_on_simd(const ShellRay& ray, float sine, float s) {
   const Few d;
   const auto all = [&](float x) HWY_ATTR { return hn::Set(d, x); };
-  const PlaceLanes<Few> place = place_on(d,
-                                         {all(ray.place.x), all(ray.place.y), all(ray.along.x), all(ray.along.y),
-                                          all(sine), all(ray.cosine), all(ray.curvature), all(ray.scale)},
-                                         all(s));
+  const PlaceLanes<Few> place =
+      place_on(d,
+               {all(ray.place.x), all(ray.place.y), all(ray.along.x), all(ray.along.y), all(sine), all(ray.cosine),
+                all(ray.curvature), all(ray.scale), all(ray.height)},
+               all(s));
   return {hn::GetLane(place.x), hn::GetLane(place.y), hn::GetLane(place.z)};
 }
 

@@ -65,7 +65,7 @@ HWY_INLINE V distance_at(D d, const ShellTable& t, const PlaceLanes<D>& q) {
 
 template <class D>
 struct RayLanes {
-  hn::Vec<D> x, y, along_x, along_y, sine, cosine, curvature, scale;
+  hn::Vec<D> x, y, along_x, along_y, sine, cosine, curvature, scale, height;
 };
 
 /// Angle / tangent for angles up to about 1: the series of the arc tangent.
@@ -82,10 +82,11 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE PlaceLanes<D> place_on(D d, const RayLanes<D>& ray, V s) {
   const V one = hn::Set(d, 1.0f), a = hn::Mul(s, ray.sine), down = hn::Mul(s, ray.cosine);
   if (hn::AllTrue(d, hn::Eq(ray.curvature, hn::Zero(d)))) {
-    return {hn::MulAdd(ray.along_x, a, ray.x), hn::MulAdd(ray.along_y, a, ray.y), hn::Neg(hn::Mul(ray.scale, down))};
+    return {hn::MulAdd(ray.along_x, a, ray.x), hn::MulAdd(ray.along_y, a, ray.y),
+            hn::NegMulAdd(ray.scale, down, ray.height)};
   }
-  // In radii of the top: `bent` across and `b` up from the centre. A ray that passes beside the centre further than 84
-  // degrees on is held there.
+  // In radii of the surface at the crossing: `bent` across and `b` up from the centre. A ray that passes beside the
+  // centre further than 84 degrees on is held there.
   const V bent = hn::Mul(ray.curvature, a), far = hn::Abs(bent);
   const V b = hn::Max(hn::NegMulAdd(ray.curvature, down, one), hn::Mul(hn::Set(d, 0.1f), far));
   const V fall = hn::Mul(s, hn::Sub(hn::Mul(ray.curvature, s), hn::Add(ray.cosine, ray.cosine)));
@@ -93,7 +94,8 @@ HWY_INLINE PlaceLanes<D> place_on(D d, const RayLanes<D>& ray, V s) {
   const V per_b = hn::Div(one, b);
   const V arc = hn::Mul(hn::Mul(a, per_b), arc_over_tangent(d, hn::Min(one, hn::Mul(far, per_b))));
   const V across = hn::IfThenElseZero(hn::Gt(b, hn::Zero(d)), arc);
-  return {hn::MulAdd(ray.along_x, across, ray.x), hn::MulAdd(ray.along_y, across, ray.y), hn::Mul(ray.scale, deeper)};
+  return {hn::MulAdd(ray.along_x, across, ray.x), hn::MulAdd(ray.along_y, across, ray.y),
+          hn::MulAdd(ray.scale, deeper, ray.height)};
 }
 
 }  // namespace HWY_NAMESPACE

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "votf/shell_kernels.h"
@@ -17,9 +18,11 @@ float squared(float x) { return x * x; }
 /// Widths that a ray within the shell covers a metre, at most.
 float fastest(const ShellRay& ray, float sine, const OcclusionVolume& volume) {
   const float across = glm::length(ray.along) * sine;
-  const float down = ray.scale * (ray.curvature < 0 ? 1.0f : ray.cosine);  // a hollow's rays steepen
+  // A hollow's rays steepen, and so do those of a bulge on their way up.
+  const float down = ray.scale * (ray.curvature < 0 || ray.height < 0 ? 1.0f : ray.cosine);
   // Towards the centre of the curvature the same way covers more of the surface; not beyond a third of the radius.
-  const float radius = 1 - std::max(0.0f, ray.curvature) * (volume.top - volume.bottom) / ray.scale;
+  const float below = volume.top - volume.bottom + ray.height;
+  const float radius = 1 - std::max(ray.curvature * below, ray.curvature * ray.height) / ray.scale;
   return std::sqrt(squared(across / squared(std::max(radius, 1.0f / 3))) + squared(down));
 }
 
@@ -36,6 +39,22 @@ ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume) {
   const float square = ray.cosine * ray.cosine - ray.curvature * fall;
   if (square >= 0) return {fall / std::max(ray.cosine + std::sqrt(square), 1e-6f), true};
   return {2 * ray.cosine / ray.curvature, false};
+}
+
+ShellSpan span_from_side(const ShellRay& ray, const OcclusionVolume& volume, bool onwards) {
+  // As above, of s^2 curvature - 2 s cosine = rise (2 + curvature rise) the first positive one.
+  const float down = onwards ? ray.cosine : -ray.cosine, infinite = std::numeric_limits<float>::infinity();
+  const auto first = [&](float rise) {
+    const float towards = rise < 0 ? down : -down, bends = rise < 0 ? -ray.curvature : ray.curvature;
+    const float far = rise * (2 + ray.curvature * rise), square = down * down + ray.curvature * far;
+    if (!(square >= 0)) return infinite;
+    const float root = std::sqrt(square);
+    if (towards < 0) return bends > 0 ? (root - towards) / bends : infinite;
+    return towards + root > 0 ? std::abs(far) / (towards + root) : infinite;
+  };
+  const float bottom = first((volume.bottom - volume.top - ray.height) / ray.scale);
+  const float top = first(-ray.height / ray.scale);
+  return {std::min(bottom, top), bottom < top};
 }
 
 ShellWay::ShellWay(const ShellRay& along, const OcclusionVolume& volume, float from, float to, bool starts_on,

@@ -8,15 +8,17 @@
 
 namespace velour {
 
-/// A straight ray of the world where it crosses the top of a shell downwards, seen from the surface: the shell is the
-/// tile's, bent with the normal curvature that the surface has in the ray's plane, so the ray is an arc that may leave
-/// through the top again. Exact on spheres and, along their principal directions, on cylinders; twist is left out.
+/// A straight ray of the world where it crosses the top of a shell downwards, or a side of it, seen from the surface:
+/// the shell is the tile's, bent with the normal curvature that the surface has in the ray's plane, so the ray is an
+/// arc that may leave through the top again. Exact on spheres and, along their principal directions, on cylinders;
+/// twist is left out.
 struct ShellRay {
-  Vec2 place;       // where it crosses the top, widths of the tile
-  Vec2 along;       // widths that a metre of the top surface along the ray covers
-  float cosine;     // of its angle with the normal, in [0, 1]
-  float curvature;  // of the top in its plane, 1 / metres; positive: convex
-  float scale;      // widths that a metre along the normal covers
+  Vec2 place;        // where it crosses, widths of the tile
+  Vec2 along;        // widths that a metre along the ray covers of the surface at the crossing's height
+  float cosine;      // of its angle with the normal, downwards: in [0, 1] at the top, from -1 at a side
+  float curvature;   // of the surface at the crossing's height in its plane, 1 / metres; positive: convex
+  float scale;       // widths that a metre along the normal covers
+  float height = 0;  // of the crossing, widths from the top: 0, or below at a side
 
   /// Where it is, in widths from the top, `s` metres behind the crossing; before it where s is negative.
   Vec3 at(float s) const;
@@ -28,6 +30,8 @@ struct ShellSpan {
   bool through_bottom;  // else it leaves through the top again
 };
 ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume);
+/// The same of a ray that crosses a side, `onwards` or back; infinite where it stays within.
+ShellSpan span_from_side(const ShellRay& ray, const OcclusionVolume& volume, bool onwards);
 
 /// Of the ray's angle with the normal.
 float sine_of(const ShellRay& ray);

@@ -57,6 +57,41 @@ TEST(ShellRay, EndsAtTheBottomOrAtTheTop) {
   EXPECT_TRUE(span_of({{0, 0}, {1, 0}, 0.3f, 0.1f, 1}, volume).through_bottom);
 }
 
+TEST(ShellRay, FromASideItGoesToTheBottomOrTheTop) {
+  OcclusionVolume volume;
+  volume.bottom = -0.1f;
+  volume.top = 0.1f;
+  int through_bottom = 0, within = 0, all = 0;
+  for (const float curvature : {0.0f, 0.3f, 1.0f, -0.3f, -1.0f}) {
+    for (const float cosine : {1.0f, 0.3f, 0.05f, 0.0f, -0.05f, -0.3f, -1.0f}) {
+      for (const float height : {-0.02f, -0.1f, -0.19f}) {
+        const ShellRay ray{{0, 0}, {1, 0}, cosine, curvature, 1, height};
+        EXPECT_NEAR(ray.at(0).z, height, 1e-7f);
+        for (const bool onwards : {false, true}) {
+          const ShellSpan span = span_from_side(ray, volume, onwards);
+          const float end = std::min(span.end, 1.0f), sign = onwards ? 1.0f : -1.0f;
+          const float radius = curvature == 0 ? 0 : 1 / curvature;
+          // Heights are over the circle through the crossing; the last part before the end stays out of rounding.
+          for (int i = 1; i < 50; ++i) {
+            const float s = 0.998f * sign * end * static_cast<float>(i) / 49, z = ray.at(s).z;
+            EXPECT_GT(z, -0.2f - 1e-4f) << curvature << ' ' << cosine << ' ' << height << ' ' << s;
+            EXPECT_LT(z, 1e-4f) << curvature << ' ' << cosine << ' ' << height << ' ' << s;
+            EXPECT_NEAR(z, height + over_circle(radius, cosine, s).y, 1e-4f);
+          }
+          ++all;
+          within += span.end > 1 ? 1 : 0;
+          if (span.end > 1) continue;
+          EXPECT_NEAR(ray.at(sign * span.end).z, span.through_bottom ? -0.2f : 0.0f, 1e-4f);
+          through_bottom += span.through_bottom ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(through_bottom, all / 4);
+  EXPECT_LT(through_bottom, 3 * all / 4);
+  EXPECT_LT(within, all / 3);
+}
+
 /// A line through x = `place` of the plane z = 0 passes the wires' axes at |x - axis| cos.
 bool meets_wires(const Vec2& place, const Vec3& w, float radius) {
   const float cosine = w.z / std::hypot(w.x, w.z);
