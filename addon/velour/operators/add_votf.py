@@ -10,6 +10,7 @@ from ..export.tiles import export_tile
 from ..native import votf_job
 from . import measured
 from .background_job import OneJob
+from .job_target import JobTarget
 from .tiles import find_tile, tile_of
 
 
@@ -45,8 +46,7 @@ class VELOUR_OT_add_votf(OneJob, bpy.types.Operator):
         node = velour_node(material)
         if node is None or node.image is None:
             raise ExportError(f"{owner} has no model; fit one, or choose one as its image.")
-        # Names, not pointers: undo may replace any datablock before the job is done.
-        self._material_name, self._node_name = material.name, node.name
+        self._target = JobTarget(material, node)
         self._subject = material.name
         tile = self._tile(context, node.velour, owner)
         if self.properties.is_property_set("texels"):
@@ -77,7 +77,7 @@ class VELOUR_OT_add_votf(OneJob, bpy.types.Operator):
     def _finish(self):
         with self._job, self._job.result_model() as model:
             data, report = model.bytes(), self._job.report()
-        material, node = measured.put_model(data, self._material_name, self._node_name, self.report)
+        material, node = measured.put_model(data, self._target, self.report)
         if node is None:
             return {"FINISHED"}
         for sentence in (*self._notes, *report["warnings"]):

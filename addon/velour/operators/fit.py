@@ -10,6 +10,7 @@ from ..native import Measurement, fit_job
 from ..properties.material_settings import MODELS
 from . import measured
 from .background_job import OneJob
+from .job_target import JobTarget
 
 _SETTINGS = ("model", "tolerance", "max_lobes", "kernel", "seed")
 
@@ -44,8 +45,7 @@ class VELOUR_OT_fit(OneJob, bpy.types.Operator):
         owner = f"Material '{material.name}'"
         if node is None or node.velour.measurement is None:
             raise ExportError(f"{owner}: no measurement is chosen; use File > Import > Measured Material.")
-        # Names, not pointers: undo may replace any datablock before the job is done.
-        self._material_name, self._node_name = material.name, node.name
+        self._target = JobTarget(material, node)
         self._subject = material.name
         settings = self._settings(node)
         with measurement_path(node.velour.measurement, owner) as path, Measurement.load(path) as measurement:
@@ -69,7 +69,7 @@ class VELOUR_OT_fit(OneJob, bpy.types.Operator):
     def _finish(self):
         with self._job, self._job.result_model() as model:
             data, info = model.bytes(), model.info()
-        material, node = measured.put_model(data, self._material_name, self._node_name, self.report)
+        material, node = measured.put_model(data, self._target, self.report)
         if node is None:
             return {"FINISHED"}
         node.velour.measurement.velour.sha256 = self._digest

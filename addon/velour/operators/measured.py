@@ -56,13 +56,12 @@ def packed_model(data, name):
     return image
 
 
-def put_model(data, material_name, node_name, report):
-    """Puts a model into a new image of the node: the one before it is untouched, so undo brings it back.
+def put_model(data, target, report):
+    """Puts a model into a new image of a JobTarget: the one before it is untouched, so undo brings it back.
 
     The material and the node; (None, None) where they are gone, and the image is kept."""
-    material = bpy.data.materials.get(material_name)
-    image = packed_model(data, material_name)
-    node = material.node_tree.nodes.get(node_name) if material and material.node_tree else None
+    material, node = target.find()
+    image = packed_model(data, material.name if material else target.material_name)
     if node is None:
         image.use_fake_user = True
         report({"WARNING"}, f"The material is gone; its model is kept as image '{image.name}'.")

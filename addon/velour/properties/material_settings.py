@@ -1,7 +1,7 @@
 """A measured material: settings of the Image Texture node whose image is the model."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 from .placement_settings import VelourPlacementSettings
 
@@ -108,6 +108,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         override=_OVERRIDE,
     )
     seed: IntProperty(name="Seed", description="Of the fit", default=0, min=0, override=_OVERRIDE)
+    job: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # the mark of the one whose result comes here
     scene_model: PointerProperty(
         name="Model for the Scene",
         description="A smaller model that holds for the views and lights of one scene. The full model stays"
