@@ -113,16 +113,38 @@ class Notes(BlenderTest):
         lamp.visible_glossy = False
         self._said("Light 'Spot'", "hidden from glossy rays")
 
+    def _picture_on(self, tree, uv_map, socket):
+        """Links an image on that UV map, which the object has then, to an input."""
+        node, source = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeUVMap")
+        node.image, source.uv_map = bpy.data.images.new(uv_map, 4, 4), uv_map
+        tree.links.new(source.outputs[0], node.inputs["Vector"])
+        tree.links.new(node.outputs[0], socket)
+        bpy.context.object.data.uv_layers.new(name=uv_map)
+
     def test_several_uv_maps_of_a_material(self):
-        material = self._material("ShaderNodeBsdfPrincipled")
-        tree = material.node_tree
+        tree = self._material("ShaderNodeBsdfPrincipled").node_tree
         shader = next(n for n in tree.nodes if "Metallic" in n.inputs and n.outputs[0].is_linked)
-        for socket, uv_map in (("Base Color", "first"), ("Metallic", "second")):
-            node, source = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeUVMap")
-            node.image, source.uv_map = bpy.data.images.new(uv_map, 4, 4), uv_map
-            tree.links.new(source.outputs[0], node.inputs["Vector"])
-            tree.links.new(node.outputs[0], shader.inputs[socket])
-        self._said("Material 'Glass'", "several UV maps", "'first'")
+        for socket, uv_map in zip(("Base Color", "Metallic", "Roughness", "Alpha"), "abcd", strict=True):
+            self._picture_on(tree, uv_map, shader.inputs[socket])
+        self.assertEqual(self._notes(), [])
+        normal_map = tree.nodes.new("ShaderNodeNormalMap")
+        tree.links.new(normal_map.outputs[0], shader.inputs["Normal"])
+        self._picture_on(tree, "e", normal_map.inputs["Color"])
+        self._said("Material 'Glass'", "5 UV maps", "'a'")
+
+    def test_normal_maps_on_several_uv_maps(self):
+        tree = self._material("ShaderNodeAddShader").node_tree
+        add = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeAddShader")
+        for i, uv_map in enumerate("ab"):
+            shader, normal_map = (
+                tree.nodes.new("ShaderNodeBsdfDiffuse"),
+                tree.nodes.new("ShaderNodeNormalMap"),
+            )
+            normal_map.uv_map = uv_map
+            tree.links.new(shader.outputs[0], add.inputs[i])
+            tree.links.new(normal_map.outputs[0], shader.inputs["Normal"])
+            self._picture_on(tree, uv_map, normal_map.inputs["Color"])
+        self._said("Material 'Glass'", "Normal Maps ask for several UV maps", "'a'")
 
     def test_light_factors(self):
         lamp = bpy.data.objects.new("Fill", bpy.data.lights.new("Fill", "POINT"))

@@ -70,7 +70,9 @@ class Furnace(BlenderTest):
         np.testing.assert_allclose(scenes.middle(scenes.render(self.folder), 1.0), (0.3, 0.2, 0.1), rtol=0.01)
 
     def test_no_world(self):
+        """Black things before nothing; a black picture and no more would be refused (test_bad_inputs.py)."""
         bpy.context.scene.world = None
+        bpy.context.scene.render.film_transparent = True
         scenes.add_sphere(scenes.diffuse_material())
         self.assertEqual(float(np.abs(scenes.render(self.folder)[..., :3]).max()), 0.0)
 

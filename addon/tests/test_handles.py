@@ -158,7 +158,9 @@ def test_instances_at_once_are_as_one_by_one():
             mesh, _ = scene.add_mesh(*_octahedron(), smooth=np.zeros(8, np.uint8))
             materials = [scene.add_principled_material(base_color=(0.8, 0.4, 0.2))]
             if at_once:
-                scene.add_instances(mesh, matrices, materials, hidden=("shadows",))
+                scene.add_instances(
+                    np.full(len(matrices), mesh, np.uint32), matrices, materials, hidden=("shadows",)
+                )
             else:
                 for matrix in matrices:
                     scene.add_instance(mesh, matrix, materials, hidden=("shadows",))
@@ -175,12 +177,14 @@ def test_instances_at_once_are_as_one_by_one():
 
 def test_instances_that_are_no_matrices_are_refused():
     with Scene() as scene:
-        mesh, _ = scene.add_mesh(*_octahedron())
+        meshes = np.full(2, scene.add_mesh(*_octahedron())[0], np.uint32)
         material = scene.add_principled_material()
         with pytest.raises(VelourError, match="n x 3 x 4 is needed"):
-            scene.add_instances(mesh, np.zeros((2, 4, 4), np.float32), [material])
+            scene.add_instances(meshes, np.zeros((2, 4, 4), np.float32), [material])
+        with pytest.raises(VelourError, match="meshes has shape"):
+            scene.add_instances(meshes[:1], np.zeros((2, 3, 4), np.float32), [material])
         with pytest.raises(VelourError, match="not finite"):
-            scene.add_instances(mesh, np.full((2, 3, 4), np.nan, np.float32), [material])
+            scene.add_instances(meshes, np.full((2, 3, 4), np.nan, np.float32), [material])
 
 
 def _lit_octahedron(**principled) -> Scene:

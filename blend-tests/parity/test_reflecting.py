@@ -53,6 +53,28 @@ class NormalMaps(ShaderTest):
         self.tree.end(self.tree.diffuse(Normal=self._map()))
         self.assert_parity("Normal Map: mirrored and sheared UV map")
 
+    def _other_uv_map(self):
+        """Another UV map, turned and mirrored: it is not the one that renders."""
+        layer = self.roof.data.uv_layers.new(name="turned")
+        layer.data.foreach_set("uv", [1, 0, 1, 1.5, 0, 1.5, 0, 0])
+
+    def test_other_uv_map(self):
+        """Of the tangents alone: the picture stays on the one that renders."""
+        self._other_uv_map()
+        self.tree.end(self.tree.diffuse(Normal=self._map(uv_map="turned")))
+        self.assert_parity("Normal Map: tangents of another UV map")
+
+    def test_picture_on_other_uv_map(self):
+        """Tangents stay those of the UV map that renders."""
+        self._other_uv_map()
+        normal = self._map()
+        picture = normal.node.inputs["Color"].links[0].from_node
+        self.tree.set(
+            picture.inputs["Vector"], self.tree.node("ShaderNodeUVMap", settings={"uv_map": "turned"})
+        )
+        self.tree.end(self.tree.diffuse(Normal=normal))
+        self.assert_parity("Normal Map: its image on another UV map")
+
     def test_from_behind(self):
         self.roof.rotation_euler = (3.14159, 0, 0)
         self.roof.location.z = 2

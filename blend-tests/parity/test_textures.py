@@ -57,6 +57,40 @@ class UvMaps(ParityTest):
         self._uv_map(self._picture("Closest"), "second")
         self.assert_parity("UV maps: chosen by a UV Map node")
 
+    def test_two_at_once(self):
+        """Colours on one UV map, the factor of a mix on the other; both are magnified pictures."""
+        tree = self.material.node_tree
+        colour, factor = self._picture("Closest"), self._picture("Closest")
+        self._uv_map(factor, "second")
+        shader = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfDiffuse")
+        tree.links.new(colour.outputs[0], shader.inputs["Color"])
+        other, mix = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeMixShader")
+        other.inputs["Color"].default_value = (0.1, 0.2, 0.6, 1)
+        tree.links.new(factor.outputs[0], mix.inputs["Fac"])
+        tree.links.new(shader.outputs[0], mix.inputs[1])
+        tree.links.new(other.outputs[0], mix.inputs[2])
+        tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        self.assert_parity("UV maps: two in one material")
+
+    def test_two_slots(self):
+        """Each material has its pictures on a UV map of its own."""
+        self._uv_map(self._picture("Closest"), "second")
+        self.wall.data.materials.append(self.material.copy())
+        other = self.wall.data.materials[1].node_tree
+        next(n for n in other.nodes if n.bl_idname == "ShaderNodeUVMap").uv_map = "first"
+        mesh = self.wall.data
+        mesh.clear_geometry()
+        mesh.from_pydata(
+            [(-1.5, 0, -1), (0, 0, -1), (0, 0, 1), (-1.5, 0, 1), (1.5, 0, -1), (1.5, 0, 1)],
+            [],
+            [(0, 1, 2, 3), (1, 4, 5, 2)],
+        )
+        mesh.polygons.foreach_set("material_index", [0, 1])
+        uv = np.array([(0, 0), (1, 0), (1, 1), (0, 1)] * 2, np.float32)
+        for name, values in (("first", uv), ("second", 2 * uv[:, ::-1] + 0.25)):
+            (mesh.uv_layers.get(name) or mesh.uv_layers.new(name=name)).data.foreach_set("uv", values.ravel())
+        self.assert_parity("UV maps: one for each slot")
+
     def test_linear(self):
         self._picture()
         self.assert_parity("Image Texture: linear")

@@ -120,7 +120,7 @@ def _curves(scene: bpy.types.Scene) -> dict[str, list[tuple[float, float]]]:
     scene.render.resolution_x, scene.render.resolution_y = (side // PLOT_REDUCTION for side in SIZE)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     view = final_view(depsgraph, Notes())
-    exported, _ = export_scene(depsgraph, view, Notes())
+    exported = export_scene(depsgraph, view, Notes()).scene
     with exported:
 
         def picture(strategy: str, samples: int, seed: int) -> tuple[np.ndarray, float]:

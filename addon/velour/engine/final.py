@@ -7,6 +7,7 @@ import bpy
 
 from ..core.cache import user_cache_folder
 from ..export import ExportError, Notes, export_scene
+from ..export.black import refuse_dark_inside
 from ..export.camera import final_view
 from ..export.film import film_exposure, hides_world
 from ..native import render_job
@@ -38,7 +39,8 @@ def render_final(engine, depsgraph):
             raise RenderCancelledError
 
     begin = time.monotonic()
-    native_scene, materials = export_scene(depsgraph, view, notes, check_break, strict=not engine.is_preview)
+    exported = export_scene(depsgraph, view, notes, check_break, strict=not engine.is_preview)
+    native_scene, materials, surroundings = exported
     with native_scene:
         engine.update_stats("Velour", _exported(native_scene.info(), time.monotonic() - begin))
         stamps = {}
@@ -47,7 +49,7 @@ def render_final(engine, depsgraph):
             _say(notes)
         options = _options(scene, view, engine.is_preview)
         with render_job(native_scene, **options) as job:
-            _render_layer(engine, depsgraph, job, view, options["spp"])
+            _render_layer(engine, depsgraph, job, view, options["spp"], surroundings)
         _stamp(engine, depsgraph.view_layer_eval.name, stamps)
 
 
@@ -82,7 +84,7 @@ def _cache_folder():
         return user_cache_folder()
 
 
-def _render_layer(engine, depsgraph, job, view, spp):
+def _render_layer(engine, depsgraph, job, view, spp, surroundings):
     layer, exposure = depsgraph.view_layer_eval, film_exposure(depsgraph.scene_eval)
     add_passes(engine, layer)
     result = engine.begin_result(0, 0, view.width, view.height, layer=layer.name)
@@ -90,6 +92,7 @@ def _render_layer(engine, depsgraph, job, view, spp):
     try:
         job.start()
         _follow(engine, job, result, spp, exposure)
+        refuse_dark_inside(depsgraph, job.read_pass("Combined"), "" if engine.is_preview else surroundings)
         write_passes(job, result, exposure)
         complete = True
     finally:

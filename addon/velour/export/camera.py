@@ -45,6 +45,8 @@ def final_view(depsgraph, notes, whole=False):
     window = _WINDOWS[lens.type](_projection(camera, depsgraph, scene.render, size))
     if not whole:
         window, size = _inside_border(window, size, scene.render)
+    if not np.isfinite(camera.matrix_world).all():
+        raise ExportError(f"Camera '{camera.name}': its transform is not a finite number; place it anew.")
     kind = "perspective" if lens.type == "PERSP" else "orthographic"
     matrix, clips = unscaled(camera.matrix_world), (lens.clip_start, lens.clip_end)
     return View(kind, matrix, window, *clips, *size, aperture(camera, depsgraph))

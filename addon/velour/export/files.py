@@ -13,7 +13,7 @@ import bpy
 from ..native import Btf, Measurement, Model, VelourError, library
 from .notes import ExportError
 
-_FIND = "put it back, or use File > External Data > Find Missing Files"
+FIND = "put it back, or use File > External Data > Find Missing Files"
 
 
 def absolute_path(image):
@@ -39,7 +39,7 @@ def content(image, owner):
             return file.read()
     except OSError as error:
         raise ExportError(
-            f"{owner}: the file {path or image.name!r} cannot be read ({error.strerror}); {_FIND}."
+            f"{owner}: the file {path or image.name!r} cannot be read ({error.strerror}); {FIND}."
         ) from error
 
 
@@ -97,7 +97,7 @@ def measurement_path(image, owner):
     path = absolute_path(image)
     if image.packed_file is None:
         if not os.path.exists(path):  # some BTFs are folders
-            raise ExportError(f"{owner}: the measurement {path or image.name!r} is missing; {_FIND}.")
+            raise ExportError(f"{owner}: the measurement {path or image.name!r} is missing; {FIND}.")
         yield path
         return
     with tempfile.TemporaryDirectory(prefix="velour-") as folder:

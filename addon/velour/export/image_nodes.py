@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from mathutils import Euler, Matrix
 
-from .plugs import fed_by, trees_of
+from .plugs import fed_by
 
 _WRAPS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
 _SOURCES = ("FILE", "GENERATED")
@@ -90,10 +90,3 @@ def _mapping_matrix(plug):
         raise UnsupportedError(f"'{node.name}' maps normals")
     matrix = np.array(kinds[node.vector_type](), np.float32)
     return np.ascontiguousarray(matrix[:2][:, (0, 1, 3)])  # texture coordinates have no z
-
-
-def named_uv_maps(tree):
-    """Names of the UV maps that nodes linked to something ask for."""
-    all_nodes = [node for each in trees_of(tree) for node in each.nodes]
-    nodes = [node for node in all_nodes if node.bl_idname == "ShaderNodeUVMap" and node.outputs[0].is_linked]
-    return sorted({node.uv_map for node in nodes if node.uv_map})

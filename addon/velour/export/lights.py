@@ -4,7 +4,9 @@ import math
 
 import bpy
 
+from ..native import VelourError
 from .axes import column_lengths, unscaled
+from .notes import ExportError
 
 # Blender's area lamps emit pi/4 of their nominal power: their radiance is P / (4 A), a Lambert emitter's
 # would be P / (pi A).
@@ -26,29 +28,44 @@ def _is_plain(tree):
 
 
 def add_light(scene, obj, matrix, notes):
-    """`obj`: an evaluated lamp object, `matrix`: where this instance of it stands."""
+    """Whether it shines. `obj`: an evaluated lamp object, `matrix`: where this instance of it stands."""
     lamp = obj.data
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
-        return  # no lamp: it only shows Cycles where the sky comes in
+        return False  # no lamp: it only shows Cycles where the sky comes in
     owner = f"Light '{obj.name}'"
     if lamp.use_nodes and lamp.node_tree and not _is_plain(lamp.node_tree):
         notes.add(f"{owner}: shader nodes of lights are ignored; its colour and power are used.")
     if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):
         notes.add(f"{owner}: its diffuse, specular and volume factors are ignored.")
-    _note_newer(lamp, owner, notes)
     kind, factor, values = _DESCRIBE[lamp.type](lamp, matrix)
-    color = [lamp.energy * factor * c for c in lamp.color]
-    scene.add_light(kind, color, unscaled(matrix), casts_shadow=_casts_shadow(lamp), **values)
+    color = tuple(power(lamp, matrix) * factor * c for c in tinted(lamp))
+    _note_shape(lamp, matrix, owner, notes)
+    try:
+        scene.add_light(kind, color, unscaled(matrix), casts_shadow=_casts_shadow(lamp), **values)
+    except VelourError as error:
+        raise ExportError(f"{owner}: {error}") from error
+    return any(c != 0.0 for c in color) and not _is_flat(lamp, matrix)
 
 
-def _note_newer(lamp, owner, notes):
-    """Settings of 4.5 and newer."""
-    if getattr(lamp, "use_temperature", False):
-        notes.add(f"{owner}: its temperature is not supported; its colour alone is used.")
-    if getattr(lamp, "exposure", 0.0) != 0.0:
-        notes.add(f"{owner}: its exposure is not supported; ignored.")
-    if not getattr(lamp, "normalize", True):
-        notes.add(f"{owner}: that its power is not normalised is not supported; ignored.")
+def power(lamp, matrix):
+    """W, or W/m^2 of a sun: the nominal one times two to the exposure and, unless normalised, the area."""
+    watts = lamp.energy * 2.0 ** getattr(lamp, "exposure", 0.0)  # 4.5 and newer, as what follows
+    return watts if getattr(lamp, "normalize", True) else watts * lamp.area(matrix_world=matrix)
+
+
+def tinted(lamp):
+    """Its colour times that of a black body of its temperature."""
+    tint = lamp.temperature_color if getattr(lamp, "use_temperature", False) else (1.0, 1.0, 1.0)
+    return tuple(c * t for c, t in zip(lamp.color, tint, strict=True))
+
+
+def _is_flat(lamp, matrix):
+    return lamp.type == "AREA" and 0.0 in _area(lamp, matrix)[2]["size"]
+
+
+def _note_shape(lamp, matrix, owner, notes):
+    if _is_flat(lamp, matrix):
+        notes.add(f"{owner}: its size or scale is zero along an axis; it emits nothing.")
 
 
 def _sun(lamp, _matrix):
@@ -75,7 +92,15 @@ def _point(lamp, _matrix):
 def _spot(lamp, matrix):
     _kind, factor, values = _point(lamp, matrix)
     values.update(angle=lamp.spot_size, blend=lamp.spot_blend, cosine=int(bpy.app.version < (3, 5)))
+    if bpy.app.version >= (3, 5):
+        values["cone_scale"] = cone_scale(matrix)
     return "spot", factor, values
+
+
+def cone_scale(matrix):
+    """How much wider a spot's cone is along its x and y; 1 where the scale is even, or zero along an axis."""
+    x, y, z = column_lengths(matrix)
+    return (x / z, y / z) if x * y * z > 0.0 else (1.0, 1.0)
 
 
 def _area(lamp, matrix):

@@ -7,8 +7,9 @@ from . import files
 from .nodes import velour_node
 from .notes import ExportError
 from .placement import Tile
-from .shaders import as_principled, split, surface_layers, unlike_reflection
+from .shaders import as_principled, shines, split, surface_layers, unlike_reflection
 from .textures import TextureTable
+from .uv_maps import placed_map, shader_maps
 
 
 class Reduced(NamedTuple):
@@ -33,10 +34,12 @@ class MaterialTable:
         self._notes = notes
         self.strict = strict
         self._numbers = {}
+        self._uv_maps = {}
         self._tiles = {}  # of materials that show a BTF
         self._textured = set()  # of others: those with textures
         self._textures = TextureTable(notes)
         self.reduced = []
+        self.glows = False  # one of them may shine by itself
         self.beyond_reflection = []  # sentences: what of mixed materials no BTF can hold
 
     def find(self, material):
@@ -47,6 +50,11 @@ class MaterialTable:
         """The Tile of a material that has its number; None of one that is no BTF."""
         return self._tiles.get(_key(material))
 
+    def uv_maps(self, material):
+        """Its UvMaps; the material is added."""
+        self.number(material)
+        return self._uv_maps[_key(material)]
+
     def needs_coordinates(self, material):
         """Whether a material that has its number looks at texture coordinates."""
         return _key(material) in self._textured or self.tile(material) is not None
@@ -55,6 +63,7 @@ class MaterialTable:
         """`material` may be None: Blender's default grey."""
         key = _key(material)
         if key not in self._numbers:
+            self._uv_maps[key] = placed_map(material)
             self._numbers[key] = self._add(material)
         return self._numbers[key]
 
@@ -71,11 +80,13 @@ class MaterialTable:
 
     def _add_shader(self, material):
         layers = surface_layers(material, self._notes)
+        self._uv_maps[_key(material)] = shader_maps(_owner(material), layers, self._notes)
+        self.glows = self.glows or any(map(shines, layers))
         plain = as_principled(layers)
         if plain:
             return self._scene.add_textured_material(self._slots(plain, material), **plain.values)
         self.beyond_reflection += [
-            f"Material '{material.name}': {words} is no part of a BTF; left out."
+            f"{_owner(material)}: {words} is no part of a BTF; left out."
             for words in unlike_reflection(layers)
         ]
         with Shader.new() as shader:
@@ -100,14 +111,15 @@ class MaterialTable:
         return {name: slot for name, slot in slots.items() if slot}
 
     def _slot(self, picture, is_color, material):
-        slot = self._textures.slot(picture, is_color, f"Material '{material.name}'")
+        maps = self._uv_maps[_key(material)]
+        slot = self._textures.slot(picture, is_color, _owner(material), maps)
         if slot:
             self._textured.add(_key(material))
         return slot
 
     def _add_measured(self, material, node):
         settings = node.velour
-        owner = f"Material '{material.name}'"
+        owner = _owner(material)
         if settings.use_reference:
             return self._add_reference(material, node, owner)
         if settings.use_scene_model and settings.scene_model is not None:
@@ -155,6 +167,10 @@ class MaterialTable:
                 return self._scene.add_btf_material(btf)
         except VelourError as error:
             raise ExportError(f"{owner}: {error}") from error
+
+
+def _owner(material):
+    return f"Material '{material.name}'" if material else "The default material"
 
 
 def _key(material):

@@ -7,20 +7,48 @@ import numpy as np
 
 
 class MeshArrays(NamedTuple):
-    """The keywords of Scene.add_mesh."""
+    """The keywords of Scene.add_mesh; triangles name corners."""
 
     positions: np.ndarray
     triangles: np.ndarray
-    corner_normals: np.ndarray
-    corner_uvs: np.ndarray | None
+    corner_vertices: np.ndarray
     material_slots: np.ndarray
+    corner_uvs: np.ndarray | None = None
+    more_uvs: np.ndarray | None = None
+    relief_uvs: np.ndarray | None = None
+    corner_normals: np.ndarray | None = None
+    vertex_normals: np.ndarray | None = None
+    face_normals: np.ndarray | None = None
+    face_smooth: np.ndarray | None = None
+    triangle_faces: np.ndarray | None = None
+
+    def vertices(self, triangles):
+        """[n x 3] Of some of the triangles."""
+        return self.corner_vertices[self.triangles[triangles]]
+
+    def uvs(self, triangles):
+        """[n x 3 x 2]"""
+        return self.corner_uvs[self.triangles[triangles]]
+
+    def normals(self, triangles):
+        """[n x 3 x 3]"""
+        if self.corner_normals is not None:
+            return self.corner_normals[self.triangles[triangles]]
+        if self.face_normals is None:
+            return self.vertex_normals[self.vertices(triangles)]
+        faces = self.triangle_faces[triangles]
+        normals = np.repeat(self.face_normals[faces, None], 3, axis=1)
+        if self.face_smooth is not None:
+            smooth = self.face_smooth[faces] != 0
+            normals[smooth] = self.vertex_normals[self.vertices(triangles)[smooth]]
+        return normals
 
 
 def object_arrays(obj, uv_maps=()):
     """MeshArrays of an evaluated object; None where it has no face.
 
-    `uv_maps`: for each material slot, of which the last stands for all beyond, the UV map of its faces.
-    Empty, or where there is none of that name: the one that renders.
+    `uv_maps`: for each material slot, of which the last stands for all beyond, the UvMaps of its faces.
+    Empty, or where there is none of a name: the one that renders. None: no texture coordinates.
     """
     with _mesh_of(obj) as mesh:
         return mesh_arrays(mesh, uv_maps) if mesh else None
@@ -35,7 +63,7 @@ def triangle_faces(obj):
     """[triangles] The face of an evaluated object that each triangle of object_arrays() is a part of."""
     with _mesh_of(obj) as mesh:
         mesh.calc_loop_triangles()
-        return _read(mesh.loop_triangles, "polygon_index", len(mesh.loop_triangles), np.uint32)
+        return _faces(mesh, len(mesh.loop_triangles))
 
 
 @contextlib.contextmanager
@@ -55,15 +83,16 @@ def mesh_arrays(mesh, uv_maps=()):
     count = len(mesh.loop_triangles)
     if count == 0:
         return None
-    corners = _read(mesh.loop_triangles, "loops", count * 3, np.uint32).reshape(count, 3)
+    corners = _read(mesh.loop_triangles, "loops", (count, 3), np.uint32)
     slots = _material_slots(mesh, count)
     return MeshArrays(
-        positions=_read(mesh.vertices, "co", len(mesh.vertices) * 3).reshape(-1, 3),
+        positions=_read(mesh.vertices, "co", (len(mesh.vertices), 3)),
+        triangles=corners,
         # What triangles say of vertices and materials they look up one by one, many times slower.
-        triangles=_read(mesh.loops, "vertex_index", len(mesh.loops), np.uint32)[corners],
-        corner_normals=_corner_normals(mesh)[corners],
-        corner_uvs=_corner_uvs(mesh, corners, slots, uv_maps),
+        corner_vertices=_read(mesh.loops, "vertex_index", (len(mesh.loops),), np.uint32),
         material_slots=slots,
+        **_normals(mesh, count),
+        **_coordinates(mesh, corners, slots, uv_maps),
     )
 
 
@@ -71,41 +100,89 @@ def _material_slots(mesh, count):
     """[triangles]; without an attribute that says otherwise all faces are of the first slot."""
     if len(mesh.materials) <= 1 and "material_index" not in mesh.attributes:
         return np.zeros(count, np.uint32)
-    of_faces = _read(mesh.polygons, "material_index", len(mesh.polygons), np.uint32)
-    return of_faces[_read(mesh.loop_triangles, "polygon_index", count, np.uint32)]
+    of_faces = _read(mesh.polygons, "material_index", (len(mesh.polygons),), np.uint32)
+    return of_faces[_faces(mesh, count)]
 
 
-def _read(collection, attribute, size, dtype=np.float32):
+def _faces(mesh, count):
+    return _read(mesh.loop_triangles, "polygon_index", (count,), np.uint32)
+
+
+def _read(collection, attribute, shape, dtype=np.float32):
     """Indices as uint32: what Blender calls unsigned is copied item by item into anything else."""
-    values = np.empty(size, dtype)
-    collection.foreach_get(attribute, values)
+    values = np.empty(shape, dtype)
+    collection.foreach_get(attribute, values.reshape(-1))
     return values
 
 
-def _corner_normals(mesh):
-    """[loops x 3]: custom, sharp and auto-smooth normals as Blender shades them."""
-    size = len(mesh.loops) * 3
-    if hasattr(mesh, "corner_normals"):  # 4.1 and newer
-        return _read(mesh.corner_normals, "vector", size).reshape(-1, 3)
+def _normals(mesh, count):
+    """Custom, sharp and auto-smooth normals as Blender shades them: those of corners only where they differ.
+
+    Blender gives normals to Python one by one, and there are many more corners than vertices.
+    """
+    domain = getattr(mesh, "normals_domain", None)  # 4.1 and newer
+    if domain == "CORNER":
+        return {"corner_normals": _read(mesh.corner_normals, "vector", (len(mesh.loops), 3))}
+    if domain is None and mesh.use_auto_smooth:
+        return {"corner_normals": _split_normals(mesh)}
+    smooth = _smooth_faces(mesh, domain)
+    normals = {}
+    if smooth.any():
+        normals["vertex_normals"] = _read(mesh.vertex_normals, "vector", (len(mesh.vertices), 3))
+    if not smooth.all():
+        normals["face_normals"] = _read(mesh.polygon_normals, "vector", (len(mesh.polygons), 3))
+        normals["triangle_faces"] = _faces(mesh, count)
+    return {**normals, "face_smooth": smooth.view(np.uint8)} if len(normals) == 3 else normals
+
+
+def _smooth_faces(mesh, domain):
+    """[faces], or one for all."""
+    if domain is not None:
+        return np.array([domain == "POINT"])
+    return _read(mesh.polygons, "use_smooth", (len(mesh.polygons),), bool)
+
+
+def _split_normals(mesh):
     mesh.calc_normals_split()
-    normals = _read(mesh.loops, "normal", size).reshape(-1, 3)
+    normals = _read(mesh.loops, "normal", (len(mesh.loops), 3))
     mesh.free_normals_split()
     return normals
 
 
-def _corner_uvs(mesh, corners, slots, uv_maps):
-    """[triangles x 3 x 2] of the UV map that renders, or of that of a triangle's slot; None without maps."""
-    rendered = next((uv for uv in mesh.uv_layers if uv.active_render), None)
-    if rendered is None:
-        return None
-    uvs = _layer_uvs(mesh, rendered)[corners]
-    for slot, name in enumerate(uv_maps):
-        layer = mesh.uv_layers.get(name) if name else None
-        if layer is not None:
-            shown = np.minimum(slots, len(uv_maps) - 1) == slot  # beyond the last slot the last one shows
-            uvs[shown] = _layer_uvs(mesh, layer)[corners[shown]]
+def _coordinates(mesh, corners, slots, uv_maps):
+    """Sets of texture coordinates, [corners x 2] each, as far as materials look at them."""
+    if uv_maps is None or not mesh.uv_layers:
+        return {}
+    # Beyond the last slot the last material shows.
+    shown = np.minimum(slots, len(uv_maps) - 1) if len(uv_maps) > 1 else None
+
+    def uvs(names):
+        return _corner_uvs(mesh, corners, shown, names)
+
+    found = {"corner_uvs": uvs([maps.first for maps in uv_maps])}
+    count = max((len(maps.names) for maps in uv_maps), default=1)
+    if count > 1:
+        sets = [
+            [maps.names[i] if i < len(maps.names) else maps.first for maps in uv_maps]
+            for i in range(1, count)
+        ]
+        found["more_uvs"] = np.stack([uvs(names) for names in sets])
+    if any(maps.relief is not None for maps in uv_maps):
+        found["relief_uvs"] = uvs([maps.first if maps.relief is None else maps.relief for maps in uv_maps])
+    return found
+
+
+def _corner_uvs(mesh, corners, shown, names):
+    """Of each slot its UV map; without a name, or where there is none of it, that which renders."""
+    rendered = next((layer for layer in mesh.uv_layers if layer.active_render), mesh.uv_layers[0])
+    layers = [mesh.uv_layers.get(name) or rendered if name else rendered for name in names] or [rendered]
+    uvs = _layer_uvs(mesh, layers[0])
+    for slot, layer in enumerate(layers[1:], 1):
+        if layer != layers[0]:
+            of_slot = corners[shown == slot]
+            uvs[of_slot] = _layer_uvs(mesh, layer)[of_slot]
     return uvs
 
 
 def _layer_uvs(mesh, layer):
-    return _read(layer.data, "uv", len(mesh.loops) * 2).reshape(-1, 2)
+    return _read(layer.data, "uv", (len(mesh.loops), 2))

@@ -10,7 +10,7 @@ from .lights import add_light
 from .meshes import has_uv_map, object_arrays
 from .placement import Placements
 from .units import metres_per_unit
-from .uv_maps import missing_map, uv_map_names
+from .uv_maps import maps_of_slots, missing_map
 from .visibility import hidden_from, note_visibility
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -27,6 +27,7 @@ _UNSUPPORTED = {
 class _Shown(NamedTuple):
     """What all instances of an object have in common."""
 
+    owner: str  # its name
     mesh: int | None  # its number in the scene; None: there is nothing to see
     slots: list
     look: tuple  # the arguments of Scene.add_instances beside mesh and matrices
@@ -47,8 +48,11 @@ class ObjectExport:
         self._to_scene = to_scene
         self._meshes = {}
         self._shown = {}
-        self._groups = InstanceGroups(scene)
+        self._groups = InstanceGroups(scene, notes)
         self._placements = Placements(materials, notes)
+        self._owners = []  # of the instances in the scene, by name
+        self.shines = False  # a lamp has power
+        self.is_seen = False  # the camera sees an instance, if it looks there
 
     def add_all(self, depsgraph):
         self._add(depsgraph, lambda instance: instance.show_self)
@@ -67,14 +71,18 @@ class ObjectExport:
             obj = instance.object
             if obj.type == "LIGHT" and not geometry_alone:
                 note_visibility(obj, self._notes)
-                add_light(self._scene, obj, instance.matrix_world, self._notes)
+                self.shines |= add_light(self._scene, obj, instance.matrix_world, self._notes)
                 continue
             key = _identity(obj)
             if key not in self._shown:
                 self._shown[key] = self._look_at(obj, depsgraph, geometry_alone)
             if self._shown[key]:
                 self._add_instance(instance, self._shown[key], metres)
-        self._groups.add_to_scene()
+        self._owners += self._groups.add_to_scene()
+
+    def owner(self, instance):
+        """The name of the object that an instance of the scene is of; None of None."""
+        return None if instance is None else self._owners[instance]
 
     def _look_at(self, obj, depsgraph, geometry_alone):
         """The _Shown of an object; None of what is no geometry."""
@@ -92,13 +100,13 @@ class ObjectExport:
         is_tiled = any(self._materials.tile(material) for material in slots)
         if not is_tiled:
             self._placements.note_missing(obj, mesh, slots)
-        return _Shown(mesh, slots, (numbers, hidden), is_tiled)
+        self.is_seen |= "camera" not in hidden
+        return _Shown(obj.name, mesh, slots, (numbers, hidden), is_tiled)
 
     def _add_instance(self, instance, shown, metres):
         matrix = instance.matrix_world
         if matrix.to_3x3().determinant() == 0:
-            name = instance.object.name
-            self._notes.add(f"Object '{name}': its scale is zero along an axis; left out.")
+            self._notes.add(f"Object '{shown.owner}': its scale is zero along an axis; left out.")
             return
         placements = None
         if shown.is_tiled:
@@ -106,23 +114,30 @@ class ObjectExport:
         if self._to_scene is not None:
             matrix = self._to_scene @ matrix
         if placements is None:
-            self._groups.add((shown.mesh, *shown.look), matrix)
+            self._groups.add(shown.mesh, shown.look, matrix, shown.owner)
         else:
             numbers, hidden = shown.look
             self._scene.add_instance(shown.mesh, affine(matrix), numbers, placements, hidden)
+            self._owners.append(shown.owner)
 
     def _mesh(self, obj, override):
         """The mesh's number in the scene (None: there is nothing to see) and the materials of its slots."""
-        uv_maps = uv_map_names([override] if override else all_materials(obj))
+        materials = [override] if override else all_materials(obj)
+        uv_maps = maps_of_slots(tuple(map(self._materials.uv_maps, materials)))
         key = (obj.type, (obj.data or obj).as_pointer(), uv_maps)
         if key not in self._meshes:
             self._meshes[key] = self._add_mesh(obj, uv_maps)
         number, count = self._meshes[key]
         slots = [override] * count if override else slot_materials(obj, count)
-        for material, name in zip(slots, uv_map_names(slots), strict=False):
-            if name and not has_uv_map(obj, name):
-                self._notes.add(missing_map(obj, name, material.name))
+        if uv_maps:
+            self._note_missing_maps(obj, slots)
         return number, slots
+
+    def _note_missing_maps(self, obj, slots):
+        for material in slots:
+            for name in sorted(self._materials.uv_maps(material).all_names):
+                if name and not has_uv_map(obj, name):
+                    self._notes.add(missing_map(obj, name, material.name))
 
     def _add_mesh(self, obj, uv_maps):
         arrays = object_arrays(obj, uv_maps)
@@ -133,6 +148,8 @@ class ObjectExport:
             self._notes.add(
                 f"Object '{obj.name}': {dropped} triangles without area or with NaN are left out."
             )
+        if dropped == len(arrays.triangles):
+            return None, 0
         return number, int(np.max(arrays.material_slots)) + 1
 
     def _note_extras(self, obj):

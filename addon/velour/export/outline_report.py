@@ -56,8 +56,8 @@ def _bends(shown):
     arrays = shown.arrays
     triangles = np.isin(arrays.material_slots, shown.slots)
     matrix = np.array(shown.obj.matrix_world, float)[:3, :3]
-    corners = arrays.positions[arrays.triangles[triangles]] @ matrix.T * shown.metres
-    normals = arrays.corner_normals[triangles].reshape(-1, 3, 3) @ np.linalg.inv(matrix)
+    corners = arrays.positions[arrays.vertices(triangles)] @ matrix.T * shown.metres
+    normals = arrays.normals(triangles) @ np.linalg.inv(matrix)
     with np.errstate(divide="ignore", invalid="ignore"):
         normals = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
     return curvature_range(corners, normals)

@@ -9,7 +9,7 @@ from ..core.placement import LARGEST_STRETCH, Lie, Surface, UvMetric, lie_of, te
 from .meshes import object_arrays
 from .nodes import velour_node
 from .notes import ExportError
-from .uv_maps import uv_map_names
+from .uv_maps import placed_maps
 
 
 class Tile(NamedTuple):
@@ -92,7 +92,7 @@ def surface_of(arrays, slots):
     if arrays is None or arrays.corner_uvs is None:
         return None
     shown = np.isin(arrays.material_slots, slots)
-    return Surface.of(arrays.positions, arrays.triangles[shown], arrays.corner_uvs[shown])
+    return Surface.of(arrays.positions, arrays.vertices(shown), arrays.uvs(shown))
 
 
 def missing_coordinates(obj, material_name):
@@ -149,7 +149,7 @@ class Placements:
     def _surface(self, obj, slots, material, mesh):
         key = (mesh, _slots_that_show(slots, material))
         if key not in self._surfaces:
-            self._surfaces[key] = surface_of(object_arrays(obj, uv_map_names(slots)), key[1])
+            self._surfaces[key] = surface_of(object_arrays(obj, placed_maps(slots)), key[1])
         return self._surfaces[key]
 
     def _map(self, instance, slots, material, key, metres_per_unit):

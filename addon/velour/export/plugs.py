@@ -75,15 +75,3 @@ def _step_out_of(plug):
 def _same(sockets, socket, groups):
     found = next((other for other in sockets if other.identifier == socket.identifier), None)
     return Plug(found, groups) if found else None
-
-
-def trees_of(tree):
-    """A node tree and those of the groups in it, each once."""
-    found, waiting = [], [tree]
-    while waiting:
-        tree = waiting.pop()
-        if tree is None or tree in found:
-            continue
-        found.append(tree)
-        waiting += [node.node_tree for node in tree.nodes if node.bl_idname == "ShaderNodeGroup"]
-    return found

@@ -1,34 +1,63 @@
 """The whole export, in order."""
 
+from typing import NamedTuple
+
 from ..native import Scene
+from .black import refuse_black
 from .color import set_working_space
+from .libraries import refuse_missing_libraries
 from .materials import MaterialTable
 from .objects import ObjectExport
 from .world import add_world
 
 
-def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
-    """A committed library scene of what the depsgraph shows, seen through `view`, and its MaterialTable.
+class Export(NamedTuple):
+    scene: Scene  # committed
+    materials: MaterialTable
+    surroundings: str  # a sentence on what the camera is inside of; empty: it is not
 
-    `check_break` is called often and raises to stop; `strict` refuses measured materials that cannot be had.
+
+def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
+    """What the depsgraph shows, seen through `view`, as an Export.
+
+    `check_break` is called often and raises to stop; `strict` refuses measured materials and libraries that
+    cannot be had, and what can only be black.
     """
+    if strict:
+        refuse_missing_libraries(depsgraph.scene)
     scene = Scene()
     try:
         set_working_space(scene)
         materials = MaterialTable(scene, notes, strict)
-        ObjectExport(scene, materials, notes, check_break).add_all(depsgraph)
+        objects = ObjectExport(scene, materials, notes, check_break)
+        objects.add_all(depsgraph)
         has_sky = depsgraph.view_layer_eval.use_sky
-        add_world(scene, depsgraph.scene_eval.world if has_sky else None, notes)
+        world_shines = add_world(scene, depsgraph.scene_eval.world if has_sky else None, notes)
+        if strict:
+            refuse_black(depsgraph, objects, materials, world_shines, notes)
         view.add_to(scene)
         _note_scene(depsgraph.scene_eval, notes)
         check_break()
         scene.commit()
-        for warning in scene.info()["warnings"]:
+        info = scene.info()
+        for warning in info["warnings"]:
             notes.add(warning)
-        return scene, materials
+        surroundings = _surroundings(depsgraph.scene.camera, objects.owner(info["camera_inside"]))
+        if surroundings:
+            notes.add(surroundings)
+        return Export(scene, materials, surroundings)
     except BaseException:
         scene.close()
         raise
+
+
+def _surroundings(camera, owner):
+    if owner is None:
+        return ""
+    return (
+        f"Camera '{camera.name}': it is inside of object '{owner}' and sees nothing else; move it out, hide"
+        " the object from renders, or raise the camera's Clip Start."
+    )
 
 
 def _note_scene(scene, notes):

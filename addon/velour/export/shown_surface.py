@@ -9,7 +9,7 @@ from .meshes import MeshArrays, object_arrays
 from .objects import all_materials, slots_of
 from .placement import Metrics, surface_of
 from .units import metres_per_unit
-from .uv_maps import uv_map_names
+from .uv_maps import placed_maps
 
 
 class ShownSurface(NamedTuple):
@@ -24,7 +24,7 @@ class ShownSurface(NamedTuple):
     def of(cls, depsgraph, obj, material) -> ShownSurface:
         """Of an object of the .blend."""
         evaluated = obj.evaluated_get(depsgraph)
-        arrays = object_arrays(evaluated, uv_map_names(all_materials(evaluated)))
+        arrays = object_arrays(evaluated, placed_maps(all_materials(evaluated)))
         slots = slots_of(evaluated, arrays, material)
         surface = surface_of(arrays, slots)
         metres = metres_per_unit(depsgraph.scene)

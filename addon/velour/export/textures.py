@@ -4,6 +4,7 @@ import numpy as np
 
 from ..native import Texture, TextureSlot
 from .color import luminance_weights
+from .files import FIND, absolute_path
 from .pixels import working_pixels
 
 
@@ -14,18 +15,22 @@ class TextureTable:
         self._notes = notes
         self._textures = {}
 
-    def slot(self, picture, is_color, owner):
-        """Of a Picture; None where its image cannot be read, which is noted."""
+    def slot(self, picture, is_color, owner, uv_maps):
+        """Of a Picture of a material with these UvMaps; None where its image cannot be read: noted."""
         key = (picture.image.as_pointer(), picture.alpha, picture.wrap, picture.filter, is_color)
         if key not in self._textures:
             self._textures[key] = self._read(picture, is_color, owner)
         texture = self._textures[key]
-        return TextureSlot(texture, picture.uv_map) if texture else None
+        return TextureSlot(texture, picture.uv_map, uv_maps.number(picture.coordinates)) if texture else None
 
     def _read(self, picture, is_color, owner):
         pixels = working_pixels(picture.image, self._notes)
         if pixels is None:
-            self._notes.add(f"{owner}: the image '{picture.image.name}' cannot be read; left out.")
+            path = absolute_path(picture.image) or "no file"
+            self._notes.add(
+                f"{owner}: the image '{picture.image.name}' ({path}) cannot be read, and the value below it"
+                f" is used; {FIND}."
+            )
             return None
         options = {"wrap": picture.wrap, "filter": picture.filter}
         if is_color and not picture.alpha:

@@ -1,21 +1,82 @@
-"""Which UV map a material is shown by."""
+"""Which UV maps a material is shown by."""
 
-from .image_nodes import named_uv_maps
+from typing import NamedTuple
+
 from .nodes import velour_node
 
-
-def uv_map_names(materials):
-    """What the materials of an object's slots ask for; empty where all take the one that renders."""
-    names = tuple(map(_name, materials))
-    return names if any(names) else ()
+MOST_SETS = 4  # VLR_MOST_UV_SETS
 
 
-def _name(material):
+class UvMaps(NamedTuple):
+    """UV maps of a mesh by name; "": the one that renders."""
+
+    names: tuple = ("",)  # that pictures are on; the first is that of tiles and of what is stretched, too
+    relief: str | None = None  # that tangents of its normal maps follow; None: the first, or it has none
+
+    @property
+    def first(self):
+        return self.names[0] if self.names else ""
+
+    def number(self, name):
+        """Of one that a picture is on."""
+        return self.names.index(name) if name in self.names else 0
+
+    @property
+    def all_names(self):
+        return {*self.names, self.relief or ""}
+
+
+RENDERED = UvMaps()
+UNUSED = UvMaps(())  # of materials that are the same all over
+
+
+def maps_of_slots(maps):
+    """What object_arrays() takes, of the UvMaps of a mesh's slots."""
+    if all(each == UNUSED for each in maps):
+        return None
+    return () if all(each in (UNUSED, RENDERED) for each in maps) else maps
+
+
+def placed_maps(materials):
+    """Of slots, as far as measured materials show them, as object_arrays() takes them."""
+    return maps_of_slots(tuple(map(placed_map, materials)))
+
+
+def placed_map(material):
     node = velour_node(material)
-    if node:
-        return node.velour.placement.uv_map
-    named = named_uv_maps(material.node_tree) if material and material.use_nodes else []
-    return named[0] if named else ""
+    return UvMaps((node.velour.placement.uv_map,)) if node else RENDERED
+
+
+def shader_maps(owner, layers, notes):
+    """Of a material that is not measured, by its Layers."""
+    parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
+    reliefs = [part.relief for part in parts if part.relief]
+    pictures = [picture for part in parts for picture in part.pictures.values()]
+    pictures += [factor.picture for part in parts for factor in part.factors if factor.picture]
+    pictures += [relief.picture for relief in reliefs]
+    names = tuple(sorted({picture.coordinates for picture in pictures}))
+    if not names:
+        return UNUSED
+    if len(names) > MOST_SETS:
+        notes.add(
+            f"{owner}: its pictures ask for {len(names)} UV maps; those beyond {MOST_SETS} are shown by"
+            f" {_called(names[0])}."
+        )
+        names = names[:MOST_SETS]
+    return UvMaps(names, _relief_map(owner, names, reliefs, notes))
+
+
+def _relief_map(owner, names, reliefs, notes):
+    asked = list(dict.fromkeys(relief.uv_map for relief in reliefs))
+    if len(asked) > 1:
+        notes.add(
+            f"{owner}: its Normal Maps ask for several UV maps; tangents of all follow {_called(asked[0])}."
+        )
+    return asked[0] if asked and asked[0] != names[0] else None
+
+
+def _called(name):
+    return f"'{name}'" if name else "the one that renders"
 
 
 def missing_map(obj, name, material_name):

@@ -16,13 +16,18 @@ _RAYS = {"diffuse": "diffuse rays", "glossy": "glossy rays"}
 
 
 def add_world(scene, world, notes):
+    """Whether it shines."""
     _note_visibility(world, notes)
     if world is None:
-        scene.set_world_color((0, 0, 0))
-    elif not world.use_nodes or world.node_tree is None:
-        scene.set_world_color(tuple(world.color))
-    else:
-        _add_nodes(scene, world, notes)
+        return _add_color(scene, (0.0, 0.0, 0.0))
+    if not world.use_nodes or world.node_tree is None:
+        return _add_color(scene, tuple(world.color))
+    return _add_nodes(scene, world, notes)
+
+
+def _add_color(scene, color):
+    scene.set_world_color(color)
+    return any(c != 0.0 for c in color)
 
 
 def _note_visibility(world, notes):
@@ -42,20 +47,19 @@ def _add_nodes(scene, world, notes):
     if background is None or background.bl_idname != "ShaderNodeBackground":
         if background is not None:
             notes.add(f"{owner}: node '{background.name}' is not a Background; rendered black.")
-        scene.set_world_color((0, 0, 0))
-        return
+        return _add_color(scene, (0.0, 0.0, 0.0))
     if source(background.inputs["Strength"]):
         notes.add(f"{owner}: what is linked to the strength is not supported; its own value is used.")
     strength = background.inputs["Strength"].default_value
     color = source(background.inputs["Color"])
     if color is not None and color.bl_idname == "ShaderNodeTexEnvironment":
         _add_environment(scene, owner, color, strength, notes)
-        return
+        return strength != 0.0
     if color is not None:
         notes.add(
             f"{owner}: node '{color.name}' is not an Environment Texture; the Background's colour is used."
         )
-    scene.set_world_color(tuple(strength * c for c in background.inputs["Color"].default_value[:3]))
+    return _add_color(scene, tuple(strength * c for c in background.inputs["Color"].default_value[:3]))
 
 
 def _add_environment(scene, owner, node, strength, notes):

@@ -12,7 +12,7 @@ from ctypes import byref, c_uint32
 import numpy as np
 
 from . import library, table
-from .arrays import affine, checked, pointer, small
+from .arrays import address, affine, checked, pointer, small
 from .btf import Btf
 from .errors import refuse
 from .handle import Handle, choice, path_bytes, set_fields
@@ -21,7 +21,21 @@ from .model import Model
 from .shader import Shader, described
 from .texture import TextureSlot
 
-_COLORS = {"color": 3, "size": 2, "window": 4}
+_COLORS = {"color": 3, "size": 2, "window": 4, "cone_scale": 2}
+# Of Scene.add_mesh: type, what there is one for each of (corner, triangle, vertex, face), its shape.
+_MESH_ARRAYS = {
+    "corner_normals": (np.float32, "c", (3,)),
+    "corner_uvs": (np.float32, "c", (2,)),
+    "more_uvs": (np.float32, "c", (2,)),
+    "relief_uvs": (np.float32, "c", (2,)),
+    "material_slots": (np.uint32, "t", ()),
+    "smooth": (np.uint8, "t", ()),
+    "corner_vertices": (np.uint32, "any", ()),
+    "vertex_normals": (np.float32, "v", (3,)),
+    "face_normals": (np.float32, "any", (3,)),
+    "face_smooth": (np.uint8, "f", ()),
+    "triangle_faces": (np.uint32, "t", ()),
+}
 
 
 class Scene(Handle):
@@ -42,38 +56,38 @@ class Scene(Handle):
 
     # ---- geometry
 
-    def add_mesh(
-        self,
-        positions: np.ndarray,
-        triangles: np.ndarray,
-        corner_normals: np.ndarray | None = None,
-        corner_uvs: np.ndarray | None = None,
-        material_slots: np.ndarray | None = None,
-        smooth: np.ndarray | None = None,
-    ) -> tuple[int, int]:
+    def add_mesh(self, positions: np.ndarray, triangles: np.ndarray, **arrays) -> tuple[int, int]:
         """The mesh's number, and how many degenerate or non-finite triangles were left out.
 
-        float32: positions [v x 3] in metres, corner_normals [t x 3 x 3] (None: smooth vertex normals),
-        corner_uvs [t x 3 x 2]. uint32: triangles [t x 3], material_slots [t] (None: all 0). uint8: smooth
-        [t], used without corner_normals (None: all smooth). The library copies; nothing need stay alive.
+        float32: positions [v x 3] in metres; uint32: triangles [t x 3]. Others may be None, or not given;
+        float32: corner_normals [t x 3 x 3], corner_uvs [t x 3 x 2], more_uvs [sets x t x 3 x 2] (sets 1, 2,
+        ... of texture coordinates), relief_uvs [t x 3 x 2] (what tangents of normal maps follow, else
+        corner_uvs); uint32: material_slots [t] (else all 0); uint8: smooth [t], without normals (else all).
+
+        With corner_vertices (uint32 [c]: of each corner of the faces) `triangles` name corners, and what has
+        [t x 3] has [c]. Without corner_normals: vertex_normals [v x 3] of smooth faces, face_normals [f x 3]
+        of the others with triangle_faces (uint32 [t]) and, where there are both, face_smooth (uint8 [f]).
+        Without any normals vertices are smooth. The library copies; nothing need stay alive.
         """
         positions = checked("positions", positions, (None, 3))
         triangles = checked("triangles", triangles, (None, 3), np.uint32)
-        count = len(triangles)
-
-        def optional(name, array, shape, dtype=np.float32):
-            return None if array is None else checked(name, array, (count, *shape), dtype)
-
+        given = {name: array for name, array in arrays.items() if array is not None}
         desc = table.MeshDesc(
             vertex_count=len(positions),
-            triangle_count=count,
-            positions=pointer(positions),
-            triangles=pointer(triangles),
-            corner_normals=pointer(optional("corner_normals", corner_normals, (3, 3))),
-            corner_uvs=pointer(optional("corner_uvs", corner_uvs, (3, 2))),
-            material_slots=pointer(optional("material_slots", material_slots, (), np.uint32)),
-            smooth=pointer(optional("smooth", smooth, (), np.uint8)),
+            triangle_count=len(triangles),
+            positions=address(positions),
+            triangles=address(triangles),
+            corner_count=len(given.get("corner_vertices", ())),
+            more_uv_sets=len(given.get("more_uvs", ())),
+            face_count=len(given.get("face_normals", ())),
         )
+        corners = (desc.corner_count,) if "corner_vertices" in given else (desc.triangle_count, 3)
+        sizes = {"t": desc.triangle_count, "v": desc.vertex_count, "f": desc.face_count}
+        for name, array in given.items():
+            dtype, size, rest = _MESH_ARRAYS[name]
+            shape = corners if size == "c" else (sizes.get(size),)
+            sets = (None,) if name == "more_uvs" else ()
+            setattr(desc, name, address(checked(name, array, (*sets, *shape, *rest), dtype)))
         mesh, dropped = c_uint32(), c_uint32()
         self._lib.vlr_scene_add_mesh(self.pointer, byref(desc), byref(mesh), byref(dropped))
         return mesh.value, dropped.value
@@ -97,13 +111,17 @@ class Scene(Handle):
             placements = small("placements", placements, 6 * len(materials))
         self._lib.vlr_scene_add_placed_instance(self.pointer, mesh, matrix, numbers, placements, len(numbers))
 
-    def add_instances(self, mesh: int, object_to_world: np.ndarray, materials, hidden=()) -> None:
-        """Many that differ in nothing but their matrices, float32 [n x 3 x 4]; else as add_instance."""
+    def add_instances(self, meshes: np.ndarray, object_to_world: np.ndarray, materials, hidden=()) -> None:
+        """Many that differ in nothing but meshes and matrices, uint32 [n], float32 [n x 3 x 4].
+
+        Else as add_instance.
+        """
         matrices = checked("object_to_world", object_to_world, (None, 3, 4))
+        meshes = checked("meshes", meshes, (len(matrices),), np.uint32)
         self._lib.vlr_scene_hide_instances(self.pointer, sum(table.HIDDEN[name] for name in set(hidden)))
         numbers = (c_uint32 * len(materials))(*materials)
         self._lib.vlr_scene_add_instances(
-            self.pointer, mesh, pointer(matrices), len(matrices), numbers, len(numbers)
+            self.pointer, address(meshes), address(matrices), len(matrices), numbers, len(numbers)
         )
 
     # ---- materials: each returns its number
@@ -165,7 +183,7 @@ class Scene(Handle):
         sides, a disk's diameters, metres. blend: share of a spot's cone over which it fades out. spread: the
         angle in which a rectangle or disk shines, radians. sphere: whether a point or spot is a ball or a
         disk that faces each place it lights. cosine: whether a spot's light falls with the cosine to its
-        axis.
+        axis. cone_scale [2]: how much wider than its angle a spot's cone is along its x and y.
         """
         values = {"type": choice("light", kind, table.LIGHTS), "color": color, **values}
         desc = self._desc(table.LightDesc, "vlr_light_desc_init", values)
@@ -224,7 +242,7 @@ class Scene(Handle):
         self._lib.vlr_scene_commit(self.pointer)
 
     def info(self) -> dict:
-        """triangles, instances, lights, materials, untextured, bytes, bvh_seconds, warnings."""
+        """As vlr_scene_info_json: triangles, instances, lights, camera_inside, bytes, warnings and more."""
         return library.json_of(self._lib.vlr_scene_info_json, self.pointer)
 
     def _numbered(self, function_name: str, *arguments) -> int:

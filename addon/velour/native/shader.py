@@ -42,11 +42,11 @@ class Shader(Handle):
         desc.surface, desc.textures = pointer(surface), pointer(pictures)
         if normal is not None:
             desc.normal, desc.normal_map = normal.texture.pointer, small("uv_map", normal.uv_map, 6)
-            desc.normal_strength = normal_strength
+            desc.normal_strength, desc.normal_set = normal_strength, normal.uv_set
         self._lib.vlr_shader_add_layer(self.pointer, byref(desc))
 
     def weigh_layer(
-        self, kind: str, value: float = 1.0, texture: Texture | None = None, uv_map=IDENTITY
+        self, kind: str, value: float = 1.0, texture: Texture | None = None, uv_map=IDENTITY, uv_set=0
     ) -> None:
         """Multiplies the weight of the last layer: by `share` of a mix, its `rest` (1 - share), or a `gain`.
 
@@ -57,6 +57,7 @@ class Shader(Handle):
         desc.kind, desc.value = choice("kind", kind, table.FACTORS), value
         if texture is not None:
             desc.texture, desc.map = texture.pointer, small("uv_map", uv_map, 6)
+            desc.set = uv_set
         self._lib.vlr_shader_weigh_layer(self.pointer, byref(desc))
 
 
@@ -67,5 +68,6 @@ def described(lib, textures: dict[str, TextureSlot], values: dict):
     lib.vlr_principled_textures_init(byref(pictures))
     set_fields(desc, {n: small(n, v, _COLORS[n]) if n in _COLORS else v for n, v in values.items()})
     for name, slot in textures.items():
-        set_fields(pictures, {name: slot.texture.pointer, f"{name}_map": small("uv_map", slot.uv_map, 6)})
+        uv_map = small("uv_map", slot.uv_map, 6)
+        set_fields(pictures, {name: slot.texture.pointer, f"{name}_map": uv_map, f"{name}_set": slot.uv_set})
     return desc, pictures

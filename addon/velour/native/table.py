@@ -173,12 +173,23 @@ class MeshDesc(Struct):
         ("vertex_count", c_uint32),
         ("triangle_count", c_uint32),
         ("pad", c_uint32),
-        ("positions", POINTER(c_float)),
-        ("triangles", POINTER(c_uint32)),
-        ("corner_normals", POINTER(c_float)),
-        ("corner_uvs", POINTER(c_float)),
-        ("material_slots", POINTER(c_uint32)),
-        ("smooth", POINTER(c_uint8)),
+        ("positions", c_void_p),
+        ("triangles", c_void_p),
+        ("corner_normals", c_void_p),
+        ("corner_uvs", c_void_p),
+        ("material_slots", c_void_p),
+        ("smooth", c_void_p),
+        ("more_uvs", c_void_p),
+        ("relief_uvs", c_void_p),
+        ("more_uv_sets", c_uint32),
+        ("corner_count", c_uint32),
+        ("corner_vertices", c_void_p),
+        ("vertex_normals", c_void_p),
+        ("face_normals", c_void_p),
+        ("face_smooth", c_void_p),
+        ("triangle_faces", c_void_p),
+        ("face_count", c_uint32),
+        ("pad2", c_uint32),
     ]
 
 
@@ -231,6 +242,10 @@ class PrincipledTextures(Struct):
         ("metallic_map", c_float * 6),
         ("roughness_map", c_float * 6),
         ("alpha_map", c_float * 6),
+        ("base_color_set", c_uint32),
+        ("metallic_set", c_uint32),
+        ("roughness_set", c_uint32),
+        ("alpha_set", c_uint32),
     ]
 
 
@@ -243,7 +258,7 @@ class LayerDesc(Struct):
         ("normal", c_void_p),
         ("normal_map", c_float * 6),
         ("normal_strength", c_float),
-        ("pad", c_uint32),
+        ("normal_set", c_uint32),
     ]
 
 
@@ -252,7 +267,7 @@ class FactorDesc(Struct):
         ("struct_size", c_uint32),
         ("kind", c_int32),
         ("value", c_float),
-        ("pad", c_uint32),
+        ("set", c_uint32),
         ("texture", c_void_p),
         ("map", c_float * 6),
     ]
@@ -271,6 +286,7 @@ class LightDesc(Struct):
         ("spread", c_float),
         ("sphere", c_int32),
         ("cosine", c_int32),
+        ("cone_scale", c_float * 2),
     ]
 
 
@@ -425,7 +441,7 @@ STATUS_CALLS = {
     ],
     "vlr_scene_add_instance": [_handle, c_uint32, _floats, _number, c_uint32],
     "vlr_scene_add_placed_instance": [_handle, c_uint32, _floats, _number, _floats, c_uint32],
-    "vlr_scene_add_instances": [_handle, c_uint32, _floats, c_uint64, _number, c_uint32],
+    "vlr_scene_add_instances": [_handle, c_void_p, c_void_p, c_uint64, _number, c_uint32],
     "vlr_scene_hide_instances": [_handle, c_uint32],
     "vlr_scene_add_light": [_handle, POINTER(LightDesc)],
     "vlr_scene_set_world_color": [_handle, _floats],

@@ -38,10 +38,14 @@ class Texture(Handle):
 
 
 class TextureSlot(NamedTuple):
-    """A texture of a parameter; `uv_map` [2 x 3] takes the surface's (u, v, 1) to the picture's."""
+    """A texture of a parameter; `uv_map` [2 x 3] takes the surface's (u, v, 1) to the picture's.
+
+    uv_set: of the mesh's texture coordinates, below table.MOST_UV_SETS.
+    """
 
     texture: Texture
     uv_map: object = IDENTITY
+    uv_set: int = 0
 
 
 def _options(values: dict):

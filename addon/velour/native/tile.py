@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ctypes import byref
+from ctypes import POINTER, byref, c_float, c_uint32, cast
 from typing import NamedTuple
 
 import numpy as np
@@ -51,15 +51,16 @@ class Tile(Handle):
         desc = table.MeshDesc()
         self._lib.vlr_tile_desc(self.pointer, byref(desc))
 
-        def array(pointer, *shape):
-            return np.ctypeslib.as_array(pointer, shape).copy()
+        def array(address, *shape, kind=c_float):
+            return np.ctypeslib.as_array(cast(address, POINTER(kind)), shape).copy()
 
+        count = desc.triangle_count
         return TileMesh(
             positions=array(desc.positions, desc.vertex_count, 3),
-            triangles=array(desc.triangles, desc.triangle_count, 3),
-            corner_normals=array(desc.corner_normals, desc.triangle_count, 3, 3),
-            corner_uvs=array(desc.corner_uvs, desc.triangle_count, 3, 2),
-            material_slots=array(desc.material_slots, desc.triangle_count),
+            triangles=array(desc.triangles, count, 3, kind=c_uint32),
+            corner_normals=array(desc.corner_normals, count, 3, 3),
+            corner_uvs=array(desc.corner_uvs, count, 3, 2),
+            material_slots=array(desc.material_slots, count, kind=c_uint32),
         )
 
     def info(self) -> dict:

@@ -113,7 +113,7 @@ class SceneFit:
         """One view layer of one frame."""
         notes = Notes()  # said by renders
         view = final_view(depsgraph, notes, whole=True)
-        native_scene, materials = export_scene(depsgraph, view, notes)
+        native_scene, materials, _ = export_scene(depsgraph, view, notes)
         with native_scene:
             number = materials.find(bpy.data.materials[self.material_name])
             if number is not None:

@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 5
+#define VLR_ABI_VERSION 6
 
 typedef int32_t vlr_status;
 enum {
@@ -318,6 +318,8 @@ VLR_API void vlr_scene_free(vlr_scene* scene);
  * of all other colours and images of the scene and of the film. Default: identity. */
 VLR_API vlr_status vlr_scene_set_working_space(vlr_scene* scene, const float* rec709_to_working);
 
+/* Sets of texture coordinates that a material can look at. */
+enum { VLR_MOST_UV_SETS = 4 };
 typedef struct vlr_mesh_desc {
   uint32_t struct_size;
   uint32_t vertex_count;
@@ -329,6 +331,20 @@ typedef struct vlr_mesh_desc {
   const float* corner_uvs;        /* [triangle_count x 3 x 2]; NULL: none */
   const uint32_t* material_slots; /* [triangle_count]; NULL: all 0 */
   const uint8_t* smooth;          /* [triangle_count] 1: smooth; used when corner_normals is NULL; NULL: all smooth */
+  const float* more_uvs;          /* [more_uv_sets x triangle_count x 3 x 2] sets 1, 2, ... beside corner_uvs, set 0 */
+  const float* relief_uvs;        /* [triangle_count x 3 x 2] what tangents of normal maps follow; NULL: set 0 */
+  uint32_t more_uv_sets;          /* VLR_MOST_UV_SETS - 1 at most */
+  uint32_t corner_count;
+  /* Not NULL: `triangles` name corners of faces, these are the vertices of those [corner_count], and what is said to be
+   * triangle_count x 3 is corner_count: nothing need be spread over the triangles that faces are cut into. */
+  const uint32_t* corner_vertices;
+  /* Used when corner_normals is NULL: normals of smooth faces, 1 a vertex, and of the others, 1 a face. */
+  const float* vertex_normals;    /* [vertex_count x 3] */
+  const float* face_normals;      /* [face_count x 3] */
+  const uint8_t* face_smooth;     /* [face_count]; NULL: all are where there are vertex_normals */
+  const uint32_t* triangle_faces; /* [triangle_count]; with face_normals */
+  uint32_t face_count;
+  uint32_t pad2;
 } vlr_mesh_desc;
 /* Degenerate triangles and non-finite vertices are left out; *dropped (may be NULL) says how many triangles. */
 VLR_API vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint32_t* mesh, uint32_t* dropped);
@@ -380,9 +396,9 @@ VLR_API vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const
  * anisotropy follows, come with them. NULL: they are the mesh's own. */
 VLR_API vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
                                                  const uint32_t* materials, const float* placements, uint32_t count);
-/* Many that differ in nothing but their matrices: object_to_world [instances x 12]. Those before one that is refused
- * have been added. */
-VLR_API vlr_status vlr_scene_add_instances(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
+/* Many that differ in nothing but their meshes [instances] and matrices, object_to_world [instances x 12]. Those before
+ * one that is refused have been added. */
+VLR_API vlr_status vlr_scene_add_instances(vlr_scene* scene, const uint32_t* meshes, const float* object_to_world,
                                            uint64_t instances, const uint32_t* materials, uint32_t count);
 
 /* Bits: what passes through an instance as if it were not there; of a holdout the camera sees nothing, and nothing
@@ -401,10 +417,11 @@ typedef struct vlr_light_desc {
   float size[2];            /* point, spot: radius, -; rectangle: sides; disk: diameters (an ellipse if they differ) */
   float angle;              /* sun: angular diameter; spot: of its cone; radians */
   int32_t casts_shadow;
-  float blend;    /* spot: share of the cone over which its light fades out, 0..1; 0 */
-  float spread;   /* rectangle, disk: full angle in which it shines, radians; pi: the same radiance everywhere */
-  int32_t sphere; /* point, spot: 1: a ball; 0: a disk that faces each place it lights, as Cycles' soft falloff */
-  int32_t cosine; /* spot: 1: its light also falls with the cosine to the axis, as in Blender before 3.5 */
+  float blend;         /* spot: share of the cone over which its light fades out, 0..1; 0 */
+  float spread;        /* rectangle, disk: full angle in which it shines, radians; pi: the same radiance everywhere */
+  int32_t sphere;      /* point, spot: 1: a ball; 0: a disk that faces each place it lights, as Cycles' soft falloff */
+  int32_t cosine;      /* spot: 1: its light also falls with the cosine to the axis, as in Blender before 3.5 */
+  float cone_scale[2]; /* spot: its cone is so much wider along its x and y, as if space were stretched; 1, 1 */
 } vlr_light_desc;
 VLR_API void vlr_light_desc_init(vlr_light_desc* desc);
 VLR_API vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc);
@@ -441,7 +458,8 @@ VLR_API vlr_status vlr_scene_frame_camera(vlr_scene* scene, float aspect, uint32
 /* Builds the acceleration structure and checks the scene. Needed before a render job is made, after every change. */
 VLR_API vlr_status vlr_scene_commit(vlr_scene* scene);
 /* JSON: triangles, instances, lights, materials, untextured (instances of a mesh without texture coordinates whose
- * material varies over the surface: one place of it is shown everywhere), bytes, bvh_seconds, warnings. */
+ * material varies over the surface: one place of it is shown everywhere), camera_inside (of a committed scene, the
+ * number of the instance that the camera is inside of and sees nothing but; null), bytes, bvh_seconds, warnings. */
 VLR_API vlr_status vlr_scene_info_json(vlr_scene* scene, const char** json);
 
 /* ---- textures ------------------------------------------------------------------------------------------------ */
@@ -479,6 +497,10 @@ typedef struct vlr_principled_textures {
   float metallic_map[6];
   float roughness_map[6];
   float alpha_map[6];
+  uint32_t base_color_set; /* of the mesh's texture coordinates; 0. One that a mesh does not have is its first. */
+  uint32_t metallic_set;
+  uint32_t roughness_set;
+  uint32_t alpha_set;
 } vlr_principled_textures;
 VLR_API void vlr_principled_textures_init(vlr_principled_textures* textures);
 VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principled_desc* desc,
@@ -503,17 +525,17 @@ typedef struct vlr_layer_desc {
   const vlr_principled_desc* surface;      /* NULL: its defaults; alpha and emission are not looked at */
   const vlr_principled_textures* textures; /* NULL: none; of what the kind looks at */
   const vlr_texture* normal; /* what reflects: a normal map, colours; NULL: none. It follows the MikkTSpace tangents of
-                                the mesh's texture coordinates */
+                                the mesh's relief_uvs */
   float normal_map[6];       /* as those of vlr_principled_textures */
   float normal_strength;     /* of its tilt, not negative; 1 */
-  uint32_t pad;
+  uint32_t normal_set;       /* as those of vlr_principled_textures */
 } vlr_layer_desc;
 VLR_API void vlr_layer_desc_init(vlr_layer_desc* desc);
 typedef struct vlr_factor_desc {
   uint32_t struct_size;
-  int32_t kind; /* VLR_FACTOR_* */
-  float value;  /* 1 */
-  uint32_t pad;
+  int32_t kind;               /* VLR_FACTOR_* */
+  float value;                /* 1 */
+  uint32_t set;               /* as those of vlr_principled_textures */
   const vlr_texture* texture; /* numbers, in the place of value; NULL: none */
   float map[6];               /* as those of vlr_principled_textures */
 } vlr_factor_desc;

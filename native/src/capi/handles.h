@@ -48,6 +48,7 @@ struct vlr_texture {
 struct vlr_shader {
   velour::ShaderLayers layers;
   bool relief = false;                  // a layer has a normal map
+  uint8_t uv_sets = 1;                  // how many sets of texture coordinates it looks at
   velour::LayerWeight* last = nullptr;  // of the layer that was added last; null: there is none
 };
 

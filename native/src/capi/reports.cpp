@@ -11,6 +11,7 @@
 #include "domain/hash_text.h"
 #include "model/order_json.h"
 #include "render/footprint.h"
+#include "render/surroundings.h"
 #include "scene/embree_scene.h"
 #include "srbf/simd_target.h"
 #include "velour/version.h"
@@ -331,12 +332,14 @@ std::string microsurface_json(const MicrosurfaceReport& report) {
 
 std::string scene_json(const Scene& scene) {
   const SceneInfo& info = scene.info();
+  const auto around = scene.committed() ? surrounding_instance(scene) : std::nullopt;
   return text({{"triangles", info.triangles},
                {"instances", info.instances},
                {"meshes", info.meshes},
                {"lights", info.lights},
                {"materials", info.materials},
                {"untextured", untextured_instances(scene)},
+               {"camera_inside", around ? Json(*around) : Json(nullptr)},
                {"bytes", info.bytes},
                {"bvh_seconds", info.bvh_seconds},
                {"warnings", info.warnings}});

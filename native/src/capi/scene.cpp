@@ -40,13 +40,25 @@ std::span<const T> array_of(const void* first, size_t count) {
 MeshArrays arrays_of(const vlr_mesh_desc& desc) {
   require(desc.positions, "vlr_mesh_desc.positions");
   require(desc.triangles, "vlr_mesh_desc.triangles");
-  const size_t triangles = desc.triangle_count;
+  if (desc.more_uv_sets >= VLR_MOST_UV_SETS) {
+    throw Error(Status::invalid_argument, "vlr_mesh_desc.more_uv_sets is " + std::to_string(desc.more_uv_sets) +
+                                              "; a mesh has at most " + std::to_string(VLR_MOST_UV_SETS - 1) +
+                                              " sets of texture coordinates beside the first.");
+  }
+  const size_t triangles = desc.triangle_count, corners = desc.corner_vertices ? desc.corner_count : 3 * triangles;
   return {.positions = array_of<Vec3>(desc.positions, desc.vertex_count),
           .triangles = array_of<glm::uvec3>(desc.triangles, triangles),
-          .corner_normals = array_of<Vec3>(desc.corner_normals, 3 * triangles),
-          .corner_uvs = array_of<Vec2>(desc.corner_uvs, 3 * triangles),
+          .corner_normals = array_of<Vec3>(desc.corner_normals, corners),
+          .corner_uvs = array_of<Vec2>(desc.corner_uvs, corners),
+          .more_uvs = array_of<Vec2>(desc.more_uvs, corners * desc.more_uv_sets),
+          .relief_uvs = array_of<Vec2>(desc.relief_uvs, corners),
           .material_slots = array_of<uint32_t>(desc.material_slots, triangles),
-          .smooth = array_of<uint8_t>(desc.smooth, triangles)};
+          .smooth = array_of<uint8_t>(desc.smooth, triangles),
+          .corner_vertices = array_of<uint32_t>(desc.corner_vertices, corners),
+          .vertex_normals = array_of<Vec3>(desc.vertex_normals, desc.vertex_count),
+          .face_normals = array_of<Vec3>(desc.face_normals, desc.face_count),
+          .face_smooth = array_of<uint8_t>(desc.face_smooth, desc.face_count),
+          .triangle_faces = array_of<uint32_t>(desc.triangle_faces, triangles)};
 }
 
 void initialize(vlr_mesh_desc* desc) {
@@ -93,6 +105,7 @@ Light converted(const vlr_light_desc& desc) {
           .size = {desc.size[0], desc.size[1]},
           .angle = desc.angle,
           .blend = desc.blend,
+          .cone_scale = {desc.cone_scale[0], desc.cone_scale[1]},
           .cosine = desc.cosine != 0,
           .spread = desc.spread,
           .sphere = desc.sphere != 0,
@@ -241,14 +254,15 @@ vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const 
   });
 }
 
-vlr_status vlr_scene_add_instances(vlr_scene* scene, uint32_t mesh, const float* object_to_world, uint64_t instances,
-                                   const uint32_t* materials, uint32_t count) {
+vlr_status vlr_scene_add_instances(vlr_scene* scene, const uint32_t* meshes, const float* object_to_world,
+                                   uint64_t instances, const uint32_t* materials, uint32_t count) {
   return guard([&] {
     require(scene, "scene");
+    require(meshes, "meshes");
     require(object_to_world, "object_to_world");
     require(materials, "materials");
     for (uint64_t i = 0; i < instances; ++i) {
-      scene->scene->add_instance(mesh, affine_from(object_to_world + 12 * i), {materials, materials + count}, {},
+      scene->scene->add_instance(meshes[i], affine_from(object_to_world + 12 * i), {materials, materials + count}, {},
                                  scene->hidden_from);
     }
   });
@@ -280,6 +294,7 @@ void vlr_light_desc_init(vlr_light_desc* desc) {
   desc->casts_shadow = defaults.casts_shadow ? 1 : 0;
   desc->blend = defaults.blend;
   desc->cosine = defaults.cosine ? 1 : 0;
+  for (int i = 0; i < 2; ++i) desc->cone_scale[i] = defaults.cone_scale[i];
   desc->spread = defaults.spread;
   desc->sphere = defaults.sphere ? 1 : 0;
 }

@@ -31,16 +31,24 @@ std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> mat
   const DiffusePart diffuse = layer.kind == VLR_LAYER_GLOSSY    ? DiffusePart::none
                               : layer.kind == VLR_LAYER_DIFFUSE ? DiffusePart::all
                                                                 : DiffusePart::base_of_principled;
-  return make_normal_mapped(
-      std::move(material),
-      {color_slot(layer.normal, layer.normal_map, "vlr_layer_desc.normal"), std::max(layer.normal_strength, 0.0f)},
-      diffuse);
+  return make_normal_mapped(std::move(material),
+                            {color_slot(layer.normal, layer.normal_map, layer.normal_set, "vlr_layer_desc.normal"),
+                             std::max(layer.normal_strength, 0.0f)},
+                            diffuse);
+}
+
+PrincipledTextures textures_of(const vlr_layer_desc& layer) {
+  return converted(read_options(layer.textures, vlr_principled_textures_init, "vlr_principled_textures"));
+}
+
+/// Those that its pictures are on.
+uint8_t sets_of(const vlr_layer_desc& layer) {
+  return std::max(uv_sets(textures_of(layer)), static_cast<uint8_t>(1 + layer.normal_set));
 }
 
 LayerWeight& add_layer(ShaderLayers& layers, const vlr_layer_desc& layer) {
   const auto desc = read_options(layer.surface, vlr_principled_desc_init, "vlr_principled_desc");
-  const PrincipledTextures textures =
-      converted(read_options(layer.textures, vlr_principled_textures_init, "vlr_principled_textures"));
+  const PrincipledTextures textures = textures_of(layer);
   if (layer.kind == VLR_LAYER_TRANSPARENT || layer.kind == VLR_LAYER_EMISSION) {
     auto& to = layer.kind == VLR_LAYER_EMISSION ? layers.glowing : layers.transparent;
     to.push_back({base_color(desc), textures.base_color});
@@ -86,6 +94,7 @@ vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) 
     require_choice(layer.kind, VLR_LAYER_EMISSION, "vlr_layer_desc.kind");
     shader->last = &add_layer(shader->layers, layer);
     shader->relief |= layer.normal != nullptr;
+    shader->uv_sets = std::max(shader->uv_sets, sets_of(layer));
   });
 }
 
@@ -100,7 +109,8 @@ vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* des
                   "A shader without layers has nothing to weigh; add a layer before its factors.");
     }
     shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value,
-                                     number_slot(factor.texture, factor.map, "vlr_factor_desc.texture")});
+                                     number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture")});
+    shader->uv_sets = std::max(shader->uv_sets, static_cast<uint8_t>(1 + factor.set));
   });
 }
 
@@ -109,7 +119,9 @@ vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* sha
     require(scene, "scene");
     require(shader, "shader");
     require(material, "material");
-    *material = scene->scene->add_material(
-        {.material = make_layered_material(shader->layers), .rec709_colors = false, .relief = shader->relief});
+    *material = scene->scene->add_material({.material = make_layered_material(shader->layers),
+                                            .rec709_colors = false,
+                                            .relief = shader->relief,
+                                            .uv_sets = shader->uv_sets});
   });
 }

@@ -1,4 +1,7 @@
 #include "capi/surfaces.h"
+
+#include <algorithm>
+
 #include "capi/texture_maps.h"
 #include "material/principled_material.h"
 
@@ -10,23 +13,36 @@ namespace {
   throw Error(Status::invalid_argument, std::string(field) + " needs a texture of " + needed + ".");
 }
 
-}  // namespace
+static_assert(VLR_MOST_UV_SETS == SurfaceSite::kMostSets);
 
-TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, const char* field) {
-  if (texture != nullptr && !texture->color) refuse_kind(field, "colours (channel -1)");
-  return {texture != nullptr ? texture->color : nullptr, map_from(map)};
+size_t known_set(uint32_t set, const char* field) {
+  if (set < SurfaceSite::kMostSets) return set;
+  throw Error(Status::invalid_argument, std::string(field) + " is on set " + std::to_string(set) +
+                                            " of texture coordinates; a material has sets 0 to " +
+                                            std::to_string(SurfaceSite::kMostSets - 1) + ".");
 }
 
-TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, const char* field) {
+}  // namespace
+
+TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field) {
+  if (texture != nullptr && !texture->color) refuse_kind(field, "colours (channel -1)");
+  return {texture != nullptr ? texture->color : nullptr, map_from(map), known_set(set, field)};
+}
+
+TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field) {
   if (texture != nullptr && !texture->number) refuse_kind(field, "numbers (a channel)");
-  return {texture != nullptr ? texture->number : nullptr, map_from(map)};
+  return {texture != nullptr ? texture->number : nullptr, map_from(map), known_set(set, field)};
+}
+
+uint8_t uv_sets(const PrincipledTextures& t) {
+  return static_cast<uint8_t>(1 + std::max({t.base_color.set, t.metallic.set, t.roughness.set, t.alpha.set}));
 }
 
 PrincipledTextures converted(const vlr_principled_textures& t) {
-  return {color_slot(t.base_color, t.base_color_map, "vlr_principled_textures.base_color"),
-          number_slot(t.metallic, t.metallic_map, "vlr_principled_textures.metallic"),
-          number_slot(t.roughness, t.roughness_map, "vlr_principled_textures.roughness"),
-          number_slot(t.alpha, t.alpha_map, "vlr_principled_textures.alpha")};
+  return {color_slot(t.base_color, t.base_color_map, t.base_color_set, "vlr_principled_textures.base_color"),
+          number_slot(t.metallic, t.metallic_map, t.metallic_set, "vlr_principled_textures.metallic"),
+          number_slot(t.roughness, t.roughness_map, t.roughness_set, "vlr_principled_textures.roughness"),
+          number_slot(t.alpha, t.alpha_map, t.alpha_set, "vlr_principled_textures.alpha")};
 }
 
 PrincipledParameters parameters_of(const vlr_principled_desc& desc) {
@@ -60,9 +76,10 @@ vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principle
     require(scene, "scene");
     require(material, "material");
     const auto given = read_options(desc, vlr_principled_desc_init, "vlr_principled_desc");
-    const auto pictures = read_options(textures, vlr_principled_textures_init, "vlr_principled_textures");
-    *material = scene->scene->add_material({.material = material_of(given, converted(pictures)),
+    const auto pictures = converted(read_options(textures, vlr_principled_textures_init, "vlr_principled_textures"));
+    *material = scene->scene->add_material({.material = material_of(given, pictures),
                                             .emission = {given.emission[0], given.emission[1], given.emission[2]},
-                                            .rec709_colors = false});
+                                            .rec709_colors = false,
+                                            .uv_sets = uv_sets(pictures)});
   });
 }

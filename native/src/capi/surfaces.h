@@ -7,10 +7,13 @@
 
 namespace velour::capi {
 
-/// These throw Error(invalid_argument), by the name of `field`, for a texture of the other kind.
-TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, const char* field);
-TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, const char* field);
+/// These throw Error(invalid_argument), by the name of `field`, for a texture of the other kind and for a set of
+/// texture coordinates beyond the last.
+TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field);
+TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field);
 PrincipledTextures converted(const vlr_principled_textures& textures);
+/// How many sets of texture coordinates they look at.
+uint8_t uv_sets(const PrincipledTextures& textures);
 
 PrincipledParameters parameters_of(const vlr_principled_desc& desc);
 /// A uniform material knows its albedos more cheaply.

@@ -14,9 +14,12 @@ template <class T>
 struct TextureSlot {
   std::shared_ptr<const Texture<T>> texture{};
   TextureMap map{};  // of the surface's coordinates to the picture's
+  size_t set = 0;    // which of them (SurfaceSite::place)
 
   T at(const SurfaceSite& site, const T& otherwise) const {
-    return texture ? texture->look_up(map.point(site.uv), map.map * site.footprint) : otherwise;
+    if (!texture) return otherwise;
+    const SitePlace place = site.place(set);
+    return texture->look_up(map.point(place.uv), map.map * place.footprint);
   }
 };
 

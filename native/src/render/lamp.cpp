@@ -82,6 +82,10 @@ void Lamp::set_spot(const Light& light) {
   axis_ = -glm::normalize(light.light_to_world.column(2));
   cos_cone_ = std::cos(0.5f * std::clamp(light.angle, 0.0f, 2.0f * kPi));
   cosine_ = light.cosine;
+  if (light.cone_scale != Vec2(1.0f)) {
+    narrow_x_ = light.light_to_world.column(0) / light.cone_scale.x;
+    narrow_y_ = light.light_to_world.column(1) / light.cone_scale.y;
+  }
   fade_ = std::clamp(light.blend, 0.0f, 1.0f) * (1.0f - cos_cone_);
 }
 
@@ -110,8 +114,14 @@ void Lamp::set_spread(float spread) {
   focus_ = 1.0f / (1.0f - half * cot_spread_);
 }
 
-float Lamp::falloff(const Vec3& direction) const {
+float Lamp::cone_cosine(const Vec3& direction) const {
   const float cosine = -glm::dot(direction, axis_);
+  if (narrow_x_ == Vec3(0.0f)) return cosine;
+  return cosine / glm::length(Vec3(glm::dot(direction, narrow_x_), glm::dot(direction, narrow_y_), cosine));
+}
+
+float Lamp::falloff(const Vec3& direction) const {
+  const float cosine = type_ == Light::Type::spot ? cone_cosine(direction) : -glm::dot(direction, axis_);
   if (type_ == Light::Type::spot) {
     if (cosine <= cos_cone_) return 0.0f;
     const float t = cosine - cos_cone_;

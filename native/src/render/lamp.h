@@ -54,6 +54,8 @@ class Lamp {
   Sight hit_area(const Vec3& position, const Vec3& direction) const;
   /// Seen as a round cone from wherever.
   bool is_round() const { return type_ != Light::Type::rectangle && type_ != Light::Type::disk; }
+  /// Of a spot: cosine to the axis, in space as its cone was before it was scaled.
+  float cone_cosine(const Vec3& direction) const;
   /// How much of radiance and intensity goes against `direction`.
   float falloff(const Vec3& direction) const;
   /// Cone that holds the lamp, seen from `position`: its axis and 1 - cos of its half angle; 0: not seen.
@@ -67,8 +69,9 @@ class Lamp {
   Vec3 center_{0.0f};    // but for a sun
   Vec3 axis_{0.0f};      // sun: towards it; spot, rectangle, disk: where it shines
   Vec3 half_x_{0.0f}, half_y_{0.0f};
-  float one_minus_cos_ = 0;  // sun
-  float radius_ = 0;         // point, spot
+  Vec3 narrow_x_{0.0f}, narrow_y_{0.0f};  // spot: axes over the scale of its cone, where that is not 1
+  float one_minus_cos_ = 0;               // sun
+  float radius_ = 0;                      // point, spot
   float area_ = 0;
   float cos_cone_ = -1, fade_ = 0;    // spot: cosine where its cone ends, width of the rim in cosines
   float cot_spread_ = 0, focus_ = 1;  // rectangle, disk: cotangent of half the spread, radiance along the normal

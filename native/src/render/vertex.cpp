@@ -56,8 +56,9 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   if (!surface->material->varies()) return;
   transmits = surface->material->transmits();
   const TexturePoint texture = scene.texture(hit);
-  find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction,
-            pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction));
+  const RaySides sides = pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction);
+  find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction, sides);
+  if (surface->uv_sets > 1) find_others(scene, hit, ray.direction, sides);
   if (surface->relief) find_relief(scene, hit);
   if (crossing != nullptr && surface->holed()) {
     // At a point: a footprint would average the holes in, which the rays of a pixel do.
@@ -73,6 +74,13 @@ void Vertex::find_relief(const Scene& scene, const Hit& hit) {
   const Mat3 relief = scene.relief(hit);
   for (int i = 0; i < 3; ++i) site.relief[i] = (site.back ? -1.0f : 1.0f) * frame.to_local(relief[i]);
   site.ground = frame.to_local(geometric_normal);
+}
+
+void Vertex::find_others(const Scene& scene, const Hit& hit, const Vec3& direction, const RaySides& sides) {
+  for (size_t set = 1; set < surface->uv_sets; ++set) {
+    const TexturePoint texture = scene.texture(hit, set);
+    site.others[set - 1] = {texture.uv, texture_footprint(sides, direction, geometric_normal, texture)};
+  }
 }
 
 void Vertex::find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction,

@@ -66,6 +66,7 @@ struct Vertex {
   Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossing* crossing, const Ray& ray, const Hit& hit,
          const RayCone& cone_at_origin, const PixelFootprint* pixel);
   void find_relief(const Scene& scene, const Hit& hit);
+  void find_others(const Scene& scene, const Hit& hit, const Vec3& direction, const RaySides& sides);
   void find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
 };
 

@@ -12,10 +12,11 @@ struct Light {
   Rgb color{
       1.0f};  // sun: irradiance on a plane that faces it, W/m^2; others: power, W; of a spot: were its cone a sphere
   Affine light_to_world;
-  Vec2 size{0.0f};      // point, spot: radius, -; rectangle: sides; disk: diameters along x and y
-  float angle = 0.0f;   // sun: angular diameter; spot: of its cone; radians
-  float blend = 0.0f;   // spot: share of the cone over which it fades out, 0..1
-  bool cosine = false;  // spot: its light also falls with the cosine to the axis, as that of a small plane
+  Vec2 size{0.0f};        // point, spot: radius, -; rectangle: sides; disk: diameters along x and y
+  float angle = 0.0f;     // sun: angular diameter; spot: of its cone; radians
+  float blend = 0.0f;     // spot: share of the cone over which it fades out, 0..1
+  Vec2 cone_scale{1.0f};  // spot: the cone is so much wider along x and y, as if space were
+  bool cosine = false;    // spot: its light also falls with the cosine to the axis, as that of a small plane
   /// Rectangle, disk: full angle in which it shines, radians, as if through a grid of slats: radiance falls off
   /// linearly in the tangent of the angle to the normal, from a value that keeps the power. Pi: the same in all
   /// directions.

@@ -4,22 +4,10 @@
 #include <cmath>
 #include <string>
 
-#include "job/error.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
-
-/// Embree's own bound on coordinates; beyond it triangles vanish silently.
-constexpr float kReach = 1.8e18f;
-
-bool usable(const Vec3& p) {
-  return std::abs(p.x) < kReach && std::abs(p.y) < kReach && std::abs(p.z) < kReach;  // false for NaN
-}
-
-/// Twice the area times the unit normal, in float64: edges of tiny and huge meshes neither vanish nor overflow.
-Vec3d area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return glm::cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
-}
 
 Vec3 unit(const Vec3d& v) { return Vec3(v / glm::length(v)); }
 
@@ -29,70 +17,82 @@ bool usable_normal(const Vec3& n) {
   return length_sq > 1e-30f && std::isfinite(length_sq);
 }
 
-void check_length(size_t found, size_t expected, const char* what) {
-  if (found == 0 || found == expected) return;
-  throw Error(Status::invalid_argument, "A mesh has " + std::to_string(found) + " " + what +
-                                            " where its triangles need " + std::to_string(expected) + ".");
+void in_pieces(size_t count, const auto& work) {
+  const Progress unwatched;
+  parallel_pieces((count + kTrianglesOfPiece - 1) / kTrianglesOfPiece, 0, unwatched, [&](size_t piece) {
+    const size_t begin = piece * kTrianglesOfPiece;
+    work(begin, std::min(begin + kTrianglesOfPiece, count));
+  });
 }
 
 }  // namespace
 
 Mesh::Mesh(const MeshArrays& arrays) {
-  const size_t n = arrays.triangles.size();
-  check_length(arrays.corner_normals.size(), 3 * n, "corner normals");
-  check_length(arrays.corner_uvs.size(), 3 * n, "corner texture coordinates");
-  check_length(arrays.material_slots.size(), n, "material slots");
-  check_length(arrays.smooth.size(), n, "smooth flags");
+  arrays.check();
+  const std::vector<uint32_t> kept = usable_triangles(arrays);
+  const size_t count = kept.size();
+  dropped_ = static_cast<uint32_t>(arrays.triangles.size() - count);
   positions_.assign(arrays.positions.begin(), arrays.positions.end());
-  keep_good_triangles(arrays);
-}
-
-void Mesh::keep_good_triangles(const MeshArrays& arrays) {
-  std::vector<uint8_t> smooth;
-  for (size_t i = 0; i < arrays.triangles.size(); ++i) {
-    const glm::uvec3& t = arrays.triangles[i];
-    const uint32_t last = std::max({t.x, t.y, t.z});
-    if (last >= positions_.size()) {
-      throw Error(Status::invalid_argument, "Triangle " + std::to_string(i) + " names vertex " + std::to_string(last) +
-                                                " of a mesh with " + std::to_string(positions_.size()) + " vertices.");
-    }
-    const Vec3 &a = positions_[t.x], &b = positions_[t.y], &c = positions_[t.z];
-    if (!usable(a) || !usable(b) || !usable(c) || !(glm::length(area_normal(a, b, c)) > 0.0)) {
-      ++dropped_;
-      continue;
-    }
-    triangles_.push_back(t);
-    if (!arrays.smooth.empty()) smooth.push_back(arrays.smooth[i]);
-    if (!arrays.material_slots.empty()) slots_.push_back(arrays.material_slots[i]);
-    for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
-      if (!arrays.corner_normals.empty()) normals_.push_back(arrays.corner_normals[k]);
-      if (!arrays.corner_uvs.empty()) uvs_.push_back(arrays.corner_uvs[k]);
-    }
-  }
   // What no triangle names may hold anything; the ray tracer must not see it.
   for (Vec3& p : positions_) {
-    if (!usable(p)) p = Vec3(0.0f);
+    if (!usable_position(p)) p = Vec3(0.0f);
   }
-  compute_normals(smooth);
+  triangles_.resize(count);
+  normals_.resize(3 * count);
+  if (!arrays.corner_uvs.empty()) {
+    uvs_.resize(3 * count);
+    more_uvs_.assign(arrays.more_uvs.size() / arrays.corner_uvs.size(), std::vector<Vec2>(3 * count));
+    if (!arrays.relief_uvs.empty()) relief_uvs_.resize(3 * count);
+  }
+  if (!arrays.material_slots.empty()) slots_.resize(count);
+  in_pieces(count, [&](size_t begin, size_t end) { copy_triangles(arrays, kept, begin, end); });
+  const std::vector<Vec3d> sums = arrays.has_normals() ? std::vector<Vec3d>() : summed_normals();
+  in_pieces(count, [&](size_t begin, size_t end) { finish_normals(arrays, kept, sums, begin, end); });
 }
 
-void Mesh::compute_normals(std::span<const uint8_t> smooth) {
-  std::vector<Vec3d> sums;
-  if (normals_.empty()) {
-    sums.assign(positions_.size(), Vec3d(0.0));
-    for (const glm::uvec3& t : triangles_) {
-      const Vec3d n = area_normal(positions_[t.x], positions_[t.y], positions_[t.z]);
-      for (int k = 0; k < 3; ++k) sums[t[k]] += n;
+void Mesh::copy_triangles(const MeshArrays& arrays, std::span<const uint32_t> kept, size_t begin, size_t end) {
+  for (size_t i = begin; i < end; ++i) {
+    const size_t from = kept[i];
+    glm::uvec3 t = arrays.triangles[from];
+    if (!arrays.corner_vertices.empty()) {
+      for (int k = 0; k < 3; ++k) t[k] = arrays.corner_vertices[t[k]];
     }
+    triangles_[i] = t;
+    if (!slots_.empty()) slots_[i] = arrays.material_slots[from];
+    for (int k = 0; k < 3; ++k) normals_[3 * i + static_cast<size_t>(k)] = arrays.normal(from, k, t[k]);
+    if (!uvs_.empty()) copy_uvs(arrays, from, i);
   }
-  normals_.resize(3 * triangles_.size(), Vec3(0.0f));
-  for (size_t i = 0; i < triangles_.size(); ++i) {
+}
+
+void Mesh::copy_uvs(const MeshArrays& arrays, size_t from, size_t to) {
+  for (int k = 0; k < 3; ++k) {
+    const size_t corner = arrays.corner(from, k), place = 3 * to + static_cast<size_t>(k);
+    uvs_[place] = arrays.corner_uvs[corner];
+    for (size_t set = 0; set < more_uvs_.size(); ++set) {
+      more_uvs_[set][place] = arrays.more_uvs[set * arrays.corner_uvs.size() + corner];
+    }
+    if (!relief_uvs_.empty()) relief_uvs_[place] = arrays.relief_uvs[corner];
+  }
+}
+
+std::vector<Vec3d> Mesh::summed_normals() const {
+  std::vector<Vec3d> sums(positions_.size(), Vec3d(0.0));
+  for (const glm::uvec3& t : triangles_) {
+    const Vec3d n = area_normal(positions_[t.x], positions_[t.y], positions_[t.z]);
+    for (int k = 0; k < 3; ++k) sums[t[k]] += n;
+  }
+  return sums;
+}
+
+void Mesh::finish_normals(const MeshArrays& arrays, std::span<const uint32_t> kept, std::span<const Vec3d> sums,
+                          size_t begin, size_t end) {
+  for (size_t i = begin; i < end; ++i) {
     const glm::uvec3& t = triangles_[i];
-    const Vec3 flat = unit(area_normal(positions_[t.x], positions_[t.y], positions_[t.z]));
+    const bool summed = !sums.empty() && (arrays.smooth.empty() || arrays.smooth[kept[i]] != 0);
     for (int k = 0; k < 3; ++k) {
       Vec3& n = normals_[3 * i + static_cast<size_t>(k)];
-      if (!sums.empty() && (smooth.empty() || smooth[i] != 0) && glm::length(sums[t[k]]) > 0.0) n = unit(sums[t[k]]);
-      n = usable_normal(n) ? glm::normalize(n) : flat;
+      if (summed && glm::length(sums[t[k]]) > 0.0) n = unit(sums[t[k]]);
+      n = usable_normal(n) ? glm::normalize(n) : unit(area_normal(positions_[t.x], positions_[t.y], positions_[t.z]));
     }
   }
 }
@@ -135,7 +135,8 @@ Vec3 Mesh::tangent(uint32_t triangle, const Mat2& map) const {
 
 void Mesh::make_tangents() {
   if (uvs_.empty() || has_tangents()) return;
-  tangents_ = corner_tangents(positions_, triangles_, normals_, uvs_);
+  tangents_ = corner_tangents(positions_, triangles_, normals_, relief_uvs_.empty() ? uvs_ : relief_uvs_);
+  relief_uvs_ = {};
 }
 
 Mat3 Mesh::relief(uint32_t triangle, const Vec2& uv) const {
@@ -146,9 +147,11 @@ Mat3 Mesh::relief(uint32_t triangle, const Vec2& uv) const {
 }
 
 uint64_t Mesh::bytes() const {
+  uint64_t more = 0;
+  for (const std::vector<Vec2>& set : more_uvs_) more += set.size() * sizeof(Vec2);
   return positions_.size() * sizeof(Vec3) + triangles_.size() * sizeof(glm::uvec3) + normals_.size() * sizeof(Vec3) +
-         uvs_.size() * sizeof(Vec2) + slots_.size() * sizeof(uint32_t) + tangents_.size() * sizeof(CornerTangent) +
-         sides_.size() * sizeof(BorderEdge);
+         (uvs_.size() + relief_uvs_.size()) * sizeof(Vec2) + slots_.size() * sizeof(uint32_t) +
+         tangents_.size() * sizeof(CornerTangent) + sides_.size() * sizeof(BorderEdge) + more;
 }
 
 }  // namespace velour

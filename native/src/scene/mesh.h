@@ -8,19 +8,10 @@
 
 #include "scene/border_edges.h"
 #include "scene/corner_tangents.h"
+#include "scene/mesh_arrays.h"
 #include "sphere/vec.h"
 
 namespace velour {
-
-/// Borrowed arrays that a Mesh is built from. Empty means: not given.
-struct MeshArrays {
-  std::span<const Vec3> positions{};
-  std::span<const glm::uvec3> triangles{};
-  std::span<const Vec3> corner_normals{};      // 3 a triangle; any length but zero
-  std::span<const Vec2> corner_uvs{};          // 3 a triangle
-  std::span<const uint32_t> material_slots{};  // 1 a triangle; none: slot 0
-  std::span<const uint8_t> smooth{};           // 1 a triangle; used without corner_normals; none: all smooth
-};
 
 /// From where to where a shell reaches over its surface, metres of the world; a surface without one: as low as high.
 struct ShellHeights {
@@ -28,8 +19,7 @@ struct ShellHeights {
 };
 
 /// Immutable but for make_tangents(). Triangles that a ray cannot hit reliably - a corner that is not finite or out of
-/// reach, no area
-/// - are left out. Zero or non-finite shading normals are replaced by the triangle's own.
+/// reach, no area - are left out. Zero or non-finite shading normals are replaced by the triangle's own.
 class Mesh {
  public:
   /// Copies. Throws Error(invalid_argument) when lengths disagree or a triangle names a vertex that is not there.
@@ -59,9 +49,11 @@ class Mesh {
   /// How many triangles of the input were left out.
   uint32_t dropped() const { return dropped_; }
   bool has_uvs() const { return !uvs_.empty(); }
-  /// Only with has_uvs().
-  std::span<const Vec2, 3> corner_uvs(uint32_t triangle) const {
-    return std::span<const Vec2, 3>(&uvs_[3 * static_cast<size_t>(triangle)], 3);
+  /// Only with has_uvs(). Of a set that is not there, the first.
+  std::span<const Vec2, 3> corner_uvs(uint32_t triangle, size_t set = 0) const {
+    const size_t corner = 3 * static_cast<size_t>(triangle);
+    const bool other = set > 0 && set <= more_uvs_.size() && corner < more_uvs_[set - 1].size();
+    return std::span<const Vec2, 3>(other ? &more_uvs_[set - 1][corner] : &uvs_[corner], 3);
   }
 
   /// At barycentric weights (u, v) of corners 1 and 2. Object space; not normalised.
@@ -86,15 +78,22 @@ class Mesh {
   uint64_t bytes() const;
 
  private:
-  void keep_good_triangles(const MeshArrays& arrays);
-  void compute_normals(std::span<const uint8_t> smooth);
+  /// Copies what belongs to triangles [begin, end) of this mesh; `kept`: their numbers in `arrays`.
+  void copy_triangles(const MeshArrays& arrays, std::span<const uint32_t> kept, size_t begin, size_t end);
+  void copy_uvs(const MeshArrays& arrays, size_t from, size_t to);
+  /// Replaces normals that are not given or not usable, of triangles [begin, end).
+  void finish_normals(const MeshArrays& arrays, std::span<const uint32_t> kept, std::span<const Vec3d> sums,
+                      size_t begin, size_t end);
+  std::vector<Vec3d> summed_normals() const;
   /// `quad`: (bottom a, bottom b, top b), (bottom a, top b, top a) over the edge from a to b.
   void add_side(const BorderEdge& edge, const std::array<glm::uvec3, 2>& quad);
 
   std::vector<Vec3> positions_;
   std::vector<glm::uvec3> triangles_;
-  std::vector<Vec3> normals_;  // 3 a triangle
-  std::vector<Vec2> uvs_;      // 3 a triangle, or none
+  std::vector<Vec3> normals_;                // 3 a triangle
+  std::vector<Vec2> uvs_;                    // 3 a triangle, or none
+  std::vector<std::vector<Vec2>> more_uvs_;  // other sets of them, but for sides
+  std::vector<Vec2> relief_uvs_;             // 3 a triangle until there are tangents; none: the first set
   std::vector<uint32_t> slots_;
   std::vector<CornerTangent> tangents_;  // 3 a triangle, or none
   std::vector<BorderEdge> sides_;        // of triangles of the top

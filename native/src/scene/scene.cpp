@@ -110,11 +110,13 @@ void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vect
 
 uint32_t Scene::add_light(const Light& light) {
   require_finite(light.light_to_world, "a light");
-  const float numbers[] = {light.color.r, light.color.g, light.color.b, light.size.x,
-                           light.size.y,  light.angle,   light.blend,   light.spread};
+  const float numbers[] = {light.color.r, light.color.g, light.color.b, light.size.x,       light.size.y,
+                           light.angle,   light.blend,   light.spread,  light.cone_scale.x, light.cone_scale.y};
   for (float x : numbers) {
-    if (!std::isfinite(x)) refuse("A light's colour, size or angle is not finite.");
+    if (!std::isfinite(x)) refuse("A light's colour, size, angle or scale is not finite.");
   }
+  if (!(light.cone_scale.x > 0.0f) || !(light.cone_scale.y > 0.0f))
+    refuse("The scale of a spot's cone is not positive.");
   changed();
   lights_.push_back(light);
   return static_cast<uint32_t>(lights_.size() - 1);
@@ -226,21 +228,21 @@ const TextureMap* Scene::placement(const Hit& hit) const {
   return instance.placements.empty() ? nullptr : &instance.placements[slot(hit)];
 }
 
-TexturePoint Scene::texture(const Hit& hit) const {
-  const TexturePoint point = texture_of_mesh(hit);
-  const TextureMap* placed = placement(hit);
+TexturePoint Scene::texture(const Hit& hit, size_t set) const {
+  const TexturePoint point = texture_of_mesh(hit, set);
+  const TextureMap* placed = set == 0 ? placement(hit) : nullptr;
   if (placed == nullptr) return point;
   const Mat2& map = placed->map;
   return {placed->point(point.uv), map[0].x * point.u_gradient + map[1].x * point.v_gradient,
           map[0].y * point.u_gradient + map[1].y * point.v_gradient};
 }
 
-TexturePoint Scene::texture_of_mesh(const Hit& hit) const {
+TexturePoint Scene::texture_of_mesh(const Hit& hit, size_t set) const {
   const Instance& instance = instances_[hit.instance];
   const Mesh& mesh = traced_mesh(instance);
   if (!mesh.has_uvs()) return {};
   const glm::uvec3& corner = mesh.triangles()[hit.triangle];
-  const std::span<const Vec2, 3> uv = mesh.corner_uvs(hit.triangle);
+  const std::span<const Vec2, 3> uv = mesh.corner_uvs(hit.triangle, set);
   const auto edge = [&](int k) {
     return Vec3d(instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]));
   };

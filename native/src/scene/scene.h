@@ -25,6 +25,7 @@ struct SurfaceMaterial {
   Rgb emission{0.0f};         // radiance of both sides, working space
   bool rec709_colors = true;  // f is Rec. 709 (measured) and is taken to the working space; false: already there
   bool relief = false;        // it has a normal map: meshes that show it get tangents
+  uint8_t uv_sets = 1;        // how many sets of texture coordinates it looks at, SurfaceSite::kMostSets at most
   /// Structure that lies over the surface and lets rays through; null: none. Needs texture coordinates.
   std::shared_ptr<const ShellField> shell = nullptr;
   /// The structure's own surface is what is shaded and shadowed; false: f says how the structure looks over its plane,
@@ -143,8 +144,8 @@ class Scene {
   /// Number of the material that was hit.
   uint32_t material(const Hit& hit) const;
   bool is_holdout(const Hit& hit) const { return (instances_[hit.instance].hidden & hidden::kHoldout) != 0; }
-  /// Apart from surface(): most materials are uniform.
-  TexturePoint texture(const Hit& hit) const;
+  /// Apart from surface(): most materials are uniform. Only the first set of texture coordinates is placed.
+  TexturePoint texture(const Hit& hit, size_t set = 0) const;
   /// What the components of a normal map are along at a hit, world space: tangent, bitangent, normal, towards the
   /// mesh's front, not normalised. Zero without texture coordinates, or where no material of the mesh has a map.
   Mat3 relief(const Hit& hit) const;
@@ -192,7 +193,7 @@ class Scene {
   uint32_t slot(const Hit& hit) const;
   /// Null where texture coordinates are the mesh's own.
   const TextureMap* placement(const Hit& hit) const;
-  TexturePoint texture_of_mesh(const Hit& hit) const;
+  TexturePoint texture_of_mesh(const Hit& hit, size_t set) const;
   Bounds bounds_of_instances() const;
   SceneInfo count() const;
 

@@ -17,6 +17,7 @@ class Relief(NamedTuple):
 
     picture: object
     strength: float
+    uv_map: str = ""  # of its tangents, by name; empty: the one that renders
 
 
 class Layer(NamedTuple):
@@ -57,6 +58,13 @@ def as_principled(layers):
     if glow:
         layer = layer._replace(values={**layer.values, "emission": glow.values["base_color"]}, glow=None)
     return layer if layer.kind == "principled" else None
+
+
+def shines(layer):
+    """Whether it sends light of its own."""
+    if layer.kind != "emission":
+        return layer.glow is not None and shines(layer.glow)
+    return "base_color" in layer.pictures or max(layer.values["base_color"]) > 0.0
 
 
 def unlike_reflection(layers):

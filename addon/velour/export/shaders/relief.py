@@ -19,15 +19,4 @@ def read_relief(plug, reader):
     strength = max(reader.value(fed.input("Strength")), 0.0)
     if picture is None or strength == 0.0:
         return None
-    _note_coordinates(fed, picture, reader)
-    return Relief(picture, strength)
-
-
-def _note_coordinates(fed, picture, reader):
-    """Tangents are those of the UV map that the pictures are on; nothing named may be the same, or not."""
-    named = fed.node.uv_map
-    if named and picture.coordinates and named != picture.coordinates:
-        reader.note(
-            fed,
-            f"the UV map '{named}' is ignored; tangents follow that of the image, '{picture.coordinates}'.",
-        )
+    return Relief(picture, strength, fed.node.uv_map)

@@ -29,7 +29,6 @@ def surface_layers(material, notes):
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
         notes.add(f"{owner}: it is mixed of more than {_MOST_LAYERS} shaders; rendered grey.")
         return [grey()]
-    reader.note_uv_maps(material.node_tree, layers)
     return layers
 
 

@@ -1,6 +1,6 @@
 """Numbers, colours and pictures of a node's inputs."""
 
-from ..image_nodes import UnsupportedError, named_uv_maps, picture_of
+from ..image_nodes import UnsupportedError, picture_of
 from ..plugs import followed
 
 _MOST_STEPS = 256
@@ -39,16 +39,6 @@ class Reader:
 
     def note_link(self, plug, reason=""):
         self.note(plug, f"the link to '{plug.socket.name}' is ignored; its own value is used{reason}.")
-
-    def note_uv_maps(self, tree, layers):
-        """Says so where pictures are on several UV maps."""
-        parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
-        pictures = [p for part in parts for p in part.pictures.values()]
-        pictures += [part.relief.picture for part in parts if part.relief]
-        pictures += [f.picture for part in parts for f in part.factors if f.picture]
-        if len({picture.coordinates for picture in pictures}) > 1:
-            shown = named_uv_maps(tree)[0]
-            self.notes.add(f"{self.owner}: its pictures ask for several UV maps; all are shown by '{shown}'.")
 
 
 def own_value(socket, asked=None):

@@ -172,6 +172,25 @@ TEST(Lamp, SpotFadesOverItsBlend) {
   EXPECT_NEAR(share(inner + 0.001f), inner + 0.001f, 1e-5f);
 }
 
+TEST(Lamp, SpotsOfScaledObjectsHaveEllipticCones) {
+  Light light = lamp_above(Light::Type::spot, {0, 0});
+  light.angle = 1.0f;
+  light.blend = 0.5f;
+  light.light_to_world = {{0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 2}};  // x points along the world's y
+  const auto share = [&](const Vec3& along) {
+    return Lamp(light, 1).irradiance(Vec3(0, 0, 2) + glm::normalize(along)).perpendicular.g * 4 * kPi;
+  };
+  float circular[2];
+  for (const int axis : {0, 1}) circular[axis] = share({axis == 0 ? 0.45f : 0, axis == 1 ? 0.45f : 0, -1});
+  ASSERT_GT(circular[0], 0.1f);
+  ASSERT_LT(circular[0], 0.9f);
+  light.cone_scale = {2, 0.5f};
+  EXPECT_NEAR(share({0, 0.9f, -1}), circular[0], 1e-5f);
+  EXPECT_NEAR(share({0.225f, 0, -1}), circular[1], 1e-5f);
+  EXPECT_EQ(share({0.45f, 0, -1}), 0);
+  EXPECT_NEAR(share({0, 0, -1}), 1, 1e-5f);
+}
+
 TEST(Lamp, DiskThatFacesIsSeenUnderItsTangent) {
   Light light;
   light.type = Light::Type::point;

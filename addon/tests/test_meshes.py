@@ -1,0 +1,84 @@
+"""Meshes of faces with shared corners."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from velour.native import Scene, Texture, TextureSlot, VelourError, render_job
+
+_COLORS = np.random.default_rng(1).uniform(0.1, 0.9, (4, 4, 3)).astype(np.float32)
+
+
+def _cube_faces():
+    """positions, corner_vertices of six quads, triangles of corners, faces of those, normals of faces."""
+    positions = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], np.float32)
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    starts = 4 * np.arange(6, dtype=np.uint32)
+    triangles = np.concatenate([starts[:, None] + [0, 1, 2], starts[:, None] + [0, 2, 3]]).astype(np.uint32)
+    normals = np.array([(0, 0, -1), (0, 0, 1), (0, -1, 0), (0, 1, 0), (-1, 0, 0), (1, 0, 0)], np.float32)
+    return positions, np.array(quads, np.uint32).ravel(), triangles, triangles[:, 0] // 4, normals
+
+
+def _picture_of_mesh(**mesh):
+    with Scene() as scene, Texture.from_pixels(_COLORS, filter="closest") as texture:
+        number, dropped = scene.add_mesh(**mesh)
+        assert dropped == 0
+        material = scene.add_textured_material({"base_color": TextureSlot(texture)})
+        scene.add_instance(number, np.eye(4), [material])
+        scene.add_light("sun", (2, 2, 2), _looking_from((3, -4, 5)))
+        scene.look_at((3, -5, 4), (0, 0, 0), 0.6, 1.0)
+        scene.commit()
+        with render_job(scene, width=16, height=16, spp=8) as job:
+            job.run()
+            return job.read_pass("Combined")
+
+
+def _looking_from(eye):
+    z = np.array(eye, float) / np.linalg.norm(eye)
+    x = np.cross((0, 0, 1), z) / np.linalg.norm(np.cross((0, 0, 1), z))
+    return np.column_stack((x, np.cross(z, x), z, eye)).astype(np.float32)
+
+
+@pytest.mark.parametrize("shading", ["flat", "smooth", "mixed", "corners"])
+def test_corners_of_faces_need_not_be_spread_over_triangles(shading):
+    """The same picture, bit by bit, as of arrays with three of everything for each triangle."""
+    positions, vertices, triangles, faces, face_normals = _cube_faces()
+    uvs = np.random.default_rng(2).uniform(0, 1, (24, 2)).astype(np.float32)
+    vertex_normals = (positions / np.sqrt(3)).astype(np.float32)
+    smooth = np.array([1, 0, 1, 0, 0, 1], np.uint8)
+    flat_corners, smooth_corners = np.repeat(face_normals, 4, axis=0), vertex_normals[vertices]
+    mixed = np.where(np.repeat(smooth, 4)[:, None] != 0, smooth_corners, flat_corners)
+    by_faces = {"face_normals": face_normals, "triangle_faces": faces}
+    given, corner_normals = {
+        "flat": (by_faces, flat_corners),
+        "smooth": ({"vertex_normals": vertex_normals}, smooth_corners),
+        "mixed": ({**by_faces, "vertex_normals": vertex_normals, "face_smooth": smooth}, mixed),
+        "corners": ({"corner_normals": mixed}, mixed),
+    }[shading]
+    shared = _picture_of_mesh(
+        positions=positions, triangles=triangles, corner_vertices=vertices, corner_uvs=uvs, **given
+    )
+    spread = _picture_of_mesh(
+        positions=positions,
+        triangles=vertices[triangles],
+        corner_uvs=uvs[triangles],
+        corner_normals=np.ascontiguousarray(corner_normals[triangles], np.float32),
+    )
+    assert spread[..., :3].max() > 0.05
+    np.testing.assert_array_equal(shared, spread)
+
+
+def test_corners_and_faces_that_are_not_there_are_refused():
+    positions, vertices, triangles, faces, normals = _cube_faces()
+    mesh = {"positions": positions, "triangles": triangles, "corner_vertices": vertices}
+    with Scene() as scene:
+        with pytest.raises(VelourError, match="names corner 24 of a mesh with 24 corners"):
+            scene.add_mesh(**{**mesh, "triangles": triangles + np.uint32(1)})
+        with pytest.raises(VelourError, match="names vertex 8 of a mesh with 8 vertices"):
+            scene.add_mesh(**{**mesh, "corner_vertices": vertices + np.uint32(1)})
+        with pytest.raises(VelourError, match="names face 6 of a mesh with 6 faces"):
+            scene.add_mesh(**mesh, face_normals=normals, triangle_faces=faces + np.uint32(1))
+        with pytest.raises(VelourError, match="without the faces of its triangles"):
+            scene.add_mesh(**mesh, face_normals=normals)
+        with pytest.raises(VelourError, match=r"corner_uvs has shape \(12, 3, 2\)"):
+            scene.add_mesh(**mesh, corner_uvs=np.zeros((12, 3, 2), np.float32))

@@ -1,0 +1,85 @@
+"""Pictures that can only be black: refused with the reason, unless they may be meant."""
+
+from .film import hides_world
+from .notes import ExportError
+
+_NO_LIGHT = (
+    "nothing shines in it: it has no light with any power, no glowing material and a black world, so its"
+    " picture is black; add a light, or raise the strength of the world"
+)
+_NOTHING_SEEN = (
+    "it shows the camera no object with faces and a black world, so its picture is black; switch objects or"
+    " their collections on for renders (the camera in the Outliner), or give the world a colour"
+)
+
+
+def refuse_black(depsgraph, objects, materials, world_shines, notes):
+    """Of the ObjectExport and MaterialTable of what `depsgraph` shows."""
+    scene = depsgraph.scene_eval
+    if scene.render.film_transparent:
+        return
+    all_objects = depsgraph.scene.objects
+    reason = None
+    if not (objects.shines or materials.glows or world_shines):
+        reason, changes = _NO_LIGHT, _light_may_change(depsgraph.scene, all_objects)
+    elif not objects.is_seen and (not world_shines or hides_world(scene.world)):
+        reason, changes = _NOTHING_SEEN, any(map(_faces_may_change, all_objects))
+    if reason is None:
+        return
+    sentence = f"Scene '{scene.name}', view layer '{depsgraph.view_layer_eval.name}': {reason}."
+    if not changes and not may_be_meant(depsgraph):
+        raise ExportError(sentence)
+    notes.add(sentence)
+
+
+def may_be_meant(depsgraph):
+    """Whether somebody may want a black picture: it is part of another, or is not looked at for light."""
+    scene, layer = depsgraph.scene, depsgraph.view_layer_eval
+    layers = [other for other in scene.view_layers if other.use]
+    composited = scene.render.use_compositing and _compositor(scene)
+    return len(layers) > 1 or composited or layer.use_pass_normal or layer.velour.use_pass_sample_count
+
+
+def _compositor(scene):
+    if hasattr(scene, "compositing_node_group"):  # 5.0 and newer
+        return scene.compositing_node_group is not None
+    return scene.use_nodes
+
+
+def is_animated(block):
+    """Whether a datablock, its nodes or its shapes may be others in another frame."""
+    blocks = (block, getattr(block, "node_tree", None), getattr(block, "shape_keys", None))
+    return any(_has_animation(each) for each in blocks if each is not None)
+
+
+def _has_animation(block):
+    data = getattr(block, "animation_data", None)
+    return data is not None and bool(data.action or data.drivers or data.nla_tracks)
+
+
+def _light_may_change(scene, objects):
+    if scene.world and is_animated(scene.world):
+        return True
+    return any(_may_shine_later(obj) for obj in objects)
+
+
+def _may_shine_later(obj):
+    blocks = [obj.data] if obj.type == "LIGHT" else [slot.material for slot in obj.material_slots]
+    comes_and_goes = is_animated(obj) and (obj.type == "LIGHT" or obj.hide_render)
+    return comes_and_goes or any(block and is_animated(block) for block in blocks)
+
+
+def _faces_may_change(obj):
+    """Modifiers and particles may have nothing to show in this frame alone."""
+    if obj.type in ("LIGHT", "CAMERA", "SPEAKER", "LIGHT_PROBE"):
+        return False
+    blocks = [block for block in (obj, obj.data) if block is not None]
+    return bool(obj.modifiers or obj.particle_systems) or any(map(is_animated, blocks))
+
+
+def refuse_dark_inside(depsgraph, pixels, surroundings):
+    """A black picture of the inside of a thing that nothing lights; of a flight through it, frames may be."""
+    scene = depsgraph.scene
+    is_part = scene.render.use_border or any(map(is_animated, scene.objects)) or may_be_meant(depsgraph)
+    if surroundings and not is_part and not pixels[..., :3].any():
+        raise ExportError(surroundings)

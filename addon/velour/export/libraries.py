@@ -1,0 +1,51 @@
+"""Linked .blend files that are not there."""
+
+import os
+
+import bpy
+
+from .files import FIND
+from .notes import ExportError
+
+
+def refuse_missing_libraries(scene):
+    """Refuses an original scene that shows something of a library that is gone: it would show less."""
+    missing = {library.as_pointer() for library in bpy.data.libraries if not _is_there(library)}
+    for block in _shown_by(scene) if missing else ():
+        library = block.library
+        if library is not None and library.as_pointer() in missing:
+            kind, path = block.bl_rna.name, _path(library)
+            raise ExportError(f"{kind} '{block.name}': its library {path!r} is missing; {FIND}.")
+
+
+def _is_there(library):
+    return library.packed_file is not None or os.path.isfile(_path(library))
+
+
+def _path(library):
+    return os.path.normpath(bpy.path.abspath(library.filepath, library=library.parent))
+
+
+def _shown_by(scene):
+    """Datablocks that a picture of the scene is made of, each once; what is gone has left a stand-in."""
+    waiting, seen = [scene.collection, scene.world], set()
+    while waiting:
+        block = waiting.pop()
+        if block is None or block.as_pointer() in seen:
+            continue
+        seen.add(block.as_pointer())
+        yield block
+        waiting += _parts(block)
+
+
+def _parts(block):
+    if isinstance(block, bpy.types.Collection):
+        return [*block.objects, *block.children]
+    if isinstance(block, bpy.types.Object):
+        slots = [slot.material for slot in block.material_slots]
+        override = block.override_library
+        return [block.data, block.instance_collection, *slots, override.reference if override else None]
+    trees = [block.node_tree] if getattr(block, "node_tree", None) else []
+    if isinstance(block, bpy.types.NodeTree):
+        trees = [node.node_tree for node in block.nodes if getattr(node, "node_tree", None)]
+    return trees

@@ -1,0 +1,92 @@
+"""What is exported of meshes, against what Blender says of their corners."""
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+
+def _export(name):
+    return __import__(f"{inputs.ADDON}.export.{name}", fromlist=[name])
+
+
+def _blenders_normals(mesh):
+    """[triangles x 3 x 3]"""
+    normals = np.empty((len(mesh.loops), 3), np.float32)
+    if hasattr(mesh, "corner_normals"):
+        mesh.corner_normals.foreach_get("vector", normals.reshape(-1))
+    else:
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", normals.reshape(-1))
+    mesh.calc_loop_triangles()
+    return np.array([[normals[corner] for corner in t.loops] for t in mesh.loop_triangles])
+
+
+class MeshArrays(BlenderTest):
+    """A ball of quads and triangles, dented so that no face is flat."""
+
+    def setUp(self):
+        super().setUp()
+        self.ball = scenes.add_sphere()
+        for i, vertex in enumerate(self.ball.data.vertices):
+            vertex.co *= 1 + 0.05 * (i % 7)
+
+    def _arrays(self, uv_maps=()):
+        self.evaluated = self.ball.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        return _export("meshes").object_arrays(self.evaluated, uv_maps)
+
+    def _assert_normals(self, *given):
+        arrays = self._arrays()
+        there = [
+            name for name in ("corner", "vertex", "face") if getattr(arrays, f"{name}_normals") is not None
+        ]
+        self.assertEqual(there, list(given))
+        np.testing.assert_allclose(
+            arrays.normals(slice(None)), _blenders_normals(self.evaluated.data), atol=1e-6
+        )
+
+    def _shade(self, smooth):
+        self.ball.data.polygons.foreach_set("use_smooth", smooth)
+        self.ball.data.update()
+
+    def test_smooth(self):
+        self._assert_normals("vertex")
+
+    def test_flat(self):
+        self._shade([False] * len(self.ball.data.polygons))
+        self._assert_normals("face")
+
+    def test_mixed(self):
+        self._shade([i % 3 == 0 for i in range(len(self.ball.data.polygons))])
+        newer = hasattr(self.ball.data, "normals_domain")
+        self._assert_normals(*(("corner",) if newer else ("vertex", "face")))
+
+    def test_auto_smooth(self):
+        if not hasattr(self.ball.data, "use_auto_smooth"):
+            self.skipTest("auto smooth is a modifier since Blender 4.1")
+        self.ball.data.use_auto_smooth, self.ball.data.auto_smooth_angle = True, 0.2
+        self._assert_normals("corner")
+
+    def test_coordinates_only_where_they_are_looked_at(self):
+        self.assertIsNotNone(self._arrays().corner_uvs)
+        self.assertIsNone(self._arrays(None).corner_uvs)
+
+    def test_coordinates_of_slots(self):
+        """A face has the UV maps that its material asks for, or else the one that renders."""
+        mesh, uv_maps = self.ball.data, _export("uv_maps")
+        other = mesh.uv_layers.new(name="other")
+        other.data.foreach_set("uv", np.arange(2 * len(mesh.loops), dtype=np.float32))
+        mesh.polygons.foreach_set("material_index", [i % 2 for i in range(len(mesh.polygons))])
+        for _ in range(2):
+            mesh.materials.append(None)
+        asked = (uv_maps.UvMaps(("other", "UVMap"), "missing"), uv_maps.RENDERED)
+        arrays = self._arrays(asked)
+        first, rendered = np.empty((2, len(mesh.loops), 2), np.float32)
+        other.data.foreach_get("uv", first.reshape(-1))
+        mesh.uv_layers["UVMap"].data.foreach_get("uv", rendered.reshape(-1))
+        odd = arrays.material_slots == 1
+        np.testing.assert_array_equal(arrays.uvs(~odd), first[arrays.triangles[~odd]])
+        np.testing.assert_array_equal(arrays.uvs(odd), rendered[arrays.triangles[odd]])
+        np.testing.assert_array_equal(arrays.more_uvs, rendered[None])
+        np.testing.assert_array_equal(arrays.relief_uvs, rendered)
