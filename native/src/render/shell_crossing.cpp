@@ -25,34 +25,31 @@ bool goes_in(const Ray& ray, const Hit& hit) { return glm::dot(ray.direction, hi
 }  // namespace
 
 ShellCrossing::ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit)
-    : foot_(scene.shell_foot(hit)),
+    : scene_(scene),
+      foot_(scene.shell_foot(hit)),
       direction_(downwards(ray, foot_.top)),
       leaving_(direction_ != ray.direction),
       crossing_(ray.origin + hit.distance * ray.direction),
       side_normal_(hit.geometric_normal),
-      frame_(scene.shell(foot_.top, direction_)),
-      texture_(scene.texture(foot_.top)) {
-  // Beside the outline of the smooth surface the ray passes, whatever its triangles are.
+      frame_(scene.shell(foot_.top, direction_)) {
   ShellEdge edge{frame_.softness};
   if (edge.softness > 0) edge.offset = edge.softness * (ray_number(ray, hit, RayDecision::shell_edge) - 0.5f);
   way_ = foot_.is_side ? way_at_side(ray, hit, edge) : way_behind(in_shell(), hit, edge);
-  if (!way_.empty() && scene.has_sides(hit)) end_at_sides(scene, ray, hit);
+  if (!way_.empty() && scene.has_sides(hit)) end_at_sides(ray, hit);
 }
 
 ShellRay ShellCrossing::in_shell() const {
-  const float aspect = field().volume().aspect, cosine = -glm::dot(direction_, frame_.normal);
-  const Vec3 along = direction_ + cosine * frame_.normal;
-  const float sine = glm::length(along);
-  const Vec3 unit = sine > 0 ? along / sine : Vec3(0.0f);
-  return {.place = texture_.uv * Vec2(1, aspect),
-          .along = Vec2(glm::dot(texture_.u_gradient, unit), aspect * glm::dot(texture_.v_gradient, unit)),
-          .cosine = std::clamp(cosine, foot_.is_side ? -1.0f : 0.0f, 1.0f),
+  const Vec2 widths(1, field().volume().aspect);
+  return {.place = widths * frame_.uv,
+          .along = widths * frame_.uv_along,
+          .cosine = std::clamp(-glm::dot(direction_, frame_.normal), foot_.is_side ? -1.0f : 0.0f, 1.0f),
           .curvature = frame_.curvature,
           .scale = frame_.scale};
 }
 
 ShellWay ShellCrossing::way_behind(const ShellRay& ray, const Hit& hit, const ShellEdge& edge) const {
   const OcclusionVolume& volume = field().volume();
+  // Beside the outline of the smooth surface the ray passes, whatever its triangles are.
   if (!(ray.cosine > 0)) return {ray, volume, 0, 0};
   const ShellSpan span = span_of(ray, volume);
   if (!leaving_) return {ray, volume, 0, span.end, false, edge};
@@ -79,22 +76,27 @@ ShellWay ShellCrossing::way_at_side(const Ray& ray, const Hit& hit, const ShellE
 }
 
 /// A ray that comes out of a side goes on outside; one that came in through a side is decided there.
-void ShellCrossing::end_at_sides(const Scene& scene, const Ray& ray, const Hit& hit) {
+void ShellCrossing::end_at_sides(const Ray& ray, const Hit& hit) {
   if (foot_.is_side ? goes_in(ray, hit) : !leaving_) {
     const float way = way_.end - way_.begin, far = hit.distance + std::abs(way);
-    const float side = scene.next_side(hit, {ray.origin, hit.distance, ray.direction, far}, false);
+    const float side = scene_.next_side(hit, {ray.origin, hit.distance, ray.direction, far}, false);
     way_.end = side <= far ? std::copysign(side - hit.distance, way) : way_.end;
     if (!std::isfinite(way_.end)) way_.end = way_.begin;
   } else {
     const float from = std::max(0.0f, hit.distance - std::abs(way_.end - way_.begin));
-    const float side = scene.next_side(hit, {ray.origin, from, ray.direction, hit.distance}, true);
+    const float side = scene_.next_side(hit, {ray.origin, from, ray.direction, hit.distance}, true);
     if (side <= hit.distance) way_.end = way_.begin;
   }
 }
 
 bool ShellCrossing::find() {
+  const Hit& top = foot_.top;
   hit_.met = false;
-  if (!way_.empty()) hit_ = trace_shell(field(), way_);
+  if (!std::isnan(top.shell_s)) {  // which is known already
+    hit_ = {true, top.shell_begin, top.shell_s, way_.ray.at(top.shell_s) + Vec3(0, 0, field().volume().top)};
+  } else if (!way_.empty()) {
+    hit_ = trace_shell(field(), way_);
+  }
   return hit_.met;
 }
 
@@ -131,7 +133,8 @@ Vec3 ShellCrossing::cut_normal() const {
 Vec3 ShellCrossing::structure_normal(const Vec3& up) const {
   const float aspect = field().volume().aspect;
   const Vec3 slope = field().gradient(hit_.place);
-  const Vec3 n = slope.x * texture_.u_gradient + slope.y * aspect * texture_.v_gradient + slope.z * frame_.scale * up;
+  const TexturePoint texture = scene_.texture(foot_.top);
+  const Vec3 n = slope.x * texture.u_gradient + slope.y * aspect * texture.v_gradient + slope.z * frame_.scale * up;
   const float square = glm::dot(n, n);
   return square > 0 ? n / std::sqrt(square) : up;
 }

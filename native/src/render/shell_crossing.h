@@ -39,7 +39,7 @@ class ShellCrossing {
  private:
   ShellRay in_shell() const;
   ShellWay way_at_side(const Ray& ray, const Hit& hit, const ShellEdge& edge);
-  void end_at_sides(const Scene& scene, const Ray& ray, const Hit& hit);
+  void end_at_sides(const Ray& ray, const Hit& hit);
   /// Whether it is met where the side cuts it.
   bool is_cut() const;
   Vec3 cut_normal() const;
@@ -47,13 +47,13 @@ class ShellCrossing {
   Vec3 normal() const;
   Vec3 structure_normal(const Vec3& up) const;
 
+  const Scene& scene_;
   const Scene::ShellFoot foot_;
   const Vec3 direction_;  // of the ray, downwards through the shell
   bool leaving_;
   Vec3 crossing_;     // of the top or side
   Vec3 side_normal_;  // outwards, not normalised
   ShellFrame frame_;
-  TexturePoint texture_;
   ShellWay way_;
   ShellHit hit_;
 };

@@ -18,7 +18,7 @@ Rgb* behind(Rgb* passed, size_t i) { return passed != nullptr ? passed + i : nul
 /// Ways through shells that are traced together, as long as they are of one field.
 class ShellWays {
  public:
-  explicit ShellWays(bool* met) : met_(met) {}
+  ShellWays(Hit* hits, bool* met) : hits_(hits), met_(met) {}
 
   void add(const ShellCrossing& crossing, size_t number) {
     if (field_ != &crossing.field()) trace();
@@ -26,19 +26,25 @@ class ShellWays {
     way_[count_] = crossing.way();
     number_[count_++] = static_cast<uint8_t>(number);
   }
-  /// Says which of them meet what is there.
+  /// Says which of them meet what is there, and where.
   void trace() {
-    if (count_ > 0) trace_shells(*field_, {way_, count_}, hit_);
-    for (size_t i = 0; i < count_; ++i) met_[number_[i]] = hit_[i].met;
+    if (count_ > 0) trace_shells(*field_, {way_, count_}, found_);
+    for (size_t i = 0; i < count_; ++i) {
+      met_[number_[i]] = found_[i].met;
+      if (!found_[i].met) continue;
+      hits_[number_[i]].shell_begin = found_[i].begin;
+      hits_[number_[i]].shell_s = found_[i].s;
+    }
     count_ = 0;
   }
 
  private:
+  Hit* hits_;
   bool* met_;
   const ShellField* field_ = nullptr;
   size_t count_ = 0;
   ShellWay way_[kTogether];
-  ShellHit hit_[kTogether];
+  ShellHit found_[kTogether];
   uint8_t number_[kTogether];
 };
 
@@ -141,8 +147,8 @@ bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit, uint8_t kind, Rg
   return false;
 }
 
-void VisibleRays::decide(const Pending& pending, uint8_t kind, bool* met, Rgb* passed) const {
-  ShellWays ways(met);
+void VisibleRays::decide(Pending& pending, uint8_t kind, bool* met, Rgb* passed) const {
+  ShellWays ways(pending.hit, met);
   for (size_t i = 0; i < pending.count; ++i) {
     const Hit& hit = pending.hit[i];
     met[i] = !pending.again(i) && meets_surface(pending.ray[i], hit, kind, behind(passed, pending.number[i]));

@@ -31,7 +31,7 @@ class VisibleRays {
   /// Replaces `hits`, the nearest ones of at most as many `rays` as Pending holds, by the nearest that they meet.
   void pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed) const;
   /// Which of the pending rays meet what they have come to; what passes is multiplied into `passed`, by number of ray.
-  void decide(const Pending& pending, uint8_t kind, bool* met, Rgb* passed) const;
+  void decide(Pending& pending, uint8_t kind, bool* met, Rgb* passed) const;
   bool meets_surface(const Ray& ray, const Hit& hit, uint8_t kind, Rgb* passed) const;
   bool sees_all(uint8_t kind) const { return all_opaque_ && (hidden_ & kind) == 0; }
   void occluded_some(std::span<const Ray> rays, uint8_t* blocked, Rgb* passed) const;

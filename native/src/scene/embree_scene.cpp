@@ -131,6 +131,7 @@ struct EmbreeScene::Impl {
     hit.u = from.hit.u;
     hit.v = from.hit.v;
     hit.triangle = from.hit.primID;
+    hit.shell_s = std::numeric_limits<float>::quiet_NaN();
     hit.geometric_normal = {from.hit.Ng_x, from.hit.Ng_y, from.hit.Ng_z};
     if (top != nullptr) hit.geometric_normal = instances[hit.instance].normal_to_world * hit.geometric_normal;
   }

@@ -31,6 +31,8 @@ struct Hit {
   float u, v;                  // barycentric weights of vertices 1 and 2
   uint32_t triangle;           // of the mesh
   uint32_t instance = kNoHit;  // kNoHit: the ray met nothing
+  /// What VisibleRays has found behind the crossing of a shell (ShellHit); NaN: it was not asked.
+  float shell_begin = 0, shell_s = std::numeric_limits<float>::quiet_NaN();
 };
 
 /// Meshes and instances of them. Build once, then trace from any number of threads.

@@ -78,11 +78,14 @@ struct SceneInfo {
 /// What bends a shell at a hit, world space.
 struct ShellFrame {
   const ShellField* field;
-  float softness;    // of its edge, widths
-  Vec3 normal;       // unit, interpolated, towards the mesh's front
-  float scale;       // widths of the tile that a metre along the normal covers
-  float curvature;   // normal curvature along the direction that was asked for, 1 / metres
-  Vec3 normal_turn;  // what the normal changes by along it, 1 / metres
+  float softness;  // of its edge, widths
+  Vec3 normal;     // unit, interpolated, towards the mesh's front
+  float scale;     // widths of the tile that a metre along the normal covers
+  Vec2 uv;         // texture coordinates, as placed
+  // Along the direction that was asked for:
+  float curvature = 0;     // normal curvature, 1 / metres
+  Vec3 normal_turn{0.0f};  // what the normal changes by, 1 / metres
+  Vec2 uv_along{0.0f};     // what the texture coordinates change by, 1 / metres
 };
 
 /// Fill, commit, render. Every change after commit() needs another commit(). Reading a committed scene is thread-safe.

@@ -175,7 +175,7 @@ ShellFrame Scene::shell(const Hit& hit, const Vec3& direction) const {
   Vec3 normal[3];
   for (size_t k = 0; k < 3; ++k) normal[k] = glm::normalize(instance.normal_to_world * local[k]);
   const auto edge = [&](int k) {
-    return instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]);
+    return Vec3d(instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]));
   };
   ShellFrame frame;
   const SurfaceMaterial& surface = materials_[material(hit)];
@@ -185,20 +185,27 @@ ShellFrame Scene::shell(const Hit& hit, const Vec3& direction) const {
   frame.scale = 1 / instance.tile_width[slot(hit)];
   const Vec3 mean = (1 - hit.u - hit.v) * normal[0] + hit.u * normal[1] + hit.v * normal[2];
   frame.normal = glm::normalize(glm::dot(mean, mean) > 0 ? mean : normal[0]);
-  // The normal's change along the edges, and the direction in terms of them.
-  const Vec3 e1 = edge(1), e2 = edge(2), across = glm::cross(e1, e2);
+  const std::span<const Vec2, 3> uv = mesh.corner_uvs(hit.triangle);
+  const Vec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
+  frame.uv = uv[0] + hit.u * d1 + hit.v * d2;
+  // What changes along the edges, and the direction in terms of them.
+  const Vec3d e1 = edge(1), e2 = edge(2), across = glm::cross(e1, e2);
   const Vec3 along = direction - glm::dot(direction, frame.normal) * frame.normal;
-  const float length = glm::length(along), square = glm::dot(across, across);
-  frame.normal_turn = Vec3(0.0f);
+  const float length = glm::length(along);
+  const double square = glm::dot(across, across);
   if (length > 0 && square > 0) {
     const Vec3 unit = along / length;
-    const float a = glm::dot(glm::cross(unit, e2), across) / square,
-                b = glm::dot(glm::cross(e1, unit), across) / square;
+    const auto a = static_cast<float>(glm::dot(glm::cross(Vec3d(unit), e2), across) / square),
+               b = static_cast<float>(glm::dot(glm::cross(e1, Vec3d(unit)), across) / square);
     frame.normal_turn = a * (normal[1] - normal[0]) + b * (normal[2] - normal[0]);
     frame.curvature = glm::dot(frame.normal_turn, unit);
-  } else {
-    frame.curvature = 0;
+    frame.uv_along = a * d1 + b * d2;
   }
+  if (const TextureMap* placed = placement(hit)) {
+    frame.uv = placed->point(frame.uv);
+    frame.uv_along = placed->map * frame.uv_along;
+  }
+  if (!std::isfinite(glm::dot(frame.uv + frame.uv_along, Vec2(1.0f)))) frame.uv = frame.uv_along = Vec2(0.0f);
   return frame;
 }
 

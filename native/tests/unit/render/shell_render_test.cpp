@@ -271,6 +271,34 @@ TEST(ShellRender, ABtfThatHoldsTheHolesIsLookedUpAtPoints) {
   EXPECT_GT(footprint(true), 0.0f);
 }
 
+TEST(ShellRender, WhatRaysHaveFoundIsWhatIsShaded) {
+  Shot shot(tiled_sphere(64, 8), shelled(field_of(test::wires(64, kRadius))));
+  shot.scene.set_shell_tile(0, 0.3f);
+  shot.scene.set_shell_softness(0, 0.05f);
+  shot.scene.commit(1);
+  std::vector<Ray> rays;
+  for (uint64_t i = 0; i < 500; ++i) {
+    RandomStream numbers(8, i, 0);
+    const Vec3 at(0, 2.4f * numbers.next() - 1.2f, 2.4f * numbers.next() - 1.2f);
+    rays.push_back({i % 2 == 0 ? at + Vec3(4, 0, 0) : 0.5f * at, 0, {-1, 0, 0}});
+  }
+  std::vector<Hit> hits(rays.size());
+  VisibleRays(shot.scene).intersect(rays, hits.data());
+  int met = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].instance == kNoHit) continue;
+    EXPECT_FALSE(std::isnan(hits[i].shell_s)) << i;
+    Hit unasked = hits[i];
+    unasked.shell_s = std::numeric_limits<float>::quiet_NaN();
+    const Vertex known = Vertex::seen(shot.scene, rays[i], hits[i], {0, 0}, nullptr),
+                 found = Vertex::seen(shot.scene, rays[i], unasked, {0, 0}, nullptr);
+    EXPECT_EQ(known.position, found.position) << i;
+    EXPECT_EQ(known.frame.z, found.frame.z) << i;
+    ++met;
+  }
+  EXPECT_GT(met, 150);
+}
+
 TEST(ShellRender, StructureOnASphereDoesNotBlockItsOwnRays) {
   // Places on wires found along grazing rays are found a little elsewhere along others.
   Shot shot(tiled_sphere(64, 8), shelled(field_of(test::wires(64, kRadius))));
@@ -284,7 +312,8 @@ TEST(ShellRender, StructureOnASphereDoesNotBlockItsOwnRays) {
     Hit hit;
     visible.intersect({&ray, 1}, &hit);
     if (hit.instance == kNoHit || glm::dot(hit.geometric_normal, ray.direction) > 0) continue;
-    const ShellCrossing crossing(shot.scene, ray, hit);
+    ShellCrossing crossing(shot.scene, ray, hit);
+    EXPECT_TRUE(crossing.find());
     const SurfacePoint place = crossing.surface(shot.scene.surface(hit), true);
     const Frame frame = Frame::about(place.shading_normal);
     int open = 0;
