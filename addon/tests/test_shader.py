@@ -77,3 +77,37 @@ def test_wrong_calls_are_refused_with_a_sentence():
         with pytest.raises(VelourError, match=r"vlr_factor_desc\.texture needs a texture of numbers"):
             shader.weigh_layer("share", texture=colour)
         colour.close()
+
+
+def _floor_under_glow(strategy, drawn):
+    """Mean of a floor under a square that glows, and the scene's warnings."""
+    with Scene() as scene:
+        positions = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
+        mesh = scene.add_mesh(positions, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))[0]
+        scene.add_instance(
+            mesh, np.eye(4), [scene.add_principled_material(base_color=(0.5,) * 3, specular=0)]
+        )
+        glow = scene.add_principled_material(base_color=(0,) * 3, specular=0, emission=(2, 2, 2))
+        if not drawn:
+            scene.set_drawn_to(glow, False)
+        above = np.eye(4)
+        above[2, 3] = 1
+        scene.add_instance(mesh, above, [glow], hidden=["camera"])
+        look_down = np.eye(4)
+        look_down[2, 3] = 5
+        scene.set_camera("orthographic", look_down, (-0.01, 0.01, -0.01, 0.01))
+        scene.commit()
+        with render_job(scene, width=SIDE, height=SIDE, spp=4096, strategy=strategy) as job:
+            job.run()
+            return job.read_pass("Combined")[..., :3].mean(), scene.info()["warnings"]
+
+
+def test_what_glows_lights_without_bounces():
+    # A unit square's view factor from a metre below its middle: 4 pieces of a corner's.
+    side = np.sqrt(2)
+    factor = 4 * (2 / side * np.arctan(1 / side)) / (2 * np.pi)
+    for strategy, drawn in (("mis", True), ("mis", False), ("light", True), ("cosine", True)):
+        mean, warnings = _floor_under_glow(strategy, drawn)
+        assert abs(mean - 0.5 * 2 * factor) < 0.01, (strategy, drawn)
+        assert warnings == []
+    assert _floor_under_glow("light", False)[0] == 0.0

@@ -84,7 +84,8 @@ class MaterialTable:
         self.glows = self.glows or any(map(shines, layers))
         plain = as_principled(layers)
         if plain:
-            return self._scene.add_textured_material(self._slots(plain, material), **plain.values)
+            number = self._scene.add_textured_material(self._slots(plain, material), **plain.values)
+            return self._with_rays(number, material)
         self.beyond_reflection += [
             f"{_owner(material)}: {words} is no part of a BTF; left out."
             for words in unlike_reflection(layers)
@@ -93,7 +94,13 @@ class MaterialTable:
             for layer in layers:
                 for part in split(layer):
                     self._add_layer(shader, part, material)
-            return self._scene.add_shader_material(shader)
+            return self._with_rays(self._scene.add_shader_material(shader), material)
+
+    def _with_rays(self, number, material):
+        """The material, to which rays are drawn as the artist wants it."""
+        if not draws_rays(material):
+            self._scene.set_drawn_to(number, False)
+        return number
 
     def _add_layer(self, shader, layer, material):
         values = dict(layer.values)
@@ -171,6 +178,16 @@ class MaterialTable:
 
 def _owner(material):
     return f"Material '{material.name}'" if material else "The default material"
+
+
+def draws_rays(material):
+    """Whether Cycles draws rays to surfaces that glow; its settings are there only with Cycles."""
+    settings = getattr(material, "cycles", None)
+    if settings is None:
+        return True
+    if hasattr(settings, "emission_sampling"):  # 3.5 and newer
+        return settings.emission_sampling != "NONE"
+    return getattr(settings, "sample_as_light", True)
 
 
 def _key(material):

@@ -144,6 +144,10 @@ class Scene(Handle):
         """How wide a tile of the material's shell (VOTF) is; 0: as the texture coordinates say."""
         self._lib.vlr_scene_set_shell_tile(self.pointer, material, metres)
 
+    def set_drawn_to(self, material: int, drawn: bool) -> None:
+        """Whether rays are drawn to its surfaces where they glow; the picture converges to the same."""
+        self._lib.vlr_scene_set_drawn_to(self.pointer, material, drawn)
+
     def add_measurement_material(
         self, measurement: Measurement, proposal: Model | None = None, neighbors: int = 0
     ) -> int:

@@ -416,6 +416,7 @@ STATUS_CALLS = {
     "vlr_scene_add_model_material": [_handle, _handle, c_uint32, _number],
     "vlr_scene_set_shell_tile": [_handle, c_uint32, c_float],
     "vlr_scene_set_shell_softness": [_handle, c_uint32, c_float],
+    "vlr_scene_set_drawn_to": [_handle, c_uint32, c_int32],
     "vlr_scene_set_model_material": [_handle, c_uint32, _handle, c_uint32],
     "vlr_scene_add_measurement_material": [_handle, _handle, _handle, c_uint32, _number],
     "vlr_scene_add_btf_material": [_handle, _handle, c_uint64, _number],

@@ -11,6 +11,7 @@
 #include "domain/hash_text.h"
 #include "model/order_json.h"
 #include "render/footprint.h"
+#include "render/glow_group.h"
 #include "render/surroundings.h"
 #include "scene/embree_scene.h"
 #include "srbf/simd_target.h"
@@ -333,6 +334,8 @@ std::string microsurface_json(const MicrosurfaceReport& report) {
 std::string scene_json(const Scene& scene) {
   const SceneInfo& info = scene.info();
   const auto around = scene.committed() ? surrounding_instance(scene) : std::nullopt;
+  std::vector<std::string> warnings = info.warnings;
+  if (std::ranges::any_of(scene.materials(), glows)) std::erase(warnings, kNoLightWarning);
   return text({{"triangles", info.triangles},
                {"instances", info.instances},
                {"meshes", info.meshes},
@@ -342,7 +345,7 @@ std::string scene_json(const Scene& scene) {
                {"camera_inside", around ? Json(*around) : Json(nullptr)},
                {"bytes", info.bytes},
                {"bvh_seconds", info.bvh_seconds},
-               {"warnings", info.warnings}});
+               {"warnings", warnings}});
 }
 
 namespace {

@@ -199,6 +199,13 @@ vlr_status vlr_scene_set_shell_softness(vlr_scene* scene, uint32_t material, flo
   });
 }
 
+vlr_status vlr_scene_set_drawn_to(vlr_scene* scene, uint32_t material, int32_t drawn) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->set_drawn_to(material, drawn != 0);
+  });
+}
+
 vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measurement* measurement,
                                               const vlr_model* proposal, uint32_t neighbors, uint32_t* material) {
   return guard([&] {

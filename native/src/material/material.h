@@ -76,6 +76,8 @@ class Material {
   /// What light that passes is multiplied with, in the space that f is in; it may be above 1.
   virtual Rgb passing(const SurfaceSite& /*site*/) const { return Rgb(1.0f); }
 
+  /// Whether emission() may be other than 0.
+  virtual bool glows() const { return false; }
   /// Radiance that what is there sends to every side, in the working space.
   virtual Rgb emission(const SurfaceSite& /*site*/) const { return Rgb(0.0f); }
 

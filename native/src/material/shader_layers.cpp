@@ -105,6 +105,7 @@ class LayeredMaterial final : public Material {
     return glm::distance(passed, Rgb(1.0f)) < 1e-5f ? Rgb(1.0f) : passed;  // of what white is mixed in with: rounding
   }
 
+  bool glows() const override { return !layers_.glowing.empty(); }
   Rgb emission(const SurfaceSite& site) const override {
     Rgb sum(0.0f);
     for (const ColorLayer& l : layers_.glowing) sum += l.at(site);

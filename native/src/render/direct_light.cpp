@@ -22,6 +22,7 @@ void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shado
   terms_.clear();
   for (size_t k = 0; k < receivers.size(); ++k) shade(receivers[k], static_cast<uint8_t>(k), output);
   settle(receivers, output);
+  if (!lighting_.glow().empty()) settle_glow(receivers, output);
 }
 
 void DirectLight::prepare(const Receiver& receiver, Work& work) {
@@ -73,7 +74,8 @@ void DirectLight::draw_towards_lights(std::span<const Receiver> receivers) {
     count += work_[k].from_lights.count;
   }
   if (count == 0) return;
-  lighting_.sample({position, static_cast<size_t>(count)}, points_.points(0, count), towards_lights_);
+  lighting_.sample({position, static_cast<size_t>(count)}, points_.points(0, count), towards_lights_,
+                   {aims_, lighting_.glow().empty() ? 0 : static_cast<size_t>(count)});
 }
 
 /// The products are Gaussians in the world frame, whatever the vertex.
@@ -88,17 +90,20 @@ void DirectLight::draw_towards_products(std::span<const Receiver> receivers) {
 }
 
 /// A direction that brings nothing costs nothing further: n counts it, the batch does not hold it.
-void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer) {
+void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer, uint8_t aim) {
   if (!vertex.receives(wl, wl_world)) return;
   drawer_[world_.count] = drawer;
+  aim_[world_.count] = aim;
   local_.push(wl);
   world_.push(wl_world);
 }
 
 void DirectLight::keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Drawer drawer) {
+  const bool aimed = drawer == Drawer::lights && !lighting_.glow().empty();
   for (int i = first; i < first + count; ++i) {
     const Vec3 wl_world = drawn.get(i);  // zero for a lamp's dark side: then not above the horizon
-    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world, drawer);
+    const uint8_t aim = aimed && aims_[i].instance != kNoHit ? static_cast<uint8_t>(i + 1) : 0;
+    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world, drawer, aim);
   }
 }
 
@@ -154,6 +159,7 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
     terms_.position[to] = receiver.vertex.position;
     terms_.drawer[to] = drawer_[i];
     terms_.receiver[to] = place;
+    terms_.aim[to] = aim_[i];
   }
 }
 
@@ -168,6 +174,21 @@ void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
   }
   for (const LampHit& hit : terms_.lamp_hits) {
     add(hit.direction, hit.lamp->radiance(terms_.world.get(hit.direction)), hit.distance, hit.lamp->casts_shadow());
+  }
+}
+
+void DirectLight::settle_glow(std::span<const Receiver> receivers, Output output) {
+  Ray rays[DirectionBatch::kCapacity];
+  const int count = terms_.world.count;
+  for (int i = 0; i < count; ++i) {
+    rays[i] = receivers[terms_.receiver[i]].vertex.ray(terms_.world.get(i), std::numeric_limits<float>::infinity());
+  }
+  terms_.look_up_glow(lighting_, options_.heuristic, aims_, {rays, static_cast<size_t>(count)});
+  for (const LightTerms::Glow& g : terms_.glow) {
+    const Receiver& receiver = receivers[terms_.receiver[g.direction]];
+    const auto [radiance, far] = lighting_.glow().light(rays[g.direction], g.hit, receiver.vertex.cone);
+    const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
+    queue(receiver, terms_.world.get(g.direction), light, far, true, output);
   }
 }
 

@@ -37,6 +37,7 @@ class DirectLight {
         lighting_(lighting),
         options_(options),
         sampling_(surface_sampling(options.strategy)),
+        meets_surfaces_(shares(options, 0.0f).surface > 0.0f),
         sky_(sky),
         lights_part_(lights_part) {}
 
@@ -51,12 +52,23 @@ class DirectLight {
   /// density beside surface and lights: the products of the material's lobes with those of the sky; a vertex without
   /// products is lit as by `mis`.
   ///
+  /// Surfaces that glow are lights like the others (counts_glow() says which), and directions meet them behind whatever
+  /// shadow rays pass.
+  ///
   /// Sharp lamps, which no drawn direction can meet, are added under every strategy: each once when there are at most
   /// kSharpLamps, else that many drawn in proportion to power.
   void gather(std::span<const Receiver> receivers, ShadowQueue& shadows, std::vector<CameraSample>& samples);
 
+  /// Whether gather() has in its terms what the surface emits that a ray from its vertex has hit. Where it has not,
+  /// the ray of extend() is who counts it: of surfaces that no rays are drawn to, under a strategy that draws none from
+  /// the surface side.
+  bool counts_glow(const Hit& hit) const {
+    const GlowingSurfaces& glow = lighting_.glow();
+    return meets_surfaces_ ? glow.holds(hit) : glow.draws(hit);
+  }
+
   /// One more ray from the vertex that was number `place` of the last gather(), drawn from the surface side alone: what
-  /// it meets on surfaces was in no term of gather(), and what it meets beyond them (lamps, environment) was in all, so
+  /// surfaces reflect was in no term of gather(), and what it meets beyond them (lamps, environment) was in all, so
   /// only surfaces may be counted at its end.
   std::optional<Continuation> extend(const Receiver& receiver, size_t place);
 
@@ -94,12 +106,13 @@ class DirectLight {
   void draw_towards_products(std::span<const Receiver> receivers);
   void draw_from_surface(const Receiver& receiver, const Work& work);
   void draw_sharp(const Receiver& receiver);
-  void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer);
+  void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer, uint8_t aim = 0);
   void keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Drawer drawer);
   /// Draws and reflects at one vertex.
   void shade(const Receiver& receiver, uint8_t place, Output output);
   void add_terms(const Receiver& receiver, uint8_t place);
   void settle(std::span<const Receiver> receivers, Output output);
+  void settle_glow(std::span<const Receiver> receivers, Output output);
   void queue(const Receiver& receiver, const Vec3& wl_world, const Rgb& light, float far, bool casts_shadow,
              Output output);
   Rgb reflectance(const Vertex& vertex, int direction) const;
@@ -109,6 +122,7 @@ class DirectLight {
   const Lighting& lighting_;
   const RenderOptions& options_;
   const SurfaceSampling sampling_;
+  const bool meets_surfaces_;  // whether any directions come from the surface side
   const SkyProposals* sky_;
   const std::span<const float> lights_part_;
 
@@ -117,12 +131,14 @@ class DirectLight {
   PointBatch points_;
   LobeDraws product_draws_;
   DirectionBatch towards_lights_, towards_products_;  // world
+  Hit aims_[DirectionBatch::kCapacity];               // of towards_lights_, where anything glows
   LightTerms terms_;
 
   // Of one vertex: those drawn directions that can bring light, above both the shading horizon and the surface itself.
   // local_ goes on with the directions of sharp lamps.
   DirectionBatch drawn_, local_, world_;
   Drawer drawer_[DirectionBatch::kCapacity];
+  uint8_t aim_[DirectionBatch::kCapacity];  // as LightTerms::aim
   RgbBatch f_;
   ScalarBatch material_pdf_, surface_pdf_, product_pdf_;
   LobeProducts products_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/ray_beyond.h"
 #include "render/scene_observer.h"
 
 namespace velour {
@@ -32,9 +33,10 @@ void HitLightEstimator::estimate_half(const Vertex& vertex, int bounces, uint64_
     draw(vertex, n, numbers);
     weigh(vertex, n);
     trace(vertex);
-    add_lights();
+    add_lights(vertex);
+    add_glow(vertex, n);
     if (bounces > 0) add_surfaces(vertex.cone, bounces, key, half);
-    for (int i = 0; i < world_.count; ++i) add_term(local_.get(i), weight_[i] * radiance_[i]);
+    for (int i = 0; i < world_.count; ++i) add_term(local_.get(i), weight_[i] * radiance_[i] + glow_[i]);
   }
   add_sharp(vertex, numbers);
 }
@@ -47,22 +49,30 @@ HitLightEstimator::Counts HitLightEstimator::counts(int bounces) const {
 void HitLightEstimator::draw(const Vertex& vertex, Counts counts, PathNumbers& numbers) {
   local_.count = world_.count = 0;
   Vec2 u[kObservedDirections];
+  Hit aims[kObservedDirections];
   DirectionBatch drawn;
   if (counts.lights > 0) {
     const std::span<Vec2> points(u, static_cast<size_t>(counts.lights));
     numbers.points(Purpose::light, 0, points);
     std::fill_n(position_, counts.lights, vertex.position);
-    lighting_.sample({position_, points.size()}, points, drawn);
-    for (int i = 0; i < drawn.count; ++i) keep_if_received(vertex, vertex.frame.to_local(drawn.get(i)), drawn.get(i));
+    lighting_.sample({position_, points.size()}, points, drawn, {aims, points.size()});
+    for (int i = 0; i < drawn.count; ++i) {
+      keep_if_received(vertex, vertex.frame.to_local(drawn.get(i)), drawn.get(i), Drawer::lights, aims[i]);
+    }
   }
   const std::span<Vec2> points(u, static_cast<size_t>(counts.surface));
   numbers.points(Purpose::surface, 0, points);
   vertex.surface->material->sample(prepared_, points, drawn);
-  for (int i = 0; i < drawn.count; ++i) keep_if_received(vertex, drawn.get(i), vertex.frame.to_world(drawn.get(i)));
+  for (int i = 0; i < drawn.count; ++i) {
+    keep_if_received(vertex, drawn.get(i), vertex.frame.to_world(drawn.get(i)), Drawer::surface, {});
+  }
 }
 
-void HitLightEstimator::keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world) {
+void HitLightEstimator::keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer,
+                                         const Hit& aim) {
   if (!vertex.receives(wl, wl_world)) return;
+  drawer_[local_.count] = drawer;
+  aims_[local_.count] = aim;
   local_.push(wl);
   world_.push(wl_world);
 }
@@ -84,7 +94,7 @@ void HitLightEstimator::weigh(const Vertex& vertex, Counts counts) {
   for (int i = 0; i < world_.count; ++i) {
     const float density =
         static_cast<float>(counts.lights) * light_pdf_.v[i] + static_cast<float>(counts.surface) * material_pdf_.v[i];
-    weight_[i] = density > 0.0f ? std::abs(local_.z[i]) / density : 0.0f;
+    weight_[i] = density > 0.0f && aims_[i].instance == kNoHit ? std::abs(local_.z[i]) / density : 0.0f;
   }
 }
 
@@ -95,18 +105,41 @@ void HitLightEstimator::trace(const Vertex& vertex) {
 }
 
 /// Radiance of environment and lamps where nothing stands before them.
-void HitLightEstimator::add_lights() {
+void HitLightEstimator::add_lights(const Vertex& vertex) {
   for (int i = 0; i < world_.count; ++i) {
     radiance_[i] = hits_[i].instance == kNoHit ? passed_[i] * environment_.get(i) : Rgb(0.0f);
   }
   for (const LampHit& lamp : lamp_hits_) {
-    const Hit& hit = hits_[lamp.direction];
-    const bool blocked = hit.instance != kNoHit && hit.distance < lamp.distance;
-    if (blocked && lamp.lamp->casts_shadow()) continue;
-    const Rgb through = lamp.lamp->casts_shadow() ? passed_[lamp.direction] : Rgb(1.0f);
-    radiance_[lamp.direction] += through * lamp.lamp->radiance(world_.get(lamp.direction));
+    radiance_[lamp.direction] += passed_from(vertex, lamp) * lamp.lamp->radiance(world_.get(lamp.direction));
   }
   for (int i = 0; i < world_.count; ++i) note_density(light_pdf_.v[i], weight_[i] * radiance_[i]);
+}
+
+Rgb HitLightEstimator::passed_from(const Vertex& vertex, const LampHit& lamp) const {
+  if (!lamp.lamp->casts_shadow()) return Rgb(1.0f);
+  const Hit& hit = hits_[lamp.direction];
+  if (hit.instance != kNoHit && hit.distance < lamp.distance) return Rgb(0.0f);
+  if (!visible_.tints()) return Rgb(1.0f);
+  // What the direction passed on its way to the hit may stand behind the lamp.
+  Rgb passed;
+  return visible_.occluded(vertex.ray(world_.get(lamp.direction), lamp.distance), &passed) ? Rgb(0.0f) : passed;
+}
+
+/// As LightTerms has it: what the lights draw brings the light of a surface only where it was aimed at it.
+void HitLightEstimator::add_glow(const Vertex& vertex, Counts counts) {
+  for (int i = 0; i < world_.count; ++i) {
+    glow_[i] = Rgb(0.0f);
+    const Hit& hit = hits_[i];
+    if (hit.instance == kNoHit || !lighting_.glow().holds(hit)) continue;
+    if (drawer_[i] == Drawer::lights && !same_crossing(hit, aims_[i])) continue;
+    const float pdf = lighting_.glow_pdf(vertex.position, world_.get(i), hit);
+    const float density =
+        static_cast<float>(counts.lights) * pdf + static_cast<float>(counts.surface) * material_pdf_.v[i];
+    if (!(density > 0.0f)) continue;
+    const Vertex surface = Vertex::seen(scene_, rays_[i], hit, vertex.cone, nullptr);
+    glow_[i] = std::abs(local_.z[i]) / density * passed_[i] * surface.emission();
+    note_density(pdf, glow_[i]);
+  }
 }
 
 void HitLightEstimator::add_surfaces(const RayCone& cone, int bounces, uint64_t key, int half) {
@@ -114,7 +147,7 @@ void HitLightEstimator::add_surfaces(const RayCone& cone, int bounces, uint64_t 
   int direction[DirectionBatch::kCapacity];
   indirect.clear();
   for (int i = 0; i < world_.count; ++i) {
-    if (hits_[i].instance == kNoHit) continue;
+    if (hits_[i].instance == kNoHit || weight_[i] == 0.0f) continue;
     PathNumbers numbers(options_[half], key, static_cast<uint32_t>(i));
     numbers.next_vertex();
     direction[indirect.samples().size()] = i;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "render/combination.h"
 #include "render/indirect_light.h"
 #include "render/sharp_lamps.h"
 
@@ -22,7 +23,8 @@ class HitLightEstimator {
  public:
   /// `options`: those of two renders whose random numbers are independent, one a half.
   HitLightEstimator(const Scene& scene, const Lighting& lighting, const RenderOptions (&options)[2])
-      : visible_(scene),
+      : scene_(scene),
+        visible_(scene),
         lighting_(lighting),
         options_(options),
         indirect_{IndirectLight(scene, lighting, options[0]), IndirectLight(scene, lighting, options[1])} {}
@@ -39,17 +41,21 @@ class HitLightEstimator {
   };
   Counts counts(int bounces) const;
   void draw(const Vertex& vertex, Counts counts, PathNumbers& numbers);
-  void keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world);
+  void keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer, const Hit& aim);
   void weigh(const Vertex& vertex, Counts counts);
   void trace(const Vertex& vertex);
-  void add_lights();
+  void add_lights(const Vertex& vertex);
+  /// What is left on the way of what a lamp sends.
+  Rgb passed_from(const Vertex& vertex, const LampHit& lamp) const;
+  void add_glow(const Vertex& vertex, Counts counts);
   void add_surfaces(const RayCone& cone, int bounces, uint64_t key, int half);
   void add_sharp(const Vertex& vertex, PathNumbers& numbers);
   void add_term(const Vec3& wl, const Rgb& light);
-  /// Luminance of the light of lamps and environment, by Lighting's density.
+  /// Luminance of the light of lamps, environment and surfaces that glow, by Lighting's density.
   void note_density(float density, const Rgb& light);
   float light_density();
 
+  const Scene& scene_;
   const VisibleRays visible_;
   const Lighting& lighting_;
   const RenderOptions (&options_)[2];
@@ -62,11 +68,14 @@ class HitLightEstimator {
   RgbBatch environment_, f_;
   ScalarBatch light_pdf_, material_pdf_;
   std::vector<LampHit> lamp_hits_;
-  float weight_[DirectionBatch::kCapacity];  // cos / (n density)
+  Drawer drawer_[DirectionBatch::kCapacity];
+  Hit aims_[DirectionBatch::kCapacity];      // as Lighting::sample gives them
+  float weight_[DirectionBatch::kCapacity];  // cos / (n density); 0: aimed at a surface
   Ray rays_[DirectionBatch::kCapacity];
   Hit hits_[DirectionBatch::kCapacity];
   Rgb passed_[DirectionBatch::kCapacity];  // on the way there
   Rgb radiance_[DirectionBatch::kCapacity];
+  Rgb glow_[DirectionBatch::kCapacity];  // light of surfaces that glow, weighed
   Vec3 position_[DirectionBatch::kCapacity];
 
   // Of both halves.

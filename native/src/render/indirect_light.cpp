@@ -39,7 +39,7 @@ void IndirectLight::meet_surfaces() {
     if (hits_[i].instance == kNoHit) continue;
     Path& path = paths_[i];
     const Vertex vertex = Vertex::seen(scene_, rays_[i], hits_[i], path.cone, nullptr);
-    samples_[path.sample].radiance += path.throughput * vertex.emission();
+    if (!light_.counts_glow(hits_[i])) samples_[path.sample].radiance += path.throughput * vertex.emission();
     receivers_.emplace_back(vertex, &path.numbers, path.throughput, path.sample, kDirections, kDirections);
   }
 }

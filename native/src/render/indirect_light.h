@@ -7,8 +7,9 @@
 
 namespace velour {
 
-/// One a thread. Estimates what TileRenderer counts beyond a path's first continuing ray: emission and light of lamps
-/// and environment at every surface that the path meets.
+/// One a thread. Estimates what TileRenderer counts beyond a path's first continuing ray: the light of lamps,
+/// environment and surfaces that glow at every surface that the path meets, and what of their own emission was not in
+/// that (DirectLight::counts_glow; whoever adds rays counts it at the first of them).
 class IndirectLight {
  public:
   IndirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options)

@@ -12,8 +12,37 @@ void LightTerms::look_up(const Lighting& lighting, Heuristic heuristic) {
     const float q[3] = {product.v[i], surface.v[i], light_share.v[i] * light_pdf.v[i]};
     const float density = effective_density(heuristic, q, drawer[i]);
     // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
-    weight.v[i] = density == 0.0f ? 0.0f : 1.0f / density;
+    weight.v[i] = density == 0.0f || aim[i] != 0 ? 0.0f : 1.0f / density;
   }
+}
+
+void LightTerms::look_up_glow(const Lighting& lighting, Heuristic heuristic, std::span<const Hit> aims,
+                              std::span<const Ray> rays) {
+  find_glow(lighting.glow(), aims, rays);
+  for (Glow& g : glow) {
+    const int i = g.direction;
+    const float pdf = light_share.v[i] > 0.0f ? lighting.glow_pdf(position[i], world.get(i), g.hit) : 0.0f;
+    const float q[3] = {product.v[i], surface.v[i], light_share.v[i] * pdf};
+    const float density = effective_density(heuristic, q, drawer[i]);
+    g.weight = density == 0.0f ? 0.0f : 1.0f / density;
+  }
+}
+
+void LightTerms::find_glow(const GlowingSurfaces& surfaces, std::span<const Hit> aims, std::span<const Ray> rays) {
+  Ray searching[DirectionBatch::kCapacity];
+  int number[DirectionBatch::kCapacity];
+  size_t count = 0;
+  for (int i = 0; i < world.count; ++i) {
+    if (aim[i] != 0) {
+      glow.push_back({i, aims[aim[i] - size_t{1}], 0.0f});
+    } else if (drawer[i] != Drawer::lights) {
+      number[count] = i;
+      searching[count++] = rays[static_cast<size_t>(i)];
+    }
+  }
+  found_.clear();
+  surfaces.meet({searching, count}, found_);
+  for (const GlowHit& f : found_) glow.push_back({number[f.ray], f.hit, 0.0f});
 }
 
 }  // namespace velour

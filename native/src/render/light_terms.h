@@ -11,6 +11,9 @@ namespace velour {
 
 /// What each direction brings is  reflected x radiance / d,  d the density of combination.h. Looked up for a batch at
 /// once, so that the sky's texels of all are on their way together and vectors are full.
+///
+/// Directions that are aimed at surfaces that glow bring their light alone, those that the lights draw otherwise bring
+/// none of it, and the others bring both: each kind of light is weighed with the densities of those that bring it.
 struct alignas(64) LightTerms {
   DirectionBatch world;
   RgbBatch reflected;            // throughput f cos / n of n directions
@@ -19,17 +22,32 @@ struct alignas(64) LightTerms {
   Vec3 position[DirectionBatch::kCapacity];     // of the vertex
   Drawer drawer[DirectionBatch::kCapacity];     // who drew it
   uint8_t receiver[DirectionBatch::kCapacity];  // number of the vertex in the batch
+  uint8_t aim[DirectionBatch::kCapacity];       // 0: none; else 1 + its number among the aims (Lighting::sample)
 
   // What look_up() finds.
   RgbBatch environment;  // radiance
   ScalarBatch weight;    // 1 / d
   std::vector<LampHit> lamp_hits;
+  struct Glow {
+    int direction;
+    Hit hit;
+    float weight;  // 1 / d
+  };
+  std::vector<Glow> glow;
 
   void clear() {
     world.count = 0;
     lamp_hits.clear();
+    glow.clear();
   }
   void look_up(const Lighting& lighting, Heuristic heuristic);
+  /// `rays`: along the directions, as they leave their vertices.
+  void look_up_glow(const Lighting& lighting, Heuristic heuristic, std::span<const Hit> aims,
+                    std::span<const Ray> rays);
+
+ private:
+  void find_glow(const GlowingSurfaces& surfaces, std::span<const Hit> aims, std::span<const Ray> rays);
+  std::vector<GlowHit> found_;
 };
 
 }  // namespace velour

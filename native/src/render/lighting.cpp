@@ -1,6 +1,10 @@
 #include "render/lighting.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "sphere/random.h"
 
 namespace velour {
 namespace {
@@ -9,7 +13,7 @@ constexpr float kBelowOne = 0x1.fffffep-1f;
 
 }  // namespace
 
-Lighting::Lighting(const Scene& scene) : environment_(scene.environment()) {
+Lighting::Lighting(const Scene& scene) : environment_(scene.environment()), glow_(scene) {
   // A scene of nothing or of one point still needs distant and near lights to compare.
   const float radius = std::max(scene.bounds().radius(), 1e-6f);
   for (const Light& light : scene.lights()) {
@@ -23,6 +27,12 @@ Lighting::Lighting(const Scene& scene) : environment_(scene.environment()) {
 void Lighting::set_probabilities(float environment_power) {
   float total = environment_power;
   for (const Lamp& lamp : lamps_) total += lamp.power();
+  if (glow_.power() > 0.0f) {
+    const double others = static_cast<double>(total), glow = static_cast<double>(glow_.power());
+    // A multiple of what random numbers are multiples of, so that the probability is exact.
+    glow_begin_ = static_cast<float>(std::floor(others / (others + glow) * 0x1p24) * 0x1p-24);
+    total += glow_.power();
+  }
   environment_probability_ = total > 0.0f ? environment_power / total : 0.0f;
   for (const Lamp& lamp : lamps_) probability_.push_back(lamp.power() / total);
 
@@ -39,20 +49,38 @@ bool Lighting::choose_environment(Vec2& u) const {
 }
 
 Vec3 Lighting::sample_lamp(const Vec3& position, const Vec2& u) const {
+  if (lamps_.empty()) return Vec3(0.0f);
   float left = u.x - environment_probability_;
   size_t chosen = 0;
   while (chosen + 1 < lamps_.size() && left >= probability_[chosen]) left -= probability_[chosen++];
   return lamps_[chosen].sample(position, {std::min(left / probability_[chosen], kBelowOne), u.y});
 }
 
-void Lighting::sample(std::span<const Vec3> position, std::span<const Vec2> u, DirectionBatch& world) const {
-  if (lamps_.empty()) return environment_.sample(u, world);
+Vec3 Lighting::sample_glow(const Vec3& position, const Vec2& u, Hit* aim) const {
+  // Among a hundred thousand triangles the 24 bits of a number are used up before it comes to a place in one of them.
+  // What follows them is made of the bits of both.
+  const uint64_t bits = (uint64_t{std::bit_cast<uint32_t>(u.x)} << 32) | std::bit_cast<uint32_t>(u.y);
+  const double fine = static_cast<double>(mix64(bits) >> 11) * 0x1p-77;
+  const double begin = static_cast<double>(glow_begin_);
+  Vec3 direction;
+  const Hit hit = glow_.sample(position, (static_cast<double>(u.x) + fine - begin) / (1.0 - begin), u.y, direction);
+  if (aim != nullptr) *aim = hit;
+  return direction;
+}
+
+void Lighting::sample(std::span<const Vec3> position, std::span<const Vec2> u, DirectionBatch& world,
+                      std::span<Hit> aims) const {
+  if (lamps_.empty() && glow_.empty()) return environment_.sample(u, world);
   Vec2 of_environment[DirectionBatch::kCapacity];
   int place[DirectionBatch::kCapacity];
   size_t count = 0;
   for (size_t i = 0; i < u.size(); ++i) {
     Vec2 left = u[i];
-    if (choose_environment(left)) {
+    Hit* aim = aims.empty() ? nullptr : &aims[i];
+    if (aim != nullptr) aim->instance = kNoHit;
+    if (u[i].x >= glow_begin_) {
+      world.set(static_cast<int>(i), sample_glow(position[i], u[i], aim));
+    } else if (choose_environment(left)) {
       place[count] = static_cast<int>(i);
       of_environment[count++] = left;
     } else {
@@ -70,7 +98,7 @@ void Lighting::sample(std::span<const Vec3> position, std::span<const Vec2> u, D
 void Lighting::look_up(std::span<const Vec3> position, const DirectionBatch& world, RgbBatch& environment,
                        ScalarBatch& pdf, std::vector<LampHit>& hits) const {
   environment_.look_up(world, environment, pdf);
-  if (lamps_.empty()) return;
+  if (lamps_.empty() && glow_.empty()) return;
   for (int i = 0; i < world.count; ++i) {
     float density = environment_probability_ * pdf.v[i];
     for (size_t k = 0; k < lamps_.size(); ++k) {

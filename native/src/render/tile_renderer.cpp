@@ -132,7 +132,7 @@ void TileRenderer::follow(size_t index, int depth) {
     sample.normal = vertex.frame.z;
     sample.depth = context_.scene.camera().depth(vertex.position);
   }
-  sample.radiance += path.throughput * vertex.emission();
+  if (depth == 0 || !light_.counts_glow(hit)) sample.radiance += path.throughput * vertex.emission();
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);
   receivers_.emplace_back(vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most), most);
 }

@@ -1,9 +1,9 @@
 #include "render/visible_rays.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "material/material.h"
+#include "render/ray_beyond.h"
 #include "render/ray_number.h"
 #include "render/shell_crossing.h"
 
@@ -72,12 +72,10 @@ struct VisibleRays::Pending {
   }
   /// Lets a ray go on behind its hit.
   void pass(size_t i) {
-    constexpr float kStep = 0x1p-20f;  // of the distance: the ray tracer's own error
     passed[i] = hit[i];
-    ray[i].near = std::nextafter(hit[i].distance * (1.0f + kStep), ray[i].far);
+    go_beyond(ray[i], hit[i]);
   }
-  /// A ray crosses a triangle once; what is found again is the same crossing, by rounding.
-  bool again(size_t i) const { return hit[i].instance == passed[i].instance && hit[i].triangle == passed[i].triangle; }
+  bool again(size_t i) const { return same_crossing(hit[i], passed[i]); }
 };
 
 VisibleRays::VisibleRays(const Scene& scene)

@@ -30,6 +30,17 @@ struct Affine {
     const double d = glm::determinant(glm::dmat3(Vec3d(column(0)), Vec3d(column(1)), Vec3d(column(2))));
     return std::abs(d) > 1e-36;
   }
+  /// Of an invertible map.
+  Affine inverse() const {
+    const glm::dmat3 back = glm::inverse(glm::dmat3(Vec3d(column(0)), Vec3d(column(1)), Vec3d(column(2))));
+    const Vec3d shift = -(back * Vec3d(column(3)));
+    Affine a;
+    for (int row = 0; row < 3; ++row) {
+      for (int c = 0; c < 3; ++c) a.m[4 * row + c] = static_cast<float>(back[c][row]);
+      a.m[4 * row + 3] = static_cast<float>(shift[row]);
+    }
+    return a;
+  }
   bool finite() const {
     for (float x : m) {
       if (!std::isfinite(x)) return false;

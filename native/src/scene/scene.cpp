@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "job/error.h"
+#include "scene/box_around.h"
 
 namespace velour {
 namespace {
@@ -52,17 +53,6 @@ Bounds bounds_of(const Mesh& mesh, const Affine& to_world) {
   return bounds;
 }
 
-/// Of the corners of `box`: never smaller than the bounds of what is in it.
-Bounds box_around(const Bounds& box, const Affine& to_world) {
-  Bounds bounds;
-  for (int corner = 0; corner < 8 && !box.empty(); ++corner) {
-    const Vec3 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                 corner & 4 ? box.high.z : box.low.z);
-    bounds.add(to_world.point(p));
-  }
-  return bounds;
-}
-
 }  // namespace
 
 void Scene::changed() { rays_.reset(); }
@@ -88,6 +78,11 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
     material.shell_softness = place.shell_softness;
   }
   place = std::move(material);
+}
+
+void Scene::set_drawn_to(uint32_t material, bool drawn) {
+  if (material >= materials_.size()) refuse("There is no material " + std::to_string(material) + " to draw rays to.");
+  materials_[material].drawn_to = drawn;
 }
 
 void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,

@@ -37,6 +37,8 @@ struct SurfaceMaterial {
   float shell_tile = 0;
   /// Widths of the tile over which the structure's edge fades out (ShellEdge); 0: hard.
   float shell_softness = 0;
+  /// Whether rays are drawn to it where it glows; false: its light is found by what surfaces reflect alone.
+  bool drawn_to = true;
 };
 
 /// What rays there are to an instance that some of them pass through; bits of Instance::hidden, and values of velour.h.
@@ -102,6 +104,8 @@ class Scene {
   void set_shell_tile(uint32_t material, float metres);
   /// SurfaceMaterial::shell_softness, below 1. As above. A committed scene stays committed.
   void set_shell_softness(uint32_t material, float widths);
+  /// SurfaceMaterial::drawn_to. A committed scene stays committed.
+  void set_drawn_to(uint32_t material, bool drawn);
   /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a
   /// zero scale) is left out and counted in the warnings. `placements[s]` takes the mesh's texture coordinates to those
   /// that slot s is shown with, and with them its footprints and its tangents; none: they are the same.

@@ -35,7 +35,8 @@ class ScaledGrey final : public Material {
   float factor_;
 };
 
-enum class ObservedLight { sky, lamps, sharp_lamps };
+/// Beside what shines itself; `surfaces`: nothing.
+enum class ObservedLight { sky, lamps, sharp_lamps, surfaces };
 inline constexpr uint32_t kObservedMaterial = 0;
 
 inline void add_sky(Scene& scene) {

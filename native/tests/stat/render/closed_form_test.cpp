@@ -1,8 +1,7 @@
 // Radiance against closed forms.
 #include <gtest/gtest.h>
 
-#include <array>
-
+#include "support/polygon_irradiance.h"
 #include "support/renders.h"
 
 namespace velour {
@@ -29,16 +28,6 @@ Scene plane() {
   scene.add_instance(0, {}, {0});
   scene.set_camera(test::camera_above(0.01f));
   return scene;
-}
-
-/// Lambert's formula: irradiance at the origin of plane z = 0 from a polygon of radiance 1 seen counter-clockwise.
-double polygon_irradiance(const std::array<Vec3d, 4>& corners) {
-  double sum = 0;
-  for (size_t i = 0; i < 4; ++i) {
-    const Vec3d a = glm::normalize(corners[i]), b = glm::normalize(corners[(i + 1) % 4]);
-    sum += std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(a, b)).z;
-  }
-  return std::abs(sum) / 2;
 }
 
 TEST(ClosedForm, PlaneUnderConstantSkyReflectsItsAlbedo) {
@@ -83,9 +72,9 @@ TEST(ClosedForm, PlaneUnderRectangleLight) {
   scene.add_light(light);
   scene.commit(1);
   const double radiance = 10 / (kPiD * 2);
-  const double expected =
-      0.6 / kPiD * radiance *
-      polygon_irradiance({Vec3d(-0.3, -0.3, 1.5), Vec3d(1.7, -0.3, 1.5), Vec3d(1.7, 0.7, 1.5), Vec3d(-0.3, 0.7, 1.5)});
+  const double expected = 0.6 / kPiD * radiance *
+                          test::polygon_irradiance({Vec3d(-0.3, -0.3, 1.5), Vec3d(1.7, -0.3, 1.5), Vec3d(1.7, 0.7, 1.5),
+                                                    Vec3d(-0.3, 0.7, 1.5)});
   test::ZTests tests, control;
   // The irradiance changes by a thousandth over the five millimetres to each side that the picture spans.
   for (Strategy strategy : kAll) expect_mean(scene, small_options(strategy, 1024), expected, tests);
@@ -170,8 +159,8 @@ TEST(ClosedForm, OpenCornerHalvesTheSky) {
 }
 
 TEST(ClosedForm, ClosedSphereAddsUpBounces) {
-  // Inside a sphere of emission 1 and albedo a, B bounces see 1 + a + ... + a^(B+1) less the last term, which only
-  // light from lamps would fill.
+  // Inside a sphere of emission 1 and albedo a, B bounces see 1 + a + ... + a^(B+1): the last term is direct light of
+  // the last surface.
   for (Strategy strategy : kAll) {
     Scene scene;
     scene.add_mesh(test::sphere(32));
@@ -179,9 +168,9 @@ TEST(ClosedForm, ClosedSphereAddsUpBounces) {
     scene.add_instance(0, {}, {0});
     scene.set_camera(Camera::look_at({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 1, 1));
     scene.commit(1);
-    double expected = 0;
+    double expected = 1;
     for (int bounces = 0; bounces <= 3; ++bounces) {
-      expected += std::pow(0.5, bounces);
+      expected += std::pow(0.5, bounces + 1);
       RenderOptions options = small_options(strategy, 4096);
       options.bounces = bounces;
       EXPECT_NEAR(mean_of(rendered(scene, options)), expected, 0.015 * expected) << bounces;

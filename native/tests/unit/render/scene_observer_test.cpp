@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "domain/observation_hash.h"
+#include "material/shader_layers.h"
 #include "render/draw_by_weight.h"
 #include "support/observed_scenes.h"
 
@@ -53,6 +54,35 @@ TEST(SceneObserver, ThreadsDoNotChangeABit) {
   EXPECT_EQ(one.domain.hash, three.domain.hash);
   EXPECT_EQ(content_hash(one), one.domain.hash);
   EXPECT_NE(one.domain.hash, observed(scene, {32, 32, 2, 1, 8}).domain.hash) << "another seed";
+}
+
+/// Largest difference of two channels of what arrives from a ball of a lamp, of the brightest.
+float colour_of_lamp(float pane_height) {
+  Scene scene;
+  scene.add_instance(scene.add_mesh(test::square(100)), {},
+                     {scene.add_material({std::make_shared<test::Lambert>(0.6f), Rgb(0.0f), false})});
+  ShaderLayers layers;
+  layers.transparent.emplace_back(Rgb(1, 0.5f, 0.2f));
+  const auto pane = make_layered_material(std::move(layers));
+  scene.add_instance(scene.add_mesh(test::square(100)), test::shift({0, 0, pane_height}),
+                     {scene.add_material({.material = pane, .rec709_colors = false})});
+  Light lamp;
+  lamp.type = Light::Type::point;
+  lamp.size = {0.3f, 0};
+  lamp.light_to_world = test::shift({0, 0, 1});
+  scene.add_light(lamp);
+  scene.set_camera(test::camera_above(0.01f));
+  scene.commit(1);
+  const auto o = observed(scene);
+  EXPECT_FALSE(o.light.empty());
+  float largest = 0;
+  for (const Rgb& light : o.light) largest = std::max(largest, (light.r - light.b) / light.r);
+  return largest;
+}
+
+TEST(SceneObserver, ALampTakesNoColourFromWhatLiesBehindIt) {
+  EXPECT_EQ(colour_of_lamp(2), 0);
+  EXPECT_NEAR(colour_of_lamp(0.5f), 0.8, 1e-5);
 }
 
 TEST(SceneObserver, HoldsWhatItPromises) {

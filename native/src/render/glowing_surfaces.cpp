@@ -1,0 +1,164 @@
+#include "render/glowing_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "material/material.h"
+#include "render/ray_beyond.h"
+#include "render/vertex.h"
+#include "scene/box_around.h"
+
+namespace velour {
+namespace {
+
+constexpr uint32_t kNone = GlowGroup::kNone;
+constexpr size_t kMostRays = 64;
+
+/// Uniform in a triangle, without the fold of a square root [Hei19]: weights of its second and third corner.
+Vec2 in_triangle(float x, float y) { return y > x ? Vec2(0.5f * x, y - 0.5f * x) : Vec2(x - 0.5f * y, 0.5f * y); }
+
+/// All that a group depends on.
+struct GroupKey {
+  uint32_t mesh;
+  std::vector<uint32_t> materials;
+  std::vector<float> placements;
+  auto operator<=>(const GroupKey&) const = default;
+
+  explicit GroupKey(const Scene::Instance& i) : mesh(i.traced), materials(i.materials) {
+    for (const TextureMap& p : i.placements) {
+      placements.insert(placements.end(), {p.map[0].x, p.map[0].y, p.map[1].x, p.map[1].y, p.shift.x, p.shift.y});
+    }
+  }
+};
+
+}  // namespace
+
+GlowingSurfaces::GlowingSurfaces(const Scene& scene) : scene_(scene) {
+  for (const SurfaceMaterial& m : scene.materials()) glows_.push_back(glows(m));
+  if (std::ranges::find(glows_, 1) == glows_.end()) return;
+  find_places();
+  if (places_.empty()) return;
+  build_tree();
+  rays_ = std::make_unique<EmbreeScene>();
+  rays_->share_meshes(scene.rays());
+  for (const Place& place : places_) {
+    const Scene::Instance& i = scene.instances()[place.instance];
+    rays_->add_instance(i.traced, i.object_to_world);
+  }
+  rays_->commit(1);
+}
+
+void GlowingSurfaces::find_places() {
+  std::map<GroupKey, uint32_t> group_of;
+  place_of_.assign(scene_.instances().size(), kNone);
+  for (uint32_t k = 0; k < place_of_.size(); ++k) {
+    const Scene::Instance& i = scene_.instances()[k];
+    const bool glow = std::ranges::any_of(i.materials, [&](uint32_t m) { return glows_[m] != 0; });
+    if (!glow || (i.hidden & hidden::kFromBounces) != 0) continue;
+    const auto [found, is_new] = group_of.emplace(GroupKey(i), static_cast<uint32_t>(groups_.size()));
+    if (is_new) groups_.emplace_back(scene_, i);
+    place_of_[k] = static_cast<uint32_t>(places_.size());
+    places_.push_back({k, found->second, i.object_to_world.inverse(), kNone});
+  }
+}
+
+void GlowingSurfaces::build_tree() {
+  std::vector<LightTree::Light> lights;
+  for (uint32_t p = 0; p < places_.size(); ++p) {
+    Place& place = places_[p];
+    if (group(place).tree().empty()) continue;
+    const Scene::Instance& i = scene_.instances()[place.instance];
+    const auto power = static_cast<float>(group(place).power(scene_.traced_mesh(i), i.object_to_world));
+    if (!(power > 0.0f) || !std::isfinite(power)) continue;
+    place.light = static_cast<uint32_t>(lights.size());
+    lit_.push_back(p);
+    lights.push_back({box_around(group(place).tree().bounds(), i.object_to_world), power});
+  }
+  tree_ = LightTree(lights);
+}
+
+bool GlowingSurfaces::holds(const Hit& hit) const {
+  return !empty() && place(hit.instance) != nullptr && glows_[scene_.material(hit)] != 0;
+}
+
+bool GlowingSurfaces::draws(const Hit& hit) const {
+  if (!holds(hit)) return false;
+  const Place& at = *place(hit.instance);
+  return at.light != kNone && group(at).light(hit.triangle) != kNone;
+}
+
+Hit GlowingSurfaces::sample(const Vec3& position, double x, float y, Vec3& direction) const {
+  const Place& chosen = places_[lit_[tree_.choose(position, x)]];
+  const Scene::Instance& instance = scene_.instances()[chosen.instance];
+  const Mesh& mesh = scene_.traced_mesh(instance);
+  const GlowGroup& of = group(chosen);
+  const uint32_t triangle = of.triangle(of.tree().choose(chosen.to_object.point(position), x));
+  const Vec2 weights = in_triangle(static_cast<float>(x), y);
+  const Vec3 to_point = instance.object_to_world.point(mesh.position(triangle, weights)) - position;
+  const float distance = glm::length(to_point);
+  direction = distance > 0.0f ? to_point / distance : Vec3(0.0f);
+  return {distance,       instance.normal_to_world * double_area(mesh, triangle, {}), weights.x, weights.y, triangle,
+          chosen.instance};
+}
+
+float GlowingSurfaces::pdf(const Vec3& position, const Vec3& direction, const Hit& hit) const {
+  if (!draws(hit)) return 0.0f;
+  const Place& at = *place(hit.instance);
+  const Scene::Instance& instance = scene_.instances()[hit.instance];
+  const GlowGroup& of = group(at);
+  const Vec3 twice = double_area(scene_.traced_mesh(instance), hit.triangle, instance.object_to_world);
+  const auto facing = static_cast<double>(0.5f * std::abs(glm::dot(direction, twice)));
+  const double chosen = tree_.probability(position, at.light) *
+                        of.tree().probability(at.to_object.point(position), of.light(hit.triangle));
+  const double distance = static_cast<double>(hit.distance);
+  const double pdf = chosen * distance * distance / facing;
+  return pdf < 1e30 ? static_cast<float>(pdf) : 0.0f;
+}
+
+bool GlowingSurfaces::stops(const Hit& hit) const {
+  if ((scene_.instances()[hit.instance].hidden & hidden::kFromShadows) != 0) return false;
+  const SurfaceMaterial& material = scene_.materials()[scene_.material(hit)];
+  return !material.shell && material.material->opaque();
+}
+
+void GlowingSurfaces::meet(std::span<const Ray> rays, std::vector<GlowHit>& found) const {
+  Ray left[kMostRays];
+  Hit hit[kMostRays], passed[kMostRays];
+  size_t number[kMostRays], count = rays.size();
+  for (size_t i = 0; i < count; ++i) {
+    left[i] = rays[i];
+    number[i] = i;
+  }
+  while (count > 0) {
+    rays_->intersect({left, count}, hit);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; ++i) {
+      if (hit[i].instance == kNoHit) continue;
+      hit[i].instance = places_[hit[i].instance].instance;
+      if (!same_crossing(hit[i], passed[i]) && holds(hit[i])) found.push_back({number[i], hit[i]});
+      if (stops(hit[i])) continue;
+      passed[kept] = hit[i];
+      left[kept] = left[i];
+      number[kept] = number[i];
+      go_beyond(left[kept++], hit[i]);
+    }
+    count = kept;
+  }
+}
+
+GlowingSurfaces::Light GlowingSurfaces::light(const Ray& ray, const Hit& hit, const RayCone& cone) const {
+  constexpr float kLeastFacing = 1e-3f, kRounding = 0x1p-20f;
+  const Vertex vertex = Vertex::seen(scene_, ray, hit, cone, nullptr);
+  const Material& material = *vertex.surface->material;
+  const float alpha = material.opaque() ? 1.0f : material.alpha({.uv = vertex.site.uv});
+  const float facing = std::abs(glm::dot(ray.direction, vertex.geometric_normal));
+  // A ray that was aimed starts a little off where it was aimed from.
+  const float distance = facing > kLeastFacing
+                             ? std::abs(glm::dot(vertex.position - ray.origin, vertex.geometric_normal)) / facing
+                             : hit.distance;
+  const float margin = vertex.offset / std::max(facing, kLeastFacing) + kRounding * distance;
+  return {alpha * vertex.emission(), std::max(0.0f, distance - margin)};
+}
+
+}  // namespace velour
