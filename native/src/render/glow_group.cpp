@@ -16,7 +16,7 @@ float luminance_at(const SurfaceMaterial& m, const SurfaceSite& site) {
   return light > 0.0f ? std::min(light, kMostLuminance) : 0.0f;
 }
 
-/// The parallelogram of which the triangle is a half.
+/// The parallelogram of which the triangle is a half; of other sets of coordinates than the first, all of the picture.
 SurfaceSite site_of(const Mesh& mesh, uint32_t triangle, const TextureMap* placed) {
   if (!mesh.has_uvs()) return {};
   Vec2 uv[3];
@@ -25,7 +25,10 @@ SurfaceSite site_of(const Mesh& mesh, uint32_t triangle, const TextureMap* place
     uv[k] = placed != nullptr ? placed->point(own) : own;
     if (!std::isfinite(uv[k].x + uv[k].y)) return {};
   }
-  return {.uv = 0.5f * (uv[1] + uv[2]), .footprint = Mat2(uv[1] - uv[0], uv[2] - uv[0])};
+  SurfaceSite site = SurfaceSite::everywhere();
+  site.uv = 0.5f * (uv[1] + uv[2]);
+  site.footprint = Mat2(uv[1] - uv[0], uv[2] - uv[0]);
+  return site;
 }
 
 /// Whether areas scale by one number whatever their direction.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "material/material.h"
+#include "render/point_site.h"
 #include "render/ray_beyond.h"
 #include "render/vertex.h"
 #include "scene/box_around.h"
@@ -151,7 +151,7 @@ GlowingSurfaces::Light GlowingSurfaces::light(const Ray& ray, const Hit& hit, co
   constexpr float kLeastFacing = 1e-3f, kRounding = 0x1p-20f;
   const Vertex vertex = Vertex::seen(scene_, ray, hit, cone, nullptr);
   const Material& material = *vertex.surface->material;
-  const float alpha = material.opaque() ? 1.0f : material.alpha({.uv = vertex.site.uv});
+  const float alpha = material.opaque() ? 1.0f : material.alpha(point_site(scene_, hit, *vertex.surface));
   const float facing = std::abs(glm::dot(ray.direction, vertex.geometric_normal));
   // A ray that was aimed starts a little off where it was aimed from.
   const float distance = facing > kLeastFacing

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "material/material.h"
+#include "render/point_site.h"
 #include "render/ray_beyond.h"
 #include "render/ray_number.h"
 #include "render/shell_crossing.h"
@@ -136,12 +136,12 @@ void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked, Rgb
 
 bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit, uint8_t kind, Rgb* passed) const {
   if ((scene_.instances()[hit.instance].hidden & kind) != 0) return false;
-  const Material& material = *scene_.materials()[scene_.material(hit)].material;
+  const SurfaceMaterial& surface = scene_.materials()[scene_.material(hit)];
+  const Material& material = *surface.material;
   if (material.opaque()) return true;
-  // At a point: what a footprint would average, the rays of a pixel do.
-  const Vec2 uv = material.varies() ? scene_.texture(hit).uv : Vec2(0.0f);
-  if (ray_number(ray, hit, RayDecision::alpha) < material.alpha({.uv = uv})) return true;
-  if (passed != nullptr && material.tints()) *passed *= material.passing({.uv = uv});
+  const SurfaceSite site = point_site(scene_, hit, surface);
+  if (ray_number(ray, hit, RayDecision::alpha) < material.alpha(site)) return true;
+  if (passed != nullptr && material.tints()) *passed *= material.passing(site);
   return false;
 }
 

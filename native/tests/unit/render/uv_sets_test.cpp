@@ -77,6 +77,22 @@ TEST(UvSets, APictureOnASecondSetLooksAsOnAFirst) {
   EXPECT_GT(largest_difference(picture(square_with(kFirst, {kSecond}), colored(0, 2)), alone), kSeen);
 }
 
+SurfaceMaterial cut_out(size_t set, uint8_t sets) {
+  const std::vector<float> holes = {1, 0, 0, 1};
+  PrincipledTextures textures;
+  textures.alpha = {std::make_shared<const Texture<float>>(2, 2, holes, TextureOptions{}), {}, set};
+  return {.material = make_textured_material({.base_color = Rgb(0.8f)}, textures, 1),
+          .rec709_colors = false,
+          .uv_sets = sets};
+}
+
+/// Rays that pass, and shadows, look at the sets as well.
+TEST(UvSets, HolesOnASecondSetAreWhereTheyAreOnAFirst) {
+  const auto alone = picture(square_with(kSecond, {}), cut_out(0, 1));
+  EXPECT_LT(largest_difference(picture(square_with(kFirst, {kSecond}), cut_out(1, 2)), alone), kRounding);
+  EXPECT_GT(largest_difference(picture(square_with(kFirst, {kSecond}), cut_out(0, 2)), alone), kSeen);
+}
+
 TEST(UvSets, OneThatIsNotThereIsTheFirst) {
   EXPECT_EQ(picture(square_with(kFirst, {}), colored(2, 3)), picture(square_with(kFirst, {}), colored(0, 1)));
 }
