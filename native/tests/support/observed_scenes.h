@@ -35,8 +35,7 @@ class ScaledGrey final : public Material {
   float factor_;
 };
 
-/// Beside what shines itself; `surfaces`: nothing.
-enum class ObservedLight { sky, lamps, sharp_lamps, surfaces };
+enum class ObservedLight { sky, lamps, sharp_lamps };
 inline constexpr uint32_t kObservedMaterial = 0;
 
 inline void add_sky(Scene& scene) {

@@ -85,9 +85,11 @@ Scene gallery(bool drawn_to, float light = 1) {
   const auto picture =
       std::make_shared<const Texture<Rgb>>(4, 4, texels, TextureOptions{.filter = TextureFilter::closest});
   const LayerWeight half{{{LayerFactor::Kind::share, 0.5f}}};
-  const auto mixed = make_layered_material({.reflecting = {{std::make_shared<test::Lambert>(0.5f), half}},
-                                            .transparent = {{Rgb(1, 0.8f, 0.4f), {}, half}},
-                                            .glowing = {{Rgb(1.0f), {picture, {}}, half}}});
+  ShaderLayers layers;
+  layers.reflecting.emplace_back(std::make_shared<test::Lambert>(0.5f), half);
+  layers.transparent.emplace_back(Rgb(1, 0.8f, 0.4f), TextureSlot<Rgb>{}, half);
+  layers.glowing.emplace_back(Rgb(1.0f), TextureSlot<Rgb>{picture}, half);
+  const auto mixed = make_layered_material(std::move(layers));
   SurfaceMaterial textured{.material = mixed, .rec709_colors = false, .drawn_to = drawn_to};
   SurfaceMaterial plain = glowing(2 * light);
   plain.drawn_to = drawn_to;
