@@ -43,7 +43,7 @@ class SceneModelsOfBtfs(SceneModelTest):
         node = measured.ensure_node(material)
         node.image = measured.packed_model(data, "ribs")
         node.velour.measurement = measured.measurement_image(path, digest)
-        measured.assign(bpy.context, material)
+        bpy.context.object.active_material = material
 
     def test_fewer_texels_beside_the_full_model(self):
         full = self.node.image

@@ -9,7 +9,9 @@ _TURNS = 600  # of 0.1 s that a fit may take
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (renamed, copied, deleted, undone, new_file, loaded_file, scene_removed))
+    window.run(
+        folder, (renamed, copied, deleted, undone, new_file, loaded_file, scene_removed, scene_fit_renamed)
+    )
 
 
 def _cube_with_fit(**settings):
@@ -126,3 +128,19 @@ def scene_removed(folder):
     bpy.data.scenes.remove(scene)
     yield from _end()
     assert _model("Paint") != before
+
+
+def scene_fit_renamed(folder):
+    """A fit for the scene finds the material, too, and the model of one that is deleted is kept."""
+    material, _before = _cube_with_fit(model="PARAMETRIC", tolerance=0.05, max_lobes=4)
+    yield from _end()
+    scenes.use_engine()
+    with window.override():
+        assert bpy.ops.velour.fit_for_scene("INVOKE_DEFAULT", material="Paint", current_frame=True) == {
+            "RUNNING_MODAL"
+        }
+    material.name = "Another"
+    yield from _end()
+    assert scenes.velour_node(bpy.data.materials["Another"]).velour.scene_model is not None, (
+        "the model is lost"
+    )

@@ -16,7 +16,6 @@ class JobTarget:
         """The material and its node, also where they were renamed; (None, None) where they are gone."""
         material, node = next(self._marked(), (None, None))
         if node is not None:
-            node.velour.job = ""
             return material, node
         # An undo to what was before the mark takes it away.
         material = bpy.data.materials.get(self.material_name)

@@ -9,6 +9,7 @@ from ..export.nodes import velour_node
 from ..export.observe import observe
 from ..native import Btf, Observation, compress_job, fit_job
 from . import measured
+from .job_target import JobTarget
 from .sharing import other_scenes
 
 ENGINE = "VELOUR"
@@ -19,7 +20,7 @@ class SharedMaterialError(ExportError):
 
 
 class SceneFit:
-    """Observes frame after frame, then fits. Holds names: undo may replace any datablock meanwhile."""
+    """Observes frame after frame, then fits. Holds names and a mark: undo may replace any datablock."""
 
     def __init__(self, material, scene, current_frame=False, shared=False):
         _refuse_unfit(material)
@@ -32,6 +33,7 @@ class SceneFit:
                 " be fitted. Make the material single-user, or fit it even if shared (shared=True)."
             )
         self.material_name, self.scene_name = material.name, scene.name
+        self._target = JobTarget(material, velour_node(material))
         self.frames = [scene.frame_current] if current_frame else frame_range(scene)
         self._measurement = _read_measurement(material)
         self.observation = Observation.of_nothing()
@@ -56,7 +58,7 @@ class SceneFit:
                 f"Material '{self.material_name}' is not seen in {self._range()} of scene"
                 f" '{self.scene_name}'; nothing tells what its model is needed for."
             )
-        node = self.node()
+        _material, node = self._material()
         with read_model(node.image, f"Material '{self.material_name}'") as full:
             if full.info()["source"]["sha256"] != self._measurement.info()["sha256"]:
                 raise ExportError(
@@ -93,15 +95,23 @@ class SceneFit:
 
     def keep(self, model):
         """Puts the model beside the full one, in a new image, and switches it on."""
-        image = measured.packed_model(model.bytes(), f"{self.material_name} for {self.scene_name}")
-        settings = self.node().velour
-        settings.scene_model, settings.use_scene_model = image, True
+        material, node = self._target.find()
+        name = material.name if material else self.material_name
+        image = measured.packed_model(model.bytes(), f"{name} for {self.scene_name}")
+        if node is None:
+            image.use_fake_user = True
+            raise ExportError(
+                f"Material '{name}' is gone; its model for the scene is kept as image '{image.name}'."
+            )
+        node.velour.scene_model, node.velour.use_scene_model = image, True
 
-    def node(self):
-        material = bpy.data.materials.get(self.material_name)
+    def _material(self):
+        """The material and its node, whatever it is called now."""
+        material, node = self._target.find()
         if velour_node(material) is None:
             raise ExportError(f"Material '{self.material_name}' is gone, or is not measured any more.")
-        return velour_node(material)
+        self.material_name = material.name
+        return material, node
 
     def _scene(self):
         scene = bpy.data.scenes.get(self.scene_name)
@@ -115,7 +125,7 @@ class SceneFit:
         view = final_view(depsgraph, notes, whole=True)
         native_scene, materials, _ = export_scene(depsgraph, view, notes)
         with native_scene:
-            number = materials.find(bpy.data.materials[self.material_name])
+            number = materials.find(self._material()[0])
             if number is not None:
                 with observe(native_scene, number, view, depsgraph) as seen:
                     self.observation.merge(seen)
