@@ -11,6 +11,11 @@ import bpy
 from support.check_folder import CheckFolderTest
 
 
+def _hear_ctrl_c():
+    """A shell starts what it runs in the background deaf to it, and children inherit that."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Trouble(CheckFolderTest):
     def test_trouble_stops_nothing(self):
         self.save("shot")
@@ -55,7 +60,9 @@ class Trouble(CheckFolderTest):
         self.scene.velour.samples = 1 << 20
         self.save("shot")
         command = [str(part) for part in self.command("--update")]
-        child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        child = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, preexec_fn=_hear_ctrl_c
+        )
         self._wait_for(self.shots / "velour-check/work/001/inside_render.log", "Sample ")
         start = time.monotonic()
         child.send_signal(signal.SIGINT)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from typing import NamedTuple
@@ -25,6 +26,11 @@ class Result(NamedTuple):
 
 def command(*arguments) -> list[str]:
     return [sys.executable, "-P", "-m", "velour.core.cli", *map(str, arguments)]
+
+
+def hear_ctrl_c() -> None:
+    """For preexec_fn: what a shell starts in the background is deaf to Ctrl-C, and so are its children."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def environment(**more) -> dict:

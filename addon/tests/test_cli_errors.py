@@ -10,7 +10,7 @@ import time
 import inputs
 import numpy as np
 import pytest
-from command_line import command, environment, refused, velour
+from command_line import command, environment, hear_ctrl_c, refused, velour
 
 NOISE = random.Random(1).randbytes(4096)
 RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-o", "o.exr"]
@@ -176,9 +176,8 @@ def test_a_failed_fit_leaves_the_old_model(tmp_path):
 
 
 def _interrupted(arguments) -> tuple[int, str]:
-    process = subprocess.Popen(
-        command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment()
-    )
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    process = subprocess.Popen(command(*arguments), env=environment(), preexec_fn=hear_ctrl_c, **pipes)
     try:
         time.sleep(2.5)
         assert process.poll() is None, process.communicate()[1]

@@ -10,7 +10,7 @@ import time
 
 import pytest
 import uniform_moments
-from command_line import environment
+from command_line import environment, hear_ctrl_c
 from conftest import ROOT
 
 
@@ -81,7 +81,12 @@ def test_a_run_that_is_stopped_leaves_whole_files_and_goes_on(data_folder, tmp_p
     env = environment(VELOUR_DATA=str(data_folder))
     # A group of its own: Ctrl-C reaches the script and the render.
     process = subprocess.Popen(
-        _command("figures", tmp_path), env=env, stdout=subprocess.PIPE, text=True, start_new_session=True
+        _command("figures", tmp_path),
+        env=env,
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=hear_ctrl_c,
     )
     for line in process.stdout:
         if "32 spp" in line:
