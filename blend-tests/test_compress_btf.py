@@ -124,6 +124,7 @@ class CompressBtf(BlenderTest):
     def test_a_btf_that_changed_is_not_rendered_unless_accepted(self):
         folder = self._captured()
         scenes.use_engine(samples=1, size=8)
+        scenes.set_world()
         scenes.add_camera()
         bpy.ops.velour.compress_btf(assign=True, megabytes=0.02)
         scenes.velour_node(bpy.data.materials["ribs"]).velour.use_reference = True
