@@ -53,6 +53,7 @@ class BackgroundJob:
         state = context.window_manager.velour
         if not state.running:
             state.running, state.cancel_requested, state.subject = True, False, self._shown_as
+            state.waiting = len(_line) - 1
             self._start(context)
         return True
 
@@ -77,7 +78,8 @@ class BackgroundJob:
             if _line.index(self._ticket) == 0:
                 context.window_manager.velour.running = False
             _line.remove(self._ticket)
-        context.window_manager.velour.waiting = max(0, len(_line) - 1)
+        state = context.window_manager.velour
+        state.waiting = len(_line) - int(state.running)  # the next one, until its timer's turn, as well
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
