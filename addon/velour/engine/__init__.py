@@ -1,6 +1,6 @@
 """The render engine."""
 
-from . import write_lock
+from . import viewport_clock, write_lock
 from .engine import VelourRenderEngine
 
 CLASSES = (VelourRenderEngine,)
@@ -11,4 +11,5 @@ def attach():
 
 
 def detach():
+    viewport_clock.detach()
     write_lock.detach()

@@ -6,8 +6,10 @@ import bpy
 
 from ..export import ExportError, visitor
 from ..native import VelourError
+from . import viewport_clock
 from .final import RenderCancelledError, render_final
 from .passes import register_passes
+from .viewport import Viewport
 
 log = logging.getLogger(__package__)
 
@@ -22,8 +24,12 @@ class VelourRenderEngine(bpy.types.RenderEngine):
 
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)  # Blender 4.4 and newer pass arguments and need this call
+        self._viewport = None
 
     def __del__(self):
+        viewport = getattr(self, "_viewport", None)
+        if viewport:
+            viewport.close()
         parent = getattr(super(), "__del__", None)  # missing up to and including 5.2
         if parent:
             parent()
@@ -32,7 +38,8 @@ class VelourRenderEngine(bpy.types.RenderEngine):
         try:
             # Previews are rendered by other threads meanwhile: a visitor is none of their business.
             visit = None if self.is_preview else visitor.current()
-            (visit or render_final)(self, depsgraph)
+            with viewport_clock.paused():
+                (visit or render_final)(self, depsgraph)
         except RenderCancelledError:
             pass  # Blender knows: it asked
         except (ExportError, VelourError) as error:
@@ -40,6 +47,16 @@ class VelourRenderEngine(bpy.types.RenderEngine):
         except Exception as error:  # an exception alone would leave a black picture and exit status 0
             log.exception("render failed")
             self._fail(f"Velour failed unexpectedly: {type(error).__name__}: {error}")
+
+    def view_update(self, context, depsgraph):
+        if self._viewport is None:
+            self._viewport = Viewport(self)
+        self._viewport.update(context, depsgraph)
+
+    def view_draw(self, context, depsgraph):
+        if self._viewport is None:
+            self.view_update(context, depsgraph)
+        self._viewport.draw(context, depsgraph)
 
     def update_render_passes(self, scene=None, renderlayer=None):
         register_passes(self, scene, renderlayer)

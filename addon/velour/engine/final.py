@@ -5,12 +5,12 @@ import time
 
 import bpy
 
-from ..core.cache import user_cache_folder
 from ..export import ExportError, Notes, export_scene
 from ..export.black import refuse_dark_inside
 from ..export.camera import final_view
-from ..export.film import film_exposure, hides_world
+from ..export.film import film_exposure
 from ..native import render_job
+from .options import final_options
 from .passes import add_passes, write_passes
 from .scene_models import choose_models
 
@@ -47,41 +47,10 @@ def render_final(engine, depsgraph):
         if not engine.is_preview:
             stamps = choose_models(native_scene, materials.reduced, view, depsgraph, notes, check_break)
             _say(notes)
-        options = _options(scene, view, engine.is_preview)
+        options = final_options(scene, view, engine.is_preview)
         with render_job(native_scene, **options) as job:
             _render_layer(engine, depsgraph, job, view, options["spp"], surroundings)
         _stamp(engine, depsgraph.view_layer_eval.name, stamps)
-
-
-def _options(scene, view, is_preview):
-    settings = scene.velour
-    return {
-        "width": view.width,
-        "height": view.height,
-        "spp": settings.preview_samples if is_preview else settings.samples,
-        "split": settings.split,
-        "bounces": settings.bounces,
-        "strategy": settings.strategy.lower().replace("_", "-"),
-        "threads": scene.render.threads,
-        "seed": settings.seed,
-        "share": settings.share,
-        "heuristic": settings.heuristic.lower(),
-        "sequence": settings.sequence.lower(),
-        "noise": 0.0 if is_preview or not settings.use_noise_target else settings.noise_target,
-        "time_limit": settings.time_limit,
-        "cache_folder": _cache_folder() if settings.use_cache else "",
-        "transparent": int(scene.render.film_transparent),
-        "hide_world": int(hides_world(scene.world)),
-    }
-
-
-def _cache_folder():
-    """An extension's own folder where there are extensions, else the user's cache."""
-    package = __package__.rpartition(".")[0]
-    try:
-        return bpy.utils.extension_path_user(package, path="cache")
-    except (AttributeError, ValueError):  # Blender before 4.2; installed as a plain add-on
-        return user_cache_folder()
 
 
 def _render_layer(engine, depsgraph, job, view, spp, surroundings):

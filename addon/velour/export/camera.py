@@ -88,6 +88,11 @@ def _inside_border(window, size, render):
     y0, y1 = (int(np.float32(b) * np.float32(size[1])) for b in (render.border_min_y, render.border_max_y))
     if x1 <= x0 or y1 <= y0:
         raise ExportError("The render border holds no pixel; draw a larger one, or switch Render Region off.")
+    return inside(window, size, x0, y0, x1, y1)
+
+
+def inside(window, size, x0, y0, x1, y1):
+    """The part of a window of `size` pixels that lies between pixels, and its size."""
     left, right, bottom, top = window
     dx, dy = (right - left) / size[0], (top - bottom) / size[1]
     return (left + x0 * dx, left + x1 * dx, bottom + y0 * dy, bottom + y1 * dy), (x1 - x0, y1 - y0)

@@ -17,6 +17,7 @@ from .job import (
 from .measurement import Measurement
 from .model import Model
 from .observation import Observation
+from .progressive import Picture, ProgressiveJob
 from .scene import Scene
 from .shader import Shader
 from .texture import Texture, TextureSlot
@@ -30,6 +31,8 @@ __all__ = [
     "Measurement",
     "Model",
     "Observation",
+    "Picture",
+    "ProgressiveJob",
     "Scene",
     "Shader",
     "Status",

@@ -179,15 +179,19 @@ def render_job(scene, **options) -> Job:
     """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit
     (seconds), transparent, measure_ray_share, heuristic (table.HEURISTICS), sequence (table.SEQUENCES),
     share, noise, cache_folder (keeps fits of the environment; none: nowhere). `scene` is committed."""
-    raw = _defaults(table.RenderOptions, "vlr_render_options_init")
-    enums = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence": table.SEQUENCES}
-    for name in enums.keys() & options.keys():
-        options[name] = choice(name, options[name], enums[name])
-    if options.get("cache_folder") is not None:
-        options["cache_folder"] = path_bytes(options["cache_folder"])
-    set_fields(raw, options)
+    raw = render_options(options)
     size = (raw.width, raw.height)
     return Job._create("vlr_render_create_job", scene.pointer, ctypes.byref(raw), size=size)
+
+
+def render_options(options: dict) -> table.RenderOptions:
+    raw = _defaults(table.RenderOptions, "vlr_render_options_init")
+    enums = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence": table.SEQUENCES}
+    chosen = {name: choice(name, options[name], enums[name]) for name in enums.keys() & options.keys()}
+    if options.get("cache_folder") is not None:
+        chosen["cache_folder"] = path_bytes(options["cache_folder"])
+    set_fields(raw, {**options, **chosen})
+    return raw
 
 
 def observe_job(scene, material: int, **options) -> Job:

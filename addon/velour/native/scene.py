@@ -92,6 +92,10 @@ class Scene(Handle):
         self._lib.vlr_scene_add_mesh(self.pointer, byref(desc), byref(mesh), byref(dropped))
         return mesh.value, dropped.value
 
+    def remove_mesh(self, mesh: int) -> None:
+        """Takes what there is of one that no instance shows; its number stays, of a mesh of nothing."""
+        self._lib.vlr_scene_remove_mesh(self.pointer, mesh)
+
     def load_mesh(self, path: str | os.PathLike) -> int:
         """Reads a Wavefront OBJ file; the mesh's number."""
         return self._numbered("vlr_scene_load_mesh", path_bytes(path))
@@ -124,6 +128,10 @@ class Scene(Handle):
             self.pointer, address(meshes), address(matrices), len(matrices), numbers, len(numbers)
         )
 
+    def clear_instances(self) -> None:
+        """Meshes and materials stay."""
+        self._lib.vlr_scene_clear_instances(self.pointer)
+
     # ---- materials: each returns its number
 
     def add_model_material(self, model: Model, neighbors: int = 0) -> int:
@@ -135,6 +143,10 @@ class Scene(Handle):
 
         A committed scene stays so, unless their shells differ in their heights. No job may run on it."""
         self._lib.vlr_scene_set_model_material(self.pointer, material, model.pointer, neighbors)
+
+    def replace_material(self, material: int) -> None:
+        """Puts the one that was added last in the place of `material`, and takes it from the end."""
+        self._lib.vlr_scene_replace_material(self.pointer, material)
 
     def set_shell_softness(self, material: int, widths: float) -> None:
         """Over what share of the tile's width the edge of a shell fades out, from 0 (hard) to below 1."""
@@ -193,6 +205,9 @@ class Scene(Handle):
         desc = self._desc(table.LightDesc, "vlr_light_desc_init", values)
         desc.light_to_world = affine("light_to_world", light_to_world)
         self._lib.vlr_scene_add_light(self.pointer, byref(desc))
+
+    def clear_lights(self) -> None:
+        self._lib.vlr_scene_clear_lights(self.pointer)
 
     def set_world_color(self, color) -> None:
         """Radiance [3] from every direction."""

@@ -330,6 +330,16 @@ class RenderOptions(Struct):
     ]
 
 
+class ProgressivePicture(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("samples", c_uint32),
+        ("version", c_uint64),
+    ]
+
+
 class ObserveOptions(Struct):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -360,6 +370,7 @@ STRUCTS = {
     "vlr_light_desc": LightDesc,
     "vlr_camera_desc": CameraDesc,
     "vlr_render_options": RenderOptions,
+    "vlr_progressive_picture": ProgressivePicture,
     "vlr_observe_options": ObserveOptions,
 }
 
@@ -412,11 +423,13 @@ STATUS_CALLS = {
     "vlr_scene_create": [_out_handle],
     "vlr_scene_set_working_space": [_handle, _floats],
     "vlr_scene_add_mesh": [_handle, POINTER(MeshDesc), _number, _number],
+    "vlr_scene_remove_mesh": [_handle, c_uint32],
     "vlr_scene_load_mesh": [_handle, c_char_p, _number],
     "vlr_scene_add_model_material": [_handle, _handle, c_uint32, _number],
     "vlr_scene_set_shell_tile": [_handle, c_uint32, c_float],
     "vlr_scene_set_shell_softness": [_handle, c_uint32, c_float],
     "vlr_scene_set_drawn_to": [_handle, c_uint32, c_int32],
+    "vlr_scene_replace_material": [_handle, c_uint32],
     "vlr_scene_set_model_material": [_handle, c_uint32, _handle, c_uint32],
     "vlr_scene_add_measurement_material": [_handle, _handle, _handle, c_uint32, _number],
     "vlr_scene_add_btf_material": [_handle, _handle, c_uint64, _number],
@@ -443,8 +456,10 @@ STATUS_CALLS = {
     "vlr_scene_add_instance": [_handle, c_uint32, _floats, _number, c_uint32],
     "vlr_scene_add_placed_instance": [_handle, c_uint32, _floats, _number, _floats, c_uint32],
     "vlr_scene_add_instances": [_handle, c_void_p, c_void_p, c_uint64, _number, c_uint32],
+    "vlr_scene_clear_instances": [_handle],
     "vlr_scene_hide_instances": [_handle, c_uint32],
     "vlr_scene_add_light": [_handle, POINTER(LightDesc)],
+    "vlr_scene_clear_lights": [_handle],
     "vlr_scene_set_world_color": [_handle, _floats],
     "vlr_scene_set_world_pixels": [_handle, c_uint32, c_uint32, c_uint32, _floats, c_float, _floats],
     "vlr_scene_load_world": [_handle, c_char_p, c_float, _floats],
@@ -459,6 +474,9 @@ STATUS_CALLS = {
     "vlr_tile_material": [_handle, c_uint32, POINTER(PrincipledDesc)],
     "vlr_tile_info_json": [_handle, _json],
     "vlr_render_create_job": [_handle, POINTER(RenderOptions), _out_handle],
+    "vlr_progressive_create_job": [_handle, POINTER(RenderOptions), _out_handle],
+    "vlr_progressive_restart": [_handle],
+    "vlr_progressive_read": [_handle, _floats, c_uint64, POINTER(ProgressivePicture)],
     "vlr_job_read_pass": [_handle, c_char_p, _floats, c_uint64],
     "vlr_observation_create": [_out_handle],
     "vlr_observation_load": [c_char_p, _out_handle],

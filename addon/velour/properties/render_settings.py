@@ -97,11 +97,20 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     preview_samples: IntProperty(
         name="Preview Samples",
-        description="Light directions a pixel in material previews and in the viewport",
+        description="Light directions a pixel in material previews",
         default=32,
         min=1,
         soft_max=256,
         max=1 << 16,
+        override=_OVERRIDE,
+    )
+    viewport_samples: IntProperty(
+        name="Viewport Samples",
+        description="Light directions a pixel in the rendered viewport. 0: as many as there is time for",
+        default=1024,
+        min=0,
+        soft_max=4096,
+        max=1 << 20,
         override=_OVERRIDE,
     )
     split: IntProperty(

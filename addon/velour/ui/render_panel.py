@@ -53,6 +53,7 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
             layout.prop(settings, "use_cache")
         column = layout.column(align=True)
         column.prop(settings, "samples")
+        column.prop(settings, "viewport_samples", text="Viewport")
         column.prop(settings, "preview_samples", text="Preview")
         column.prop(settings, "split")
         layout.prop(settings, "bounces")

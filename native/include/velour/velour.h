@@ -348,10 +348,14 @@ typedef struct vlr_mesh_desc {
 } vlr_mesh_desc;
 /* Degenerate triangles and non-finite vertices are left out; *dropped (may be NULL) says how many triangles. */
 VLR_API vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint32_t* mesh, uint32_t* dropped);
+/* Takes what there is of a mesh that no instance shows; its number stays, of a mesh without triangles. */
+VLR_API vlr_status vlr_scene_remove_mesh(vlr_scene* scene, uint32_t mesh);
 /* Reads a Wavefront OBJ file, or a Stanford PLY file by its extension .ply. */
 VLR_API vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint32_t* mesh);
 
 /* Materials are numbered in the order of adding. */
+/* Puts the material that was added last in the place of `material`, and takes it from the end. */
+VLR_API vlr_status vlr_scene_replace_material(vlr_scene* scene, uint32_t material);
 VLR_API vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model, uint32_t neighbors,
                                                 uint32_t* material);
 /* How wide, in metres, a tile of the material's shell (VOTF) is, which scales its height; 0: as the texture coordinates
@@ -404,6 +408,9 @@ VLR_API vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh
 VLR_API vlr_status vlr_scene_add_instances(vlr_scene* scene, const uint32_t* meshes, const float* object_to_world,
                                            uint64_t instances, const uint32_t* materials, uint32_t count);
 
+/* Takes all of them out of the scene; meshes and materials stay. */
+VLR_API vlr_status vlr_scene_clear_instances(vlr_scene* scene);
+
 /* Bits: what passes through an instance as if it were not there; of a holdout the camera sees nothing, and nothing
  * behind it: black, alpha 0. */
 enum { VLR_HIDDEN_FROM_CAMERA = 1, VLR_HIDDEN_FROM_BOUNCES = 2, VLR_HIDDEN_FROM_SHADOWS = 4, VLR_HOLDOUT = 8 };
@@ -428,6 +435,7 @@ typedef struct vlr_light_desc {
 } vlr_light_desc;
 VLR_API void vlr_light_desc_init(vlr_light_desc* desc);
 VLR_API vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc);
+VLR_API vlr_status vlr_scene_clear_lights(vlr_scene* scene);
 
 /* The world is +z up. Image: equirectangular, row 0 at the top (+z), in the convention of Blender: the middle column
  * looks along +x; u = 1/2 - atan2(y, x) / (2 pi) from the left, v = 1/2 + asin(z) / pi from the bottom.
@@ -458,7 +466,9 @@ VLR_API vlr_status vlr_scene_look_at(vlr_scene* scene, const float* eye, const f
 /* The default camera: frames the bounding box of all instances to the picture's height. `up_axis` 1 or 2 (y or z). */
 VLR_API vlr_status vlr_scene_frame_camera(vlr_scene* scene, float aspect, uint32_t up_axis);
 
-/* Builds the acceleration structure and checks the scene. Needed before a render job is made, after every change. */
+/* Builds the acceleration structure and checks the scene. Needed before a render job is made, after every change; what
+ * has not changed is not built again: a camera, a light, a world or a plain material costs next to nothing, an instance
+ * the level of the instances, a mesh that mesh. */
 VLR_API vlr_status vlr_scene_commit(vlr_scene* scene);
 /* JSON: triangles, instances, lights, materials, untextured (instances of a mesh without texture coordinates whose
  * material varies over the surface: one place of it is shown everywhere), camera_inside (of a committed scene, the
@@ -702,6 +712,23 @@ VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_rende
 /* The film so far, row 0 at the bottom. Passes and channels: "Combined" 4 (RGBA, premultiplied), "Depth" 1,
  * "Normal" 3 (world), "Sample Count" 1. `pixels` holds width x height x channels. May be called while the job runs. */
 VLR_API vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels, uint64_t count);
+
+/* A picture for somebody who watches: coarse at once, then finer, then less noisy; `noise` and `time_limit` are not
+ * used. Started again after a cancel, the job goes on where it was. The scene may change while it does not run: then
+ * vlr_scene_commit and vlr_progressive_restart come before the next start. No report but {}. */
+VLR_API vlr_status vlr_progressive_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
+/* The next start begins anew. Not while the job runs. */
+VLR_API vlr_status vlr_progressive_restart(vlr_job* job);
+typedef struct vlr_progressive_picture {
+  uint32_t struct_size;
+  uint32_t width, height; /* 0: there is none yet */
+  uint32_t samples;       /* light directions that every pixel of full size has */
+  uint64_t version;       /* grows with what there is to see */
+} vlr_progressive_picture;
+/* The picture so far, RGBA, premultiplied, row 0 at the bottom: width x height x 4 values of the picture, which has no
+ * more than the options asked for. `count` values fit `pixels`; NULL: only `picture` is wanted. At any time. */
+VLR_API vlr_status vlr_progressive_read(const vlr_job* job, float* pixels, uint64_t count,
+                                        vlr_progressive_picture* picture);
 
 /* ---- observations -------------------------------------------------------------------------------------------- */
 

@@ -14,6 +14,7 @@
 #include "material/shader_layers.h"
 #include "model/model.h"
 #include "render/film.h"
+#include "render/progressive.h"
 #include "scene/scene.h"
 #include "tile/tile.h"
 
@@ -71,7 +72,8 @@ struct JobOutput {
   std::string report;
   std::shared_ptr<const Model> model;
   std::shared_ptr<const SceneObservation> observation;
-  std::shared_ptr<const Film> film;  // set when the job is made
+  std::shared_ptr<const Film> film;                // set when the job is made
+  std::shared_ptr<ProgressiveRender> progressive;  // likewise; thread-safe but for run() and restart()
 
   void set(std::string json, std::shared_ptr<const Model> result = nullptr) {
     const std::lock_guard lock(mutex);

@@ -78,6 +78,50 @@ vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_option
   });
 }
 
+vlr_status vlr_progressive_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out) {
+  return guard([&] {
+    require(scene, "scene");
+    require(out, "out");
+    const RenderOptions asked = converted(read_options(options, vlr_render_options_init, "vlr_render_options"));
+    auto output = std::make_shared<JobOutput>();
+    output->progressive = std::make_shared<ProgressiveRender>(scene->scene, asked);
+    *out = new vlr_job(output, [output](Progress& progress) {
+      output->progressive->run(progress);
+      output->set("{}");
+    });
+  });
+}
+
+namespace {
+
+ProgressiveRender& progressive_of(const vlr_job* job) {
+  require(job, "job");
+  if (!job->output->progressive) throw Error(Status::invalid_state, "This job makes no progressive picture.");
+  return *job->output->progressive;
+}
+
+}  // namespace
+
+vlr_status vlr_progressive_restart(vlr_job* job) {
+  return guard([&] {
+    ProgressiveRender& progressive = progressive_of(job);
+    if (job->job.poll().state == Job::State::running) {
+      throw Error(Status::invalid_state, "The job is running; cancel it and wait for its end first.");
+    }
+    progressive.restart();
+  });
+}
+
+vlr_status vlr_progressive_read(const vlr_job* job, float* pixels, uint64_t count, vlr_progressive_picture* picture) {
+  return guard([&] {
+    const ProgressiveRender& progressive = progressive_of(job);
+    const auto seen = pixels ? progressive.read({pixels, static_cast<size_t>(count)}) : progressive.picture();
+    const vlr_progressive_picture values{sizeof(vlr_progressive_picture), static_cast<uint32_t>(seen.width),
+                                         static_cast<uint32_t>(seen.height), seen.samples, seen.version};
+    write_struct(values, picture, "vlr_progressive_picture");
+  });
+}
+
 vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels, uint64_t count) {
   return guard([&] {
     require(job, "job");

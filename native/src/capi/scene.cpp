@@ -166,6 +166,34 @@ vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint32_t* mes
   });
 }
 
+vlr_status vlr_scene_remove_mesh(vlr_scene* scene, uint32_t mesh) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->remove_mesh(mesh);
+  });
+}
+
+vlr_status vlr_scene_replace_material(vlr_scene* scene, uint32_t material) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->replace_material(material);
+  });
+}
+
+vlr_status vlr_scene_clear_instances(vlr_scene* scene) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->clear_instances();
+  });
+}
+
+vlr_status vlr_scene_clear_lights(vlr_scene* scene) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->clear_lights();
+  });
+}
+
 vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model, uint32_t neighbors,
                                         uint32_t* material) {
   return guard([&] {

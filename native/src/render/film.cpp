@@ -125,6 +125,20 @@ void Film::read_pass(std::string_view name, std::span<float> pixels) const {
   }
 }
 
+void Film::read_over(const Film* coarser, std::span<float> pixels) const {
+  if (coarser == nullptr) return read_pass("Combined", pixels);
+  const std::lock_guard lock(mutex_), other(coarser->mutex_);
+  float* out = pixels.data();
+  for (int y = 0; y < height_; ++y) {
+    const int row = y * coarser->height_ / height_ * coarser->width_;
+    for (int x = 0; x < width_; ++x, out += 4) {
+      const PixelSum& own = pixels_[static_cast<size_t>(y * width_ + x)];
+      const PixelSum& under = coarser->pixels_[static_cast<size_t>(row + x * coarser->width_ / width_)];
+      write_combined(own.camera_rays > 0 ? own : under, out);
+    }
+  }
+}
+
 uint64_t Film::directions() const {
   const std::lock_guard lock(mutex_);
   uint64_t sum = 0;

@@ -64,6 +64,8 @@ class Film {
   static int channels(std::string_view pass);
   /// `pixels` holds width x height x channels(pass). Pixels without samples are 0; depth is 1e10 where nothing was hit.
   void read_pass(std::string_view pass, std::span<float> pixels) const;
+  /// "Combined", but pixels without samples are those of a `coarser` film of the same view; null: they are 0.
+  void read_over(const Film* coarser, std::span<float> pixels) const;
 
   /// Light directions of all pixels.
   uint64_t directions() const;

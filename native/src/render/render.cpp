@@ -8,13 +8,11 @@
 #include <chrono>
 #include <string>
 
-#include "fit/ggx_fit.h"
 #include "job/threads.h"
-#include "render/lights_part.h"
 #include "render/noise_target.h"
+#include "render/preparation.h"
 #include "render/ray_share.h"
 #include "render/tile_renderer.h"
-#include "scene/sky_misfit.h"
 
 namespace velour {
 namespace {
@@ -23,42 +21,14 @@ using Clock = std::chrono::steady_clock;
 
 /// Camera rays a pixel of a whole-grown pass: a tile stays below 10 ms, so a cancel is seen soon.
 constexpr int kLargestPass = 8;
-/// What tables or fits before the first pass take of the whole, roughly.
-constexpr double kPreparation = 0.05;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-void require_range(const char* name, int value, int low, int high) {
-  if (value >= low && value <= high) return;
-  throw Error(Status::invalid_argument, "Render option " + std::string(name) + " is " + std::to_string(value) +
-                                            "; it must lie between " + std::to_string(low) + " and " +
-                                            std::to_string(high) + ".");
-}
-
-RenderOptions checked(const Scene& scene, RenderOptions options, const Film& film) {
-  constexpr int kMost = 1 << 30;
-  require_range("width", options.width, 1, 65536);
-  require_range("height", options.height, 1, 65536);
-  require_range("spp", options.spp, 1, kMost);
-  require_range("split", options.split, 1, RenderOptions::kMaxSplit);
-  require_range("bounces", options.bounces, 0, 1024);
-  require_range("threads", options.threads, 0, 4096);
-  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::product));
-  require_range("camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
-  require_range("heuristic", static_cast<int>(options.heuristic), 0, static_cast<int>(Heuristic::power));
-  require_range("sequence", static_cast<int>(options.sequence), 0, static_cast<int>(Sequence::sobol));
-  if (!(options.light_share >= 0.0f && options.light_share <= 1.0f)) {
-    throw Error(Status::invalid_argument,
-                "Render option share is " + std::to_string(options.light_share) + "; it must lie between 0 and 1.");
-  }
-  if (!(options.noise >= 0.0)) throw Error(Status::invalid_argument, "Render option noise is negative.");
-  if (!(options.time_limit >= 0.0)) throw Error(Status::invalid_argument, "Render option time_limit is negative.");
+RenderOptions checked_for(const Scene& scene, const RenderOptions& options, const Film& film) {
   if (film.width() != options.width || film.height() != options.height) {
     throw Error(Status::invalid_argument, "The film has another size than the render options ask for.");
   }
-  if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is rendered.");
-  options.split = std::min(options.split, options.spp);
-  return options;
+  return checked(scene, options);
 }
 
 /// Camera rays a pixel of the next pass: doubling, so that a first picture appears at once.
@@ -72,70 +42,26 @@ int pass_size(const RenderOptions& options, int done, int total) {
 class Renderer {
  public:
   Renderer(const Scene& scene, const RenderOptions& options, Film& film, Progress& progress)
-      : options_(checked(scene, options, film)),
+      : options_(checked_for(scene, options, film)),
         film_(film),
         progress_(progress),
         arena_(arena_concurrency(options_.threads)),
-        context_{scene, options_, Lighting(scene), {}, {}, nullptr, {}},
+        context_(scene, options_),
         target_(options_.noise, blocks_of(options_.width, options_.height)) {}
 
   RenderReport run() {
     film_.clear();
-    prepare_tables();
-    fit_ggx_lobes();
-    prepare_sky();
+    prepare(context_, arena_, progress_, report_.stages);
+    if (context_.sky) report_.sky = context_.sky_report;
     render_passes();
     if (options_.measure_ray_share) measure_ray_share();
     return report();
   }
 
  private:
-  template <typename Work>
-  void stage(const char* name, double begin, double end, Work&& work) {
-    progress_.stage(name, begin, end);
-    const auto start = Clock::now();
-    work();
-    report_.stages.push_back({name, seconds_since(start)});
-  }
-
-  void prepare_tables() {
-    if (options_.strategy != Strategy::table) return;
-    const auto& materials = context_.scene.materials();
-    context_.tables.resize(materials.size());
-    stage("tables", 0.0, kPreparation, [&] {
-      for (size_t m = 0; m < materials.size(); ++m) {
-        progress_.check();
-        arena_.execute([&] { context_.tables[m] = std::make_unique<const TableSampler>(*materials[m].material); });
-      }
-    });
-  }
-
-  void fit_ggx_lobes() {
-    if (surface_sampling(options_.strategy) != SurfaceSampling::ggx) return;
-    const auto& materials = context_.scene.materials();
-    stage("ggx fit", 0.0, kPreparation, [&] {
-      for (const SurfaceMaterial& m : materials) {
-        context_.ggx.push_back(std::make_unique<const GgxSampler>(fit_ggx(*m.material, options_.threads, progress_)));
-      }
-    });
-  }
-
-  void prepare_sky() {
-    const Environment& environment = context_.scene.environment();
-    if (options_.strategy != Strategy::product || environment.black()) return;
-    stage("sky", 0.0, kPreparation, [&] {
-      arena_.execute([&] {
-        const SkyMixture sky = sky_mixture(environment, {}, options_.cache_folder, progress_);
-        context_.sky = std::make_unique<const SkyProposals>(sky, sky_misfit(environment, sky));
-        context_.lights_part = lights_parts(context_.scene, *context_.sky);
-        report_.sky = RenderReport::Sky{sky.size(), sky.relative_l2, sky.seconds, sky.cached};
-      });
-    });
-  }
-
   void render_passes() {
     const int total = context_.camera_rays();
-    stage("render", report_.stages.empty() ? 0.0 : kPreparation, 1.0, [&] {
+    run_stage(progress_, report_.stages, "render", report_.stages.empty() ? 0.0 : kPreparation, 1.0, [&] {
       const auto start = Clock::now();
       while (done_ < total && !target_.active().empty()) {
         const int count = std::min(pass_size(options_, done_, total), target_.next_decision() - done_);
@@ -173,8 +99,8 @@ class Renderer {
   }
 
   void measure_ray_share() {
-    stage("replay", 1.0, 1.0,
-          [&] { arena_.execute([&] { report_.ray_share = share_.measure(context_.scene.rays(), progress_); }); });
+    run_stage(progress_, report_.stages, "replay", 1.0, 1.0,
+              [&] { arena_.execute([&] { report_.ray_share = share_.measure(context_.scene.rays(), progress_); }); });
   }
 
   RenderReport report() {

@@ -10,11 +10,14 @@
 #include "render/direct_light.h"
 #include "render/film.h"
 #include "render/ray_log.h"
+#include "render/report.h"
 
 namespace velour {
 
-/// What all threads share during a render. Immutable.
+/// What all threads share during a render, and do not change.
 struct RenderContext {
+  RenderContext(const Scene& of, const RenderOptions& asked) : scene(of), options(asked), lighting(of) {}
+
   const Scene& scene;
   const RenderOptions& options;  // split <= spp
   Lighting lighting;
@@ -23,6 +26,7 @@ struct RenderContext {
   std::vector<std::unique_ptr<const GgxSampler>> ggx;
   std::unique_ptr<const SkyProposals> sky;  // null unless the strategy needs it
   std::vector<float> lights_part;           // by material, with `sky`
+  RenderReport::Sky sky_report{};           // with `sky`
 
   int camera_rays() const { return (options.spp + options.split - 1) / options.split; }
   /// Light directions of camera ray `index`: the last one takes what is left of spp.

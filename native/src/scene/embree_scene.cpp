@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "job/error.h"
@@ -45,7 +46,7 @@ struct EmbreeScene::Meshes {
   std::atomic<int64_t> bytes{0};
   RTCDevice device = nullptr;
   std::vector<RTCScene> scenes;
-  size_t built = 0;  // of them
+  std::vector<uint32_t> unbuilt;  // of them, by number
 
   Meshes() : device(api.rtcNewDevice(nullptr)) {
     if (device == nullptr) throw Error(Status::unsupported, "Embree cannot run on this processor.");
@@ -60,8 +61,9 @@ struct EmbreeScene::Meshes {
 
   void build(tbb::task_arena& arena) {
     arena.execute([this] {
-      for (; built < scenes.size(); ++built) api.rtcJoinCommitScene(scenes[built]);
+      for (uint32_t number : unbuilt) api.rtcJoinCommitScene(scenes[number]);
     });
+    unbuilt.clear();
   }
 };
 
@@ -112,6 +114,29 @@ struct EmbreeScene::Impl {
     return scene;
   }
 
+  /// Of a mesh, not committed.
+  RTCScene mesh_scene(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) const {
+    for (const glm::uvec3& t : triangles) {
+      if (std::max({t.x, t.y, t.z}) >= positions.size()) {
+        throw Error(Status::invalid_argument, "A triangle names vertex " + std::to_string(std::max({t.x, t.y, t.z})) +
+                                                  " of a mesh with " + std::to_string(positions.size()) + ".");
+      }
+    }
+    RTCGeometry geometry = api.rtcNewGeometry(meshes->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (!triangles.empty()) {
+      void* vertex = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3),
+                                                 positions.size());
+      void* index = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                sizeof(glm::uvec3), triangles.size());
+      check();
+      std::memcpy(vertex, positions.data(), positions.size_bytes());
+      std::memcpy(index, triangles.data(), triangles.size_bytes());
+    }
+    RTCScene scene = new_scene();
+    attach(scene, geometry, 0);
+    return scene;
+  }
+
   void check() const {
     const RTCError error = api.rtcGetDeviceError(meshes->device);
     if (error == RTC_ERROR_NONE) return;
@@ -141,26 +166,17 @@ EmbreeScene::EmbreeScene() : impl_(std::make_unique<Impl>()) {}
 EmbreeScene::~EmbreeScene() = default;
 
 uint32_t EmbreeScene::add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
-  for (const glm::uvec3& t : triangles) {
-    if (std::max({t.x, t.y, t.z}) >= positions.size()) {
-      throw Error(Status::invalid_argument, "A triangle names vertex " + std::to_string(std::max({t.x, t.y, t.z})) +
-                                                " of a mesh with " + std::to_string(positions.size()) + ".");
-    }
-  }
-  const EmbreeApi& api = impl_->api;
-  RTCGeometry geometry = api.rtcNewGeometry(impl_->meshes->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  if (!triangles.empty()) {
-    void* vertex = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3),
-                                               positions.size());
-    void* index = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
-                                              triangles.size());
-    impl_->check();
-    std::memcpy(vertex, positions.data(), positions.size_bytes());
-    std::memcpy(index, triangles.data(), triangles.size_bytes());
-  }
-  impl_->meshes->scenes.push_back(impl_->new_scene());
-  impl_->attach(impl_->meshes->scenes.back(), geometry, 0);
-  return static_cast<uint32_t>(impl_->meshes->scenes.size() - 1);
+  Meshes& meshes = *impl_->meshes;
+  meshes.scenes.push_back(impl_->mesh_scene(positions, triangles));
+  meshes.unbuilt.push_back(static_cast<uint32_t>(meshes.scenes.size() - 1));
+  return meshes.unbuilt.back();
+}
+
+void EmbreeScene::set_mesh(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
+  Meshes& meshes = *impl_->meshes;
+  RTCScene scene = impl_->mesh_scene(positions, triangles);
+  impl_->api.rtcReleaseScene(std::exchange(meshes.scenes.at(number), scene));
+  meshes.unbuilt.push_back(number);
 }
 
 void EmbreeScene::share_meshes(const EmbreeScene& other) { impl_->meshes = other.impl_->meshes; }
@@ -172,6 +188,8 @@ uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world)
   impl_->instances.push_back({mesh, object_to_world, object_to_world.normal_map()});
   return static_cast<uint32_t>(impl_->instances.size() - 1);
 }
+
+void EmbreeScene::clear_instances() { impl_->instances.clear(); }
 
 void EmbreeScene::commit(int threads) {
   Impl& s = *impl_;

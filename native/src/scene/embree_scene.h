@@ -35,7 +35,8 @@ struct Hit {
   float shell_begin = 0, shell_s = std::numeric_limits<float>::quiet_NaN();
 };
 
-/// Meshes and instances of them. Build once, then trace from any number of threads.
+/// Meshes and instances of them. Build, then trace from any number of threads. Changes need another commit(), which
+/// builds anew what has changed alone: meshes that are new, and the level of the instances over them.
 class EmbreeScene {
  public:
   EmbreeScene();
@@ -45,11 +46,14 @@ class EmbreeScene {
 
   /// Copies the geometry. Returns the mesh's number.
   uint32_t add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
+  /// Puts another mesh in the place of one; without triangles it takes no memory.
+  void set_mesh(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
   /// Takes the meshes of `other`, which is committed, in the place of its own: no geometry is copied, no mesh is built
-  /// again. Neither may add meshes then.
+  /// again. Neither may add meshes while the other is traced.
   void share_meshes(const EmbreeScene& other);
   /// Returns the instance's number, counted from 0.
   uint32_t add_instance(uint32_t mesh, const Affine& object_to_world);
+  void clear_instances();
   /// Builds; uses at most `threads` threads (0: all). A scene whose only instance has the identity map is traced
   /// without an instance level.
   void commit(int threads);

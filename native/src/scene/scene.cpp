@@ -55,12 +55,30 @@ Bounds bounds_of(const Mesh& mesh, const Affine& to_world) {
 
 }  // namespace
 
-void Scene::changed() { rays_.reset(); }
+void Scene::changed() {
+  committed_ = false;
+  ++revision_;
+}
+
+void Scene::geometry_changed() {
+  changed();
+  geometry_changed_ = true;
+}
 
 uint32_t Scene::add_mesh(Mesh mesh) {
-  changed();
+  geometry_changed();
   meshes_.push_back(std::move(mesh));
   return static_cast<uint32_t>(meshes_.size() - 1);
+}
+
+void Scene::remove_mesh(uint32_t number) {
+  if (number >= meshes_.size()) refuse("There is no mesh " + std::to_string(number) + " to remove.");
+  if (std::ranges::any_of(instances_, [&](const Instance& i) { return i.mesh == number; })) {
+    refuse("Mesh " + std::to_string(number) + " has instances; remove those first.");
+  }
+  geometry_changed();
+  meshes_[number] = Mesh(MeshArrays{});
+  if (number < is_traced_.size()) trace_mesh(number, false);
 }
 
 uint32_t Scene::add_material(SurfaceMaterial material) {
@@ -72,7 +90,8 @@ uint32_t Scene::add_material(SurfaceMaterial material) {
 void Scene::set_material(uint32_t number, SurfaceMaterial material) {
   if (number >= materials_.size()) refuse("There is no material " + std::to_string(number) + " to replace.");
   SurfaceMaterial& place = materials_[number];
-  if (!have_same_tops(place, material)) changed();
+  ++revision_;
+  if (!have_same_tops(place, material)) geometry_changed();
   if (material.shell && place.shell) {
     material.shell_tile = place.shell_tile;
     material.shell_softness = place.shell_softness;
@@ -80,8 +99,17 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
   place = std::move(material);
 }
 
+void Scene::replace_material(uint32_t number) {
+  if (number + 1 >= materials_.size()) refuse("There is no material " + std::to_string(number) + " to replace.");
+  if (!have_same_tops(materials_[number], materials_.back())) geometry_changed();
+  changed();
+  materials_[number] = std::move(materials_.back());
+  materials_.pop_back();
+}
+
 void Scene::set_drawn_to(uint32_t material, bool drawn) {
   if (material >= materials_.size()) refuse("There is no material " + std::to_string(material) + " to draw rays to.");
+  ++revision_;
   materials_[material].drawn_to = drawn;
 }
 
@@ -94,7 +122,7 @@ void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vect
     if (m >= materials_.size()) refuse("There is no material " + std::to_string(m) + " for an instance.");
   }
   require_placements(placements, materials.size());
-  changed();
+  geometry_changed();
   if (!object_to_world.invertible()) {
     ++flat_instances_;
     return;
@@ -117,6 +145,17 @@ uint32_t Scene::add_light(const Light& light) {
   return static_cast<uint32_t>(lights_.size() - 1);
 }
 
+void Scene::clear_lights() {
+  changed();
+  lights_.clear();
+}
+
+void Scene::clear_instances() {
+  geometry_changed();
+  instances_.clear();
+  flat_instances_ = 0;
+}
+
 void Scene::set_environment(Environment environment) {
   changed();
   environment_ = std::move(environment);
@@ -124,7 +163,7 @@ void Scene::set_environment(Environment environment) {
 
 void Scene::set_camera(const Camera& camera) {
   require_finite(camera.camera_to_world, "the camera");
-  changed();
+  committed_ = false;
   camera_ = camera;
 }
 
@@ -142,23 +181,41 @@ void Scene::commit(int threads) {
   if (committed()) return;
   const auto start = std::chrono::steady_clock::now();
   make_tangents();
-  lift_shells();
-  auto rays = std::make_unique<EmbreeScene>();
-  std::vector<bool> traced(meshes_.size() + lifted_.size());
-  for (const Instance& i : instances_) traced[i.traced] = true;
-  for (size_t m = 0; m < traced.size(); ++m) {
-    const Mesh& mesh = m < meshes_.size() ? meshes_[m] : lifted_[m - meshes_.size()];
-    // Meshes that are traced as the tops of their shells alone keep their number.
-    traced[m] ? rays->add_mesh(mesh.positions(), mesh.triangles()) : rays->add_mesh({}, {});
-  }
-  for (const Instance& i : instances_) rays->add_instance(i.traced, i.object_to_world);
-  rays->commit(threads);
-  rays_ = std::move(rays);
-  build_sides(threads);
-  bounds_ = bounds_of_instances();
+  if (geometry_changed_) build_rays(threads);
+  committed_ = true;
   info_ = count();
   info_.bytes += rays_->bytes() + (sides_ ? sides_->bytes() : 0);
   info_.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Scene::build_rays(int threads) {
+  const bool had_tops = !lifted_.empty();
+  lift_shells();
+  // Tops have the numbers behind those of the meshes, so they hold on to nothing.
+  if (!rays_ || had_tops || !lifted_.empty()) {
+    rays_ = std::make_unique<EmbreeScene>();
+    is_traced_.clear();
+  }
+  std::vector<bool> traced(meshes_.size() + lifted_.size());
+  for (const Instance& i : instances_) traced[i.traced] = true;
+  for (uint32_t m = 0; m < traced.size(); ++m) trace_mesh(m, traced[m]);
+  rays_->clear_instances();
+  for (const Instance& i : instances_) rays_->add_instance(i.traced, i.object_to_world);
+  rays_->commit(threads);
+  build_sides(threads);
+  geometry_changed_ = false;
+  bounds_ = bounds_of_instances();
+}
+
+void Scene::trace_mesh(uint32_t number, bool is_traced) {
+  const Mesh& mesh = number < meshes_.size() ? meshes_[number] : lifted_[number - meshes_.size()];
+  if (number == is_traced_.size()) {
+    is_traced ? rays_->add_mesh(mesh.positions(), mesh.triangles()) : rays_->add_mesh({}, {});
+    is_traced_.push_back(is_traced);
+  } else if (is_traced_[number] != is_traced) {
+    is_traced ? rays_->set_mesh(number, mesh.positions(), mesh.triangles()) : rays_->set_mesh(number, {}, {});
+    is_traced_[number] = is_traced;
+  }
 }
 
 void Scene::make_tangents() {
@@ -172,7 +229,7 @@ Bounds Scene::bounds_of_instances() const {
   std::unordered_map<const Mesh*, Bounds> of_mesh;
   Bounds bounds;
   for (const Instance& i : instances_) {
-    const Mesh& mesh = committed() ? traced_mesh(i) : meshes_[i.mesh];
+    const Mesh& mesh = geometry_changed_ ? meshes_[i.mesh] : traced_mesh(i);
     auto found = of_mesh.find(&mesh);
     if (found == of_mesh.end()) found = of_mesh.emplace(&mesh, bounds_of(mesh, Affine{})).first;
     // Of a hundred thousand instances few are at the border, and only there do their corners matter.

@@ -90,16 +90,21 @@ struct ShellFrame {
   Vec2 uv_along{0.0f};     // what the texture coordinates change by, 1 / metres
 };
 
-/// Fill, commit, render. Every change after commit() needs another commit(). Reading a committed scene is thread-safe.
+/// Fill, commit, render. Every change after commit() needs another commit(), which builds anew no more than what has
+/// changed. Reading a committed scene is thread-safe.
 class Scene {
  public:
   /// These return the number of what was added, counted from 0. Arguments that name missing things throw
   /// Error(invalid_argument).
   uint32_t add_mesh(Mesh mesh);
+  /// Takes what there is of a mesh that no instance shows; its number stays, of a mesh without triangles.
+  void remove_mesh(uint32_t number);
   uint32_t add_material(SurfaceMaterial material);
   /// Puts another material in the place of one. A committed scene stays committed, unless one of the two has a shell
   /// and the other none of the same heights; nothing may read it meanwhile. A shell keeps tile and softness.
   void set_material(uint32_t number, SurfaceMaterial material);
+  /// Puts the material that was added last in the place of `number`, and takes it from the end.
+  void replace_material(uint32_t number);
   /// SurfaceMaterial::shell_tile. Throws Error(invalid_argument) for a material without a shell.
   void set_shell_tile(uint32_t material, float metres);
   /// SurfaceMaterial::shell_softness, below 1. As above. A committed scene stays committed.
@@ -112,7 +117,9 @@ class Scene {
   /// `hidden_from`: bits of `hidden`.
   void add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
                     std::vector<TextureMap> placements = {}, uint8_t hidden_from = 0);
+  void clear_instances();
   uint32_t add_light(const Light& light);
+  void clear_lights();
   void set_environment(Environment environment);
   void set_camera(const Camera& camera);
   /// Camera::framing of all instances.
@@ -122,7 +129,9 @@ class Scene {
 
   /// Checks the scene and builds the hierarchy with at most `threads` threads (0: all); nothing, if it is committed.
   void commit(int threads = 0);
-  bool committed() const { return rays_ != nullptr; }
+  bool committed() const { return committed_; }
+  /// Another number after every change but that of the camera alone.
+  uint64_t revision() const { return revision_; }
 
   struct Instance {
     uint32_t mesh;
@@ -187,7 +196,11 @@ class Scene {
   const SceneInfo& info() const { return info_; }
 
  private:
-  void changed();
+  void changed();           // what is traced stays
+  void geometry_changed();  // a mesh, an instance, a shell
+  void build_rays(int threads);
+  /// The hierarchy's copy of a mesh, or nothing of one that is not traced: all keep their numbers.
+  void trace_mesh(uint32_t number, bool is_traced);
   SurfaceMaterial& with_shell(uint32_t material, const char* to_what);
   void make_tangents();
   void lift_shells();
@@ -215,7 +228,10 @@ class Scene {
   std::optional<Mat3> rec709_to_working_;
   uint64_t unlifted_ = 0;  // instances whose shells lack texture coordinates
   std::vector<std::string> shell_warnings_;
+  bool committed_ = false, geometry_changed_ = true;
+  uint64_t revision_ = 0;
   std::unique_ptr<EmbreeScene> rays_;
+  std::vector<bool> is_traced_;         // of the meshes that rays_ has: they are more than nothing
   std::unique_ptr<EmbreeScene> sides_;  // of shells, for next_side(); null: there are none
   Bounds bounds_;
   SceneInfo info_;

@@ -62,7 +62,7 @@ void Scene::set_shell_tile(uint32_t material, float metres) {
   if (!(metres >= 0 && std::isfinite(metres))) {
     throw Error(Status::invalid_argument, "The tile of a shell cannot be " + std::to_string(metres) + " metres wide.");
   }
-  changed();
+  geometry_changed();
   surface.shell_tile = metres;
 }
 
@@ -72,6 +72,7 @@ void Scene::set_shell_softness(uint32_t material, float widths) {
     throw Error(Status::invalid_argument, "The edge of a shell cannot fade out over " + std::to_string(widths) +
                                               " of the tile's width; give a share from 0 to below 1.");
   }
+  ++revision_;
   surface.shell_softness = widths;
 }
 

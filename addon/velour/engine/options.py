@@ -1,0 +1,54 @@
+"""A scene's settings as the options of a render job."""
+
+import bpy
+
+from ..core.cache import user_cache_folder
+from ..export.film import hides_world
+
+_WITHOUT_END = 1 << 24  # light directions a pixel: more than anybody waits for
+
+
+def final_options(scene, view, is_preview):
+    settings = scene.velour
+    return {
+        **_common(scene, view),
+        "spp": settings.preview_samples if is_preview else settings.samples,
+        "threads": scene.render.threads,
+        "noise": 0.0 if is_preview or not settings.use_noise_target else settings.noise_target,
+        "time_limit": settings.time_limit,
+    }
+
+
+def viewport_options(scene, view):
+    return {
+        **_common(scene, view),
+        "spp": scene.velour.viewport_samples or _WITHOUT_END,
+        "threads": max(1, scene.render.threads - 1),  # one is left to the interface
+    }
+
+
+def _common(scene, view):
+    settings = scene.velour
+    return {
+        "width": view.width,
+        "height": view.height,
+        "split": settings.split,
+        "bounces": settings.bounces,
+        "strategy": settings.strategy.lower().replace("_", "-"),
+        "seed": settings.seed,
+        "share": settings.share,
+        "heuristic": settings.heuristic.lower(),
+        "sequence": settings.sequence.lower(),
+        "cache_folder": _cache_folder() if settings.use_cache else "",
+        "transparent": int(scene.render.film_transparent),
+        "hide_world": int(hides_world(scene.world)),
+    }
+
+
+def _cache_folder():
+    """An extension's own folder where there are extensions, else the user's cache."""
+    package = __package__.rpartition(".")[0]
+    try:
+        return bpy.utils.extension_path_user(package, path="cache")
+    except (AttributeError, ValueError):  # Blender before 4.2; installed as a plain add-on
+        return user_cache_folder()

@@ -1,0 +1,65 @@
+"""What goes on in rendered viewports between redraws: one timer for all, and a stop while Blender renders.
+
+Nothing calls from the library into Python, so the timer looks for new pictures. It ends when no viewport
+has anything to wait for.
+"""
+
+import contextlib
+import threading
+
+import bpy
+
+_SECONDS = 0.02
+
+_viewports = []
+_lock = threading.Lock()  # of the next: renders have threads of their own
+_renders = 0
+
+
+def watch(viewport):
+    """From the main thread. Calls viewport.turn() until it is false, or until forget()."""
+    if viewport not in _viewports:
+        _viewports.append(viewport)
+    if not bpy.app.timers.is_registered(_turn):
+        bpy.app.timers.register(_turn, first_interval=_SECONDS, persistent=True)
+
+
+def forget(viewport):
+    if viewport in _viewports:
+        _viewports.remove(viewport)
+
+
+def viewports():
+    """Those that have anything to wait for."""
+    return tuple(_viewports)
+
+
+def is_paused():
+    return _renders > 0
+
+
+@contextlib.contextmanager
+def paused():
+    """Viewports leave the processor to a render meanwhile, then go on where they were. From any thread."""
+    global _renders
+    with _lock:
+        _renders += 1
+    for viewport in tuple(_viewports):
+        viewport.pause()
+    try:
+        yield
+    finally:
+        with _lock:
+            _renders -= 1
+
+
+def _turn():
+    for viewport in tuple(_viewports):
+        if not viewport.turn():
+            forget(viewport)
+    return _SECONDS if _viewports else None
+
+
+def detach():
+    if bpy.app.timers.is_registered(_turn):
+        bpy.app.timers.unregister(_turn)

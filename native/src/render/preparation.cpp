@@ -1,0 +1,82 @@
+#include "render/preparation.h"
+
+#include <algorithm>
+#include <string>
+
+#include "fit/ggx_fit.h"
+#include "render/lights_part.h"
+#include "scene/sky_misfit.h"
+
+namespace velour {
+namespace {
+
+void require_range(const char* name, int value, int low, int high) {
+  if (value >= low && value <= high) return;
+  throw Error(Status::invalid_argument, "Render option " + std::string(name) + " is " + std::to_string(value) +
+                                            "; it must lie between " + std::to_string(low) + " and " +
+                                            std::to_string(high) + ".");
+}
+
+void prepare_tables(RenderContext& context, tbb::task_arena& arena, Progress& progress) {
+  const auto& materials = context.scene.materials();
+  context.tables.resize(materials.size());
+  for (size_t m = 0; m < materials.size(); ++m) {
+    progress.check();
+    arena.execute([&] { context.tables[m] = std::make_unique<const TableSampler>(*materials[m].material); });
+  }
+}
+
+void fit_ggx_lobes(RenderContext& context, Progress& progress) {
+  for (const SurfaceMaterial& m : context.scene.materials()) {
+    context.ggx.push_back(std::make_unique<const GgxSampler>(fit_ggx(*m.material, context.options.threads, progress)));
+  }
+}
+
+void prepare_sky(RenderContext& context, Progress& progress) {
+  const Environment& environment = context.scene.environment();
+  const SkyMixture sky = sky_mixture(environment, {}, context.options.cache_folder, progress);
+  context.sky = std::make_unique<const SkyProposals>(sky, sky_misfit(environment, sky));
+  context.lights_part = lights_parts(context.scene, *context.sky);
+  context.sky_report = {sky.size(), sky.relative_l2, sky.seconds, sky.cached};
+}
+
+}  // namespace
+
+RenderOptions checked(const Scene& scene, RenderOptions options) {
+  constexpr int kMost = 1 << 30;
+  require_range("width", options.width, 1, 65536);
+  require_range("height", options.height, 1, 65536);
+  require_range("spp", options.spp, 1, kMost);
+  require_range("split", options.split, 1, RenderOptions::kMaxSplit);
+  require_range("bounces", options.bounces, 0, 1024);
+  require_range("threads", options.threads, 0, 4096);
+  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::product));
+  require_range("camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
+  require_range("heuristic", static_cast<int>(options.heuristic), 0, static_cast<int>(Heuristic::power));
+  require_range("sequence", static_cast<int>(options.sequence), 0, static_cast<int>(Sequence::sobol));
+  if (!(options.light_share >= 0.0f && options.light_share <= 1.0f)) {
+    throw Error(Status::invalid_argument,
+                "Render option share is " + std::to_string(options.light_share) + "; it must lie between 0 and 1.");
+  }
+  if (!(options.noise >= 0.0)) throw Error(Status::invalid_argument, "Render option noise is negative.");
+  if (!(options.time_limit >= 0.0)) throw Error(Status::invalid_argument, "Render option time_limit is negative.");
+  if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is rendered.");
+  options.split = std::min(options.split, options.spp);
+  return options;
+}
+
+void prepare(RenderContext& context, tbb::task_arena& arena, Progress& progress, std::vector<RenderStage>& stages) {
+  const Strategy strategy = context.options.strategy;
+  const auto stage = [&](const char* name, const auto& work) {
+    run_stage(progress, stages, name, 0.0, kPreparation, work);
+  };
+  if (strategy == Strategy::table) stage("tables", [&] { prepare_tables(context, arena, progress); });
+  if (surface_sampling(strategy) == SurfaceSampling::ggx) {
+    stage("ggx fit", [&] { fit_ggx_lobes(context, progress); });
+  }
+  if (strategy == Strategy::product && !context.scene.environment().black()) {
+    stage("sky", [&] { arena.execute([&] { prepare_sky(context, progress); }); });
+  }
+}
+
+}  // namespace velour

@@ -1,0 +1,33 @@
+// What comes before the first camera ray: checks, and what strategies make of the scene.
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <vector>
+
+#include "render/tile_renderer.h"
+
+namespace velour {
+
+/// `options`, with no larger a split than there are directions. Throws Error(invalid_argument) with the option at
+/// fault, Error(invalid_state) when the scene is not committed.
+RenderOptions checked(const Scene& scene, RenderOptions options);
+
+/// What tables or fits before the first pass take of the whole, roughly.
+inline constexpr double kPreparation = 0.05;
+
+/// Does `work` as the stage `name` of `progress`, [begin, end] of the whole, and notes its seconds.
+template <typename Work>
+void run_stage(Progress& progress, std::vector<RenderStage>& stages, const char* name, double begin, double end,
+               const Work& work) {
+  progress.stage(name, begin, end);
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  stages.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+}
+
+/// Makes what the strategy of `context` needs beside its lighting; throws Error(cancelled).
+void prepare(RenderContext& context, tbb::task_arena& arena, Progress& progress, std::vector<RenderStage>& stages);
+
+}  // namespace velour

@@ -1,0 +1,72 @@
+// A picture for somebody who watches it and keeps changing the scene: coarse at once, then finer, then less noisy.
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "render/tile_renderer.h"
+
+namespace velour {
+
+/// Goes through levels of half the pixels' size each, one camera ray a pixel, and then on at full size. Camera rays,
+/// strategies and light are those of render(): after all of spp its picture is the same, bit for bit.
+class ProgressiveRender {
+ public:
+  struct Picture {
+    int width = 0, height = 0;  // 0: there is none yet
+    uint32_t samples = 0;       // light directions that every pixel of full size has
+    uint64_t version = 0;       // grows with what there is to see
+  };
+
+  /// `scene` must be committed, and may change between runs: then restart() goes before the next one. Of `options`,
+  /// noise and time_limit are not used. Throws what render() throws.
+  ProgressiveRender(std::shared_ptr<const Scene> scene, const RenderOptions& options);
+
+  /// The next run begins anew. Not while one runs.
+  void restart();
+  /// Until the picture has all of spp, or Error(cancelled); then the next run goes on where this one was.
+  void run(Progress& progress);
+
+  // From any thread, at any time:
+  Picture picture() const;
+  /// RGBA, premultiplied, row 0 at the bottom; pixels that are not there yet are those of the level before. Throws
+  /// Error(invalid_argument) where `pixels` holds less than the picture has; a picture of full size always fits.
+  Picture read(std::span<float> pixels) const;
+
+ private:
+  struct Level {
+    Level(int width, int height);
+    Film film;
+    std::vector<PixelRect> tiles;
+    std::vector<int> done;  // camera rays a pixel, by tile
+    int least = 0;          // of them
+  };
+  bool is_last() const { return level_ + 1 == levels_.size(); }
+  void prepare_scene(Progress& progress);
+  void set_options(const Level& level);
+  void render_level(Progress& progress);
+  void render_pass(Level& level, int target, Progress& progress);
+  void show();
+
+  const std::shared_ptr<const Scene> scene_;
+  const RenderOptions asked_;
+  RenderOptions options_;  // of the level
+  tbb::task_arena arena_;
+  std::unique_ptr<RenderContext> context_;
+  uint64_t prepared_for_ = 0;  // revision of the scene
+  std::vector<std::unique_ptr<Level>> levels_;
+  size_t level_ = 0;
+
+  mutable std::mutex mutex_;        // of what follows
+  const Level* shown_ = nullptr;    // null: nothing yet
+  const Level* beneath_ = nullptr;  // the level before, where `shown_` has holes
+  uint32_t samples_ = 0;
+  std::atomic<uint64_t> version_{0};
+};
+
+}  // namespace velour

@@ -1,0 +1,168 @@
+// A committed scene that changes is the scene that would have been built like that at once.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "support/test_scene.h"
+
+namespace velour {
+namespace {
+
+using test::rendered;
+using test::shift;
+using test::small_options;
+
+std::shared_ptr<const Material> grey(float albedo) { return std::make_shared<test::Lambert>(albedo); }
+
+void begin(Scene& scene) {
+  scene.add_material({grey(0.5f), Rgb(0.0f), false});
+  scene.add_material({grey(0.2f), Rgb(0.0f), false});
+  scene.set_environment(Environment::constant(Rgb(1.0f)));
+  scene.set_camera(test::camera_above(2));
+}
+
+void add_ground_and_ball(Scene& scene, const Vec3& place) {
+  const uint32_t ground = scene.add_mesh(test::square(3)), ball = scene.add_mesh(test::sphere(12));
+  scene.add_instance(ground, {}, {0});
+  scene.add_instance(ball, shift(place), {1});
+}
+
+using Change = std::function<void(Scene&)>;
+
+/// `change` after a first commit against a scene that `expected` makes at once.
+void expect_same(const Change& change, const Change& expected) {
+  Scene changed, fresh;
+  begin(changed);
+  add_ground_and_ball(changed, {0, 0, 1});
+  changed.commit(2);
+  const RenderOptions options = small_options(Strategy::mis, 16);
+  const std::vector<float> before = rendered(changed, options);
+  change(changed);
+  changed.commit(2);
+  begin(fresh);
+  expected(fresh);
+  fresh.commit(2);
+  const std::vector<float> after = rendered(changed, options);
+  EXPECT_NE(after, before) << "the change changes nothing";
+  EXPECT_EQ(after, rendered(fresh, options));
+  EXPECT_EQ(changed.info().instances, fresh.info().instances);
+  EXPECT_EQ(changed.info().triangles, fresh.info().triangles);
+}
+
+TEST(SceneChanges, InstancesMove) {
+  expect_same(
+      [](Scene& s) {
+        s.clear_instances();
+        s.add_instance(0, {}, {0});
+        s.add_instance(1, shift({0.5f, 0, 1}), {1});
+      },
+      [](Scene& s) {
+        add_ground_and_ball(s, {0.5f, 0, 1});
+      });
+}
+
+TEST(SceneChanges, AMeshGivesWayToAnother) {
+  expect_same(
+      [](Scene& s) {
+        s.clear_instances();
+        const uint32_t coarse = s.add_mesh(test::sphere(5));
+        s.add_instance(0, {}, {0});
+        s.add_instance(coarse, shift({0, 0, 1}), {1});
+        s.remove_mesh(1);
+      },
+      [](Scene& s) {
+        const uint32_t ground = s.add_mesh(test::square(3)), ball = s.add_mesh(test::sphere(5));
+        s.add_instance(ground, {}, {0});
+        s.add_instance(ball, shift({0, 0, 1}), {1});
+      });
+}
+
+TEST(SceneChanges, AnInstanceIsAloneAndHasCompanyAgain) {
+  expect_same(
+      [](Scene& s) {
+        s.clear_instances();
+        s.add_instance(0, {}, {0});
+        s.commit(2);
+        s.add_instance(1, shift({0, 0.5f, 1}), {1});
+      },
+      [](Scene& s) {
+        add_ground_and_ball(s, {0, 0.5f, 1});
+      });
+}
+
+TEST(SceneChanges, LightsAndWorld) {
+  expect_same(
+      [](Scene& s) {
+        s.add_light({});
+        s.commit(2);
+        s.clear_lights();
+        s.set_environment(Environment::constant(Rgb(0.25f)));
+      },
+      [](Scene& s) {
+        add_ground_and_ball(s, {0, 0, 1});
+        s.set_environment(Environment::constant(Rgb(0.25f)));
+      });
+}
+
+TEST(SceneChanges, MaterialsAreReplaced) {
+  expect_same(
+      [](Scene& s) {
+        s.add_material({grey(0.8f), Rgb(0.0f), false});
+        s.replace_material(1);
+        EXPECT_EQ(s.materials().size(), 2u);
+      },
+      [](Scene& s) {
+        s.add_material({grey(0.8f), Rgb(0.0f), false});
+        const uint32_t ground = s.add_mesh(test::square(3)), ball = s.add_mesh(test::sphere(12));
+        s.add_instance(ground, {}, {0});
+        s.add_instance(ball, shift({0, 0, 1}), {2});
+      });
+}
+
+TEST(SceneChanges, TheCameraAloneIsNoRevision) {
+  Scene scene;
+  begin(scene);
+  add_ground_and_ball(scene, {0, 0, 1});
+  scene.commit(2);
+  const uint64_t before = scene.revision();
+  const uint64_t bytes = scene.info().bytes;
+  scene.set_camera(test::camera_above(3));
+  EXPECT_FALSE(scene.committed());
+  scene.commit(2);
+  EXPECT_EQ(scene.revision(), before);
+  EXPECT_EQ(scene.info().bytes, bytes);
+  scene.clear_lights();
+  EXPECT_NE(scene.revision(), before);
+}
+
+TEST(SceneChanges, MemoryDoesNotGrow) {
+  Scene scene;
+  begin(scene);
+  add_ground_and_ball(scene, {0, 0, 1});
+  scene.commit(2);
+  const uint64_t bytes = scene.info().bytes;
+  uint32_t ball = 1;
+  for (int i = 0; i < 50; ++i) {
+    scene.clear_instances();
+    const uint32_t next = scene.add_mesh(test::sphere(12));
+    scene.add_instance(0, {}, {0});
+    scene.add_instance(next, shift({0, 0, 1}), {1});
+    scene.remove_mesh(ball);
+    ball = next;
+    scene.commit(2);
+  }
+  EXPECT_LT(scene.info().bytes, bytes + bytes / 2);
+}
+
+TEST(SceneChanges, RefusesToRemoveWhatIsThere) {
+  Scene scene;
+  begin(scene);
+  add_ground_and_ball(scene, {0, 0, 1});
+  EXPECT_THROW(scene.remove_mesh(0), Error);
+  EXPECT_THROW(scene.remove_mesh(7), Error);
+  EXPECT_THROW(scene.replace_material(1), Error);
+  EXPECT_THROW(scene.replace_material(9), Error);
+}
+
+}  // namespace
+}  // namespace velour
