@@ -6,6 +6,9 @@ import numpy as np
 from . import stage
 from .case import ParityTest
 
+# Sockets of the Principled BSDF that were renamed in 4.0.
+_NEWER_NAMES = {"Specular": "Specular IOR Level", "Emission": "Emission Color"}
+
 
 class Tree:
     """A material's nodes, made from the leaves up: every method returns the output to link further."""
@@ -22,7 +25,8 @@ class Tree:
         for name, value in (settings or {}).items():
             setattr(node, name, value)
         for name, value in inputs.items():
-            self.set(node.inputs[name.replace("_", " ")], value)
+            name = name.replace("_", " ")
+            self.set(node.inputs[name if name in node.inputs else _NEWER_NAMES[name]], value)
         return node.outputs[output]
 
     def set(self, socket, value):

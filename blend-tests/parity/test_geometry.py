@@ -29,21 +29,28 @@ class Geometry(ParityTest):
         stage.sphere(segments=10, rings=6)
         self.assert_approximate("Normals: smooth, coarse mesh", 0.7)
 
+    @staticmethod
+    def _auto_smooth(mesh, angle):
+        if hasattr(mesh, "use_auto_smooth"):
+            mesh.use_auto_smooth, mesh.auto_smooth_angle = True, angle
+        else:
+            mesh.set_sharp_from_angle(angle=angle)  # 4.1 and newer
+
     def test_auto_smooth(self):
         obj = stage.sphere(segments=16, rings=6)
-        obj.data.use_auto_smooth, obj.data.auto_smooth_angle = True, math.radians(28)
+        self._auto_smooth(obj.data, math.radians(28))
         self.assert_parity("Normals: auto smooth")
 
     def test_sharp_edges(self):
         obj = stage.sphere(segments=16, rings=8)
-        obj.data.use_auto_smooth, obj.data.auto_smooth_angle = True, math.pi
+        self._auto_smooth(obj.data, math.pi)
         for i, edge in enumerate(obj.data.edges):
             edge.use_edge_sharp = i % 3 == 0
         self.assert_parity("Normals: sharp edges")
 
     def test_custom(self):
         obj = stage.sphere(segments=24, rings=12)
-        obj.data.use_auto_smooth = True
+        self._auto_smooth(obj.data, math.pi)
         normals = np.array([v.normal[:] for v in obj.data.vertices]) + np.array((0.3, -0.2, 0.4))
         obj.data.normals_split_custom_set_from_vertices([tuple(n / np.linalg.norm(n)) for n in normals])
         self.assert_parity("Normals: custom")

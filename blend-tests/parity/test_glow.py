@@ -52,16 +52,16 @@ class Glow(ParityTest):
         self.assert_parity("Glowing surface: both sides")
 
     def test_standing(self):
-        """Near the square's plane Cycles is darker than Lambert's formula, by up to a tenth."""
+        """Near the square's plane older Cycles is darker than Lambert's formula, by up to a tenth."""
         self._glow()
         self._square((1.5, 0.5, 1), 0.9, (math.pi / 2, 0, 0.8))
-        self.assert_approximate("Glowing surface: seen edge-on", 2)
+        self.assert_approximate("Glowing surface: seen edge-on", 2, exact_from=(4, 0))
 
     def test_picture(self):
-        """Drawing rays, Cycles is up to a tenth off from closed forms of the texels' light."""
+        """Drawing rays, older Cycles is up to a tenth off from closed forms of the texels' light."""
         self._glow(self.tree.picture(image(6, 4)), self.tree.picture(image(8, 4, low=0, high=12)))
         self._square(scale=0.9).visible_camera = False
-        self.assert_approximate("Glowing surface: image", 3)
+        self.assert_approximate("Glowing surface: image", 3, exact_from=(4, 0))
         ours = self.pictures("VELOUR", 2)
         self._leave_to_bounces()
         verdict = judge_renders(ours, self.pictures("CYCLES", 8))
@@ -131,12 +131,10 @@ class Glow(ParityTest):
         self.assert_parity("Glowing surface: mixed, under a lamp")
 
     def test_principled(self):
-        inputs = {"Emission": (1, 0.5, 0.2, 1), "Emission Strength": 8.0}
+        glow = {"Emission": (1, 0.5, 0.2, 1), "Emission_Strength": 8.0}
         principled = self.tree.node(
-            "ShaderNodeBsdfPrincipled", Base_Color=(0, 0, 0, 1), Alpha=0.6, Specular=0.0
+            "ShaderNodeBsdfPrincipled", Base_Color=(0, 0, 0, 1), Alpha=0.6, Specular=0.0, **glow
         )
-        for name, value in inputs.items():
-            self.tree.set(principled.node.inputs[name], value)
         self.tree.end(principled)
         self._square()
         stage.world((0.6, 0.8, 1), 0.1)

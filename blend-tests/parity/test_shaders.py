@@ -58,10 +58,10 @@ class Mixed(ShaderTest):
 
     def test_principled_emission(self):
         tree = self.tree
-        inputs = {"Emission": tree.picture(image(6)), "Emission Strength": 0.7}
-        principled = tree.node("ShaderNodeBsdfPrincipled", Base_Color=(0, 0, 0, 1), Alpha=0.6, Specular=0.0)
-        for name, value in inputs.items():
-            tree.set(principled.node.inputs[name], value)
+        glow = {"Emission": tree.picture(image(6)), "Emission_Strength": 0.7}
+        principled = tree.node(
+            "ShaderNodeBsdfPrincipled", Base_Color=(0, 0, 0, 1), Alpha=0.6, Specular=0.0, **glow
+        )
         tree.end(principled)
         self.assert_parity("Principled BSDF: emission by an image, alpha")
 

@@ -66,7 +66,7 @@ class UvMaps(ParityTest):
         tree.links.new(colour.outputs[0], shader.inputs["Color"])
         other, mix = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeMixShader")
         other.inputs["Color"].default_value = (0.1, 0.2, 0.6, 1)
-        tree.links.new(factor.outputs[0], mix.inputs["Fac"])
+        tree.links.new(factor.outputs[0], mix.inputs[0])
         tree.links.new(shader.outputs[0], mix.inputs[1])
         tree.links.new(other.outputs[0], mix.inputs[2])
         tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])

@@ -8,9 +8,11 @@ from ..native import VelourError
 from .axes import column_lengths, unscaled
 from .notes import ExportError
 
-# Blender's area lamps emit pi/4 of their nominal power: their radiance is P / (4 A), a Lambert emitter's
-# would be P / (pi A).
-_AREA_POWER = math.pi / 4
+# What lamps emit of their nominal power changed between 3.4 and 4.3, with the release that made spheres
+# of point lamps, and no property tells. Area lamps had a radiance of P / (4 A), a Lambert emitter's is
+# P / (pi A); suns were disks on a plane at distance 1, and are cones of even radiance.
+_OLDER_LAMPS = bpy.app.version < (4, 0)
+_AREA_POWER = math.pi / 4 if _OLDER_LAMPS else 1.0
 
 _FACTORS = ("diffuse_factor", "specular_factor", "volume_factor")
 
@@ -75,9 +77,9 @@ def _sun(lamp, _matrix):
 def _sun_factor(angle):
     """Irradiance of a facing plane over Blender's strength; 1 for a small sun.
 
-    It is the mean cosine over a disk seen under `angle`, uniform on the plane at distance 1.
+    Of older suns it is the mean cosine over a disk seen under `angle`, uniform on the plane at distance 1.
     """
-    if angle < 1e-3:
+    if angle < 1e-3 or not _OLDER_LAMPS:
         return 1.0
     tangent_sq = math.tan(min(angle, math.pi - 1e-3) / 2) ** 2
     return 2 * (math.sqrt(1 + tangent_sq) - 1) / tangent_sq

@@ -157,7 +157,9 @@ class ObjectExport:
         for system in obj.particle_systems:
             if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
                 self._notes.add(f"Object '{obj.name}': hair '{system.name}' is not supported; left out.")
-        if getattr(getattr(obj, "cycles", None), "use_adaptive_subdivision", False):
+        # Of the object before Blender 5.0, of its modifier since.
+        adaptive = (getattr(obj, "cycles", None), *obj.modifiers)
+        if any(getattr(place, "use_adaptive_subdivision", False) for place in adaptive):
             self._notes.add(f"Object '{obj.name}': adaptive subdivision is not supported; ignored.")
 
     def _note_unsupported(self, obj):

@@ -4,7 +4,6 @@
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
@@ -16,6 +15,7 @@
 #include <cstring>
 
 #include "file/atomic_file.h"
+#include "image/exr_output.h"
 #include "image/exr_scan.h"
 #include "job/error.h"
 
@@ -26,19 +26,6 @@ namespace {
 uint64_t chunk_head(size_t parts) { return parts > 1 ? 12 : 8; }
 
 constexpr uint64_t kMostHeaderBytes = uint64_t{1} << 14;
-
-class FileOutput : public Imf::OStream {
- public:
-  FileOutput(AtomicFile& file, const std::string& path) : OStream(path.c_str()), file_(file) {}
-  void write(const char source[], int count) override {
-    file_.write({reinterpret_cast<const uint8_t*>(source), static_cast<size_t>(count)});
-  }
-  uint64_t tellp() override { return file_.position(); }
-  void seekp(uint64_t position) override { file_.seek(position); }
-
- private:
-  AtomicFile& file_;
-};
 
 /// As OpenEXR stores them: in alphabetical order.
 std::vector<std::string> stored_channels(const ImageStack& stack) {
@@ -158,7 +145,7 @@ void write_image_stacks(const std::string& path, std::span<const ImageStack> sta
   for (const auto& [name, text] : attributes) headers.at(0).insert(name, Imf::StringAttribute(text));
   AtomicFile file(path);
   try {
-    FileOutput stream(file, path);
+    ExrOutput stream(file, path);
     Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
     for (size_t i = 0; i < stacks.size(); ++i) {
       write_stack(Imf::OutputPart(out, static_cast<int>(i)), stacks[i], pixels[i], progress);

@@ -1,25 +1,21 @@
 #include "image/picture.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 
 #include "file/file.h"
+#include "image/open_picture.h"
 #include "job/error.h"
 
 namespace velour {
 namespace {
 
-/// A byte of a DEFLATE stream makes at most 1032 bytes, and a byte at most eight 1-bit values.
-constexpr uint64_t kMaxValuesPerByte = 1032 * 8;
 constexpr uint64_t kMaxValues = uint64_t{1} << 30;
 constexpr int kMaxChannels = 64;
+constexpr std::array<uint8_t, 4> kExrMagic{0x76, 0x2f, 0x31, 0x01};
 
 /// IEC 61966-2-1.
 float linear_from_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
@@ -31,66 +27,28 @@ uint8_t srgb_byte(float linear) {
   return static_cast<uint8_t>(std::lround(v * 255.0f));
 }
 
-/// Readers may say several sentences, a line each.
-std::string input_error(const std::string& path, std::string detail) {
-  std::ranges::replace(detail, '\n', ' ');
-  return path + ": cannot be read as a picture" + (detail.empty() ? "." : ": " + detail);
-}
-
-/// The process's own limits of OpenImageIO stay as they are (Blender shares them), so sizes are checked here.
-void check_size(const std::string& path, const OIIO::ImageSpec& spec) {
-  const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height) + " x " +
-                           std::to_string(spec.nchannels) + " channels";
-  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.nchannels <= 0 || spec.nchannels > kMaxChannels)
+/// The limits of OpenEXR and OpenImageIO are the process's (Blender shares them) and stay as they are, so sizes are
+/// checked here.
+void check_size(const std::string& path, const OpenPicture::Format& format) {
+  const std::string size = std::to_string(format.width) + " x " + std::to_string(format.height) + " x " +
+                           std::to_string(format.channels) + " channels";
+  if (format.width <= 0 || format.height <= 0 || format.depth > 1 || format.channels <= 0 ||
+      format.channels > kMaxChannels)
     throw Error(Status::bad_data, path + ": the header says " + size + ", which is no flat picture.");
-  const uint64_t pixels = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height);
+  const uint64_t pixels = static_cast<uint64_t>(format.width) * static_cast<uint64_t>(format.height);
   const uint64_t bound = std::min(kMaxValues, kMaxValuesPerByte * std::filesystem::file_size(path));
-  if (pixels > bound / static_cast<uint64_t>(spec.nchannels))
+  if (pixels > bound / static_cast<uint64_t>(format.channels))
     throw Error(Status::bad_data, path + ": the header says " + size + ", more than the file can hold.");
 }
 
-/// OpenEXR makes tables for all rows that a header claims when it opens a file, before anyone can ask how many.
-void check_exr_rows(const std::string& path) {
-  constexpr size_t kMostHeader = 65536, kBegin = 8;
-  const auto head = read_file_head(path, kMostHeader);
-  const std::string text(head.begin(), head.end());
-  if (!text.starts_with("\x76\x2f\x31\x01")) return;
-  for (size_t at = kBegin; at < text.size() && text[at] != 0;) {  // name, type, size, value
-    const std::string name = text.c_str() + at;
-    at += name.size() + 1;
-    at = text.find('\0', at);
-    uint32_t size = 0;
-    if (at == std::string::npos || text.size() - at < 1 + sizeof size) return;
-    std::memcpy(&size, text.data() + at + 1, sizeof size);
-    at += 1 + sizeof size;
-    if (size > std::filesystem::file_size(path) - at) throw Error(Status::bad_data, path + ": its header is damaged.");
-    if (size > text.size() - at) return;
-    std::array<int32_t, 4> window{};  // least x, y, most x, y
-    if (name == "dataWindow" && size == sizeof window) {
-      std::memcpy(window.data(), text.data() + at, sizeof window);
-      const int64_t rows = int64_t{window[3]} - window[1] + 1;
-      if (rows > static_cast<int64_t>(kMaxValuesPerByte * std::filesystem::file_size(path))) {
-        throw Error(Status::bad_data,
-                    path + ": the header says " + std::to_string(rows) + " rows, more than the file can hold.");
-      }
-    }
-    at += size;
-  }
-}
-
-std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path) {
-  read_file_head(path, 1);  // says plainly what is wrong with the path
-  check_exr_rows(path);
-  OIIO::ImageSpec request;
-  request.attribute("oiio:UnassociatedAlpha",
-                    1);  // channels as stored: no product with alpha before the sRGB curve
-  auto input = OIIO::ImageInput::open(path, &request);
-  if (!input) throw Error(Status::bad_data, input_error(path, OIIO::geterror()));
-  check_size(path, input->spec());
+std::unique_ptr<OpenPicture> open_picture(const std::string& path) {
+  const auto head = read_file_head(path, kExrMagic.size());  // says plainly what is wrong with the path
+  auto input = std::ranges::equal(head, kExrMagic) ? open_exr(path) : open_other_format(path);
+  check_size(path, input->format());
   return input;
 }
 
-Picture picture_of(const OIIO::ImageSpec& spec) { return {spec.width, spec.height, spec.nchannels, {}}; }
+Picture picture_of(const OpenPicture::Format& format) { return {format.width, format.height, format.channels, {}}; }
 
 /// Files store the top row first.
 void flip_rows(Picture& picture) {
@@ -107,24 +65,6 @@ void make_linear(Picture& picture, int alpha_channel, const TransferCurve& curve
       picture.pixels[i] = linear(picture.pixels[i]);
 }
 
-/// Encodes into memory first, so that the file appears whole or not at all.
-void encode(const std::string& path, OIIO::ImageSpec spec, OIIO::TypeDesc type, const void* pixels) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  auto output = OIIO::ImageOutput::create(path);
-  if (!output) throw Error(Status::unsupported, path + ": OpenImageIO cannot write this format here.");
-  output->set_ioproxy(&memory);
-  if (!output->open(path, spec) || !output->write_image(type, pixels) || !output->close())
-    throw Error(Status::io, path + ": cannot encode the picture: " + output->geterror());
-  write_file(path, bytes);
-}
-
-void write_exr(const std::string& path, const Picture& picture) {
-  OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, OIIO::TypeDesc::FLOAT);
-  spec.attribute("compression", "zip");
-  encode(path, spec, OIIO::TypeDesc::FLOAT, picture.pixels.data());
-}
-
 void write_png(const std::string& path, const Picture& picture) {
   std::vector<uint8_t> bytes(picture.pixels.size());
   const bool has_alpha = picture.channels == 2 || picture.channels == 4;
@@ -133,33 +73,31 @@ void write_png(const std::string& path, const Picture& picture) {
     bytes[i] = alpha ? static_cast<uint8_t>(std::lround(std::clamp(picture.pixels[i], 0.0f, 1.0f) * 255.0f))
                      : srgb_byte(picture.pixels[i]);
   }
-  OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  encode(path, spec, OIIO::TypeDesc::UINT8, bytes.data());
+  write_file(path, png_of(path, picture.width, picture.height, picture.channels, bytes));
 }
 
 }  // namespace
 
-Picture read_picture_header(const std::string& path) { return picture_of(open_picture(path)->spec()); }
+std::string input_error(const std::string& path, std::string detail) {
+  std::ranges::replace(detail, '\n', ' ');  // readers may say several sentences, a line each
+  return path + ": cannot be read as a picture" + (detail.empty() ? "." : ": " + detail);
+}
+
+Picture read_picture_header(const std::string& path) { return picture_of(open_picture(path)->format()); }
 
 std::optional<std::string> read_picture_text(const std::string& path, const std::string& name) {
-  const auto input = open_picture(path);
-  const OIIO::ParamValue* found = input->spec().find_attribute(name, OIIO::TypeDesc::STRING);
-  return found ? std::optional(found->get_string()) : std::nullopt;
+  return open_picture(path)->text(name);
 }
 
 Picture read_picture(const std::string& path, const TransferCurve& curve) {
   const auto input = open_picture(path);
-  const OIIO::ImageSpec spec = input->spec();
-  Picture picture = picture_of(spec);
-  picture.pixels.resize(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) *
-                        static_cast<size_t>(spec.nchannels));
-  const bool read = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.pixels.data());
-  // Of a JPEG or TIFF that ends early it says so, and that all is well.
-  if (!read || input->has_error()) throw Error(Status::bad_data, input_error(path, input->geterror()));
+  const OpenPicture::Format format = input->format();
+  Picture picture = picture_of(format);
+  picture.pixels.resize(static_cast<size_t>(format.width) * static_cast<size_t>(format.height) *
+                        static_cast<size_t>(format.channels));
+  input->read(picture.pixels);
   flip_rows(picture);
-  if (!spec.format.is_floating_point()) make_linear(picture, spec.alpha_channel, curve);
+  if (format.integers) make_linear(picture, format.alpha_channel, curve);
   return picture;
 }
 
@@ -172,7 +110,7 @@ void write_picture(const std::string& path, const Picture& picture) {
   Picture top_first = picture;
   flip_rows(top_first);
   const auto extension = std::filesystem::path(path).extension();
-  if (extension == ".exr") return write_exr(path, top_first);
+  if (extension == ".exr") return write_exr(path, picture.width, picture.height, picture.channels, top_first.pixels);
   if (extension == ".png") return write_png(path, top_first);
   throw Error(Status::unsupported, path + ": pictures are written as .exr or .png.");
 }

@@ -1,4 +1,4 @@
-// Pictures: linear float pixels, read and written through OpenImageIO.
+// Pictures: linear float pixels, read and written through OpenEXR and OpenImageIO.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct TransferCurve {
   std::optional<float> gamma = std::nullopt;  // nothing: sRGB; 1: they are linear already
 };
 
-/// Any format OpenImageIO knows; integer formats are made linear, floats are taken as they are. Throws Error with the
-/// file's name, also for a file that ends early. Dimensions are checked against the file's size before anything is
-/// allocated.
+/// Any format OpenImageIO knows (a library without it: EXR, PNG, JPEG, BMP, Radiance HDR); integer formats are made
+/// linear, floats are taken as they are. Throws Error with the file's name, also for a file that ends early. Dimensions
+/// are checked against the file's size before anything is allocated.
 Picture read_picture(const std::string& path, const TransferCurve& curve = {});
 /// Width, height, channels without the pixels.
 Picture read_picture_header(const std::string& path);

@@ -105,6 +105,7 @@ READERS = {
     "ShaderNodeBsdfPrincipled": _read_principled,
     "ShaderNodeBsdfDiffuse": _read_diffuse,
     "ShaderNodeBsdfGlossy": _read_glossy,
+    "ShaderNodeBsdfAnisotropic": _read_glossy,  # from 4.0 on what Add calls Glossy BSDF
     "ShaderNodeEmission": _read_emission,
     "ShaderNodeBsdfTransparent": _read_transparent,
 }

@@ -43,6 +43,14 @@ TEST(Picture, ExrKeepsFloats) {
   EXPECT_EQ(read_picture_header(path).width, 7);
 }
 
+TEST(Picture, ExrKeepsTheOrderOfChannels) {
+  const std::string path = test::scratch_folder() / "a.exr";
+  for (int channels = 1; channels <= 6; ++channels) {
+    write_picture(path, gradient(4, 3, channels));
+    EXPECT_EQ(read_picture(path).pixels, gradient(4, 3, channels).pixels) << channels;
+  }
+}
+
 TEST(Picture, SamePictureSameBytes) {
   const auto folder = test::scratch_folder();
   write_picture(folder / "a.exr", gradient(16, 16, 4));
@@ -129,6 +137,38 @@ TEST(Picture, RefusalsAreOneLine) {
     EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
   }
   EXPECT_GT(refused, 5);
+}
+
+/// 16 x 8 grey pixels made by libjpeg: the upper half 200, the lower 40 of 255.
+const std::vector<uint8_t> kJpeg = [] {
+  const std::string_view digits =
+      "ffd8ffdb0043000201010101010201010102020202020403020202020504040304060506060605060606070908060709070606080b08090a"
+      "0a"
+      "0a0a0a06080b0c0b0a0c090a0a0affc0000b080008001001011100ffc4001500010100000000000000000000000000000006ffc400181000"
+      "02"
+      "0300000000000000000000000000001a68a7e5ffda0008010100003f009f6448676267864486762679ffd9";
+  std::vector<uint8_t> bytes;
+  for (size_t i = 0; i < digits.size(); i += 2)
+    bytes.push_back(static_cast<uint8_t>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16)));
+  return bytes;
+}();
+
+TEST(Picture, ReadsJpeg) {
+  const std::string path = test::scratch_folder() / "a.jpg";
+  write_file(path, kJpeg);
+  const Picture picture = read_picture(path, {1.0f});
+  ASSERT_EQ(picture.channels, 1);
+  ASSERT_EQ(picture.pixels.size(), 128u);
+  EXPECT_NEAR(picture.pixel(3, 7)[0], 200.0f / 255.0f, 1.5f / 255.0f);
+  EXPECT_NEAR(picture.pixel(12, 0)[0], 40.0f / 255.0f, 1.5f / 255.0f);
+}
+
+TEST(Picture, RefusesJpegThatEndsEarly) {
+  const std::string path = test::scratch_folder() / "cut.jpg";
+  for (size_t size = 1; size + 2 < kJpeg.size(); size += 3) {
+    write_file(path, std::span(kJpeg).first(size));
+    EXPECT_NE(refusal([&] { read_picture(path); }).find("cut.jpg"), std::string::npos) << size;
+  }
 }
 
 TEST(Picture, ReadsRadianceHdr) {

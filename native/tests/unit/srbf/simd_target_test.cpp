@@ -1,6 +1,8 @@
 #include "srbf/simd_target.h"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include "support/mixtures.h"
 
@@ -32,6 +34,17 @@ TEST_F(SimdTarget, RefusesAnUnknownNameAndKeepsItsChoice) {
     EXPECT_FALSE(select_simd_target(""));
     EXPECT_EQ(simd_target(), target);
   }
+}
+
+/// Highway's own answer, from its library, which ours does not link.
+TEST_F(SimdTarget, DetectsWhatHighwayDetects) {
+  void* library = dlopen("libhwy.so.1", RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) GTEST_SKIP() << "Highway's library is not installed";
+  const auto oracle = reinterpret_cast<int64_t (*)()>(dlsym(library, "_ZN3hwy16SupportedTargetsEv"));
+  ASSERT_NE(oracle, nullptr);
+  ASSERT_NE(oracle, &hwy::SupportedTargets);
+  EXPECT_EQ(hwy::SupportedTargets() & HWY_TARGETS, oracle() & HWY_TARGETS);
+  dlclose(library);
 }
 
 // Fused and separate multiply-adds round differently; nothing else may differ.

@@ -1,0 +1,110 @@
+"""The zip of scripts/package: complete, and the same from the same build."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import zipfile
+
+import pytest
+from conftest import ROOT
+
+OF_THE_SYSTEM = re.compile(r"(ld-linux-x86-64|libc|libm|libstdc\+\+|libgcc_s)\.so\.\d+")
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """Two runs: their folders, and what the second said."""
+    folders = [tmp_path_factory.mktemp("package") for _ in range(2)]
+    for folder in folders:
+        done = subprocess.run(
+            [ROOT / "scripts/package", "--output", folder], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+    return folders, done.stdout
+
+
+@pytest.fixture(scope="module")
+def unpacked(package, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("unpacked")
+    (path,) = package[0][0].glob("velour-*-linux-x64.zip")
+    with zipfile.ZipFile(path) as file:
+        file.extractall(folder)
+    return folder / "velour"
+
+
+def _dynamic(file):
+    return subprocess.run(["readelf", "-dW", file], check=True, capture_output=True, text=True).stdout
+
+
+def test_the_same_build_makes_the_same_bytes(package):
+    first, second = ([*folder.glob("*.zip")] for folder in package[0])
+    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
+
+
+def test_is_one_folder_that_older_and_newer_blenders_take(package, unpacked):
+    assert {path.name for path in unpacked.parent.iterdir()} == {"velour"}
+    assert (unpacked / "__init__.py").is_file()
+    assert (unpacked / "blender_manifest.toml").is_file()
+    assert not [*unpacked.rglob("__pycache__")]
+
+
+def test_every_library_is_inside(unpacked):
+    inside = {path.name for path in (unpacked / "lib").iterdir()}
+    assert {name for name in inside if name.startswith("libembree")}, inside
+    for path in (unpacked / "lib").glob("*.so*"):
+        needed = set(re.findall(r"\(NEEDED\).*\[(.+)\]", _dynamic(path)))
+        assert not {name for name in needed - inside if not OF_THE_SYSTEM.fullmatch(name)}, path.name
+    assert not [name for name in inside if "OpenImageIO" in name]
+
+
+def test_looks_for_them_in_its_own_folder_first(unpacked):
+    text = _dynamic(unpacked / "lib/libvelour.so")
+    assert re.search(r"\(RPATH\).*\[\$ORIGIN\]", text), text
+    assert "RUNPATH" not in text
+
+
+def test_shows_nothing_but_its_own_names(unpacked):
+    text = subprocess.run(
+        ["nm", "-D", "--defined-only", unpacked / "lib/libvelour.so"],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    names = {line.split()[-1] for line in text.splitlines()}
+    assert names
+    assert {name for name in names if not name.startswith("vlr_")} == set()
+
+
+def test_every_library_has_its_licence(unpacked):
+    text = (unpacked / "lib/LICENSES.txt").read_text()
+    for path in (unpacked / "lib").glob("*.so*"):
+        assert path.name == "libvelour.so" or path.name in text
+
+
+def test_runs_on_what_the_documentation_names(package):
+    glibc, runtime = re.search(
+        r"needs glibc ([\d.]+) and libstdc\+\+ with GLIBCXX_([\d.]+)", package[1]
+    ).groups()
+    page = (ROOT / "docs/packaging.md").read_text()
+    assert f"glibc {glibc}" in page
+    assert f"GLIBCXX_{runtime}" in page
+
+
+def test_works_alone(unpacked, tmp_path):
+    """The library finds its own Embree with nothing on the path, and renders as the one of this build."""
+    program = (
+        "from velour.native import library; import json; s = library.system();"
+        "print(json.dumps(s['embree'])); print(open('/proc/self/maps').read())"
+    )
+    done = subprocess.run(
+        ["/usr/bin/python3", "-c", program],
+        env={"PYTHONPATH": str(unpacked.parent), "HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    mapped = set(re.findall(r"(/\S+\.so\S*)", done.stdout))
+    ours = {path for path in mapped if re.search(r"embree|tbb|OpenEXR|Imath|Iex|IlmThread", path)}
+    assert ours
+    assert {path for path in ours if not path.startswith(str(unpacked))} == set()

@@ -1,0 +1,128 @@
+// Pictures of the formats that a library without OpenImageIO knows beside OpenEXR's, by stb_image: PNG, JPEG, BMP,
+// Radiance HDR. For libraries that must carry all they need with them.
+#include <algorithm>
+#include <cstring>
+
+#include "file/file.h"
+#include "image/open_picture.h"
+#include "job/error.h"
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_NO_STDIO
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_BMP
+#define STBI_ONLY_HDR
+#include <stb/stb_image.h>
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image_write.h>
+
+namespace velour {
+namespace {
+
+/// stb_image takes zeros for what a file lacks; who asks for a byte beyond the end has been told of more than there is.
+struct Source {
+  std::span<const uint8_t> bytes;
+  size_t position = 0;
+  bool ended_early = false;
+
+  static int read(void* user, char* to, int size) {
+    auto& self = *static_cast<Source*>(user);
+    const size_t rest = self.bytes.size() - self.position;
+    if (rest == 0) self.ended_early = true;
+    const size_t count = std::min(rest, static_cast<size_t>(size));
+    if (count > 0) std::memcpy(to, self.bytes.data() + self.position, count);
+    self.position += count;
+    return static_cast<int>(count);
+  }
+  static void skip(void* user, int size) {
+    auto& self = *static_cast<Source*>(user);
+    const size_t rest = self.bytes.size() - self.position;
+    const size_t count = size > 0 ? static_cast<size_t>(size) : 0;
+    self.ended_early |= size < 0 || count > rest;
+    self.position += std::min(rest, count);
+  }
+  static int at_end(void* user) {
+    const auto& self = *static_cast<Source*>(user);
+    return self.position == self.bytes.size();
+  }
+  static constexpr stbi_io_callbacks kCallbacks{read, skip, at_end};
+};
+
+template <typename T>
+struct Free {
+  void operator()(T* values) const { stbi_image_free(values); }
+};
+template <typename T>
+using Values = std::unique_ptr<T, Free<T>>;
+
+class ByStb : public OpenPicture {
+ public:
+  explicit ByStb(const std::string& path) : path_(path), bytes_(read_file(path)) {
+    const auto* data = bytes_.data();
+    const int size = static_cast<int>(std::min<size_t>(bytes_.size(), INT32_MAX));
+    if (stbi_info_from_memory(data, size, &format_.width, &format_.height, &format_.channels) == 0) {
+      throw Error(
+          Status::bad_data,
+          input_error(path, "this library reads EXR, PNG, JPEG, BMP and Radiance HDR files; is it one, and whole?"));
+    }
+    format_.integers = stbi_is_hdr_from_memory(data, size) == 0;
+    sixteen_bits_ = stbi_is_16_bit_from_memory(data, size) != 0;
+    if (format_.integers && format_.channels % 2 == 0) format_.alpha_channel = format_.channels - 1;
+  }
+
+  Format format() const override { return format_; }
+  std::optional<std::string> text(const std::string&) const override { return std::nullopt; }
+
+  void read(std::span<float> values) override {
+    if (!format_.integers) return copy(load<float>(stbi_loadf_from_callbacks), 1.0f, values);
+    if (sixteen_bits_) return copy(load<stbi_us>(stbi_load_16_from_callbacks), 65535.0f, values);
+    copy(load<stbi_uc>(stbi_load_from_callbacks), 255.0f, values);
+  }
+
+ private:
+  template <typename T, typename Load>
+  Values<T> load(Load* function) const {
+    Source source{bytes_};
+    int width = 0, height = 0, channels = 0;
+    Values<T> values(function(&Source::kCallbacks, &source, &width, &height, &channels, format_.channels));
+    if (!values) throw Error(Status::bad_data, input_error(path_, stbi_failure_reason()));
+    if (source.ended_early || width != format_.width || height != format_.height)
+      throw Error(Status::bad_data, input_error(path_, "it ends early."));
+    return values;
+  }
+
+  template <typename T>
+  static void copy(const Values<T>& from, float largest, std::span<float> to) {
+    for (size_t i = 0; i < to.size(); ++i) to[i] = static_cast<float>(from.get()[i]) / largest;
+  }
+
+  std::string path_;
+  std::vector<uint8_t> bytes_;
+  Format format_;
+  bool sixteen_bits_ = false;
+};
+
+void append(void* to, void* data, int size) {
+  auto& bytes = *static_cast<std::vector<uint8_t>*>(to);
+  const auto* from = static_cast<const uint8_t*>(data);
+  bytes.insert(bytes.end(), from, from + size);
+}
+
+}  // namespace
+
+std::unique_ptr<OpenPicture> open_other_format(const std::string& path) { return std::make_unique<ByStb>(path); }
+
+std::vector<uint8_t> png_of(const std::string& path, int width, int height, int channels,
+                            std::span<const uint8_t> values) {
+  std::vector<uint8_t> bytes;
+  if (channels > 4 ||
+      stbi_write_png_to_func(append, &bytes, width, height, channels, values.data(), width * channels) == 0)
+    throw Error(Status::unsupported, path + ": a PNG file has one to four channels.");
+  return bytes;
+}
+
+}  // namespace velour

@@ -1,0 +1,50 @@
+// The two functions that Highway's headers want of its library, which Velour therefore does not link. Inside Blender
+// that library would be Blender's own copy, found first whatever version it is, and the bits of its answer mean other
+// instruction sets from one version to the next.
+#include <hwy/targets.h>
+
+#include "srbf/simd_dispatch.h"
+
+namespace hwy {
+namespace {
+
+#if defined(__x86_64__)
+/// Asks the processor, and whether the operating system keeps the registers.
+#define VELOUR_HAS(feature) (__builtin_cpu_supports(feature) != 0)
+
+bool has_ssse3() { return VELOUR_HAS("ssse3"); }
+bool has_sse4() {
+  return has_ssse3() && VELOUR_HAS("sse4.1") && VELOUR_HAS("sse4.2") && VELOUR_HAS("pclmul") && VELOUR_HAS("aes");
+}
+bool has_avx2() {
+  return has_sse4() && VELOUR_HAS("avx") && VELOUR_HAS("avx2") && VELOUR_HAS("lzcnt") && VELOUR_HAS("bmi") &&
+         VELOUR_HAS("bmi2") && VELOUR_HAS("fma") && VELOUR_HAS("f16c");
+}
+bool has_avx3() {
+  return has_avx2() && VELOUR_HAS("avx512f") && VELOUR_HAS("avx512vl") && VELOUR_HAS("avx512dq") &&
+         VELOUR_HAS("avx512bw") && VELOUR_HAS("avx512cd");
+}
+
+/// What velour's kernels are compiled for (HWY_TARGETS); newer sets count as the best of these.
+int64_t detect() {
+  int64_t found = HWY_STATIC_TARGET;
+  if (has_ssse3()) found |= HWY_SSSE3;
+  if (has_sse4()) found |= HWY_SSE4;
+  if (has_avx2()) found |= HWY_AVX2;
+  if (has_avx3()) found |= HWY_AVX3;
+  return found;
+}
+#else
+int64_t detect() { return HWY_STATIC_TARGET; }
+#endif
+
+}  // namespace
+
+int64_t SupportedTargets() {
+  static const int64_t found = detect();
+  return found;
+}
+
+ChosenTarget& GetChosenTarget() { return velour::detail::chosen_simd_target(); }
+
+}  // namespace hwy
