@@ -12,6 +12,8 @@ from support.judge import judge_renders
 
 from . import engines, stage
 
+ALWAYS, NEVER = (0,), (99,)
+
 
 class ParityTest(blender.BlenderTest):
     """Starts from an empty file set up for both engines."""
@@ -37,9 +39,10 @@ class ParityTest(blender.BlenderTest):
         record(feature, verdict, "honoured")
         self.assertTrue(verdict.agrees, f"{feature}: {verdict}")
 
-    def assert_approximate(self, feature, most_percent, samples=1, exact_from=None):
-        """A known mismatch, which may not grow. `exact_from`: the Blender whose Cycles has none any more."""
-        if exact_from is not None and bpy.app.version >= exact_from:
+    def assert_approximate(self, feature, most_percent, samples=1, exact=None):
+        """A known mismatch, which may not grow. `exact`: the Blender from which on there is none, and the one
+        from which on there is again."""
+        if exact is not None and exact[0] <= bpy.app.version < exact[1]:
             return self.assert_parity(feature, samples)
         verdict = self.verdict(samples)
         record(feature, verdict, "approximated")

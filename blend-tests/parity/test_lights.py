@@ -3,7 +3,7 @@
 import math
 
 from parity import stage
-from parity.case import BoxTest, ParityTest
+from parity.case import NEVER, BoxTest, ParityTest
 
 
 class Lights(BoxTest):
@@ -18,7 +18,7 @@ class Lights(BoxTest):
     def test_wide_sun(self):
         """Cycles before 4.0 makes the rim of a sun brighter than its middle."""
         stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=math.radians(90))
-        self.assert_approximate("Sun: angle 90 degrees", 6.0, exact_from=(4, 0))
+        self.assert_approximate("Sun: angle 90 degrees", 6.0, exact=((4, 0), NEVER))
 
     def test_color(self):
         stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=0.0, color=(1.0, 0.5, 0.2))
