@@ -1,64 +1,26 @@
-"""The rendered viewport: what it shows, how soon, in which colours; that it stops and goes on."""
+"""The rendered viewport: its colours, its views and regions; that it stops, rests and says errors."""
 
-import importlib
 import time
 
 import bpy
 import numpy as np
 
-from support import inputs, scenes, window
-
-_TURN = 0.05
-_PATIENCE = 40  # seconds; the machine may be busy
+from support import scenes, viewport, window
 
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (grey, first_picture))
-
-
-def _addon(name):
-    return importlib.import_module(f"{inputs.ADDON}.{name}")
-
-
-def area_3d():
-    return next(area for area in window.first().screen.areas if area.type == "VIEW_3D")
-
-
-def show_rendered(samples=64):
-    """Switches the viewport on; overlays and widgets off, so that pixels are the picture's."""
-    scene = scenes.use_engine(samples)
-    scene.velour.viewport_samples = samples
-    space = area_3d().spaces.active
-    space.overlay.show_overlays = space.show_gizmo = False
-    space.shading.type = "RENDERED"
-    return space
-
-
-def viewports():
-    return list(_addon("engine.viewport_clock").viewports())
-
-
-def until(is_true, what):
-    """Turns until `is_true()`."""
-    end = time.monotonic() + _PATIENCE
-    while not is_true():
-        assert time.monotonic() < end, what
-        yield _TURN
-
-
-def finished():
-    """Turns until the viewport has all of its samples on the screen."""
-    yield 0.2
-    yield from until(lambda: not viewports(), "the viewport does not come to its end")
-    yield 0.3
-
-
-def middle(pixels):
-    """The middle of the 3D viewport on a screenshot."""
-    area = area_3d()
-    x, y = area.x + area.width // 2, area.y + area.height // 2
-    return pixels[y - 20 : y + 20, x - 20 : x + 20]
+    tests = (
+        grey,
+        as_the_final_render,
+        first_picture,
+        camera_view,
+        render_region,
+        error_line,
+        rests,
+        local_view,
+    )
+    window.run(folder, tests)
 
 
 def grey(folder):
@@ -66,19 +28,157 @@ def grey(folder):
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     bpy.data.objects.remove(bpy.data.objects["Light"])
     scenes.set_world((0.18, 0.18, 0.18))
-    show_rendered()
-    yield from finished()
-    values = 255 * middle(window.screenshot(folder, "grey"))
+    viewport.show()
+    yield from viewport.finished()
+    values = 255 * viewport.middle(window.screenshot(folder, "grey"))
     assert np.abs(values - 118).max() <= 1, (values.min(), values.max())
 
 
-def first_picture(folder):
+def _colored_scene():
     scenes.set_world((0.5, 0.7, 1.0), 0.5)
-    space = show_rendered(samples=256)
-    yield 0.4
-    window.screenshot(folder, "first")
-    yield from finished()
+    cube = bpy.data.objects["Cube"]
+    cube.active_material = scenes.diffuse_material((0.8, 0.3, 0.1))
+    return cube
+
+
+def as_the_final_render(folder):
+    """The same colours on the screen as in a saved picture, under Blender's default view transform."""
+    _colored_scene().scale = (4, 4, 4)  # the camera sees nothing else in the middle
+    bpy.data.objects["Cube"].location = (0, 0, -3.5)
+    default = bpy.context.scene.view_settings.view_transform
+    viewport.show(samples=64)
+    scene = bpy.context.scene
+    scene.render.preview_pixel_size = "4"
+    scene.velour.samples, scene.view_settings.view_transform = 256, default
+    assert default != "Standard"
+    viewport.space().region_3d.view_perspective = "CAMERA"
+    yield from viewport.finished()
+    screen = viewport.middle(window.screenshot(folder, "as-final"))
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    scene.render.filepath = str(folder / "final.png")
+    bpy.ops.render.render(write_still=True)
+    final = scenes.read(folder / "final.png")[30:34, 30:34, :3]
+    difference = 255 * np.abs(screen.mean((0, 1)) - final.mean((0, 1)))
+    assert difference.max() < 3, difference
+    assert np.ptp(final.mean((0, 1))) > 0.1, "it has no colour"
+
+
+def first_picture(folder):
+    """Soon, coarse, and finer later; nothing of it is left when it is switched off."""
+    _colored_scene()
+    begin = time.monotonic()
+    viewport.show(samples=256)
+    yield from viewport.until(lambda: not viewport.is_idle(), "no job")
+    yield from viewport.until(lambda: viewport.the_one()._picture.shown_at > 0, "no picture")
+    print("first picture after", time.monotonic() - begin, flush=True)
+    yield from viewport.finished()
     window.screenshot(folder, "finished")
-    space.shading.type = "SOLID"
+    assert viewport.the_one()._picture.samples == 256
+    viewport.space().shading.type = "SOLID"
     yield 0.5
-    window.screenshot(folder, "solid")
+    assert not tuple(viewport.addon("engine.viewport")._all), "it is still there"
+    assert viewport.is_idle()
+
+
+def camera_view(folder):
+    """Perspective, camera and orthographic views show the cube where Blender's own shading does."""
+    _colored_scene()
+    view = viewport.show(samples=8)
+    bpy.context.scene.camera.data.show_passepartout = False
+    for name in ("PERSP", "CAMERA", "ORTHO"):
+        view.shading.type = "RENDERED"
+        view.region_3d.view_perspective = name
+        if name == "CAMERA":
+            view.region_3d.view_camera_zoom, view.region_3d.view_camera_offset = 10, (0.1, -0.05)
+            bpy.context.scene.camera.data.shift_x = 0.05
+        yield from viewport.finished()
+        rendered = window.screenshot(folder, f"view-{name.lower()}")
+        view.shading.type, view.shading.light = "SOLID", "FLAT"
+        yield 0.5
+        solid = window.screenshot(folder, f"view-{name.lower()}-solid")
+        ours, blenders = _shape(rendered), _shape(solid)
+        assert blenders.sum() > 2000
+        assert np.count_nonzero(ours != blenders) < 0.02 * blenders.sum(), name
+
+
+def _shape(screenshot):
+    """Where the middle of the viewport differs from its upper left: the cube."""
+    view = viewport.region()
+    part = screenshot[view.y + 60 : view.y + view.height - 120, view.x + 100 : view.x + view.width - 100]
+    return np.abs(part - part[-1, 0]).max(-1) > 0.08
+
+
+def render_region(folder):
+    _colored_scene()
+    view = viewport.show(samples=16)
+    view.use_render_border = True
+    view.render_border_min_x, view.render_border_max_x = 0.25, 0.5
+    view.render_border_min_y, view.render_border_max_y = 0.25, 0.75
+    bpy.context.scene.update_tag()
+    yield from viewport.finished()
+    shown = window.screenshot(folder, "region")
+    region = viewport.region()
+    height, width = viewport.pixels().shape[:2]
+    assert abs(width - region.width / 4) <= 1
+    assert abs(height - region.height / 2) <= 1
+    inside = shown[region.y + region.height // 2, region.x + int(0.3 * region.width)]
+    outside = shown[region.y + region.height // 2, region.x + int(0.8 * region.width)]
+    assert np.abs(inside - outside).max() > 0.1
+
+
+def error_line(folder):
+    """One line while something is wrong, the picture when it is no longer."""
+    _colored_scene()
+    view = viewport.show(samples=16)
+    view.overlay.show_overlays = True
+    view.region_3d.view_perspective = "CAMERA"
+    camera = bpy.context.scene.camera.data
+    camera.type = "PANO"
+    yield 0.5
+    window.screenshot(folder, "error")
+    assert "panoramic" in viewport.the_one()._view_error
+    camera.type = "PERSP"
+    yield from viewport.finished()
+    window.screenshot(folder, "error-gone")
+    assert not viewport.the_one()._view_error
+    assert viewport.the_one()._picture.samples == 16
+
+
+def rests(folder):
+    """While a final render runs the viewport's job does not, and it goes on afterwards where it was."""
+    _colored_scene()
+    viewport.show(samples=1 << 20)
+    yield from viewport.until(lambda: viewport.samples() > 8, "no picture")
+    before = viewport.the_one()._picture.samples
+    bpy.context.scene.velour.samples = 1 << 17
+    with window.override():
+        bpy.ops.render.render("INVOKE_DEFAULT")
+    yield 0.5
+    assert bpy.app.is_job_running("RENDER")
+    assert viewport.the_one()._job.poll().state == "cancelled"
+    yield from viewport.until(lambda: not bpy.app.is_job_running("RENDER"), "the render does not end")
+    yield 0.5
+    assert viewport.the_one()._job.poll().running
+    assert viewport.the_one()._job.picture().samples >= before
+
+
+def local_view(folder):
+    """Shows what is selected alone, and all again."""
+    _colored_scene()
+    with window.override():
+        scenes.add_sphere(radius=2.0).location = (3, 0, 0)
+        bpy.ops.object.select_all(action="DESELECT")
+    bpy.data.objects["Cube"].select_set(True)
+    viewport.show(samples=16)
+    yield from viewport.finished()
+    everything = viewport.the_one()._live.scene.info()["instances"]
+    with viewport.override():
+        bpy.ops.view3d.localview(frame_selected=False)
+    yield from viewport.finished()
+    window.screenshot(folder, "local-view")
+    alone = viewport.the_one()._live.scene.info()["instances"]
+    with viewport.override():
+        bpy.ops.view3d.localview(frame_selected=False)
+    yield from viewport.finished()
+    assert (everything, alone) == (2, 1), (everything, alone)
+    assert viewport.the_one()._live.scene.info()["instances"] == 2

@@ -8,48 +8,76 @@ import logging
 import time
 import weakref
 
-from ..export import ExportError, Notes, export_scene
+import bpy
+
+from ..export import ExportError
 from ..export.film import film_exposure
+from ..export.live import LiveExport
+from ..export.look import Look
 from ..export.viewport import viewport_frame
 from ..native import ProgressiveJob, VelourError
 from . import viewport_clock
 from .options import viewport_options
+from .viewport_picture import ViewportPicture
 
 log = logging.getLogger(__package__)
 
 _LEAST_SECONDS = 0.05  # between two pictures
 _SHARE = 0.1  # of the main thread's time, at most, for pictures that only grow less noisy
+_PATIENCE = 0.04  # seconds that a change waits for the first picture of the change before
+
+_all = weakref.WeakSet()
 
 
 class Viewport:
     def __init__(self, engine):
         self._engine = weakref.ref(engine)
-        self._scene = None  # the library's
+        self._live = None  # LiveExport
         self._job = None
         self._options = None  # of the job
-        self._key = None  # of what the job shows
-        self._place = None
+        self._key = (
+            None  # of the view that the job shows; None: of none, or of a scene before its last change
+        )
         self._is_waiting = False  # the job begins when it is no longer paused
-        self._picture = None  # of the job, that is drawn
-        self._screen = None
-        self._error = ""
-        self._drawn_at = self._drawn_in = 0.0  # seconds
+        self._picture = ViewportPicture()
+        self._place = None  # in the region
+        self._scene_error = self._view_error = ""
+        _all.add(self)
 
     def close(self):
         viewport_clock.forget(self)
-        if self._job:
-            self._job.close()
-        if self._scene:
-            self._scene.close()
+        self._close_job()
+        self._drop_scene()
 
     def update(self, context, depsgraph):
         """The scene has changed, or is shown for the first time."""
-        self._guard(self._export, context, depsgraph)
+        self._scene_error = ""
+        try:
+            self._take_up(depsgraph, Look(context, depsgraph))
+        except Exception as error:
+            self._scene_error = _sentence(error)
+            self._close_job()
+            self._drop_scene()
 
     def draw(self, context, depsgraph):
-        self._guard(self._follow, context, depsgraph)
-        self._guard(self._show, depsgraph.scene_eval)
-        self._say()
+        if self._live is None and not self._scene_error:
+            self.update(context, depsgraph)  # its scene was forgotten
+        self._view_error = ""
+        try:
+            self._follow(context, depsgraph)
+            self._show(depsgraph.scene_eval)
+        except Exception as error:
+            self._view_error = _sentence(error)
+            self._close_job()
+        self._engine().update_stats("Velour", self._scene_error or self._view_error or self._progress())
+
+    def forget_scene(self):
+        """Nothing of what was exported may be taken for what is there now."""
+        self._close_job()
+        self._drop_scene()
+        engine = self._engine()
+        if engine:
+            engine.tag_redraw()
 
     def pause(self):
         """Called from any thread; turn() goes on later."""
@@ -60,95 +88,75 @@ class Viewport:
     def turn(self):
         """Between redraws. False: there is nothing to wait for."""
         engine = self._engine()
-        if engine is None or self._job is None or self._error:
+        if engine is None or self._job is None:
             return False
-        state = self._job.poll().state
         if viewport_clock.is_paused():
             self.pause()
             return True
+        state = self._job.poll().state
         if self._is_waiting or state == "cancelled":
             self._start()
-            return True
-        if state == "failed":
-            self._guard(self._job.wait)
-        if self._error or self._is_news():
+        elif state == "failed" or self._is_due():
             engine.tag_redraw()
-        return not self._error and (state == "running" or self._is_behind())
+        return state in ("running", "ready", "cancelled") or self._picture.is_behind(self._job)
 
-    def _is_behind(self):
-        return self._picture is None or self._job.picture().version != self._picture.version
-
-    def _is_news(self):
+    def _is_due(self):
         """Whether there is a picture worth the time that it takes to draw."""
-        picture = self._job.picture()
-        if picture.width == 0 or (self._picture and picture.version == self._picture.version):
-            return False
-        return time.monotonic() - self._drawn_at > max(_LEAST_SECONDS, self._drawn_in / _SHARE)
+        waited = time.monotonic() - self._picture.shown_at
+        return waited > max(_LEAST_SECONDS, self._picture.seconds / _SHARE) and self._picture.is_behind(
+            self._job
+        )
 
-    def _guard(self, step, *arguments):
-        try:
-            step(*arguments)
-        except (ExportError, VelourError) as error:
-            self._fail(str(error))
-        except Exception as error:
-            log.exception("viewport failed")
-            self._fail(f"Velour failed unexpectedly: {type(error).__name__}: {error}")
-
-    def _fail(self, sentence):
-        """One line in the viewport until the next change."""
-        self._error = sentence
-        if self._job:
-            self._job.close()
-        self._job = self._options = self._key = None
-
-    def _export(self, context, depsgraph):
-        self._error = ""
-        frame = viewport_frame(context, depsgraph)
-        if self._job:
-            self._job.close()
-        self._job = self._options = self._key = None
-        if frame is None:
+    def _take_up(self, depsgraph, look):
+        if self._live is None:
+            self._close_job()
+            self._live = LiveExport(depsgraph, look)
             return
-        scene, self._scene = self._scene, None
-        if scene:
-            scene.close()
-        self._scene = export_scene(depsgraph, frame.view, Notes(), strict=False).scene
+        changes = self._live.changes(depsgraph, look)
+        if not changes:
+            return
+        self._halt()
+        self._key = None
+        if changes.everything:
+            self._close_job()
+            self._drop_scene()
+            self._live = LiveExport(depsgraph, look)
+        else:
+            self._live.update(changes, depsgraph, look)
 
     def _follow(self, context, depsgraph):
         """Takes up what the viewport looks through, and how it is rendered."""
-        if self._error or self._scene is None:
+        if self._live is None:
             return
+        if self._job and self._job.poll().state == "failed":
+            self._job.wait()  # raises
         frame = viewport_frame(context, depsgraph)
+        self._place = frame and frame.place
         if frame is None:
-            self._fail("")
-            self._place = None
+            self._close_job()
             return
-        self._place = frame.place
         options = viewport_options(depsgraph.scene_eval, frame.view)
         if self._job and options == self._options and frame.key() == self._key:
             return
-        if (
-            self._job
-            and options == self._options
-            and self._job.picture().width == 0
-            and self._job.poll().running
-        ):
-            viewport_clock.watch(self)  # else a view that turns on and on would never be seen
-            return
+        if self._job and options == self._options and self._key is not None and self._is_unseen():
+            return  # turn() comes back to it: else a view that turns on and on would never be seen
         self._restart(frame, options)
+
+    def _is_unseen(self):
+        """Whether the job runs and has nothing to show yet."""
+        return self._job.poll().running and self._job.picture().width == 0
 
     def _restart(self, frame, options):
         if self._job:
-            self._job.stop()
-        frame.view.add_to(self._scene)
-        self._scene.commit()
-        if options == self._options:
+            self._halt()
+        frame.view.add_to(self._live.scene)
+        self._live.scene.commit()
+        if self._job and options == self._options:
             self._job.restart()
         else:
-            if self._job:
-                self._job.close()
-            self._job, self._options = ProgressiveJob.of(self._scene, **options), options
-            self._picture = None
+            self._close_job()
+            self._job = ProgressiveJob.of(self._live.scene, **options)
+            self._options = options
         self._key = frame.key()
         self._start()
 
@@ -158,24 +166,65 @@ class Viewport:
             self._job.start()
         viewport_clock.watch(self)
 
+    def _halt(self):
+        """Stops the job; what it has to show is kept for the next redraw."""
+        if self._job is None:
+            return
+        end = time.monotonic() + _PATIENCE
+        while self._is_unseen() and time.monotonic() < end:
+            time.sleep(0.002)
+        self._job.stop()
+        self._picture.take(self._job)
+
+    def _close_job(self):
+        if self._job:
+            self._job.close()
+        self._job = self._options = self._key = None
+        self._is_waiting = False
+        self._picture.begin()
+
+    def _drop_scene(self):
+        if self._live:
+            self._live.close()
+        self._live = None
+
     def _show(self, scene):
-        from .viewport_picture import ViewportPicture  # needs a window
-
-        begin = time.monotonic()
-        if self._screen is None:
-            self._screen = ViewportPicture()
-        if self._job and self._is_behind():
-            picture = self._screen.read(self._job, film_exposure(scene))
-            if picture.width:
-                self._picture, self._drawn_at = picture, begin
-        if self._place:
-            self._screen.draw(self._engine(), scene, self._place)
-        self._drawn_in = time.monotonic() - begin
-
-    def _say(self):
-        self._engine().update_stats("Velour", self._error or self._progress())
+        if self._job:
+            self._picture.take(self._job)
+        if self._place and self._live:
+            self._picture.draw(self._engine(), scene, self._place, film_exposure(scene))
 
     def _progress(self):
-        if self._options is None or self._picture is None:
+        if self._options is None:
             return ""
         return f"Sample {self._picture.samples}/{self._options['spp']}"
+
+
+def _sentence(error):
+    """One line in the viewport."""
+    if isinstance(error, (ExportError, VelourError)):
+        return str(error)
+    log.error("viewport failed", exc_info=error)
+    return f"Velour failed unexpectedly: {type(error).__name__}: {error}"
+
+
+@bpy.app.handlers.persistent
+def _forget_scenes(*_arguments):
+    """After undo, redo and loading, datablocks of other things may lie where those lay that were exported."""
+    for viewport in tuple(_all):
+        viewport.forget_scene()
+
+
+def _handlers():
+    handlers = bpy.app.handlers
+    return handlers.undo_post, handlers.redo_post, handlers.load_post
+
+
+def attach():
+    for handlers in _handlers():
+        handlers.append(_forget_scenes)
+
+
+def detach():
+    for handlers in _handlers():
+        handlers.remove(_forget_scenes)

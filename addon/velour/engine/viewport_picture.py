@@ -1,8 +1,10 @@
-"""The picture of a rendered viewport, on its way to the screen. Nothing headless comes here."""
+"""The picture of a rendered viewport, on its way from the job to the screen."""
 
-import gpu
+import time
+
 import numpy as np
-from gpu_extras.presets import draw_texture_2d
+
+_HALF_MAX = 65504.0
 
 
 class ViewportPicture:
@@ -10,25 +12,43 @@ class ViewportPicture:
 
     def __init__(self):
         self._pixels = np.empty(0, np.float32)
+        self._size = None  # of what was taken last
+        self._is_fresh = False  # it is not on the screen yet
+        self._version = 0  # the job's
         self._texture = None
+        self.samples = 0
+        self.shown_at = self.seconds = 0.0  # when, and how long it took
 
-    def read(self, job, exposure):
-        """Takes the job's picture, where there is one; it as Picture."""
+    def begin(self):
+        """Another job; what is on the screen stays until that has something to show."""
+        self._version = self.samples = 0
+
+    def is_behind(self, job):
+        picture = job.picture()
+        return picture.width > 0 and picture.version != self._version
+
+    def take(self, job):
+        """Copies what the job has to show, where that is new."""
+        if not self.is_behind(job):
+            return
+        begin = time.monotonic()
         count = 4 * job.size[0] * job.size[1]
         if self._pixels.size != count:
             self._pixels = np.empty(count, np.float32)
         picture = job.read(self._pixels)
-        if picture.width == 0:
-            return picture
-        values = self._pixels[: 4 * picture.width * picture.height]
-        if exposure != 1.0:
-            values.reshape(-1, 4)[:, :3] *= exposure
-        np.clip(values, -_HALF_MAX, _HALF_MAX, out=values)
-        buffer = gpu.types.Buffer("FLOAT", values.size, values)
-        self._texture = gpu.types.GPUTexture((picture.width, picture.height), format="RGBA16F", data=buffer)
-        return picture
+        self._size, self._version = (picture.width, picture.height), picture.version
+        self._is_fresh, self.samples = True, picture.samples
+        self.seconds = time.monotonic() - begin
 
-    def draw(self, engine, scene, place):
+    def draw(self, engine, scene, place, exposure):
+        import gpu  # nothing headless comes here
+        from gpu_extras.presets import draw_texture_2d
+
+        if self._is_fresh:
+            begin = self.shown_at = time.monotonic()
+            self._texture = self._upload(gpu, exposure)
+            self._is_fresh = False
+            self.seconds += time.monotonic() - begin
         if self._texture is None:
             return
         gpu.state.blend_set("ALPHA_PREMULT")
@@ -37,5 +57,10 @@ class ViewportPicture:
         engine.unbind_display_space_shader()
         gpu.state.blend_set("NONE")
 
-
-_HALF_MAX = 65504.0
+    def _upload(self, gpu, exposure):
+        values = self._pixels[: 4 * self._size[0] * self._size[1]]
+        if exposure != 1.0:
+            values.reshape(-1, 4)[:, :3] *= exposure
+        np.clip(values, -_HALF_MAX, _HALF_MAX, out=values)
+        buffer = gpu.types.Buffer("FLOAT", values.size, values)
+        return gpu.types.GPUTexture(self._size, format="RGBA16F", data=buffer)

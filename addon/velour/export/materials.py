@@ -67,6 +67,26 @@ class MaterialTable:
             self._numbers[key] = self._add(material)
         return self._numbers[key]
 
+    def renew(self, material):
+        """Takes up another look of a material, where it is shown.
+
+        Whether what shows it has to be looked at again: texture coordinates and tiles are other ones.
+        """
+        key = _key(material)
+        if key not in self._numbers:
+            return False
+        before, number = self._needs(key), self._numbers.pop(key)
+        self._tiles.pop(key, None)
+        self._textured.discard(key)
+        self.number(material)
+        self._scene.replace_material(number)
+        self._numbers[key] = number
+        # How tiles lie is told by settings of the material.
+        return self._needs(key) != before or key in self._tiles
+
+    def _needs(self, key):
+        return self._uv_maps[key], self._tiles.get(key), key in self._textured
+
     def _add(self, material):
         node = velour_node(material)
         if node is not None:

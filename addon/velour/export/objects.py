@@ -6,6 +6,7 @@ import numpy as np
 
 from .axes import affine
 from .instances import InstanceGroups
+from .kept_meshes import KeptMeshes
 from .lights import add_light
 from .meshes import has_uv_map, object_arrays
 from .placement import Placements
@@ -38,15 +39,16 @@ class ObjectExport:
     """Adds visible objects to `scene`; instances share the geometry of their evaluated datablock.
 
     `to_scene`: the 4 x 4 matrix from Blender's world to that of `scene`; None: they are the same.
+    `meshes`: KeptMeshes of exports into the same scene before.
     """
 
-    def __init__(self, scene, materials, notes, check_break, to_scene=None):
+    def __init__(self, scene, materials, notes, check_break, to_scene=None, meshes=None):
         self._scene = scene
         self._materials = materials
         self._notes = notes
         self._check_break = check_break  # called once an instance; raises to stop
         self._to_scene = to_scene
-        self._meshes = {}
+        self._meshes = KeptMeshes() if meshes is None else meshes
         self._shown = {}
         self._groups = InstanceGroups(scene, notes)
         self._placements = Placements(materials, notes)
@@ -55,7 +57,11 @@ class ObjectExport:
         self.is_seen = False  # the camera sees an instance, if it looks there
 
     def add_all(self, depsgraph):
-        self._add(depsgraph, lambda instance: instance.show_self)
+        self.add_shown(depsgraph, lambda instance: instance.show_self)
+
+    def add_shown(self, depsgraph, is_shown):
+        """The instances for which `is_shown` is true."""
+        self._add(depsgraph, is_shown)
 
     def add_geometry(self, depsgraph, is_wanted):
         """Of the instances for which `is_wanted` is true, visible to all; no lights."""
@@ -125,7 +131,7 @@ class ObjectExport:
         materials = [override] if override else all_materials(obj)
         uv_maps = maps_of_slots(tuple(map(self._materials.uv_maps, materials)))
         key = (obj.type, (obj.data or obj).as_pointer(), uv_maps)
-        if key not in self._meshes:
+        if not self._meshes.has(key, obj):
             self._meshes[key] = self._add_mesh(obj, uv_maps)
         number, count = self._meshes[key]
         slots = [override] * count if override else slot_materials(obj, count)

@@ -1,0 +1,60 @@
+"""What a viewport's scene has to take up of what Blender says has changed."""
+
+import bpy
+
+# Of objects and worlds that show them more is said; that a datablock was looked at says nothing.
+_SAID_ELSEWHERE = (
+    bpy.types.Camera,
+    bpy.types.Mesh,
+    bpy.types.Curve,
+    bpy.types.MetaBall,
+    bpy.types.Armature,
+    bpy.types.Lattice,
+    bpy.types.Key,
+    bpy.types.Action,
+    bpy.types.ParticleSettings,
+    bpy.types.NodeTree,
+    bpy.types.Scene,
+)
+_WITHOUT_A_PICTURE = ("CAMERA", "SPEAKER", "LIGHT_PROBE", "ARMATURE", "LATTICE")
+
+
+class Changes:
+    """Of a depsgraph's updates."""
+
+    def __init__(self, updates):
+        self.everything = self.objects = self.lights = self.world = self.scene = False
+        self.materials = []
+        self.geometry = set()  # pointers of objects of the .blend
+        for update in updates:
+            self._add(update)
+
+    def __bool__(self):
+        return any((self.everything, self.objects, self.lights, self.world, self.materials))
+
+    def _add(self, update):
+        block = update.id
+        if isinstance(block, bpy.types.Object):
+            self._add_object(block, update.is_updated_geometry)
+        elif isinstance(block, bpy.types.Light):
+            self.lights = True
+        elif isinstance(block, bpy.types.World):
+            self.world = True
+        elif isinstance(block, bpy.types.Material):
+            self.materials.append(block)
+        elif isinstance(block, bpy.types.Collection):
+            self.objects = True
+        elif isinstance(block, bpy.types.Scene):
+            self.scene = True
+        elif isinstance(block, bpy.types.Image):
+            self.everything |= block.type not in ("RENDER_RESULT", "COMPOSITING")
+        elif not isinstance(block, _SAID_ELSEWHERE):
+            self.everything |= update.is_updated_geometry or update.is_updated_shading
+
+    def _add_object(self, obj, is_geometry):
+        if obj.type == "LIGHT":
+            self.lights = True
+        elif obj.type not in _WITHOUT_A_PICTURE:
+            self.objects = True
+            if is_geometry:
+                self.geometry.add(obj.original.as_pointer())

@@ -1,0 +1,85 @@
+"""The library's scene of what a viewport shows, kept up with the .blend: what changed alone is taken anew."""
+
+import math
+
+from mathutils import Matrix
+
+from ..native import Scene
+from .changes import Changes
+from .color import set_working_space
+from .kept_meshes import KeptMeshes
+from .materials import MaterialTable
+from .notes import Notes
+from .objects import ObjectExport
+from .world import add_world
+
+_MOST_REMOVED = 4096  # numbers of meshes that are no longer there: then all begins anew
+
+
+class LiveExport:
+    """Needs scene.commit() before it is rendered; the camera is for others to set."""
+
+    def __init__(self, depsgraph, look):
+        self.scene = Scene()
+        try:
+            set_working_space(self.scene)
+            self._materials = MaterialTable(self.scene, Notes(), strict=False)
+            self._meshes = KeptMeshes()
+            self._removed = 0
+            self._look = look.key()
+            self._add_objects(depsgraph, look)
+            self._add_world(depsgraph, look)
+        except BaseException:
+            self.scene.close()
+            raise
+
+    def close(self):
+        self.scene.close()
+
+    def changes(self, depsgraph, look):
+        """What depsgraph and viewport say has changed; with `everything` another export is to be made."""
+        changes = Changes(depsgraph.updates)
+        objects, world, scene = look.key()
+        changes.objects |= objects != self._look[0]
+        changes.world |= world != self._look[1]
+        changes.everything |= scene != self._look[2] or self._removed > _MOST_REMOVED
+        return changes
+
+    def update(self, changes, depsgraph, look):
+        self._look = look.key()
+        if self._renew(changes.materials) or changes.objects:
+            self._add_objects(depsgraph, look, changes.geometry)
+        elif changes.lights:
+            self._add_lights(depsgraph, look)
+        if changes.world:
+            self._add_world(depsgraph, look)
+
+    def _renew(self, materials):
+        """Whether what shows them has to be looked at again: they look at other texture coordinates."""
+        return any([self._materials.renew(material) for material in materials])
+
+    def _add_objects(self, depsgraph, look, changed=frozenset()):
+        self.scene.clear_instances()
+        self.scene.clear_lights()
+        self._meshes.begin(changed)
+        self._export().add_shown(depsgraph, look.shows)
+        for number, _slots in self._meshes.drop_unused():
+            if number is not None:
+                self.scene.remove_mesh(number)
+                self._removed += 1
+
+    def _add_lights(self, depsgraph, look):
+        self.scene.clear_lights()
+        self._export().add_shown(depsgraph, lambda i: i.object.type == "LIGHT" and look.shows(i))
+
+    def _export(self):
+        return ObjectExport(self.scene, self._materials, Notes(), lambda: None, meshes=self._meshes)
+
+    def _add_world(self, depsgraph, look):
+        light = look.studio_light
+        if light:
+            turn = Matrix.Rotation(-light.turn - math.pi / 2, 3, "Z")
+            self.scene.set_world_file(light.path, light.strength, turn)
+        else:
+            has_sky = depsgraph.view_layer_eval.use_sky
+            add_world(self.scene, depsgraph.scene_eval.world if has_sky else None, Notes())

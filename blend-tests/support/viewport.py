@@ -1,0 +1,87 @@
+"""The rendered viewport under test."""
+
+import importlib
+import time
+
+import bpy
+
+from . import inputs, scenes, window
+
+TURN = 0.05
+_PATIENCE = 60  # seconds; the machine may be busy
+
+
+def addon(name):
+    return importlib.import_module(f"{inputs.ADDON}.{name}")
+
+
+def area():
+    return next(area for area in window.first().screen.areas if area.type == "VIEW_3D")
+
+
+def region():
+    return next(region for region in area().regions if region.type == "WINDOW")
+
+
+def space():
+    return area().spaces.active
+
+
+def override():
+    view = area()
+    return bpy.context.temp_override(window=window.first(), area=view, region=region())
+
+
+def show(samples=64):
+    """Switches the viewport on; overlays and widgets off, so that pixels are the picture's."""
+    scene = scenes.use_engine(samples)
+    scene.velour.viewport_samples = samples
+    view = space()
+    view.overlay.show_overlays = view.show_gizmo = False
+    view.shading.type = "RENDERED"
+    return view
+
+
+def the_one():
+    """The Viewport of the only 3D viewport."""
+    (found,) = tuple(addon("engine.viewport")._all)
+    return found
+
+
+def samples():
+    """Of the picture on the screen; 0: there is none."""
+    found = tuple(addon("engine.viewport")._all)
+    return found[0]._picture.samples if found else 0
+
+
+def is_idle():
+    return not addon("engine.viewport_clock").viewports()
+
+
+def until(is_true, what):
+    """Turns until `is_true()`."""
+    end = time.monotonic() + _PATIENCE
+    while not is_true():
+        assert time.monotonic() < end, what
+        yield TURN
+
+
+def finished():
+    """Turns until the viewport has all of its samples on the screen."""
+    yield 0.15
+    yield from until(is_idle, "the viewport does not come to its end")
+    yield 0.15
+
+
+def pixels():
+    """[height x width x 4] scene-linear, of what the viewport shows."""
+    picture = the_one()._picture
+    width, height = picture._size
+    return picture._pixels[: 4 * width * height].reshape(height, width, 4).copy()
+
+
+def middle(screenshot, half=20):
+    """The middle of the 3D viewport on a screenshot."""
+    view = region()
+    x, y = view.x + view.width // 2, view.y + view.height // 2
+    return screenshot[y - half : y + half, x - half : x + half]

@@ -1,0 +1,218 @@
+"""Edits in the rendered viewport: what was exported piece by piece is what a whole export makes."""
+
+import math
+
+import bpy
+import numpy as np
+
+from support import scenes, viewport, window
+
+
+def start(folder):
+    """Called by the harness once the window is there."""
+    window.run(folder, (edits, undo, selection))
+
+
+def _scene():
+    scenes.set_world((0.5, 0.7, 1.0), 0.5)
+    cube = bpy.data.objects["Cube"]
+    cube.active_material = scenes.diffuse_material((0.8, 0.3, 0.1), "Orange")
+    twin = bpy.data.objects.new("Twin", cube.data)
+    twin.location = (3, 0, 0)
+    bpy.context.scene.collection.objects.link(twin)
+    with window.override():
+        ball = scenes.add_sphere(scenes.diffuse_material((0.2, 0.6, 0.3), "Green"))
+    ball.name, ball.location = "Ball", (0, 3, 0)
+
+
+def _socket(material, name):
+    node = next(n for n in bpy.data.materials[material].node_tree.nodes if n.type == "BSDF_DIFFUSE")
+    return node.inputs[name]
+
+
+def _move():
+    bpy.data.objects["Cube"].location.z += 1
+
+
+def _energy():
+    bpy.data.lights["Light"].energy *= 3
+
+
+def _lamp_moves():
+    bpy.data.objects["Light"].location.x -= 4
+
+
+def _color():
+    _socket("Orange", "Color").default_value = (0.1, 0.2, 0.9, 1)
+
+
+def _world():
+    bpy.context.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.2
+
+
+def _other_world():
+    scenes.set_world((1.0, 0.5, 0.4), 0.4)
+
+
+def _vertex():
+    mesh = bpy.data.meshes["Cube"]
+    mesh.vertices[0].co.x += 1.5
+    mesh.update()
+
+
+def _modifier():
+    bpy.data.objects["Ball"].modifiers.new("Array", "ARRAY")
+
+
+def _modifier_changes():
+    bpy.data.objects["Ball"].modifiers["Array"].count = 3
+
+
+def _added():
+    with window.override():
+        ground = scenes.add_plane(bpy.data.materials["Green"], size=20)
+    ground.name, ground.location.z = "Ground", -2
+
+
+def _removed():
+    bpy.data.objects.remove(bpy.data.objects["Twin"])
+
+
+def _hidden():
+    bpy.data.objects["Ball"].hide_set(True)
+
+
+def _shown():
+    bpy.data.objects["Ball"].hide_set(False)
+
+
+def _other_material():
+    bpy.data.objects["Ground"].material_slots[0].material = bpy.data.materials["Orange"]
+
+
+def _glows():
+    tree = bpy.data.materials["Green"].node_tree
+    glow = tree.nodes.new("ShaderNodeEmission")
+    glow.inputs["Strength"].default_value = 2
+    tree.links.new(glow.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+
+
+def _instances():
+    collection = bpy.data.collections.new("Many")
+    collection.objects.link(bpy.data.objects["Ball"])
+    for i in range(4):
+        empty = bpy.data.objects.new(f"Empty{i}", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+        empty.location = (3 * math.cos(i), 3 * math.sin(i), 2)
+        bpy.context.scene.collection.objects.link(empty)
+
+
+def _instances_follow():
+    bpy.data.objects["Empty2"].scale = (0.5, 0.5, 0.5)
+
+
+def _textured():
+    image = bpy.data.images.new("Checks", 8, 8)
+    image.pixels = np.tile(np.float32([1, 0, 0, 1, 0, 1, 0, 1]), 32).tolist()
+    tree = bpy.data.materials["Orange"].node_tree
+    picture = tree.nodes.new("ShaderNodeTexImage")
+    picture.image = image
+    tree.links.new(picture.outputs[0], _socket("Orange", "Color"))
+
+
+def _painted():
+    image = bpy.data.images["Checks"]
+    image.pixels = np.tile(np.float32([1, 1, 0, 1, 0, 1, 1, 1]), 32).tolist()
+    image.update()
+    image.update_tag()
+
+
+def _scene_lights_off():
+    viewport.space().shading.use_scene_lights_render = False
+
+
+def _scene_lights_on():
+    viewport.space().shading.use_scene_lights_render = True
+
+
+def _film():
+    bpy.context.scene.render.film_transparent = True
+
+
+def _frame():
+    bpy.data.objects["Cube"].keyframe_insert("location", frame=1)
+    bpy.data.objects["Cube"].location.x += 2
+    bpy.data.objects["Cube"].keyframe_insert("location", frame=5)
+    bpy.context.scene.frame_set(5)
+
+
+def _turned():
+    viewport.space().region_3d.view_rotation.rotate(__import__("mathutils").Euler((0, 0, 0.5)))
+
+
+_EDITS = (
+    *(_move, _energy, _lamp_moves, _color, _world, _other_world, _vertex, _modifier, _modifier_changes),
+    *(_added, _removed, _hidden, _shown, _other_material, _glows, _instances, _instances_follow),
+    *(_textured, _painted, _scene_lights_off, _scene_lights_on, _film, _frame, _turned),
+)
+
+
+def edits(folder):
+    _scene()
+    viewport.show(samples=8)
+    bpy.context.scene.render.preview_pixel_size = "4"
+    yield from viewport.finished()
+    last = viewport.pixels()
+    for edit in _EDITS:
+        exported = viewport.the_one()._live
+        edit()
+        yield from viewport.finished()
+        now = viewport.pixels()
+        window.screenshot(folder, f"edit{edit.__name__}")
+        assert not np.array_equal(now, last), f"{edit.__name__} is not seen"
+        assert edit is _painted or viewport.the_one()._live is exported, f"{edit.__name__}: all exported anew"
+        viewport.the_one().forget_scene()
+        bpy.context.scene.update_tag()
+        yield from viewport.finished()
+        last = viewport.pixels()
+        assert np.array_equal(now, last), f"{edit.__name__}: {_difference(now, last)}"
+
+
+def _difference(a, b):
+    return f"{np.count_nonzero((a != b).any(-1))} pixels differ, by at most {np.abs(a - b).max()}"
+
+
+def undo(folder):
+    _scene()
+    viewport.show(samples=8)
+    bpy.context.scene.render.preview_pixel_size = "4"
+    with window.override():
+        bpy.ops.ed.undo_push(message="before")
+    yield from viewport.finished()
+    before = viewport.pixels()
+    with window.override():
+        bpy.data.objects["Cube"].location.z += 1
+        bpy.ops.ed.undo_push(message="moved")
+    yield from viewport.finished()
+    moved = viewport.pixels()
+    assert not np.array_equal(before, moved)
+    with window.override():
+        bpy.ops.ed.undo()
+    yield from viewport.finished()
+    assert np.array_equal(viewport.pixels(), before)
+    with window.override():
+        bpy.ops.ed.redo()
+    yield from viewport.finished()
+    assert np.array_equal(viewport.pixels(), moved)
+
+
+def selection(folder):
+    """Changes nothing, and so begins nothing anew."""
+    _scene()
+    viewport.show(samples=1 << 20)
+    yield from viewport.until(lambda: viewport.samples() > 16, "no picture")
+    samples = viewport.the_one()._job.picture().samples
+    bpy.data.objects["Cube"].select_set(False)
+    bpy.context.view_layer.objects.active = bpy.data.objects["Ball"]
+    yield 0.3
+    assert viewport.the_one()._job.picture().samples >= samples
