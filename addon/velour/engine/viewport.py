@@ -93,6 +93,9 @@ class Viewport:
         if viewport_clock.is_paused():
             self.pause()
             return True
+        if self._key is None:  # the scene has changed and is not committed: draw() starts the job
+            engine.tag_redraw()
+            return True
         state = self._job.poll().state
         if self._is_waiting or state == "cancelled":
             self._start()
