@@ -13,7 +13,10 @@ def link(obj):
 
 def without_terminator(obj):
     """Keeps Cycles from moving shadow rays off smooth surfaces, which lets light through their rim."""
-    obj.cycles.shadow_terminator_geometry_offset = 0.0
+    # Of the object itself since Blender 5.0, where the older one lives on without effect.
+    (
+        obj if hasattr(obj, "shadow_terminator_geometry_offset") else obj.cycles
+    ).shadow_terminator_geometry_offset = 0.0
     return obj
 
 

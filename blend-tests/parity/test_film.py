@@ -41,7 +41,7 @@ class Border(TownTest):
 class Film(ParityTest):
     def setUp(self):
         super().setUp()
-        stage.sphere(smooth=False)  # Cycles 5 shades smooth spheres with few faces another way
+        stage.sphere()
         stage.sharp_sun()
         stage.world((0.2, 0.3, 0.4))
         stage.camera((0, -6, 0), (math.pi / 2, 0, 0))

@@ -6,10 +6,7 @@ import bpy
 import numpy as np
 
 from parity import stage
-from parity.case import ALWAYS, ParityTest
-
-# Cycles 5 lets light reach faces that are turned away from it where their smooth normals are not.
-UNTIL_5 = (ALWAYS, (5, 0))
+from parity.case import NEVER, ParityTest
 
 
 class Geometry(ParityTest):
@@ -30,8 +27,7 @@ class Geometry(ParityTest):
     def test_coarse_smooth(self):
         """Velour bends normals that face away from the viewer, Cycles 3 bends none of a diffuse surface."""
         stage.sphere(segments=10, rings=6)
-        most = 0.7 if bpy.app.version < (5, 0) else 1.2
-        self.assert_approximate("Normals: smooth, coarse mesh", most, exact=((4, 0), (5, 0)))
+        self.assert_approximate("Normals: smooth, coarse mesh", 0.7, exact=((4, 0), NEVER))
 
     @staticmethod
     def _auto_smooth(mesh, angle):
@@ -43,7 +39,7 @@ class Geometry(ParityTest):
     def test_auto_smooth(self):
         obj = stage.sphere(segments=16, rings=6)
         self._auto_smooth(obj.data, math.radians(28))
-        self.assert_approximate("Normals: auto smooth", 0.3, exact=UNTIL_5)
+        self.assert_parity("Normals: auto smooth")
 
     def test_sharp_edges(self):
         obj = stage.sphere(segments=16, rings=8)
@@ -57,7 +53,7 @@ class Geometry(ParityTest):
         self._auto_smooth(obj.data, math.pi)
         normals = np.array([v.normal[:] for v in obj.data.vertices]) + np.array((0.3, -0.2, 0.4))
         obj.data.normals_split_custom_set_from_vertices([tuple(n / np.linalg.norm(n)) for n in normals])
-        self.assert_approximate("Normals: custom", 4, exact=UNTIL_5)
+        self.assert_parity("Normals: custom")
 
     def test_scale(self):
         """Cycles interpolates the normals of a mesh with one user in the world, of others before."""
@@ -65,13 +61,13 @@ class Geometry(ParityTest):
         obj.scale = (1.5, 1, 0.4)
         self.assert_approximate("Scale: not uniform", 1.0)
         stage.twin(obj)
-        self.assert_approximate("Scale: not uniform, several users", 0.4, exact=UNTIL_5)
+        self.assert_parity("Scale: not uniform, several users")
 
     def test_negative_scale(self):
         obj = stage.sphere(segments=32, rings=16)
         obj.scale, obj.rotation_euler = (-1.4, 0.8, 1), (0.3, 0.2, 0.1)
         stage.twin(obj)
-        self.assert_approximate("Scale: negative", 0.3, exact=UNTIL_5)
+        self.assert_parity("Scale: negative")
 
     def test_zero_scale(self):
         stage.sphere(segments=32, rings=16).scale = (1, 0, 1)

@@ -130,13 +130,14 @@ def _euler_matrix(euler):
 
 def _note_mapping(owner, mapping, notes):
     scale = mapping.inputs["Scale"].default_value
-    moved = any(abs(c) > 1e-6 for c in mapping.inputs["Location"].default_value)
+    location = mapping.inputs.get("Location")  # newer Blenders find it only where the type uses it
+    moved = location is not None and any(abs(c) > 1e-6 for c in location.default_value)
     uneven = not all(math.isclose(s, scale[0], rel_tol=1e-5) and s > 0 for s in scale)
     if (moved and mapping.vector_type in ("POINT", "TEXTURE")) or uneven:
         notes.add(
             f"{owner}: node '{mapping.name}': only the rotation is supported; location and scale are ignored."
         )
-    if any(source(mapping.inputs[name]) for name in ("Location", "Rotation", "Scale")):
+    if any(source(socket) for socket in mapping.inputs if socket.name in ("Location", "Rotation", "Scale")):
         notes.add(
             f"{owner}: node '{mapping.name}': what is linked to it is not supported; its own values are used."
         )
