@@ -90,3 +90,48 @@ class MeshArrays(BlenderTest):
         np.testing.assert_array_equal(arrays.uvs(odd), rendered[arrays.triangles[odd]])
         np.testing.assert_array_equal(arrays.more_uvs, rendered[None])
         np.testing.assert_array_equal(arrays.relief_uvs, rendered)
+
+
+class MeshQueue(BlenderTest):
+    """Meshes of several sets of arrays, of which one leaves nothing and one has no room beside others."""
+
+    def _meshes(self):
+        grid = _export("meshes").mesh_arrays
+        flat, soft, flat_again = (scenes.add_sphere().data for _ in range(3))
+        soft.polygons.foreach_set("use_smooth", [True] * len(soft.polygons))
+        for mesh in (flat, flat_again):
+            mesh.polygons.foreach_set("use_smooth", [False] * len(mesh.polygons))
+        nothing = bpy.data.meshes.new("nothing")
+        nothing.from_pydata([(0, 0, 0)] * 3, [], [(0, 1, 2)])
+        bpy.ops.mesh.primitive_grid_add(x_subdivisions=240, y_subdivisions=240)
+        return [flat, soft, nothing, bpy.context.object.data, flat_again], grid
+
+    def test_as_added_one_by_one(self):
+        native, export = __import__(f"{inputs.ADDON}.native", fromlist=["Scene"]), _export("mesh_queue")
+        meshes, read = self._meshes()
+        notes = _export("notes").Notes()
+        with native.Scene() as together, native.Scene() as single:
+            queue = export.MeshQueue(together, notes)
+            places = [queue.add(read(mesh, (), queue.empty), mesh.name) for mesh in meshes]
+            for mesh in meshes:
+                single.add_mesh(**read(mesh)._asdict())
+            self.assertEqual([queue.numbers()[place] for place in places], [0, 1, None, 3, 4])
+            self.assertEqual(
+                [sentence for sentence in notes if "'nothing': 1 triangles" in sentence], list(notes)
+            )
+            for scene in (together, single):
+                material = scene.add_principled_material()
+                for number in (0, 1, 3, 4):
+                    scene.add_instance(number, np.eye(4), [material])
+                scene.set_world_color((1, 1, 1))
+                scene.frame_camera(1.0)
+                scene.commit()
+            pictures = [self._picture(native, scene) for scene in (together, single)]
+            self.assertEqual(together.info()["triangles"], single.info()["triangles"])
+            self.assertGreater(pictures[0][..., :3].max(), 0.1)
+            np.testing.assert_array_equal(*pictures)
+
+    def _picture(self, native, scene):
+        with native.render_job(scene, width=24, height=24, spp=4) as job:
+            job.run()
+            return job.read_pass("Combined")

@@ -82,3 +82,71 @@ def test_corners_and_faces_that_are_not_there_are_refused():
             scene.add_mesh(**mesh, face_normals=normals)
         with pytest.raises(VelourError, match=r"corner_uvs has shape \(12, 3, 2\)"):
             scene.add_mesh(**mesh, corner_uvs=np.zeros((12, 3, 2), np.float32))
+
+
+def _bare(positions, vertices, triangles, faces, normals, mirror=1):
+    return {
+        "positions": positions * np.float32((mirror, 1, 1)),
+        "triangles": triangles,
+        "corner_vertices": vertices,
+        "face_normals": normals * np.float32((mirror, 1, 1)),
+        "triangle_faces": faces.astype(np.uint32),
+    }
+
+
+def _in_turn(meshes):
+    """The argument of Scene.add_meshes."""
+    names = {name for mesh in meshes for name in mesh}
+    given = {name: [mesh[name].ravel() for mesh in meshes if name in mesh] for name in names}
+    sizes = {name: [mesh[name].size if name in mesh else 0 for mesh in meshes] for name in names}
+    return {name: (np.concatenate(given[name]), sizes[name]) for name in names}
+
+
+def _picture_of_meshes(add):
+    with Scene() as scene:
+        numbers, dropped = add(scene)
+        assert list(numbers) == list(range(len(numbers)))
+        assert list(dropped) == [0, 0, 2]
+        material = scene.add_principled_material(base_color=(0.6, 0.5, 0.4))
+        for i, number in enumerate(numbers):
+            place = np.eye(4, dtype=np.float32)
+            place[:3, 3] = 2.5 * (i - 1), 0.5 * i, 0
+            scene.add_instance(int(number), place, [material])
+        scene.add_light("sun", (2, 2, 2), _looking_from((3, -4, 5)))
+        scene.look_at((3, -9, 6), (0, 0, 0), 0.8, 1.0)
+        scene.commit()
+        with render_job(scene, width=24, height=24, spp=8) as job:
+            job.run()
+            return job.read_pass("Combined")
+
+
+def test_many_meshes_are_those_that_are_added_one_by_one():
+    """Of several sets of arrays, and with triangles that are left out: the same picture, bit by bit."""
+    cube = _cube_faces()
+    flat = _bare(*cube)
+    soft = {name: _bare(*cube, mirror=-1)[name] for name in ("positions", "triangles", "corner_vertices")}
+    soft["vertex_normals"] = soft["positions"].copy()
+    torn = _bare(*cube)
+    torn["triangles"] = flat["triangles"].copy()
+    torn["triangles"][:2] = torn["triangles"][0, 0]
+    meshes = [flat, soft, torn]
+    many = _picture_of_meshes(lambda scene: scene.add_meshes(_in_turn(meshes)))
+    single = _picture_of_meshes(lambda scene: zip(*(scene.add_mesh(**mesh) for mesh in meshes), strict=True))
+    assert many[..., :3].max() > 0.05
+    np.testing.assert_array_equal(many, single)
+    other = _picture_of_meshes(lambda scene: scene.add_meshes(_in_turn([soft, flat, torn])))
+    assert np.abs(other - single).max() > 0.01
+
+
+def test_of_many_meshes_all_or_none_are_added():
+    flat = _bare(*_cube_faces())
+    wrong = {**flat, "corner_vertices": flat["corner_vertices"] + np.uint32(1)}
+    with Scene() as scene:
+        with pytest.raises(VelourError, match="names vertex 8 of a mesh with 8 vertices"):
+            scene.add_meshes(_in_turn([flat, wrong]))
+        short = {**flat, "triangle_faces": flat["triangle_faces"][:-1]}
+        with pytest.raises(VelourError, match="triangle_faces holds 11 numbers; 12 are needed"):
+            scene.add_meshes(_in_turn([flat, short]))
+        with pytest.raises(VelourError, match="a mesh has no positions"):
+            scene.add_meshes({"triangles": _in_turn([flat])["triangles"]})
+        assert scene.add_mesh(**flat) == (0, 0)

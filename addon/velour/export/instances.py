@@ -4,6 +4,8 @@ from array import array
 
 import numpy as np
 
+_NOTHING = 2**32 - 1  # the number of no mesh
+
 
 class InstanceGroups:
     """Collects them, and adds the instances of each group to `scene` by one call."""
@@ -14,31 +16,38 @@ class InstanceGroups:
         self._groups = {}
 
     def add(self, mesh, look, matrix, owner):
-        """`look`: (materials, hidden), as of Scene.add_instances; `owner`: the object's name."""
+        """`mesh`: its place in a MeshQueue; `look`: (materials, hidden), as of Scene.add_instances.
+
+        `owner`: the object's name.
+        """
         group = self._groups.get(look)
         if group is None:
             group = self._groups[look] = (array("I"), array("f"), [])
-        meshes, rows, owners = group
-        meshes.append(mesh)
+        places, rows, owners = group
+        places.append(mesh)
         owners.append(owner)
-        for row in matrix[:3]:
-            rows.extend(row)
+        rows.fromlist([*matrix[0], *matrix[1], *matrix[2]])
 
-    def add_to_scene(self):
-        """The owners, in the order of the instances in the scene."""
+    def add_to_scene(self, numbers):
+        """The owners, in the order of the instances in the scene.
+
+        `numbers`: of the queue; instances of meshes that have none are left out.
+        """
         all_owners = []
-        for (materials, hidden), (meshes, rows, owners) in self._groups.items():
-            numbers = np.frombuffer(meshes, np.uint32)
+        numbers = np.array([_NOTHING if number is None else number for number in numbers], np.uint32)
+        for (materials, hidden), (places, rows, owners) in self._groups.items():
+            meshes = numbers[np.frombuffer(places, np.uint32)]
             matrices = np.frombuffer(rows, np.float32).reshape(-1, 3, 4)
-            finite = np.isfinite(matrices).all(axis=(1, 2))
-            if not finite.all():
-                numbers, matrices, owners = self._with_a_place(finite, numbers, matrices, owners)
-            self._scene.add_instances(numbers, matrices, materials, hidden)
+            self._note_endless(matrices, owners)
+            shown = np.isfinite(matrices).all(axis=(1, 2)) & (meshes != _NOTHING)
+            if not shown.all():
+                meshes, matrices = meshes[shown], matrices[shown]
+                owners = [owners[i] for i in np.flatnonzero(shown)]
+            self._scene.add_instances(meshes, matrices, materials, hidden)
             all_owners += owners
         self._groups = {}
         return all_owners
 
-    def _with_a_place(self, finite, numbers, matrices, owners):
-        for i in np.flatnonzero(~finite):
+    def _note_endless(self, matrices, owners):
+        for i in np.flatnonzero(~np.isfinite(matrices).all(axis=(1, 2))):
             self._notes.add(f"Object '{owners[i]}': its transform is not a finite number; left out.")
-        return numbers[finite], matrices[finite], [owners[i] for i in np.flatnonzero(finite)]

@@ -1,5 +1,7 @@
 """The meshes of an export that goes on: what has not changed is not looked at again."""
 
+from .mesh_queue import MeshQueue
+
 
 class KeptMeshes(dict):
     """What ObjectExport makes of a mesh, by its key; of a single export no more than that."""
@@ -8,6 +10,13 @@ class KeptMeshes(dict):
         super().__init__()
         self._changed = frozenset()
         self._used = set()
+        self._queue = None
+
+    def queue(self, scene, notes):
+        """The MeshQueue of all exports, which are into the same scene."""
+        if self._queue is None:
+            self._queue = MeshQueue(scene, notes)
+        return self._queue
 
     def begin(self, changed):
         """Another export; `changed`: pointers of objects of the .blend whose geometry may be another one."""
@@ -24,5 +33,7 @@ class KeptMeshes(dict):
         return is_known
 
     def drop_unused(self):
-        """What no object has shown since begin()."""
-        return [self.pop(key) for key in set(self) - self._used]
+        """What no object has shown since begin(): numbers in the scene."""
+        dropped = [self.pop(key) for key in set(self) - self._used]
+        numbers = [self._queue.numbers()[mesh.place] for mesh in dropped if mesh]
+        return [number for number in numbers if number is not None]

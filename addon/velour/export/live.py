@@ -63,10 +63,9 @@ class LiveExport:
         self.scene.clear_lights()
         self._meshes.begin(changed)
         self._export().add_shown(depsgraph, look.shows)
-        for number, _slots in self._meshes.drop_unused():
-            if number is not None:
-                self.scene.remove_mesh(number)
-                self._removed += 1
+        for number in self._meshes.drop_unused():
+            self.scene.remove_mesh(number)
+            self._removed += 1
 
     def _add_lights(self, depsgraph, look):
         self.scene.clear_lights()

@@ -1,9 +1,14 @@
 """Evaluated geometry as numpy arrays."""
 
 import contextlib
+import math
 from typing import NamedTuple
 
+import bpy
 import numpy as np
+
+# To ask each mesh for what it has not is slow.
+_HAS_DOMAINS = "normals_domain" in bpy.types.Mesh.bl_rna.properties  # 4.1 and newer
 
 
 class MeshArrays(NamedTuple):
@@ -21,6 +26,11 @@ class MeshArrays(NamedTuple):
     face_normals: np.ndarray | None = None
     face_smooth: np.ndarray | None = None
     triangle_faces: np.ndarray | None = None
+
+    @property
+    def slot_count(self):
+        """Up to the last that a triangle is of."""
+        return 1 + int(self.material_slots.max()) if self.material_slots.any() else 1
 
     def vertices(self, triangles):
         """[n x 3] Of some of the triangles."""
@@ -44,14 +54,22 @@ class MeshArrays(NamedTuple):
         return normals
 
 
-def object_arrays(obj, uv_maps=()):
+def _own(_name, count, dtype):
+    return np.empty(count, dtype)
+
+
+def object_arrays(obj, uv_maps=(), empty=_own):
     """MeshArrays of an evaluated object; None where it has no face.
+
+    `empty`: gives memory for a field, by its name, how many numbers and of which type.
 
     `uv_maps`: for each material slot, of which the last stands for all beyond, the UvMaps of its faces.
     Empty, or where there is none of a name: the one that renders. None: no texture coordinates.
     """
+    if not _must_convert(obj):
+        return mesh_arrays(obj.data, uv_maps, empty)
     with _mesh_of(obj) as mesh:
-        return mesh_arrays(mesh, uv_maps) if mesh else None
+        return mesh_arrays(mesh, uv_maps, empty) if mesh else None
 
 
 def has_uv_map(obj, name):
@@ -66,10 +84,14 @@ def triangle_faces(obj):
         return _faces(mesh, len(mesh.loop_triangles))
 
 
+def _must_convert(obj):
+    """Only what is not a mesh yet, or is being edited, needs a copy."""
+    return obj.type != "MESH" or obj.mode == "EDIT"
+
+
 @contextlib.contextmanager
 def _mesh_of(obj):
-    # Only what is not a mesh yet, or is being edited, needs a converted copy.
-    convert = obj.type != "MESH" or obj.mode == "EDIT"
+    convert = _must_convert(obj)
     try:
         yield obj.to_mesh() if convert else obj.data
     finally:
@@ -77,61 +99,75 @@ def _mesh_of(obj):
             obj.to_mesh_clear()
 
 
-def mesh_arrays(mesh, uv_maps=()):
+def mesh_arrays(mesh, uv_maps=(), empty=_own):
     """`mesh` in its local space, split into Blender's own triangles; None where it has no face."""
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
     if count == 0:
         return None
-    corners = _read(mesh.loop_triangles, "loops", (count, 3), np.uint32)
-    slots = _material_slots(mesh, count)
+    vertices, corner_count = mesh.vertices, len(mesh.loops)
+    corners = _fill(empty("triangles", 3 * count, np.uint32), mesh.loop_triangles, "loops").reshape(-1, 3)
+    slots = _material_slots(mesh, count, empty)
     return MeshArrays(
-        positions=_read(mesh.vertices, "co", (len(mesh.vertices), 3)),
+        positions=_fill(empty("positions", 3 * len(vertices), np.float32), vertices, "co").reshape(-1, 3),
         triangles=corners,
         # What triangles say of vertices and materials they look up one by one, many times slower.
-        corner_vertices=_read(mesh.loops, "vertex_index", (len(mesh.loops),), np.uint32),
+        corner_vertices=_fill(empty("corner_vertices", corner_count, np.uint32), mesh.loops, "vertex_index"),
         material_slots=slots,
-        **_normals(mesh, count),
+        **_normals(mesh, count, empty),
         **_coordinates(mesh, corners, slots, uv_maps),
     )
 
 
-def _material_slots(mesh, count):
+def _material_slots(mesh, count, empty):
     """[triangles]; without an attribute that says otherwise all faces are of the first slot."""
+    slots = empty("material_slots", count, np.uint32)
     if len(mesh.materials) <= 1 and "material_index" not in mesh.attributes:
-        return np.zeros(count, np.uint32)
-    of_faces = _read(mesh.polygons, "material_index", (len(mesh.polygons),), np.uint32)
-    return of_faces[_faces(mesh, count)]
+        slots.fill(0)
+    else:
+        of_faces = _read(mesh.polygons, "material_index", (len(mesh.polygons),), np.uint32)
+        np.take(of_faces, _faces(mesh, count), out=slots)
+    return slots
 
 
-def _faces(mesh, count):
-    return _read(mesh.loop_triangles, "polygon_index", (count,), np.uint32)
+def _faces(mesh, count, empty=_own):
+    return _fill(empty("triangle_faces", count, np.uint32), mesh.loop_triangles, "polygon_index")
 
 
 def _read(collection, attribute, shape, dtype=np.float32):
     """Indices as uint32: what Blender calls unsigned is copied item by item into anything else."""
-    values = np.empty(shape, dtype)
-    collection.foreach_get(attribute, values.reshape(-1))
+    return _fill(np.empty(math.prod(shape), dtype), collection, attribute).reshape(shape)
+
+
+def _fill(values, collection, attribute):
+    collection.foreach_get(attribute, values)
     return values
 
 
-def _normals(mesh, count):
+def _vectors(memory, collection):
+    return _fill(memory, collection, "vector").reshape(-1, 3)
+
+
+def _normals(mesh, count, empty):
     """Custom, sharp and auto-smooth normals as Blender shades them: those of corners only where they differ.
 
     Blender gives normals to Python one by one, and there are many more corners than vertices.
     """
-    domain = getattr(mesh, "normals_domain", None)  # 4.1 and newer
+    domain = mesh.normals_domain if _HAS_DOMAINS else None
     if domain == "CORNER":
         return {"corner_normals": _read(mesh.corner_normals, "vector", (len(mesh.loops), 3))}
     if domain is None and mesh.use_auto_smooth:
         return {"corner_normals": _split_normals(mesh)}
     smooth = _smooth_faces(mesh, domain)
+    smooth_count = np.count_nonzero(smooth)  # any() and all() of few take many times as long
     normals = {}
-    if smooth.any():
-        normals["vertex_normals"] = _read(mesh.vertex_normals, "vector", (len(mesh.vertices), 3))
-    if not smooth.all():
-        normals["face_normals"] = _read(mesh.polygon_normals, "vector", (len(mesh.polygons), 3))
-        normals["triangle_faces"] = _faces(mesh, count)
+    if smooth_count > 0:
+        memory = empty("vertex_normals", 3 * len(mesh.vertices), np.float32)
+        normals["vertex_normals"] = _vectors(memory, mesh.vertex_normals)
+    if smooth_count < len(smooth):
+        memory = empty("face_normals", 3 * len(mesh.polygons), np.float32)
+        normals["face_normals"] = _vectors(memory, mesh.polygon_normals)
+        normals["triangle_faces"] = _faces(mesh, count, empty)
     return {**normals, "face_smooth": smooth.view(np.uint8)} if len(normals) == 3 else normals
 
 

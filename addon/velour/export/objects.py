@@ -2,17 +2,15 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from .axes import affine
 from .instances import InstanceGroups
 from .kept_meshes import KeptMeshes
 from .lights import add_light
 from .meshes import has_uv_map, object_arrays
-from .placement import Placements
+from .placement import Placements, missing_coordinates
 from .units import metres_per_unit
 from .uv_maps import maps_of_slots, missing_map
-from .visibility import hidden_from, note_visibility
+from .visibility import Visibility, note_visibility
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
@@ -29,10 +27,26 @@ class _Shown(NamedTuple):
     """What all instances of an object have in common."""
 
     owner: str  # its name
-    mesh: int | None  # its number in the scene; None: there is nothing to see
+    mesh: int  # its place in the MeshQueue
     slots: list
     look: tuple  # the arguments of Scene.add_instances beside mesh and matrices
     is_tiled: bool  # how tiles lie may depend on the matrix
+
+
+class _Mesh(NamedTuple):
+    place: int  # in the MeshQueue
+    slot_count: int
+    has_uvs: bool
+
+
+class _Slots(NamedTuple):
+    """What all meshes with as many slots have in common, where these show the same materials."""
+
+    materials: list
+    numbers: tuple  # in the scene
+    is_tiled: bool
+    look_at_uvs: list  # of the materials those that need texture coordinates
+    uv_maps: list  # of each material the names of UV maps that it asks for
 
 
 class ObjectExport:
@@ -49,12 +63,16 @@ class ObjectExport:
         self._check_break = check_break  # called once an instance; raises to stop
         self._to_scene = to_scene
         self._meshes = KeptMeshes() if meshes is None else meshes
+        self._queue = self._meshes.queue(scene, notes)
+        self._uv_maps = {}
+        self._slots = {}
         self._shown = {}
         self._groups = InstanceGroups(scene, notes)
         self._placements = Placements(materials, notes)
         self._owners = []  # of the instances in the scene, by name
         self.shines = False  # a lamp has power
-        self.is_seen = False  # the camera sees an instance, if it looks there
+        self._seen = []  # places of meshes that the camera sees, if it looks there
+        self.is_seen = False  # one of them has triangles
 
     def add_all(self, depsgraph):
         self.add_shown(depsgraph, lambda instance: instance.show_self)
@@ -69,6 +87,8 @@ class ObjectExport:
 
     def _add(self, depsgraph, is_wanted, geometry_alone=False):
         metres = metres_per_unit(depsgraph.scene)
+        override = depsgraph.view_layer_eval.material_override
+        visibility = None if geometry_alone else Visibility(depsgraph.view_layer)
         for instance in depsgraph.object_instances:
             self._check_break()
             # The instance is only valid within this turn of the loop.
@@ -79,38 +99,49 @@ class ObjectExport:
                 note_visibility(obj, self._notes)
                 self.shines |= add_light(self._scene, obj, instance.matrix_world, self._notes)
                 continue
-            key = _identity(obj)
-            if key not in self._shown:
-                self._shown[key] = self._look_at(obj, depsgraph, geometry_alone)
-            if self._shown[key]:
-                self._add_instance(instance, self._shown[key], metres)
-        self._owners += self._groups.add_to_scene()
+            shown = self._look_once(instance, obj, override, visibility)
+            if shown:
+                self._add_instance(instance, shown, metres)
+        numbers = self._queue.numbers()
+        self.is_seen = any(numbers[place] is not None for place in self._seen)
+        self._owners += self._groups.add_to_scene(numbers)
 
     def owner(self, instance):
         """The name of the object that an instance of the scene is of; None of None."""
         return None if instance is None else self._owners[instance]
 
-    def _look_at(self, obj, depsgraph, geometry_alone):
-        """The _Shown of an object; None of what is no geometry."""
-        if not geometry_alone:
+    def _look_once(self, instance, obj, override, visibility):
+        if not instance.is_instance:  # there is no other of it
+            return self._look_at(obj, override, visibility)
+        key = _identity(obj)
+        if key not in self._shown:
+            self._shown[key] = self._look_at(obj, override, visibility)
+        return self._shown[key]
+
+    def _look_at(self, obj, override, visibility):
+        """The _Shown of an object; None of what is no geometry. `visibility` None: all see it."""
+        if visibility:
             note_visibility(obj, self._notes)
         if obj.type not in GEOMETRY:
             self._note_unsupported(obj)
             return None
         self._note_extras(obj)
-        mesh, slots = self._mesh(obj, depsgraph.view_layer_eval.material_override)
+        data = obj.data
+        materials = (override,) if override else tuple(_materials(obj, data))
+        mesh = self._mesh(obj, data, materials)
         if mesh is None:
             return None
-        numbers = tuple(self._materials.number(material) for material in slots)
-        hidden = () if geometry_alone else hidden_from(obj, depsgraph.view_layer)
-        is_tiled = any(self._materials.tile(material) for material in slots)
-        if not is_tiled:
-            self._placements.note_missing(obj, mesh, slots)
-        self.is_seen |= "camera" not in hidden
-        return _Shown(obj.name, mesh, slots, (numbers, hidden), is_tiled)
+        slots = self._slots_of(materials, mesh.slot_count)
+        if slots.is_tiled and self._queue.numbers()[mesh.place] is None:
+            return None
+        self._note_missing_uvs(obj, mesh, slots)
+        hidden = visibility.hidden(obj) if visibility else ()
+        if "camera" not in hidden:
+            self._seen.append(mesh.place)
+        return _Shown(obj.name, mesh.place, slots.materials, (slots.numbers, hidden), slots.is_tiled)
 
     def _add_instance(self, instance, shown, metres):
-        matrix = instance.matrix_world
+        matrix = instance.matrix_world.copy()  # which asks Blender once
         if matrix.to_3x3().determinant() == 0:
             self._notes.add(f"Object '{shown.owner}': its scale is zero along an axis; left out.")
             return
@@ -123,40 +154,47 @@ class ObjectExport:
             self._groups.add(shown.mesh, shown.look, matrix, shown.owner)
         else:
             numbers, hidden = shown.look
-            self._scene.add_instance(shown.mesh, affine(matrix), numbers, placements, hidden)
+            mesh = self._queue.numbers()[shown.mesh]
+            self._scene.add_instance(mesh, affine(matrix), numbers, placements, hidden)
             self._owners.append(shown.owner)
 
-    def _mesh(self, obj, override):
-        """The mesh's number in the scene (None: there is nothing to see) and the materials of its slots."""
-        materials = [override] if override else all_materials(obj)
-        uv_maps = maps_of_slots(tuple(map(self._materials.uv_maps, materials)))
-        key = (obj.type, (obj.data or obj).as_pointer(), uv_maps)
+    def _mesh(self, obj, data, materials):
+        """The _Mesh of an object; None: it has no faces."""
+        if materials not in self._uv_maps:
+            self._uv_maps[materials] = maps_of_slots(tuple(map(self._materials.uv_maps, materials)))
+        uv_maps = self._uv_maps[materials]
+        key = (obj.type, (data or obj).as_pointer(), uv_maps)
         if not self._meshes.has(key, obj):
-            self._meshes[key] = self._add_mesh(obj, uv_maps)
-        number, count = self._meshes[key]
-        slots = [override] * count if override else slot_materials(obj, count)
-        if uv_maps:
-            self._note_missing_maps(obj, slots)
-        return number, slots
-
-    def _note_missing_maps(self, obj, slots):
-        for material in slots:
-            for name in sorted(self._materials.uv_maps(material).all_names):
-                if name and not has_uv_map(obj, name):
-                    self._notes.add(missing_map(obj, name, material.name))
-
-    def _add_mesh(self, obj, uv_maps):
-        arrays = object_arrays(obj, uv_maps)
-        if arrays is None:
-            return None, 0
-        number, dropped = self._scene.add_mesh(**arrays._asdict())
-        if dropped:
-            self._notes.add(
-                f"Object '{obj.name}': {dropped} triangles without area or with NaN are left out."
+            arrays = object_arrays(obj, uv_maps, self._queue.empty)
+            self._meshes[key] = arrays and _Mesh(
+                self._queue.add(arrays, obj.name), arrays.slot_count, arrays.corner_uvs is not None
             )
-        if dropped == len(arrays.triangles):
-            return None, 0
-        return number, int(np.max(arrays.material_slots)) + 1
+        return self._meshes[key]
+
+    def _slots_of(self, materials, count):
+        key = (materials, count)
+        if key not in self._slots:
+            shown = _shown_materials(materials, count)
+            self._slots[key] = _Slots(
+                shown,
+                tuple(map(self._materials.number, shown)),
+                any(map(self._materials.tile, shown)),
+                [material for material in shown if self._materials.needs_coordinates(material)],
+                [
+                    (material, sorted(self._materials.uv_maps(material).all_names - {""}))
+                    for material in shown
+                ],
+            )
+        return self._slots[key]
+
+    def _note_missing_uvs(self, obj, mesh, slots):
+        if slots.look_at_uvs and not mesh.has_uvs and not slots.is_tiled:
+            for material in slots.look_at_uvs:
+                self._notes.add(missing_coordinates(obj, material.name))
+        for material, names in slots.uv_maps:
+            for name in names:
+                if not has_uv_map(obj, name):
+                    self._notes.add(missing_map(obj, name, material.name))
 
     def _note_extras(self, obj):
         """What a renderer would add to the evaluated mesh."""
@@ -182,16 +220,19 @@ def _identity(obj):
 
 def all_materials(obj):
     """Of the slots of an object; at least one, which may be None."""
+    return _materials(obj, obj.data)
+
+
+def _materials(obj, data):
     own = [slot.material for slot in obj.material_slots]
-    of_data = list(obj.data.materials) if hasattr(obj.data, "materials") else []
+    of_data = getattr(data, "materials", ())
     # Instanced geometry of geometry nodes carries its own materials under an object with fewer slots.
-    materials = own if len(own) >= len(of_data) else own + of_data[len(own) :]
+    materials = own if len(own) >= len(of_data) else own + list(of_data)[len(own) :]
     return materials or [None]
 
 
-def slot_materials(obj, count):
-    """The materials of slots 0..count-1; a face beyond the last slot shows the last one, as in Blender."""
-    materials = all_materials(obj)
+def _shown_materials(materials, count):
+    """Of slots 0..count-1; a face beyond the last slot shows the last one, as in Blender."""
     return [materials[min(slot, len(materials) - 1)] for slot in range(count)]
 
 
@@ -199,5 +240,5 @@ def slots_of(obj, arrays, material):
     """The slots of an evaluated object's MeshArrays that show a material of the .blend."""
     if arrays is None:
         return ()
-    shown = slot_materials(obj, int(np.max(arrays.material_slots)) + 1)
+    shown = _shown_materials(all_materials(obj), arrays.slot_count)
     return tuple(slot for slot, other in enumerate(shown) if other and other.original == material.original)

@@ -140,12 +140,6 @@ class Placements:
             maps.append(texture_map((1, 1)) if uv_map is None else uv_map)
         return maps if is_placed else None
 
-    def note_missing(self, obj, key, slots):
-        """Of an object without tiles: says which materials miss the texture coordinates that they look at."""
-        for material in slots:
-            if self._materials.needs_coordinates(material):
-                self._warn(obj, material, None, self._surface(obj, slots, material, key), None)
-
     def _surface(self, obj, slots, material, mesh):
         key = (mesh, _slots_that_show(slots, material))
         if key not in self._surfaces:

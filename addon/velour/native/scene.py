@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+from collections.abc import Mapping
 from ctypes import byref, c_uint32
 
 import numpy as np
@@ -17,25 +18,12 @@ from .btf import Btf
 from .errors import refuse
 from .handle import Handle, choice, path_bytes, set_fields
 from .measurement import Measurement
+from .mesh_descs import checked_mesh, mesh_descs
 from .model import Model
 from .shader import Shader, described
 from .texture import TextureSlot
 
 _COLORS = {"color": 3, "size": 2, "window": 4, "cone_scale": 2}
-# Of Scene.add_mesh: type, what there is one for each of (corner, triangle, vertex, face), its shape.
-_MESH_ARRAYS = {
-    "corner_normals": (np.float32, "c", (3,)),
-    "corner_uvs": (np.float32, "c", (2,)),
-    "more_uvs": (np.float32, "c", (2,)),
-    "relief_uvs": (np.float32, "c", (2,)),
-    "material_slots": (np.uint32, "t", ()),
-    "smooth": (np.uint8, "t", ()),
-    "corner_vertices": (np.uint32, "any", ()),
-    "vertex_normals": (np.float32, "v", (3,)),
-    "face_normals": (np.float32, "any", (3,)),
-    "face_smooth": (np.uint8, "f", ()),
-    "triangle_faces": (np.uint32, "t", ()),
-}
 
 
 class Scene(Handle):
@@ -69,28 +57,22 @@ class Scene(Handle):
         of the others with triangle_faces (uint32 [t]) and, where there are both, face_smooth (uint8 [f]).
         Without any normals vertices are smooth. The library copies; nothing need stay alive.
         """
-        positions = checked("positions", positions, (None, 3))
-        triangles = checked("triangles", triangles, (None, 3), np.uint32)
-        given = {name: array for name, array in arrays.items() if array is not None}
-        desc = table.MeshDesc(
-            vertex_count=len(positions),
-            triangle_count=len(triangles),
-            positions=address(positions),
-            triangles=address(triangles),
-            corner_count=len(given.get("corner_vertices", ())),
-            more_uv_sets=len(given.get("more_uvs", ())),
-            face_count=len(given.get("face_normals", ())),
+        mesh = checked_mesh({"positions": positions, "triangles": triangles, **arrays})
+        numbers, dropped = self.add_meshes(mesh)
+        return int(numbers[0]), int(dropped[0])
+
+    def add_meshes(self, meshes: Mapping[str, tuple]) -> tuple[np.ndarray, np.ndarray]:
+        """Of each mesh what add_mesh returns, uint32 [n]; all or none are added.
+
+        meshes: by the names of its arguments the numbers of all meshes in turn, one array [m] of its type,
+        and how many of them are of each mesh, [n]; 0: not given.
+        """
+        descs = mesh_descs(meshes)
+        first, dropped = c_uint32(), np.zeros(len(descs), np.uint32)
+        self._lib.vlr_scene_add_meshes(
+            self.pointer, address(descs), len(descs), byref(first), address(dropped)
         )
-        corners = (desc.corner_count,) if "corner_vertices" in given else (desc.triangle_count, 3)
-        sizes = {"t": desc.triangle_count, "v": desc.vertex_count, "f": desc.face_count}
-        for name, array in given.items():
-            dtype, size, rest = _MESH_ARRAYS[name]
-            shape = corners if size == "c" else (sizes.get(size),)
-            sets = (None,) if name == "more_uvs" else ()
-            setattr(desc, name, address(checked(name, array, (*sets, *shape, *rest), dtype)))
-        mesh, dropped = c_uint32(), c_uint32()
-        self._lib.vlr_scene_add_mesh(self.pointer, byref(desc), byref(mesh), byref(dropped))
-        return mesh.value, dropped.value
+        return np.arange(first.value, first.value + len(descs), dtype=np.uint32), dropped
 
     def remove_mesh(self, mesh: int) -> None:
         """Takes what there is of one that no instance shows; its number stays, of a mesh of nothing."""

@@ -424,6 +424,7 @@ STATUS_CALLS = {
     "vlr_scene_set_working_space": [_handle, _floats],
     "vlr_scene_add_mesh": [_handle, POINTER(MeshDesc), _number, _number],
     "vlr_scene_remove_mesh": [_handle, c_uint32],
+    "vlr_scene_add_meshes": [_handle, c_void_p, c_uint64, _number, c_void_p],
     "vlr_scene_load_mesh": [_handle, c_char_p, _number],
     "vlr_scene_add_model_material": [_handle, _handle, c_uint32, _number],
     "vlr_scene_set_shell_tile": [_handle, c_uint32, c_float],

@@ -350,6 +350,10 @@ typedef struct vlr_mesh_desc {
 VLR_API vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint32_t* mesh, uint32_t* dropped);
 /* Takes what there is of a mesh that no instance shows; its number stays, of a mesh without triangles. */
 VLR_API vlr_status vlr_scene_remove_mesh(vlr_scene* scene, uint32_t mesh);
+/* Many, which are built side by side: all or none are added, numbered one after the other from *first. descs [count]
+ * are all of the struct_size of the first; dropped [count] may be NULL. */
+VLR_API vlr_status vlr_scene_add_meshes(vlr_scene* scene, const vlr_mesh_desc* descs, uint64_t count, uint32_t* first,
+                                        uint32_t* dropped);
 /* Reads a Wavefront OBJ file, or a Stanford PLY file by its extension .ply. */
 VLR_API vlr_status vlr_scene_load_mesh(vlr_scene* scene, const char* path, uint32_t* mesh);
 

@@ -12,6 +12,7 @@
 #include "material/principled_lobes.h"
 #include "material/through_material.h"
 #include "model/model_material.h"
+#include "scene/build_meshes.h"
 #include "scene/mesh_file.h"
 
 using namespace velour;
@@ -64,6 +65,22 @@ MeshArrays arrays_of(const vlr_mesh_desc& desc) {
 void initialize(vlr_mesh_desc* desc) {
   *desc = {};
   desc->struct_size = sizeof(vlr_mesh_desc);
+}
+
+/// Built side by side.
+std::vector<Mesh> meshes_of(const vlr_mesh_desc* descs, uint64_t count) {
+  std::vector<MeshArrays> arrays;
+  arrays.reserve(count);
+  if (count > 0) require(descs, "descs");
+  for (uint64_t i = 0; i < count; ++i) {
+    const auto* bytes = reinterpret_cast<const char*>(descs) + i * descs->struct_size;
+    const auto* desc = reinterpret_cast<const vlr_mesh_desc*>(bytes);
+    if (desc->struct_size != descs->struct_size) {
+      throw Error(Status::invalid_argument, "vlr_mesh_desc.struct_size is not the same of all meshes.");
+    }
+    arrays.push_back(arrays_of(read_options(desc, initialize, "vlr_mesh_desc")));
+  }
+  return build_meshes(arrays);
 }
 
 /// Lobes that draw samples for a raw measurement: speed depends on how well they fit, the picture does not, so a coarse
@@ -154,6 +171,18 @@ vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint3
     Mesh added(arrays_of(read_options(desc, initialize, "vlr_mesh_desc")));
     if (dropped) *dropped = added.dropped();
     *mesh = scene->scene->add_mesh(std::move(added));
+  });
+}
+
+vlr_status vlr_scene_add_meshes(vlr_scene* scene, const vlr_mesh_desc* descs, uint64_t count, uint32_t* first,
+                                uint32_t* dropped) {
+  return guard([&] {
+    require(scene, "scene");
+    require(first, "first");
+    std::vector<Mesh> added = meshes_of(descs, count);
+    for (uint64_t i = 0; dropped && i < count; ++i) dropped[i] = added[i].dropped();
+    *first = static_cast<uint32_t>(scene->scene->meshes().size());
+    for (Mesh& mesh : added) scene->scene->add_mesh(std::move(mesh));
   });
 }
 

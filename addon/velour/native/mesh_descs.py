@@ -1,0 +1,93 @@
+"""Meshes as the library reads them: a struct each, whose arrays lie one behind the other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from . import table
+from .arrays import address, checked
+from .errors import refuse
+
+# Of Scene.add_mesh: type, what there is one for each of (corner, triangle, vertex, face), its shape.
+MESH_ARRAYS = {
+    "positions": (np.float32, "v", (3,)),
+    "triangles": (np.uint32, "t", (3,)),
+    "corner_normals": (np.float32, "c", (3,)),
+    "corner_uvs": (np.float32, "c", (2,)),
+    "more_uvs": (np.float32, "c", (2,)),
+    "relief_uvs": (np.float32, "c", (2,)),
+    "material_slots": (np.uint32, "t", ()),
+    "smooth": (np.uint8, "t", ()),
+    "corner_vertices": (np.uint32, "k", ()),
+    "vertex_normals": (np.float32, "v", (3,)),
+    "face_normals": (np.float32, "f", (3,)),
+    "face_smooth": (np.uint8, "f", ()),
+    "triangle_faces": (np.uint32, "t", ()),
+}
+
+
+def checked_mesh(arrays: Mapping[str, np.ndarray]) -> dict[str, tuple[np.ndarray, list[int]]]:
+    """The arguments of Scene.add_meshes for one mesh, of those of Scene.add_mesh."""
+    if unknown := arrays.keys() - MESH_ARRAYS.keys():
+        raise refuse(f"a mesh has no {min(unknown)}; it has {', '.join(MESH_ARRAYS)}.")
+    corners = (None, 3) if arrays.get("corner_vertices") is None else (None,)
+    found = {}
+    for name, array in arrays.items():
+        if array is not None:
+            dtype, size, rest = MESH_ARRAYS[name]
+            lengths = corners if size == "c" else (None,)
+            sets = (None,) if name == "more_uvs" else ()
+            checked(name, array, (*sets, *lengths, *rest), dtype)
+            found[name] = (array.reshape(-1), [array.size])
+    return found
+
+
+def mesh_descs(meshes: Mapping[str, tuple]) -> np.ndarray:
+    """vlr_mesh_descs [n] of the arguments of Scene.add_meshes; those must outlive them."""
+    for name in ("positions", "triangles"):
+        if name not in meshes:
+            raise refuse(f"a mesh has no {name}.")
+    sizes = {name: np.asarray(each, np.int64) for name, (_, each) in meshes.items()}
+    descs = np.zeros(len(sizes["positions"]), table.MeshDesc)
+    counts = _counts(sizes, len(descs))
+    descs["struct_size"] = descs.itemsize
+    for name, field in _COUNT_FIELDS.items():
+        descs[field] = counts[name]
+    for name, (joined, _) in meshes.items():
+        checked(name, joined, (int(sizes[name].sum()),), MESH_ARRAYS[name][0])
+        ends = joined.itemsize * np.cumsum(sizes[name])
+        places = address(joined) + (ends - joined.itemsize * sizes[name]).astype(np.uint64)
+        must = name in ("positions", "triangles")
+        descs[name] = places if must else np.where(sizes[name] > 0, places, 0)
+    return descs
+
+
+_COUNT_FIELDS = {
+    "v": "vertex_count",
+    "t": "triangle_count",
+    "k": "corner_count",
+    "f": "face_count",
+    "sets": "more_uv_sets",
+}
+
+
+def _counts(sizes, meshes):
+    """How many of each kind there are, [n]; refuses sizes that do not agree."""
+    none = np.zeros(meshes, np.int64)
+    counts = {
+        "v": sizes["positions"] // 3,
+        "t": sizes["triangles"] // 3,
+        "k": sizes.get("corner_vertices", none),
+        "f": sizes.get("face_normals", none) // 3,
+    }
+    counts["c"] = np.where(counts["k"] > 0, counts["k"], 3 * counts["t"])
+    counts["sets"] = sizes.get("more_uvs", none) // np.maximum(2 * counts["c"], 1)
+    for name, size in sizes.items():
+        _, kind, rest = MESH_ARRAYS[name]
+        wanted = counts[kind] * int(np.prod(rest)) * (counts["sets"] if name == "more_uvs" else 1)
+        wrong = np.flatnonzero((size != wanted) & (size > 0))
+        if len(wrong):
+            raise refuse(f"{name} holds {size[wrong[0]]} numbers; {wanted[wrong[0]]} are needed.")
+    return counts
