@@ -1,5 +1,7 @@
 """What tests of scenes that give no picture, or a part of one, have in common."""
 
+import re
+
 import bpy
 import numpy as np
 
@@ -35,7 +37,8 @@ class BadInputTest(BlenderTest):
         self._said(child, "Error: ", *words)
 
     def _said(self, child, *words):
-        lines = child.stdout.splitlines()
+        # What older Blenders call "Error: ", newer ones log with the time and a category.
+        lines = [re.sub(r"^.*\| ERROR ", "Error: ", line) for line in child.stdout.splitlines()]
         self.assertTrue(any(all(word in line for word in words) for line in lines), child.stdout)
 
     def _rendered(self, *words):
