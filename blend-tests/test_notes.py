@@ -58,7 +58,7 @@ class Notes(BlenderTest):
     def _linked(self, idname, shader="ShaderNodeBsdfDiffuse", socket="Normal"):
         """A material of a shader with another node at one of its inputs; both nodes."""
         tree = self._material(shader).node_tree
-        node = next(n for n in tree.nodes if n.outputs[0].is_linked and socket in n.inputs)
+        node = next(n for n in tree.nodes if socket in n.inputs and n.outputs[0].is_linked)
         other = tree.nodes.new(idname)
         tree.links.new(other.outputs[0], node.inputs[socket])
         return node, other
