@@ -92,7 +92,7 @@ def test_runs_on_what_the_documentation_names(package):
 
 
 def test_works_alone(unpacked, tmp_path):
-    """The library finds its own Embree with nothing on the path, and renders as the one of this build."""
+    """The library finds its own Embree and OpenEXR with nothing on the path."""
     program = (
         "from velour.native import library; import json; s = library.system();"
         "print(json.dumps(s['embree'])); print(open('/proc/self/maps').read())"
