@@ -8,7 +8,11 @@ from support.blender import BlenderTest
 
 
 def _export(name):
-    return __import__(f"{inputs.ADDON}.export.{name}", fromlist=[name])
+    return _module("export", name)
+
+
+def _module(layer, name):
+    return __import__(f"{inputs.ADDON}.{layer}.{name}", fromlist=[name])
 
 
 def _blenders_normals(mesh):
@@ -107,11 +111,11 @@ class MeshQueue(BlenderTest):
         return [flat, soft, nothing, bpy.context.object.data, flat_again], grid
 
     def test_as_added_one_by_one(self):
-        native, export = __import__(f"{inputs.ADDON}.native", fromlist=["Scene"]), _export("mesh_queue")
+        native = __import__(f"{inputs.ADDON}.native", fromlist=["Scene"])
         meshes, read = self._meshes()
         notes = _export("notes").Notes()
         with native.Scene() as together, native.Scene() as single:
-            queue = export.MeshQueue(together, notes)
+            queue = _module("core", "mesh_queue").MeshQueue(together, notes)
             places = [queue.add(read(mesh, (), queue.empty), mesh.name) for mesh in meshes]
             for mesh in meshes:
                 single.add_mesh(**read(mesh)._asdict())

@@ -1,6 +1,6 @@
 """The meshes of an export that goes on: what has not changed is not looked at again."""
 
-from .mesh_queue import MeshQueue
+from ..core.mesh_queue import MeshQueue
 
 
 class KeptMeshes(dict):

@@ -2,56 +2,14 @@
 
 import contextlib
 import math
-from typing import NamedTuple
 
 import bpy
 import numpy as np
 
+from ..core.mesh_arrays import MeshArrays
+
 # To ask each mesh for what it has not is slow.
 _HAS_DOMAINS = "normals_domain" in bpy.types.Mesh.bl_rna.properties  # 4.1 and newer
-
-
-class MeshArrays(NamedTuple):
-    """The keywords of Scene.add_mesh; triangles name corners."""
-
-    positions: np.ndarray
-    triangles: np.ndarray
-    corner_vertices: np.ndarray
-    material_slots: np.ndarray
-    corner_uvs: np.ndarray | None = None
-    more_uvs: np.ndarray | None = None
-    relief_uvs: np.ndarray | None = None
-    corner_normals: np.ndarray | None = None
-    vertex_normals: np.ndarray | None = None
-    face_normals: np.ndarray | None = None
-    face_smooth: np.ndarray | None = None
-    triangle_faces: np.ndarray | None = None
-
-    @property
-    def slot_count(self):
-        """Up to the last that a triangle is of."""
-        return 1 + int(self.material_slots.max()) if self.material_slots.any() else 1
-
-    def vertices(self, triangles):
-        """[n x 3] Of some of the triangles."""
-        return self.corner_vertices[self.triangles[triangles]]
-
-    def uvs(self, triangles):
-        """[n x 3 x 2]"""
-        return self.corner_uvs[self.triangles[triangles]]
-
-    def normals(self, triangles):
-        """[n x 3 x 3]"""
-        if self.corner_normals is not None:
-            return self.corner_normals[self.triangles[triangles]]
-        if self.face_normals is None:
-            return self.vertex_normals[self.vertices(triangles)]
-        faces = self.triangle_faces[triangles]
-        normals = np.repeat(self.face_normals[faces, None], 3, axis=1)
-        if self.face_smooth is not None:
-            smooth = self.face_smooth[faces] != 0
-            normals[smooth] = self.vertex_normals[self.vertices(triangles)[smooth]]
-        return normals
 
 
 def _own(_name, count, dtype):

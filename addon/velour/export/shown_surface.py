@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ..core.mesh_arrays import MeshArrays
 from ..core.placement import Surface
-from .meshes import MeshArrays, object_arrays
+from .meshes import object_arrays
 from .objects import all_materials, slots_of
 from .placement import Metrics, surface_of
 from .units import metres_per_unit

@@ -1,36 +1,43 @@
 """Meshes on their way to the library's scene: small ones are handed on together."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..native.mesh_descs import MESH_ARRAYS
-from .meshes import MeshArrays
+from .mesh_arrays import MeshArrays
 
 _ROOM = 1 << 18  # numbers in a pool
 
 
 class _Pool:
-    """Memory for one array each of many meshes, in turn."""
+    """Memory for one array each of many meshes, one behind the other without a gap."""
 
     def __init__(self, dtype):
-        self.memory = np.empty(_ROOM, dtype)
-        self.used = 0
+        self._memory = np.empty(_ROOM, dtype)
+        self._held = 0
+        self._lent_at = 0
 
-    def take(self, count):
-        """None: there is no room."""
-        begin, end = self.used, self.used + count
+    def lend(self, count):
+        """Memory behind what is held, until another asks or hold() makes it last; None: there is no room."""
+        self._lent_at = self._held
+        end = self._held + count
+        return self._memory[self._held : end] if end <= _ROOM else None
+
+    def hold(self, array):
+        """Puts it there, if it was not read into what was lent last; False: there is no room."""
+        end = self._held + array.size
         if end > _ROOM:
-            return None
-        self.used = end
-        return self.memory[begin:end]
+            return False
+        if array.base is not self._memory or self._lent_at != self._held:
+            self._memory[self._held : end] = array.reshape(-1)
+        self._held = end
+        return True
 
-    def holds(self, array):
-        """Puts it there, if it is not; False: there is no room."""
-        if array.base is self.memory:
-            return True
-        room = self.take(array.size)
-        if room is not None:
-            room[:] = array.reshape(-1)
-        return room is not None
+    def take_all(self):
+        """What is held, which stays until another array is read."""
+        held, self._held = self._memory[: self._held], 0
+        return held
 
 
 class MeshQueue:
@@ -43,15 +50,18 @@ class MeshQueue:
         self._numbers = []  # in the scene, of all before; None: there is nothing to see
 
     def empty(self, name, count, dtype):
-        """[count] Memory for the field `name` of the MeshArrays that are added next."""
-        memory = self._pools[name].take(count)
+        """[count] Memory for the field `name` of the MeshArrays that are added next.
+
+        What is not added leaves nothing behind: the next mesh is given the same memory.
+        """
+        memory = self._pools[name].lend(count)
         return np.empty(count, dtype) if memory is None else memory
 
     def add(self, arrays, owner):
         """Its place; `owner`: the name of an object that shows it."""
         place = len(self._numbers) + len(self._owners)
         pools = self._pools.values()
-        if all(array is None or pool.holds(array) for pool, array in zip(pools, arrays, strict=True)):
+        if all(array is None or pool.hold(array) for pool, array in zip(pools, arrays, strict=True)):
             self._owners.append(owner)
             self._sizes.append([0 if array is None else array.size for array in arrays])
         else:
@@ -66,16 +76,15 @@ class MeshQueue:
         return self._numbers
 
     def _hand_on(self):
+        held = [pool.take_all() for pool in self._pools.values()]
         if self._owners:
             sizes = np.array(self._sizes).T
-            found = zip(self._pools.items(), sizes, strict=True)
-            meshes = {name: (pool.memory[: each.sum()], each) for (name, pool), each in found if each.any()}
+            found = zip(self._pools, held, sizes, strict=True)
+            meshes = {name: (memory[: each.sum()], each) for name, memory, each in found if each.any()}
             triangles = meshes["triangles"][1] // 3
             handed_on = zip(*self._scene.add_meshes(meshes), triangles, self._owners, strict=True)
             self._numbers += [self._seen(*each) for each in handed_on]
         self._owners, self._sizes = [], []
-        for pool in self._pools.values():
-            pool.used = 0
 
     def _seen(self, number, dropped, triangles, owner):
         """The number of a mesh; None where nothing of it is left."""
