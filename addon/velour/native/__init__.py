@@ -17,6 +17,7 @@ from .job import (
 from .measurement import Measurement
 from .model import Model
 from .observation import Observation
+from .plot import Plot
 from .progressive import Picture, ProgressiveJob
 from .scene import Scene
 from .shader import Shader
@@ -32,6 +33,7 @@ __all__ = [
     "Model",
     "Observation",
     "Picture",
+    "Plot",
     "ProgressiveJob",
     "Scene",
     "Shader",

@@ -29,6 +29,7 @@ COMPANDINGS = ("none", "root")  # by number
 BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
 BTF_COLORS = ("rec709", "xyz")
 PEERS = ("ggx", "principled")
+PLOTS = ("lobes", "order", "view-error", "albedo")
 LIGHTS = ("sun", "point", "rectangle", "disk", "spot")
 HIDDEN = {"camera": 1, "bounces": 2, "shadows": 4, "holdout": 8}  # VLR_HIDDEN_FROM_*, VLR_HOLDOUT
 CAMERAS = ("perspective", "orthographic")
@@ -330,6 +331,21 @@ class RenderOptions(Struct):
     ]
 
 
+class PlotStyle(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("side", c_uint32),
+        ("text", c_float),
+        ("background", c_float * 3),
+        ("foreground", c_float * 3),
+        ("model", c_float * 3),
+        ("measured", c_float * 3),
+        ("red", c_float * 3),
+        ("green", c_float * 3),
+        ("blue", c_float * 3),
+    ]
+
+
 class ProgressivePicture(Struct):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -372,6 +388,7 @@ STRUCTS = {
     "vlr_render_options": RenderOptions,
     "vlr_progressive_picture": ProgressivePicture,
     "vlr_observe_options": ObserveOptions,
+    "vlr_plot_style": PlotStyle,
 }
 
 _handle = c_void_p
@@ -486,6 +503,10 @@ STATUS_CALLS = {
     "vlr_observation_info_json": [_handle, _json],
     "vlr_observe_create_job": [_handle, c_uint32, POINTER(ObserveOptions), _out_handle],
     "vlr_job_result_observation": [_handle, _out_handle],
+    "vlr_plot_create": [_handle, _handle, c_int32, c_double, c_double, _out_handle],
+    "vlr_plot_json": [_handle, _json],
+    "vlr_plot_draw": [_handle, POINTER(PlotStyle), _floats, c_uint64],
+    "vlr_plot_save": [_handle, POINTER(PlotStyle), c_char_p],
     "vlr_image_write": [c_char_p, c_uint32, c_uint32, c_uint32, _floats],
     "vlr_image_read": [c_char_p, _number, _number, _number, _floats, c_uint64],
     "vlr_image_compare": [c_uint64, c_uint32, _floats, _floats, POINTER(c_double), POINTER(c_double)],
@@ -505,6 +526,7 @@ PLAIN_CALLS = {
     "vlr_texture_free": (None, [_handle]),
     "vlr_observation_free": (None, [_handle]),
     "vlr_tile_free": (None, [_handle]),
+    "vlr_plot_free": (None, [_handle]),
     "vlr_btf_options_init": (None, [POINTER(BtfOptions)]),
     "vlr_compress_options_init": (None, [POINTER(CompressOptions)]),
     "vlr_fit_options_init": (None, [POINTER(FitOptions)]),
@@ -521,6 +543,7 @@ PLAIN_CALLS = {
     "vlr_camera_desc_init": (None, [POINTER(CameraDesc)]),
     "vlr_render_options_init": (None, [POINTER(RenderOptions)]),
     "vlr_observe_options_init": (None, [POINTER(ObserveOptions)]),
+    "vlr_plot_style_init": (None, [POINTER(PlotStyle)]),
 }
 
 

@@ -56,6 +56,7 @@ typedef struct vlr_texture vlr_texture;         /* a picture that stands for a n
 typedef struct vlr_shader vlr_shader;           /* what a material is mixed and added of, being made */
 typedef struct vlr_observation vlr_observation; /* what scenes show of one material */
 typedef struct vlr_tile vlr_tile;               /* procedural mesostructure */
+typedef struct vlr_plot vlr_plot;               /* what is known of a model, as numbers and as a picture */
 typedef struct vlr_job vlr_job;
 
 /* ---- library ------------------------------------------------------------------------------------------------- */
@@ -774,6 +775,43 @@ VLR_API vlr_status vlr_observe_create_job(const vlr_scene* scene, uint32_t mater
 VLR_API vlr_status vlr_model_out_of_domain(const vlr_model* model, const vlr_observation* frame, double* share);
 /* The observation of a finished job; a new handle. */
 VLR_API vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observation** out);
+
+/* ---- plots of models ----------------------------------------------------------------------------------------- */
+
+enum {
+  VLR_PLOT_LOBES = 0,      /* luminance of f cos(theta_l) in the plane of incidence of one view, polar: the model, each
+                            * of its lobes, and what was measured */
+  VLR_PLOT_ORDER = 1,      /* error against lobes (BTFs: against bytes) with the point that was chosen */
+  VLR_PLOT_VIEW_ERROR = 2, /* relative L2 at 5, 30, 60, 75 and 85 degrees, and the tolerance */
+  VLR_PLOT_ALBEDO = 3      /* directional albedo of each channel against the view angle: the model, what was measured */
+};
+/* The numbers of a plot (VLR_PLOT_*). `measurement` adds those that only it has; NULL: none. `view` is the polar angle
+ * of the view of VLR_PLOT_LOBES, 0 to below pi/2; `azimuth` its azimuth, and that of the views of VLR_PLOT_ALBEDO.
+ * VLR_UNSUPPORTED with the reason where the model has no such plot: BTFs have VLR_PLOT_ORDER alone. */
+VLR_API vlr_status vlr_plot_create(const vlr_model* model, const vlr_measurement* measurement, int32_t kind,
+                                   double view, double azimuth, vlr_plot** out);
+VLR_API void vlr_plot_free(vlr_plot* plot);
+/* JSON: plot ("lobes", "order", "view-error", "albedo"), polar, x and y {column, label, logarithmic, range [low,
+ * high]}, series [{name, x [..], y [..], chosen (the number of a point, or null)}]. Angles in degrees, f in 1/sr. */
+VLR_API vlr_status vlr_plot_json(vlr_plot* plot, const char** json);
+
+typedef struct vlr_plot_style {
+  uint32_t struct_size;
+  uint32_t side; /* pixels, 64..8192; 800 */
+  float text;    /* em of the text, pixels, at most a sixteenth of the side; 0: by the side */
+  /* sRGB as displays take it, 0..1. What would not be read on the background is moved towards the text. */
+  float background[3];
+  float foreground[3]; /* text and axes */
+  float model[3];
+  float measured[3]; /* and the chosen point */
+  float red[3], green[3], blue[3];
+} vlr_plot_style;
+/* For white paper. */
+VLR_API void vlr_plot_style_init(vlr_plot_style* style);
+/* RGBA of side x side, row 0 at the bottom: sRGB, 0..1, opaque. `count` is 4 side^2. */
+VLR_API vlr_status vlr_plot_draw(const vlr_plot* plot, const vlr_plot_style* style, float* rgba, uint64_t count);
+/* By extension, atomically: .png and .svg are the same picture, .csv has the numbers (series, x, y, chosen). */
+VLR_API vlr_status vlr_plot_save(const vlr_plot* plot, const vlr_plot_style* style, const char* path);
 
 /* ---- images -------------------------------------------------------------------------------------------------- */
 

@@ -13,6 +13,7 @@
 #include "job/job.h"
 #include "material/shader_layers.h"
 #include "model/model.h"
+#include "plot/plot.h"
 #include "render/film.h"
 #include "render/progressive.h"
 #include "scene/scene.h"
@@ -57,6 +58,11 @@ struct vlr_shader {
 struct vlr_observation {
   std::shared_ptr<const velour::SceneObservation> observation;
   std::string info;
+};
+
+struct vlr_plot {
+  velour::Plot plot;
+  std::string json;
 };
 
 struct vlr_tile {

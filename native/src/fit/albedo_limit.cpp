@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "brdf/parametric_limits.h"
-#include "fit/fit_report.h"
+#include "fit/directional_albedo.h"
 #include "fit/view_grid.h"
 #include "job/parallel.h"
 #include "material/parametric_material.h"

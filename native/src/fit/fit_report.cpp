@@ -6,10 +6,10 @@
 
 #include "brdf/held_out.h"
 #include "fit/compare.h"
+#include "fit/directional_albedo.h"
 #include "fit/evaluate.h"
 #include "fit/measurement_warnings.h"
 #include "fit/reciprocity.h"
-#include "fit/view_grid.h"
 
 namespace velour {
 namespace {
@@ -60,23 +60,10 @@ void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOption
                      " with relative L2 " + number(worst->relative_l2));
 }
 
-/// Directional albedo of the covered light directions.
-double measured_albedo(const Measurement& measurement, const Vec3& wv) {
-  const LightGrid grid = light_grid(wv);
-  std::vector<Rgb> f(grid.wl.size());
-  std::vector<uint8_t> valid(grid.wl.size());
-  measurement.eval(wv, grid.wl, f, valid);
-  Vec3d albedo(0);
-  for (size_t i = 0; i < f.size(); ++i) {
-    if (valid[i]) albedo += Vec3d(f[i]) * static_cast<double>(grid.weight[i] * grid.wl[i].z);
-  }
-  return largest(albedo);
-}
-
 void warn_of_albedo(const Measurement& measurement, const Vec3& wv, FitRecord& record) {
   const std::string where =
       "albedo " + number(record.albedo_max) + " at view " + view_name(wv, measurement.isotropic()) + " degrees: ";
-  const double measured = measured_albedo(measurement, wv);
+  const double measured = largest(directional_albedo(measurement, wv).albedo);  // of what it covers
   if (measured > kWrongScale) {
     record.warnings.push_back(where +
                               "the measurement reflects more light there than arrives, far more than errors "
@@ -126,15 +113,6 @@ void forget_errors_outside(const ViewRange& views, const std::vector<FittedView>
 
 double tolerance_at(double tolerance, double theta_v) {
   return theta_v <= radians_from(75.0) + 1e-6 ? tolerance : 2 * tolerance;
-}
-
-Vec3d directional_albedo(const Material& material, const Vec3& wv) {
-  const LightGrid grid = light_grid(wv);
-  std::vector<Rgb> f(grid.wl.size());
-  evaluate(material, wv, grid.wl, f);
-  Vec3d albedo(0);
-  for (size_t i = 0; i < f.size(); ++i) albedo += Vec3d(f[i]) * static_cast<double>(grid.weight[i] * grid.wl[i].z);
-  return albedo;
 }
 
 FitRecord report_fit(const Measurement& measurement, const Material& material, const FitOptions& options,

@@ -20,9 +20,6 @@ struct FittedView {
 /// The tolerance that holds at polar angle `theta_v` (radians): twice as much beyond 75 degrees.
 double tolerance_at(double tolerance, double theta_v);
 
-/// Directional albedo, the integral of f cos over the lights, of each channel.
-Vec3d directional_albedo(const Material& material, const Vec3& wv);
-
 /// Errors by compare(), albedos, and a sentence for each thing a user should know. `fitted` are the views of the model,
 /// `views` the range that it is for: errors elsewhere are nobody's, and those of a part of the views are no promise of
 /// a tolerance.

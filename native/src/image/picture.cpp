@@ -8,6 +8,7 @@
 
 #include "file/file.h"
 #include "image/open_picture.h"
+#include "image/srgb.h"
 #include "job/error.h"
 
 namespace velour {
@@ -16,10 +17,6 @@ namespace {
 constexpr uint64_t kMaxValues = uint64_t{1} << 30;
 constexpr int kMaxChannels = 64;
 constexpr std::array<uint8_t, 4> kExrMagic{0x76, 0x2f, 0x31, 0x01};
-
-/// IEC 61966-2-1.
-float linear_from_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
-float srgb_from_linear(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f; }
 
 /// Nearest 8-bit code; not a number and negative values give 0.
 uint8_t srgb_byte(float linear) {

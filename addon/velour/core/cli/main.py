@@ -9,12 +9,13 @@ import sys
 from ...native import library
 from ...native.errors import VelourError
 from ...native.version import version_text
-from . import capture, compare, compress, export, fit, info, later, observe, output, render, tile, votf
+from . import capture, compare, compress, export, fit, info, later, observe, output, plot, render, tile, votf
 
 _VERBS = {
     "info": (info, "what a measurement, BTF, model or observation holds"),
     "fit": (fit, "fit a model to a measurement"),
     "compare": (compare, "error of a model against a measurement or BTF"),
+    "plot": (plot, "draw what a model is made of, its error or its albedo"),
     "render": (render, "render a mesh with a measured material under a world"),
     "observe": (observe, "learn under which views and lights a scene shows its material"),
     "capture": (capture, "make a measurement of a modelled surface"),

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "fit/fit_report.h"
+#include "fit/directional_albedo.h"
 #include "fit/parametric_fit.h"
 #include "material/parametric_material.h"
 #include "support/analytic_measurement.h"

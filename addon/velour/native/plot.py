@@ -1,0 +1,68 @@
+"""Plots of models."""
+
+from __future__ import annotations
+
+import math
+import os
+from ctypes import byref
+
+import numpy as np
+
+from . import library, table
+from .arrays import pointer, small
+from .handle import Handle, choice, path_bytes
+from .measurement import Measurement
+from .model import Model
+
+_COLORS = ("background", "foreground", "model", "measured", "red", "green", "blue")
+
+
+class Plot(Handle):
+    """The numbers of one plot of a model, immutable; drawn at any size and in any colours.
+
+    Styles: side (pixels), text (em, pixels), and the sRGB colours background, foreground, model, measured,
+    red, green, blue, each three numbers from 0 to 1. What is not said is the library's own.
+    """
+
+    _free_name = "vlr_plot_free"
+
+    @classmethod
+    def of(
+        cls,
+        model: Model,
+        kind: str,
+        measurement: Measurement | None = None,
+        view: float = math.radians(30),
+        azimuth: float = 0.0,
+    ) -> Plot:
+        """`kind`: lobes, order, view-error, albedo. Angles in radians. VelourError: there is no such plot."""
+        number = choice("kind", kind, table.PLOTS)
+        measured = None if measurement is None else measurement.pointer
+        return cls._create("vlr_plot_create", model.pointer, measured, number, view, azimuth)
+
+    def data(self) -> dict:
+        """plot, polar, x and y {column, label, logarithmic, range}, series [{name, x, y, chosen}]."""
+        return library.json_of(self._lib.vlr_plot_json, self.pointer)
+
+    def draw(self, **style) -> np.ndarray:
+        """RGBA [side x side x 4] float32, row 0 at the bottom, sRGB from 0 to 1, opaque."""
+        chosen = _style(style)
+        pixels = np.empty((chosen.side, chosen.side, 4), np.float32)
+        self._lib.vlr_plot_draw(self.pointer, byref(chosen), pointer(pixels), pixels.size)
+        return pixels
+
+    def save(self, path: str | os.PathLike, **style) -> None:
+        """By extension: .png, .svg, .csv. Atomic."""
+        self._lib.vlr_plot_save(self.pointer, byref(_style(style)), path_bytes(path))
+
+
+def _style(values: dict) -> table.PlotStyle:
+    style = table.PlotStyle()
+    library.load().vlr_plot_style_init(byref(style))
+    for name, value in values.items():
+        if name in _COLORS:
+            value = small(name, value, 3)
+        elif name not in ("side", "text"):
+            raise TypeError(f"a plot has no style {name!r}; it has side, text, {', '.join(_COLORS)}")
+        setattr(style, name, value)
+    return style

@@ -1,0 +1,14 @@
+// The two ways in which a plot fills its square. For plot_layout.cpp alone.
+#pragma once
+
+#include "plot/pen.h"
+
+namespace velour {
+
+/// x to the right, y upwards.
+void lay_out_cartesian(const Plot& plot, Pen& pen);
+
+/// The upper half of a disc, the surface's normal upwards; the radius is y.
+void lay_out_polar(const Plot& plot, Pen& pen);
+
+}  // namespace velour

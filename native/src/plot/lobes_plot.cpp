@@ -1,0 +1,162 @@
+#include "plot/lobes_plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "fit/evaluate.h"
+#include "plot/axes.h"
+#include "plot/measured_points.h"
+
+namespace velour {
+namespace {
+
+constexpr double kStep = 0.2;  // degrees
+// About the mirror direction and back to the viewer steps grow from this, so that the finest highlight has points.
+constexpr double kFinest = 0.002, kGrowth = 1.3;
+// A peak of this many means hides the rest on a linear radius.
+constexpr double kPeakyness = 8;
+constexpr double kFewestDecades = 2, kMostDecades = 4;
+
+/// Signed degrees, sorted.
+std::vector<double> plotted_angles(double view_degrees) {
+  std::vector<double> angles;
+  const int steps = static_cast<int>(std::lround(180 / kStep));
+  for (int k = 1; k < steps; ++k) angles.push_back(-90 + 180.0 * k / steps);
+  for (const double peak : {view_degrees, -view_degrees}) {
+    angles.push_back(peak);
+    for (double away = kFinest; away < 2; away *= kGrowth) {
+      angles.push_back(peak - away);
+      angles.push_back(peak + away);
+    }
+  }
+  std::erase_if(angles, [](double a) { return std::abs(a) >= 90; });
+  std::ranges::sort(angles);
+  return angles;
+}
+
+double luminance_of(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+
+struct NamedLobe {
+  std::string name;
+  std::function<double(const Vec3d& wl)> f_cos;
+};
+
+/// As the material mixes them for the view, neighbouring views' lobes with their weights.
+std::vector<NamedLobe> lobes_of(const ScatteredBrdf& /*brdf*/, const Material& material, const Vec3& wv) {
+  const auto point = std::make_shared<PreparedBrdf>();
+  material.prepare(wv, *point);
+  const LobeMixture& m = point->lobes;
+  std::vector<NamedLobe> lobes;
+  for (int j = 0; j < m.count; ++j) {
+    lobes.push_back({"lobe " + std::to_string(j + 1), [point, j](const Vec3d& wl) {
+                       const LobeMixture& mixture = point->lobes;
+                       const Vec3d center(mixture.x[j], mixture.y[j], mixture.z[j]);
+                       return luminance(Rgb(mixture.r[j], mixture.g[j], mixture.b[j])) *
+                              kernel_value(mixture.kernel, mixture.bandwidth[j], one_minus_dot(wl, center));
+                     }});
+  }
+  if (const Rgb diffuse(m.diffuse_r, m.diffuse_g, m.diffuse_b); luminance(diffuse) > 0) {
+    lobes.push_back({"cosine", [diffuse](const Vec3d& wl) { return luminance(diffuse) * std::max(wl.z, 0.0); }});
+  }
+  return lobes;
+}
+
+double f_of(const WarpedLobe& lobe, const Vec3d& wl, const Vec3d& wv) {
+  return luminance_of(lobe.coefficient) * warped_kernel(lobe, wl, wv);
+}
+
+std::vector<NamedLobe> lobes_of(const ParametricBrdf& brdf, const Material& /*material*/, const Vec3& view) {
+  const Vec3d wv(view);
+  const auto lobes_here = std::make_shared<std::vector<WarpedLobe>>(lobes_at(brdf, wv));
+  std::vector<NamedLobe> lobes;
+  for (size_t j = 0; j < lobes_here->size(); ++j) {
+    lobes.push_back({"lobe " + std::to_string(j + 1), [&brdf, lobes_here, wv, j](const Vec3d& wl) {
+                       const double f = f_of((*lobes_here)[j], wl, wv);
+                       if (!brdf.symmetric) return f * wl.z;
+                       return 0.5 * (f + f_of(lobes_at(brdf, wl)[j], wv, wl)) * wl.z;
+                     }});
+  }
+  return lobes;
+}
+
+template <typename Body>
+std::vector<NamedLobe> lobes_of(const Body& /*a BTF's*/, const Material& /*material*/, const Vec3& /*wv*/) {
+  return {};
+}
+
+std::vector<PlotPoint> model_points(const Material& material, const Vec3& wv, const PlotView& view,
+                                    const std::vector<double>& angles) {
+  std::vector<Vec3> wl;
+  for (const double angle : angles) wl.push_back(light_in_plane(angle, view.phi));
+  std::vector<Rgb> f(wl.size());
+  evaluate(material, wv, wl, f);
+  std::vector<PlotPoint> points;
+  for (size_t i = 0; i < wl.size(); ++i) points.push_back({angles[i], static_cast<double>(luminance(f[i]) * wl[i].z)});
+  return points;
+}
+
+void set_radius(const PlotSeries& model, const std::vector<PlotPoint>& measured, PlotAxis& axis) {
+  double largest = 0, sum = 0, least = 0;
+  for (const PlotPoint& p : model.points) largest = std::max(largest, p.y);
+  // At even angles, as the peaks have points of their own.
+  const size_t count = model.points.size();
+  for (size_t i = 1; i < count; ++i) {
+    sum += 0.5 * (model.points[i - 1].y + model.points[i].y) * (model.points[i].x - model.points[i - 1].x);
+  }
+  for (const PlotPoint& p : measured) largest = std::max(largest, p.y);
+  if (!(largest > 0)) return set_linear_range(axis, 1);
+  const double mean = sum / 180;
+  if (largest <= kPeakyness * mean) return set_linear_range(axis, largest);
+  std::vector<double> values;
+  for (const PlotPoint& p : model.points) {
+    if (p.y > 0 && std::abs(p.x) < 80) values.push_back(p.y);
+  }
+  std::ranges::sort(values);
+  least = values.empty() ? largest : values[values.size() / 20];
+  const double high = std::ceil(std::log10(largest) - 1e-9);
+  const double low = std::clamp(std::floor(std::log10(least)), high - kMostDecades, high - kFewestDecades);
+  axis.logarithmic = true;
+  axis.low = std::pow(10.0, low);
+  axis.high = std::pow(10.0, high);
+}
+
+void add_lobes(const Model& model, const Material& material, const Vec3& wv, const PlotView& view,
+               const std::vector<double>& angles, Plot& plot) {
+  const auto lobes = std::visit([&](const auto& body) { return lobes_of(body, material, wv); }, model.body);
+  for (const NamedLobe& lobe : lobes) {
+    PlotSeries series{lobe.name, PlotRole::lobe, PlotMark::line, {}};
+    for (const double angle : angles) {
+      series.points.push_back({angle, lobe.f_cos(Vec3d(light_in_plane(angle, view.phi)))});
+    }
+    plot.series.push_back(std::move(series));
+  }
+  if (!lobes.empty()) plot.legend.push_back({"its lobes", PlotRole::lobe, PlotMark::line});
+}
+
+}  // namespace
+
+Plot lobes_plot(const Model& model, const Material& material, const Measurement* measurement, const PlotView& view) {
+  const Vec3 wv = direction(static_cast<float>(view.theta), static_cast<float>(view.phi));
+  const double degrees = view.theta * 180 / kPiD;
+  const std::vector<double> angles = plotted_angles(degrees);
+  Plot plot{.kind = "lobes", .polar = true};
+  plot.x = {"theta_l_degrees", "light angle, degrees", false, -90, 90};
+  plot.y = {"f_cos_per_sr", "f cos \u03b8, 1/sr"};
+  PlotSeries total{"model", PlotRole::model, PlotMark::line, model_points(material, wv, view, angles)};
+  plot.legend.push_back({"model", PlotRole::model, PlotMark::line});
+  add_lobes(model, material, wv, view, angles, plot);
+  PlotSeries measured{"measured", PlotRole::measured, PlotMark::dots, {}};
+  if (measurement) measured.points = measured_points(*measurement, view);
+  set_radius(total, measured.points, plot.y);
+  plot.series.push_back(std::move(total));
+  if (!measured.points.empty()) {
+    plot.legend.push_back({"measured", PlotRole::measured, PlotMark::dots});
+    plot.series.push_back(std::move(measured));
+  }
+  plot.series.push_back({"view", PlotRole::text, PlotMark::dashes, {{-degrees, plot.y.low}, {-degrees, plot.y.high}}});
+  plot.legend.push_back({"view, " + tick_text(degrees) + "\u00b0", PlotRole::text, PlotMark::dashes});
+  return plot;
+}
+
+}  // namespace velour

@@ -1,0 +1,38 @@
+#include "plot/model_plots.h"
+
+#include "job/error.h"
+#include "model/model_material.h"
+#include "plot/albedo_plot.h"
+#include "plot/fit_plots.h"
+#include "plot/lobes_plot.h"
+
+namespace velour {
+namespace {
+
+void require_brdf(const Model& model, PlotKind kind) {
+  if (!is_btf(model)) return;
+  throw Error(Status::unsupported, "The model of a BTF has no plot '" +
+                                       std::string(kPlotNames[static_cast<size_t>(kind)]) +
+                                       "', which is of one BRDF; it has 'order'.");
+}
+
+void check_view(const PlotView& view) {
+  if (view.theta >= 0 && view.theta < kPiD / 2 && std::isfinite(view.phi)) return;
+  throw Error(Status::invalid_argument, "The view of a plot lies " + std::to_string(view.theta * 180 / kPiD) +
+                                            " degrees from the normal; 0 to below 90 is meant.");
+}
+
+}  // namespace
+
+Plot make_plot(PlotKind kind, const std::shared_ptr<const Model>& model, const Measurement* measurement,
+               const PlotView& view) {
+  if (kind == PlotKind::order) return order_plot(*model);
+  require_brdf(*model, kind);
+  if (kind == PlotKind::view_error) return view_error_plot(model->fit);
+  check_view(view);
+  const auto material = make_material(model, 0);
+  if (kind == PlotKind::lobes) return lobes_plot(*model, *material, measurement, view);
+  return albedo_plot(*material, measurement, view.phi);
+}
+
+}  // namespace velour

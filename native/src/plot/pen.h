@@ -1,0 +1,45 @@
+// Draws the parts that all plots share, in the plot's colours and in widths that go with its text.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plot/drawing.h"
+#include "plot/plot.h"
+#include "plot/plot_layout.h"
+
+namespace velour {
+
+class Pen {
+ public:
+  explicit Pen(const PlotStyle& style);
+
+  float side() const { return static_cast<float>(drawing_.side); }
+  float em() const { return em_; }
+  float line_height() const { return 1.35f * em_; }
+  float margin() const { return 0.6f * em_; }  // of the square
+  float width_of(const std::string& text) const;
+
+  void text(const std::string& text, const Vec2& baseline, float align);
+  void grid_line(const std::vector<Vec2>& points);
+  void series(PlotRole role, PlotMark mark, const std::vector<Vec2>& points,
+              std::optional<size_t> chosen = std::nullopt);
+
+  /// Of `plot`, in lines of at most `width`.
+  float legend_height(const Plot& plot, float width) const;
+  void legend(const Plot& plot, const Vec2& upper_left, float width);
+
+  Drawing take() { return std::move(drawing_); }
+
+ private:
+  std::vector<Vec2> legend_places(const Plot& plot, float width) const;
+  void dots(const std::vector<Vec2>& points, float radius, const Rgb& color);
+  float line_width(PlotRole role) const;
+
+  PlotColors colors_;
+  float em_;
+  Drawing drawing_;
+};
+
+}  // namespace velour

@@ -1,0 +1,118 @@
+#include "plot/raster.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plot/font.h"
+
+namespace velour {
+namespace {
+
+/// Pixels [x0, x1) x [y0, y1), y down.
+struct Box {
+  int x0, y0, x1, y1;
+};
+
+class Raster {
+ public:
+  explicit Raster(const Drawing& drawing)
+      : side_(drawing.side), pixels_(static_cast<size_t>(side_) * static_cast<size_t>(side_), drawing.background) {}
+
+  void add(const Stroke& stroke) {
+    if (stroke.points.empty()) return;
+    // Coverage first: where segments of one stroke meet, it is not drawn twice.
+    const float reach = 0.5f * stroke.width + 0.5f;
+    const Box box = box_of(stroke.points, reach);
+    if (box.x0 >= box.x1 || box.y0 >= box.y1) return;
+    const auto width = static_cast<size_t>(box.x1 - box.x0);
+    std::vector<float> cover(width * static_cast<size_t>(box.y1 - box.y0));
+    for (size_t i = 0; i < stroke.points.size(); ++i) {
+      const Vec2 a = stroke.points[i], b = stroke.points[std::min(i + 1, stroke.points.size() - 1)];
+      cover_segment(a, b, reach, box, cover);
+    }
+    // What is thinner than a pixel covers no more of it than its width.
+    const float most = std::min(stroke.width, 1.0f);
+    for (int y = box.y0; y < box.y1; ++y) {
+      for (int x = box.x0; x < box.x1; ++x) {
+        const float c = cover[static_cast<size_t>(y - box.y0) * width + static_cast<size_t>(x - box.x0)];
+        if (c > 0) blend(x, y, std::min(c, 1.0f) * most, stroke.color);
+      }
+    }
+  }
+
+  void add(const Dot& dot) { add(Stroke{{dot.center}, 2 * dot.radius, dot.color}); }
+
+  void add(const Label& label) {
+    const float start = label.baseline.x - label.align * text_width(label.text, label.size);
+    const float whole = std::floor(start);
+    const TextPixels text = text_pixels(label.text, label.size, start - whole);
+    // Whole rows keep stems sharp.
+    const int left = static_cast<int>(whole) + text.left;
+    const int top = static_cast<int>(std::lround(label.baseline.y)) + text.top;
+    for (int y = 0; y < text.height; ++y) {
+      for (int x = 0; x < text.width; ++x) {
+        const uint8_t c = text.coverage[static_cast<size_t>(y * text.width + x)];
+        const bool inside = left + x >= 0 && left + x < side_ && top + y >= 0 && top + y < side_;
+        if (c > 0 && inside) blend(left + x, top + y, static_cast<float>(c) / 255, label.color);
+      }
+    }
+  }
+
+  std::vector<float> rgba() const {
+    std::vector<float> out;
+    out.reserve(4 * pixels_.size());
+    for (int y = side_ - 1; y >= 0; --y) {
+      for (int x = 0; x < side_; ++x) {
+        const Rgb& c = pixels_[index(x, y)];
+        out.insert(out.end(), {c.r, c.g, c.b, 1.0f});
+      }
+    }
+    return out;
+  }
+
+ private:
+  size_t index(int x, int y) const {
+    return static_cast<size_t>(y) * static_cast<size_t>(side_) + static_cast<size_t>(x);
+  }
+
+  void blend(int x, int y, float cover, const Rgb& color) {
+    Rgb& pixel = pixels_[index(x, y)];
+    pixel = glm::mix(pixel, color, cover);
+  }
+
+  Box box_of(const std::vector<Vec2>& points, float reach) const {
+    Vec2 low = points.front(), high = low;
+    for (const Vec2& p : points) low = glm::min(low, p), high = glm::max(high, p);
+    return {first(low.x, reach), first(low.y, reach), end(high.x, reach), end(high.y, reach)};
+  }
+  int first(float at, float reach) const { return std::clamp(static_cast<int>(std::floor(at - reach)), 0, side_); }
+  int end(float at, float reach) const { return std::clamp(static_cast<int>(std::ceil(at + reach)) + 1, 0, side_); }
+
+  void cover_segment(const Vec2& a, const Vec2& b, float reach, const Box& all, std::vector<float>& cover) const {
+    const Box box = box_of({a, b}, reach);
+    const Vec2 d = b - a;
+    const float length_sq = std::max(glm::dot(d, d), 1e-12f);
+    for (int y = box.y0; y < box.y1; ++y) {
+      for (int x = box.x0; x < box.x1; ++x) {
+        const Vec2 p = Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) - a;
+        const float along = std::clamp(glm::dot(p, d) / length_sq, 0.0f, 1.0f);
+        float& c = cover[static_cast<size_t>(y - all.y0) * static_cast<size_t>(all.x1 - all.x0) +
+                         static_cast<size_t>(x - all.x0)];
+        c = std::max(c, reach - glm::length(p - along * d));
+      }
+    }
+  }
+
+  int side_;
+  std::vector<Rgb> pixels_;  // row 0 at the top
+};
+
+}  // namespace
+
+std::vector<float> rasterized(const Drawing& drawing) {
+  Raster raster(drawing);
+  for (const auto& mark : drawing.marks) std::visit([&](const auto& m) { raster.add(m); }, mark);
+  return raster.rgba();
+}
+
+}  // namespace velour

@@ -1,0 +1,13 @@
+// A drawing as a picture of lines.
+#pragma once
+
+#include <string>
+
+#include "plot/drawing.h"
+
+namespace velour {
+
+/// SVG 1.1, side x side user units; text stays text, in DejaVu Sans where there is one.
+std::string svg_text(const Drawing& drawing);
+
+}  // namespace velour
