@@ -1,7 +1,5 @@
 """The window: panels drawn without an error, a fit in the background with cancel, a render as it grows."""
 
-import importlib
-
 import addon_utils
 import bpy
 import numpy as np
@@ -143,20 +141,10 @@ def fit_and_undo(folder):
     assert node.image.name != before, "no new model"
     yield from window.show_properties("MATERIAL")
     window.screenshot(folder, "fit-done")
-    _check_order_plot(node.image)
     with window.override():
         bpy.ops.ed.undo()
     yield 0.2
     assert scenes.velour_node(bpy.data.materials["Paint"]).image.name == before
-
-
-def _check_order_plot(image):
-    """The plot of the panel is there as an icon, and made once."""
-    preview = importlib.import_module(f"{inputs.ADDON}.ui.order_preview")
-    with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
-        order = model.info()["order"]
-    assert preview.order_icon(order) != 0
-    assert preview.order_icon(order) == preview.order_icon(order), "drawn again at every redraw"
 
 
 def _start_scene_fit(last_frame):

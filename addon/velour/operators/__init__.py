@@ -12,6 +12,7 @@ from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
 from .placement import VELOUR_OT_describe_placement, VELOUR_OT_keep_uv_density
+from .plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from .repeat_tile import VELOUR_OT_repeat_tile
 from .save_model import VELOUR_OT_save_model
 
@@ -22,6 +23,8 @@ CLASSES = (
     VELOUR_OT_fit_for_scene,
     VELOUR_OT_cancel_fit,
     VELOUR_OT_save_model,
+    VELOUR_OT_save_plot,
+    VELOUR_OT_enlarge_plot,
     VELOUR_OT_accept_file,
     VELOUR_OT_add_mesostructure,
     VELOUR_OT_repeat_tile,

@@ -7,6 +7,7 @@ from .job_state import VelourJobState
 from .layer_settings import VelourLayerSettings
 from .material_settings import VelourMaterialSettings
 from .placement_settings import VelourPlacementSettings
+from .plot_settings import VelourPlotSettings
 from .render_settings import VelourRenderSettings
 from .tile_settings import VelourTileSettings
 
@@ -20,7 +21,11 @@ _POINTERS = (
     (bpy.types.WindowManager, VelourJobState, set()),
 )
 # A group comes after those that it holds.
-CLASSES = (VelourPlacementSettings, *dict.fromkeys(group for _owner, group, _override in _POINTERS))
+CLASSES = (
+    VelourPlacementSettings,
+    VelourPlotSettings,
+    *dict.fromkeys(group for _owner, group, _override in _POINTERS),
+)
 
 
 def attach():

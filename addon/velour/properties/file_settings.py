@@ -1,7 +1,7 @@
-"""What is remembered of a model or measurement file."""
+"""What is remembered of a model or measurement file, or of a picture that Velour made."""
 
 import bpy
-from bpy.props import StringProperty
+from bpy.props import BoolProperty, StringProperty
 
 
 class VelourFileSettings(bpy.types.PropertyGroup):
@@ -13,3 +13,4 @@ class VelourFileSettings(bpy.types.PropertyGroup):
         " A final render refuses a file that has changed since",
         override={"LIBRARY_OVERRIDABLE"},
     )
+    is_plot: BoolProperty(options={"HIDDEN"})  # drawn by an operator, which may draw another one over it

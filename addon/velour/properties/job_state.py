@@ -1,7 +1,9 @@
-"""The work that runs in the background, for panels and status bar to show. Never saved."""
+"""What windows show: the work that runs in the background, and which plot. Never saved."""
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+from .plot_settings import VelourPlotSettings
 
 
 class VelourJobState(bpy.types.PropertyGroup):
@@ -14,3 +16,4 @@ class VelourJobState(bpy.types.PropertyGroup):
     seconds_left: FloatProperty(default=-1.0, options={"SKIP_SAVE"})  # below 0: not known
     waiting: IntProperty(options={"SKIP_SAVE"})  # how many come after it
     fraction: FloatProperty(name="Progress", subtype="FACTOR", min=0.0, max=1.0, options={"SKIP_SAVE"})
+    plot: PointerProperty(type=VelourPlotSettings)

@@ -1,6 +1,6 @@
 """Panels and preferences."""
 
-from . import file_handler, library_state, order_preview, placement_summary, progress, stock_panels, summaries
+from . import file_handler, library_state, placement_summary, plot_preview, progress, stock_panels, summaries
 from .layer_panel import VELOUR_VIEWLAYER_PT_passes
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
@@ -10,6 +10,7 @@ from .material_panel import (
     VELOUR_MATERIAL_PT_surface,
 )
 from .placement_panel import VELOUR_MATERIAL_PT_placement
+from .plot_panel import VELOUR_MATERIAL_PT_plots
 from .preferences import VelourPreferences
 from .render_panel import VELOUR_RENDER_PT_film, VELOUR_RENDER_PT_library, VELOUR_RENDER_PT_sampling
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
@@ -25,6 +26,7 @@ CLASSES = (
     VELOUR_MATERIAL_PT_placement,
     VELOUR_MATERIAL_PT_scene_model,
     VELOUR_MATERIAL_PT_model,
+    VELOUR_MATERIAL_PT_plots,
     VELOUR_MATERIAL_PT_outline,
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_surface,
@@ -46,4 +48,4 @@ def detach():
     placement_summary.detach()
     progress.detach()
     summaries.forget()
-    order_preview.forget()
+    plot_preview.forget()

@@ -12,10 +12,8 @@ from ..operators.add_votf import VELOUR_OT_add_votf
 from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.save_model import VELOUR_OT_save_model
-from .order_preview import order_icon
 from .placement_summary import measured
 from .progress import draw_progress
-from .size_curve import draw_size_curve
 from .summaries import model_summary
 from .text import draw_sentence
 
@@ -95,10 +93,8 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
             return
         if "texels" in info:
             draw_rows(self.layout, _btf_rows(info))
-            draw_size_curve(self.layout, info)
         else:
             _draw_numbers(self.layout, info)
-            _draw_order(self.layout, info["order"])
         for warning in info["warnings"]:
             draw_sentence(context, self.layout, warning, icon="INFO")
         self.layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT")
@@ -244,19 +240,6 @@ def _lobes(info):
     if info["model"] == "scattered":
         return f"{info['lobes']} over {info['views']} views"
     return f"{info['lobes']} for all views"
-
-
-def _draw_order(layout, order):
-    """The curve with the point that the model is; older models have none."""
-    if not order["lobes"]:
-        return
-    box = layout.box()
-    box.label(text="Error against lobes")
-    box.template_icon(order_icon(order), scale=7.0)
-    chosen = order["chosen"]
-    if chosen is not None:
-        worst, size = _number(order["worst"][chosen]), order["parameter_bytes"][chosen]
-        box.label(text=f"{order['lobes'][chosen]} lobes, {size} bytes: {worst} of the tolerance")
 
 
 def _draw_error_by_angle(box, errors):

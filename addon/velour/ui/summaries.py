@@ -10,17 +10,17 @@ from ..native import VelourError
 
 _KEPT = 64
 _summaries = {}  # identity: info, or the sentence why there is none; oldest first
-_waiting = {}  # identity: key of the image in bpy.data.images
+_waiting = {}  # identity: name
 
 
 def model_summary(image):
     """The model's info; the sentence why there is none; or None while it is not read yet."""
-    identity = _identity(image)
-    if identity not in _summaries and identity not in _waiting:
-        _waiting[identity] = (image.name, image.library.filepath) if image.library else image.name
+    known = identity(image)
+    if known not in _summaries and known not in _waiting:
+        _waiting[known] = name_of(image)
         if not bpy.app.timers.is_registered(_read_waiting):
             bpy.app.timers.register(_read_waiting)
-    return _summaries.get(identity)
+    return _summaries.get(known)
 
 
 def forget():
@@ -30,8 +30,13 @@ def forget():
         bpy.app.timers.unregister(_read_waiting)
 
 
-def _identity(image):
-    """Changes whenever the content may have changed; cheap. No pointer: undo replaces datablocks."""
+def name_of(image):
+    """The key of the image in bpy.data.images. No pointer: undo replaces datablocks."""
+    return (image.name, image.library.filepath) if image.library else image.name
+
+
+def identity(image):
+    """Changes whenever the content may have changed; cheap."""
     path = absolute_path(image)
     if image.packed_file is not None:
         return image.name, path, image.velour.sha256, image.packed_file.size
@@ -44,13 +49,17 @@ def _identity(image):
 
 def _read_waiting():
     """A timer: runs on the main thread between two redraws."""
-    for identity, key in _waiting.items():
-        image = bpy.data.images.get(key)
+    for known, name in _waiting.items():
+        image = bpy.data.images.get(name)
         if image is not None:
-            _summaries[identity] = _read(image)
+            _summaries[known] = _read(image)
     _waiting.clear()
     while len(_summaries) > _KEPT:
         del _summaries[next(iter(_summaries))]
+    redraw_panels()
+
+
+def redraw_panels():
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "PROPERTIES":

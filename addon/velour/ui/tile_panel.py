@@ -8,8 +8,8 @@ from ..operators.capture_btf import VELOUR_OT_capture_btf
 from ..operators.compress_btf import VELOUR_OT_compress_btf
 from ..operators.repeat_tile import VELOUR_OT_repeat_tile, is_repeated
 from ..properties.tile_settings import SHAPE_OF
+from .draw_plot import draw_chosen, draw_plot
 from .progress import draw_progress
-from .size_curve import draw_size_curve
 from .summaries import model_summary
 from .text import data_size
 
@@ -35,9 +35,9 @@ class TilePanel:
         column.label(text=_size(settings), icon="INFO")
         draw_progress(context, layout)
         layout.operator(VELOUR_OT_capture_btf.bl_idname, icon="PLAY").collection = collection_name
-        self._draw_material(layout, settings, collection_name)
+        self._draw_material(context, layout, settings, collection_name)
 
-    def _draw_material(self, layout, settings, collection_name):
+    def _draw_material(self, context, layout, settings, collection_name):
         """What a material of the capture is asked for, and what the last one was."""
         column = layout.column(align=True)
         for name in ("method", *SHAPE_OF.get(settings.method, ())):
@@ -48,7 +48,8 @@ class TilePanel:
         operator.collection = collection_name
         info = model_summary(settings.model) if settings.model is not None else None
         if isinstance(info, dict) and "texels" in info:
-            draw_size_curve(layout, info)
+            draw_plot(context, layout, settings.model, None, "ORDER")
+            draw_chosen(layout, info)
 
 
 class VELOUR_OBJECT_PT_tile(TilePanel, bpy.types.Panel):

@@ -1,0 +1,17 @@
+"""The colours of Blender's theme, as plots take them."""
+
+
+def theme_colors(preferences):
+    """Keywords of Plot.draw. What would not be read on the background the library mixes with the text."""
+    theme = preferences.themes[0]
+    interface, editor = theme.user_interface, theme.properties.space
+    colors = {
+        "background": editor.back,
+        "foreground": editor.text,
+        "model": interface.wcol_regular.inner_sel,
+        "measured": theme.view_3d.object_active,
+        "red": interface.axis_x,
+        "green": interface.axis_y,
+        "blue": interface.axis_z,
+    }
+    return {name: tuple(color)[:3] for name, color in colors.items()}

@@ -1,0 +1,114 @@
+"""Plots out of the panel: into files, and large into an Image Editor."""
+
+import functools
+
+import bpy
+from bpy.props import IntProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from ..export import ExportError
+from ..export.nodes import velour_node
+from ..native import VelourError
+from ..properties.plot_settings import plot_azimuth, plot_kind, plot_view
+from . import measured
+from .model_plots import PlotSource, measurement_for, plot_name
+from .plot_colors import theme_colors
+
+_KINDS_OF_FILES = (".png", ".svg", ".csv")
+
+
+class _OfMaterial:
+    """What both have: which plot of which material."""
+
+    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    kind: plot_kind()
+    view: plot_view()
+    azimuth: plot_azimuth()
+
+    def execute(self, context):
+        material = measured.find_material(context, self.material)
+        node = velour_node(material)
+        if node is None or node.image is None:
+            self.report({"ERROR"}, "There is no model to plot; fit or import one first.")
+            return {"CANCELLED"}
+        measurement = measurement_for(self.kind, node.velour)
+        try:
+            with PlotSource(node.image, measurement, f"Material '{material.name}'") as source:
+                if source.missing:
+                    self.report({"WARNING"}, source.missing)
+                with source.plot(self.kind, self.view, self.azimuth) as plot:
+                    self._use(context, plot, material.name)
+        except (ExportError, VelourError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class VELOUR_OT_save_plot(_OfMaterial, bpy.types.Operator, ExportHelper):
+    bl_idname = "velour.save_plot"
+    bl_label = "Save Plot"
+    bl_description = "Write the plot as a picture for paper (.png, .svg), or its numbers (.csv)"
+
+    filename_ext = ".png"
+    check_extension = None  # the file's own decides what is written
+    filter_glob: StringProperty(default="*.png;*.svg;*.csv", options={"HIDDEN"})
+    side: IntProperty(name="Size", description="Of a picture: pixels", default=800, min=64, max=8192)
+
+    def _use(self, _context, plot, _name):
+        path = bpy.path.abspath(self.filepath)
+        plot.save(
+            path if path.lower().endswith(_KINDS_OF_FILES) else path + self.filename_ext, side=self.side
+        )
+
+
+class VELOUR_OT_enlarge_plot(_OfMaterial, bpy.types.Operator):
+    bl_idname = "velour.enlarge_plot"
+    bl_label = "Enlarge"
+    bl_description = "Open the plot as an image in an Image Editor"
+
+    side: IntProperty(name="Size", description="Pixels", default=1024, min=64, max=8192)
+
+    def _use(self, context, plot, name):
+        pixels = plot.draw(side=self.side, **theme_colors(context.preferences))
+        image = _image(f"{name} {plot_name(self.kind)}", self.side)
+        image.pixels.foreach_set(pixels.ravel())
+        image.pack()  # or Blender asks about it at the end
+        if not bpy.app.background:
+            _show(context, image)
+
+
+def _image(name, side):
+    """The one of that name, where it is a plot of this size, or a new one."""
+    image = bpy.data.images.get(name)
+    if image is None or not image.velour.is_plot or tuple(image.size) != (side, side):
+        image = bpy.data.images.new(name, side, side)
+        image.velour.is_plot = True
+    return image
+
+
+def _show(context, image):
+    """In an Image Editor that is open, or in a window of its own."""
+    windows = context.window_manager.windows
+    areas = [area for window in windows for area in window.screen.areas]
+    area = next((area for area in areas if area.type == "IMAGE_EDITOR"), None)
+    if area is None:
+        window = context.window or windows[0]
+        largest = max(window.screen.areas, key=lambda a: a.width * a.height)
+        with context.temp_override(window=window, area=largest):
+            bpy.ops.screen.area_dupli("INVOKE_DEFAULT")
+        area = windows[-1].screen.areas[0]
+        area.type = "IMAGE_EDITOR"
+    area.spaces.active.image = image
+    # The editor has its size once it has been drawn.
+    bpy.app.timers.register(functools.partial(_fit, image.name), first_interval=0.2)
+
+
+def _fit(name):
+    """All of the image in view, in the editors that show it."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type != "IMAGE_EDITOR" or getattr(area.spaces.active.image, "name", "") != name:
+                continue
+            region = next(region for region in area.regions if region.type == "WINDOW")
+            with bpy.context.temp_override(window=window, area=area, region=region):
+                bpy.ops.image.view_all(fit_view=True)

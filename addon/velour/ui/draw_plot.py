@@ -1,0 +1,52 @@
+"""A plot in a panel."""
+
+import bpy
+
+from .plot_preview import plot_picture
+from .text import draw_sentence
+
+_LEAST, _MOST = 6, 24  # sides of a plot, in Blender's units of buttons
+_BESIDE = 3.2  # of these, what panel and editor need to the left and right
+
+
+def draw_plot(context, layout, model, measurement, kind):
+    """Of the model in an image datablock, as wide as the region; or the sentence why there is none."""
+    unit = _unit(context.preferences.system)
+    scale = max(_LEAST, min(_MOST, int(context.region.width / unit - _BESIDE)))
+    picture = plot_picture(context, model, measurement, kind, _side(scale, unit))
+    if picture.icon or not picture.sentence:
+        layout.template_icon(picture.icon, scale=scale)  # as high while there is none yet
+    if picture.sentence:
+        draw_sentence(context, layout, picture.sentence, icon="INFO")
+
+
+def _side(scale, unit):
+    """Pixels that Blender shows of an icon so large: it leaves a margin around it."""
+    margin = 0.15 * unit if bpy.app.version >= (4, 0) else 4
+    return int(scale * unit - 2 * margin)
+
+
+def _unit(system):
+    """Pixels of a button's height, as Blender rounds them."""
+    return round(18 * system.ui_scale) + 2 * int(system.pixel_size)
+
+
+def draw_chosen(layout, info):
+    """Which point of the curve the model is; models of earlier versions have none."""
+    order = info["order"]
+    if order["chosen"] is None:
+        return
+    at = order["chosen"]
+    size = order["parameter_bytes"][at]
+    if "texels" in info:
+        text = f"{size / 1e6:.3g} MB: error {order['relative_l2'][at]:.3g}"
+        text += _asked(order["relative_l2"][at], info["tolerance"])
+    else:
+        text = f"{order['lobes'][at]} lobes, {size} bytes: {order['worst'][at]:.3g} of the tolerance"
+    layout.label(text=text)
+
+
+def _asked(error, tolerance):
+    if not tolerance:
+        return ""
+    return f", within {tolerance:.3g}" if error <= tolerance else f", {tolerance:.3g} was asked for"

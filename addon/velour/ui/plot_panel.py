@@ -1,0 +1,46 @@
+"""The plots of a material's model."""
+
+import bpy
+
+from ..export.nodes import velour_node
+from ..operators.model_plots import measurement_for
+from ..operators.plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
+from .draw_plot import draw_chosen, draw_plot
+from .material_panel import MaterialPanel
+from .summaries import model_summary
+
+
+class VELOUR_MATERIAL_PT_plots(MaterialPanel, bpy.types.Panel):
+    bl_label = "Plots"
+    bl_parent_id = "VELOUR_MATERIAL_PT_measured"
+
+    @classmethod
+    def poll(cls, context):
+        node = velour_node(context.material)
+        return node is not None and node.image is not None and isinstance(model_summary(node.image), dict)
+
+    def draw(self, context):
+        layout, node = self.layout, velour_node(context.material)
+        info = model_summary(node.image)
+        settings = context.window_manager.velour.plot
+        kind = settings.kind
+        if "texels" in info:
+            kind = "ORDER"  # a BTF has no other
+        else:
+            layout.row().prop(settings, "kind", expand=True)
+            _draw_view(layout, settings, info)
+        draw_plot(context, layout, node.image, measurement_for(kind, node.velour), kind)
+        if kind == "ORDER":
+            draw_chosen(layout, info)
+        row = layout.row()
+        for operator in (VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot):
+            button = row.operator(operator.bl_idname)
+            button.kind, button.view, button.azimuth = kind, settings.view, settings.azimuth
+
+
+def _draw_view(layout, settings, info):
+    row = layout.row(align=True)
+    if settings.kind == "LOBES":
+        row.prop(settings, "view")
+    if settings.kind in ("LOBES", "ALBEDO") and not info["isotropic"]:
+        row.prop(settings, "azimuth")

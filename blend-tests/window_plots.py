@@ -1,0 +1,64 @@
+"""The plots of the material panel: drawn to the pixel, once, in the theme's colours."""
+
+import os
+
+import bpy
+import numpy as np
+
+from support import plots, scenes, window
+
+
+def start(folder):
+    """Called by the harness once the window is there."""
+    window.run(folder, (each_plot, light_theme, slider))
+
+
+def each_plot(folder):
+    """The large plot is on the screen pixel by pixel; the small editor has one of its own size."""
+    plots.material()
+    for number, kind in enumerate(("LOBES", "ORDER", "VIEW_ERROR", "ALBEDO")):
+        plots.preview().forget()
+        yield from plots.show(kind, scroll=0 if number else 15)
+        screen = window.screenshot(folder, f"plot-{kind.lower()}")
+        small, large = sorted(plots.pictures(), key=len)
+        assert len(small) < len(large), (len(small), len(large))
+        assert plots.is_on_screen(screen, large), f"{kind}: the plot is not on the screen pixel by pixel"
+        assert not plots.is_on_screen(screen, large[::-1]), "the check would see the plot upside down as well"
+    large_again = plots.pictures()
+    for area in window.first().screen.areas:
+        area.tag_redraw()
+    yield 0.5
+    assert len(plots.pictures()) == len(large_again), "drawn again at a redraw"
+
+
+def light_theme(folder):
+    plots.material()
+    yield from plots.show("LOBES")
+    dark = plots.pictures()[-1]
+    path = os.path.join(bpy.utils.preset_paths("interface_theme")[0], "Blender_Light.xml")
+    with window.override():
+        bpy.ops.script.execute_preset(filepath=path, menu_idname="USERPREF_MT_interface_theme_presets")
+    yield from plots.drawn()
+    screen = window.screenshot(folder, "light")
+    shown = plots.pictures()[-2:]
+    bpy.ops.preferences.reset_default_theme()
+    yield 0.3
+    assert min(picture.mean() for picture in shown) > dark.mean() + 50
+    assert any(plots.is_on_screen(screen, picture) for picture in shown)
+
+
+def slider(folder):
+    """Another view gives another picture; until it is there the one before stays."""
+    plots.material()
+    yield from plots.show("LOBES")
+    preview, before = plots.preview(), plots.pictures()
+    bpy.context.window_manager.velour.plot.view = np.radians(65)
+    node = scenes.velour_node(bpy.data.materials["Paint"])
+    side = max(map(len, before))
+    asked = bpy.context, node.image, node.velour.measurement, "LOBES", side
+    assert preview.plot_picture(*asked).icon != 0, "the picture before is not shown"
+    assert len(plots.pictures()) == len(before), "drawn while it was asked for"
+    yield from plots.drawn()
+    window.screenshot(folder, "slider")
+    assert len(plots.pictures()) > len(before)
+    assert not np.array_equal(plots.pictures()[-1], before[-1])
