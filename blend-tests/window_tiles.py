@@ -130,7 +130,10 @@ def material(folder):
         bpy.ops.velour.compress_btf(collection="Collection", tolerance=0.2)
     assert bpy.data.collections["Collection"].velour.model is not None
     for _ in range(_TURNS // 10):
-        yield 1.0  # the model is read between two redraws
+        yield 1.0  # the model is read, and its curve drawn, between two redraws
+        for _ in range(12):  # turns of a wheel: the curve stands below the settings
+            window.scroll_down(40)
+        yield 0.3
         if _orange(window.screenshot(folder, "collection-curve")) > _orange(before) + 20:
             return
     raise AssertionError("no chosen point")

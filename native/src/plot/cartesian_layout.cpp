@@ -49,7 +49,7 @@ void draw_grid(const Plot& plot, const Frame& frame, Pen& pen) {
     const float half = 0.5f * pen.width_of(tick.text);
     if (x - half < free_from) continue;
     free_from = x + half + 0.4f * pen.em();
-    pen.text(tick.text, {x, frame.bottom + 1.1f * pen.em()}, 0.5f);
+    pen.text(tick.text, {x, frame.bottom + 1.3f * pen.em()}, 0.5f);
   }
 }
 

@@ -20,8 +20,9 @@ Box box_of(const Label& label) {
   return {left, label.baseline.y - 0.73f * label.size, left + width, label.baseline.y};
 }
 
-bool overlap(const Box& a, const Box& b) {
-  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+/// Closer than `gap` to each other.
+bool overlap(const Box& a, const Box& b, float gap) {
+  return a.left < b.right + gap && b.left < a.right + gap && a.top < b.bottom + gap && b.top < a.bottom + gap;
 }
 
 std::vector<Label> labels_of(const Drawing& drawing) {
@@ -70,7 +71,7 @@ TEST(PlotLayout, TextsLieInsideAndApart) {
                         box.bottom <= static_cast<float>(side))
                 << plot.kind << " " << side << " " << text << ": " << labels[i].text;
             for (size_t j = 0; j < i; ++j) {
-              EXPECT_FALSE(overlap(box, box_of(labels[j])))
+              EXPECT_FALSE(overlap(box, box_of(labels[j]), 0.15f * labels[i].size))
                   << plot.kind << " " << side << " " << text << ": " << labels[i].text << " on " << labels[j].text;
             }
           }
