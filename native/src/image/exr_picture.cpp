@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "file/file.h"
+#include "image/exr_errors.h"
 #include "image/exr_output.h"
 #include "image/open_picture.h"
 #include "job/error.h"
@@ -57,6 +58,10 @@ auto order_of(const std::string& channel) {
   return std::tuple(layer, colour == std::string_view::npos, colour, channel);
 }
 
+auto input_error_of(const std::string& path) {
+  return [&path](const char* why) { return input_error(path, why); };
+}
+
 class OpenExr : public OpenPicture {
  public:
   explicit OpenExr(const std::string& path) : path_(path), file_(path.c_str(), 0) {
@@ -92,14 +97,10 @@ class OpenExr : public OpenPicture {
       buffer.insert(names_[c], Imf::Slice::Make(Imf::FLOAT, values.data() + c, window, pixel,
                                                 pixel * static_cast<size_t>(format().width)));
     }
-    try {
+    with_exr_errors(Status::bad_data, input_error_of(path_), [&] {
       file_.setFrameBuffer(buffer);
       file_.readPixels(window.min.y, window.max.y);
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& error) {
-      throw Error(Status::bad_data, input_error(path_, error.what()));
-    }
+    });
   }
 
  private:
@@ -120,15 +121,7 @@ std::string channel_name(int channel, int channels) {
 
 std::unique_ptr<OpenPicture> open_exr(const std::string& path) {
   check_rows(path);
-  try {
-    return std::make_unique<OpenExr>(path);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(Status::bad_data, input_error(path, error.what()));
-  }
+  return with_exr_errors(Status::bad_data, input_error_of(path), [&] { return std::make_unique<OpenExr>(path); });
 }
 
 void write_exr(const std::string& path, int width, int height, int channels, std::span<const float> values) {
@@ -144,18 +137,13 @@ void write_exr(const std::string& path, int width, int height, int channels, std
                                          pixel * static_cast<size_t>(width)));
   }
   AtomicFile file(path);
-  try {
+  const auto sentence = [&](const char* why) { return path + ": OpenEXR cannot write the picture: " + why; };
+  with_exr_errors(Status::io, sentence, [&] {
     ExrOutput stream(file, path);
     Imf::OutputFile output(stream, header, 0);
     output.setFrameBuffer(buffer);
     output.writePixels(height);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(Status::io, path + ": OpenEXR cannot write the picture: " + error.what());
-  }
+  });
   file.commit();
 }
 

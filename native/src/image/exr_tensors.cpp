@@ -17,6 +17,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "image/exr_errors.h"
 #include "image/exr_scan.h"
 #include "job/error.h"
 
@@ -249,28 +250,18 @@ std::vector<uint8_t> encode_tensors(const TensorFile& file) {
   if (file.tensors.empty()) throw Error(Status::invalid_argument, "A file of tensors needs at least one tensor.");
   const auto headers = make_headers(file);
   MemoryOutput stream;
-  try {
+  const auto sentence = [](const char* why) { return std::string("OpenEXR cannot encode the tensors: ") + why; };
+  with_exr_errors(Status::unknown, sentence, [&] {
     Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
     write_parts(out, file);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(Status::unknown, std::string("OpenEXR cannot encode the tensors: ") + error.what());
-  }
+  });
   return stream.take();
 }
 
 TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& name) {
   const auto parts = scan_exr(bytes, name);
-  try {
-    return decode_scanned(bytes, parts, name);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(Status::bad_data, name + ": OpenEXR refuses the file: " + error.what());
-  }
+  const auto sentence = [&](const char* why) { return name + ": OpenEXR refuses the file: " + why; };
+  return with_exr_errors(Status::bad_data, sentence, [&] { return decode_scanned(bytes, parts, name); });
 }
 
 bool looks_like_exr(std::span<const uint8_t> head) {

@@ -15,6 +15,7 @@
 #include <cstring>
 
 #include "file/atomic_file.h"
+#include "image/exr_errors.h"
 #include "image/exr_output.h"
 #include "image/exr_scan.h"
 #include "job/error.h"
@@ -144,19 +145,14 @@ void write_image_stacks(const std::string& path, std::span<const ImageStack> sta
   std::vector<Imf::Header> headers = headers_of(stacks);
   for (const auto& [name, text] : attributes) headers.at(0).insert(name, Imf::StringAttribute(text));
   AtomicFile file(path);
-  try {
+  const auto sentence = [&](const char* why) { return path + ": OpenEXR cannot write the images: " + why; };
+  with_exr_errors(Status::io, sentence, [&] {
     ExrOutput stream(file, path);
     Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
     for (size_t i = 0; i < stacks.size(); ++i) {
       write_stack(Imf::OutputPart(out, static_cast<int>(i)), stacks[i], pixels[i], progress);
     }
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(Status::io, path + ": OpenEXR cannot write the images: " + error.what());
-  }
+  });
   file.commit();
 }
 

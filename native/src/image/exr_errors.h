@@ -1,0 +1,25 @@
+// What OpenEXR throws, in the project's own words.
+#pragma once
+
+#include <exception>
+#include <new>
+
+#include "job/error.h"
+
+namespace velour {
+
+/// Calls `work()`; an exception of OpenEXR's comes out as Error(status, `sentence` of its words).
+template <class Work, class Sentence>
+auto with_exr_errors(Status status, const Sentence& sentence, const Work& work) {
+  try {
+    return work();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(status, sentence(error.what()));
+  }
+}
+
+}  // namespace velour
