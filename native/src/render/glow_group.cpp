@@ -62,11 +62,12 @@ Vec3 double_area(const Mesh& mesh, uint32_t triangle, const Affine& object_to_wo
   return glm::cross(edge(1), edge(2));
 }
 
-GlowGroup::GlowGroup(const Scene& scene, const Scene::Instance& instance) {
+GlowGroup::GlowGroup(const Scene& scene, const Scene::Instance& instance, const Progress& progress) {
   const Mesh& mesh = scene.traced_mesh(instance);
   light_.assign(mesh.triangles().size(), kNone);
   std::vector<LightTree::Light> lights;
   for (uint32_t t = 0; t < light_.size(); ++t) {
+    progress.check();
     const uint32_t slot = slot_of(mesh, t, instance);
     const SurfaceMaterial& material = scene.materials()[instance.materials[slot]];
     if (!material.drawn_to || !glows(material)) continue;
@@ -78,7 +79,7 @@ GlowGroup::GlowGroup(const Scene& scene, const Scene::Instance& instance) {
     light_[t] = static_cast<uint32_t>(triangle_.size());
     triangle_.push_back(t);
   }
-  tree_ = LightTree(lights);
+  tree_ = LightTree(lights, progress);
 }
 
 double GlowGroup::power(const Mesh& mesh, const Affine& object_to_world) const {

@@ -18,7 +18,8 @@ class GlowGroup {
  public:
   static constexpr uint32_t kNone = 0xffffffffu;
 
-  GlowGroup(const Scene& scene, const Scene::Instance& instance);
+  /// Throws Error(cancelled).
+  GlowGroup(const Scene& scene, const Scene::Instance& instance, const Progress& progress);
 
   /// Triangles that rays are drawn to; the power of one is its luminance times its area in the object.
   const LightTree& tree() const { return tree_; }

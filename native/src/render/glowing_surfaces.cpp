@@ -34,12 +34,12 @@ struct GroupKey {
 
 }  // namespace
 
-GlowingSurfaces::GlowingSurfaces(const Scene& scene) : scene_(scene) {
+GlowingSurfaces::GlowingSurfaces(const Scene& scene, const Progress& progress) : scene_(scene) {
   for (const SurfaceMaterial& m : scene.materials()) glows_.push_back(glows(m));
   if (std::ranges::find(glows_, 1) == glows_.end()) return;
-  find_places();
+  find_places(progress);
   if (places_.empty()) return;
-  build_tree();
+  build_tree(progress);
   rays_ = std::make_unique<EmbreeScene>();
   rays_->share_meshes(scene.rays());
   for (const Place& place : places_) {
@@ -49,7 +49,7 @@ GlowingSurfaces::GlowingSurfaces(const Scene& scene) : scene_(scene) {
   rays_->commit(1);
 }
 
-void GlowingSurfaces::find_places() {
+void GlowingSurfaces::find_places(const Progress& progress) {
   std::map<GroupKey, uint32_t> group_of;
   place_of_.assign(scene_.instances().size(), kNone);
   for (uint32_t k = 0; k < place_of_.size(); ++k) {
@@ -57,15 +57,16 @@ void GlowingSurfaces::find_places() {
     const bool glow = std::ranges::any_of(i.materials, [&](uint32_t m) { return glows_[m] != 0; });
     if (!glow || (i.hidden & hidden::kFromBounces) != 0) continue;
     const auto [found, is_new] = group_of.emplace(GroupKey(i), static_cast<uint32_t>(groups_.size()));
-    if (is_new) groups_.emplace_back(scene_, i);
+    if (is_new) groups_.emplace_back(scene_, i, progress);
     place_of_[k] = static_cast<uint32_t>(places_.size());
     places_.push_back({k, found->second, i.object_to_world.inverse(), kNone});
   }
 }
 
-void GlowingSurfaces::build_tree() {
+void GlowingSurfaces::build_tree(const Progress& progress) {
   std::vector<LightTree::Light> lights;
   for (uint32_t p = 0; p < places_.size(); ++p) {
+    progress.check();
     Place& place = places_[p];
     if (group(place).tree().empty()) continue;
     const Scene::Instance& i = scene_.instances()[place.instance];
@@ -75,7 +76,7 @@ void GlowingSurfaces::build_tree() {
     lit_.push_back(p);
     lights.push_back({box_around(group(place).tree().bounds(), i.object_to_world), power});
   }
-  tree_ = LightTree(lights);
+  tree_ = LightTree(lights, progress);
 }
 
 bool GlowingSurfaces::holds(const Hit& hit) const {

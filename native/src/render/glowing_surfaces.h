@@ -19,8 +19,8 @@ struct GlowHit {
 /// allocation but of what is found.
 class GlowingSurfaces {
  public:
-  /// `scene` is committed.
-  explicit GlowingSurfaces(const Scene& scene);
+  /// `scene` is committed. Throws Error(cancelled): of millions of triangles the choice takes seconds to prepare.
+  GlowingSurfaces(const Scene& scene, const Progress& progress);
 
   bool empty() const { return places_.empty(); }
   /// Luminance of the power that surfaces send from both sides, of those that rays are drawn to.
@@ -60,8 +60,8 @@ class GlowingSurfaces {
   const Place* place(uint32_t instance) const {
     return place_of_[instance] == GlowGroup::kNone ? nullptr : &places_[place_of_[instance]];
   }
-  void find_places();
-  void build_tree();
+  void find_places(const Progress& progress);
+  void build_tree(const Progress& progress);
 
   const Scene& scene_;
   std::vector<uint8_t> glows_;  // by material

@@ -18,7 +18,7 @@ int widest_axis(const Bounds& bounds) {
 
 }  // namespace
 
-LightTree::LightTree(std::span<const Light> lights) : node_of_(lights.size()) {
+LightTree::LightTree(std::span<const Light> lights, const Progress& progress) : node_of_(lights.size()) {
   if (lights.empty()) return;
   const size_t nodes = 2 * lights.size() - 1;
   middle_.reserve(nodes);
@@ -29,10 +29,12 @@ LightTree::LightTree(std::span<const Light> lights) : node_of_(lights.size()) {
   for (const Light& light : lights) bounds_.add(light.box);
   std::vector<uint32_t> order(lights.size());
   std::iota(order.begin(), order.end(), 0u);
-  build(lights, order, kNoParent);
+  build(lights, order, kNoParent, progress);
 }
 
-void LightTree::build(std::span<const Light> lights, std::span<uint32_t> order, uint32_t parent) {
+void LightTree::build(std::span<const Light> lights, std::span<uint32_t> order, uint32_t parent,
+                      const Progress& progress) {
+  progress.check();
   const auto node = static_cast<uint32_t>(power_.size());
   Bounds box, middles;
   double power = 0;
@@ -54,9 +56,9 @@ void LightTree::build(std::span<const Light> lights, std::span<uint32_t> order, 
   const size_t half = order.size() / 2;
   std::ranges::nth_element(order, order.begin() + static_cast<std::ptrdiff_t>(half), {},
                            [&](uint32_t i) { return std::pair(lights[i].box.center()[axis], i); });
-  build(lights, order.first(half), node);
+  build(lights, order.first(half), node, progress);
   link_[node] = static_cast<uint32_t>(power_.size());
-  build(lights, order.subspan(half), node);
+  build(lights, order.subspan(half), node, progress);
 }
 
 double LightTree::importance(uint32_t node, const Vec3& position) const {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "job/progress.h"
 #include "scene/camera.h"
 
 namespace velour {
@@ -19,7 +20,8 @@ class LightTree {
     float power;  // above 0, finite
   };
   LightTree() = default;
-  explicit LightTree(std::span<const Light> lights);
+  /// Throws Error(cancelled).
+  LightTree(std::span<const Light> lights, const Progress& progress);
 
   bool empty() const { return power_.empty(); }
   size_t size() const { return node_of_.size(); }
@@ -36,7 +38,7 @@ class LightTree {
 
  private:
   static constexpr uint32_t kLeaf = 0x80000000u;
-  void build(std::span<const Light> lights, std::span<uint32_t> order, uint32_t parent);
+  void build(std::span<const Light> lights, std::span<uint32_t> order, uint32_t parent, const Progress& progress);
   double importance(uint32_t node, const Vec3& position) const;
   /// Of the left one of two siblings.
   double share(uint32_t left, uint32_t right, const Vec3& position) const;

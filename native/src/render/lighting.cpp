@@ -13,7 +13,8 @@ constexpr float kBelowOne = 0x1.fffffep-1f;
 
 }  // namespace
 
-Lighting::Lighting(const Scene& scene) : environment_(scene.environment()), glow_(scene) {
+Lighting::Lighting(const Scene& scene, const Progress& progress)
+    : environment_(scene.environment()), glow_(scene, progress) {
   // A scene of nothing or of one point still needs distant and near lights to compare.
   const float radius = std::max(scene.bounds().radius(), 1e-6f);
   for (const Light& light : scene.lights()) {

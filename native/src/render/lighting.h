@@ -20,7 +20,8 @@ struct LampHit {
 
 class Lighting {
  public:
-  explicit Lighting(const Scene& scene);
+  /// Throws Error(cancelled).
+  Lighting(const Scene& scene, const Progress& progress);
 
   const Environment& environment() const { return environment_; }
   /// Of the power of all that a sampled direction can meet, the environment's; the probability of `sample` choosing it.

@@ -66,7 +66,7 @@ void ProgressiveRender::prepare_scene(Progress& progress) {
   if (context_ && prepared_for_ == scene_->revision()) return;
   context_.reset();
   options_ = asked_;
-  auto context = std::make_unique<RenderContext>(*scene_, options_);
+  auto context = std::make_unique<RenderContext>(*scene_, options_, progress);
   std::vector<RenderStage> unreported;
   prepare(*context, arena_, progress, unreported);
   context_ = std::move(context);

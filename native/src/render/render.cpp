@@ -46,7 +46,7 @@ class Renderer {
         film_(film),
         progress_(progress),
         arena_(arena_concurrency(options_.threads)),
-        context_(scene, options_),
+        context_(scene, options_, progress),
         target_(options_.noise, blocks_of(options_.width, options_.height)) {}
 
   RenderReport run() {

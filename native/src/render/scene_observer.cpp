@@ -57,7 +57,7 @@ class Observer {
         paths_(render_options(options, 0)),
         halves_{render_options(options, 1), render_options(options, 2)},
         progress_(progress),
-        lighting_(scene),
+        lighting_(scene, progress),
         arena_(arena_concurrency(options.threads)) {}
 
   SceneObservation run() {

@@ -16,7 +16,9 @@ namespace velour {
 
 /// What all threads share during a render, and do not change.
 struct RenderContext {
-  RenderContext(const Scene& of, const RenderOptions& asked) : scene(of), options(asked), lighting(of) {}
+  /// Throws Error(cancelled).
+  RenderContext(const Scene& of, const RenderOptions& asked, const Progress& progress)
+      : scene(of), options(asked), lighting(of, progress) {}
 
   const Scene& scene;
   const RenderOptions& options;  // split <= spp

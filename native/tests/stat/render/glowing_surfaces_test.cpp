@@ -215,7 +215,7 @@ Scene thin_lights() {
 
 TEST(GlowingSurfaces, RaysAreDrawnByTheirDensity) {
   const Scene scene = thin_lights();
-  const Lighting lighting(scene);
+  const Lighting lighting(scene, Progress());
   const Vec3 origin(0.0f);
   const auto draw = [&](const Vec2& u) {
     DirectionBatch world;

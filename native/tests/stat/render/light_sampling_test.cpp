@@ -126,7 +126,7 @@ double density(const Lighting& lighting, const Vec3& w) {
 
 TEST(LightingSampling, AllLightOfASceneFollowsItsDensity) {
   const Scene scene = lit();
-  const Lighting lighting(scene);
+  const Lighting lighting(scene, Progress());
   EXPECT_GT(lighting.environment_share(), 0.1f);
   EXPECT_LT(lighting.environment_share(), 0.9f);
   Sampler sampler{[&](const Vec2& u) { return draw(lighting, u); },

@@ -228,7 +228,7 @@ TEST(Lighting, SharpLampsAreChosenByPower) {
     scene.add_light(light);
   }
   scene.commit(1);
-  const Lighting lighting(scene);
+  const Lighting lighting(scene, Progress());
   ASSERT_EQ(lighting.sharp().size(), 3u);  // the dark one is gone
   EXPECT_FALSE(lighting.has_extended());
   float probability;

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "sphere/random.h"
 
 namespace velour {
@@ -23,7 +26,7 @@ std::vector<LightTree::Light> scattered(size_t count) {
 
 TEST(LightTree, ProbabilitiesAddUpToOneAndNoneIsZero) {
   for (const size_t count : {1u, 2u, 3u, 17u, 1000u}) {
-    const LightTree tree(scattered(count));
+    const LightTree tree(scattered(count), Progress());
     for (const Vec3& position : {Vec3(0), Vec3(5, 2, 0.5f), Vec3(1e6f, 0, 0)}) {
       double sum = 0;
       for (uint32_t i = 0; i < count; ++i) {
@@ -40,7 +43,7 @@ TEST(LightTree, ProbabilitiesAddUpToOneAndNoneIsZero) {
 TEST(LightTree, ChoosesEachLightInOnePieceOfItsProbability) {
   constexpr uint32_t kCount = 40;
   constexpr int kNumbers = 1 << 20;
-  const LightTree tree(scattered(kCount));
+  const LightTree tree(scattered(kCount), Progress());
   const Vec3 position(4, 1, 0);
   std::vector<int> chosen(kCount);
   std::vector<double> last(kCount, -1);
@@ -65,7 +68,7 @@ TEST(LightTree, ChoosesEachLightInOnePieceOfItsProbability) {
 TEST(LightTree, TheNearOneOfTwoAlikeIsTheLikelierOne) {
   std::vector<LightTree::Light> lights(2, {{Vec3(0), Vec3(0.1f)}, 1});
   lights[1].box = {Vec3(10, 0, 0), Vec3(10.1f, 0.1f, 0.1f)};
-  const LightTree tree(lights);
+  const LightTree tree(lights, Progress());
   EXPECT_GT(tree.probability({1, 0, 0}, 0), 0.95);
   EXPECT_LT(tree.probability({9, 0, 0}, 0), 0.05);
   EXPECT_NEAR(tree.probability({5.05f, 0, 0}, 0), 0.5, 1e-6);
@@ -74,10 +77,40 @@ TEST(LightTree, TheNearOneOfTwoAlikeIsTheLikelierOne) {
 TEST(LightTree, LightsOfOnePointAreChosenByPower) {
   std::vector<LightTree::Light> lights(3, {{Vec3(1), Vec3(1)}, 1});
   lights[2].power = 6;
-  const LightTree tree(lights);
+  const LightTree tree(lights, Progress());
   for (const Vec3& position : {Vec3(0), Vec3(1)}) EXPECT_NEAR(tree.probability(position, 2), 0.75, 1e-6);
   EXPECT_EQ(tree.power(), 8);
   EXPECT_TRUE(LightTree().empty());
+}
+
+TEST(LightTree, IsNotBuiltAfterACancel) {
+  Progress cancelled;
+  cancelled.cancel();
+  EXPECT_THROW(LightTree(scattered(1), cancelled), Error);
+}
+
+/// Of many lights it takes seconds: a cancel in between ends it long before.
+TEST(LightTree, EndsSoonAfterACancel) {
+  const auto lights = scattered(300000);
+  const auto seconds_of_build = [&](Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    try {
+      const LightTree tree(lights, progress);
+      EXPECT_FALSE(progress.cancelled());
+    } catch (const Error& error) {
+      EXPECT_EQ(error.status(), Status::cancelled);
+    }
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  Progress progress;
+  const double whole = seconds_of_build(progress);
+  std::thread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::duration<double>(0.3 * whole));
+    progress.cancel();
+  });
+  EXPECT_LT(seconds_of_build(progress), 0.8 * whole);
+  canceller.join();
+  EXPECT_TRUE(progress.cancelled());
 }
 
 }  // namespace
