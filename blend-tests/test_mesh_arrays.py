@@ -116,7 +116,7 @@ class MeshQueue(BlenderTest):
         notes = _export("notes").Notes()
         with native.Scene() as together, native.Scene() as single:
             queue = _module("core", "mesh_queue").MeshQueue(together, notes)
-            places = [queue.add(read(mesh, (), queue.empty), mesh.name) for mesh in meshes]
+            places = [queue.add(read(mesh, empty=queue.empty), mesh.name) for mesh in meshes]
             for mesh in meshes:
                 single.add_mesh(**read(mesh)._asdict())
             self.assertEqual([queue.numbers()[place] for place in places], [0, 1, None, 3, 4])

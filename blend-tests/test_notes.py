@@ -81,6 +81,50 @@ class Notes(BlenderTest):
         node.distribution = "BECKMANN"
         self._said("Material 'Glass'", node.name, "'Beckmann' is shown as GGX")
 
+    def _shows_attribute(self, name, idname="ShaderNodeAttribute"):
+        """A sphere of colours by an attribute; the object and the node."""
+        _, node = self._linked(idname, socket="Color")
+        setattr(node, "attribute_name" if idname == "ShaderNodeAttribute" else "layer_name", name)
+        return bpy.context.object, node
+
+    def test_missing_attribute(self):
+        obj, _ = self._shows_attribute("paint")
+        self._said(f"Object '{obj.name}'", "no colours or numbers 'paint'", "material 'Glass'", "shows 0")
+        obj.data.attributes.new("paint", "FLOAT_COLOR", "POINT")
+        self.assertEqual(self._notes(), [])
+
+    def test_missing_colour_attribute(self):
+        obj, _ = self._shows_attribute("", "ShaderNodeVertexColor")
+        self._said(f"Object '{obj.name}'", "no colour attribute", "material 'Glass'")
+        obj.data.color_attributes.new("paint", "BYTE_COLOR", "CORNER")
+        self.assertEqual(self._notes(), [])
+
+    def test_attributes_of_objects(self):
+        _, node = self._shows_attribute("paint")
+        node.attribute_type = "OBJECT"
+        self._said("Material 'Glass'", "'Color'", f"'{node.name}' shows an attribute of type 'Object'")
+
+    def test_attribute_in_the_place_of_a_normal_map(self):
+        _, normal_map = self._linked("ShaderNodeNormalMap")
+        tree = normal_map.id_data
+        tree.links.new(tree.nodes.new("ShaderNodeVertexColor").outputs[0], normal_map.inputs["Color"])
+        self._said("Material 'Glass'", normal_map.name, "it is no picture")
+
+    def test_many_attributes(self):
+        """Five in one material, of which four are shown."""
+        tree = self._material("ShaderNodeBsdfPrincipled").node_tree
+        node = next(n for n in tree.nodes if "Metallic" in n.inputs and n.outputs[0].is_linked)
+        mesh = bpy.context.object.data
+        emission = "Emission Color" if "Emission Color" in node.inputs else "Emission"
+        inputs_of = ("Base Color", "Metallic", "Roughness", "Alpha", emission)
+        for i, socket in enumerate(inputs_of):
+            self.assertEqual(self._notes(), [])
+            shown = tree.nodes.new("ShaderNodeAttribute")
+            shown.attribute_name = f"paint {i}"
+            mesh.attributes.new(shown.attribute_name, "FLOAT_COLOR", "POINT")
+            tree.links.new(shown.outputs["Color"], node.inputs[socket])
+        self._said("Material 'Glass'", "5 attributes", "beyond 4")
+
     def test_unsupported_part_of_a_mix(self):
         tree = self._material("ShaderNodeMixShader").node_tree
         mix = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeMixShader")

@@ -127,6 +127,24 @@ def _painted():
     image.update_tag()
 
 
+def _attribute():
+    """Of the cube's mesh, which its twin shows as well."""
+    paint = bpy.data.meshes["Cube"].attributes.new("paint", "FLOAT_COLOR", "POINT")
+    for i, element in enumerate(paint.data):
+        element.color = (i % 2, i // 2 % 2, i // 4, 1)
+    tree = bpy.data.materials["Orange"].node_tree
+    shown = tree.nodes.new("ShaderNodeVertexColor")
+    shown.layer_name = "paint"
+    tree.links.new(shown.outputs[0], _socket("Orange", "Color"))
+
+
+def _attribute_changes():
+    mesh = bpy.data.meshes["Cube"]
+    for element in mesh.attributes["paint"].data:
+        element.color = (0.1, 0.9, 0.9, 1)
+    mesh.update()
+
+
 def _scene_lights_off():
     viewport.space().shading.use_scene_lights_render = False
 
@@ -153,7 +171,8 @@ def _turned():
 _EDITS = (
     *(_move, _energy, _lamp_moves, _color, _world, _other_world, _vertex, _modifier, _modifier_changes),
     *(_added, _removed, _hidden, _shown, _other_material, _glows, _instances, _instances_follow),
-    *(_textured, _painted, _scene_lights_off, _scene_lights_on, _film, _frame, _turned),
+    *(_textured, _painted, _attribute, _attribute_changes),
+    *(_scene_lights_off, _scene_lights_on, _film, _frame, _turned),
 )
 
 

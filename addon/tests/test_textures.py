@@ -78,3 +78,66 @@ def test_wrong_textures_are_refused_with_a_sentence(tmp_path):
     with pytest.raises(VelourError, match="nowhere") as caught:
         Texture.load(tmp_path / "nowhere.png")
     assert caught.value.status == Status.IO
+
+
+def _painted_plane(scene, *colors):
+    """[4 x 3] colours of the corners of a square each: one set a colour array."""
+    positions = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
+    triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
+    return scene.add_mesh(
+        positions,
+        triangles,
+        corner_vertices=np.arange(4, dtype=np.uint32),
+        corner_colors=np.array(colors, np.float32),
+    )[0]
+
+
+def _painted(textures, *colors):
+    with Scene() as scene:
+        material = scene.add_textured_material(textures, specular=0.0)
+        scene.add_instance(_painted_plane(scene, *colors), np.eye(4), [material])
+        scene.set_world_color((1, 1, 1))
+        look_down = np.eye(4)
+        look_down[2, 3] = 5
+        scene.set_camera("orthographic", look_down, (-1, 1, -1, 1))
+        scene.commit()
+        assert scene.info()["untextured"] == 0
+        with render_job(scene, width=SIDE, height=SIDE, spp=256, strategy="cosine") as job:
+            job.run()
+            return job.read_pass("Combined")[..., :3]
+
+
+def test_a_mesh_shows_the_colours_of_its_corners():
+    ramp = np.array([[0.1, 0, 0.5], [0.9, 0, 0.5], [0.9, 0.8, 0.5], [0.1, 0.8, 0.5]])
+    places = (np.arange(SIDE) + 0.5) / SIDE
+    expected = np.empty((SIDE, SIDE, 3))
+    expected[..., 0], expected[..., 1], expected[..., 2] = 0.1 + 0.8 * places, 0.8 * places[:, None], 0.5
+    with Texture.of_corners(1) as texture:
+        pixels = _painted({"base_color": TextureSlot(texture)}, np.zeros((4, 3)), ramp)
+        np.testing.assert_allclose(pixels, expected, atol=5e-3)
+        missing = _painted({"base_color": TextureSlot(texture)}, ramp)
+    np.testing.assert_array_equal(missing, 0)
+
+
+def test_numbers_are_the_first_channel_of_corners():
+    open_or_not = np.array([[1, 0, 0], [0, 1, 1], [0, 1, 1], [1, 0, 0]])
+    white = np.ones((4, 3))
+    with Texture.of_corners(0) as alpha, Texture.of_corners(1) as colour:
+        slots = {"alpha": TextureSlot(alpha), "base_color": TextureSlot(colour)}
+        pixels = _painted(slots, open_or_not, 0 * white)
+    expected = (np.arange(SIDE) + 0.5) / SIDE  # of the white sky behind
+    np.testing.assert_allclose(pixels.mean(axis=(0, 2)), expected, atol=0.1)
+
+
+def test_sets_of_corner_colours_are_few_and_whole():
+    with pytest.raises(VelourError, match="no set 4 of corner colours"):
+        Texture.of_corners(4)
+    with Scene() as scene:
+        with pytest.raises(VelourError, match="color_sets is 5"):
+            _painted_plane(scene, *[np.zeros((4, 3))] * 5)
+        with pytest.raises(VelourError, match="corner_colors"):
+            scene.add_mesh(
+                np.eye(3, dtype=np.float32),
+                np.array([[0, 1, 2]], np.uint32),
+                corner_colors=np.zeros((1, 2, 3), np.float32),
+            )

@@ -17,6 +17,7 @@ class MeshArrays(NamedTuple):
     corner_uvs: np.ndarray | None = None
     more_uvs: np.ndarray | None = None
     relief_uvs: np.ndarray | None = None
+    corner_colors: np.ndarray | None = None
     corner_normals: np.ndarray | None = None
     vertex_normals: np.ndarray | None = None
     face_normals: np.ndarray | None = None

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 from ..native import Model, Shader, VelourError
 from . import files
+from .corner_colors import CornerColors, shader_colors
 from .nodes import velour_node
 from .notes import ExportError
 from .placement import Tile
-from .shaders import as_principled, shines, split, surface_layers, unlike_reflection
+from .shaders import as_principled, shines, sources_of, split, surface_layers, unlike_reflection
 from .textures import TextureTable
 from .uv_maps import placed_map, shader_maps
 
@@ -35,6 +36,7 @@ class MaterialTable:
         self.strict = strict
         self._numbers = {}
         self._uv_maps = {}
+        self._colors = {}  # the CornerColors that each asks for
         self._tiles = {}  # of materials that show a BTF
         self._textured = set()  # of others: those with textures
         self._textures = TextureTable(notes)
@@ -54,6 +56,11 @@ class MaterialTable:
         """Its UvMaps; the material is added."""
         self.number(material)
         return self._uv_maps[_key(material)]
+
+    def colors(self, material):
+        """The CornerColors that it shows, in the order of their sets; the material is added."""
+        self.number(material)
+        return self._colors.get(_key(material), ())
 
     def needs_coordinates(self, material):
         """Whether a material that has its number looks at texture coordinates."""
@@ -78,6 +85,7 @@ class MaterialTable:
         before, number = self._needs(key), self._numbers.pop(key)
         self._tiles.pop(key, None)
         self._textured.discard(key)
+        self._colors.pop(key, None)
         self.number(material)
         self._scene.replace_material(number)
         self._numbers[key] = number
@@ -85,7 +93,7 @@ class MaterialTable:
         return self._needs(key) != before or key in self._tiles
 
     def _needs(self, key):
-        return self._uv_maps[key], self._tiles.get(key), key in self._textured
+        return self._uv_maps[key], self._colors.get(key), self._tiles.get(key), key in self._textured
 
     def _add(self, material):
         node = velour_node(material)
@@ -100,7 +108,9 @@ class MaterialTable:
 
     def _add_shader(self, material):
         layers = surface_layers(material, self._notes)
-        self._uv_maps[_key(material)] = shader_maps(_owner(material), layers, self._notes)
+        sources, reliefs = sources_of(layers)
+        self._uv_maps[_key(material)] = shader_maps(_owner(material), sources, reliefs, self._notes)
+        self._colors[_key(material)] = shader_colors(_owner(material), sources, self._notes)
         self.glows = self.glows or any(map(shines, layers))
         plain = as_principled(layers)
         if plain:
@@ -133,11 +143,15 @@ class MaterialTable:
             shader.weigh_layer(factor.kind, factor.value, *(slot or ()))
 
     def _slots(self, layer, material):
-        """TextureSlots of a Layer's pictures that can be read."""
+        """TextureSlots of a Layer's pictures that can be read, and of its CornerColors."""
         slots = {n: self._slot(picture, n == "base_color", material) for n, picture in layer.pictures.items()}
         return {name: slot for name, slot in slots.items() if slot}
 
     def _slot(self, picture, is_color, material):
+        """None: the value below the link is used."""
+        if isinstance(picture, CornerColors):
+            colors = self._colors[_key(material)]
+            return self._textures.of_corners(colors.index(picture)) if picture in colors else None
         maps = self._uv_maps[_key(material)]
         slot = self._textures.slot(picture, is_color, _owner(material), maps)
         if slot:

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from ..core.mesh_arrays import MeshArrays
+from .corner_colors import corner_colors, has_attribute
 
 # To ask each mesh for what it has not is slow.
 _HAS_DOMAINS = "normals_domain" in bpy.types.Mesh.bl_rna.properties  # 4.1 and newer
@@ -16,23 +17,29 @@ def _own(_name, count, dtype):
     return np.empty(count, dtype)
 
 
-def object_arrays(obj, uv_maps=(), empty=_own):
+def object_arrays(obj, uv_maps=(), colors=(), empty=_own):
     """MeshArrays of an evaluated object; None where it has no face.
 
     `empty`: gives memory for a field, by its name, how many numbers and of which type.
 
     `uv_maps`: for each material slot, of which the last stands for all beyond, the UvMaps of its faces.
     Empty, or where there is none of a name: the one that renders. None: no texture coordinates.
+    `colors`: likewise the CornerColors that they show.
     """
     if not _must_convert(obj):
-        return mesh_arrays(obj.data, uv_maps, empty)
+        return mesh_arrays(obj.data, uv_maps, colors, empty)
     with _mesh_of(obj) as mesh:
-        return mesh_arrays(mesh, uv_maps, empty) if mesh else None
+        return mesh_arrays(mesh, uv_maps, colors, empty) if mesh else None
 
 
 def has_uv_map(obj, name):
     with _mesh_of(obj) as mesh:
         return mesh is not None and name in mesh.uv_layers
+
+
+def has_colors(obj, asked):
+    with _mesh_of(obj) as mesh:
+        return mesh is not None and has_attribute(mesh, asked)
 
 
 def triangle_faces(obj):
@@ -57,7 +64,7 @@ def _mesh_of(obj):
             obj.to_mesh_clear()
 
 
-def mesh_arrays(mesh, uv_maps=(), empty=_own):
+def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own):
     """`mesh` in its local space, split into Blender's own triangles; None where it has no face."""
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
@@ -66,7 +73,7 @@ def mesh_arrays(mesh, uv_maps=(), empty=_own):
     vertices, corner_count = mesh.vertices, len(mesh.loops)
     corners = _fill(empty("triangles", 3 * count, np.uint32), mesh.loop_triangles, "loops").reshape(-1, 3)
     slots = _material_slots(mesh, count, empty)
-    return MeshArrays(
+    arrays = MeshArrays(
         positions=_fill(empty("positions", 3 * len(vertices), np.float32), vertices, "co").reshape(-1, 3),
         triangles=corners,
         # What triangles say of vertices and materials they look up one by one, many times slower.
@@ -75,6 +82,7 @@ def mesh_arrays(mesh, uv_maps=(), empty=_own):
         **_normals(mesh, count, empty),
         **_coordinates(mesh, corners, slots, uv_maps),
     )
+    return arrays._replace(corner_colors=corner_colors(mesh, arrays, colors)) if colors else arrays
 
 
 def _material_slots(mesh, count, empty):

@@ -3,10 +3,11 @@
 from typing import NamedTuple
 
 from .axes import affine
+from .corner_colors import colors_of_slots, missing_colors
 from .instances import InstanceGroups
 from .kept_meshes import KeptMeshes
 from .lights import add_light
-from .meshes import has_uv_map, object_arrays
+from .meshes import has_colors, has_uv_map, object_arrays
 from .placement import Placements, missing_coordinates
 from .units import metres_per_unit
 from .uv_maps import maps_of_slots, missing_map
@@ -47,6 +48,7 @@ class _Slots(NamedTuple):
     is_tiled: bool
     look_at_uvs: list  # of the materials those that need texture coordinates
     uv_maps: list  # of each material the names of UV maps that it asks for
+    colors: list  # of each the CornerColors
 
 
 class ObjectExport:
@@ -64,7 +66,7 @@ class ObjectExport:
         self._to_scene = to_scene
         self._meshes = KeptMeshes() if meshes is None else meshes
         self._queue = self._meshes.queue(scene, notes)
-        self._uv_maps = {}
+        self._asked = {}  # by materials of slots, what they ask of a mesh
         self._slots = {}
         self._shown = {}
         self._groups = InstanceGroups(scene, notes)
@@ -134,7 +136,7 @@ class ObjectExport:
         slots = self._slots_of(materials, mesh.slot_count)
         if slots.is_tiled and self._queue.numbers()[mesh.place] is None:
             return None
-        self._note_missing_uvs(obj, mesh, slots)
+        self._note_missing(obj, mesh, slots)
         hidden = visibility.hidden(obj) if visibility else ()
         if "camera" not in hidden:
             self._seen.append(mesh.place)
@@ -160,12 +162,13 @@ class ObjectExport:
 
     def _mesh(self, obj, data, materials):
         """The _Mesh of an object; None: it has no faces."""
-        if materials not in self._uv_maps:
-            self._uv_maps[materials] = maps_of_slots(tuple(map(self._materials.uv_maps, materials)))
-        uv_maps = self._uv_maps[materials]
-        key = (obj.type, (data or obj).as_pointer(), uv_maps)
+        if materials not in self._asked:
+            uv_maps = maps_of_slots(tuple(map(self._materials.uv_maps, materials)))
+            self._asked[materials] = uv_maps, colors_of_slots(tuple(map(self._materials.colors, materials)))
+        asked = self._asked[materials]
+        key = (obj.type, (data or obj).as_pointer(), asked)
         if not self._meshes.has(key, obj):
-            arrays = object_arrays(obj, uv_maps, self._queue.empty)
+            arrays = object_arrays(obj, *asked, self._queue.empty)
             self._meshes[key] = arrays and _Mesh(
                 self._queue.add(arrays, obj.name), arrays.slot_count, arrays.corner_uvs is not None
             )
@@ -184,10 +187,11 @@ class ObjectExport:
                     (material, sorted(self._materials.uv_maps(material).all_names - {""}))
                     for material in shown
                 ],
+                [(material, self._materials.colors(material)) for material in shown],
             )
         return self._slots[key]
 
-    def _note_missing_uvs(self, obj, mesh, slots):
+    def _note_missing(self, obj, mesh, slots):
         if slots.look_at_uvs and not mesh.has_uvs and not slots.is_tiled:
             for material in slots.look_at_uvs:
                 self._notes.add(missing_coordinates(obj, material.name))
@@ -195,6 +199,10 @@ class ObjectExport:
             for name in names:
                 if not has_uv_map(obj, name):
                     self._notes.add(missing_map(obj, name, material.name))
+        for material, colors in slots.colors:
+            for asked in colors:
+                if not has_colors(obj, asked):
+                    self._notes.add(missing_colors(obj, asked, material.name))
 
     def _note_extras(self, obj):
         """What a renderer would add to the evaluated mesh."""

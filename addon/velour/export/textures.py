@@ -23,6 +23,12 @@ class TextureTable:
         texture = self._textures[key]
         return TextureSlot(texture, picture.uv_map, uv_maps.number(picture.coordinates)) if texture else None
 
+    def of_corners(self, color_set):
+        """Of a mesh's own colours."""
+        if color_set not in self._textures:
+            self._textures[color_set] = Texture.of_corners(color_set)
+        return TextureSlot(self._textures[color_set])
+
     def _read(self, picture, is_color, owner):
         pixels = working_pixels(picture.image, self._notes)
         if pixels is None:

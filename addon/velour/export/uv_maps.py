@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from .image_nodes import Picture
 from .nodes import velour_node
 
 MOST_SETS = 4  # VLR_MOST_UV_SETS
@@ -47,12 +48,9 @@ def placed_map(material):
     return UvMaps((node.velour.placement.uv_map,)) if node else RENDERED
 
 
-def shader_maps(owner, layers, notes):
-    """Of a material that is not measured, by its Layers."""
-    parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
-    reliefs = [part.relief for part in parts if part.relief]
-    pictures = [picture for part in parts for picture in part.pictures.values()]
-    pictures += [factor.picture for part in parts for factor in part.factors if factor.picture]
+def shader_maps(owner, sources, reliefs, notes):
+    """Of a material that is not measured, by the pictures in its layers and its Reliefs."""
+    pictures = [source for source in sources if isinstance(source, Picture)]
     pictures += [relief.picture for relief in reliefs]
     names = tuple(sorted({picture.coordinates for picture in pictures}))
     if not names:

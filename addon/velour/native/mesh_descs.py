@@ -18,6 +18,7 @@ MESH_ARRAYS = {
     "corner_uvs": (np.float32, "c", (2,)),
     "more_uvs": (np.float32, "c", (2,)),
     "relief_uvs": (np.float32, "c", (2,)),
+    "corner_colors": (np.float32, "c", (3,)),
     "material_slots": (np.uint32, "t", ()),
     "smooth": (np.uint8, "t", ()),
     "corner_vertices": (np.uint32, "k", ()),
@@ -38,7 +39,7 @@ def checked_mesh(arrays: Mapping[str, np.ndarray]) -> dict[str, tuple[np.ndarray
         if array is not None:
             dtype, size, rest = MESH_ARRAYS[name]
             lengths = corners if size == "c" else (None,)
-            sets = (None,) if name == "more_uvs" else ()
+            sets = (None,) if name in _SETS else ()
             checked(name, array, (*sets, *lengths, *rest), dtype)
             found[name] = (array.reshape(-1), [array.size])
     return found
@@ -69,8 +70,10 @@ _COUNT_FIELDS = {
     "t": "triangle_count",
     "k": "corner_count",
     "f": "face_count",
-    "sets": "more_uv_sets",
+    "more_uvs": "more_uv_sets",
+    "corner_colors": "color_sets",
 }
+_SETS = ("more_uvs", "corner_colors")  # of these there are several, one after the other
 
 
 def _counts(sizes, meshes):
@@ -83,10 +86,12 @@ def _counts(sizes, meshes):
         "f": sizes.get("face_normals", none) // 3,
     }
     counts["c"] = np.where(counts["k"] > 0, counts["k"], 3 * counts["t"])
-    counts["sets"] = sizes.get("more_uvs", none) // np.maximum(2 * counts["c"], 1)
+    for name in _SETS:
+        of_set = counts["c"] * int(np.prod(MESH_ARRAYS[name][2]))
+        counts[name] = sizes.get(name, none) // np.maximum(of_set, 1)
     for name, size in sizes.items():
         _, kind, rest = MESH_ARRAYS[name]
-        wanted = counts[kind] * int(np.prod(rest)) * (counts["sets"] if name == "more_uvs" else 1)
+        wanted = counts[kind] * int(np.prod(rest)) * (counts[name] if name in _SETS else 1)
         wrong = np.flatnonzero((size != wanted) & (size > 0))
         if len(wrong):
             raise refuse(f"{name} holds {size[wrong[0]]} numbers; {wanted[wrong[0]]} are needed.")

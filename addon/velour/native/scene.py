@@ -50,7 +50,8 @@ class Scene(Handle):
         float32: positions [v x 3] in metres; uint32: triangles [t x 3]. Others may be None, or not given;
         float32: corner_normals [t x 3 x 3], corner_uvs [t x 3 x 2], more_uvs [sets x t x 3 x 2] (sets 1, 2,
         ... of texture coordinates), relief_uvs [t x 3 x 2] (what tangents of normal maps follow, else
-        corner_uvs); uint32: material_slots [t] (else all 0); uint8: smooth [t], without normals (else all).
+        corner_uvs), corner_colors [sets x t x 3 x 3] (Texture.of_corners); uint32: material_slots [t] (else
+        all 0); uint8: smooth [t], without normals (else all).
 
         With corner_vertices (uint32 [c]: of each corner of the faces) `triangles` name corners, and what has
         [t x 3] has [c]. Without corner_normals: vertex_normals [v x 3] of smooth faces, face_normals [f x 3]

@@ -190,7 +190,8 @@ class MeshDesc(Struct):
         ("face_smooth", c_void_p),
         ("triangle_faces", c_void_p),
         ("face_count", c_uint32),
-        ("pad2", c_uint32),
+        ("color_sets", c_uint32),
+        ("corner_colors", c_void_p),
     ]
 
 
@@ -460,6 +461,7 @@ STATUS_CALLS = {
         POINTER(TextureOptions),
         _out_handle,
     ],
+    "vlr_texture_of_corners": [c_uint32, _out_handle],
     "vlr_texture_load": [c_char_p, POINTER(TextureOptions), _out_handle],
     "vlr_shader_create": [_out_handle],
     "vlr_shader_add_layer": [_handle, POINTER(LayerDesc)],

@@ -32,6 +32,11 @@ class Texture(Handle):
         return cls._create("vlr_texture_create", width, height, channels, pointer(pixels), _options(options))
 
     @classmethod
+    def of_corners(cls, color_set: int) -> Texture:
+        """The colours of the mesh's own corners, of one of its sets; for numbers, their first channel."""
+        return cls._create("vlr_texture_of_corners", color_set)
+
+    @classmethod
     def load(cls, path: str | os.PathLike, **options) -> Texture:
         """raw: 1 takes integer values as numbers from 0 to 1, not as sRGB colours."""
         return cls._create("vlr_texture_load", path_bytes(path), _options(options))

@@ -321,6 +321,8 @@ VLR_API vlr_status vlr_scene_set_working_space(vlr_scene* scene, const float* re
 
 /* Sets of texture coordinates that a material can look at. */
 enum { VLR_MOST_UV_SETS = 4 };
+/* Sets of corner colours likewise. */
+enum { VLR_MOST_COLOR_SETS = 4 };
 typedef struct vlr_mesh_desc {
   uint32_t struct_size;
   uint32_t vertex_count;
@@ -345,7 +347,8 @@ typedef struct vlr_mesh_desc {
   const uint8_t* face_smooth;     /* [face_count]; NULL: all are where there are vertex_normals */
   const uint32_t* triangle_faces; /* [triangle_count]; with face_normals */
   uint32_t face_count;
-  uint32_t pad2;
+  uint32_t color_sets;        /* VLR_MOST_COLOR_SETS at most */
+  const float* corner_colors; /* [color_sets x triangle_count x 3 x 3] of vlr_texture_of_corners, working space */
 } vlr_mesh_desc;
 /* Degenerate triangles and non-finite vertices are left out; *dropped (may be NULL) says how many triangles. */
 VLR_API vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint32_t* mesh, uint32_t* dropped);
@@ -500,6 +503,10 @@ VLR_API vlr_status vlr_texture_create(uint32_t width, uint32_t height, uint32_t 
                                       const vlr_texture_options* options, vlr_texture** out);
 /* From an image file, whose colours are taken as they are, whatever the working space. */
 VLR_API vlr_status vlr_texture_load(const char* path, const vlr_texture_options* options, vlr_texture** out);
+/* The colours of the mesh's own corners, interpolated, in the place of a picture: of this set, below
+ * VLR_MOST_COLOR_SETS; black on meshes that do not have it. It stands for a colour, or by its first channel for a
+ * number; maps and sets of texture coordinates are not looked at. */
+VLR_API vlr_status vlr_texture_of_corners(uint32_t set, vlr_texture** out);
 VLR_API void vlr_texture_free(vlr_texture* texture);
 
 /* Each may be NULL: the number of the vlr_principled_desc holds. A map [2 x 3, row-major] takes (u, v, 1) of the

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,12 +46,13 @@ struct vlr_scene {
 struct vlr_texture {
   std::shared_ptr<const velour::Texture<velour::Rgb>> color;
   std::shared_ptr<const velour::Texture<float>> number;
+  std::optional<uint32_t> corner_colors;  // of the mesh, this set of them
 };
 
 struct vlr_shader {
   velour::ShaderLayers layers;
-  bool relief = false;                  // a layer has a normal map
-  uint8_t uv_sets = 1;                  // how many sets of texture coordinates it looks at
+  bool relief = false;  // a layer has a normal map
+  velour::MeshSets sets;
   velour::LayerWeight* last = nullptr;  // of the layer that was added last; null: there is none
 };
 

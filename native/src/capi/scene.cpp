@@ -46,6 +46,11 @@ MeshArrays arrays_of(const vlr_mesh_desc& desc) {
                                               "; a mesh has at most " + std::to_string(VLR_MOST_UV_SETS - 1) +
                                               " sets of texture coordinates beside the first.");
   }
+  if (desc.color_sets > VLR_MOST_COLOR_SETS) {
+    throw Error(Status::invalid_argument, "vlr_mesh_desc.color_sets is " + std::to_string(desc.color_sets) +
+                                              "; a mesh has at most " + std::to_string(VLR_MOST_COLOR_SETS) +
+                                              " sets of corner colours.");
+  }
   const size_t triangles = desc.triangle_count, corners = desc.corner_vertices ? desc.corner_count : 3 * triangles;
   return {.positions = array_of<Vec3>(desc.positions, desc.vertex_count),
           .triangles = array_of<glm::uvec3>(desc.triangles, triangles),
@@ -53,6 +58,7 @@ MeshArrays arrays_of(const vlr_mesh_desc& desc) {
           .corner_uvs = array_of<Vec2>(desc.corner_uvs, corners),
           .more_uvs = array_of<Vec2>(desc.more_uvs, corners * desc.more_uv_sets),
           .relief_uvs = array_of<Vec2>(desc.relief_uvs, corners),
+          .corner_colors = array_of<Rgb>(desc.corner_colors, corners * desc.color_sets),
           .material_slots = array_of<uint32_t>(desc.material_slots, triangles),
           .smooth = array_of<uint8_t>(desc.smooth, triangles),
           .corner_vertices = array_of<uint32_t>(desc.corner_vertices, corners),

@@ -26,29 +26,27 @@ std::shared_ptr<const Material> reflecting(int32_t kind, vlr_principled_desc des
   return material_of(desc, textures);
 }
 
+TextureSlot<Rgb> normal_slot(const vlr_layer_desc& layer) {
+  return color_slot(layer.normal, layer.normal_map, layer.normal_set, "vlr_layer_desc.normal");
+}
+
 std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const vlr_layer_desc& layer) {
   if (layer.normal == nullptr) return material;
   const DiffusePart diffuse = layer.kind == VLR_LAYER_GLOSSY    ? DiffusePart::none
                               : layer.kind == VLR_LAYER_DIFFUSE ? DiffusePart::all
                                                                 : DiffusePart::base_of_principled;
-  return make_normal_mapped(std::move(material),
-                            {color_slot(layer.normal, layer.normal_map, layer.normal_set, "vlr_layer_desc.normal"),
-                             std::max(layer.normal_strength, 0.0f)},
-                            diffuse);
+  return make_normal_mapped(std::move(material), {normal_slot(layer), std::max(layer.normal_strength, 0.0f)}, diffuse);
 }
 
 PrincipledTextures textures_of(const vlr_layer_desc& layer) {
   return converted(read_options(layer.textures, vlr_principled_textures_init, "vlr_principled_textures"));
 }
 
-/// Those that its pictures are on.
-uint8_t sets_of(const vlr_layer_desc& layer) {
-  return std::max(uv_sets(textures_of(layer)), static_cast<uint8_t>(1 + layer.normal_set));
-}
-
-LayerWeight& add_layer(ShaderLayers& layers, const vlr_layer_desc& layer) {
+LayerWeight& add_layer(ShaderLayers& layers, MeshSets& sets, const vlr_layer_desc& layer) {
   const auto desc = read_options(layer.surface, vlr_principled_desc_init, "vlr_principled_desc");
   const PrincipledTextures textures = textures_of(layer);
+  sets.add(sets_of(textures));
+  sets.add(normal_slot(layer));
   if (layer.kind == VLR_LAYER_TRANSPARENT || layer.kind == VLR_LAYER_EMISSION) {
     auto& to = layer.kind == VLR_LAYER_EMISSION ? layers.glowing : layers.transparent;
     to.push_back({base_color(desc), textures.base_color});
@@ -92,9 +90,8 @@ vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) 
     require(shader, "shader");
     const auto layer = read_options(desc, vlr_layer_desc_init, "vlr_layer_desc");
     require_choice(layer.kind, VLR_LAYER_EMISSION, "vlr_layer_desc.kind");
-    shader->last = &add_layer(shader->layers, layer);
+    shader->last = &add_layer(shader->layers, shader->sets, layer);
     shader->relief |= layer.normal != nullptr;
-    shader->uv_sets = std::max(shader->uv_sets, sets_of(layer));
   });
 }
 
@@ -108,9 +105,9 @@ vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* des
       throw Error(Status::invalid_state,
                   "A shader without layers has nothing to weigh; add a layer before its factors.");
     }
-    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value,
-                                     number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture")});
-    shader->uv_sets = std::max(shader->uv_sets, static_cast<uint8_t>(1 + factor.set));
+    const auto texture = number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture");
+    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value, texture});
+    shader->sets.add(texture);
   });
 }
 
@@ -122,6 +119,7 @@ vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* sha
     *material = scene->scene->add_material({.material = make_layered_material(shader->layers),
                                             .rec709_colors = false,
                                             .relief = shader->relief,
-                                            .uv_sets = shader->uv_sets});
+                                            .uv_sets = shader->sets.uvs,
+                                            .color_sets = shader->sets.colors});
   });
 }

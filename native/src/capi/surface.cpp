@@ -1,7 +1,5 @@
 #include "capi/surfaces.h"
 
-#include <algorithm>
-
 #include "capi/texture_maps.h"
 #include "material/principled_material.h"
 
@@ -25,17 +23,26 @@ size_t known_set(uint32_t set, const char* field) {
 }  // namespace
 
 TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field) {
-  if (texture != nullptr && !texture->color) refuse_kind(field, "colours (channel -1)");
-  return {texture != nullptr ? texture->color : nullptr, map_from(map), known_set(set, field)};
+  if (texture == nullptr) return {};
+  if (texture->corner_colors) return TextureSlot<Rgb>::colors_of_corners(*texture->corner_colors);
+  if (!texture->color) refuse_kind(field, "colours (channel -1)");
+  return {texture->color, map_from(map), known_set(set, field)};
 }
 
 TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field) {
-  if (texture != nullptr && !texture->number) refuse_kind(field, "numbers (a channel)");
-  return {texture != nullptr ? texture->number : nullptr, map_from(map), known_set(set, field)};
+  if (texture == nullptr) return {};
+  if (texture->corner_colors) return TextureSlot<float>::colors_of_corners(*texture->corner_colors);
+  if (!texture->number) refuse_kind(field, "numbers (a channel)");
+  return {texture->number, map_from(map), known_set(set, field)};
 }
 
-uint8_t uv_sets(const PrincipledTextures& t) {
-  return static_cast<uint8_t>(1 + std::max({t.base_color.set, t.metallic.set, t.roughness.set, t.alpha.set}));
+MeshSets sets_of(const PrincipledTextures& t) {
+  MeshSets sets;
+  sets.add(t.base_color);
+  sets.add(t.metallic);
+  sets.add(t.roughness);
+  sets.add(t.alpha);
+  return sets;
 }
 
 PrincipledTextures converted(const vlr_principled_textures& t) {
@@ -80,6 +87,7 @@ vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principle
     *material = scene->scene->add_material({.material = material_of(given, pictures),
                                             .emission = {given.emission[0], given.emission[1], given.emission[2]},
                                             .rec709_colors = false,
-                                            .uv_sets = uv_sets(pictures)});
+                                            .uv_sets = sets_of(pictures).uvs,
+                                            .color_sets = sets_of(pictures).colors});
   });
 }

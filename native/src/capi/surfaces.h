@@ -12,8 +12,7 @@ namespace velour::capi {
 TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field);
 TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field);
 PrincipledTextures converted(const vlr_principled_textures& textures);
-/// How many sets of texture coordinates they look at.
-uint8_t uv_sets(const PrincipledTextures& textures);
+MeshSets sets_of(const PrincipledTextures& textures);
 
 PrincipledParameters parameters_of(const vlr_principled_desc& desc);
 /// A uniform material knows its albedos more cheaply.

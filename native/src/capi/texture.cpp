@@ -81,6 +81,21 @@ vlr_status vlr_texture_create(uint32_t width, uint32_t height, uint32_t channels
   });
 }
 
+vlr_status vlr_texture_of_corners(uint32_t set, vlr_texture** out) {
+  return guard([&] {
+    require(out, "out");
+    static_assert(VLR_MOST_COLOR_SETS == SurfaceSite::kMostColorSets);
+    if (set >= VLR_MOST_COLOR_SETS) {
+      throw Error(Status::invalid_argument, "There is no set " + std::to_string(set) +
+                                                " of corner colours; a material looks at sets 0 to " +
+                                                std::to_string(VLR_MOST_COLOR_SETS - 1) + ".");
+    }
+    auto texture = std::make_unique<vlr_texture>();
+    texture->corner_colors = set;
+    *out = texture.release();
+  });
+}
+
 vlr_status vlr_texture_load(const char* path, const vlr_texture_options* options, vlr_texture** out) {
   return guard([&] {
     require(path, "path");

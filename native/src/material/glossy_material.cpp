@@ -39,7 +39,7 @@ class GlossyMaterial final : public Material {
     });
   }
 
-  bool varies() const override { return p_.color_texture.texture || p_.roughness_texture.texture; }
+  bool varies() const override { return p_.color_texture.given() || p_.roughness_texture.given(); }
   bool isotropic() const override { return true; }
 
  private:

@@ -26,7 +26,7 @@ class TexturedMaterial final : public PrincipledSampling {
 
   bool varies() const override { return textures_.any(); }
 
-  bool opaque() const override { return !textures_.alpha.texture && alpha_ >= 1.0f; }
+  bool opaque() const override { return !textures_.alpha.given() && alpha_ >= 1.0f; }
 
   float alpha(const SurfaceSite& site) const override {
     return std::clamp(textures_.alpha.at(site, alpha_), 0.0f, 1.0f);

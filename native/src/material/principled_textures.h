@@ -13,7 +13,7 @@ struct PrincipledTextures {
   TextureSlot<Rgb> base_color{};
   TextureSlot<float> metallic{}, roughness{}, alpha{};
 
-  bool any() const { return base_color.texture || metallic.texture || roughness.texture || alpha.texture; }
+  bool any() const { return base_color.given() || metallic.given() || roughness.given() || alpha.given(); }
 };
 
 /// Parameters are averaged over the footprint, each by itself: exact for the base colour of what is far away, while the

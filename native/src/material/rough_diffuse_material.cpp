@@ -38,7 +38,7 @@ class RoughDiffuseMaterial final : public Material {
     wl.fill(u, sample_cosine_hemisphere);
   }
 
-  bool varies() const override { return p_.color_texture.texture || p_.roughness_texture.texture; }
+  bool varies() const override { return p_.color_texture.given() || p_.roughness_texture.given(); }
   bool isotropic() const override { return true; }
 
  private:

@@ -180,7 +180,7 @@ float LayerWeight::at(const SurfaceSite& site) const {
 }
 
 bool LayerWeight::varies() const {
-  return std::ranges::any_of(factors, [](const LayerFactor& f) { return f.texture.texture != nullptr; });
+  return std::ranges::any_of(factors, [](const LayerFactor& f) { return f.texture.given(); });
 }
 
 std::shared_ptr<const Material> make_layered_material(ShaderLayers layers) {

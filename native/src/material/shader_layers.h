@@ -41,7 +41,7 @@ struct ColorLayer {
   LayerWeight weight{};
 
   Rgb at(const SurfaceSite& site) const { return weight.at(site) * texture.at(site, color); }
-  bool varies() const { return texture.texture || weight.varies(); }
+  bool varies() const { return texture.given() || weight.varies(); }
 };
 
 /// Sums: mixes are layers whose weights add up to 1.

@@ -23,6 +23,9 @@ struct SurfaceSite {
   /// The same on other sets of texture coordinates, of materials that look at several (place()).
   static constexpr size_t kMostSets = 4;  // `uv` included
   std::array<SitePlace, kMostSets - 1> others{};
+  /// Colours of the mesh's corners, interpolated; of materials that look at them. Nothing is averaged over a footprint.
+  static constexpr size_t kMostColorSets = 4;
+  std::array<Rgb, kMostColorSets> colors{};
   /// Of BTFs of open structure whose outlines rays find for themselves (HoledBtfMaterial): from `uv` to its mirror
   /// image at an outline that is near enough for texels to reach over it; else zero.
   Vec2 beyond_outline{0.0f};
@@ -36,10 +39,12 @@ struct SurfaceSite {
   /// On a set of texture coordinates, below kMostSets; 0: `uv`.
   SitePlace place(size_t set) const { return set == 0 ? SitePlace{uv, footprint} : others[set - 1]; }
 
-  /// All of a texture that repeats: what a table or a fit for a whole material looks at.
+  /// All of a texture that repeats, and grey in the place of a mesh's colours: what a table or a fit for a whole
+  /// material looks at.
   static SurfaceSite everywhere() {
     SurfaceSite site{.uv = Vec2(0.5f), .footprint = Mat2(1.0f)};
     site.others.fill(site.place(0));
+    site.colors.fill(Rgb(0.5f));
     return site;
   }
 };

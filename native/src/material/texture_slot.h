@@ -1,7 +1,10 @@
-// A picture in the place of a number or a colour of a material.
+// A picture, or a mesh's own colours, in the place of a number or a colour of a material.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <type_traits>
 
 #include "material/surface_site.h"
 #include "material/texture.h"
@@ -9,22 +12,54 @@
 
 namespace velour {
 
-/// Without a picture the parameter's own value holds.
+/// With neither the parameter's own value holds.
 template <class T>
 struct TextureSlot {
   std::shared_ptr<const Texture<T>> texture;
-  TextureMap map;  // of the surface's coordinates to the picture's
-  size_t set;      // which of them (SurfaceSite::place)
+  TextureMap map;           // of the surface's coordinates to the picture's
+  size_t set;               // which of them (SurfaceSite::place), or of the mesh's colours
+  bool of_corners = false;  // the mesh's colours (SurfaceSite::colors); a number is their first channel
 
   // Not an aggregate: of those in braced lists GCC 12 warns of members that were not initialised.
   TextureSlot(std::shared_ptr<const Texture<T>> picture = nullptr, const TextureMap& to_picture = {},
               size_t of_surface = 0) noexcept
       : texture(std::move(picture)), map(to_picture), set(of_surface) {}
+  static TextureSlot colors_of_corners(size_t set) {
+    TextureSlot slot(nullptr, {}, set);
+    slot.of_corners = true;
+    return slot;
+  }
+
+  bool given() const { return texture || of_corners; }
 
   T at(const SurfaceSite& site, const T& otherwise) const {
+    if (of_corners) return corner_value(site.colors[set]);
     if (!texture) return otherwise;
     const SitePlace place = site.place(set);
     return texture->look_up(map.point(place.uv), map.map * place.footprint);
+  }
+
+ private:
+  static T corner_value(const Rgb& color) {
+    if constexpr (std::is_same_v<T, Rgb>)
+      return color;
+    else
+      return color.r;
+  }
+};
+
+/// How many sets of a mesh's texture coordinates, and of its corners' colours, a material looks at.
+struct MeshSets {
+  uint8_t uvs = 0, colors = 0;
+
+  void add(const MeshSets& other) {
+    uvs = std::max(uvs, other.uvs);
+    colors = std::max(colors, other.colors);
+  }
+  template <class T>
+  void add(const TextureSlot<T>& slot) {
+    uint8_t& count = slot.of_corners ? colors : uvs;
+    if (slot.given()) count = std::max(count, static_cast<uint8_t>(1 + slot.set));
   }
 };
 

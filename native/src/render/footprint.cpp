@@ -53,7 +53,10 @@ Mat2 texture_footprint(const RaySides& sides, const Vec3& direction, const Vec3&
 }
 
 uint64_t untextured_instances(const Scene& scene) {
-  const auto varies = [&](uint32_t number) { return scene.materials()[number].material->varies(); };
+  const auto varies = [&](uint32_t number) {
+    const SurfaceMaterial& material = scene.materials()[number];
+    return material.uv_sets > 0 && material.material->varies();
+  };
   return static_cast<uint64_t>(std::ranges::count_if(scene.instances(), [&](const Scene::Instance& i) {
     return !scene.meshes()[i.mesh].has_uvs() && std::ranges::any_of(i.materials, varies);
   }));

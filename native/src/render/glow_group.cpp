@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "material/material.h"
 
@@ -50,8 +51,18 @@ bool glows(const SurfaceMaterial& m) { return !m.shell && (m.emission != Rgb(0.0
 
 float mean_glow(const SurfaceMaterial& m, const Mesh& mesh, uint32_t triangle, const TextureMap* placed) {
   if (!m.material->varies()) return luminance_at(m, {});
-  return std::max(luminance_at(m, site_of(mesh, triangle, placed)),
-                  kLeastOfMean * luminance_at(m, SurfaceSite::everywhere()));
+  SurfaceSite own = site_of(mesh, triangle, placed), all = SurfaceSite::everywhere();
+  const auto light = [&] { return std::max(luminance_at(m, own), kLeastOfMean * luminance_at(m, all)); };
+  if (m.color_sets == 0) return light();
+  // Corners, too: there is light wherever one of them has some, whatever the others take from the mean.
+  constexpr Vec2 kPlaces[] = {{1 / 3.0f, 1 / 3.0f}, {0, 0}, {1, 0}, {0, 1}};
+  float sum = 0;
+  for (const Vec2& place : kPlaces) {
+    for (size_t set = 0; set < m.color_sets; ++set)
+      own.colors[set] = all.colors[set] = mesh.color(triangle, place, set);
+    sum += light();
+  }
+  return sum / static_cast<float>(std::size(kPlaces));
 }
 
 Vec3 double_area(const Mesh& mesh, uint32_t triangle, const Affine& object_to_world) {

@@ -13,6 +13,7 @@ inline SurfaceSite point_site(const Scene& scene, const Hit& hit, const SurfaceM
   if (!surface.material->varies()) return site;
   site.uv = scene.texture(hit).uv;
   for (size_t set = 1; set < surface.uv_sets; ++set) site.others[set - 1].uv = scene.texture(hit, set).uv;
+  for (size_t set = 0; set < surface.color_sets; ++set) site.colors[set] = scene.color(hit, set);
   return site;
 }
 

@@ -59,6 +59,7 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   const RaySides sides = pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction);
   find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction, sides);
   if (surface->uv_sets > 1) find_others(scene, hit, ray.direction, sides);
+  find_colors(scene, hit);
   if (surface->relief) find_relief(scene, hit);
   if (crossing != nullptr && surface->holed()) {
     // At a point: a footprint would average the holes in, which the rays of a pixel do.
@@ -81,6 +82,10 @@ void Vertex::find_others(const Scene& scene, const Hit& hit, const Vec3& directi
     const TexturePoint texture = scene.texture(hit, set);
     site.others[set - 1] = {texture.uv, texture_footprint(sides, direction, geometric_normal, texture)};
   }
+}
+
+void Vertex::find_colors(const Scene& scene, const Hit& hit) {
+  for (size_t set = 0; set < surface->color_sets; ++set) site.colors[set] = scene.color(hit, set);
 }
 
 void Vertex::find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction,

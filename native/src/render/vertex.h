@@ -67,6 +67,7 @@ struct Vertex {
          const RayCone& cone_at_origin, const PixelFootprint* pixel);
   void find_relief(const Scene& scene, const Hit& hit);
   void find_others(const Scene& scene, const Hit& hit, const Vec3& direction, const RaySides& sides);
+  void find_colors(const Scene& scene, const Hit& hit);
   void find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
 };
 

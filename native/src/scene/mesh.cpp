@@ -44,6 +44,9 @@ Mesh::Mesh(const MeshArrays& arrays) {
     more_uvs_.assign(arrays.more_uvs.size() / arrays.corner_uvs.size(), std::vector<Vec2>(3 * count));
     if (!arrays.relief_uvs.empty()) relief_uvs_.resize(3 * count);
   }
+  if (!arrays.corner_colors.empty()) {
+    colors_.assign(arrays.corner_colors.size() / arrays.corners(), std::vector<Rgb>(3 * count));
+  }
   if (!arrays.material_slots.empty()) slots_.resize(count);
   in_pieces(count, [&](size_t begin, size_t end) { copy_triangles(arrays, kept, begin, end); });
   const std::vector<Vec3d> sums = arrays.has_normals() ? std::vector<Vec3d>() : summed_normals();
@@ -61,6 +64,7 @@ void Mesh::copy_triangles(const MeshArrays& arrays, std::span<const uint32_t> ke
     if (!slots_.empty()) slots_[i] = arrays.material_slots[from];
     for (int k = 0; k < 3; ++k) normals_[3 * i + static_cast<size_t>(k)] = arrays.normal(from, k, t[k]);
     if (!uvs_.empty()) copy_uvs(arrays, from, i);
+    copy_colors(arrays, from, i);
   }
 }
 
@@ -72,6 +76,16 @@ void Mesh::copy_uvs(const MeshArrays& arrays, size_t from, size_t to) {
       more_uvs_[set][place] = arrays.more_uvs[set * arrays.corner_uvs.size() + corner];
     }
     if (!relief_uvs_.empty()) relief_uvs_[place] = arrays.relief_uvs[corner];
+  }
+}
+
+void Mesh::copy_colors(const MeshArrays& arrays, size_t from, size_t to) {
+  for (size_t set = 0; set < colors_.size(); ++set) {
+    for (int k = 0; k < 3; ++k) {
+      const Rgb color = arrays.corner_colors[set * arrays.corners() + arrays.corner(from, k)];
+      const bool finite = std::isfinite(color.r + color.g + color.b);
+      colors_[set][3 * to + static_cast<size_t>(k)] = finite ? color : Rgb(0.0f);
+    }
   }
 }
 
@@ -122,6 +136,13 @@ Vec3 Mesh::shading_normal(uint32_t triangle, const Vec2& uv) const {
   return usable_normal(mean) ? mean : n[0];  // opposed corner normals cancel
 }
 
+Rgb Mesh::color(uint32_t triangle, const Vec2& uv, size_t set) const {
+  const size_t corner = 3 * static_cast<size_t>(triangle);
+  if (set >= colors_.size() || corner >= colors_[set].size()) return Rgb(0.0f);
+  const Rgb* c = &colors_[set][corner];
+  return interpolate(c[0], c[1], c[2], uv);
+}
+
 Vec3 Mesh::tangent(uint32_t triangle, const Mat2& map) const {
   if (uvs_.empty()) return Vec3(0.0f);
   const glm::uvec3& t = triangles_[triangle];
@@ -149,6 +170,7 @@ Mat3 Mesh::relief(uint32_t triangle, const Vec2& uv) const {
 uint64_t Mesh::bytes() const {
   uint64_t more = 0;
   for (const std::vector<Vec2>& set : more_uvs_) more += set.size() * sizeof(Vec2);
+  for (const std::vector<Rgb>& set : colors_) more += set.size() * sizeof(Rgb);
   return positions_.size() * sizeof(Vec3) + triangles_.size() * sizeof(glm::uvec3) + normals_.size() * sizeof(Vec3) +
          (uvs_.size() + relief_uvs_.size()) * sizeof(Vec2) + slots_.size() * sizeof(uint32_t) +
          tangents_.size() * sizeof(CornerTangent) + sides_.size() * sizeof(BorderEdge) + more;

@@ -55,6 +55,8 @@ class Mesh {
     const bool other = set > 0 && set <= more_uvs_.size() && corner < more_uvs_[set - 1].size();
     return std::span<const Vec2, 3>(other ? &more_uvs_[set - 1][corner] : &uvs_[corner], 3);
   }
+  /// At barycentric weights (u, v) of corners 1 and 2; black of a set that is not there.
+  Rgb color(uint32_t triangle, const Vec2& uv, size_t set) const;
 
   /// At barycentric weights (u, v) of corners 1 and 2. Object space; not normalised.
   Vec3 position(uint32_t triangle, const Vec2& uv) const;
@@ -81,6 +83,7 @@ class Mesh {
   /// Copies what belongs to triangles [begin, end) of this mesh; `kept`: their numbers in `arrays`.
   void copy_triangles(const MeshArrays& arrays, std::span<const uint32_t> kept, size_t begin, size_t end);
   void copy_uvs(const MeshArrays& arrays, size_t from, size_t to);
+  void copy_colors(const MeshArrays& arrays, size_t from, size_t to);
   /// Replaces normals that are not given or not usable, of triangles [begin, end).
   void finish_normals(const MeshArrays& arrays, std::span<const uint32_t> kept, std::span<const Vec3d> sums,
                       size_t begin, size_t end);
@@ -94,6 +97,7 @@ class Mesh {
   std::vector<Vec2> uvs_;                    // 3 a triangle, or none
   std::vector<std::vector<Vec2>> more_uvs_;  // other sets of them, but for sides
   std::vector<Vec2> relief_uvs_;             // 3 a triangle until there are tangents; none: the first set
+  std::vector<std::vector<Rgb>> colors_;     // sets of 3 a triangle, but for sides
   std::vector<uint32_t> slots_;
   std::vector<CornerTangent> tangents_;  // 3 a triangle, or none
   std::vector<BorderEdge> sides_;        // of triangles of the top

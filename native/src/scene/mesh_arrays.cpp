@@ -71,11 +71,15 @@ Vec3d area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 void MeshArrays::check() const {
-  const size_t n = triangles.size(), corners = corner_vertices.empty() ? 3 * n : corner_vertices.size();
+  const size_t n = triangles.size(), corners = this->corners();
   check_length(corner_normals.size(), corners, "corner normals");
   check_length(corner_uvs.size(), corners, "corner texture coordinates");
   check_more_uvs(more_uvs.size(), corner_uvs.size());
   check_length(relief_uvs.size(), corners, "texture coordinates of normal maps");
+  if (corners == 0 ? !corner_colors.empty() : corner_colors.size() % corners != 0) {
+    refuse("A mesh has " + std::to_string(corner_colors.size()) + " corner colours, which are no whole sets of its " +
+           std::to_string(corners) + " corners.");
+  }
   check_length(material_slots.size(), n, "material slots");
   check_length(smooth.size(), n, "smooth flags");
   check_length(vertex_normals.size(), positions.size(), "vertex normals");

@@ -17,6 +17,7 @@ struct MeshArrays {
   std::span<const Vec2> corner_uvs{};          // 3 a triangle
   std::span<const Vec2> more_uvs{};            // other sets of them, one after the other
   std::span<const Vec2> relief_uvs{};          // 3 a triangle: what tangents of normal maps follow; none: corner_uvs
+  std::span<const Rgb> corner_colors{};        // sets of 3 a triangle, one after the other; what is not finite is 0
   std::span<const uint32_t> material_slots{};  // 1 a triangle; none: slot 0
   std::span<const uint8_t> smooth{};           // 1 a triangle; used without any normals; none: all smooth
   /// Given: `triangles` name corners of faces, these are the vertices of those, and what is said to be 3 a triangle is
@@ -30,6 +31,7 @@ struct MeshArrays {
 
   /// Throws Error(invalid_argument) when lengths disagree.
   void check() const;
+  size_t corners() const { return corner_vertices.empty() ? 3 * triangles.size() : corner_vertices.size(); }
   size_t corner(size_t triangle, int k) const {
     return corner_vertices.empty() ? 3 * triangle + static_cast<size_t>(k) : triangles[triangle][k];
   }

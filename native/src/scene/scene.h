@@ -26,6 +26,7 @@ struct SurfaceMaterial {
   bool rec709_colors = true;  // f is Rec. 709 (measured) and is taken to the working space; false: already there
   bool relief = false;        // it has a normal map: meshes that show it get tangents
   uint8_t uv_sets = 1;        // how many sets of texture coordinates it looks at, SurfaceSite::kMostSets at most
+  uint8_t color_sets = 0;     // how many sets of corner colours it looks at, SurfaceSite::kMostColorSets at most
   /// Structure that lies over the surface and lets rays through; null: none. Needs texture coordinates.
   std::shared_ptr<const ShellField> shell = nullptr;
   /// The structure's own surface is what is shaded and shadowed; false: f says how the structure looks over its plane,
@@ -162,6 +163,10 @@ class Scene {
   bool is_holdout(const Hit& hit) const { return (instances_[hit.instance].hidden & hidden::kHoldout) != 0; }
   /// Apart from surface(): most materials are uniform. Only the first set of texture coordinates is placed.
   TexturePoint texture(const Hit& hit, size_t set = 0) const;
+  /// Mesh::color there.
+  Rgb color(const Hit& hit, size_t set) const {
+    return traced_mesh(instances_[hit.instance]).color(hit.triangle, {hit.u, hit.v}, set);
+  }
   /// What the components of a normal map are along at a hit, world space: tangent, bitangent, normal, towards the
   /// mesh's front, not normalised. Zero without texture coordinates, or where no material of the mesh has a map.
   Mat3 relief(const Hit& hit) const;

@@ -1,6 +1,6 @@
 """Shaders of materials that are not measured, as layers."""
 
-from .layer import Layer, as_principled, shines, split, unlike_reflection
+from .layer import Layer, as_principled, shines, sources_of, split, unlike_reflection
 from .tree import surface_layers
 
-__all__ = ["Layer", "as_principled", "shines", "split", "surface_layers", "unlike_reflection"]
+__all__ = ["Layer", "as_principled", "shines", "sources_of", "split", "surface_layers", "unlike_reflection"]

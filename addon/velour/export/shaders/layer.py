@@ -9,7 +9,7 @@ BLACK = {"base_color": (0.0, 0.0, 0.0), "metallic": 0.0, "roughness": 1.0, "spec
 class Factor(NamedTuple):
     kind: str  # share of a mix, its rest, or a gain
     value: float = 1.0
-    picture: object = None  # image_nodes.Picture in its place
+    picture: object = None  # image_nodes.Picture or corner_colors.CornerColors in its place
 
 
 class Relief(NamedTuple):
@@ -21,7 +21,7 @@ class Relief(NamedTuple):
 
 
 class Layer(NamedTuple):
-    """Keywords of Shader.add_layer, pictures in the place of some, and the factors of its weight.
+    """Keywords of Shader.add_layer, pictures or CornerColors in the place of some, the factors of its weight.
 
     kind: as Shader.add_layer's. A principled one may hold alpha and what glows until split() takes them out.
     """
@@ -65,6 +65,14 @@ def shines(layer):
     if layer.kind != "emission":
         return layer.glow is not None and shines(layer.glow)
     return "base_color" in layer.pictures or max(layer.values["base_color"]) > 0.0
+
+
+def sources_of(layers):
+    """Pictures and CornerColors in the place of their numbers, and the Reliefs."""
+    parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
+    sources = [source for part in parts for source in part.pictures.values()]
+    sources += [factor.picture for part in parts for factor in part.factors if factor.picture]
+    return sources, [part.relief for part in parts if part.relief]
 
 
 def unlike_reflection(layers):

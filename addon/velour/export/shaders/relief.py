@@ -1,5 +1,6 @@
 """Normal Map nodes."""
 
+from ..corner_colors import CornerColors
 from ..plugs import fed_by
 from .layer import Relief
 
@@ -17,6 +18,9 @@ def read_relief(plug, reader):
         return None
     _, picture = reader.number(fed.input("Color"))
     strength = max(reader.value(fed.input("Strength")), 0.0)
+    if isinstance(picture, CornerColors):
+        reader.note_link(fed.input("Color"), " (it is no picture)")
+        return None
     if picture is None or strength == 0.0:
         return None
     return Relief(picture, strength, fed.node.uv_map)

@@ -1,5 +1,6 @@
 """Numbers, colours and pictures of a node's inputs."""
 
+from ..corner_colors import corner_colors_of
 from ..image_nodes import UnsupportedError, picture_of
 from ..plugs import followed
 
@@ -15,14 +16,14 @@ class Reader:
         self.steps_left = _MOST_STEPS  # shaders that may be read
 
     def number(self, plug):
-        """Of an input that may be a picture: its number or colour, and its Picture or None."""
+        """Of an input that may be a picture: its number or colour, and its Picture, CornerColors or None."""
         fed = followed(plug) if plug else None
         if fed is None or not fed.socket.is_output:
             return own_value((fed or plug).socket, plug.socket) if plug else 0.0, None
         if fed.node.bl_idname in ("ShaderNodeValue", "ShaderNodeRGB"):
             return own_value(fed.socket, plug.socket), None
         try:
-            return own_value(plug.socket), picture_of(fed)
+            return own_value(plug.socket), _source_of(fed, plug.socket)
         except UnsupportedError as reason:
             self.note_link(plug, f" ({reason})")
             return own_value(plug.socket), None
@@ -39,6 +40,13 @@ class Reader:
 
     def note_link(self, plug, reason=""):
         self.note(plug, f"the link to '{plug.socket.name}' is ignored; its own value is used{reason}.")
+
+
+def _source_of(fed, asked):
+    """The Picture or CornerColors at an output that feeds the socket `asked`; raises UnsupportedError."""
+    if fed.node.bl_idname in ("ShaderNodeVertexColor", "ShaderNodeAttribute"):
+        return corner_colors_of(fed, isinstance(asked.default_value, (int, float)))
+    return picture_of(fed)
 
 
 def own_value(socket, asked=None):

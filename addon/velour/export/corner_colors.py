@@ -1,0 +1,139 @@
+"""Attributes of meshes as the colours of their corners."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .color import luminance_weights
+from .image_nodes import UnsupportedError
+
+MOST_SETS = 4  # VLR_MOST_COLOR_SETS
+# Types that Cycles reads: the property of an element, and how many numbers it has.
+_READ = {
+    "FLOAT_COLOR": ("color", 4),
+    "BYTE_COLOR": ("color", 4),  # which Blender hands out decoded
+    "FLOAT": ("value", 1),
+    "INT": ("value", 1),
+    "BOOLEAN": ("value", 1),
+    "FLOAT_VECTOR": ("vector", 3),
+    "FLOAT2": ("vector", 2),
+}
+
+
+class CornerColors(NamedTuple):
+    """What a node shows of an attribute."""
+
+    name: str | None  # None: the colour attribute that renders
+    part: str  # the node's output: Color, Vector, Fac or Alpha
+    is_number: bool  # it is linked to a number; on the corners it then is a grey
+    otherwise: float = 0.0  # on meshes without the attribute
+
+
+def corner_colors_of(plug, is_number):
+    """At the output of a node that shows an attribute, as an input that is a number or a colour takes it."""
+    node, part = plug.node, plug.socket.name
+    if node.bl_idname == "ShaderNodeVertexColor":
+        return CornerColors(node.layer_name or None, part, is_number)
+    if node.attribute_type != "GEOMETRY":
+        kind = node.bl_rna.properties["attribute_type"].enum_items[node.attribute_type].name
+        raise UnsupportedError(f"'{node.name}' shows an attribute of type '{kind}'")
+    otherwise = 1.0 if part == "Alpha" else 0.0
+    return CornerColors(node.attribute_name, "Fac" if part == "Factor" else part, is_number, otherwise)
+
+
+def shader_colors(owner, sources, notes):
+    """The sets that a material asks for, of the pictures and CornerColors in its layers."""
+    asked = tuple(dict.fromkeys(source for source in sources if isinstance(source, CornerColors)))
+    if len(asked) > MOST_SETS:
+        notes.add(
+            f"{owner}: it shows {len(asked)} attributes of meshes; beyond {MOST_SETS} the values below the"
+            " links are used."
+        )
+    return asked[:MOST_SETS]
+
+
+def colors_of_slots(colors):
+    """What object_arrays() takes, of the sets that the slots of a mesh ask for."""
+    return colors if any(colors) else ()
+
+
+def corner_colors(mesh, arrays, colors):
+    """[sets x corners x 3], None of none. `arrays`: MeshArrays; `colors`: of each slot its CornerColors.
+
+    The last slot stands for all beyond. Where a mesh has no such attribute it is what Cycles shows.
+    """
+    count = max(map(len, colors), default=0)
+    if count == 0:
+        return None
+    sets = np.zeros((count, len(arrays.corner_vertices), 3), np.float32)
+    slots = np.minimum(arrays.material_slots, len(colors) - 1)
+    for slot, asked in enumerate(colors):
+        shown = arrays.triangles[slots == slot]
+        for number, each in enumerate(asked):
+            values = _corner_values(mesh, arrays, each)
+            sets[number, shown] = each.otherwise if values is None else values[shown]
+    return sets
+
+
+def has_attribute(mesh, asked):
+    return _attribute(mesh, asked.name) is not None
+
+
+def missing_colors(obj, asked, material_name):
+    """The sentence for an object that has_attribute() is false of."""
+    what = "colour attribute" if asked.name is None else f"colours or numbers '{asked.name}'"
+    return (
+        f"Object '{obj.name}': it has no {what} for material '{material_name}', which shows"
+        f" {asked.otherwise:g} in its place."
+    )
+
+
+def _attribute(mesh, name):
+    if name is None:
+        colors = getattr(mesh, "color_attributes", ())
+        index = colors.render_color_index if len(colors) else -1
+        return colors[index] if 0 <= index < len(colors) else None
+    found = mesh.attributes.get(name)
+    readable = found is not None and found.data_type in _READ and found.domain in _SPREAD
+    return found if readable else None
+
+
+def _corner_values(mesh, arrays, asked):
+    """[corners x 3], or None."""
+    attribute = _attribute(mesh, asked.name)
+    if attribute is None:
+        return None
+    field, size = _READ[attribute.data_type]
+    values = np.empty((len(attribute.data), size), np.float32)
+    attribute.data.foreach_get(field, values.reshape(-1))
+    return _SPREAD[attribute.domain](mesh, arrays, _shown(values, asked))
+
+
+def _shown(values, asked):
+    """[elements x 3] What the output of a node gives, [elements x 1 to 4] of the attribute."""
+    size = values.shape[1]
+    color = np.pad(values, ((0, 0), (0, 1))) if size == 2 else values[:, :3]
+    if asked.part == "Alpha":
+        number = values[:, 3] if size == 4 else np.ones(len(values), np.float32)
+    elif asked.part == "Fac":
+        number = values[:, 0] if size == 2 else color.mean(axis=1)
+    elif not asked.is_number or size == 1:
+        return np.broadcast_to(color, (len(values), 3))
+    else:
+        number = color.mean(axis=1) if asked.part == "Vector" else color @ luminance_weights()
+    return np.repeat(number[:, None], 3, axis=1)
+
+
+def _spread_over_faces(mesh, arrays, values):
+    faces = np.empty(len(arrays.triangles), np.int32)
+    mesh.loop_triangles.foreach_get("polygon_index", faces)
+    corners = np.empty((len(arrays.corner_vertices), 3), np.float32)
+    corners[arrays.triangles] = values[faces][:, None]
+    return corners
+
+
+_SPREAD = {
+    "POINT": lambda _mesh, arrays, values: values[arrays.corner_vertices],
+    "CORNER": lambda _mesh, _arrays, values: values,
+    "FACE": _spread_over_faces,
+}
