@@ -116,6 +116,7 @@ def test_page_is_whole_and_escaped(tmp_path, renders):
     assert "a &lt;b&gt; &amp; c" in text
     assert "<b>" not in text
     assert "<signal>" not in text
+    assert '<td colspan="4">Blender crashed (&lt;signal&gt; &quot;11&quot;)</td></tr>' in text
     names = sorted(path.name for path in (tmp_path / "pictures").iterdir())
     kinds = ("difference", "new", "reference")
     assert names == sorted([f"001-{k}.png" for k in kinds] + [f"001-crop-{k}.png" for k in kinds])

@@ -14,9 +14,8 @@ from .case import Outcome
 from .views import GAIN, MAGNIFICATION, MARGIN, crop, views
 
 _TITLES = {"reference": "reference", "new": "new", "difference": f"difference x {GAIN}"}
-_COLUMNS = (
-    "scene",
-    "verdict",
+_COLUMNS = ("scene", "verdict")
+_NUMBERS = (
     "largest block difference, %",
     "in standard errors",
     "limit",
@@ -25,9 +24,13 @@ _COLUMNS = (
 _STYLE = """body { font: 15px/1.4 sans-serif; margin: 2em; background: #222; color: #ddd }
 table { border-collapse: collapse }
 td, th { padding: .2em .8em; text-align: left; border-bottom: 1px solid #444 }
+td.number, th.number { text-align: right }
+td, p { max-width: 50em }
 .failed { color: #ff8a80 } .ok { color: #a5d6a7 } a { color: #90caf9 }
-figure { display: inline-block; margin: 0 1em 1em 0 } figcaption { color: #aaa; font-size: 13px }
-img { image-rendering: pixelated; min-width: 240px; max-width: 32vw; background: #000 }"""
+figure { display: inline-block; width: clamp(240px, 30vw, 640px); margin: 0 1em .5em 0; vertical-align: top }
+figcaption { color: #aaa; font-size: 13px }
+img { image-rendering: pixelated; max-width: 100%; background: #000 }
+.whole img { width: 100% }"""
 
 
 class Page:
@@ -53,7 +56,8 @@ class Page:
         """The path of index.html."""
         title = html.escape(self._title)
         head = f"{len(self._rows) - self._failed} as expected, {self._failed} not"
-        table = _tag("table", _tag("tr", *(_tag("th", name) for name in _COLUMNS)), *self._rows)
+        names = [_tag("th", name) for name in _COLUMNS] + [_number("th", name) for name in _NUMBERS]
+        table = _tag("table", _tag("tr", *names), *self._rows)
         body = _tag("body", _tag("h1", title), _tag("p", head), table, *self._sections)
         meta = f'<meta charset="utf-8">{_tag("title", title)}{_tag("style", _STYLE)}'
         files.write_text(
@@ -72,7 +76,7 @@ class Page:
 
     def _pictures(self, outcome: Outcome, stem: str) -> list[str]:
         made, caption = views(outcome)
-        parts = [self._figures(made, stem)]
+        parts = [f'<div class="whole">{self._figures(made, stem)}</div>']
         if not outcome.passed:
             block = outcome.comparison.block
             parts.append(
@@ -96,17 +100,24 @@ def _tag(name: str, *inside: str) -> str:
     return f"<{name}>{''.join(inside)}</{name}>"
 
 
+def _number(name: str, text: str) -> str:
+    return f'<{name} class="number">{text}</{name}>'
+
+
 def _word(outcome: Outcome) -> str:
     word = "ok" if outcome.passed else "failed"
     return f'<span class="{word}">{word}</span>'
 
 
 def _row(outcome: Outcome, number: int) -> str:
-    cells = [f'<a href="#{number}">{html.escape(outcome.name)}</a>', _word(outcome)]
+    cells = [_tag("td", f'<a href="#{number}">{html.escape(outcome.name)}</a>'), _tag("td", _word(outcome))]
     found = outcome.comparison
     if found:
-        cells += [f"{found.percent:.2f}", f"{found.z:.1f}", f"{found.limit:.1f}", f"{found.sees:.2f}"]
-    return _tag("tr", *(_tag("td", cell) for cell in cells))
+        texts = (f"{found.percent:.2f}", f"{found.z:.1f}", f"{found.limit:.1f}", f"{found.sees:.2f}")
+        cells += [_number("td", text) for text in texts]
+    else:
+        cells.append(f'<td colspan="{len(_NUMBERS)}">{html.escape(outcome.sentence)}</td>')
+    return _tag("tr", *cells)
 
 
 def _record(outcome: Outcome) -> dict:
