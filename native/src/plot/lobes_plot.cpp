@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fit/evaluate.h"
+#include "model/model_material.h"
 #include "plot/axes.h"
 #include "plot/measured_points.h"
 
@@ -43,9 +44,9 @@ struct NamedLobe {
 };
 
 /// As the material mixes them for the view, neighbouring views' lobes with their weights.
-std::vector<NamedLobe> lobes_of(const ScatteredBrdf& /*brdf*/, const Material& material, const Vec3& wv) {
+std::vector<NamedLobe> lobes_of(const ScatteredBrdf& /*brdf*/, const Material* material, const Vec3& wv) {
   const auto point = std::make_shared<PreparedBrdf>();
-  material.prepare(wv, *point);
+  material->prepare(wv, *point);
   const LobeMixture& m = point->lobes;
   std::vector<NamedLobe> lobes;
   for (int j = 0; j < m.count; ++j) {
@@ -66,7 +67,7 @@ double f_of(const WarpedLobe& lobe, const Vec3d& wl, const Vec3d& wv) {
   return luminance_of(lobe.coefficient) * warped_kernel(lobe, wl, wv);
 }
 
-std::vector<NamedLobe> lobes_of(const ParametricBrdf& brdf, const Material& /*material*/, const Vec3& view) {
+std::vector<NamedLobe> lobes_of(const ParametricBrdf& brdf, const Material* /*material*/, const Vec3& view) {
   const Vec3d wv(view);
   const auto lobes_here = std::make_shared<std::vector<WarpedLobe>>(lobes_at(brdf, wv));
   std::vector<NamedLobe> lobes;
@@ -81,16 +82,27 @@ std::vector<NamedLobe> lobes_of(const ParametricBrdf& brdf, const Material& /*ma
 }
 
 template <typename Body>
-std::vector<NamedLobe> lobes_of(const Body& /*a BTF's*/, const Material& /*material*/, const Vec3& /*wv*/) {
+std::vector<NamedLobe> lobes_of(const Body& /*a BTF's*/, const Material* /*material*/, const Vec3& /*wv*/) {
   return {};
 }
 
-std::vector<PlotPoint> model_points(const Material& material, const Vec3& wv, const PlotView& view,
+/// None of a parametric model: setting up how samples are drawn from it would take half a second for each view, and its
+/// value is a formula.
+std::shared_ptr<const Material> material_for_values(const std::shared_ptr<const Model>& model) {
+  return std::holds_alternative<ParametricBrdf>(model->body) ? nullptr : make_material(model, 0);
+}
+
+std::vector<PlotPoint> model_points(const Model& model, const Material* material, const Vec3& wv, const PlotView& view,
                                     const std::vector<double>& angles) {
   std::vector<Vec3> wl;
   for (const double angle : angles) wl.push_back(light_in_plane(angle, view.phi));
   std::vector<Rgb> f(wl.size());
-  evaluate(material, wv, wl, f);
+  if (material) {
+    evaluate(*material, wv, wl, f);
+  } else {
+    const auto& brdf = std::get<ParametricBrdf>(model.body);
+    for (size_t i = 0; i < wl.size(); ++i) f[i] = Rgb(value_of(brdf, Vec3d(wl[i]), Vec3d(wv)));
+  }
   std::vector<PlotPoint> points;
   for (size_t i = 0; i < wl.size(); ++i) points.push_back({angles[i], static_cast<double>(luminance(f[i]) * wl[i].z)});
   return points;
@@ -121,7 +133,7 @@ void set_radius(const PlotSeries& model, const std::vector<PlotPoint>& measured,
   axis.high = std::pow(10.0, high);
 }
 
-void add_lobes(const Model& model, const Material& material, const Vec3& wv, const PlotView& view,
+void add_lobes(const Model& model, const Material* material, const Vec3& wv, const PlotView& view,
                const std::vector<double>& angles, Plot& plot) {
   const auto lobes = std::visit([&](const auto& body) { return lobes_of(body, material, wv); }, model.body);
   for (const NamedLobe& lobe : lobes) {
@@ -136,16 +148,17 @@ void add_lobes(const Model& model, const Material& material, const Vec3& wv, con
 
 }  // namespace
 
-Plot lobes_plot(const Model& model, const Material& material, const Measurement* measurement, const PlotView& view) {
+Plot lobes_plot(const std::shared_ptr<const Model>& model, const Measurement* measurement, const PlotView& view) {
+  const auto material = material_for_values(model);
   const Vec3 wv = direction(static_cast<float>(view.theta), static_cast<float>(view.phi));
   const double degrees = view.theta * 180 / kPiD;
   const std::vector<double> angles = plotted_angles(degrees);
   Plot plot{.kind = "lobes", .polar = true};
   plot.x = {"theta_l_degrees", "light angle, degrees", false, -90, 90};
   plot.y = {"f_cos_per_sr", "f cos \u03b8, 1/sr"};
-  PlotSeries total{"model", PlotRole::model, PlotMark::line, model_points(material, wv, view, angles)};
+  PlotSeries total{"model", PlotRole::model, PlotMark::line, model_points(*model, material.get(), wv, view, angles)};
   plot.legend.push_back({"model", PlotRole::model, PlotMark::line});
-  add_lobes(model, material, wv, view, angles, plot);
+  add_lobes(*model, material.get(), wv, view, angles, plot);
   PlotSeries measured{"measured", PlotRole::measured, PlotMark::dots, {}};
   if (measurement) measured.points = measured_points(*measurement, view);
   set_radius(total, measured.points, plot.y);

@@ -30,9 +30,8 @@ Plot make_plot(PlotKind kind, const std::shared_ptr<const Model>& model, const M
   require_brdf(*model, kind);
   if (kind == PlotKind::view_error) return view_error_plot(model->fit);
   check_view(view);
-  const auto material = make_material(model, 0);
-  if (kind == PlotKind::lobes) return lobes_plot(*model, *material, measurement, view);
-  return albedo_plot(*material, measurement, view.phi);
+  if (kind == PlotKind::lobes) return lobes_plot(model, measurement, view);
+  return albedo_plot(*make_material(model, 0), measurement, view.phi);
 }
 
 }  // namespace velour
