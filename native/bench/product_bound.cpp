@@ -155,7 +155,7 @@ class Study {
 
   Lighting prepare(const Arguments& a) {
     describe(a, scene_);
-    return Lighting(scene_);
+    return Lighting(scene_, Progress());
   }
 
   void visit() {

@@ -139,7 +139,7 @@ class Study {
  private:
   Lighting described(const Arguments& a) {
     describe(a, scene_);
-    return Lighting(scene_);
+    return Lighting(scene_, Progress());
   }
 
   Moments pixel(int x, int y, Directions& directions) const {
