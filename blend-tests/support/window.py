@@ -8,8 +8,9 @@ import sys
 import traceback
 
 import bpy
+import numpy as np
 
-from . import scenes
+from . import framebuffer, scenes
 
 
 def run(folder, tests):
@@ -84,10 +85,12 @@ def scroll_down(pixels):
 
 
 def screenshot(folder, name):
-    """[height x width x 3] of what the window shows; a picture of nothing fails."""
-    path = folder / f"{name}.png"
-    with override():
-        bpy.ops.screen.screenshot(filepath=str(path))
-    pixels = scenes.read(path)[..., :3]
+    """[height x width x 3] in [0, 1], of what the window shows; a picture of nothing fails.
+
+    From the screen, which the window fills: since Blender 4 its own screenshots are black under Mesa.
+    """
+    pixels = framebuffer.read(folder / framebuffer.FILE)
+    framebuffer.write_png(folder / f"{name}.png", pixels)
+    pixels = pixels / np.float32(255)
     assert pixels.std() > 0.02, "the screenshot is uniform"
     return pixels

@@ -9,6 +9,7 @@ from .nodes import velour_node
 from .notes import ExportError
 from .placement import Tile
 from .shaders import as_principled, shines, sources_of, split, surface_layers, unlike_reflection
+from .shaders.relief import correction
 from .textures import TextureTable
 from .uv_maps import placed_map, shader_maps
 
@@ -137,6 +138,7 @@ class MaterialTable:
         if layer.relief:
             values["normal"] = self._slot(layer.relief.picture, True, material)
             values["normal_strength"] = layer.relief.strength
+            values["normal_correction"] = correction(material)
         shader.add_layer(layer.kind, self._slots(layer, material), **values)
         for factor in layer.factors:
             slot = factor.picture and self._slot(factor.picture, False, material)

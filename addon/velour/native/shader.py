@@ -27,6 +27,8 @@ class Shader(Handle):
         textures: dict[str, TextureSlot] | None = None,
         normal: TextureSlot | None = None,
         normal_strength: float = 1.0,
+        normal_correction: str = "faded",
+        interreflection: bool = False,
         **values,
     ) -> None:
         """`kind`: principled, diffuse, glossy, transparent, emission; the weight is 1.
@@ -34,6 +36,8 @@ class Shader(Handle):
         textures and values: as of Scene.add_textured_material, without alpha and emission. diffuse and glossy
         look at base_color and roughness; base_color of transparent is what light that goes straight on is
         multiplied with, of emission the radiance. normal: a normal map, colours, of what reflects.
+        normal_correction: faded, shadowed, as it is: what becomes of steep normals. interreflection: a rough
+        diffuse layer keeps its energy.
         """
         desc = table.LayerDesc()
         self._lib.vlr_layer_desc_init(byref(desc))
@@ -43,6 +47,8 @@ class Shader(Handle):
         if normal is not None:
             desc.normal, desc.normal_map = normal.texture.pointer, small("uv_map", normal.uv_map, 6)
             desc.normal_strength, desc.normal_set = normal_strength, normal.uv_set
+            desc.normal_correction = choice("normal_correction", normal_correction, table.RELIEF_CORRECTIONS)
+        desc.interreflection = interreflection
         self._lib.vlr_shader_add_layer(self.pointer, byref(desc))
 
     def weigh_layer(

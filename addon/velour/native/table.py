@@ -40,6 +40,7 @@ WRAPS = ("repeat", "extend", "clip", "mirror")
 FILTERS = ("closest", "linear")
 LAYERS = ("principled", "diffuse", "glossy", "transparent", "emission")
 FACTORS = ("share", "rest", "gain")
+RELIEF_CORRECTIONS = ("faded", "shadowed", "as it is")
 STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product")
 
 
@@ -261,6 +262,8 @@ class LayerDesc(Struct):
         ("normal_map", c_float * 6),
         ("normal_strength", c_float),
         ("normal_set", c_uint32),
+        ("normal_correction", c_int32),
+        ("interreflection", c_int32),
     ]
 
 

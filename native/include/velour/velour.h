@@ -544,6 +544,9 @@ enum {
  * GAIN is any number that is not negative. */
 enum { VLR_FACTOR_SHARE = 0, VLR_FACTOR_REST = 1, VLR_FACTOR_GAIN = 2 };
 
+/* What keeps steep mapped normals from showing what cannot be there: see ReliefCorrection in material/normal_map.h. */
+enum { VLR_RELIEF_FADED = 0, VLR_RELIEF_SHADOWED = 1, VLR_RELIEF_AS_IT_IS = 2 };
+
 typedef struct vlr_layer_desc {
   uint32_t struct_size;
   int32_t kind;                            /* VLR_LAYER_* */
@@ -554,6 +557,8 @@ typedef struct vlr_layer_desc {
   float normal_map[6];       /* as those of vlr_principled_textures */
   float normal_strength;     /* of its tilt, not negative; 1 */
   uint32_t normal_set;       /* as those of vlr_principled_textures */
+  int32_t normal_correction; /* VLR_RELIEF_* */
+  int32_t interreflection;   /* of a diffuse layer: its facets send light to each other, so energy is kept; 0 */
 } vlr_layer_desc;
 VLR_API void vlr_layer_desc_init(vlr_layer_desc* desc);
 typedef struct vlr_factor_desc {

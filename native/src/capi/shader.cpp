@@ -14,12 +14,14 @@ namespace {
 
 Rgb base_color(const vlr_principled_desc& d) { return {d.base_color[0], d.base_color[1], d.base_color[2]}; }
 
-std::shared_ptr<const Material> reflecting(int32_t kind, vlr_principled_desc desc, PrincipledTextures textures) {
-  if (kind == VLR_LAYER_GLOSSY) {
+std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, vlr_principled_desc desc,
+                                           PrincipledTextures textures) {
+  if (layer.kind == VLR_LAYER_GLOSSY) {
     return make_glossy_material({base_color(desc), desc.roughness, textures.base_color, textures.roughness});
   }
-  if (kind == VLR_LAYER_DIFFUSE) {
-    return make_rough_diffuse_material({base_color(desc), desc.roughness, textures.base_color, textures.roughness});
+  if (layer.kind == VLR_LAYER_DIFFUSE) {
+    return make_rough_diffuse_material(
+        {base_color(desc), desc.roughness, layer.interreflection != 0, textures.base_color, textures.roughness});
   }
   desc.alpha = 1.0f;
   textures.alpha = {};
@@ -35,7 +37,10 @@ std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> mat
   const DiffusePart diffuse = layer.kind == VLR_LAYER_GLOSSY    ? DiffusePart::none
                               : layer.kind == VLR_LAYER_DIFFUSE ? DiffusePart::all
                                                                 : DiffusePart::base_of_principled;
-  return make_normal_mapped(std::move(material), {normal_slot(layer), std::max(layer.normal_strength, 0.0f)}, diffuse);
+  return make_normal_mapped(std::move(material),
+                            {normal_slot(layer), std::max(layer.normal_strength, 0.0f),
+                             static_cast<ReliefCorrection>(layer.normal_correction)},
+                            diffuse);
 }
 
 PrincipledTextures textures_of(const vlr_layer_desc& layer) {
@@ -52,7 +57,7 @@ LayerWeight& add_layer(ShaderLayers& layers, MeshSets& sets, const vlr_layer_des
     to.push_back({base_color(desc), textures.base_color});
     return to.back().weight;
   }
-  layers.reflecting.push_back({with_normals(reflecting(layer.kind, desc, textures), layer)});
+  layers.reflecting.push_back({with_normals(reflecting(layer, desc, textures), layer)});
   return layers.reflecting.back().weight;
 }
 
@@ -90,6 +95,7 @@ vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) 
     require(shader, "shader");
     const auto layer = read_options(desc, vlr_layer_desc_init, "vlr_layer_desc");
     require_choice(layer.kind, VLR_LAYER_EMISSION, "vlr_layer_desc.kind");
+    require_choice(layer.normal_correction, VLR_RELIEF_AS_IT_IS, "vlr_layer_desc.normal_correction");
     shader->last = &add_layer(shader->layers, shader->sets, layer);
     shader->relief |= layer.normal != nullptr;
   });

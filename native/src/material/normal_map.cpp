@@ -8,7 +8,8 @@
 namespace velour {
 namespace {
 
-constexpr float kLeastCosine = 1e-6f;  // of the surface's own normal: f is finite
+constexpr float kLeastCosine = 1e-6f;      // of the surface's own normal: f is finite
+constexpr float kLeastViewCosine = 1e-3f;  // of a viewer with the mapped normal
 
 class NormalMappedMaterial final : public Material {
  public:
@@ -22,7 +23,9 @@ class NormalMappedMaterial final : public Material {
 
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
     const Frame frame = Frame::about(normal_at(wv, site));
-    material_->prepare(frame.to_local(wv), site, point);
+    Vec3 local = frame.to_local(wv);
+    if (local.z < kLeastViewCosine) local = glm::normalize(Vec3(local.x, local.y, kLeastViewCosine));
+    material_->prepare(local, site, point);
     point.relief = frame;
   }
 
@@ -48,13 +51,23 @@ class NormalMappedMaterial final : public Material {
 
  private:
   void soften(const PreparedBrdf& point, const DirectionBatch& wl, const DirectionBatch& turned, RgbBatch& f) const {
-    if (diffuse_ == DiffusePart::none) return;
+    if (diffuse_ == DiffusePart::none || map_.correction == ReliefCorrection::none) return;
     RgbBatch specular;
     if (principled_ != nullptr) principled_->eval_specular(point, turned, specular);
     for (int i = 0; i < wl.count; ++i) {
       const Rgb rest = principled_ != nullptr ? specular.get(i) : Rgb(0.0f);
-      f.set(i, rest + (f.get(i) - rest) * terminator_softening(wl.z[i], turned.z[i], point.relief.z.z));
+      f.set(i, rest + (f.get(i) - rest) * kept(wl.z[i], turned.z[i], point.relief.z.z));
     }
+  }
+
+  float kept(float own, float mapped, float tilt) const {
+    return map_.correction == ReliefCorrection::faded ? terminator_softening(own, mapped, tilt)
+                                                      : relief_shadowing(own, tilt);
+  }
+
+  bool keeps_mirrors_above() const {
+    if (map_.correction == ReliefCorrection::shadowed) return diffuse_ != DiffusePart::all;
+    return map_.correction == ReliefCorrection::faded;
   }
 
   Vec3 normal_at(const Vec3& wv, const SurfaceSite& site) const {
@@ -64,7 +77,7 @@ class NormalMappedMaterial final : public Material {
     const Vec3 normal = site.relief * map;
     const float length = glm::length(normal);
     if (!(length > 0) || !std::isfinite(length)) return kOwn;
-    return with_mirror_above(normal / length, site.ground, wv);
+    return keeps_mirrors_above() ? with_mirror_above(normal / length, site.ground, wv) : normal / length;
   }
 
   const std::shared_ptr<const Material> material_;
@@ -94,6 +107,13 @@ float terminator_softening(float own, float mapped, float tilt) {
   const float g = bottom != 0 ? own / bottom : 0.0f;
   if (g >= 1) return 1;
   return g > 0 ? g * (1 + g * (1 - g)) : 0.0f;
+}
+
+float relief_shadowing(float own, float tilt) {
+  if (!(own > 0)) return 0;
+  const auto tangent_sq = [](float cosine) { return std::max(1 / (cosine * cosine) - 1, 0.0f); };
+  const float alpha_sq = tilt != 0 ? std::min(tangent_sq(tilt) / 8, 1.0f) : 1.0f;
+  return 2 / (1 + std::sqrt(1 + alpha_sq * tangent_sq(own)));
 }
 
 std::shared_ptr<const Material> make_normal_mapped(std::shared_ptr<const Material> material, const NormalMap& map,

@@ -8,28 +8,40 @@
 
 namespace velour {
 
+/// What keeps steep normals from showing what cannot be there. Cycles does the first up to Blender 4.1; since, a
+/// material says which of the others.
+enum class ReliefCorrection {
+  faded,     // mirror images stay above the ground; diffuse light fades out by terminator_softening()
+  shadowed,  // the same of what is not diffuse alone; by relief_shadowing()
+  none       // neither: the normals as they are
+};
+
 /// Colours from 0 to 1 are components from -1 to 1 along tangent, bitangent and normal of the surface
 /// (SurfaceSite::relief).
 struct NormalMap {
   TextureSlot<Rgb> texture{};
   /// Of the tilt: 0 is the surface as it is, 1 the picture, more exaggerates.
   float strength = 1;
+  ReliefCorrection correction = ReliefCorrection::faded;
 };
 
-/// What of f is diffuse: there the light fades out softly before the surface's own horizon, as in Cycles ([CLB19], Eq.
-/// 3 and the smoothing after it), where it would end in a hard line.
+/// What of f is diffuse: there the light fades out softly before the surface's own horizon, where it would end in a
+/// hard line.
 enum class DiffusePart { none, all, base_of_principled };
 
 /// `material`, uniform or textured, about the mapped normal: its f times the ratio of the cosines with the mapped and
-/// with the surface's own normal, 0 where light or viewer are behind either. So that what a mirror would reflect comes
-/// from above the geometric surface, the normal is turned towards that one as far as it needs. Where the surface has no
-/// relief the material is as it is.
+/// with the surface's own normal, 0 where the light is behind either; a viewer behind the mapped one sees what is seen
+/// at its horizon. So that what a mirror would reflect comes from above the geometric surface, the normal is turned
+/// towards that one as far as it needs, unless the correction leaves it. Where the surface has no relief the material
+/// is as it is.
 std::shared_ptr<const Material> make_normal_mapped(std::shared_ptr<const Material> material, const NormalMap& map,
                                                    DiffusePart diffuse);
 
 /// What the light keeps of a diffuse f about a normal whose cosine with the surface's own is `tilt`: `own` and `mapped`
-/// are the light's cosines with both.
+/// are the light's cosines with both. [CLB19], Eq. 3 and the smoothing after it.
 float terminator_softening(float own, float mapped, float tilt);
+/// The same as the share that facets of GGX, as rough as the tilt is steep, do not shadow ([CLS19]).
+float relief_shadowing(float own, float tilt);
 
 /// Unit `normal`, or one between it and unit `ground` about which the mirror image of unit `wv` is above `ground`: by a
 /// cosine of 0.01, or 0.9 of wv's own where that is less. `wv` is above `ground`.

@@ -1,13 +1,23 @@
 #include "material/rough_diffuse_material.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sphere/warp.h"
 
 namespace velour {
 namespace {
 
-enum Parameter { kRed, kGreen, kBlue, kEven, kUneven };
+enum Parameter { kRed, kGreen, kBlue, kEven, kUneven, kManyRed, kManyGreen, kManyBlue };
+
+/// The integral of s / t of the header times the cosine, over the hemisphere of light.
+float uneven_albedo(float cosine) {
+  if (cosine < 1e-6f) return 0.5f * kPi - 2.0f / 3 - cosine;
+  const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.0f));
+  return sine * (std::acos(std::min(cosine, 1.0f)) - 2.0f / 3 - sine * cosine) +
+         2.0f / 3 * (sine / cosine) * (1 - sine * sine * sine);
+}
+constexpr float kMeanUnevenAlbedo = (2 * kPi - 5.6f) / 3;  // weighted by the cosine
 
 class RoughDiffuseMaterial final : public Material {
  public:
@@ -20,16 +30,22 @@ class RoughDiffuseMaterial final : public Material {
     for (int c = 0; c < 3; ++c) point.parameter[kRed + c] = color[c];
     point.parameter[kEven] = 1 / (kPi + (0.5f * kPi - 2.0f / 3) * roughness);
     point.parameter[kUneven] = roughness * point.parameter[kEven];
+    const Rgb many = p_.interreflection && roughness > 0 ? interreflected(point, color) : Rgb(0.0f);
+    for (int c = 0; c < 3; ++c) point.parameter[kManyRed + c] = many[c];
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     const Rgb color(point.parameter[kRed], point.parameter[kGreen], point.parameter[kBlue]);
+    const Rgb many(point.parameter[kManyRed], point.parameter[kManyGreen], point.parameter[kManyBlue]);
+    const bool any = many != Rgb(0.0f);
     const Vec3& wv = point.wv;
     for (int i = 0; i < wl.count; ++i) {
       const Vec3 l = wl.get(i);
       float s = wv.x * l.x + wv.y * l.y;
       if (s > 0) s /= std::max(wv.z, l.z);
-      f.set(i, l.z > 0 ? color * (point.parameter[kEven] + point.parameter[kUneven] * s) : Rgb(0.0f));
+      Rgb value = color * (point.parameter[kEven] + point.parameter[kUneven] * s);
+      if (any) value += many * (1 - albedo(point, l.z));
+      f.set(i, l.z > 0 ? value : Rgb(0.0f));
       pdf.v[i] = std::max(l.z, 0.0f) / kPi;
     }
   }
@@ -42,6 +58,17 @@ class RoughDiffuseMaterial final : public Material {
   bool isotropic() const override { return true; }
 
  private:
+  /// Of a white surface.
+  static float albedo(const PreparedBrdf& point, float cosine) {
+    return kPi * point.parameter[kEven] + point.parameter[kUneven] * uneven_albedo(cosine);
+  }
+
+  /// All of it that the light has no part in.
+  static Rgb interreflected(const PreparedBrdf& point, const Rgb& color) {
+    const float mean = kPi * point.parameter[kEven] + point.parameter[kUneven] * kMeanUnevenAlbedo;
+    return color * color * (mean / (1 - mean) * (1 - albedo(point, point.wv.z)) / kPi) / (1.0f - color * (1 - mean));
+  }
+
   const RoughDiffuseParameters p_;
 };
 

@@ -1,5 +1,7 @@
 """Nodes of shaders as Layers."""
 
+import bpy
+
 from ..plugs import fed_by
 from .layer import BLACK, Factor, Layer
 from .relief import read_relief
@@ -25,7 +27,11 @@ _IGNORED = {
     "Coat Weight": 0.0,
     "Transmission": 0.0,
     "Transmission Weight": 0.0,
+    "Diffuse Roughness": 0.0,
+    "Thin Film Thickness": 0.0,
 }
+# No property tells: rough diffuse surfaces keep their energy since Principled has a roughness of its base.
+_INTERREFLECTION = bpy.app.version >= (4, 3)
 _LINK_ONLY = ("Clearcoat Normal", "Coat Normal", "Tangent")
 
 
@@ -51,7 +57,8 @@ def _read_diffuse(plug, reader):
     if rough is None and roughness <= 0.0:
         return [Layer("principled", {**BLACK, "base_color": color}, pictures, relief=relief)]
     pictures |= {"roughness": rough} if rough else {}
-    return [Layer("diffuse", {"base_color": color, "roughness": roughness}, pictures, relief=relief)]
+    values = {"base_color": color, "roughness": roughness, "interreflection": _INTERREFLECTION}
+    return [Layer("diffuse", values, pictures, relief=relief)]
 
 
 def _read_glossy(plug, reader):

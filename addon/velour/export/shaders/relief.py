@@ -5,6 +5,12 @@ from ..plugs import fed_by
 from .layer import Relief
 
 
+def correction(material):
+    """What becomes of steep normals, as Shader.add_layer has it; materials choose since Blender 4.2."""
+    corrects = getattr(material, "use_bump_map_correction", None)
+    return "faded" if corrects is None else "shadowed" if corrects else "as it is"
+
+
 def read_relief(plug, reader):
     """The Relief of a shader node, None of one without; what is linked to its normal besides is noted."""
     fed = fed_by(plug.input("Normal"))

@@ -78,6 +78,38 @@ TEST(NormalMap, DiffuseLightFadesOutBeforeTheHorizon) {
   EXPECT_NEAR(value(metal, DiffusePart::base_of_principled), value(metal, DiffusePart::none), 1e-5f);
 }
 
+TEST(NormalMap, ReliefShadowsAsItsTiltIsSteep) {
+  EXPECT_EQ(relief_shadowing(0.5f, 1), 1);  // flat
+  EXPECT_EQ(relief_shadowing(1, 0.3f), 1);
+  EXPECT_EQ(relief_shadowing(-0.1f, 0.8f), 0);
+  // A tilt of 45 degrees: alpha^2 is an eighth.
+  EXPECT_NEAR(relief_shadowing(0.5f, std::sqrt(0.5f)), 2 / (1 + std::sqrt(1 + 3.0f / 8)), 1e-6f);
+  EXPECT_NEAR(relief_shadowing(0.5f, 0.01f), 2 / (1 + std::sqrt(1 + 3.0f)), 1e-6f);  // no rougher than 1
+  EXPECT_NEAR(relief_shadowing(0.5f, 0), 2 / (1 + std::sqrt(1 + 3.0f)), 1e-6f);
+}
+
+/// Of light that is low, and of a view whose mirror image would be below the ground.
+TEST(NormalMap, CorrectionsDiffer) {
+  const Vec3 normal = direction(0.9f, 0), low = direction(1.5f, 0), wv = direction(1.2f, kPi);
+  ASSERT_GT(glm::dot(with_mirror_above(normal, {0, 0, 1}, wv), {0, 0, 1}), normal.z + 0.1f);
+  ASSERT_LT(glm::dot(normal, wv), 0);  // and it is behind the mapped normal
+  const auto value = [&](ReliefCorrection correction, DiffusePart diffuse) {
+    const NormalMap map{test::one_texel(0.5f + 0.5f * normal), 1, correction};
+    PreparedBrdf point;
+    const auto material = make_normal_mapped(white(), map, diffuse);
+    material->prepare(wv, {.relief = Mat3(1.0f), .ground = {0, 0, 1}}, point);
+    return kPi * test::eval_one(*material, point, low).f.g * low.z;
+  };
+  const float hard = glm::dot(normal, low), shadowed = relief_shadowing(low.z, normal.z);
+  EXPECT_LT(shadowed, 0.5f);
+  EXPECT_NEAR(value(ReliefCorrection::none, DiffusePart::all), hard, 1e-4f);
+  EXPECT_NEAR(value(ReliefCorrection::shadowed, DiffusePart::all), shadowed * hard, 1e-4f);
+  const float turned = glm::dot(with_mirror_above(normal, {0, 0, 1}, wv), low);
+  EXPECT_LT(turned, hard - 0.05f);
+  EXPECT_NEAR(value(ReliefCorrection::shadowed, DiffusePart::none), turned, 1e-4f);
+  EXPECT_NEAR(value(ReliefCorrection::none, DiffusePart::none), hard, 1e-4f);
+}
+
 /// Over random normals, grounds and views: what the view's mirror image needs, and no more.
 TEST(NormalMap, MirrorImagesStayAboveTheGround) {
   int turned = 0;

@@ -153,6 +153,23 @@ TEST(RoughDiffuseMaterial, IsLambertWithoutRoughnessAndDarkerWithIt) {
   EXPECT_GT(albedo_of(1, 1.4f), albedo_of(1, 0.2f) + 0.01);  // flat: bright at its rim
 }
 
+/// A furnace: with light that its facets send to each other, white keeps all of it at every angle, and colours what a
+/// series of colour per reflection leaves.
+TEST(RoughDiffuseMaterial, KeepsItsEnergyByInterreflection) {
+  const auto albedo_of = [](float color, bool interreflection, float theta_v) {
+    return albedo(*make_rough_diffuse_material({Rgb(color), 1, interreflection}), theta_v);
+  };
+  const double mean = (kPi + (2 * kPi - 5.6) / 3) / (kPi + kPi / 2 - 2.0 / 3);
+  for (const float theta_v : {0.0f, 0.4f, 0.8f, 1.2f, 1.5f}) {
+    const double once = albedo_of(1, false, theta_v);
+    EXPECT_LT(once, 0.97) << theta_v;
+    EXPECT_NEAR(albedo_of(1, true, theta_v), 1, 2e-3) << theta_v;
+    const double more = 0.25 * mean * (1 - once) / (1 - 0.5 * (1 - mean));
+    EXPECT_NEAR(albedo_of(0.5f, true, theta_v), 0.5 * once + more, 1e-3) << theta_v;
+  }
+  EXPECT_NEAR(albedo(*make_rough_diffuse_material({Rgb(1), 0, true}), 0.5f), 1, 1e-4);
+}
+
 /// The value of the formula at directions where it is short.
 TEST(RoughDiffuseMaterial, FollowsItsFormula) {
   const auto f = [](const Vec3& wl, const Vec3& wv) {
