@@ -27,7 +27,7 @@ class NormalMaps(ShaderTest):
     def test_glossy(self):
         """Steep facets show what a roughness of 1 shows of flat ones."""
         self.tree.end(self.tree.glossy(0.4, Normal=self._map(low=0.35, high=0.65)))
-        self.assert_approximate("Normal Map: Glossy", 1, samples=4)
+        self.assert_approximate("Normal Map: Glossy", 1, samples=4, exact=((5, 0), NEVER))
 
     def test_leaf(self):
         """What foliage is made of; but for the Principled itself."""
@@ -42,11 +42,11 @@ class NormalMaps(ShaderTest):
     def test_half_strength(self):
         """Before strength scaled tilt in tangent space, Cycles interpolated the normals themselves."""
         self.tree.end(self.tree.diffuse(Normal=self._map(0.5)))
-        self.assert_approximate("Normal Map: strength 0.5", 4)
+        self.assert_approximate("Normal Map: strength 0.5", 4, exact=((4, 0), NEVER))
 
     def test_strong(self):
         self.tree.end(self.tree.diffuse(Normal=self._map(2.0)))
-        self.assert_approximate("Normal Map: strength 2", 4)
+        self.assert_approximate("Normal Map: strength 2", 4, exact=((4, 0), NEVER))
 
     def test_mirrored(self):
         layer = self.roof.data.uv_layers["UVMap"]
@@ -90,13 +90,14 @@ class NormalMaps(ShaderTest):
         self.assert_parity("Normal Map: uneven negative scale")
 
     def test_sphere(self):
+        """Blender 5's fade ends at another horizon where the surface is smooth."""
         ball = stage.sphere(1.2, segments=24, rings=12)
         ball.location.z = 2.2
         self.roof.hide_render = True
         ball.data.materials.clear()
         ball.data.materials.append(self.material)
         self.tree.end(self.tree.diffuse(Normal=self._map(size=16, low=0.35, high=0.65)))
-        self.assert_parity("Normal Map: smooth sphere")
+        self.assert_approximate("Normal Map: smooth sphere", 0.5, exact=((3, 0), (5, 0)))
 
 
 class Reflecting(ShaderTest):
@@ -114,7 +115,10 @@ class Reflecting(ShaderTest):
         self.assert_approximate("Glossy BSDF: GGX, roughness 1", 2, exact=((4, 0), NEVER))
 
     def test_sharp(self):
-        self.tree.end(self.tree.glossy(0.0, distribution="SHARP"))
+        node = self.tree.glossy(0.0)
+        if any(item.identifier == "SHARP" for item in node.node.bl_rna.properties["distribution"].enum_items):
+            node.node.distribution = "SHARP"
+        self.tree.end(node)
         self.assert_parity("Glossy BSDF: sharp")
 
     def test_beckmann(self):

@@ -27,7 +27,7 @@ class Shader(Handle):
         textures: dict[str, TextureSlot] | None = None,
         normal: TextureSlot | None = None,
         normal_strength: float = 1.0,
-        normal_correction: str = "faded",
+        normal_correction: str = "turned",
         interreflection: bool = False,
         **values,
     ) -> None:
@@ -36,7 +36,7 @@ class Shader(Handle):
         textures and values: as of Scene.add_textured_material, without alpha and emission. diffuse and glossy
         look at base_color and roughness; base_color of transparent is what light that goes straight on is
         multiplied with, of emission the radiance. normal: a normal map, colours, of what reflects.
-        normal_correction: faded, shadowed, as it is: what becomes of steep normals. interreflection: a rough
+        normal_correction: turned, faded, shadowed, as it is: what becomes of steep normals. interreflection: a rough
         diffuse layer keeps its energy.
         """
         desc = table.LayerDesc()

@@ -545,7 +545,7 @@ enum {
 enum { VLR_FACTOR_SHARE = 0, VLR_FACTOR_REST = 1, VLR_FACTOR_GAIN = 2 };
 
 /* What keeps steep mapped normals from showing what cannot be there: see ReliefCorrection in material/normal_map.h. */
-enum { VLR_RELIEF_FADED = 0, VLR_RELIEF_SHADOWED = 1, VLR_RELIEF_AS_IT_IS = 2 };
+enum { VLR_RELIEF_TURNED = 0, VLR_RELIEF_FADED = 1, VLR_RELIEF_SHADOWED = 2, VLR_RELIEF_AS_IT_IS = 3 };
 
 typedef struct vlr_layer_desc {
   uint32_t struct_size;

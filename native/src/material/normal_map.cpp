@@ -61,13 +61,13 @@ class NormalMappedMaterial final : public Material {
   }
 
   float kept(float own, float mapped, float tilt) const {
-    return map_.correction == ReliefCorrection::faded ? terminator_softening(own, mapped, tilt)
-                                                      : relief_shadowing(own, tilt);
+    return map_.correction == ReliefCorrection::shadowed ? relief_shadowing(own, tilt)
+                                                         : terminator_softening(own, mapped, tilt);
   }
 
   bool keeps_mirrors_above() const {
-    if (map_.correction == ReliefCorrection::shadowed) return diffuse_ != DiffusePart::all;
-    return map_.correction == ReliefCorrection::faded;
+    if (map_.correction == ReliefCorrection::turned) return true;
+    return map_.correction != ReliefCorrection::none && diffuse_ != DiffusePart::all;
   }
 
   Vec3 normal_at(const Vec3& wv, const SurfaceSite& site) const {

@@ -8,12 +8,13 @@
 
 namespace velour {
 
-/// What keeps steep normals from showing what cannot be there. Cycles does the first up to Blender 4.1; since, a
-/// material says which of the others.
+/// What keeps steep normals from showing what cannot be there: in Cycles of Blender 3 the first, of Blender 4 the
+/// second, since Blender 5 the third; from 4.2 on a material may ask for the last.
 enum class ReliefCorrection {
-  faded,     // mirror images stay above the ground; diffuse light fades out by terminator_softening()
-  shadowed,  // the same of what is not diffuse alone; by relief_shadowing()
-  none       // neither: the normals as they are
+  turned,    // mirror images stay above the ground; diffuse light fades out by terminator_softening()
+  faded,     // the same, but normals of what is diffuse stay
+  shadowed,  // the same, but diffuse light fades out by relief_shadowing()
+  none       // normals and light stay
 };
 
 /// Colours from 0 to 1 are components from -1 to 1 along tangent, bitangent and normal of the surface
@@ -22,7 +23,7 @@ struct NormalMap {
   TextureSlot<Rgb> texture{};
   /// Of the tilt: 0 is the surface as it is, 1 the picture, more exaggerates.
   float strength = 1;
-  ReliefCorrection correction = ReliefCorrection::faded;
+  ReliefCorrection correction = ReliefCorrection::turned;
 };
 
 /// What of f is diffuse: there the light fades out softly before the surface's own horizon, where it would end in a

@@ -54,8 +54,8 @@ def _read_diffuse(plug, reader):
     roughness, rough = reader.number(plug.input("Roughness"))
     relief = read_relief(plug, reader)
     pictures = {"base_color": picture} if picture else {}
-    if rough is None and roughness <= 0.0:
-        return [Layer("principled", {**BLACK, "base_color": color}, pictures, relief=relief)]
+    if rough is None and roughness <= 0.0 and relief is None:
+        return [Layer("principled", {**BLACK, "base_color": color}, pictures)]
     pictures |= {"roughness": rough} if rough else {}
     values = {"base_color": color, "roughness": roughness, "interreflection": _INTERREFLECTION}
     return [Layer("diffuse", values, pictures, relief=relief)]

@@ -1,14 +1,20 @@
 """Normal Map nodes."""
 
+import bpy
+
 from ..corner_colors import CornerColors
 from ..plugs import fed_by
 from .layer import Relief
 
+# What Cycles does to steep normals changed between 3.4 and 4.3, and again until 5.2; no property tells.
+_CORRECTION = ("turned", "faded", "shadowed")[min(max(bpy.app.version[0] - 3, 0), 2)]
+
 
 def correction(material):
-    """What becomes of steep normals, as Shader.add_layer has it; materials choose since Blender 4.2."""
-    corrects = getattr(material, "use_bump_map_correction", None)
-    return "faded" if corrects is None else "shadowed" if corrects else "as it is"
+    """What becomes of steep normals, as Shader.add_layer has it."""
+    # A choice since 4.2, of Cycles' own; this is its default.
+    corrects = getattr(getattr(material, "cycles", None), "use_bump_map_correction", True)
+    return _CORRECTION if corrects else "as it is"
 
 
 def read_relief(plug, reader):

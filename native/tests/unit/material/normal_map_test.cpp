@@ -101,12 +101,18 @@ TEST(NormalMap, CorrectionsDiffer) {
     return kPi * test::eval_one(*material, point, low).f.g * low.z;
   };
   const float hard = glm::dot(normal, low), shadowed = relief_shadowing(low.z, normal.z);
+  const float faded = terminator_softening(low.z, hard, normal.z);
   EXPECT_LT(shadowed, 0.5f);
+  EXPECT_GT(std::abs(shadowed - faded), 0.05f);
   EXPECT_NEAR(value(ReliefCorrection::none, DiffusePart::all), hard, 1e-4f);
   EXPECT_NEAR(value(ReliefCorrection::shadowed, DiffusePart::all), shadowed * hard, 1e-4f);
   const float turned = glm::dot(with_mirror_above(normal, {0, 0, 1}, wv), low);
   EXPECT_LT(turned, hard - 0.05f);
-  EXPECT_NEAR(value(ReliefCorrection::shadowed, DiffusePart::none), turned, 1e-4f);
+  EXPECT_NEAR(value(ReliefCorrection::faded, DiffusePart::all), faded * hard, 1e-4f);
+  for (const auto correction : {ReliefCorrection::turned, ReliefCorrection::faded, ReliefCorrection::shadowed}) {
+    EXPECT_NEAR(value(correction, DiffusePart::none), turned, 1e-4f);
+  }
+  EXPECT_LT(value(ReliefCorrection::turned, DiffusePart::all), turned);
   EXPECT_NEAR(value(ReliefCorrection::none, DiffusePart::none), hard, 1e-4f);
 }
 
