@@ -39,6 +39,13 @@ class NormalMaps(ShaderTest):
         tree.end(tree.mix(tree.picture(leaf, "Alpha"), tree.transparent(), principled))
         self.assert_approximate("Principled BSDF: cut-out, base colour and normal map by images", 5)
 
+    def test_uncorrected(self):
+        if not hasattr(self.material.cycles, "use_bump_map_correction"):
+            self.skipTest("Bump Map Correction is a choice since Blender 4.2")
+        self.material.cycles.use_bump_map_correction = False
+        self.tree.end(self.tree.diffuse(Normal=self._map()))
+        self.assert_parity("Normal Map: without Bump Map Correction")
+
     def test_half_strength(self):
         """Before strength scaled tilt in tangent space, Cycles interpolated the normals themselves."""
         self.tree.end(self.tree.diffuse(Normal=self._map(0.5)))
