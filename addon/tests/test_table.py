@@ -59,6 +59,7 @@ def test_sizes_and_offsets_agree_with_the_compiler(compiler, tmp_path):
         ("VLR_FILTER_", table.FILTERS),
         ("VLR_LAYER_", table.LAYERS),
         ("VLR_FACTOR_", table.FACTORS),
+        ("VLR_RELIEF_", table.RELIEF_CORRECTIONS),
         ("VLR_STRATEGY_", table.STRATEGIES),
         ("VLR_JOB_", table.JOB_STATES),
     ],

@@ -36,8 +36,8 @@ class Shader(Handle):
         textures and values: as of Scene.add_textured_material, without alpha and emission. diffuse and glossy
         look at base_color and roughness; base_color of transparent is what light that goes straight on is
         multiplied with, of emission the radiance. normal: a normal map, colours, of what reflects.
-        normal_correction: turned, faded, shadowed, as it is: what becomes of steep normals. interreflection: a rough
-        diffuse layer keeps its energy.
+        normal_correction: turned, faded, shadowed, as-it-is: what becomes of steep normals. interreflection:
+        a rough diffuse layer keeps its energy.
         """
         desc = table.LayerDesc()
         self._lib.vlr_layer_desc_init(byref(desc))

@@ -40,7 +40,7 @@ WRAPS = ("repeat", "extend", "clip", "mirror")
 FILTERS = ("closest", "linear")
 LAYERS = ("principled", "diffuse", "glossy", "transparent", "emission")
 FACTORS = ("share", "rest", "gain")
-RELIEF_CORRECTIONS = ("turned", "faded", "shadowed", "as it is")
+RELIEF_CORRECTIONS = ("turned", "faded", "shadowed", "as-it-is")
 STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product")
 
 

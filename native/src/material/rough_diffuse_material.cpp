@@ -66,7 +66,8 @@ class RoughDiffuseMaterial final : public Material {
   /// All of it that the light has no part in.
   static Rgb interreflected(const PreparedBrdf& point, const Rgb& color) {
     const float mean = kPi * point.parameter[kEven] + point.parameter[kUneven] * kMeanUnevenAlbedo;
-    return color * color * color * (mean / (1 - mean) * (1 - albedo(point, point.wv.z)) / kPi) / (1.0f - color * (1 - mean));
+    return color * color * color * (mean / (1 - mean) * (1 - albedo(point, point.wv.z)) / kPi) /
+           (1.0f - color * (1 - mean));
   }
 
   const RoughDiffuseParameters p_;

@@ -14,7 +14,7 @@ def correction(material):
     """What becomes of steep normals, as Shader.add_layer has it."""
     # A choice since 4.2, of Cycles' own; this is its default.
     corrects = getattr(getattr(material, "cycles", None), "use_bump_map_correction", True)
-    return _CORRECTION if corrects else "as it is"
+    return _CORRECTION if corrects else "as-it-is"
 
 
 def read_relief(plug, reader):
