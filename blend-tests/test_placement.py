@@ -226,6 +226,87 @@ class Pictures(Placed):
         self.assertTrue(any("no UV map 'Coarse'" in note for note in self._notes()))
 
 
+class Projected(Placed):
+    """Meshes without UV maps: seen from above, u is x and v is y, in units of the object."""
+
+    def _bare_plane(self, *arguments, **settings):
+        obj = scenes.add_plane(self._material(*arguments, **settings))
+        obj.data.uv_layers.remove(obj.data.uv_layers[0])
+        return obj
+
+    def test_tiles_have_their_real_size(self):
+        obj = self._bare_plane()
+        expected = ((4, 0, -2), (0, 4, -2))  # tiles of half a metre from the middle of 2 m
+        self._check_picture(expected)
+        (note,) = self._notes()
+        self.assertIn("Object 'Plane': it has no UV map; material 'Quarters' is projected", note)
+        self.assertEqual(list(self._report().warnings), [note])
+        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, real size")
+        self._placement().mode = "REAL_SIZE"
+        self._check_picture(expected)
+        self._placement().uv_density = (7, 7)  # of another object, which has a UV map
+        self._check_picture(expected)
+        obj.data.uv_layers.new()
+        self.assertEqual(self._notes(), [])
+
+    def test_repeats_are_of_tiles_of_real_size(self):
+        self._bare_plane(repeats=(2, 1), rotation=np.radians(90))
+        self._check_picture(((0, 8, -4), (-4, 0, 2)))
+
+    def test_repeats_of_unknown_size_are_of_metres(self):
+        self.scene.unit_settings.scale_length = 2.0
+        self._bare_plane(metres=0)
+        self._check_picture(((4, 0, -2), (0, 4, -2)))  # four metres
+
+    def test_the_units_of_the_scene_and_the_objects_scale_count(self):
+        self.scene.unit_settings.scale_length = 0.5
+        obj = self._bare_plane(mode="REAL_SIZE")
+        self._check_picture(((2, 0, -1), (0, 2, -1)))
+        for vertex in obj.data.vertices:
+            vertex.co /= 2
+        obj.scale = (2, 2, 1)
+        self._check_picture(((2, 0, -1), (0, 2, -1)))
+        self._placement().real_size_scale = "STRETCH"
+        self._check_picture(((1, 0, -0.5), (0, 1, -0.5)))
+
+    def test_faces_are_seen_along_the_axis_that_they_face(self):
+        """A box from the front: z is up."""
+        bpy.ops.mesh.primitive_cube_add(size=2.0)
+        bpy.context.object.data.materials.append(self._material())
+        bpy.context.object.data.uv_layers.remove(bpy.context.object.data.uv_layers[0])
+        camera = self.scene.camera
+        camera.location, camera.rotation_euler = (0, -5, 0), (np.radians(90), 0, 0)
+        self._check_picture(((4, 0, -2), (0, 4, -2)))
+        camera.location, camera.rotation_euler = (-5, 0, 0), (np.radians(90), 0, np.radians(-90))
+        self._check_picture(((4, 0, -2), (0, 4, -2)))  # u is -y, which is to the right
+
+    def test_pictures_of_other_slots_still_show_one_point(self):
+        """A picture on a mesh without UV maps is what Cycles shows of it."""
+        obj = self._bare_plane()
+        picture = scenes.diffuse_material(name="Picture")
+        tree = picture.node_tree
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image = bpy.data.images.new("Black and white", 2, 2)
+        texture.image.pixels = [0, 0, 0, 1, 1, 1, 1, 1] * 2
+        tree.links.new(texture.outputs[0], tree.nodes["Diffuse BSDF"].inputs["Color"])
+        obj.data.materials.append(picture)
+        notes = self._notes()
+        self.assertEqual(len(notes), 1)  # it shows on no face
+        obj.data.polygons[0].material_index = 1
+        notes = self._notes()
+        self.assertTrue(any("one point of material 'Picture'" in note for note in notes), notes)
+        pixels = scenes.render(self.folder)[..., 0]
+        self.assertGreater(pixels.mean(), 0.1)
+        self.assertLess(pixels.std(), 0.01 * pixels.mean())
+
+    def test_what_is_no_mesh_yet(self):
+        bpy.ops.object.metaball_add(radius=0.5)
+        bpy.context.object.data.materials.append(self._material())
+        bpy.context.view_layer.update()
+        (note,) = self._notes()
+        self.assertIn("Object 'Mball': it has no UV map", note)
+
+
 class Reports(Placed):
     def test_rows_of_a_plane(self):
         scenes.add_plane(self._material(mode="REAL_SIZE"))
@@ -333,7 +414,7 @@ class Reports(Placed):
             bpy.ops.velour.describe_placement()
         obj.data.materials[0] = self._material()
         obj.data.uv_layers.remove(obj.data.uv_layers[0])
-        with self.assertRaisesRegex(RuntimeError, "'Plane': its UV map is missing"):
+        with self.assertRaisesRegex(RuntimeError, "'Plane': it has no UV map"):
             bpy.ops.velour.keep_uv_density()
 
     def test_keeping_the_density_is_one_undo_step(self):
@@ -384,14 +465,6 @@ class Warnings(Placed):
         owners = {note.split("'")[1] for note in self._notes()}
         self.assertEqual(owners, {"Plane", "Second", "Third"})
 
-    def test_a_mesh_without_texture_coordinates(self):
-        obj = scenes.add_plane(self._material())
-        obj.data.uv_layers.remove(obj.data.uv_layers[0])
-        self.assertIn("Object 'Plane': its UV map is missing", self._notes()[0])
-        picture = scenes.render(self.folder)[..., 0]
-        self.assertLess(picture.std(), 0.01 * picture.mean())  # one point of it
-        self.assertEqual(list(self._report().warnings), self._notes())
-
     def test_texture_coordinates_without_extent(self):
         obj = scenes.add_plane(self._material(mode="REAL_SIZE"))
         for loop in obj.data.uv_layers[0].data:
@@ -400,7 +473,7 @@ class Warnings(Placed):
 
     def test_real_size_of_unknown_size_is_refused(self):
         scenes.add_plane(self._material(metres=0, mode="REAL_SIZE"))
-        with self.assertRaisesRegex(RuntimeError, "Material 'Quarters': its BTF does not know how large"):
+        with self.assertRaisesRegex(RuntimeError, "Material 'Quarters': its model does not know how large"):
             scenes.render(self.folder)
         report = self._report()
         self.assertIn("enter Tile Size", report.warnings[0])

@@ -1,6 +1,7 @@
 """The window: panels of a material made from a BTF, and the numbers in them."""
 
 import importlib
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -12,7 +13,8 @@ _TURNS = 100  # of 0.1 s that a measurement may take
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (model_rows, repeats, real_size, unknown_size, follows_changes, without_coordinates))
+    parts = (model_rows, repeats, real_size, unknown_size, follows_changes, without_coordinates, brushed)
+    window.run(folder, parts)
 
 
 def _ui(name):
@@ -47,12 +49,22 @@ def _report():
     raise AssertionError("nothing was measured")
 
 
+def _model_info(material):
+    """Of its model, once it is read."""
+    for _ in range(_TURNS):
+        info = _ui("summaries").model_summary(scenes.velour_node(material).image)
+        if info is not None:
+            return info
+        yield 0.1
+    raise AssertionError("the model was not read")
+
+
 def model_rows(folder):
     """The Model panel's rows are those of the model."""
     yield from _plane()
-    image = scenes.velour_node(bpy.data.materials["Quarters"]).image
-    info = _ui("summaries").model_summary(image)
-    size = image.packed_file.size
+    material = bpy.data.materials["Quarters"]
+    info = yield from _model_info(material)
+    size = scenes.velour_node(material).image.packed_file.size
     rows = dict(_ui("material_panel")._btf_rows(info))
     raw = 6 * (inputs.QUARTER_TEXELS * 16) ** 2  # texels and pairs of half-float colours
     assert rows["Kind"] == "BTF, srbf", rows
@@ -136,5 +148,24 @@ def without_coordinates(folder):
     obj.data.uv_layers.remove(obj.data.uv_layers[0])
     report = yield from _report()
     yield 0.3
-    assert "its UV map is missing" in report.warnings[0], report.warnings
+    assert "is projected onto it" in report.warnings[0], report.warnings
     window.screenshot(folder, "without-coordinates")
+
+
+def brushed(folder):
+    """What is anisotropic has two fields of it, what is isotropic has none."""
+    obj = yield from _plane()
+    panel = _ui("placement_panel").VELOUR_MATERIAL_PT_placement
+    obj.data.uv_layers.remove(obj.data.uv_layers[0])
+    matt = inputs.model_bytes(inputs.lambert_measurement())
+    for name, model, is_brushed in (("matt", matt, False), ("brushed", inputs.brushed_model(), True)):
+        obj.data.materials.clear()
+        obj.data.materials.append(scenes.measured_material(model, name))
+        yield from _model_info(obj.active_material)
+        if is_brushed:
+            report = yield from _report()
+            assert report.rows == (), report
+            assert "is projected onto it" in report.warnings[0], report
+        yield 0.5
+        window.screenshot(folder, f"placed-{name}")
+        assert panel.poll(SimpleNamespace(material=obj.active_material)) == is_brushed

@@ -69,6 +69,20 @@ def test_a_material_without_texture_cannot_be_placed(folder, model_file, world_f
     assert "--texture-scale and --texture-offset" in sentence
 
 
+def test_an_anisotropic_brdf_can_be_turned(folder, model, world_file):
+    brushed = folder / "brushed.exr"
+    common = ["--roughness", 0.2, "--anisotropy", 3, "--rays", 200000, "--quiet"]
+    assert velour("capture", "--microsurface", *common, "-o", brushed).status == 0
+    turned = rendered(plane(folder / "turned.obj"), brushed, world_file, "--texture-rotation", 90)
+    by_hand = plane(folder / "by-hand.obj", np.array(((0, 1, 0), (-1, 0, 0))))
+    expected = rendered(by_hand, brushed, world_file)
+    np.testing.assert_allclose(turned, expected, atol=5e-3 * expected.mean())
+    plain = rendered(plane(folder / "plain.obj"), brushed, world_file)
+    assert np.abs(plain - expected).mean() > 0.02 * expected.mean()
+    arguments = ["render", "--mesh", by_hand, "--material", brushed, "--world", world_file]
+    assert "has no texture" in refused(*arguments, "-o", folder / "x.exr", "--texture-scale", 2)
+
+
 def test_a_mesh_without_coordinates_is_warned_of(folder, model, world_file):
     mesh = write_octahedron(folder / "octahedron.obj")
     done = velour(

@@ -46,6 +46,11 @@ def anisotropic_measurement():
     return _made("anisotropic.exr", make)
 
 
+def brushed_model():
+    """Of a metal with a roughness of 0.25 and an anisotropy of 4, from the virtual goniometer; four lobes."""
+    return (Path(__file__).parent.parent / "scenes/data/brushed.velour").read_bytes()
+
+
 def write_merl(path, f):
     """`f(theta_h, theta_d, phi_d)` gives three channels in 1/sr, broadcast over the table."""
     theta_h = (np.arange(90) / 90) ** 2 * (np.pi / 2)  # the table is square-root spaced in theta_h

@@ -11,7 +11,7 @@ from .placement import Tile
 from .shaders import as_principled, shines, sources_of, split, surface_layers, unlike_reflection
 from .shaders.relief import correction
 from .textures import TextureTable
-from .uv_maps import placed_map, shader_maps
+from .uv_maps import UNUSED, placed_map, shader_maps
 
 
 class Reduced(NamedTuple):
@@ -38,7 +38,8 @@ class MaterialTable:
         self._numbers = {}
         self._uv_maps = {}
         self._colors = {}  # the CornerColors that each asks for
-        self._tiles = {}  # of materials that show a BTF
+        self._tiles = {}  # of materials that repeat over surfaces
+        self._turns = {}  # of others that are anisotropic: radians
         self._textured = set()  # of others: those with textures
         self._textures = TextureTable(notes)
         self.reduced = []
@@ -50,8 +51,12 @@ class MaterialTable:
         return self._numbers.get(material.as_pointer())
 
     def tile(self, material):
-        """The Tile of a material that has its number; None of one that is no BTF."""
+        """The Tile of a material that has its number; None of one that has no tiles."""
         return self._tiles.get(_key(material))
+
+    def turn(self, material):
+        """Radians, of an anisotropic material that has its number and no tiles; 0 of others."""
+        return self._turns.get(_key(material), 0.0)
 
     def uv_maps(self, material):
         """Its UvMaps; the material is added."""
@@ -65,7 +70,8 @@ class MaterialTable:
 
     def needs_coordinates(self, material):
         """Whether a material that has its number looks at texture coordinates."""
-        return _key(material) in self._textured or self.tile(material) is not None
+        key = _key(material)
+        return key in self._textured or key in self._tiles or key in self._turns
 
     def number(self, material):
         """`material` may be None: Blender's default grey."""
@@ -85,6 +91,7 @@ class MaterialTable:
             return False
         before, number = self._needs(key), self._numbers.pop(key)
         self._tiles.pop(key, None)
+        self._turns.pop(key, None)
         self._textured.discard(key)
         self._colors.pop(key, None)
         self.number(material)
@@ -94,7 +101,8 @@ class MaterialTable:
         return self._needs(key) != before or key in self._tiles
 
     def _needs(self, key):
-        return self._uv_maps[key], self._colors.get(key), self._tiles.get(key), key in self._textured
+        placed = self._tiles.get(key), self._turns.get(key)
+        return self._uv_maps[key], self._colors.get(key), placed, key in self._textured
 
     def _add(self, material):
         node = velour_node(material)
@@ -173,7 +181,7 @@ class MaterialTable:
             )
         with files.read_model(node.image, owner) as model:
             info = model.info()
-            self._tiles[_key(material)] = Tile.of(material, info)
+            self._note_place(material, info)
             return self._add_model(model, info, settings)
 
     def _add_pair(self, material, node, owner):
@@ -181,10 +189,20 @@ class MaterialTable:
         has_full = files.is_there(node.image)
         model = files.read_model(node.image, owner) if has_full else reduced
         info = model.info()
-        self._tiles[_key(material)] = Tile.of(material, info)
+        self._note_place(material, info)
         number = self._add_model(model, info, node.velour)
         self.reduced.append(Reduced(number, material.name, reduced, node.velour.neighbors, has_full))
         return number
+
+    def _note_place(self, material, info):
+        """What a measured material looks at of where it lies. `info`: of its model or measurement."""
+        tile, key = Tile.of(material, info), _key(material)
+        if tile:
+            self._tiles[key] = tile
+        elif not info["isotropic"]:
+            self._turns[key] = velour_node(material).velour.placement.rotation
+        else:
+            self._uv_maps[key] = UNUSED
 
     def _add_model(self, model, info, settings):
         number = self._scene.add_model_material(model, settings.neighbors)
@@ -201,12 +219,13 @@ class MaterialTable:
             return self._add_btf(material, node.velour.measurement, owner)
         proposal = files.read_model(node.image, owner) if node.image else None
         with files.read_measurement(node.velour.measurement, owner) as measurement:
+            self._note_place(material, measurement.info())
             return self._scene.add_measurement_material(measurement, proposal, node.velour.neighbors)
 
     def _add_btf(self, material, image, owner):
         try:
             with files.read_btf(image, owner) as btf:
-                self._tiles[_key(material)] = Tile.of(material, btf.info())
+                self._note_place(material, btf.info())
                 return self._scene.add_btf_material(btf)
         except VelourError as error:
             raise ExportError(f"{owner}: {error}") from error

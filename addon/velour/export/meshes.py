@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from ..core.mesh_arrays import MeshArrays
+from ..core.projection import box_projection
 from .corner_colors import corner_colors, has_attribute
 
 # To ask each mesh for what it has not is slow.
@@ -23,8 +24,8 @@ def object_arrays(obj, uv_maps=(), colors=(), empty=_own):
     `empty`: gives memory for a field, by its name, how many numbers and of which type.
 
     `uv_maps`: for each material slot, of which the last stands for all beyond, the UvMaps of its faces.
-    Empty, or where there is none of a name: the one that renders. None: no texture coordinates.
-    `colors`: likewise the CornerColors that they show.
+    Empty, or where there is none of a name: the one that renders. None: no texture coordinates, as on
+    meshes without UV maps, but for slots that project. `colors`: likewise the CornerColors that they show.
     """
     if not _must_convert(obj):
         return mesh_arrays(obj.data, uv_maps, colors, empty)
@@ -35,6 +36,11 @@ def object_arrays(obj, uv_maps=(), colors=(), empty=_own):
 def has_uv_map(obj, name):
     with _mesh_of(obj) as mesh:
         return mesh is not None and name in mesh.uv_layers
+
+
+def has_uv_maps(obj):
+    with _mesh_of(obj) as mesh:
+        return mesh is not None and len(mesh.uv_layers) > 0
 
 
 def has_colors(obj, asked):
@@ -71,17 +77,17 @@ def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own):
     if count == 0:
         return None
     vertices, corner_count = mesh.vertices, len(mesh.loops)
-    corners = _fill(empty("triangles", 3 * count, np.uint32), mesh.loop_triangles, "loops").reshape(-1, 3)
-    slots = _material_slots(mesh, count, empty)
+    corners = _fill(empty("triangles", 3 * count, np.uint32), mesh.loop_triangles, "loops")
     arrays = MeshArrays(
         positions=_fill(empty("positions", 3 * len(vertices), np.float32), vertices, "co").reshape(-1, 3),
-        triangles=corners,
+        triangles=corners.reshape(-1, 3),
         # What triangles say of vertices and materials they look up one by one, many times slower.
         corner_vertices=_fill(empty("corner_vertices", corner_count, np.uint32), mesh.loops, "vertex_index"),
-        material_slots=slots,
+        material_slots=_material_slots(mesh, count, empty),
         **_normals(mesh, count, empty),
-        **_coordinates(mesh, corners, slots, uv_maps),
     )
+    if uv_maps is not None:
+        arrays = arrays._replace(**_coordinates(mesh, arrays, uv_maps))
     return arrays._replace(corner_colors=corner_colors(mesh, arrays, colors)) if colors else arrays
 
 
@@ -151,10 +157,11 @@ def _split_normals(mesh):
     return normals
 
 
-def _coordinates(mesh, corners, slots, uv_maps):
+def _coordinates(mesh, arrays, uv_maps):
     """Sets of texture coordinates, [corners x 2] each, as far as materials look at them."""
-    if uv_maps is None or not mesh.uv_layers:
-        return {}
+    if not mesh.uv_layers:
+        return {"corner_uvs": _projected(mesh, arrays, uv_maps)}
+    corners, slots = arrays.triangles, arrays.material_slots
     # Beyond the last slot the last material shows.
     shown = np.minimum(slots, len(uv_maps) - 1) if len(uv_maps) > 1 else None
 
@@ -172,6 +179,19 @@ def _coordinates(mesh, corners, slots, uv_maps):
     if any(maps.relief is not None for maps in uv_maps):
         found["relief_uvs"] = uvs([maps.first if maps.relief is None else maps.relief for maps in uv_maps])
     return found
+
+
+def _projected(mesh, arrays, uv_maps):
+    """[corners x 2] Of slots that project; None where none does."""
+    projects = np.array([maps.projects for maps in uv_maps], bool)
+    if not projects.any():
+        return None
+    faces = np.empty(len(arrays.corner_vertices), np.uint32)
+    faces[arrays.triangles] = _faces(mesh, len(arrays.triangles))[:, None]
+    normals = _read(mesh.polygon_normals, "vector", (len(mesh.polygons), 3))
+    uvs = box_projection(arrays.positions[arrays.corner_vertices], normals[faces])
+    uvs[arrays.triangles[~projects[np.minimum(arrays.material_slots, len(projects) - 1)]]] = 0
+    return uvs
 
 
 def _corner_uvs(mesh, corners, shown, names):

@@ -7,8 +7,8 @@ from .corner_colors import colors_of_slots, missing_colors
 from .instances import InstanceGroups
 from .kept_meshes import KeptMeshes
 from .lights import add_light
-from .meshes import has_colors, has_uv_map, object_arrays
-from .placement import Placements, missing_coordinates
+from .meshes import has_colors, has_uv_map, has_uv_maps, object_arrays
+from .placement import Placements, missing_coordinates, projected_onto
 from .units import metres_per_unit
 from .uv_maps import maps_of_slots, missing_map
 from .visibility import Visibility, note_visibility
@@ -31,13 +31,13 @@ class _Shown(NamedTuple):
     mesh: int  # its place in the MeshQueue
     slots: list
     look: tuple  # the arguments of Scene.add_instances beside mesh and matrices
-    is_tiled: bool  # how tiles lie may depend on the matrix
+    is_placed: bool  # how it is turned, and how tiles lie, is said by instance
 
 
 class _Mesh(NamedTuple):
     place: int  # in the MeshQueue
     slot_count: int
-    has_uvs: bool
+    has_uvs: bool  # of UV maps
 
 
 class _Slots(NamedTuple):
@@ -45,7 +45,7 @@ class _Slots(NamedTuple):
 
     materials: list
     numbers: tuple  # in the scene
-    is_tiled: bool
+    is_placed: bool
     look_at_uvs: list  # of the materials those that need texture coordinates
     uv_maps: list  # of each material the names of UV maps that it asks for
     colors: list  # of each the CornerColors
@@ -134,13 +134,13 @@ class ObjectExport:
         if mesh is None:
             return None
         slots = self._slots_of(materials, mesh.slot_count)
-        if slots.is_tiled and self._queue.numbers()[mesh.place] is None:
+        if slots.is_placed and self._queue.numbers()[mesh.place] is None:
             return None
         self._note_missing(obj, mesh, slots)
         hidden = visibility.hidden(obj) if visibility else ()
         if "camera" not in hidden:
             self._seen.append(mesh.place)
-        return _Shown(obj.name, mesh.place, slots.materials, (slots.numbers, hidden), slots.is_tiled)
+        return _Shown(obj.name, mesh.place, slots.materials, (slots.numbers, hidden), slots.is_placed)
 
     def _add_instance(self, instance, shown, metres):
         matrix = instance.matrix_world.copy()  # which asks Blender once
@@ -148,7 +148,7 @@ class ObjectExport:
             self._notes.add(f"Object '{shown.owner}': its scale is zero along an axis; left out.")
             return
         placements = None
-        if shown.is_tiled:
+        if shown.is_placed:
             placements = self._placements.of(instance, shown.mesh, shown.slots, metres)
         if self._to_scene is not None:
             matrix = self._to_scene @ matrix
@@ -170,7 +170,7 @@ class ObjectExport:
         if not self._meshes.has(key, obj):
             arrays = object_arrays(obj, *asked, self._queue.empty)
             self._meshes[key] = arrays and _Mesh(
-                self._queue.add(arrays, obj.name), arrays.slot_count, arrays.corner_uvs is not None
+                self._queue.add(arrays, obj.name), arrays.slot_count, _has_own_uvs(obj, arrays, asked[0])
             )
         return self._meshes[key]
 
@@ -181,7 +181,7 @@ class ObjectExport:
             self._slots[key] = _Slots(
                 shown,
                 tuple(map(self._materials.number, shown)),
-                any(map(self._materials.tile, shown)),
+                any(self._materials.tile(m) or self._materials.turn(m) for m in shown),
                 [material for material in shown if self._materials.needs_coordinates(material)],
                 [
                     (material, sorted(self._materials.uv_maps(material).all_names - {""}))
@@ -192,9 +192,11 @@ class ObjectExport:
         return self._slots[key]
 
     def _note_missing(self, obj, mesh, slots):
-        if slots.look_at_uvs and not mesh.has_uvs and not slots.is_tiled:
+        if not mesh.has_uvs:
             for material in slots.look_at_uvs:
-                self._notes.add(missing_coordinates(obj, material.name))
+                is_projected = self._materials.uv_maps(material).projects
+                sentence = projected_onto if is_projected else missing_coordinates
+                self._notes.add(sentence(obj, material.name))
         for material, names in slots.uv_maps:
             for name in names:
                 if not has_uv_map(obj, name):
@@ -218,6 +220,13 @@ class ObjectExport:
         kind = _UNSUPPORTED.get(obj.type)
         if kind:
             self._notes.add(f"Object '{obj.name}': {kind} are not supported; left out.")
+
+
+def _has_own_uvs(obj, arrays, uv_maps):
+    """Whether the texture coordinates of its MeshArrays are those of UV maps."""
+    if arrays.corner_uvs is None:
+        return False
+    return not any(maps.projects for maps in uv_maps) or has_uv_maps(obj)
 
 
 def _identity(obj):

@@ -6,27 +6,28 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.placement import LARGEST_STRETCH, Lie, Surface, UvMetric, lie_of, texture_map
-from .meshes import object_arrays
+from .meshes import has_uv_maps, object_arrays
 from .nodes import velour_node
 from .notes import ExportError
 from .uv_maps import placed_maps
 
 
 class Tile(NamedTuple):
-    """What a placement needs to know of a material that shows a BTF."""
+    """What a placement needs to know of a material that repeats over surfaces."""
 
     material: str  # its name
     settings: object  # node.velour.placement
-    texels: tuple[int, int]
+    texels: tuple[int, int]  # of an outline alone: its points
     own_metres: tuple[float, float] | None  # as the BTF says, if it says anything
 
     @classmethod
     def of(cls, material, info):
-        """`info`: of the model or BTF; None where it is the same all over a surface."""
-        if "texels" not in info:
+        """`info`: of the model or BTF; None where it has neither texels nor an outline."""
+        points = info.get("texels") or info.get("shell", {}).get("points")
+        if points is None:
             return None
-        settings, metres = velour_node(material).velour.placement, info["tile_metres"]
-        return cls(material.name, settings, tuple(info["texels"]), tuple(metres) if metres else None)
+        settings, metres = velour_node(material).velour.placement, info.get("tile_metres")
+        return cls(material.name, settings, tuple(points[:2]), tuple(metres) if metres else None)
 
     @property
     def metres(self):
@@ -46,14 +47,16 @@ class Metrics(NamedTuple):
 
     local: UvMetric
     world: UvMetric
+    projected: float | None  # metres of a unit of texture coordinates; None: they are of a UV map
 
     @classmethod
-    def of(cls, surface, matrix, metres_per_unit):
+    def of(cls, surface, matrix, metres_per_unit, is_projected):
+        projected = metres_per_unit if is_projected else None
         local = UvMetric.of(surface, metres_per_unit * np.eye(3))
         linear = np.array(matrix, float)[:3, :3]
         if np.abs(linear.T @ linear - np.eye(3)).max() < 1e-6:
-            return cls(local, local)
-        return cls(local, UvMetric.of(surface, metres_per_unit * linear))
+            return cls(local, local, projected)
+        return cls(local, UvMetric.of(surface, metres_per_unit * linear), projected)
 
     def growth(self, keeps_size):
         """How much longer u and v count because the object is scaled."""
@@ -64,20 +67,26 @@ class Metrics(NamedTuple):
 
 def tile_map(tile, metrics):
     """[2 x 3]: from the mesh's texture coordinates to tiles. Not of a flat surface."""
-    settings = tile.settings
-    repeats, lengths = settings.repeats, metrics.growth(settings.keeps_size)
+    settings, lengths = tile.settings, metrics.growth(tile.settings.keeps_size)
     if settings.mode == "REAL_SIZE":
         if tile.metres is None:
             raise ExportError(
-                f"Material '{tile.material}': its BTF does not know how large its tile is; enter Tile Size in"
-                " its Placement panel, or choose Repeats there."
+                f"Material '{tile.material}': its model does not know how large its tile is; enter Tile Size"
+                " in its Placement panel, or choose Repeats there."
             )
         repeats, lengths = 1 / np.array(tile.metres), lengths / _density(settings, metrics)
+    elif metrics.projected is None:
+        repeats = settings.repeats
+    else:  # there is no unit square: of tiles of real size
+        repeats = np.array(settings.repeats) / (tile.metres or (1.0, 1.0))
+        lengths = lengths * metrics.projected
     return texture_map(repeats, settings.rotation, settings.offset, lengths)
 
 
 def _density(settings, metrics):
     """Of u and v on the object without its scale, 1/m."""
+    if metrics.projected is not None:
+        return 1 / metrics.projected
     given = np.array(settings.uv_density)
     return given if given.min() > 0 else np.array(metrics.local.density())
 
@@ -99,6 +108,13 @@ def missing_coordinates(obj, material_name):
     return (
         f"Object '{obj.name}': its UV map is missing or has no extent; one point of material"
         f" '{material_name}' is shown all over it. Unwrap it, or choose another material."
+    )
+
+
+def projected_onto(obj, material_name):
+    return (
+        f"Object '{obj.name}': it has no UV map; material '{material_name}' is projected onto it along its"
+        " own axes. Unwrap it to say how the material lies."
     )
 
 
@@ -131,8 +147,6 @@ class Placements:
 
         `key`: the same for instances of one mesh.
         """
-        if not any(map(self._materials.needs_coordinates, slots)):
-            return None
         maps, is_placed = [], False
         for material in slots:
             uv_map = self._map(instance, slots, material, key, metres_per_unit)
@@ -141,29 +155,31 @@ class Placements:
         return maps if is_placed else None
 
     def _surface(self, obj, slots, material, mesh):
+        """The Surface of what shows the material, and whether texture coordinates are projected there."""
         key = (mesh, _slots_that_show(slots, material))
         if key not in self._surfaces:
-            self._surfaces[key] = surface_of(object_arrays(obj, placed_maps(slots)), key[1])
+            surface = surface_of(object_arrays(obj, placed_maps(slots)), key[1])
+            self._surfaces[key] = surface, not has_uv_maps(obj)
         return self._surfaces[key]
 
     def _map(self, instance, slots, material, key, metres_per_unit):
-        if not self._materials.needs_coordinates(material):
+        turn, tile = self._materials.turn(material), self._materials.tile(material)
+        if turn:
+            return texture_map((1, 1), turn)
+        if tile is None:
             return None
-        obj, tile = instance.object, self._materials.tile(material)
-        surface = self._surface(obj, slots, material, key)
-        placed = None
-        if surface is not None and tile is not None:
-            shown = _slots_that_show(slots, material)
-            shape = (key, shown, material.original.as_pointer(), _size_of(instance.matrix_world))
-            if shape not in self._placed:
-                self._placed[shape] = self._place(tile, surface, instance.matrix_world, metres_per_unit)
-            placed = self._placed[shape]
-        self._warn(obj, material, tile, surface, placed)
+        surface, is_projected = self._surface(instance.object, slots, material, key)
+        shown = _slots_that_show(slots, material)
+        shape = (key, shown, material.original.as_pointer(), _size_of(instance.matrix_world))
+        if shape not in self._placed:
+            metrics = Metrics.of(surface, instance.matrix_world, metres_per_unit, is_projected)
+            self._placed[shape] = self._place(tile, metrics)
+        placed = self._placed[shape]
+        self._warn(instance.object, tile, surface, placed)
         return placed.uv_map if placed else None
 
-    def _place(self, tile, surface, matrix, metres_per_unit):
+    def _place(self, tile, metrics):
         """None where texture coordinates have no extent."""
-        metrics = Metrics.of(surface, matrix, metres_per_unit)
         if metrics.world.is_flat:
             return None
         try:
@@ -175,10 +191,10 @@ class Placements:
             uv_map = texture_map((1, 1))
         return _Placed(uv_map, lie_on(tile, metrics, uv_map))
 
-    def _warn(self, obj, material, tile, surface, placed):
-        if surface is None or (tile is not None and placed is None):
-            self._notes.add(missing_coordinates(obj, material.name))
-        elif placed is not None and placed.lie.is_stretched:
+    def _warn(self, obj, tile, surface, placed):
+        if placed is None:
+            self._notes.add(missing_coordinates(obj, tile.material))
+        elif placed.lie.is_stretched:
             self._notes.add(stretch_sentence(obj, tile, placed.lie, surface))
 
 

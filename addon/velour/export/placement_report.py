@@ -12,6 +12,7 @@ from .notes import ExportError
 from .placement import (
     lie_on,
     missing_coordinates,
+    projected_onto,
     stretch_sentence,
     tile_map,
 )
@@ -23,7 +24,7 @@ _SAME = 0.005  # of real size: nobody sees that
 class PlacementReport(NamedTuple):
     rows: tuple[tuple[str, str], ...]  # name and value, for people
     warnings: tuple[str, ...]
-    uv_density: tuple[float, float] | None = None  # of the object without its scale, 1/m
+    uv_density: tuple[float, float] | None = None  # of the object's UV map without its scale, 1/m
 
 
 def report_on(depsgraph, obj, material, tile):
@@ -32,17 +33,28 @@ def report_on(depsgraph, obj, material, tile):
     metrics = shown.metrics
     if metrics is None:
         return PlacementReport((), (missing_coordinates(obj, material.name),))
-    rows, density = [_density_row(metrics)], metrics.local.density()
+    rows, warnings = [_density_row(metrics)], _warnings(shown, material)
+    density = None if shown.is_projected else metrics.local.density()
     try:
         uv_map = tile_map(tile, metrics)
     except ExportError as error:
-        return PlacementReport(tuple(rows), (str(error),), density)
+        return PlacementReport(tuple(rows), (*warnings, str(error)), density)
     tiles, lie = metrics.world.placed(uv_map), lie_on(tile, metrics, uv_map)
     rows += [_size_row(tile, tiles), _spread_row(lie), _texel_row(tile, lie)]
     of_faces = _of_faces(shown, tiles.scales() * shown.metres * _texels(tile))
     rows += [_camera_row(depsgraph, obj, of_faces), _stretch_row(lie)]
-    warnings = (stretch_sentence(obj, tile, lie, shown.surface),) if lie.is_stretched else ()
+    if lie.is_stretched:
+        warnings += (stretch_sentence(obj, tile, lie, shown.surface),)
     return PlacementReport(tuple(rows), warnings, density)
+
+
+def report_on_brushed(depsgraph, obj, material):
+    """The same of an anisotropic material, which has no tile."""
+    return PlacementReport((), _warnings(ShownSurface.of(depsgraph, obj, material), material))
+
+
+def _warnings(shown, material):
+    return (projected_onto(shown.obj, material.name),) if shown.is_projected else ()
 
 
 def _of_faces(shown, values):

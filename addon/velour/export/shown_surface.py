@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from ..core.mesh_arrays import MeshArrays
 from ..core.placement import Surface
-from .meshes import object_arrays
+from .meshes import has_uv_maps, object_arrays
 from .objects import all_materials, slots_of
 from .placement import Metrics, surface_of
 from .units import metres_per_unit
@@ -20,6 +20,7 @@ class ShownSurface(NamedTuple):
     surface: Surface | None  # of those
     metres: float  # a unit of the scene
     metrics: Metrics | None  # None where texture coordinates are missing or have no extent
+    is_projected: bool
 
     @classmethod
     def of(cls, depsgraph, obj, material) -> ShownSurface:
@@ -29,6 +30,9 @@ class ShownSurface(NamedTuple):
         slots = slots_of(evaluated, arrays, material)
         surface = surface_of(arrays, slots)
         metres = metres_per_unit(depsgraph.scene)
-        metrics = None if surface is None else Metrics.of(surface, evaluated.matrix_world, metres)
+        is_projected = surface is not None and not has_uv_maps(evaluated)
+        metrics = None
+        if surface is not None:
+            metrics = Metrics.of(surface, evaluated.matrix_world, metres, is_projected)
         has_extent = metrics is not None and not metrics.world.is_flat
-        return cls(evaluated, arrays, slots, surface, metres, metrics if has_extent else None)
+        return cls(evaluated, arrays, slots, surface, metres, metrics if has_extent else None, is_projected)

@@ -13,6 +13,7 @@ class UvMaps(NamedTuple):
 
     names: tuple = ("",)  # that pictures are on; the first is that of tiles and of what is stretched, too
     relief: str | None = None  # that tangents of its normal maps follow; None: the first, or it has none
+    projects: bool = False  # onto meshes without any (core/projection.py); else they show one point of it
 
     @property
     def first(self):
@@ -45,7 +46,7 @@ def placed_maps(materials):
 
 def placed_map(material):
     node = velour_node(material)
-    return UvMaps((node.velour.placement.uv_map,)) if node else RENDERED
+    return UvMaps((node.velour.placement.uv_map,), projects=True) if node else RENDERED
 
 
 def shader_maps(owner, sources, reliefs, notes):

@@ -1,4 +1,4 @@
-"""Where the tiles of a BTF lie on the objects that show it."""
+"""How a material lies on the objects that show it: its tiles, or what is anisotropic."""
 
 import bpy
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
@@ -76,7 +76,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
     )
     rotation: FloatProperty(
         name="Rotation",
-        description="Turns the tiles counter-clockwise, and with them the direction that the material has",
+        description="Turns tiles, and the direction that the material has, counter-clockwise",
         subtype="ANGLE",
         default=0.0,
         update=_changed,

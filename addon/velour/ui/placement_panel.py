@@ -1,4 +1,4 @@
-"""Where the tiles of a BTF lie on objects."""
+"""How tiles, and what is anisotropic, lie on objects."""
 
 import bpy
 
@@ -16,27 +16,38 @@ class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        node = velour_node(context.material)
-        info = model_summary(node.image) if node is not None and node.image is not None else None
-        return isinstance(info, dict) and "texels" in info
+        info = _info(context)
+        return _has_tiles(info) or not info.get("isotropic", True)
 
     def draw(self, context):
-        layout = self.layout
+        layout, info = self.layout, _info(context)
         layout.use_property_split = True
         layout.use_property_decorate = False
-        node = velour_node(context.material)
-        settings = node.velour.placement
-        layout.row().prop(settings, "mode", expand=True)
-        if settings.mode == "REPEATS":
-            layout.column().prop(settings, "repeats")
-        else:
-            _draw_real_size(layout, settings, model_summary(node.image)["tile_metres"])
+        settings = velour_node(context.material).velour.placement
+        if _has_tiles(info):
+            layout.row().prop(settings, "mode", expand=True)
+            if settings.mode == "REPEATS":
+                layout.column().prop(settings, "repeats")
+            else:
+                _draw_real_size(layout, settings, info.get("tile_metres"))
         _draw_uv_map(layout, settings, context.object)
         layout.prop(settings, "rotation")
-        layout.column().prop(settings, "offset")
-        layout.prop(settings, settings.scale_property)
+        if _has_tiles(info):
+            layout.column().prop(settings, "offset")
+            layout.prop(settings, settings.scale_property)
         report = measured(context, context.material)
         _draw_report(context, layout, report and report.placement)
+
+
+def _info(context):
+    """Of the active material's model; empty where there is none yet."""
+    node = velour_node(context.material)
+    info = model_summary(node.image) if node is not None and node.image is not None else None
+    return info if isinstance(info, dict) else {}
+
+
+def _has_tiles(info):
+    return "texels" in info or "shell" in info
 
 
 def _draw_uv_map(layout, settings, obj):
@@ -51,7 +62,7 @@ def _draw_real_size(layout, settings, own_metres):
     column = layout.column()
     column.prop(settings, "tile_size", text="Tile Size (mm)")
     if min(settings.tile_size) == 0:
-        icon, text = ("ERROR", "The BTF does not know it: enter it")
+        icon, text = ("ERROR", "It is not known: enter it")
         if own_metres:
             icon, text = "INFO", "Of the BTF: {:.4g} x {:.4g} mm".format(*(1e3 * side for side in own_metres))
         column.label(text=text, icon=icon)
@@ -63,6 +74,8 @@ def _draw_real_size(layout, settings, own_metres):
 def _draw_report(context, layout, report):
     if report is None:
         layout.label(text="Measuring...", icon="TIME")
+        return
+    if not report.rows and not report.warnings:
         return
     box = layout.box()
     box.label(text=f"On '{context.object.name}'")

@@ -11,14 +11,14 @@ from bpy.app.handlers import persistent
 from ..export.nodes import velour_node
 from ..export.outline_report import OutlineReport, outline_report_on
 from ..export.placement import Tile
-from ..export.placement_report import PlacementReport, report_on
+from ..export.placement_report import PlacementReport, report_on, report_on_brushed
 from .summaries import model_summary
 
 _QUIET_SECONDS = 0.3  # while something is dragged nothing is measured
 
 
 class Measured(NamedTuple):
-    placement: PlacementReport | None = None  # of a material with tiles
+    placement: PlacementReport | None = None  # of a material with tiles, or an anisotropic one
     outline: OutlineReport | None = None  # of one with an outline, on an object with texture coordinates
 
 
@@ -83,8 +83,14 @@ def _report_of(obj, material, scene):
     if obj is None or not isinstance(info, dict) or depsgraph.scene != scene:
         return None
     tile = Tile.of(material, info)
-    placement = report_on(depsgraph, obj, material, tile) if tile is not None else None
+    placement = _placement_of(depsgraph, obj, material, info, tile)
     if "shell" not in info:
         return Measured(placement)
     width = node.velour.outline_width
     return Measured(placement, outline_report_on(depsgraph, obj, material, info["shell"], tile, width))
+
+
+def _placement_of(depsgraph, obj, material, info, tile):
+    if tile is not None:
+        return report_on(depsgraph, obj, material, tile)
+    return None if info["isotropic"] else report_on_brushed(depsgraph, obj, material)

@@ -335,7 +335,7 @@ typedef struct vlr_mesh_desc {
   const uint32_t* material_slots; /* [triangle_count]; NULL: all 0 */
   const uint8_t* smooth;          /* [triangle_count] 1: smooth; used when corner_normals is NULL; NULL: all smooth */
   const float* more_uvs;          /* [more_uv_sets x triangle_count x 3 x 2] sets 1, 2, ... beside corner_uvs, set 0 */
-  const float* relief_uvs;        /* [triangle_count x 3 x 2] what tangents of normal maps follow; NULL: set 0 */
+  const float* relief_uvs;        /* [triangle_count x 3 x 2] what MikkTSpace tangents follow; NULL: set 0 */
   uint32_t more_uv_sets;          /* VLR_MOST_UV_SETS - 1 at most */
   uint32_t corner_count;
   /* Not NULL: `triangles` name corners of faces, these are the vertices of those [corner_count], and what is said to be
@@ -376,8 +376,8 @@ VLR_API vlr_status vlr_scene_set_shell_softness(vlr_scene* scene, uint32_t mater
  * is found by the directions that surfaces reflect, alone. The picture converges to the same. */
 VLR_API vlr_status vlr_scene_set_drawn_to(vlr_scene* scene, uint32_t material, int32_t drawn);
 /* Puts a model in the place of material number `material`, of whatever kind it was; a shell keeps tile and softness. A
- * committed scene stays committed, unless one of the two has a shell and the other none of the same heights; no job of
- * the scene may run meanwhile. */
+ * committed scene stays committed, unless one of the two has a shell and the other none of the same heights, or the
+ * model alone is anisotropic; no job of the scene may run meanwhile. */
 VLR_API vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t material, const vlr_model* model,
                                                 uint32_t neighbors);
 /* Reference mode: f comes from the raw measurement. `proposal` (may be NULL) is the model whose lobes draw samples;
@@ -408,7 +408,8 @@ VLR_API vlr_status vlr_scene_add_instance(vlr_scene* scene, uint32_t mesh, const
                                           const uint32_t* materials, uint32_t count);
 /* The same with placements [count x 6]: of each slot a map [2 x 3, row-major] that takes (u, v, 1) of the mesh to the
  * texture coordinates that its material is shown with, as if the mesh had those; footprints, and the tangent that
- * anisotropy follows, come with them. NULL: they are the mesh's own. */
+ * anisotropy follows, come with them. An anisotropic BRDF is turned as the map turns, by angles on the surface, however
+ * far texture coordinates are stretched there. NULL: they are the mesh's own. */
 VLR_API vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const float* object_to_world,
                                                  const uint32_t* materials, const float* placements, uint32_t count);
 /* Many that differ in nothing but their meshes [instances] and matrices, object_to_world [instances x 12]. Those before

@@ -100,9 +100,14 @@ std::shared_ptr<const Model> coarse_proposal(const Measurement& measurement) {
   return std::make_shared<const Model>(fit_scattered(measurement, options, unwatched));
 }
 
+SurfaceMaterial brushed_if_anisotropic(SurfaceMaterial surface) {
+  surface.brushed = !surface.material->isotropic() && !surface.material->varies();
+  return surface;
+}
+
 SurfaceMaterial surface_of(const std::shared_ptr<const Model>& model, uint32_t neighbors) {
   SurfaceMaterial surface{.material = make_material(model, static_cast<int>(neighbors))};
-  if (!model->shell) return surface;
+  if (!model->shell) return brushed_if_anisotropic(std::move(surface));
   surface.shell = std::make_shared<const ShellField>(model->shell->volume);
   surface.shell_shaded = !is_btf(*model);
   if (surface.holed()) surface.material = std::make_shared<const HoledBtfMaterial>(surface.material);
@@ -276,8 +281,8 @@ vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measur
     require(measurement, "measurement");
     require(material, "material");
     const auto model = proposal ? proposal->model : coarse_proposal(*measurement->measurement);
-    *material = scene->scene->add_material(
-        {.material = make_measured_material(measurement->measurement, model, static_cast<int>(neighbors))});
+    *material = scene->scene->add_material(brushed_if_anisotropic(
+        {.material = make_measured_material(measurement->measurement, model, static_cast<int>(neighbors))}));
   });
 }
 

@@ -167,6 +167,15 @@ Mat3 Mesh::relief(uint32_t triangle, const Vec2& uv) const {
   return {tangent, t[0].side * glm::cross(normal, tangent), normal};
 }
 
+Vec3 Mesh::smooth_tangent(uint32_t triangle, const Vec2& uv, const Mat2& map) const {
+  const Mat3 space = relief(triangle, uv);
+  const Vec3 normal = glm::normalize(space[2]);
+  const Vec3 x = space[0] - glm::dot(space[0], normal) * normal;
+  const Vec3 y = tangents_[3 * static_cast<size_t>(triangle)].side * glm::cross(normal, x);
+  // The first column of the map's inverse, but for its length.
+  return (glm::determinant(map) < 0.0f ? -1.0f : 1.0f) * (map[1].y * x - map[0].y * y);
+}
+
 uint64_t Mesh::bytes() const {
   uint64_t more = 0;
   for (const std::vector<Vec2>& set : more_uvs_) more += set.size() * sizeof(Vec2);

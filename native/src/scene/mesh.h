@@ -70,8 +70,11 @@ class Mesh {
   /// Along d position / d (first coordinate of `map` times the texture coordinates); zero without uvs or where they are
   /// degenerate.
   Vec3 tangent(uint32_t triangle, const Mat2& map = Mat2(1.0f)) const;
+  /// The same, but of MikkTSpace's tangents: smooth where triangles share corners. `map` turns it on the surface, and
+  /// knows nothing of how far the picture is stretched there. Only with has_tangents().
+  Vec3 smooth_tangent(uint32_t triangle, const Vec2& uv, const Mat2& map = Mat2(1.0f)) const;
   uint32_t material_slot(uint32_t triangle) const { return slots_.empty() ? 0 : slots_[triangle]; }
-  /// Makes what relief() needs, where there are texture coordinates and it is not there yet.
+  /// Makes what relief() and smooth_tangent() need, where there are texture coordinates and it is not there yet.
   void make_tangents();
   bool has_tangents() const { return !tangents_.empty(); }
   /// Columns: tangent, bitangent and normal of a normal map, object space, interpolated and not normalised. Only with

@@ -38,6 +38,8 @@ void require_placements(const std::vector<TextureMap>& placements, size_t materi
   }
 }
 
+bool needs_tangents(const SurfaceMaterial& material) { return material.relief || material.brushed; }
+
 /// Whether shells of the two make the same tops of meshes, and fold where the others do.
 bool have_same_tops(const SurfaceMaterial& a, const SurfaceMaterial& b) {
   if (!a.shell || !b.shell) return !a.shell && !b.shell;
@@ -92,6 +94,7 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
   SurfaceMaterial& place = materials_[number];
   ++revision_;
   if (!have_same_tops(place, material)) geometry_changed();
+  if (needs_tangents(material) && !needs_tangents(place)) changed();
   if (material.shell && place.shell) {
     material.shell_tile = place.shell_tile;
     material.shell_softness = place.shell_softness;
@@ -220,8 +223,12 @@ void Scene::trace_mesh(uint32_t number, bool is_traced) {
 
 void Scene::make_tangents() {
   for (const Instance& i : instances_) {
-    if (std::ranges::any_of(i.materials, [&](uint32_t m) { return materials_[m].relief; }))
-      meshes_[i.mesh].make_tangents();
+    Mesh& mesh = meshes_[i.mesh];
+    if (mesh.has_tangents() ||
+        std::ranges::none_of(i.materials, [&](uint32_t m) { return needs_tangents(materials_[m]); }))
+      continue;
+    mesh.make_tangents();
+    if (!lifted_.empty()) geometry_changed_ = true;  // tops have copies
   }
 }
 
@@ -318,6 +325,14 @@ Mat3 Scene::relief(const Hit& hit) const {
   return mesh.has_tangents() ? instance.normal_to_world * mesh.relief(hit.triangle, {hit.u, hit.v}) : Mat3(0.0f);
 }
 
+Vec3 Scene::tangent(const Hit& hit) const {
+  const Mesh& mesh = traced_mesh(instances_[hit.instance]);
+  const TextureMap* placed = placement(hit);
+  const Mat2 map = placed != nullptr ? placed->map : Mat2(1.0f);
+  const bool smooth = mesh.has_tangents() && materials_[material(hit)].brushed;
+  return smooth ? mesh.smooth_tangent(hit.triangle, {hit.u, hit.v}, map) : mesh.tangent(hit.triangle, map);
+}
+
 SurfacePoint Scene::surface(const Hit& hit) const {
   const Instance& instance = instances_[hit.instance];
   const Mesh& mesh = traced_mesh(instance);
@@ -330,8 +345,7 @@ SurfacePoint Scene::surface(const Hit& hit) const {
   point.geometric_normal =
       glm::normalize(front / std::max({std::abs(front.x), std::abs(front.y), std::abs(front.z), 1e-37f}));
   point.shading_normal = glm::normalize(instance.normal_to_world * mesh.shading_normal(hit.triangle, uv));
-  const TextureMap* placed = placement(hit);
-  point.tangent = map.vector(mesh.tangent(hit.triangle, placed != nullptr ? placed->map : Mat2(1.0f)));
+  point.tangent = map.vector(tangent(hit));
   point.error = position_error(map, mesh.position_magnitude(hit.triangle, uv));
   point.material = material(hit);
   return point;

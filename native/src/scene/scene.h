@@ -25,6 +25,7 @@ struct SurfaceMaterial {
   Rgb emission{0.0f};         // radiance of both sides, working space
   bool rec709_colors = true;  // f is Rec. 709 (measured) and is taken to the working space; false: already there
   bool relief = false;        // it has a normal map: meshes that show it get tangents
+  bool brushed = false;       // anisotropic and the same all over: +x is smooth_tangent(), meshes get tangents
   uint8_t uv_sets = 1;        // how many sets of texture coordinates it looks at, SurfaceSite::kMostSets at most
   uint8_t color_sets = 0;     // how many sets of corner colours it looks at, SurfaceSite::kMostColorSets at most
   /// Structure that lies over the surface and lets rays through; null: none. Needs texture coordinates.
@@ -102,7 +103,8 @@ class Scene {
   void remove_mesh(uint32_t number);
   uint32_t add_material(SurfaceMaterial material);
   /// Puts another material in the place of one. A committed scene stays committed, unless one of the two has a shell
-  /// and the other none of the same heights; nothing may read it meanwhile. A shell keeps tile and softness.
+  /// and the other none of the same heights, or the new one alone needs tangents; nothing may read it meanwhile. A
+  /// shell keeps tile and softness.
   void set_material(uint32_t number, SurfaceMaterial material);
   /// Puts the material that was added last in the place of `number`, and takes it from the end.
   void replace_material(uint32_t number);
@@ -219,6 +221,8 @@ class Scene {
   /// Null where texture coordinates are the mesh's own.
   const TextureMap* placement(const Hit& hit) const;
   TexturePoint texture_of_mesh(const Hit& hit, size_t set) const;
+  /// SurfacePoint::tangent in the object's space.
+  Vec3 tangent(const Hit& hit) const;
   Bounds bounds_of_instances() const;
   SceneInfo count() const;
 

@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     group.add_argument(
         "--texture-rotation", type=numbers.real(), metavar="DEG",
-        help="turns the tiles counter-clockwise about the first one's corner (0)",
+        help="turns the tiles counter-clockwise about the first one's corner, or an anisotropic BRDF (0)",
     )  # fmt: skip
     group.add_argument(
         "--texture-offset", type=numbers.reals(2), metavar="U,V",
@@ -65,7 +65,9 @@ def placements(args: argparse.Namespace) -> list | None:
     given = {name: v for name in names if (v := getattr(args, f"texture_{name}")) is not None}
     if not given:
         return None
-    if not {"texels", "shell"} & library.file_info(args.material).keys():
+    info = library.file_info(args.material)
+    is_turned = given.keys() == {"rotation"} and not info.get("isotropic", True)
+    if not is_turned and not {"texels", "shell"} & info.keys():
         flags = " and ".join(f"--texture-{name}" for name in given)
         raise refuse(f"{args.material} has no texture that could be placed; leave {flags} out.")
     turn = math.radians(given.get("rotation", 0.0))
