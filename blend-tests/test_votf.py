@@ -48,9 +48,7 @@ class Outline(BlenderTest):
         shell = self._info()["shell"]
         self.assertEqual(shell["source"], self.tile.name)
         self.assertEqual(shell["points"][0], 48)
-        with inputs.native().Tile.create("net", count=2, resolution=8) as tile:
-            solid = 1 - tile.info()["open_area"]
-        self.assertAlmostEqual(self._alpha("after"), solid, delta=0.03)
+        self.assertAlmostEqual(self._alpha("after"), self._solid(), delta=0.03)
 
     def test_a_wider_tile_has_a_higher_outline(self):
         bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=32)
@@ -70,6 +68,28 @@ class Outline(BlenderTest):
         soft = scenes.render(self.folder, "soft")[..., 3]
         self.assertAlmostEqual(float(soft.mean()), float(hard.mean()), delta=0.03)
         self.assertGreater(np.mean((soft > 0.1) & (soft < 0.9)), 1.5 * np.mean((hard > 0.1) & (hard < 0.9)))
+
+    def _solid(self):
+        with inputs.native().Tile.create("net", count=2, resolution=8) as tile:
+            return 1 - tile.info()["open_area"]
+
+    def test_it_lies_as_its_placement_says(self):
+        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=32)
+        layers = bpy.context.object.data.uv_layers
+        bpy.context.scene.camera.data.ortho_scale = 0.25  # a tile
+        plain = scenes.render(self.folder, "plain")[..., 3]
+        placement = scenes.velour_node(self.material).velour.placement
+        placement.repeats, placement.rotation = (2, 1), np.pi / 2
+        placed = scenes.render(self.folder, "placed")[..., 3]
+        placement.repeats, placement.rotation = (1, 1), 0
+        for corner in layers.active.data:
+            corner.uv = 2 * corner.uv.y, -corner.uv.x
+        moved = scenes.render(self.folder, "moved")[..., 3]
+        self.assertLess(np.abs(placed - moved).mean(), 0.02)
+        self.assertGreater(np.abs(placed - plain).mean(), 0.1)
+        layers.remove(layers[0])
+        bpy.context.scene.camera.data.ortho_scale = 1
+        self.assertAlmostEqual(self._alpha("projected"), self._solid(), delta=0.03)  # one tile, of a metre
 
     def test_its_height_is_told_in_radii_of_the_surface(self):
         bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=32)

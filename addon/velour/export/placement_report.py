@@ -7,7 +7,7 @@ import numpy as np
 
 from ..core.placement import LARGEST_STRETCH
 from .camera_texels import texels_per_pixel
-from .meshes import triangle_faces
+from .meshes import has_uv_maps, triangle_faces
 from .notes import ExportError
 from .placement import (
     lie_on,
@@ -33,7 +33,7 @@ def report_on(depsgraph, obj, material, tile):
     metrics = shown.metrics
     if metrics is None:
         return PlacementReport((), (missing_coordinates(obj, material.name),))
-    rows, warnings = [_density_row(metrics)], _warnings(shown, material)
+    rows, warnings = [_density_row(metrics)], _warnings(obj, material, shown.is_projected)
     density = None if shown.is_projected else metrics.local.density()
     try:
         uv_map = tile_map(tile, metrics)
@@ -50,11 +50,12 @@ def report_on(depsgraph, obj, material, tile):
 
 def report_on_brushed(depsgraph, obj, material):
     """The same of an anisotropic material, which has no tile."""
-    return PlacementReport((), _warnings(ShownSurface.of(depsgraph, obj, material), material))
+    is_projected = not has_uv_maps(obj.evaluated_get(depsgraph))
+    return PlacementReport((), _warnings(obj, material, is_projected))
 
 
-def _warnings(shown, material):
-    return (projected_onto(shown.obj, material.name),) if shown.is_projected else ()
+def _warnings(obj, material, is_projected):
+    return (projected_onto(obj, material.name),) if is_projected else ()
 
 
 def _of_faces(shown, values):
