@@ -8,6 +8,8 @@ import numpy as np
 from parity import stage
 from parity.case import ParityTest
 
+_OLDER = ((3, 0), (5, 0))  # where pictures of the sky light surfaces by their integral
+
 
 class World(ParityTest):
     """A sphere before the sky."""
@@ -52,13 +54,16 @@ class World(ParityTest):
     def test_environment(self):
         self._environment()
         self.background.inputs["Strength"].default_value = 1.5
-        self.assert_parity("World: environment texture, strength")
+        self.assert_approximate("World: environment texture, strength", 2, exact=_OLDER)
 
     def test_rotation(self):
+        """In Blender 5.2 the sky itself agrees; what it lights is brighter than its integral."""
         for kind in ("POINT", "TEXTURE", "VECTOR"):
             with self.subTest(kind):
                 self._mapping(self._environment(), (0.3, -0.4, 1.1), kind)
-                self.assert_parity(f"World: rotated environment, {kind.lower()} mapping")
+                self.assert_approximate(
+                    f"World: rotated environment, {kind.lower()} mapping", 40, exact=_OLDER
+                )
 
     def test_closest(self):
         self._environment(interpolation="Closest")
