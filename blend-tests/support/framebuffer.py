@@ -1,11 +1,13 @@
 """The pixels of a screen that nobody sees: what Xvfb keeps in its file, in the format of xwd."""
 
 import struct
+import time
 import zlib
 
 import numpy as np
 
 FILE = "Xvfb_screen0"  # in the folder that Xvfb is given with -fbdir
+_BETWEEN, _MOST_READS = 0.15, 20  # seconds
 _HEADER = struct.Struct(">25I")  # of XWDFile.h, version 7: sizes, formats, masks
 
 
@@ -18,6 +20,17 @@ def read(path):
         raise ValueError(f"{path}: {bits} bits a pixel, byte order {header[7]}; 32 and 0 are read.")
     rows = np.frombuffer(content, np.uint8, height * stride, header_size + 12 * colours)
     return rows.reshape(height, stride)[::-1, : 4 * width].reshape(height, width, 4)[..., 2::-1].copy()
+
+
+def at_rest(path):
+    """The same once it stays: what has been drawn takes a while to the screen."""
+    pixels = read(path)
+    for _ in range(_MOST_READS):
+        time.sleep(_BETWEEN)
+        last, pixels = pixels, read(path)
+        if np.array_equal(last, pixels):
+            break
+    return pixels
 
 
 def write_png(path, pixels):

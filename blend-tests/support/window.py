@@ -89,7 +89,9 @@ def screenshot(folder, name):
 
     From the screen, which the window fills: since Blender 4 its own screenshots are black under Mesa.
     """
-    pixels = framebuffer.read(folder / framebuffer.FILE)
+    with override():
+        bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
+    pixels = framebuffer.at_rest(folder / framebuffer.FILE)
     framebuffer.write_png(folder / f"{name}.png", pixels)
     pixels = pixels / np.float32(255)
     assert pixels.std() > 0.02, "the screenshot is uniform"
