@@ -4,6 +4,7 @@ import importlib
 import time
 
 import bpy
+import numpy as np
 
 from . import inputs, scenes, window
 
@@ -71,6 +72,12 @@ def finished():
     yield 0.15
     yield from until(is_idle, "the viewport does not come to its end")
     yield 0.15
+
+
+def seen(last, what):
+    """Turns until the viewport shows something else than the pixels `last`, all of its samples."""
+    yield from until(lambda: samples() and not np.array_equal(pixels(), last), f"{what} is not seen")
+    yield from finished()
 
 
 def pixels():
