@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import sys
+import time
 import unittest
 from pathlib import Path
 
@@ -12,15 +13,27 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from support import blender
 
+SLOW_SECONDS = 5
+
 
 class Result(unittest.TextTestResult):
-    """Also counts the passed ones."""
+    """Also counts the passed ones, and says what took long."""
 
     def __init__(self, *arguments, **keywords):
         super().__init__(*arguments, **keywords)
         self.passed = 0
 
-    def addSuccess(self, test):  # noqa: N802  (unittest's name)
+    def startTest(self, test):  # noqa: N802  (unittest's name)
+        super().startTest(test)
+        self._start = time.monotonic()
+
+    def stopTest(self, test):  # noqa: N802
+        super().stopTest(test)
+        seconds = time.monotonic() - self._start
+        if seconds > SLOW_SECONDS:
+            self.stream.writeln(f"slow: {test.id().rpartition('.')[2]}: {seconds:.1f} s")
+
+    def addSuccess(self, test):  # noqa: N802
         super().addSuccess(test)
         self.passed += 1
 

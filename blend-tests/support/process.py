@@ -6,6 +6,8 @@ import signal
 import subprocess
 from pathlib import Path
 
+_running = set()  # of execute()
+
 
 def environment(blender, stage=None):
     """`stage`: a folder of scripts that Blender takes in place of the user's own."""
@@ -43,12 +45,24 @@ def execute(command, variables, log, seconds):
             stderr=subprocess.STDOUT,
             start_new_session=True,
         )
+        _running.add(process)
         try:
             return process.wait(seconds)
         except subprocess.TimeoutExpired:
             output.write(f"\nkilled after {seconds} s\n".encode())
             return None
         finally:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
+            _kill(process)
             process.wait()
+            _running.discard(process)
+
+
+def stop_all():
+    """Ends what other threads have execute() wait for."""
+    for process in list(_running):
+        _kill(process)
+
+
+def _kill(process):
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)

@@ -11,6 +11,7 @@
 #include "btf/btf_folder.h"
 #include "capture/btf_capture.h"
 #include "support/statistics.h"
+#include "support/test_data.h"
 #include "support/test_scene.h"
 
 namespace velour::test {
@@ -18,7 +19,7 @@ namespace velour::test {
 /// A folder that is there while this is; empty at first.
 class ScratchFolder {
  public:
-  explicit ScratchFolder(const std::string& name) : path_(std::filesystem::path(VELOUR_SCRATCH_DIR) / name) {
+  explicit ScratchFolder(const std::string& name) : path_(scratch_root() / name) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_.parent_path());
   }

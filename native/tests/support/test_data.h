@@ -3,28 +3,18 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <string>
 
 namespace velour::test {
 
 /// Folder of real test inputs: $VELOUR_DATA, else ../shared/data beside the project; empty when absent.
-inline std::filesystem::path data_folder() {
-  const char* from_environment = std::getenv("VELOUR_DATA");
-  const std::filesystem::path folder =
-      from_environment ? from_environment : std::string(VELOUR_SOURCE_DIR) + "/../shared/data";
-  return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
-}
+std::filesystem::path data_folder();
 
-/// A fresh folder for one test's files, named after it, below the build folder; kept for a look after a failure.
-inline std::filesystem::path scratch_folder() {
-  const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::path(VELOUR_SCRATCH_DIR) / info->test_suite_name() / info->name();
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
-}
+/// Below the build folder, for files of tests.
+std::filesystem::path scratch_root();
+
+/// A fresh folder for one test's files, named after it, in the root; kept for a look after a failure.
+std::filesystem::path scratch_folder();
 
 }  // namespace velour::test
 

@@ -31,7 +31,7 @@ std::vector<double> planes_of(const std::function<Rgb(const Vec3&, const Vec3&)>
 class Merl : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    const auto folder = std::filesystem::path(VELOUR_SCRATCH_DIR) / "Merl";
+    const auto folder = test::scratch_root() / "Merl";
     std::filesystem::create_directories(folder);
     path_ = folder / "glossy.binary";
     write_merl(path_, planes_of(test::glossy));

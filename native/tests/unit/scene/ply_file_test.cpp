@@ -10,12 +10,13 @@
 
 #include "job/error.h"
 #include "scene/mesh_file.h"
+#include "support/test_data.h"
 
 namespace velour {
 namespace {
 
 std::string written(const std::string& bytes, const std::string& name = "mesh.ply") {
-  const auto path = std::filesystem::path(VELOUR_SCRATCH_DIR) / name;
+  const auto path = test::scratch_root() / name;
   std::filesystem::create_directories(path.parent_path());
   std::ofstream(path, std::ios::binary) << bytes;
   return path.string();
