@@ -36,6 +36,27 @@ def glossy_measurement():
     return _made("glossy.binary", lambda path: write_merl(path, f))
 
 
+def plastic_measurement():
+    """A MERL file of a blue base under a GGX lobe of alpha 0.16 that rises from 4 % as Schlick says."""
+
+    def f(theta_h, theta_d, phi_d):
+        cosines = [
+            np.maximum(
+                np.cos(theta_h) * np.cos(theta_d) + side * np.sin(theta_h) * np.sin(theta_d) * np.cos(phi_d),
+                0.02,
+            )
+            for side in (-1, 1)
+        ]
+        alpha_sq = 0.16**2
+        d = alpha_sq / (np.pi * (np.cos(theta_h) ** 2 * (alpha_sq - 1) + 1) ** 2)
+        g = np.prod([2 * c / (c + np.sqrt(alpha_sq + (1 - alpha_sq) * c**2)) for c in cosines], axis=0)
+        fresnel = 0.04 + 0.96 * (1 - np.cos(theta_d)) ** 5
+        lobe = fresnel * d * g / (4 * cosines[0] * cosines[1])
+        return [base / np.pi + lobe for base in (0.05, 0.15, 0.5)]
+
+    return _made("plastic.binary", lambda path: write_merl(path, f))
+
+
 def anisotropic_measurement():
     """A table of a micro-surface, far too noisy for anything but being refused."""
 

@@ -14,7 +14,7 @@ from velour.native import Measurement, fit_job, table
 from velour_cli import ROOT, velour, velour_to_file
 
 MODELS = table.MODELS
-PEERS = table.PEERS
+PEERS = ("ggx", "principled")
 TOLERANCE = 0.02
 _PROGRAM = ROOT / "build/release/native/bench/evaluation_cost"
 _UNBOUND = 1e-6  # a tolerance that no fit meets, so that the bound asked for is what ends it

@@ -11,6 +11,7 @@ from .job import (
     compare_peer_job,
     fit_job,
     microsurface_job,
+    model_peer_job,
     observe_job,
     render_job,
 )
@@ -53,6 +54,7 @@ __all__ = [
     "images",
     "library",
     "microsurface_job",
+    "model_peer_job",
     "observe_job",
     "render_job",
     "votf_data_job",

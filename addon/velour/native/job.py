@@ -163,6 +163,11 @@ def compare_peer_job(measurement: Measurement, peer: str) -> Job:
     return Job._create("vlr_compare_peer_create_job", measurement.pointer, number)
 
 
+def model_peer_job(model: Model, peer: str) -> Job:
+    """As compare_peer_job, of a model in the place of its measurement."""
+    return Job._create("vlr_model_peer_create_job", model.pointer, choice("peer", peer, table.PEERS))
+
+
 def microsurface_job(path: str | os.PathLike, **options) -> Job:
     """Writes a virtual measurement to `path`. Options: roughness, anisotropy, metal, base_albedo, base_share,
     rays, seed, threads."""

@@ -28,7 +28,7 @@ COMPRESS_METHODS = ("svd", "srbf", "tucker", "cta", "kcta", "svd-view")  # by nu
 COMPANDINGS = ("none", "root")  # by number
 BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
 BTF_COLORS = ("rec709", "xyz")
-PEERS = ("ggx", "principled")
+PEERS = ("ggx", "principled", "plain_principled")
 PLOTS = ("lobes", "order", "view-error", "albedo")
 LIGHTS = ("sun", "point", "rectangle", "disk", "spot")
 HIDDEN = {"camera": 1, "bounces": 2, "shadows": 4, "holdout": 8}  # VLR_HIDDEN_FROM_*, VLR_HOLDOUT
@@ -436,6 +436,7 @@ STATUS_CALLS = {
     "vlr_fit_create_job": [_handle, POINTER(FitOptions), _out_handle],
     "vlr_compare_create_job": [_handle, _handle, _out_handle],
     "vlr_compare_peer_create_job": [_handle, c_int32, _out_handle],
+    "vlr_model_peer_create_job": [_handle, c_int32, _out_handle],
     "vlr_microsurface_create_job": [POINTER(MicrosurfaceOptions), c_char_p, _out_handle],
     "vlr_directions": [c_char_p, POINTER(c_double), POINTER(c_uint64)],
     "vlr_capture_create_job": [_handle, POINTER(CaptureOptions), c_char_p, _out_handle],

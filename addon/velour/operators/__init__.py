@@ -6,6 +6,7 @@ from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
 from .add_mesostructure import VELOUR_OT_add_mesostructure
 from .add_votf import VELOUR_OT_add_votf
+from .approximate import VELOUR_OT_approximate
 from .capture_btf import VELOUR_OT_capture_btf
 from .compress_btf import VELOUR_OT_compress_btf
 from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
@@ -21,6 +22,7 @@ CLASSES = (
     VELOUR_OT_load_material,
     VELOUR_OT_fit,
     VELOUR_OT_fit_for_scene,
+    VELOUR_OT_approximate,
     VELOUR_OT_cancel_fit,
     VELOUR_OT_save_model,
     VELOUR_OT_save_plot,

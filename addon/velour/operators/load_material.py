@@ -72,6 +72,9 @@ class VELOUR_OT_load_material(bpy.types.Operator, ImportHelper):
                 material.use_fake_user = True
         unfitted = [m.name for m in materials if measured.ensure_node(m).image is None]
         jobs = [(bpy.ops.velour.fit, {"material": name}) for name in unfitted if self.fit]
+        jobs += [
+            (bpy.ops.velour.approximate, {"material": m.name}) for m in materials if m.name not in unfitted
+        ]
         for path in btfs:  # the first of all files takes the slot
             place = {
                 "assign": self.assign and not materials and path == btfs[0],

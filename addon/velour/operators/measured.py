@@ -6,6 +6,7 @@ import bpy
 
 from ..export.files import absolute_path, sha256
 from ..export.nodes import active_output, velour_node
+from . import approximation_group
 
 NODE_NAME = "Velour"
 
@@ -19,8 +20,11 @@ def find_material(context, name):
 
 
 def new_material(name):
-    """A material with a measured node beside a Principled approximation, ready for a model."""
+    """A material with a measured node beside the group that approximates it, ready for a model."""
     material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    approximation_group.put(material)
     ensure_node(material)
     return material
 
@@ -35,6 +39,9 @@ def ensure_node(material):
         node.name = node.label = NODE_NAME
         node.location = _free_place(material.node_tree)
         node.velour.enabled = True
+        # Cycles reads the images of all nodes that are not muted, linked or not; models are no pictures, and
+        # Blender 3.4 ends on some.
+        node.mute = True
     return node
 
 

@@ -2,6 +2,7 @@
 
 import bpy
 
+from .approximation_state import VelourApproximationState
 from .file_settings import VelourFileSettings
 from .job_state import VelourJobState
 from .layer_settings import VelourLayerSettings
@@ -15,6 +16,7 @@ _POINTERS = (
     (bpy.types.Scene, VelourRenderSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.ViewLayer, VelourLayerSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.ShaderNodeTexImage, VelourMaterialSettings, {"LIBRARY_OVERRIDABLE"}),
+    (bpy.types.ShaderNodeTree, VelourApproximationState, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.Image, VelourFileSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.Object, VelourTileSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.Collection, VelourTileSettings, {"LIBRARY_OVERRIDABLE"}),

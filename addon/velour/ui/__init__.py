@@ -1,6 +1,7 @@
 """Panels and preferences."""
 
 from . import file_handler, library_state, placement_summary, plot_preview, progress, stock_panels, summaries
+from .approximation_panel import VELOUR_MATERIAL_PT_approximation
 from .layer_panel import VELOUR_VIEWLAYER_PT_passes
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
@@ -28,6 +29,7 @@ CLASSES = (
     VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_plots,
     VELOUR_MATERIAL_PT_outline,
+    VELOUR_MATERIAL_PT_approximation,
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_surface,
     VELOUR_OBJECT_PT_tile,

@@ -159,7 +159,7 @@ def _draw_numbers(layout, info):
         ("Reciprocity error", _number(info["reciprocity"])),
     )
     draw_rows(layout, rows)
-    _draw_error_by_angle(layout.box(), info["by_view_angle"])
+    draw_error_by_angle(layout.box(), info["by_view_angle"])
 
 
 def _btf_rows(info):
@@ -242,7 +242,7 @@ def _lobes(info):
     return f"{info['lobes']} for all views"
 
 
-def _draw_error_by_angle(box, errors):
+def draw_error_by_angle(box, errors):
     box.label(text="Error by view angle")
     row = box.row(align=True)
     for angle, error in errors.items():

@@ -232,12 +232,16 @@ VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const 
 /* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples, narrow_views. */
 VLR_API vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_model* model, vlr_job** out);
 /* Analytic materials to compare with: the GGX lobe over a diffuse base that the strategies `ggx` and `mis-ggx` draw
- * from, and Blender's Principled material. */
-enum { VLR_PEER_GGX = 0, VLR_PEER_PRINCIPLED = 1 };
+ * from, and Blender's Principled material: all of it, or without coat and specular tint, which Blender before 4.0 has
+ * not alike. */
+enum { VLR_PEER_GGX = 0, VLR_PEER_PRINCIPLED = 1, VLR_PEER_PLAIN_PRINCIPLED = 2 };
 /* The same of the peer (VLR_PEER_*) that suits the measurement best. JSON: also seconds (of its fit), parameter_bytes,
  * and ggx {alpha [x, y], f0, f90, diffuse} or principled {base_color, metallic, roughness, specular,
  * specular_tint, coat, coat_roughness}; colours linear Rec. 709. */
 VLR_API vlr_status vlr_compare_peer_create_job(const vlr_measurement* measurement, int32_t peer, vlr_job** out);
+/* The same of the peer that suits a model best: errors are those against the model, of a BTF against its mean over the
+ * tile. Views that the model is not made for are null. */
+VLR_API vlr_status vlr_model_peer_create_job(const vlr_model* model, int32_t peer, vlr_job** out);
 
 typedef struct vlr_microsurface_options {
   uint32_t struct_size;

@@ -5,6 +5,7 @@
 #include "capture/microsurface.h"
 #include "fit/compare.h"
 #include "fit/fit_model.h"
+#include "fit/material_measurement.h"
 #include "fit/peer.h"
 #include "model/model_file.h"
 #include "model/model_material.h"
@@ -68,6 +69,20 @@ MicrosurfaceOptions converted(const vlr_microsurface_options& given) {
   return options;
 }
 
+Peer checked_peer(int32_t peer) {
+  if (peer < VLR_PEER_GGX || peer > VLR_PEER_PLAIN_PRINCIPLED) {
+    throw Error(Status::invalid_argument, "The peer is " + std::to_string(peer) + ", not a VLR_PEER value.");
+  }
+  return static_cast<Peer>(peer);
+}
+
+vlr_job* peer_job(std::shared_ptr<const Measurement> measurement, Peer peer) {
+  auto output = std::make_shared<JobOutput>();
+  return new vlr_job(output, [output, peer, source = std::move(measurement)](Progress& progress) {
+    output->set(peer_json(judge_peer(*source, peer, 0, progress)));
+  });
+}
+
 }  // namespace
 
 vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options, vlr_job** out) {
@@ -106,13 +121,18 @@ vlr_status vlr_compare_peer_create_job(const vlr_measurement* measurement, int32
   return guard([&] {
     require(measurement, "measurement");
     require(out, "out");
-    if (peer != VLR_PEER_GGX && peer != VLR_PEER_PRINCIPLED) {
-      throw Error(Status::invalid_argument, "The peer is " + std::to_string(peer) + ", not a VLR_PEER value.");
-    }
-    auto output = std::make_shared<JobOutput>();
-    *out = new vlr_job(output, [output, peer, source = measurement->measurement](Progress& progress) {
-      output->set(peer_json(judge_peer(*source, static_cast<Peer>(peer), 0, progress)));
-    });
+    *out = peer_job(measurement->measurement, checked_peer(peer));
+  });
+}
+
+vlr_status vlr_model_peer_create_job(const vlr_model* model, int32_t peer, vlr_job** out) {
+  return guard([&] {
+    require(model, "model");
+    require(out, "out");
+    const auto* parametric = std::get_if<ParametricBrdf>(&model->model->body);
+    const auto source = std::make_shared<const MaterialMeasurement>(make_reflecting_material(model->model, 0),
+                                                                    parametric ? parametric->views : ViewRange{});
+    *out = peer_job(source, checked_peer(peer));
   });
 }
 

@@ -16,7 +16,8 @@ std::shared_ptr<const Material> make(const PrincipledParameters& p) { return mak
 
 PeerParameters fit_peer(const Measurement& measurement, Peer peer, int threads, Progress& progress) {
   if (peer == Peer::ggx) return fit_ggx(measurement, threads, progress);
-  return fit_principled(measurement, threads, progress);
+  const auto set = peer == Peer::principled ? PrincipledSet::all : PrincipledSet::plain;
+  return fit_principled(measurement, set, threads, progress);
 }
 
 std::shared_ptr<const Material> make_peer_material(const PeerParameters& parameters) {

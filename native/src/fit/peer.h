@@ -13,7 +13,7 @@
 
 namespace velour {
 
-enum class Peer { ggx, principled };
+enum class Peer { ggx, principled, plain_principled };
 using PeerParameters = std::variant<GgxParameters, PrincipledParameters>;
 
 /// The peer that suits the measurement best. The result does not depend on `threads` (0: all).

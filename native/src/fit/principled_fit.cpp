@@ -14,15 +14,20 @@ PrincipledParameters kind(float metallic, float tint, float coat, float coat_rou
   return {.metallic = metallic, .specular_tint = Rgb(tint), .coat = coat, .coat_roughness = coat_roughness};
 }
 
+std::vector<PrincipledParameters> kinds_of(PrincipledSet set) {
+  if (set == PrincipledSet::plain) {
+    return {kind(0, 1, 0, 0.1f), kind(0.3f, 1, 0, 0.1f), kind(0.7f, 1, 0, 0.1f), kind(1, 1, 0, 0.1f)};
+  }
+  return {kind(0, 1, 0, 0.1f),           kind(0, 1, 1, 0.3f),          kind(1, 1, 0, 0.1f),
+          kind(1, 1, 0.5f, 0.15f),       kind(0.3f, 0.5f, 0.3f, 0.3f), kind(0.3f, 0.5f, 0.5f, 0.5f),
+          kind(0.7f, 0.5f, 0.05f, 0.1f), kind(0.7f, 0.5f, 0.3f, 0.3f)};
+}
+
 /// kRoughnesses of one kind, then the next kind. At the ends of the ranges, and between them: a weight of 0 hides the
 /// parameters of what it weighs, and some descents get stuck there.
-std::vector<PrincipledParameters> starts() {
-  const PrincipledParameters kinds[] = {kind(0, 1, 0, 0.1f),           kind(0, 1, 1, 0.3f),
-                                        kind(1, 1, 0, 0.1f),           kind(1, 1, 0.5f, 0.15f),
-                                        kind(0.3f, 0.5f, 0.3f, 0.3f),  kind(0.3f, 0.5f, 0.5f, 0.5f),
-                                        kind(0.7f, 0.5f, 0.05f, 0.1f), kind(0.7f, 0.5f, 0.3f, 0.3f)};
+std::vector<PrincipledParameters> starts(PrincipledSet set) {
   std::vector<PrincipledParameters> out;
-  for (PrincipledParameters p : kinds) {
+  for (PrincipledParameters p : kinds_of(set)) {
     for (size_t i = 0; i < kRoughnesses; ++i) {
       p.roughness = 0.08f * std::pow(1 / 0.08f, static_cast<float>(i) / (kRoughnesses - 1));
       out.push_back(p);
@@ -43,11 +48,12 @@ Candidates best_of_each_kind(const Candidates& all) {
 
 }  // namespace
 
-PrincipledParameters fit_principled(const Measurement& measurement, int threads, Progress& progress) {
+PrincipledParameters fit_principled(const Measurement& measurement, PrincipledSet set, int threads,
+                                    Progress& progress) {
   PairSamples samples = pair_samples(measurement, threads, progress);
   if (samples.samples.empty()) return {.base_color = Rgb(0), .specular = 0};
-  const PrincipledProblem problem(std::move(samples));
-  const std::vector<PrincipledParameters> from = starts();
+  const PrincipledProblem problem(std::move(samples), set);
+  const std::vector<PrincipledParameters> from = starts(set);
   const auto scanned = judged(problem, std::span(from), threads, progress);
   return best_descent(problem, best_of_each_kind(scanned), threads, progress);
 }

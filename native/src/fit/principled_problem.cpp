@@ -21,8 +21,8 @@ float difference_of(float value) { return value > 0.5f ? -1e-3f : 1e-3f; }
 
 }  // namespace
 
-PrincipledProblem::PrincipledProblem(PairSamples samples)
-    : samples_(std::move(samples.samples)), floor_(samples.floor) {
+PrincipledProblem::PrincipledProblem(PairSamples samples, PrincipledSet set)
+    : samples_(std::move(samples.samples)), floor_(samples.floor), set_(set) {
   for (const PairSample& s : samples_) h_.push_back(glm::normalize(s.w.wl + s.w.wv));
 }
 
@@ -104,6 +104,7 @@ PrincipledProblem::Normal PrincipledProblem::normal(const PrincipledParameters& 
     }
   }
   freeze_at_bounds(p, n);
+  freeze_others(n);
   return n;
 }
 
@@ -116,6 +117,16 @@ void PrincipledProblem::freeze_at_bounds(const PrincipledParameters& p, Normal& 
     check(kTint + c, p.specular_tint[c], 0);
   }
   for (size_t k = 0; k < kShape.size(); ++k) check(place(k), p.*kShape[k], least(kShape[k]));
+}
+
+void PrincipledProblem::freeze_others(Normal& n) const {
+  if (set_ == PrincipledSet::all) return;
+  for (int c = 0; c < 3; ++c) n.freeze(kTint + c);
+  for (size_t k = 0; k < kShape.size(); ++k) {
+    if (kShape[k] == &PrincipledParameters::coat || kShape[k] == &PrincipledParameters::coat_roughness) {
+      n.freeze(place(k));
+    }
+  }
 }
 
 PrincipledParameters PrincipledProblem::moved(const PrincipledParameters& p,

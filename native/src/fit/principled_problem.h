@@ -6,6 +6,7 @@
 
 #include "fit/levenberg_marquardt.h"
 #include "fit/pair_samples.h"
+#include "fit/principled_fit.h"
 #include "material/principled_lobes.h"
 
 namespace velour {
@@ -21,7 +22,7 @@ class PrincipledProblem {
       &PrincipledParameters::metallic, &PrincipledParameters::roughness, &PrincipledParameters::specular,
       &PrincipledParameters::coat, &PrincipledParameters::coat_roughness};
 
-  explicit PrincipledProblem(PairSamples samples);
+  explicit PrincipledProblem(PairSamples samples, PrincipledSet set = PrincipledSet::all);
 
   double cost(const PrincipledParameters& p) const;
   Normal normal(const PrincipledParameters& p) const;
@@ -37,10 +38,13 @@ class PrincipledProblem {
   std::array<std::vector<Parts>, kShape.size()> parts_beside(const PrincipledParameters& p,
                                                              const PrincipledLobes& lobes) const;
   void freeze_at_bounds(const PrincipledParameters& p, Normal& n) const;
+  /// What is not in the set.
+  void freeze_others(Normal& n) const;
 
   std::vector<PairSample> samples_;
   std::vector<Vec3> h_;
   float floor_;
+  PrincipledSet set_;
 };
 
 }  // namespace velour

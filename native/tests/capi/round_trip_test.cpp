@@ -156,6 +156,24 @@ TEST_P(RoundTrip, TheBestGgxLobeIsJudgedToo) {
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_compare_peer_create_job(measurement_, 7, &job));
 }
 
+TEST_P(RoundTrip, AModelHasAPeerWithoutItsMeasurement) {
+  for (const int32_t peer : {VLR_PEER_GGX, VLR_PEER_PRINCIPLED, VLR_PEER_PLAIN_PRINCIPLED}) {
+    vlr_job* job = nullptr;
+    ASSERT_EQ(VLR_OK, vlr_model_peer_create_job(model_, peer, &job)) << vlr_last_error();
+    ASSERT_EQ(VLR_OK, vlr_job_start(job));
+    ASSERT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
+    const char* text = nullptr;
+    ASSERT_EQ(VLR_OK, vlr_job_report_json(job, &text)) << vlr_last_error();
+    const char* own = peer == VLR_PEER_GGX ? "\"f90\"" : "\"specular_tint\"";
+    EXPECT_NE(std::strstr(text, own), nullptr) << text;
+    EXPECT_NE(std::strstr(text, "\"by_view_angle\""), nullptr) << text;
+    vlr_job_free(job);
+  }
+  vlr_job* job = nullptr;
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_model_peer_create_job(nullptr, VLR_PEER_PRINCIPLED, &job));
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_model_peer_create_job(model_, 3, &job));
+}
+
 TEST_P(RoundTrip, InfoNamesTheSource) {
   const char* json = nullptr;
   ASSERT_EQ(VLR_OK, vlr_model_info_json(model_, &json));

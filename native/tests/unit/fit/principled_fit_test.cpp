@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fit/evaluate.h"
+#include "fit/material_measurement.h"
 #include "fit/peer.h"
 #include "fit/principled_problem.h"
 #include "material/principled_material.h"
@@ -45,14 +46,41 @@ TEST(PrincipledFit, RecoversKnownMaterials) {
 TEST(PrincipledFit, NegativeControlAnotherRoughnessIsNotFound) {
   Progress progress;
   const PrincipledParameters truth = known_materials()[0];
-  const PrincipledParameters found = fit_principled(measurement_of(truth), 2, progress);
+  const PrincipledParameters found = fit_principled(measurement_of(truth), PrincipledSet::all, 2, progress);
   EXPECT_GT(std::abs(found.roughness - 1.1f * truth.roughness), 0.02f);
+}
+
+// Of a coated metal it is the best without a coat, and worse than with one.
+TEST(PrincipledFit, ThePlainSetHasNeitherCoatNorTint) {
+  Progress progress;
+  const auto coated = measurement_of(known_materials()[2]);
+  const PeerFit plain = judge_peer(coated, Peer::plain_principled, 2, progress);
+  const PeerFit full = judge_peer(coated, Peer::principled, 2, progress);
+  const auto& found = std::get<PrincipledParameters>(plain.parameters);
+  EXPECT_EQ(found.coat, 0);
+  EXPECT_EQ(found.specular_tint, Rgb(1));
+  EXPECT_GT(plain.error.relative_l2, 2 * full.error.relative_l2);
+  const auto bare = judge_peer(measurement_of(known_materials()[0]), Peer::plain_principled, 2, progress);
+  EXPECT_LT(bare.error.relative_l2, 0.01);
+}
+
+// A model is seen as its measurement is, and not at views that it is not made for.
+TEST(PrincipledFit, RecoversAMaterialFromItself) {
+  Progress progress;
+  const PrincipledParameters truth = known_materials()[0];
+  const MaterialMeasurement seen(make_principled_material(truth), {.begin = 0, .end = 70});
+  const PeerFit fit = judge_peer(seen, Peer::principled, 2, progress);
+  EXPECT_NEAR(std::get<PrincipledParameters>(fit.parameters).roughness, truth.roughness, 0.02);
+  EXPECT_LT(fit.error.relative_l2, 0.01);
+  EXPECT_TRUE(fit.error.by_view_angle.at("60").has_value());
+  EXPECT_FALSE(fit.error.by_view_angle.at("75").has_value());
 }
 
 TEST(PrincipledFit, DoesNotDependOnThreads) {
   const auto measurement = AnalyticMeasurement(test::ggx(0.2f, 0.2f));
   Progress progress;
-  const auto one = fit_principled(measurement, 1, progress), two = fit_principled(measurement, 2, progress);
+  const auto one = fit_principled(measurement, PrincipledSet::all, 1, progress);
+  const auto two = fit_principled(measurement, PrincipledSet::all, 2, progress);
   EXPECT_EQ(one.base_color, two.base_color);
   EXPECT_EQ(one.specular_tint, two.specular_tint);
   for (const auto member : PrincipledProblem::kShape) EXPECT_EQ(one.*member, two.*member);
@@ -62,7 +90,7 @@ TEST(PrincipledFit, UncoveredDataGiveABlackMaterial) {
   Progress progress;
   AnalyticMeasurement nothing(test::lambert);
   nothing.set_coverage([](const DirectionPair&) { return false; });
-  const PrincipledParameters black = fit_principled(nothing, 1, progress);
+  const PrincipledParameters black = fit_principled(nothing, PrincipledSet::all, 1, progress);
   EXPECT_EQ(black.base_color, Rgb(0));
   EXPECT_EQ(black.specular, 0);
 }
@@ -70,7 +98,7 @@ TEST(PrincipledFit, UncoveredDataGiveABlackMaterial) {
 TEST(PrincipledFit, StopsAtACancel) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(fit_principled(AnalyticMeasurement(test::lambert), 2, progress), Error);
+  EXPECT_THROW(fit_principled(AnalyticMeasurement(test::lambert), PrincipledSet::all, 2, progress), Error);
 }
 
 TEST(PrincipledFit, FollowsARealPaper) {

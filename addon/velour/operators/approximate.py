@@ -1,0 +1,73 @@
+"""Approximate a measured material: in the background of a window, or at once without one."""
+
+import bpy
+from bpy.props import StringProperty
+
+from ..core.approximation import Steps
+from ..export import ExportError
+from ..export.files import content, read_model, sha256
+from ..export.nodes import velour_node
+from . import approximation_group, measured
+from .background_job import OneJob
+from .job_target import JobTarget
+
+
+class Approximates(OneJob):
+    """Mixin of an operator whose last jobs are the `_steps` of an approximation."""
+
+    _steps = None  # none: no approximation is wanted
+    _next = None
+
+    def _advance(self):
+        """Whether another job is to be run before the approximation is there."""
+        self._next = self._steps.next_job() if self._steps else None
+        return self._next is not None
+
+    def _goes_on(self):
+        if self._next is None:
+            return False
+        self._job, self._next = self._next, None
+        return True
+
+
+class VELOUR_OT_approximate(Approximates, bpy.types.Operator):
+    bl_idname = "velour.approximate"
+    bl_label = "Approximate"
+    bl_description = (
+        "Make the node group of a Principled BSDF that comes closest to the model: what EEVEE, Cycles, Solid"
+        " mode and exporters show. Other nodes are not touched"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+
+    _what = "The approximation"
+
+    def _begin(self, context):
+        material = measured.find_material(context, self.material)
+        if material is None:
+            raise ExportError(
+                f"There is no material {self.material!r}." if self.material else "No active material."
+            )
+        owner = f"Material '{material.name}'"
+        if not approximation_group.is_editable(material):
+            raise ExportError(f"{owner} is linked from another file; approximate it there, or make it local.")
+        node = velour_node(material)
+        if node is None or node.image is None:
+            raise ExportError(f"{owner} has no model; fit one, or choose one as its image.")
+        self._target, self._subject = JobTarget(material, node), material.name
+        self._digest = sha256(content(node.image, owner))
+        self._steps = Steps(read_model(node.image, owner), approximation_group.has_layers())
+        self._job = self._steps.next_job()
+
+    def _finish(self):
+        if self._advance():
+            return None
+        material, _node = self._target.find()
+        if material is None:
+            self.report({"WARNING"}, "The material is gone.")
+            return {"CANCELLED"}
+        found = self._steps.result
+        approximation_group.put(material, found, self._digest)
+        self.report({"INFO"}, f"Approximated '{material.name}': relative error {found.relative_l2:.3g}.")
+        return {"FINISHED"}

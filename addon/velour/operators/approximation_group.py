@@ -1,0 +1,151 @@
+"""The native node group that shows a measured material wherever there is no Velour."""
+
+import bpy
+
+from ..core.approximation import PLACEHOLDER
+from ..export.color import rec709_to_working
+from ..export.nodes import active_output, first_input, velour_node
+from ..properties.approximation_state import VIEW_ANGLES
+
+NAME = "Velour approximation"
+
+# The library's names: those of Blender's sockets over the versions. A tint is told to colours only: before
+# Blender 4.0 it is a number, of another meaning.
+_SOCKETS = {
+    "base_color": ("Base Color",),
+    "metallic": ("Metallic",),
+    "roughness": ("Roughness",),
+    "specular": ("Specular IOR Level", "Specular"),
+    "specular_tint": ("Specular Tint",),
+    "coat": ("Coat Weight", "Clearcoat"),
+    "coat_roughness": ("Coat Roughness", "Clearcoat Roughness"),
+}
+
+
+def has_layers():
+    """Whether coat and tints of the Principled BSDF are those that the library fits; no property tells."""
+    return bpy.app.version >= (4, 0, 0)
+
+
+def find(material):
+    """The material's group node that is an approximation, or None."""
+    for node in material.node_tree.nodes if material and material.node_tree else ():
+        if node.bl_idname == "ShaderNodeGroup" and node.node_tree and node.node_tree.velour.is_approximation:
+            return node
+    return None
+
+
+def is_editable(material):
+    """Not of another file: overrides cannot add nodes."""
+    return material.library is None and material.override_library is None
+
+
+def is_wanted(material):
+    """Whether a new model may change what other programs see: there is an approximation, or no shader."""
+    outputs = [n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial"]
+    has_shader = any(node.inputs["Surface"].is_linked for node in outputs)
+    return is_editable(material) and (find(material) is not None or not has_shader)
+
+
+def put(material, approximation=PLACEHOLDER, model=""):
+    """Makes the material's group anew and shows it, if it is the first; touches no other node.
+
+    Materials that are copies share a group: it is replaced, never changed. model: the SHA-256 of what it
+    stands for.
+    """
+    tree, node = material.node_tree, find(material)
+    output = active_output(tree, "ShaderNodeOutputMaterial") or tree.nodes.new("ShaderNodeOutputMaterial")
+    is_new, before = node is None, node.node_tree if node else None
+    if is_new:
+        node = tree.nodes.new("ShaderNodeGroup")
+        node.name = node.label = NAME
+        node.location = output.location.x - 200, output.location.y
+    shown_by = [output.inputs["Surface"]] if is_new else [link.to_socket for link in node.outputs[0].links]
+    node.node_tree = None
+    _remove(before)  # first: its name is free then
+    node.node_tree = _group(approximation, velour_node(material))
+    for socket in shown_by:
+        tree.links.new(node.outputs[0], socket)
+    if not output.inputs["Surface"].is_linked:
+        tree.links.new(node.outputs[0], output.inputs["Surface"])
+    _remember(node.node_tree.velour, approximation, model)
+    _set_solid(material, approximation)
+
+
+def _group(approximation, node):
+    group = bpy.data.node_groups.new(NAME, "ShaderNodeTree")
+    if hasattr(group, "interface"):  # 4.0 and newer
+        group.interface.new_socket(name="BSDF", in_out="OUTPUT", socket_type="NodeSocketShader")
+    else:
+        group.outputs.new("NodeSocketShader", "BSDF")
+    sink = group.nodes.new("NodeGroupOutput")
+    sink.location = 600, 0
+    shader = _principled(group, approximation)
+    if approximation.anisotropic > 0:
+        _turn(group, shader, approximation, node.velour.placement)
+    last = _with_base(group, shader, approximation.diffuse) if max(approximation.diffuse) > 0 else shader
+    group.links.new(last.outputs[0], sink.inputs[0])
+    return group
+
+
+def _principled(group, approximation):
+    shader = group.nodes.new("ShaderNodeBsdfPrincipled")
+    shader.distribution = "GGX"  # as it was fitted: without light between facets
+    for name, value in approximation.principled.items():
+        socket = first_input(shader, *_SOCKETS[name])
+        if name == "base_color":
+            socket.default_value = _rgba(value)
+        elif hasattr(socket.default_value, "__len__"):
+            socket.default_value = (*value, 1.0)  # a tint is a ratio
+        elif name != "specular_tint":
+            socket.default_value = value
+    return shader
+
+
+def _turn(group, shader, approximation, placement):
+    """Along the texture coordinates, as measured materials lie."""
+    tangent = group.nodes.new("ShaderNodeTangent")
+    tangent.direction_type = "UV_MAP"
+    tangent.uv_map = placement.uv_map
+    tangent.location = -220, -300
+    group.links.new(tangent.outputs[0], shader.inputs["Tangent"])
+    turns = placement.rotation / 6.283185307179586 + (0.25 if approximation.turned else 0.0)
+    shader.inputs["Anisotropic"].default_value = approximation.anisotropic
+    shader.inputs["Anisotropic Rotation"].default_value = turns % 1.0
+
+
+def _with_base(group, shader, color):
+    base = group.nodes.new("ShaderNodeBsdfDiffuse")
+    base.inputs["Color"].default_value = _rgba(color)
+    base.location = 0, 160
+    both = group.nodes.new("ShaderNodeAddShader")
+    both.location = 400, 0
+    for number, part in enumerate((shader, base)):
+        group.links.new(part.outputs[0], both.inputs[number])
+    return both
+
+
+def _rgba(color):
+    """Of linear Rec. 709 in Blender's scene-linear space."""
+    return (*(float(c) for c in rec709_to_working() @ color), 1.0)
+
+
+def _remove(group):
+    """Of a material's own; copies of the material keep it."""
+    if group is not None and group.users == 0:
+        bpy.data.node_groups.remove(group)
+
+
+def _remember(state, approximation, model):
+    state.is_approximation, state.model = True, model
+    errors = {"": approximation.relative_l2, **approximation.by_view_angle}
+    state.relative_l2, *by_angle = (
+        -1.0 if errors.get(angle) is None else errors[angle] for angle in ("", *VIEW_ANGLES)
+    )
+    state.by_view_angle = by_angle
+
+
+def _set_solid(material, approximation):
+    material.diffuse_color = _rgba(approximation.color)
+    material.metallic = approximation.principled["metallic"]
+    material.roughness = approximation.principled["roughness"]

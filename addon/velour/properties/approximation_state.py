@@ -1,0 +1,15 @@
+"""What a native node group says of the measured material that it stands for."""
+
+import bpy
+from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, StringProperty
+
+VIEW_ANGLES = ("5", "30", "60", "75", "85")  # degrees
+
+
+class VelourApproximationState(bpy.types.PropertyGroup):
+    """`node_tree.velour`. Errors below 0: not known."""
+
+    is_approximation: BoolProperty()
+    model: StringProperty()  # SHA-256 of the model's file; empty: it is a placeholder
+    relative_l2: FloatProperty(default=-1.0)
+    by_view_angle: FloatVectorProperty(size=len(VIEW_ANGLES), default=(-1.0,) * len(VIEW_ANGLES))

@@ -1,0 +1,37 @@
+"""What other programs see of a measured material, and how far that is from the model."""
+
+import bpy
+
+from ..export.nodes import velour_node
+from ..operators import approximation_group
+from ..operators.approximate import VELOUR_OT_approximate
+from ..properties.approximation_state import VIEW_ANGLES
+from .material_panel import MaterialPanel, VELOUR_MATERIAL_PT_model, draw_error_by_angle, draw_rows
+from .text import draw_sentence
+
+
+class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
+    bl_label = "Approximation"
+    bl_parent_id = "VELOUR_MATERIAL_PT_measured"
+
+    @classmethod
+    def poll(cls, context):
+        return VELOUR_MATERIAL_PT_model.poll(context)
+
+    def draw(self, context):
+        layout, group = self.layout, approximation_group.find(context.material)
+        if group is None:
+            draw_sentence(
+                context, layout, "EEVEE, Cycles, Solid mode and exporters show this material's own shader."
+            )
+            layout.operator(VELOUR_OT_approximate.bl_idname, icon="NODE_MATERIAL")
+            return
+        state = group.node_tree.velour
+        if state.relative_l2 >= 0.0:
+            draw_rows(layout, (("Relative error", f"{state.relative_l2:.3g}, against the model"),))
+            errors = (error if error >= 0.0 else None for error in state.by_view_angle)
+            draw_error_by_angle(layout.box(), dict(zip(VIEW_ANGLES, errors, strict=True)))
+        digest = velour_node(context.material).image.velour.sha256
+        if digest and digest != state.model:
+            draw_sentence(context, layout, "It is not of this model: refresh it.", icon="ERROR")
+        layout.operator(VELOUR_OT_approximate.bl_idname, text="Refresh", icon="FILE_REFRESH")

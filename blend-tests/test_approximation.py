@@ -1,0 +1,236 @@
+"""The node group that shows a measured material where there is no Velour."""
+
+import importlib
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest, run_blender
+
+SIZE = 96
+_BLOCK = 8  # pixels: noise is far below what is looked for
+
+# What any Blender has: nothing that Velour registers.
+_NATIVE = {
+    "NodeGroupOutput",
+    "ShaderNodeAddShader",
+    "ShaderNodeBsdfDiffuse",
+    "ShaderNodeBsdfPrincipled",
+    "ShaderNodeTangent",
+}
+
+_RENDER = """
+import bpy
+assert not hasattr(bpy.types.Scene, "velour"), "Velour is there"
+scene = bpy.context.scene
+scene.render.engine = "CYCLES"
+scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 64, 0, False
+scene.render.filepath = {path!r}
+bpy.ops.render.render(write_still=True)
+"""
+
+
+def group_module():
+    return importlib.import_module(f"{inputs.ADDON}.operators.approximation_group")
+
+
+def group_of(material):
+    return group_module().find(material)
+
+
+class Approximation(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.obj = scenes.add_sphere()
+        scenes.use_engine(samples=64, size=SIZE)
+
+    @property
+    def material(self):
+        return self.obj.active_material
+
+    def _import(self, path, **options):
+        bpy.ops.velour.load_material(filepath=str(path), **options)
+        return self.material
+
+    def _model_file(self, data, name="paint"):
+        path = self.folder / f"{name}.velour"
+        path.write_bytes(data)
+        return path
+
+
+class WithoutVelour(Approximation):
+    """A file is opened in a Blender that has no Velour, and rendered by Cycles."""
+
+    def setUp(self):
+        super().setUp()
+        scenes.add_camera(ortho_scale=2.2)
+        scenes.set_world(strength=0.3)
+        lamp = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+        lamp.data.energy, lamp.data.angle, lamp.rotation_euler = 3, 0.1, (0.3, 0.7, 0)
+        bpy.context.scene.collection.objects.link(lamp)
+
+    def _cycles(self, name):
+        blend, path = self.folder / f"{name}.blend", self.folder / f"{name}.exr"
+        bpy.ops.wm.save_as_mainfile(filepath=str(blend), copy=True)
+        code = _RENDER.format(path=str(path))
+        done = run_blender(blend, "--python-exit-code", "1", "--python-expr", code, addons=False)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        return _blocks(scenes.read(path))
+
+    def _error(self, name):
+        """Relative RMS difference of what Cycles and Velour show."""
+        velour = _blocks(scenes.render(self.folder))
+        return float(np.sqrt(((self._cycles(name) - velour) ** 2).mean() / (velour**2).mean()))
+
+    def test_a_plastic(self):
+        self._import(inputs.plastic_measurement())
+        self.assertLess(self._error("plastic"), 0.06)
+        self._import(inputs.plastic_measurement(), fit=False)
+        model = inputs.model_bytes(inputs.plastic_measurement())
+        self._give_model(model)
+        self.assertGreater(self._error("grey"), 0.3, "a placeholder is no approximation")
+
+    def _give_model(self, data):
+        measured = importlib.import_module(f"{inputs.ADDON}.operators.measured")
+        scenes.velour_node(self.material).image = measured.packed_model(data, "Paint")
+
+    def test_a_brushed_metal_lies_as_it_does(self):
+        self._import(self._model_file(inputs.brushed_model()))
+        node = scenes.velour_node(self.material)
+        node.velour.placement.rotation = 0.6
+        bpy.ops.velour.approximate()
+        self.assertLess(self._error("brushed"), 0.25)
+        node = scenes.velour_node(self.material)
+        node.velour.placement.rotation = 0.6 + np.pi / 2  # and the group is as it was
+        self.assertGreater(self._error("turned"), 0.5)
+
+
+class Group(Approximation):
+    def test_a_new_material_has_one(self):
+        bpy.ops.velour.add_material()
+        self.assertEqual(group_of(self.material).node_tree.name, "Velour approximation")
+        self.assertTrue(group_of(self.material).outputs[0].is_linked)
+
+    def test_it_is_of_native_nodes_and_so_is_solid_mode(self):
+        for name, data in (
+            ("brushed", inputs.brushed_model()),
+            ("lambert", inputs.model_bytes(inputs.lambert_measurement())),
+        ):
+            group = group_of(self._import(self._model_file(data, name))).node_tree
+            self.assertLessEqual({node.bl_idname for node in group.nodes}, _NATIVE)
+        self.assert_close(self.material.metallic, 0, 0.05)
+        np.testing.assert_allclose(self.material.diffuse_color[:3], (0.8, 0.5, 0.2), atol=0.03)
+
+    def test_its_error_is_the_library_s(self):
+        data = inputs.model_bytes(inputs.plastic_measurement())
+        state = group_of(self._import(self._model_file(data))).node_tree.velour
+        peer = "principled" if group_module().has_layers() else "plain_principled"
+        velour = inputs.native()
+        with velour.Model.from_bytes(data, "plastic") as model, velour.model_peer_job(model, peer) as job:
+            report = job.run()
+        self.assert_close(state.relative_l2, report["relative_l2"], 1e-6)
+        np.testing.assert_allclose(state.by_view_angle, list(report["by_view_angle"].values()), rtol=1e-5)
+        self.assertEqual(state.model, scenes.velour_node(self.material).image.velour.sha256)
+
+    def test_a_fit_refreshes_it(self):
+        self._import(inputs.lambert_measurement(), fit=False)
+        self.assertEqual(group_of(self.material).node_tree.velour.model, "")
+        bpy.ops.velour.fit(tolerance=0.1, max_lobes=3)
+        group = group_of(self.material)
+        self.assertEqual(group.node_tree.velour.model, scenes.velour_node(self.material).image.velour.sha256)
+        self.assertEqual(group.node_tree.name, "Velour approximation")
+        self.assertTrue(group.outputs[0].is_linked)
+        self.assertEqual(len(bpy.data.node_groups), 1, "the one before is left behind")
+
+    def test_a_shader_of_the_artist_s_own_stays(self):
+        self.obj.active_material = material = scenes.diffuse_material()
+        bpy.ops.velour.add_material()
+        self._measure(material)
+        bpy.ops.velour.fit(tolerance=0.1, max_lobes=3)
+        self.assertIsNone(group_of(material))
+        surface = material.node_tree.nodes["Material Output"].inputs["Surface"]
+        self.assertEqual(surface.links[0].from_node.bl_idname, "ShaderNodeBsdfDiffuse")
+        self.assertEqual(bpy.ops.velour.approximate(), {"FINISHED"})  # the artist's click
+        self.assertEqual(surface.links[0].from_node, group_of(material))
+        self.assertIn("ShaderNodeBsdfDiffuse", [node.bl_idname for node in material.node_tree.nodes])
+
+    def test_a_free_output_is_used(self):
+        self.obj.active_material = material = scenes.diffuse_material()
+        bpy.ops.velour.add_material()
+        self._measure(material)
+        surface = material.node_tree.nodes["Material Output"].inputs["Surface"]
+        material.node_tree.links.remove(surface.links[0])
+        bpy.ops.velour.fit(tolerance=0.1, max_lobes=3)
+        self.assertEqual(surface.links[0].from_node, group_of(material))
+
+    def _measure(self, material):
+        measured = importlib.import_module(f"{inputs.ADDON}.operators.measured")
+        settings = scenes.velour_node(material).velour
+        settings.measurement = measured.file_image(str(inputs.lambert_measurement()))
+
+    def test_copies_share_it_until_one_is_refreshed(self):
+        self._import(self._model_file(inputs.model_bytes(inputs.lambert_measurement())))
+        original, copy = self.material, self.material.copy()
+        before = group_of(original).node_tree
+        self.assertEqual(group_of(copy).node_tree, before)
+        bpy.ops.velour.approximate(material=copy.name)
+        self.assertEqual(group_of(original).node_tree, before)
+        self.assertNotEqual(group_of(copy).node_tree, before)
+
+    def test_a_group_of_that_name_is_left_alone(self):
+        mine = bpy.data.node_groups.new("Velour approximation", "ShaderNodeTree")
+        mine.use_fake_user = True
+        self._import(self._model_file(inputs.model_bytes(inputs.lambert_measurement())))
+        self.assertEqual(mine.name, "Velour approximation")
+        self.assertEqual(len(mine.nodes), 0)
+        self.assertNotEqual(group_of(self.material).node_tree, mine)
+
+    def test_undo(self):
+        bpy.context.preferences.edit.use_global_undo = True
+        self._import(self._model_file(inputs.model_bytes(inputs.lambert_measurement())))
+        color = tuple(self.material.diffuse_color)
+        bpy.ops.ed.undo_push(message="before")
+        name = self.material.name
+        measured = importlib.import_module(f"{inputs.ADDON}.operators.measured")
+        other = inputs.model_bytes(inputs.plastic_measurement())
+        scenes.velour_node(self.material).image = measured.packed_model(other, "Other")
+        bpy.ops.velour.approximate()
+        self.assertNotEqual(tuple(self.material.diffuse_color), color)
+        bpy.ops.ed.undo_push(message="approximate")
+        bpy.ops.ed.undo()
+        material = bpy.data.materials[name]
+        self.assertEqual(tuple(material.diffuse_color), color)
+        np.testing.assert_array_equal(_base_color(group_of(material)), color)
+
+
+class Refusals(Approximation):
+    def _refused(self, words, **arguments):
+        with self.assertRaisesRegex(RuntimeError, words):
+            bpy.ops.velour.approximate(**arguments)
+
+    def test_without_a_material_or_a_model(self):
+        self._refused("No active material")
+        self._refused("Nobody", material="Nobody")
+        bpy.ops.velour.add_material()
+        self._refused("has no model")
+
+    def test_linked_materials(self):
+        self._import(self._model_file(inputs.model_bytes(inputs.lambert_measurement())))
+        path, name = str(self.folder / "library.blend"), self.material.name
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        with bpy.data.libraries.load(path, link=True) as (_source, target):
+            target.materials = [name]
+        self._refused("linked from another file", material=name)
+        self.assertEqual(len(bpy.data.node_groups), 1)
+
+
+def _base_color(node):
+    shader = next(n for n in node.node_tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
+    return tuple(shader.inputs["Base Color"].default_value)
+
+
+def _blocks(picture):
+    count = SIZE // _BLOCK
+    return picture[..., :3].reshape(count, _BLOCK, count, _BLOCK, 3).mean(axis=(1, 3))
