@@ -9,6 +9,7 @@ from ..native import VelourError
 from . import viewport_clock
 from .final import RenderCancelledError, render_final
 from .passes import register_passes
+from .stamps import Stamps
 from .viewport import Viewport
 
 log = logging.getLogger(__package__)
@@ -25,6 +26,7 @@ class VelourRenderEngine(bpy.types.RenderEngine):
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)  # Blender 4.4 and newer pass arguments and need this call
         self._viewport = None
+        self.stamps = Stamps()
 
     def __del__(self):
         viewport = getattr(self, "_viewport", None)

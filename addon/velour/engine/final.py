@@ -50,7 +50,7 @@ def render_final(engine, depsgraph):
         options = final_options(scene, view, engine.is_preview)
         with render_job(native_scene, **options) as job:
             _render_layer(engine, depsgraph, job, view, options["spp"], surroundings)
-        _stamp(engine, depsgraph.view_layer_eval.name, stamps)
+        engine.stamps.add(engine.get_result(), depsgraph, materials.models, stamps)
 
 
 def _render_layer(engine, depsgraph, job, view, spp, surroundings):
@@ -111,12 +111,6 @@ def _statistics(state, spp):
     left = state.seconds_left
     remaining = "" if left is None else f" | Remaining {int(left) // 60:02d}:{int(left) % 60:02d}"
     return f"Sample {int(state.fraction * spp)}/{spp}{remaining}"
-
-
-def _stamp(engine, layer_name, stamps):
-    """Fields of the picture's metadata, beside Blender's own."""
-    for name, text in stamps.items():
-        engine.get_result().stamp_data_add_field(f"velour.{layer_name}.{name}", text)
 
 
 def _say(notes):

@@ -45,7 +45,7 @@ def content(image, owner):
 
 def is_there(image):
     """Whether the file that `image` (or None) stands for exists."""
-    return image is not None and (image.packed_file is not None or os.path.isfile(absolute_path(image)))
+    return image is not None and (image.packed_file is not None or os.path.exists(absolute_path(image)))
 
 
 def sha256(data):

@@ -5,6 +5,7 @@ from typing import NamedTuple
 from ..native import Model, Shader, VelourError
 from . import files
 from .corner_colors import CornerColors, shader_colors
+from .model_hashes import model_hashes
 from .nodes import velour_node
 from .notes import ExportError
 from .placement import Tile
@@ -43,6 +44,7 @@ class MaterialTable:
         self._textured = set()  # of others: those with textures
         self._textures = TextureTable(notes)
         self.reduced = []
+        self.models = {}  # hashes of the files of measured materials, by full name
         self.glows = False  # one of them may shine by itself
         self.beyond_reflection = []  # sentences: what of mixed materials no BTF can hold
 
@@ -108,7 +110,9 @@ class MaterialTable:
         node = velour_node(material)
         if node is not None:
             try:
-                return self._add_measured(material, node)
+                number = self._add_measured(material, node)
+                self.models[material.name_full] = model_hashes(material)
+                return number
             except (ExportError, VelourError) as error:
                 if self.strict:
                     raise

@@ -1,0 +1,29 @@
+"""What a picture says in its metadata of how it was made: farms look at it before a frame counts as done."""
+
+import json
+
+from ..native.version import version_text
+
+
+class Stamps:
+    """Of one engine, which Blender has render the view layers of a frame one after the other."""
+
+    def __init__(self):
+        self._frame = None
+        self._models = {}  # {view layer: {material: hashes}}
+
+    def add(self, result, depsgraph, models, notes_of_models):
+        """Writes the fields once a view layer is rendered.
+
+        Of this layer are `models`, {material: hashes of the files it is rendered from}, and
+        `notes_of_models`, {material: what to say of its model for the scene}.
+        """
+        layer, frame = depsgraph.view_layer_eval.name, depsgraph.scene_eval.frame_current
+        if frame != self._frame:
+            self._frame, self._models = frame, {}
+        self._models[layer] = models
+        in_all = {name: hashes for layers in self._models.values() for name, hashes in layers.items()}
+        result.stamp_data_add_field("velour.version", version_text())
+        result.stamp_data_add_field("velour.models", json.dumps(in_all, sort_keys=True))
+        for name, text in notes_of_models.items():
+            result.stamp_data_add_field(f"velour.{layer}.{name}", text)

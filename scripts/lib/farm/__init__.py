@@ -1,0 +1,1 @@
+"""Batch rendering of a .blend on engines that exist: docs/farm.md."""

@@ -1,0 +1,70 @@
+"""How Blender is started, on a node and where jobs are made."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+from pathlib import Path
+
+from .job import Job
+
+FAILED = 7  # the exit status of a script that raises; Blender's own failures have 1
+
+
+def start(job: Job) -> list[str]:
+    """The command up to the .blend. What stands before --python-exit-code does not know of it."""
+    command = [job.blender, "-b", "-noaudio", "--python-exit-code", str(FAILED)]
+    if not job.preferences:
+        command.append("--factory-startup")
+    command.append("-y" if job.scripts else "-Y")
+    return [*command, "--addons", job.addon, job.blend]
+
+
+def render(job: Job, frame: int, picture: Path) -> list[str]:
+    """`picture`: its path without number and extension.
+
+    -E: a node without Velour fails. Else Blender takes EEVEE, writes a picture and says that all is well.
+    """
+    command = [*start(job), "-E", "VELOUR", "-t", str(job.threads), "-o", f"{picture}####"]
+    return [*command, "-F", job.format, "-x", "1", "-f", str(frame)]
+
+
+def execute(command: list[str], log: Path) -> int:
+    """The exit status; all that is said goes to `log`."""
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with open(log, "wb") as file:
+        try:
+            done = subprocess.run(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=file,
+                stderr=subprocess.STDOUT,
+                env=_environment(command),
+            )
+        except OSError as error:
+            file.write(f"Error: {command[0]} cannot be started ({error.strerror})\n".encode())
+            return 127
+    return done.returncode
+
+
+def _environment(command: list[str]) -> dict[str, str]:
+    """A distribution's Blender looks for its Python along PATH: not a version manager's, please."""
+    program = shutil.which(command[0])
+    if not program:
+        return dict(os.environ)
+    folder = str(Path(program).resolve().parent)
+    return {**os.environ, "PATH": os.pathsep.join((folder, os.environ.get("PATH", os.defpath)))}
+
+
+def ending(status: int, log: Path) -> str:
+    """Why Blender ended as it did, with the last error that it named."""
+    number = -status if status < 0 else status - 128  # a script around Blender adds 128
+    if number in set(signal.Signals):
+        words = f"Blender was ended by {signal.Signals(number).name}"
+    else:
+        words = f"Blender ended with status {status}"
+    lines = log.read_text(encoding="utf-8", errors="replace").splitlines() if log.is_file() else []
+    errors = [line.strip() for line in lines if "Error" in line]
+    return f"{words}: {errors[-1]}" if errors else words

@@ -1,0 +1,92 @@
+"""scripts/farm: makes a job of a .blend, submits what is left to Slurm, says how it stands: docs/farm.md."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from pathlib import Path
+
+from . import flamenco, job, openjd, program, ranges, slurm, status
+from .make import make
+
+_UNITS = {"": 1, "M": 1, "G": 1024, "T": 1024**2}
+
+
+def main(arguments: list[str] | None = None) -> int:
+    given = _parse(arguments)
+    try:
+        if given.status:
+            return _say_status(job.load(given.path))
+        return _submit(given)
+    except (job.JobError, OSError) as error:
+        print(f"farm: {error}", file=sys.stderr)
+        return 1
+
+
+def _parse(arguments: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="farm", description="Renders the frames of a .blend with Velour on Slurm, Flamenco or OpenJD."
+    )
+    add = parser.add_argument
+    add("path", type=Path, metavar="BLEND", help="the .blend; with --status the folder of pictures")
+    add("--output", type=Path, metavar="FOLDER", help="of the pictures (frames, beside the .blend)")
+    add("--frames", type=_frames, metavar="LIST", help="such as 1-10,15,20-30:2 (those of the scene)")
+    add("--format", choices=("OPEN_EXR", "OPEN_EXR_MULTILAYER"), default="OPEN_EXR", help="(OPEN_EXR)")
+    add("--threads", type=_count, default=0, metavar="N", help="of a task (all that its node has)")
+    add("--memory", type=_memory, default=0, metavar="SIZE", help="of a task, such as 8G (what Slurm gives)")
+    add("--tasks", type=_count, default=1000, metavar="N", help="of the array at most (1000)")
+    add("--blender", default="blender", metavar="PATH", help="the Blender to run, here and on the nodes")
+    add("--addon", default="velour", metavar="MODULE", help="Velour's name there (velour)")
+    add("--preferences", action="store_true", help="with user preferences, not factory settings")
+    add("--scripts", action="store_true", help="let scripts and drivers inside the .blend run")
+    add("--sbatch", action="append", default=[], metavar="OPTION", help="for sbatch; may be repeated")
+    add("--no-submit", action="store_true", help="only write the job")
+    add("--status", action="store_true", help="say what is done and what failed")
+    return parser.parse_args(arguments)
+
+
+def _submit(given: argparse.Namespace) -> int:
+    found = make(given)
+    for writer in (program, slurm, flamenco, openjd):
+        writer.write(found.folder if writer is program else found)
+    now = status.look(found)
+    left = status.tasks_left(found, now)
+    print(now.lines()[-1])
+    if not left:
+        return 0
+    if given.no_submit:
+        print(f"The job is in {found.folder}.")
+        return 0
+    number = slurm.submit(found, left, given.sbatch)
+    for frame in now.failed:
+        found.failure(frame).unlink(missing_ok=True)
+    print(f"Slurm's job {number}; how it stands: scripts/farm --status {found.output}")
+    return 0
+
+
+def _say_status(found: job.Job) -> int:
+    now = status.look(found)
+    print("\n".join(now.lines()))
+    return now.code
+
+
+def _frames(text: str) -> list[int]:
+    try:
+        return ranges.parse(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def _count(text: str) -> int:
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError("a number from 1 on is needed")
+    return int(text)
+
+
+def _memory(text: str) -> int:
+    """MiB."""
+    match = re.fullmatch(r"(\d+)([MGT]?)", text)
+    if not match or not int(match[1]):
+        raise argparse.ArgumentTypeError("MiB, or a number with M, G or T, is needed")
+    return int(match[1]) * _UNITS[match[2]]

@@ -1,0 +1,30 @@
+"""Runs in Blender with a .blend open: what a job has to know of it, as JSON.
+
+Arguments after "--": the add-on's module, the file to write.
+"""
+
+import importlib
+import json
+import sys
+from pathlib import Path
+
+import bpy
+
+
+def look(addon):
+    if addon not in sys.modules:
+        return {
+            "error": f"there is no add-on {addon!r} in this Blender; install it, or name it with --addon."
+        }
+    hashes = importlib.import_module(f"{addon}.export.model_hashes").model_hashes
+    models = {material.name_full: hashes(material) for material in bpy.data.materials}
+    scene = bpy.context.scene
+    return {
+        "velour": importlib.import_module(f"{addon}.native.version").version_text(),
+        "models": {name: found for name, found in models.items() if found is not None},
+        "frames": list(range(scene.frame_start, scene.frame_end + 1, scene.frame_step)),
+    }
+
+
+addon, report = sys.argv[sys.argv.index("--") + 1 :]
+Path(report).write_text(json.dumps(look(addon)), encoding="utf-8")

@@ -1,0 +1,74 @@
+"""A job from a .blend: Blender is asked once what it holds, so that each node can be held to that."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+from pathlib import Path
+
+from . import blender, job
+
+HERE = Path(__file__).resolve().parent
+
+
+def make(given: argparse.Namespace) -> job.Job:
+    """Saves the job; one that is there must be of the same .blend, the same models and the same Velour."""
+    blend = given.path.resolve()
+    if not blend.is_file():
+        raise job.JobError(f"{blend} is no file.")
+    folder = (given.output or blend.parent / "frames").resolve() / job.FOLDER
+    made = job.Job(
+        blend=str(blend),
+        blend_state=job.blend_state(blend),
+        name=blend.stem,
+        format=given.format,
+        velour="",
+        models={},
+        frames=given.frames or [],
+        tasks=1,
+        blender=given.blender,
+        addon=given.addon,
+        threads=given.threads,
+        memory_mib=given.memory,
+        preferences=given.preferences,
+        scripts=given.scripts,
+        folder=folder,
+    )
+    _ask_blender(made)
+    made.tasks = min(given.tasks, len(made.frames))
+    if (folder / "job.json").is_file():
+        _refuse_another(made, job.load(folder))
+    made.save()
+    return made
+
+
+def _ask_blender(made: job.Job) -> None:
+    with tempfile.TemporaryDirectory(prefix="velour-farm-") as name:
+        report, log = Path(name) / "report.json", Path(name) / "log.txt"
+        script = ["--python", str(HERE / "inside_blend.py"), "--", made.addon, str(report)]
+        status = blender.execute([*blender.start(made), *script], log)
+        if status or not report.is_file():
+            raise job.JobError(f"{made.blend}: {blender.ending(status, log)}")
+        found = json.loads(report.read_text(encoding="utf-8"))
+    if "error" in found:
+        raise job.JobError(f"{made.blend}: {found['error']}")
+    made.velour, made.models = found["velour"], found["models"]
+    made.frames = made.frames or found["frames"]
+
+
+def _refuse_another(made: job.Job, before: job.Job) -> None:
+    """Frames of two states of a scene must not become one sequence."""
+    kept = {
+        "blend": "path of the .blend",
+        "blend_state": ".blend",
+        "velour": "Velour",
+        "models": "model",
+        "format": "format",
+    }
+    other = [words for name, words in kept.items() if getattr(made, name) != getattr(before, name)]
+    if other:
+        raise job.JobError(
+            f"{made.folder} is of another {' and another '.join(other)}: name another --output, or remove"
+            " that folder to keep the pictures that its Velour and models still fit."
+        )

@@ -1,0 +1,65 @@
+"""Open Job Description (specification 2023-09): a template as JSON, for AWS Deadline Cloud and others."""
+
+from __future__ import annotations
+
+import json
+
+from . import program, ranges
+from .job import Job, replace_text
+
+FILE = "openjd.json"
+_LONGEST_NAME = 64
+
+
+def write(job: Job) -> None:
+    replace_text(job.folder / FILE, json.dumps(template(job), indent=2, ensure_ascii=False) + "\n")
+
+
+def template(job: Job) -> dict:
+    return {
+        "specificationVersion": "jobtemplate-2023-09",
+        "name": f"velour {job.name}"[:_LONGEST_NAME],
+        "parameterDefinitions": _parameters(job),
+        "steps": [_step(job)],
+    }
+
+
+def _parameters(job: Job) -> list[dict]:
+    blend = {"name": "Blend", "type": "PATH", "objectType": "FILE", "dataFlow": "IN", "default": job.blend}
+    output = {"name": "Output", "type": "PATH", "objectType": "DIRECTORY", "dataFlow": "INOUT"}
+    return [
+        {**blend, "description": "The .blend."},
+        {
+            **output,
+            "default": str(job.output),
+            "description": "Of the pictures, with the job's folder in it.",
+        },
+        {"name": "Blender", "type": "STRING", "default": job.blender, "description": "On the nodes."},
+        {
+            "name": "Frames",
+            "type": "STRING",
+            "default": ranges.words(job.frames),
+            "description": "Such as 1-10,15.",
+        },
+    ]
+
+
+def _step(job: Job) -> dict:
+    folder = f"{{{{Param.Output}}}}/{job.folder.name}"
+    paths = ["--blend", "{{Param.Blend}}", "--blender", "{{Param.Blender}}"]
+    frame = ["--frames", "{{Task.Param.Frame}}"]
+    run = {"command": "python3", "args": [f"{folder}/{program.NAME}", f"{folder}/job.json", *frame, *paths]}
+    step = {
+        "name": "Frames",
+        "parameterSpace": {
+            "taskParameterDefinitions": [{"name": "Frame", "type": "INT", "range": "{{Param.Frames}}"}]
+        },
+        "script": {"actions": {"onRun": run}},
+    }
+    amounts = _amounts(job)
+    return {**step, "hostRequirements": {"amounts": amounts}} if amounts else step
+
+
+def _amounts(job: Job) -> list[dict]:
+    asked = (("amount.worker.vcpu", job.threads), ("amount.worker.memory", job.memory_mib))
+    return [{"name": name, "min": least} for name, least in asked if least]

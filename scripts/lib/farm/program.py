@@ -1,0 +1,24 @@
+"""frame.pyz: what a node runs, in one file that needs nothing of this repository."""
+
+from __future__ import annotations
+
+import io
+import os
+import zipfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+NAME = "frame.pyz"
+_MODULES = ("__init__", "blender", "exr", "frame", "job", "ranges")
+_MAIN = "import sys\n\nfrom farm.frame import main\n\nsys.exit(main())\n"
+
+
+def write(folder: Path) -> None:
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        archive.writestr("__main__.py", _MAIN)
+        for module in _MODULES:
+            archive.write(HERE / f"{module}.py", f"farm/{module}.py")
+    temporary = folder / f".{NAME}.{os.getpid()}"
+    temporary.write_bytes(data.getvalue())
+    os.replace(temporary, folder / NAME)

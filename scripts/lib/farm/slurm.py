@@ -1,0 +1,75 @@
+"""Slurm: an array job, one element a task of the job."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+
+from . import program, ranges
+from .job import Job, JobError, replace_text
+
+SCRIPT, SUBMITTED = "slurm.sh", "slurm.id"
+
+
+def write(job: Job) -> None:
+    replace_text(job.folder / SCRIPT, script(job))
+
+
+def script(job: Job) -> str:
+    said = str(job.folder).replace("%", "%%")
+    lines = [
+        "#!/bin/sh",
+        f"# All of it: sbatch --array=0-{job.tasks - 1} slurm.sh; scripts/farm submits what is left.",
+        f"#SBATCH --job-name=velour-{re.sub(r'[^A-Za-z0-9._-]', '_', job.name)}",
+        f'#SBATCH --output="{said}/logs/slurm-%A_%a.txt"',
+        "#SBATCH --nodes=1 --ntasks=1",
+    ]
+    if job.threads:
+        lines.append(f"#SBATCH --cpus-per-task={job.threads}")
+    if job.memory_mib:
+        lines.append(
+            f"#SBATCH --mem={job.memory_mib}M"
+        )  # of the node: --mem-per-cpu would grow with the threads
+    command = ["exec", "python3", str(job.folder / program.NAME), str(job.folder / "job.json"), "--task"]
+    return "\n".join([*lines, f'{shlex.join(command)} "$SLURM_ARRAY_TASK_ID"', ""])
+
+
+def submit(job: Job, tasks: list[int], options: list[str]) -> str:
+    """The number of the job that Slurm made; raises JobError."""
+    running = still_running(job)
+    if running:
+        raise JobError(
+            f"Slurm's job {running} still renders this; wait for it, or end it with: scancel {running}"
+        )
+    array = f"--array={ranges.words(tasks)}"
+    said = _slurm("sbatch", "--parsable", array, *options, str(job.folder / SCRIPT))
+    number = said.strip().split(";")[0]  # ";CLUSTER" follows where there are several
+    replace_text(job.folder / SUBMITTED, number + "\n")
+    return number
+
+
+def still_running(job: Job) -> str:
+    """The number of the job that was submitted last, while a part of it waits or runs; else ""."""
+    file = job.folder / SUBMITTED
+    if not file.is_file():
+        return ""
+    number = file.read_text(encoding="utf-8").strip()
+    try:
+        return number if _slurm("squeue", "-h", "-o", "%t", "-j", number).strip() else ""
+    except JobError as error:
+        if "Invalid job id" in str(error):  # Slurm has forgotten it
+            return ""
+        raise
+
+
+def _slurm(*command: str) -> str:
+    try:
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    except OSError as error:
+        raise JobError(
+            f"{command[0]} cannot be started ({error.strerror}); --no-submit only writes the job."
+        ) from error
+    if done.returncode:
+        raise JobError(f"{command[0]} says: {' '.join((done.stderr or done.stdout).split())}")
+    return done.stdout
