@@ -10,6 +10,7 @@
 #include "job/error.h"
 #include "tensor/cluster_choice.h"
 #include "tensor/cluster_fit.h"
+#include "tensor/cluster_start.h"
 
 namespace velour {
 namespace {
@@ -140,11 +141,13 @@ class ShapeSearch {
 
   double error_of(const TensorShape& shape) {
     const TensorOptions tensor{options_.seed, options_.threads};
+    const RowMatrix& coordinates = coordinates_for(shape, tensor);
     const ClusterOptions fit{.clusters = shape.clusters,
                              .members = shape.members,
                              .ranks = {shape.rank.texel, shape.rank.view, shape.rank.light, shape.rank.color},
                              .iterations = kIterations,
                              .tolerance = kTolerance,
+                             .coordinates = &coordinates,
                              .tensor = tensor};
     const double done = static_cast<double>(found_.trials.size()) / kMostTrials;
     const Progress::Span trial(progress_, done, std::min(1.0, done + 1.0 / kMostTrials));
@@ -152,6 +155,16 @@ class ShapeSearch {
     ClusteredTensor found = fit_clusters(fitted_, fit, progress_).tensor;
     const double of_slices = relative_error(found, tensor);
     return std::sqrt(of_slices * of_slices + found_.relief_error);
+  }
+
+  /// Of the fitted slices, for a start of clusters.
+  const RowMatrix& coordinates_for(const TensorShape& shape, const TensorOptions& options) {
+    const Index entries = fitted_.size() / fitted_.extent(0);
+    const Index rank = std::min<Index>({2 * Index{shape.rank.texel}, fitted_.extent(0), entries});
+    if (coordinates_.cols() < rank) {
+      coordinates_ = slice_coordinates({fitted_.data(), {fitted_.extent(0), entries}}, rank, options, progress_);
+    }
+    return coordinates_;
   }
 
   /// Of the judged slices.
@@ -170,6 +183,7 @@ class ShapeSearch {
   Progress& progress_;
   TensorView fitted_, judged_;
   FoundShape found_;
+  RowMatrix coordinates_;
   std::map<std::tuple<uint32_t, uint32_t, uint32_t, long>, double> errors_;
 };
 

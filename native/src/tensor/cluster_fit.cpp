@@ -7,7 +7,9 @@
 
 #include "job/error.h"
 #include "tensor/cluster_choice.h"
+#include "tensor/cluster_rests.h"
 #include "tensor/cluster_start.h"
+#include "tensor/mode_product.h"
 
 namespace velour {
 namespace {
@@ -20,8 +22,7 @@ Index fair_share(Index slices, Index clusters) { return std::max<Index>(1, slice
 class ClusterSolver {
  public:
   ClusterSolver(const TensorView& slices, const ClusterOptions& options, uint64_t seed, const Progress& progress)
-      : view_(slices),
-        matrix_(slices.data(), {slices.extent(0), slices.size() / slices.extent(0)}),
+      : matrix_(slices.data(), {slices.extent(0), slices.size() / slices.extent(0)}),
         options_(options),
         progress_(progress) {
     tensor_.extent = slices.extents();
@@ -40,18 +41,16 @@ class ClusterSolver {
   void start() {
     tensor_.cluster.resize(static_cast<size_t>(options_.clusters));
     basis_.resize(tensor_.cluster.size());
-    const Index rank = std::min<Index>({2 * options_.ranks[0], matrix_.extent(0), matrix_.extent(1)});
-    std::vector<uint32_t> of =
-        options_.start == ClusterStart::random
-            ? clusters_at_random(matrix_.extent(0), options_.clusters, options_.tensor.seed)
-            : clusters_by_direction(matrix_, options_.clusters, rank, options_.tensor, progress_);
+    const std::vector<uint32_t> of = options_.start == ClusterStart::random
+                                         ? clusters_at_random(matrix_.extent(0), options_.clusters, seed())
+                                         : clusters_by_direction(coordinates(), options_.clusters, seed());
     for (uint32_t c = 0; c < tensor_.cluster.size(); ++c) {
       std::vector<Index> mine;
       for (size_t i = 0; i < of.size(); ++i) {
         if (of[i] == c) mine.push_back(static_cast<Index>(i));
       }
       if (mine.empty()) mine.push_back(static_cast<Index>(c) % matrix_.extent(0));
-      fit_cluster(c, mine);
+      fit_cluster(c, rests(mine, c));
     }
   }
 
@@ -76,6 +75,14 @@ class ClusterSolver {
   ClusteredTensor take() { return std::move(tensor_); }
 
  private:
+  uint64_t seed() const { return options_.tensor.seed; }
+
+  RowMatrix coordinates() const {
+    const Index rank = std::min<Index>({2 * options_.ranks[0], matrix_.extent(0), matrix_.extent(1)});
+    if (options_.coordinates == nullptr) return slice_coordinates(matrix_, rank, options_.tensor, progress_);
+    return options_.coordinates->leftCols(std::min(rank, options_.coordinates->cols()));
+  }
+
   KeptSquares choose() {
     return choose_members(ClusterProducts(matrix_, basis_, options_.tensor, progress_), tensor_, options_.tensor,
                           progress_);
@@ -88,19 +95,8 @@ class ClusterSolver {
     return {tensor_.member.data() + static_cast<size_t>(slice) * members, members};
   }
 
-  auto coefficient(Index slice, Index k) {
-    return tensor_.coefficient.row(slice).segment(k * tensor_.rank(), tensor_.rank());
-  }
-
-  /// Of a slice, what its clusters but `but` leave.
-  Eigen::RowVectorXf rest_of(Index slice, uint32_t but) {
-    Eigen::RowVectorXf rest =
-        Eigen::Map<const Eigen::RowVectorXf>(matrix_.data() + slice * matrix_.extent(1), matrix_.extent(1));
-    const std::span<uint32_t> member = members_of(slice);
-    for (size_t k = 0; k < member.size(); ++k) {
-      if (member[k] != but) rest -= coefficient(slice, static_cast<Index>(k)) * basis_[member[k]];
-    }
-    return rest;
+  DenseTensor rests(std::span<const Index> which, uint32_t but) {
+    return cluster_rests(matrix_, tensor_, basis_, which, but, options_.tensor, progress_);
   }
 
   void update(uint32_t c) {
@@ -111,22 +107,28 @@ class ClusterSolver {
     }
     if (mine.empty()) {
       tensor_.cluster[c].factor.clear();
-      return fit_cluster(c, worst_off());
+      return fit_cluster(c, rests(worst_off(), c));
     }
-    fit_cluster(c, mine);
-    for (const Index i : mine) {
-      const std::span<uint32_t> member = members_of(i);
+    const DenseTensor data = rests(mine, c);
+    fit_cluster(c, data);
+    const DenseTensor coefficient = mode_product(data.view(), 1, basis_[c], options_.tensor.threads, progress_);
+    const Index rank = tensor_.rank();
+    for (size_t i = 0; i < mine.size(); ++i) {
+      const std::span<uint32_t> member = members_of(mine[i]);
       const Index k = std::find(member.begin(), member.end(), c) - member.begin();
-      coefficient(i, k) = rest_of(i, c) * basis_[c].transpose();
+      tensor_.coefficient.row(mine[i]).segment(k * rank, rank) =
+          Eigen::Map<const Eigen::RowVectorXf>(coefficient.data.data() + static_cast<Index>(i) * rank, rank);
     }
   }
 
   std::vector<Index> worst_off() {
     std::vector<Index> all(square_.size());
     std::iota(all.begin(), all.end(), Index{0});
-    std::vector<double> error;
+    const DenseTensor rest = rests(all, static_cast<uint32_t>(basis_.size()));
+    std::vector<float> error;
     for (const Index i : all) {
-      error.push_back(static_cast<double>(rest_of(i, static_cast<uint32_t>(basis_.size())).squaredNorm()));
+      error.push_back(
+          Eigen::Map<const Eigen::VectorXf>(rest.data.data() + i * rest.extent[1], rest.extent[1]).squaredNorm());
     }
     std::stable_sort(all.begin(), all.end(),
                      [&](Index a, Index b) { return error[static_cast<size_t>(a)] > error[static_cast<size_t>(b)]; });
@@ -135,32 +137,21 @@ class ClusterSolver {
     return all;
   }
 
-  DenseTensor gathered(uint32_t c, const std::vector<Index>& mine) {
-    std::vector<Index> extent = tensor_.extent;
-    extent[0] = static_cast<Index>(mine.size());
-    DenseTensor gathered(extent);
-    for (size_t i = 0; i < mine.size(); ++i) {
-      const Eigen::RowVectorXf rest = rest_of(mine[i], c);
-      std::copy_n(rest.data(), rest.size(), gathered.data.begin() + static_cast<Index>(i) * rest.size());
-    }
-    return gathered;
-  }
-
-  void fit_cluster(uint32_t c, const std::vector<Index>& mine) {
+  /// `rests`: what its slices leave to it.
+  void fit_cluster(uint32_t c, const DenseTensor& rests) {
     TensorCluster& cluster = tensor_.cluster[c];
-    const DenseTensor data = gathered(c, mine);
-    std::vector<Index> ranks;
-    for (size_t mode = 0; mode < data.extent.size(); ++mode) {
-      ranks.push_back(std::min(options_.ranks[mode], data.extent[mode]));
-    }
+    std::vector<Index> extent = tensor_.extent, ranks;
+    extent[0] = rests.extent[0];
+    for (size_t mode = 0; mode < extent.size(); ++mode) ranks.push_back(std::min(options_.ranks[mode], extent[mode]));
+    const TensorView data(rests.data.data(), extent);
     Tucker tucker;
     if (cluster.factor.empty()) {
-      tucker = truncated_hosvd(data.view(), ranks, options_.tensor, progress_);
+      tucker = truncated_hosvd(data, ranks, options_.tensor, progress_);
     } else {
       tucker.factor = cluster.factor;
       // The sweep begins with this one: its number of columns is all that counts.
       tucker.factor.insert(tucker.factor.begin(), RowMatrix::Zero(ranks[0], ranks[0]));
-      hooi_sweep(data.view(), tucker, options_.tensor, progress_);
+      hooi_sweep(data, tucker, options_.tensor, progress_);
     }
     const Index others = static_cast<Index>(tucker.core.data.size()) / ranks[0];
     const RowMatrix core = Eigen::Map<const RowMatrix>(tucker.core.data.data(), ranks[0], others);
@@ -170,7 +161,7 @@ class ClusterSolver {
     basis_[c] = cluster.basis(options_.tensor, progress_);
   }
 
-  TensorView view_, matrix_;
+  TensorView matrix_;
   ClusterOptions options_;
   const Progress& progress_;
   ClusteredTensor tensor_;

@@ -15,6 +15,7 @@ struct ClusterOptions {
   double tolerance = 1e-4;          // of the squares of all slices: an iteration that gains less is the last
   int restarts = 1;                 // seeds; the best is returned
   ClusterStart start = ClusterStart::directions;
+  const RowMatrix* coordinates = nullptr;  // slice_coordinates of twice the rank of the slices or more, where known
   TensorOptions tensor{};
 };
 

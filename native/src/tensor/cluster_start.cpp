@@ -11,15 +11,6 @@ namespace {
 
 constexpr int kSteps = 20;
 
-/// Unit rows: the slices' coordinates.
-RowMatrix directions(const TensorView& slices, Index rank, const TensorOptions& options, const Progress& progress) {
-  const RowMatrix space = leading_vectors(slices, 1, rank, options, progress);
-  const DenseTensor product = mode_product(slices, 1, space.transpose(), options.threads, progress);
-  RowMatrix rows = Eigen::Map<const RowMatrix>(product.data.data(), product.extent[0], product.extent[1]);
-  for (Index i = 0; i < rows.rows(); ++i) rows.row(i).normalize();  // zero stays zero
-  return rows;
-}
-
 /// Each centre drawn by the squared distance to those before it.
 RowMatrix seeds(const RowMatrix& points, Index count, uint64_t seed) {
   RowMatrix center(count, points.cols());
@@ -50,10 +41,16 @@ uint32_t nearest(const RowMatrix& center, const Eigen::RowVectorXf& point) {
 
 }  // namespace
 
-std::vector<uint32_t> clusters_by_direction(const TensorView& slices, Index clusters, Index rank,
-                                            const TensorOptions& options, const Progress& progress) {
-  const RowMatrix points = directions(slices, rank, options, progress);
-  RowMatrix center = seeds(points, clusters, options.seed);
+RowMatrix slice_coordinates(const TensorView& slices, Index rank, const TensorOptions& options,
+                            const Progress& progress) {
+  const RowMatrix space = leading_vectors(slices, 1, rank, options, progress);
+  const DenseTensor product = mode_product(slices, 1, space.transpose(), options.threads, progress);
+  return Eigen::Map<const RowMatrix>(product.data.data(), product.extent[0], product.extent[1]);
+}
+
+std::vector<uint32_t> clusters_by_direction(RowMatrix points, Index clusters, uint64_t seed) {
+  points.rowwise().normalize();  // zero stays zero
+  RowMatrix center = seeds(points, clusters, seed);
   std::vector<uint32_t> member(static_cast<size_t>(points.rows()));
   for (int step = 0; step < kSteps; ++step) {
     RowMatrix sum = RowMatrix::Zero(center.rows(), center.cols());

@@ -1,10 +1,10 @@
 #include "tensor/leading_vectors.h"
 
 #include <algorithm>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 #include "sphere/random.h"
+#include "tensor/leading_eigenvectors.h"
 #include "tensor/mode_product.h"
 
 namespace velour {
@@ -28,17 +28,28 @@ TensorView unfolded(const TensorView& view, size_t mode, DenseTensor& storage) {
   return {storage.data.data(), {unfolding.rows(), view.size() / unfolding.rows()}};
 }
 
-/// Of symmetric `products`, the strongest first.
-RowMatrix eigenvectors(const Eigen::MatrixXd& products, Index rank) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(products);
-  return solver.eigenvectors().rightCols(rank).rowwise().reverse().cast<float>();
+/// From `basis`, which spans them: orthonormal columns.
+RowMatrix leading_within(const TensorView& view, size_t mode, const RowMatrix& basis, Index rank,
+                         const TensorOptions& options, const Progress& progress) {
+  const DenseTensor response = mode_product(view, mode, basis.transpose(), options.threads, progress);
+  return basis *
+         leading_eigenvectors(slice_products(response.view(), mode, options.threads, progress), rank, options, progress)
+             .cast<float>();
 }
 
-/// From `basis`, which spans them: orthonormal columns.
-RowMatrix leading_within(const TensorView& view, size_t mode, const RowMatrix& basis, Index rank, int threads,
-                         const Progress& progress) {
-  const DenseTensor response = mode_product(view, mode, basis.transpose(), threads, progress);
-  return basis * eigenvectors(slice_products(response.view(), mode, threads, progress), rank);
+/// By the products of columns with one another.
+RowMatrix leading_by_columns(const TensorView& view, size_t mode, Index rank, const TensorOptions& options,
+                             const Progress& progress) {
+  DenseTensor storage{{}};
+  const TensorView matrix = unfolded(view, mode, storage);
+  const Index rows = matrix.extent(0);
+  const RowMatrix right = leading_eigenvectors(slice_products(matrix, 1, options.threads, progress),
+                                               std::min(rank, matrix.extent(1)), options, progress)
+                              .cast<float>();
+  const DenseTensor left = mode_product(matrix, 1, right.transpose(), options.threads, progress);
+  RowMatrix all = RowMatrix::Zero(rows, rank);  // beyond the columns any direction does
+  all.leftCols(right.cols()) = Eigen::Map<const RowMatrix>(left.data.data(), rows, right.cols());
+  return orthonormal(all);
 }
 
 }  // namespace
@@ -76,19 +87,14 @@ RowMatrix random_range(const TensorView& view, size_t mode, Index columns, int p
 RowMatrix leading_vectors(const TensorView& view, size_t mode, Index rank, const TensorOptions& options,
                           const Progress& progress) {
   const Index rows = view.extent(mode), columns = view.size() / std::max<Index>(rows, 1);
-  if (rows <= kSide) return eigenvectors(slice_products(view, mode, options.threads, progress), rank);
-  if (columns <= kSide) {
-    DenseTensor storage{{}};
-    const TensorView matrix = unfolded(view, mode, storage);
-    const RowMatrix right = eigenvectors(slice_products(matrix, 1, options.threads, progress), std::min(rank, columns));
-    const DenseTensor left = mode_product(matrix, 1, right.transpose(), options.threads, progress);
-    RowMatrix all = RowMatrix::Zero(rows, rank);  // beyond the columns any direction does
-    all.leftCols(right.cols()) = Eigen::Map<const RowMatrix>(left.data.data(), rows, right.cols());
-    return orthonormal(all);
+  if (rows <= std::min(columns, kSide)) {
+    return leading_eigenvectors(slice_products(view, mode, options.threads, progress), rank, options, progress)
+        .cast<float>();
   }
+  if (columns <= kSide) return leading_by_columns(view, mode, rank, options, progress);
   const Index wide = std::min({rank + kOversampling, rows, columns});
   const RowMatrix basis = random_range(view, mode, wide, kPowers, options, progress);
-  return leading_within(view, mode, basis, rank, options.threads, progress);
+  return leading_within(view, mode, basis, rank, options, progress);
 }
 
 }  // namespace velour

@@ -8,17 +8,20 @@
 namespace velour {
 namespace {
 
-constexpr Index kColumns = 1024;  // of a piece of work: fixed, so that sums do not depend on threads
-constexpr size_t kBlocks = 64;    // small blocks of a piece
-constexpr size_t kSums = 32;      // partial sums, at most: fixed as well
+// Of a piece of work: fixed, so that sums do not depend on threads. A sum of products is written for each piece.
+constexpr Index kColumns = 256, kSummedColumns = 1024;
+constexpr size_t kBlocks = 64;          // small blocks of a piece
+constexpr size_t kSums = 32;            // partial sums, at most: fixed as well
+constexpr size_t kSumBytes = 64 << 20;  // of all of them, about
 
 /// The columns of an unfolding in pieces.
 class Pieces {
  public:
-  explicit Pieces(const Unfolding& u)
+  Pieces(const Unfolding& u, Index together)
       : blocks_(u.blocks()),
         columns_(u.columns()),
-        parts_(static_cast<size_t>((u.columns() + kColumns - 1) / kColumns)),
+        width_(together),
+        parts_(static_cast<size_t>((u.columns() + together - 1) / together)),
         together_(parts_ == 1 ? kBlocks : 1) {}
   size_t count() const { return (blocks_ * parts_ + together_ - 1) / together_; }
 
@@ -27,21 +30,21 @@ class Pieces {
   void visit(size_t piece, const Use& use) const {
     const size_t end = std::min(blocks_ * parts_, (piece + 1) * together_);
     for (size_t i = piece * together_; i < end; ++i) {
-      const Index begin = static_cast<Index>(i % parts_) * kColumns;
-      use(i / parts_, begin, std::min(kColumns, columns_ - begin));
+      const Index begin = static_cast<Index>(i % parts_) * width_;
+      use(i / parts_, begin, std::min(width_, columns_ - begin));
     }
   }
 
  private:
   size_t blocks_;
-  Index columns_;
+  Index columns_, width_;
   size_t parts_, together_;
 };
 
-template <class M>
-void add_products(const M& columns, Eigen::MatrixXd& sum) {
-  const Eigen::MatrixXf product = columns * columns.transpose();
-  sum += product.template cast<double>();
+/// On and below the diagonal.
+void add_products(const StridedMatrix<const float>& columns, RowMatrix& product, Eigen::MatrixXd& sum) {
+  multiply_by_itself(columns, {product.data(), product.rows(), product.cols(), product.cols(), 1});
+  sum.triangularView<Eigen::Lower>() += product.cast<double>();
 }
 
 }  // namespace
@@ -52,15 +55,11 @@ DenseTensor mode_product(const TensorView& view, size_t mode, const RowMatrix& m
   extents[mode] = matrix.rows();
   DenseTensor result(std::move(extents));
   const Unfolding from(view, mode), to(result.view(), mode, from);
-  const Pieces pieces(from);
+  const Pieces pieces(from, kColumns);
+  const StridedMatrix<const float> left{matrix.data(), matrix.rows(), matrix.cols(), matrix.cols(), 1};
   parallel_pieces(pieces.count(), threads, progress, [&](size_t piece) {
     pieces.visit(piece, [&](size_t block, Index begin, Index count) {
-      with_columns(view.data(), from, block, begin, count, [&](const auto& columns) {
-        using Both = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
-        float* const target = result.data.data() + to.first(block) + begin * to.column_stride();
-        Eigen::Map<RowMatrix, 0, Both>(target, to.rows(), count, Both(to.row_stride(), to.column_stride())) =
-            matrix * columns;
-      });
+      multiply(left, from.part(view.data(), block, begin, count), to.part(result.data.data(), block, begin, count));
     });
   });
   return result;
@@ -68,19 +67,20 @@ DenseTensor mode_product(const TensorView& view, size_t mode, const RowMatrix& m
 
 Eigen::MatrixXd slice_products(const TensorView& view, size_t mode, int threads, const Progress& progress) {
   const Unfolding from(view, mode);
-  const Pieces pieces(from);
-  const size_t sums = std::min(kSums, pieces.count());
+  const Pieces pieces(from, kSummedColumns);
+  const auto bytes = static_cast<size_t>(from.rows() * from.rows()) * sizeof(double);
+  const size_t sums = std::min({kSums, kSumBytes / bytes + 1, pieces.count()});
   std::vector<Eigen::MatrixXd> sum(sums, Eigen::MatrixXd::Zero(from.rows(), from.rows()));
   parallel_pieces(sums, threads, progress, [&](size_t s) {
+    RowMatrix product(from.rows(), from.rows());
     for (size_t piece = s; piece < pieces.count(); piece += sums) {
       pieces.visit(piece, [&](size_t block, Index begin, Index count) {
-        with_columns(view.data(), from, block, begin, count,
-                     [&](const auto& columns) { add_products(columns, sum[s]); });
+        add_products(from.part(view.data(), block, begin, count), product, sum[s]);
       });
     }
   });
-  for (size_t s = 1; s < sums; ++s) sum[0] += sum[s];
-  return sum[0];
+  for (size_t s = 1; s < sums; ++s) sum[0].triangularView<Eigen::Lower>() += sum[s];
+  return sum[0].selfadjointView<Eigen::Lower>();
 }
 
 }  // namespace velour

@@ -48,12 +48,19 @@ Tucker truncated_hosvd(const TensorView& view, const std::vector<Index>& ranks, 
 }
 
 void hooi_sweep(const TensorView& view, Tucker& tucker, const TensorOptions& options, const Progress& progress) {
-  for (size_t mode = 0; mode < view.order(); ++mode) {
-    const Index rank = tucker.factor[mode].cols();
-    const DenseTensor rest = projected(view, tucker.factor, mode, options, progress);
-    tucker.factor[mode] = leading_vectors(rest.view(), mode, rank, options, progress);
-    if (mode + 1 < view.order()) continue;
-    tucker.core = mode_product(rest.view(), mode, tucker.factor[mode].transpose(), options.threads, progress);
+  std::vector<RowMatrix>& factor = tucker.factor;
+  const auto improve = [&](const DenseTensor& rest, size_t mode) {
+    factor[mode] = leading_vectors(rest.view(), mode, factor[mode].cols(), options, progress);
+    return mode_product(rest.view(), mode, factor[mode].transpose(), options.threads, progress);
+  };
+  tucker.core = improve(projected(view, factor, 0, options, progress), 0);
+  if (view.order() == 1) return;
+  // All others look at the tensor through the first mode's new factor.
+  const DenseTensor seen = mode_product(view, 0, factor[0].transpose(), options.threads, progress);
+  for (size_t mode = 1; mode < view.order(); ++mode) {
+    std::vector<RowMatrix> others = factor;
+    others[0] = {};
+    tucker.core = improve(projected(seen.view(), others, mode, options, progress), mode);
   }
 }
 

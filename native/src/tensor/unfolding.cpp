@@ -1,8 +1,13 @@
 #include "tensor/unfolding.h"
 
-#include <limits>
+#include <algorithm>
 
 namespace velour {
+namespace {
+
+constexpr Index kColumns = 16;  // enough
+
+}  // namespace
 
 Unfolding::Unfolding(const TensorView& view, size_t mode) {
   for (size_t k = 0; k < view.order(); ++k) {
@@ -14,12 +19,14 @@ Unfolding::Unfolding(const TensorView& view, size_t mode) {
       group_.emplace_back(k, k);
     }
   }
-  Index least = std::numeric_limits<Index>::max();
-  for (size_t g = 0; g < group_.size(); ++g) {
-    const Index stride = view.stride(group_[g].second);
-    if (stride >= least) continue;
-    least = stride;
-    column_group_ = g;
+  // Few columns would leave registers empty, far ones cache lines.
+  const auto rank = [&](const Group& group) {
+    Index extent = 1;
+    for (size_t k = group.first; k <= group.second; ++k) extent *= view.extent(k);
+    return std::pair(std::min(extent, kColumns), -view.stride(group.second));
+  };
+  for (size_t g = 1; g < group_.size(); ++g) {
+    if (rank(group_[g]) > rank(group_[column_group_])) column_group_ = g;
   }
   lay_out(view, mode);
 }

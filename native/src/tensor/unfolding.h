@@ -1,13 +1,15 @@
 // Tensors as matrices.
 #pragma once
 
+#include "tensor/matrix_product.h"
 #include "tensor/tensor_view.h"
 
 namespace velour {
 
 /// The mode-n unfolding, the matrix whose rows are the indices of a mode and whose columns are all others, as blocks of
 /// columns that stay where they are: neighbouring modes that lie evenly in memory are one, of those the one of the
-/// smallest stride makes the columns of a block, and there is a block for every index of the rest.
+/// smallest stride that has enough indices makes the columns of a block, and there is a block for every index of the
+/// rest.
 class Unfolding {
  public:
   Unfolding(const TensorView& view, size_t mode);
@@ -19,8 +21,11 @@ class Unfolding {
   Index columns() const { return columns_; }  // of a block
   Index row_stride() const { return row_stride_; }
   Index column_stride() const { return column_stride_; }
-  /// Of a block in the memory of the view.
-  Index first(size_t block) const { return first_[block]; }
+  /// `count` columns of a block from column `begin` on; `data`: of the view.
+  template <class T>
+  StridedMatrix<T> part(T* data, size_t block, Index begin, Index count) const {
+    return {data + first_[block] + begin * column_stride_, rows_, count, row_stride_, column_stride_};
+  }
 
  private:
   using Group = std::pair<size_t, size_t>;  // modes first ... last
@@ -31,23 +36,5 @@ class Unfolding {
   Index rows_, columns_ = 1, row_stride_, column_stride_ = 1;
   std::vector<Index> first_;
 };
-
-/// Calls use(matrix) with rows() x `count` of a block from column `begin` on, as Eigen knows it; strides that it cannot
-/// use are copied.
-template <class Use>
-void with_columns(const float* data, const Unfolding& u, size_t block, Index begin, Index count, const Use& use) {
-  using ColumnMatrix = Eigen::MatrixXf;
-  const float* const from = data + u.first(block) + begin * u.column_stride();
-  const Eigen::OuterStride<> row_stride(u.row_stride()), column_stride(u.column_stride());
-  if (u.column_stride() == 1) {
-    use(Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>>(from, u.rows(), count, row_stride));
-  } else if (u.row_stride() == 1) {
-    use(Eigen::Map<const ColumnMatrix, 0, Eigen::OuterStride<>>(from, u.rows(), count, column_stride));
-  } else {
-    using Both = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
-    use(ColumnMatrix(
-        Eigen::Map<const ColumnMatrix, 0, Both>(from, u.rows(), count, Both(u.column_stride(), u.row_stride()))));
-  }
-}
 
 }  // namespace velour
