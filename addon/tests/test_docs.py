@@ -29,6 +29,13 @@ def test_links_lead_somewhere(page):
     assert missing == []
 
 
+def test_places_that_the_next_engineer_is_sent_to_exist():
+    text = (ROOT / "docs/next_engineer.md").read_text(encoding="utf-8")
+    places = re.findall(r"`((?:native|addon|scripts|blend-tests)/[\w./-]+)`", text)
+    assert len(places) > 40
+    assert [place for place in places if not (ROOT / place).exists()] == []
+
+
 def test_code_names_of_the_equations_exist(code):
     text = (ROOT / "docs/equations.md").read_text(encoding="utf-8")
     names = {name.split("::")[-1] for name in re.findall(r"`([A-Za-z_:]+)`", text)}
