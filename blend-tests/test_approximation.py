@@ -17,7 +17,10 @@ _NATIVE = {
     "ShaderNodeAddShader",
     "ShaderNodeBsdfDiffuse",
     "ShaderNodeBsdfPrincipled",
+    "ShaderNodeMapping",
     "ShaderNodeTangent",
+    "ShaderNodeTexImage",
+    "ShaderNodeUVMap",
 }
 
 _RENDER = """
@@ -26,7 +29,7 @@ assert not hasattr(bpy.types.Scene, "velour"), "Velour is there"
 scene = bpy.context.scene
 scene.render.engine = "CYCLES"
 scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 64, 0, False
-scene.render.filepath = {path!r}
+scene.render.filepath, scene.render.image_settings.file_format = {path!r}, "OPEN_EXR"
 bpy.ops.render.render(write_still=True)
 """
 
@@ -60,7 +63,7 @@ class Approximation(BlenderTest):
 
 
 class WithoutVelour(Approximation):
-    """A file is opened in a Blender that has no Velour, and rendered by Cycles."""
+    """A file is opened in a Blender that has no Velour, and rendered by Cycles, under a sky and a sun."""
 
     def setUp(self):
         super().setUp()
@@ -83,6 +86,8 @@ class WithoutVelour(Approximation):
         velour = _blocks(scenes.render(self.folder))
         return float(np.sqrt(((self._cycles(name) - velour) ** 2).mean() / (velour**2).mean()))
 
+
+class Uniform(WithoutVelour):
     def test_a_plastic(self):
         self._import(inputs.plastic_measurement())
         self.assertLess(self._error("plastic"), 0.06)
@@ -106,6 +111,42 @@ class WithoutVelour(Approximation):
         self.assertGreater(self._error("turned"), 0.5)
 
 
+class Tiles(WithoutVelour):
+    """Of BTFs, on a plane that is seen from above."""
+
+    def setUp(self):
+        super().setUp()
+        bpy.data.objects.remove(self.obj)
+        self.obj = scenes.add_plane()
+        bpy.context.scene.camera.data.ortho_scale = 2.0
+
+    def test_they_lie_as_they_do(self):
+        self._import(self._model_file(inputs.quarters_model()))
+        placement = scenes.velour_node(self.material).velour.placement
+        placement.repeats, placement.rotation, placement.offset = (1.5, 1.0), 0.4, (0.1, 0.2)
+        self.assertGreater(self._error("before"), 0.2)
+        bpy.ops.velour.approximate()
+        self.assertLess(self._error("quarters"), 0.06)
+
+    def test_tiles_of_a_real_size_lie_so_where_a_unit_is_a_metre(self):
+        """The plane's unit of texture coordinates is 2 m."""
+        self._import(self._model_file(inputs.quarters_model(metres=0.5)))
+        placement = scenes.velour_node(self.material).velour.placement
+        placement.mode, placement.uv_density = "REAL_SIZE", (0.5, 0.5)
+        bpy.ops.velour.approximate()
+        self.assertLess(self._error("real"), 0.12)
+
+    def test_one_sees_through_holes(self):
+        bpy.ops.velour.add_material()
+        pixels = np.ones((4, 4, 4), np.float32) * 0.5
+        pixels[:, :2, 3], pixels[:, 2:, 3] = 0, 1  # the left half is open
+        core = importlib.import_module(f"{inputs.ADDON}.core.approximation")
+        group_module().put(self.material, core.PLACEHOLDER._replace(color_map=pixels))
+        left, right = np.split(self._cycles("holes")[2:-2], 2, axis=1)
+        np.testing.assert_allclose(left[:, 2:-2], 0.3, atol=0.01)  # the sky
+        self.assertGreater(right[:, 2:-2].min(), 0.5)  # the sun as well
+
+
 class Group(Approximation):
     def test_a_new_material_has_one(self):
         bpy.ops.velour.add_material()
@@ -115,6 +156,7 @@ class Group(Approximation):
     def test_it_is_of_native_nodes_and_so_is_solid_mode(self):
         for name, data in (
             ("brushed", inputs.brushed_model()),
+            ("quarters", inputs.quarters_model()),
             ("lambert", inputs.model_bytes(inputs.lambert_measurement())),
         ):
             group = group_of(self._import(self._model_file(data, name))).node_tree

@@ -6,7 +6,10 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numpy as np
+
 from ..native import Job, Model, model_peer_job
+from .approximation_map import map_job, map_of, size_of
 
 _GRAZING = math.cos(math.radians(82))  # where a metal's tint is told: [KHE21]
 _LEAST_DIFFUSE = 0.002  # albedo below which a base is not worth a node
@@ -20,6 +23,8 @@ class Approximation(NamedTuple):
     anisotropic: float = 0.0  # Blender's
     turned: bool = False  # the rougher direction is y
     diffuse: tuple = (0.0, 0.0, 0.0)  # of a diffuse base that is added
+    color_map: np.ndarray | None = None  # RGBA of a tile in place of the base colour
+    tile_metres: tuple | None = None
     relative_l2: float | None = None  # against the model; None: it is no fit
     by_view_angle: dict = {}
 
@@ -56,12 +61,19 @@ class Steps:
         return next(self._jobs, None)
 
     def _run(self, model: Model, has_layers: bool) -> Iterator[Job]:
-        isotropic = model.info().get("isotropic", True)
+        info = model.info()
+        isotropic = info.get("isotropic", True)
         peer = ("principled" if has_layers else "plain_principled") if isotropic else "ggx"
         with model_peer_job(model, peer) as job:
             yield job
             report = job.report()
         values = {"principled": report[peer.removeprefix("plain_")]} if isotropic else from_ggx(report["ggx"])
+        if size := size_of(info):
+            with map_job(model, size) as job:
+                yield job
+                picture = job.read_pass("Combined")
+            values["tile_metres"] = info.get("tile_metres")
+            values["color_map"] = map_of(picture, values["principled"]["base_color"])
         self.result = Approximation(
             **values, relative_l2=report["relative_l2"], by_view_angle=report["by_view_angle"]
         )

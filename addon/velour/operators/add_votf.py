@@ -9,12 +9,12 @@ from ..export.nodes import velour_node
 from ..export.tiles import export_tile
 from ..native import votf_job
 from . import measured
-from .background_job import OneJob
+from .approximate import MakesModel
 from .job_target import JobTarget
 from .tiles import find_tile, tile_of
 
 
-class VELOUR_OT_add_votf(OneJob, bpy.types.Operator):
+class VELOUR_OT_add_votf(MakesModel, bpy.types.Operator):
     bl_idname = "velour.add_votf"
     bl_label = "Add Outline"
     bl_description = (
@@ -74,12 +74,12 @@ class VELOUR_OT_add_votf(OneJob, bpy.types.Operator):
             raise ExportError(f"{owner}: choose the object that is the structure.")
         return tile_of(context, settings.structure)
 
-    def _finish(self):
-        with self._job, self._job.result_model() as model:
-            data, report = model.bytes(), self._job.report()
-        material, node = measured.put_model(data, self._target, self.report)
+    def _put(self):
+        report = self._report
+        material, node = measured.put_model(self._data, self._target, self.report)
         if node is None:
             return {"FINISHED"}
+        self._put_approximation(material)
         for sentence in (*self._notes, *report["warnings"]):
             self.report({"WARNING"}, sentence)
         self.report(

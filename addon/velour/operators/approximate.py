@@ -30,6 +30,32 @@ class Approximates(OneJob):
         return True
 
 
+class MakesModel(Approximates):
+    """Mixin of an operator whose first job makes a model, which comes with its approximation or not at all.
+
+    It is for the material of `_target`; `_put()` takes `_data`, `_info` and the first job's `_report`.
+    """
+
+    _data = None  # the model's file
+
+    def _finish(self):
+        if self._data is None:
+            with self._job:
+                model, self._report = self._job.result_model(), self._job.report()
+            self._data, self._info = model.bytes(), model.info()
+            if self._wants_approximation():
+                self._steps = Steps(model, approximation_group.has_layers())
+        return None if self._advance() else self._put()
+
+    def _wants_approximation(self):
+        material, _node = self._target.find()
+        return material is not None and approximation_group.is_wanted(material)
+
+    def _put_approximation(self, material):
+        if self._steps:
+            approximation_group.put(material, self._steps.result, sha256(self._data))
+
+
 class VELOUR_OT_approximate(Approximates, bpy.types.Operator):
     bl_idname = "velour.approximate"
     bl_label = "Approximate"

@@ -6,6 +6,7 @@ from ..core.approximation import PLACEHOLDER
 from ..export.color import rec709_to_working
 from ..export.nodes import active_output, first_input, velour_node
 from ..properties.approximation_state import VIEW_ANGLES
+from .approximation_image import add_image, add_texture, is_open
 
 NAME = "Velour approximation"
 
@@ -63,7 +64,7 @@ def put(material, approximation=PLACEHOLDER, model=""):
     shown_by = [output.inputs["Surface"]] if is_new else [link.to_socket for link in node.outputs[0].links]
     node.node_tree = None
     _remove(before)  # first: its name is free then
-    node.node_tree = _group(approximation, velour_node(material))
+    node.node_tree = _group(approximation, material)
     for socket in shown_by:
         tree.links.new(node.outputs[0], socket)
     if not output.inputs["Surface"].is_linked:
@@ -72,7 +73,7 @@ def put(material, approximation=PLACEHOLDER, model=""):
     _set_solid(material, approximation)
 
 
-def _group(approximation, node):
+def _group(approximation, material):
     group = bpy.data.node_groups.new(NAME, "ShaderNodeTree")
     if hasattr(group, "interface"):  # 4.0 and newer
         group.interface.new_socket(name="BSDF", in_out="OUTPUT", socket_type="NodeSocketShader")
@@ -81,8 +82,11 @@ def _group(approximation, node):
     sink = group.nodes.new("NodeGroupOutput")
     sink.location = 600, 0
     shader = _principled(group, approximation)
+    node = velour_node(material)
     if approximation.anisotropic > 0:
         _turn(group, shader, approximation, node.velour.placement)
+    if approximation.color_map is not None:
+        _color(group, shader, approximation, material)
     last = _with_base(group, shader, approximation.diffuse) if max(approximation.diffuse) > 0 else shader
     group.links.new(last.outputs[0], sink.inputs[0])
     return group
@@ -100,6 +104,17 @@ def _principled(group, approximation):
         elif name != "specular_tint":
             socket.default_value = value
     return shader
+
+
+def _color(group, shader, approximation, material):
+    pixels, placement = approximation.color_map, velour_node(material).velour.placement
+    image = add_image(f"{material.name} approximation", pixels)
+    texture = add_texture(group, image, placement, approximation.tile_metres)
+    group.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+    if is_open(pixels):
+        group.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
+        if hasattr(material, "shadow_method"):  # before 4.2 EEVEE has to be told
+            material.blend_method = material.shadow_method = "HASHED"
 
 
 def _turn(group, shader, approximation, placement):
@@ -131,9 +146,14 @@ def _rgba(color):
 
 
 def _remove(group):
-    """Of a material's own; copies of the material keep it."""
-    if group is not None and group.users == 0:
-        bpy.data.node_groups.remove(group)
+    """Of a material's own, with its image; copies of the material keep them."""
+    if group is None or group.users > 0:
+        return
+    images = [node.image for node in group.nodes if node.bl_idname == "ShaderNodeTexImage" and node.image]
+    bpy.data.node_groups.remove(group)
+    for image in images:
+        if image.users == 0:
+            bpy.data.images.remove(image)
 
 
 def _remember(state, approximation, model):

@@ -10,12 +10,12 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 from ..native import Btf, compress_job
 from ..properties.tile_settings import METHODS, SHAPE_OF
 from . import measured
-from .background_job import OneJob
+from .approximate import MakesModel
 from .slots import Slot, assign
 from .tiles import find_tile, held_out_folder, tile_folder
 
 
-class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
+class VELOUR_OT_compress_btf(MakesModel, bpy.types.Operator):
     bl_idname = "velour.compress_btf"
     bl_label = "Make Material from BTF"
     bl_description = "Fit a model to a captured or measured BTF and make a material of it"
@@ -126,13 +126,16 @@ class VELOUR_OT_compress_btf(OneJob, bpy.types.Operator):
         if owner is not None:
             owner.velour.model = image
 
-    def _finish(self):
-        with self._job, self._job.result_model() as model:
-            data, report = model.bytes(), self._job.report()
+    def _wants_approximation(self):
+        return True
+
+    def _put(self):
+        data, report = self._data, self._report
         material = measured.new_material(self._subject)
         node = measured.ensure_node(material)
         node.image = measured.packed_model(data, self._subject)
         node.velour.measurement = measured.measurement_image(self._path, self._digest)
+        self._put_approximation(material)
         self._remember(node.image)
         slot = Slot(self.object, self.slot) if self.object else None
         if not (self.assign and assign(bpy.context, material, slot)):

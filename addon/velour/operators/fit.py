@@ -3,20 +3,19 @@
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ..core.approximation import Steps
 from ..export import ExportError
-from ..export.files import measurement_path, sha256
+from ..export.files import measurement_path
 from ..export.nodes import velour_node
 from ..native import Measurement, fit_job
 from ..properties.material_settings import MODELS
-from . import approximation_group, measured
-from .approximate import Approximates
+from . import measured
+from .approximate import MakesModel
 from .job_target import JobTarget
 
 _SETTINGS = ("model", "tolerance", "max_lobes", "kernel", "seed")
 
 
-class VELOUR_OT_fit(Approximates, bpy.types.Operator):
+class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
     bl_idname = "velour.fit"
     bl_label = "Fit"
     bl_description = "Fit a model to the material's measurement. The model before it is not touched"
@@ -35,7 +34,6 @@ class VELOUR_OT_fit(Approximates, bpy.types.Operator):
     seed: IntProperty(name="Seed", min=0, options={"SKIP_SAVE"})
 
     _what = "The fit"
-    _fitted = None  # bytes and info of the model, once it is there
 
     def _begin(self, context):
         material = measured.find_material(context, self.material)
@@ -68,30 +66,17 @@ class VELOUR_OT_fit(Approximates, bpy.types.Operator):
                 setattr(node.velour, name, getattr(self, name))
         return node.velour
 
-    def _finish(self):
-        if self._fitted is None:
-            self._take_model()
-        if self._advance():
-            return None  # the model comes with its approximation, or a cancel leaves half of it
-        data, info = self._fitted
+    def _put(self):
+        data, info = self._data, self._info
         material, node = measured.put_model(data, self._target, self.report)
         if node is None:
             return {"FINISHED"}
-        if self._steps:
-            approximation_group.put(material, self._steps.result, sha256(data))
+        self._put_approximation(material)
         node.velour.measurement.velour.sha256 = self._digest
         for warning in info["warnings"]:
             self.report({"WARNING"}, f"Material '{material.name}': {warning}")
         self.report({"INFO"}, f"Fitted '{material.name}': {info['lobes']} lobes, {len(data)} bytes.")
         return {"FINISHED"}
-
-    def _take_model(self):
-        with self._job:
-            model = self._job.result_model()
-        self._fitted = model.bytes(), model.info()
-        material, _node = self._target.find()
-        if material is not None and approximation_group.is_wanted(material):
-            self._steps = Steps(model, approximation_group.has_layers())
 
 
 def _model_options(settings):
