@@ -90,6 +90,10 @@ def test_a_killed_blender_is_named(job, tmp_path):
     log = tmp_path / "log"
     log.write_text("Read blend\nError: Material 'a': gone\nBlender quit\n")
     assert blender.ending(1, log) == "Blender ended with status 1: Error: Material 'a': gone"
+    log.write_text(
+        "Approximated: relative error 0.4.\n00:06.355  reports  | ERROR Material 'a': gone.\nquit\n"
+    )
+    assert blender.ending(1, log) == "Blender ended with status 1: ERROR Material 'a': gone"
     assert blender.execute([str(tmp_path / "no-blender")], log) == 127
     assert "cannot be started (No such file or directory)" in blender.ending(127, log)
 

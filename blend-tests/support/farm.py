@@ -8,38 +8,30 @@ from pathlib import Path
 import bpy
 
 from . import process, scenes
-from .blender import BlenderTest
+from .blender import BlenderTest, folder
 
 ROOT = Path(__file__).resolve().parents[2]
 SECONDS = 120
 
 
 class FarmTest(BlenderTest):
-    """A .blend of three frames whose model is a file beside it."""
+    """A .blend of three frames whose model is a file beside it, and its job, which nobody has rendered."""
 
     def setUp(self):
         super().setUp()
-        # A blank, as folders of productions have.
-        self.shots = self.folder / "a b"
-        self.shots.mkdir(parents=True)
-        scenes.worn_file(self.shots / "paint.velour")
-        bpy.context.scene.frame_start, bpy.context.scene.frame_end = 1, 3
+        self.shots = self.folder / "a b"  # a blank, as folders of productions have
+        shutil.copytree(_prepared(), self.shots)
         self.blend = self.shots / "shot.blend"
-        bpy.ops.wm.save_as_mainfile(filepath=str(self.blend))
         self.output = self.shots / "frames"
+        self.edit_job(blend=str(self.blend))
 
     def farm(self, *arguments, environment=None):
-        command = [ROOT / "scripts/farm", "--blender", bpy.app.binary_path, *arguments]
-        return process.run(command, environment, SECONDS)
-
-    def make(self, *arguments):
-        done = self.farm(self.blend, "--no-submit", *arguments)
-        self.assertEqual(done.returncode, 0, done.stdout)
+        return _farm(*arguments, environment=environment)
 
     def node(self, *arguments, environment=None, prefix=()):
         """Runs the frame program as a farm's node does."""
-        folder = self.output / "farm"
-        command = [*prefix, "/usr/bin/python3", folder / "frame.pyz", folder / "job.json", *arguments]
+        job = self.output / "farm"
+        command = [*prefix, "/usr/bin/python3", job / "frame.pyz", job / "job.json", *arguments]
         return process.run(command, environment, SECONDS)
 
     def picture(self, frame):
@@ -57,13 +49,34 @@ class FarmTest(BlenderTest):
         path = self.output / "farm/job.json"
         path.write_text(json.dumps({**json.loads(path.read_text()), **changes}))
 
-    def another_stage(self, name, file="", before="", after=""):
+    def another_stage(self, name, file, before, after):
         """Variables for a copy of the staged add-on, in which `file` reads otherwise."""
         stage = self.folder / name
         shutil.copytree(os.environ["VELOUR_STAGE"], stage)
-        if file:
-            path = stage / "addons/velour" / file
-            text = path.read_text()
-            self.assertIn(before, text)
-            path.write_text(text.replace(before, after))
+        path = stage / "addons/velour" / file
+        text = path.read_text()
+        self.assertIn(before, text)
+        path.write_text(text.replace(before, after))
         return {"BLENDER_USER_SCRIPTS": str(stage)}
+
+
+def _farm(*arguments, environment=None):
+    command = [ROOT / "scripts/farm", "--blender", bpy.app.binary_path, *arguments]
+    return process.run(command, environment, SECONDS)
+
+
+def _prepared():
+    """Made by the first test that asks."""
+    shots = folder() / "prepared"
+    if not shots.exists():
+        shots.mkdir()
+        scenes.worn_file(shots / "paint.velour")
+        bpy.context.scene.frame_start, bpy.context.scene.frame_end = 1, 3
+        blend = str(shots / "shot.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=blend)
+        bpy.ops.file.make_paths_relative()
+        bpy.ops.wm.save_mainfile()
+        done = _farm(blend, "--no-submit", "--threads", "1")
+        if done.returncode:
+            raise RuntimeError(done.stdout)
+    return shots

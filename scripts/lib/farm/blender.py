@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -10,6 +11,8 @@ from pathlib import Path
 
 from .job import Job
 
+# "Error: ..." of Blender 3 and 4, "... | ERROR ..." of 5, "ValueError: ..." of Python.
+_ERROR = re.compile(r"\b(?:\w*Error|ERROR)\b.*")
 FAILED = 7  # the exit status of a script that raises; Blender's own failures have 1
 
 
@@ -65,6 +68,6 @@ def ending(status: int, log: Path) -> str:
         words = f"Blender was ended by {signal.Signals(number).name}"
     else:
         words = f"Blender ended with status {status}"
-    lines = log.read_text(encoding="utf-8", errors="replace").splitlines() if log.is_file() else []
-    errors = [line.strip() for line in lines if "Error" in line]
-    return f"{words}: {errors[-1]}" if errors else words
+    said = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
+    errors = _ERROR.findall(said)
+    return f"{words}: {errors[-1].rstrip('. ')}" if errors else words

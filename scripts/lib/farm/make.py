@@ -49,7 +49,7 @@ def _ask_blender(made: job.Job) -> None:
         script = ["--python", str(HERE / "inside_blend.py"), "--", made.addon, str(report)]
         status = blender.execute([*blender.start(made), *script], log)
         if status or not report.is_file():
-            raise job.JobError(f"{made.blend}: {blender.ending(status, log)}")
+            raise job.JobError(f"{made.blend}: {blender.ending(status, log)}.")
         found = json.loads(report.read_text(encoding="utf-8"))
     if "error" in found:
         raise job.JobError(f"{made.blend}: {found['error']}")

@@ -1,0 +1,80 @@
+"""Nodes of a farm that are not as they should be: no picture, and a sentence that says why."""
+
+import os
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+from support import process
+from support.farm import FarmTest
+
+_NOBODY = 65534
+_STAMP = 'result.stamp_data_add_field("velour.version", version_text())'
+
+
+class Nodes(FarmTest):
+    def _assert_refused(self, *words, environment=None):
+        """A status and the reason, at once and when asked later."""
+        node = self.node("--frames", 1, environment=environment)
+        self.assertEqual(node.returncode, 1, node.stdout)
+        self.assertEqual(self.pictures(), [])
+        status, said = self.status()
+        self.assertEqual(status, 1, said)
+        for word in words:
+            self.assertIn(word, node.stdout)
+            self.assertIn(word, said)
+        self.assertEqual(list((self.output / "farm/partial").rglob("*.exr")), [])
+
+    def test_without_velour(self):
+        empty = self.folder / "empty"
+        empty.mkdir()
+        words = ("frame 1", "Blender ended with status 1", "VELOUR")
+        self._assert_refused(*words, environment={"BLENDER_USER_SCRIPTS": str(empty)})
+
+    def test_older_velour(self):
+        older = _STAMP.replace("version_text()", '"0.0.9"')
+        environment = self.another_stage("older", "engine/stamps.py", _STAMP, older)
+        self._assert_refused("Velour 0.0.9 rendered it, the job is for 0.1.0", environment=environment)
+
+    def test_velour_that_says_nothing(self):
+        environment = self.another_stage("silent", "engine/stamps.py", _STAMP, "pass")
+        self._assert_refused("no Velour wrote it, or one older than 0.1.0", environment=environment)
+
+    def test_missing_model(self):
+        (self.shots / "paint.velour").unlink()
+        self._assert_refused("Material 'paint'", "paint.velour", "Find Missing Files")
+
+    def test_other_model(self):
+        self.edit_job(models={"paint": ["0" * 64]})
+        self._assert_refused("rendered from other models than the job's: 'paint'")
+
+
+@unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"), "needs root, to become nobody")
+class Site(FarmTest):
+    """The add-on lies where nobody may write, and the home cannot be written to."""
+
+    def setUp(self):
+        super().setUp()
+        # Where nobody can go, whatever folder these tests are in.
+        self.site = Path(tempfile.mkdtemp(prefix="velour-site-"))
+        self.addCleanup(shutil.rmtree, self.site)
+        self.site.chmod(0o755)
+
+    def test_read_only_site_and_home(self):
+        scripts, home = self.site / "scripts", self.site / "home"
+        shutil.copytree(os.environ["VELOUR_STAGE"], scripts)
+        shutil.copytree(self.shots, self.site / "shots")
+        home.mkdir()
+        self.output = self.site / "shots/frames"
+        self.edit_job(blend=str(self.site / "shots/shot.blend"))
+        for path in (self.output, *self.output.rglob("*")):
+            os.chown(path, _NOBODY, _NOBODY)
+        nobody = ["setpriv", f"--reuid={_NOBODY}", f"--regid={_NOBODY}", "--clear-groups"]
+        refused = process.run([*nobody, "touch", home / "x", scripts / "x"])
+        self.assertEqual(refused.stdout.count("Permission denied"), 2, refused.stdout)
+        environment = {"BLENDER_USER_SCRIPTS": str(scripts), "HOME": str(home)}
+        node = self.node("--frames", 1, environment=environment, prefix=nobody)
+        self.assertEqual(node.returncode, 0, node.stdout)
+        self.assertEqual(self.pictures(), ["shot_0001.exr"])
+        self.assertEqual(list(home.iterdir()), [])
