@@ -60,8 +60,8 @@ class VELOUR_OT_approximate(Approximates, bpy.types.Operator):
     bl_idname = "velour.approximate"
     bl_label = "Approximate"
     bl_description = (
-        "Make the node group of a Principled BSDF that comes closest to the model: what EEVEE, Cycles, Solid"
-        " mode and exporters show. Other nodes are not touched"
+        "Make the node group of a Principled BSDF that comes closest to the model: what EEVEE, Cycles and"
+        " Solid mode show. Other nodes are not touched"
     )
     bl_options = {"REGISTER", "UNDO"}
 

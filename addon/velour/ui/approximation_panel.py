@@ -21,9 +21,7 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
     def draw(self, context):
         layout, group = self.layout, approximation_group.find(context.material)
         if group is None:
-            draw_sentence(
-                context, layout, "EEVEE, Cycles, Solid mode and exporters show this material's own shader."
-            )
+            draw_sentence(context, layout, "EEVEE, Cycles and Solid mode show this material's own shader.")
             layout.operator(VELOUR_OT_approximate.bl_idname, icon="NODE_MATERIAL")
             return
         state = group.node_tree.velour
