@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "srbf/front_lanes-inl.h"
 #include "srbf/simd_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -32,9 +33,9 @@ size_t facing_places_simd(const PlaceNormals& normals, const Vec3& wl, uint32_t*
   for (size_t at = 0; at < normals.count(); at += hn::Lanes(d)) {
     const auto load = [&](size_t c) HWY_ATTR { return hn::LoadU(d, normals.component(c) + at); };
     const V geometric = dot(wl, load(0), load(1), load(2)), shading = dot(wl, load(3), load(4), load(5));
-    const auto faces = hn::RebindMask(du, hn::Gt(hn::Min(geometric, shading), hn::Zero(d)));
-    hn::StoreU(hn::Compress(hn::Iota(du, static_cast<uint32_t>(at)), faces), du, numbers + count);
-    count += hn::CountTrue(du, faces);
+    const FrontLanes faces(d, hn::Gt(hn::Min(geometric, shading), hn::Zero(d)));
+    hn::StoreU(faces.of(du, hn::Iota(du, static_cast<uint32_t>(at))), du, numbers + count);
+    count += faces.count();
   }
   return count;
 }
@@ -54,16 +55,16 @@ void collect_lit_simd(const LightGroup& group, uint32_t first, uint64_t mask, co
   uint32_t count = 0;
   for (uint32_t at = 0; mask >> at != 0; at += lanes) {
     const uint64_t bits = mask >> at;
-    const auto wanted = hn::LoadMaskBits(d, reinterpret_cast<const uint8_t*>(&bits));
+    const FrontLanes wanted(d, hn::LoadMaskBits(d, reinterpret_cast<const uint8_t*>(&bits)));
     const uint32_t from = first + at;
     const V wx = hn::Load(d, group.x + from), wy = hn::Load(d, group.y + from), wz = hn::Load(d, group.z + from);
     const V local_z = dot(frame.z, wx, wy, wz);
-    hn::StoreU(hn::Compress(dot(frame.x, wx, wy, wz), wanted), d, x.v + count);
-    hn::StoreU(hn::Compress(dot(frame.y, wx, wy, wz), wanted), d, y.v + count);
-    hn::StoreU(hn::Compress(local_z, wanted), d, z.v + count);
-    hn::StoreU(hn::Compress(hn::Mul(local_z, hn::Load(d, group.per_irradiance + from)), wanted), d, weight.v + count);
-    hn::StoreU(hn::Compress(hn::Iota(du, from), hn::RebindMask(du, wanted)), du, number.v + count);
-    count += static_cast<uint32_t>(hn::CountTrue(d, wanted));
+    hn::StoreU(wanted.of(d, dot(frame.x, wx, wy, wz)), d, x.v + count);
+    hn::StoreU(wanted.of(d, dot(frame.y, wx, wy, wz)), d, y.v + count);
+    hn::StoreU(wanted.of(d, local_z), d, z.v + count);
+    hn::StoreU(wanted.of(d, hn::Mul(local_z, hn::Load(d, group.per_irradiance + from))), d, weight.v + count);
+    hn::StoreU(wanted.of(du, hn::Iota(du, from)), du, number.v + count);
+    count += static_cast<uint32_t>(wanted.count());
     if (at + lanes == 64) break;
   }
   std::copy_n(x.v, count, lit.wl.x);

@@ -14,6 +14,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "srbf/front_lanes-inl.h"
 #include "srbf/simd_dispatch.h"
 #include "srbf/simd_math-inl.h"
 
@@ -88,7 +89,7 @@ float total_simd(const LobeProducts& products) {
 
 /// Copies the products of at least `least` to `mixture`, in order, their masses to its densities; returns how many.
 int keep_simd(const LobeProducts& products, float least, LobeMixture& mixture) {
-  // A compressed store writes whole vectors.
+  // Whole vectors are written.
   static_assert(LobeProducts::kCapacity + LobeProducts::kLanes <= LobeMixture::kCapacity);
   const hn::CappedTag<float, LobeProducts::kLanes> d;
   const auto bound = hn::Set(d, least);
@@ -97,11 +98,12 @@ int keep_simd(const LobeProducts& products, float least, LobeMixture& mixture) {
     const auto mass = hn::LoadU(d, products.mass + at);
     const auto kept = hn::Ge(mass, bound);
     if (hn::AllFalse(d, kept)) continue;
-    hn::CompressStore(hn::LoadU(d, products.x + at), kept, d, mixture.x + count);
-    hn::CompressStore(hn::LoadU(d, products.y + at), kept, d, mixture.y + count);
-    hn::CompressStore(hn::LoadU(d, products.z + at), kept, d, mixture.z + count);
-    hn::CompressStore(hn::LoadU(d, products.bandwidth + at), kept, d, mixture.bandwidth + count);
-    count += hn::CompressStore(mass, kept, d, mixture.density + count);
+    const FrontLanes front(d, kept);
+    const auto keep = [&](const float* from, float* to)
+                          HWY_ATTR { hn::StoreU(front.of(d, hn::LoadU(d, from + at)), d, to + count); };
+    keep(products.x, mixture.x), keep(products.y, mixture.y), keep(products.z, mixture.z);
+    keep(products.bandwidth, mixture.bandwidth), keep(products.mass, mixture.density);
+    count += front.count();
   }
   return static_cast<int>(count);
 }

@@ -8,6 +8,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "srbf/front_lanes-inl.h"
 #include "srbf/simd_dispatch.h"
 #include "votf/shell_lanes-inl.h"
 #include "votf/shell_march-inl.h"
@@ -109,7 +110,6 @@ HWY_INLINE void report(D d, const ShellTable& t, const RayLanes<D>& rays, const 
 template <class D>
 HWY_INLINE size_t march_some(D d, const ShellTable& t, Marches& all, size_t at, size_t count, size_t left, bool last,
                              ShellHit* hits) {
-  const hn::RebindToUnsigned<D> du;
   const auto of = [&](Marches::Field k) HWY_ATTR { return hn::LoadU(d, all.field[k] + at); };
   const RayLanes<D> rays = rays_of(d, all, at);
   const auto valid = hn::FirstN(d, count - at);
@@ -131,14 +131,15 @@ HWY_INLINE size_t march_some(D d, const ShellTable& t, Marches& all, size_t at, 
   }
   const auto ended = hn::AndNot(m.active, valid);
   if (!hn::AllFalse(d, ended)) report(d, t, rays, m, ended, all.number + at, hits);
+  const FrontLanes front(d, m.active);
   const auto keep = [&](Marches::Field k, hn::Vec<D> v)
-                        HWY_ATTR { hn::StoreU(hn::Compress(v, m.active), d, all.field[k] + left); };
+                        HWY_ATTR { hn::StoreU(front.of(d, v), d, all.field[k] + left); };
   for (size_t k = 0; k < Marches::kOwn; ++k) keep(static_cast<Marches::Field>(k), of(static_cast<Marches::Field>(k)));
   keep(Marches::kOwn, m.own), keep(Marches::kBegin, m.begin), keep(Marches::kS, m.s), keep(Marches::kFree, m.free);
   keep(Marches::kStep, m.step), keep(Marches::kSkipped, m.skipped);
-  const auto number = hn::LoadU(du, all.number + at);
-  hn::StoreU(hn::Compress(number, hn::RebindMask(du, m.active)), du, all.number + left);
-  return hn::CountTrue(d, m.active);
+  const hn::RebindToUnsigned<D> du;
+  hn::StoreU(front.of(du, hn::LoadU(du, all.number + at)), du, all.number + left);
+  return front.count();
 }
 
 template <class D>
