@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/affine.h"
-#include "scene/camera.h"
+#include "scene/bounds.h"
 
 namespace velour {
 

@@ -51,6 +51,20 @@ Mesh::Mesh(const MeshArrays& arrays) {
   in_pieces(count, [&](size_t begin, size_t end) { copy_triangles(arrays, kept, begin, end); });
   const std::vector<Vec3d> sums = arrays.has_normals() ? std::vector<Vec3d>() : summed_normals();
   in_pieces(count, [&](size_t begin, size_t end) { finish_normals(arrays, kept, sums, begin, end); });
+  find_bounds();
+}
+
+void Mesh::find_bounds() {
+  std::vector<Bounds> of_piece((triangles_.size() + kTrianglesOfPiece - 1) / kTrianglesOfPiece);
+  in_pieces(triangles_.size(), [&](size_t begin, size_t end) {
+    Bounds bounds;
+    for (size_t i = begin; i < end; ++i) {
+      for (int k = 0; k < 3; ++k) bounds.add(positions_[triangles_[i][k]]);
+    }
+    of_piece[begin / kTrianglesOfPiece] = bounds;
+  });
+  bounds_ = {};
+  for (const Bounds& bounds : of_piece) bounds_.add(bounds);
 }
 
 void Mesh::copy_triangles(const MeshArrays& arrays, std::span<const uint32_t> kept, size_t begin, size_t end) {

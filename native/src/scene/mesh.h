@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/border_edges.h"
+#include "scene/bounds.h"
 #include "scene/corner_tangents.h"
 #include "scene/mesh_arrays.h"
 #include "sphere/vec.h"
@@ -45,6 +46,8 @@ class Mesh {
   SidePoint on_side(uint32_t triangle, const Vec2& uv) const;
 
   std::span<const Vec3> positions() const { return positions_; }
+  /// Of the corners of all triangles, object space.
+  const Bounds& bounds() const { return bounds_; }
   std::span<const glm::uvec3> triangles() const { return triangles_; }
   /// How many triangles of the input were left out.
   uint32_t dropped() const { return dropped_; }
@@ -87,6 +90,7 @@ class Mesh {
   void copy_triangles(const MeshArrays& arrays, std::span<const uint32_t> kept, size_t begin, size_t end);
   void copy_uvs(const MeshArrays& arrays, size_t from, size_t to);
   void copy_colors(const MeshArrays& arrays, size_t from, size_t to);
+  void find_bounds();
   /// Replaces normals that are not given or not usable, of triangles [begin, end).
   void finish_normals(const MeshArrays& arrays, std::span<const uint32_t> kept, std::span<const Vec3d> sums,
                       size_t begin, size_t end);
@@ -95,6 +99,7 @@ class Mesh {
   void add_side(const BorderEdge& edge, const std::array<glm::uvec3, 2>& quad);
 
   std::vector<Vec3> positions_;
+  Bounds bounds_;
   std::vector<glm::uvec3> triangles_;
   std::vector<Vec3> normals_;                // 3 a triangle
   std::vector<Vec2> uvs_;                    // 3 a triangle, or none

@@ -43,6 +43,7 @@ Mesh Mesh::lifted(std::span<const ShellHeights> heights, const Mat3& metric) con
     const uint32_t a = top[static_cast<int>(e.corner)], b = top[static_cast<int>((e.corner + 1) % 3)];
     mesh.add_side(e, {glm::uvec3(below(a), below(b), b), glm::uvec3(below(a), b, a)});
   }
+  mesh.find_bounds();
   return mesh;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <string>
-#include <unordered_map>
 
 #include "job/error.h"
 #include "scene/box_around.h"
@@ -233,15 +232,11 @@ void Scene::make_tangents() {
 }
 
 Bounds Scene::bounds_of_instances() const {
-  std::unordered_map<const Mesh*, Bounds> of_mesh;
   Bounds bounds;
   for (const Instance& i : instances_) {
     const Mesh& mesh = geometry_changed_ ? meshes_[i.mesh] : traced_mesh(i);
-    auto found = of_mesh.find(&mesh);
-    if (found == of_mesh.end()) found = of_mesh.emplace(&mesh, bounds_of(mesh, Affine{})).first;
     // Of a hundred thousand instances few are at the border, and only there do their corners matter.
-    if (bounds.holds(box_around(found->second, i.object_to_world))) continue;
-    bounds.add(bounds_of(mesh, i.object_to_world));
+    if (!bounds.holds(box_around(mesh.bounds(), i.object_to_world))) bounds.add(bounds_of(mesh, i.object_to_world));
   }
   return bounds;
 }
