@@ -94,7 +94,7 @@ class Uniform(WithoutVelour):
         self._import(inputs.plastic_measurement(), fit=False)
         model = inputs.model_bytes(inputs.plastic_measurement())
         self._give_model(model)
-        self.assertGreater(self._error("grey"), 0.3, "a placeholder is no approximation")
+        self.assertGreater(self._error("grey"), 0.3, "grey is no approximation")
 
     def _give_model(self, data):
         measured = importlib.import_module(f"{inputs.ADDON}.operators.measured")
@@ -141,7 +141,7 @@ class Tiles(WithoutVelour):
         pixels = np.ones((4, 4, 4), np.float32) * 0.5
         pixels[:, :2, 3], pixels[:, 2:, 3] = 0, 1  # the left half is open
         core = importlib.import_module(f"{inputs.ADDON}.core.approximation")
-        group_module().put(self.material, core.PLACEHOLDER._replace(color_map=pixels))
+        group_module().put(self.material, core.UNFITTED._replace(color_map=pixels))
         left, right = np.split(self._cycles("holes")[2:-2], 2, axis=1)
         np.testing.assert_allclose(left[:, 2:-2], 0.3, atol=0.01)  # the sky
         self.assertGreater(right[:, 2:-2].min(), 0.5)  # the sun as well

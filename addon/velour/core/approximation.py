@@ -36,7 +36,8 @@ class Approximation(NamedTuple):
         )
 
 
-PLACEHOLDER = Approximation(
+# A grey: Blender's own, until there is a model.
+UNFITTED = Approximation(
     {
         "base_color": (0.8, 0.8, 0.8),
         "metallic": 0.0,
@@ -84,7 +85,7 @@ def from_ggx(ggx: dict) -> dict:
     smooth, rough = sorted(ggx["alpha"])
     return {
         "principled": {
-            **PLACEHOLDER.principled,
+            **UNFITTED.principled,
             "base_color": tuple(min(f0, 1.0) for f0 in ggx["f0"]),
             "metallic": 1.0,
             "roughness": min((smooth * rough) ** 0.25, 1.0),

@@ -5,7 +5,6 @@ from bpy.props import IntProperty, StringProperty
 
 from ..export import ExportError
 from ..export.files import read_model
-from ..export.nodes import velour_node
 from ..export.tiles import export_tile
 from ..native import votf_job
 from . import measured
@@ -37,15 +36,9 @@ class VELOUR_OT_add_votf(MakesModel, bpy.types.Operator):
     _what = "Adding the outline"
 
     def _begin(self, context):
-        material = measured.find_material(context, self.material)
-        if material is None:
-            raise ExportError(
-                f"There is no material {self.material!r}." if self.material else "No active material."
-            )
+        material = measured.wanted_material(context, self.material)
         owner = f"Material '{material.name}'"
-        node = velour_node(material)
-        if node is None or node.image is None:
-            raise ExportError(f"{owner} has no model; fit one, or choose one as its image.")
+        node = measured.modelled_node(material)
         self._target = JobTarget(material, node)
         self._subject = material.name
         tile = self._tile(context, node.velour, owner)

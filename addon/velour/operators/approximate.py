@@ -6,7 +6,6 @@ from bpy.props import StringProperty
 from ..core.approximation import Steps
 from ..export import ExportError
 from ..export.files import content, read_model, sha256
-from ..export.nodes import velour_node
 from . import approximation_group, measured
 from .background_job import OneJob
 from .job_target import JobTarget
@@ -70,17 +69,11 @@ class VELOUR_OT_approximate(Approximates, bpy.types.Operator):
     _what = "The approximation"
 
     def _begin(self, context):
-        material = measured.find_material(context, self.material)
-        if material is None:
-            raise ExportError(
-                f"There is no material {self.material!r}." if self.material else "No active material."
-            )
+        material = measured.wanted_material(context, self.material)
         owner = f"Material '{material.name}'"
         if not approximation_group.is_editable(material):
             raise ExportError(f"{owner} is linked from another file; approximate it there, or make it local.")
-        node = velour_node(material)
-        if node is None or node.image is None:
-            raise ExportError(f"{owner} has no model; fit one, or choose one as its image.")
+        node = measured.modelled_node(material)
         self._target, self._subject = JobTarget(material, node), material.name
         self._digest = sha256(content(node.image, owner))
         self._steps = Steps(read_model(node.image, owner), approximation_group.has_layers())

@@ -1,8 +1,10 @@
 """The native node group that shows a measured material wherever there is no Velour."""
 
+import math
+
 import bpy
 
-from ..core.approximation import PLACEHOLDER
+from ..core.approximation import UNFITTED
 from ..export.color import rec709_to_working
 from ..export.nodes import active_output, first_input, velour_node
 from ..properties.approximation_state import VIEW_ANGLES
@@ -48,7 +50,7 @@ def is_wanted(material):
     return is_editable(material) and (find(material) is not None or not has_shader)
 
 
-def put(material, approximation=PLACEHOLDER, model=""):
+def put(material, approximation=UNFITTED, model=""):
     """Makes the material's group anew and shows it, if it is the first; touches no other node.
 
     Materials that are copies share a group: it is replaced, never changed. model: the SHA-256 of what it
@@ -124,7 +126,7 @@ def _turn(group, shader, approximation, placement):
     tangent.uv_map = placement.uv_map
     tangent.location = -220, -300
     group.links.new(tangent.outputs[0], shader.inputs["Tangent"])
-    turns = placement.rotation / 6.283185307179586 + (0.25 if approximation.turned else 0.0)
+    turns = placement.rotation / math.tau + (0.25 if approximation.turned else 0.0)
     shader.inputs["Anisotropic"].default_value = approximation.anisotropic
     shader.inputs["Anisotropic Rotation"].default_value = turns % 1.0
 

@@ -36,11 +36,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
     _what = "The fit"
 
     def _begin(self, context):
-        material = measured.find_material(context, self.material)
-        if material is None:
-            raise ExportError(
-                f"There is no material {self.material!r} to fit." if self.material else "No active material."
-            )
+        material = measured.wanted_material(context, self.material)
         node = velour_node(material)
         owner = f"Material '{material.name}'"
         if node is None or node.velour.measurement is None:

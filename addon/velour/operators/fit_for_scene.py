@@ -68,11 +68,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         self._close()
 
     def _begin(self, context):
-        material = measured.find_material(context, self.material)
-        if material is None:
-            raise ExportError(
-                f"There is no material {self.material!r} to fit." if self.material else "No active material."
-            )
+        material = measured.wanted_material(context, self.material)
         if bpy.app.is_job_running("RENDER"):
             raise ExportError("A render is running; wait for it, or cancel it.")
         self._work = SceneFit(material, context.scene, self.current_frame, self.shared)

@@ -4,6 +4,7 @@ import os
 
 import bpy
 
+from ..export import ExportError
 from ..export.files import absolute_path, sha256
 from ..export.nodes import active_output, velour_node
 from . import approximation_group
@@ -17,6 +18,22 @@ def find_material(context, name):
         return bpy.data.materials.get(name)
     obj = context.object
     return obj.active_material if obj else None
+
+
+def wanted_material(context, name):
+    """The same; raises ExportError where there is none."""
+    material = find_material(context, name)
+    if material is None:
+        raise ExportError(f"There is no material {name!r}." if name else "No active material.")
+    return material
+
+
+def modelled_node(material):
+    """The material's measured node; raises ExportError where it has no model."""
+    node = velour_node(material)
+    if node is None or node.image is None:
+        raise ExportError(f"Material '{material.name}' has no model; fit one, or choose one as its image.")
+    return node
 
 
 def new_material(name):
