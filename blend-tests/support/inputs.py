@@ -121,19 +121,23 @@ QUARTERS = ((0.8, 0.4), (0.2, 0.1))  # rows from below: albedos of a tile's quar
 QUARTER_TEXELS = 16  # along the tile's side
 
 
-def quarters_model(metres=0.5):
-    """A model of the BTF of a flat, matt tile of four greys, `metres` wide; 0: its size is not known."""
+def quarters_model(metres=0.5, **options):
+    """A model of the BTF of a flat, matt tile of four greys, `metres` wide; 0: its size is not known.
+
+    Options are those of compress_job.
+    """
 
     def make(path):
         capture = Path(f"{path}.btf")
         _capture_quarters(capture, metres)
         velour = native()
-        with velour.Btf.load(capture) as btf, velour.compress_job(btf) as job:
+        with velour.Btf.load(capture) as btf, velour.compress_job(btf, **options) as job:
             job.run()
             with job.result_model() as model:
                 path.write_bytes(model.bytes())
 
-    return _made(f"quarters-{metres:g}-{library_file().stat().st_mtime_ns}.velour", make).read_bytes()
+    name = "-".join(["quarters", f"{metres:g}", *map(str, options.values())])
+    return _made(f"{name}-{library_file().stat().st_mtime_ns}.velour", make).read_bytes()
 
 
 def _capture_quarters(folder_of_btf, metres):

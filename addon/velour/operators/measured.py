@@ -56,8 +56,7 @@ def ensure_node(material):
         node.name = node.label = NODE_NAME
         node.location = _free_place(material.node_tree)
         node.velour.enabled = True
-        # Cycles reads the images of all nodes that are not muted, linked or not; models are no pictures, and
-        # Blender 3.4 ends on some.
+        # Cycles reads the images of all nodes that are not muted, linked or not; models are no pictures.
         node.mute = True
     return node
 

@@ -86,8 +86,21 @@ PartSize part_size(std::vector<uint64_t> shape) {
   return size;
 }
 
-std::vector<std::string> channel_names(uint64_t channels) {
-  return channels == 3 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
+using ChannelNames = std::vector<std::string>;
+
+/// Of parts that viewers show.
+ChannelNames shown_names(uint64_t channels) { return channels == 3 ? ChannelNames{"R", "G", "B"} : ChannelNames{"Y"}; }
+
+/// Of parts that reach beyond the first one. Blender 3.4 makes room for the first part's pixels and writes all others
+/// there, past its end; channels of names that it does not know it leaves out.
+ChannelNames hidden_names(uint64_t channels) {
+  return channels == 3 ? ChannelNames{"value_r", "value_g", "value_b"} : ChannelNames{"value"};
+}
+
+/// Those of a part that there is.
+ChannelNames names_in(const Imf::Header& header, uint64_t channels) {
+  const ChannelNames hidden = hidden_names(channels);
+  return header.channels().findChannel(hidden[0]) ? hidden : shown_names(channels);
 }
 
 /// Number of elements, or 0 where an extent is 0 or the product does not fit.
@@ -139,17 +152,19 @@ void check_tensor(const std::string& name, const Tensor& tensor) {
                 "Tensor '" + name + "' of shape '" + shape_text(tensor.shape) + "' is too long for OpenEXR.");
 }
 
-Imf::Header make_header(const std::string& name, const Tensor& tensor, const Imath::Box2i& display) {
+/// `first`: the first part's window, empty for that one.
+Imf::Header make_header(const std::string& name, const Tensor& tensor, const Imath::Box2i& first) {
   const PartSize size = part_size(tensor.shape);
   const Imath::Box2i window({0, 0}, {static_cast<int>(size.width) - 1, static_cast<int>(size.height) - 1});
-  Imf::Header header(display.isEmpty() ? window : display, window);
+  const bool shown = first.isEmpty() || (first.intersects(window.min) && first.intersects(window.max));
+  Imf::Header header(first.isEmpty() ? window : first, window);
   header.setName(name);
   header.setType(Imf::SCANLINEIMAGE);
   header.compression() = Imf::ZIP_COMPRESSION;  // a chunk that does not get smaller is stored as it is
   header.zipCompressionLevel() = kZipLevel;
   Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
   header.insert(kShapeAttribute, Imf::StringAttribute(shape_text(tensor.shape)));
-  for (const auto& channel : channel_names(size.channels))
+  for (const auto& channel : shown ? shown_names(size.channels) : hidden_names(size.channels))
     header.channels().insert(channel, Imf::Channel(tensor.half ? Imf::HALF : Imf::FLOAT));
   return header;
 }
@@ -170,10 +185,9 @@ constexpr Imf::PixelType pixel_type(const half*) { return Imf::HALF; }
 
 /// OpenEXR's view of row-major values.
 template <typename Value>
-Imf::FrameBuffer frame_buffer(Value* data, const PartSize& size) {
+Imf::FrameBuffer frame_buffer(Value* data, const PartSize& size, const ChannelNames& names) {
   Imf::FrameBuffer buffer;
   const size_t x_stride = sizeof(Value) * size.channels, y_stride = x_stride * size.width;
-  const auto names = channel_names(size.channels);
   for (size_t c = 0; c < names.size(); ++c)
     buffer.insert(names[c], Imf::Slice(pixel_type(data), reinterpret_cast<char*>(data + c), x_stride, y_stride));
   return buffer;
@@ -181,11 +195,12 @@ Imf::FrameBuffer frame_buffer(Value* data, const PartSize& size) {
 
 void write_part(Imf::OutputPart part, const Tensor& tensor) {
   const PartSize size = part_size(tensor.shape);
+  const ChannelNames names = names_in(part.header(), size.channels);
   // OpenEXR converts what it reads, not what it writes.
   const std::vector<half> halves(tensor.data.begin(), tensor.half ? tensor.data.end() : tensor.data.begin());
   // Slice takes a mutable pointer for reading and writing alike; nothing is written through it here.
-  part.setFrameBuffer(tensor.half ? frame_buffer(const_cast<half*>(halves.data()), size)
-                                  : frame_buffer(const_cast<float*>(tensor.data.data()), size));
+  part.setFrameBuffer(tensor.half ? frame_buffer(const_cast<half*>(halves.data()), size, names)
+                                  : frame_buffer(const_cast<float*>(tensor.data.data()), size, names));
   part.writePixels(static_cast<int>(size.height));
 }
 
@@ -218,12 +233,13 @@ void read_attributes(const Imf::Header& header, std::map<std::string, std::strin
 Tensor read_part(Imf::MultiPartInputFile& in, int index, const ExrPart& scanned, const std::string& name) {
   Tensor tensor{checked_shape(scanned, name), {}, scanned.value_bytes == sizeof(half)};
   const PartSize size = part_size(tensor.shape);
-  for (const auto& channel : channel_names(size.channels))
+  const ChannelNames names = names_in(in.header(index), size.channels);
+  for (const auto& channel : names)
     if (!in.header(index).channels().findChannel(channel))
       throw Error(Status::bad_data, name + ": part '" + scanned.name + "': channel " + channel + " is missing.");
   tensor.data.resize(scanned.value_count());
   Imf::InputPart part(in, index);
-  part.setFrameBuffer(frame_buffer(tensor.data.data(), size));
+  part.setFrameBuffer(frame_buffer(tensor.data.data(), size, names));
   part.readPixels(0, static_cast<int>(size.height) - 1);
   return tensor;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 
 #include "image/exr_scan.h"
 #include "job/error.h"
@@ -66,6 +67,21 @@ TEST(ExrTensors, RoundTrip) {
   const auto bytes = encode_tensors(sample_file());
   EXPECT_TRUE(looks_like_exr(bytes));
   expect_equal(sample_file(), decode_tensors(bytes, "test"));
+}
+
+TEST(ExrTensors, OnlyPartsWithinTheFirstOneAreForViewers) {
+  TensorFile file = sample_file();  // the first is "cube": 6 x 20 pixels
+  file.tensors["small.colour"] = ramp({5, 3});
+  const auto bytes = encode_tensors(file);
+  std::map<std::string, std::vector<std::string>> channels;
+  for (const ExrPart& part : scan_exr(bytes, "test")) channels[part.name] = part.channels;
+  using Names = std::vector<std::string>;
+  for (const char* shown : {"cube", "one", "small"}) EXPECT_EQ(channels.at(shown), Names{"Y"}) << shown;
+  EXPECT_EQ(channels.at("small.colour"), (Names{"B", "G", "R"}));
+  for (const char* hidden : {"tall", "wide"}) EXPECT_EQ(channels.at(hidden), Names{"value"}) << hidden;
+  for (const char* hidden : {"lobes.center", "rows.of.colour"}) {
+    EXPECT_EQ(channels.at(hidden), (Names{"value_b", "value_g", "value_r"})) << hidden;
+  }
 }
 
 TEST(ExrTensors, KeepsEveryBit) {
