@@ -44,6 +44,13 @@ OBSERVE = ["observe", *RENDER[1:-1], "o.json"]
         [*RENDER, "--texture-scale", "2,0"],
         [*RENDER, "--texture-scale", "1,2,3"],
         [*RENDER, "--texture-offset", "1"],
+        [*RENDER, "--samples", "8"],
+        [*RENDER, "--samples", "8:8"],
+        [*RENDER, "--samples", "-8:8"],
+        [*RENDER, "--crop", "0:4"],
+        [*RENDER, "--crop", "4:0,0:4"],
+        ["merge", "part.exr"],
+        ["merge", "-o", "whole.exr"],
     ],
 )
 def test_wrong_usage_is_2(arguments):
@@ -73,7 +80,7 @@ def test_captures_that_cannot_be_are_refused_with_a_sentence(arguments, word, tm
 
 def test_help_and_version():
     assert velour("--version").out.startswith("velour 0.")
-    for verb in ("info", "fit", "compare", "render", "capture"):
+    for verb in ("info", "fit", "compare", "render", "merge", "capture"):
         assert "--json-file" in velour(verb, "--help").out
 
 

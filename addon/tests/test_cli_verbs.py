@@ -40,6 +40,7 @@ RENDER_KEYS = [
     "blocks_unfinished",
     "sky",
     "out_of_domain",
+    "samples",
 ]
 OBSERVE_KEYS = [
     "seconds",

@@ -5,10 +5,11 @@ from __future__ import annotations
 import ctypes
 import os
 from ctypes import byref, c_double, c_uint32
+from typing import NamedTuple
 
 import numpy as np
 
-from . import library
+from . import library, table
 from .arrays import checked, pointer
 from .errors import refuse
 from .handle import path_bytes
@@ -19,6 +20,33 @@ def write(path: str | os.PathLike, pixels: np.ndarray) -> None:
     pixels = checked("pixels", pixels, (None, None, None))
     height, width, channels = pixels.shape
     library.load().vlr_image_write(path_bytes(path), width, height, channels, pointer(pixels))
+
+
+class Frame(NamedTuple):
+    """Where a picture's pixels lie in a larger one: its size, and the place of their lower left one in it."""
+
+    width: int
+    height: int
+    x: int = 0
+    y: int = 0
+
+
+def write_part(path: str | os.PathLike, pixels: np.ndarray, frame: Frame, texts: dict[str, str]) -> None:
+    """As write(), of .exr alone: says where the part lies, and `texts` in its header."""
+    pixels = checked("pixels", pixels, (None, None, None))
+    height, width, channels = pixels.shape
+    place = table.ImageFrame(**frame._asdict())
+    words = [word.encode() for pair in texts.items() for word in pair]
+    library.load().vlr_image_write_part(
+        path_bytes(path), width, height, channels, pointer(pixels), byref(place),
+        (ctypes.c_char_p * len(words))(*words), len(texts),
+    )  # fmt: skip
+
+
+def header(path: str | os.PathLike) -> dict:
+    """Of an OpenEXR file: width, height, channels (names), frame (a Frame), texts (by name)."""
+    said = library.json_of(library.load().vlr_image_header_json, path_bytes(path))
+    return said | {"frame": Frame(**said["frame"])}
 
 
 def read(path: str | os.PathLike) -> np.ndarray:

@@ -70,6 +70,10 @@ class Job(Handle):
         """Asks for the end; the job stops within 0.1 s."""
         self._lib.vlr_job_cancel(self.pointer)
 
+    def stop(self) -> None:
+        """Asks a render to end at a whole pass, with what it has; its report says how far it came."""
+        self._lib.vlr_job_stop(self.pointer)
+
     def wait(self, progress: ProgressCallback | None = None, timeout: float | None = None) -> bool:
         """Waits for the end; False when `timeout` seconds ran out first. Raises the error of a failed job.
 
@@ -183,9 +187,10 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
 def render_job(scene, **options) -> Job:
     """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit
     (seconds), transparent, measure_ray_share, heuristic (table.HEURISTICS), sequence (table.SEQUENCES),
-    share, noise, cache_folder (keeps fits of the environment; none: nowhere). `scene` is committed."""
+    share, noise, cache_folder (keeps fits of the environment; none: nowhere). Of parts: samples_begin,
+    samples_end, crop_x0, crop_y0, crop_x1, crop_y1 (vlr_render_options). `scene` is committed."""
     raw = render_options(options)
-    size = (raw.width, raw.height)
+    size = (raw.crop_x1 - raw.crop_x0, raw.crop_y1 - raw.crop_y0) if raw.crop_x1 else (raw.width, raw.height)
     return Job._create("vlr_render_create_job", scene.pointer, ctypes.byref(raw), size=size)
 
 

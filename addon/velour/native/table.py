@@ -331,6 +331,12 @@ class RenderOptions(Struct):
         ("noise", c_double),
         ("cache_folder", c_char_p),
         ("hide_world", c_int32),
+        ("samples_begin", c_uint32),
+        ("samples_end", c_uint32),
+        ("crop_x0", c_uint32),
+        ("crop_y0", c_uint32),
+        ("crop_x1", c_uint32),
+        ("crop_y1", c_uint32),
         ("pad", c_uint32),
     ]
 
@@ -372,6 +378,16 @@ class ObserveOptions(Struct):
     ]
 
 
+class ImageFrame(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("x", c_int32),
+        ("y", c_int32),
+    ]
+
+
 STRUCTS = {
     "vlr_job_state": JobStateStruct,
     "vlr_fit_options": FitOptions,
@@ -393,6 +409,7 @@ STRUCTS = {
     "vlr_progressive_picture": ProgressivePicture,
     "vlr_observe_options": ObserveOptions,
     "vlr_plot_style": PlotStyle,
+    "vlr_image_frame": ImageFrame,
 }
 
 _handle = c_void_p
@@ -502,6 +519,7 @@ STATUS_CALLS = {
     "vlr_progressive_restart": [_handle],
     "vlr_progressive_read": [_handle, _floats, c_uint64, POINTER(ProgressivePicture)],
     "vlr_job_read_pass": [_handle, c_char_p, _floats, c_uint64],
+    "vlr_job_stop": [_handle],
     "vlr_observation_create": [_out_handle],
     "vlr_observation_load": [c_char_p, _out_handle],
     "vlr_observation_save": [_handle, c_char_p],
@@ -515,6 +533,17 @@ STATUS_CALLS = {
     "vlr_plot_save": [_handle, POINTER(PlotStyle), c_char_p],
     "vlr_image_write": [c_char_p, c_uint32, c_uint32, c_uint32, _floats],
     "vlr_image_read": [c_char_p, _number, _number, _number, _floats, c_uint64],
+    "vlr_image_write_part": [
+        c_char_p,
+        c_uint32,
+        c_uint32,
+        c_uint32,
+        _floats,
+        POINTER(ImageFrame),
+        POINTER(c_char_p),
+        c_uint32,
+    ],
+    "vlr_image_header_json": [c_char_p, _json],
     "vlr_image_compare": [c_uint64, c_uint32, _floats, _floats, POINTER(c_double), POINTER(c_double)],
 }
 

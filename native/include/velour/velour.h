@@ -723,6 +723,13 @@ typedef struct vlr_render_options {
   double noise;              /* relative error at which a block of 16 x 16 pixels gets no more samples; 0: off */
   const char* cache_folder;  /* for fits of the environment (product), made when missing; NULL or "": none */
   int32_t hide_world;        /* 1: rays of the camera that meet nothing are black; `transparent` goes before */
+  /* Parts of a picture, for several machines; they do not go with `noise`. Of the spp light directions of a pixel
+   * [samples_begin, samples_end), 0: to the last; multiples of split, or spp. Means of ranges, weighted by their camera
+   * rays (split light directions each, the last of a pixel what is left), are the picture but for rounding. */
+  uint32_t samples_begin, samples_end;
+  /* Pixels [x0, x1) x [y0, y1), row 0 at the bottom, of width x height; all 0: all. They have the bits that they have
+   * in the whole picture, and passes hold them alone. */
+  uint32_t crop_x0, crop_y0, crop_x1, crop_y1;
   uint32_t pad;
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);
@@ -732,12 +739,17 @@ VLR_API void vlr_render_options_init(vlr_render_options* options);
 VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
 
 /* The film so far, row 0 at the bottom. Passes and channels: "Combined" 4 (RGBA, premultiplied), "Depth" 1,
- * "Normal" 3 (world), "Sample Count" 1. `pixels` holds width x height x channels. May be called while the job runs. */
+ * "Normal" 3 (world), "Sample Count" 1. `pixels` holds width x height x channels, of a crop its own width and height.
+ * May be called while the job runs. */
 VLR_API vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels, uint64_t count);
 
-/* A picture for somebody who watches: coarse at once, then finer, then less noisy; `noise` and `time_limit` are not
- * used. Started again after a cancel, the job goes on where it was. The scene may change while it does not run: then
- * vlr_scene_commit and vlr_progressive_restart come before the next start. No report but {}. */
+/* Asks a render to end at a whole pass, soon, with what it has: then it is done, and its report's spp says how many
+ * light directions every pixel has. From any thread; a job that starts again does not know of it any more. */
+VLR_API vlr_status vlr_job_stop(vlr_job* job);
+
+/* A picture for somebody who watches: coarse at once, then finer, then less noisy; `noise`, `time_limit`, samples and
+ * crop are not used. Started again after a cancel, the job goes on where it was. The scene may change while it does not
+ * run: then vlr_scene_commit and vlr_progressive_restart come before the next start. No report but {}. */
 VLR_API vlr_status vlr_progressive_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
 /* The next start begins anew. Not while the job runs. */
 VLR_API vlr_status vlr_progressive_restart(vlr_job* job);
@@ -839,6 +851,20 @@ VLR_API vlr_status vlr_image_write(const char* path, uint32_t width, uint32_t he
 /* First reads the size (pixels NULL), then the pixels, row 0 at the bottom, linear. */
 VLR_API vlr_status vlr_image_read(const char* path, uint32_t* width, uint32_t* height, uint32_t* channels,
                                   float* pixels, uint64_t count);
+/* Where the pixels of an OpenEXR file lie in a larger picture (its data window in its display window). */
+typedef struct vlr_image_frame {
+  uint32_t struct_size;
+  uint32_t width, height; /* of the larger picture */
+  int32_t x, y;           /* of the lower left pixel, from the larger picture's lower left corner */
+} vlr_image_frame;
+/* As vlr_image_write, of .exr alone, with such a frame (NULL: a picture of its own) and texts in the header: `texts`
+ * holds text_count names, each followed by its text. */
+VLR_API vlr_status vlr_image_write_part(const char* path, uint32_t width, uint32_t height, uint32_t channels,
+                                        const float* pixels, const vlr_image_frame* frame, const char* const* texts,
+                                        uint32_t text_count);
+/* What the header of an OpenEXR file says: width, height, channels [names, in the order of vlr_image_read], frame
+ * {width, height, x, y}, texts {name: text}. The text is this thread's until its next call. */
+VLR_API vlr_status vlr_image_header_json(const char* path, const char** json);
 /* rmse and relmse of linear RGB: relmse = mean((x - r)^2 / (r^2 + 0.01 mean(r)^2)). Pixel counts must agree. */
 VLR_API vlr_status vlr_image_compare(uint64_t pixel_count, uint32_t channels, const float* pixels,
                                      const float* reference, double* rmse, double* relmse);

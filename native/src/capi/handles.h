@@ -1,6 +1,7 @@
 // What the opaque handles hold.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -81,6 +82,7 @@ struct JobOutput {
   std::shared_ptr<const Model> model;
   std::shared_ptr<const SceneObservation> observation;
   std::shared_ptr<const Film> film;                // set when the job is made
+  std::atomic<bool> stop{false};                   // of a render: to end at a whole pass
   std::shared_ptr<ProgressiveRender> progressive;  // likewise; thread-safe but for run() and restart()
 
   void set(std::string json, std::shared_ptr<const Model> result = nullptr) {

@@ -1,7 +1,8 @@
 #include <algorithm>
 
 #include "capi/guard.h"
-#include "image/picture.h"
+#include "capi/json_text.h"
+#include "image/exr_part.h"
 
 using namespace velour;
 using namespace velour::capi;
@@ -15,6 +16,21 @@ Picture checked_picture(uint32_t width, uint32_t height, uint32_t channels) {
                                               " pixels and " + std::to_string(channels) + " channels cannot be made.");
   }
   return {static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), {}};
+}
+
+PictureFrame converted(const vlr_image_frame& given, const Picture& part) {
+  vlr_image_frame frame = read_options(
+      &given, +[](vlr_image_frame* empty) { *empty = {}; }, "vlr_image_frame");
+  checked_picture(frame.width, frame.height, 1);
+  const bool inside = frame.x >= 0 && frame.y >= 0 && frame.x <= static_cast<int64_t>(frame.width) - part.width &&
+                      frame.y <= static_cast<int64_t>(frame.height) - part.height;
+  if (!inside) {
+    throw Error(Status::invalid_argument, "A part of " + std::to_string(part.width) + " x " +
+                                              std::to_string(part.height) + " pixels at " + std::to_string(frame.x) +
+                                              ", " + std::to_string(frame.y) + " does not lie in a picture of " +
+                                              std::to_string(frame.width) + " x " + std::to_string(frame.height) + ".");
+  }
+  return {static_cast<int>(frame.width), static_cast<int>(frame.height), frame.x, frame.y};
 }
 
 }  // namespace
@@ -46,6 +62,42 @@ vlr_status vlr_image_read(const char* path, uint32_t* width, uint32_t* height, u
                                                 std::to_string(picture.pixels.size()) + " values.");
     }
     std::copy(picture.pixels.begin(), picture.pixels.end(), pixels);
+  });
+}
+
+vlr_status vlr_image_write_part(const char* path, uint32_t width, uint32_t height, uint32_t channels,
+                                const float* pixels, const vlr_image_frame* frame, const char* const* texts,
+                                uint32_t text_count) {
+  return guard([&] {
+    require(path, "path");
+    require(pixels, "pixels");
+    if (text_count > 0) require(texts, "texts");
+    Picture picture = checked_picture(width, height, channels);
+    const PictureFrame place = frame ? converted(*frame, picture) : PictureFrame{picture.width, picture.height, 0, 0};
+    PictureTexts named;
+    for (uint32_t i = 0; i < text_count; ++i) {
+      require(texts[2 * i], "texts");
+      require(texts[2 * i + 1], "texts");
+      named[texts[2 * i]] = texts[2 * i + 1];
+    }
+    picture.pixels.assign(pixels, pixels + static_cast<size_t>(width) * height * channels);
+    write_exr_part(path, picture, place, named);
+  });
+}
+
+vlr_status vlr_image_header_json(const char* path, const char** json) {
+  return guard([&] {
+    require(path, "path");
+    require(json, "json");
+    const ExrHeader header = read_exr_header(path);
+    const PictureFrame& frame = header.frame;
+    thread_local std::string said;
+    said = text({{"width", header.width},
+                 {"height", header.height},
+                 {"channels", header.channels},
+                 {"frame", {{"width", frame.width}, {"height", frame.height}, {"x", frame.x}, {"y", frame.y}}},
+                 {"texts", header.texts}});
+    *json = said.c_str();
   });
 }
 

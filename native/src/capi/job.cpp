@@ -34,6 +34,7 @@ bool wait_with_callback(vlr_job& handle, double timeout, vlr_progress_fn progres
 vlr_status vlr_job_start(vlr_job* job) {
   return guard([&] {
     require(job, "job");
+    job->output->stop = false;
     job->job.start();
   });
 }

@@ -3,6 +3,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/reports.h"
+#include "render/preparation.h"
 
 using namespace velour;
 using namespace velour::capi;
@@ -52,6 +53,9 @@ RenderOptions converted(const vlr_render_options& given) {
   options.sequence = static_cast<Sequence>(given.sequence);
   options.light_share = static_cast<float>(given.share);
   options.noise = given.noise;
+  options.samples = {static_cast<int>(given.samples_begin), static_cast<int>(given.samples_end)};
+  options.crop = {static_cast<int>(given.crop_x0), static_cast<int>(given.crop_y0), static_cast<int>(given.crop_x1),
+                  static_cast<int>(given.crop_y1)};
   if (given.cache_folder) options.cache_folder = given.cache_folder;
   return options;
 }
@@ -65,16 +69,25 @@ vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_option
     if (!scene->scene->committed()) {
       throw Error(Status::invalid_state, "The scene is not committed; call vlr_scene_commit first.");
     }
-    const RenderOptions render_options =
-        converted(read_options(options, vlr_render_options_init, "vlr_render_options"));
-    auto film = std::make_shared<Film>(render_options.width, render_options.height);
+    const RenderOptions asked = converted(read_options(options, vlr_render_options_init, "vlr_render_options"));
+    check_crop(asked);
+    auto film = std::make_shared<Film>(asked.window());
     auto output = std::make_shared<JobOutput>();
     output->film = film;
-    const auto task = [output, film, render_options,
-                       source = std::shared_ptr<const Scene>(scene->scene)](Progress& progress) {
-      output->set(render_json(render(*source, render_options, *film, progress)));
+    const auto task = [output, film, asked, source = std::shared_ptr<const Scene>(scene->scene)](Progress& progress) {
+      RenderOptions options_of_run = asked;
+      options_of_run.stop = &output->stop;
+      output->set(render_json(render(*source, options_of_run, *film, progress)));
     };
     *out = new vlr_job(output, task);
+  });
+}
+
+vlr_status vlr_job_stop(vlr_job* job) {
+  return guard([&] {
+    require(job, "job");
+    if (!job->output->film) throw Error(Status::invalid_state, "This job makes no picture that it could end with.");
+    job->output->stop = true;
   });
 }
 

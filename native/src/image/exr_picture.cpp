@@ -89,6 +89,23 @@ class OpenExr : public OpenPicture {
     return found != nullptr ? std::optional(found->value()) : std::nullopt;
   }
 
+  ExrHeader header() const {
+    const Imath::Box2i &data = file_.header().dataWindow(), &whole = file_.header().displayWindow();
+    const auto side = [](int first, int last) { return static_cast<int>(int64_t{last} - first + 1); };
+    ExrHeader header;
+    header.width = side(data.min.x, data.max.x);
+    header.height = side(data.min.y, data.max.y);
+    header.channels = names_;
+    header.frame = {side(whole.min.x, whole.max.x), side(whole.min.y, whole.max.y),
+                    static_cast<int>(int64_t{data.min.x} - whole.min.x),
+                    static_cast<int>(int64_t{whole.max.y} - data.max.y)};
+    for (auto attribute = file_.header().begin(); attribute != file_.header().end(); ++attribute) {
+      const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
+      if (text != nullptr) header.texts[attribute.name()] = text->value();
+    }
+    return header;
+  }
+
   void read(std::span<float> values) override {
     const size_t pixel = names_.size() * sizeof(float);
     const Imath::Box2i& window = file_.header().dataWindow();
@@ -117,6 +134,21 @@ std::string channel_name(int channel, int channels) {
   return channel < 4 ? kColours[static_cast<size_t>(channel)] : "channel" + std::to_string(channel);
 }
 
+/// OpenEXR counts rows from the top.
+Imath::Box2i data_window(const Picture& picture, const PictureFrame& frame) {
+  const int top = frame.height - frame.y - picture.height;
+  return {{frame.x, top}, {frame.x + picture.width - 1, top + picture.height - 1}};
+}
+
+void add_texts(Imf::Header& header, const PictureTexts& texts) {
+  for (const auto& [name, text] : texts) {
+    if (name.empty() || header.find(name) != header.end()) {
+      throw Error(Status::invalid_argument, "A text of a picture cannot be named '" + name + "'.");
+    }
+    header.insert(name, Imf::StringAttribute(text));
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<OpenPicture> open_exr(const std::string& path) {
@@ -124,17 +156,25 @@ std::unique_ptr<OpenPicture> open_exr(const std::string& path) {
   return with_exr_errors(Status::bad_data, input_error_of(path), [&] { return std::make_unique<OpenExr>(path); });
 }
 
-void write_exr(const std::string& path, int width, int height, int channels, std::span<const float> values) {
-  Imf::Header header(width, height);
+ExrHeader read_exr_header(const std::string& path) {
+  check_rows(path);
+  return with_exr_errors(Status::bad_data, input_error_of(path), [&] { return OpenExr(path).header(); });
+}
+
+void write_exr(const std::string& path, const Picture& top_first, const PictureFrame& frame,
+               const PictureTexts& texts) {
+  const size_t pixel = static_cast<size_t>(top_first.channels) * sizeof(float);
+  const Imath::Box2i window = data_window(top_first, frame);
+  Imf::Header header(Imath::Box2i({0, 0}, {frame.width - 1, frame.height - 1}), window);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
+  add_texts(header, texts);
   Imf::FrameBuffer buffer;
-  const size_t pixel = static_cast<size_t>(channels) * sizeof(float);
-  for (int c = 0; c < channels; ++c) {
-    const std::string name = channel_name(c, channels);
+  for (int c = 0; c < top_first.channels; ++c) {
+    const std::string name = channel_name(c, top_first.channels);
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, values.data() + c, header.dataWindow(), pixel,
-                                         pixel * static_cast<size_t>(width)));
+    buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, top_first.pixels.data() + c, window, pixel,
+                                         pixel * static_cast<size_t>(top_first.width)));
   }
   AtomicFile file(path);
   const auto sentence = [&](const char* why) { return path + ": OpenEXR cannot write the picture: " + why; };
@@ -142,7 +182,7 @@ void write_exr(const std::string& path, int width, int height, int channels, std
     ExrOutput stream(file, path);
     Imf::OutputFile output(stream, header, 0);
     output.setFrameBuffer(buffer);
-    output.writePixels(height);
+    output.writePixels(top_first.height);
   });
   file.commit();
 }

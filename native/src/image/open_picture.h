@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "image/exr_part.h"
+
 namespace velour {
 
 /// A byte of a DEFLATE stream makes at most 1032 bytes, and a byte at most eight 1-bit values.
@@ -41,7 +43,7 @@ std::unique_ptr<OpenPicture> open_other_format(const std::string& path);
 /// Bytes of a PNG file of 8 bits; top row first.
 std::vector<uint8_t> png_of(const std::string& path, int width, int height, int channels,
                             std::span<const uint8_t> values);
-/// Writes 32-bit floats, losslessly compressed; top row first. Atomic.
-void write_exr(const std::string& path, int width, int height, int channels, std::span<const float> values);
+/// Writes 32-bit floats, losslessly compressed; `top_first` has its top row first. Atomic.
+void write_exr(const std::string& path, const Picture& top_first, const PictureFrame& frame, const PictureTexts& texts);
 
 }  // namespace velour

@@ -73,6 +73,19 @@ void write_png(const std::string& path, const Picture& picture) {
   write_file(path, png_of(path, picture.width, picture.height, picture.channels, bytes));
 }
 
+/// `picture` as files store it; its size is checked.
+Picture top_first(const std::string& path, const Picture& picture) {
+  const uint64_t count = static_cast<uint64_t>(picture.width) * static_cast<uint64_t>(picture.height) *
+                         static_cast<uint64_t>(picture.channels);
+  if (picture.width <= 0 || picture.height <= 0 || picture.channels <= 0 || count != picture.pixels.size()) {
+    throw Error(Status::invalid_argument, path + ": the picture has " + std::to_string(picture.pixels.size()) +
+                                              " values, not width x height x channels.");
+  }
+  Picture flipped = picture;
+  flip_rows(flipped);
+  return flipped;
+}
+
 }  // namespace
 
 std::string input_error(const std::string& path, std::string detail) {
@@ -99,17 +112,17 @@ Picture read_picture(const std::string& path, const TransferCurve& curve) {
 }
 
 void write_picture(const std::string& path, const Picture& picture) {
-  const uint64_t count = static_cast<uint64_t>(picture.width) * static_cast<uint64_t>(picture.height) *
-                         static_cast<uint64_t>(picture.channels);
-  if (picture.width <= 0 || picture.height <= 0 || picture.channels <= 0 || count != picture.pixels.size())
-    throw Error(Status::invalid_argument, path + ": the picture has " + std::to_string(picture.pixels.size()) +
-                                              " values, not width x height x channels.");
-  Picture top_first = picture;
-  flip_rows(top_first);
   const auto extension = std::filesystem::path(path).extension();
-  if (extension == ".exr") return write_exr(path, picture.width, picture.height, picture.channels, top_first.pixels);
-  if (extension == ".png") return write_png(path, top_first);
-  throw Error(Status::unsupported, path + ": pictures are written as .exr or .png.");
+  if (extension == ".png") return write_png(path, top_first(path, picture));
+  write_exr_part(path, picture, {picture.width, picture.height, 0, 0}, {});
+}
+
+void write_exr_part(const std::string& path, const Picture& picture, const PictureFrame& frame,
+                    const PictureTexts& texts) {
+  if (std::filesystem::path(path).extension() != ".exr") {
+    throw Error(Status::unsupported, path + ": pictures are written as .exr or .png, parts of them as .exr.");
+  }
+  write_exr(path, top_first(path, picture), frame, texts);
 }
 
 PictureDifference compare_pictures(const float* pixels, const float* reference, size_t pixel_count, int channels) {

@@ -68,12 +68,12 @@ double PixelSum::variance() const {
   return difference * difference * even * odd / (n * n);
 }
 
-Film::Film(int width, int height) : width_(width), height_(height) {
-  if (width <= 0 || height <= 0) {
-    throw Error(Status::invalid_argument,
-                "A picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels is empty.");
+Film::Film(const PixelRect& window) : window_(window) {
+  if (window.width() <= 0 || window.height() <= 0) {
+    throw Error(Status::invalid_argument, "A picture of " + std::to_string(window.width()) + " x " +
+                                              std::to_string(window.height()) + " pixels is empty.");
   }
-  pixels_.resize(static_cast<size_t>(width) * static_cast<size_t>(height));
+  pixels_.resize(static_cast<size_t>(window.width()) * static_cast<size_t>(window.height()));
 }
 
 void Film::clear() {
@@ -85,9 +85,9 @@ namespace {
 
 /// Calls copy(offset of the row in the film, offset in the tile) for every row of `rect`.
 template <typename Copy>
-void for_rows(const PixelRect& rect, int film_width, Copy&& copy) {
+void for_rows(const PixelRect& rect, const PixelRect& window, Copy&& copy) {
   for (int y = rect.y0; y < rect.y1; ++y) {
-    copy(static_cast<std::ptrdiff_t>(y) * film_width + rect.x0,
+    copy(static_cast<std::ptrdiff_t>(y - window.y0) * window.width() + rect.x0 - window.x0,
          static_cast<std::ptrdiff_t>(y - rect.y0) * rect.width());
   }
 }
@@ -96,14 +96,14 @@ void for_rows(const PixelRect& rect, int film_width, Copy&& copy) {
 
 void Film::load(const PixelRect& rect, std::span<PixelSum> pixels) const {
   const std::lock_guard lock(mutex_);
-  for_rows(rect, width_, [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+  for_rows(rect, window_, [&](std::ptrdiff_t from, std::ptrdiff_t to) {
     std::copy_n(pixels_.begin() + from, rect.width(), pixels.begin() + to);
   });
 }
 
 void Film::store(const PixelRect& rect, std::span<const PixelSum> pixels) {
   const std::lock_guard lock(mutex_);
-  for_rows(rect, width_, [&](std::ptrdiff_t to, std::ptrdiff_t from) {
+  for_rows(rect, window_, [&](std::ptrdiff_t to, std::ptrdiff_t from) {
     std::copy_n(pixels.begin() + from, rect.width(), pixels_.begin() + to);
   });
 }
@@ -129,11 +129,11 @@ void Film::read_over(const Film* coarser, std::span<float> pixels) const {
   if (coarser == nullptr) return read_pass("Combined", pixels);
   const std::lock_guard lock(mutex_), other(coarser->mutex_);
   float* out = pixels.data();
-  for (int y = 0; y < height_; ++y) {
-    const int row = y * coarser->height_ / height_ * coarser->width_;
-    for (int x = 0; x < width_; ++x, out += 4) {
-      const PixelSum& own = pixels_[static_cast<size_t>(y * width_ + x)];
-      const PixelSum& under = coarser->pixels_[static_cast<size_t>(row + x * coarser->width_ / width_)];
+  for (int y = 0; y < height(); ++y) {
+    const int row = y * coarser->height() / height() * coarser->width();
+    for (int x = 0; x < width(); ++x, out += 4) {
+      const PixelSum& own = pixels_[static_cast<size_t>(y * width() + x)];
+      const PixelSum& under = coarser->pixels_[static_cast<size_t>(row + x * coarser->width() / width())];
       write_combined(own.camera_rays > 0 ? own : under, out);
     }
   }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/pixel_rect.h"
 #include "sphere/vec.h"
 
 namespace velour {
@@ -40,22 +41,19 @@ struct PixelSum {
   double variance() const;
 };
 
-struct PixelRect {
-  int x0, y0, x1, y1;  // [x0, x1) x [y0, y1)
-  int width() const { return x1 - x0; }
-  int height() const { return y1 - y0; }
-};
-
 /// Thread-safe: workers publish whole tiles, anyone may read a pass at any time. Row 0 is at the bottom.
 class Film {
  public:
-  Film(int width, int height);
-  int width() const { return width_; }
-  int height() const { return height_; }
+  Film(int width, int height) : Film(PixelRect{0, 0, width, height}) {}
+  /// Of the pixels of a picture that lie in `window`. Throws Error(invalid_argument) where that is empty.
+  explicit Film(const PixelRect& window);
+  const PixelRect& window() const { return window_; }
+  int width() const { return window_.width(); }
+  int height() const { return window_.height(); }
 
   /// Sets all pixels to nothing.
   void clear();
-  /// Copies the sums of `rect`, row by row, to and from `pixels`.
+  /// Copies the sums of `rect`, which lies in the window, row by row, to and from `pixels`.
   void load(const PixelRect& rect, std::span<PixelSum> pixels) const;
   void store(const PixelRect& rect, std::span<const PixelSum> pixels);
 
@@ -74,7 +72,7 @@ class Film {
   double noise() const;
 
  private:
-  const int width_, height_;
+  const PixelRect window_;
   mutable std::mutex mutex_;
   std::vector<PixelSum> pixels_;
 };

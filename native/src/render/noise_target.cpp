@@ -9,11 +9,12 @@ namespace {
 
 constexpr int kBlockSize = 16;
 
-/// Where `side` pixels are cut: into equal parts as near to kBlockSize as can be.
-std::vector<int> cuts(int side) {
+/// Where the pixels [begin, end) are cut: into equal parts as near to kBlockSize as can be.
+std::vector<int> cuts(int begin, int end) {
+  const int side = end - begin;
   const int parts = std::max(1, (side + kBlockSize / 2) / kBlockSize);
   std::vector<int> at;
-  for (int i = 0; i <= parts; ++i) at.push_back(static_cast<int>(static_cast<int64_t>(side) * i / parts));
+  for (int i = 0; i <= parts; ++i) at.push_back(begin + static_cast<int>(static_cast<int64_t>(side) * i / parts));
   return at;
 }
 
@@ -29,8 +30,8 @@ double mean_luminance(std::span<const BlockError> errors, std::span<const PixelR
 
 }  // namespace
 
-std::vector<PixelRect> blocks_of(int width, int height) {
-  const std::vector<int> x = cuts(width), y = cuts(height);
+std::vector<PixelRect> blocks_of(const PixelRect& picture) {
+  const std::vector<int> x = cuts(picture.x0, picture.x1), y = cuts(picture.y0, picture.y1);
   std::vector<PixelRect> blocks;
   for (size_t j = 0; j + 1 < y.size(); ++j) {
     for (size_t i = 0; i + 1 < x.size(); ++i) blocks.push_back({x[i], y[j], x[i + 1], y[j + 1]});

@@ -10,7 +10,7 @@
 namespace velour {
 
 /// Cuts a picture into blocks of about 16 x 16 pixels, none much smaller: they are the tiles of the work too.
-std::vector<PixelRect> blocks_of(int width, int height);
+std::vector<PixelRect> blocks_of(const PixelRect& picture);
 
 /// Estimated mean over the pixels of the variance of their luminance, and mean of their luminance.
 struct BlockError {

@@ -1,8 +1,11 @@
 // What a render is asked for.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
+
+#include "render/pixel_rect.h"
 
 namespace velour {
 
@@ -28,6 +31,11 @@ enum class Heuristic : int { balance = 0, power = 1 };  // values of velour.h
 /// Where random numbers come from (path_numbers.h).
 enum class Sequence : int { random = 0, sobol = 1 };  // values of velour.h
 
+/// Some of the light directions of a pixel, [begin, end) of spp: whole camera rays.
+struct SampleRange {
+  int begin = 0, end = 0;  // end 0: spp
+};
+
 struct RenderOptions {
   int width = 640, height = 480;
   int spp = 64;   // light directions a pixel
@@ -47,6 +55,13 @@ struct RenderOptions {
   Heuristic heuristic = Heuristic::balance;
   Sequence sequence = Sequence::sobol;
   double noise = 0;  // relative error of a block of pixels at which it is done (noise_target.h); 0: all of spp
+  /// Parts of a picture, for several machines: what is rendered of it has the bits that the whole has there. Neither
+  /// goes with a noise target, which looks at the whole.
+  SampleRange samples;
+  PixelRect crop{};                         // no pixels: all
+  const std::atomic<bool>* stop = nullptr;  // set from any thread: the render ends at a whole pass, soon
+
+  PixelRect window() const { return crop == PixelRect{} ? PixelRect{0, 0, width, height} : crop; }
 
   static constexpr int kMaxSplit = 48;  // a batch of 64 directions also holds those of up to 4 sharp lamps
 };

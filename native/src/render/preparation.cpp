@@ -40,7 +40,37 @@ void prepare_sky(RenderContext& context, Progress& progress) {
   context.sky_report = {sky.size(), sky.relative_l2, sky.seconds, sky.cached};
 }
 
+/// options.samples, its end in numbers.
+SampleRange checked_samples(const RenderOptions& options) {
+  const SampleRange range{options.samples.begin, options.samples.end == 0 ? options.spp : options.samples.end};
+  const auto whole = [&](int directions) { return directions % options.split == 0 || directions == options.spp; };
+  if (range.begin < 0 || range.begin >= range.end || range.end > options.spp) {
+    throw Error(Status::invalid_argument,
+                "Render option samples is " + std::to_string(range.begin) + ":" + std::to_string(range.end) +
+                    "; it must lie within 0:" + std::to_string(options.spp) + ", the samples of a pixel (spp).");
+  }
+  if (!whole(range.begin) || !whole(range.end)) {
+    throw Error(Status::invalid_argument, "Render option samples is " + std::to_string(range.begin) + ":" +
+                                              std::to_string(range.end) + "; its ends must be multiples of " +
+                                              std::to_string(options.split) + ", which share a camera ray (split).");
+  }
+  return range;
+}
+
 }  // namespace
+
+void check_crop(const RenderOptions& options) {
+  const PixelRect crop = options.window();
+  if (crop.x0 >= 0 && crop.y0 >= 0 && crop.width() > 0 && crop.height() > 0 && crop.x1 <= options.width &&
+      crop.y1 <= options.height) {
+    return;
+  }
+  const auto span = [](int from, int to) { return std::to_string(from) + ":" + std::to_string(to); };
+  throw Error(Status::invalid_argument, "Render option crop is columns " + span(crop.x0, crop.x1) + ", rows " +
+                                            span(crop.y0, crop.y1) + "; it must hold pixels of the picture's " +
+                                            std::to_string(options.width) + " x " + std::to_string(options.height) +
+                                            ".");
+}
 
 RenderOptions checked(const Scene& scene, RenderOptions options) {
   constexpr int kMost = 1 << 30;
@@ -62,6 +92,13 @@ RenderOptions checked(const Scene& scene, RenderOptions options) {
   if (!(options.time_limit >= 0.0)) throw Error(Status::invalid_argument, "Render option time_limit is negative.");
   if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is rendered.");
   options.split = std::min(options.split, options.spp);
+  const bool is_part = options.samples.begin > 0 || options.samples.end > 0 || options.crop != PixelRect{};
+  if (is_part && options.noise > 0.0) {
+    throw Error(Status::invalid_argument,
+                "Render option noise looks at a whole picture, and goes with neither samples nor crop.");
+  }
+  options.samples = checked_samples(options);
+  check_crop(options);
   return options;
 }
 

@@ -10,8 +10,11 @@
 
 namespace velour {
 
-/// `options`, with no larger a split than there are directions. Throws Error(invalid_argument) with the option at
-/// fault, Error(invalid_state) when the scene is not committed.
+/// Throws Error(invalid_argument) where the crop holds no pixels, or others than the picture's.
+void check_crop(const RenderOptions& options);
+
+/// `options`, with no larger a split than there are directions, and the end of samples in numbers. Throws
+/// Error(invalid_argument) with the option at fault, Error(invalid_state) when the scene is not committed.
 RenderOptions checked(const Scene& scene, RenderOptions options);
 
 /// What tables or fits before the first pass take of the whole, roughly.

@@ -31,7 +31,7 @@ int first_divisor(int width, int height) {
 }  // namespace
 
 ProgressiveRender::Level::Level(int width, int height)
-    : film(width, height), tiles(blocks_of(width, height)), done(tiles.size()) {}
+    : film(width, height), tiles(blocks_of(film.window())), done(tiles.size()) {}
 
 ProgressiveRender::ProgressiveRender(std::shared_ptr<const Scene> scene, const RenderOptions& options)
     : scene_(std::move(scene)), asked_(checked(*scene_, options)), arena_(arena_concurrency(options.threads)) {

@@ -24,7 +24,7 @@ class ProgressiveRender {
   };
 
   /// `scene` must be committed, and may change between runs: then restart() goes before the next one. Of `options`,
-  /// noise and time_limit are not used. Throws what render() throws.
+  /// noise, time_limit, samples, crop and stop are not used. Throws what render() throws.
   ProgressiveRender(std::shared_ptr<const Scene> scene, const RenderOptions& options);
 
   /// The next run begins anew. Not while one runs.

@@ -25,17 +25,17 @@ constexpr int kLargestPass = 8;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 RenderOptions checked_for(const Scene& scene, const RenderOptions& options, const Film& film) {
-  if (film.width() != options.width || film.height() != options.height) {
-    throw Error(Status::invalid_argument, "The film has another size than the render options ask for.");
+  if (film.window() != options.window()) {
+    throw Error(Status::invalid_argument, "The film has another size or place than the render options ask for.");
   }
   return checked(scene, options);
 }
 
 /// Camera rays a pixel of the next pass: doubling, so that a first picture appears at once.
-int pass_size(const RenderOptions& options, int done, int total) {
+int pass_size(const RenderOptions& options, int done, int left) {
   const int asked = options.camera_rays_per_pass;
   const int grown = std::clamp(done, 1, kLargestPass);
-  return std::min(asked > 0 ? asked : grown, total - done);
+  return std::min(asked > 0 ? asked : grown, left);
 }
 
 /// One render, from its start to its report.
@@ -47,7 +47,8 @@ class Renderer {
         progress_(progress),
         arena_(arena_concurrency(options_.threads)),
         context_(scene, options_, progress),
-        target_(options_.noise, blocks_of(options_.width, options_.height)) {}
+        target_(options_.noise, blocks_of(options_.window())),
+        next_(context_.first_camera_ray()) {}
 
   RenderReport run() {
     film_.clear();
@@ -60,18 +61,21 @@ class Renderer {
 
  private:
   void render_passes() {
-    const int total = context_.camera_rays();
+    const int first = context_.first_camera_ray(), end = context_.end_camera_ray();
     run_stage(progress_, report_.stages, "render", report_.stages.empty() ? 0.0 : kPreparation, 1.0, [&] {
       const auto start = Clock::now();
-      while (done_ < total && !target_.active().empty()) {
-        const int count = std::min(pass_size(options_, done_, total), target_.next_decision() - done_);
+      while (next_ < end && !target_.active().empty() && !stopped()) {
+        const int size = pass_size(options_, next_ - first, end - next_);
+        const int count = std::min(size, target_.next_decision() - next_);
         if (report_.passes > 0 && out_of_time(seconds_since(start), count)) break;
-        render_pass(count, total);
-        if (done_ == target_.next_decision()) target_.decide(film_);
+        render_pass(count, end - first);
+        if (next_ == target_.next_decision()) target_.decide(film_);
       }
     });
     report_.seconds = report_.stages.back().seconds;
   }
+
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
 
   /// Whether a pass of `count` camera rays would end after the limit, at the speed so far.
   bool out_of_time(double seconds, int count) const {
@@ -81,6 +85,7 @@ class Renderer {
 
   void render_pass(int count, int total) {
     std::atomic<size_t> finished{0};
+    const int done = next_ - context_.first_camera_ray();
     const std::vector<size_t>& active = target_.active();
     const double done_tiles = 1.0 - static_cast<double>(active.size()) / static_cast<double>(target_.blocks().size());
     arena_.execute([&] {
@@ -88,12 +93,12 @@ class Renderer {
         TileRenderer& renderer = renderers_.local();
         const PixelRect& tile = target_.blocks()[active[i]];
         share_.record(active[i], tile, count,
-                      [&](RayLog* log) { renderer.render(tile, done_, count, film_, log, progress_); });
+                      [&](RayLog* log) { renderer.render(tile, next_, count, film_, log, progress_); });
         const double part = static_cast<double>(++finished) / static_cast<double>(active.size());
-        progress_.update(std::max(done_tiles, (done_ + part * count) / total));
+        progress_.update(std::max(done_tiles, (done + part * count) / total));
       });
     });
-    done_ += count;
+    next_ += count;
     work_ += static_cast<double>(count) * static_cast<double>(active.size());
     ++report_.passes;
   }
@@ -108,10 +113,12 @@ class Renderer {
       report_.rays += renderer.rays();
       report_.nan_samples += renderer.nan_samples();
     }
-    report_.spp = static_cast<uint64_t>(
-        std::min(static_cast<int64_t>(done_) * options_.split, static_cast<int64_t>(options_.spp)));
+    const auto directions_before = [&](int camera_ray) {
+      return std::min(static_cast<int64_t>(camera_ray) * options_.split, static_cast<int64_t>(options_.spp));
+    };
+    report_.spp = static_cast<uint64_t>(directions_before(next_) - directions_before(context_.first_camera_ray()));
     const double samples = static_cast<double>(film_.directions());
-    report_.spp_mean = samples / (static_cast<double>(options_.width) * options_.height);
+    report_.spp_mean = samples / (static_cast<double>(film_.width()) * film_.height());
     report_.samples_per_second = report_.seconds > 0.0 ? samples / report_.seconds : 0.0;
     report_.noise = film_.noise();
     report_.block_noise = target_.worst(film_);
@@ -128,7 +135,7 @@ class Renderer {
   tbb::enumerable_thread_specific<TileRenderer> renderers_{[this] { return TileRenderer(context_); }};
   RayShare share_{options_.measure_ray_share, options_.split};
   RenderReport report_;
-  int done_ = 0;     // camera rays a pixel of the active tiles
+  int next_;         // camera ray of the active tiles
   double work_ = 0;  // camera rays a pixel, summed over tiles
 };
 

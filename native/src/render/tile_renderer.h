@@ -21,7 +21,7 @@ struct RenderContext {
       : scene(of), options(asked), lighting(of, progress) {}
 
   const Scene& scene;
-  const RenderOptions& options;  // split <= spp
+  const RenderOptions& options;  // split <= spp, samples.end > 0
   Lighting lighting;
   // By material; empty unless the strategy needs them.
   std::vector<std::unique_ptr<const TableSampler>> tables;
@@ -30,9 +30,16 @@ struct RenderContext {
   std::vector<float> lights_part;           // by material, with `sky`
   RenderReport::Sky sky_report{};           // with `sky`
 
-  int camera_rays() const { return (options.spp + options.split - 1) / options.split; }
+  /// A pixel of the whole picture.
+  int camera_rays() const { return rays_of(options.spp); }
+  /// Those of options.samples.
+  int first_camera_ray() const { return rays_of(options.samples.begin); }
+  int end_camera_ray() const { return rays_of(options.samples.end); }
   /// Light directions of camera ray `index`: the last one takes what is left of spp.
   int directions(int index) const { return std::min(options.split, options.spp - index * options.split); }
+
+ private:
+  int rays_of(int directions) const { return (directions + options.split - 1) / options.split; }
 };
 
 class TileRenderer {

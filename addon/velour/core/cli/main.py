@@ -9,7 +9,22 @@ import sys
 from ...native import library
 from ...native.errors import VelourError
 from ...native.version import version_text
-from . import capture, compare, compress, export, fit, info, later, observe, output, plot, render, tile, votf
+from . import (
+    capture,
+    compare,
+    compress,
+    export,
+    fit,
+    info,
+    later,
+    merge,
+    observe,
+    output,
+    plot,
+    render,
+    tile,
+    votf,
+)
 
 _VERBS = {
     "info": (info, "what a measurement, BTF, model or observation holds"),
@@ -17,6 +32,7 @@ _VERBS = {
     "compare": (compare, "error of a model against a measurement or BTF"),
     "plot": (plot, "draw what a model is made of, its error or its albedo"),
     "render": (render, "render a mesh with a measured material under a world"),
+    "merge": (merge, "make one picture of parts that render wrote"),
     "observe": (observe, "learn under which views and lights a scene shows its material"),
     "capture": (capture, "make a measurement of a modelled surface"),
     "votf": (votf, "add to a model the outline and the holes of a modelled surface"),

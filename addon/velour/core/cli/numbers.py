@@ -61,6 +61,26 @@ def reals(count: int, low: float = -math.inf, high: float = math.inf):
     return parse
 
 
+def span(text: str) -> tuple[int, int]:
+    """BEGIN:END, two whole numbers in order."""
+    ends = text.split(":")
+    if len(ends) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} is not BEGIN:END")
+    begin, end = map(whole(0, 2**30), ends)
+    if begin >= end:
+        raise argparse.ArgumentTypeError(f"{text!r} is empty: the end must be above the begin")
+    return begin, end
+
+
+def pixels(text: str) -> tuple[int, int, int, int]:
+    """X0:X1,Y0:Y1 as x0, y0, x1, y1."""
+    spans = text.split(",")
+    if len(spans) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} is not X0:X1,Y0:Y1")
+    (x0, x1), (y0, y1) = map(span, spans)
+    return x0, y0, x1, y1
+
+
 class Camera(NamedTuple):
     eye: tuple[float, ...]
     target: tuple[float, ...]

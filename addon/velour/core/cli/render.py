@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 import contextlib
 import time
+from dataclasses import replace
 
 import numpy as np
 
 from ...native import Model, Scene, images, library, observe_job, render_job, table
 from ...native.errors import refuse
-from .. import domain
+from .. import domain, picture_parts
 from ..cache import user_cache_folder
-from . import later, numbers, output, scene
+from ..picture_parts import Part
+from . import later, numbers, output, render_part, scene
 
 KEYS = (
     "seconds",
@@ -29,6 +31,7 @@ KEYS = (
     "blocks_unfinished",
     "sky",
     "out_of_domain",
+    "samples",
 )
 _MOST_SPP = 1 << 16  # of a render that a noise target ends
 
@@ -59,6 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--no-cache", dest="cache", action="store_const", const="", help="neither reads nor keeps them"
     )
+    render_part.add_arguments(parser)
     parser.add_argument("--reference", metavar="REF.exr", help="picture to compare with: rmse, relmse")
     parser.add_argument(
         "--full-model", metavar="FULL",
@@ -67,7 +71,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> dict:
-    _refuse_unsupported(args)
+    later.only("--strategy", args.strategy, table.STRATEGIES)
+    options = _options(args)
+    render_part.check(args, options)
     output.check_writable(args.output)
     with contextlib.ExitStack() as handles:
         reference = _read_reference(args)
@@ -75,21 +81,23 @@ def run(args: argparse.Namespace) -> dict:
         described = handles.enter_context(Scene())
         material = scene.fill(described, args, handles)
         outside = _choose_model(described, material, args, handles)
+        part = render_part.asked(args, options)
         loaded = time.perf_counter()
-        job = handles.enter_context(render_job(described, **_options(args)))
+        job = handles.enter_context(render_job(described, **options, **render_part.options_of(part)))
         report = job.run(output.progress_of(args))
         picture = job.read_pass("Combined")
         rendered = time.perf_counter()
-        images.write(args.output, picture)
+        ranges = render_part.rendered(part, report)
+        picture_parts.write(args.output, replace(part, ranges=ranges, read=lambda: picture))
         written = time.perf_counter()
         info = described.info()
-    _tell(args, report, info)
+    _tell(args, part, report, info)
     bvh = info["bvh_seconds"]
     stages = {"load": loaded - start - bvh, "bvh": bvh, **report["stages"], "write": written - rendered}
     rmse, relmse = (
         images.compare(picture[..., :3].copy(), reference) if reference is not None else (None, None)
     )
-    report |= {"stages": stages, "rmse": rmse, "relmse": relmse, "out_of_domain": outside}
+    report |= {"stages": stages, "rmse": rmse, "relmse": relmse, "out_of_domain": outside, "samples": ranges}
     return {key: report[key] for key in KEYS}
 
 
@@ -125,20 +133,17 @@ def _choose_model(
     return share
 
 
-def _refuse_unsupported(args: argparse.Namespace) -> None:
-    later.only("--strategy", args.strategy, table.STRATEGIES)
-
-
 def _read_reference(args: argparse.Namespace) -> np.ndarray | None:
     """Linear RGB of --reference; refused before the render, not after it, when the size is another."""
     if not args.reference:
         return None
     pixels = images.read(args.reference)
     height, width, channels = pixels.shape
-    if (width, height) != args.size or channels < 3:
+    needed = render_part.size(args)
+    if (width, height) != needed or channels < 3:
         raise refuse(
             f"The reference {args.reference} is {width}x{height} with {channels} channels; "
-            f"{args.size[0]}x{args.size[1]} with at least 3 are needed."
+            f"{needed[0]}x{needed[1]} with at least 3 are needed."
         )
     return pixels[..., :3].copy()
 
@@ -159,7 +164,7 @@ def _options(args: argparse.Namespace) -> dict:
     }
 
 
-def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
+def _tell(args: argparse.Namespace, part: Part, report: dict, info: dict) -> None:
     for warning in info["warnings"]:
         output.log.warning("%s", warning)
     if report["nan_samples"]:
@@ -171,7 +176,7 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
         )  # fmt: skip
     if report["sky"]:
         output.log.info("%(lobes)d lobes for the world, relative L2 %(relative_l2).3f.", report["sky"])
-    level = (
-        output.log.warning if args.time_limit and args.spp and report["spp"] < args.spp else output.log.info
-    )
+    asked = part.ranges[0][1] - part.ranges[0][0]
+    ended_early = args.time_limit and not part.made["noise"] and report["spp"] < asked
+    level = output.log.warning if ended_early else output.log.info
     level("%d passes, %d light directions a pixel.", report["passes"], report["spp"])

@@ -25,7 +25,7 @@ PixelSum pixel(std::initializer_list<float> samples) {
 TEST(Blocks, CoverThePictureOnceAndNoneIsSmall) {
   for (const auto& [width, height] : {std::pair{640, 480}, {1, 1}, {17, 40}, {100, 23}, {333, 9}}) {
     std::vector<int> covered(static_cast<size_t>(width * height));
-    for (const PixelRect& b : blocks_of(width, height)) {
+    for (const PixelRect& b : blocks_of({0, 0, width, height})) {
       EXPECT_GE(b.width(), std::min(width, 11));
       EXPECT_LE(b.width(), 24);
       for (int y = b.y0; y < b.y1; ++y) {
@@ -34,7 +34,7 @@ TEST(Blocks, CoverThePictureOnceAndNoneIsSmall) {
     }
     EXPECT_EQ(std::ranges::count(covered, 1), width * height);
   }
-  EXPECT_EQ(blocks_of(640, 480).size(), 40u * 30u);
+  EXPECT_EQ(blocks_of({0, 0, 640, 480}).size(), 40u * 30u);
 }
 
 TEST(PixelSum, VarianceComesFromTheDifferenceOfTheHalves) {
@@ -70,7 +70,7 @@ void fill(Film& film, float spread) {
 
 TEST(NoiseTarget, ABlockIsDoneAfterTwoGoodDecisionsInARow) {
   Film film(16, 16);
-  NoiseTarget target(0.1, blocks_of(16, 16));
+  NoiseTarget target(0.1, blocks_of({0, 0, 16, 16}));
   EXPECT_EQ(target.next_decision(), NoiseTarget::kRaysAtLeast);
   for (float spread : {0.05f, 0.2f, 0.05f}) {  // a lucky one first
     fill(film, spread);
@@ -84,7 +84,7 @@ TEST(NoiseTarget, ABlockIsDoneAfterTwoGoodDecisionsInARow) {
 
 TEST(NoiseTarget, DecisionsGrowRarer) {
   Film film(16, 16);
-  NoiseTarget target(1e-9, blocks_of(16, 16));
+  NoiseTarget target(1e-9, blocks_of({0, 0, 16, 16}));
   fill(film, 0.5f);
   std::vector<int> at;
   for (int i = 0; i < 40; ++i) {

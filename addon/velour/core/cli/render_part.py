@@ -1,0 +1,133 @@
+"""Which part of a picture a render makes, and what its file says of that."""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+from pathlib import Path
+
+from ...native import library, table
+from ...native.errors import refuse
+from ...native.images import Frame
+from ...native.job import render_options
+from ...native.version import version_text
+from ..picture_parts import Part, Range
+from . import numbers
+
+_FILES = ("mesh", "proposal", "world", "full_model")  # told apart by what is in them
+_NUMBERS = ("spp", "bounces", "share", "seed", "noise")
+_NAMES = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence": table.SEQUENCES}
+# What says nothing of the whole picture. All other options do, also those that are still to come.
+_ELSEWHERE = {
+    "output", "samples", "crop", "threads", "time_limit", "memory", "cache", "reference",
+    "json", "json_file", "quiet", "log_level", "simd", "run", "later",
+}  # fmt: skip
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("parts of a picture, for velour merge")
+    group.add_argument(
+        "--samples", type=numbers.span, metavar="A:B", help="of the --spp light directions of a pixel these"
+    )
+    group.add_argument(
+        "--crop", type=numbers.pixels, metavar="X0:X1,Y0:Y1", help="these pixels, from the upper left corner"
+    )
+
+
+def check(args: argparse.Namespace, options: dict) -> None:
+    """Refuses what can be seen to go wrong before anything is read; `options` of render_job()."""
+    if not (args.samples or args.crop):
+        return
+    if Path(args.output).suffix != ".exr":
+        raise refuse(
+            f"{args.output}: parts of pictures are written as .exr, which says what they are parts of."
+        )
+    if args.noise is not None:
+        raise refuse("--noise looks at a whole picture; leave --samples and --crop out, or --noise.")
+    if args.crop:
+        _check_crop(args.crop, args.size)
+    if args.samples:
+        _check_samples(args.samples, render_options(options))
+
+
+def _check_crop(crop: tuple[int, int, int, int], picture: tuple[int, int]) -> None:
+    x0, y0, x1, y1 = crop
+    if x1 > picture[0] or y1 > picture[1]:
+        raise refuse(
+            f"--crop {x0}:{x1},{y0}:{y1} is not within the picture's {picture[0]}x{picture[1]} pixels."
+        )
+
+
+def _check_samples(samples: Range, raw: table.RenderOptions) -> None:
+    text = f"--samples {samples[0]}:{samples[1]}"
+    if samples[1] > raw.spp:
+        raise refuse(f"{text} goes beyond --spp {raw.spp}, the samples of the whole picture: give that, too.")
+    split = min(raw.split, raw.spp)
+    if any(end % split and end != raw.spp for end in samples):
+        raise refuse(f"The ends of {text} must be multiples of --split {split}, which share a camera ray.")
+
+
+def size(args: argparse.Namespace) -> tuple[int, int]:
+    """Width and height of what is rendered."""
+    x0, y0, x1, y1 = args.crop or (0, 0, *args.size)
+    return x1 - x0, y1 - y0
+
+
+def asked(args: argparse.Namespace, options: dict) -> Part:
+    """The part that is to be rendered with `options` of render_job()."""
+    made = _made(args, options)
+    width, height = size(args)
+    left, _, _, bottom = args.crop or (0, 0, *args.size)
+    frame = Frame(*args.size, left, args.size[1] - bottom)
+    ranges = (args.samples or (0, made["spp"]),)
+    return Part(str(args.output), made, ranges, frame, width, height, library.system()["simd"], None)
+
+
+def options_of(part: Part) -> dict:
+    """As render_job() takes them."""
+    if part.made["noise"]:  # which goes with no part
+        return {}
+    (begin, end), (rows, columns) = part.ranges[0], part.window
+    return {
+        "samples_begin": begin,
+        "samples_end": end,
+        "crop_x0": columns.start,
+        "crop_y0": rows.start,
+        "crop_x1": columns.stop,
+        "crop_y1": rows.stop,
+    }
+
+
+def rendered(part: Part, report: dict) -> tuple[Range, ...]:
+    """The samples that each pixel has; with a noise target pixels have their own numbers of them: none."""
+    if part.made["noise"]:
+        return ()
+    begin = part.ranges[0][0]
+    return ((begin, begin + report["spp"]),)
+
+
+def _made(args: argparse.Namespace, options: dict) -> dict:
+    """All that the whole picture depends on, by the options' names; files by their contents."""
+    raw = render_options(options)
+    made = {name: value for name, value in vars(args).items() if name not in _ELSEWHERE}
+    made |= {name: _sha256(path) for name in _FILES if (path := getattr(args, name))}
+    made["material"] = _material_hash(args.material)
+    made |= {name: getattr(raw, name) for name in _NUMBERS}
+    made |= {name: names[getattr(raw, name)] for name, names in _NAMES.items()}
+    made |= {"split": min(raw.split, raw.spp), "version": version_text()}
+    return json.loads(json.dumps(made))  # as it comes back from a file
+
+
+def _material_hash(path: str) -> str:
+    """A BTF may be many files, and knows the hash of all."""
+    info = library.file_info(path)
+    return info["sha256"] if info["kind"] == "btf" else _sha256(path)
+
+
+def _sha256(path: str) -> str:
+    digest = hashlib.sha256()
+    with open(path, "rb") as file:
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()

@@ -1,0 +1,200 @@
+"""Parts of one picture, which several machines or runs made: pixels of it, samples of it, or both.
+
+A picture's header says what it is a part of (`velour.render`: all that the whole depends on), which
+samples of each pixel it has (`velour.samples`), and with which instruction set they were made
+(`velour.simd`), on which the last bits depend. Where its pixels lie is its data window. Ranges [begin, end)
+count light directions.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+from pathlib import Path
+
+import numpy as np
+
+from ..native import images
+from ..native.errors import refuse
+from ..native.images import Frame
+from ..native.version import version_text
+
+MADE, SAMPLES, SIMD = "velour.render", "velour.samples", "velour.simd"
+Range = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Part:
+    name: str  # for sentences
+    made: dict  # what the whole depends on; spp and split are in it
+    ranges: tuple[Range, ...]  # in order, apart from each other
+    frame: Frame
+    width: int
+    height: int
+    simd: str  # several with commas
+    # Its pixels [height x width x channels], row 0 at the bottom; None: they are not there yet.
+    read: Callable[[], np.ndarray] | None
+
+    @property
+    def window(self) -> tuple[slice, slice]:
+        """Of an array of the whole picture."""
+        x, y = self.frame.x, self.frame.y
+        return slice(y, y + self.height), slice(x, x + self.width)
+
+
+def write(path: str | os.PathLike, part: Part) -> None:
+    """As images.write(); .exr files say what they are a part of. Without ranges they cannot be merged."""
+    if Path(path).suffix != ".exr":
+        return images.write(path, part.read())
+    texts = {"velour.version": version_text(), MADE: json.dumps(part.made, sort_keys=True), SIMD: part.simd}
+    if part.ranges:
+        texts[SAMPLES] = ",".join(f"{begin}:{end}" for begin, end in part.ranges)
+    images.write_part(path, part.read(), part.frame, texts)
+
+
+def open_part(path: str | os.PathLike) -> Part:
+    """The part that a file is; its pixels are read later. Raises a sentence where it says nothing of that."""
+    header = images.header(path)
+    said = header["texts"]
+    missing = next((name for name in (MADE, SAMPLES) if name not in said), None)
+    if missing:
+        raise refuse(f"{path} does not say what it is a part of: it has no {missing} in its header.")
+    made, ranges = _parsed(said[MADE], said[SAMPLES])
+    width, height, frame = header["width"], header["height"], header["frame"]
+    inside = 0 <= frame.x <= frame.width - width and 0 <= frame.y <= frame.height - height
+    if not (ranges and inside):
+        raise refuse(f"{path}: what its header says of the part makes no sense.")
+    return Part(str(path), made, ranges, frame, width, height, said.get(SIMD, ""), lambda: images.read(path))
+
+
+def _parsed(made_text: str, ranges_text: str) -> tuple[dict, tuple[Range, ...]]:
+    """No ranges where the texts are none of ours."""
+    try:
+        made = json.loads(made_text)
+        ranges = tuple(
+            (int(begin), int(end)) for begin, end in (r.split(":") for r in ranges_text.split(","))
+        )
+        ends = [end for span in ranges for end in span]
+        sound = ends == sorted(set(ends)) and ends[0] >= 0 and ends[-1] <= made["spp"] and made["split"] > 0
+    except (ValueError, KeyError, TypeError):
+        sound = False
+    return (made, ranges) if sound else ({}, ())
+
+
+def merge(parts: list[Part], partial: bool = False) -> Part:
+    """The whole picture: all samples of all its pixels; with `partial` some samples, of all pixels the same.
+
+    A pixel's means are weighted by their camera rays; a pixel that one part has alone keeps its bits.
+    """
+    check_one_picture(parts)
+    for one, other in combinations(parts, 2):
+        _check_apart(one, other)
+    ranges = _covered(parts, partial)
+    pixels = _weighted(parts, ranges)
+    height, width = pixels.shape[:2]
+    simd = ",".join(sorted({name for part in parts for name in part.simd.split(",")}))
+    return Part(
+        "the merged picture", parts[0].made, ranges, Frame(width, height), width, height, simd, lambda: pixels
+    )
+
+
+def check_one_picture(parts: list[Part]) -> None:
+    """Raises a sentence that names two parts of different pictures, and in what these differ."""
+    first = parts[0]
+    for part in parts[1:]:
+        if difference := _difference(first, part):
+            raise refuse(f"{first.name} and {part.name} are parts of different pictures: {difference}.")
+
+
+def _difference(one: Part, other: Part) -> str:
+    for key in sorted(one.made.keys() | other.made.keys()):
+        a, b = one.made.get(key), other.made.get(key)
+        if a != b:
+            return f"their {key.replace('_', ' ')} differs ({_short(a)} and {_short(b)})"
+    a, b = one.frame, other.frame
+    if (a.width, a.height) != (b.width, b.height):
+        return f"they are of {a.width}x{a.height} and {b.width}x{b.height} pixels"
+    return ""
+
+
+def _short(value) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 40 else f"{text[:17]}..."
+
+
+def _check_apart(one: Part, other: Part) -> None:
+    sides = zip(one.window, other.window, strict=True)
+    pixels = [(max(a.start, b.start), min(a.stop, b.stop)) for a, b in sides]
+    if any(begin >= end for begin, end in pixels):
+        return
+    for a in one.ranges:
+        for b in other.ranges:
+            begin, end = max(a[0], b[0]), min(a[1], b[1])
+            if begin < end:
+                where = _place(one.frame, *pixels)
+                raise refuse(f"{one.name} and {other.name} both have the samples {begin}:{end} of {where}.")
+
+
+def _covered(parts: list[Part], partial: bool) -> tuple[Range, ...]:
+    """The samples that all pixels have. Raises a sentence that names what is missing."""
+    frame, spp = parts[0].frame, parts[0].made["spp"]
+    ends = sorted({0, spp, *(end for part in parts for span in part.ranges for end in span)})
+    covered = []
+    for begin, end in pairwise(ends):
+        seen = np.zeros((frame.height, frame.width), bool)
+        for part in parts:
+            if any(a <= begin and end <= b for a, b in part.ranges):
+                seen[part.window] = True
+        if partial and not seen.any():
+            continue
+        if not seen.all():
+            raise refuse(_missing(frame, ~seen, begin, end))
+        covered.append((begin, end))
+    return joined(covered)
+
+
+def _missing(frame: Frame, missing: np.ndarray, begin: int, end: int) -> str:
+    rows, columns = (np.flatnonzero(missing.any(axis=axis)) for axis in (1, 0))
+    rows, columns = (rows[0], rows[-1] + 1), (columns[0], columns[-1] + 1)
+    all_of_them = missing[slice(*rows), slice(*columns)].all()
+    where = _place(frame, rows, columns)
+    return f"No part has the samples {begin}:{end} of {where if all_of_them else f'some of {where}'}."
+
+
+def _place(frame: Frame, rows: tuple[int, int], columns: tuple[int, int]) -> str:
+    """As --crop has it: rows from the top."""
+    top, bottom = frame.height - rows[1], frame.height - rows[0]
+    return f"the pixels {columns[0]}:{columns[1]},{top}:{bottom}"
+
+
+def joined(ranges: Iterable[Range]) -> tuple[Range, ...]:
+    """The same samples in as few ranges as can be."""
+    result: list[Range] = []
+    for begin, end in sorted(ranges):
+        if result and result[-1][1] == begin:
+            begin = result.pop()[0]
+        result.append((begin, end))
+    return tuple(result)
+
+
+def camera_rays(ranges: Iterable[Range], split: int) -> int:
+    """The last of a pixel may have fewer than `split` directions, and counts like any other."""
+    return sum(-(-end // split) - -(-begin // split) for begin, end in ranges)
+
+
+def _weighted(parts: list[Part], ranges: tuple[Range, ...]) -> np.ndarray:
+    split, frame = parts[0].made["split"], parts[0].frame
+    total = None
+    for part in parts:
+        pixels = part.read()
+        if total is None:
+            # -0 is what leaves every number, -0 among them, as it is.
+            total = np.full((frame.height, frame.width, pixels.shape[2]), -0.0)
+        if pixels.shape[2] != total.shape[2]:
+            raise refuse(f"{part.name} has {pixels.shape[2]} channels, {parts[0].name} {total.shape[2]}.")
+        # Exact: a float32 times a number of camera rays has fewer digits than a float64.
+        total[part.window] += pixels.astype(np.float64) * camera_rays(part.ranges, split)
+    return (total / camera_rays(ranges, split)).astype(np.float32)

@@ -1,0 +1,77 @@
+// Parts of pictures as OpenEXR files: where they lie, and what their headers say.
+#include "image/exr_part.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <filesystem>
+
+#include "file/file.h"
+#include "job/error.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+Picture numbered(int width, int height, int channels) {
+  Picture picture{width, height, channels, {}};
+  for (int i = 0; i < width * height * channels; ++i) picture.pixels.push_back(static_cast<float>(i) / 3.0f);
+  return picture;
+}
+
+TEST(ExrPart, KeepsPlaceTextsAndPixels) {
+  const std::string path = test::scratch_folder() / "part.exr";
+  const Picture part = numbered(3, 2, 4);
+  const PictureFrame frame{10, 8, 4, 1};
+  const PictureTexts texts = {{"velour.samples", "0:8"}, {"velour.words", "R\xc3\xb6hre \"x\"\n"}};
+  write_exr_part(path, part, frame, texts);
+  const ExrHeader header = read_exr_header(path);
+  EXPECT_EQ(header.frame, frame);
+  EXPECT_EQ(header.texts, texts);
+  EXPECT_EQ(header.width, 3);
+  EXPECT_EQ(header.height, 2);
+  EXPECT_EQ(header.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+  EXPECT_EQ(read_picture(path).pixels, part.pixels);
+  EXPECT_EQ(read_picture_text(path, "velour.samples"), "0:8");
+}
+
+/// The four numbers of a window of the file's header, which OpenEXR counts from the top.
+std::array<int32_t, 4> window_in(const std::string& path, const std::string& name) {
+  const auto bytes = read_file(path);
+  const std::string text(bytes.begin(), bytes.end()), field = name + std::string("\0box2i\0\x10\0\0\0", 11);
+  std::array<int32_t, 4> window{};
+  const size_t at = text.find(field);
+  EXPECT_NE(at, std::string::npos);
+  std::memcpy(window.data(), text.data() + at + field.size(), sizeof window);
+  return window;
+}
+
+TEST(ExrPart, WindowsAreOpenExrs) {
+  const std::string path = test::scratch_folder() / "part.exr";
+  write_exr_part(path, numbered(3, 2, 1), {10, 8, 4, 1}, {});
+  EXPECT_EQ(window_in(path, "displayWindow"), (std::array<int32_t, 4>{0, 0, 9, 7}));
+  EXPECT_EQ(window_in(path, "dataWindow"), (std::array<int32_t, 4>{4, 5, 6, 6}));  // rows 1 and 2 of 8 from below
+}
+
+TEST(ExrPart, AWholePictureIsItsOwnFrame) {
+  const std::string path = test::scratch_folder() / "whole.exr";
+  write_picture(path, numbered(5, 4, 3));
+  EXPECT_EQ(read_exr_header(path).frame, (PictureFrame{5, 4, 0, 0}));
+  EXPECT_TRUE(read_exr_header(path).texts.empty());
+}
+
+TEST(ExrPart, RefusesOtherFormatsAndReservedNames) {
+  const auto folder = test::scratch_folder();
+  const auto written = [&](const char* name, const char* text) {
+    write_exr_part(folder / name, numbered(2, 2, 3), {2, 2, 0, 0}, {{text, "x"}});
+  };
+  EXPECT_THROW(written("part.png", "velour.samples"), Error);
+  for (const char* name : {"dataWindow", "channels", "compression", ""}) EXPECT_THROW(written("part.exr", name), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "part.exr"));
+  write_picture(folder / "whole.png", numbered(2, 2, 3));
+  EXPECT_THROW(read_exr_header(folder / "whole.png"), Error);
+}
+
+}  // namespace
+}  // namespace velour
