@@ -105,11 +105,12 @@ def check_one_picture(parts: list[Part]) -> None:
     """Raises a sentence that names two parts of different pictures, and in what these differ."""
     first = parts[0]
     for part in parts[1:]:
-        if difference := _difference(first, part):
-            raise refuse(f"{first.name} and {part.name} are parts of different pictures: {difference}.")
+        if what := difference(first, part):
+            raise refuse(f"{first.name} and {part.name} are parts of different pictures: {what}.")
 
 
-def _difference(one: Part, other: Part) -> str:
+def difference(one: Part, other: Part) -> str:
+    """In what the pictures differ that these are parts of; empty where they are of one."""
     for key in sorted(one.made.keys() | other.made.keys()):
         a, b = one.made.get(key), other.made.get(key)
         if a != b:

@@ -55,7 +55,7 @@ class Renderer {
     prepare(context_, arena_, progress_, report_.stages);
     if (context_.sky) report_.sky = context_.sky_report;
     render_passes();
-    if (options_.measure_ray_share) measure_ray_share();
+    if (options_.measure_ray_share && !stopped()) measure_ray_share();  // a stop is in a hurry
     return report();
   }
 

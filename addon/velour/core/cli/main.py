@@ -25,6 +25,7 @@ from . import (
     tile,
     votf,
 )
+from .unfinished import UnfinishedError
 
 _VERBS = {
     "info": (info, "what a measurement, BTF, model or observation holds"),
@@ -41,11 +42,11 @@ _VERBS = {
     "compress": (compress, "fit a model to a BTF"),
 }
 _LEVELS = ("error", "warning", "info", "debug")
-DONE, FAILED, INTERRUPTED = 0, 1, 130
+DONE, FAILED, UNFINISHED, INTERRUPTED = 0, 1, 3, 130
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The exit status: 0 done, 1 failed, 130 interrupted. Wrong usage leaves through argparse with 2."""
+    """The exit status: 0 done, 1 failed, 3 ended early, 130 interrupted. Wrong usage leaves with 2."""
     args = _parser().parse_args(arguments)
     try:
         output.set_up_log("error" if args.quiet else args.log_level)
@@ -55,6 +56,8 @@ def main(arguments: list[str] | None = None) -> int:
         output.deliver(args, args.run(args))
         sys.stdout.flush()
         return DONE
+    except UnfinishedError as error:
+        return _fail(str(error), UNFINISHED)
     except KeyboardInterrupt:
         return _fail("Interrupted.", INTERRUPTED)
     except BrokenPipeError:

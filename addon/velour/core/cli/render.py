@@ -11,10 +11,9 @@ import numpy as np
 
 from ...native import Model, Scene, images, library, observe_job, render_job, table
 from ...native.errors import refuse
-from .. import domain, picture_parts
+from .. import domain
 from ..cache import user_cache_folder
-from ..picture_parts import Part
-from . import later, numbers, output, render_part, scene
+from . import later, numbers, output, render_part, scene, unfinished
 
 KEYS = (
     "seconds",
@@ -82,22 +81,28 @@ def run(args: argparse.Namespace) -> dict:
         material = scene.fill(described, args, handles)
         outside = _choose_model(described, material, args, handles)
         part = render_part.asked(args, options)
+        before = unfinished.kept(part)
+        left = unfinished.left(part, before)
         loaded = time.perf_counter()
-        job = handles.enter_context(render_job(described, **options, **render_part.options_of(part)))
-        report = job.run(output.progress_of(args))
+        job = handles.enter_context(render_job(described, **options, **render_part.options_of(left)))
+        with unfinished.stopping(job.start()):
+            output.log.info("Rendering the samples %d:%d.", *left.ranges[0])
+            job.wait(output.progress_of(args))
+        report = job.report()
         picture = job.read_pass("Combined")
         rendered = time.perf_counter()
-        ranges = render_part.rendered(part, report)
-        picture_parts.write(args.output, replace(part, ranges=ranges, read=lambda: picture))
+        new = replace(left, ranges=render_part.rendered(left, report), read=lambda: picture)
+        whole = unfinished.deliver(part, before, new, report)
         written = time.perf_counter()
         info = described.info()
-    _tell(args, part, report, info)
+    _tell(args, report, info)
     bvh = info["bvh_seconds"]
     stages = {"load": loaded - start - bvh, "bvh": bvh, **report["stages"], "write": written - rendered}
-    rmse, relmse = (
-        images.compare(picture[..., :3].copy(), reference) if reference is not None else (None, None)
-    )
-    report |= {"stages": stages, "rmse": rmse, "relmse": relmse, "out_of_domain": outside, "samples": ranges}
+    rmse, relmse = (None, None)
+    if reference is not None:
+        rmse, relmse = images.compare(whole.read()[..., :3].copy(), reference)
+    report |= {"stages": stages, "rmse": rmse, "relmse": relmse, "out_of_domain": outside}
+    report["samples"] = whole.ranges
     return {key: report[key] for key in KEYS}
 
 
@@ -164,7 +169,7 @@ def _options(args: argparse.Namespace) -> dict:
     }
 
 
-def _tell(args: argparse.Namespace, part: Part, report: dict, info: dict) -> None:
+def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
     for warning in info["warnings"]:
         output.log.warning("%s", warning)
     if report["nan_samples"]:
@@ -176,7 +181,4 @@ def _tell(args: argparse.Namespace, part: Part, report: dict, info: dict) -> Non
         )  # fmt: skip
     if report["sky"]:
         output.log.info("%(lobes)d lobes for the world, relative L2 %(relative_l2).3f.", report["sky"])
-    asked = part.ranges[0][1] - part.ranges[0][0]
-    ended_early = args.time_limit and not part.made["noise"] and report["spp"] < asked
-    level = output.log.warning if ended_early else output.log.info
-    level("%d passes, %d light directions a pixel.", report["passes"], report["spp"])
+    output.log.info("%d passes, %d light directions a pixel.", report["passes"], report["spp"])

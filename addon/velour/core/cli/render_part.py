@@ -107,6 +107,13 @@ def rendered(part: Part, report: dict) -> tuple[Range, ...]:
     return ((begin, begin + report["spp"]),)
 
 
+def is_complete(asked: Part, whole: Part, report: dict) -> bool:
+    """Whether `whole` has all that was asked for; with a noise target `report` tells."""
+    if asked.made["noise"]:
+        return report["blocks_unfinished"] == 0 or report["spp"] == asked.made["spp"]
+    return whole.ranges == asked.ranges
+
+
 def _made(args: argparse.Namespace, options: dict) -> dict:
     """All that the whole picture depends on, by the options' names; files by their contents."""
     raw = render_options(options)
