@@ -1,12 +1,13 @@
 // A BTF as clustered tensors, evaluated.
 //
 // f is a product of four factors with a core between them, and what order they are multiplied in decides what it costs.
-// A hit asks for one place and one view and for many lights. So what needs neither is done once, when the model is
-// loaded: the core times the rows of the view's factor, a matrix [rank of the texels] x [rank of the lights, and
-// colour] for every cluster and captured view. A hit multiplies those of the three views about its own with the
-// coefficients of the clusters it meets, which leaves one row over the rank of the lights for every cluster and
-// channel; a light is then three rows of a factor, interpolated, times those. Pictures, whose texels share view and
-// light, go the other way round (tensor_images.h).
+// A hit asks for one place, one view and some lights. So what needs none of them is done once, when the model is
+// loaded: where memory allows, core and factors are multiplied for every pair of captured directions, a vector [rank of
+// the texels, and colour] for every cluster. A hit multiplies the coefficients of the clusters it meets with their
+// colours; a light is then the three times three vectors of the views and lights about it, interpolated, times those.
+// Where these vectors would take too much, the core is multiplied with the views alone: a hit contracts those of its
+// three views, at ten times the cost, and a light is three rows of a factor (TensorOrder). Pictures, whose texels share
+// view and light, go the other way round (tensor_images.h).
 #pragma once
 
 #include <memory>
@@ -14,8 +15,8 @@
 #include <vector>
 
 #include "btf/relief.h"
-#include "btf/tensor_sums.h"
-#include "srbf/aligned_array.h"
+#include "btf/tensor_point.h"
+#include "sphere/direction_mesh.h"
 
 namespace velour {
 
@@ -24,7 +25,7 @@ class TensorEvaluator {
  public:
   using Point = TensorPoint;
 
-  explicit TensorEvaluator(std::shared_ptr<const TensorBtf> btf);
+  explicit TensorEvaluator(std::shared_ptr<const TensorBtf> btf, uint64_t most_bytes = kMostTableBytes);
   ~TensorEvaluator();
 
   const TensorBtf& btf() const { return *btf_; }
@@ -48,8 +49,7 @@ class TensorEvaluator {
   /// The mean normal of the relief that is seen.
   Vec3 normal(const TensorPoint& point) const { return glm::normalize(Vec3(point.slope, 1)); }
 
-  /// Of the cores times all views, on one side. Above it the views are left to the hit, which then sums over the rank
-  /// of the views instead of three of them.
+  /// Of a side's tables.
   static constexpr uint64_t kMostTableBytes = uint64_t{128} << 20;
 
  private:

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "btf/tensor_btf.h"
+#include "sphere/direction_mesh.h"
 
 namespace velour {
 
@@ -14,10 +15,12 @@ struct TensorPoint {
   static constexpr uint16_t kNotMet = 0xffff;
 
   alignas(64) float coefficient[kMostRanks];  // [met][padded rank of the texels]
-  alignas(64) float row[3 * kMostRanks];      // [met][channel][padded rank of the lights]: what multiplies the light
-  float share[kMostClusters];                 // [met]: the weights of its texels
-  uint16_t met[kMostClusters];                // number in that order of each cluster, or kNotMet
-  uint8_t cluster[kMostClusters];             // [met]
+  // [met][channel][TensorTables::width]: what multiplies the light; and what may be written behind it.
+  alignas(64) float row[3 * kMostRanks + kRankPadding];
+  DirectionMesh::Weights view;
+  float share[kMostClusters];      // [met]: the weights of its texels
+  uint16_t met[kMostClusters];     // number in that order of each cluster, or kNotMet
+  uint8_t cluster[kMostClusters];  // [met]
   uint32_t count;
   uint32_t side;
   Vec3 wv;

@@ -139,49 +139,108 @@ HWY_INLINE void contract_cluster(const TensorTables& t, const Nodes& nodes, uint
   HWY_ALIGN float sums[3 * TensorBtf::kMaxRank];
   sum_rows(t, nodes, coefficient, t.table + cluster * t.table_cluster(), sums);
   const float* const color = t.color + size_t{cluster} * 3 * t.color_rank;
-  for (uint32_t c = 0; c < 3; ++c, row += t.light_rank) {
-    for (uint32_t j = 0; j < t.light_rank; j += static_cast<uint32_t>(hn::Lanes(d))) {
+  for (uint32_t c = 0; c < 3; ++c, row += t.width) {
+    for (uint32_t j = 0; j < t.width; j += static_cast<uint32_t>(hn::Lanes(d))) {
       auto sum = hn::Zero(d);
       for (uint32_t k = 0; k < t.color_rank; ++k) {
         const auto factor = hn::Set(d, color[c * t.color_rank + k]);
-        sum = hn::MulAdd(hn::Load(d, sums + k * t.light_rank + j), factor, sum);
+        sum = hn::MulAdd(hn::Load(d, sums + k * t.width + j), factor, sum);
       }
       hn::Store(sum, d, row + j);
     }
   }
 }
 
-HWY_FLATTEN void with_view(const TensorTables& t, const DirectionMesh::Weights& view, TensorPoint& point) {
-  Nodes nodes;
-  if (!t.view) take_views(view, nodes);
-  for (uint32_t m = 0; m < point.count; ++m) {
-    const uint32_t cluster = point.cluster[m];
-    if (t.view) take_ranks(t, view, cluster, nodes);
-    float* const coefficient = point.coefficient + m * padded_rank(t.rank);
-    scale(t, cluster, point.share[m], coefficient);
-    contract_cluster(t, nodes, cluster, coefficient, point.row + m * 3 * t.light_rank);
+/// A cluster's rows of the three channels in order of pairs: coefficients times colours. Behind the rank coefficients
+/// are 0, so what is written too far is 0 where the row ends and is written over by what follows elsewhere.
+HWY_INLINE void spread_cluster(const TensorTables& t, uint32_t cluster, const float* coefficient, float* row) {
+  const Block d;
+  const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d)), padded = padded_rank(t.rank);
+  const float* color = t.color + size_t{cluster} * 3 * t.color_rank;
+  for (uint32_t c = 0; c < 3; ++c, row += t.width) {
+    std::fill_n(row + t.width - kRankPadding, kRankPadding, 0.0f);
+    for (uint32_t k = 0; k < t.color_rank; ++k) {
+      const auto factor = hn::Set(d, *color++);
+      for (uint32_t r = 0; r < padded; r += lanes) {
+        hn::StoreU(hn::Mul(hn::Load(d, coefficient + r), factor), d, row + k * t.rank + r);
+      }
+    }
   }
 }
 
-HWY_FLATTEN Vec3 under_light(const TensorTables& t, const DirectionMesh::Weights& light, const TensorPoint& point) {
+HWY_FLATTEN void with_view(const TensorTables& t, const DirectionMesh::Weights& view, TensorPoint& point) {
+  Nodes nodes;
+  if (t.order == TensorOrder::views) take_views(view, nodes);
+  point.view = view;
+  for (uint32_t m = 0; m < point.count; ++m) {
+    const uint32_t cluster = point.cluster[m];
+    float *const coefficient = point.coefficient + m * padded_rank(t.rank), *const row = point.row + m * 3 * t.width;
+    scale(t, cluster, point.share[m], coefficient);
+    if (t.order == TensorOrder::ranks) take_ranks(t, view, cluster, nodes);
+    if (t.order == TensorOrder::pairs) {
+      spread_cluster(t, cluster, coefficient, row);
+    } else {
+      contract_cluster(t, nodes, cluster, coefficient, row);
+    }
+  }
+}
+
+/// Lights three by three, each three with one weight.
+template <size_t kThrees>
+struct Threes {
+  hn::Vec<Block> weight[3 * kThrees];
+  const float* from[3 * kThrees];
+
+  /// The factor of a block of a cluster's row.
+  HWY_INLINE hn::Vec<Block> at(size_t place) const {
+    const Block d;
+    auto total = hn::Zero(d);
+    for (size_t i = 0; i < 3 * kThrees; i += 3) {
+      const auto first = hn::Mul(hn::Load(d, from[i] + place), weight[i]);
+      const auto second = hn::MulAdd(hn::Load(d, from[i + 1] + place), weight[i + 1], first);
+      total = hn::Add(total, hn::MulAdd(hn::Load(d, from[i + 2] + place), weight[i + 2], second));
+    }
+    return total;
+  }
+};
+
+/// The three lights of a node of the views, or of all of them.
+template <size_t kThrees>
+HWY_INLINE void take_lights(const TensorTables& t, uint32_t view, float share, const DirectionMesh::Weights& light,
+                            size_t three, Threes<kThrees>& threes) {
+  for (size_t i = 0; i < 3; ++i) {
+    threes.weight[3 * three + i] = hn::Set(Block(), share * light.weight[i]);
+    threes.from[3 * three + i] = t.light + (size_t{view} * t.lights + light.index[i]) * t.light_node();
+  }
+}
+
+template <size_t kThrees>
+HWY_INLINE Vec3 sum_of_rows(const TensorTables& t, const Threes<kThrees>& threes, const TensorPoint& point) {
   const Block d;
-  const float* from[3];
-  for (size_t i = 0; i < 3; ++i) from[i] = t.light + size_t{light.index[i]} * t.clusters * t.light_rank;
-  const auto w0 = hn::Set(d, light.weight[0]), w1 = hn::Set(d, light.weight[1]), w2 = hn::Set(d, light.weight[2]);
   auto red = hn::Zero(d), green = red, blue = red;
   for (uint32_t m = 0; m < point.count; ++m) {
-    const size_t first = size_t{point.cluster[m]} * t.light_rank;
-    const float* const row = point.row + m * 3 * t.light_rank;
-    for (uint32_t j = 0; j < t.light_rank; j += static_cast<uint32_t>(hn::Lanes(d))) {
-      const auto at = [&](size_t i) { return hn::Load(d, from[i] + first + j); };
-      const auto factor = hn::MulAdd(at(2), w2, hn::MulAdd(at(1), w1, hn::Mul(at(0), w0)));
+    const size_t first = size_t{point.cluster[m]} * t.width;
+    const float* const row = point.row + m * 3 * t.width;
+    for (uint32_t j = 0; j < t.width; j += static_cast<uint32_t>(hn::Lanes(d))) {
+      const auto factor = threes.at(first + j);
       red = hn::MulAdd(factor, hn::Load(d, row + j), red);
-      green = hn::MulAdd(factor, hn::Load(d, row + t.light_rank + j), green);
-      blue = hn::MulAdd(factor, hn::Load(d, row + 2 * t.light_rank + j), blue);
+      green = hn::MulAdd(factor, hn::Load(d, row + t.width + j), green);
+      blue = hn::MulAdd(factor, hn::Load(d, row + 2 * t.width + j), blue);
     }
   }
   const auto total = [&](auto sum) { return hn::GetLane(hn::SumOfLanes(d, sum)); };
   return {total(red), total(green), total(blue)};
+}
+
+HWY_FLATTEN Vec3 under_light(const TensorTables& t, const DirectionMesh::Weights& light, const TensorPoint& point) {
+  if (t.order == TensorOrder::pairs) {
+    Threes<3> threes;
+    for (size_t i = 0; i < 3; ++i) take_lights(t, point.view.index[i], point.view.weight[i], light, i, threes);
+    return sum_of_rows(t, threes, point);
+  }
+  Threes<1> threes;
+  take_lights(t, 0, 1, light, 0, threes);
+  return sum_of_rows(t, threes, point);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -22,22 +22,34 @@ struct TensorTexels {
 /// Adds `weight` times the four texels about `texel` (bilinear_at) to the point: bytes and shares.
 void add_tensor_texels(const TensorTexels& texels, const Vec2& texel, float weight, TensorPoint& point);
 
-/// A side, contracted as far as no query is needed.
-struct TensorTables {
-  uint32_t clusters, rank, color_rank, light_rank;  // that of the lights is padded
-  const float *least, *step;                        // [cluster][padded rank]: of bytes
-  const float* color;                               // [cluster][channel][rank]
-  const float* view;                                // [view][cluster][rank], where `table` is of ranks; else null
-  uint32_t view_rank;
-  const float* table;  // [view, or rank of the views][cluster][rank][rank of the colours][padded rank of the lights]
-  const float* light;  // [light][cluster][padded rank of the lights]
-
-  size_t table_row() const { return size_t{color_rank} * light_rank; }
-  size_t table_cluster() const { return rank * table_row(); }
-  size_t table_node() const { return clusters * table_cluster(); }
+/// What of a query its factors are contracted with last: the earlier, the larger the tables and the less is left.
+enum class TensorOrder {
+  pairs,  // all but texels, for every pair of directions
+  views,  // texels and lights, for every view
+  ranks,  // all of them
 };
 
-/// From the bytes and shares of a point to what multiplies the light: the view is contracted with the texels.
+/// A side, contracted as far as no query is needed. A point has a row of `width` numbers for every cluster and channel:
+/// [rank of the lights], or in order of pairs [rank of the colours][rank of the texels]; both padded.
+struct TensorTables {
+  TensorOrder order;
+  uint32_t clusters, rank, color_rank, width;
+  const float *least, *step;  // [cluster][padded rank]: of bytes
+  const float* color;         // [cluster][channel][rank]
+  const float* view;          // [view][cluster][rank], in order of ranks
+  uint32_t view_rank;
+  const float* table;  // [view, or rank of the views][cluster][rank][rank of the colours][width], not of pairs
+  const float*
+      light;  // [light][cluster][width], or [view][light][cluster][width] of pairs: what rows are multiplied by
+  uint32_t lights;
+
+  size_t table_row() const { return size_t{color_rank} * width; }
+  size_t table_cluster() const { return rank * table_row(); }
+  size_t table_node() const { return clusters * table_cluster(); }
+  size_t light_node() const { return size_t{clusters} * width; }
+};
+
+/// From the bytes and shares of a point to what multiplies the light.
 void contract_view(const TensorTables& tables, const DirectionMesh::Weights& view, TensorPoint& point);
 
 /// The sum of each channel under a light.

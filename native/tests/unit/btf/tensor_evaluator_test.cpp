@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "btf/tensor_contraction.h"
 #include "btf/tensor_images.h"
 #include "sphere/directions.h"
 #include "support/example_tensor.h"
@@ -32,8 +33,18 @@ void expect_same(const Rgb& a, const Rgb& b, float tolerance, uint64_t i) {
   EXPECT_NEAR(glm::distance(a, b), 0.0f, tolerance) << i << ": " << a.r << ' ' << a.g << ' ' << a.b << " / " << b.r;
 }
 
-void expect_defined(const TensorBtf& btf) {
-  const TensorEvaluator evaluator(shared(btf));
+TensorTables tables(const TensorBtf& btf, uint64_t most_bytes) {
+  return TensorContraction(btf, btf.sides[0], most_bytes).tables();
+}
+
+/// Of the first side's tables, in order of pairs.
+uint64_t bytes_of_pairs(const TensorBtf& btf) {
+  const TensorTables t = tables(btf, TensorEvaluator::kMostTableBytes);
+  return directions_on_side(btf.layout.views(), false).size() * t.lights * t.light_node() * sizeof(float);
+}
+
+void expect_defined(const TensorBtf& btf, uint64_t most_bytes) {
+  const TensorEvaluator evaluator(shared(btf), most_bytes);
   test::on_every_simd_target([&] {
     for (uint64_t i = 0; i < 200; ++i) {
       RandomStream random(12, i, 0);
@@ -47,6 +58,26 @@ void expect_defined(const TensorBtf& btf) {
   });
 }
 
+/// In every order: where there is room, in less than pairs take, and with none.
+void expect_defined(const TensorBtf& btf) {
+  for (const uint64_t most : {TensorEvaluator::kMostTableBytes, bytes_of_pairs(btf) - 1, uint64_t{0}}) {
+    expect_defined(btf, most);
+  }
+}
+
+TEST(TensorContraction, IsAsEarlyAsThereIsRoomFor) {
+  const TensorBtf btf = test::example_tensor(false, Companding::root, {3, 1, {1, 2, 3, 1}, false});
+  const uint64_t pairs = bytes_of_pairs(btf);
+  EXPECT_EQ(tables(btf, pairs).order, TensorOrder::pairs);
+  EXPECT_EQ(tables(btf, pairs - 1).order, TensorOrder::views);
+  EXPECT_EQ(tables(btf, 0).order, TensorOrder::ranks);
+}
+
+TEST(TensorContraction, IsNotOfPairsWherePointsHaveNoRoomForTheirRows) {
+  const test::TensorShape shape{128, 2, {16, 2, 2, 3}, false};  // 128 x 48 numbers are more than 4096
+  EXPECT_EQ(tables(test::example_tensor(false, Companding::root, shape), uint64_t{1} << 40).order, TensorOrder::views);
+}
+
 TEST(TensorEvaluator, IsTheDefinition) {
   for (const Companding companding : {Companding::none, Companding::root}) {
     expect_defined(test::example_tensor(true, companding));
@@ -58,6 +89,7 @@ TEST(TensorEvaluator, OfAllShapesIsTheDefinition) {
   expect_defined(test::example_tensor(false, Companding::root, {1, 1, {33, 3, 17, 3}, true}));  // Tucker
   expect_defined(test::example_tensor(false, Companding::root, {5, 1, {16, 6, 16, 1}, false}));
   expect_defined(test::example_tensor(false, Companding::root, {256, 8, {2, 2, 2, 1}, true}));
+  expect_defined(test::example_tensor(false, Companding::root, {2, 2, {17, 3, 2, 3}, true}));  // rows of 51
 }
 
 TEST(TensorImages, HaveTheSideOfTheirPair) {
