@@ -41,6 +41,7 @@ RENDER_KEYS = [
     "sky",
     "out_of_domain",
     "samples",
+    "memory",
 ]
 OBSERVE_KEYS = [
     "seconds",

@@ -49,13 +49,19 @@ def header(path: str | os.PathLike) -> dict:
     return said | {"frame": Frame(**said["frame"])}
 
 
-def read(path: str | os.PathLike) -> np.ndarray:
-    lib, name = library.load(), path_bytes(path)
+def size(path: str | os.PathLike) -> tuple[int, int, int]:
+    """Width, height and channels, without reading the pixels."""
     width, height, channels = c_uint32(), c_uint32(), c_uint32()
-    size = byref(width), byref(height), byref(channels)
-    lib.vlr_image_read(name, *size, None, 0)
-    pixels = np.empty((height.value, width.value, channels.value), np.float32)
-    lib.vlr_image_read(name, *size, pointer(pixels), pixels.size)
+    places = byref(width), byref(height), byref(channels)
+    library.load().vlr_image_read(path_bytes(path), *places, None, 0)
+    return width.value, height.value, channels.value
+
+
+def read(path: str | os.PathLike) -> np.ndarray:
+    width, height, channels = size(path)
+    pixels = np.empty((height, width, channels), np.float32)
+    again = byref(c_uint32()), byref(c_uint32()), byref(c_uint32())
+    library.load().vlr_image_read(path_bytes(path), *again, pointer(pixels), pixels.size)
     return pixels
 
 

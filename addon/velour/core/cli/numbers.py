@@ -81,6 +81,12 @@ def pixels(text: str) -> tuple[int, int, int, int]:
     return x0, y0, x1, y1
 
 
+def size_in_bytes(text: str) -> int:
+    """Bytes, or K, M, G, T of 1024 each."""
+    number, unit = (text[:-1], text[-1]) if text[-1:].upper() in ("K", "M", "G", "T") else (text, "")
+    return whole(1, 2**43)(number) << 10 * " KMGT".index(unit.upper() or " ")
+
+
 class Camera(NamedTuple):
     eye: tuple[float, ...]
     target: tuple[float, ...]

@@ -13,7 +13,7 @@ from ...native import Model, Scene, images, library, observe_job, render_job, ta
 from ...native.errors import refuse
 from .. import domain
 from ..cache import user_cache_folder
-from . import later, numbers, output, render_part, scene, unfinished
+from . import later, memory, numbers, output, render_part, scene, unfinished
 
 KEYS = (
     "seconds",
@@ -31,6 +31,7 @@ KEYS = (
     "sky",
     "out_of_domain",
     "samples",
+    "memory",
 )
 _MOST_SPP = 1 << 16  # of a render that a noise target ends
 
@@ -74,6 +75,7 @@ def run(args: argparse.Namespace) -> dict:
     options = _options(args)
     render_part.check(args, options)
     output.check_writable(args.output)
+    estimate = memory.check(args)
     with contextlib.ExitStack() as handles:
         reference = _read_reference(args)
         start = time.perf_counter()
@@ -102,7 +104,7 @@ def run(args: argparse.Namespace) -> dict:
     if reference is not None:
         rmse, relmse = images.compare(whole.read()[..., :3].copy(), reference)
     report |= {"stages": stages, "rmse": rmse, "relmse": relmse, "out_of_domain": outside}
-    report["samples"] = whole.ranges
+    report |= {"samples": whole.ranges, "memory": memory.report(estimate)}
     return {key: report[key] for key in KEYS}
 
 

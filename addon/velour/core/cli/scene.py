@@ -41,8 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     btf_options.add_arguments(parser)
     parser.add_argument(
-        "--memory", type=numbers.whole(1, 2**63), metavar="BYTES", help="that a BTF itself may take (4 GiB)"
-    )
+        "--memory", type=numbers.size_in_bytes, metavar="SIZE",
+        help="bytes, or K, M, G, T, that a render may take (what the system gives), and a BTF itself (4G)",
+    )  # fmt: skip
     parser.add_argument(
         "--size", type=numbers.picture_size, default=(640, 480), metavar="WxH", help="640x480"
     )

@@ -1,0 +1,133 @@
+"""What a render says that it will take: beside what it took, and against limits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from command_line import refused, velour
+from velour.core.memory_limit import Limit, memory_limit
+from velour.native import images
+
+MOST = 1.5  # times the measured peak
+
+
+@pytest.fixture
+def small(mesh_file, world_file, model_file, tmp_path) -> dict:
+    return {"mesh": mesh_file, "material": model_file, "world": world_file, "size": "32x24",
+            "output": tmp_path / "o.exr"}  # fmt: skip
+
+
+def render(scene: dict, *more):
+    options = [word for name, value in scene.items() for word in (f"--{name}", value)]
+    return ["render", *options, "--spp", 1, "--threads", 2, "--no-cache", *more]
+
+
+@pytest.fixture
+def large(measurement_file, tmp_path):
+    """{part of the estimate: what makes it large}, each made when it is asked for."""
+
+    def mesh():
+        n = 300
+        across, up = np.meshgrid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, n + 1))
+        points = np.stack([across, 0.1 * np.sin(7 * across), up], axis=-1).reshape(-1, 3)
+        corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n) + 1).reshape(-1, 1)
+        with open(tmp_path / "grid.obj", "wb") as file:
+            np.savetxt(file, points, "v %.6f %.6f %.6f")
+            np.savetxt(file, corner + np.array([0, n + 1, n + 2, 1]), "f %d %d %d %d")
+        return {"mesh": tmp_path / "grid.obj"}
+
+    def world():
+        images.write(tmp_path / "large.exr", np.full((1024, 2048, 3), 0.5, np.float32))
+        return {"world": tmp_path / "large.exr"}
+
+    return {
+        "mesh": mesh,
+        "material": lambda: {"material": measurement_file},
+        "world": world,
+        "picture": lambda: {"size": "1600x1200"},
+    }
+
+
+@pytest.mark.parametrize("part", ["mesh", "material", "world", "picture"])
+def test_the_estimate_is_no_less_than_the_peak_and_not_much_more(part, small, large):
+    told = velour(*render(small | large[part](), "--json")).json["memory"]
+    assert list(told["parts"]) == ["program", "mesh", "material", "world", "picture"]
+    assert told["estimated"] == sum(told["parts"].values())
+    assert told["peak"] <= told["estimated"] <= MOST * told["peak"]
+    assert told["estimated"] - told["parts"][part] < told["peak"], "the part does not show"
+
+
+def test_a_render_that_goes_on_from_a_side_file_takes_more(small):
+    wide = render(small | {"size": "1600x1200"}, "--spp", 16)
+    assert velour(*wide, "--time-limit", 1e-9).status == 3
+    told = velour(*wide, "--json").json["memory"]
+    assert told["peak"] <= told["estimated"] <= MOST * told["peak"]
+    assert told["estimated"] - 112 * 1600 * 1200 < told["peak"]
+
+
+def test_more_than_the_limit_is_refused_before_anything_is_rendered(small):
+    sentence = refused(*render(small | {"size": "20000x20000"}, "--memory", "2G"))
+    for words in (
+        "would take about 3",
+        "picture 35.8 GiB",
+        "above its limit of 2.0 GiB (--memory)",
+        "--crop",
+    ):
+        assert words in sentence
+    result = velour(*render(small, "--memory", "2G", "--log-level", "info"))
+    assert result.status == 0
+    assert "Estimated memory: " in result.err
+    assert " of 2.0 GiB (--memory): program " in result.err
+    assert "above its limit of 1 MiB (the Slurm job)" in refused(*render(small), SLURM_MEM_PER_NODE="1")
+
+
+@pytest.mark.parametrize("size", ["", "G", "-1", "1.5G", "2X", "2GB"])
+def test_sizes_that_are_none_are_wrong_usage(size, small):
+    assert velour(*render(small, f"--memory={size}")).status == 2
+
+
+def system(tmp_path, cgroup: str, **limits) -> dict:
+    """The root of a system whose process is in `cgroup`; limits by file, __ for slashes."""
+    (tmp_path / "proc/self").mkdir(parents=True)
+    (tmp_path / "proc/self/cgroup").write_text(cgroup)
+    for name, text in limits.items():
+        path = tmp_path / "sys/fs/cgroup" / name.replace("__", "/").replace("_dot_", ".")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"{text}\n")
+    return tmp_path
+
+
+def test_the_least_limit_of_the_groups_around_the_process_holds(tmp_path):
+    limits = {"a__memory_dot_max": 5 << 30, "a__b__memory_dot_max": "max", "a__b__c__memory_dot_max": 6 << 30}
+    root = system(tmp_path, "0::/a/b/c\n", **limits)
+    assert memory_limit({}, root) == Limit(5 << 30, "the cgroup")
+    assert memory_limit({"SLURM_MEM_PER_NODE": "4096"}, root) == Limit(4 << 30, "the Slurm job")
+    assert memory_limit({"SLURM_MEM_PER_NODE": "8192"}, root) == Limit(5 << 30, "the cgroup")
+
+
+def test_cgroups_of_version_1(tmp_path):
+    name = "memory__job__memory_dot_limit_in_bytes"
+    root = system(tmp_path, "4:cpu:/\n3:memory:/job\n0::/\n", **{name: 3 << 30})
+    assert memory_limit({}, root) == Limit(3 << 30, "the cgroup")
+    (root / "sys/fs/cgroup/memory/job/memory.limit_in_bytes").write_text("9223372036854771712\n")
+    assert memory_limit({}, root) is None
+
+
+def test_a_container_whose_group_has_another_name_inside(tmp_path):
+    root = system(tmp_path, "0::/host/name\n", memory_dot_max=2 << 30)
+    assert memory_limit({}, root) == Limit(2 << 30, "the cgroup")
+
+
+@pytest.mark.parametrize(
+    ("environment", "gib"),
+    [
+        ({"SLURM_MEM_PER_CPU": "1024", "SLURM_CPUS_ON_NODE": "8"}, 8),
+        ({"SLURM_MEM_PER_CPU": "1024"}, None),
+        ({"SLURM_MEM_PER_NODE": "0"}, None),
+        ({"SLURM_MEM_PER_NODE": "2048", "SLURM_MEM_PER_CPU": "9", "SLURM_CPUS_ON_NODE": "9"}, 2),
+        ({}, None),
+    ],
+)
+def test_limits_of_slurm_jobs(environment, gib, tmp_path):
+    limit = memory_limit(environment, tmp_path)
+    assert (limit and limit.size) == (gib and gib << 30)

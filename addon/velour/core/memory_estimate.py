@@ -1,0 +1,111 @@
+"""What a render of the command line will take, told from its files before they are read.
+
+The factors are those of measured peaks. They err to the safe side: what is freed before the next part comes
+is counted as if it stayed.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import NamedTuple
+
+from ..native import images, library
+
+MIB = 1 << 20
+
+_STARTING = 16 * MIB  # whatever the scene
+_THREAD = 2 * MIB
+_MESH = 6.5  # a byte of an OBJ file: its numbers, corners, the hierarchy
+_MODEL = 4  # a byte of a model: halves become floats, tables over the view
+_MEASUREMENT = 3  # a byte of a table: the table, its proposal
+_WORLD_PIXEL = 22  # texels and their sums
+_WORLD_VALUE = 8  # while it is read
+_PIXEL = 96  # sums of a pixel, and the picture that is written
+_MERGED_PIXEL = 112  # beside what a side file has
+
+
+class Estimate(NamedTuple):
+    """Bytes at the peak, of the whole process."""
+
+    program: int
+    mesh: int
+    material: int
+    world: int
+    picture: int
+
+    @property
+    def total(self) -> int:
+        return sum(self)
+
+    def __str__(self) -> str:
+        return ", ".join(f"{name} {size_text(value)}" for name, value in self._asdict().items())
+
+    @property
+    def remedy(self) -> str:
+        """What helps most."""
+        parts = self._asdict()
+        return _REMEDIES[max(parts, key=parts.get)]
+
+
+_REMEDIES = {
+    "program": "give it more",
+    "mesh": "take a mesh of fewer faces, or give it more",
+    "material": "fit a model and render that, or give it more",
+    "world": "take a picture of fewer pixels for the world, or give it more",
+    "picture": "render parts of it (--crop) and merge them, or give it more",
+}
+
+
+def estimate(
+    mesh: str,
+    material: str,
+    proposal: str | None,
+    world: str,
+    window: tuple[int, int],
+    goes_on: bool,
+    threads: int,
+) -> Estimate:
+    """`window`: pixels that are rendered, across and up; `goes_on`: beside those of a side file."""
+    of_material = _material(material)  # opens the library, which is a part of the program
+    width, height, channels = images.size(world)
+    return Estimate(
+        resident() + _STARTING + _THREAD * threads,
+        round(_MESH * os.path.getsize(mesh)),
+        of_material + (_MODEL * os.path.getsize(proposal) if proposal else 0),
+        width * height * (_WORLD_PIXEL + _WORLD_VALUE * channels),
+        window[0] * window[1] * (_PIXEL + (_MERGED_PIXEL if goes_on else 0)),
+    )
+
+
+def _material(path: str) -> int:
+    info = library.file_info(path)
+    if info["kind"] == "btf":
+        return info["raw_bytes"] * 4 // 3  # with coarser levels
+    return os.path.getsize(path) * (_MODEL if info["kind"] == "model" else _MEASUREMENT)
+
+
+def size_text(size: float) -> str:
+    for unit in ("bytes", "KiB", "MiB"):
+        if size < 1024:
+            return f"{size:.0f} {unit}"
+        size /= 1024
+    return f"{size:.1f} GiB"
+
+
+def resident() -> int:
+    """Bytes of this process that are in memory now; 0 where the system does not tell."""
+    return _status("VmRSS")
+
+
+def peak() -> int:
+    """The most that there ever were."""
+    return _status("VmHWM")
+
+
+def _status(field: str) -> int:
+    try:
+        with open("/proc/self/status", encoding="ascii") as file:
+            lines = dict(line.split(":", 1) for line in file if ":" in line)
+        return int(lines[field].split()[0]) * 1024
+    except (OSError, KeyError, ValueError):
+        return 0

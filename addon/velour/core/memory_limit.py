@@ -1,0 +1,56 @@
+"""How much memory the system or a batch engine lets this process have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+_NO_LIMIT = 1 << 60  # what version 1 of cgroups says where there is none is a little below 2^63
+
+
+class Limit(NamedTuple):
+    size: int  # bytes
+    of: str  # who says so
+
+
+def memory_limit(environment: Mapping[str, str], root: Path = Path("/")) -> Limit | None:
+    """The least of the limits of the process' cgroups and its Slurm job; None: nobody gives one."""
+    return min([*_of_cgroups(root), *_of_slurm(environment)], default=None)
+
+
+def _of_cgroups(root: Path) -> Iterator[Limit]:
+    for line in _text(root / "proc/self/cgroup").splitlines():
+        _, controllers, path = line.split(":", 2)
+        if controllers == "":
+            yield from _of_folders(root / "sys/fs/cgroup", path, "memory.max")
+        elif "memory" in controllers.split(","):
+            yield from _of_folders(root / "sys/fs/cgroup/memory", path, "memory.limit_in_bytes")
+
+
+def _of_folders(mount: Path, path: str, name: str) -> Iterator[Limit]:
+    """A group has the limits of those around it, too. In a container `path` may be one of the host's."""
+    group = mount / path.lstrip("/")
+    for folder in [group, *group.parents]:
+        text = _text(folder / name).strip()
+        if text.isdigit() and int(text) < _NO_LIMIT:
+            yield Limit(int(text), "the cgroup")
+        if folder == mount:
+            return
+
+
+def _of_slurm(environment: Mapping[str, str]) -> Iterator[Limit]:
+    """MiB; 0: all that the node has."""
+    node, cpu = (environment.get(f"SLURM_MEM_PER_{per}", "") for per in ("NODE", "CPU"))
+    cpus = environment.get("SLURM_CPUS_ON_NODE", "")
+    if node.isdigit() and int(node) > 0:
+        yield Limit(int(node) << 20, "the Slurm job")
+    elif cpu.isdigit() and cpus.isdigit() and int(cpu) > 0:
+        yield Limit(int(cpu) * int(cpus) << 20, "the Slurm job")
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError:
+        return ""
