@@ -7,30 +7,17 @@
 
 #include "render/preparation.h"
 #include "render/render.h"
-#include "support/test_scene.h"
+#include "unit/render/busy_scene.h"
 
 namespace velour {
 namespace {
 
 constexpr int kWidth = 37, kHeight = 21, kChannels = 4;
 
-/// Sphere on a square under an uneven sky and a rectangle.
+/// Of which some camera rays meet nothing.
 Scene uneven_scene() {
-  Scene scene;
-  const uint32_t ground = scene.add_mesh(test::square(3)), ball = scene.add_mesh(test::sphere(12));
-  scene.add_material({std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), false});
-  scene.add_instance(ground, {}, {0});
-  scene.add_instance(ball, test::shift({0, 0, 1}), {0});
-  std::vector<float> pixels(3 * 8 * 4);
-  for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<float>(i % 7) * 0.2f;
-  scene.set_environment(Environment::image({8, 4, 3, pixels}, 1, Mat3(1.0f)));
-  Light rectangle;
-  rectangle.type = Light::Type::rectangle;
-  rectangle.size = {1, 1};
-  rectangle.color = Rgb(20.0f);
-  rectangle.light_to_world = test::shift({2, 0, 3});
-  scene.add_light(rectangle);
-  scene.set_camera(test::camera_above(4));  // some camera rays meet nothing
+  Scene scene = test::busy_scene();
+  scene.set_camera(test::camera_above(4));
   scene.commit(2);
   return scene;
 }
