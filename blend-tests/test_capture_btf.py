@@ -1,5 +1,6 @@
 """Tiles of Blender captured as BTFs."""
 
+import importlib
 import json
 
 import bpy
@@ -60,6 +61,15 @@ class CaptureBtf(BlenderTest):
         other = json.loads((path / "btf.json").read_text())
         self.assertEqual(self._files(index), self._files(other))
         self.assertEqual(len(self._files(index)), 6)
+
+    def test_the_panel_tells_how_many_bytes_it_takes(self):
+        self._plane(size=2)
+        panel = importlib.import_module(f"{inputs.ADDON}.ui.tile_panel")
+        for texels in (16, 48):
+            self._capture(f"tile-{texels}", texels=texels, views=8, lights=16, samples=1)
+            written = sum(file.stat().st_size for file in (self.folder / f"tile-{texels}.btf").iterdir())
+            told = panel.capture_bytes(bpy.context.object.velour)
+            self.assertLess(abs(written / told - 1), 0.1, (written, told))
 
     def test_size_is_that_of_the_scene_in_metres(self):
         self._plane(size=2)

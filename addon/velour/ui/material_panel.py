@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..core.model_warnings import panel_warnings
 from ..engine.engine import VelourRenderEngine
 from ..export.nodes import active_output, velour_node
 from ..export.notes import Notes
@@ -95,8 +96,8 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
             draw_rows(self.layout, _btf_rows(info))
         else:
             _draw_numbers(self.layout, info)
-        for warning in info["warnings"]:
-            draw_sentence(context, self.layout, warning, icon="INFO")
+        for sentence in panel_warnings(info):
+            draw_sentence(context, self.layout, sentence, icon="INFO")
         self.layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT")
 
 

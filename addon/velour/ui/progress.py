@@ -18,11 +18,13 @@ def draw_progress(context, layout):
     job = context.window_manager.velour
     if not job.running:
         return
+    has_progress = hasattr(layout, "progress")  # 4.0 and newer
+    if not has_progress:
+        layout.label(text=_text(job), icon="TIME")  # beside a slider there is no room for the time left
     row = layout.row(align=True)
-    if hasattr(row, "progress"):  # 4.0 and newer
+    if has_progress:
         row.progress(factor=job.fraction, text=_text(job))
     else:
-        row.label(text=_text(job), icon="TIME")
         row.prop(job, "fraction", text="", slider=True)
     row.operator(VELOUR_OT_cancel_fit.bl_idname, text="", icon="CANCEL")
 

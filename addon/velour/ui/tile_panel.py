@@ -77,8 +77,15 @@ class VELOUR_COLLECTION_PT_tile(TilePanel, bpy.types.Panel):
         self._draw(context, context.collection, context.collection.name)
 
 
+def capture_bytes(settings):
+    """What a capture of one side takes on disk, within a few per cent."""
+    rows = settings.texels * (8 * settings.texels + 32)  # colours and their errors as half floats, and heads
+    maps = 12 * settings.texels**2  # coverage and heights
+    return settings.views * (settings.lights * rows + maps)
+
+
 def _size(settings):
-    """What is written: half floats, three channels; of two sides all four pairs of hemispheres."""
-    front = 6 * settings.texels**2 * settings.views * settings.lights
+    """Of two sides all four pairs of hemispheres."""
+    front = capture_bytes(settings)
     one, both = data_size(front), data_size(4 * front)
     return {"ONE": one, "TWO": both, "AUTOMATIC": f"{one}, with holes {both}"}[settings.sides]

@@ -1,0 +1,38 @@
+"""What the panel says of a model that misses its tolerance: one sentence, whatever the number of views."""
+
+from __future__ import annotations
+
+
+def _info(path) -> dict:
+    from velour.native import Model
+
+    with Model.load(path) as model:
+        return model.info()
+
+
+def test_missed_views_are_one_sentence(model_file):
+    from velour.core.model_warnings import panel_warnings
+
+    info = _info(model_file)
+    about_views = [w for w in info["warnings"] if w.startswith(("view ", "fitted views"))]
+    assert len(about_views) > 3
+    first, *others = panel_warnings(info)
+    assert first.startswith("The tolerance of 0.0001 is missed at 5°, 30°")
+    assert others == [w for w in info["warnings"] if w not in about_views]
+
+
+def test_others_are_left_as_they_are():
+    from velour.core.model_warnings import panel_warnings
+
+    warnings = ["view 85 degrees: the measurement does not cover it", "the measurement is not reciprocal"]
+    assert panel_warnings({"warnings": warnings, "tolerance": 0.02}) == warnings
+
+
+def test_views_between_the_reported_ones():
+    from velour.core.model_warnings import panel_warnings
+
+    warnings = [
+        "fitted views that miss the tolerance with at most 3 lobes (degrees): 72.1; the worst is 72.1"
+    ]
+    (sentence,) = panel_warnings({"warnings": warnings, "tolerance": 0.02})
+    assert sentence.startswith("The tolerance of 0.02 is missed between the reported views.")
