@@ -224,7 +224,7 @@ def _relative_error(error):
 
 
 def _evaluations(rate):
-    return "not measured" if rate is None else f"{rate / 1e6:.2g} million evaluations a second, one core"
+    return "not measured" if rate is None else f"{rate / 1e6:.2g} million a second, one core"
 
 
 def draw_rows(layout, rows):

@@ -79,9 +79,11 @@ class VELOUR_COLLECTION_PT_tile(TilePanel, bpy.types.Panel):
 
 def capture_bytes(settings):
     """What a capture of one side takes on disk, within a few per cent."""
-    rows = settings.texels * (8 * settings.texels + 32)  # colours and their errors as half floats, and heads
+    row = 6 * settings.texels + 16  # colours as half floats, and what the file says of the row
+    if settings.samples > 1:
+        row += 2 * settings.texels + 16  # errors
     maps = 12 * settings.texels**2  # coverage and heights
-    return settings.views * (settings.lights * rows + maps)
+    return settings.views * (settings.lights * settings.texels * row + maps)
 
 
 def _size(settings):

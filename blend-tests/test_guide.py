@@ -1,0 +1,114 @@
+"""The user guide: its snippets run, and what it names is what Blender and Velour show."""
+
+import shlex
+import shutil
+from pathlib import Path
+
+import bpy
+
+from support import blender, guide, inputs, labels, process
+from support.blender import BlenderTest
+
+ROOT = Path(__file__).resolve().parents[1]
+MEASUREMENT = "cc_iris_purple_gem_rgb.bsdf"  # the guide's; any will do, formats are recognised by content
+SECONDS = 120
+NEWER = {"Get Extensions", "Install from Disk..."}  # of 4.2 and newer; all others are 3.4's
+
+
+class Snippets(BlenderTest):
+    """Each page's, in order, in a folder of their own."""
+
+    def _run_page(self, name):
+        page = guide.FOLDER / name
+        shutil.copy(inputs.glossy_measurement(), self.folder / MEASUREMENT)
+        (self.folder / "scripts").symlink_to(ROOT / "scripts")
+        found = guide.snippets(page)
+        self.assertEqual({language for language, _ in found} - {"python", "sh"}, set())
+        python = [text for language, text in found if language == "python"]
+        if python:
+            self._run_python("\n".join(python))
+        for language, text in found:
+            if language == "sh":
+                self._run(["sh", "-e", "-c", text])
+        return found
+
+    def _run_python(self, text):
+        path = self.folder / "snippets.py"
+        path.write_text(text)
+        self._run(blender.child_command("--python-exit-code", "1", "--python", path))
+
+    def _run(self, command):
+        done = process.run(["env", "-C", self.folder, *command], seconds=SECONDS)
+        self.assertEqual(done.returncode, 0, f"{shlex.join(map(str, command))}\n{done.stdout}")
+
+    def test_first_material(self):
+        self.assertEqual([language for language, _ in self._run_page("first_material.md")], ["python", "sh"])
+        self.assertTrue((self.folder / "iris.velour").is_file())
+        self.assertTrue((self.folder / "monkey_0001.png").is_file())
+
+    def test_tolerance(self):
+        self._run_page("tolerance.md")
+        sizes = [(self.folder / f"iris_{tolerance}.velour").stat().st_size for tolerance in (0.1, 0.02)]
+        self.assertLess(*sizes)
+        self.assertTrue((self.folder / "iris_0.05.csv").is_file())
+
+    def test_cloth(self):
+        self._run_page("cloth.md")
+        self.assertGreater((self.folder / "weave.velour").stat().st_size, 10_000)
+
+    def test_farm(self):
+        model = inputs.model_bytes(inputs.glossy_measurement())
+        (self.folder / "paint.velour").write_bytes(model)
+        bpy.ops.mesh.primitive_uv_sphere_add()
+        bpy.ops.velour.load_material(filepath=str(self.folder / "paint.velour"))
+        bpy.ops.object.light_add(location=(0, 0, 3))
+        bpy.ops.object.camera_add(location=(0, 0, 5))
+        scene = bpy.context.scene
+        scene.camera = bpy.context.object
+        scene.render.engine, scene.velour.samples, scene.render.resolution_percentage = "VELOUR", 4, 3
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "shot.blend"))
+        self.assertEqual(len(self._run_page("farm.md")), 3)
+        self.assertEqual(len(list((self.folder / "frames").glob("shot_*.exr"))), 2)
+
+    def test_no_page_is_left_out(self):
+        run = {"first_material.md", "tolerance.md", "cloth.md", "farm.md"}
+        self.assertEqual({page.name for page in guide.PAGES if guide.snippets(page)}, run)
+
+    def test_a_wrong_snippet_is_seen(self):
+        with self.assertRaises(AssertionError):
+            self._run_python("import bpy\nbpy.ops.velour.fit_all()")
+        with self.assertRaises(AssertionError):
+            self._run(["sh", "-e", "-c", "scripts/farm missing.blend --no-submit\ntrue"])
+
+
+class Labels(BlenderTest):
+    def test_ours(self):
+        known = labels.ours()
+        named = {label for page in guide.PAGES for label in guide.our_labels(page)}
+        self.assertGreater(len(named), 25)
+        self.assertEqual(named - known, set())
+        self.assertNotIn("Capture BTFs", known)
+        self.assertNotIn("Subsurface", known)  # Blender's
+
+    def test_blenders(self):
+        known = labels.blenders()
+        named = {label for page in guide.PAGES for label in guide.blenders_labels(page)}
+        self.assertGreater(len(named), 15)
+        self.assertLessEqual(NEWER, named)
+        self.assertEqual((named & NEWER if bpy.app.version >= (4, 2) else named - NEWER) - known, set())
+        self.assertNotIn("Capture BTF", known)
+
+    def test_menus(self):
+        paths = [path for page in guide.PAGES for path in guide.menu_paths(page)]
+        self.assertGreaterEqual({path for path, _ in paths}, {"File > Import", "Add > Mesh"})
+        for path, entry in paths:
+            self.assertIn(entry, labels.our_entries(path), path)
+        self.assertNotIn("Mesostructure", labels.our_entries("File > Import"))
+
+    def test_messages(self):
+        source = labels.our_texts()
+        quoted = {message for page in guide.PAGES for message in guide.messages(page)}
+        self.assertGreater(len(quoted), 3)
+        for message in quoted:
+            self.assertTrue(any(message in text for text in source), message)
+        self.assertFalse(any("nothing shines on it" in text for text in source))

@@ -1,0 +1,169 @@
+"""The window as the guide shows it: a 3D viewport beside a high Properties editor; pictures of its parts."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+import bpy
+from support import framebuffer, inputs, window
+
+from . import headers, panels
+
+PROPERTIES_WIDTH = 440
+WINDOW_HEIGHT = 660  # of pictures of the whole window, the bar at its top included
+_HEADER = 13  # half the height of a panel's header
+_MARGIN = 6  # around panels on pictures
+_PATIENCE = 600  # seconds that a job may take
+_CLICKS = 5
+
+
+def area(kind: str) -> bpy.types.Area:
+    return next(area for area in window.first().screen.areas if area.type == kind)
+
+
+def inside(kind: str):
+    """The context of what the artist does in an editor."""
+    editor = area(kind)
+    return bpy.context.temp_override(window=window.first(), area=editor, region=main_region(editor))
+
+
+def main_region(editor: bpy.types.Area) -> bpy.types.Region:
+    return next(region for region in editor.regions if region.type == "WINDOW")
+
+
+class Desk:
+    """Methods that take their time yield the seconds until the next turn of Blender's event loop."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+
+    def arrange(self):
+        """Outliner closed, Properties wide, the viewport as high as the pictures of the window."""
+        with inside("OUTLINER"):
+            bpy.ops.screen.area_close()
+        yield 0.3
+        properties = area("PROPERTIES")
+        middle = properties.y + properties.height // 2
+        yield from self._move_border(properties.x - 1, middle, properties.width - PROPERTIES_WIDTH)
+        view = area("VIEW_3D")
+        lower = window.first().height - WINDOW_HEIGHT
+        yield from self._move_border(view.x + view.width // 2, view.y - 1, lower - view.y)
+
+    def show(self, tab: str):
+        """A tab of the Properties editor."""
+        area("PROPERTIES").spaces.active.context = tab
+        yield 0.8
+        area("PROPERTIES").tag_redraw()
+        yield 0.4
+
+    def fold(self, tab: str, label: str, is_open: bool):
+        """Opens or closes a panel, by clicks on its header: it may still move while its editor is drawn."""
+        for _ in range(_CLICKS):
+            header = next(place.header for place in self._places(tab, self._screen()) if place.label == label)
+            if header.is_open == is_open:
+                return
+            x = main_region(area("PROPERTIES")).x + 90
+            yield from self.click(x, window.first().height - 1 - header.row)
+        raise TimeoutError(f"panel {label!r} of tab {tab} does not fold")
+
+    def click(self, x: int, y: int):
+        """The left button, at window coordinates."""
+        for kind, value in (("MOUSEMOVE", "NOTHING"), ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE")):
+            window.first().event_simulate(type=kind, value=value, x=x, y=y)
+            yield 0.15
+        yield 0.4
+
+    def point(self, x: int, y: int):
+        """The mouse, and no button."""
+        window.first().event_simulate(type="MOUSEMOVE", value="NOTHING", x=x, y=y)
+        yield 0.3
+
+    def press(self, key: str, x: int, y: int):
+        for value in ("PRESS", "RELEASE"):
+            window.first().event_simulate(type=key, value=value, x=x, y=y)
+            yield 0.15
+        yield 0.4
+
+    def plot(self, kind: str):
+        """Until the plot is drawn."""
+        preview = importlib.import_module(f"{inputs.ADDON}.ui.plot_preview")
+        bpy.context.window_manager.velour.plot.kind = kind
+        area("PROPERTIES").tag_redraw()
+        yield 1.0
+        while preview._waiting:
+            yield 0.2
+        yield 0.8
+
+    def start(self, operator, **arguments):
+        """A long action, as its button in the 3D viewport's window starts it."""
+        with inside("VIEW_3D"):
+            state = operator("INVOKE_DEFAULT", **arguments)
+        if state != {"RUNNING_MODAL"}:
+            raise RuntimeError(f"{operator.idname()} did not start: {state}")
+
+    def job(self, until: float = 2.0):
+        """Until what was started is done, or has come so far."""
+        state = bpy.context.window_manager.velour
+        for _ in range(10 * _PATIENCE):
+            yield 0.1
+            if not (state.running or state.waiting) or state.fraction >= until:
+                return
+        raise TimeoutError(f"{state.subject}: {state.stage} takes too long")
+
+    def picture_of_panels(self, name: str, tab: str, first: str | None, last: str | None = None):
+        """From the header of one panel, or the top of the tab, to the end of another, or of the same."""
+        pixels = self._screen()
+        found = self._places(tab, pixels)
+        labels = [place.label for place in found]
+        end = found[labels.index(last or first)].end
+        region = main_region(area("PROPERTIES"))
+        top = _top(pixels, region) if first is None else found[labels.index(first)].header.row - _HEADER - 1
+        bottom = _last_row(pixels, region) + _MARGIN if end is None else end - _HEADER - 1
+        self._write(name, pixels[top:bottom, region.x : region.x + region.width])
+
+    def picture_of_editor(self, name: str, kind: str, height: int | None = None):
+        """An area of the window, or its upper part."""
+        pixels, editor = self._screen(), area(kind)
+        top = _top(pixels, editor)
+        rows = slice(top, top + (height or editor.height))
+        self._write(name, pixels[rows, editor.x : editor.x + editor.width])
+
+    def picture_of_window(self, name: str, height: int | None = WINDOW_HEIGHT, width: int | None = None):
+        self._write(name, self._screen()[:height, :width])
+
+    def _move_border(self, x: int, y: int, delta: int):
+        yield from self.point(x, y)
+        with window.override():
+            bpy.ops.screen.area_move(x=x, y=y, delta=delta)
+        yield 0.3
+
+    def _places(self, tab: str, pixels) -> list[panels.Place]:
+        region = main_region(area("PROPERTIES"))
+        top = _top(pixels, region)
+        strip = pixels[top : top + region.height, region.x : region.x + headers.STRIP]
+        found = [header._replace(row=header.row + top) for header in headers.find(strip)]
+        with inside("PROPERTIES"):
+            return panels.places(tab, found)
+
+    def _screen(self):
+        """[height x width x 3] bytes, the highest row first."""
+        with window.override():
+            bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
+        return framebuffer.at_rest(self.folder / framebuffer.FILE)[::-1]
+
+    def _write(self, name: str, pixels):
+        framebuffer.write_png(self.folder / f"{name}.png", pixels[::-1])
+
+
+def _top(pixels, part: bpy.types.Area | bpy.types.Region) -> int:
+    """Its highest row on a picture of the screen."""
+    return len(pixels) - part.y - part.height
+
+
+def _last_row(pixels, region: bpy.types.Region) -> int:
+    """Of what stands in the region: below it the ground is empty."""
+    top = _top(pixels, region)
+    rows = pixels[top : top + region.height, region.x : region.x + region.width - 20].astype(int)
+    filled = rows.max(axis=(1, 2)) - rows.min(axis=(1, 2)) > 20
+    return top + int(filled.nonzero()[0].max())

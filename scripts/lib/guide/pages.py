@@ -1,0 +1,81 @@
+"""The numbers of a chapter, written where its page has markers for them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from generated import replaced
+from markdown_table import table
+from provenance import conditions
+from velour.core import files
+
+
+def write(page: Path, facts: dict) -> None:
+    text = page.read_text(encoding="utf-8")
+    parts = {
+        "taken": _taken(facts),
+        **{name: part(facts) for name, part in _PARTS.get(page.stem, {}).items()},
+    }
+    for name, part in parts.items():
+        text = replaced(text, name, part, "guide")
+    files.write_text(page, text)
+
+
+def _taken(facts: dict) -> str:
+    c = conditions(0, 0)
+    return (
+        f"Pictures and numbers of this page were taken on {c['date']}, commit {c['commit']}, in\n"
+        f"Blender {facts['blender']} on {c['machine']}.\n"
+    )
+
+
+def _first_material(facts: dict) -> str:
+    return (
+        f"The paint of the pictures: {facts['lobes']} lobes, {_kb(facts['bytes'])} in place of the\n"
+        f"{_kb(facts['measurement_bytes'])} of the measurement, relative error {facts['error']:.3f}.\n"
+    )
+
+
+def _tolerances(facts: dict) -> str:
+    rows = [
+        [
+            f"{row['tolerance']:g}",
+            str(row["max_lobes"]),
+            str(row["lobes"]),
+            _kb(row["bytes"]),
+            f"{row['error']:.3f}",
+        ]
+        for row in facts["fits"]
+    ]
+    return table(["Tolerance", "Max Lobes", "Lobes", "Size", "Relative error"], rows)
+
+
+def _for_scene(facts: dict) -> str:
+    scene = facts["scene"]
+    return (
+        f"Here: {scene['bytes']} bytes of parameters in place of {scene['full_bytes']}, picture error\n"
+        f"{scene['picture_error']:.2g} (of the full model {scene['full_picture_error']:.2g}).\n"
+    )
+
+
+def _cloth(facts: dict) -> str:
+    return (
+        f"The weave of the pictures: the capture has {_mb(facts['capture_bytes'])}, the material"
+        f" {_mb(facts['model_bytes'])}\n(1:{facts['ratio']:.0f}), and {_mb(facts['outlined_bytes'])}"
+        " with its outline.\n"
+    )
+
+
+_PARTS = {
+    "first_material": {"fit": _first_material},
+    "tolerance": {"tolerances": _tolerances, "scene": _for_scene},
+    "cloth": {"cloth": _cloth},
+}
+
+
+def _kb(count: int) -> str:
+    return f"{count / 1000:.1f} kB" if count < 100_000 else f"{count / 1000:.0f} kB"
+
+
+def _mb(count: int) -> str:
+    return f"{count / 1e6:.3g} MB"

@@ -1,0 +1,61 @@
+"""What the guide's pictures show: a monkey, or a cloth, under one of the worlds that come with Blender."""
+
+import math
+import os
+
+import bpy
+from mathutils import Vector
+
+WORLD = "courtyard.exr"
+_ROTATION = 250.0  # degrees: the sun comes from the left
+
+
+def start(samples: int, size: tuple[int, int]) -> bpy.types.Scene:
+    """The cube and the lamp of a new file are gone, the engine is Velour."""
+    for name in ("Cube", "Light"):
+        bpy.data.objects.remove(bpy.data.objects[name])
+    scene = bpy.context.scene
+    scene.render.engine = "VELOUR"
+    scene.velour.samples = scene.velour.viewport_samples = samples
+    scene.render.resolution_x, scene.render.resolution_y = size
+    return scene
+
+
+def add_monkey() -> bpy.types.Object:
+    bpy.ops.mesh.primitive_monkey_add(rotation=(math.radians(-25), 0, math.radians(30)))
+    monkey = bpy.context.object
+    bpy.ops.object.subdivision_set(level=3)
+    bpy.ops.object.shade_smooth()
+    return monkey
+
+
+def add_world() -> None:
+    world = bpy.context.scene.world
+    world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    picture, mapping, place = (
+        nodes.new(f"ShaderNode{name}") for name in ("TexEnvironment", "Mapping", "TexCoord")
+    )
+    folder = os.path.join(bpy.utils.system_resource("DATAFILES"), "studiolights", "world")
+    picture.image = bpy.data.images.load(os.path.join(folder, WORLD))
+    mapping.inputs["Rotation"].default_value[2] = math.radians(_ROTATION)
+    links.new(place.outputs["Generated"], mapping.inputs["Vector"])
+    links.new(mapping.outputs["Vector"], picture.inputs["Vector"])
+    links.new(picture.outputs["Color"], nodes["Background"].inputs["Color"])
+
+
+def look_at(target: tuple[float, float, float], origin: tuple[float, float, float], lens: float) -> None:
+    camera = bpy.context.scene.camera
+    camera.location, camera.data.lens = origin, lens
+    camera.rotation_euler = (Vector(target) - camera.location).to_track_quat("-Z", "Y").to_euler()
+
+
+def render(folder, name: str, size: tuple[int, int] | None = None) -> None:
+    """F12, and the picture saved as it is seen."""
+    scene = bpy.context.scene
+    if size:
+        scene.render.resolution_x, scene.render.resolution_y = size
+    bpy.ops.render.render()
+    scene.render.image_settings.file_format = "PNG"
+    scene.render.image_settings.color_mode = "RGB"
+    bpy.data.images["Render Result"].save_render(str(folder / f"{name}.png"))
