@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from generated import replaced
 from markdown_table import table
 from provenance import conditions
 from velour.core import files
+from velour_cli import ROOT
+
+GUIDE = ROOT / "docs/guide"
 
 
-def write(page: Path, facts: dict) -> None:
+def write(chapter: str, facts: dict) -> None:
+    page = GUIDE / f"{_PAGES.get(chapter, chapter)}.md"
     text = page.read_text(encoding="utf-8")
     parts = {
         "taken": _taken(facts),
-        **{name: part(facts) for name, part in _PARTS.get(page.stem, {}).items()},
+        **{name: part(facts) for name, part in _PARTS.get(chapter, {}).items()},
     }
     for name, part in parts.items():
         text = replaced(text, name, part, "guide")
@@ -50,15 +52,7 @@ def _tolerances(facts: dict) -> str:
     return table(["Tolerance", "Max Lobes", "Lobes", "Size", "Relative error"], rows)
 
 
-def _for_scene(facts: dict) -> str:
-    scene = facts["scene"]
-    return (
-        f"Here: {scene['bytes']} bytes of parameters in place of {scene['full_bytes']}, picture error\n"
-        f"{scene['picture_error']:.2g} (of the full model {scene['full_picture_error']:.2g}).\n"
-    )
-
-
-def _cloth(facts: dict) -> str:
+def _tile(facts: dict) -> str:
     return (
         f"The weave of the pictures: the capture has {_mb(facts['capture_bytes'])}, the material"
         f" {_mb(facts['model_bytes'])}\n(1:{facts['ratio']:.0f}), and {_mb(facts['outlined_bytes'])}"
@@ -66,10 +60,11 @@ def _cloth(facts: dict) -> str:
     )
 
 
+_PAGES = {"tile": "cloth"}  # of a chapter that has none of its own
 _PARTS = {
     "first_material": {"fit": _first_material},
-    "tolerance": {"tolerances": _tolerances, "scene": _for_scene},
-    "cloth": {"cloth": _cloth},
+    "tolerance": {"tolerances": _tolerances},
+    "tile": {"tile": _tile},
 }
 
 

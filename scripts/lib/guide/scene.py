@@ -10,7 +10,7 @@ WORLD = "courtyard.exr"
 _ROTATION = 250.0  # degrees: the sun comes from the left
 
 
-def start(samples: int, size: tuple[int, int]) -> bpy.types.Scene:
+def start(samples: int = 128, size: tuple[int, int] = (640, 420)) -> bpy.types.Scene:
     """The cube and the lamp of a new file are gone, the engine is Velour."""
     for name in ("Cube", "Light"):
         bpy.data.objects.remove(bpy.data.objects[name])

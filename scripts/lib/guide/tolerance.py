@@ -1,4 +1,4 @@
-"""The same measurement with several tolerances, side by side; and a model for the scene."""
+"""The same measurement with several tolerances, side by side."""
 
 import bpy
 import numpy as np
@@ -6,7 +6,7 @@ from support import framebuffer, scenes
 
 from . import scene
 from .desk import inside
-from .facts import fit_facts, model_info
+from .facts import fit_facts
 
 SIZE = (250, 250)
 SAMPLES = 256
@@ -35,7 +35,6 @@ def steps(desk, measurement, facts):
     _side_by_side(desk.folder, [*(f"part-{number}" for number in range(len(FITS))), "part-measured"])
     yield from desk.plot("ORDER")
     desk.picture_of_panels("size_plot", "MATERIAL", "Plots")
-    yield from _fit_for_scene(desk, material, facts)
 
 
 def _side_by_side(folder, names):
@@ -45,18 +44,3 @@ def _side_by_side(folder, names):
     for name in names:
         (folder / f"{name}.png").unlink()
     framebuffer.write_png(folder / "tolerances.png", np.concatenate(pictures, axis=1))
-
-
-def _fit_for_scene(desk, material, facts):
-    bpy.context.scene.frame_end = 1
-    desk.start(bpy.ops.velour.fit_for_scene, material=material.name)
-    yield from desk.job()
-    yield 1.0
-    desk.picture_of_panels("scene_model", "MATERIAL", "Model for the Scene")
-    info = model_info(scenes.velour_node(material).velour.scene_model)
-    facts["scene"] = {
-        "bytes": info["parameter_bytes"],
-        "full_bytes": info["scene"]["full_parameter_bytes"],
-        "picture_error": info["scene"]["picture_error"],
-        "full_picture_error": info["scene"]["full_picture_error"],
-    }
