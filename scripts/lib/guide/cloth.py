@@ -7,7 +7,7 @@ from support import scenes
 from . import scene
 from .desk import inside
 
-SIZE = (640, 420)
+SIZE = (560, 440)
 SAMPLES = 64
 REPEATS, ROTATION = (14, 14), 30.0  # degrees
 
@@ -22,7 +22,7 @@ def steps(desk, _measurement, _facts):
     placement = scenes.velour_node(bpy.context.view_layer.objects.active.active_material).velour.placement
     placement.mode, placement.repeats, placement.rotation = "REPEATS", REPEATS, np.radians(ROTATION)
     scene.add_world()
-    scene.look_at((0, 0, 0), (0.35, -3.2, 0.5), 90)
+    scene.look_at((0, 0, 0), (0.5, -3.9, 0.4), 90)
     yield from desk.show("MATERIAL")
     yield from desk.plot("ORDER")
     desk.picture_of_panels("placement", "MATERIAL", "Placement")
