@@ -109,8 +109,9 @@ class ShapeSearch {
       if (colors < 1 || colors > 3 || share < kLeastShare || share > kMostShare) return;
       next.push_back({clusters, members, colors, share});
     };
-    add(of.clusters, of.members, of.colors, of.texel_share + kShareStep);
-    add(of.clusters, of.members, of.colors, of.texel_share - kShareStep);
+    for (const double step : {kShareStep, -kShareStep}) {
+      add(of.clusters, of.members, of.colors, next_share(of, step));
+    }
     add(2 * of.clusters, of.members, of.colors, of.texel_share);
     add(of.clusters / 2, of.members, of.colors, of.texel_share);
     add(of.clusters, of.members + 1, of.colors, of.texel_share);
@@ -118,6 +119,18 @@ class ShapeSearch {
     add(of.clusters, of.members, of.colors + 1, of.texel_share);
     add(of.clusters, of.members, of.colors - 1, of.texel_share);
     return next;
+  }
+
+  /// The next share in steps of `step` that is another rank of texels, which has limits; out of bounds if none is.
+  double next_share(ShapeChoice of, double step) const {
+    const auto rank = [&] {
+      const auto shape = largest_shape(of, options_.extent, options_.bytes);
+      return shape ? shape->rank.texel : 0;
+    };
+    const uint32_t now = rank();
+    do of.texel_share += step;
+    while (of.texel_share >= kLeastShare && of.texel_share <= kMostShare && rank() == now);
+    return of.texel_share;
   }
 
   /// Of a choice, tried once; more than all where it is not within the bytes.
