@@ -73,7 +73,7 @@ def model_rows(folder):
     assert rows["Directions"] == "16 views, 16 lights", rows
     assert rows["Lobes"] == f"{info['lobes']}, {info['coefficients']} coefficients a texel", rows
     assert rows["Side"] == f"front: {info['parameter_bytes'] / 1e6:.2f} MB", rows
-    assert rows["Speed"].endswith("million evaluations a second, one core"), rows
+    assert rows["Speed"].endswith("million a second, one core"), rows
     assert rows["Size"] == f"{size / 1e6:.2f} MB, 1:{raw / size:.0f}", rows
     assert float(rows["PSNR"].removesuffix(" dB")) > 40, rows  # four greys: a constant holds them
     assert rows["Unseen pairs"] == "not measured", rows
