@@ -19,7 +19,7 @@ from support import process
 
 CHAPTERS = ("install", "first_material", "tolerance", "tile", "cloth")
 MEASUREMENT = "brdf/cc_iris_purple_gem_rgb.bsdf"
-SCREEN = "1000x1900"  # wide enough for the whole window in a page, high enough for the longest panel
+SCREEN = "1000x2300"  # wide enough for the whole window in a page, high enough for the longest panel
 SECONDS = 600
 FILES = ROOT / "build/guide"
 
