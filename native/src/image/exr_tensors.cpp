@@ -92,9 +92,10 @@ using ChannelNames = std::vector<std::string>;
 ChannelNames shown_names(uint64_t channels) { return channels == 3 ? ChannelNames{"R", "G", "B"} : ChannelNames{"Y"}; }
 
 /// Of parts that reach beyond the first one. Blender 3.4 makes room for the first part's pixels and writes all others
-/// there, past its end; channels of names that it does not know it leaves out.
+/// there, past its end; channels of names that it does not know it leaves out. In the order of the alphabet, in which
+/// they are stored.
 ChannelNames hidden_names(uint64_t channels) {
-  return channels == 3 ? ChannelNames{"value_r", "value_g", "value_b"} : ChannelNames{"value"};
+  return channels == 3 ? ChannelNames{"value_x", "value_y", "value_z"} : ChannelNames{"value"};
 }
 
 /// Those of a part that there is.

@@ -12,7 +12,7 @@ namespace velour {
 /// float32, row-major. In the file a tensor is one part with one channel "Y": its last dimension is the width, the
 /// others flattened are the height, and the attribute "velour.shape" holds the shape. Three-component last dimensions
 /// are stored as channels R, G, B instead, so that a viewer shows them in colour. Parts wider or higher than the first
-/// are not for viewers: their channels are "value", or "value_r", "value_g", "value_b".
+/// are not for viewers: their channels are "value", or "value_x", "value_y", "value_z".
 struct Tensor {
   std::vector<uint64_t> shape;
   std::vector<float> data;
