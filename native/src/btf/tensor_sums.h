@@ -39,8 +39,7 @@ struct TensorTables {
   const float* view;          // [view][cluster][rank], in order of ranks
   uint32_t view_rank;
   const float* table;  // [view, or rank of the views][cluster][rank][rank of the colours][width], not of pairs
-  const float*
-      light;  // [light][cluster][width], or [view][light][cluster][width] of pairs: what rows are multiplied by
+  const float* light;  // what rows are multiplied by: [light][cluster][width], of pairs [view][light][cluster][width]
   uint32_t lights;
 
   size_t table_row() const { return size_t{color_rank} * width; }
