@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-HEADERS = 6000  # bytes of a model's file besides what is fitted, about
+HEADERS = 2300  # bytes of a model's file besides what is fitted, about
 _CLOSE = 0.08  # of the bytes that may be left unused where a further fit could use them
 _SLACK = 1.01
 _TRIES = 4

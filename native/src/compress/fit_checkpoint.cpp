@@ -92,13 +92,12 @@ std::optional<std::vector<size_t>> FitCheckpoint::wholes(const std::string& stag
 void FitCheckpoint::keep(const std::string& stage, const RowMatrix& matrix) {
   if (options_.path.empty() || matrix.size() == 0) return;
   file_.tensors[stage] = {{static_cast<uint64_t>(matrix.rows()), static_cast<uint64_t>(matrix.cols())},
-                          {matrix.data(), matrix.data() + matrix.size()},
-                          false};
+                          {matrix.data(), matrix.data() + matrix.size()}};
 }
 
 void FitCheckpoint::keep_numbers(const std::string& stage, std::span<const double> numbers) {
   if (options_.path.empty() || numbers.empty()) return;
-  Tensor& tensor = file_.tensors[stage] = {{numbers.size(), kWords}, {}, false};
+  Tensor& tensor = file_.tensors[stage] = {{numbers.size(), kWords}, {}};
   for (const double n : numbers) append_words(n, tensor.data);
 }
 

@@ -15,7 +15,7 @@ constexpr uint32_t kTiled = 0x200, kDeep = 0x800, kMultiPart = 0x1000;
 constexpr size_t kMaxParts = 4096;
 /// DEFLATE cannot expand a byte to more than this.
 constexpr uint64_t kMaxDeflateRatio = 1032;
-constexpr int32_t kHalfPixels = 1, kFloatPixels = 2;
+constexpr int32_t kIntegerPixels = 0, kHalfPixels = 1, kFloatPixels = 2;
 
 /// What the scan needs of a part beside its ExrPart.
 struct PartLayout {
@@ -67,13 +67,15 @@ void read_channels(ByteReader value, ExrPart& part) {
     value.take(4, "channel flags");
     const auto x_step = value.number<int32_t>("channel sampling");
     const auto y_step = value.number<int32_t>("channel sampling");
-    if ((pixel_type != kFloatPixels && pixel_type != kHalfPixels) || x_step != 1 || y_step != 1)
+    if (pixel_type < kIntegerPixels || pixel_type > kFloatPixels || x_step != 1 || y_step != 1)
       fail(value, part, "channel " + channel + " is not 32-bit or 16-bit float at full resolution; write floats.");
     if (part.channels.size() == 16) fail(value, part, "has more than 16 channels.");
     const uint64_t bytes = pixel_type == kHalfPixels ? 2 : 4;
-    if (!part.channels.empty() && bytes != part.value_bytes)
+    const bool integers = pixel_type == kIntegerPixels;
+    if (!part.channels.empty() && (bytes != part.value_bytes || integers != part.integers))
       fail(value, part, "channel " + channel + " is not of the same type as those before; write all alike.");
     part.value_bytes = bytes;
+    part.integers = integers;
     part.channels.push_back(channel);
   }
 }
@@ -112,6 +114,8 @@ void read_attribute(ByteReader& in, const std::string& field, ExrPart& part, Par
     layout.type = as_text(value);
   else if (field == "velour.shape" && type == "string")
     part.shape = as_text(value);
+  else if (field == "velour.coding" && type == "string")
+    part.coding = as_text(value);
 }
 
 void check_part(const ByteReader& in, const ExrPart& part, const PartLayout& layout) {

@@ -2,8 +2,8 @@
 //
 // OpenEXR allocates what a header claims, and its only limits (Header::setMaxImageSize) are global to the process,
 // which may be Blender's. So the claims are compared with the bytes here: afterwards OpenEXR opens nothing but scan
-// line parts of floats or half floats, lossless, whose chunks lie inside the file and are large enough for their
-// pixels.
+// line parts of floats, half floats or integers, lossless, whose chunks lie inside the file and are large enough for
+// their pixels.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,13 @@
 namespace velour {
 
 struct ExrPart {
-  std::string name;   // empty in a single-part file without a name
-  std::string shape;  // text of "velour.shape"; empty: not a tensor
+  std::string name;    // empty in a single-part file without a name
+  std::string shape;   // text of "velour.shape"; empty: not a tensor
+  std::string coding;  // text of "velour.coding"
   uint64_t width = 0, height = 0;
   std::vector<std::string> channels;  // full resolution, in file order
   uint64_t value_bytes = 4;           // of all channels: 4 (float) or 2 (half)
+  bool integers = false;              // 32 bits, of all channels, in place of floats
   bool compressed = false;
 
   uint64_t value_count() const { return width * height * channels.size(); }

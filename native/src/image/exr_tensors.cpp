@@ -15,17 +15,19 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 
 #include "image/exr_errors.h"
 #include "image/exr_scan.h"
+#include "image/tensor_pack.h"
+#include "image/tensor_pixels.h"
 #include "job/error.h"
 
 namespace velour {
 namespace {
 
-constexpr char kShapeAttribute[] = "velour.shape";
-constexpr size_t kMaxRank = 16;
+constexpr char kShapeAttribute[] = "velour.shape", kCodingAttribute[] = "velour.coding", kPack[] = "pack";
 constexpr int kZipLevel = 6;  // written out, because the library's default may change and the bytes must not
 
 class MemoryInput : public Imf::IStream {
@@ -68,57 +70,10 @@ class MemoryOutput : public Imf::OStream {
   uint64_t position_ = 0;
 };
 
-/// How a tensor lies in a part.
-struct PartSize {
-  uint64_t width = 1, height = 1, channels = 1;
-};
-
-PartSize part_size(std::vector<uint64_t> shape) {
-  PartSize size;
-  if (!shape.empty() && shape.back() == 3) {
-    size.channels = 3;
-    shape.pop_back();
-  }
-  if (shape.empty()) return size;
-  size.width = shape.back();
-  shape.pop_back();
-  for (const uint64_t extent : shape) size.height *= extent;
-  return size;
-}
-
-using ChannelNames = std::vector<std::string>;
-
-/// Of parts that viewers show.
-ChannelNames shown_names(uint64_t channels) { return channels == 3 ? ChannelNames{"R", "G", "B"} : ChannelNames{"Y"}; }
-
-/// Of parts that reach beyond the first one. Blender 3.4 makes room for the first part's pixels and writes all others
-/// there, past its end; channels of names that it does not know it leaves out. In the order of the alphabet, in which
-/// they are stored.
-ChannelNames hidden_names(uint64_t channels) {
-  return channels == 3 ? ChannelNames{"value_x", "value_y", "value_z"} : ChannelNames{"value"};
-}
-
 /// Those of a part that there is.
 ChannelNames names_in(const Imf::Header& header, uint64_t channels) {
   const ChannelNames hidden = hidden_names(channels);
   return header.channels().findChannel(hidden[0]) ? hidden : shown_names(channels);
-}
-
-/// Number of elements, or 0 where an extent is 0 or the product does not fit.
-uint64_t element_count(const std::vector<uint64_t>& shape) {
-  uint64_t count = 1;
-  for (const uint64_t extent : shape) {
-    if (extent == 0 || count > (uint64_t{1} << 40) / extent) return 0;
-    count *= extent;
-  }
-  return count;
-}
-
-std::string shape_text(const std::vector<uint64_t>& shape) {
-  if (shape.empty()) return "scalar";
-  std::string text = std::to_string(shape[0]);
-  for (size_t i = 1; i < shape.size(); ++i) text.append(" ").append(std::to_string(shape[i]));
-  return text;
 }
 
 std::vector<uint64_t> parse_shape(const std::string& text, const std::string& where) {
@@ -126,7 +81,7 @@ std::vector<uint64_t> parse_shape(const std::string& text, const std::string& wh
   if (text == "scalar") return shape;
   const char* at = text.data();
   const char* const end = at + text.size();
-  while (at != end && shape.size() < kMaxRank) {
+  while (at != end && shape.size() < kMaxTensorRank) {
     const auto result = std::from_chars(at, end, shape.emplace_back());
     if (result.ec != std::errc()) break;
     at = result.ptr;
@@ -137,82 +92,100 @@ std::vector<uint64_t> parse_shape(const std::string& text, const std::string& wh
               where + "velour.shape is '" + text + "'; it must be up to 16 extents, as in '90 90 180'.");
 }
 
-void check_tensor(const std::string& name, const Tensor& tensor) {
-  const uint64_t count = element_count(tensor.shape);
-  if (count == 0 || count != tensor.data.size() || tensor.shape.size() > kMaxRank)
-    throw Error(Status::invalid_argument, "Tensor '" + name + "' of shape '" + shape_text(tensor.shape) + "' has " +
-                                              std::to_string(tensor.data.size()) + " values.");
-  for (const float value : tensor.data)
-    if (tensor.half && rounded_to_half(value) != value)
-      throw Error(Status::invalid_argument, "Tensor '" + name + "' is to be stored as half floats, which cannot hold " +
-                                                std::to_string(value) + "; round it first.");
-  const PartSize size = part_size(tensor.shape);
+/// Whether OpenEXR has room for them.
+void check_size(const std::string& name, const PartSize& size) {
   constexpr uint64_t kMaxLine = INT32_MAX / (4 * 16 * 3);  // a chunk's bytes are an int in OpenEXR
   if (size.width > kMaxLine || size.height > INT32_MAX / 2)
-    throw Error(Status::invalid_argument,
-                "Tensor '" + name + "' of shape '" + shape_text(tensor.shape) + "' is too long for OpenEXR.");
+    throw Error(Status::invalid_argument, "Tensor '" + name + "' is too long for OpenEXR.");
 }
 
 /// `first`: the first part's window, empty for that one.
-Imf::Header make_header(const std::string& name, const Tensor& tensor, const Imath::Box2i& first) {
-  const PartSize size = part_size(tensor.shape);
+Imf::Header make_header(const std::string& name, const TensorPixels& pixels, const Imath::Box2i& first) {
+  const PartSize& size = pixels.size();
   const Imath::Box2i window({0, 0}, {static_cast<int>(size.width) - 1, static_cast<int>(size.height) - 1});
-  const bool shown = first.isEmpty() || (first.intersects(window.min) && first.intersects(window.max));
+  const bool is_pack = pixels.type() == Imf::UINT;
+  const bool within = first.isEmpty() || (first.intersects(window.min) && first.intersects(window.max));
   Imf::Header header(first.isEmpty() ? window : first, window);
   header.setName(name);
   header.setType(Imf::SCANLINEIMAGE);
-  header.compression() = Imf::ZIP_COMPRESSION;  // a chunk that does not get smaller is stored as it is
+  header.compression() = is_pack ? Imf::NO_COMPRESSION : Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = kZipLevel;
   Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
-  header.insert(kShapeAttribute, Imf::StringAttribute(shape_text(tensor.shape)));
-  for (const auto& channel : shown ? shown_names(size.channels) : hidden_names(size.channels))
-    header.channels().insert(channel, Imf::Channel(tensor.half ? Imf::HALF : Imf::FLOAT));
+  for (const auto& channel : within && !is_pack ? shown_names(size.channels) : hidden_names(size.channels))
+    header.channels().insert(channel, Imf::Channel(pixels.type()));
   return header;
 }
 
-/// All parts share the first one's display window, as OpenEXR asks; the data windows differ.
-std::vector<Imf::Header> make_headers(const TensorFile& file) {
-  std::vector<Imf::Header> headers;
-  for (const auto& [name, tensor] : file.tensors) {
-    check_tensor(name, tensor);
-    headers.push_back(make_header(name, tensor, headers.empty() ? Imath::Box2i() : headers[0].displayWindow()));
+/// Parts of a file, of tensors that outlive it. All share the first one's display window, as OpenEXR asks; the data
+/// windows differ.
+class PartList {
+ public:
+  void add(const std::string& name, const Tensor& tensor) {
+    if (tensor.precision == Precision::bytes)
+      throw Error(Status::invalid_argument, "Tensor '" + name + "' of bytes needs a file that is packed.");
+    add_pixels(name, TensorPixels(tensor));
+    headers_.back().insert(kShapeAttribute, Imf::StringAttribute(shape_text(tensor.shape)));
   }
-  for (const auto& [key, value] : file.attributes) headers.at(0).insert(key, Imf::StringAttribute(value));
-  return headers;
+
+  void add_pack(const std::vector<uint8_t>& pack) {
+    add_pixels(kPack, TensorPixels(pack));
+    headers_.back().insert(kCodingAttribute, Imf::StringAttribute(kPack));
+  }
+
+  void describe(const std::map<std::string, std::string>& attributes) {
+    for (const auto& [key, value] : attributes) headers_.at(0).insert(key, Imf::StringAttribute(value));
+  }
+
+  std::vector<uint8_t> encoded() const {
+    MemoryOutput stream;
+    const auto sentence = [](const char* why) { return std::string("OpenEXR cannot encode the tensors: ") + why; };
+    with_exr_errors(Status::unknown, sentence, [&] {
+      Imf::MultiPartOutputFile out(stream, headers_.data(), static_cast<int>(headers_.size()), false, 0);
+      for (size_t i = 0; i < pixels_.size(); ++i) write_part({out, static_cast<int>(i)}, pixels_[i]);
+    });
+    return stream.take();
+  }
+
+ private:
+  void add_pixels(const std::string& name, TensorPixels pixels) {
+    check_size(name, pixels.size());
+    const Imath::Box2i first = headers_.empty() ? Imath::Box2i() : headers_[0].displayWindow();
+    headers_.push_back(make_header(name, pixels, first));
+    pixels_.push_back(std::move(pixels));
+  }
+
+  static void write_part(Imf::OutputPart part, const TensorPixels& pixels) {
+    part.setFrameBuffer(pixels.frame_buffer(names_in(part.header(), pixels.size().channels)));
+    part.writePixels(static_cast<int>(pixels.size().height));
+  }
+
+  std::vector<Imf::Header> headers_;
+  std::vector<TensorPixels> pixels_;
+};
+
+bool is_open(const std::string& text) { return text.size() <= kLongestOpenText; }
+
+/// The first tensor that OpenEXR has a type for and short attributes are open, the rest is one part.
+void add_packed(const TensorFile& file, PartList& parts) {
+  const auto first = std::find_if(file.tensors.begin(), file.tensors.end(),
+                                  [](const auto& named) { return named.second.precision != Precision::bytes; });
+  if (first == file.tensors.end()) throw Error(Status::invalid_argument, "A packed file needs a tensor beside bytes.");
+  TensorFile pack{{}, file.tensors};
+  pack.tensors.erase(first->first);
+  parts.add(first->first, first->second);
+  std::map<std::string, std::string> open;
+  for (const auto& [key, text] : file.attributes) (is_open(text) ? open : pack.attributes).emplace(key, text);
+  parts.add_pack(encode_pack(pack));
+  parts.describe(open);
 }
 
-constexpr Imf::PixelType pixel_type(const float*) { return Imf::FLOAT; }
-constexpr Imf::PixelType pixel_type(const half*) { return Imf::HALF; }
-
-/// OpenEXR's view of row-major values.
-template <typename Value>
-Imf::FrameBuffer frame_buffer(Value* data, const PartSize& size, const ChannelNames& names) {
-  Imf::FrameBuffer buffer;
-  const size_t x_stride = sizeof(Value) * size.channels, y_stride = x_stride * size.width;
-  for (size_t c = 0; c < names.size(); ++c)
-    buffer.insert(names[c], Imf::Slice(pixel_type(data), reinterpret_cast<char*>(data + c), x_stride, y_stride));
-  return buffer;
-}
-
-void write_part(Imf::OutputPart part, const Tensor& tensor) {
-  const PartSize size = part_size(tensor.shape);
-  const ChannelNames names = names_in(part.header(), size.channels);
-  // OpenEXR converts what it reads, not what it writes.
-  const std::vector<half> halves(tensor.data.begin(), tensor.half ? tensor.data.end() : tensor.data.begin());
-  // Slice takes a mutable pointer for reading and writing alike; nothing is written through it here.
-  part.setFrameBuffer(tensor.half ? frame_buffer(const_cast<half*>(halves.data()), size, names)
-                                  : frame_buffer(const_cast<float*>(tensor.data.data()), size, names));
-  part.writePixels(static_cast<int>(size.height));
-}
-
-void write_parts(Imf::MultiPartOutputFile& out, const TensorFile& file) {
-  int index = 0;
-  for (const auto& [name, tensor] : file.tensors) write_part(Imf::OutputPart(out, index++), tensor);
+void add_all(const TensorFile& file, PartList& parts) {
+  for (const auto& [name, tensor] : file.tensors) parts.add(name, tensor);
+  parts.describe(file.attributes);
 }
 
 /// The shape of a scanned part, agreed with its pixels.
-std::vector<uint64_t> checked_shape(const ExrPart& part, const std::string& name) {
-  const std::string where = name + ": part '" + part.name + "': ";
+std::vector<uint64_t> checked_shape(const ExrPart& part, const std::string& where) {
   auto shape = parse_shape(part.shape, where);
   const uint64_t count = element_count(shape);
   const PartSize size = count == 0 ? PartSize{0, 0, 0} : part_size(shape);
@@ -227,22 +200,45 @@ void read_attributes(const Imf::Header& header, std::map<std::string, std::strin
   for (auto it = header.begin(); it != header.end(); ++it) {
     const std::string key = it.name();
     const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
-    if (text && key.starts_with("velour.") && key != kShapeAttribute) attributes.emplace(key, text->value());
+    if (text && key.starts_with("velour.") && key != kShapeAttribute && key != kCodingAttribute) {
+      attributes.emplace(key, text->value());
+    }
   }
 }
 
-Tensor read_part(Imf::MultiPartInputFile& in, int index, const ExrPart& scanned, const std::string& name) {
-  Tensor tensor{checked_shape(scanned, name), {}, scanned.value_bytes == sizeof(half)};
-  const PartSize size = part_size(tensor.shape);
-  const ChannelNames names = names_in(in.header(index), size.channels);
+template <typename Value>
+std::vector<Value> read_pixels(Imf::MultiPartInputFile& in, int index, Imf::PixelType type, const ExrPart& scanned,
+                               const std::string& where) {
+  const ChannelNames names = names_in(in.header(index), scanned.channels.size());
   for (const auto& channel : names)
     if (!in.header(index).channels().findChannel(channel))
-      throw Error(Status::bad_data, name + ": part '" + scanned.name + "': channel " + channel + " is missing.");
-  tensor.data.resize(scanned.value_count());
+      throw Error(Status::bad_data, where + "channel " + channel + " is missing.");
+  std::vector<Value> values(scanned.value_count());
+  const PartSize size{scanned.width, scanned.height, names.size()};
   Imf::InputPart part(in, index);
-  part.setFrameBuffer(frame_buffer(tensor.data.data(), size, names));
+  part.setFrameBuffer(pixel_buffer(reinterpret_cast<const char*>(values.data()), type, size, names));
   part.readPixels(0, static_cast<int>(size.height) - 1);
-  return tensor;
+  return values;
+}
+
+Tensor read_tensor(Imf::MultiPartInputFile& in, int index, const ExrPart& part, const std::string& where) {
+  if (part.integers) throw Error(Status::bad_data, where + "has integers in place of floats.");
+  const auto precision = part.value_bytes == sizeof(half) ? Precision::halves : Precision::floats;
+  auto shape = checked_shape(part, where);
+  return {std::move(shape), read_pixels<float>(in, index, Imf::FLOAT, part, where), precision};
+}
+
+TensorFile read_pack(Imf::MultiPartInputFile& in, int index, const ExrPart& part, const std::string& where) {
+  if (!part.integers || part.channels.size() != 1)
+    throw Error(Status::bad_data, where + "has no integers of one channel.");
+  const auto words = read_pixels<uint32_t>(in, index, Imf::UINT, part, where);
+  return decode_pack({reinterpret_cast<const uint8_t*>(words.data()), words.size() * sizeof(uint32_t)},
+                     where + "its pack");
+}
+
+void merge(TensorFile from, TensorFile& file) {
+  file.attributes.merge(from.attributes);
+  file.tensors.merge(from.tensors);
 }
 
 TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrPart>& parts, const std::string& name) {
@@ -254,25 +250,24 @@ TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrP
   for (int i = 0; i < in.parts() && static_cast<size_t>(i) < parts.size(); ++i) {
     const ExrPart& part = parts[static_cast<size_t>(i)];
     read_attributes(in.header(i), file.attributes);
-    if (!part.shape.empty()) file.tensors[part.name] = read_part(in, i, part, name);
+    const std::string where = name + ": part '" + part.name + "': ";
+    if (!part.shape.empty()) file.tensors[part.name] = read_tensor(in, i, part, where);
+    if (part.coding == kPack) {
+      merge(read_pack(in, i, part, where), file);
+      file.packed = true;
+    }
   }
   return file;
 }
 
 }  // namespace
 
-float rounded_to_half(float value) { return half(value); }
-
 std::vector<uint8_t> encode_tensors(const TensorFile& file) {
   if (file.tensors.empty()) throw Error(Status::invalid_argument, "A file of tensors needs at least one tensor.");
-  const auto headers = make_headers(file);
-  MemoryOutput stream;
-  const auto sentence = [](const char* why) { return std::string("OpenEXR cannot encode the tensors: ") + why; };
-  with_exr_errors(Status::unknown, sentence, [&] {
-    Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
-    write_parts(out, file);
-  });
-  return stream.take();
+  for (const auto& [name, tensor] : file.tensors) check_tensor(name, tensor);
+  PartList parts;
+  file.packed ? add_packed(file, parts) : add_all(file, parts);
+  return parts.encoded();
 }
 
 TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& name) {

@@ -1,33 +1,20 @@
 // Named tensors in the bytes of a multi-part OpenEXR file: the container of models and of Velour's own tables.
+//
+// In the file a tensor is one part with one channel "Y": its last dimension is the width, the others flattened are the
+// height, and the attribute "velour.shape" holds the shape. Three-component last dimensions are stored as channels R,
+// G, B instead, so that a viewer shows them in colour. Parts wider or higher than the first are not for viewers: their
+// channels are "value", or "value_x", "value_y", "value_z". Packed files have two parts: the first tensor that is not
+// of bytes, and a pack (tensor_pack.h) as integers of channel "value", whose attribute "velour.coding" is "pack".
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "image/tensor.h"
+
 namespace velour {
-
-/// float32, row-major. In the file a tensor is one part with one channel "Y": its last dimension is the width, the
-/// others flattened are the height, and the attribute "velour.shape" holds the shape. Three-component last dimensions
-/// are stored as channels R, G, B instead, so that a viewer shows them in colour. Parts wider or higher than the first
-/// are not for viewers: their channels are "value", or "value_x", "value_y", "value_z".
-struct Tensor {
-  std::vector<uint64_t> shape;
-  std::vector<float> data;
-  /// Two bytes a value in the file. Then every value is one that a half float holds (rounded_to_half), so that what is
-  /// read is what was written.
-  bool half = false;
-};
-
-/// The half float nearest to `value`; infinite past 65504.
-float rounded_to_half(float value);
-
-struct TensorFile {
-  std::map<std::string, std::string> attributes;  // "velour.kind", "velour.format_version", ...: strings
-  std::map<std::string, Tensor> tensors;          // part name -> tensor
-};
 
 /// The bytes of the file; deterministic: the same content gives the same bytes.
 std::vector<uint8_t> encode_tensors(const TensorFile& file);

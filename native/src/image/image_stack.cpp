@@ -133,7 +133,7 @@ bool is_chunk(const uint8_t* chunk, uint64_t head, const std::array<int32_t, 3>&
 
 bool agrees(const ExrPart& part, const ImageStack& stack) {
   return part.name == stack.name && part.channels == stored_channels(stack) && part.value_bytes == value_bytes(stack) &&
-         part.width == stack.width && part.height == stack.height * stack.images && !part.compressed;
+         !part.integers && part.width == stack.width && part.height == stack.height * stack.images && !part.compressed;
 }
 
 }  // namespace

@@ -32,10 +32,11 @@ Mat3 read_axes(const ModelFields& fields) {
 }  // namespace
 
 void write_btf_frame(const BtfFrame& frame, TensorFile& file) {
+  file.packed = true;
   file.attributes[kIndex] = encode_btf_index({.layout = frame.layout, .grid = frame.grid}, std::nullopt);
   file.attributes[kCompanding] = kCompandingNames[static_cast<size_t>(frame.companding)];
   file.attributes["velour.units"] = "apparent BRDF in 1/sr, linear Rec. 709";
-  Tensor& axes = file.tensors[kAxes] = {{3, 3}, {}, false};
+  Tensor& axes = file.tensors[kAxes] = {{3, 3}, {}};
   for (int i = 0; i < 9; ++i) axes.data.push_back(frame.axes[i / 3][i % 3]);
 }
 
@@ -68,7 +69,7 @@ std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string
 }
 
 Tensor tensor_of(const std::vector<HalfBits>& halves, const std::vector<uint64_t>& shape) {
-  Tensor tensor{shape, std::vector<float>(halves.size()), true};
+  Tensor tensor{shape, std::vector<float>(halves.size()), Precision::halves};
   halves_to_floats(halves, tensor.data);
   return tensor;
 }

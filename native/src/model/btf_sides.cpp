@@ -45,12 +45,12 @@ std::vector<SharedSide> read_shared(const ModelFields& fields, size_t sides) {
 std::string side_prefix(size_t number) { return "btf.side." + std::to_string(number) + "."; }
 
 void write_side_table(const SideTable& table, TensorFile& file) {
-  Tensor& sides = file.tensors[kSides] = {{table.sides.size(), 2}, {}, true};
+  Tensor& sides = file.tensors[kSides] = {{table.sides.size(), 2}, {}, Precision::halves};
   for (const SideTable::Place& s : table.sides) {
     sides.data.insert(sides.data.end(), {flag(s.view_below), flag(s.light_below)});
   }
   if (table.shared.empty()) return;
-  Tensor& shared = file.tensors[kShared] = {{table.shared.size(), 3}, {}, true};
+  Tensor& shared = file.tensors[kShared] = {{table.shared.size(), 3}, {}, Precision::halves};
   for (const SharedSide& s : table.shared) {
     shared.data.insert(shared.data.end(), {flag(s.view_below), flag(s.light_below), static_cast<float>(s.side)});
   }
@@ -63,7 +63,7 @@ SideTable read_side_table(const ModelFields& fields) {
 }
 
 Tensor byte_maps(const std::vector<uint8_t>& bytes, uint64_t coefficients, uint32_t width, uint32_t height) {
-  Tensor tensor{{coefficients, height, width}, {}, true};
+  Tensor tensor{{coefficients, height, width}, {}, Precision::bytes};
   for (const uint8_t byte : transposed(bytes, coefficients)) tensor.data.push_back(byte * kOfByte);
   return tensor;
 }
@@ -85,7 +85,7 @@ std::vector<uint8_t> read_byte_maps(const ModelFields& fields, const std::string
 
 Tensor scales_tensor(const std::vector<ByteScale>& scales, std::vector<uint64_t> shape) {
   shape.push_back(2);
-  Tensor tensor{std::move(shape), {}, false};
+  Tensor tensor{std::move(shape), {}};
   for (const ByteScale& s : scales) tensor.data.insert(tensor.data.end(), {s.least, s.step});
   return tensor;
 }

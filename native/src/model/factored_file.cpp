@@ -62,8 +62,8 @@ std::vector<uint8_t> read_axis_numbers(const ModelFields& fields, const std::vec
 void write_factored(const FactoredBtf& btf, TensorFile& file) {
   const uint64_t components = btf.components();
   write_btf_frame({btf.layout, btf.grid, btf.companding, btf.axes}, file);
-  file.tensors[kAxis] = {{components}, std::vector<float>(btf.axis.begin(), btf.axis.end()), true};
-  if (btf.by_view()) file.tensors[kView] = {{components}, std::vector<float>(btf.view.begin(), btf.view.end()), false};
+  file.tensors[kAxis] = {{components}, std::vector<float>(btf.axis.begin(), btf.axis.end()), Precision::halves};
+  if (btf.by_view()) file.tensors[kView] = {{components}, std::vector<float>(btf.view.begin(), btf.view.end())};
   file.tensors[functions_name(btf)] = tensor_of(btf.pair_value, {btf.function_rows(), components});
   for (size_t l = 0; l < btf.levels.size(); ++l) {
     const TexelLevel& level = btf.levels[l];

@@ -62,15 +62,15 @@ void write_parametric(const ParametricBrdf& brdf, TensorFile& file) {
   }
   const auto lobes = static_cast<uint64_t>(brdf.lobe_count());
   if (lobes == 0) {  // a black model: OpenEXR has neither empty parts nor files without one
-    file.tensors[kNone] = {{}, {0.0f}, true};
+    file.tensors[kNone] = {{}, {0.0f}, Precision::halves};
     return;
   }
-  Tensor& space = file.tensors[kSpace] = {{lobes}, {}, true};
+  Tensor& space = file.tensors[kSpace] = {{lobes}, {}, Precision::halves};
   for (const LobeSpace s : brdf.space) space.data.push_back(static_cast<float>(s));
   file.tensors[kControl] = {
       {static_cast<uint64_t>(brdf.spline().node_count()), static_cast<uint64_t>(brdf.parameter_count()), lobes},
       brdf.control,
-      true};
+      Precision::halves};
 }
 
 ParametricBrdf read_parametric(const ModelFields& fields) {

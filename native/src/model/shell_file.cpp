@@ -58,7 +58,7 @@ void write_shell(const ModelShell& shell, TensorFile& file) {
                {"reach", v.reach},   {"closed", v.closed}, {"tile_width", v.tile_width}, {"source", shell.source}};
   if (shell.errors) json.update(Json{{"coverage", shell.errors->coverage}, {"wrong", shell.errors->wrong}});
   file.attributes[kAttribute] = json.dump();
-  file.tensors[kPart] = {{v.depth, v.height, v.width}, {v.distance.begin(), v.distance.end()}, true};
+  file.tensors[kPart] = {{v.depth, v.height, v.width}, {v.distance.begin(), v.distance.end()}, Precision::halves};
 }
 
 std::optional<ModelShell> read_shell(const ModelFields& fields) {

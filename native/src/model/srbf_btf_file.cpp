@@ -23,14 +23,14 @@ struct SideParts {
 };
 
 void write_side(const SrbfSide& side, const SideParts& part, TensorFile& file) {
-  Tensor& lobes = file.tensors[part.lobes()] = {{side.lobes.size(), MultivariateLobe::kNumbers}, {}, false};
-  Tensor& frames = file.tensors[part.frames()] = {{side.lobes.size()}, {}, true};
+  Tensor& lobes = file.tensors[part.lobes()] = {{side.lobes.size(), MultivariateLobe::kNumbers}, {}};
+  Tensor& frames = file.tensors[part.frames()] = {{side.lobes.size()}, {}, Precision::halves};
   for (size_t j = 0; j < side.lobes.size(); ++j) {
     const MultivariateLobe& lobe = side.lobes[j];
     for (int i = 0; i < MultivariateLobe::kNumbers; ++i) lobes.data.push_back(lobe[i]);
     frames.data.push_back(j < side.tile_lobes ? 0.0f : 1.0f);
   }
-  Tensor& coefficients = file.tensors[part.coefficients()] = {{side.coefficients(), 2}, {}, true};
+  Tensor& coefficients = file.tensors[part.coefficients()] = {{side.coefficients(), 2}, {}, Precision::halves};
   for (size_t a = 0; a < 3; ++a) {
     for (const uint16_t lobe : side.lobe[a]) {
       coefficients.data.insert(coefficients.data.end(), {static_cast<float>(a), static_cast<float>(lobe)});

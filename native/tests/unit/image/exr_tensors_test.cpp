@@ -28,7 +28,7 @@ TensorFile sample_file() {
   file.tensors = {{"cube", ramp({4, 5, 6})}, {"lobes.center", ramp({7, 3})},
                   {"one", ramp({})},         {"rows.of.colour", ramp({2, 40, 9, 3})},
                   {"tall", ramp({100, 1})},  {"wide", ramp({1000})}};
-  file.tensors["small"] = {{2, 2}, {1, 0.5f, -3, 1024}, true};
+  file.tensors["small"] = {{2, 2}, {1, 0.5f, -3, 1024}, Precision::halves};
   return file;
 }
 
@@ -39,7 +39,7 @@ void expect_equal(const TensorFile& a, const TensorFile& b) {
     const auto found = b.tensors.find(name);
     ASSERT_NE(found, b.tensors.end()) << name;
     EXPECT_EQ(tensor.shape, found->second.shape) << name;
-    EXPECT_EQ(tensor.half, found->second.half) << name;
+    EXPECT_EQ(tensor.precision, found->second.precision) << name;
     EXPECT_EQ(0, std::memcmp(tensor.data.data(), found->second.data.data(), tensor.data.size() * 4)) << name;
   }
 }
@@ -69,6 +69,73 @@ TEST(ExrTensors, RoundTrip) {
   expect_equal(sample_file(), decode_tensors(bytes, "test"));
 }
 
+TEST(ExrTensors, PackedFilesAreRead) {
+  TensorFile file = sample_file();
+  file.packed = true;
+  file.attributes["velour.long"] = std::string(1000, 'x');
+  file.tensors["maps"] = {{2, 2, 3}, {0, 1 / 256.0f, 0.5f, 3 / 256.0f, 0, 0.25f, 0, 0, 0, 0, 0, 0}, Precision::bytes};
+  const TensorFile back = decode_tensors(encode_tensors(file), "test");
+  EXPECT_TRUE(back.packed);
+  expect_equal(file, back);
+}
+
+TEST(ExrTensors, PackedFilesShowTheFirstTensorAndShortTexts) {
+  TensorFile file = sample_file();
+  file.packed = true;
+  file.attributes["velour.long"] = std::string(257, 'x');
+  file.attributes["velour.short"] = std::string(256, 'y');
+  const auto bytes = encode_tensors(file);
+  const auto parts = scan_exr(bytes, "test");
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].name, "cube");
+  EXPECT_EQ(parts[1].name, "pack");
+  EXPECT_EQ(parts[1].channels, std::vector<std::string>{"value"});  // which Blender 3.4 leaves out
+  const auto has = [&](const std::string& text) {
+    return std::search(bytes.begin(), bytes.end(), text.begin(), text.end()) != bytes.end();
+  };
+  EXPECT_TRUE(has(file.attributes["velour.short"]));
+  EXPECT_FALSE(has(file.attributes["velour.long"]));
+}
+
+TEST(ExrTensors, PackedFilesAreSmaller) {
+  TensorFile file;
+  for (int i = 0; i < 20; ++i) file.tensors["some.tensor." + std::to_string(i)] = ramp({2, 3});
+  const size_t parts = encode_tensors(file).size();
+  file.packed = true;
+  EXPECT_LT(5 * encode_tensors(file).size(), parts);
+}
+
+TEST(ExrTensors, BytesNeedAPack) {
+  TensorFile file;
+  file.tensors["maps"] = {{1, 1}, {0}, Precision::bytes};
+  EXPECT_THROW(encode_tensors(file), Error);
+}
+
+TEST(ExrTensors, DamagedPacksAreRefused) {
+  TensorFile file = sample_file();
+  file.packed = true;
+  const auto bytes = encode_tensors(file);
+  for (size_t at = bytes.size() - 1000; at < bytes.size() - 4; at += 7) {  // pixels of the pack: it is the last part
+    auto damaged = bytes;
+    damaged[at] ^= 0x10;
+    EXPECT_NE(refusal(damaged).find("hostile.velour: part 'pack': its pack"), std::string::npos) << at;
+  }
+}
+
+TEST(ExrTensors, IntegersAreNoTensor) {
+  TensorFile file = sample_file();
+  file.packed = true;
+  auto bytes = encode_tensors(file);
+  const size_t at = value_of(bytes, "velour.coding", "string");
+  const std::string coding = "velour.coding", shape = "velour.shape";
+  const auto name = std::search(bytes.begin(), bytes.end(), coding.begin(), coding.end());
+  ASSERT_NE(name, bytes.end());
+  std::copy_n("kcap", 4, bytes.begin() + static_cast<std::ptrdiff_t>(at));  // a coding that nobody knows
+  const TensorFile back = decode_tensors(bytes, "test");
+  EXPECT_FALSE(back.packed);
+  EXPECT_EQ(back.tensors.size(), 1u);
+}
+
 TEST(ExrTensors, OnlyPartsWithinTheFirstOneAreForViewers) {
   TensorFile file = sample_file();  // the first is "cube": 6 x 20 pixels
   file.tensors["small.colour"] = ramp({5, 3});
@@ -94,28 +161,28 @@ TEST(ExrTensors, KeepsEveryBit) {
 TEST(ExrTensors, HalfFloatsTakeTwoBytesAndKeepTheirBits) {
   const float infinity = std::numeric_limits<float>::infinity();
   TensorFile file;
-  file.tensors["halves"] = {{3, 2, 3}, {0, -0.0f, 1, -2.5f, 65504, 6e-8f, infinity, 0.1f, 3.14f}, true};
+  file.tensors["halves"] = {{3, 2, 3}, {0, -0.0f, 1, -2.5f, 65504, 6e-8f, infinity, 0.1f, 3.14f}, Precision::halves};
   file.tensors["halves"].data.resize(18, 7.0f / 3.0f);
   for (float& x : file.tensors["halves"].data) x = rounded_to_half(x);
   const TensorFile again = decode_tensors(encode_tensors(file), "test");
   expect_equal(file, again);
   EXPECT_EQ(encode_tensors(again), encode_tensors(file));
 
-  const auto size = [](bool half) {
+  const auto size = [](Precision precision) {
     TensorFile noise;
-    noise.tensors["noise"] = {{1000}, {}, half};
+    noise.tensors["noise"] = {{1000}, {}, precision};
     for (uint32_t i = 0; i < 1000; ++i)
       noise.tensors["noise"].data.push_back(rounded_to_half(static_cast<float>(i * 2654435761u % 65521u) / 7.0f));
     return static_cast<int>(encode_tensors(noise).size());
   };
-  EXPECT_LT(size(true), 2000 + 600);
-  EXPECT_GT(size(false) - size(true), 500);
+  EXPECT_LT(size(Precision::halves), 2000 + 600);
+  EXPECT_GT(size(Precision::floats) - size(Precision::halves), 500);
 }
 
 TEST(ExrTensors, WhatHalfFloatsCannotHoldIsRefused) {
   for (const float value : {1.0f / 3.0f, 1e6f, 1e-30f, std::numeric_limits<float>::quiet_NaN()}) {
     TensorFile file;
-    file.tensors["x"] = {{1}, {value}, true};
+    file.tensors["x"] = {{1}, {value}, Precision::halves};
     EXPECT_THROW(encode_tensors(file), Error) << value;
   }
 }

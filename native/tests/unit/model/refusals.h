@@ -29,7 +29,7 @@ inline std::string refusal_of(const Model& model, const FileChange& change) {
 /// As floats, so that values reach the file that no half float holds.
 inline FileChange set_value(const std::string& part, size_t i, float value) {
   return [=](TensorFile& file) {
-    file.tensors.at(part).half = false;
+    file.tensors.at(part).precision = Precision::floats;
     file.tensors.at(part).data.at(i) = value;
   };
 }

@@ -74,7 +74,7 @@ TEST(SrbfBtfModel, KeepsSidesThatAnotherOneServes) {
 
 TEST(SrbfBtfModel, SharedSidesNameSidesThatAreThere) {
   const auto shared = [](std::vector<float> row) {
-    return [row](TensorFile& f) { f.tensors["btf.shared"] = {{row.size() / 3, 3}, row, false}; };
+    return [row](TensorFile& f) { f.tensors["btf.shared"] = {{row.size() / 3, 3}, row}; };
   };
   expect_refused(shared({1, 0, 2}), "btf.shared[2]");  // of two
   expect_refused(shared({1, 0, 0.5f}), "btf.shared[2]");
@@ -148,12 +148,14 @@ TensorFile older_file(const SrbfBtf& btf) {
   Model model = test::example_srbf_model();
   model.body = btf;
   TensorFile file = decode_tensors(encode_model(model), "test.velour");
+  file.packed = false;
   file.attributes["velour.format_version"] = "1.4";
   file.tensors.erase("btf.side.0.scales");
   const std::vector<ByteScale>& scale = btf.sides[0].scale;
   for (size_t l = 0; l < btf.sides[0].levels.size(); ++l) {
     const std::string number = std::to_string(l);
     Tensor tensor = file.tensors.at("btf.side.0.bytes." + number);
+    tensor.precision = Precision::halves;
     const size_t texels = tensor.data.size() / scale.size();
     for (size_t i = 0; i < tensor.data.size(); ++i) {
       const ByteScale& s = scale[i / texels];
@@ -183,9 +185,22 @@ TEST(SrbfBtfModel, OfTheVersionBeforeIsReadWithinHalfAStep) {
   }
 }
 
+TEST(SrbfBtfModel, OfTheVersionBeforePacksIsRead) {
+  const SrbfBtf btf = test::example_srbf();
+  Model model = test::example_srbf_model();
+  model.body = btf;
+  TensorFile file = decode_tensors(encode_model(model), "test.velour");
+  file.packed = false;
+  for (auto& [name, tensor] : file.tensors) {
+    if (tensor.precision == Precision::bytes) tensor.precision = Precision::halves;
+  }
+  const Model back = decode_model(encode_tensors(file), "test.velour");
+  EXPECT_EQ(encode_model(back), encode_model(model));
+}
+
 TEST(SrbfBtfModel, OfTheVersionBeforeNamesValuesThatAreNoNumbers) {
   TensorFile file = older_file(test::example_srbf());
-  file.tensors.at("btf.side.0.texels.1").half = false;
+  file.tensors.at("btf.side.0.texels.1").precision = Precision::floats;
   file.tensors.at("btf.side.0.texels.1").data[3] = std::numeric_limits<float>::infinity();
   try {
     decode_model(encode_tensors(file), "test.velour");
@@ -228,7 +243,7 @@ TEST(SrbfBtfModel, OfVersionsBeforeTheNextHasLobesWithoutAPhase) {
   TensorFile file = decode_tensors(encode_model(model), "test.velour");
   Tensor& lobes = file.tensors.at("btf.side.0.lobes");
   ASSERT_EQ(lobes.shape[1], 10u);
-  Tensor before{{lobes.shape[0], 9}, {}, false};
+  Tensor before{{lobes.shape[0], 9}, {}};
   for (size_t i = 0; i < lobes.data.size(); ++i) {
     if (i % 10 != 9) before.data.push_back(lobes.data[i]);
   }

@@ -156,7 +156,7 @@ TEST(TensorBtfModel, MembersAreAtMostTheClusters) {
 TEST(TensorBtfModel, RanksHaveLimits) {
   const auto core = [](uint64_t clusters, uint64_t rank) {
     return [=](TensorFile& f) {
-      f.tensors["btf.side.0.core"] = {{clusters, rank, 1}, std::vector<float>(clusters * rank), false};
+      f.tensors["btf.side.0.core"] = {{clusters, rank, 1}, std::vector<float>(clusters * rank)};
     };
   };
   expect_refused(core(257, 1), "257 entries along dimension 0");
@@ -164,7 +164,7 @@ TEST(TensorBtfModel, RanksHaveLimits) {
   expect_refused(core(200, 17), "200 clusters of rank 17");
   expect_refused(
       [](TensorFile& f) {
-        f.tensors["btf.side.0.color"] = {{3, 3, 4}, std::vector<float>(36), false};
+        f.tensors["btf.side.0.color"] = {{3, 3, 4}, std::vector<float>(36)};
       },
       "btf.side.0.color");
 }

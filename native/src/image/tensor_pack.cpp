@@ -1,0 +1,189 @@
+#include "image/tensor_pack.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+
+#include "file/json_fields.h"
+#include "image/map_rest.h"
+#include "image/zlib_stream.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+using Json = JsonFields::Json;
+
+constexpr float kOfByte = 1.0f / 256;  // exact, times a byte
+constexpr std::array kNames = {"float", "half", "byte"};
+constexpr std::array<uint64_t, 3> kValueBytes = {4, 2, 1};
+constexpr uint64_t kMostTensors = 4096;
+
+uint64_t value_bytes(Precision precision) { return kValueBytes[static_cast<size_t>(precision)]; }
+
+std::string list_of(const TensorFile& file) {
+  Json tensors = Json::array();
+  for (const auto& [name, tensor] : file.tensors) {
+    const char* const values = kNames[static_cast<size_t>(tensor.precision)];
+    tensors.push_back({{"name", name}, {"values", values}, {"shape", tensor.shape}});
+  }
+  const Json list = {{"texts", file.attributes}, {"tensors", tensors}};
+  return list.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+uint32_t bits_of(float value, Precision precision) {
+  return precision == Precision::halves ? half(value).bits() : std::bit_cast<uint32_t>(value);
+}
+
+float value_of(uint32_t bits, Precision precision) {
+  if (precision == Precision::floats) return std::bit_cast<float>(bits);
+  half value;
+  value.setBits(static_cast<uint16_t>(bits));
+  return value;
+}
+
+/// All highest bytes, then all of the next lower ones.
+std::vector<uint8_t> planes_of(const Tensor& tensor) {
+  std::vector<uint8_t> planes;
+  for (uint64_t plane = value_bytes(tensor.precision); plane-- > 0;) {
+    for (const float value : tensor.data) {
+      planes.push_back(static_cast<uint8_t>(bits_of(value, tensor.precision) >> 8 * plane));
+    }
+  }
+  return planes;
+}
+
+std::vector<float> values_of(const std::vector<uint8_t>& planes, Precision precision) {
+  const size_t count = planes.size() / value_bytes(precision);
+  std::vector<float> values(count);
+  for (size_t i = 0; i < count; ++i) {
+    uint32_t bits = 0;
+    for (size_t at = i; at < planes.size(); at += count) bits = bits << 8 | planes[at];
+    values[i] = value_of(bits, precision);
+  }
+  return values;
+}
+
+std::vector<uint8_t> rests_of(const Tensor& maps) {
+  std::vector<uint8_t> bytes(maps.data.size());
+  std::transform(maps.data.begin(), maps.data.end(), bytes.begin(),
+                 [](float value) { return static_cast<uint8_t>(value / kOfByte); });
+  maps_to_rests(bytes, maps.shape.end()[-2], maps.shape.back());
+  return bytes;
+}
+
+std::vector<float> values_of_rests(std::vector<uint8_t> rests, const std::vector<uint64_t>& shape) {
+  rests_to_maps(rests, shape.end()[-2], shape.back());
+  std::vector<float> values(rests.size());
+  std::transform(rests.begin(), rests.end(), values.begin(), [](uint8_t byte) { return byte * kOfByte; });
+  return values;
+}
+
+std::vector<uint64_t> shape_in(const JsonFields& fields) {
+  const Json& list = fields.at("shape");
+  const auto is_extent = [](const Json& json) { return json.is_number_unsigned(); };
+  if (!list.is_array() || list.size() > kMaxTensorRank || !std::all_of(list.begin(), list.end(), is_extent))
+    fields.fail("shape", "up to 16 whole numbers");
+  return list.get<std::vector<uint64_t>>();
+}
+
+Precision precision_in(const JsonFields& fields) {
+  const auto found = std::find(kNames.begin(), kNames.end(), fields.text("values"));
+  if (found == kNames.end()) fields.fail("values", "float, half or byte");
+  return static_cast<Precision>(found - kNames.begin());
+}
+
+/// Reads the list of a stream, then the values that it lists.
+class PackReader {
+ public:
+  PackReader(std::span<const uint8_t> bytes, const std::string& where)
+      : source_{where, "the file is damaged, make it anew."}, inflater_(bytes), left_(kMostInflated * bytes.size()) {}
+
+  TensorFile read() {
+    const Json list = Json::parse(read_list(), nullptr, false);
+    if (!list.is_object()) damaged();
+    const JsonFields fields(list, source_);
+    TensorFile file;
+    read_texts(fields, file);
+    read_tensors(fields, file);
+    if (!inflater_.finish()) damaged();
+    return file;
+  }
+
+ private:
+  [[noreturn]] void damaged() const {
+    throw Error(Status::bad_data, source_.name + " is damaged; make the file anew.");
+  }
+
+  std::vector<uint8_t> take(uint64_t count) {
+    if (count > left_) damaged();
+    left_ -= count;
+    std::vector<uint8_t> bytes(count);
+    if (!inflater_.read(bytes)) damaged();
+    return bytes;
+  }
+
+  std::vector<uint8_t> read_list() {
+    const std::vector<uint8_t> count = take(4);
+    return take(count[0] | count[1] << 8 | count[2] << 16 | uint64_t{count[3]} << 24);
+  }
+
+  void read_texts(const JsonFields& fields, TensorFile& file) const {
+    const Json& texts = fields.at("texts");
+    if (!texts.is_object()) fields.fail("texts", "an object");
+    const JsonFields each(texts, source_, "texts.");
+    for (const auto& item : texts.items()) file.attributes[item.key()] = each.text(item.key().c_str());
+  }
+
+  void read_tensors(const JsonFields& fields, TensorFile& file) {
+    const Json& tensors = fields.at("tensors");
+    if (!tensors.is_array() || tensors.size() > kMostTensors) fields.fail("tensors", "an array of up to 4096");
+    for (const Json& json : tensors) {
+      if (!json.is_object()) fields.fail("tensors", "an array of objects");
+      const JsonFields tensor(json, source_, "tensors.");
+      file.tensors[tensor.text("name")] = read_tensor(tensor);
+    }
+  }
+
+  Tensor read_tensor(const JsonFields& fields) {
+    Tensor tensor{shape_in(fields), {}, precision_in(fields)};
+    const uint64_t count = element_count(tensor.shape);
+    const bool is_maps = tensor.precision == Precision::bytes;
+    if (count == 0 || (is_maps && tensor.shape.size() < 2)) fields.fail("shape", "one of such a tensor");
+    std::vector<uint8_t> bytes = take(count * value_bytes(tensor.precision));
+    tensor.data = is_maps ? values_of_rests(std::move(bytes), tensor.shape) : values_of(bytes, tensor.precision);
+    return tensor;
+  }
+
+  JsonSource source_;
+  Inflater inflater_;
+  uint64_t left_;  // bytes that may still come out of the stream
+};
+
+}  // namespace
+
+std::vector<uint8_t> encode_pack(const TensorFile& file) {
+  const std::string list = list_of(file);
+  std::array<uint8_t, 4> count;
+  for (size_t i = 0; i < count.size(); ++i) count[i] = static_cast<uint8_t>(list.size() >> 8 * i);
+  Deflater deflater;
+  deflater.write(count);
+  deflater.write({reinterpret_cast<const uint8_t*>(list.data()), list.size()});
+  for (const auto& [name, tensor] : file.tensors) {
+    if (tensor.precision == Precision::bytes) {
+      deflater.write_rests(rests_of(tensor));
+    } else {
+      deflater.write(planes_of(tensor));
+    }
+  }
+  return deflater.take();
+}
+
+TensorFile decode_pack(std::span<const uint8_t> bytes, const std::string& where) {
+  return PackReader(bytes, where).read();
+}
+
+}  // namespace velour
