@@ -16,7 +16,7 @@ def _module(layer, name):
 
 
 def _blenders_normals(mesh):
-    """[triangles x 3 x 3]"""
+    """[triangles x 3 x 3] But for auto smooth, of flat faces those of their triangles, as Cycles has them."""
     normals = np.empty((len(mesh.loops), 3), np.float32)
     if hasattr(mesh, "corner_normals"):
         mesh.corner_normals.foreach_get("vector", normals.reshape(-1))
@@ -24,11 +24,21 @@ def _blenders_normals(mesh):
         mesh.calc_normals_split()
         mesh.loops.foreach_get("normal", normals.reshape(-1))
     mesh.calc_loop_triangles()
-    return np.array([[normals[corner] for corner in t.loops] for t in mesh.loop_triangles])
+    by_corners = _newer(mesh) or mesh.use_auto_smooth
+    return np.array(
+        [
+            [normals[corner] for corner in t.loops] if by_corners or t.use_smooth else [t.normal] * 3
+            for t in mesh.loop_triangles
+        ]
+    )
+
+
+def _newer(mesh):
+    return hasattr(mesh, "normals_domain") and mesh.normals_domain == "CORNER"
 
 
 class MeshArrays(BlenderTest):
-    """A ball of quads and triangles, dented so that no face is flat."""
+    """A ball of quads and triangles, dented so that no face is plane."""
 
     def setUp(self):
         super().setUp()
@@ -43,7 +53,9 @@ class MeshArrays(BlenderTest):
     def _assert_normals(self, *given):
         arrays = self._arrays()
         there = [
-            name for name in ("corner", "vertex", "face") if getattr(arrays, f"{name}_normals") is not None
+            name
+            for name in ("corner_normals", "vertex_normals", "smooth")
+            if getattr(arrays, name) is not None
         ]
         self.assertEqual(there, list(given))
         np.testing.assert_allclose(
@@ -55,22 +67,33 @@ class MeshArrays(BlenderTest):
         self.ball.data.update()
 
     def test_smooth(self):
-        self._assert_normals("vertex")
+        self._assert_normals("vertex_normals")
 
     def test_flat(self):
         self._shade([False] * len(self.ball.data.polygons))
-        self._assert_normals("face")
+        self._assert_normals("smooth")
 
     def test_mixed(self):
         self._shade([i % 3 == 0 for i in range(len(self.ball.data.polygons))])
         newer = hasattr(self.ball.data, "normals_domain")
-        self._assert_normals(*(("corner",) if newer else ("vertex", "face")))
+        self._assert_normals(*(("corner_normals",) if newer else ("vertex_normals", "smooth")))
 
     def test_auto_smooth(self):
         if not hasattr(self.ball.data, "use_auto_smooth"):
             self.skipTest("auto smooth is a modifier since Blender 4.1")
         self.ball.data.use_auto_smooth, self.ball.data.auto_smooth_angle = True, 0.2
-        self._assert_normals("corner")
+        self._assert_normals("corner_normals")
+
+    def test_slots(self):
+        """Only where some face is not of the first."""
+        self.assertIsNone(self._arrays().material_slots)
+        for _ in range(2):
+            self.ball.data.materials.append(None)
+        faces = [i % 2 for i in range(len(self.ball.data.polygons))]
+        self.ball.data.polygons.foreach_set("material_index", faces)
+        slots = self._arrays().slots
+        triangles = self.evaluated.data.loop_triangles
+        self.assertEqual(list(slots), [faces[t.polygon_index] for t in triangles])
 
     def test_coordinates_only_where_they_are_looked_at(self):
         self.assertIsNotNone(self._arrays().corner_uvs)

@@ -10,13 +10,14 @@ _COLORS = np.random.default_rng(1).uniform(0.1, 0.9, (4, 4, 3)).astype(np.float3
 
 
 def _cube_faces():
-    """positions, corner_vertices of six quads, triangles of corners, faces of those, normals of faces."""
+    """positions, corner_vertices of six quads, triangles of corners, faces of those, normals of corners."""
     positions = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], np.float32)
     quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
     starts = 4 * np.arange(6, dtype=np.uint32)
     triangles = np.concatenate([starts[:, None] + [0, 1, 2], starts[:, None] + [0, 2, 3]]).astype(np.uint32)
     normals = np.array([(0, 0, -1), (0, 0, 1), (0, -1, 0), (0, 1, 0), (-1, 0, 0), (1, 0, 0)], np.float32)
-    return positions, np.array(quads, np.uint32).ravel(), triangles, triangles[:, 0] // 4, normals
+    vertices, corner_normals = np.array(quads, np.uint32).ravel(), np.repeat(normals, 4, axis=0)
+    return positions, vertices, triangles, triangles[:, 0] // 4, corner_normals
 
 
 def _picture_of_mesh(**mesh):
@@ -42,17 +43,16 @@ def _looking_from(eye):
 @pytest.mark.parametrize("shading", ["flat", "smooth", "mixed", "corners"])
 def test_corners_of_faces_need_not_be_spread_over_triangles(shading):
     """The same picture, bit by bit, as of arrays with three of everything for each triangle."""
-    positions, vertices, triangles, faces, face_normals = _cube_faces()
+    positions, vertices, triangles, faces, flat_corners = _cube_faces()
     uvs = np.random.default_rng(2).uniform(0, 1, (24, 2)).astype(np.float32)
     vertex_normals = (positions / np.sqrt(3)).astype(np.float32)
     smooth = np.array([1, 0, 1, 0, 0, 1], np.uint8)
-    flat_corners, smooth_corners = np.repeat(face_normals, 4, axis=0), vertex_normals[vertices]
+    smooth_corners = vertex_normals[vertices]
     mixed = np.where(np.repeat(smooth, 4)[:, None] != 0, smooth_corners, flat_corners)
-    by_faces = {"face_normals": face_normals, "triangle_faces": faces}
     given, corner_normals = {
-        "flat": (by_faces, flat_corners),
+        "flat": ({"smooth": np.zeros(12, np.uint8)}, flat_corners),
         "smooth": ({"vertex_normals": vertex_normals}, smooth_corners),
-        "mixed": ({**by_faces, "vertex_normals": vertex_normals, "face_smooth": smooth}, mixed),
+        "mixed": ({"vertex_normals": vertex_normals, "smooth": smooth[faces]}, mixed),
         "corners": ({"corner_normals": mixed}, mixed),
     }[shading]
     shared = _picture_of_mesh(
@@ -68,29 +68,26 @@ def test_corners_of_faces_need_not_be_spread_over_triangles(shading):
     np.testing.assert_array_equal(shared, spread)
 
 
-def test_corners_and_faces_that_are_not_there_are_refused():
-    positions, vertices, triangles, faces, normals = _cube_faces()
+def test_corners_that_are_not_there_are_refused():
+    positions, vertices, triangles, _, _ = _cube_faces()
     mesh = {"positions": positions, "triangles": triangles, "corner_vertices": vertices}
     with Scene() as scene:
         with pytest.raises(VelourError, match="names corner 24 of a mesh with 24 corners"):
             scene.add_mesh(**{**mesh, "triangles": triangles + np.uint32(1)})
         with pytest.raises(VelourError, match="names vertex 8 of a mesh with 8 vertices"):
             scene.add_mesh(**{**mesh, "corner_vertices": vertices + np.uint32(1)})
-        with pytest.raises(VelourError, match="names face 6 of a mesh with 6 faces"):
-            scene.add_mesh(**mesh, face_normals=normals, triangle_faces=faces + np.uint32(1))
-        with pytest.raises(VelourError, match="without the faces of its triangles"):
-            scene.add_mesh(**mesh, face_normals=normals)
+        with pytest.raises(VelourError, match="smooth holds 6 numbers; 12 are needed"):
+            scene.add_mesh(**mesh, smooth=np.ones(6, np.uint8))
         with pytest.raises(VelourError, match=r"corner_uvs has shape \(12, 3, 2\)"):
             scene.add_mesh(**mesh, corner_uvs=np.zeros((12, 3, 2), np.float32))
 
 
-def _bare(positions, vertices, triangles, faces, normals, mirror=1):
+def _bare(positions, vertices, triangles, _faces, _normals, mirror=1):
     return {
         "positions": positions * np.float32((mirror, 1, 1)),
         "triangles": triangles,
         "corner_vertices": vertices,
-        "face_normals": normals * np.float32((mirror, 1, 1)),
-        "triangle_faces": faces.astype(np.uint32),
+        "smooth": np.zeros(len(triangles), np.uint8),
     }
 
 
@@ -144,8 +141,8 @@ def test_of_many_meshes_all_or_none_are_added():
     with Scene() as scene:
         with pytest.raises(VelourError, match="names vertex 8 of a mesh with 8 vertices"):
             scene.add_meshes(_in_turn([flat, wrong]))
-        short = {**flat, "triangle_faces": flat["triangle_faces"][:-1]}
-        with pytest.raises(VelourError, match="triangle_faces holds 11 numbers; 12 are needed"):
+        short = {**flat, "smooth": flat["smooth"][:-1]}
+        with pytest.raises(VelourError, match="smooth holds 11 numbers; 12 are needed"):
             scene.add_meshes(_in_turn([flat, short]))
         with pytest.raises(VelourError, match="a mesh has no positions"):
             scene.add_meshes({"triangles": _in_turn([flat])["triangles"]})

@@ -87,6 +87,14 @@ class Attributes(ParityTest):
         self.tree.end(self.tree.emission(self._color_attribute(), self.tree.picture(image(3))))
         self.assert_parity("Color Attribute: emission, beside an image")
 
+    def test_uv_map(self):
+        """As a colour, and as the number that an output gives of two."""
+        layer = self.wall.data.uv_layers.new(name="dense")
+        layer.data.foreach_set("uv", np.random.default_rng(5).uniform(0, 1, 2 * len(layer.data)))
+        glow = self.tree.emission(self._attribute("dense", "Vector"), self._attribute("dense", "Alpha"))
+        self.tree.end(self.tree.mix(self._attribute("dense", "Fac"), glow, self.tree.diffuse()))
+        self.assert_parity("Attribute: a UV map")
+
     def test_missing(self):
         """Black as a colour; the alpha of an Attribute node is 1."""
         self._paint("FLOAT_COLOR", "POINT")

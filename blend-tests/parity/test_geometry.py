@@ -9,6 +9,13 @@ from parity import stage
 from parity.case import NEVER, ParityTest
 
 
+def auto_smooth(mesh, angle):
+    if hasattr(mesh, "use_auto_smooth"):
+        mesh.use_auto_smooth, mesh.auto_smooth_angle = True, angle
+    else:
+        mesh.set_sharp_from_angle(angle=angle)  # 4.1 and newer
+
+
 class Geometry(ParityTest):
     def setUp(self):
         super().setUp()
@@ -29,28 +36,21 @@ class Geometry(ParityTest):
         stage.sphere(segments=10, rings=6)
         self.assert_approximate("Normals: smooth, coarse mesh", 0.7, exact=((4, 0), NEVER))
 
-    @staticmethod
-    def _auto_smooth(mesh, angle):
-        if hasattr(mesh, "use_auto_smooth"):
-            mesh.use_auto_smooth, mesh.auto_smooth_angle = True, angle
-        else:
-            mesh.set_sharp_from_angle(angle=angle)  # 4.1 and newer
-
     def test_auto_smooth(self):
         obj = stage.sphere(segments=16, rings=6)
-        self._auto_smooth(obj.data, math.radians(28))
+        auto_smooth(obj.data, math.radians(28))
         self.assert_parity("Normals: auto smooth")
 
     def test_sharp_edges(self):
         obj = stage.sphere(segments=16, rings=8)
-        self._auto_smooth(obj.data, math.pi)
+        auto_smooth(obj.data, math.pi)
         for i, edge in enumerate(obj.data.edges):
             edge.use_edge_sharp = i % 3 == 0
         self.assert_parity("Normals: sharp edges")
 
     def test_custom(self):
         obj = stage.sphere(segments=24, rings=12)
-        self._auto_smooth(obj.data, math.pi)
+        auto_smooth(obj.data, math.pi)
         normals = np.array([v.normal[:] for v in obj.data.vertices]) + np.array((0.3, -0.2, 0.4))
         obj.data.normals_split_custom_set_from_vertices([tuple(n / np.linalg.norm(n)) for n in normals])
         self.assert_parity("Normals: custom")
@@ -108,6 +108,30 @@ class Geometry(ParityTest):
         for obj in self.scene.objects:
             obj.location.x += 5000
         self.assert_parity("5 km from the origin")
+
+
+class Sheet(ParityTest):
+    """Quads whose corners go up and down at random, under a low sun: no face is plane."""
+
+    def setUp(self):
+        super().setUp()
+        heights = np.random.default_rng(3).uniform(0, 0.6, (7, 7))
+        points = [(x - 3, y - 3, heights[x, y]) for x in range(7) for y in range(7)]
+        faces = [(7 * x + y, 7 * x + 7 + y, 7 * x + 8 + y, 7 * x + y + 1) for x in range(6) for y in range(6)]
+        self.sheet = stage.mesh(points, faces, stage.grey(0.7), "Sheet").data
+        stage.camera((0, -6, 6), (0.78, 0, 0), 45)
+        stage.sharp_sun()
+
+    def test_flat(self):
+        self.assert_parity("Normals: flat, warped faces")
+
+    def test_mixed(self):
+        self.sheet.polygons.foreach_set("use_smooth", [i % 2 == 0 for i in range(36)])
+        self.assert_parity("Normals: flat and smooth faces")
+
+    def test_auto_smooth(self):
+        auto_smooth(self.sheet, 0.6)
+        self.assert_parity("Normals: auto smooth, warped faces")
 
 
 class Visibility(ParityTest):

@@ -57,6 +57,21 @@ class UvMaps(ParityTest):
         self._uv_map(self._picture("Closest"), "second")
         self.assert_parity("UV maps: chosen by a UV Map node")
 
+    def test_mapping(self):
+        """Location, rotation and scale of each type of Mapping."""
+        tree = self.material.node_tree
+        picture = self._picture("Closest")
+        mapping, source = tree.nodes.new("ShaderNodeMapping"), tree.nodes.new("ShaderNodeTexCoord")
+        tree.links.new(source.outputs["UV"], mapping.inputs["Vector"])
+        tree.links.new(mapping.outputs[0], picture.inputs["Vector"])
+        mapping.inputs["Location"].default_value = (0.3, -0.2, 0)
+        mapping.inputs["Rotation"].default_value = (0, 0, 0.7)
+        mapping.inputs["Scale"].default_value = (1.5, -0.6, 1)
+        for kind in ("POINT", "TEXTURE", "VECTOR"):
+            with self.subTest(kind):
+                mapping.vector_type = kind
+                self.assert_parity(f"Image Texture: {kind.lower()} mapping")
+
     def test_two_at_once(self):
         """Colours on one UV map, the factor of a mix on the other; both are magnified pictures."""
         tree = self.material.node_tree

@@ -13,21 +13,26 @@ class MeshArrays(NamedTuple):
     positions: np.ndarray
     triangles: np.ndarray
     corner_vertices: np.ndarray
-    material_slots: np.ndarray
+    material_slots: np.ndarray | None = None
+    corner_normals: np.ndarray | None = None
+    vertex_normals: np.ndarray | None = None
+    smooth: np.ndarray | None = None
     corner_uvs: np.ndarray | None = None
     more_uvs: np.ndarray | None = None
     relief_uvs: np.ndarray | None = None
     corner_colors: np.ndarray | None = None
-    corner_normals: np.ndarray | None = None
-    vertex_normals: np.ndarray | None = None
-    face_normals: np.ndarray | None = None
-    face_smooth: np.ndarray | None = None
-    triangle_faces: np.ndarray | None = None
+
+    @property
+    def slots(self):
+        """[triangles]"""
+        return (
+            np.zeros(len(self.triangles), np.uint32) if self.material_slots is None else self.material_slots
+        )
 
     @property
     def slot_count(self):
         """Up to the last that a triangle is of."""
-        return 1 + int(self.material_slots.max()) if self.material_slots.any() else 1
+        return 1 if self.material_slots is None else 1 + int(self.material_slots.max())
 
     def vertices(self, triangles):
         """[n x 3] Of some of the triangles."""
@@ -38,14 +43,20 @@ class MeshArrays(NamedTuple):
         return self.corner_uvs[self.triangles[triangles]]
 
     def normals(self, triangles):
-        """[n x 3 x 3]"""
+        """[n x 3 x 3] Of flat triangles without area 0."""
         if self.corner_normals is not None:
             return self.corner_normals[self.triangles[triangles]]
-        if self.face_normals is None:
-            return self.vertex_normals[self.vertices(triangles)]
-        faces = self.triangle_faces[triangles]
-        normals = np.repeat(self.face_normals[faces, None], 3, axis=1)
-        if self.face_smooth is not None:
-            smooth = self.face_smooth[faces] != 0
-            normals[smooth] = self.vertex_normals[self.vertices(triangles)[smooth]]
+        if self.vertex_normals is None:
+            return np.repeat(self._flat_normals(triangles)[:, None], 3, axis=1)
+        normals = self.vertex_normals[self.vertices(triangles)]
+        if self.smooth is not None:
+            flat = self.smooth[triangles] == 0
+            normals[flat] = self._flat_normals(triangles)[flat][:, None]
         return normals
+
+    def _flat_normals(self, triangles):
+        """[n x 3]"""
+        a, b, c = np.moveaxis(self.positions[self.vertices(triangles)].astype(float), 1, 0)
+        across = np.cross(b - a, c - a)
+        lengths = np.linalg.norm(across, axis=1, keepdims=True)
+        return np.divide(across, lengths, out=np.zeros_like(across), where=lengths > 0)

@@ -34,8 +34,10 @@ def render_final(engine, depsgraph):
     engine.update_stats("Velour", "Exporting the scene")
     view = final_view(depsgraph, notes)
 
+    breaks = _Clock(_POLL_SECONDS)  # asked once an instance, which Blender's answer takes longer than
+
     def check_break():
-        if engine.test_break():
+        if breaks.rings() and engine.test_break():
             raise RenderCancelledError
 
     begin = time.monotonic()

@@ -66,7 +66,7 @@ def corner_colors(mesh, arrays, colors):
     if count == 0:
         return None
     sets = np.zeros((count, len(arrays.corner_vertices), 3), np.float32)
-    slots = np.minimum(arrays.material_slots, len(colors) - 1)
+    slots = np.minimum(arrays.slots, len(colors) - 1)
     for slot, asked in enumerate(colors):
         shown = arrays.triangles[slots == slot]
         for number, each in enumerate(asked):
@@ -88,14 +88,26 @@ def missing_colors(obj, asked, material_name):
     )
 
 
+class _Attribute(NamedTuple):
+    data: object  # Blender's collection of elements
+    domain: str
+    field: str  # an element's property
+    size: int  # how many numbers it has
+
+
 def _attribute(mesh, name):
+    """The _Attribute of that name; None: there is none that can be read."""
     if name is None:
         colors = getattr(mesh, "color_attributes", ())
         index = colors.render_color_index if len(colors) else -1
-        return colors[index] if 0 <= index < len(colors) else None
-    found = mesh.attributes.get(name)
-    readable = found is not None and found.data_type in _READ and found.domain in _SPREAD
-    return found if readable else None
+        found = colors[index] if 0 <= index < len(colors) else None
+    else:
+        found = mesh.attributes.get(name)
+        if found is None and name in mesh.uv_layers:  # before Blender 3.5 these are no attributes
+            return _Attribute(mesh.uv_layers[name].data, "CORNER", "uv", 2)
+    if found is None or found.data_type not in _READ or found.domain not in _SPREAD:
+        return None
+    return _Attribute(found.data, found.domain, *_READ[found.data_type])
 
 
 def _corner_values(mesh, arrays, asked):
@@ -103,9 +115,8 @@ def _corner_values(mesh, arrays, asked):
     attribute = _attribute(mesh, asked.name)
     if attribute is None:
         return None
-    field, size = _READ[attribute.data_type]
-    values = np.empty((len(attribute.data), size), np.float32)
-    attribute.data.foreach_get(field, values.reshape(-1))
+    values = np.empty((len(attribute.data), attribute.size), np.float32)
+    attribute.data.foreach_get(attribute.field, values.reshape(-1))
     return _SPREAD[attribute.domain](mesh, arrays, _shown(values, asked))
 
 

@@ -76,15 +76,15 @@ def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own):
     count = len(mesh.loop_triangles)
     if count == 0:
         return None
-    vertices, corner_count = mesh.vertices, len(mesh.loops)
+    vertices, loops = mesh.vertices, mesh.loops
     corners = _fill(empty("triangles", 3 * count, np.uint32), mesh.loop_triangles, "loops")
     arrays = MeshArrays(
-        positions=_fill(empty("positions", 3 * len(vertices), np.float32), vertices, "co").reshape(-1, 3),
-        triangles=corners.reshape(-1, 3),
+        _fill(empty("positions", 3 * len(vertices), np.float32), vertices, "co").reshape(-1, 3),
+        corners.reshape(-1, 3),
         # What triangles say of vertices and materials they look up one by one, many times slower.
-        corner_vertices=_fill(empty("corner_vertices", corner_count, np.uint32), mesh.loops, "vertex_index"),
-        material_slots=_material_slots(mesh, count, empty),
-        **_normals(mesh, count, empty),
+        _fill(empty("corner_vertices", len(loops), np.uint32), loops, "vertex_index"),
+        _material_slots(mesh, count, empty),
+        *_normals(mesh, count, empty),
     )
     if uv_maps is not None:
         arrays = arrays._replace(**_coordinates(mesh, arrays, uv_maps))
@@ -92,18 +92,15 @@ def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own):
 
 
 def _material_slots(mesh, count, empty):
-    """[triangles]; without an attribute that says otherwise all faces are of the first slot."""
-    slots = empty("material_slots", count, np.uint32)
+    """[triangles]; None: without an attribute that says otherwise all faces are of the first slot."""
     if len(mesh.materials) <= 1 and "material_index" not in mesh.attributes:
-        slots.fill(0)
-    else:
-        of_faces = _read(mesh.polygons, "material_index", (len(mesh.polygons),), np.uint32)
-        np.take(of_faces, _faces(mesh, count), out=slots)
-    return slots
+        return None
+    of_faces = _read(mesh.polygons, "material_index", (len(mesh.polygons),), np.uint32)
+    return np.take(of_faces, _faces(mesh, count), out=empty("material_slots", count, np.uint32))
 
 
-def _faces(mesh, count, empty=_own):
-    return _fill(empty("triangle_faces", count, np.uint32), mesh.loop_triangles, "polygon_index")
+def _faces(mesh, count):
+    return _read(mesh.loop_triangles, "polygon_index", (count,), np.uint32)
 
 
 def _read(collection, attribute, shape, dtype=np.float32):
@@ -121,33 +118,37 @@ def _vectors(memory, collection):
 
 
 def _normals(mesh, count, empty):
-    """Custom, sharp and auto-smooth normals as Blender shades them: those of corners only where they differ.
+    """corner_normals, vertex_normals and smooth: those of corners only where they differ.
 
-    Blender gives normals to Python one by one, and there are many more corners than vertices.
+    Blender gives normals to Python one by one, and there are many more corners than vertices. A flat face is
+    shaded by the triangles that it is cut into, as in Cycles, but for auto smooth.
     """
     domain = mesh.normals_domain if _HAS_DOMAINS else None
     if domain == "CORNER":
-        return {"corner_normals": _read(mesh.corner_normals, "vector", (len(mesh.loops), 3))}
+        return _read(mesh.corner_normals, "vector", (len(mesh.loops), 3)), None, None
     if domain is None and mesh.use_auto_smooth:
-        return {"corner_normals": _split_normals(mesh)}
-    smooth = _smooth_faces(mesh, domain)
-    smooth_count = np.count_nonzero(smooth)  # any() and all() of few take many times as long
-    normals = {}
-    if smooth_count > 0:
+        return _split_normals(mesh), None, None
+    some_smooth, some_flat, faces = _smooth_faces(mesh, domain)
+    of_vertices = smooth = None
+    if some_smooth:
         memory = empty("vertex_normals", 3 * len(mesh.vertices), np.float32)
-        normals["vertex_normals"] = _vectors(memory, mesh.vertex_normals)
-    if smooth_count < len(smooth):
-        memory = empty("face_normals", 3 * len(mesh.polygons), np.float32)
-        normals["face_normals"] = _vectors(memory, mesh.polygon_normals)
-        normals["triangle_faces"] = _faces(mesh, count, empty)
-    return {**normals, "face_smooth": smooth.view(np.uint8)} if len(normals) == 3 else normals
+        of_vertices = _vectors(memory, mesh.vertex_normals)
+    if some_flat:
+        smooth = empty("smooth", count, np.uint8)
+        if some_smooth:
+            np.take(faces.view(np.uint8), _faces(mesh, count), out=smooth)
+        else:
+            smooth.fill(0)
+    return None, of_vertices, smooth
 
 
 def _smooth_faces(mesh, domain):
-    """[faces], or one for all."""
+    """Whether some faces are, whether some are not, and [faces]; None: all are alike."""
     if domain is not None:
-        return np.array([domain == "POINT"])
-    return _read(mesh.polygons, "use_smooth", (len(mesh.polygons),), bool)
+        return domain == "POINT", domain != "POINT", None
+    faces = _read(mesh.polygons, "use_smooth", (len(mesh.polygons),), bool)
+    seen = faces.tobytes()  # any() and all() of few take many times as long
+    return b"\1" in seen, b"\0" in seen, faces
 
 
 def _split_normals(mesh):
@@ -161,9 +162,9 @@ def _coordinates(mesh, arrays, uv_maps):
     """Sets of texture coordinates, [corners x 2] each, as far as materials look at them."""
     if not mesh.uv_layers:
         return {"corner_uvs": _projected(mesh, arrays, uv_maps)}
-    corners, slots = arrays.triangles, arrays.material_slots
+    corners = arrays.triangles
     # Beyond the last slot the last material shows.
-    shown = np.minimum(slots, len(uv_maps) - 1) if len(uv_maps) > 1 else None
+    shown = np.minimum(arrays.slots, len(uv_maps) - 1) if len(uv_maps) > 1 else None
 
     def uvs(names):
         return _corner_uvs(mesh, corners, shown, names)
@@ -190,7 +191,7 @@ def _projected(mesh, arrays, uv_maps):
     faces[arrays.triangles] = _faces(mesh, len(arrays.triangles))[:, None]
     normals = _read(mesh.polygon_normals, "vector", (len(mesh.polygons), 3))
     uvs = box_projection(arrays.positions[arrays.corner_vertices], normals[faces])
-    uvs[arrays.triangles[~projects[np.minimum(arrays.material_slots, len(projects) - 1)]]] = 0
+    uvs[arrays.triangles[~projects[np.minimum(arrays.slots, len(projects) - 1)]]] = 0
     return uvs
 
 

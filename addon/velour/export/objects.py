@@ -11,7 +11,7 @@ from .meshes import has_colors, has_uv_map, has_uv_maps, object_arrays
 from .placement import Placements, missing_coordinates, projected_onto
 from .units import metres_per_unit
 from .uv_maps import maps_of_slots, missing_map
-from .visibility import Visibility, note_visibility
+from .visibility import Visibility, note_light_visibility
 
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
@@ -97,11 +97,12 @@ class ObjectExport:
             if not is_wanted(instance):
                 continue
             obj = instance.object
-            if obj.type == "LIGHT" and not geometry_alone:
-                note_visibility(obj, self._notes)
+            kind = obj.type
+            if kind == "LIGHT" and not geometry_alone:
+                note_light_visibility(obj, self._notes)
                 self.shines |= add_light(self._scene, obj, instance.matrix_world, self._notes)
                 continue
-            shown = self._look_once(instance, obj, override, visibility)
+            shown = self._look_once(instance, obj, kind, override, visibility)
             if shown:
                 self._add_instance(instance, shown, metres)
         numbers = self._queue.numbers()
@@ -112,32 +113,31 @@ class ObjectExport:
         """The name of the object that an instance of the scene is of; None of None."""
         return None if instance is None else self._owners[instance]
 
-    def _look_once(self, instance, obj, override, visibility):
+    def _look_once(self, instance, obj, kind, override, visibility):
         if not instance.is_instance:  # there is no other of it
-            return self._look_at(obj, override, visibility)
+            return self._look_at(obj, kind, override, visibility)
         key = _identity(obj)
         if key not in self._shown:
-            self._shown[key] = self._look_at(obj, override, visibility)
+            self._shown[key] = self._look_at(obj, kind, override, visibility)
         return self._shown[key]
 
-    def _look_at(self, obj, override, visibility):
+    def _look_at(self, obj, kind, override, visibility):
         """The _Shown of an object; None of what is no geometry. `visibility` None: all see it."""
-        if visibility:
-            note_visibility(obj, self._notes)
-        if obj.type not in GEOMETRY:
+        if kind not in GEOMETRY:
             self._note_unsupported(obj)
             return None
-        self._note_extras(obj)
+        if obj.modifiers:
+            self._note_extras(obj)
         data = obj.data
         materials = (override,) if override else tuple(_materials(obj, data))
-        mesh = self._mesh(obj, data, materials)
+        mesh = self._mesh(obj, kind, data, materials)
         if mesh is None:
             return None
         slots = self._slots_of(materials, mesh.slot_count)
         if slots.is_placed and self._queue.numbers()[mesh.place] is None:
             return None
         self._note_missing(obj, mesh, slots)
-        hidden = visibility.hidden(obj) if visibility else ()
+        hidden = visibility.hidden(obj, self._notes) if visibility else ()
         if "camera" not in hidden:
             self._seen.append(mesh.place)
         return _Shown(obj.name, mesh.place, slots.materials, (slots.numbers, hidden), slots.is_placed)
@@ -160,13 +160,13 @@ class ObjectExport:
             self._scene.add_instance(mesh, affine(matrix), numbers, placements, hidden)
             self._owners.append(shown.owner)
 
-    def _mesh(self, obj, data, materials):
+    def _mesh(self, obj, kind, data, materials):
         """The _Mesh of an object; None: it has no faces."""
         if materials not in self._asked:
             uv_maps = maps_of_slots(tuple(map(self._materials.uv_maps, materials)))
             self._asked[materials] = uv_maps, colors_of_slots(tuple(map(self._materials.colors, materials)))
         asked = self._asked[materials]
-        key = (obj.type, (data or obj).as_pointer(), asked)
+        key = (kind, (data or obj).as_pointer(), asked)
         if not self._meshes.has(key, obj):
             arrays = object_arrays(obj, *asked, self._queue.empty)
             self._meshes[key] = arrays and _Mesh(
@@ -207,7 +207,7 @@ class ObjectExport:
                     self._notes.add(missing_colors(obj, asked, material.name))
 
     def _note_extras(self, obj):
-        """What a renderer would add to the evaluated mesh."""
+        """What a renderer would add to the evaluated mesh, which its modifiers tell of."""
         for system in obj.particle_systems:
             if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
                 self._notes.add(f"Object '{obj.name}': hair '{system.name}' is not supported; left out.")

@@ -54,7 +54,7 @@ def _tile_width(metrics, tile, shell):
 def _bends(shown):
     """Least and largest curvature of a ShownSurface in the world, 1/m."""
     arrays = shown.arrays
-    triangles = np.isin(arrays.material_slots, shown.slots)
+    triangles = np.isin(arrays.slots, shown.slots)
     matrix = np.array(shown.obj.matrix_world, float)[:3, :3]
     corners = arrays.positions[arrays.vertices(triangles)] @ matrix.T * shown.metres
     normals = arrays.normals(triangles) @ np.linalg.inv(matrix)

@@ -100,7 +100,7 @@ def surface_of(arrays, slots):
     """The Surface of those slots of MeshArrays; None without texture coordinates."""
     if arrays is None or arrays.corner_uvs is None:
         return None
-    shown = np.isin(arrays.material_slots, slots)
+    shown = np.isin(arrays.slots, slots)
     return Surface.of(arrays.positions, arrays.vertices(shown), arrays.uvs(shown))
 
 

@@ -62,7 +62,7 @@ def _of_faces(shown, values):
     """Values of a ShownSurface's triangles as values of the object's faces; NaN of other slots."""
     faces = triangle_faces(shown.obj)
     found = np.full(int(faces.max()) + 1, np.nan)
-    found[faces[np.isin(shown.arrays.material_slots, shown.slots)]] = values
+    found[faces[np.isin(shown.arrays.slots, shown.slots)]] = values
     return found
 
 

@@ -4,7 +4,6 @@ import bpy
 
 from .notes import listed
 
-_GEOMETRY = ("MESH", "CURVE", "SURFACE", "FONT", "META")
 # To ask each object for what it has not is slow.
 _LINKS_LIGHT = "light_linking" in bpy.types.Object.bl_rna.properties  # 4.0 and newer
 _BOUNCES = {"visible_diffuse": "diffuse rays", "visible_glossy": "glossy rays"}
@@ -20,17 +19,25 @@ class Visibility:
         self._some_indirect = any(each.indirect_only for each in collections)
         self._some_holdout = any(each.holdout for each in collections)
 
-    def hidden(self, obj):
-        """The keyword `hidden` of Scene.add_instance."""
+    def hidden(self, obj, notes):
+        """The keyword `hidden` of Scene.add_instance; says what of it is not rendered."""
         found = []
         if not obj.visible_camera or self._is_indirect(obj):
             found.append("camera")
-        if len(_hidden_bounces(obj)) == len(_BOUNCES):
+        bounces = _hidden_bounces(obj)
+        if len(bounces) == len(_BOUNCES):
             found.append("bounces")
+        elif bounces:
+            notes.add(
+                f"Object '{obj.name}': that it is hidden from {bounces[0]} alone is not supported; ignored."
+            )
         if not obj.visible_shadow:
             found.append("shadows")
         if obj.is_holdout or self._is_holdout(obj):
             found.append("holdout")
+        if obj.is_shadow_catcher:
+            notes.add(f"Object '{obj.name}': that it is a shadow catcher is not supported; ignored.")
+        _note_linking(obj, "Object", notes)
         return tuple(found)
 
     def _is_indirect(self, obj):
@@ -46,24 +53,18 @@ def _all_collections(root):
         yield from _all_collections(child)
 
 
-def note_visibility(obj, notes):
-    """Says what of an evaluated object's visibility is not rendered."""
+def note_light_visibility(obj, notes):
+    """Says what of an evaluated light's visibility is not rendered."""
+    bounces = _hidden_bounces(obj)
+    if bounces:
+        notes.add(f"Light '{obj.name}': that it is hidden from {listed(bounces)} is not supported; ignored.")
+    _note_linking(obj, "Light", notes)
+
+
+def _note_linking(obj, kind, notes):
     linking = obj.light_linking if _LINKS_LIGHT else None
     if linking is not None and (linking.receiver_collection or linking.blocker_collection):
-        notes.add(f"{_owner(obj)}: light linking is not supported; ignored.")
-    bounces = _hidden_bounces(obj)
-    if obj.type == "LIGHT" and bounces:
-        notes.add(f"{_owner(obj)}: that it is hidden from {listed(bounces)} is not supported; ignored.")
-    if obj.type not in _GEOMETRY:
-        return
-    if len(bounces) == 1:
-        notes.add(f"{_owner(obj)}: that it is hidden from {bounces[0]} alone is not supported; ignored.")
-    if obj.is_shadow_catcher:
-        notes.add(f"{_owner(obj)}: that it is a shadow catcher is not supported; ignored.")
-
-
-def _owner(obj):
-    return f"{'Light' if obj.type == 'LIGHT' else 'Object'} '{obj.name}'"
+        notes.add(f"{kind} '{obj.name}': light linking is not supported; ignored.")
 
 
 def _hidden_bounces(obj):

@@ -10,7 +10,7 @@ from . import table
 from .arrays import address, checked
 from .errors import refuse
 
-# Of Scene.add_mesh: type, what there is one for each of (corner, triangle, vertex, face), its shape.
+# Of Scene.add_mesh: type, what there is one for each of (corner, triangle, vertex), its shape.
 MESH_ARRAYS = {
     "positions": (np.float32, "v", (3,)),
     "triangles": (np.uint32, "t", (3,)),
@@ -23,9 +23,6 @@ MESH_ARRAYS = {
     "smooth": (np.uint8, "t", ()),
     "corner_vertices": (np.uint32, "k", ()),
     "vertex_normals": (np.float32, "v", (3,)),
-    "face_normals": (np.float32, "f", (3,)),
-    "face_smooth": (np.uint8, "f", ()),
-    "triangle_faces": (np.uint32, "t", ()),
 }
 
 
@@ -69,7 +66,6 @@ _COUNT_FIELDS = {
     "v": "vertex_count",
     "t": "triangle_count",
     "k": "corner_count",
-    "f": "face_count",
     "more_uvs": "more_uv_sets",
     "corner_colors": "color_sets",
 }
@@ -83,7 +79,6 @@ def _counts(sizes, meshes):
         "v": sizes["positions"] // 3,
         "t": sizes["triangles"] // 3,
         "k": sizes.get("corner_vertices", none),
-        "f": sizes.get("face_normals", none) // 3,
     }
     counts["c"] = np.where(counts["k"] > 0, counts["k"], 3 * counts["t"])
     for name in _SETS:

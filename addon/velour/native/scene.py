@@ -51,12 +51,11 @@ class Scene(Handle):
         float32: corner_normals [t x 3 x 3], corner_uvs [t x 3 x 2], more_uvs [sets x t x 3 x 2] (sets 1, 2,
         ... of texture coordinates), relief_uvs [t x 3 x 2] (what tangents of normal maps follow, else
         corner_uvs), corner_colors [sets x t x 3 x 3] (Texture.of_corners); uint32: material_slots [t] (else
-        all 0); uint8: smooth [t], without normals (else all).
+        all 0); uint8: smooth [t], 0: the triangle is flat (else none is; not beside corner_normals).
 
         With corner_vertices (uint32 [c]: of each corner of the faces) `triangles` name corners, and what has
-        [t x 3] has [c]. Without corner_normals: vertex_normals [v x 3] of smooth faces, face_normals [f x 3]
-        of the others with triangle_faces (uint32 [t]) and, where there are both, face_smooth (uint8 [f]).
-        Without any normals vertices are smooth. The library copies; nothing need stay alive.
+        [t x 3] has [c]. Without corner_normals: vertex_normals [v x 3] of what is smooth, else the means of
+        the triangles about each vertex. The library copies; nothing need stay alive.
         """
         mesh = checked_mesh({"positions": positions, "triangles": triangles, **arrays})
         numbers, dropped = self.add_meshes(mesh)

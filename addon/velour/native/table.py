@@ -174,7 +174,7 @@ class MeshDesc(Struct):
         ("struct_size", c_uint32),
         ("vertex_count", c_uint32),
         ("triangle_count", c_uint32),
-        ("pad", c_uint32),
+        ("color_sets", c_uint32),
         ("positions", c_void_p),
         ("triangles", c_void_p),
         ("corner_normals", c_void_p),
@@ -187,11 +187,6 @@ class MeshDesc(Struct):
         ("corner_count", c_uint32),
         ("corner_vertices", c_void_p),
         ("vertex_normals", c_void_p),
-        ("face_normals", c_void_p),
-        ("face_smooth", c_void_p),
-        ("triangle_faces", c_void_p),
-        ("face_count", c_uint32),
-        ("color_sets", c_uint32),
         ("corner_colors", c_void_p),
     ]
 

@@ -331,13 +331,13 @@ typedef struct vlr_mesh_desc {
   uint32_t struct_size;
   uint32_t vertex_count;
   uint32_t triangle_count;
-  uint32_t pad;
+  uint32_t color_sets;            /* VLR_MOST_COLOR_SETS at most */
   const float* positions;         /* [vertex_count x 3] */
   const uint32_t* triangles;      /* [triangle_count x 3] */
-  const float* corner_normals;    /* [triangle_count x 3 x 3] shading normals; NULL: smooth vertex normals */
+  const float* corner_normals;    /* [triangle_count x 3 x 3] shading normals; NULL: vertex_normals */
   const float* corner_uvs;        /* [triangle_count x 3 x 2]; NULL: none */
   const uint32_t* material_slots; /* [triangle_count]; NULL: all 0 */
-  const uint8_t* smooth;          /* [triangle_count] 1: smooth; used when corner_normals is NULL; NULL: all smooth */
+  const uint8_t* smooth;          /* [triangle_count] 0: flat; used when corner_normals is NULL; NULL: all smooth */
   const float* more_uvs;          /* [more_uv_sets x triangle_count x 3 x 2] sets 1, 2, ... beside corner_uvs, set 0 */
   const float* relief_uvs;        /* [triangle_count x 3 x 2] what MikkTSpace tangents follow; NULL: set 0 */
   uint32_t more_uv_sets;          /* VLR_MOST_UV_SETS - 1 at most */
@@ -345,14 +345,8 @@ typedef struct vlr_mesh_desc {
   /* Not NULL: `triangles` name corners of faces, these are the vertices of those [corner_count], and what is said to be
    * triangle_count x 3 is corner_count: nothing need be spread over the triangles that faces are cut into. */
   const uint32_t* corner_vertices;
-  /* Used when corner_normals is NULL: normals of smooth faces, 1 a vertex, and of the others, 1 a face. */
-  const float* vertex_normals;    /* [vertex_count x 3] */
-  const float* face_normals;      /* [face_count x 3] */
-  const uint8_t* face_smooth;     /* [face_count]; NULL: all are where there are vertex_normals */
-  const uint32_t* triangle_faces; /* [triangle_count]; with face_normals */
-  uint32_t face_count;
-  uint32_t color_sets;        /* VLR_MOST_COLOR_SETS at most */
-  const float* corner_colors; /* [color_sets x triangle_count x 3 x 3] of vlr_texture_of_corners, working space */
+  const float* vertex_normals; /* [vertex_count x 3] of what is smooth; NULL: means of the triangles about a vertex */
+  const float* corner_colors;  /* [color_sets x triangle_count x 3 x 3] of vlr_texture_of_corners, working space */
 } vlr_mesh_desc;
 /* Degenerate triangles and non-finite vertices are left out; *dropped (may be NULL) says how many triangles. */
 VLR_API vlr_status vlr_scene_add_mesh(vlr_scene* scene, const vlr_mesh_desc* desc, uint32_t* mesh, uint32_t* dropped);

@@ -62,10 +62,7 @@ MeshArrays arrays_of(const vlr_mesh_desc& desc) {
           .material_slots = array_of<uint32_t>(desc.material_slots, triangles),
           .smooth = array_of<uint8_t>(desc.smooth, triangles),
           .corner_vertices = array_of<uint32_t>(desc.corner_vertices, corners),
-          .vertex_normals = array_of<Vec3>(desc.vertex_normals, desc.vertex_count),
-          .face_normals = array_of<Vec3>(desc.face_normals, desc.face_count),
-          .face_smooth = array_of<uint8_t>(desc.face_smooth, desc.face_count),
-          .triangle_faces = array_of<uint32_t>(desc.triangle_faces, triangles)};
+          .vertex_normals = array_of<Vec3>(desc.vertex_normals, desc.vertex_count)};
 }
 
 void initialize(vlr_mesh_desc* desc) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "job/parallel.h"
@@ -49,7 +50,9 @@ Mesh::Mesh(const MeshArrays& arrays) {
   }
   if (!arrays.material_slots.empty()) slots_.resize(count);
   in_pieces(count, [&](size_t begin, size_t end) { copy_triangles(arrays, kept, begin, end); });
-  const std::vector<Vec3d> sums = arrays.has_normals() ? std::vector<Vec3d>() : summed_normals();
+  const bool given = !arrays.corner_normals.empty() || !arrays.vertex_normals.empty();
+  const bool all_flat = !arrays.smooth.empty() && std::ranges::none_of(arrays.smooth, std::identity());
+  const std::vector<Vec3d> sums = given || all_flat ? std::vector<Vec3d>() : summed_normals();
   in_pieces(count, [&](size_t begin, size_t end) { finish_normals(arrays, kept, sums, begin, end); });
   find_bounds();
 }
@@ -116,7 +119,7 @@ void Mesh::finish_normals(const MeshArrays& arrays, std::span<const uint32_t> ke
                           size_t begin, size_t end) {
   for (size_t i = begin; i < end; ++i) {
     const glm::uvec3& t = triangles_[i];
-    const bool summed = !sums.empty() && (arrays.smooth.empty() || arrays.smooth[kept[i]] != 0);
+    const bool summed = !sums.empty() && arrays.is_smooth(kept[i]);
     for (int k = 0; k < 3; ++k) {
       Vec3& n = normals_[3 * i + static_cast<size_t>(k)];
       if (summed && glm::length(sums[t[k]]) > 0.0) n = unit(sums[t[k]]);

@@ -45,9 +45,6 @@ std::optional<std::string> missing(const MeshArrays& arrays, size_t triangle) {
     }
     if (vertex >= arrays.positions.size()) return lacks("vertex", vertex, arrays.positions.size(), "vertices");
   }
-  if (!arrays.triangle_faces.empty() && arrays.triangle_faces[triangle] >= arrays.face_normals.size()) {
-    return lacks("face", arrays.triangle_faces[triangle], arrays.face_normals.size(), "faces");
-  }
   return std::nullopt;
 }
 
@@ -83,21 +80,11 @@ void MeshArrays::check() const {
   check_length(material_slots.size(), n, "material slots");
   check_length(smooth.size(), n, "smooth flags");
   check_length(vertex_normals.size(), positions.size(), "vertex normals");
-  check_length(triangle_faces.size(), n, "faces of triangles");
-  check_length(face_smooth.size(), face_normals.size(), "smooth flags of faces");
-  if (face_normals.empty() != triangle_faces.empty()) {
-    refuse("A mesh has normals of faces without the faces of its triangles, or those without normals.");
-  }
 }
 
 Vec3 MeshArrays::normal(size_t triangle, int k, uint32_t vertex) const {
   if (!corner_normals.empty()) return corner_normals[corner(triangle, k)];
-  if (!face_normals.empty()) {
-    const uint32_t face = triangle_faces[triangle];
-    const bool is_smooth = !vertex_normals.empty() && (face_smooth.empty() || face_smooth[face] != 0);
-    if (!is_smooth) return face_normals[face];
-  }
-  return vertex_normals.empty() ? Vec3(0.0f) : vertex_normals[vertex];
+  return vertex_normals.empty() || !is_smooth(triangle) ? Vec3(0.0f) : vertex_normals[vertex];
 }
 
 std::vector<uint32_t> usable_triangles(const MeshArrays& arrays) {

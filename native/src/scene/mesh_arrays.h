@@ -19,15 +19,12 @@ struct MeshArrays {
   std::span<const Vec2> relief_uvs{};          // 3 a triangle: what tangents of normal maps follow; none: corner_uvs
   std::span<const Rgb> corner_colors{};        // sets of 3 a triangle, one after the other; what is not finite is 0
   std::span<const uint32_t> material_slots{};  // 1 a triangle; none: slot 0
-  std::span<const uint8_t> smooth{};           // 1 a triangle; used without any normals; none: all smooth
+  std::span<const uint8_t> smooth{};           // 1 a triangle; used without corner_normals; none: all smooth
   /// Given: `triangles` name corners of faces, these are the vertices of those, and what is said to be 3 a triangle is
   /// 1 a corner: no array need be spread over the triangles that faces are cut into.
   std::span<const uint32_t> corner_vertices{};
-  /// Used without corner_normals: of smooth faces, 1 a vertex; and of the others, 1 a face.
+  /// Used without corner_normals, of smooth triangles; none: means of the triangles about a vertex, by area.
   std::span<const Vec3> vertex_normals{};
-  std::span<const Vec3> face_normals{};
-  std::span<const uint8_t> face_smooth{};      // 1 a face; none: all are where there are vertex normals
-  std::span<const uint32_t> triangle_faces{};  // 1 a triangle; with face_normals
 
   /// Throws Error(invalid_argument) when lengths disagree.
   void check() const;
@@ -35,9 +32,9 @@ struct MeshArrays {
   size_t corner(size_t triangle, int k) const {
     return corner_vertices.empty() ? 3 * triangle + static_cast<size_t>(k) : triangles[triangle][k];
   }
-  /// (0, 0, 0): none is given.
+  /// (0, 0, 0): none is given, or the triangle is flat.
   Vec3 normal(size_t triangle, int k, uint32_t vertex) const;
-  bool has_normals() const { return !corner_normals.empty() || !vertex_normals.empty() || !face_normals.empty(); }
+  bool is_smooth(size_t triangle) const { return smooth.empty() || smooth[triangle] != 0; }
 };
 
 /// Triangles that a ray can hit reliably, by number. Throws Error(invalid_argument) when one names a vertex, corner or

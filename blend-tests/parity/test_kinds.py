@@ -1,0 +1,94 @@
+"""Everything that shows faces, and what scene, view layer and libraries say of it."""
+
+import math
+
+import bpy
+
+from parity import stage
+from parity.ground import KindTest
+
+
+class Kinds(KindTest):
+    def test_curves(self):
+        bpy.ops.curve.primitive_bezier_circle_add(radius=1.2, location=(-1.5, 0, 0.5))
+        self.made(bevel_depth=0.25, bevel_resolution=6)
+        bpy.ops.curve.primitive_nurbs_path_add(location=(1.5, 0.5, 0.6))
+        self.made(0.4, extrude=0.3)
+        self.assert_parity("Curves: bevel and extrusion")
+
+    def test_text(self):
+        bpy.ops.object.text_add(location=(-2, -0.5, 0.1), rotation=(0.4, 0, 0))
+        self.made(body="Velour", size=1.4, extrude=0.1)
+        self.assert_parity("Text")
+
+    def test_surface(self):
+        bpy.ops.surface.primitive_nurbs_surface_torus_add(radius=1.2, location=(0, 0, 0.6))
+        self.made()
+        self.assert_parity("Surfaces")
+
+    def test_metaballs(self):
+        for x in (-0.6, 0.5):
+            bpy.ops.object.metaball_add(type="BALL", radius=1.0, location=(x, 0, 0.8))
+            self.made(resolution=0.15, render_resolution=0.1)
+        self.assert_parity("Metaballs")
+
+    def test_modifiers(self):
+        small = self.small()
+        small.scale = (1.5, 1.5, 1.5)
+        array, bend = small.modifiers.new("Array", "ARRAY"), small.modifiers.new("Bend", "SIMPLE_DEFORM")
+        array.count, bend.deform_method, bend.angle = 5, "BEND", 0.9
+        array.relative_offset_displace = (1.1, 0.2, 0.1)
+        self.assert_parity("Modifiers")
+
+
+class Shown(KindTest):
+    def test_slots_of_objects(self):
+        first = self.small()
+        second = stage.link(first.copy())
+        for obj, x in ((first, -1), (second, 1)):
+            obj.location, obj.scale = (x, 0, 0), (4, 4, 4)
+        second.material_slots[0].link = "OBJECT"
+        second.material_slots[0].material = stage.grey(0.1)
+        self.assert_parity("Material slots of objects")
+
+    def test_override(self):
+        self.carrier()
+        self.scene.view_layers[0].material_override = stage.grey(0.25)
+        self.assert_parity("View layer: material override")
+
+    def test_excluded(self):
+        """One collection is excluded from the view layer, one switched off for renders."""
+        for i, name in enumerate(("Shown", "Excluded", "Off")):
+            group = bpy.data.collections.new(name)
+            self.scene.collection.children.link(group)
+            small = self.small()
+            self.scene.collection.objects.unlink(small)
+            group.objects.link(small)
+            small.location, small.scale = (1.5 * i - 1.5, 0, 0), (4, 4, 4)
+        self.scene.view_layers[0].layer_collection.children["Excluded"].exclude = True
+        bpy.data.collections["Off"].hide_render = True
+        self.assert_parity("View layer: excluded collection, collection off for renders")
+
+    def test_library(self):
+        """Linked with its parent, moved by an override."""
+        parent, small = self.carrier(), self.small()
+        small.parent, small.scale = parent, (3, 3, 3)
+        path = self.folder / "props.blend"
+        bpy.data.libraries.write(str(path), {parent, small})
+        for obj in (parent, small):
+            bpy.data.objects.remove(obj)
+        with bpy.data.libraries.load(str(path), link=True) as (there, here):
+            here.objects = there.objects
+        for obj in here.objects:
+            stage.link(obj)
+        small = next(obj for obj in here.objects if obj.name.startswith("Small"))
+        small.override_create(remap_local_usages=True).location = (0.5, -0.8, 0.4)
+        self.assert_parity("Linked library, overridden object")
+
+    def test_backface_culling(self):
+        """Cycles shows both sides whatever the material says, and so does Velour."""
+        sheet = self.carrier()
+        sheet.rotation_euler.x = math.pi
+        sheet.location.z = 1.5
+        sheet.data.materials[0].use_backface_culling = True
+        self.assert_parity("Material: Backface Culling")
