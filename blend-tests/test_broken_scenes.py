@@ -67,6 +67,21 @@ class BrokenGeometry(BadInputTest):
             vertex.co.x = math.nan
         self._refused("no object with faces")
 
+    def test_loose(self):
+        """Vertices and edges without faces are no reason for words, and may be nowhere."""
+        self.ball.data.vertices.add(3)
+        self.ball.data.edges.add(1)
+        first = len(self.ball.data.vertices) - 3
+        self.ball.data.edges[-1].vertices = (first, first + 1)
+        self.ball.data.vertices[first + 2].co = (math.nan, 0, math.inf)
+        wire = bpy.data.objects.new("Wire", bpy.data.meshes.new("Wire"))
+        wire.data.from_pydata([(0, 0, 2), (1, 0, 2)], [(0, 1)], [])
+        self.scene.collection.objects.link(wire)
+        child = self._run()
+        self.assertEqual(child.returncode, 0, child.stdout)
+        self.assertNotIn("Velour: ", child.stdout)
+        self.assertGreater(scenes.middle(self._picture(1)).min(), 0.2)
+
     def test_transform(self):
         other = bpy.data.objects.new("Lost", self.ball.data)
         other.location.x = math.nan

@@ -8,6 +8,7 @@ from .add_mesostructure import VELOUR_OT_add_mesostructure
 from .add_votf import VELOUR_OT_add_votf
 from .approximate import VELOUR_OT_approximate
 from .capture_btf import VELOUR_OT_capture_btf
+from .check_scene import VELOUR_OT_check_scene
 from .compress_btf import VELOUR_OT_compress_btf
 from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
@@ -35,6 +36,7 @@ CLASSES = (
     VELOUR_OT_add_votf,
     VELOUR_OT_describe_placement,
     VELOUR_OT_keep_uv_density,
+    VELOUR_OT_check_scene,
 )
 
 

@@ -3,6 +3,7 @@
 import bpy
 
 from .approximation_state import VelourApproximationState
+from .check_state import VelourCheckState, VelourSentence
 from .file_settings import VelourFileSettings
 from .job_state import VelourJobState
 from .layer_settings import VelourLayerSettings
@@ -26,6 +27,8 @@ _POINTERS = (
 CLASSES = (
     VelourPlacementSettings,
     VelourPlotSettings,
+    VelourSentence,
+    VelourCheckState,
     *dict.fromkeys(group for _owner, group, _override in _POINTERS),
 )
 

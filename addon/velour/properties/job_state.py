@@ -1,8 +1,9 @@
-"""What windows show: the work that runs in the background, and which plot. Never saved."""
+"""What windows show: the work that runs in the background, which plot, what a check found. Never saved."""
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
+from .check_state import VelourCheckState
 from .plot_settings import VelourPlotSettings
 
 
@@ -17,3 +18,4 @@ class VelourJobState(bpy.types.PropertyGroup):
     waiting: IntProperty(options={"SKIP_SAVE"})  # how many come after it
     fraction: FloatProperty(name="Progress", subtype="FACTOR", min=0.0, max=1.0, options={"SKIP_SAVE"})
     plot: PointerProperty(type=VelourPlotSettings)
+    checked: PointerProperty(type=VelourCheckState)

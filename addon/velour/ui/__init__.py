@@ -13,7 +13,12 @@ from .material_panel import (
 from .placement_panel import VELOUR_MATERIAL_PT_placement
 from .plot_panel import VELOUR_MATERIAL_PT_plots
 from .preferences import VelourPreferences
-from .render_panel import VELOUR_RENDER_PT_film, VELOUR_RENDER_PT_library, VELOUR_RENDER_PT_sampling
+from .render_panel import (
+    VELOUR_RENDER_PT_check,
+    VELOUR_RENDER_PT_film,
+    VELOUR_RENDER_PT_library,
+    VELOUR_RENDER_PT_sampling,
+)
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
 from .tile_panel import VELOUR_COLLECTION_PT_tile, VELOUR_OBJECT_PT_tile
 
@@ -22,6 +27,7 @@ CLASSES = (
     VELOUR_RENDER_PT_library,
     VELOUR_RENDER_PT_sampling,
     VELOUR_RENDER_PT_film,
+    VELOUR_RENDER_PT_check,
     VELOUR_VIEWLAYER_PT_passes,
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_placement,

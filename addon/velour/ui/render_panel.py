@@ -3,6 +3,7 @@
 import bpy
 
 from ..engine.engine import VelourRenderEngine
+from ..operators.check_scene import VELOUR_OT_check_scene
 from . import library_state
 from .text import draw_sentence
 
@@ -71,3 +72,17 @@ class VELOUR_RENDER_PT_film(_RenderPanel, bpy.types.Panel):
         if cycles is not None:
             layout.prop(cycles, "film_exposure", text="Exposure")
         layout.prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+class VELOUR_RENDER_PT_check(_RenderPanel, bpy.types.Panel):
+    bl_label = "What Is Left Out"
+
+    def draw(self, context):
+        layout, checked = self.layout, context.window_manager.velour.checked
+        layout.operator(VELOUR_OT_check_scene.bl_idname, icon="VIEWZOOM")
+        if checked.scene != context.scene.name:
+            return
+        for sentence in checked.sentences:
+            draw_sentence(context, layout, sentence.text, icon="ERROR" if sentence.is_refusal else "INFO")
+        if not checked.sentences:
+            layout.label(text=f"Nothing, in frame {checked.frame}.", icon="CHECKMARK")

@@ -1,0 +1,114 @@
+"""What is left out of a scene, said before it is rendered."""
+
+import types
+
+import bpy
+
+from support import scenes
+from support.blender import BlenderTest
+
+
+class _Layout:
+    """Remembers what is drawn."""
+
+    def __init__(self):
+        self.texts, self.operators = [], []
+
+    def column(self, **_settings):
+        return self
+
+    def label(self, text="", **_settings):
+        self.texts.append(text)
+
+    def operator(self, idname, **_settings):
+        self.operators.append(idname)
+
+
+class CheckScene(BlenderTest):
+    """A ball under a lamp."""
+
+    def setUp(self):
+        super().setUp()
+        self.scene = scenes.use_engine(samples=1, size=4)
+        scenes.add_camera()
+        self.ball = scenes.add_sphere(scenes.diffuse_material())
+        self.lamp = bpy.data.objects.new("Fill", bpy.data.lights.new("Fill", "POINT"))
+        self.lamp.data.energy = 50.0
+        self.scene.collection.objects.link(self.lamp)
+        self.scene.world = None
+
+    def _found(self):
+        self.assertEqual(bpy.ops.velour.check_scene(), {"FINISHED"})
+        checked = bpy.context.window_manager.velour.checked
+        self.assertEqual((checked.scene, checked.frame), (self.scene.name, self.scene.frame_current))
+        return [(sentence.is_refusal, sentence.text) for sentence in checked.sentences]
+
+    def _drawn(self):
+        panel = types.SimpleNamespace(layout=_Layout())
+        screen = types.SimpleNamespace(system=types.SimpleNamespace(ui_scale=1.0))  # there is none here
+        context = types.SimpleNamespace(
+            window_manager=bpy.context.window_manager,
+            scene=bpy.context.scene,
+            region=None,
+            preferences=screen,
+        )
+        bpy.types.VELOUR_RENDER_PT_check.draw(panel, context)
+        self.assertEqual(panel.layout.operators, ["velour.check_scene"])
+        return " ".join(panel.layout.texts)
+
+    def test_nothing(self):
+        self.assertEqual(self._drawn(), "")
+        self.assertEqual(self._found(), [])
+        self.assertEqual(self._drawn(), "Nothing, in frame 1.")
+
+    def test_owners_are_named(self):
+        """Of a lamp, an object, a material and the scene: as the render itself says."""
+        self.lamp.data.specular_factor = 0.5
+        self.ball.visible_glossy = False
+        tree = self.ball.active_material.node_tree
+        glass = tree.nodes.new("ShaderNodeBsdfGlass")
+        tree.links.new(glass.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        self.scene.render.use_motion_blur = True
+        found, drawn = self._found(), self._drawn()
+        self.assertEqual(len(found), 4, found)
+        for words in (
+            "Light 'Fill': its diffuse, specular and volume factors are ignored.",
+            "Object 'Sphere': that it is hidden from glossy rays alone is not supported; ignored.",
+            "Material 'Diffuse': node 'Glass BSDF' (Glass BSDF) is not supported; rendered grey.",
+            f"Scene '{self.scene.name}': motion blur is not supported; ignored.",
+        ):
+            self.assertIn((False, words), found)
+            self.assertIn(words, drawn)
+
+    def test_refusals(self):
+        self.lamp.data.energy = 0.0
+        ((is_refusal, text),) = self._found()
+        self.assertTrue(is_refusal)
+        self.assertIn(f"Scene '{self.scene.name}', view layer 'ViewLayer': nothing shines in it", text)
+        self.assertIn("nothing shines", self._drawn())
+
+    def test_no_camera(self):
+        self.scene.camera = None
+        ((is_refusal, text),) = self._found()
+        self.assertTrue(is_refusal)
+        self.assertIn("camera", text)
+
+    def test_scene_and_picture_stay(self):
+        picture = scenes.render(self.folder)
+        names = [scene.name for scene in bpy.data.scenes]
+        self.lamp.data.energy = 5000.0
+        self._found()
+        self.assertEqual([scene.name for scene in bpy.data.scenes], names)
+        bpy.data.images["Render Result"].save_render(str(self.folder / "after.exr"))
+        self.assertLess(abs(scenes.read(self.folder / "after.exr") - picture).max(), 1e-3)
+
+    def test_another_scene_shows_nothing_of_it(self):
+        self._found()
+        bpy.context.window.scene = bpy.data.scenes.new("Other")
+        self.assertEqual(self._drawn(), "")
+
+
+if __name__ == "__main__":
+    import unittest
+
+    unittest.main()
