@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 
 def _info(path) -> dict:
     from velour.native import Model
@@ -36,3 +38,20 @@ def test_views_between_the_reported_ones():
     ]
     (sentence,) = panel_warnings({"warnings": warnings, "tolerance": 0.02})
     assert sentence.startswith("The tolerance of 0.02 is missed between the reported views.")
+
+
+@pytest.mark.parametrize(
+    ("albedo", "gain", "said"),
+    [
+        (0.9, (1.0, 1.0, 1.0), None),
+        (0.9, (1.0, 1.1, 1.0), None),
+        (0.9, (1.0, 2.0, 0.5), "1.8 times"),
+        (1.02, (1.0, 1.0, 1.0), None),  # the measurement's own fault, told elsewhere
+        (None, (4.0, 4.0, 4.0), None),
+    ],
+)
+def test_a_tint_that_makes_light_is_told(albedo, gain, said):
+    from velour.core.model_warnings import gain_warning
+
+    sentence = gain_warning(albedo, gain)
+    assert (sentence is None) if said is None else (said in sentence)

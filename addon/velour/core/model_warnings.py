@@ -18,3 +18,11 @@ def panel_warnings(info: dict) -> list[str]:
     where = f" at {', '.join(angles)}" if angles else " between the reported views"
     remedy = "More lobes may help (Max Lobes); the plot Size shows what each brings."
     return [f"The tolerance of {info['tolerance']:g} is missed{where}. {remedy}", *others]
+
+
+def gain_warning(albedo_max: float | None, gain: tuple[float, float, float]) -> str | None:
+    """Where a tint makes a model reflect more light than falls on it. None of `albedo_max`: not known."""
+    brightest = max(gain) * (albedo_max or 0.0)
+    if max(gain) <= 1.0 or brightest <= 1.0:
+        return None
+    return f"Reflects up to {brightest:.2g} times the light that falls on it; lower Tint or Exposure."

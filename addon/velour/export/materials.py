@@ -111,6 +111,7 @@ class MaterialTable:
         if node is not None:
             try:
                 number = self._add_measured(material, node)
+                self._scene.set_gain(number, gain(node.velour))
                 self.models[material.name_full] = model_hashes(material)
                 return number
             except (ExportError, VelourError) as error:
@@ -233,6 +234,11 @@ class MaterialTable:
                 return self._scene.add_btf_material(btf)
         except VelourError as error:
             raise ExportError(f"{owner}: {error}") from error
+
+
+def gain(settings):
+    """What a measured material's reflection is multiplied with: the artist's tint and exposure."""
+    return tuple(channel * 2.0**settings.exposure for channel in settings.tint)
 
 
 def _owner(material):

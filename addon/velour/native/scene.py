@@ -8,7 +8,7 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Mapping
-from ctypes import byref, c_uint32
+from ctypes import byref, c_float, c_uint32
 
 import numpy as np
 
@@ -129,6 +129,10 @@ class Scene(Handle):
     def replace_material(self, material: int) -> None:
         """Puts the one that was added last in the place of `material`, and takes it from the end."""
         self._lib.vlr_scene_replace_material(self.pointer, material)
+
+    def set_gain(self, material: int, gain: tuple[float, float, float]) -> None:
+        """What the material reflects is multiplied with, in the working space; at least 0."""
+        self._lib.vlr_scene_set_gain(self.pointer, material, (c_float * 3)(*gain))
 
     def set_shell_softness(self, material: int, widths: float) -> None:
         """Over what share of the tile's width the edge of a shell fades out, from 0 (hard) to below 1."""

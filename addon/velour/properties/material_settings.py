@@ -1,7 +1,15 @@
 """A measured material: settings of the Image Texture node whose image is the model."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 
 from .placement_settings import VelourPlacementSettings
 
@@ -156,6 +164,28 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         max=0.99,
         soft_max=0.1,
         precision=3,
+        update=_changed,
+        override=_OVERRIDE,
+    )
+    tint: FloatVectorProperty(
+        name="Tint",
+        description="What the material reflects is multiplied with this colour. White: as it was measured",
+        subtype="COLOR",
+        size=3,
+        default=(1.0, 1.0, 1.0),
+        min=0.0,
+        soft_max=1.0,
+        update=_changed,
+        override=_OVERRIDE,
+    )
+    exposure: FloatProperty(
+        name="Exposure",
+        description="In stops: each doubles what the material reflects. 0: as it was measured",
+        default=0.0,
+        soft_min=-4.0,
+        soft_max=4.0,
+        min=-32.0,
+        max=32.0,
         update=_changed,
         override=_OVERRIDE,
     )

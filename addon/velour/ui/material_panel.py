@@ -2,8 +2,9 @@
 
 import bpy
 
-from ..core.model_warnings import panel_warnings
+from ..core.model_warnings import gain_warning, panel_warnings
 from ..engine.engine import VelourRenderEngine
+from ..export.materials import gain
 from ..export.nodes import active_output, velour_node
 from ..export.notes import Notes
 from ..export.shaders import surface_layers
@@ -55,6 +56,7 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
             row.active = info.get("model", "scattered") == "scattered"
             row.prop(settings, "neighbors")
         layout.column().prop(settings, "use_reference")
+        _draw_gain(context, layout, settings, info)
 
 
 def _draw_fit_settings(column, settings):
@@ -67,6 +69,15 @@ def _draw_fit_settings(column, settings):
         column.prop(settings, "use_limit_albedo")
         column.prop(settings, "use_symmetric")
     column.prop(settings, "use_all_data")
+
+
+def _draw_gain(context, layout, settings, info):
+    column = layout.column(align=True)
+    column.prop(settings, "tint")
+    column.prop(settings, "exposure")
+    sentence = gain_warning(info.get("albedo_max"), gain(settings))
+    if sentence:
+        draw_sentence(context, layout, sentence, icon="ERROR")
 
 
 def _draw_fit(context, layout):

@@ -370,12 +370,15 @@ VLR_API vlr_status vlr_scene_set_shell_tile(vlr_scene* scene, uint32_t material,
 /* Over what share of the tile's width the edge of the material's shell (VOTF) fades out, from 0 (hard) to below 1: each
  * ray finds it elsewhere. */
 VLR_API vlr_status vlr_scene_set_shell_softness(vlr_scene* scene, uint32_t material, float widths);
+/* What the material reflects is multiplied with `gain`: red, green, blue of the working space, finite and at least 0;
+ * (1, 1, 1) unless told. What glows, and what is let through, stays. Samples are drawn as before. */
+VLR_API vlr_status vlr_scene_set_gain(vlr_scene* scene, uint32_t material, const float gain[3]);
 /* Whether rays are drawn to the material's surfaces where they glow, as to a lamp (not 0; the default). 0: their light
  * is found by the directions that surfaces reflect, alone. The picture converges to the same. */
 VLR_API vlr_status vlr_scene_set_drawn_to(vlr_scene* scene, uint32_t material, int32_t drawn);
-/* Puts a model in the place of material number `material`, of whatever kind it was; a shell keeps tile and softness. A
- * committed scene stays committed, unless one of the two has a shell and the other none of the same heights, or the
- * model alone is anisotropic; no job of the scene may run meanwhile. */
+/* Puts a model in the place of material number `material`, of whatever kind it was; a shell keeps tile and softness,
+ * the gain stays. A committed scene stays committed, unless one of the two has a shell and the other none of the same
+ * heights, or the model alone is anisotropic; no job of the scene may run meanwhile. */
 VLR_API vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t material, const vlr_model* model,
                                                 uint32_t neighbors);
 /* Reference mode: f comes from the raw measurement. `proposal` (may be NULL) is the model whose lobes draw samples;

@@ -264,6 +264,14 @@ vlr_status vlr_scene_set_shell_softness(vlr_scene* scene, uint32_t material, flo
   });
 }
 
+vlr_status vlr_scene_set_gain(vlr_scene* scene, uint32_t material, const float gain[3]) {
+  return guard([&] {
+    require(scene, "scene");
+    require(gain, "gain");
+    scene->scene->set_gain(material, {gain[0], gain[1], gain[2]});
+  });
+}
+
 vlr_status vlr_scene_set_drawn_to(vlr_scene* scene, uint32_t material, int32_t drawn) {
   return guard([&] {
     require(scene, "scene");

@@ -12,9 +12,10 @@ struct Continuation {
   Rgb throughput;
 };
 
-/// f of the vertex's material in the scene's space.
+/// f of the vertex's material in the scene's space, with its gain.
 inline Rgb in_working_space(const std::optional<Mat3>& rec709_to_working, const Vertex& vertex, const Rgb& f) {
-  return rec709_to_working && vertex.surface->rec709_colors ? *rec709_to_working * f : f;
+  const SurfaceMaterial& surface = *vertex.surface;
+  return surface.gain * (rec709_to_working && surface.rec709_colors ? *rec709_to_working * f : f);
 }
 
 /// One ray drawn with `u` by the surface side, and `throughput` f cos / pdf, which need not be finite. Nothing when it

@@ -98,6 +98,7 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
     material.shell_tile = place.shell_tile;
     material.shell_softness = place.shell_softness;
   }
+  material.gain = place.gain;
   place = std::move(material);
 }
 
@@ -107,6 +108,17 @@ void Scene::replace_material(uint32_t number) {
   changed();
   materials_[number] = std::move(materials_.back());
   materials_.pop_back();
+}
+
+void Scene::set_gain(uint32_t material, const Rgb& gain) {
+  if (material >= materials_.size()) refuse("There is no material " + std::to_string(material) + " to tint.");
+  for (int c = 0; c < 3; ++c) {
+    if (!(gain[c] >= 0 && std::isfinite(gain[c]))) {
+      refuse("A material cannot be made " + std::to_string(gain[c]) + " times as bright.");
+    }
+  }
+  ++revision_;
+  materials_[material].gain = gain;
 }
 
 void Scene::set_drawn_to(uint32_t material, bool drawn) {

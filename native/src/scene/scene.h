@@ -41,6 +41,8 @@ struct SurfaceMaterial {
   float shell_softness = 0;
   /// Whether rays are drawn to it where it glows; false: its light is found by what surfaces reflect alone.
   bool drawn_to = true;
+  /// What f is multiplied with, in the working space: an artist's tint and exposure. Densities stay as they are.
+  Rgb gain{1.0f};
 };
 
 /// What rays there are to an instance that some of them pass through; bits of Instance::hidden, and values of velour.h.
@@ -104,7 +106,7 @@ class Scene {
   uint32_t add_material(SurfaceMaterial material);
   /// Puts another material in the place of one. A committed scene stays committed, unless one of the two has a shell
   /// and the other none of the same heights, or the new one alone needs tangents; nothing may read it meanwhile. A
-  /// shell keeps tile and softness.
+  /// shell keeps tile and softness; the gain stays.
   void set_material(uint32_t number, SurfaceMaterial material);
   /// Puts the material that was added last in the place of `number`, and takes it from the end.
   void replace_material(uint32_t number);
@@ -112,6 +114,8 @@ class Scene {
   void set_shell_tile(uint32_t material, float metres);
   /// SurfaceMaterial::shell_softness, below 1. As above. A committed scene stays committed.
   void set_shell_softness(uint32_t material, float widths);
+  /// SurfaceMaterial::gain, finite and at least 0. A committed scene stays committed.
+  void set_gain(uint32_t material, const Rgb& gain);
   /// SurfaceMaterial::drawn_to. A committed scene stays committed.
   void set_drawn_to(uint32_t material, bool drawn);
   /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a

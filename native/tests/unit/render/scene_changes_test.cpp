@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 
+#include "job/error.h"
 #include "support/test_scene.h"
 
 namespace velour {
@@ -75,6 +77,40 @@ TEST(SceneChanges, AMeshGivesWayToAnother) {
         s.add_instance(ground, {}, {0});
         s.add_instance(ball, shift({0, 0, 1}), {1});
       });
+}
+
+TEST(SceneChanges, AMaterialGainsLight) {
+  expect_same([](Scene& s) { s.set_gain(0, Rgb(0.5f)); },
+              [](Scene& s) {
+                s.set_material(0, {grey(0.25f), Rgb(0.0f), false});
+                add_ground_and_ball(s, {0, 0, 1});
+              });
+}
+
+TEST(SceneChanges, AGainIsOfEachChannelAndStays) {
+  Scene scene;
+  begin(scene);
+  scene.add_instance(scene.add_mesh(test::square(9)), {}, {0});
+  scene.commit(1);
+  const RenderOptions options = small_options(Strategy::mis, 16);
+  const std::vector<float> before = rendered(scene, options);
+  const Rgb gain(2, 1, 0.25f);
+  scene.set_gain(0, gain);
+  scene.set_material(0, {grey(0.5f), Rgb(0.0f), false});
+  const std::vector<float> after = rendered(scene, options);
+  ASSERT_EQ(after.size() % 4, 0u);
+  for (size_t i = 0; i < after.size(); ++i) {
+    EXPECT_EQ(after[i], before[i] * (i % 4 < 3 ? gain[static_cast<int>(i % 4)] : 1)) << i;
+  }
+}
+
+TEST(SceneChanges, NonsensicalGainsAreRefused) {
+  Scene scene;
+  begin(scene);
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {-0.1f, nan, infinity}) EXPECT_THROW(scene.set_gain(0, Rgb(1, bad, 1)), Error) << bad;
+  EXPECT_THROW(scene.set_gain(2, Rgb(1)), Error);
+  scene.set_gain(1, Rgb(0));
 }
 
 TEST(SceneChanges, AnInstanceIsAloneAndHasCompanyAgain) {
