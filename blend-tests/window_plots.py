@@ -19,9 +19,9 @@ def each_plot(folder):
     for number, kind in enumerate(("LOBES", "ORDER", "VIEW_ERROR", "ALBEDO")):
         plots.preview().forget()
         yield from plots.show(kind, scroll=0 if number else 15)
-        screen = window.screenshot(folder, f"plot-{kind.lower()}")
         small, large = sorted(plots.pictures(), key=len)
         assert len(small) < len(large), (len(small), len(large))
+        screen = yield from plots.screenshot(folder, f"plot-{kind.lower()}", large)
         assert plots.is_on_screen(screen, large), f"{kind}: the plot is not on the screen pixel by pixel"
         assert not plots.is_on_screen(screen, large[::-1]), "the check would see the plot upside down as well"
     large_again = plots.pictures()
@@ -39,8 +39,8 @@ def light_theme(folder):
     with window.override():
         bpy.ops.script.execute_preset(filepath=path, menu_idname="USERPREF_MT_interface_theme_presets")
     yield from plots.drawn()
-    screen = window.screenshot(folder, "light")
     shown = plots.pictures()[-2:]
+    screen = yield from plots.screenshot(folder, "light", max(shown, key=len))
     bpy.ops.preferences.reset_default_theme()
     yield 0.3
     assert min(picture.mean() for picture in shown) > dark.mean() + 50

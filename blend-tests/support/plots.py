@@ -8,6 +8,7 @@ import numpy as np
 from . import inputs, scenes, window
 
 _SECONDS = 20
+_TURNS = 20  # of a wheel
 _CLOSE = 8  # of 255: rounding of the theme's colours, which are mixed again on the way to the screen
 
 
@@ -46,6 +47,17 @@ def drawn():
             break
         yield 0.1
     yield 0.5
+
+
+def screenshot(folder, name, picture):
+    """Of the window, the large editor scrolled down until the whole picture is on it, or to its end."""
+    for _ in range(_TURNS):
+        screen = window.screenshot(folder, name)
+        if is_on_screen(screen, picture):
+            break
+        window.scroll_down(40)
+        yield 0.1
+    return screen
 
 
 def pictures():
