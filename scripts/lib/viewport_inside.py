@@ -1,0 +1,128 @@
+"""Runs inside Blender's window: seconds until the rendered viewport shows a change.
+
+`--python viewport_inside.py -- FOLDER`. FOLDER/task.json names the scene, and how often it is switched off
+and on; FOLDER/result.json is what was found.
+"""
+
+import json
+import sys
+import time
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blend-tests"))
+
+import viewport_scenes
+from support import blender, viewport, window
+
+SAMPLES = 8
+REPEATS = 5  # of each change; the median counts
+_TURN = 0.005
+_PATIENCE = 120
+
+
+class Stopwatch:
+    """What the add-on's viewport does, and when: wraps the two calls that Blender makes."""
+
+    def __init__(self):
+        engine_viewport = viewport.addon("engine.viewport").Viewport
+        self._update, self._draw = engine_viewport.update, engine_viewport.draw
+        engine_viewport.update = lambda shown, *given: self._timed_update(shown, *given)
+        engine_viewport.draw = lambda shown, *given: self._timed_draw(shown, *given)
+        self.start()
+
+    def start(self):
+        self.begin = time.monotonic()
+        self.export, self.held, self.seen = 0.0, 0.0, None
+
+    def _timed_update(self, shown, *given):
+        begin = time.monotonic()
+        self._update(shown, *given)
+        self.export += time.monotonic() - begin
+
+    def _timed_draw(self, shown, *given):
+        begin, export = time.monotonic(), self.export
+        self._draw(shown, *given)
+        end = time.monotonic()
+        self.held = max(self.held, end - begin - (self.export - export))
+        if self.seen is None and shown._picture.shown_at >= begin:
+            self.seen = end - self.begin
+
+    def until_seen(self):
+        while self.seen is None:
+            if time.monotonic() > self.begin + _PATIENCE:
+                raise TimeoutError("the viewport shows nothing")
+            yield _TURN
+
+    def row(self):
+        return {"seen": self.seen, "export": self.export, "held": self.held}
+
+
+def main():
+    folder = Path(sys.argv[sys.argv.index("--") + 1])
+    task = json.loads((folder / "task.json").read_text())
+    bpy.app.timers.register(lambda: _start(folder, task), first_interval=1.0)  # once the window is there
+
+
+def _start(folder, task):
+    blender.enable_addon()
+
+    def steps(folder):
+        result = {"blender": bpy.app.version_string, "samples": SAMPLES}
+        yield from _measure(folder, task, result)
+        (folder / "result.json").write_text(json.dumps(result))
+
+    window.run(folder, (steps,))
+
+
+def _measure(folder, task, result):
+    bpy.context.scene.render.engine = "VELOUR"
+    viewport_scenes.start(task["scene"])
+    yield 1.0
+    watch = Stopwatch()
+    viewport.show(samples=SAMPLES)
+    yield from watch.until_seen()
+    yield from viewport.finished()
+    result["changes"] = {"switched on": [watch.row()]}
+    result["size"] = [viewport.region().width, viewport.region().height]
+    for name, change in viewport_scenes.CHANGES.items():
+        result["changes"][name] = yield from _repeated(watch, change)
+    window.screenshot(folder, "viewport")
+    result["mib"] = _resident_mib()
+    if task["restarts"]:
+        result["restarts"] = yield from _restarted(watch, task["restarts"])
+
+
+def _repeated(watch, change):
+    rows = []
+    for time_of_it in range(REPEATS):
+        watch.start()
+        change(time_of_it)
+        yield from watch.until_seen()
+        yield from viewport.finished()
+        rows.append(watch.row())
+    return rows
+
+
+def _restarted(watch, count):
+    """MiB after each tenth of them."""
+    shading, memory = viewport.space().shading, []
+    for i in range(count):
+        shading.type = "SOLID"
+        yield 0.05
+        watch.start()
+        shading.type = "RENDERED"
+        yield from watch.until_seen()
+        if (i + 1) % max(count // 10, 1) == 0:
+            memory.append(_resident_mib())
+    return {"count": count, "mib": memory}
+
+
+def _resident_mib():
+    lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
+    return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS")) / 1024
+
+
+main()
