@@ -19,7 +19,7 @@ from renders import Settings
 from velour.native.table import COMPRESS_METHODS
 from velour_cli import ROOT
 
-MEMBERS = (2, 3, 4)  # of K-CTA
+MEMBERS = (None, 2, 3, 4)  # of K-CTA; None: sought
 SWITCHES = {
     "btf": "this chart",
     "kept": "writes what the fits say that are there, and makes no others",
@@ -35,7 +35,7 @@ def methods(known: tuple[str, ...], wanted: list[str] | None = None) -> list[Met
         for k in members:
             extra = () if k is None else (("members", k),)
             label = name if k is None else f"{name} {k}"
-            if not wanted or name in wanted or label in wanted:
+            if not wanted or label in wanted:
                 found.append(Method(label, (("method", name), *extra)))
     return found
 

@@ -25,6 +25,7 @@ constexpr double kShareStep = 0.12, kLeastShare = 0.12, kMostShare = 0.96;
 constexpr double kLeftOfRelief = 0.27;
 constexpr uint32_t kUsualClusters = 8, kUsualMembers = 2;
 constexpr double kWorthClusters = 0.99;
+constexpr double kFlattered = 0.5;  // of an error, over the coefficients of a texel
 
 class ShapeSearch {
  public:
@@ -36,22 +37,25 @@ class ShapeSearch {
 
   FoundShape run() {
     found_.relief_error = kLeftOfRelief * options_.relief_share;
-    std::optional<ShapeChoice> best;
-    for (const ShapeChoice& start : starts()) {
-      const ShapeChoice end = walk(start, found_.trials.size() + kMostTrials / 2);
-      if (!best || is_better_shape(end.clusters, error(end), best->clusters, error(*best))) best = end;
-    }
-    found_.choice = *best;
+    std::vector<JudgedShape> ends;  // from fewer clusters, and from more
+    for (const ShapeChoice& start : starts())
+      ends.push_back(judged(walk(start, found_.trials.size() + kMostTrials / 2)));
+    const JudgedShape &few = ends.front(), &more = ends.back();
+    const bool more_are_better = is_better_shape(more.choice.clusters, more.error, few.choice.clusters, few.error);
+    found_.best = more_are_better ? more : few;
+    if (is_rival(few, found_.best)) found_.rival = few;
     found_.view_rank = options_.extent.view_rank;
     found_.light_rank = options_.extent.light_rank;
-    found_.shape = *largest_shape(*best, options_.extent, options_.bytes);
-    found_.error = error(*best);
     progress_.update(1.0);
     return std::move(found_);
   }
 
  private:
   static bool few(const TensorView& slices) { return slices.extent(0) < kFitted + kJudged; }
+
+  JudgedShape judged(const ShapeChoice& choice) {
+    return {choice, *largest_shape(choice, options_.extent, options_.bytes), error(choice)};
+  }
 
   /// To the best that is found in so many trials.
   ShapeChoice walk(ShapeChoice best, size_t most) {
@@ -204,6 +208,11 @@ class ShapeSearch {
 
 bool is_better_shape(uint32_t clusters, double error, uint32_t others, double least) {
   return error < (clusters > others ? kWorthClusters : 1.0) * least;
+}
+
+bool is_rival(const JudgedShape& other, const JudgedShape& best) {
+  const double least = 1 + kFlattered / best.shape.coefficients();
+  return other.choice.clusters < best.choice.clusters && other.error < least * best.error;
 }
 
 FoundShape search_shape(const TensorView& slices, const ShapeSearchOptions& options, Progress& progress) {

@@ -6,7 +6,7 @@
 namespace velour {
 namespace {
 
-constexpr size_t kShapeNumbers = 11, kTrialNumbers = 8;
+constexpr size_t kJudgedNumbers = 8, kShapeNumbers = 2 * kJudgedNumbers + 3, kTrialNumbers = 8;
 constexpr size_t kMostTrials = 64;
 
 void append(const TensorShape& shape, std::vector<double>& numbers) {
@@ -26,6 +26,17 @@ TensorShape shape_at(const double* numbers) {
   return {whole[0], whole[1], {whole[2], whole[3], whole[4], whole[5]}};
 }
 
+void append(const JudgedShape& judged, std::vector<double>& numbers) {
+  append(judged.shape, numbers);
+  numbers.insert(numbers.end(), {judged.choice.texel_share, judged.error});
+}
+
+/// Clusters of 0 where there is none.
+JudgedShape judged_at(const double* numbers) {
+  const TensorShape shape = shape_at(numbers);
+  return {{shape.clusters, shape.members, shape.rank.color, numbers[6]}, shape, numbers[7]};
+}
+
 std::vector<std::vector<HalfBits>*> parts_of(TensorBtfCluster& c) { return {&c.view, &c.light, &c.color, &c.core}; }
 
 }  // namespace
@@ -37,17 +48,16 @@ std::optional<FoundShape> kept_shape(const FitCheckpoint& checkpoint, const std:
   }
   const double* at = numbers->data();
   FoundShape found;
-  found.shape = shape_at(at);
-  if (found.shape.clusters == 0) return std::nullopt;
-  found.choice = {found.shape.clusters, found.shape.members, found.shape.rank.color, at[6]};
-  found.error = at[7];
-  found.relief_error = at[10];
-  if (!(found.relief_error >= 0)) return std::nullopt;
+  found.best = judged_at(at);
+  if (found.best.shape.clusters == 0) return std::nullopt;
+  if (const JudgedShape rival = judged_at(at + kJudgedNumbers); rival.shape.clusters > 0) found.rival = rival;
+  at += 2 * kJudgedNumbers;
   const auto is_rank = [](double n) { return n >= 1 && n <= static_cast<double>(TensorBtf::kMaxRank); };
-  if (!is_rank(at[8]) || !is_rank(at[9])) return std::nullopt;
-  found.view_rank = static_cast<uint32_t>(at[8]);
-  found.light_rank = static_cast<uint32_t>(at[9]);
-  for (at += kShapeNumbers; at < numbers->data() + numbers->size(); at += kTrialNumbers) {
+  if (!is_rank(at[0]) || !is_rank(at[1]) || !(at[2] >= 0)) return std::nullopt;
+  found.view_rank = static_cast<uint32_t>(at[0]);
+  found.light_rank = static_cast<uint32_t>(at[1]);
+  found.relief_error = at[2];
+  for (at += 3; at < numbers->data() + numbers->size(); at += kTrialNumbers) {
     const TensorShape shape = shape_at(at);
     if (shape.clusters == 0 || !(at[6] >= 0)) return std::nullopt;
     found.trials.push_back({shape.clusters,
@@ -61,9 +71,10 @@ std::optional<FoundShape> kept_shape(const FitCheckpoint& checkpoint, const std:
 
 void keep_shape(FitCheckpoint& checkpoint, const std::string& stage, const FoundShape& found) {
   std::vector<double> numbers;
-  append(found.shape, numbers);
-  numbers.insert(numbers.end(), {found.choice.texel_share, found.error, static_cast<double>(found.view_rank),
-                                 static_cast<double>(found.light_rank), found.relief_error});
+  append(found.best, numbers);
+  append(found.rival.value_or(JudgedShape{{}, TensorShape{0, 0, {}}, 0}), numbers);
+  numbers.insert(numbers.end(),
+                 {static_cast<double>(found.view_rank), static_cast<double>(found.light_rank), found.relief_error});
   for (const ShapeTrial& trial : found.trials) {
     append({trial.clusters, trial.members, {trial.rank[0], trial.rank[1], trial.rank[2], trial.rank[3]}}, numbers);
     numbers.insert(numbers.end(), {static_cast<double>(trial.parameter_bytes), trial.expected});

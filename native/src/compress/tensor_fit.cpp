@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "compress/btf_compare.h"
+#include "compress/model_images.h"
 #include "compress/relief_pyramid.h"
 #include "compress/tensor_checkpoint.h"
 #include "compress/tensor_functions.h"
@@ -22,9 +24,18 @@ constexpr double kFinest = 20;    // of the measurement: the largest model that 
 constexpr double kStep = 1.2;     // from a size to the next
 constexpr double kFall = 0.3;     // errors fall as the bytes to this power, about
 constexpr double kShare = 0.625;  // sides share the bytes by this power of their energies: then 2 kFall is best
-constexpr double kColours = 0.15, kBases = 0.15, kReduced = 0.4, kClusters = 0.5;  // where parts of the progress end
+constexpr double kColours = 0.15, kBases = 0.1, kReduced = 0.25, kShapes = 0.6, kFitted = 0.9,
+                 kClusters = 0.5;  // where parts of the progress end
 
 std::string side_stage(size_t side) { return "side." + std::to_string(side); }
+
+std::string text_of(const TensorShape& shape) {
+  std::string text = std::to_string(shape.clusters);
+  for (const uint32_t n : {shape.members, shape.rank.texel, shape.rank.view, shape.rank.light, shape.rank.color}) {
+    text += '-' + std::to_string(n);
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -61,6 +72,7 @@ TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOption
     const Progress::Span of_side(progress_, kColours + share * static_cast<double>(s),
                                  kColours + share * static_cast<double>(s + 1));
     find_shape(s, side_bytes(s, bytes), range);
+    settle_rival(s);
     shapes_.insert(shapes_.end(), sides_[s].found.trials.begin(), sides_[s].found.trials.end());
   }
   set_curve(bytes);
@@ -73,7 +85,7 @@ void TensorFitter::find_sides(const ColourAxes& colours) {
   for (FittedSide& side : found.sides) {
     std::vector<Relief> relief =
         options_.relief ? relief_pyramid(measurement_, side.directions) : plane_pyramid(measurement_.grid());
-    sides_.push_back({std::move(side.directions), side.energy, std::move(relief), {}, 0, {}, {}});
+    sides_.push_back({std::move(side.directions), side.energy, std::move(relief), {}, 0, {}, {}, {}});
   }
 }
 
@@ -134,18 +146,51 @@ void TensorFitter::find_shape(size_t side, uint64_t bytes, const ShapeRange& ran
     return;
   }
   reduce(side);
-  const Progress::Span shapes(progress_, kReduced, 1);
+  const Progress::Span shapes(progress_, kReduced, kShapes);
   of.found =
       search_shape(of.reduced->slices.view(),
                    {range, extent(side), bytes, of.reduced->relief_share, options_.seed, options_.threads}, progress_);
   keep_shape(checkpoint_, side_stage(side) + ".shape", of.found);
 }
 
+/// The images decide which of two shapes is the side's.
+void TensorFitter::settle_rival(size_t side) {
+  Side& of = sides_[side];
+  if (!of.found.rival) return;
+  const JudgedShape rivals[] = {of.found.best, *of.found.rival};
+  double least = 0;
+  for (size_t i = 0; i < 2; ++i) {
+    const double half = (1 - kShapes) / 2;
+    const Progress::Span one(progress_, kShapes + half * static_cast<double>(i),
+                             kShapes + half * static_cast<double>(i + 1));
+    TensorSide fitted = [&] {
+      const Progress::Span fitting(progress_, 0, kFitted);
+      return fit_side(side, rivals[i].shape);
+    }();
+    const double error = error_of(fitted);
+    if (i > 0 && error >= least) continue;
+    least = error;
+    of.found.best = rivals[i];
+    of.fitted = std::move(fitted);
+  }
+  of.found.rival.reset();
+  keep_shape(checkpoint_, side_stage(side) + ".shape", of.found);
+  if (options_.tolerance == 0) of.reduced.reset();
+}
+
+/// Of a model with no other side.
+double TensorFitter::error_of(const TensorSide& side) {
+  const ModelBody alone = TensorBtf{measurement_.layout(), measurement_.grid(), options_.companding, axes_, {side}, {}};
+  progress_.stage("errors", kFitted, 1);
+  return compare_btf(measurement_, images_of(alone), {.companding = options_.companding}, options_.threads, progress_)
+      .relative_l2;
+}
+
 /// Of other sizes the found shape, with twice the clusters for four times the bytes.
 std::optional<TensorShape> TensorFitter::shape_of(size_t side, uint64_t bytes) const {
   const Side& of = sides_[side];
-  if (bytes == of.found_bytes) return of.found.shape;
-  ShapeChoice choice = of.found.choice;
+  if (bytes == of.found_bytes) return of.found.best.shape;
+  ShapeChoice choice = of.found.best.choice;
   for (double ratio = static_cast<double>(of.found_bytes) / static_cast<double>(bytes); ratio >= 4; ratio /= 4) {
     if (options_.clusters == 0) choice.clusters = std::max((choice.clusters + 1) / 2, choice.members);
   }
@@ -156,7 +201,8 @@ std::optional<TensorShape> TensorFitter::shape_of(size_t side, uint64_t bytes) c
 void TensorFitter::set_curve(uint64_t bytes) {
   double left = 0, relief = 0, all = 0;
   for (const Side& of : sides_) {
-    left += of.energy * std::max(of.found.error * of.found.error - of.found.relief_error, 0.0);
+    const double error = of.found.best.error;
+    left += of.energy * std::max(error * error - of.found.relief_error, 0.0);
     relief += of.energy * of.found.relief_error;
     all += of.energy;
   }
@@ -199,17 +245,23 @@ ModelBody TensorFitter::fit(size_t point) {
   const double share = 1.0 / static_cast<double>(sides_.size());
   for (size_t s = 0; s < sides_.size(); ++s) {
     const Progress::Span of_side(progress_, share * static_cast<double>(s), share * static_cast<double>(s + 1));
-    const TensorShape shape = shape_of(s, side_bytes(s, bytes_[point])).value();
-    const std::string stage = "fit." + std::to_string(point) + "." + side_stage(s);
-    const SideDirections& directions = sides_[s].directions;
-    TensorSide& fitted = btf.sides.emplace_back(
-        TensorSide{directions.view_below, directions.light_below, shape.rank, shape.members, {}, {}});
-    fitted.clusters.resize(shape.clusters);
-    set_clusters(s, stage + ".cluster.", fitted);
-    const Progress::Span texels(progress_, kClusters, 1);
-    solve_tensor_levels(views_, source(s), options_.companding, checkpoint_, stage + ".level.", progress_, fitted);
+    const uint64_t bytes = side_bytes(s, bytes_[point]);
+    const Side& side = sides_[s];
+    btf.sides.push_back(side.fitted && bytes == side.found_bytes ? *side.fitted
+                                                                 : fit_side(s, shape_of(s, bytes).value()));
   }
   return btf;
+}
+
+TensorSide TensorFitter::fit_side(size_t side, const TensorShape& shape) {
+  const SideDirections& directions = sides_[side].directions;
+  TensorSide fitted{directions.view_below, directions.light_below, shape.rank, shape.members, {}, {}};
+  fitted.clusters.resize(shape.clusters);
+  const std::string stage = "fit." + side_stage(side) + '.' + text_of(shape);
+  set_clusters(side, stage + ".cluster.", fitted);
+  const Progress::Span texels(progress_, kClusters, 1);
+  solve_tensor_levels(views_, source(side), options_.companding, checkpoint_, stage + ".level.", progress_, fitted);
+  return fitted;
 }
 
 void TensorFitter::set_clusters(size_t side, const std::string& stage, TensorSide& fitted) {
@@ -231,7 +283,7 @@ void TensorFitter::set_clusters(size_t side, const std::string& stage, TensorSid
                                         progress_);
   fitted.clusters = stored_clusters(found.tensor, *of.bases);
   keep_clusters(checkpoint_, stage, fitted);
-  if (options_.tolerance > 0) return;  // another size may follow
+  if (options_.tolerance > 0 || of.found.rival) return;  // another size or shape may follow
   of.reduced.reset();
 }
 

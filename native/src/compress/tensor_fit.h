@@ -13,7 +13,8 @@ namespace velour {
 
 /// Tucker, CTA and K-CTA, by the clusters and members that they may have. What some texels show, in bases of the views
 /// and lights, is clustered (tensor/cluster_fit.h); how many clusters of which ranks are worth their bytes is tried
-/// first. Clusters are stored as half floats, and the texels of every level are then solved for by what was stored.
+/// first; where that leaves two shapes close to each other, models of both are. Clusters are stored as half floats, and
+/// the texels of every level are then solved for by what was stored.
 class TensorFitter final : public BtfFitter {
  public:
   /// Both must outlive this. What the checkpoint has kept is not done again. Throws Error(invalid_argument) when the
@@ -32,6 +33,7 @@ class TensorFitter final : public BtfFitter {
     uint64_t found_bytes = 0;  // that it was sought for
     std::optional<DirectionBases> bases;
     std::optional<ReducedTexels> reduced;  // both only while something is fitted to them
+    std::optional<TensorSide> fitted;      // of the best shape, where it had a rival
   };
   TensorSource source(size_t side) const;
   TensorExtent extent(size_t side) const;
@@ -39,8 +41,11 @@ class TensorFitter final : public BtfFitter {
   void find_sides(const ColourAxes& colours);
   void reduce(size_t side);
   void find_shape(size_t side, uint64_t bytes, const ShapeRange& range);
+  void settle_rival(size_t side);
+  double error_of(const TensorSide& side);
   void set_curve(uint64_t bytes);
   std::optional<TensorShape> shape_of(size_t side, uint64_t bytes) const;
+  TensorSide fit_side(size_t side, const TensorShape& shape);
   void set_clusters(size_t side, const std::string& stage, TensorSide& fitted);
 
   const BtfMeasurement& measurement_;

@@ -18,15 +18,15 @@ FoundShape found(uint32_t functions) {
 
 TEST(ShapeSearch, GivesTexelsNoMoreThanTheyNeed) {
   const FoundShape shape = found(640);
-  EXPECT_LE(shape.shape.rank.texel, 4u);
-  EXPECT_LT(shape.error, 0.7 * shape.trials[0].expected);
+  EXPECT_LE(shape.best.shape.rank.texel, 4u);
+  EXPECT_LT(shape.best.error, 0.7 * shape.trials[0].expected);
 }
 
 TEST(ShapeSearch, GoesOnWhereSharesMakeTheSameShape) {
   const FoundShape shape = found(8);  // from a share of 0.48 on texels have 8 coefficients
   EXPECT_EQ(shape.trials[0].rank[0], 8u);
-  EXPECT_LE(shape.shape.rank.texel, 4u);
-  EXPECT_LT(shape.error, 0.7 * shape.trials[0].expected);
+  EXPECT_LE(shape.best.shape.rank.texel, 4u);
+  EXPECT_LT(shape.best.error, 0.7 * shape.trials[0].expected);
 }
 
 }  // namespace
