@@ -138,6 +138,20 @@ TEST(TensorFit, FewerClustersAreRivalsWhereTexelsHaveFewCoefficients) {
   EXPECT_FALSE(is_rival(judged(4, 5, 0.401), judged(1, 5, 0.400)));
 }
 
+/// The control: the search alone would have taken more clusters than one.
+TEST(TensorFit, ModelsDecideBetweenShapesThatAreClose) {
+  std::vector<float> steps;
+  for (uint32_t t = 0; t < small_grid().texels(); ++t) steps.push_back(t % 12 / 3 % 2 == t / 12 / 3 % 2 ? 0.15f : 0.0f);
+  const test::MemoryBtfWithRelief btf = test::over_relief(images_of(true_model(0)), steps);
+  const TensorFit cta = fit(btf, {.bytes = 900}, kCta);
+  double one = 2, more = 2;
+  for (const ShapeTrial& t : cta.shapes)
+    (t.clusters == 1 ? one : more) = std::min(t.expected, t.clusters == 1 ? one : more);
+  EXPECT_TRUE(is_better_shape(4, more, 1, one));
+  EXPECT_EQ(cta.btf.sides[0].clusters.size(), 1u);
+  EXPECT_LE(errors_of(cta.btf, btf).relative_l2, errors_of(fit(btf, {.bytes = 900}, kTucker).btf, btf).relative_l2);
+}
+
 TEST(TensorFit, OfOneClusterIsTucker) {
   const test::MemoryBtf btf = test::striped_btf(small_grid());
   expect_same(fit(btf, {.bytes = kBytes, .clusters = 1, .members = 1}, kTucker).btf,
