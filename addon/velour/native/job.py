@@ -174,7 +174,7 @@ def model_peer_job(model: Model, peer: str) -> Job:
 
 def microsurface_job(path: str | os.PathLike, **options) -> Job:
     """Writes a virtual measurement to `path`. Options: roughness, anisotropy, metal, base_albedo, base_share,
-    rays, seed, threads."""
+    ior, flake_roughness, rays, seed, threads."""
     raw = _defaults(table.MicrosurfaceOptions, "vlr_microsurface_options_init")
     if "metal" in options:
         options["metal"] = options["metal"].encode()

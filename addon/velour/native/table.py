@@ -123,6 +123,8 @@ class MicrosurfaceOptions(Struct):
         ("metal", c_char_p),
         ("base_albedo", c_float * 3),
         ("base_share", c_double),
+        ("ior", c_double),
+        ("flake_roughness", c_double),
         ("rays", c_uint64),
         ("seed", c_uint64),
     ]

@@ -5,6 +5,7 @@ import bpy
 from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
 from .add_mesostructure import VELOUR_OT_add_mesostructure
+from .add_presets import VELOUR_OT_add_presets
 from .add_votf import VELOUR_OT_add_votf
 from .approximate import VELOUR_OT_approximate
 from .capture_btf import VELOUR_OT_capture_btf
@@ -30,6 +31,7 @@ CLASSES = (
     VELOUR_OT_enlarge_plot,
     VELOUR_OT_accept_file,
     VELOUR_OT_add_mesostructure,
+    VELOUR_OT_add_presets,
     VELOUR_OT_repeat_tile,
     VELOUR_OT_capture_btf,
     VELOUR_OT_compress_btf,

@@ -1,7 +1,9 @@
-"""The add-on's preferences: is the library there, and which."""
+"""The add-on's preferences: is the library there, and which; the presets."""
 
 import bpy
 
+from ..core import presets
+from ..operators.add_presets import VELOUR_OT_add_presets, library_of, missing
 from . import library_state
 from .text import draw_sentence
 
@@ -17,3 +19,20 @@ class VelourPreferences(bpy.types.AddonPreferences):
         column = self.layout.column(align=True)
         for line in library_state.lines():
             column.label(text=line)
+        self._draw_presets(context)
+
+    def _draw_presets(self, context):
+        folder = presets.folder()
+        column = self.layout.column()
+        if library_of(context.preferences, folder):
+            draw_sentence(
+                context, column, f"Preset materials: in the asset browser, from {folder}", icon="CHECKMARK"
+            )
+            return
+        text = (
+            f"Preset materials: {folder}"
+            if presets.is_built(folder)
+            else f"No preset materials. {missing(folder)}"
+        )
+        draw_sentence(context, column, text)
+        column.operator(VELOUR_OT_add_presets.bl_idname, icon="ASSET_MANAGER")

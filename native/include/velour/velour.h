@@ -32,7 +32,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 6
+#define VLR_ABI_VERSION 7
 
 typedef int32_t vlr_status;
 enum {
@@ -251,7 +251,11 @@ typedef struct vlr_microsurface_options {
   const char* metal;    /* "nickel", "gold", "copper", "aluminium", "silver", "iron", "chromium", "titanium" */
   float base_albedo[3]; /* diffuse base under the metal flakes; 0 0 0: bare metal */
   double base_share;    /* share of the surface that is diffuse base; 0..1 */
-  uint64_t rays;        /* camera-side rays in all; more is finer and slower */
+  /* Refractive index of a clear surface, 1.05..3; 0: none. Roughness and anisotropy are then its own; base and metal
+   * lie below it, as pigment and flakes. */
+  double ior;
+  double flake_roughness; /* Beckmann alpha of the flakes below a clear surface; 0.01..0.4 */
+  uint64_t rays;          /* camera-side rays in all; more is finer and slower */
   uint64_t seed;
 } vlr_microsurface_options;
 VLR_API void vlr_microsurface_options_init(vlr_microsurface_options* options);

@@ -63,6 +63,8 @@ MicrosurfaceOptions converted(const vlr_microsurface_options& given) {
   if (given.metal) options.metal = given.metal;
   options.base_albedo = {given.base_albedo[0], given.base_albedo[1], given.base_albedo[2]};
   options.base_share = given.base_share;
+  options.ior = given.ior;
+  options.flake_roughness = given.flake_roughness;
   options.rays = given.rays;
   options.seed = given.seed;
   options.threads = static_cast<int>(given.threads);
@@ -145,6 +147,8 @@ void vlr_microsurface_options_init(vlr_microsurface_options* options) {
   options->anisotropy = defaults.anisotropy;
   for (int i = 0; i < 3; ++i) options->base_albedo[i] = defaults.base_albedo[i];
   options->base_share = defaults.base_share;
+  options->ior = defaults.ior;
+  options->flake_roughness = defaults.flake_roughness;
   options->rays = defaults.rays;
 }
 

@@ -23,6 +23,9 @@ constexpr uint64_t kSamplesPerCheck = 2048;
 enum class Stream : uint64_t { heights = 0, patches = 1, rays = 2 };
 uint64_t stream_of(uint64_t tile, Stream stream) { return 3 * tile + static_cast<uint64_t>(stream); }
 
+/// More than there are; what lies below a tile is that of a tile so much further on.
+constexpr uint64_t kTilesAbove = uint64_t{1} << 40;
+
 double guide_over_cosine(const HeightFieldOptions& surface, const Vec3& w) {
   const double sin_x = w.x, sin_y = static_cast<double>(w.y) / surface.anisotropy;
   const double alpha_sin = surface.roughness * std::sqrt(sin_x * sin_x + sin_y * sin_y);
@@ -38,8 +41,8 @@ struct Path {
   Vec3 wv;        // where it began
   Vec3 arriving;  // unit, from the current point back along the path
   FacetPoint at;
-  bool met_base;
-  Rgb weight;  // flux towards the light per unit of flux that arrives along wv
+  bool met_base;  // or a body
+  Rgb weight;     // flux towards the light per unit of flux that arrives along wv
 };
 
 /// Traces one tile into one batch.
@@ -50,6 +53,7 @@ class TileRun {
         bins_(bins),
         tile_(make_height_field(options.surface, options.seed, stream_of(tile, Stream::heights)),
               patches(options, tile)),
+        below_(options.body, options.seed, stream_of(tile + kTilesAbove, Stream::heights)),
         stream_(stream_of(tile, Stream::rays)),
         sums_(sums) {}
 
@@ -75,7 +79,13 @@ class TileRun {
     }
     // Facet area seen from wv, per area of the mean plane seen from wv.
     const float weight = cosine / (start.normal.z * wv.z);
-    follow({wv, wv, start, false, Rgb(weight)}, random);
+    const Path path{wv, wv, start, false, Rgb(weight)};
+    if (start.base) {
+      follow_scattered(path, random);
+    } else {
+      if (options_.body) follow_through_body(path, random);
+      follow_mirrored(path, random);
+    }
   }
 
  private:
@@ -126,7 +136,11 @@ class TileRun {
     });
   }
 
-  /// Direction in which the path goes on; multiplies its weight.
+  Rgb reflectance(const Path& path) const {
+    return fresnel_reflectance(options_.conductor, std::min(glm::dot(path.arriving, path.at.normal), 1.0f));
+  }
+
+  /// Direction in which the path goes on, at an interface by chance; multiplies its weight.
   Vec3 scatter(Path& path, RandomStream& random) const {
     const Vec3& normal = path.at.normal;
     if (path.at.base) {
@@ -134,8 +148,18 @@ class TileRun {
       path.weight *= options_.base_albedo;
       return Frame::about(normal).to_world(sample_cosine_hemisphere(random.next2()));
     }
-    path.weight *= fresnel_reflectance(options_.conductor, glm::dot(path.arriving, normal));
+    if (!options_.body) {
+      path.weight *= reflectance(path);
+    } else if (random.next() >= reflectance(path).r) {
+      return scatter_in_body(path, random);
+    }
     return mirrored(path.arriving, normal);
+  }
+
+  Vec3 scatter_in_body(Path& path, RandomStream& random) const {
+    const Frame frame = Frame::about(path.at.normal);
+    path.met_base = true;
+    return frame.to_world(below_.through(frame.to_local(path.arriving), path.weight, random));
   }
 
   static bool survives(Path& path, RandomStream& random) {
@@ -146,20 +170,42 @@ class TileRun {
     return true;
   }
 
-  void follow(Path path, RandomStream& random) {
+  void follow_mirrored(Path path, RandomStream& random) {
+    path.weight *= reflectance(path);
+    const Vec3 leaving = mirrored(path.arriving, path.at.normal);
+    const Fate fate = advance(path, leaving);
+    count_mirror_pair({leaving, path.wv}, fate == Fate::escaped);
+    if (fate == Fate::hit) follow_scattered(path, random);
+  }
+
+  void follow_through_body(Path path, RandomStream& random) {
+    path.weight *= 1.0f - reflectance(path);
+    const Vec3 leaving = scatter_in_body(path, random);
+    follow(path, leaving, random);
+  }
+
+  void follow_scattered(Path path, RandomStream& random) {
+    const Vec3 leaving = scatter(path, random);
+    follow(path, leaving, random);
+  }
+
+  /// To the next facet, if there is one.
+  Fate advance(Path& path, const Vec3& leaving) {
+    ++sums_.rays;
+    const Fate fate = tile_.trace(path.at.position, leaving, path.at);
+    path.arriving = -leaving;
+    if (fate == Fate::lost) ++sums_.lost;
+    return fate;
+  }
+
+  /// What leaves towards `leaving`, until it escapes and is collected.
+  void follow(Path path, Vec3 leaving, RandomStream& random) {
     for (int bounce = 0; bounce < kMaxBounces; ++bounce) {
-      const bool mirror_pair = bounce == 0 && !path.at.base;
-      const Vec3 leaving = scatter(path, random);
-      if (!mirror_pair && !survives(path, random)) return;
-      ++sums_.rays;
-      const Fate fate = tile_.trace(path.at.position, leaving, path.at);
-      if (mirror_pair) count_mirror_pair({leaving, path.wv}, fate == Fate::escaped);
-      if (fate == Fate::lost) break;
-      if (fate == Fate::escaped) {
-        if (!mirror_pair) collect({leaving, path.wv}, path);
-        return;
-      }
-      path.arriving = -leaving;
+      if (!survives(path, random)) return;
+      const Fate fate = advance(path, leaving);
+      if (fate == Fate::escaped) collect({leaving, path.wv}, path);
+      if (fate != Fate::hit) return;
+      leaving = scatter(path, random);
     }
     ++sums_.lost;
   }
@@ -167,6 +213,7 @@ class TileRun {
   const GoniometerOptions& options_;
   const GoniometerBins& bins_;
   PeriodicTile tile_;
+  BodyBelow below_;
   uint64_t stream_;
   GoniometerSums& sums_;
 };
@@ -177,7 +224,9 @@ GoniometerBins::GoniometerBins(const GoniometerOptions& options)
     : slopes(options.surface.roughness, options.surface.roughness / options.surface.anisotropy),
       mirror(options.surface.anisotropy == 1.0 ? PairGrid(24, 12, 0) : PairGrid(12, 9, 24)),
       metal(options.surface.anisotropy == 1.0 ? PairGrid(20, 24, 0) : PairGrid(12, 9, 24)),
-      diffuse(options.surface.anisotropy == 1.0 ? PairGrid(14, 9, 0) : PairGrid(8, 6, 12)) {}
+      diffuse(options.body.has_flakes()           ? metal
+              : options.surface.anisotropy == 1.0 ? PairGrid(14, 9, 0)
+                                                  : PairGrid(8, 6, 12)) {}
 
 GoniometerSums::GoniometerSums(const GoniometerBins& bins)
     : metal_facets(bins.slopes.size()),

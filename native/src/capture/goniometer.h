@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "capture/coated_body.h"
 #include "capture/conductor.h"
 #include "capture/height_field.h"
 #include "capture/pair_grid.h"
@@ -14,9 +15,10 @@ namespace velour {
 
 struct GoniometerOptions {
   HeightFieldOptions surface;
-  Conductor conductor{};
+  Conductor conductor{};     // of the facets; of a clear surface n alone
   Rgb base_albedo{0, 0, 0};  // of the diffuse base
   double base_share = 0.0;   // share of the mean plane over which the surface is base
+  CoatedBody body;           // below a clear surface, whose interface the facets then are; it goes without base_share
   uint64_t seed = 0;
   int batches = 32;         // independent repetitions, from whose spread errors are estimated
   int tiles_per_batch = 2;  // surfaces a batch
@@ -29,9 +31,9 @@ struct GoniometerOptions {
 struct GoniometerBins {
   explicit GoniometerBins(const GoniometerOptions& options);
   SlopeBins slopes;
-  PairGrid mirror;   // one reflection, off metal
-  PairGrid metal;    // several reflections, off metal alone
-  PairGrid diffuse;  // any light that met the base: it varies slowest
+  PairGrid mirror;   // one reflection, off metal or an interface
+  PairGrid metal;    // several of these, and nothing else
+  PairGrid diffuse;  // any light that met the base or a body: it varies slowest
 };
 
 /// What was collected. Sums of two runs add.
@@ -62,7 +64,8 @@ double mirror_guide_over_cosines(const HeightFieldOptions& surface, const Direct
 /// A sample is a point of the surface, uniform over the mean plane, and a view of uniform theta_v and azimuth. If the
 /// viewer sees the point, light is followed backwards from there: mirrored by metal, scattered with a cosine by the
 /// base, until it escapes. The first mirror pair of a metal facet is counted in `tried` and `clear`; whatever escapes
-/// after any other history adds to `flux`.
+/// after any other history adds to `flux`. At the first facet of a clear surface what is mirrored and what goes through
+/// the body are both followed, later one of them by chance.
 std::vector<GoniometerSums> run_goniometer(const GoniometerOptions& options, Progress& progress);
 
 }  // namespace velour

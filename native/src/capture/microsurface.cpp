@@ -35,6 +35,15 @@ void check_range(const char* name, double value, double lowest, double highest) 
                                             ": give a number from " + number(lowest) + " to " + number(highest) + ".");
 }
 
+void put_below_clear_surface(const MicrosurfaceOptions& options, GoniometerOptions& goniometer) {
+  check_range("refractive index", options.ior, 1.05, 3.0);
+  check_range("flake roughness", options.flake_roughness, 0.01, 0.4);
+  goniometer.body = {options.ior, goniometer.conductor, options.flake_roughness, options.base_albedo,
+                     options.base_share};
+  goniometer.conductor = interface_of(goniometer.body);
+  goniometer.base_share = 0.0;
+}
+
 GoniometerOptions goniometer_options(const MicrosurfaceOptions& options) {
   check_range("roughness", options.roughness, 0.01, 1.0);
   check_range("anisotropy", options.anisotropy, 1.0, 10.0);
@@ -51,6 +60,7 @@ GoniometerOptions goniometer_options(const MicrosurfaceOptions& options) {
   goniometer.conductor = metal(options.metal);
   goniometer.base_albedo = options.base_albedo;
   goniometer.base_share = options.base_share;
+  if (options.ior != 0.0) put_below_clear_surface(options, goniometer);
   goniometer.seed = options.seed;
   goniometer.threads = options.threads;
   const uint64_t rays = options.rays != 0 ? options.rays : kDefaultRays;
@@ -93,9 +103,13 @@ void write_isotropic(const MicrosurfaceBrdf& brdf, int threads, const std::strin
 }
 
 std::string describe(const MicrosurfaceOptions& options) {
+  const std::string clear = options.ior == 0.0
+                                ? ""
+                                : " Below a clear surface of index " + number(options.ior) +
+                                      ", whose roughness it is; flakes " + number(options.flake_roughness) + ".";
   return "Ray-traced Gaussian random surface of " + options.metal + ": roughness " + number(options.roughness) +
          " along x, anisotropy " + number(options.anisotropy) + ", diffuse base over a share of " +
-         number(options.base_share) + ".";
+         number(options.base_share) + "." + clear;
 }
 
 void write_anisotropic(const MicrosurfaceBrdf& brdf, const MicrosurfaceOptions& options, const std::string& path,

@@ -16,7 +16,10 @@ struct MicrosurfaceOptions {
   std::string metal = "copper";
   Rgb base_albedo{0, 0, 0};  // diffuse base
   double base_share = 0.0;   // share of the surface that is diffuse base
-  uint64_t rays = 0;         // 0: the default
+  /// Refractive index of a clear surface over base and metal, which are then below it: pigment and flakes. 0: none.
+  double ior = 0.0;
+  double flake_roughness = 0.2;  // Beckmann alpha of the flakes below a clear surface
+  uint64_t rays = 0;             // 0: the default
   uint64_t seed = 0;
   int threads = 0;
 };

@@ -32,6 +32,9 @@ class PeriodicTile {
   /// The surface above a point of the mean plane; u uniform in [0, 1)^2 makes it uniform over that plane's area.
   FacetPoint point_above(const Vec2& u) const;
 
+  /// A point that nothing of the surface is above, for rays that come down; u as of point_above.
+  Vec3 place_above(const Vec2& u) const { return {u * period_, top_}; }
+
   /// First meeting with the surface. `lost` are rays that run below it through rounding, or so flat that they cross
   /// kMaxPeriods periods without a meeting.
   Fate trace(const Vec3& origin, const Vec3& direction, FacetPoint& hit) const;

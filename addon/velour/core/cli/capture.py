@@ -12,7 +12,7 @@ _MESOSTRUCTURE = (
     "texels", "views", "lights", "held_out", "samples", "bounces", "sides", "memory", "resume", "period",
     "origin", "metres_per_unit", "up", "base_color", "metallic", "ray_share",
 )  # fmt: skip
-_MICROSURFACE = ("metal", "anisotropy", "base_albedo", "base_share", "rays")
+_MICROSURFACE = ("metal", "anisotropy", "base_albedo", "base_share", "ior", "flake_roughness", "rays")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -73,6 +73,12 @@ def _add_microsurface(group) -> None:
     )
     group.add_argument(
         "--base-share", type=numbers.real(0, 1), metavar="S", help="of the surface that is base"
+    )
+    group.add_argument(
+        "--ior", type=numbers.real(0, 3), metavar="N", help="of a clear surface over base and metal (none)"
+    )
+    group.add_argument(
+        "--flake-roughness", type=numbers.real(0, 1), metavar="R", help="of metal below a clear surface (0.2)"
     )
     group.add_argument("--rays", type=numbers.whole(1, 2**63), metavar="N", help="camera-side rays in all")
 

@@ -46,6 +46,8 @@ TEST(Microsurface, RefusesNumbersOutOfRangeWithASentence) {
   refused([](auto& o) { o.base_share = 1.1; }, "base share");
   refused([](auto& o) { o.base_albedo.g = -0.1f; }, "base albedo");
   refused([](auto& o) { o.metal = "mithril"; }, "mithril");
+  refused([](auto& o) { o.ior = 1.0; }, "refractive index");
+  refused([](auto& o) { o.ior = 1.5, o.flake_roughness = 0.5; }, "flake roughness");
   refused([](auto& o) { o.threads = -1; }, "threads");
   refused([](auto& o) { o.rays = ~0ULL; }, "rays");
 }
@@ -109,6 +111,19 @@ TEST(Microsurface, ABareBaseHasItsColourAlone) {
   Progress progress;
   const MicrosurfaceReport report = capture_microsurface(options, path, progress);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(report.albedo[c], static_cast<double>(options.base_albedo[c]), 0.02);
+}
+
+TEST(Microsurface, ACoatedBaseHasItsColourBelowAGreyHighlight) {
+  const std::string path = (test::scratch_folder() / "plastic.binary").string();
+  MicrosurfaceOptions options = quick();
+  options.ior = 1.5;
+  options.base_share = 1;
+  options.base_albedo = {0.9f, 0.3f, 0.0f};
+  Progress progress;
+  const MicrosurfaceReport report = capture_microsurface(options, path, progress);
+  EXPECT_GT(report.albedo[0], 0.6);
+  EXPECT_NEAR(report.albedo[2], 0.04, 0.01);  // the surface alone
+  EXPECT_GT(report.albedo[0], report.albedo[1] + 0.2);
 }
 
 TEST(Microsurface, TheSameBytesForAnyNumberOfThreads) {

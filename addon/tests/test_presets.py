@@ -1,0 +1,102 @@
+"""scripts/presets: the table, and one small preset from the goniometer to its picture."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import uuid
+from collections import Counter
+
+import numpy as np
+import pytest
+from command_line import environment
+from conftest import ROOT
+
+sys.path.insert(0, str(ROOT / "scripts/lib"))
+
+import preset_build
+import preset_preview
+from preset_table import CATALOGS, CLOTHS, METALS, PAINTS, PLAIN, PRESETS, Surface, Weave
+from velour.native import Model, Tile
+
+SMALL = preset_build.Sizes(
+    rays=60_000, yarn_rays=60_000, texels=4, directions=20, samples=1, outline_texels=32
+)
+
+
+def test_has_what_it_is_to_have():
+    assert Counter(preset.catalog for preset in PRESETS) == {METALS: 8, PAINTS: 6, PLAIN: 4, CLOTHS: 6}
+    for preset in PRESETS:
+        assert isinstance(preset.made_of, Weave if preset.catalog == CLOTHS else Surface), preset.name
+        assert preset.description, preset.name
+        assert preset.tags, preset.name
+
+
+def test_names_and_catalogs_are_told_apart():
+    assert len({preset.name.lower() for preset in PRESETS}) == len(PRESETS)
+    assert len({str(uuid.UUID(number)) for number in CATALOGS.values()}) == len(CATALOGS)
+    assert not [preset.name for preset in PRESETS if "," in preset.name]  # of --only
+
+
+def test_numbers_are_those_of_surfaces():
+    """An albedo of 1 or a negative index is no material; tiles have a material a yarn."""
+    for preset in PRESETS:
+        made_of = preset.made_of
+        for surface in made_of.yarns if isinstance(made_of, Weave) else (made_of,):
+            assert all(0 <= albedo < 0.9 for albedo in surface.base_albedo), preset.name
+            assert surface.ior == 0 or 1.3 < surface.ior < 1.7, preset.name
+        if isinstance(made_of, Weave):
+            with Tile.create(made_of.kind, **made_of.shape) as tile:
+                assert len(tile.info()["materials"]) == len(made_of.yarns), preset.name
+
+
+@pytest.fixture(scope="module")
+def workshop(tmp_path_factory):
+    return preset_build.Workshop(tmp_path_factory.mktemp("presets"), SMALL, threads=2)
+
+
+def _preset(name):
+    return next(preset for preset in PRESETS if preset.name == name)
+
+
+def test_a_cloth_has_a_look_and_an_outline_and_is_made_once(workshop):
+    tulle = _preset("Tulle")
+    assert not workshop.is_built(tulle)
+    path = workshop.build(tulle)
+    with Model.load(path) as model:
+        info = model.info()
+    assert info["tile_metres"] == pytest.approx([0.008, 0.008])
+    assert 0.3 < workshop.report_of(tulle)["coverage"] < 0.9
+    assert not [*workshop.work.glob("capture-*")]
+    before = path.stat().st_mtime_ns
+    assert workshop.is_built(tulle)
+    assert workshop.build(tulle) == path
+    assert path.stat().st_mtime_ns == before
+    # Other numbers are another model; --fresh makes the same one anew, and once.
+    assert preset_build.Workshop(workshop.work, SMALL._replace(texels=5), 2).model_path(tulle) != path
+    fresh = preset_build.Workshop(workshop.work, SMALL, 2, fresh=True)
+    assert fresh.model_path(tulle) == path
+    assert not fresh.is_built(tulle)
+
+
+def test_a_picture_shows_the_material_on_a_backdrop(workshop):
+    gold = _preset("Polished Gold")
+    pixels = preset_preview.picture(gold, workshop.build(gold), spp=8)
+    assert (pixels.shape, pixels.dtype) == ((256, 256, 4), np.float32)
+    assert 0 <= pixels.min() < pixels.max() <= 1
+    assert (pixels[..., 3] == 1).all()
+    corner, ball = pixels[:20, :20, :3].mean(axis=(0, 1)), pixels[80:176, 80:176, :3].mean(axis=(0, 1))
+    assert np.ptp(corner) < 0.01  # grey
+    assert ball[0] > ball[1] > ball[2] + 0.1  # gold
+
+
+def test_the_script_refuses_what_is_not_there():
+    done = subprocess.run(
+        [sys.executable, "-P", ROOT / "scripts/lib/presets.py", "--only", "Mithril"],
+        capture_output=True,
+        text=True,
+        env=environment(),
+    )
+    assert done.returncode == 1
+    assert "'mithril'" in done.stderr
+    assert "Polished Gold" in done.stderr

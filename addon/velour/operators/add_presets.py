@@ -1,0 +1,66 @@
+"""The library of presets, made known to Blender's asset browser: only when the artist asks for it."""
+
+import os
+
+import bpy
+from bpy.props import StringProperty
+
+from ..core import presets
+
+
+class VELOUR_OT_add_presets(bpy.types.Operator):
+    bl_idname = "velour.add_presets"
+    bl_label = "Add the Preset Library"
+    bl_description = "Let asset browsers show Velour's preset materials: adds their folder to the preferences"
+    bl_options = {"REGISTER"}
+
+    directory: StringProperty(
+        name="Folder",
+        subtype="DIR_PATH",
+        description="Where velour_presets.blend lies; empty: in the add-on",
+        options={"SKIP_SAVE"},
+    )
+
+    def invoke(self, context, event):
+        """Asks for the folder where the add-on has none."""
+        if self.directory or presets.is_built(presets.folder()):
+            return self.execute(context)
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context):
+        folder = os.path.normpath(bpy.path.abspath(self.directory) or presets.folder())
+        if not presets.is_built(folder):
+            self.report({"ERROR"}, missing(folder))
+            return {"CANCELLED"}
+        known = library_of(context.preferences, folder)
+        if known is not None:
+            self.report({"INFO"}, f"The asset library '{known.name}' is there already: {folder}")
+            return {"FINISHED"}
+        _add(context.preferences, folder)
+        self.report({"INFO"}, f"Asset browsers have the library '{presets.NAME}' now: {folder}")
+        return {"FINISHED"}
+
+
+def missing(folder):
+    """What is wrong where the presets are not in `folder`, and what to do."""
+    return (
+        f"{folder} has no {presets.LIBRARY_FILE}: run scripts/presets in Velour's sources, then scripts/build"
+        " or scripts/package; or choose the folder that has it."
+    )
+
+
+def library_of(preferences, folder):
+    """The asset library of the user's that is `folder`, or None."""
+    for library in preferences.filepaths.asset_libraries:
+        if os.path.realpath(bpy.path.abspath(library.path)) == os.path.realpath(folder):
+            return library
+    return None
+
+
+def _add(preferences, folder):
+    bpy.ops.preferences.asset_library_add(directory=str(folder))
+    library = library_of(preferences, folder)
+    library.name = presets.NAME
+    if hasattr(library, "import_method"):  # models belong to the file that shows them
+        library.import_method = "APPEND_REUSE"

@@ -1,0 +1,78 @@
+#include "capture/coated_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sphere/frame.h"
+#include "sphere/warp.h"
+
+namespace velour {
+namespace {
+
+constexpr int kMaxMeetings = 64;     // with the body, of light that the interface sends back again and again
+constexpr int kMaxReflections = 64;  // within the body
+constexpr double kPatchWidth = 4.0;  // of pigment, in correlation lengths
+
+/// `w` on the other side of the interface, bent by `eta` = index on this side / index on the other; z 0: totally
+/// reflected.
+Vec3 refracted(const Vec3& w, float eta) {
+  const float sin_sq = eta * eta * (w.x * w.x + w.y * w.y);
+  return {eta * w.x, eta * w.y, std::sqrt(std::max(0.0f, 1.0f - sin_sq))};
+}
+
+}  // namespace
+
+Conductor interface_of(const CoatedBody& body) { return {Rgb(static_cast<float>(body.ior)), Rgb(0)}; }
+
+BodyBelow::BodyBelow(const CoatedBody& body, uint64_t seed, uint64_t stream)
+    : body_(body), interface_(interface_of(body)) {
+  const auto ior = static_cast<float>(body.ior);
+  flakes_ = {body.metal.n / ior, body.metal.k / ior};
+  if (!body.has_flakes()) return;
+  HeightFieldOptions flakes;
+  flakes.roughness = body.flake_roughness;
+  surface_.emplace(make_height_field(flakes, seed, stream),
+                   make_patches(flakes.cells, kPatchWidth * flakes.correlation, body.pigment_share, seed, stream + 1));
+}
+
+/// Light from `inside`, a direction above the body, until it goes up again.
+Vec3 BodyBelow::scatter(const Vec3& inside, Rgb& weight, RandomStream& random) const {
+  if (!surface_) {
+    weight *= body_.pigment_albedo;
+    return sample_cosine_hemisphere(random.next2());
+  }
+  FacetPoint at;
+  Vec3 arriving = inside;
+  Fate fate = surface_->trace(surface_->place_above(random.next2()), -inside, at);
+  for (int reflection = 0; reflection < kMaxReflections && fate == Fate::hit; ++reflection) {
+    Vec3 leaving;
+    if (at.base) {
+      weight *= body_.pigment_albedo;
+      leaving = Frame::about(at.normal).to_world(sample_cosine_hemisphere(random.next2()));
+    } else {
+      const float cosine = glm::dot(arriving, at.normal);
+      weight *= fresnel_reflectance(flakes_, std::clamp(cosine, 0.0f, 1.0f));
+      leaving = 2.0f * cosine * at.normal - arriving;
+    }
+    fate = surface_->trace(at.position, leaving, at);
+    if (fate == Fate::escaped) return leaving;
+    arriving = -leaving;
+  }
+  weight = Rgb(0);
+  return {0, 0, 1};
+}
+
+Vec3 BodyBelow::through(Vec3 arriving, Rgb& weight, RandomStream& random) const {
+  const auto ior = static_cast<float>(body_.ior);
+  Vec3 inside = refracted(arriving, 1.0f / ior);
+  for (int meeting = 0; meeting < kMaxMeetings && weight != Rgb(0); ++meeting) {
+    inside = scatter(inside, weight, random);
+    const Vec3 out = refracted(inside, ior);
+    if (out.z > 0.0f && random.next() >= fresnel_reflectance(interface_, out.z).r) return out;
+    inside = {-inside.x, -inside.y, inside.z};  // back along the ray that the interface sends down
+  }
+  weight = Rgb(0);
+  return {0, 0, 1};
+}
+
+}  // namespace velour
