@@ -32,7 +32,7 @@ double distance_from_beckmann(const MicrosurfaceBrdf& brdf, double alpha, const 
 void check(double alpha, uint64_t samples) {
   GoniometerOptions options;
   options.surface.roughness = alpha;
-  options.conductor = {Rgb(0), Rgb(1)};
+  options.facets = Reflectance({0.0, 1.0});
   options.samples_per_tile = samples / static_cast<uint64_t>(options.batches * options.tiles_per_batch);
   const GoniometerBins bins(options);
   Progress progress;

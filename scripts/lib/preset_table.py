@@ -114,7 +114,7 @@ PRESETS = (
     Preset(
         "Midnight Car Paint",
         PAINTS,
-        flakes("aluminium", 0.12, 0.22, (0.008, 0.02, 0.09)),
+        flakes("aluminium", 0.04, 0.22, (0.005, 0.02, 0.14)),
         "Deep blue with few flakes, below a clear coat",
         ("flakes", "car", "blue"),
     ),

@@ -54,7 +54,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="small and coarse, to try the script")
     parser.add_argument("--fresh", action="store_true", help="builds anew what is kept")
     parser.add_argument("--output", metavar="FOLDER", type=Path)
-    parser.add_argument("--threads", metavar="T", type=int, default=min(2, threads()))
+    parser.add_argument("--threads", metavar="T", type=int, default=threads())
     return parser.parse_args()
 
 

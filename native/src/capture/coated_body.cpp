@@ -22,12 +22,10 @@ Vec3 refracted(const Vec3& w, float eta) {
 
 }  // namespace
 
-Conductor interface_of(const CoatedBody& body) { return {Rgb(static_cast<float>(body.ior)), Rgb(0)}; }
+Reflectance interface_of(const CoatedBody& body) { return Reflectance({body.ior}); }
 
 BodyBelow::BodyBelow(const CoatedBody& body, uint64_t seed, uint64_t stream)
     : body_(body), interface_(interface_of(body)) {
-  const auto ior = static_cast<float>(body.ior);
-  flakes_ = {body.metal.n / ior, body.metal.k / ior};
   if (!body.has_flakes()) return;
   HeightFieldOptions flakes;
   flakes.roughness = body.flake_roughness;
@@ -51,7 +49,7 @@ Vec3 BodyBelow::scatter(const Vec3& inside, Rgb& weight, RandomStream& random) c
       leaving = Frame::about(at.normal).to_world(sample_cosine_hemisphere(random.next2()));
     } else {
       const float cosine = glm::dot(arriving, at.normal);
-      weight *= fresnel_reflectance(flakes_, std::clamp(cosine, 0.0f, 1.0f));
+      weight *= body_.flakes.at(cosine);
       leaving = 2.0f * cosine * at.normal - arriving;
     }
     fate = surface_->trace(at.position, leaving, at);
@@ -68,7 +66,7 @@ Vec3 BodyBelow::through(Vec3 arriving, Rgb& weight, RandomStream& random) const 
   for (int meeting = 0; meeting < kMaxMeetings && weight != Rgb(0); ++meeting) {
     inside = scatter(inside, weight, random);
     const Vec3 out = refracted(inside, ior);
-    if (out.z > 0.0f && random.next() >= fresnel_reflectance(interface_, out.z).r) return out;
+    if (out.z > 0.0f && random.next() >= interface_.at(out.z).r) return out;
     inside = {-inside.x, -inside.y, inside.z};  // back along the ray that the interface sends down
   }
   weight = Rgb(0);

@@ -3,26 +3,25 @@
 
 #include <optional>
 
-#include "capture/conductor.h"
 #include "capture/periodic_tile.h"
+#include "capture/reflectance.h"
 #include "sphere/random.h"
 
 namespace velour {
 
 /// A clear dielectric on a body of pigment and flakes.
 struct CoatedBody {
-  double ior = 0.0;              // of the dielectric; 0: there is none
-  Conductor metal{};             // of the flakes, against air
+  double ior;                    // of the dielectric
+  Reflectance flakes;            // of the flakes' metal, below the dielectric
   double flake_roughness = 0.2;  // Beckmann alpha of the flakes' own slopes
   Rgb pigment_albedo{0, 0, 0};
   double pigment_share = 1.0;  // of the body's area
 
-  explicit operator bool() const { return ior > 0.0; }
-  bool has_flakes() const { return ior > 0.0 && pigment_share < 1.0; }
+  bool has_flakes() const { return pigment_share < 1.0; }
 };
 
-/// The interface as what reflects: fresnel_reflectance of it is the dielectric's from air.
-Conductor interface_of(const CoatedBody& body);
+/// What the interface reflects, from air.
+Reflectance interface_of(const CoatedBody& body);
 
 /// One random surface of flakes with patches of pigment, below a clear one; both are thin against their distance and
 /// each other's tiles, so light comes to a place of this one by chance and leaves through the facet that it came in by.
@@ -41,7 +40,7 @@ class BodyBelow {
   Vec3 scatter(const Vec3& inside, Rgb& weight, RandomStream& random) const;
 
   CoatedBody body_;
-  Conductor interface_, flakes_;  // flakes_: against the dielectric
+  Reflectance interface_;
   std::optional<PeriodicTile> surface_;
 };
 

@@ -32,10 +32,6 @@ double guide_over_cosine(const HeightFieldOptions& surface, const Vec3& w) {
   return 1.0 / (static_cast<double>(w.z) + alpha_sin / (2.0 * std::sqrt(kPiD)));
 }
 
-void add(std::vector<double>& to, const std::vector<double>& from, double sign) {
-  for (size_t i = 0; i < to.size(); ++i) to[i] += sign * from[i];
-}
-
 /// A path on its way from the viewer to the light.
 struct Path {
   Vec3 wv;        // where it began
@@ -53,9 +49,10 @@ class TileRun {
         bins_(bins),
         tile_(make_height_field(options.surface, options.seed, stream_of(tile, Stream::heights)),
               patches(options, tile)),
-        below_(options.body, options.seed, stream_of(tile + kTilesAbove, Stream::heights)),
         stream_(stream_of(tile, Stream::rays)),
-        sums_(sums) {}
+        sums_(sums) {
+    if (options.body) below_.emplace(*options.body, options.seed, stream_of(tile + kTilesAbove, Stream::heights));
+  }
 
   void count_facets() {
     for (int facet = 0; facet < tile_.facets(); ++facet) {
@@ -83,7 +80,7 @@ class TileRun {
     if (start.base) {
       follow_scattered(path, random);
     } else {
-      if (options_.body) follow_through_body(path, random);
+      if (below_) follow_through_body(path, random);
       follow_mirrored(path, random);
     }
   }
@@ -136,9 +133,7 @@ class TileRun {
     });
   }
 
-  Rgb reflectance(const Path& path) const {
-    return fresnel_reflectance(options_.conductor, std::min(glm::dot(path.arriving, path.at.normal), 1.0f));
-  }
+  Rgb reflectance(const Path& path) const { return options_.facets.at(glm::dot(path.arriving, path.at.normal)); }
 
   /// Direction in which the path goes on, at an interface by chance; multiplies its weight.
   Vec3 scatter(Path& path, RandomStream& random) const {
@@ -148,7 +143,7 @@ class TileRun {
       path.weight *= options_.base_albedo;
       return Frame::about(normal).to_world(sample_cosine_hemisphere(random.next2()));
     }
-    if (!options_.body) {
+    if (!below_) {
       path.weight *= reflectance(path);
     } else if (random.next() >= reflectance(path).r) {
       return scatter_in_body(path, random);
@@ -159,7 +154,7 @@ class TileRun {
   Vec3 scatter_in_body(Path& path, RandomStream& random) const {
     const Frame frame = Frame::about(path.at.normal);
     path.met_base = true;
-    return frame.to_world(below_.through(frame.to_local(path.arriving), path.weight, random));
+    return frame.to_world(below_->through(frame.to_local(path.arriving), path.weight, random));
   }
 
   static bool survives(Path& path, RandomStream& random) {
@@ -213,53 +208,12 @@ class TileRun {
   const GoniometerOptions& options_;
   const GoniometerBins& bins_;
   PeriodicTile tile_;
-  BodyBelow below_;
+  std::optional<BodyBelow> below_;
   uint64_t stream_;
   GoniometerSums& sums_;
 };
 
 }  // namespace
-
-GoniometerBins::GoniometerBins(const GoniometerOptions& options)
-    : slopes(options.surface.roughness, options.surface.roughness / options.surface.anisotropy),
-      mirror(options.surface.anisotropy == 1.0 ? PairGrid(24, 12, 0) : PairGrid(12, 9, 24)),
-      metal(options.surface.anisotropy == 1.0 ? PairGrid(20, 24, 0) : PairGrid(12, 9, 24)),
-      diffuse(options.body.has_flakes()           ? metal
-              : options.surface.anisotropy == 1.0 ? PairGrid(14, 9, 0)
-                                                  : PairGrid(8, 6, 12)) {}
-
-GoniometerSums::GoniometerSums(const GoniometerBins& bins)
-    : metal_facets(bins.slopes.size()),
-      tried(bins.mirror.size()),
-      clear(bins.mirror.size()),
-      metal_flux(3 * bins.metal.size()),
-      diffuse_flux(3 * bins.diffuse.size()) {}
-
-GoniometerSums& GoniometerSums::operator+=(const GoniometerSums& other) {
-  add(metal_facets, other.metal_facets, 1);
-  add(tried, other.tried, 1);
-  add(clear, other.clear, 1);
-  add(metal_flux, other.metal_flux, 1);
-  add(diffuse_flux, other.diffuse_flux, 1);
-  facets += other.facets;
-  samples += other.samples;
-  rays += other.rays;
-  lost += other.lost;
-  return *this;
-}
-
-GoniometerSums& GoniometerSums::operator-=(const GoniometerSums& other) {
-  add(metal_facets, other.metal_facets, -1);
-  add(tried, other.tried, -1);
-  add(clear, other.clear, -1);
-  add(metal_flux, other.metal_flux, -1);
-  add(diffuse_flux, other.diffuse_flux, -1);
-  facets -= other.facets;
-  samples -= other.samples;
-  rays -= other.rays;
-  lost -= other.lost;
-  return *this;
-}
 
 double mirror_guide_over_cosines(const HeightFieldOptions& surface, const DirectionPair& pair) {
   return guide_over_cosine(surface, pair.wl) * guide_over_cosine(surface, pair.wv);

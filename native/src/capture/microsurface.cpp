@@ -11,6 +11,7 @@
 
 #include "brdf/brdf_table.h"
 #include "brdf/merl.h"
+#include "capture/metals.h"
 #include "capture/microsurface_brdf.h"
 #include "job/threads.h"
 
@@ -38,9 +39,9 @@ void check_range(const char* name, double value, double lowest, double highest) 
 void put_below_clear_surface(const MicrosurfaceOptions& options, GoniometerOptions& goniometer) {
   check_range("refractive index", options.ior, 1.05, 3.0);
   check_range("flake roughness", options.flake_roughness, 0.01, 0.4);
-  goniometer.body = {options.ior, goniometer.conductor, options.flake_roughness, options.base_albedo,
-                     options.base_share};
-  goniometer.conductor = interface_of(goniometer.body);
+  goniometer.body = CoatedBody{options.ior, metal_reflectance(options.metal, options.ior), options.flake_roughness,
+                               options.base_albedo, options.base_share};
+  goniometer.facets = interface_of(*goniometer.body);
   goniometer.base_share = 0.0;
 }
 
@@ -57,7 +58,7 @@ GoniometerOptions goniometer_options(const MicrosurfaceOptions& options) {
   GoniometerOptions goniometer;
   goniometer.surface.roughness = options.roughness;
   goniometer.surface.anisotropy = options.anisotropy;
-  goniometer.conductor = metal(options.metal);
+  goniometer.facets = metal_reflectance(options.metal);
   goniometer.base_albedo = options.base_albedo;
   goniometer.base_share = options.base_share;
   if (options.ior != 0.0) put_below_clear_surface(options, goniometer);

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "job/progress.h"
 #include "sphere/vec.h"
@@ -11,11 +10,11 @@
 namespace velour {
 
 struct MicrosurfaceOptions {
-  double roughness = 0.2;   // Beckmann alpha along x = sqrt(2) x RMS slope
-  double anisotropy = 1.0;  // alpha_x / alpha_y
-  std::string metal = "copper";
-  Rgb base_albedo{0, 0, 0};  // diffuse base
-  double base_share = 0.0;   // share of the surface that is diffuse base
+  double roughness = 0.2;        // Beckmann alpha along x = sqrt(2) x RMS slope
+  double anisotropy = 1.0;       // alpha_x / alpha_y
+  std::string metal = "copper";  // one of metal_names()
+  Rgb base_albedo{0, 0, 0};      // diffuse base
+  double base_share = 0.0;       // share of the surface that is diffuse base
   /// Refractive index of a clear surface over base and metal, which are then below it: pigment and flakes. 0: none.
   double ior = 0.0;
   double flake_roughness = 0.2;  // Beckmann alpha of the flakes below a clear surface
@@ -37,8 +36,5 @@ struct MicrosurfaceReport {
 /// Traces, tabulates and writes `path`: MERL layout when isotropic, Velour's EXR table otherwise.
 MicrosurfaceReport capture_microsurface(const MicrosurfaceOptions& options, const std::string& path,
                                         Progress& progress);
-
-/// Names that `metal` may have.
-std::vector<std::string> metal_names();
 
 }  // namespace velour

@@ -70,8 +70,7 @@ Rgb MicrosurfaceBrdf::single(const DirectionPair& pair) const {
   const double h_z_sq = static_cast<double>(h.z) * static_cast<double>(h.z);
   const double facets = density / (h_z_sq * h_z_sq);
   const double visible = clear_share(bins_.mirror.stencil(pair)) * mirror_guide_over_cosines(options_.surface, pair);
-  const float cos_d = std::min(glm::dot(pair.wv, h), 1.0f);
-  return static_cast<float>(0.25 * facets * visible) * fresnel_reflectance(options_.conductor, cos_d);
+  return static_cast<float>(0.25 * facets * visible) * options_.facets.at(glm::dot(pair.wv, h));
 }
 
 Rgb albedo(const MicrosurfaceBrdf& brdf, Rgb (MicrosurfaceBrdf::*part)(const DirectionPair&) const, const Vec3& wv,

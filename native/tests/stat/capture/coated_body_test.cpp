@@ -18,7 +18,7 @@ GoniometerOptions clear_surface(double roughness, const CoatedBody& body) {
   GoniometerOptions options;
   options.surface.roughness = roughness;
   options.body = body;
-  options.conductor = interface_of(body);
+  options.facets = interface_of(body);
   options.seed = 7;
   options.batches = 8;
   options.tiles_per_batch = 2;
@@ -26,10 +26,10 @@ GoniometerOptions clear_surface(double roughness, const CoatedBody& body) {
   return options;
 }
 
-CoatedBody pigment(float albedo) { return {kIor, {Rgb(0), Rgb(1)}, 0.2, Rgb(albedo), 1.0}; }
+CoatedBody pigment(float albedo) { return {kIor, Reflectance({0.0, 1.0}), 0.2, Rgb(albedo), 1.0}; }
 
 /// Of a metal that reflects everything.
-CoatedBody flakes(double roughness) { return {kIor, {Rgb(0), Rgb(1)}, roughness, Rgb(0), 0.0}; }
+CoatedBody flakes(double roughness) { return {kIor, Reflectance({0.0, 1.0}), roughness, Rgb(0), 0.0}; }
 
 MicrosurfaceBrdf measured(const GoniometerOptions& options) {
   Progress progress;
@@ -39,10 +39,7 @@ MicrosurfaceBrdf measured(const GoniometerOptions& options) {
   return {options, bins, sums};
 }
 
-double reflected(double cosine) {
-  return static_cast<double>(
-      fresnel_reflectance({Rgb(static_cast<float>(kIor)), Rgb(0)}, static_cast<float>(cosine)).g);
-}
+double reflected(double cosine) { return fresnel_reflectance({kIor}, cosine); }
 
 /// Of diffuse light, from air.
 double mean_reflected() {

@@ -16,7 +16,7 @@ namespace {
 GoniometerOptions options_for(double roughness) {
   GoniometerOptions options;
   options.surface.roughness = roughness;
-  options.conductor = {Rgb(0), Rgb(1)};  // lossless: Fresnel reflectance 1
+  options.facets = Reflectance({0.0, 1.0});  // lossless
   options.seed = 20;
   options.batches = 16;
   options.tiles_per_batch = 2;
