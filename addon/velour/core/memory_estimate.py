@@ -17,6 +17,7 @@ _STARTING = 16 * MIB  # whatever the scene
 _THREAD = 2 * MIB
 _MESH = 6.5  # a byte of an OBJ file: its numbers, corners, the hierarchy
 _MODEL = 4  # a byte of a model: halves become floats, tables over the view
+_BTF_MODEL = 10  # of a BTF's, which are packed; up to 7 measured, of singular values
 _MEASUREMENT = 3  # a byte of a table: the table, its proposal
 _WORLD_PIXEL = 22  # texels and their sums
 _WORLD_VALUE = 8  # while it is read
@@ -81,7 +82,10 @@ def _material(path: str) -> int:
     info = library.file_info(path)
     if info["kind"] == "btf":
         return info["raw_bytes"] * 4 // 3  # with coarser levels
-    return os.path.getsize(path) * (_MODEL if info["kind"] == "model" else _MEASUREMENT)
+    if info["kind"] != "model":
+        return os.path.getsize(path) * _MEASUREMENT
+    tables = sum(side.get("table_bytes") or 0 for side in info.get("sides", ()))
+    return os.path.getsize(path) * (_BTF_MODEL if "texels" in info else _MODEL) + tables
 
 
 def size_text(size: float) -> str:

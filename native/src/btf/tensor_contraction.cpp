@@ -45,11 +45,14 @@ size_t view_size(const TensorTables& t, size_t views) {
   return t.order == TensorOrder::ranks ? views * t.clusters * t.view_rank : 0;
 }
 
+uint64_t table_bytes(const TensorTables& t, size_t views) {
+  return (table_size(t, views) + light_size(t, views) + view_size(t, views)) * sizeof(float);
+}
+
 TensorTables chosen(const TensorSide& side, size_t views, uint32_t lights, uint64_t most_bytes) {
   for (const TensorOrder order : {TensorOrder::pairs, TensorOrder::views}) {
     const TensorTables t = sizes_of(side, order, lights);
-    const uint64_t bytes = (table_size(t, views) + light_size(t, views)) * sizeof(float);
-    if (bytes <= most_bytes && holds_rows(t)) return t;
+    if (table_bytes(t, views) <= most_bytes && holds_rows(t)) return t;
   }
   return sizes_of(side, TensorOrder::ranks, lights);
 }
@@ -101,6 +104,12 @@ TensorContraction::TensorContraction(const TensorBtf& btf, const TensorSide& sid
   tables_.view = view_.data();
   tables_.table = table_.data();
   tables_.light = light_.data();
+}
+
+uint64_t TensorContraction::bytes(const TensorBtf& btf, const TensorSide& side, uint64_t most_bytes) {
+  const uint32_t views = count_on_side(btf.layout.views(), side.view_below);
+  const uint32_t lights = count_on_side(btf.layout.lights(), side.light_below);
+  return table_bytes(chosen(side, views, lights, most_bytes), views);
 }
 
 void TensorContraction::scale_from(const TensorSide& side) {

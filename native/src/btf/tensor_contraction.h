@@ -16,6 +16,8 @@ class TensorContraction {
   /// The earliest order whose tables take no more than `most_bytes`; in order of ranks they may.
   TensorContraction(const TensorBtf& btf, const TensorSide& side, uint64_t most_bytes);
   const TensorTables& tables() const { return tables_; }
+  /// That a contraction of such a side takes, whatever is in it.
+  static uint64_t bytes(const TensorBtf& btf, const TensorSide& side, uint64_t most_bytes);
 
  private:
   void scale_from(const TensorSide& side);

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "btf/tensor_bytes.h"
+#include "btf/tensor_contraction.h"
+#include "btf/tensor_evaluator.h"
 #include "capi/json_text.h"
 #include "capi/scene_reports.h"
 #include "domain/hash_text.h"
@@ -136,16 +138,17 @@ Json own_json(const FactoredBtf& btf) { return btf_own_json(btf); }
 const char* where(bool below) { return below ? "below" : "above"; }
 
 /// What only one kind of side has to say.
-Json own_side_json(const SrbfSide& side) {
+Json own_side_json(const SrbfBtf&, const SrbfSide& side) {
   return {{"lobes", {{"tile", side.tile_lobes}, {"texel", side.lobes.size() - side.tile_lobes}}}};
 }
-Json own_side_json(const TensorSide& side) {
+Json own_side_json(const TensorBtf& btf, const TensorSide& side) {
   const TensorSide::Ranks& rank = side.rank;
   const TensorBytes bytes = bytes_of(side);
   return {{"clusters", side.clusters.size()},
           {"members", side.members},
           {"ranks", {{"texel", rank.texel}, {"view", rank.view}, {"light", rank.light}, {"color", rank.color}}},
           {"relief", !side.levels.at(0).relief.empty()},
+          {"table_bytes", TensorContraction::bytes(btf, side, TensorEvaluator::kMostTableBytes)},
           {"bytes",
            {{"coefficients", bytes.coefficients},
             {"members", bytes.members},
@@ -161,7 +164,7 @@ Json sided_json(const Btf& btf) {
   Json json = btf_own_json(btf), sides = Json::array();
   for (const auto& side : btf.sides) {
     Json& row = sides.emplace_back(Json{{"view", where(side.view_below)}, {"light", where(side.light_below)}});
-    row.update(own_side_json(side));
+    row.update(own_side_json(btf, side));
     row.update(Json{{"parameter_bytes", side.parameter_bytes()}, {"as", nullptr}});
   }
   for (const SharedSide& shared : btf.shared) {

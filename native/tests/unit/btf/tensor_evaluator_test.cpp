@@ -73,6 +73,15 @@ TEST(TensorContraction, IsAsEarlyAsThereIsRoomFor) {
   EXPECT_EQ(tables(btf, 0).order, TensorOrder::ranks);
 }
 
+TEST(TensorContraction, SaysWhatItTakes) {
+  const TensorBtf btf = test::example_tensor(false, Companding::root, {3, 1, {1, 2, 3, 1}, false});
+  const auto bytes = [&](uint64_t most) { return TensorContraction::bytes(btf, btf.sides[0], most); };
+  const uint64_t pairs = bytes_of_pairs(btf);
+  EXPECT_EQ(bytes(pairs), pairs);
+  EXPECT_LT(bytes(pairs - 1), pairs);
+  EXPECT_GT(bytes(0), 0u);
+}
+
 TEST(TensorContraction, IsNotOfPairsWherePointsHaveNoRoomForTheirRows) {
   const test::TensorShape shape{128, 2, {16, 2, 2, 3}, false};  // 128 x 48 numbers are more than 4096
   EXPECT_EQ(tables(test::example_tensor(false, Companding::root, shape), uint64_t{1} << 40).order, TensorOrder::views);
