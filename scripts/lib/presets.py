@@ -22,7 +22,7 @@ from velour.native import images
 from velour_cli import ROOT
 
 _BUILT = ROOT / "build/presets"
-_SECONDS = {True: 900, False: 90}  # about, of a cloth and of another on one core: for the time that is left
+_COST = {True: 10, False: 1}  # of a cloth and of another, in proportion: for the time that is left
 _COLUMNS = 6  # of the sheet of all previews
 _LICENCE = """The materials of this folder are in the public domain: CC0-1.0,
 https://creativecommons.org/publicdomain/zero/1.0/
@@ -72,9 +72,9 @@ def _chosen(only: str) -> list[Preset]:
 def _build(workshop: Workshop, chosen: list[Preset]) -> None:
     progress = Progress()
     for preset in chosen:
-        progress.expect(_SECONDS[isinstance(preset.made_of, Weave)])
+        progress.expect(_COST[isinstance(preset.made_of, Weave)])
     for preset in chosen:
-        cost = _SECONDS[isinstance(preset.made_of, Weave)]
+        cost = _COST[isinstance(preset.made_of, Weave)]
         if workshop.is_built(preset):
             progress.skip(preset.name, cost)
             continue
