@@ -153,7 +153,6 @@ class Viewport:
         if self._job:
             self._halt()
         frame.view.add_to(self._live.scene)
-        self._live.scene.commit()
         if self._job and options == self._options:
             self._job.restart()
         else:

@@ -17,7 +17,7 @@ _MOST_REMOVED = 4096  # numbers of meshes that are no longer there: then all beg
 
 
 class LiveExport:
-    """Needs scene.commit() before it is rendered; the camera is for others to set."""
+    """Not committed: whoever renders it does. The camera is for others to set."""
 
     def __init__(self, depsgraph, look):
         self.scene = Scene()

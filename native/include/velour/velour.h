@@ -750,8 +750,8 @@ VLR_API vlr_status vlr_job_stop(vlr_job* job);
 
 /* A picture for somebody who watches: coarse at once, then finer, then less noisy; `noise`, `time_limit`, samples and
  * crop are not used. Started again after a cancel, the job goes on where it was. The scene may change while it does not
- * run: then vlr_scene_commit and vlr_progressive_restart come before the next start. No report but {}. */
-VLR_API vlr_status vlr_progressive_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
+ * run: then vlr_progressive_restart comes before the next start. The job commits the scene. No report but {}. */
+VLR_API vlr_status vlr_progressive_create_job(vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
 /* The next start begins anew. Not while the job runs. */
 VLR_API vlr_status vlr_progressive_restart(vlr_job* job);
 typedef struct vlr_progressive_picture {

@@ -91,7 +91,7 @@ vlr_status vlr_job_stop(vlr_job* job) {
   });
 }
 
-vlr_status vlr_progressive_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out) {
+vlr_status vlr_progressive_create_job(vlr_scene* scene, const vlr_render_options* options, vlr_job** out) {
   return guard([&] {
     require(scene, "scene");
     require(out, "out");

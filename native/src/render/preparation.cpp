@@ -72,7 +72,7 @@ void check_crop(const RenderOptions& options) {
                                             ".");
 }
 
-RenderOptions checked(const Scene& scene, RenderOptions options) {
+RenderOptions checked(RenderOptions options) {
   constexpr int kMost = 1 << 30;
   require_range("width", options.width, 1, 65536);
   require_range("height", options.height, 1, 65536);
@@ -90,7 +90,6 @@ RenderOptions checked(const Scene& scene, RenderOptions options) {
   }
   if (!(options.noise >= 0.0)) throw Error(Status::invalid_argument, "Render option noise is negative.");
   if (!(options.time_limit >= 0.0)) throw Error(Status::invalid_argument, "Render option time_limit is negative.");
-  if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is rendered.");
   options.split = std::min(options.split, options.spp);
   const bool is_part = options.samples.begin > 0 || options.samples.end > 0 || options.crop != PixelRect{};
   if (is_part && options.noise > 0.0) {

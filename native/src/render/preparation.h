@@ -14,8 +14,8 @@ namespace velour {
 void check_crop(const RenderOptions& options);
 
 /// `options`, with no larger a split than there are directions, and the end of samples in numbers. Throws
-/// Error(invalid_argument) with the option at fault, Error(invalid_state) when the scene is not committed.
-RenderOptions checked(const Scene& scene, RenderOptions options);
+/// Error(invalid_argument) with the option at fault.
+RenderOptions checked(RenderOptions options);
 
 /// What tables or fits before the first pass take of the whole, roughly.
 inline constexpr double kPreparation = 0.05;

@@ -33,8 +33,8 @@ int first_divisor(int width, int height) {
 ProgressiveRender::Level::Level(int width, int height)
     : film(width, height), tiles(blocks_of(film.window())), done(tiles.size()) {}
 
-ProgressiveRender::ProgressiveRender(std::shared_ptr<const Scene> scene, const RenderOptions& options)
-    : scene_(std::move(scene)), asked_(checked(*scene_, options)), arena_(arena_concurrency(options.threads)) {
+ProgressiveRender::ProgressiveRender(std::shared_ptr<Scene> scene, const RenderOptions& options)
+    : scene_(std::move(scene)), asked_(checked(options)), arena_(arena_concurrency(options.threads)) {
   for (int d = first_divisor(asked_.width, asked_.height); d > 0; d /= 2) {
     levels_.push_back(std::make_unique<Level>(part(asked_.width, d), part(asked_.height, d)));
   }
@@ -61,8 +61,11 @@ void ProgressiveRender::run(Progress& progress) {
   }
 }
 
-/// Lights, and what the strategy needs: kept while the camera alone moves.
+/// Its hierarchy, lights, and what the strategy needs: kept while the camera alone moves.
 void ProgressiveRender::prepare_scene(Progress& progress) {
+  progress.stage("hierarchy", 0.0, 0.0);
+  scene_->commit(asked_.threads);
+  progress.check();
   if (context_ && prepared_for_ == scene_->revision()) return;
   context_.reset();
   options_ = asked_;

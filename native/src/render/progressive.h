@@ -23,13 +23,14 @@ class ProgressiveRender {
     uint64_t version = 0;       // grows with what there is to see
   };
 
-  /// `scene` must be committed, and may change between runs: then restart() goes before the next one. Of `options`,
-  /// noise, time_limit, samples, crop and stop are not used. Throws what render() throws.
-  ProgressiveRender(std::shared_ptr<const Scene> scene, const RenderOptions& options);
+  /// `scene` may change between runs: then restart() goes before the next one. Of `options`, noise, time_limit,
+  /// samples, crop and stop are not used. Throws what render() throws of options.
+  ProgressiveRender(std::shared_ptr<Scene> scene, const RenderOptions& options);
 
   /// The next run begins anew. Not while one runs.
   void restart();
-  /// Until the picture has all of spp, or Error(cancelled); then the next run goes on where this one was.
+  /// Commits the scene, and renders until the picture has all of spp, or Error(cancelled); then the next run goes on
+  /// where this one was.
   void run(Progress& progress);
 
   // From any thread, at any time:
@@ -53,7 +54,7 @@ class ProgressiveRender {
   void render_pass(Level& level, int target, Progress& progress);
   void show();
 
-  const std::shared_ptr<const Scene> scene_;
+  const std::shared_ptr<Scene> scene_;
   const RenderOptions asked_;
   RenderOptions options_;  // of the level
   tbb::task_arena arena_;

@@ -28,7 +28,8 @@ RenderOptions checked_for(const Scene& scene, const RenderOptions& options, cons
   if (film.window() != options.window()) {
     throw Error(Status::invalid_argument, "The film has another size or place than the render options ask for.");
   }
-  return checked(scene, options);
+  if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is rendered.");
+  return checked(options);
 }
 
 /// Camera rays a pixel of the next pass: doubling, so that a first picture appears at once.

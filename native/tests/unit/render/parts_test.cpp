@@ -139,13 +139,12 @@ TEST(Parts, AStopEndsAtAWholePass) {
 }
 
 TEST(Parts, AreRefusedWithTheOptionWhereThereIsNoSuchPart) {
-  const Scene scene = uneven_scene();
   const auto refused = [&](auto&& change, const char* word) {
     RenderOptions options = options_of(Strategy::mis);
-    EXPECT_NO_THROW(checked(scene, options));
+    EXPECT_NO_THROW(checked(options));
     change(options);
     try {
-      checked(scene, options);
+      checked(options);
       ADD_FAILURE() << word;
     } catch (const Error& error) {
       EXPECT_EQ(error.status(), Status::invalid_argument);

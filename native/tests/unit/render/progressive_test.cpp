@@ -55,6 +55,16 @@ TEST(Progressive, EndsAsTheRenderDoes) {
   }
 }
 
+TEST(Progressive, CommitsItsScene) {
+  const auto scene = lit_scene();
+  scene->add_instance(1, test::shift({1, 0, 2}), {0});
+  EXPECT_FALSE(scene->committed());
+  const RenderOptions options = options_of(37, 150, 12);
+  const std::vector<float> picture = finished(scene, options);
+  EXPECT_TRUE(scene->committed());
+  EXPECT_EQ(picture, test::rendered(*scene, options));
+}
+
 TEST(Progressive, GoesOnWhereACancelStoppedIt) {
   const auto scene = lit_scene();
   const RenderOptions options = options_of(300, 150, 60);
