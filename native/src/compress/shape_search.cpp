@@ -4,6 +4,7 @@
 #include <cmath>
 #include <Eigen/Core>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 
@@ -18,14 +19,16 @@ namespace {
 constexpr Index kFitted = 1000, kJudged = 500;  // slices
 constexpr int kIterations = 3;                  // of a fit that a shape is judged by
 constexpr double kTolerance = 2e-3;
-constexpr size_t kMostTrials = 24;
+constexpr size_t kMostTrials = 36;
 constexpr double kShareStep = 0.12, kLeastShare = 0.12, kMostShare = 0.96;
 // Of ReliefGap: texels are solved for on the images, which mends the rest. By trial: weave 0.26, corduroy 0.25, gravel
 // 0.30.
 constexpr double kLeftOfRelief = 0.27;
-constexpr uint32_t kUsualClusters = 8, kUsualMembers = 2;
+constexpr uint32_t kStarts[] = {1, 2, 8};  // clusters
+constexpr uint32_t kUsualMembers = 2;
+constexpr double kUsualShare = 0.6;  // of texels
 constexpr double kWorthClusters = 0.99;
-constexpr double kFlattered = 0.5;  // of an error, over the coefficients of a texel
+constexpr double kMostOff = 0.08, kOff = 2;  // of an error; the second over the coefficients of a texel
 
 class ShapeSearch {
  public:
@@ -37,13 +40,22 @@ class ShapeSearch {
 
   FoundShape run() {
     found_.relief_error = kLeftOfRelief * options_.relief_share;
-    std::vector<JudgedShape> ends;  // from fewer clusters, and from more
-    for (const ShapeChoice& start : starts())
-      ends.push_back(judged(walk(start, found_.trials.size() + kMostTrials / 2)));
-    const JudgedShape &few = ends.front(), &more = ends.back();
-    const bool more_are_better = is_better_shape(more.choice.clusters, more.error, few.choice.clusters, few.error);
-    found_.best = more_are_better ? more : few;
-    if (is_rival(few, found_.best)) found_.rival = few;
+    std::vector<JudgedShape> ends;
+    for (const uint32_t clusters : kStarts) {
+      const double share = ends.empty() ? kUsualShare : ends[0].choice.texel_share;
+      const auto start =
+          start_of(std::clamp(clusters, options_.range.least_clusters, options_.range.most_clusters), share);
+      if (start && started_.insert(start->clusters).second) ends.push_back(judged(walk(*start)));
+    }
+    if (ends.empty()) refuse();
+    found_.best = ends[0];
+    for (const JudgedShape& end : ends) {
+      if (is_better_shape(end.choice.clusters, end.error, found_.best.choice.clusters, found_.best.error))
+        found_.best = end;
+    }
+    for (const JudgedShape& end : ends) {
+      if (!found_.rival && is_rival(end, found_.best)) found_.rival = end;
+    }
     found_.view_rank = options_.extent.view_rank;
     found_.light_rank = options_.extent.light_rank;
     progress_.update(1.0);
@@ -58,7 +70,8 @@ class ShapeSearch {
   }
 
   /// To the best that is found in so many trials.
-  ShapeChoice walk(ShapeChoice best, size_t most) {
+  ShapeChoice walk(ShapeChoice best) {
+    const size_t most = found_.trials.size() + kMostTrials / std::size(kStarts);
     double least = error(best);
     for (bool better = true; better;) {
       better = false;
@@ -74,27 +87,20 @@ class ShapeSearch {
     return best;
   }
 
-  /// One cluster, and a usual number of them.
-  std::vector<ShapeChoice> starts() const {
-    std::vector<ShapeChoice> starts;
-    for (const uint32_t clusters : {1u, kUsualClusters}) {
-      const auto start = start_of(std::clamp(clusters, options_.range.least_clusters, options_.range.most_clusters));
-      if (start && (starts.empty() || starts[0].clusters != start->clusters)) starts.push_back(*start);
-    }
-    if (!starts.empty()) return starts;
+  [[noreturn]] void refuse() const {
     throw Error(Status::invalid_argument, "No model of clustered tensors is within " + std::to_string(options_.bytes) +
                                               " bytes; ask for more bytes, or for fewer clusters and members.");
   }
 
-  /// Of so many clusters, or of fewer where these are not within the bytes.
-  std::optional<ShapeChoice> start_of(uint32_t clusters) const {
+  /// Of so many clusters, or of fewer where these are not within the bytes; of `share` or else of another one.
+  std::optional<ShapeChoice> start_of(uint32_t clusters, double share) const {
     const ShapeRange& range = options_.range;
     for (;; clusters = std::max(clusters / 2, range.least_clusters)) {
       const uint32_t most = std::min({kUsualMembers, range.most_members, clusters});
       for (uint32_t members = std::max(most, range.least_members); members >= range.least_members; --members) {
-        for (const double share : {0.6, 0.36, 0.84, 0.96}) {
+        for (const double s : {share, kUsualShare, 0.36, 0.84, 0.96}) {
           for (const uint32_t colors : {2u, 1u}) {
-            const ShapeChoice choice{clusters, members, colors, share};
+            const ShapeChoice choice{clusters, members, colors, s};
             if (members <= clusters && largest_shape(choice, options_.extent, options_.bytes)) return choice;
           }
         }
@@ -201,6 +207,7 @@ class ShapeSearch {
   TensorView fitted_, judged_;
   FoundShape found_;
   RowMatrix coordinates_;
+  std::set<uint32_t> started_;  // clusters that a walk began with
   std::map<std::tuple<uint32_t, uint32_t, uint32_t, long>, double> errors_;
 };
 
@@ -211,8 +218,8 @@ bool is_better_shape(uint32_t clusters, double error, uint32_t others, double le
 }
 
 bool is_rival(const JudgedShape& other, const JudgedShape& best) {
-  const double least = 1 + kFlattered / best.shape.coefficients();
-  return other.choice.clusters < best.choice.clusters && other.error < least * best.error;
+  const double off = std::min(kMostOff, kOff / best.shape.coefficients());
+  return other.choice.clusters != best.choice.clusters && other.error < (1 + off) * best.error;
 }
 
 FoundShape search_shape(const TensorView& slices, const ShapeSearchOptions& options, Progress& progress) {

@@ -129,13 +129,15 @@ TEST(TensorFit, MoreClustersHaveToBeBetterByAHundredth) {
   EXPECT_FALSE(is_better_shape(1, 0.2882, 4, 0.2881));
 }
 
-TEST(TensorFit, FewerClustersAreRivalsWhereTexelsHaveFewCoefficients) {
+TEST(TensorFit, ShapesAreRivalsWhereTheyAreCloseAndTexelsHaveFewCoefficients) {
   const auto judged = [](uint32_t clusters, uint32_t texel_rank, double error) {
     return JudgedShape{{clusters, 1, 1, 0.6}, {clusters, 1, {texel_rank, 4, 4, 1}}, error};
   };
   EXPECT_TRUE(is_rival(judged(1, 5, 0.430), judged(4, 5, 0.400)));
-  EXPECT_FALSE(is_rival(judged(1, 20, 0.430), judged(4, 20, 0.400)));
-  EXPECT_FALSE(is_rival(judged(4, 5, 0.401), judged(1, 5, 0.400)));
+  EXPECT_FALSE(is_rival(judged(1, 5, 0.433), judged(4, 5, 0.400)));
+  EXPECT_FALSE(is_rival(judged(1, 50, 0.430), judged(4, 50, 0.400)));
+  EXPECT_TRUE(is_rival(judged(4, 5, 0.401), judged(1, 5, 0.400)));
+  EXPECT_FALSE(is_rival(judged(1, 5, 0.400), judged(1, 5, 0.400)));
 }
 
 /// The control: the search alone would have taken more clusters than one.
