@@ -55,3 +55,19 @@ def test_a_tint_that_makes_light_is_told(albedo, gain, said):
 
     sentence = gain_warning(albedo, gain)
     assert (sentence is None) if said is None else (said in sentence)
+
+
+@pytest.mark.parametrize(
+    ("info", "reference", "said"),
+    [
+        ({"model": "parametric"}, False, None),
+        ({}, False, None),
+        ({"model": "scattered"}, True, "switch off Render from Measurement"),
+        ({"texels": [4, 4]}, False, "of a BTF"),
+    ],
+)
+def test_what_cannot_be_made_rougher_is_told(info, reference, said):
+    from velour.core.model_warnings import roughness_reason
+
+    sentence = roughness_reason(info, reference)
+    assert (sentence is None) if said is None else (said in sentence)

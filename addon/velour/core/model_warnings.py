@@ -26,3 +26,12 @@ def gain_warning(albedo_max: float | None, gain: tuple[float, float, float]) -> 
     if max(gain) <= 1.0 or brightest <= 1.0:
         return None
     return f"Reflects up to {brightest:.2g} times the light that falls on it; lower Tint or Exposure."
+
+
+def roughness_reason(info: dict, use_reference: bool) -> str | None:
+    """Why a material cannot be made rougher, and what helps. `info`: of its model; empty: there is none."""
+    if use_reference:
+        return "Roughness Offset is for models; to use it, switch off Render from Measurement."
+    if "texels" in info:
+        return "Roughness Offset is for models of BRDFs; this one, of a BTF, is rendered as it was measured."
+    return None

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from ..core.model_warnings import roughness_reason
 from ..native import Model, Shader, VelourError
 from . import files
 from .corner_colors import CornerColors, shader_colors
@@ -177,6 +178,7 @@ class MaterialTable:
         settings = node.velour
         owner = _owner(material)
         if settings.use_reference:
+            self._note_roughness(settings, {}, owner)
             return self._add_reference(material, node, owner)
         if settings.use_scene_model and settings.scene_model is not None:
             return self._add_pair(material, node, owner)
@@ -184,15 +186,30 @@ class MaterialTable:
             raise ExportError(
                 f"{owner}: node '{node.name}' has no model; press Fit, or choose a model as its image."
             )
-        with files.read_model(node.image, owner) as model:
+        with self._read_model(node.image, settings, owner) as model:
             info = model.info()
             self._note_place(material, info)
             return self._add_model(model, info, settings)
 
+    def _read_model(self, image, settings, owner):
+        """The model, as rough as the artist wants it."""
+        model = files.read_model(image, owner)
+        if settings.roughness == 0 or self._note_roughness(settings, model.info(), owner):
+            return model
+        with model:
+            return model.roughened(settings.roughness)
+
+    def _note_roughness(self, settings, info, owner):
+        """Whether the roughness offset cannot be had; it is noted where it is asked for."""
+        reason = roughness_reason(info, settings.use_reference)
+        if reason and settings.roughness > 0:
+            self._notes.add(f"{owner}: {reason}")
+        return reason is not None
+
     def _add_pair(self, material, node, owner):
-        reduced = files.read_model(node.velour.scene_model, owner)
+        reduced = self._read_model(node.velour.scene_model, node.velour, owner)
         has_full = files.is_there(node.image)
-        model = files.read_model(node.image, owner) if has_full else reduced
+        model = self._read_model(node.image, node.velour, owner) if has_full else reduced
         info = model.info()
         self._note_place(material, info)
         number = self._add_model(model, info, node.velour)

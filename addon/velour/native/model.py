@@ -42,6 +42,10 @@ class Model(Handle):
         """kind, model, kernel, lobes, bytes, relative_l2, by_view_angle, warnings, order, source, ..."""
         return library.json_of(self._lib.vlr_model_info_json, self.pointer)
 
+    def roughened(self, roughness: float) -> Model:
+        """The model of a surface that is rougher, 0 to 1; not of a BTF."""
+        return self._create("vlr_model_roughened", self.pointer, roughness)
+
     def out_of_domain(self, frame: Observation) -> float:
         """Share of what `frame` shows that a model reduced to a scene was not made for; 0 for others."""
         share = ctypes.c_double()

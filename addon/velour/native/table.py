@@ -450,6 +450,7 @@ STATUS_CALLS = {
     "vlr_fit_create_job": [_handle, POINTER(FitOptions), _out_handle],
     "vlr_compare_create_job": [_handle, _handle, _out_handle],
     "vlr_compare_peer_create_job": [_handle, c_int32, _out_handle],
+    "vlr_model_roughened": [_handle, c_float, _out_handle],
     "vlr_model_peer_create_job": [_handle, c_int32, _out_handle],
     "vlr_microsurface_create_job": [POINTER(MicrosurfaceOptions), c_char_p, _out_handle],
     "vlr_directions": [c_char_p, POINTER(c_double), POINTER(c_uint64)],

@@ -189,6 +189,17 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         update=_changed,
         override=_OVERRIDE,
     )
+    roughness: FloatProperty(
+        name="Roughness Offset",
+        description="Widens the highlights of a model of a BRDF and keeps their brightness: a mirror gets"
+        " that of a Glossy BSDF of this roughness. 0: as it was measured",
+        subtype="FACTOR",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        update=_changed,
+        override=_OVERRIDE,
+    )
     placement: PointerProperty(
         name="Placement",
         description="Where the tiles of a BTF lie on objects",

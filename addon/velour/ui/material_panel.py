@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..core.model_warnings import gain_warning, panel_warnings
+from ..core.model_warnings import gain_warning, panel_warnings, roughness_reason
 from ..engine.engine import VelourRenderEngine
 from ..export.materials import gain
 from ..export.nodes import active_output, velour_node
@@ -56,7 +56,7 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
             row.active = info.get("model", "scattered") == "scattered"
             row.prop(settings, "neighbors")
         layout.column().prop(settings, "use_reference")
-        _draw_gain(context, layout, settings, info)
+        _draw_look(context, layout, settings, info)
 
 
 def _draw_fit_settings(column, settings):
@@ -71,10 +71,17 @@ def _draw_fit_settings(column, settings):
     column.prop(settings, "use_all_data")
 
 
-def _draw_gain(context, layout, settings, info):
+def _draw_look(context, layout, settings, info):
+    """What an artist changes of a measured material."""
     column = layout.column(align=True)
     column.prop(settings, "tint")
     column.prop(settings, "exposure")
+    reason = roughness_reason(info, settings.use_reference)
+    row = column.row()
+    row.active = reason is None
+    row.prop(settings, "roughness", slider=True)
+    if reason:
+        draw_sentence(context, layout, reason, icon="INFO")
     sentence = gain_warning(info.get("albedo_max"), gain(settings))
     if sentence:
         draw_sentence(context, layout, sentence, icon="ERROR")

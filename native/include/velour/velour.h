@@ -96,6 +96,10 @@ VLR_API void vlr_model_free(vlr_model* model);
 VLR_API vlr_status vlr_model_save(const vlr_model* model, const char* path);
 /* The bytes that vlr_model_save would write; they belong to the handle. */
 VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_t* size);
+/* The model of a surface that is rougher by `roughness`, 0 to 1: a mirror gets about the highlight of a GGX or Beckmann
+ * surface of alpha = roughness^2, and other highlights are widened as much. Albedos stay (docs/parametric.md). A model
+ * of its own, with samples and densities of its own; 0 gives the same one. VLR_INVALID_ARGUMENT for models of BTFs. */
+VLR_API vlr_status vlr_model_roughened(const vlr_model* model, float roughness, vlr_model** out);
 /* JSON: kind "model", model "scattered" or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes, relative_l2,
  * by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds, seed,
  * all_data, warnings, order (as of a fit), source {name, format, sha256}. Scattered: also views, max_lobes_per_view.

@@ -1,15 +1,12 @@
 #include "brdf/parametric_brdf.h"
 
-#include <array>
 #include <cmath>
 
 namespace velour {
 namespace {
 
-using Parameters = std::array<double, ParametricBrdf::kAnisotropicCount>;
-
-Parameters parameters_at(const ParametricBrdf& brdf, const ViewTaps& taps, int lobe) {
-  Parameters p{};
+LobeParameters parameters_at(const ParametricBrdf& brdf, const ViewTaps& taps, int lobe) {
+  LobeParameters p{};
   for (int i = 0; i < taps.count; ++i) {
     for (int k = 0; k < brdf.parameter_count(); ++k) {
       const double weight = k == ParametricBrdf::kTiltX ? taps.odd_weight[i] : taps.weight[i];
@@ -30,20 +27,30 @@ void turn(WarpedLobe& lobe, double c, double s) {
 
 }  // namespace
 
+WarpedLobe lobe_of(const LobeParameters& p, LobeSpace space, double fade) {
+  using P = ParametricBrdf;
+  return {space, stretch_from(fade * p[P::kStretchA], fade * p[P::kStretchB]),
+          tilted_normal(p[P::kTiltX], p[P::kTiltY]), std::exp(p[P::kLogBandwidth]),
+          Vec3d(std::exp(p[P::kLogRed]), std::exp(p[P::kLogGreen]), std::exp(p[P::kLogBlue]))};
+}
+
+void store_shape(const WarpedLobe& lobe, LobeParameters& p) {
+  using P = ParametricBrdf;
+  p[P::kLogBandwidth] = std::log(lobe.bandwidth);
+  const glm::dvec2 tilt = tilt_of(lobe.center), stretch = exponents_of(lobe.stretch);
+  p[P::kTiltX] = tilt.x;
+  p[P::kTiltY] = tilt.y;
+  p[P::kStretchA] = stretch.x;
+  p[P::kStretchB] = stretch.y;
+}
+
 std::vector<WarpedLobe> lobes_at(const ParametricBrdf& brdf, const Vec3d& wv) {
   const ViewTaps taps = brdf.spline().at(wv);
   const double fade = brdf.isotropic ? pole_fade(wv) : 1.0;
   const double sine = std::hypot(wv.x, wv.y);
   std::vector<WarpedLobe> lobes;
   for (int j = 0; j < brdf.lobe_count(); ++j) {
-    const Parameters p = parameters_at(brdf, taps, j);
-    WarpedLobe lobe;
-    lobe.space = brdf.space[static_cast<size_t>(j)];
-    lobe.center = tilted_normal(p[ParametricBrdf::kTiltX], p[ParametricBrdf::kTiltY]);
-    lobe.stretch = stretch_from(fade * p[ParametricBrdf::kStretchA], fade * p[ParametricBrdf::kStretchB]);
-    lobe.bandwidth = std::exp(p[ParametricBrdf::kLogBandwidth]);
-    lobe.coefficient = {std::exp(p[ParametricBrdf::kLogRed]), std::exp(p[ParametricBrdf::kLogGreen]),
-                        std::exp(p[ParametricBrdf::kLogBlue])};
+    WarpedLobe lobe = lobe_of(parameters_at(brdf, taps, j), brdf.space[static_cast<size_t>(j)], fade);
     if (brdf.isotropic && sine > 0) turn(lobe, wv.x / sine, wv.y / sine);
     lobes.push_back(lobe);
   }

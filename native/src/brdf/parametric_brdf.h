@@ -1,6 +1,7 @@
 // The parametric model of a BRDF: few lobes, followed over all view directions.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -46,6 +47,13 @@ struct ParametricBrdf {
   static constexpr uint64_t parameter_bytes(uint64_t values, uint64_t lobes) { return 2 * values + lobes; }
   uint64_t parameter_bytes() const { return parameter_bytes(control.size(), space.size()); }
 };
+
+/// The parameters of one lobe, by ParametricBrdf::Isotropic and Anisotropic.
+using LobeParameters = std::array<double, ParametricBrdf::kAnisotropicCount>;
+/// The lobe in the splines' frame; its stretch is `fade` times what they say.
+WarpedLobe lobe_of(const LobeParameters& parameters, LobeSpace space, double fade);
+/// The inverse without fade, of bandwidth, tilt and stretch; the coefficients in `parameters` stay.
+void store_shape(const WarpedLobe& lobe, LobeParameters& parameters);
 
 /// f, 1/sr, of `brdf` at a pair, both unit and above the horizon.
 Vec3d value_of(const ParametricBrdf& brdf, const Vec3d& wl, const Vec3d& wv);

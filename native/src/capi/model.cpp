@@ -3,6 +3,7 @@
 #include "capi/reports.h"
 #include "model/model_file.h"
 #include "model/model_material.h"
+#include "model/roughened_model.h"
 
 using namespace velour;
 using namespace velour::capi;
@@ -73,6 +74,14 @@ vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_t* size)
     require(size, "size");
     *bytes = encoded(*model).data();
     *size = encoded(*model).size();
+  });
+}
+
+vlr_status vlr_model_roughened(const vlr_model* model, float roughness, vlr_model** out) {
+  return guard([&] {
+    require(model, "model");
+    require(out, "out");
+    *out = new_handle(roughened(*model->model, roughness));
   });
 }
 

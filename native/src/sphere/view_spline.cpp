@@ -10,6 +10,13 @@ PolarView<double> polar_view(const Vec3d& wv) {
   return {std::atan2(sine, wv.z), wv.x / sine, wv.y / sine};
 }
 
+PolarView<double> ViewSpline::view_of(int node) const {
+  if (isotropic_) return {sites()[static_cast<size_t>(node)], 1, 0};
+  const auto place = [&](int i) { return 2 * (i - 0.5) / cells_ - 1; };
+  const double x = place(node % side()), y = place(node / side()), r = std::hypot(x, y);
+  return {std::min(r, 1.0) / per_radian_, r > 0 ? x / r : 1, r > 0 ? y / r : 0};
+}
+
 std::vector<double> ViewSpline::sites() const {
   const double step = 1 / (per_radian_ * cells_);
   std::vector<double> theta;

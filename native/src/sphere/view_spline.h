@@ -21,6 +21,10 @@ struct PolarView {
   T theta, cos_phi, sin_phi;
 };
 PolarView<double> polar_view(const Vec3d& wv);
+inline Vec3d direction_of(const PolarView<double>& view) {
+  const double sine = std::sin(view.theta);
+  return {sine * view.cos_phi, sine * view.sin_phi, std::cos(view.theta)};
+}
 
 /// The nodes that a view touches. Sums over them are the spline's value there, once differentiable.
 template <class T>
@@ -63,6 +67,8 @@ class ViewSpline {
     finer.cells_ *= times;
     return finer;
   }
+  /// The view that is mostly a node's own: in the middle of what it reaches, or the nearest to it that there is.
+  PolarView<double> view_of(int node) const;
   /// Of isotropic splines, for each node a polar angle that is mostly its own: the middles of the intervals, the end,
   /// and the beginning unless it is mirrored there. Values at these determine the spline.
   std::vector<double> sites() const;

@@ -9,14 +9,22 @@ namespace {
 
 Vec3d argument(LobeSpace space, const Vec3d& wl, const Vec3d& wv) { return space == LobeSpace::half ? wl + wv : wl; }
 
-Vec3d stretched(const Stretch& s, const Vec3d& y) { return {s.xx * y.x + s.xy * y.y, s.xy * y.x + s.yy * y.y, y.z}; }
+Vec3d scaled(const Stretch& s, const Vec3d& y) { return {s.xx * y.x + s.xy * y.y, s.xy * y.x + s.yy * y.y, y.z}; }
 
 }  // namespace
+
+Vec3d stretched(const Stretch& s, const Vec3d& y) { return glm::normalize(scaled(s, y)); }
 
 Stretch stretch_from(double a, double b) {
   const double m = std::hypot(a, b);
   const double c = std::cosh(m), s = m > 1e-8 ? std::sinh(m) / m : 1.0;
   return {c - s * a, s * b, c + s * a};
+}
+
+glm::dvec2 exponents_of(const Stretch& stretch) {
+  const glm::dvec2 sines(0.5 * (stretch.yy - stretch.xx), stretch.xy);  // sinh(m) / m times (a, b)
+  const double length = glm::length(sines);
+  return length > 1e-8 ? std::asinh(length) / length * sines : sines;
 }
 
 StretchSlopes stretch_slopes(double a, double b) {
@@ -41,14 +49,20 @@ Vec3d tilted_normal(double tilt_x, double tilt_y) {
   return {s * tilt_x, s * tilt_y, std::cos(angle)};
 }
 
+glm::dvec2 tilt_of(const Vec3d& center) {
+  const double sine = std::hypot(center.x, center.y);
+  const double scale = sine > 1e-8 ? std::atan2(sine, center.z) / sine : 1.0;
+  return scale * glm::dvec2(center.x, center.y);
+}
+
 Vec3d warped(const WarpedLobe& lobe, const Vec3d& wl, const Vec3d& wv) {
-  return glm::normalize(stretched(lobe.stretch, argument(lobe.space, wl, wv)));
+  return stretched(lobe.stretch, argument(lobe.space, wl, wv));
 }
 
 Vec3d argument_at(const WarpedLobe& lobe, const Vec3d& psi) {
   // The inverse of a symmetric matrix of determinant 1.
   const Stretch inverse{lobe.stretch.yy, -lobe.stretch.xy, lobe.stretch.xx};
-  return glm::normalize(stretched(inverse, psi));
+  return stretched(inverse, psi);
 }
 
 std::optional<Vec3d> unwarped(const WarpedLobe& lobe, const Vec3d& psi, const Vec3d& wv) {
@@ -61,7 +75,7 @@ std::optional<Vec3d> unwarped(const WarpedLobe& lobe, const Vec3d& psi, const Ve
 
 double warp_jacobian(const WarpedLobe& lobe, const Vec3d& wl, const Vec3d& wv) {
   const Vec3d y = argument(lobe.space, wl, wv);
-  const double length = glm::length(stretched(lobe.stretch, y));
+  const double length = glm::length(scaled(lobe.stretch, y));
   const double cube = length * length * length;
   return (lobe.space == LobeSpace::half ? glm::dot(y, y) / 2 : 1.0) / cube;
 }

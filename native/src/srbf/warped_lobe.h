@@ -27,6 +27,10 @@ struct Stretch {
 /// exp [[-a, b], [b, a]]: by e^m along one axis and e^-m along the other, m = |(a, b)|. Positive a is longer in x of
 /// the directions (the argument is squeezed there).
 Stretch stretch_from(double a, double b);
+/// Unit S y.
+Vec3d stretched(const Stretch& stretch, const Vec3d& y);
+/// The inverse of stretch_from: (a, b).
+glm::dvec2 exponents_of(const Stretch& stretch);
 /// Its derivatives; they are no stretches themselves.
 struct StretchSlopes {
   Stretch by_a, by_b;
@@ -35,6 +39,8 @@ StretchSlopes stretch_slopes(double a, double b);
 
 /// Centre of tilt `t` (radians) from the normal: the exponential map of the sphere, smooth at 0.
 Vec3d tilted_normal(double tilt_x, double tilt_y);
+/// The inverse, up to pi long: (tilt_x, tilt_y).
+glm::dvec2 tilt_of(const Vec3d& center);
 struct TiltSlopes {
   Vec3d by_x, by_y;
 };

@@ -25,6 +25,7 @@ TEST(Misuse, NullArgumentsAreNamed) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_load(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_load_memory(nullptr, 0, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_save(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_roughened(nullptr, 0, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_start(nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_wait(nullptr, 0, nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_create(nullptr));

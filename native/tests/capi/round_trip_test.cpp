@@ -107,6 +107,28 @@ TEST_P(RoundTrip, TheModelIsCloseToTheMeasurement) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(model[c], raw[c], 0.15f * raw[c]);
 }
 
+TEST_P(RoundTrip, ARougherModelHasALowerAndWiderHighlight) {
+  vlr_model *same = nullptr, *rougher = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_model_roughened(model_, 0, &same)) << vlr_last_error();
+  ASSERT_EQ(VLR_OK, vlr_model_roughened(model_, 0.6f, &rougher)) << vlr_last_error();
+  const float wv[3] = {0, 0, 1}, wl[6] = {0, 0, 1, 0.8f, 0, 0.6f};  // at the peak, and 53 degrees from it
+  float before[6], zero[6], after[6];
+  vlr_model_eval(model_, wv, 2, wl, before, nullptr);
+  vlr_model_eval(same, wv, 2, wl, zero, nullptr);
+  vlr_model_eval(rougher, wv, 2, wl, after, nullptr);
+  EXPECT_EQ(0, std::memcmp(before, zero, sizeof before));
+  EXPECT_LT(after[1], 0.8f * before[1]);
+  EXPECT_GT(after[4], 1.1f * before[4]);
+  vlr_model_free(same);
+  vlr_model_free(rougher);
+  vlr_model* none = nullptr;
+  for (const float bad : {-0.1f, 1.5f, std::nanf("")}) {
+    EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_model_roughened(model_, bad, &none));
+    EXPECT_NE(std::strstr(vlr_last_error(), "choose 0 to 1"), nullptr) << vlr_last_error();
+  }
+  EXPECT_EQ(none, nullptr);
+}
+
 TEST_P(RoundTrip, FileAndMemoryGiveTheSameModel) {
   const std::string path = folder_ / "model.velour";
   ASSERT_EQ(VLR_OK, vlr_model_save(model_, path.c_str())) << vlr_last_error();

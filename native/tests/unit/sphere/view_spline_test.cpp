@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -39,6 +40,30 @@ TEST(ViewSpline, WeightsSumToOneAndNodesAreThere) {
         EXPECT_LT(taps.node[i], spline.node_count());
       }
       EXPECT_NEAR(sum, 1, 1e-12);
+    }
+  }
+}
+
+TEST(ViewSpline, ANodeCountsMostAtItsView) {
+  for (const bool isotropic : {true, false}) {
+    for (const ViewRange range : {ViewRange{}, ViewRange{20, 50}}) {
+      const ViewSpline spline(isotropic, 5, range);
+      // The first one at the normal is its own mirror image, and counts most there.
+      for (int node = isotropic && range.begin == 0 ? 1 : 0; node < spline.node_count(); ++node) {
+        const PolarView<double> own = spline.view_of(node);
+        EXPECT_LE(own.theta, range.last() + 1e-12);
+        const auto weight_at = [&](const PolarView<double>& at) {
+          const ViewTaps taps = spline.at(at);
+          double weight = 0;
+          for (int i = 0; i < taps.count; ++i) weight += taps.node[i] == node ? taps.weight[i] : 0.0;
+          return weight;
+        };
+        // Beside it, along the radius: no more. Corners of the square count nowhere.
+        for (const double beside : {-0.02, 0.02}) {
+          const double theta = std::clamp(own.theta + beside, isotropic ? range.first() : 0.0, range.last());
+          EXPECT_LE(weight_at({theta, own.cos_phi, own.sin_phi}), weight_at(own) + 1e-12) << node;
+        }
+      }
     }
   }
 }

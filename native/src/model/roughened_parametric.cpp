@@ -1,0 +1,203 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "brdf/parametric_limits.h"
+#include "image/tensor.h"
+#include "model/roughened_model.h"
+#include "srbf/lobe_light.h"
+#include "srbf/widened_lobe.h"
+
+namespace velour {
+namespace {
+
+constexpr double kLeastCosine = 1e-4, kLeastLight = 1e-30;
+
+using P = ParametricBrdf;
+
+/// As model files hold it.
+void set(ParametricBrdf& brdf, int node, int parameter, int lobe, double value) {
+  const ParameterRange range = parameter_range(parameter);
+  brdf.control[brdf.index(node, parameter, lobe)] =
+      rounded_to_half(std::clamp(static_cast<float>(value), range.least, range.most));
+}
+
+double get(const ParametricBrdf& brdf, int node, int parameter, int lobe) {
+  return static_cast<double>(brdf.control[brdf.index(node, parameter, lobe)]);
+}
+
+/// The same model on a finer spline, where one is to be had: that of an isotropic one. Rougher lobes change with the
+/// view in ways of their own.
+ParametricBrdf refined(const ParametricBrdf& brdf) {
+  if (!brdf.isotropic) return brdf;
+  ParametricBrdf finer = brdf;
+  finer.cells = ViewSpline::kMaxCells / brdf.cells * brdf.cells;
+  const ViewSpline from = brdf.spline(), to = finer.spline();
+  finer.control.resize(finer.index(to.node_count(), 0, 0));
+  const std::vector<double> sites = to.sites();
+  std::vector<double> values(sites.size());
+  for (int lobe = 0; lobe < brdf.lobe_count(); ++lobe) {
+    for (int k = 0; k < brdf.parameter_count(); ++k) {
+      const bool odd = k == P::kTiltX;
+      for (size_t i = 0; i < sites.size(); ++i) {
+        const ViewTaps taps = from.at(PolarView<double>{sites[i], 1, 0});
+        values[i] = 0;
+        for (int t = 0; t < taps.count; ++t) {
+          values[i] += (odd ? taps.odd_weight[t] : taps.weight[t]) * get(brdf, taps.node[t], k, lobe);
+        }
+      }
+      to.interpolate(values, odd);
+      for (int node = 0; node < to.node_count(); ++node) set(finer, node, k, lobe, values[static_cast<size_t>(node)]);
+    }
+  }
+  return finer;
+}
+
+/// Widens the lobe that a node's control values describe. A spline lies between its control values, so that lobes are
+/// nowhere narrower with more roughness.
+void widen(ParametricBrdf& brdf, int node, int lobe, double by) {
+  LobeParameters p{};
+  for (int k = 0; k < brdf.parameter_count(); ++k) p[static_cast<size_t>(k)] = get(brdf, node, k, lobe);
+  store_shape(widened(lobe_of(p, brdf.space[static_cast<size_t>(lobe)], 1), by), p);
+  for (int k = 0; k < brdf.parameter_count(); ++k) {
+    if (k < P::kLogRed || k > P::kLogBlue) set(brdf, node, k, lobe, p[static_cast<size_t>(k)]);
+  }
+}
+
+/// Adds to the logarithms of all coefficients of a channel.
+void brighten(ParametricBrdf& brdf, int node, int channel, int lobe, double by) {
+  const int k = P::kLogRed + channel;
+  set(brdf, node, k, lobe, get(brdf, node, k, lobe) + by);
+}
+
+/// What the lobes reflect at a view, of each channel.
+std::vector<Vec3d> lights_of(const ParametricBrdf& brdf, const Vec3d& wv) {
+  std::vector<Vec3d> light;
+  for (const WarpedLobe& lobe : lobes_at(brdf, wv)) light.push_back(lobe.coefficient * reflected_light(lobe, wv));
+  return light;
+}
+
+double log_of(double light) { return std::log(std::max(light, kLeastLight)); }
+
+/// Gives each lobe of `rougher` about the light that it has in `brdf`: that of the nodes' views, as control values, so
+/// that the factor of a view lies between those of its nodes.
+void keep_light_of_lobes(const ParametricBrdf& brdf, ParametricBrdf& rougher) {
+  const ViewSpline spline = brdf.spline();
+  std::vector<std::vector<double>> change(static_cast<size_t>(spline.node_count()));
+  tbb::parallel_for(size_t{0}, change.size(), [&](size_t node) {
+    const Vec3d wv = direction_of(spline.view_of(static_cast<int>(node)));
+    const auto before = lights_of(brdf, wv), after = lights_of(rougher, wv);
+    for (size_t j = 0; j < before.size(); ++j) change[node].push_back(log_of(before[j].x) - log_of(after[j].x));
+  });
+  for (int node = 0; node < spline.node_count(); ++node) {
+    for (int lobe = 0; lobe < brdf.lobe_count(); ++lobe) {
+      const double by = change[static_cast<size_t>(node)][static_cast<size_t>(lobe)];
+      for (int c = 0; c < 3; ++c) brighten(rougher, node, c, lobe, by);
+    }
+  }
+}
+
+/// A view, the nodes that it touches, and the logarithm of what is reflected there over what should be.
+struct Claim {
+  ViewTaps taps;
+  Vec3d excess;
+
+  double left(const std::vector<double>& change, int c) const {
+    double sum = excess[c];
+    for (int t = 0; t < taps.count; ++t) sum += taps.weight[t] * change[static_cast<size_t>(taps.node[t])];
+    return sum;
+  }
+};
+
+std::vector<Vec3d> claimed_views(const ParametricBrdf& brdf) {
+  constexpr double kLast = 1.569;  // radians: a tenth of a degree above the horizon
+  const double first = brdf.isotropic ? brdf.views.first() : 0.0, last = std::min(brdf.views.last(), kLast);
+  const int polar = brdf.isotropic ? 2 * brdf.cells : 24, azimuths = brdf.isotropic ? 1 : 16;
+  std::vector<Vec3d> views;
+  for (int i = 0; i <= polar; ++i) {
+    const double theta = first + (last - first) * i / polar;
+    for (int k = 0; k < azimuths; ++k) {
+      const double phi = 2 * kPiD * k / azimuths;
+      views.push_back(direction_of({theta, std::cos(phi), std::sin(phi)}));
+    }
+  }
+  return views;
+}
+
+std::vector<Claim> claims_of(const ParametricBrdf& brdf, const ParametricBrdf& rougher) {
+  const std::vector<Vec3d> views = claimed_views(brdf);
+  std::vector<Claim> claims(views.size());
+  tbb::parallel_for(size_t{0}, views.size(), [&](size_t i) {
+    Vec3d before(0), after(0);
+    for (const Vec3d& light : lights_of(brdf, views[i])) before += light;
+    for (const Vec3d& light : lights_of(rougher, views[i])) after += light;
+    claims[i].taps = brdf.spline().at(views[i]);
+    for (int c = 0; c < 3; ++c) claims[i].excess[c] = log_of(after[c]) - log_of(before[c]);
+  });
+  return claims;
+}
+
+/// What the nodes' logarithms are to change by so that nothing is left of the claims: means of what is left about each
+/// node, in rounds; then no more than that: what is still above is taken off from all nodes that a view touches.
+std::vector<double> change_of(const std::vector<Claim>& claims, size_t nodes, int c) {
+  constexpr int kRounds = 60;
+  std::vector<double> change(nodes, 0.0);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> sum(nodes, 0.0), weight(nodes, 1e-9);
+    for (const Claim& claim : claims) {
+      const double left = claim.left(change, c);
+      for (int t = 0; t < claim.taps.count; ++t) {
+        const auto node = static_cast<size_t>(claim.taps.node[t]);
+        sum[node] += claim.taps.weight[t] * left;
+        weight[node] += claim.taps.weight[t];
+      }
+    }
+    for (size_t node = 0; node < nodes; ++node) change[node] -= sum[node] / weight[node];
+  }
+  std::vector<double> above(nodes, 0.0);
+  for (const Claim& claim : claims) {
+    const double left = claim.left(change, c);
+    for (int t = 0; t < claim.taps.count; ++t) {
+      double& most = above[static_cast<size_t>(claim.taps.node[t])];
+      most = std::max(most, left);
+    }
+  }
+  for (size_t node = 0; node < nodes; ++node) change[node] -= above[node];
+  return change;
+}
+
+/// The albedo of all lobes: as it was, of each channel.
+void keep_albedo(const ParametricBrdf& brdf, ParametricBrdf& rougher) {
+  const std::vector<Claim> claims = claims_of(brdf, rougher);
+  const int nodes = brdf.spline().node_count();
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<double> change = change_of(claims, static_cast<size_t>(nodes), c);
+    for (int node = 0; node < nodes; ++node) {
+      for (int j = 0; j < brdf.lobe_count(); ++j) brighten(rougher, node, c, j, change[static_cast<size_t>(node)]);
+    }
+  }
+}
+
+}  // namespace
+
+ParametricBrdf roughened(const ParametricBrdf& original, double roughness) {
+  if (original.lobe_count() == 0) return original;
+  const ParametricBrdf brdf = refined(original);
+  ParametricBrdf rougher = brdf;
+  const ViewSpline spline = brdf.spline();
+  for (int node = 0; node < spline.node_count(); ++node) {
+    const double cosine = std::max(std::cos(spline.view_of(node).theta), kLeastCosine);
+    const double of_half = half_bandwidth_of_roughness(roughness);
+    const double of_light = light_bandwidth_of_roughness(roughness, cosine);
+    for (int lobe = 0; lobe < brdf.lobe_count(); ++lobe) {
+      const bool half = brdf.space[static_cast<size_t>(lobe)] == LobeSpace::half;
+      widen(rougher, node, lobe, half ? of_half : of_light);
+    }
+  }
+  keep_light_of_lobes(brdf, rougher);
+  keep_albedo(brdf, rougher);
+  return rougher;
+}
+
+}  // namespace velour
