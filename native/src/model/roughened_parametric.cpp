@@ -13,6 +13,7 @@ namespace velour {
 namespace {
 
 constexpr double kLeastCosine = 1e-4, kLeastLight = 1e-30;
+constexpr int kMaxGridCells = 24;  // twice as many take four times as long
 
 using P = ParametricBrdf;
 
@@ -27,31 +28,32 @@ double get(const ParametricBrdf& brdf, int node, int parameter, int lobe) {
   return static_cast<double>(brdf.control[brdf.index(node, parameter, lobe)]);
 }
 
-/// The same model on a finer spline, where one is to be had: that of an isotropic one. Rougher lobes change with the
-/// view in ways of their own.
-ParametricBrdf refined(const ParametricBrdf& brdf) {
-  if (!brdf.isotropic) return brdf;
+/// The same model on a spline of intervals of half the length.
+ParametricBrdf halved(const ParametricBrdf& brdf) {
   ParametricBrdf finer = brdf;
-  finer.cells = ViewSpline::kMaxCells / brdf.cells * brdf.cells;
-  const ViewSpline from = brdf.spline(), to = finer.spline();
-  finer.control.resize(finer.index(to.node_count(), 0, 0));
-  const std::vector<double> sites = to.sites();
-  std::vector<double> values(sites.size());
+  finer.cells = 2 * brdf.cells;
+  const ViewSpline spline = brdf.spline();
+  finer.control.resize(finer.index(finer.spline().node_count(), 0, 0));
+  std::vector<double> values(static_cast<size_t>(spline.node_count()));
   for (int lobe = 0; lobe < brdf.lobe_count(); ++lobe) {
     for (int k = 0; k < brdf.parameter_count(); ++k) {
-      const bool odd = k == P::kTiltX;
-      for (size_t i = 0; i < sites.size(); ++i) {
-        const ViewTaps taps = from.at(PolarView<double>{sites[i], 1, 0});
-        values[i] = 0;
-        for (int t = 0; t < taps.count; ++t) {
-          values[i] += (odd ? taps.odd_weight[t] : taps.weight[t]) * get(brdf, taps.node[t], k, lobe);
-        }
+      for (int node = 0; node < spline.node_count(); ++node) {
+        values[static_cast<size_t>(node)] = get(brdf, node, k, lobe);
       }
-      to.interpolate(values, odd);
-      for (int node = 0; node < to.node_count(); ++node) set(finer, node, k, lobe, values[static_cast<size_t>(node)]);
+      const auto finer_values = spline.halved(values, brdf.isotropic && k == P::kTiltX);
+      for (size_t node = 0; node < finer_values.size(); ++node) {
+        set(finer, static_cast<int>(node), k, lobe, finer_values[node]);
+      }
     }
   }
   return finer;
+}
+
+/// The same model on a finer spline: rougher lobes change with the view in ways of their own.
+ParametricBrdf refined(ParametricBrdf brdf) {
+  const int most = brdf.isotropic ? ViewSpline::kMaxCells : kMaxGridCells;
+  while (2 * brdf.cells <= most) brdf = halved(brdf);
+  return brdf;
 }
 
 /// Widens the lobe that a node's control values describe. A spline lies between its control values, so that lobes are
@@ -110,17 +112,15 @@ struct Claim {
   }
 };
 
+/// Those of twice as many nodes, and all around near the horizon.
 std::vector<Vec3d> claimed_views(const ParametricBrdf& brdf) {
   constexpr double kLast = 1.569;  // radians: a tenth of a degree above the horizon
-  const double first = brdf.isotropic ? brdf.views.first() : 0.0, last = std::min(brdf.views.last(), kLast);
-  const int polar = brdf.isotropic ? 2 * brdf.cells : 24, azimuths = brdf.isotropic ? 1 : 16;
+  const ViewSpline dense = brdf.spline().refined(2);
   std::vector<Vec3d> views;
-  for (int i = 0; i <= polar; ++i) {
-    const double theta = first + (last - first) * i / polar;
-    for (int k = 0; k < azimuths; ++k) {
-      const double phi = 2 * kPiD * k / azimuths;
-      views.push_back(direction_of({theta, std::cos(phi), std::sin(phi)}));
-    }
+  for (int node = 0; node < dense.node_count(); ++node) {
+    PolarView<double> view = dense.view_of(node);
+    view.theta = std::min(view.theta, kLast);
+    views.push_back(direction_of(view));
   }
   return views;
 }

@@ -44,6 +44,45 @@ void ViewSpline::interpolate(std::span<double> values, bool odd) const {
   for (size_t i = theta.size() - 1; i-- > 0;) values[i] -= after[i] * values[i + 1];
 }
 
+namespace {
+
+/// Chaikin's rule: the control values of a uniform quadratic B-spline whose intervals are cut in half.
+std::vector<double> cut_corners(std::span<const double> control) {
+  std::vector<double> finer;
+  for (size_t i = 0; i + 1 < control.size(); ++i) {
+    finer.push_back(0.75 * control[i] + 0.25 * control[i + 1]);
+    finer.push_back(0.25 * control[i] + 0.75 * control[i + 1]);
+  }
+  return finer;
+}
+
+/// Of rows of `width`, each with its corners cut; transposed.
+std::vector<double> cut_rows(std::span<const double> control, size_t width) {
+  const size_t rows = control.size() / width;
+  std::vector<double> finer;
+  for (size_t y = 0; y < rows; ++y) {
+    const auto row = cut_corners(control.subspan(y * width, width));
+    finer.resize(row.size() * rows);
+    for (size_t x = 0; x < row.size(); ++x) finer[x * rows + y] = row[x];
+  }
+  return finer;
+}
+
+}  // namespace
+
+std::vector<double> ViewSpline::halved(std::span<const double> control, bool odd) const {
+  if (!isotropic_) {
+    const auto width = static_cast<size_t>(side());
+    return cut_rows(cut_rows(control, width), width);
+  }
+  if (!mirrored_) return cut_corners(control);
+  std::vector<double> whole{odd ? -control[0] : control[0]};
+  whole.insert(whole.end(), control.begin(), control.end());
+  auto finer = cut_corners(whole);
+  finer.erase(finer.begin());  // the mirror image of the next
+  return finer;
+}
+
 double pole_fade(double theta_v) {
   const double x = theta_v / radians_from(2.5);
   return -std::expm1(-x * x);

@@ -67,6 +67,9 @@ class ViewSpline {
     finer.cells_ *= times;
     return finer;
   }
+  /// The control values that refined(2) has for what `control` are here; `odd` for components that change sign at the
+  /// normal.
+  std::vector<double> halved(std::span<const double> control, bool odd) const;
   /// The view that is mostly a node's own: in the middle of what it reaches, or the nearest to it that there is.
   PolarView<double> view_of(int node) const;
   /// Of isotropic splines, for each node a polar angle that is mostly its own: the middles of the intervals, the end,

@@ -136,6 +136,21 @@ TEST(ViewSpline, RefinedSplinesFollowWhatTheirOwnKnotsAllow) {
   }
 }
 
+TEST(ViewSpline, OfHalvedIntervalsIsTheSame) {
+  const ViewSpline whole(true, 5), part(true, 2, {20, 50}), grid(false, 4), part_of_grid(false, 3, {0, 40});
+  const std::pair<ViewSpline, bool> cases[] = {
+      {whole, false}, {whole, true}, {part, false}, {grid, false}, {part_of_grid, false}};
+  for (const auto& [coarse, odd] : cases) {
+    const ViewSpline fine = coarse.refined(2);
+    const auto control = waves(coarse), finer = coarse.halved(control, odd);
+    ASSERT_EQ(static_cast<int>(finer.size()), fine.node_count());
+    for (double degrees = 0; degrees <= 90; degrees += 0.37) {
+      const Vec3d wv = view(degrees, coarse.isotropic() ? 0 : 0.1 * degrees);
+      EXPECT_NEAR(value(fine.at(wv), finer, odd), value(coarse.at(wv), control, odd), 1e-12);
+    }
+  }
+}
+
 TEST(ViewSpline, TheRangeOfAllViewsChangesNothing) {
   const ViewSpline all(true, 5), named(true, 5, {0, 90}), upper(true, 5, {10, 90});
   EXPECT_EQ(all.node_count(), named.node_count());
