@@ -80,7 +80,7 @@ def _draw_look(context, layout, settings, info):
     row = column.row()
     row.active = reason is None
     row.prop(settings, "roughness", slider=True)
-    if reason:
+    if reason and settings.roughness > 0:
         draw_sentence(context, layout, reason, icon="INFO")
     sentence = gain_warning(info.get("albedo_max"), gain(settings))
     if sentence:
