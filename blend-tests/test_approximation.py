@@ -18,6 +18,7 @@ _NATIVE = {
     "ShaderNodeBsdfDiffuse",
     "ShaderNodeBsdfPrincipled",
     "ShaderNodeMapping",
+    "ShaderNodeMix",
     "ShaderNodeTangent",
     "ShaderNodeTexImage",
     "ShaderNodeUVMap",
@@ -39,7 +40,7 @@ def group_module():
 
 
 def group_of(material):
-    return group_module().find(material)
+    return importlib.import_module(f"{inputs.ADDON}.export.nodes").approximation_node(material)
 
 
 class Approximation(BlenderTest):
@@ -107,8 +108,21 @@ class Uniform(WithoutVelour):
         bpy.ops.velour.approximate()
         self.assertLess(self._error("brushed"), 0.25)
         node = scenes.velour_node(self.material)
-        node.velour.placement.rotation = 0.6 + np.pi / 2  # and the group is as it was
-        self.assertGreater(self._error("turned"), 0.5)
+        node.velour.placement.rotation = 0.6 + np.pi / 2
+        self.assertLess(self._error("turned"), 0.25)
+        _principled(group_of(self.material)).inputs["Anisotropic Rotation"].default_value -= 0.25
+        self.assertGreater(self._error("as it lay"), 0.5)
+
+    def test_the_artist_s_look_is_followed(self):
+        self._import(inputs.plastic_measurement())
+        settings = scenes.velour_node(self.material).velour
+        settings.tint, settings.exposure = (0.9, 0.5, 0.3), -0.5
+        self.assertLess(self._error("tinted"), 0.06)
+        settings.roughness = 0.5
+        self.assertLess(self._error("rough"), 0.08)
+        group_of(self.material).node_tree.velour.fitted = ""  # as an older Velour left it
+        settings.tint, settings.roughness = (1, 1, 1), 0
+        self.assertGreater(self._error("left alone"), 0.3)
 
 
 class Tiles(WithoutVelour):
@@ -123,10 +137,14 @@ class Tiles(WithoutVelour):
     def test_they_lie_as_they_do(self):
         self._import(self._model_file(inputs.quarters_model()))
         placement = scenes.velour_node(self.material).velour.placement
-        placement.repeats, placement.rotation, placement.offset = (1.5, 1.0), 0.4, (0.1, 0.2)
-        self.assertGreater(self._error("before"), 0.2)
         bpy.ops.velour.approximate()
+        before = self._cycles("before")
+        placement.repeats, placement.rotation, placement.offset = (1.5, 1.0), 0.4, (0.1, 0.2)
         self.assertLess(self._error("quarters"), 0.06)
+        scenes.velour_node(self.material).velour.tint = (0.4, 1.0, 0.7)
+        self.assertLess(self._error("tinted"), 0.06)
+        velour = _blocks(scenes.render(self.folder))
+        self.assertGreater(np.sqrt(((before - velour) ** 2).mean() / (velour**2).mean()), 0.2)
 
     def test_tiles_of_a_real_size_lie_so_where_a_unit_is_a_metre(self):
         """The plane's unit of texture coordinates is 2 m."""
@@ -220,6 +238,18 @@ class Group(Approximation):
         self.assertEqual(group_of(original).node_tree, before)
         self.assertNotEqual(group_of(copy).node_tree, before)
 
+    def test_copies_share_it_until_one_is_tinted(self):
+        self._import(self._model_file(inputs.model_bytes(inputs.lambert_measurement())))
+        original, copy = self.material, self.material.copy()
+        before = _base_color(group_of(original))
+        scenes.velour_node(copy).velour.tint = (0.5, 0.25, 1.0)
+        self.assertEqual(_base_color(group_of(original)), before)
+        np.testing.assert_allclose(
+            _base_color(group_of(copy)), np.multiply(before, (0.5, 0.25, 1, 1)), rtol=1e-5
+        )
+        np.testing.assert_allclose(copy.diffuse_color, _base_color(group_of(copy)), rtol=1e-5)
+        self.assertEqual(len(bpy.data.node_groups), 2)
+
     def test_a_group_of_that_name_is_left_alone(self):
         mine = bpy.data.node_groups.new("Velour approximation", "ShaderNodeTree")
         mine.use_fake_user = True
@@ -268,9 +298,12 @@ class Refusals(Approximation):
         self.assertEqual(len(bpy.data.node_groups), 1)
 
 
+def _principled(node):
+    return next(n for n in node.node_tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
+
+
 def _base_color(node):
-    shader = next(n for n in node.node_tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
-    return tuple(shader.inputs["Base Color"].default_value)
+    return tuple(_principled(node).inputs["Base Color"].default_value)
 
 
 def _blocks(picture):

@@ -12,6 +12,14 @@ def velour_node(material):
     return found[0] if found else None
 
 
+def approximation_node(material):
+    """The group node that shows a measured material where there is no Velour, or None."""
+    for node in material.node_tree.nodes if material and material.node_tree else ():
+        if node.bl_idname == "ShaderNodeGroup" and node.node_tree and node.node_tree.velour.is_approximation:
+            return node
+    return None
+
+
 def active_output(tree, idname):
     """The output node that Blender renders, or None."""
     outputs = [node for node in tree.nodes if node.bl_idname == idname]

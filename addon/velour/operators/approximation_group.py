@@ -1,41 +1,19 @@
 """The native node group that shows a measured material wherever there is no Velour."""
 
-import math
-
 import bpy
 
 from ..core.approximation import UNFITTED
-from ..export.color import rec709_to_working
-from ..export.nodes import active_output, first_input, velour_node
+from ..export.nodes import active_output, approximation_node
 from ..properties.approximation_state import VIEW_ANGLES
+from . import approximation_look
 from .approximation_image import add_image, add_texture, is_open
 
 NAME = "Velour approximation"
-
-# The library's names: those of Blender's sockets over the versions. A tint is told to colours only: before
-# Blender 4.0 it is a number, of another meaning.
-_SOCKETS = {
-    "base_color": ("Base Color",),
-    "metallic": ("Metallic",),
-    "roughness": ("Roughness",),
-    "specular": ("Specular IOR Level", "Specular"),
-    "specular_tint": ("Specular Tint",),
-    "coat": ("Coat Weight", "Clearcoat"),
-    "coat_roughness": ("Coat Roughness", "Clearcoat Roughness"),
-}
 
 
 def has_layers():
     """Whether coat and tints of the Principled BSDF are those that the library fits; no property tells."""
     return bpy.app.version >= (4, 0, 0)
-
-
-def find(material):
-    """The material's group node that is an approximation, or None."""
-    for node in material.node_tree.nodes if material and material.node_tree else ():
-        if node.bl_idname == "ShaderNodeGroup" and node.node_tree and node.node_tree.velour.is_approximation:
-            return node
-    return None
 
 
 def is_editable(material):
@@ -47,7 +25,7 @@ def is_wanted(material):
     """Whether a new model may change what other programs see: there is an approximation, or no shader."""
     outputs = [n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial"]
     has_shader = any(node.inputs["Surface"].is_linked for node in outputs)
-    return is_editable(material) and (find(material) is not None or not has_shader)
+    return is_editable(material) and (approximation_node(material) is not None or not has_shader)
 
 
 def put(material, approximation=UNFITTED, model=""):
@@ -56,7 +34,7 @@ def put(material, approximation=UNFITTED, model=""):
     Materials that are copies share a group: it is replaced, never changed. model: the SHA-256 of what it
     stands for.
     """
-    tree, node = material.node_tree, find(material)
+    tree, node = material.node_tree, approximation_node(material)
     output = active_output(tree, "ShaderNodeOutputMaterial") or tree.nodes.new("ShaderNodeOutputMaterial")
     is_new, before = node is None, node.node_tree if node else None
     if is_new:
@@ -72,7 +50,7 @@ def put(material, approximation=UNFITTED, model=""):
     if not output.inputs["Surface"].is_linked:
         tree.links.new(node.outputs[0], output.inputs["Surface"])
     _remember(node.node_tree.velour, approximation, model)
-    _set_solid(material, approximation)
+    approximation_look.follow(material)
 
 
 def _group(approximation, material):
@@ -83,68 +61,49 @@ def _group(approximation, material):
         group.outputs.new("NodeSocketShader", "BSDF")
     sink = group.nodes.new("NodeGroupOutput")
     sink.location = 600, 0
-    shader = _principled(group, approximation)
-    node = velour_node(material)
+    shader = group.nodes.new("ShaderNodeBsdfPrincipled")
+    shader.distribution = "GGX"  # as it was fitted: without light between facets
     if approximation.anisotropic > 0:
-        _turn(group, shader, approximation, node.velour.placement)
+        _turn(group, shader)
     if approximation.color_map is not None:
         _color(group, shader, approximation, material)
-    last = _with_base(group, shader, approximation.diffuse) if max(approximation.diffuse) > 0 else shader
+    last = _with_base(group, shader) if max(approximation.diffuse) > 0 else shader
     group.links.new(last.outputs[0], sink.inputs[0])
     return group
 
 
-def _principled(group, approximation):
-    shader = group.nodes.new("ShaderNodeBsdfPrincipled")
-    shader.distribution = "GGX"  # as it was fitted: without light between facets
-    for name, value in approximation.principled.items():
-        socket = first_input(shader, *_SOCKETS[name])
-        if name == "base_color":
-            socket.default_value = _rgba(value)
-        elif hasattr(socket.default_value, "__len__"):
-            socket.default_value = (*value, 1.0)  # a tint is a ratio
-        elif name != "specular_tint":
-            socket.default_value = value
-    return shader
-
-
 def _color(group, shader, approximation, material):
-    pixels, placement = approximation.color_map, velour_node(material).velour.placement
-    image = add_image(f"{material.name} approximation", pixels)
-    texture = add_texture(group, image, placement, approximation.tile_metres)
-    group.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+    pixels = approximation.color_map
+    texture = add_texture(group, add_image(f"{material.name} approximation", pixels))
+    dye = group.nodes.new("ShaderNodeMix")
+    dye.location = -180, 160
+    dye.data_type, dye.blend_type, dye.clamp_result = "RGBA", "MULTIPLY", True
+    factor, color, _dye = (socket for socket in dye.inputs if socket.enabled)
+    factor.default_value = 1.0
+    group.links.new(texture.outputs["Color"], color)
+    group.links.new(next(socket for socket in dye.outputs if socket.enabled), shader.inputs["Base Color"])
     if is_open(pixels):
         group.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
         if hasattr(material, "shadow_method"):  # before 4.2 EEVEE has to be told
             material.blend_method = material.shadow_method = "HASHED"
 
 
-def _turn(group, shader, approximation, placement):
+def _turn(group, shader):
     """Along the texture coordinates, as measured materials lie."""
     tangent = group.nodes.new("ShaderNodeTangent")
     tangent.direction_type = "UV_MAP"
-    tangent.uv_map = placement.uv_map
     tangent.location = -220, -300
     group.links.new(tangent.outputs[0], shader.inputs["Tangent"])
-    turns = placement.rotation / math.tau + (0.25 if approximation.turned else 0.0)
-    shader.inputs["Anisotropic"].default_value = approximation.anisotropic
-    shader.inputs["Anisotropic Rotation"].default_value = turns % 1.0
 
 
-def _with_base(group, shader, color):
+def _with_base(group, shader):
     base = group.nodes.new("ShaderNodeBsdfDiffuse")
-    base.inputs["Color"].default_value = _rgba(color)
     base.location = 0, 160
     both = group.nodes.new("ShaderNodeAddShader")
     both.location = 400, 0
     for number, part in enumerate((shader, base)):
         group.links.new(part.outputs[0], both.inputs[number])
     return both
-
-
-def _rgba(color):
-    """Of linear Rec. 709 in Blender's scene-linear space."""
-    return (*(float(c) for c in rec709_to_working() @ color), 1.0)
 
 
 def _remove(group):
@@ -160,14 +119,9 @@ def _remove(group):
 
 def _remember(state, approximation, model):
     state.is_approximation, state.model = True, model
+    state.fitted = approximation_look.kept(approximation)
     errors = {"": approximation.relative_l2, **approximation.by_view_angle}
     state.relative_l2, *by_angle = (
         -1.0 if errors.get(angle) is None else errors[angle] for angle in ("", *VIEW_ANGLES)
     )
     state.by_view_angle = by_angle
-
-
-def _set_solid(material, approximation):
-    material.diffuse_color = _rgba(approximation.color)
-    material.metallic = approximation.principled["metallic"]
-    material.roughness = approximation.principled["roughness"]

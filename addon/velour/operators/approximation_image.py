@@ -24,24 +24,24 @@ def is_open(pixels):
     return float(pixels[..., 3].mean()) < _KEPT_OPAQUE
 
 
-def add_texture(group, image, placement, metres):
-    """The image's node in a node group, where the placement says that tiles lie.
-
-    metres: sides of a tile, where the model knows them.
-    """
+def add_texture(group, image):
+    """The image's node in a node group, behind those that say where its tiles lie."""
     uvs, mapping = group.nodes.new("ShaderNodeUVMap"), group.nodes.new("ShaderNodeMapping")
     texture = group.nodes.new("ShaderNodeTexImage")
-    for node, x in ((uvs, -800), (mapping, -600), (texture, -340)):
+    for node, x in ((uvs, -1000), (mapping, -800), (texture, -500)):
         node.location = x, 0
     texture.image = image
-    uvs.uv_map = placement.uv_map
     mapping.vector_type = "TEXTURE"  # the inverse: tiles are as large as this scale
-    mapping.inputs["Location"].default_value = (*placement.offset, 0.0)
-    mapping.inputs["Rotation"].default_value = (0.0, 0.0, placement.rotation)
-    mapping.inputs["Scale"].default_value = (*(1.0 / r for r in _repeats(placement, metres)), 1.0)
     group.links.new(uvs.outputs["UV"], mapping.inputs["Vector"])
     group.links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
     return texture
+
+
+def place(mapping, placement, metres):
+    """Where the placement says that tiles lie. metres: sides of a tile, where the model knows them."""
+    mapping.inputs["Location"].default_value = (*placement.offset, 0.0)
+    mapping.inputs["Rotation"].default_value = (0.0, 0.0, placement.rotation)
+    mapping.inputs["Scale"].default_value = (*(1.0 / r for r in _repeats(placement, metres)), 1.0)
 
 
 def _repeats(placement, metres):

@@ -10,6 +10,7 @@ class VelourApproximationState(bpy.types.PropertyGroup):
     """`node_tree.velour`. Errors below 0: not known."""
 
     is_approximation: BoolProperty()
+    fitted: StringProperty()  # JSON of operators/approximation_look; empty: an older Velour made it
     model: StringProperty()  # SHA-256 of the model's file; empty: none is fitted yet
     relative_l2: FloatProperty(default=-1.0)
     by_view_angle: FloatVectorProperty(size=len(VIEW_ANGLES), default=(-1.0,) * len(VIEW_ANGLES))

@@ -11,6 +11,7 @@ from bpy.props import (
     StringProperty,
 )
 
+from .changed import changed, look_changed
 from .placement_settings import VelourPlacementSettings
 
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
@@ -21,11 +22,6 @@ MODELS = (
 )
 
 
-def _changed(settings, _context):
-    """Python's properties do not say by themselves that evaluated copies are out of date."""
-    settings.id_data.update_tag()
-
-
 class VelourMaterialSettings(bpy.types.PropertyGroup):
     """`node.velour`; the model itself is `node.image`."""
 
@@ -33,7 +29,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         name="Measured Material",
         description="Render the material of this node from the measured model in its image",
         default=False,
-        update=_changed,
+        update=changed,
         override=_OVERRIDE,
     )
     measurement: PointerProperty(
@@ -86,7 +82,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         default=0,
         min=0,
         max=16,
-        update=_changed,
+        update=changed,
         override=_OVERRIDE,
     )
     use_limit_albedo: BoolProperty(
@@ -112,7 +108,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         name="Render from Measurement",
         description="Evaluate the raw measurement instead of the model: slower, for comparison",
         default=False,
-        update=_changed,
+        update=changed,
         override=_OVERRIDE,
     )
     seed: IntProperty(name="Seed", description="Of the fit", default=0, min=0, override=_OVERRIDE)
@@ -122,7 +118,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         description="A smaller model that holds for the views and lights of one scene. The full model stays"
         " beside it",
         type=bpy.types.Image,
-        update=_changed,
+        update=changed,
         override=_OVERRIDE,
     )
     use_scene_model: BoolProperty(
@@ -130,7 +126,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         description="Render with the model for the scene, in every frame that shows the material no otherwise"
         " than it was fitted for; other frames take the full model and say so. Off: always the full model",
         default=False,
-        update=_changed,
+        update=changed,
         override=_OVERRIDE,
     )
     structure: PointerProperty(
@@ -153,7 +149,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         default=0.0,
         min=0.0,
         subtype="DISTANCE",
-        update=_changed,
+        update=changed,
         override=_OVERRIDE,
     )
     outline_softness: FloatProperty(
@@ -164,7 +160,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         max=0.99,
         soft_max=0.1,
         precision=3,
-        update=_changed,
+        update=changed,
         override=_OVERRIDE,
     )
     tint: FloatVectorProperty(
@@ -175,7 +171,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         default=(1.0, 1.0, 1.0),
         min=0.0,
         soft_max=1.0,
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     exposure: FloatProperty(
@@ -186,7 +182,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         soft_max=4.0,
         min=-32.0,
         max=32.0,
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     roughness: FloatProperty(
@@ -197,7 +193,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         default=0.0,
         min=0.0,
         max=1.0,
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     placement: PointerProperty(

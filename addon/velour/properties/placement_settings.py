@@ -3,6 +3,8 @@
 import bpy
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 
+from .changed import look_changed
+
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
 MODES = (
@@ -18,11 +20,6 @@ KEEP = ("KEEP", "Keeps Size", "Tiles keep their size when the object is scaled: 
 STRETCH = ("STRETCH", "Stretches", "Tiles are scaled with the object", 1)
 
 
-def _changed(settings, _context):
-    """Python's properties do not say by themselves that evaluated copies are out of date."""
-    settings.id_data.update_tag()
-
-
 class VelourPlacementSettings(bpy.types.PropertyGroup):
     """`node.velour.placement`."""
 
@@ -31,7 +28,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         description="How large the tiles of the BTF are on objects",
         items=MODES,
         default="REPEATS",
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     repeats: FloatVectorProperty(
@@ -42,7 +39,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         min=0.0001,
         soft_max=1000.0,
         max=1e6,
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     tile_size: FloatVectorProperty(
@@ -53,7 +50,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         min=0.0,
         max=1e9,
         precision=3,
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     uv_density: FloatVectorProperty(
@@ -65,13 +62,13 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         min=0.0,
         max=1e9,
         precision=3,
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     uv_map: StringProperty(
         name="UV Map",
         description="Of the objects that show the material. Empty: the one that renders",
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     rotation: FloatProperty(
@@ -79,7 +76,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         description="Turns tiles, and the direction that the material has, counter-clockwise",
         subtype="ANGLE",
         default=0.0,
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     offset: FloatVectorProperty(
@@ -87,7 +84,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         description="Texture coordinates of the first tile's lower left corner",
         size=2,
         default=(0.0, 0.0),
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     # Each mode has its own: a real size that a scale stretches is none, repeats are of the object as it is.
@@ -96,7 +93,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         description="What scaling an object does to tiles of real size",
         items=(KEEP, STRETCH),
         default="KEEP",
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
     repeats_scale: EnumProperty(
@@ -104,7 +101,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         description="What scaling an object does to repeats",
         items=(KEEP, STRETCH),
         default="STRETCH",
-        update=_changed,
+        update=look_changed,
         override=_OVERRIDE,
     )
 

@@ -2,8 +2,7 @@
 
 import bpy
 
-from ..export.nodes import velour_node
-from ..operators import approximation_group
+from ..export.nodes import approximation_node, velour_node
 from ..operators.approximate import VELOUR_OT_approximate
 from ..properties.approximation_state import VIEW_ANGLES
 from .material_panel import MaterialPanel, VELOUR_MATERIAL_PT_model, draw_error_by_angle, draw_rows
@@ -19,17 +18,21 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
         return VELOUR_MATERIAL_PT_model.poll(context)
 
     def draw(self, context):
-        layout, group = self.layout, approximation_group.find(context.material)
+        layout, group = self.layout, approximation_node(context.material)
         if group is None:
             draw_sentence(context, layout, "EEVEE, Cycles and Solid mode show this material's own shader.")
             layout.operator(VELOUR_OT_approximate.bl_idname, icon="NODE_MATERIAL")
             return
         state = group.node_tree.velour
         if state.relative_l2 >= 0.0:
-            draw_rows(layout, (("Relative error", f"{state.relative_l2:.3g}, against the model"),))
+            draw_rows(layout, (("Relative error", f"{state.relative_l2:.3g}, against the model as fitted"),))
             errors = (error if error >= 0.0 else None for error in state.by_view_angle)
             draw_error_by_angle(layout.box(), dict(zip(VIEW_ANGLES, errors, strict=True)))
         digest = velour_node(context.material).image.velour.sha256
         if digest and digest != state.model:
             draw_sentence(context, layout, "It is not of this model: refresh it.", icon="ERROR")
+        elif not state.fitted:
+            draw_sentence(
+                context, layout, "An older Velour made it: refresh it, so that it follows Tint and Placement."
+            )
         layout.operator(VELOUR_OT_approximate.bl_idname, text="Refresh", icon="FILE_REFRESH")
