@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import subprocess
+import sys
 
 import pytest
 from velour.native import LibraryError, library
@@ -61,6 +64,35 @@ def test_a_missing_dependency_is_named(monkeypatch, tmp_path, compiler):
     )
     needed.unlink()
     assert "libfake.so" in _refusal(monkeypatch, built)
+
+
+_UPDATE = """
+import os, shutil, sys
+from velour.native import LibraryError, library
+path = os.environ["VELOUR_LIBRARY"]
+library.load()
+library.release()
+library.load()  # the same file
+new = path + ".new"
+shutil.copy(path, new)
+os.replace(new, path)
+library.release()  # as an update of the add-on does
+try:
+    library.load()
+except LibraryError as error:
+    print(error)
+"""
+
+
+def test_an_update_asks_for_a_restart(tmp_path):
+    """The loader would give out the library that is mapped, whatever the file is now."""
+    path = tmp_path / "libvelour.so"
+    shutil.copy(library.library_path(), path)
+    run = [sys.executable, "-c", _UPDATE]
+    environment = {**os.environ, "VELOUR_LIBRARY": str(path), "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run(run, env=environment, capture_output=True, text=True, check=True)
+    assert "restart Blender" in done.stdout
+    assert str(path) in done.stdout
 
 
 def test_foreign(monkeypatch, tmp_path, compiler):

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from . import table
 from .errors import LibraryError, VelourError
+from .mapped_file import is_replaced
 from .version import ABI_VERSION, VERSION, version_text
 
 _FILE_NAMES = {"Linux": "libvelour.so", "Darwin": "libvelour.dylib", "Windows": "velour.dll"}
@@ -70,6 +71,11 @@ def _open(path: Path) -> ctypes.CDLL:
     remedy = "build it with scripts/build, install the package for this platform, or unset VELOUR_LIBRARY"
     if not path.is_file():
         raise LibraryError(f"The Velour library {where} is not there; {remedy}.")
+    if is_replaced(path):  # the loader would give out the one before, and its functions may be others
+        raise LibraryError(
+            f"The Velour library {where} was replaced, as updates do, but this Blender has the one before"
+            " in use: restart Blender."
+        )
     try:
         library = ctypes.CDLL(str(path))
     except OSError as error:
