@@ -49,9 +49,9 @@ def _add_mesostructure(group) -> None:
     group.add_argument("--sides", choices=("one", "two"), help="two by default where the tile is open")
     group.add_argument(
         "--memory",
-        type=numbers.whole(0, 2**63),
-        metavar="BYTES",
-        help="of a view's images, beyond it in a file",
+        type=numbers.size_in_bytes,
+        metavar="SIZE",
+        help="bytes, or K, M, G, T, of a view's images (1G), beyond it in a file",
     )
     group.add_argument("--resume", action="store_true", help="goes on with the views that are there")
     subject.add_place_arguments(group)

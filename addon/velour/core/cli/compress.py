@@ -28,15 +28,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     size = parser.add_mutually_exclusive_group()
     size.add_argument(
-        "--bytes", type=numbers.whole(1, 2**63), metavar="N",
-        help="of all coefficients; 1:400 of the BTF as half floats (svd: 1:200), or a few",
+        "--bytes", type=numbers.size_in_bytes, metavar="SIZE",
+        help="bytes, or K, M, G, of all coefficients; 1:400 of the BTF as half floats (svd: 1:200), or a few",
     )  # fmt: skip
     size.add_argument(
         "--ratio", type=numbers.real(1, 1e9), metavar="R", help="the same: an R-th of the BTF as half floats"
     )
     parser.add_argument(
-        "--memory", type=numbers.whole(1, 2**63), metavar="BYTES",
-        help="that the fit may hold at once beside the program itself; no limit",
+        "--memory", type=numbers.size_in_bytes, metavar="SIZE",
+        help="bytes, or K, M, G, T, that the fit may hold at once beside the program itself; no limit",
     )  # fmt: skip
     parser.add_argument(
         "--resume", action="store_true",

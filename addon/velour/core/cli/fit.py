@@ -41,7 +41,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-lobes", type=numbers.whole(1, 64), metavar="N", help="lobes in all; scattered: a view (16)"
     )
     parser.add_argument(
-        "--bytes", type=numbers.whole(1, 2**63), metavar="N", help="bound on the model's size"
+        "--bytes",
+        type=numbers.size_in_bytes,
+        metavar="SIZE",
+        help="bytes, or K, M: bound on the model's size",
     )
     parser.add_argument(
         "--limit-albedo",
