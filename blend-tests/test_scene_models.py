@@ -313,7 +313,7 @@ class Frames(PaintedPlane):
         camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
         depsgraph, notes = bpy.context.evaluated_depsgraph_get(), export.Notes()
         view = camera.final_view(depsgraph, notes)
-        scene, materials, _ = export.export_scene(depsgraph, view, notes, strict=False)
+        scene, materials, *_ = export.export_scene(depsgraph, view, notes, strict=False)
         with scene:
             self.assertEqual([entry.has_full for entry in materials.reduced], [True])
 

@@ -75,6 +75,10 @@ def test_hidden_bits():
     assert header.constants("VLR_HOLD") == {"VLR_HOLDOUT": table.HIDDEN["holdout"]}
 
 
+def test_pass_bits():
+    assert header.constants("VLR_PASS_") == {f"VLR_PASS_{n.upper()}": bit for n, bit in table.PASSES.items()}
+
+
 def test_status_codes():
     for status in errors.Status:
         assert re.search(rf"\bVLR_{status.name} = {status.value}\b", header.text())

@@ -134,6 +134,12 @@ def composite(scene):
     return lambda name: tree.links.new(source.outputs[name], sink.inputs["Image"])
 
 
+def compositor(scene):
+    """The node tree that composite() made."""
+    group = getattr(scene, "compositing_node_group", None)
+    return group or scene.node_tree
+
+
 def read(path):
     image = bpy.data.images.load(str(path), check_existing=False)
     try:

@@ -9,9 +9,10 @@ from ..export import ExportError, Notes, export_scene
 from ..export.black import refuse_dark_inside
 from ..export.camera import final_view
 from ..export.film import film_exposure
+from ..export.layer_passes import COMBINED, layer_passes, note_missing_passes
 from ..native import render_job
 from .options import final_options
-from .passes import add_passes, write_passes
+from .passes import add_passes, stamp_cryptomattes, write_passes
 from .scene_models import choose_models
 
 log = logging.getLogger(__package__)
@@ -41,30 +42,36 @@ def render_final(engine, depsgraph):
             raise RenderCancelledError
 
     begin = time.monotonic()
-    exported = export_scene(depsgraph, view, notes, check_break, strict=not engine.is_preview)
-    native_scene, materials, surroundings = exported
+    shown = [COMBINED] if engine.is_preview else layer_passes(depsgraph.view_layer_eval)
+    asked = {each.asks for each in shown if each.asks}
+    exported = export_scene(depsgraph, view, notes, check_break, not engine.is_preview, asked)
+    native_scene, materials, surroundings, passes = exported
     with native_scene:
         engine.update_stats("Velour", _exported(native_scene.info(), time.monotonic() - begin))
         stamps = {}
         if not engine.is_preview:
+            note_missing_passes(depsgraph.view_layer_eval, notes)
             stamps = choose_models(native_scene, materials.reduced, view, depsgraph, notes, check_break)
             _say(notes)
         options = final_options(scene, view, engine.is_preview)
-        with render_job(native_scene, **options) as job:
-            _render_layer(engine, depsgraph, job, view, options["spp"], surroundings)
-        engine.stamps.add(engine.get_result(), depsgraph, materials.models, stamps)
+        with render_job(native_scene, passes and passes.passes, **options) as job:
+            _render_layer(engine, depsgraph, job, view, options["spp"], surroundings, shown)
+        result = engine.get_result()
+        engine.stamps.add(result, depsgraph, materials.models, stamps)
+        if passes:
+            stamp_cryptomattes(result, depsgraph.view_layer_eval, passes.names)
 
 
-def _render_layer(engine, depsgraph, job, view, spp, surroundings):
+def _render_layer(engine, depsgraph, job, view, spp, surroundings, shown):
     layer, exposure = depsgraph.view_layer_eval, film_exposure(depsgraph.scene_eval)
-    add_passes(engine, layer)
+    add_passes(engine, layer, shown)
     result = engine.begin_result(0, 0, view.width, view.height, layer=layer.name)
     complete = False
     try:
         job.start()
         _follow(engine, job, result, spp, exposure)
         refuse_dark_inside(depsgraph, job.read_pass("Combined"), "" if engine.is_preview else surroundings)
-        write_passes(job, result, exposure)
+        write_passes(job, result, exposure, shown)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)
@@ -84,7 +91,7 @@ def _follow(engine, job, result, spp, exposure):
             engine.update_stats("Velour", _statistics(state, spp))
             engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20)
         if not bpy.app.background and pictures.rings():
-            write_passes(job, result, exposure, names=("Combined",))
+            write_passes(job, result, exposure, [COMBINED])
             engine.update_result(result)
 
 

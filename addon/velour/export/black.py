@@ -1,6 +1,7 @@
 """Pictures that can only be black: refused with the reason, unless they may be meant."""
 
 from .film import hides_world
+from .layer_passes import shows_more_than_light
 from .notes import ExportError
 
 _NO_LIGHT = (
@@ -34,10 +35,10 @@ def refuse_black(depsgraph, objects, materials, world_shines, notes):
 
 def may_be_meant(depsgraph):
     """Whether somebody may want a black picture: it is part of another, or is not looked at for light."""
-    scene, layer = depsgraph.scene, depsgraph.view_layer_eval
+    scene = depsgraph.scene
     layers = [other for other in scene.view_layers if other.use]
     composited = scene.render.use_compositing and _compositor(scene)
-    return len(layers) > 1 or composited or layer.use_pass_normal or layer.velour.use_pass_sample_count
+    return len(layers) > 1 or composited or shows_more_than_light(depsgraph.view_layer_eval)
 
 
 def _compositor(scene):

@@ -18,7 +18,7 @@ class InstanceGroups:
     def add(self, mesh, look, matrix, owner):
         """`mesh`: its place in a MeshQueue; `look`: (materials, hidden), as of Scene.add_instances.
 
-        `owner`: the object's name.
+        `owner`: the object's Owner.
         """
         group = self._groups.get(look)
         if group is None:
@@ -50,4 +50,4 @@ class InstanceGroups:
 
     def _note_endless(self, matrices, owners):
         for i in np.flatnonzero(~np.isfinite(matrices).all(axis=(1, 2))):
-            self._notes.add(f"Object '{owners[i]}': its transform is not a finite number; left out.")
+            self._notes.add(f"Object '{owners[i].name}': its transform is not a finite number; left out.")

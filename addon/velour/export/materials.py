@@ -38,6 +38,7 @@ class MaterialTable:
         self._notes = notes
         self.strict = strict
         self._numbers = {}
+        self._labels = {}  # by number
         self._uv_maps = {}
         self._colors = {}  # the CornerColors that each asks for
         self._tiles = {}  # of materials that repeat over surfaces
@@ -81,8 +82,13 @@ class MaterialTable:
         key = _key(material)
         if key not in self._numbers:
             self._uv_maps[key] = placed_map(material)
-            self._numbers[key] = self._add(material)
+            number = self._numbers[key] = self._add(material)
+            self._labels[number] = (material.name, material.pass_index) if material else (None, 0)
         return self._numbers[key]
+
+    def labels(self):
+        """By number the name, None where there is no material, and the index."""
+        return self._labels
 
     def renew(self, material):
         """Takes up another look of a material, where it is shown.

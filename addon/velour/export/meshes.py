@@ -18,7 +18,7 @@ def _own(_name, count, dtype):
     return np.empty(count, dtype)
 
 
-def object_arrays(obj, uv_maps=(), colors=(), empty=_own):
+def object_arrays(obj, uv_maps=(), colors=(), empty=_own, shows_uvs=False):
     """MeshArrays of an evaluated object; None where it has no face.
 
     `empty`: gives memory for a field, by its name, how many numbers and of which type.
@@ -26,11 +26,14 @@ def object_arrays(obj, uv_maps=(), colors=(), empty=_own):
     `uv_maps`: for each material slot, of which the last stands for all beyond, the UvMaps of its faces.
     Empty, or where there is none of a name: the one that renders. None: no texture coordinates, as on
     meshes without UV maps, but for slots that project. `colors`: likewise the CornerColors that they show.
+
+    `shows_uvs`: where there are UV maps, the one that renders is there in any case: as the first set where
+    `uv_maps` names none, else as the last.
     """
     if not _must_convert(obj):
-        return mesh_arrays(obj.data, uv_maps, colors, empty)
+        return mesh_arrays(obj.data, uv_maps, colors, empty, shows_uvs)
     with _mesh_of(obj) as mesh:
-        return mesh_arrays(mesh, uv_maps, colors, empty) if mesh else None
+        return mesh_arrays(mesh, uv_maps, colors, empty, shows_uvs) if mesh else None
 
 
 def has_uv_map(obj, name):
@@ -70,7 +73,7 @@ def _mesh_of(obj):
             obj.to_mesh_clear()
 
 
-def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own):
+def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own, shows_uvs=False):
     """`mesh` in its local space, split into Blender's own triangles; None where it has no face."""
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
@@ -88,6 +91,8 @@ def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own):
     )
     if uv_maps is not None:
         arrays = arrays._replace(**_coordinates(mesh, arrays, uv_maps))
+    if shows_uvs and mesh.uv_layers:
+        arrays = _with_rendered_uvs(mesh, arrays, uv_maps)
     return arrays._replace(corner_colors=corner_colors(mesh, arrays, colors)) if colors else arrays
 
 
@@ -182,6 +187,16 @@ def _coordinates(mesh, arrays, uv_maps):
     return found
 
 
+def _with_rendered_uvs(mesh, arrays, uv_maps):
+    if uv_maps is not None and not uv_maps:
+        return arrays  # they are its first set
+    shown = _layer_uvs(mesh, _rendered_layer(mesh))
+    if uv_maps is None:
+        return arrays._replace(corner_uvs=shown)
+    others = [] if arrays.more_uvs is None else list(arrays.more_uvs)
+    return arrays._replace(more_uvs=np.stack([*others, shown]))
+
+
 def _projected(mesh, arrays, uv_maps):
     """[corners x 2] Of slots that project; None where none does."""
     projects = np.array([maps.projects for maps in uv_maps], bool)
@@ -197,7 +212,7 @@ def _projected(mesh, arrays, uv_maps):
 
 def _corner_uvs(mesh, corners, shown, names):
     """Of each slot its UV map; without a name, or where there is none of it, that which renders."""
-    rendered = next((layer for layer in mesh.uv_layers if layer.active_render), mesh.uv_layers[0])
+    rendered = _rendered_layer(mesh)
     layers = [mesh.uv_layers.get(name) or rendered if name else rendered for name in names] or [rendered]
     uvs = _layer_uvs(mesh, layers[0])
     for slot, layer in enumerate(layers[1:], 1):
@@ -205,6 +220,10 @@ def _corner_uvs(mesh, corners, shown, names):
             of_slot = corners[shown == slot]
             uvs[of_slot] = _layer_uvs(mesh, layer)[of_slot]
     return uvs
+
+
+def _rendered_layer(mesh):
+    return next((layer for layer in mesh.uv_layers if layer.active_render), mesh.uv_layers[0])
 
 
 def _layer_uvs(mesh, layer):

@@ -13,6 +13,7 @@ from .units import metres_per_unit
 from .uv_maps import maps_of_slots, missing_map
 from .visibility import Visibility, note_light_visibility
 
+_FLAT = 1e-36  # determinants of instances that the library leaves out, and does not count
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
     "CURVES": "hair curves",
@@ -24,10 +25,19 @@ _UNSUPPORTED = {
 }
 
 
+class Owner(NamedTuple):
+    """The object that an instance is of."""
+
+    name: str
+    asset: str  # the name of the last of its parents, else its own
+    index: int
+    uv_set: int  # as in InstanceLabel
+
+
 class _Shown(NamedTuple):
     """What all instances of an object have in common."""
 
-    owner: str  # its name
+    owner: Owner
     mesh: int  # its place in the MeshQueue
     slots: list
     look: tuple  # the arguments of Scene.add_instances beside mesh and matrices
@@ -38,6 +48,7 @@ class _Mesh(NamedTuple):
     place: int  # in the MeshQueue
     slot_count: int
     has_uvs: bool  # of UV maps
+    uv_set: int  # of the UV map that renders, where it is asked for; -1
 
 
 class _Slots(NamedTuple):
@@ -55,10 +66,11 @@ class ObjectExport:
     """Adds visible objects to `scene`; instances share the geometry of their evaluated datablock.
 
     `to_scene`: the 4 x 4 matrix from Blender's world to that of `scene`; None: they are the same.
-    `meshes`: KeptMeshes of exports into the same scene before.
+    `meshes`: KeptMeshes of exports into the same scene before. `shows_uvs`: meshes have the texture
+    coordinates of a UV pass.
     """
 
-    def __init__(self, scene, materials, notes, check_break, to_scene=None, meshes=None):
+    def __init__(self, scene, materials, notes, check_break, to_scene=None, meshes=None, shows_uvs=False):
         self._scene = scene
         self._materials = materials
         self._notes = notes
@@ -71,7 +83,8 @@ class ObjectExport:
         self._shown = {}
         self._groups = InstanceGroups(scene, notes)
         self._placements = Placements(materials, notes)
-        self._owners = []  # of the instances in the scene, by name
+        self._shows_uvs = shows_uvs
+        self.owners = []  # Owners of the instances in the scene
         self.shines = False  # a lamp has power
         self._seen = []  # places of meshes that the camera sees, if it looks there
         self.is_seen = False  # one of them has triangles
@@ -107,11 +120,11 @@ class ObjectExport:
                 self._add_instance(instance, shown, metres)
         numbers = self._queue.numbers()
         self.is_seen = any(numbers[place] is not None for place in self._seen)
-        self._owners += self._groups.add_to_scene(numbers)
+        self.owners += self._groups.add_to_scene(numbers)
 
     def owner(self, instance):
         """The name of the object that an instance of the scene is of; None of None."""
-        return None if instance is None else self._owners[instance]
+        return None if instance is None else self.owners[instance].name
 
     def _look_once(self, instance, obj, kind, override, visibility):
         if not instance.is_instance:  # there is no other of it
@@ -140,12 +153,13 @@ class ObjectExport:
         hidden = visibility.hidden(obj, self._notes) if visibility else ()
         if "camera" not in hidden:
             self._seen.append(mesh.place)
-        return _Shown(obj.name, mesh.place, slots.materials, (slots.numbers, hidden), slots.is_placed)
+        owner = Owner(obj.name, _asset(obj), obj.pass_index, mesh.uv_set)
+        return _Shown(owner, mesh.place, slots.materials, (slots.numbers, hidden), slots.is_placed)
 
     def _add_instance(self, instance, shown, metres):
         matrix = instance.matrix_world.copy()  # which asks Blender once
-        if matrix.to_3x3().determinant() == 0:
-            self._notes.add(f"Object '{shown.owner}': its scale is zero along an axis; left out.")
+        if abs(matrix.to_3x3().determinant()) <= _FLAT:
+            self._notes.add(f"Object '{shown.owner.name}': its scale is zero along an axis; left out.")
             return
         placements = None
         if shown.is_placed:
@@ -158,7 +172,7 @@ class ObjectExport:
             numbers, hidden = shown.look
             mesh = self._queue.numbers()[shown.mesh]
             self._scene.add_instance(mesh, affine(matrix), numbers, placements, hidden)
-            self._owners.append(shown.owner)
+            self.owners.append(shown.owner)
 
     def _mesh(self, obj, kind, data, materials):
         """The _Mesh of an object; None: it has no faces."""
@@ -168,9 +182,12 @@ class ObjectExport:
         asked = self._asked[materials]
         key = (kind, (data or obj).as_pointer(), asked)
         if not self._meshes.has(key, obj):
-            arrays = object_arrays(obj, *asked, self._queue.empty)
+            arrays = object_arrays(obj, *asked, self._queue.empty, self._shows_uvs)
             self._meshes[key] = arrays and _Mesh(
-                self._queue.add(arrays, obj.name), arrays.slot_count, _has_own_uvs(obj, arrays, asked[0])
+                self._queue.add(arrays, obj.name),
+                arrays.slot_count,
+                _has_own_uvs(obj, arrays, asked[0]),
+                _shown_uv_set(obj, arrays, asked[0]) if self._shows_uvs else -1,
             )
         return self._meshes[key]
 
@@ -226,7 +243,20 @@ def _has_own_uvs(obj, arrays, uv_maps):
     """Whether the texture coordinates of its MeshArrays are those of UV maps."""
     if arrays.corner_uvs is None:
         return False
-    return not any(maps.projects for maps in uv_maps) or has_uv_maps(obj)
+    return not any(maps.projects for maps in uv_maps or ()) or has_uv_maps(obj)
+
+
+def _shown_uv_set(obj, arrays, uv_maps):
+    """The set of its MeshArrays that a UV pass shows; -1: it has no UV map."""
+    if not has_uv_maps(obj):
+        return -1
+    return len(arrays.more_uvs) if uv_maps else 0
+
+
+def _asset(obj):
+    while obj.parent:
+        obj = obj.parent
+    return obj.name
 
 
 def _identity(obj):

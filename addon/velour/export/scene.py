@@ -8,6 +8,7 @@ from .color import set_working_space
 from .libraries import refuse_missing_libraries
 from .materials import MaterialTable
 from .objects import ObjectExport
+from .pass_labels import AskedPasses, asked_passes
 from .world import add_world
 
 
@@ -15,13 +16,14 @@ class Export(NamedTuple):
     scene: Scene  # committed
     materials: MaterialTable
     surroundings: str  # a sentence on what the camera is inside of; empty: it is not
+    passes: AskedPasses | None  # None: none was asked for
 
 
-def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
+def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True, asked=()):
     """What the depsgraph shows, seen through `view`, as an Export.
 
     `check_break` is called often and raises to stop; `strict` refuses measured materials and libraries that
-    cannot be had, and what can only be black.
+    cannot be had, and what can only be black. `asked`: of table.PASSES.
     """
     if strict:
         refuse_missing_libraries(depsgraph.scene)
@@ -29,7 +31,7 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
     try:
         set_working_space(scene)
         materials = MaterialTable(scene, notes, strict)
-        objects = ObjectExport(scene, materials, notes, check_break)
+        objects = ObjectExport(scene, materials, notes, check_break, shows_uvs="uv" in asked)
         objects.add_all(depsgraph)
         has_sky = depsgraph.view_layer_eval.use_sky
         world_shines = add_world(scene, depsgraph.scene_eval.world if has_sky else None, notes)
@@ -45,7 +47,9 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
         surroundings = _surroundings(depsgraph.scene.camera, objects.owner(info["camera_inside"]))
         if surroundings:
             notes.add(surroundings)
-        return Export(scene, materials, surroundings)
+        layer, world = depsgraph.view_layer_eval, depsgraph.scene_eval.world
+        passes = asked_passes(asked, layer, world, objects, materials) if asked else None
+        return Export(scene, materials, surroundings, passes)
     except BaseException:
         scene.close()
         raise

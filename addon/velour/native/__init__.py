@@ -18,6 +18,7 @@ from .job import (
 from .measurement import Measurement
 from .model import Model
 from .observation import Observation
+from .passes import INSTANCE_LABEL, MATERIAL_LABEL, Passes, cryptomatte_id
 from .plot import Plot
 from .progressive import Picture, ProgressiveJob
 from .scene import Scene
@@ -26,6 +27,8 @@ from .texture import Texture, TextureSlot
 from .tile import Tile
 
 __all__ = [
+    "INSTANCE_LABEL",
+    "MATERIAL_LABEL",
     "Btf",
     "Job",
     "JobState",
@@ -33,6 +36,7 @@ __all__ = [
     "Measurement",
     "Model",
     "Observation",
+    "Passes",
     "Picture",
     "Plot",
     "ProgressiveJob",
@@ -48,6 +52,7 @@ __all__ = [
     "compare_job",
     "compare_peer_job",
     "compress_job",
+    "cryptomatte_id",
     "directions",
     "export_btf_job",
     "fit_job",

@@ -19,8 +19,8 @@ from .handle import Handle, choice, path_bytes, set_fields
 from .measurement import Measurement
 from .model import Model
 from .observation import Observation
+from .passes import Passes, channels_of
 
-PASS_CHANNELS = {"Combined": 4, "Depth": 1, "Normal": 3, "Sample Count": 1}
 _SLICE_SECONDS = 0.1  # how long a signal (Ctrl-C) may have to wait for the interpreter
 
 
@@ -112,13 +112,12 @@ class Job(Handle):
     def read_pass(self, name: str, out: np.ndarray | None = None) -> np.ndarray:
         """The film so far, also while the job runs: [height x width x channels] float32, row 0 at the bottom.
 
-        "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1.
+        "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1, and those that
+        were asked for (Passes).
         """
         if self.size is None:
             raise refuse("This job renders nothing, so it has no passes.")
-        if name not in PASS_CHANNELS:
-            raise refuse(f"There is no pass {name!r}; the passes are {', '.join(PASS_CHANNELS)}.")
-        shape = (self.size[1], self.size[0], PASS_CHANNELS[name])
+        shape = (self.size[1], self.size[0], channels_of(name))
         if out is None:
             out = np.empty(shape, np.float32)
         elif out.size != np.prod(shape) or out.dtype != np.float32 or not out.flags.c_contiguous:
@@ -184,12 +183,15 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
     return Job._create("vlr_microsurface_create_job", ctypes.byref(raw), path_bytes(path))
 
 
-def render_job(scene, **options) -> Job:
-    """Options: width, height, spp, split, bounces, strategy (table.STRATEGIES), threads, seed, time_limit
-    (seconds), transparent, measure_ray_share, heuristic (table.HEURISTICS), sequence (table.SEQUENCES),
-    share, noise, cache_folder (keeps fits of the environment; none: nowhere). Of parts: samples_begin,
-    samples_end, crop_x0, crop_y0, crop_x1, crop_y1 (vlr_render_options). `scene` is committed."""
+def render_job(scene, passes: Passes | None = None, **options) -> Job:
+    """`passes`: beyond those that every picture has. Options: width, height, spp, split, bounces, strategy
+    (table.STRATEGIES), threads, seed, time_limit (seconds), transparent, measure_ray_share, heuristic
+    (table.HEURISTICS), sequence (table.SEQUENCES), share, noise, cache_folder (keeps fits of the environment;
+    none: nowhere). Of parts: samples_begin, samples_end, crop_x0, crop_y0, crop_x1, crop_y1
+    (vlr_render_options). `scene` is committed."""
     raw = render_options(options)
+    if passes:
+        raw.passes = ctypes.pointer(passes.raw())
     size = (raw.crop_x1 - raw.crop_x0, raw.crop_y1 - raw.crop_y0) if raw.crop_x1 else (raw.width, raw.height)
     return Job._create("vlr_render_create_job", scene.pointer, ctypes.byref(raw), size=size)
 

@@ -32,6 +32,18 @@ PEERS = ("ggx", "principled", "plain_principled")
 PLOTS = ("lobes", "order", "view-error", "albedo")
 LIGHTS = ("sun", "point", "rectangle", "disk", "spot")
 HIDDEN = {"camera": 1, "bounces": 2, "shadows": 4, "holdout": 8}  # VLR_HIDDEN_FROM_*, VLR_HOLDOUT
+PASSES = {  # VLR_PASS_*
+    "position": 1,
+    "uv": 2,
+    "object_index": 4,
+    "material_index": 8,
+    "mist": 16,
+    "albedo": 32,
+    "error": 64,
+    "crypto_object": 128,
+    "crypto_material": 256,
+    "crypto_asset": 512,
+}
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
 SIDES = ("automatic", "one", "two")
@@ -308,6 +320,37 @@ class CameraDesc(Struct):
     ]
 
 
+class PassOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("asked", c_uint32),
+        ("cryptomatte_ranks", c_uint32),
+        ("mist_start", c_float),
+        ("mist_depth", c_float),
+        ("mist_exponent", c_float),
+        ("instances", c_void_p),
+        ("instance_count", c_uint64),
+        ("materials", c_void_p),
+        ("material_count", c_uint64),
+    ]
+
+
+class InstanceLabel(ctypes.Structure):
+    _fields_ = [
+        ("index", c_float),
+        ("object_id", c_float),
+        ("asset_id", c_float),
+        ("uv_set", c_int32),
+    ]
+
+
+class MaterialLabel(ctypes.Structure):
+    _fields_ = [
+        ("index", c_float),
+        ("id", c_float),
+    ]
+
+
 class RenderOptions(Struct):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -335,6 +378,7 @@ class RenderOptions(Struct):
         ("crop_x1", c_uint32),
         ("crop_y1", c_uint32),
         ("pad", c_uint32),
+        ("passes", POINTER(PassOptions)),
     ]
 
 
@@ -402,6 +446,9 @@ STRUCTS = {
     "vlr_factor_desc": FactorDesc,
     "vlr_light_desc": LightDesc,
     "vlr_camera_desc": CameraDesc,
+    "vlr_instance_label": InstanceLabel,
+    "vlr_material_label": MaterialLabel,
+    "vlr_pass_options": PassOptions,
     "vlr_render_options": RenderOptions,
     "vlr_progressive_picture": ProgressivePicture,
     "vlr_observe_options": ObserveOptions,
@@ -513,6 +560,7 @@ STATUS_CALLS = {
     "vlr_tile_desc": [_handle, POINTER(MeshDesc)],
     "vlr_tile_material": [_handle, c_uint32, POINTER(PrincipledDesc)],
     "vlr_tile_info_json": [_handle, _json],
+    "vlr_cryptomatte_id": [c_char_p, _number, POINTER(c_float)],
     "vlr_render_create_job": [_handle, POINTER(RenderOptions), _out_handle],
     "vlr_progressive_create_job": [_handle, POINTER(RenderOptions), _out_handle],
     "vlr_progressive_restart": [_handle],
@@ -575,6 +623,7 @@ PLAIN_CALLS = {
     "vlr_factor_desc_init": (None, [POINTER(FactorDesc)]),
     "vlr_light_desc_init": (None, [POINTER(LightDesc)]),
     "vlr_camera_desc_init": (None, [POINTER(CameraDesc)]),
+    "vlr_pass_options_init": (None, [POINTER(PassOptions)]),
     "vlr_render_options_init": (None, [POINTER(RenderOptions)]),
     "vlr_observe_options_init": (None, [POINTER(ObserveOptions)]),
     "vlr_plot_style_init": (None, [POINTER(PlotStyle)]),

@@ -123,7 +123,7 @@ class SceneFit:
         """One view layer of one frame."""
         notes = Notes()  # said by renders
         view = final_view(depsgraph, notes, whole=True)
-        native_scene, materials, _ = export_scene(depsgraph, view, notes)
+        native_scene, materials, *_ = export_scene(depsgraph, view, notes)
         with native_scene:
             number = materials.find(self._material()[0])
             if number is not None:

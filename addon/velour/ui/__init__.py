@@ -2,13 +2,19 @@
 
 from . import file_handler, library_state, placement_summary, plot_preview, progress, stock_panels, summaries
 from .approximation_panel import VELOUR_MATERIAL_PT_approximation
-from .layer_panel import VELOUR_VIEWLAYER_PT_passes
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_outline,
     VELOUR_MATERIAL_PT_surface,
+)
+from .pass_panels import (
+    VELOUR_MATERIAL_PT_settings,
+    VELOUR_VIEWLAYER_PT_passes,
+    VELOUR_VIEWLAYER_PT_passes_cryptomatte,
+    VELOUR_VIEWLAYER_PT_passes_data,
+    VELOUR_WORLD_PT_mist,
 )
 from .placement_panel import VELOUR_MATERIAL_PT_placement
 from .plot_panel import VELOUR_MATERIAL_PT_plots
@@ -29,6 +35,9 @@ CLASSES = (
     VELOUR_RENDER_PT_film,
     VELOUR_RENDER_PT_check,
     VELOUR_VIEWLAYER_PT_passes,
+    VELOUR_VIEWLAYER_PT_passes_data,
+    VELOUR_VIEWLAYER_PT_passes_cryptomatte,
+    VELOUR_WORLD_PT_mist,
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_placement,
     VELOUR_MATERIAL_PT_scene_model,
@@ -38,6 +47,7 @@ CLASSES = (
     VELOUR_MATERIAL_PT_approximation,
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_surface,
+    VELOUR_MATERIAL_PT_settings,
     VELOUR_OBJECT_PT_tile,
     VELOUR_COLLECTION_PT_tile,
     *file_handler.CLASSES,

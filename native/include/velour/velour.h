@@ -710,6 +710,50 @@ enum {
 enum { VLR_HEURISTIC_BALANCE = 0, VLR_HEURISTIC_POWER = 1 };
 enum { VLR_SEQUENCE_RANDOM = 0, VLR_SEQUENCE_SOBOL = 1 };
 
+/* Bits: passes beyond "Combined", "Depth", "Normal" and "Sample Count", which every picture has. */
+enum {
+  VLR_PASS_POSITION = 1,       /* "Position" 3: world; of a pixel's first camera ray, as depth is */
+  VLR_PASS_UV = 2,             /* "UV" 3: means; the third is the share of the pixel that has texture coordinates */
+  VLR_PASS_OBJECT_INDEX = 4,   /* "IndexOB" 1: of the first camera ray */
+  VLR_PASS_MATERIAL_INDEX = 8, /* "IndexMA" 1: the same */
+  VLR_PASS_MIST = 16,          /* "Mist" 1: 0..1, mean */
+  VLR_PASS_ALBEDO = 32, /* "Albedo" 3: share of light that is reflected to the viewer, 0..1, working space, mean */
+  VLR_PASS_ERROR = 64,  /* "Error" 3: standard error of "Combined", as if camera rays were independent */
+  VLR_PASS_CRYPTO_OBJECT =
+      128, /* "CryptoObject00", "CryptoObject01", ... 4: two ids, each with its coverage behind it */
+  VLR_PASS_CRYPTO_MATERIAL = 256, /* "CryptoMaterial00", ...: the same */
+  VLR_PASS_CRYPTO_ASSET = 512     /* "CryptoAsset00", ...: the same */
+};
+
+typedef struct vlr_instance_label {
+  float index;     /* "IndexOB" */
+  float object_id; /* of vlr_cryptomatte_id; 0: none */
+  float asset_id;
+  int32_t uv_set; /* of the mesh's sets of texture coordinates the one that "UV" shows; -1: none */
+} vlr_instance_label;
+typedef struct vlr_material_label {
+  float index; /* "IndexMA" */
+  float id;    /* of vlr_cryptomatte_id; 0: none */
+} vlr_material_label;
+
+typedef struct vlr_pass_options {
+  uint32_t struct_size;
+  uint32_t asked;             /* VLR_PASS_* */
+  uint32_t cryptomatte_ranks; /* ids that a pixel tells, two a pass; 2..16; 6 */
+  float mist_start;           /* metres from the camera; 5 */
+  float mist_depth;           /* metres from there to where all is mist; 0: there is none; 25 */
+  float mist_exponent;        /* of the share of that way: 1 linear, 2 quadratic, 0.5 inverse quadratic; 2 */
+  /* By the numbers of the scene's instances and materials; those beyond have no index, id or texture coordinates. */
+  const vlr_instance_label* instances;
+  uint64_t instance_count;
+  const vlr_material_label* materials;
+  uint64_t material_count;
+} vlr_pass_options;
+VLR_API void vlr_pass_options_init(vlr_pass_options* options);
+/* Of a UTF-8 name: MurmurHash3_x86_32 with seed 0, and its bits as the float that the Cryptomatte specification makes
+ * of them. NULL: not wanted. */
+VLR_API vlr_status vlr_cryptomatte_id(const char* name, uint32_t* hash, float* id);
+
 typedef struct vlr_render_options {
   uint32_t struct_size;
   uint32_t width, height;
@@ -736,6 +780,7 @@ typedef struct vlr_render_options {
    * in the whole picture, and passes hold them alone. */
   uint32_t crop_x0, crop_y0, crop_x1, crop_y1;
   uint32_t pad;
+  const vlr_pass_options* passes; /* copied; NULL: none beyond those that every picture has */
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);
 /* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise, spp_mean,
@@ -744,17 +789,18 @@ VLR_API void vlr_render_options_init(vlr_render_options* options);
 VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
 
 /* The film so far, row 0 at the bottom. Passes and channels: "Combined" 4 (RGBA, premultiplied), "Depth" 1,
- * "Normal" 3 (world), "Sample Count" 1. `pixels` holds width x height x channels, of a crop its own width and height.
- * May be called while the job runs. */
+ * "Normal" 3 (world), "Sample Count" 1, and those of VLR_PASS_* that were asked for. `pixels` holds width x height x
+ * channels, of a crop its own width and height. May be called while the job runs. */
 VLR_API vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels, uint64_t count);
 
 /* Asks a render to end at a whole pass, soon, with what it has: then it is done, and its report's spp says how many
  * light directions every pixel has. From any thread; a job that starts again does not know of it any more. */
 VLR_API vlr_status vlr_job_stop(vlr_job* job);
 
-/* A picture for somebody who watches: coarse at once, then finer, then less noisy; `noise`, `time_limit`, samples and
- * crop are not used. Started again after a cancel, the job goes on where it was. The scene may change while it does not
- * run: then vlr_progressive_restart comes before the next start. The job commits the scene. No report but {}. */
+/* A picture for somebody who watches: coarse at once, then finer, then less noisy; `noise`, `time_limit`, samples,
+ * crop and passes are not used. Started again after a cancel, the job goes on where it was. The scene may change while
+ * it does not run: then vlr_progressive_restart comes before the next start. The job commits the scene. No report but
+ * {}. */
 VLR_API vlr_status vlr_progressive_create_job(vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
 /* The next start begins anew. Not while the job runs. */
 VLR_API vlr_status vlr_progressive_restart(vlr_job* job);

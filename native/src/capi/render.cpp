@@ -2,6 +2,7 @@
 
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "capi/passes.h"
 #include "capi/reports.h"
 #include "render/preparation.h"
 
@@ -69,9 +70,10 @@ vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_option
     if (!scene->scene->committed()) {
       throw Error(Status::invalid_state, "The scene is not committed; call vlr_scene_commit first.");
     }
-    const RenderOptions asked = converted(read_options(options, vlr_render_options_init, "vlr_render_options"));
+    const vlr_render_options given = read_options(options, vlr_render_options_init, "vlr_render_options");
+    const RenderOptions asked = converted(given);
     check_crop(asked);
-    auto film = std::make_shared<Film>(asked.window());
+    auto film = std::make_shared<Film>(asked.window(), passes_of(given.passes));
     auto output = std::make_shared<JobOutput>();
     output->film = film;
     const auto task = [output, film, asked, source = std::shared_ptr<const Scene>(scene->scene)](Progress& progress) {

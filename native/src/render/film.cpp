@@ -10,7 +10,7 @@ namespace velour {
 namespace {
 
 void write_combined(const PixelSum& p, float* out) {
-  const float scale = p.camera_rays > 0 ? 1.0f / static_cast<float>(p.camera_rays) : 0.0f;
+  const float scale = p.weight();
   out[0] = p.radiance.r * scale;
   out[1] = p.radiance.g * scale;
   out[2] = p.radiance.b * scale;
@@ -20,7 +20,7 @@ void write_combined(const PixelSum& p, float* out) {
 void write_depth(const PixelSum& p, float* out) { out[0] = p.depth; }
 
 void write_normal(const PixelSum& p, float* out) {
-  const float scale = p.camera_rays > 0 ? 1.0f / static_cast<float>(p.camera_rays) : 0.0f;
+  const float scale = p.weight();
   for (int c = 0; c < 3; ++c) out[c] = p.normal[c] * scale;
 }
 
@@ -37,48 +37,34 @@ constexpr Pass kPasses[] = {{"Combined", 4, write_combined},
                             {"Normal", 3, write_normal},
                             {"Sample Count", 1, write_count}};
 
-const Pass& find_pass(std::string_view name) {
-  for (const Pass& pass : kPasses) {
-    if (pass.name == name) return pass;
-  }
-  throw Error(Status::invalid_argument,
-              "There is no pass \"" + std::string(name) + "\": Combined, Depth, Normal and Sample Count are.");
+/// Null: it is none of those that every film has.
+const Pass* find_pass(std::string_view name) {
+  const auto* found = std::ranges::find(kPasses, name, &Pass::name);
+  return found != std::end(kPasses) ? found : nullptr;
+}
+
+void check_size(std::string_view name, size_t expected, size_t given) {
+  if (given == expected) return;
+  throw Error(Status::invalid_argument, "Pass \"" + std::string(name) + "\" has " + std::to_string(expected) +
+                                            " numbers, not " + std::to_string(given) + ".");
 }
 
 }  // namespace
 
-void PixelSum::add(const CameraSample& sample) {
-  if (camera_rays == 0) depth = sample.depth;
-  radiance += sample.radiance;
-  alpha += sample.alpha;
-  normal += sample.normal;
-  luminance[camera_rays % 2] += velour::luminance(sample.radiance);
-  ++camera_rays;
-  directions += static_cast<uint32_t>(sample.directions);
-}
-
-double PixelSum::mean_luminance() const {
-  return (static_cast<double>(luminance[0]) + static_cast<double>(luminance[1])) / camera_rays;
-}
-
-double PixelSum::variance() const {
-  const double odd = camera_rays / 2, even = camera_rays - camera_rays / 2, n = camera_rays;
-  const double difference = static_cast<double>(luminance[0]) / even - static_cast<double>(luminance[1]) / odd;
-  // E difference^2 = v (1/even + 1/odd) where a half of k rays has variance v / k, and the mean has v / n.
-  return difference * difference * even * odd / (n * n);
-}
-
-Film::Film(const PixelRect& window) : window_(window) {
+Film::Film(const PixelRect& window, PassOptions options)
+    : window_(window), options_(std::move(options)), layout_(options_) {
   if (window.width() <= 0 || window.height() <= 0) {
     throw Error(Status::invalid_argument, "A picture of " + std::to_string(window.width()) + " x " +
                                               std::to_string(window.height()) + " pixels is empty.");
   }
   pixels_.resize(static_cast<size_t>(window.width()) * static_cast<size_t>(window.height()));
+  values_.resize(pixels_.size() * layout_.size());
 }
 
 void Film::clear() {
   const std::lock_guard lock(mutex_);
-  std::fill(pixels_.begin(), pixels_.end(), PixelSum{});
+  std::ranges::fill(pixels_, PixelSum{});
+  std::ranges::fill(values_, 0.0f);
 }
 
 namespace {
@@ -94,35 +80,51 @@ void for_rows(const PixelRect& rect, const PixelRect& window, Copy&& copy) {
 
 }  // namespace
 
-void Film::load(const PixelRect& rect, std::span<PixelSum> pixels) const {
+void Film::load(const PixelRect& rect, std::span<PixelSum> pixels, std::span<float> values) const {
   const std::lock_guard lock(mutex_);
+  const auto size = values.empty() ? 0 : static_cast<std::ptrdiff_t>(layout_.size());
   for_rows(rect, window_, [&](std::ptrdiff_t from, std::ptrdiff_t to) {
     std::copy_n(pixels_.begin() + from, rect.width(), pixels.begin() + to);
+    std::copy_n(values_.begin() + size * from, size * rect.width(), values.begin() + size * to);
   });
 }
 
-void Film::store(const PixelRect& rect, std::span<const PixelSum> pixels) {
+void Film::store(const PixelRect& rect, std::span<const PixelSum> pixels, std::span<const float> values) {
   const std::lock_guard lock(mutex_);
+  const auto size = values.empty() ? 0 : static_cast<std::ptrdiff_t>(layout_.size());
   for_rows(rect, window_, [&](std::ptrdiff_t to, std::ptrdiff_t from) {
     std::copy_n(pixels.begin() + from, rect.width(), pixels_.begin() + to);
+    std::copy_n(values.begin() + size * from, size * rect.width(), values_.begin() + size * to);
   });
 }
 
-int Film::channels(std::string_view pass) { return find_pass(pass).channels; }
+int Film::channels(std::string_view name) {
+  if (const Pass* pass = find_pass(name)) return pass->channels;
+  if (const int count = PassLayout::channels(name)) return count;
+  throw Error(Status::invalid_argument,
+              "There is no pass \"" + std::string(name) +
+                  "\": Combined, Depth, Normal, Sample Count, Position, UV, IndexOB, IndexMA, Mist, Albedo, Error, "
+                  "CryptoObject00, CryptoMaterial00 and CryptoAsset00 are.");
+}
 
 void Film::read_pass(std::string_view name, std::span<float> pixels) const {
-  const Pass& pass = find_pass(name);
   const std::lock_guard lock(mutex_);
-  if (pixels.size() != pixels_.size() * static_cast<size_t>(pass.channels)) {
-    throw Error(Status::invalid_argument, "Pass \"" + std::string(name) + "\" has " +
-                                              std::to_string(pixels_.size() * static_cast<size_t>(pass.channels)) +
-                                              " numbers, not " + std::to_string(pixels.size()) + ".");
-  }
+  check_size(name, pixels_.size() * static_cast<size_t>(channels(name)), pixels.size());
+  const Pass* pass = find_pass(name);
+  if (pass == nullptr) return read_layout(name, pixels);
   float* out = pixels.data();
   for (const PixelSum& pixel : pixels_) {
-    pass.write(pixel, out);
-    out += pass.channels;
+    pass->write(pixel, out);
+    out += pass->channels;
   }
+}
+
+void Film::read_layout(std::string_view name, std::span<float> pixels) const {
+  if (!layout_.has(name)) {
+    throw Error(Status::invalid_argument, "The pass \"" + std::string(name) +
+                                              "\" was not asked for when the render was made (vlr_pass_options).");
+  }
+  layout_.write(name, pixels_, values_, pixels.data());
 }
 
 void Film::read_over(const Film* coarser, std::span<float> pixels) const {

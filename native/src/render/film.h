@@ -7,60 +7,37 @@
 #include <string_view>
 #include <vector>
 
+#include "render/camera_sample.h"
+#include "render/pass_layout.h"
 #include "render/pixel_rect.h"
-#include "sphere/vec.h"
 
 namespace velour {
-
-/// What one camera ray brings.
-struct CameraSample {
-  Rgb radiance{0.0f};
-  float alpha = 0;      // 1: the pixel is covered
-  Vec3 normal{0.0f};    // shading normal, world; zero where nothing was hit
-  float depth = 1e10f;  // along the line of sight; as is: nothing was hit (Cycles writes the same)
-  int directions = 0;   // light directions that the ray stands for
-};
-
-/// Sums a pixel. Samples of a pixel must be added in the order of their camera rays: then the bits do not depend on how
-/// the rays are dealt out to passes and threads.
-struct PixelSum {
-  Rgb radiance{0.0f};
-  float alpha = 0;
-  Vec3 normal{0.0f};
-  float depth = 0;              // of the first camera ray, as Cycles does: a mean of depths lies on no surface
-  float luminance[2] = {0, 0};  // of the even and of the odd camera rays: the halves (path_numbers.h)
-  uint32_t camera_rays = 0, directions = 0;
-
-  void add(const CameraSample& sample);
-
-  double mean_luminance() const;
-  /// Estimate of the variance of mean_luminance(), from the difference of the halves; unbiased where these are
-  /// independent, too high where they are parts of one Sobol sequence, which is more even than its parts: what holds
-  /// inside a half (a Sobol sequence errs far less than independent samples) is in it. One degree of freedom: to be
-  /// averaged over pixels. Needs two camera rays.
-  double variance() const;
-};
 
 /// Thread-safe: workers publish whole tiles, anyone may read a pass at any time. Row 0 is at the bottom.
 class Film {
  public:
   Film(int width, int height) : Film(PixelRect{0, 0, width, height}) {}
-  /// Of the pixels of a picture that lie in `window`. Throws Error(invalid_argument) where that is empty.
-  explicit Film(const PixelRect& window);
+  /// Of the pixels of a picture that lie in `window`, with the passes of `options` beside those that it has anyway.
+  /// Throws Error(invalid_argument) where the window is empty, or options make no sense.
+  explicit Film(const PixelRect& window, PassOptions options = {});
   const PixelRect& window() const { return window_; }
+  const PassOptions& options() const { return options_; }
+  const PassLayout& layout() const { return layout_; }
   int width() const { return window_.width(); }
   int height() const { return window_.height(); }
 
   /// Sets all pixels to nothing.
   void clear();
-  /// Copies the sums of `rect`, which lies in the window, row by row, to and from `pixels`.
-  void load(const PixelRect& rect, std::span<PixelSum> pixels) const;
-  void store(const PixelRect& rect, std::span<const PixelSum> pixels);
+  /// Copies the sums of `rect`, which lies in the window, row by row, to and from `pixels`; with them what layout()
+  /// keeps of each pixel, unless `values` is empty.
+  void load(const PixelRect& rect, std::span<PixelSum> pixels, std::span<float> values = {}) const;
+  void store(const PixelRect& rect, std::span<const PixelSum> pixels, std::span<const float> values = {});
 
   /// Channels of a pass: "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1 (light
-  /// directions). Throws Error(invalid_argument) on another name.
+  /// directions), and those of PassLayout. Throws Error(invalid_argument) on another name.
   static int channels(std::string_view pass);
   /// `pixels` holds width x height x channels(pass). Pixels without samples are 0; depth is 1e10 where nothing was hit.
+  /// Throws Error(invalid_argument) for a pass that was not asked for.
   void read_pass(std::string_view pass, std::span<float> pixels) const;
   /// "Combined", but pixels without samples are those of a `coarser` film of the same view; null: they are 0.
   void read_over(const Film* coarser, std::span<float> pixels) const;
@@ -72,9 +49,14 @@ class Film {
   double noise() const;
 
  private:
+  void read_layout(std::string_view pass, std::span<float> pixels) const;
+
   const PixelRect window_;
+  const PassOptions options_;
+  const PassLayout layout_;
   mutable std::mutex mutex_;
   std::vector<PixelSum> pixels_;
+  std::vector<float> values_;  // layout_.size() of each pixel
 };
 
 }  // namespace velour

@@ -21,27 +21,31 @@ TileRenderer::TileRenderer(const RenderContext& context)
     : context_(context),
       pixel_(context.scene, context.options.width, context.options.height, context.camera_rays()),
       visible_(context.scene),
-      light_(context.scene, context.lighting, context.options, context.sky.get(), context.lights_part) {}
+      light_(context.scene, context.lighting, context.options, context.sky.get(), context.lights_part),
+      recorder_(context.scene) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
                           const Progress& progress) {
   pixels_.resize(static_cast<size_t>(tile.width()) * static_cast<size_t>(tile.height()));
-  film.load(tile, pixels_);
+  values_.resize(pixels_.size() * film.layout().size());
+  film_ = &film;
+  film.load(tile, pixels_, values_);
   const int pixels_a_run = std::clamp(kRaysInFlight / count, 1, tile.width());
   for (int y = tile.y0; y < tile.y1; ++y) {
-    PixelSum* row = pixels_.data() + static_cast<size_t>(y - tile.y0) * static_cast<size_t>(tile.width());
+    const size_t row = static_cast<size_t>(y - tile.y0) * static_cast<size_t>(tile.width());
     for (int x = tile.x0; x < tile.x1; x += pixels_a_run) {
       progress.check();
       const PixelRect run{x, y, std::min(x + pixels_a_run, tile.x1), y + 1};
       for (int done = 0; done < count; done += kRaysInFlight) {
-        render_run(run, first + done, std::min(kRaysInFlight, count - done), row + (x - tile.x0), log);
+        const size_t pixel = row + static_cast<size_t>(x - tile.x0);
+        render_run(run, first + done, std::min(kRaysInFlight, count - done), pixel, log);
       }
     }
   }
-  film.store(tile, pixels_);
+  film.store(tile, pixels_, values_);
 }
 
-void TileRenderer::render_run(const PixelRect& run, int first, int count, PixelSum* sums, RayLog* log) {
+void TileRenderer::render_run(const PixelRect& run, int first, int count, size_t pixel, RayLog* log) {
   start_paths(run, first, count);
   for (int depth = 0; depth <= context_.options.bounces && !paths_.empty(); ++depth) {
     trace(depth, log);
@@ -53,7 +57,16 @@ void TileRenderer::render_run(const PixelRect& run, int first, int count, PixelS
     rays_.swap(next_rays_);
   }
   add_background();
-  for (size_t i = 0; i < samples_.size(); ++i) sums[i / static_cast<size_t>(count)].add(samples_[i]);
+  add_samples(count, pixel);
+}
+
+void TileRenderer::add_samples(int count, size_t pixel) {
+  const PassLayout& layout = film_->layout();
+  for (size_t i = 0; i < samples_.size(); ++i) {
+    const size_t at = pixel + i / static_cast<size_t>(count);
+    if (layout.size() > 0) layout.add(surfaces_[i], samples_[i], pixels_[at], values_.data() + at * layout.size());
+    pixels_[at].add(samples_[i]);
+  }
 }
 
 void TileRenderer::start_paths(const PixelRect& run, int first, int count) {
@@ -68,6 +81,7 @@ void TileRenderer::start_paths(const PixelRect& run, int first, int count) {
       samples_.emplace_back().directions = context_.directions(index);
     }
   }
+  if (film_->layout().size() > 0) surfaces_.assign(samples_.size(), SurfaceSample{});
   aim_paths(run, count);
 }
 
@@ -131,6 +145,9 @@ void TileRenderer::follow(size_t index, int depth) {
     sample.alpha = 1.0f;
     sample.normal = vertex.frame.z;
     sample.depth = context_.scene.camera().depth(vertex.position);
+    if (film_->options().has(pass::kOfSurfaces)) {
+      surfaces_[path.sample] = recorder_.record(film_->options(), vertex, hit, path.throughput, path.numbers);
+    }
   }
   if (depth == 0 || !light_.counts_glow(hit)) sample.radiance += path.throughput * vertex.emission();
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);

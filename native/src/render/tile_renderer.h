@@ -11,6 +11,7 @@
 #include "render/film.h"
 #include "render/ray_log.h"
 #include "render/report.h"
+#include "render/surface_recorder.h"
 
 namespace velour {
 
@@ -67,7 +68,9 @@ class TileRenderer {
   void gather(int depth);
   void extend(const Receiver& receiver, size_t place);
   void add_background();
-  void render_run(const PixelRect& run, int first, int count, PixelSum* sums, RayLog* log);
+  void render_run(const PixelRect& run, int first, int count, size_t pixel, RayLog* log);
+  /// To the sums of the pixels from number `pixel` of the tile on.
+  void add_samples(int count, size_t pixel);
 
   const RenderContext& context_;
   const PixelFootprint pixel_;
@@ -80,13 +83,18 @@ class TileRenderer {
   std::vector<Rgb> passed_;  // of the rays, where they change their colour
   std::vector<Receiver> receivers_;
   std::vector<CameraSample> samples_;
+  SurfaceRecorder recorder_;
+  std::vector<SurfaceSample> surfaces_;  // of the samples, where the film has passes that tell of them
   struct Miss {
     uint32_t sample;
     Vec3 direction;
     Rgb throughput;
   };
   std::vector<Miss> missed_;  // camera rays that met nothing
+  // Of the tile in work:
+  const Film* film_ = nullptr;
   std::vector<PixelSum> pixels_;
+  std::vector<float> values_;
   uint64_t ray_count_ = 0;
 };
 

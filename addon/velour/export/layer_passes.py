@@ -1,0 +1,72 @@
+"""The passes that a view layer asks for, as Cycles names them."""
+
+from typing import NamedTuple
+
+
+class LayerPass(NamedTuple):
+    name: str
+    letters: str  # of its channels
+    kind: str  # of the compositor's socket
+    source: str | None  # the library's pass that it shows; None: nothing moves, it is 0
+    asks: str | None = None  # of table.PASSES; None: every film has it
+
+    @property
+    def channels(self):
+        return len(self.letters)
+
+
+# The switches of a view layer, and what each switches on.
+_SWITCHES = (
+    ("use_pass_z", (LayerPass("Depth", "Z", "VALUE", "Depth"),)),
+    ("use_pass_mist", (LayerPass("Mist", "Z", "VALUE", "Mist", "mist"),)),
+    ("use_pass_position", (LayerPass("Position", "XYZ", "VECTOR", "Position", "position"),)),
+    ("use_pass_normal", (LayerPass("Normal", "XYZ", "VECTOR", "Normal"),)),
+    ("use_pass_vector", (LayerPass("Vector", "XYZW", "VECTOR", None),)),
+    ("use_pass_uv", (LayerPass("UV", "UVA", "VECTOR", "UV", "uv"),)),
+    ("use_pass_object_index", (LayerPass("IndexOB", "X", "VALUE", "IndexOB", "object_index"),)),
+    ("use_pass_material_index", (LayerPass("IndexMA", "X", "VALUE", "IndexMA", "material_index"),)),
+)
+_OWN_SWITCHES = (  # of Velour's settings
+    ("use_pass_albedo", (LayerPass("Albedo", "RGB", "COLOR", "Albedo", "albedo"),)),
+    (
+        "use_pass_denoising",
+        (
+            LayerPass("Denoising Normal", "XYZ", "VECTOR", "Normal"),
+            LayerPass("Denoising Albedo", "RGB", "COLOR", "Albedo", "albedo"),
+        ),
+    ),
+    ("use_pass_error", (LayerPass("Error", "RGB", "COLOR", "Error", "error"),)),
+    ("use_pass_sample_count", (LayerPass("Sample Count", "X", "VALUE", "Sample Count"),)),
+)
+CRYPTOMATTES = {"object": "CryptoObject", "material": "CryptoMaterial", "asset": "CryptoAsset"}
+
+COMBINED = LayerPass("Combined", "RGBA", "COLOR", "Combined")
+
+
+def layer_passes(layer):
+    """The LayerPasses of a view layer."""
+    found = [COMBINED]
+    for owner, switches in ((layer, _SWITCHES), (layer.velour, _OWN_SWITCHES)):
+        found += [each for switch, passes in switches if getattr(owner, switch) for each in passes]
+    for kind, name in CRYPTOMATTES.items():
+        if getattr(layer, f"use_pass_cryptomatte_{kind}"):
+            names = (f"{name}{level:02d}" for level in range((layer.pass_cryptomatte_depth + 1) // 2))
+            found += [LayerPass(each, "RGBA", "COLOR", each, f"crypto_{kind}") for each in names]
+    return found
+
+
+def note_missing_passes(layer, notes):
+    """What other engines would make, and Velour does not."""
+    known = {switch for switch, _ in _SWITCHES} | {f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES}
+    known |= {"use_pass_combined", "use_pass_cryptomatte_accurate"}
+    switches = [each for each in layer.bl_rna.properties if each.identifier.startswith("use_pass_")]
+    for each in switches:
+        if each.identifier not in known and getattr(layer, each.identifier):
+            notes.add(f"View layer '{layer.name}': the pass {each.name} is not supported; left out.")
+    if layer.aovs:
+        notes.add(f"View layer '{layer.name}': shader AOVs are not supported; left out.")
+
+
+def shows_more_than_light(layer):
+    """Whether it has passes that tell of the scene where no light falls; nearly every layer has depth."""
+    return any(each.name not in ("Combined", "Depth") for each in layer_passes(layer))

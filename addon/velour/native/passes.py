@@ -1,0 +1,92 @@
+"""Passes that a render is asked for beyond those that every picture has, and what they say of the scene."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from . import library, table
+from .arrays import checked
+from .errors import refuse
+from .handle import set_fields
+
+_CHANNELS = {
+    "Combined": 4,
+    "Depth": 1,
+    "Normal": 3,
+    "Sample Count": 1,
+    "Position": 3,
+    "UV": 3,
+    "IndexOB": 1,
+    "IndexMA": 1,
+    "Mist": 1,
+    "Albedo": 3,
+    "Error": 3,
+}
+# Passes come in levels of two ids: CryptoObject00, CryptoObject01, ...
+_CRYPTOMATTES = ("CryptoObject", "CryptoMaterial", "CryptoAsset")
+
+INSTANCE_LABEL = np.dtype(table.InstanceLabel)
+MATERIAL_LABEL = np.dtype(table.MaterialLabel)
+
+
+@dataclass
+class Passes:
+    """vlr_pass_options."""
+
+    asked: frozenset[str]  # of table.PASSES
+    cryptomatte_ranks: int = 6  # ids that a pixel tells, two a pass; 2..16
+    # Metres from the camera to where it begins, from there to where all is mist, exponent of that way.
+    mist: tuple[float, float, float] = (5.0, 25.0, 2.0)
+    # By the numbers of the scene's instances and materials: INSTANCE_LABEL, MATERIAL_LABEL.
+    instances: np.ndarray = field(default_factory=lambda: np.zeros(0, INSTANCE_LABEL))
+    materials: np.ndarray = field(default_factory=lambda: np.zeros(0, MATERIAL_LABEL))
+
+    def raw(self) -> table.PassOptions:
+        """Borrows the labels."""
+        raw = table.PassOptions()
+        library.load().vlr_pass_options_init(ctypes.byref(raw))
+        start, depth, exponent = self.mist
+        numbers = {
+            "asked": sum(table.PASSES[name] for name in self.asked),
+            "cryptomatte_ranks": self.cryptomatte_ranks,
+            "mist_start": start,
+            "mist_depth": depth,
+            "mist_exponent": exponent,
+        }
+        set_fields(raw, numbers)
+        for name, dtype in (("instances", INSTANCE_LABEL), ("materials", MATERIAL_LABEL)):
+            labels = checked(name, getattr(self, name), (None,), dtype)
+            setattr(raw, name, labels.ctypes.data)
+            setattr(raw, f"{name[:-1]}_count", len(labels))
+        return raw
+
+
+def channels_of(name: str) -> int:
+    """Raises a sentence where there is no pass of that name."""
+    if name[:-2] in _CRYPTOMATTES and name[-2:].isdecimal():
+        return 4
+    if name not in _CHANNELS:
+        known = ", ".join((*_CHANNELS, *(f"{each}00" for each in _CRYPTOMATTES)))
+        raise refuse(f"There is no pass {name!r}; the passes are {known}.")
+    return _CHANNELS[name]
+
+
+class CryptomatteId(NamedTuple):
+    hash: int  # MurmurHash3_x86_32 of the name
+    value: float  # what passes hold
+
+    @property
+    def text(self) -> str:
+        """Of the value, as a manifest has it."""
+        return f"{np.float32(self.value).view(np.uint32):08x}"
+
+
+def cryptomatte_id(name: str) -> CryptomatteId:
+    raw_hash, value = ctypes.c_uint32(), ctypes.c_float()
+    lib = library.load()
+    lib.vlr_cryptomatte_id(name.encode(), ctypes.byref(raw_hash), ctypes.byref(value))
+    return CryptomatteId(raw_hash.value, value.value)

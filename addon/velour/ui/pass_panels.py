@@ -1,0 +1,86 @@
+"""Passes in the properties editor, in the order and words of Cycles: of the layer, of mist, of materials."""
+
+import bpy
+from bl_ui.properties_view_layer import ViewLayerCryptomattePanel
+
+from ..engine.engine import VelourRenderEngine
+
+
+class _LayerPanel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "view_layer"
+    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES
+
+
+class VELOUR_VIEWLAYER_PT_passes(_LayerPanel, bpy.types.Panel):
+    bl_label = "Passes"
+
+    def draw(self, context):
+        pass
+
+
+class VELOUR_VIEWLAYER_PT_passes_data(_LayerPanel, bpy.types.Panel):
+    bl_label = "Data"
+    bl_parent_id = "VELOUR_VIEWLAYER_PT_passes"
+
+    def draw(self, context):
+        layout, layer = self.layout, context.view_layer
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        self._include(layout, layer)
+        column = layout.column(heading="Indexes", align=True)
+        column.prop(layer, "use_pass_object_index")
+        column.prop(layer, "use_pass_material_index")
+        column = layout.column(heading="Debug", align=True)
+        column.prop(layer.velour, "use_pass_sample_count")
+        column.prop(layer.velour, "use_pass_error")
+
+    def _include(self, layout, layer):
+        column = layout.column(heading="Include", align=True)
+        for name in ("combined", "z", "mist", "position", "normal", "vector", "uv"):
+            column.prop(layer, f"use_pass_{name}")
+        column.prop(layer.velour, "use_pass_albedo")
+        column.prop(layer.velour, "use_pass_denoising")
+
+
+class VELOUR_VIEWLAYER_PT_passes_cryptomatte(_LayerPanel, ViewLayerCryptomattePanel, bpy.types.Panel):
+    bl_label = "Cryptomatte"
+    bl_parent_id = "VELOUR_VIEWLAYER_PT_passes"
+
+
+class VELOUR_WORLD_PT_mist(_LayerPanel, bpy.types.Panel):
+    bl_label = "Mist Pass"
+    bl_context = "world"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        asked = any(layer.use_pass_mist for layer in context.scene.view_layers)
+        return super().poll(context) and context.world is not None and asked
+
+    def draw(self, context):
+        layout, mist = self.layout, context.world.mist_settings
+        layout.use_property_split = True
+        column = layout.column(align=True)
+        column.prop(mist, "start")
+        column.prop(mist, "depth")
+        layout.prop(mist, "falloff")
+
+
+class VELOUR_MATERIAL_PT_settings(_LayerPanel, bpy.types.Panel):
+    bl_label = "Settings"
+    bl_context = "material"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.material is not None
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.prop(context.material, "pass_index")

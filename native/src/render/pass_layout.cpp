@@ -1,0 +1,200 @@
+#include "render/pass_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "job/error.h"
+#include "render/id_slots.h"
+
+namespace velour {
+
+float Mist::at(float distance) const {
+  if (!(depth > 0.0f)) return 0.0f;
+  return std::pow(std::clamp((distance - start) / depth, 0.0f, 1.0f), exponent);
+}
+
+namespace {
+
+struct Ray {
+  const SurfaceSample& surface;
+  const CameraSample& sample;
+  const PixelSum& before;
+};
+
+void set(float* v, const Vec3& x) {
+  for (int c = 0; c < 3; ++c) v[c] = x[c];
+}
+void increase(float* v, const Vec3& x) {
+  for (int c = 0; c < 3; ++c) v[c] += x[c];
+}
+bool is_first(const Ray& ray) { return ray.before.camera_rays == 0; }
+
+/// Sums of squared differences from the mean, as Welford: no digits are lost where errors are small.
+void add_error(const Ray& ray, float* v) {
+  const float n = static_cast<float>(ray.before.camera_rays);
+  for (int c = 0; c < 3; ++c) {
+    const float x = ray.sample.radiance[c], sum = ray.before.radiance[c];
+    if (n > 0.0f) v[c] += (x - sum / n) * (x - (sum + x) / (n + 1.0f));
+  }
+}
+
+void write_error(const float* v, const PixelSum& sum, float* out) {
+  const double n = sum.camera_rays;
+  for (int c = 0; c < 3; ++c) {
+    out[c] = n > 1.0 ? static_cast<float>(std::sqrt(std::max(0.0, static_cast<double>(v[c])) / (n * (n - 1.0)))) : 0.0f;
+  }
+}
+
+/// A pass of `channels` values, of which a pixel keeps as many.
+struct ValuePass {
+  uint32_t bit;
+  std::string_view name;
+  int channels;
+  void (*add)(const Ray& ray, float* values);
+  void (*write)(const float* values, const PixelSum& sum, float* out);
+};
+
+template <int channels>
+void write_as_is(const float* v, const PixelSum& /*sum*/, float* out) {
+  std::copy_n(v, channels, out);
+}
+
+constexpr ValuePass kValues[] = {
+    {pass::kPosition, "Position", 3,
+     [](const Ray& ray, float* v) {
+       if (is_first(ray)) set(v, ray.surface.position);
+     },
+     write_as_is<3>},
+    {pass::kUv, "UV", 3, [](const Ray& ray, float* v) { increase(v, ray.surface.uv); },
+     [](const float* v, const PixelSum& sum, float* out) {
+       for (int c = 0; c < 3; ++c) out[c] = v[c] * sum.weight();
+     }},
+    {pass::kObjectIndex, "IndexOB", 1,
+     [](const Ray& ray, float* v) {
+       if (is_first(ray)) *v = ray.surface.object_index;
+     },
+     write_as_is<1>},
+    {pass::kMaterialIndex, "IndexMA", 1,
+     [](const Ray& ray, float* v) {
+       if (is_first(ray)) *v = ray.surface.material_index;
+     },
+     write_as_is<1>},
+    {pass::kMist, "Mist", 1, [](const Ray& ray, float* v) { *v += ray.surface.clear; },
+     [](const float* v, const PixelSum& sum, float* out) {
+       *out = sum.camera_rays > 0 ? std::clamp(1.0f - *v * sum.weight(), 0.0f, 1.0f) : 0.0f;
+     }},
+    {pass::kAlbedo, "Albedo", 3,
+     [](const Ray& ray, float* v) {
+       for (int c = 0; c < 3; ++c) v[c] += ray.surface.albedo[c];
+     },
+     [](const float* v, const PixelSum& sum, float* out) {
+       for (int c = 0; c < 3; ++c) out[c] = std::clamp(v[c] * sum.weight(), 0.0f, 1.0f);
+     }},
+    {pass::kError, "Error", 3, add_error, write_error},
+};
+
+struct IdPass {
+  uint32_t bit;
+  std::string_view name;  // and two digits
+  float SurfaceSample::*id;
+};
+
+constexpr IdPass kIds[] = {{pass::kCryptoObject, "CryptoObject", &SurfaceSample::object_id},
+                           {pass::kCryptoMaterial, "CryptoMaterial", &SurfaceSample::material_id},
+                           {pass::kCryptoAsset, "CryptoAsset", &SurfaceSample::asset_id}};
+
+const ValuePass* find_value(std::string_view name) {
+  const auto* found = std::ranges::find(kValues, name, &ValuePass::name);
+  return found != std::end(kValues) ? found : nullptr;
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The pass that `name` is one of, and which: "CryptoAsset02" is the third.
+struct IdLevel {
+  const IdPass* pass = nullptr;
+  int level = 0;
+};
+IdLevel find_ids(std::string_view name) {
+  if (name.size() < 2) return {};
+  const char tens = name[name.size() - 2], ones = name.back();
+  const auto* found = std::ranges::find(kIds, name.substr(0, name.size() - 2), &IdPass::name);
+  if (found == std::end(kIds) || !is_digit(tens) || !is_digit(ones)) return {};
+  return {found, 10 * (tens - '0') + (ones - '0')};
+}
+
+}  // namespace
+
+PassLayout::PassLayout(const PassOptions& options) : asked_(options.asked), ranks_(options.cryptomatte_ranks) {
+  if ((asked_ & ~pass::kAll) != 0) {
+    throw Error(Status::invalid_argument,
+                "The passes asked for are " + std::to_string(asked_) + ", which has bits that are no VLR_PASS value.");
+  }
+  if (ranks_ < 2 || ranks_ > PassOptions::kMostRanks) {
+    throw Error(Status::invalid_argument, "A pixel cannot have " + std::to_string(ranks_) + " ids; 2 to " +
+                                              std::to_string(PassOptions::kMostRanks) + " are possible.");
+  }
+  for (uint32_t bit = 1; bit <= pass::kAll; bit *= 2) size_ += floats(bit);
+}
+
+/// Of a pixel; 0 where it is not asked for.
+size_t PassLayout::floats(uint32_t bit) const {
+  if ((asked_ & bit) == 0) return 0;
+  const auto* value = std::ranges::find(kValues, bit, &ValuePass::bit);
+  return static_cast<size_t>(value != std::end(kValues) ? value->channels : floats_of_ids(ranks_));
+}
+
+/// Where its floats begin.
+size_t PassLayout::place(uint32_t asked) const {
+  size_t before = 0;
+  for (uint32_t bit = 1; bit < asked; bit *= 2) before += floats(bit);
+  return before;
+}
+
+int PassLayout::channels(std::string_view name) {
+  if (const ValuePass* value = find_value(name)) return value->channels;
+  return find_ids(name).pass != nullptr ? 4 : 0;
+}
+
+bool PassLayout::has(std::string_view name) const {
+  if (const ValuePass* value = find_value(name)) return (asked_ & value->bit) != 0;
+  const auto [ids, level] = find_ids(name);
+  return ids != nullptr && (asked_ & ids->bit) != 0 && 2 * level < ranks_;
+}
+
+void PassLayout::add(const SurfaceSample& surface, const CameraSample& sample, const PixelSum& before,
+                     float* values) const {
+  const Ray ray{surface, sample, before};
+  for (const ValuePass& value : kValues) {
+    if ((asked_ & value.bit) == 0) continue;
+    value.add(ray, values);
+    values += value.channels;
+  }
+  const auto ids_a_pixel = static_cast<size_t>(floats_of_ids(ranks_));
+  for (const IdPass& ids : kIds) {
+    if ((asked_ & ids.bit) == 0) continue;
+    add_id(surface.*ids.id, surface.seen, {values, ids_a_pixel});
+    values += ids_a_pixel;
+  }
+}
+
+void PassLayout::write(std::string_view name, std::span<const PixelSum> sums, std::span<const float> values,
+                       float* out) const {
+  const ValuePass* value = find_value(name);
+  const auto [ids, level] = find_ids(name);
+  const uint32_t bit = value != nullptr ? value->bit : ids->bit;
+  const int count = channels(name);
+  const float* from = values.data() + place(bit);
+  for (const PixelSum& sum : sums) {
+    if (value != nullptr) {
+      value->write(from, sum, out);
+    } else {
+      write_ids({from, floats(bit)}, 2 * level, sum.weight(), out);
+    }
+    from += size_;
+    out += count;
+  }
+}
+
+}  // namespace velour
