@@ -5,7 +5,9 @@ import math
 import bpy
 
 from parity import stage
+from parity.case import record
 from parity.ground import KindTest
+from support.judge import judge_renders
 
 
 class Kinds(KindTest):
@@ -86,9 +88,16 @@ class Shown(KindTest):
         self.assert_parity("Linked library, overridden object")
 
     def test_backface_culling(self):
-        """Cycles shows both sides whatever the material says, and so does Velour."""
-        sheet = self.carrier()
+        """Cycles shows both sides whatever the material says: it hides the turned sheet from those rays."""
+        sheet, upright = self.carrier(), self.small()
         sheet.rotation_euler.x = math.pi
         sheet.location.z = 1.5
-        sheet.data.materials[0].use_backface_culling = True
-        self.assert_parity("Material: Backface Culling")
+        for obj in (sheet, upright):
+            obj.data.materials[0].use_backface_culling = True
+        ours = self.pictures("VELOUR")
+        sheet.data.materials[0].use_backface_culling = False
+        self.assertFalse(judge_renders(self.pictures("VELOUR"), ours).agrees)
+        sheet.visible_camera = sheet.visible_diffuse = sheet.visible_glossy = False
+        verdict = judge_renders(ours, self.pictures("CYCLES"))
+        record("Material: Backface Culling, beside an object hidden from those rays", verdict, "honoured")
+        self.assertTrue(verdict.agrees, verdict)

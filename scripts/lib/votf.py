@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import json
 import math
@@ -16,14 +15,14 @@ import script
 import votf_text
 from progress import Progress
 from velour.core.machine import threads
-from velour.native import Measurement, Model, Scene, Tile, fit_job, microsurface_job, votf_job
+from velour.native import Tile
 from velour_cli import ROOT
 from votf_errors import ShellErrors, shell_errors
+from votf_looks import Look, brdf, looks
 from votf_pictures import Shot, of_geometry, of_model
 from votf_shapes import Cloth, Cylinder, Sphere, Surface
 
 _HEIGHT = 0.06  # of the shell, of the sphere's radius
-_UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
 _MOST_SIDE = 2048  # pixels
 
 
@@ -34,14 +33,16 @@ class Extent:
     side: int = 512
     samples: int = 16
     rays: int = 40_000_000  # of the goniometer
+    texels: int = 64  # of the BTFs
 
 
-QUICK = Extent(tiles=("net",), tile_pixels=(16,), side=128, samples=4, rays=4_000_000)
+QUICK = Extent(tiles=("net",), tile_pixels=(16,), side=128, samples=4, rays=4_000_000, texels=16)
 
 
 @dataclasses.dataclass(frozen=True)
 class Row:
     tile: str
+    look: str
     surface: str
     tile_pixels: int
     errors: tuple[ShellErrors, ShellErrors]  # smooth, shell
@@ -55,50 +56,31 @@ def main() -> int:
     args.work.mkdir(parents=True, exist_ok=True)
     (args.output / "images").mkdir(parents=True, exist_ok=True)
     rows, progress = [], Progress()
-    with contextlib.ExitStack() as handles:
-        plain = handles.enter_context(_brdf(args.work, extent))
+    with brdf(args.work, extent.rays) as plain:
         for name in extent.tiles:
-            tile = handles.enter_context(Tile.create(name))
-            shell = handles.enter_context(_with_shell(plain, tile))
-            sheet = []
-            for surface_name, surface in _surfaces(tile).items():
-                for pixels in extent.tile_pixels:
-                    with progress.work(f"{name}, {surface_name}, {pixels} pixels a tile", pixels**2):
-                        row, pictures = _compared(tile, surface, pixels, plain, shell, extent)
-                    rows.append(Row(name, surface_name, pixels, *row))
-                    if pixels == max(extent.tile_pixels):
-                        sheet.append((surface_name, pictures))
-            votf_text.draw(args.output / f"images/votf_{name}.png", sheet)
+            with (
+                Tile.create(name) as tile,
+                looks(tile, plain, args.work, extent.texels, progress) as both,
+            ):
+                for look in both:
+                    rows += _rows(name, tile, look, extent, args.output / "images", progress)
     votf_text.write(args.output, rows, provenance.conditions(0, threads()), extent)
     (args.work / "rows.json").write_text(json.dumps([dataclasses.asdict(row) for row in rows], indent=1))
     print(args.output / "votf_numbers.md")
     return 0
 
 
-def _brdf(folder: Path, extent: Extent) -> Model:
-    """Of a rough metal over a diffuse base, from the virtual goniometer."""
-    table, model = folder / "metal.exr", folder / f"metal-{extent.rays}.velour"
-    if not model.exists():
-        options = {"metal": "copper", "roughness": 0.4, "base_albedo": (0.5, 0.4, 0.3), "base_share": 0.6}
-        with microsurface_job(table, rays=extent.rays, **options) as job:
-            job.run()
-        with Measurement.load(table) as measured, fit_job(measured) as job:
-            job.run()
-            with job.result_model() as fitted:
-                fitted.save(model)
-    return Model.load(model)
-
-
-def _with_shell(model: Model, tile: Tile) -> Model:
-    with Scene() as scene:
-        mesh, materials = tile.add_to(scene)
-        scene.add_instance(mesh, _UNMOVED, materials)
-        scene.commit()
-        with votf_job(
-            scene, model, origin=(0, 0), period=tile.info()["period"], source=tile.info()["kind"]
-        ) as job:
-            job.run()
-            return job.result_model()
+def _rows(name: str, tile: Tile, look: Look, extent: Extent, images: Path, progress: Progress) -> list[Row]:
+    rows, sheet = [], []
+    for surface_name, surface in _surfaces(tile).items():
+        for pixels in extent.tile_pixels:
+            with progress.work(f"{name}, {look.name}, {surface_name}, {pixels} pixels a tile", pixels**2):
+                row, pictures = _compared(tile, surface, pixels, look, extent)
+            rows.append(Row(name, look.name, surface_name, pixels, *row))
+            if pixels == max(extent.tile_pixels):
+                sheet.append((surface_name, pictures))
+    votf_text.draw(images / votf_text.sheet_name(name, look.name), sheet)
+    return rows
 
 
 def _surfaces(tile: Tile) -> dict[str, Surface]:
@@ -114,11 +96,15 @@ def _surfaces(tile: Tile) -> dict[str, Surface]:
     }
 
 
-def _compared(tile, surface: Surface, pixels: int, plain: Model, shell: Model, extent: Extent) -> tuple:
+def _compared(tile, surface: Surface, pixels: int, look: Look, extent: Extent) -> tuple:
     # Large enough for all of the surface.
     side = math.ceil(2.6 * surface.radius / surface.period * pixels)
     shot = Shot(surface, pixels, min(_MOST_SIDE, max(extent.side, side)), extent.samples)
-    pictures = of_geometry(shot, tile, plain), of_model(shot, plain), of_model(shot, shell)
+    pictures = (
+        of_geometry(shot, tile, look.of_geometry),
+        of_model(shot, look.smooth),
+        of_model(shot, look.shell),
+    )
     truth = pictures[0].pixels
     errors = tuple(shell_errors(p.pixels, truth) for p in pictures[1:])
     row = errors, tuple(p.seconds for p in pictures), tuple(p.bytes for p in pictures)

@@ -42,24 +42,54 @@ def _show(axes, picture: np.ndarray, title: str) -> None:
     axes.set_title(title, fontsize=8)
 
 
+def sheet_name(tile: str, look: str) -> str:
+    return f"votf_{tile}.png" if look == "BRDF" else f"votf_{tile}_{look.lower()}.png"
+
+
 def write(folder: Path, rows: list, conditions: dict, extent) -> None:
-    lines = [_row(row) for row in rows]
-    tiles = "\n".join(f"![{name}](images/votf_{name}.png)\n" for name in extent.tiles)
+    of_brdf, of_btf = (
+        table(_HEADER, [_row(row) for row in rows if row.look == look]) for look in ("BRDF", "BTF")
+    )
+    sheets_of_brdf, sheets_of_btf = (
+        "\n".join(f"![{name}](images/{sheet_name(name, look)})\n" for name in extent.tiles)
+        for look in ("BRDF", "BTF")
+    )
     text = f"""# Shells beside real geometry
 
 By `scripts/votf`. {provenance.sentence(conditions)}
 
 Three pictures of each surface under a sun and an even sky: with the tile's geometry all over it (every
-vertex at p + height n), smooth, and with the tile's shell ([votf.md](votf.md)); one BRDF serves all.
+vertex at p + height n), smooth, and with the tile's shell ([votf.md](votf.md)).
 The shell is 6 % of the sphere's radius high. Outline: soft intersection over union of alpha (sum of
 minima over sum of maxima) with holes filled; alpha: the same with holes; light: root mean square of the
 difference where both show the object, over that of the geometry. Pictures are {extent.side} pixels
 wide, or as wide as holds the object; {extent.samples} samples a pixel. Seconds are of tracing and
 shading, megabytes of the whole scene.
 
-{table(_HEADER, lines)}
-{tiles}"""
+## With the tile's BTF
+
+The geometry has the tile's own materials, the others show its BTF: {extent.texels} x {extent.texels} texels
+under 81 x 81 directions, of one side, as `velour capture` and `velour compress` make it unasked.
+{_ratios(rows, "BTF")}
+
+{of_btf}
+{sheets_of_btf}
+## With one BRDF
+
+One BRDF serves all three: what differs is the shape alone. {_ratios(rows, "BRDF")}
+
+{of_brdf}
+{sheets_of_brdf}"""
     (folder / "votf_numbers.md").write_text(text, encoding="utf-8")
+
+
+def _ratios(rows: list, look: str) -> str:
+    """How much longer the shell takes than the smooth surface, for each size of tiles."""
+    parts = []
+    for pixels in dict.fromkeys(row.tile_pixels for row in rows):
+        ratios = [r.seconds[2] / r.seconds[1] for r in rows if (r.look, r.tile_pixels) == (look, pixels)]
+        parts.append(f"{min(ratios):.1f} to {max(ratios):.1f} times with {pixels} pixels a tile")
+    return f"The shell takes as long as the smooth surface {', '.join(parts)}."
 
 
 _HEADER = [

@@ -14,6 +14,7 @@ from .shaders import as_principled, shines, sources_of, split, surface_layers, u
 from .shaders.relief import correction
 from .textures import TextureTable
 from .uv_maps import UNUSED, placed_map, shader_maps
+from .visibility import hidden_backs
 
 
 class Reduced(NamedTuple):
@@ -119,6 +120,7 @@ class MaterialTable:
             try:
                 number = self._add_measured(material, node)
                 self._scene.set_gain(number, gain(node.velour))
+                self._scene.hide_backs(number, hidden_backs(material))
                 self.models[material.name_full] = model_hashes(material)
                 return number
             except (ExportError, VelourError) as error:
@@ -148,7 +150,8 @@ class MaterialTable:
             return self._with_rays(self._scene.add_shader_material(shader), material)
 
     def _with_rays(self, number, material):
-        """The material, to which rays are drawn as the artist wants it."""
+        """The material, which rays are drawn to and meet as the artist wants it."""
+        self._scene.hide_backs(number, hidden_backs(material))
         if not draws_rays(material):
             self._scene.set_drawn_to(number, False)
         return number

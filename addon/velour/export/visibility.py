@@ -53,6 +53,16 @@ def _all_collections(root):
         yield from _all_collections(child)
 
 
+def hidden_backs(material):
+    """Which rays the back faces of a material let pass: the argument of Scene.hide_backs."""
+    found = []
+    if material and material.use_backface_culling:
+        found += ["camera", "bounces"]
+    if getattr(material, "use_backface_culling_shadow", False):  # 4.2 and newer
+        found.append("shadows")
+    return tuple(found)
+
+
 def note_light_visibility(obj, notes):
     """Says what of an evaluated light's visibility is not rendered."""
     bounces = _hidden_bounces(obj)

@@ -134,6 +134,11 @@ class Scene(Handle):
         """What the material reflects is multiplied with, in the working space; at least 0."""
         self._lib.vlr_scene_set_gain(self.pointer, material, (c_float * 3)(*gain))
 
+    def hide_backs(self, material: int, hidden) -> None:
+        """hidden: of "camera", "bounces", "shadows": rays that pass through back faces of the material."""
+        flags = sum(table.HIDDEN[name] for name in set(hidden))
+        self._lib.vlr_scene_hide_backs(self.pointer, material, flags)
+
     def set_shell_softness(self, material: int, widths: float) -> None:
         """Over what share of the tile's width the edge of a shell fades out, from 0 (hard) to below 1."""
         self._lib.vlr_scene_set_shell_softness(self.pointer, material, widths)

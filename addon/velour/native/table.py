@@ -513,6 +513,7 @@ STATUS_CALLS = {
     "vlr_scene_add_model_material": [_handle, _handle, c_uint32, _number],
     "vlr_scene_set_shell_tile": [_handle, c_uint32, c_float],
     "vlr_scene_set_shell_softness": [_handle, c_uint32, c_float],
+    "vlr_scene_hide_backs": [_handle, c_uint32, c_uint32],
     "vlr_scene_set_gain": [_handle, c_uint32, POINTER(c_float)],
     "vlr_scene_set_drawn_to": [_handle, c_uint32, c_int32],
     "vlr_scene_replace_material": [_handle, c_uint32],

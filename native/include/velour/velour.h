@@ -381,6 +381,10 @@ VLR_API vlr_status vlr_scene_set_shell_softness(vlr_scene* scene, uint32_t mater
 /* What the material reflects is multiplied with `gain`: red, green, blue of the working space, finite and at least 0;
  * (1, 1, 1) unless told. What glows, and what is let through, stays. Samples are drawn as before. */
 VLR_API vlr_status vlr_scene_set_gain(vlr_scene* scene, uint32_t material, const float gain[3]);
+/* Which rays (VLR_HIDDEN_FROM_CAMERA, _BOUNCES, _SHADOWS) pass through the material's back, the side that the mesh's
+ * normal does not point to: light that falls on it, where shadows are concerned. 0, unless told: none. A shell has no
+ * such side. */
+VLR_API vlr_status vlr_scene_hide_backs(vlr_scene* scene, uint32_t material, uint32_t hidden_from);
 /* Whether rays are drawn to the material's surfaces where they glow, as to a lamp (not 0; the default). 0: their light
  * is found by the directions that surfaces reflect, alone. The picture converges to the same. */
 VLR_API vlr_status vlr_scene_set_drawn_to(vlr_scene* scene, uint32_t material, int32_t drawn);

@@ -20,6 +20,14 @@ using namespace velour::capi;
 
 namespace {
 
+constexpr uint32_t kRays = VLR_HIDDEN_FROM_CAMERA | VLR_HIDDEN_FROM_BOUNCES | VLR_HIDDEN_FROM_SHADOWS;
+
+void require_hidden(uint32_t hidden_from, uint32_t known) {
+  if ((hidden_from & ~known) == 0) return;
+  throw Error(Status::invalid_argument,
+              "hidden_from is " + std::to_string(hidden_from) + ", which has bits that are no VLR_HIDDEN value.");
+}
+
 Rgb color_from(const float* c) { return {c[0], c[1], c[2]}; }
 
 Mat3 matrix_from_rows(const float* m) {
@@ -272,6 +280,14 @@ vlr_status vlr_scene_set_gain(vlr_scene* scene, uint32_t material, const float g
   });
 }
 
+vlr_status vlr_scene_hide_backs(vlr_scene* scene, uint32_t material, uint32_t hidden_from) {
+  return guard([&] {
+    require(scene, "scene");
+    require_hidden(hidden_from, kRays);
+    scene->scene->set_hidden_backs(material, static_cast<uint8_t>(hidden_from));
+  });
+}
+
 vlr_status vlr_scene_set_drawn_to(vlr_scene* scene, uint32_t material, int32_t drawn) {
   return guard([&] {
     require(scene, "scene");
@@ -351,12 +367,7 @@ vlr_status vlr_scene_add_instances(vlr_scene* scene, const uint32_t* meshes, con
 vlr_status vlr_scene_hide_instances(vlr_scene* scene, uint32_t hidden_from) {
   return guard([&] {
     require(scene, "scene");
-    constexpr uint32_t kKnown =
-        VLR_HIDDEN_FROM_CAMERA | VLR_HIDDEN_FROM_BOUNCES | VLR_HIDDEN_FROM_SHADOWS | VLR_HOLDOUT;
-    if ((hidden_from & ~kKnown) != 0) {
-      throw Error(Status::invalid_argument,
-                  "hidden_from is " + std::to_string(hidden_from) + ", which has bits that are no VLR_HIDDEN value.");
-    }
+    require_hidden(hidden_from, kRays | VLR_HOLDOUT);
     scene->hidden_from = static_cast<uint8_t>(hidden_from);
   });
 }

@@ -120,7 +120,7 @@ float GlowingSurfaces::pdf(const Vec3& position, const Vec3& direction, const Hi
 bool GlowingSurfaces::stops(const Hit& hit) const {
   if ((scene_.instances()[hit.instance].hidden & hidden::kFromShadows) != 0) return false;
   const SurfaceMaterial& material = scene_.materials()[scene_.material(hit)];
-  return !material.shell && material.material->opaque();
+  return !material.shell && material.material->opaque() && !material.hides_backs();
 }
 
 void GlowingSurfaces::meet(std::span<const Ray> rays, std::vector<GlowHit>& found) const {
@@ -152,6 +152,7 @@ GlowingSurfaces::Light GlowingSurfaces::light(const Ray& ray, const Hit& hit, co
   constexpr float kLeastFacing = 1e-3f, kRounding = 0x1p-20f;
   const Vertex vertex = Vertex::seen(scene_, ray, hit, cone, nullptr);
   const Material& material = *vertex.surface->material;
+  const bool seen = !passes_back(*vertex.surface, ray, hit, hidden::kFromBounces);
   const float alpha = material.opaque() ? 1.0f : material.alpha(point_site(scene_, hit, *vertex.surface));
   const float facing = std::abs(glm::dot(ray.direction, vertex.geometric_normal));
   // A ray that was aimed starts a little off where it was aimed from.
@@ -159,7 +160,7 @@ GlowingSurfaces::Light GlowingSurfaces::light(const Ray& ray, const Hit& hit, co
                              ? std::abs(glm::dot(vertex.position - ray.origin, vertex.geometric_normal)) / facing
                              : hit.distance;
   const float margin = vertex.offset / std::max(facing, kLeastFacing) + kRounding * distance;
-  return {alpha * vertex.emission(), std::max(0.0f, distance - margin)};
+  return {(seen ? alpha : 0.0f) * vertex.emission(), std::max(0.0f, distance - margin)};
 }
 
 }  // namespace velour

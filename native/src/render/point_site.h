@@ -1,10 +1,18 @@
-// A hit as a point of its material.
+// A hit as a place of its material, and whether rays of a kind meet it.
 #pragma once
 
 #include "material/material.h"
 #include "scene/scene.h"
 
 namespace velour {
+
+/// Whether `ray` has come to a back that is hidden from its kind. Of shadow rays that is a matter of the light, which
+/// comes the other way.
+inline bool passes_back(const SurfaceMaterial& surface, const Ray& ray, const Hit& hit, uint8_t kind) {
+  if (!surface.hides_backs() || (surface.hidden_backs & kind) == 0) return false;
+  const float along = glm::dot(hit.geometric_normal, ray.direction);
+  return kind == hidden::kFromShadows ? along < 0.0f : along > 0.0f;
+}
 
 /// Where a material is asked for what is there and what passes: at a point, because what a footprint would average the
 /// rays of a pixel do.

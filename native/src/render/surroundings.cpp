@@ -1,6 +1,7 @@
 #include "render/surroundings.h"
 
 #include "material/material.h"
+#include "render/point_site.h"
 #include "sphere/directions.h"
 
 namespace velour {
@@ -16,12 +17,14 @@ uint32_t back_met(const Scene& scene, Ray ray) {
     Hit hit;
     scene.rays().intersect(ray, hit);
     if (hit.instance == kNoHit) return kNoHit;
-    if ((scene.instances()[hit.instance].hidden & hidden::kFromCamera) != 0) {
+    const SurfaceMaterial& surface = scene.materials()[scene.material(hit)];
+    if ((scene.instances()[hit.instance].hidden & hidden::kFromCamera) != 0 ||
+        passes_back(surface, ray, hit, hidden::kFromCamera)) {
       ray.near = hit.distance * (1.0f + 1e-5f);
       continue;
     }
     const bool back = glm::dot(hit.geometric_normal, ray.direction) > 0.0f;
-    const bool opaque = scene.materials()[scene.material(hit)].material->opaque() && !scene.has_shell(hit);
+    const bool opaque = surface.material->opaque() && !scene.has_shell(hit);
     return back && opaque ? hit.instance : kNoHit;
   }
   return kNoHit;

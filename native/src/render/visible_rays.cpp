@@ -81,8 +81,9 @@ struct VisibleRays::Pending {
 VisibleRays::VisibleRays(const Scene& scene)
     : scene_(scene),
       shells_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.shell != nullptr; })),
-      all_opaque_(!shells_ && std::ranges::all_of(scene.materials(),
-                                                  [](const SurfaceMaterial& m) { return m.material->opaque(); })),
+      all_opaque_(!shells_ && std::ranges::all_of(
+                                  scene.materials(),
+                                  [](const SurfaceMaterial& m) { return m.material->opaque() && !m.hides_backs(); })),
       tints_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.material->tints(); })) {
   for (const Scene::Instance& i : scene.instances()) hidden_ |= i.hidden;
 }
@@ -138,6 +139,7 @@ bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit, uint8_t kind, Rg
   if ((scene_.instances()[hit.instance].hidden & kind) != 0) return false;
   const SurfaceMaterial& surface = scene_.materials()[scene_.material(hit)];
   const Material& material = *surface.material;
+  if (passes_back(surface, ray, hit, kind)) return false;
   if (material.opaque()) return true;
   const SurfaceSite site = point_site(scene_, hit, surface);
   if (ray_number(ray, hit, RayDecision::alpha) < material.alpha(site)) return true;

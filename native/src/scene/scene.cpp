@@ -99,6 +99,7 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
     material.shell_softness = place.shell_softness;
   }
   material.gain = place.gain;
+  material.hidden_backs = place.hidden_backs;
   place = std::move(material);
 }
 
@@ -119,6 +120,12 @@ void Scene::set_gain(uint32_t material, const Rgb& gain) {
   }
   ++revision_;
   materials_[material].gain = gain;
+}
+
+void Scene::set_hidden_backs(uint32_t material, uint8_t from) {
+  if (material >= materials_.size()) refuse("There is no material " + std::to_string(material) + " to cull.");
+  ++revision_;
+  materials_[material].hidden_backs = from;
 }
 
 void Scene::set_drawn_to(uint32_t material, bool drawn) {

@@ -41,6 +41,10 @@ struct SurfaceMaterial {
   float shell_softness = 0;
   /// Whether rays are drawn to it where it glows; false: its light is found by what surfaces reflect alone.
   bool drawn_to = true;
+  /// Kinds of rays (bits of hidden) that pass through its back, the side that the mesh's normal does not point to.
+  /// Shells have no such side.
+  uint8_t hidden_backs = 0;
+  bool hides_backs() const { return hidden_backs != 0 && !shell; }
   /// What f is multiplied with, in the working space: an artist's tint and exposure. Densities stay as they are.
   Rgb gain{1.0f};
 };
@@ -116,6 +120,8 @@ class Scene {
   void set_shell_softness(uint32_t material, float widths);
   /// SurfaceMaterial::gain, finite and at least 0. A committed scene stays committed.
   void set_gain(uint32_t material, const Rgb& gain);
+  /// SurfaceMaterial::hidden_backs. A committed scene stays committed.
+  void set_hidden_backs(uint32_t material, uint8_t from);
   /// SurfaceMaterial::drawn_to. A committed scene stays committed.
   void set_drawn_to(uint32_t material, bool drawn);
   /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a

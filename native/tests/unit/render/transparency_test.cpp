@@ -67,6 +67,57 @@ TEST(Hidden, RaysPassWhatIsHiddenFromTheirKind) {
   EXPECT_EQ(alpha, 0);
 }
 
+/// The same, the upper one turned over or not, or mirrored, and from behind not there for some rays.
+double seen_with_hidden_backs(const Affine& place, uint8_t hidden_from) {
+  Scene scene;
+  const uint32_t upper = scene.add_mesh(test::square(4)), lower = scene.add_mesh(test::square(8));
+  scene.add_instance(upper, place, {scene.add_material(matte(0.8f, {1}))});
+  scene.set_hidden_backs(0, hidden_from);
+  scene.add_instance(lower, {}, {scene.add_material(matte(0.4f, {1}))});
+  scene.set_environment(Environment::constant(Rgb(1)));
+  scene.set_camera(test::camera_above(1));
+  scene.commit(1);
+  return test::mean_of(test::rendered(scene, options_for(256)));
+}
+
+TEST(Hidden, RaysPassBacksThatAreHiddenFromTheirKind) {
+  const Affine up = test::shift({0, 0, 0.001f});
+  Affine down = up, mirrored = up;
+  down.m[5] = down.m[10] = -1;
+  mirrored.m[0] = -1;
+  constexpr uint8_t kSeen = hidden::kFromCamera | hidden::kFromBounces;
+  for (const Affine& front : {up, mirrored}) {
+    EXPECT_NEAR(seen_with_hidden_backs(front, kSeen | hidden::kFromShadows), 0.8, 5e-3);
+  }
+  EXPECT_NEAR(seen_with_hidden_backs(down, 0), 0.8, 5e-3);
+  EXPECT_NEAR(seen_with_hidden_backs(down, kSeen), 0, 5e-3);  // in the shadow of what is not seen
+  EXPECT_NEAR(seen_with_hidden_backs(down, kSeen | hidden::kFromShadows), 0.4, 5e-3);
+}
+
+/// A square of 0.4 beneath one that glows; whether rays are drawn to it or find it, its hidden back sheds no light.
+TEST(Hidden, BacksThatAreHiddenShedNoLight) {
+  const auto below = [](uint8_t hidden_backs, bool turned, Strategy strategy) {
+    Scene scene;
+    Affine place = test::shift({0, 0, 1});
+    if (turned) place.m[5] = place.m[10] = -1;
+    SurfaceMaterial glowing = matte(0, {1});
+    glowing.emission = Rgb(1);
+    scene.add_instance(scene.add_mesh(test::square(1)), place, {scene.add_material(glowing)}, {}, hidden::kFromCamera);
+    scene.set_hidden_backs(0, hidden_backs);
+    scene.add_instance(scene.add_mesh(test::square(8)), {}, {scene.add_material(matte(0.4f, {1}))});
+    scene.set_camera(test::camera_above(1));
+    scene.commit(1);
+    RenderOptions options = test::small_options(strategy, 256);
+    return test::mean_of(test::rendered(scene, options));
+  };
+  for (const Strategy strategy : {Strategy::cosine, Strategy::light, Strategy::mis}) {
+    const double lit = below(0, false, strategy);
+    EXPECT_GT(lit, 0.05);
+    EXPECT_EQ(below(hidden::kFromBounces, false, strategy), 0);  // its front is above
+    EXPECT_NEAR(below(hidden::kFromBounces, true, strategy), lit, 0.02 * lit);
+  }
+}
+
 TEST(Transparency, APartlyThereSurfaceCoversThatPartOfItsPixels) {
   const Scene scene = veil({0.3f});
   const auto pixels = test::rendered(scene, options_for(16384));
