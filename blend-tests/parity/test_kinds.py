@@ -88,8 +88,14 @@ class Shown(KindTest):
         self.assert_parity("Linked library, overridden object")
 
     def test_backface_culling(self):
-        """Cycles shows both sides whatever the material says: it hides the turned sheet from those rays."""
+        """Cycles shows both sides whatever the material says: it hides the turned sheet from those rays.
+
+        Without the sky, whose light its diffuse rays would find through the sheet.
+        """
+        stage.world((0, 0, 0))
         sheet, upright = self.carrier(), self.small()
+        for vertex in sheet.data.vertices:
+            vertex.co.z *= 0.3  # no face looks at the camera
         sheet.rotation_euler.x = math.pi
         sheet.location.z = 1.5
         for obj in (sheet, upright):
