@@ -28,6 +28,7 @@ COLORS = {
     "svd-view": "#56b4e9",
     "tucker": "#f0e442",
     "cta": "#e69f00",
+    "kcta": "#009e73",
     "kcta 2": "#cc79a7",
     "kcta 3": "#0072b2",
     "kcta 4": "#000000",
