@@ -62,7 +62,7 @@ class Headless(BlenderTest):
         spy = (
             "import importlib; final = importlib.import_module('velour.engine.final');"
             " make = final.render_job;"
-            " final.render_job = lambda s, **o: (print('THREADS', o['threads']), make(s, **o))[1]"
+            " final.render_job = lambda *a, **o: (print('THREADS', o['threads']), make(*a, **o))[1]"
         )
         text = self._render("-f", 1, arguments=("-t", 3, "--python-expr", spy))
         self.assertIn("THREADS 3", text)
