@@ -81,7 +81,7 @@ def test_more_than_the_limit_is_refused_before_anything_is_rendered(small):
     assert "above its limit of 1 MiB (the Slurm job)" in refused(*render(small), SLURM_MEM_PER_NODE="1")
 
 
-@pytest.mark.parametrize("size", ["", "G", "-1", "1.5G", "2X", "2GB"])
+@pytest.mark.parametrize("size", ["", "G", "-1", "1.5G", "2X", "2GB", "16777216T"])
 def test_sizes_that_are_none_are_wrong_usage(size, small):
     assert velour(*render(small, f"--memory={size}")).status == 2
 

@@ -82,9 +82,10 @@ def pixels(text: str) -> tuple[int, int, int, int]:
 
 
 def size_in_bytes(text: str) -> int:
-    """Bytes, or K, M, G, T of 1024 each."""
+    """Bytes, or K, M, G, T of 1024 each; 2^63 at most."""
     number, unit = (text[:-1], text[-1]) if text[-1:].upper() in ("K", "M", "G", "T") else (text, "")
-    return whole(1, 2**43)(number) << 10 * " KMGT".index(unit.upper() or " ")
+    doublings = 10 * " KMGT".index(unit.upper() or " ")
+    return whole(1, 2**63 >> doublings)(number) << doublings
 
 
 class Camera(NamedTuple):
