@@ -4,6 +4,7 @@ import importlib.util
 import json
 import sys
 import time
+import traceback
 import unittest
 from pathlib import Path
 
@@ -67,12 +68,16 @@ def main():
 
 
 def run_in_window(path, folder):
-    blender.set_folder(folder)
-    blender.enable_addon()
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    module.start(folder)
+    try:
+        blender.set_folder(folder)
+        blender.enable_addon()
+        spec = importlib.util.spec_from_file_location(path.stem, path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        module.start(folder)
+    except BaseException:
+        traceback.print_exc(file=sys.stdout)
+        bpy.ops.wm.quit_blender()  # without a report, which counts as failed
 
 
 main()

@@ -1,9 +1,9 @@
 """Passes in the properties editor, in the order and words of Cycles: of the layer, of mist, of materials."""
 
 import bpy
-from bl_ui.properties_view_layer import ViewLayerCryptomattePanel
 
 from ..engine.engine import VelourRenderEngine
+from ..export.layer_passes import CRYPTOMATTES
 
 
 class _LayerPanel:
@@ -48,9 +48,21 @@ class VELOUR_VIEWLAYER_PT_passes_data(_LayerPanel, bpy.types.Panel):
         column.prop(layer.velour, "use_pass_denoising")
 
 
-class VELOUR_VIEWLAYER_PT_passes_cryptomatte(_LayerPanel, ViewLayerCryptomattePanel, bpy.types.Panel):
+class VELOUR_VIEWLAYER_PT_passes_cryptomatte(_LayerPanel, bpy.types.Panel):
     bl_label = "Cryptomatte"
     bl_parent_id = "VELOUR_VIEWLAYER_PT_passes"
+
+    def draw(self, context):
+        layout, layer = self.layout, context.view_layer
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        switches = {f"use_pass_cryptomatte_{kind}": kind.title() for kind in CRYPTOMATTES}
+        column = layout.column()
+        for switch, text in switches.items():
+            column.prop(layer, switch, text=text)
+        column = layout.column()
+        column.active = any(getattr(layer, switch) for switch in switches)
+        column.prop(layer, "pass_cryptomatte_depth", text="Levels")
 
 
 class VELOUR_WORLD_PT_mist(_LayerPanel, bpy.types.Panel):
