@@ -30,6 +30,9 @@ class Passes(ParityTest):
     def _pictures(self, switch, name, samples=1, channels=3):
         """Of Cycles and Velour."""
         setattr(self.layer, f"use_pass_{switch}", True)
+        return self._rendered(name, samples, channels)
+
+    def _rendered(self, name, samples=1, channels=3):
         found = []
         for engine in ("CYCLES", "VELOUR"):
             self.scene.render.engine = engine
@@ -47,6 +50,16 @@ class Passes(ParityTest):
 
     def test_position(self):
         self._assert_near(*self._pictures("position", "Position"), 1e-3)
+
+    def test_denoising_normal(self):
+        """Along the camera's axes, however the camera stands."""
+        self.layer.cycles.denoising_store_passes = self.layer.velour.use_pass_denoising = True
+        for scale in ((1, 1, 1), (-1, 2, 0.5)):
+            with self.subTest(scale=scale):
+                self.scene.camera.scale = scale
+                theirs, ours = self._rendered("Denoising Normal")
+                self.assertLess(theirs[..., 2].min(), -0.9)  # of what faces the camera
+                self._assert_near(theirs, ours, 0.02)
 
     def test_uv(self):
         for name in ("Ball", "Box ä"):

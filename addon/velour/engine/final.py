@@ -12,7 +12,7 @@ from ..export.film import film_exposure
 from ..export.layer_passes import COMBINED, layer_passes, note_missing_passes
 from ..native import render_job
 from .options import final_options
-from .passes import add_passes, stamp_cryptomattes, write_passes
+from .passes import Delivery, add_passes, stamp_cryptomattes
 from .scene_models import choose_models
 
 log = logging.getLogger(__package__)
@@ -63,23 +63,25 @@ def render_final(engine, depsgraph):
 
 
 def _render_layer(engine, depsgraph, job, view, spp, surroundings, shown):
-    layer, exposure = depsgraph.view_layer_eval, film_exposure(depsgraph.scene_eval)
+    layer = depsgraph.view_layer_eval
     add_passes(engine, layer, shown)
     result = engine.begin_result(0, 0, view.width, view.height, layer=layer.name)
+    delivery = Delivery(job, result, view, film_exposure(depsgraph.scene_eval))
     complete = False
     try:
         job.start()
-        _follow(engine, job, result, spp, exposure)
+        _follow(engine, delivery, spp)
         refuse_dark_inside(depsgraph, job.read_pass("Combined"), "" if engine.is_preview else surroundings)
-        write_passes(job, result, exposure, shown)
+        delivery.write(shown)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)
     _say_report(engine, job)
 
 
-def _follow(engine, job, result, spp, exposure):
+def _follow(engine, delivery, spp):
     """Until the job ends: Esc, progress, statistics, and with a window pictures in between."""
+    job = delivery.job
     statistics = _Clock(_STATISTICS_SECONDS)
     pictures = _Clock(_FIRST_PICTURE_SECONDS, growth=_PICTURE_GROWTH)
     while not job.wait(timeout=_POLL_SECONDS):
@@ -91,8 +93,8 @@ def _follow(engine, job, result, spp, exposure):
             engine.update_stats("Velour", _statistics(state, spp))
             engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20)
         if not bpy.app.background and pictures.rings():
-            write_passes(job, result, exposure, [COMBINED])
-            engine.update_result(result)
+            delivery.write([COMBINED])
+            engine.update_result(delivery.result)
 
 
 class _Clock:

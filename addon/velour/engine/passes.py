@@ -1,13 +1,17 @@
 """From the film's passes to Blender's render result."""
 
 import json
+from typing import NamedTuple
 
+import bpy
 import numpy as np
 
+from ..export.camera import View
 from ..export.layer_passes import COMBINED, CRYPTOMATTES, layer_passes
-from ..native import cryptomatte_id
+from ..native import Job, cryptomatte_id
 
 _OF_LIGHT = ("Combined", "Error")
+_ALONG_CAMERA = ("Denoising Normal",)  # as Cycles has it; Normal itself is along the world's axes
 
 
 def register_passes(engine, scene, layer):
@@ -23,27 +27,31 @@ def add_passes(engine, layer, shown):
             engine.add_pass(each.name, each.channels, each.letters, layer=layer.name)
 
 
-def write_passes(job, result, exposure, shown):
-    """Copies the film into `result`, as far as both have the LayerPasses `shown`.
+class Delivery(NamedTuple):
+    """From a job's film to Blender's result."""
 
-    `exposure`: what light is multiplied by.
-    """
-    by_name = {each.name: each for each in shown}
-    for target in result.layers[0].passes:
-        found = by_name.get(target.name)
-        if found:
-            _fill(target.rect, _pixels(job, found, exposure))
+    job: Job
+    result: bpy.types.RenderResult
+    view: View
+    exposure: float  # what light is multiplied by
 
+    def write(self, shown):
+        """As far as both have the LayerPasses `shown`."""
+        by_name = {each.name: each for each in shown}
+        for target in self.result.layers[0].passes:
+            found = by_name.get(target.name)
+            if found:
+                _fill(target.rect, self._pixels(found))
 
-def _pixels(job, found, exposure):
-    """[pixels x channels]"""
-    if found.source is None:
-        width, height = job.size
-        return np.zeros((width * height, found.channels), np.float32)
-    pixels = job.read_pass(found.source).reshape(-1, found.channels)
-    if found.name in _OF_LIGHT:
-        pixels[:, :3] *= exposure
-    return pixels
+    def _pixels(self, found):
+        """[pixels x channels]"""
+        if found.source is None:
+            width, height = self.job.size
+            return np.zeros((width * height, found.channels), np.float32)
+        pixels = self.job.read_pass(found.source).reshape(-1, found.channels)
+        if found.name in _OF_LIGHT:
+            pixels[:, :3] *= self.exposure
+        return self.view.along_axes(pixels) if found.name in _ALONG_CAMERA else pixels
 
 
 def _fill(rect, pixels):

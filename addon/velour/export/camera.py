@@ -25,6 +25,11 @@ class View(NamedTuple):
         clips = {"clip_start": self.clip_start, "clip_end": self.clip_end}
         scene.set_camera(self.kind, self.camera_to_world, self.window, **clips, **self.lens)
 
+    def along_axes(self, directions):
+        """[n x 3] of the world, along the camera's own axes: to the right, up and into the scene."""
+        axes = self.camera_to_world[:, :3] * np.array((1, 1, -1), np.float32)
+        return directions @ np.linalg.pinv(axes).T  # axes of a squashed camera may lie in a plane
+
 
 def final_view(depsgraph, notes, whole=False):
     """The view of a final render: the scene's camera, film size and, unless `whole`, render border."""
