@@ -69,7 +69,8 @@ def _copy(scene, frame, engine_id):
         copy.frame_current = frame
         yield copy
     finally:
-        bpy.data.scenes.remove(copy)
+        # scenes.remove ends Blender 3.4 where the context has no window, as in timers.
+        bpy.data.batch_remove((copy,))
 
 
 @contextlib.contextmanager
