@@ -67,20 +67,6 @@ class Lights(BoxTest):
             lamp.data.use_shadow = False
         self.assert_parity("Light: casts no shadow")
 
-    def test_temperature_and_exposure(self):
-        lamp = stage.lamp("POINT", 80, (1, 0.5, 3), shadow_soft_size=0.2)
-        if not hasattr(lamp.data, "use_temperature"):
-            self.skipTest("lights have temperature and exposure since Blender 4.5")
-        lamp.data.use_temperature, lamp.data.temperature, lamp.data.exposure = True, 3200, 1.5
-        self.assert_parity("Light: temperature and exposure")
-
-    def test_not_normalized(self):
-        lamp = stage.lamp("AREA", 60, (1, 0.5, 3), shape="RECTANGLE", size=1.0, size_y=0.5)
-        if not hasattr(lamp.data, "normalize"):
-            self.skipTest("Normalize is a choice since Blender 4.5")
-        lamp.data.normalize = False
-        self.assert_parity("Light: not normalised")
-
     def test_many(self):
         for i in range(12):
             x, y = 2.5 * math.cos(i), 2.0 * math.sin(2 * i)
