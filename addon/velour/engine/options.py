@@ -39,13 +39,13 @@ def _common(scene, view):
         "share": settings.share,
         "heuristic": settings.heuristic.lower(),
         "sequence": settings.sequence.lower(),
-        "cache_folder": _cache_folder() if settings.use_cache else "",
+        "cache_folder": cache_folder() if settings.use_cache else "",
         "transparent": int(scene.render.film_transparent),
         "hide_world": int(hides_world(scene.world)),
     }
 
 
-def _cache_folder():
+def cache_folder():
     """An extension's own folder where there are extensions, else the user's cache."""
     package = __package__.rpartition(".")[0]
     try:

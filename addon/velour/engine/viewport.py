@@ -16,8 +16,10 @@ from ..export.live import LiveExport
 from ..export.look import Look
 from ..export.viewport import viewport_frame
 from ..native import ProgressiveJob, VelourError
+from ..realtime import UnshownError
 from . import viewport_clock
 from .options import viewport_options
+from .realtime_viewport import RealtimeViewport
 from .viewport_picture import ViewportPicture
 
 log = logging.getLogger(__package__)
@@ -42,15 +44,20 @@ class Viewport:
         self._picture = ViewportPicture()
         self._place = None  # in the region
         self._scene_error = self._view_error = ""
+        self._real_time = None  # RealtimeViewport, where that shows the scene
+        self._not_real_time = ""  # why it does not, though it should
         _all.add(self)
 
     def close(self):
         viewport_clock.forget(self)
+        self._drop_real_time()
         self._close_job()
         self._drop_scene()
 
     def update(self, context, depsgraph):
         """The scene has changed, or is shown for the first time."""
+        if self._is_real_time(depsgraph, lambda shown: shown.update(context, depsgraph)):
+            return
         self._scene_error = ""
         try:
             self._take_up(depsgraph, Look(context, depsgraph))
@@ -60,6 +67,10 @@ class Viewport:
             self._drop_scene()
 
     def draw(self, context, depsgraph):
+        lines = []
+        if self._is_real_time(depsgraph, lambda shown: lines.append(shown.draw(context, depsgraph))):
+            self._engine().update_stats("Velour", lines[0])
+            return
         if self._live is None and not self._scene_error:
             self.update(context, depsgraph)  # its scene was forgotten
         self._view_error = ""
@@ -69,10 +80,43 @@ class Viewport:
         except Exception as error:
             self._view_error = _sentence(error)
             self._close_job()
-        self._engine().update_stats("Velour", self._scene_error or self._view_error or self._progress())
+        line = self._scene_error or self._view_error or self._progress()
+        self._engine().update_stats("Velour", "; ".join(filter(None, (self._not_real_time, line))))
+
+    def _is_real_time(self, depsgraph, show):
+        """Whether it is to be, and could be: `show` has been called with a RealtimeViewport.
+
+        What real time cannot show, the ray tracer does, with a sentence, until the mode is chosen anew.
+        """
+        if depsgraph.scene.velour.viewport_mode != "REAL_TIME":
+            self._drop_real_time()
+            self._not_real_time = ""
+            return False
+        if self._not_real_time:
+            return False
+        try:
+            if self._real_time is None:
+                self._close_job()
+                self._drop_scene()
+                self._real_time = RealtimeViewport(self._engine)
+            show(self._real_time)
+            return True
+        except UnshownError as reason:
+            self._not_real_time = f"Not in real time: {reason}"
+        except Exception as error:
+            self._not_real_time = f"Not in real time: {_sentence(error)}"
+        self._drop_real_time()
+        return False
+
+    def _drop_real_time(self):
+        if self._real_time:
+            self._real_time.close()
+        self._real_time = None
 
     def forget_scene(self):
         """Nothing of what was exported may be taken for what is there now."""
+        if self._real_time:
+            self._real_time.forget_scene()
         self._close_job()
         self._drop_scene()
         engine = self._engine()

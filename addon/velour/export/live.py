@@ -19,8 +19,9 @@ _MOST_REMOVED = 4096  # numbers of meshes that are no longer there: then all beg
 class LiveExport:
     """Not committed: whoever renders it does. The camera is for others to set."""
 
-    def __init__(self, depsgraph, look):
-        self.scene = Scene()
+    def __init__(self, depsgraph, look, scene=None):
+        """`scene`: another one than the library's that takes the same."""
+        self.scene = Scene() if scene is None else scene
         try:
             set_working_space(self.scene)
             self._materials = MaterialTable(self.scene, Notes(), strict=False)

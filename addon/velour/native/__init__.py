@@ -21,6 +21,7 @@ from .observation import Observation
 from .passes import INSTANCE_LABEL, MATERIAL_LABEL, Passes, cryptomatte_id
 from .plot import Plot
 from .progressive import Picture, ProgressiveJob
+from .realtime import light_map_job, lobe_rows_job, principled_rows_job
 from .scene import Scene
 from .shader import Shader
 from .texture import Texture, TextureSlot
@@ -58,9 +59,12 @@ __all__ = [
     "fit_job",
     "images",
     "library",
+    "light_map_job",
+    "lobe_rows_job",
     "microsurface_job",
     "model_peer_job",
     "observe_job",
+    "principled_rows_job",
     "render_job",
     "votf_data_job",
     "votf_job",

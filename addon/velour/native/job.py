@@ -109,6 +109,14 @@ class Job(Handle):
         """The observation of a finished observe_job()."""
         return Observation._create("vlr_job_result_observation", self.pointer)
 
+    def result_table(self) -> np.ndarray:
+        """[height x width x 4] float32, of a finished job that makes a table for shaders."""
+        floats, width, height = ctypes.POINTER(ctypes.c_float)(), ctypes.c_uint32(), ctypes.c_uint32()
+        self._lib.vlr_job_result_table(
+            self.pointer, ctypes.byref(floats), ctypes.byref(width), ctypes.byref(height)
+        )
+        return np.ctypeslib.as_array(floats, (height.value, width.value, 4)).copy()
+
     def read_pass(self, name: str, out: np.ndarray | None = None) -> np.ndarray:
         """The film so far, also while the job runs: [height x width x channels] float32, row 0 at the bottom.
 

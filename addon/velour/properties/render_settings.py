@@ -6,6 +6,13 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
 
+def _redraw_viewports(_settings, context):
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
 class VelourRenderSettings(bpy.types.PropertyGroup):
     """`scene.velour`."""
 
@@ -103,6 +110,22 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
         soft_max=256,
         max=1 << 16,
         override=_OVERRIDE,
+    )
+    viewport_mode: EnumProperty(
+        name="Viewport",
+        description="How the rendered viewport shows the scene",
+        items=(
+            ("RAY_TRACED", "Ray Traced", "As the final render, ever less noisy", 0),
+            (
+                "REAL_TIME",
+                "Real Time",
+                "By the graphics processor at once: lit by world and lamps, without shadows and bounces",
+                1,
+            ),
+        ),
+        default="RAY_TRACED",
+        override=_OVERRIDE,
+        update=_redraw_viewports,
     )
     viewport_samples: IntProperty(
         name="Viewport Samples",

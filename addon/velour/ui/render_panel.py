@@ -52,9 +52,12 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         value.prop(settings, "noise_target", text="")
         if settings.strategy == "PRODUCT":
             layout.prop(settings, "use_cache")
+        layout.prop(settings, "viewport_mode")
         column = layout.column(align=True)
         column.prop(settings, "samples")
-        column.prop(settings, "viewport_samples", text="Viewport")
+        row = column.row()
+        row.active = settings.viewport_mode == "RAY_TRACED"
+        row.prop(settings, "viewport_samples", text="Viewport")
         column.prop(settings, "preview_samples", text="Preview")
         column.prop(settings, "split")
         layout.prop(settings, "bounces")

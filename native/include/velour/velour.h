@@ -193,6 +193,9 @@ VLR_API vlr_status vlr_job_wait(vlr_job* job, double timeout_seconds, vlr_progre
 VLR_API vlr_status vlr_job_report_json(vlr_job* job, const char** json);
 /* The model of a finished fit; a new handle. */
 VLR_API vlr_status vlr_job_result_model(const vlr_job* job, vlr_model** out);
+/* The table of a finished vlr_light_map_create_job or vlr_lobe_rows_create_job: [height][width][4] floats, which belong
+ * to the job. */
+VLR_API vlr_status vlr_job_result_table(const vlr_job* job, const float** rgba, uint32_t* width, uint32_t* height);
 /* Cancels if running, waits, frees. */
 VLR_API void vlr_job_free(vlr_job* job);
 
@@ -859,6 +862,19 @@ VLR_API vlr_status vlr_observe_create_job(const vlr_scene* scene, uint32_t mater
 VLR_API vlr_status vlr_model_out_of_domain(const vlr_model* model, const vlr_observation* frame, double* share);
 /* The observation of a finished job; a new handle. */
 VLR_API vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observation** out);
+
+/* ---- tables for shaders --------------------------------------------------------------------------------------- */
+
+/* The light of a scene's world as a shader looks it up (docs/realtime.md): averaged by the clipped cosine and by
+ * Gaussian lobes, level by level, and the world itself. Of the world as it is when the job is made. cache_folder: as of
+ * vlr_render_options. JSON: lobes, relative_l2, seconds and cached of the fit of the world's mixture; mixture: of each
+ * lobe x, y, z, bandwidth, r, g, b. */
+VLR_API vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* cache_folder, vlr_job** out);
+/* The lobes of a model of a BRDF at many views, as a shader sums them up. JSON: isotropic, side, blends, lobes.
+ * VLR_INVALID_ARGUMENT for models of BTFs. */
+VLR_API vlr_status vlr_lobe_rows_create_job(const vlr_model* model, vlr_job** out);
+/* The same of a Principled material, without emission and alpha. */
+VLR_API vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, vlr_job** out);
 
 /* ---- plots of models ----------------------------------------------------------------------------------------- */
 

@@ -16,6 +16,7 @@
 #include "material/shader_layers.h"
 #include "model/model.h"
 #include "plot/plot.h"
+#include "realtime/table_pixels.h"
 #include "render/film.h"
 #include "render/progressive.h"
 #include "scene/scene.h"
@@ -81,6 +82,7 @@ struct JobOutput {
   std::string report;
   std::shared_ptr<const Model> model;
   std::shared_ptr<const SceneObservation> observation;
+  std::shared_ptr<const TablePixels> table;
   std::shared_ptr<const Film> film;                // set when the job is made
   std::atomic<bool> stop{false};                   // of a render: to end at a whole pass
   std::shared_ptr<ProgressiveRender> progressive;  // likewise; thread-safe but for run() and restart()
@@ -89,6 +91,11 @@ struct JobOutput {
     const std::lock_guard lock(mutex);
     report = std::move(json);
     model = std::move(result);
+  }
+  void set(std::string json, std::shared_ptr<const TablePixels> result) {
+    const std::lock_guard lock(mutex);
+    report = std::move(json);
+    table = std::move(result);
   }
   void set(std::string json, std::shared_ptr<const SceneObservation> result) {
     const std::lock_guard lock(mutex);

@@ -26,6 +26,10 @@ TEST(Misuse, NullArgumentsAreNamed) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_load_memory(nullptr, 0, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_save(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_roughened(nullptr, 0, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_light_map_create_job(nullptr, nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_lobe_rows_create_job(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_principled_rows_create_job(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_result_table(nullptr, nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_start(nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_wait(nullptr, 0, nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_create(nullptr));

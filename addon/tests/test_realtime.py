@@ -1,0 +1,155 @@
+"""Tables for shaders, and a scene as a graphics processor has it; drawing: blend-tests/window_realtime.py."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from velour.core.mesh_arrays import MeshArrays
+from velour.core.mesh_queue import MeshQueue
+from velour.native import (
+    Model,
+    Scene,
+    VelourError,
+    light_map_job,
+    lobe_rows_job,
+    principled_rows_job,
+    render_job,
+)
+from velour.realtime import RealtimeScene, UnshownError
+from velour.realtime.lamps import lamp_pixels
+from velour.realtime.projection import jitter, view_projection
+
+_WEAVE = Path(__file__).parents[2] / "blend-tests/scenes/data/weave.velour"
+
+
+class _View:
+    kind, window = "perspective", (-0.5, 0.5, -0.25, 0.25)
+    clip_start, clip_end, width, height = 0.1, 100.0, 200, 100
+    camera_to_world = np.array(((1, 0, 0, 2), (0, 1, 0, 3), (0, 0, 1, 4)), float)
+
+
+def _square(**more):
+    corners = np.array(((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)), np.float32)
+    triangles = np.array(((0, 1, 2), (0, 2, 3)), np.uint32)
+    return MeshArrays(corners, triangles, np.arange(4, dtype=np.uint32), **more)
+
+
+def _added(*squares):
+    scene = RealtimeScene()
+    queue = MeshQueue(scene, None)
+    for square in squares:
+        queue.add(square, "Square")
+    queue.numbers()
+    return scene
+
+
+def test_light_map_of_a_constant_world_is_that_world_everywhere():
+    with Scene() as scene:
+        scene.set_world_color((0.5, 1.0, 2.0))
+        with light_map_job(scene) as job:
+            report = job.run()
+            table = job.result_table()
+    assert report["lobes"] == 1
+    assert report["mixture"][0][3:] == [0, 0.5, 1.0, 2.0]
+    entries = table[0, :29, :3].astype(int)
+    for x, y, side in entries:
+        map_pixels = table[y - 1 : y + side + 1, x - 1 : x + side + 1, :3]
+        np.testing.assert_allclose(map_pixels, np.broadcast_to((0.5, 1.0, 2.0), map_pixels.shape), rtol=2e-3)
+
+
+def test_rows_of_a_white_diffuse_material_reflect_nearly_all_light():
+    with principled_rows_job((1, 1, 1), roughness=1.0, specular=0.0) as job:
+        report = job.run()
+        table = job.result_table()
+    assert report["isotropic"]
+    assert table.shape == (report["side"], 2 * report["lobes"], 4)
+    albedo = table[:80, 1::2, :3].sum(axis=1)
+    np.testing.assert_allclose(albedo, 1, atol=0.03)
+
+
+def test_jobs_without_a_table_say_so():
+    with Scene() as scene:
+        scene.look_at((0, 0, 3), (0, 0, 0), 1.0, 1.0)
+        scene.commit()
+        with render_job(scene, width=2, height=2, spp=1) as job:
+            job.run()
+            with pytest.raises(VelourError, match="makes no table"):
+                job.result_table()
+
+
+def test_meshes_get_a_vertex_a_corner_and_no_normal_where_they_are_flat():
+    smooth = np.array((1, 0), np.uint8)
+    up = np.tile(np.array((0, 0, 1), np.float32), (4, 1))
+    slots = np.array((0, 1), np.uint32)
+    with _added(_square(vertex_normals=up, smooth=smooth, material_slots=slots), _square()) as scene:
+        first, second = scene.meshes
+    np.testing.assert_array_equal(first.positions, _square().positions)
+    assert first.normals[[0, 2, 3]].max() == 0, "corners of the flat triangle"
+    np.testing.assert_array_equal(first.normals[1], (0, 0, 1))
+    assert second.slots is None
+
+
+def test_instances_carry_matrices_and_maps_of_texture_coordinates():
+    with _added(_square()) as scene:
+        matrix = np.arange(12, dtype=np.float32).reshape(3, 4)
+        scene.add_instances(np.zeros(2, np.uint32), np.stack((matrix, matrix + 1)), [0])
+        scene.add_instance(0, matrix, [0], [[[2, 0, 1], [0, 2, 0]]])
+        scene.add_instances(np.zeros(1, np.uint32), matrix[None], [0], hidden=("camera",))
+        many, one = scene.groups
+        assert scene.draws == 3
+    np.testing.assert_array_equal(many.rows[1, :3], matrix + 1)
+    np.testing.assert_array_equal(many.rows[0, 3:, :3], ((1, 0, 0), (0, 1, 0)))
+    np.testing.assert_array_equal(one.rows[0, 3:, :3], ((2, 0, 1), (0, 2, 0)))
+
+
+def test_materials_are_replaced_as_in_the_scene_of_the_library():
+    with RealtimeScene() as scene:
+        red = scene.add_textured_material({}, base_color=(1, 0, 0), emission=(1, 2, 3))
+        scene.set_gain(red, (2, 2, 2))
+        green = scene.add_textured_material({}, base_color=(0, 1, 0))
+        assert (red, green) == (0, 1)
+        scene.replace_material(red)
+        assert len(scene.looks) == 1
+        assert scene.looks[0].emission == (0, 0, 0)
+        assert scene.gains == [(1, 1, 1)]
+
+
+def test_what_real_time_does_not_show_is_refused(tmp_path):
+    with RealtimeScene() as scene:
+        with pytest.raises(UnshownError, match="BTF"):
+            scene.add_btf_material(None)
+        with pytest.raises(UnshownError, match="measurements"):
+            scene.add_measurement_material(None)
+
+
+def test_a_point_goes_where_the_window_says():
+    matrix, eye = view_projection(_View)
+    assert eye == (2, 3, 4, 1)
+    x, y, _z, w = matrix @ (2 + 0.5 * 7, 3 - 0.25 * 7, 4 - 7, 1)  # the window's lower right, 7 m ahead
+    np.testing.assert_allclose((x / w, y / w), (1, -1), atol=1e-12)
+    for depth, clip in ((0.1, -1), (100.0, 1)):
+        _x, _y, z, w = matrix @ (2, 3, 4 - depth, 1)
+        assert z / w == pytest.approx(clip)
+    shifted, _eye = view_projection(_View, (0.5, 0))
+    x, _y, _z, w = shifted @ (2, 3, 0, 1)
+    assert x / w == pytest.approx(0.5 * 2 / 200)
+
+
+def test_pictures_are_taken_all_over_a_pixel():
+    places = np.array([jitter(i) for i in range(16)])
+    assert np.abs(places).max() < 0.5
+    assert np.abs(places.mean(axis=0)).max() < 0.05
+    assert places.std(axis=0).min() > 0.25
+
+
+def test_lamps_keep_power_and_place():
+    matrix = np.array(((1, 0, 0, 5), (0, 1, 0, 6), (0, 0, 1, 7)), float)
+    point = lamp_pixels("point", (4 * np.pi, 0, 0), matrix, {"size": (0.5, 0)})
+    np.testing.assert_allclose(point[:2], ((5, 6, 7, 1), (1, 0, 0, 0.25)), rtol=1e-6)
+    sun = lamp_pixels("sun", (3, 2, 1), matrix, {"angle": 0.2})
+    np.testing.assert_allclose(sun[:2], ((0, 0, 1, 0), (3, 2, 1, 0.01)), atol=1e-7)
+
+
+def test_models_of_btfs_have_no_rows():
+    with pytest.raises(VelourError, match="no rows of lobes"):
+        lobe_rows_job(Model.load(_WEAVE))

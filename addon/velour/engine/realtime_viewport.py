@@ -1,0 +1,95 @@
+"""What one 3D viewport shows of the scene in real time, drawn by the graphics processor at each redraw."""
+
+from ..export.film import film_exposure, hides_world
+from ..export.live import LiveExport
+from ..export.look import Look
+from ..export.viewport import viewport_frame
+from ..realtime import Drawing, RealtimeScene, UnshownError
+from . import viewport_clock
+from .options import cache_folder
+
+_MOST_DRAWS = 20_000  # of instances: more are slower than rays
+
+
+class RealtimeViewport:
+    """Raises UnshownError for what it cannot show, and whatever else goes wrong."""
+
+    def __init__(self, engine_reference):
+        self._engine = engine_reference
+        self._live = None
+        self._drawing = Drawing(cache_folder())
+        self._key = None  # of what was drawn last
+
+    def close(self):
+        viewport_clock.forget(self)
+        self.forget_scene()
+
+    def forget_scene(self):
+        if self._live:
+            self._live.close()
+        self._live = None
+        self._drawing.close()
+
+    def update(self, context, depsgraph):
+        self._drawing.restart()
+        look = Look(context, depsgraph)
+        if self._live is None:
+            self._live = LiveExport(depsgraph, look, RealtimeScene())
+        else:
+            changes = self._live.changes(depsgraph, look)
+            if changes and changes.everything:
+                self.forget_scene()
+                self._live = LiveExport(depsgraph, look, RealtimeScene())
+            elif changes:
+                self._live.update(changes, depsgraph, look)
+        if self._live.scene.draws > _MOST_DRAWS:
+            raise UnshownError(f"more than {_MOST_DRAWS:,} instances are shown by the ray tracer alone")
+
+    def draw(self, context, depsgraph):
+        """A sentence on how far it is."""
+        if self._live is None:
+            self.update(context, depsgraph)
+        frame = viewport_frame(context, depsgraph)
+        if frame is None:
+            return ""
+        scene = self._live.scene
+        is_ready = self._drawing.is_ready(scene)
+        viewport_clock.watch(self)
+        if not is_ready:
+            return "Preparing real time"
+        self._show(depsgraph.scene_eval, frame)
+        return self._line(scene)
+
+    def turn(self):
+        """Between redraws. False: there is nothing to wait for."""
+        engine = self._engine()
+        if engine is None or self._live is None:
+            return False
+        engine.tag_redraw()
+        return self._drawing.is_waiting(self._live.scene)
+
+    def pause(self):
+        """Draws no more than Blender asks for."""
+
+    def _show(self, scene, frame):
+        import gpu
+        from gpu_extras.presets import draw_texture_2d
+
+        shows_world = not scene.render.film_transparent and not hides_world(scene.world)
+        exposure = film_exposure(scene)
+        key = frame.key(), exposure, shows_world
+        if key != self._key:
+            self._drawing.restart()
+            self._key = key
+        texture = self._drawing.draw(self._live.scene, frame.view, exposure, shows_world)
+        engine, place = self._engine(), frame.place
+        gpu.state.blend_set("ALPHA_PREMULT")
+        engine.bind_display_space_shader(scene)
+        draw_texture_2d(texture, place[:2], place[2], place[3])
+        engine.unbind_display_space_shader()
+        gpu.state.blend_set("NONE")
+
+    @staticmethod
+    def _line(scene):
+        simpler = sum(look.is_simpler for look in scene.looks)
+        return f"Real time, {simpler} other materials simplified" if simpler else "Real time"

@@ -1,0 +1,30 @@
+"""Tables for shaders: the light of a scene's world, BRDFs as rows of lobes (docs/realtime.md)."""
+
+from __future__ import annotations
+
+import ctypes
+
+from . import library, table
+from .arrays import small
+from .handle import path_bytes, set_fields
+from .job import Job
+from .model import Model
+
+
+def light_map_job(scene, cache_folder=None) -> Job:
+    """Of the world that `scene` has now. Result: result_table(); the report has the world's mixture."""
+    folder = path_bytes(cache_folder) if cache_folder else None
+    return Job._create("vlr_light_map_create_job", scene.pointer, folder)
+
+
+def lobe_rows_job(model: Model) -> Job:
+    """Result: result_table(). Report: isotropic, side, blends, lobes. Not of the model of a BTF."""
+    return Job._create("vlr_lobe_rows_create_job", model.pointer)
+
+
+def principled_rows_job(base_color, **values) -> Job:
+    """As lobe_rows_job, of a Principled material: base_color [3], metallic, roughness, specular."""
+    desc = table.PrincipledDesc()
+    library.load().vlr_principled_desc_init(ctypes.byref(desc))
+    set_fields(desc, {"base_color": small("base_color", base_color, 3), **values})
+    return Job._create("vlr_principled_rows_create_job", ctypes.byref(desc))

@@ -1,0 +1,190 @@
+"""Draws a RealtimeScene into a texture. All of it on the main thread, while a viewport is drawn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..native import light_map_job
+from .projection import jitter, view_projection
+from .shaders import sky_shader, surface_shader
+from .targets import Targets, full_screen
+
+_WIDTH = 1020  # pixels of a row of the texture of instances: whole instances
+_FLOATS = 4
+_MOST = 16  # pictures in a mean
+
+
+class Drawing:
+    """What a scene needs on the graphics processor."""
+
+    def __init__(self, cache_folder):
+        self._cache_folder = cache_folder
+        self._rows = {}  # of each Job of lobes: texture and report
+        self._light = None  # texture
+        self.mixture = None  # [lobes x 7] that is in it: centre, bandwidth, colour
+        self._light_job = None
+        self._light_version = None  # of the world that the job is of
+        self._targets = None
+        self.count = 0  # of pictures in the mean
+        self._lamps = None  # texture
+        self._instances = None  # the groups that are in the texture, and it
+
+    def close(self):
+        if self._light_job:
+            self._light_job.close()
+        self._free_targets()
+        self.__init__(self._cache_folder)
+
+    def is_ready(self, scene):
+        """Whether all tables are there that draw() needs; a changed world is drawn as it was until then."""
+        import gpu
+
+        self._follow_light(gpu, scene)
+        jobs = {look.rows for look in scene.looks}
+        self._rows = {job: rows for job, rows in self._rows.items() if job in jobs}
+        for job in jobs - self._rows.keys():
+            if job.wait(timeout=0):  # raises what went wrong
+                self._rows[job] = self._rows_texture(gpu, scene, job), job.report()
+        return self._light is not None and len(self._rows) == len(jobs)
+
+    def is_waiting(self, scene):
+        """Whether there will be more to draw without that anything changes."""
+        lacks_tables = len(self._rows) < len({look.rows for look in scene.looks})
+        return self._light_job is not None or lacks_tables or self.count < _MOST
+
+    def _follow_light(self, gpu, scene):
+        if self._light_version != scene.world_version:
+            if self._light_job:
+                self._light_job.close()
+            self._light_job = light_map_job(scene, self._cache_folder).start()
+            self._light_version = scene.world_version
+        if self._light_job and self._light_job.wait(timeout=0):
+            self._light = _texture(gpu, self._light_job.result_table())
+            self.mixture = np.array(self._light_job.report()["mixture"], float).reshape(-1, 7)
+            self._light_job.close()
+            self._light_job = None
+            self.restart()
+
+    @staticmethod
+    def _rows_texture(gpu, scene, job):
+        table = job.result_table()
+        table[:, 1::2, :3] = table[:, 1::2, :3] @ scene.to_working.T
+        return _texture(gpu, table)
+
+    def restart(self):
+        """What is drawn next is another picture than the last."""
+        self.count = 0
+
+    def draw(self, scene, view, exposure, shows_world):
+        """A texture of the view's size: scene-linear, premultiplied. Only once is_ready().
+
+        Since restart() pictures add up to a mean, which smooths edges; with _MOST it stays.
+        """
+        import gpu
+
+        size = (view.width, view.height)
+        if self._targets is None or self._targets.size != size:
+            self._free_targets()
+            self._targets = Targets(gpu, size)
+            self.count = 0
+        if self.count < _MOST:
+            with self._targets.drawn.bind():
+                self._draw_scene(gpu, scene, view, exposure, shows_world)
+            self._targets.average(gpu, 1 / (self.count + 1))
+            self.count += 1
+        return self._targets.mean()
+
+    def _free_targets(self):
+        if self._targets:
+            self._targets.free()
+        self._targets = None
+
+    def _draw_scene(self, gpu, scene, view, exposure, shows_world):
+        matrix, eye = view_projection(view, jitter(self.count))
+        gpu.state.active_framebuffer_get().clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
+        gpu.state.blend_set("NONE")
+        gpu.state.depth_test_set("LESS_EQUAL")
+        gpu.state.depth_mask_set(True)
+        self._draw_surfaces(gpu, scene, matrix, eye, exposure)
+        if shows_world:
+            self._draw_sky(gpu, matrix, exposure)
+        gpu.state.depth_mask_set(False)
+        gpu.state.depth_test_set("NONE")
+
+    def _draw_surfaces(self, gpu, scene, matrix, eye, exposure):
+        shader = surface_shader()
+        shader.bind()
+        shader.uniform_float("view_projection", _columns(matrix))
+        shader.uniform_float("eye", eye)
+        shader.uniform_sampler("light_map", self._light)
+        shader.uniform_sampler("instances", self._instances_texture(gpu, scene))
+        self._lamps = _lamps_texture(gpu, scene.lamps)  # alive until all is drawn
+        shader.uniform_sampler("lamps", self._lamps)
+        first = 0
+        for group in scene.groups:
+            for slot, batch in enumerate(scene.meshes[group.mesh].batches(gpu, shader)):
+                material = group.materials[min(slot, len(group.materials) - 1)]
+                if batch is None or material is None:
+                    continue
+                self._set_look(shader, scene, material, exposure)
+                _draw_instances(shader, batch, self._layout(scene, material), first, len(group.rows))
+            first += len(group.rows)
+
+    def _set_look(self, shader, scene, material, exposure):
+        look = scene.looks[material]
+        shader.uniform_sampler("lobe_rows", self._rows[look.rows][0])
+        gain = [exposure * channel for channel in scene.gains[material]]
+        shader.uniform_float("gain", (*gain, float(len(scene.lamps))))
+        shader.uniform_float("emission", (*(exposure * channel for channel in look.emission), 0.0))
+
+    def _layout(self, scene, material):
+        report = self._rows[scene.looks[material].rows][1]
+        side = report["side"] if report["isotropic"] else -report["side"]
+        return report["lobes"], side, int(report["blends"])
+
+    def _instances_texture(self, gpu, scene):
+        if self._instances is None or self._instances[0] is not scene.groups:
+            rows = [group.rows.reshape(-1, _FLOATS) for group in scene.groups] or [np.zeros((5, _FLOATS))]
+            pixels = np.concatenate(rows)
+            table = np.zeros((-(-len(pixels) // _WIDTH), _WIDTH, _FLOATS), np.float32)
+            table.reshape(-1, _FLOATS)[: len(pixels)] = pixels
+            self._instances = scene.groups, _texture(gpu, table)
+        return self._instances[1]
+
+    def _draw_sky(self, gpu, matrix, exposure):
+        shader = sky_shader()
+        shader.bind()
+        shader.uniform_float("inverse_projection", _columns(np.linalg.inv(matrix)))
+        shader.uniform_float("exposure", exposure)
+        shader.uniform_sampler("light_map", self._light)
+        full_screen(shader).draw(shader)
+
+
+def _draw_instances(shader, batch, layout, first, count):
+    many = getattr(batch, "draw_instanced", None)  # 3.6 and newer
+    if many:
+        shader.uniform_int("layout_", (first, *layout))
+        many(shader, instance_count=count)
+        return
+    for i in range(first, first + count):
+        shader.uniform_int("layout_", (i, *layout))
+        batch.draw(shader)
+
+
+def _columns(matrix):
+    """As uniforms take it."""
+    from mathutils import Matrix
+
+    return Matrix(matrix.tolist())
+
+
+def _lamps_texture(gpu, lamps):
+    return _texture(gpu, np.concatenate(lamps)[None] if lamps else np.zeros((1, 4, _FLOATS), np.float32))
+
+
+def _texture(gpu, table):
+    """Of [height x width x 4] float32."""
+    height, width = table.shape[:2]
+    values = np.ascontiguousarray(table, np.float32).reshape(-1)
+    data = gpu.types.Buffer("FLOAT", values.size, values)
+    return gpu.types.GPUTexture((width, height), format="RGBA32F", data=data)

@@ -1,0 +1,72 @@
+"""Meshes as a graphics processor takes them: a vertex a corner, triangles by the slot of their material."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def split_meshes(meshes):
+    """Of what Scene.add_meshes takes, for each mesh its arrays by name, flat; None: not given."""
+    starts = {name: np.concatenate(([0], np.cumsum(sizes))) for name, (_values, sizes) in meshes.items()}
+    count = len(next(iter(meshes.values()))[1])
+    for i in range(count):
+        yield {
+            name: values[starts[name][i] : starts[name][i + 1]].copy() if sizes[i] else None
+            for name, (values, sizes) in meshes.items()
+        }
+
+
+class GpuMesh:
+    """Arrays, until something is drawn with them."""
+
+    def __init__(self, arrays):
+        get = arrays.get
+        self.triangles = get("triangles").reshape(-1, 3)
+        positions = get("positions").reshape(-1, 3)
+        vertices = get("corner_vertices")
+        if vertices is None:  # triangles name vertices; the other arrays have three corners of each
+            vertices = self.triangles.reshape(-1)
+            self.triangles = np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3)
+        corners = len(vertices)
+        self.positions = positions[vertices]
+        self.normals = self._corner_normals(get, vertices, corners)
+        uvs = get("corner_uvs")
+        self.uvs = np.zeros((corners, 2), np.float32) if uvs is None else uvs.reshape(-1, 2)
+        self.slots = get("material_slots")
+        self._batches = None
+
+    def _corner_normals(self, get, vertices, corners):
+        """Zero where a triangle is flat: the shader then has its own."""
+        if get("corner_normals") is not None:
+            return get("corner_normals").reshape(-1, 3)
+        of_vertices, smooth = get("vertex_normals"), get("smooth")
+        if of_vertices is None:
+            return np.zeros((corners, 3), np.float32)
+        normals = of_vertices.reshape(-1, 3)[vertices]
+        if smooth is not None:
+            normals[self.triangles[smooth == 0]] = 0
+        return normals
+
+    def batches(self, gpu, shader):
+        """Of each slot its GPUBatch; None: it has no triangle."""
+        if self._batches is None:
+            form = shader.format_calc()
+            vertices = gpu.types.GPUVertBuf(form, len(self.positions))
+            vertices.attr_fill("position", np.ascontiguousarray(self.positions, np.float32))
+            vertices.attr_fill("normal", np.ascontiguousarray(self.normals, np.float32))
+            vertices.attr_fill("uv", np.ascontiguousarray(self.uvs, np.float32))
+            self._batches = [self._batch(gpu, vertices, triangles) for triangles in self._by_slot()]
+            self.positions = self.normals = self.uvs = None
+        return self._batches
+
+    def _by_slot(self):
+        if self.slots is None:
+            return [self.triangles]
+        return [self.triangles[self.slots == slot] for slot in range(int(self.slots.max()) + 1)]
+
+    @staticmethod
+    def _batch(gpu, vertices, triangles):
+        if not len(triangles):
+            return None
+        indices = gpu.types.GPUIndexBuf(type="TRIS", seq=np.ascontiguousarray(triangles, np.uint32))
+        return gpu.types.GPUBatch(type="TRIS", buf=vertices, elem=indices)

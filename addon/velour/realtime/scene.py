@@ -1,0 +1,171 @@
+"""What a graphics processor draws, in the place of the library's scene: filled by the same exports."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..native import Scene, lobe_rows_job, principled_rows_job
+from .lamps import lamp_pixels
+from .meshes import GpuMesh, split_meshes
+
+_UNPLACED = np.array(((1, 0, 0), (0, 1, 0)), np.float32)
+
+
+class UnshownError(Exception):
+    """Something that only the ray tracer shows; a sentence says what."""
+
+
+class Look(NamedTuple):
+    """A material: the job of its lobes, and what these are multiplied with."""
+
+    rows: object  # Job of the library
+    emission: tuple = (0.0, 0.0, 0.0)
+    is_simpler: bool = False  # than the ray tracer shows it
+
+
+class Group(NamedTuple):
+    """Instances that differ in where they are alone."""
+
+    mesh: int
+    materials: tuple
+    rows: np.ndarray  # [instances x 5 x 4]: matrix, then the map of texture coordinates
+
+
+class RealtimeScene(Scene):
+    """Takes what export/ says of a scene. The library's own scene in it has the world, and nothing else."""
+
+    def __init__(self):
+        super().__init__()
+        self.meshes = []  # GpuMesh; None: removed
+        self.groups = []
+        self.looks = []
+        self.gains = []
+        self.lamps = []
+        self.to_working = np.eye(3, dtype=np.float32)
+        self.world_version = 0
+
+    def close(self):
+        for look in self.looks:
+            look.rows.close()
+        self.looks = []
+        super().close()
+
+    def set_working_space(self, rec709_to_working):
+        super().set_working_space(rec709_to_working)
+        self.to_working = np.asarray(rec709_to_working, np.float32).reshape(3, 3)
+
+    # ---- geometry
+
+    def add_meshes(self, meshes):
+        first = len(self.meshes)
+        self.meshes += [GpuMesh(arrays) for arrays in split_meshes(meshes)]
+        count = len(self.meshes) - first
+        return np.arange(first, first + count, dtype=np.uint32), np.zeros(count, np.uint32)
+
+    def remove_mesh(self, mesh):
+        self.meshes[mesh] = None
+
+    def add_instance(self, mesh, object_to_world, materials, placements=None, hidden=()):
+        matrix = np.asarray(object_to_world, np.float32).reshape(1, 3, 4)
+        maps = [_UNPLACED] if placements is None else np.asarray(placements, np.float32).reshape(-1, 2, 3)
+        for slot, placed in enumerate(maps):
+            only = None if placements is None else slot
+            self._add_group(mesh, matrix, materials, placed, hidden, only)
+
+    def add_instances(self, meshes, object_to_world, materials, hidden=()):
+        for mesh in np.unique(meshes):
+            self._add_group(int(mesh), object_to_world[meshes == mesh], materials, _UNPLACED, hidden)
+
+    def _add_group(self, mesh, matrices, materials, placed, hidden, only=None):
+        """`only`: the slot that is drawn; None: all."""
+        if "camera" in hidden or "holdout" in hidden:
+            return
+        rows = np.zeros((len(matrices), 5, 4), np.float32)
+        rows[:, :3] = matrices
+        rows[:, 3:, :3] = placed
+        shown = tuple(m if only in (None, slot) else None for slot, m in enumerate(materials))
+        self.groups.append(Group(mesh, shown, rows))
+
+    def clear_instances(self):
+        self.groups = []
+
+    # ---- materials
+
+    def add_model_material(self, model, neighbors=0):
+        if "texels" in model.info():
+            raise UnshownError("materials with BTFs are shown by the ray tracer alone")
+        return self._add_look(Look(lobe_rows_job(model)))
+
+    def add_measurement_material(self, measurement, proposal=None, neighbors=0):
+        raise UnshownError("measurements themselves are shown by the ray tracer alone")
+
+    def add_btf_material(self, btf, most_bytes=0):
+        raise UnshownError("materials with BTFs are shown by the ray tracer alone")
+
+    def add_textured_material(self, textures, **values):
+        emission = tuple(values.pop("emission", (0.0, 0.0, 0.0)))
+        is_simpler = bool(textures) or values.pop("alpha", 1.0) < 1.0
+        return self._add_look(Look(_rows_of(values), emission, is_simpler))
+
+    def add_shader_material(self, shader):
+        return self._add_look(Look(_rows_of({}), is_simpler=True))
+
+    def replace_material(self, material):
+        self.looks[material].rows.close()
+        self.looks[material], self.gains[material] = self.looks.pop(), self.gains.pop()
+
+    def set_gain(self, material, gain):
+        self.gains[material] = tuple(gain)
+
+    def hide_backs(self, material, hidden):
+        """Both sides are drawn."""
+
+    def set_drawn_to(self, material, drawn):
+        """Surfaces that glow light nothing else here."""
+
+    def set_shell_softness(self, material, widths):
+        """Shells are of BTFs and outlines, which are refused."""
+
+    set_shell_tile = set_shell_softness
+
+    def _add_look(self, look):
+        look.rows.start()
+        self.looks.append(look)
+        self.gains.append((1.0, 1.0, 1.0))
+        return len(self.looks) - 1
+
+    # ---- light
+
+    def add_light(self, kind, color, light_to_world, **values):
+        self.lamps.append(lamp_pixels(kind, color, np.asarray(light_to_world, float).reshape(3, 4), values))
+
+    def clear_lights(self):
+        self.lamps = []
+
+    def set_world_color(self, color):
+        super().set_world_color(color)
+        self.world_version += 1
+
+    def set_world_pixels(self, pixels, strength=1.0, world_to_image=None):
+        super().set_world_pixels(pixels, strength, world_to_image)
+        self.world_version += 1
+
+    def set_world_file(self, path, strength=1.0, world_to_image=None):
+        super().set_world_file(path, strength, world_to_image)
+        self.world_version += 1
+
+    @property
+    def draws(self):
+        """How many times something is drawn, where each instance is drawn by itself."""
+        return sum(len(group.rows) * len(group.materials) for group in self.groups)
+
+
+def _rows_of(values):
+    known = {name: values[name] for name in ("metallic", "roughness", "specular") if name in values}
+    color = tuple(min(max(c, 0.0), 1.0) for c in values.get("base_color", (0.8, 0.8, 0.8)))
+    return principled_rows_job(
+        color, **{n: min(max(v, 0.0), 1.0) if math.isfinite(v) else 0.5 for n, v in known.items()}
+    )

@@ -1,0 +1,69 @@
+"""The shaders, compiled once a session."""
+
+from functools import cache
+from pathlib import Path
+
+_FOLDER = Path(__file__).parent
+
+
+def _source(*names):
+    return "\n".join((_FOLDER / f"{name}.glsl").read_text(encoding="utf-8") for name in names)
+
+
+@cache
+def surface_shader():
+    """A GPUShader; raises where it does not compile."""
+    import gpu
+
+    info = gpu.types.GPUShaderCreateInfo()
+    for slot, name in enumerate(("instances", "light_map", "lobe_rows", "lamps")):
+        info.sampler(slot, "FLOAT_2D", name)
+    info.push_constant("MAT4", "view_projection")
+    info.push_constant("VEC4", "eye")  # where it is, 1; or the direction towards it, 0
+    info.push_constant("VEC4", "gain")  # and how many lamps there are
+    info.push_constant("VEC4", "emission")
+    info.push_constant("IVEC4", "layout_")
+    for slot, (kind, name) in enumerate((("VEC3", "position"), ("VEC3", "normal"), ("VEC2", "uv"))):
+        info.vertex_in(slot, kind, name)
+    between = gpu.types.GPUStageInterfaceInfo("velour_surface")
+    between.smooth("VEC3", "world")
+    between.smooth("VEC3", "shading_normal")
+    between.smooth("VEC2", "coordinates")
+    info.vertex_out(between)
+    info.fragment_out(0, "VEC4", "pixel")
+    info.vertex_source(_source("surface.vert"))
+    info.fragment_source(_source("light", "surface.frag"))
+    return gpu.shader.create_from_info(info)
+
+
+@cache
+def sky_shader():
+    import gpu
+
+    info = gpu.types.GPUShaderCreateInfo()
+    info.sampler(0, "FLOAT_2D", "light_map")
+    info.push_constant("MAT4", "inverse_projection")
+    info.push_constant("FLOAT", "exposure")
+    return _full_screen(gpu, info, "light", "sky.frag")
+
+
+@cache
+def average_shader():
+    import gpu
+
+    info = gpu.types.GPUShaderCreateInfo()
+    for slot, name in enumerate(("average", "latest")):
+        info.sampler(slot, "FLOAT_2D", name)
+    info.push_constant("FLOAT", "share")
+    return _full_screen(gpu, info, "average.frag")
+
+
+def _full_screen(gpu, info, *fragment):
+    info.vertex_in(0, "VEC2", "position")
+    between = gpu.types.GPUStageInterfaceInfo(f"velour_{fragment[-1].partition('.')[0]}")
+    between.smooth("VEC2", "place")
+    info.vertex_out(between)
+    info.fragment_out(0, "VEC4", "pixel")
+    info.vertex_source(_source("full_screen.vert"))
+    info.fragment_source(_source(*fragment))
+    return gpu.shader.create_from_info(info)

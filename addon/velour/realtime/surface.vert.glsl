@@ -1,0 +1,16 @@
+// layout_: first instance, lobes of a place, places along a side (negative: anisotropic), whether places blend.
+
+void main()
+{
+  int at = (layout_.x + gl_InstanceID) * 5;
+  int width = textureSize(instances, 0).x;
+  vec4 row[5];
+  for (int i = 0; i < 5; ++i) row[i] = texelFetch(instances, ivec2((at + i) % width, (at + i) / width), 0);
+  world = vec3(dot(row[0], vec4(position, 1)), dot(row[1], vec4(position, 1)), dot(row[2], vec4(position, 1)));
+  // Cofactors: the inverse transpose but for a factor, whose sign mirrored instances keep.
+  mat3 cofactors = mat3(cross(row[1].xyz, row[2].xyz), cross(row[2].xyz, row[0].xyz), cross(row[0].xyz, row[1].xyz));
+  float turn = sign(dot(row[0].xyz, cofactors[0]));
+  shading_normal = turn * (normal * cofactors);
+  coordinates = vec2(dot(row[3].xyz, vec3(uv, 1)), dot(row[4].xyz, vec3(uv, 1)));
+  gl_Position = view_projection * vec4(world, 1);
+}

@@ -1,0 +1,44 @@
+"""The textures that are drawn into."""
+
+from .shaders import average_shader
+
+
+class Targets:
+    """What is drawn, and the mean of what has been drawn, of a size."""
+
+    def __init__(self, gpu, size):
+        self.size = size
+        self.drawn = gpu.types.GPUOffScreen(*size, format="RGBA16F")
+        self._means = [gpu.types.GPUOffScreen(*size, format="RGBA32F") for _ in range(2)]
+
+    def free(self):
+        for target in (self.drawn, *self._means):
+            target.free()
+
+    def average(self, gpu, share):
+        """What is drawn becomes that share of the mean; 1: all of it."""
+        shader = average_shader()
+        before, after = self._means
+        with after.bind():
+            gpu.state.blend_set("NONE")
+            shader.bind()
+            shader.uniform_sampler("average", _texture(before if share < 1 else self.drawn))
+            shader.uniform_sampler("latest", _texture(self.drawn))
+            shader.uniform_float("share", share)
+            full_screen(shader).draw(shader)
+        self._means = [after, before]
+
+    def mean(self):
+        return _texture(self._means[0])
+
+
+def full_screen(shader):
+    from gpu_extras.batch import batch_for_shader
+
+    corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    return batch_for_shader(shader, "TRIS", {"position": corners}, indices=((0, 1, 2), (0, 2, 3)))
+
+
+def _texture(target):
+    texture = getattr(target, "texture_color", None)
+    return texture if texture is not None else target.color_texture

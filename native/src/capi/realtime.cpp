@@ -1,0 +1,89 @@
+#include "capi/guard.h"
+#include "capi/handles.h"
+#include "capi/json_text.h"
+#include "capi/surfaces.h"
+#include "realtime/light_map.h"
+#include "realtime/lobe_rows.h"
+#include "velour/velour.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+namespace {
+
+std::string mixture_json(const SkyMixture& sky) {
+  Json lobes = Json::array();
+  for (size_t k = 0; k < sky.size(); ++k) {
+    const Vec3& c = sky.center[k];
+    const Rgb& color = sky.coefficient[k];
+    lobes.push_back({c.x, c.y, c.z, sky.bandwidth[k], color.r, color.g, color.b});
+  }
+  return text({{"lobes", sky.size()},
+               {"relative_l2", sky.relative_l2},
+               {"seconds", sky.seconds},
+               {"cached", sky.cached},
+               {"mixture", std::move(lobes)}});
+}
+
+/// A job of the rows that `make`(progress) makes.
+template <typename Make>
+vlr_job* rows_job(Make make) {
+  auto output = std::make_shared<JobOutput>();
+  return new vlr_job(output, [output, make = std::move(make)](Progress& progress) {
+    LobeRows rows = make(progress);
+    const Json json = {
+        {"isotropic", rows.isotropic}, {"side", rows.side}, {"blends", rows.blends}, {"lobes", rows.lobes}};
+    output->set(text(json), std::make_shared<const TablePixels>(std::move(rows.pixels)));
+  });
+}
+
+}  // namespace
+
+vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* cache_folder, vlr_job** out) {
+  return guard([&] {
+    require(scene, "scene");
+    require(out, "out");
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, environment = scene->scene->environment(),
+                                folder = std::string(cache_folder ? cache_folder : "")](Progress& progress) {
+      const SkyMixture sky = sky_mixture(environment, {}, folder, progress);
+      output->set(mixture_json(sky), std::make_shared<const TablePixels>(light_map(sky, environment, 0, progress)));
+    });
+  });
+}
+
+vlr_status vlr_lobe_rows_create_job(const vlr_model* model, vlr_job** out) {
+  return guard([&] {
+    require(model, "model");
+    require(out, "out");
+    if (is_btf(*model->model)) {
+      throw Error(Status::invalid_argument, "The model of a BTF has no rows of lobes; models of BRDFs have.");
+    }
+    *out = rows_job([model = model->model](Progress& progress) { return lobe_rows(*model, 0, progress); });
+  });
+}
+
+vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, vlr_job** out) {
+  return guard([&] {
+    require(desc, "desc");
+    require(out, "out");
+    *out = rows_job(
+        [parameters = parameters_of(*desc)](Progress& progress) { return lobe_rows(parameters, 0, progress); });
+  });
+}
+
+vlr_status vlr_job_result_table(const vlr_job* job, const float** rgba, uint32_t* width, uint32_t* height) {
+  return guard([&] {
+    require(job, "job");
+    require(rgba, "rgba");
+    require(width, "width");
+    require(height, "height");
+    job->job.rethrow();
+    const std::lock_guard lock(job->output->mutex);
+    const auto& table = job->output->table;
+    if (!table) throw Error(Status::invalid_state, "This job makes no table.");
+    *rgba = table->rgba.data();
+    *width = table->width;
+    *height = table->height;
+  });
+}

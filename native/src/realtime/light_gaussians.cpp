@@ -1,0 +1,142 @@
+#include "realtime/light_gaussians.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sphere/frame.h"
+#include "srbf/kernel.h"
+
+namespace velour {
+namespace {
+
+constexpr double kMostBandwidth = 1e6;
+constexpr double kBroad = 8, kNarrow = 24;  // bandwidths
+constexpr double kSteps = 1.8;  // deviations of a Gaussian between two of a row: smooth to one in two hundred
+
+/// Gaussians in a row: places x, in deviations of what they sample, and weights that sum to 1.
+struct Row {
+  explicit Row(size_t count) : n(static_cast<int>(count)) {
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += std::exp(-x(i) * x(i) / 2);
+    for (int i = 0; i < n; ++i) variance += (share[i] = std::exp(-x(i) * x(i) / 2) / sum) * x(i) * x(i);
+  }
+  double x(int i) const { return n > 1 ? 4.0 * i / (n - 1) - 2 : 0; }
+  /// Variance of places, over that of each Gaussian, that still adds up smoothly.
+  double most() const { return variance * std::pow(kSteps * (n - 1) / 4, 2); }
+
+  static constexpr int kMost = 9;
+  int n;
+  double share[kMost], variance = 0;
+};
+
+/// The light direction of an argument beside the lobe's centre, if there is one.
+std::optional<Vec3d> light_at(const WarpedLobe& lobe, const Vec3d& tangent, double distance, const Vec3d& wv) {
+  const Vec3d psi = std::cos(distance) * lobe.center + std::sin(distance) * tangent;
+  return unwarped(lobe, psi, wv);
+}
+
+/// What a deviation along `tangent` is among lights, by both sides of the centre where both have any.
+Vec3d spread(const WarpedLobe& lobe, const Vec3d& center, const Vec3d& tangent, double step, const Vec3d& wv) {
+  const auto ahead = light_at(lobe, tangent, step, wv), behind = light_at(lobe, tangent, -step, wv);
+  if (ahead && behind) return (*ahead - *behind) / (2 * step);
+  if (ahead) return (*ahead - center) / step;
+  if (behind) return (center - *behind) / step;
+  return tangent;
+}
+
+/// A Gaussian times the clipped cosine, as a Gaussian again: what its mean and variance along the normal become, those
+/// of a normal distribution of cosines. `color` times the mean cosine.
+void multiply_by_cosine(LightGaussian& g) {
+  const double m = g.center.z, s = std::sqrt(std::max(1 - m * m, 0.0) / g.bandwidth);
+  if (s < 1e-6) {
+    g.color *= std::max(m, 0.0);
+    return;
+  }
+  const double x = m / s, density = std::exp(-x * x / 2) / std::sqrt(2 * kPiD),
+               above = 0.5 * std::erfc(-x / std::sqrt(2.0));
+  const double first = s * density + m * above;  // moments of max(z, 0)
+  const double second = (m * m + s * s) * above + m * s * density;
+  const double third = (m * m + 2 * s * s) * s * density + m * (m * m + 3 * s * s) * above;
+  if (!(first > 1e-9)) {
+    g.color = Vec3d(0.0);
+    return;
+  }
+  const double mean = std::min(second / first, 1.0),
+               variance = std::max(third / first - second / first * second / first, 0.1 * s * s);
+  const double planar = std::sqrt((1 - mean * mean) / (1 - m * m));
+  g.center = glm::normalize(Vec3d(planar * g.center.x, planar * g.center.y, mean));
+  g.bandwidth = std::clamp(g.bandwidth * s / std::sqrt(variance), 1.0, kMostBandwidth);
+  g.color *= first;
+}
+
+void clip_at_horizon(LightGaussian& g) {
+  const double deviation = std::sqrt(std::max(1 - g.center.z * g.center.z, 1e-12) / g.bandwidth);
+  g.color *= 0.5 * std::erfc(-g.center.z / deviation / std::sqrt(2.0));
+}
+
+/// Lobes broader than this are not Gaussians once the cosine is in; they are left to whoever fits what is broad.
+double gaussian_share(double bandwidth) {
+  const double t = std::clamp(std::log(bandwidth / kBroad) / std::log(kNarrow / kBroad), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
+LobeReach lobe_reach(const WarpedLobe& lobe, const Vec3d& wv) {
+  LobeReach reach;
+  const auto center = unwarped(lobe, lobe.center, wv);
+  if (!center) return reach;
+  reach.is_seen = true;
+  const Frame frame = Frame::about(Vec3(lobe.center));
+  const Vec3d x(frame.x), y(frame.y);
+  const double step = std::min(0.5 / std::sqrt(lobe.bandwidth), 0.2);
+  const Vec3d dx = spread(lobe, *center, x, step, wv), dy = spread(lobe, *center, y, step, wv);
+  // The longest axis of the ellipse that a circle of arguments becomes.
+  const double a = glm::dot(dx, dx), b = glm::dot(dx, dy), c = glm::dot(dy, dy);
+  const double middle = (a + c) / 2, half = std::hypot((a - c) / 2, b);
+  const double turn = 0.5 * std::atan2(2 * b, a - c);
+  reach.along = std::cos(turn) * x + std::sin(turn) * y;
+  reach.longer = std::sqrt(middle + half);
+  reach.shorter = std::sqrt(std::max(middle - half, 1e-4 * middle));
+  return reach;
+}
+
+size_t gaussians_for(double ratio) {
+  size_t n = 1;
+  while (n < Row::kMost && ratio * ratio - 1 > Row(n).most() + 0.2) n += 2;
+  return n;
+}
+
+void light_gaussians(const WarpedLobe& lobe, LobeOf of, const LobeReach& reach, const Vec3d& wv,
+                     std::span<LightGaussian> out) {
+  const Row row(out.size());
+  // The variance of a row is that of its places and that of each: along they add up to the lobe's, across each has all.
+  const double square = std::pow(reach.longer / reach.shorter, 2), places = std::min(square - 1, row.most());
+  const double own = square / (1 + places);  // along, over that across; above 1 where the row is too short
+  const double deviation = std::sqrt(1 / lobe.bandwidth);  // of the argument
+  const double spread = row.n > 1 ? deviation * std::sqrt(places / (1 + places) / row.variance) : 0;
+  const double across = reach.bandwidth_across(lobe) / std::sqrt(own);
+  const auto center = unwarped(lobe, lobe.center, wv);
+  const double whole = kernel_integral(Kernel::gaussian, lobe.bandwidth), share = gaussian_share(across);
+  for (int i = 0; i < row.n; ++i) {
+    LightGaussian& g = out[static_cast<size_t>(i)] = {.bandwidth = std::clamp(across, 1.0, kMostBandwidth)};
+    const auto wl = center ? light_at(lobe, reach.along, row.x(i) * spread, wv) : std::nullopt;
+    if (!wl) continue;
+    const double area = 1 / warp_jacobian(lobe, *wl, wv), growth = area * warp_jacobian(lobe, *center, wv);
+    g.center = *wl;
+    g.bandwidth = std::clamp(across / growth, 1.0, kMostBandwidth);
+    g.color = share * whole * row.share[i] * area * lobe.coefficient;
+    of == LobeOf::f ? multiply_by_cosine(g) : clip_at_horizon(g);
+  }
+}
+
+Vec3d value_of(std::span<const LightGaussian> gaussians, const Vec3d& wl) {
+  Vec3d sum(0.0);
+  for (const LightGaussian& g : gaussians) {
+    sum += g.color * (kernel_value(Kernel::gaussian, g.bandwidth, one_minus_dot(g.center, wl)) /
+                      kernel_integral(Kernel::gaussian, g.bandwidth));
+  }
+  return sum;
+}
+
+}  // namespace velour

@@ -1,0 +1,172 @@
+#include "realtime/light_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "job/parallel.h"
+#include "sphere/octahedral.h"
+#include "srbf/kernel.h"
+#include "srbf/lobe_products.h"
+
+namespace velour {
+namespace {
+
+constexpr int kCosineSide = 48, kSkySide = 1024, kLeastSide = 24, kMostSide = 640;
+constexpr double kPixelsOfDeviation = 3.5;  // of a lobe's; linear look-ups then err by 1/98 of its peak along each axis
+constexpr int kAngles = 256;                // of the table of a lobe's light on a receiver
+
+struct Map {
+  int x, y, side;  // of the border's first pixel; without borders
+};
+
+int side_of(int level) {
+  if (level == LightLevels::kCosine) return kCosineSide;
+  if (level == LightLevels::kSky) return kSkySide;
+  const double deviations = std::sqrt(4 * kPiD * LightLevels::bandwidth(level));
+  return std::clamp(static_cast<int>(kPixelsOfDeviation * deviations), kLeastSide, kMostSide);
+}
+
+/// Below the row of the list: shelves of maps, largest first.
+std::array<Map, LightLevels::kCount> placed_maps(uint32_t& width, uint32_t& height) {
+  std::array<Map, LightLevels::kCount> maps{};
+  int x = 0, y = 1, shelf = 0;
+  constexpr int kWidth = 1728;
+  for (int level = LightLevels::kCount - 1; level >= 0; --level) {
+    const int side = side_of(level), outer = side + 2;
+    if (x + outer > kWidth) x = 0, y += shelf, shelf = 0;
+    maps[static_cast<size_t>(level)] = {x, y, side};
+    x += outer;
+    shelf = std::max(shelf, outer);
+  }
+  width = kWidth;
+  height = static_cast<uint32_t>(y + shelf);
+  return maps;
+}
+
+/// Pixel of a map, border included, on the sphere: the octahedral map goes on over its edges turned by half.
+Vec3 direction_at(int x, int y, int side) {
+  const auto to_square = [&](int i) { return (static_cast<float>(i) + 0.5f) / static_cast<float>(side); };
+  Vec2 square(to_square(x), to_square(y));
+  if (x < 0 || x >= side) square = {x < 0 ? -square.x : 2 - square.x, 1 - square.y};
+  if (y < 0 || y >= side) square = {1 - square.x, y < 0 ? -square.y : 2 - square.y};
+  return octahedral_to(square);
+}
+
+/// What a receiver gets of a Gaussian of amplitude 1 by the angle between its normal and the lobe's centre, over pi.
+class ReceivedLight {
+ public:
+  explicit ReceivedLight(double bandwidth) {
+    constexpr int kZeniths = 64;
+    const double least = std::max(bandwidth, 1e-4), whole = kernel_integral(Kernel::gaussian, least);
+    for (int a = 0; a < kAngles; ++a) {
+      const double angle = kPiD * a / (kAngles - 1);
+      double sum = 0;
+      for (int i = 0; i < kZeniths; ++i) {
+        const double d = kernel_sample(Kernel::gaussian, least, (i + 0.5) / kZeniths);
+        sum += mean_clipped(std::cos(angle) * (1 - d), std::sin(angle) * std::sqrt(d * (2 - d)));
+      }
+      by_angle_[static_cast<size_t>(a)] = static_cast<float>(whole * sum / kZeniths / kPiD);
+    }
+  }
+
+  float at(float cosine) const {
+    const float place = std::acos(std::clamp(cosine, -1.0f, 1.0f)) / kPi * (kAngles - 1);
+    const auto first = std::min(static_cast<size_t>(place), size_t{kAngles - 2});
+    const float t = place - static_cast<float>(first);
+    return (1 - t) * by_angle_[first] + t * by_angle_[first + 1];
+  }
+
+ private:
+  /// Mean of max(a + b cos phi, 0) over phi; b >= 0.
+  static double mean_clipped(double a, double b) {
+    if (a >= b) return a;
+    if (a <= -b) return 0;
+    const double edge = std::acos(-a / b);
+    return (a * edge + b * std::sin(edge)) / kPiD;
+  }
+  std::array<float, kAngles> by_angle_;
+};
+
+/// The mixture as the products' kernel takes it: amplitudes 1, as many lobes as lanes.
+class Lobes {
+ public:
+  explicit Lobes(const SkyMixture& sky) : coefficient_(sky.coefficient) {
+    for (size_t k = 0; k < sky.size(); ++k) lobes_.add({sky.center[k], sky.bandwidth[k], 1.0f});
+    while (lobes_.size() % LobeProducts::kLanes != 0) {
+      lobes_.add({{0, 0, 1}, 1, 0});
+      coefficient_.emplace_back(0.0f);
+    }
+  }
+
+  /// The sky's mean over a Gaussian density about `center`.
+  Rgb mean(const Vec3& center, float bandwidth, LobeProducts& products) const {
+    const auto whole = static_cast<float>(kernel_integral(Kernel::gaussian, static_cast<double>(bandwidth)));
+    products.count = 0;
+    multiply_lobes({center, bandwidth, 1 / whole}, lobes_, 0, static_cast<int>(lobes_.size()), nullptr, products);
+    Rgb sum(0.0f);
+    for (size_t k = 0; k < coefficient_.size(); ++k) sum += products.mass[k] * coefficient_[k];
+    return sum;
+  }
+
+ private:
+  GaussianLobes lobes_;
+  std::vector<Rgb> coefficient_;
+};
+
+void fill_level(int level, int y, const Map& map, const SkyMixture& sky, const Lobes& lobes,
+                const std::vector<ReceivedLight>& received, const Environment& environment, TablePixels& pixels) {
+  LobeProducts products;
+  for (int x = -1; x <= map.side; ++x) {
+    const Vec3 w = direction_at(x, y, map.side);
+    Rgb mean(0.0f);
+    if (level == LightLevels::kSky) {
+      mean = environment.radiance(w);
+    } else if (level == LightLevels::kCosine) {
+      for (size_t k = 0; k < sky.size(); ++k) {
+        mean += received[k].at(glm::dot(w, sky.center[k])) * sky.coefficient[k];
+      }
+    } else {
+      mean = lobes.mean(w, LightLevels::bandwidth(level), products);
+    }
+    float* const to = pixels.at(static_cast<uint32_t>(map.x + 1 + x), static_cast<uint32_t>(map.y + 1 + y));
+    for (int c = 0; c < 3; ++c) to[c] = mean[c];
+    to[3] = 1;
+  }
+}
+
+}  // namespace
+
+float LightLevels::of(float bandwidth) {
+  const float known = std::clamp(bandwidth, 1.0f, LightLevels::bandwidth(kSharpest));
+  return kBroadest + kPerOctave * std::log2(known);
+}
+
+float LightLevels::bandwidth(int level) { return std::exp2(static_cast<float>(level - kBroadest) / kPerOctave); }
+
+TablePixels light_map(const SkyMixture& sky, const Environment& environment, int threads, Progress& progress) {
+  uint32_t width, height;
+  const auto maps = placed_maps(width, height);
+  TablePixels pixels(width, height);
+  const Lobes lobes(sky);
+  const std::vector<ReceivedLight> received(sky.bandwidth.begin(), sky.bandwidth.end());
+  struct Row {
+    int level, y;
+  };
+  std::vector<Row> rows;
+  for (int level = 0; level < LightLevels::kCount; ++level) {
+    const Map& map = maps[static_cast<size_t>(level)];
+    float* const entry = pixels.at(static_cast<uint32_t>(level), 0);
+    entry[0] = static_cast<float>(map.x + 1);
+    entry[1] = static_cast<float>(map.y + 1);
+    entry[2] = static_cast<float>(map.side);
+    for (int y = -1; y <= map.side; ++y) rows.push_back({level, y});
+  }
+  parallel_for_each(rows.size(), threads, progress, [&](size_t i) {
+    const Row& row = rows[i];
+    fill_level(row.level, row.y, maps[static_cast<size_t>(row.level)], sky, lobes, received, environment, pixels);
+  });
+  return pixels;
+}
+
+}  // namespace velour

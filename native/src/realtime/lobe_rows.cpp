@@ -1,0 +1,197 @@
+#include "realtime/lobe_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+
+#include "job/error.h"
+#include "job/parallel.h"
+#include "material/scattered_lobes.h"
+#include "realtime/broad_part.h"
+#include "realtime/ggx_lobes.h"
+#include "realtime/light_map.h"
+
+namespace velour {
+namespace {
+
+constexpr int kLobeFloats = 8;
+constexpr int kAngles = 91, kGrid = 33;           // of parametric models, which blend
+constexpr int kNearAngles = 361, kNearGrid = 65;  // of scattered ones, which do not
+constexpr double kSoft = 150;                     // bandwidths of light below which the broad part mends a lobe
+
+size_t places_of(const LobeRows& rows) {
+  const auto n = static_cast<size_t>(rows.side);
+  return rows.isotropic ? n : n * n;
+}
+
+Vec3d view_at(const LobeRows& rows, size_t place) {
+  const auto n = static_cast<size_t>(rows.side);
+  const auto along = [&](size_t i) { return static_cast<double>(i) / static_cast<double>(n - 1); };
+  glm::dvec2 disk(along(place), 0);
+  if (!rows.isotropic) {
+    disk = {2 * along(place % n) - 1, 2 * along(place / n) - 1};
+    disk /= std::max(glm::length(disk), 1.0);
+  }
+  // A view in the surface itself sees nothing.
+  const double radius = glm::length(disk), theta = std::min(radius * kPiD / 2, 1.5690);
+  const double sine = radius > 0 ? std::sin(theta) / radius : 0;
+  return {sine * disk.x, sine * disk.y, std::cos(theta)};
+}
+
+void write_lobe(const Vec3& center, float level, const Vec3& color, float* to) {
+  const float values[kLobeFloats] = {center.x, center.y, center.z, level, color.x, color.y, color.z, 0};
+  std::copy_n(values, kLobeFloats, to);
+}
+
+void write_lobe(const LightGaussian& g, float* to) {
+  write_lobe(Vec3(g.center), LightLevels::of(static_cast<float>(g.bandwidth)), Vec3(g.color), to);
+}
+
+/// All of a place.
+void write_lobes(const BroadPart::Fitted& broad, const std::vector<LightGaussian>& gaussians, float* to) {
+  write_lobe({0, 0, 1}, LightLevels::kCosine, Vec3(broad.cosine), to);
+  for (const LightGaussian& g : broad.gaussians) write_lobe(g, to += kLobeFloats);
+  for (const LightGaussian& g : gaussians) write_lobe(g, to += kLobeFloats);
+}
+
+/// Black, of lobes that point anywhere.
+TablePixels pixels_of(const LobeRows& rows) {
+  TablePixels pixels(2 * static_cast<uint32_t>(rows.lobes), static_cast<uint32_t>(places_of(rows)));
+  for (size_t i = 0; i < pixels.rgba.size(); i += kLobeFloats) {
+    write_lobe({0, 0, 1}, LightLevels::kBroadest, Vec3(0.0f), pixels.rgba.data() + i);
+  }
+  return pixels;
+}
+
+using Lobes = std::vector<WarpedLobe>;
+using LobesAt = std::function<Lobes(const Vec3d& wv)>;
+/// What the soft ones of a view's lobes should reflect, and whatever no lobe does: f.
+using SoftValue = std::function<Vec3d(const Lobes& soft, const Vec3d& wl, const Vec3d& wv)>;
+
+/// How many Gaussians each lobe takes, for the view that needs most.
+std::vector<size_t> gaussians_of_lobes(const LobesAt& lobes_at_view, const LobeRows& rows) {
+  std::vector<size_t> counts;
+  for (size_t place = 0; place < places_of(rows); ++place) {
+    const Vec3d wv = view_at(rows, place);
+    const Lobes lobes = lobes_at_view(wv);
+    counts.resize(lobes.size(), 1);
+    for (size_t j = 0; j < lobes.size(); ++j) {
+      const LobeReach reach = lobe_reach(lobes[j], wv);
+      if (reach.is_seen) counts[j] = std::max(counts[j], gaussians_for(reach.longer / reach.shorter));
+    }
+  }
+  return counts;
+}
+
+/// The lobes of one place.
+void write_place(const Lobes& lobes, LobeOf of, const std::vector<size_t>& counts, const SoftValue& soft_value,
+                 const BroadPart& broad, const Vec3d& wv, float* to) {
+  std::vector<LightGaussian> gaussians, soft_gaussians;
+  Lobes soft;
+  for (size_t j = 0; j < lobes.size(); ++j) {
+    const LobeReach reach = lobe_reach(lobes[j], wv);
+    std::vector<LightGaussian> row(counts[j]);
+    light_gaussians(lobes[j], of, reach, wv, row);
+    gaussians.insert(gaussians.end(), row.begin(), row.end());
+    if (reach.bandwidth_across(lobes[j]) > kSoft) continue;
+    soft.push_back(lobes[j]);
+    soft_gaussians.insert(soft_gaussians.end(), row.begin(), row.end());
+  }
+  const auto fitted = broad.fitted([&](const Vec3d& wl) {
+    const Vec3d reflected = wl.z > 0 ? wl.z * soft_value(soft, wl, wv) : Vec3d(0.0);
+    return reflected - value_of(soft_gaussians, wl);
+  });
+  write_lobes(fitted, gaussians, to);
+}
+
+LobeRows blended_rows(bool isotropic, LobeOf of, const LobesAt& lobes_at_view, const SoftValue& soft_value, int threads,
+                      Progress& progress) {
+  LobeRows rows{.isotropic = isotropic, .side = isotropic ? kAngles : kGrid};
+  const auto counts = gaussians_of_lobes(lobes_at_view, rows);
+  const BroadPart broad;
+  rows.lobes = BroadPart::kLobes;
+  for (const size_t count : counts) rows.lobes += static_cast<int>(count);
+  rows.pixels = pixels_of(rows);
+  parallel_for_each(places_of(rows), threads, progress, [&](size_t place) {
+    const Vec3d wv = view_at(rows, place);
+    write_place(lobes_at_view(wv), of, counts, soft_value, broad, wv, rows.pixels.at(0, static_cast<uint32_t>(place)));
+  });
+  return rows;
+}
+
+LobeRows rows_of(const ParametricBrdf& brdf, int threads, Progress& progress) {
+  const auto lobes = [&](const Vec3d& wv) { return lobes_at(brdf, wv); };
+  const auto soft = [](const Lobes& lobes_of_view, const Vec3d& wl, const Vec3d& wv) {
+    return value_of(lobes_of_view, wl, wv);
+  };
+  return blended_rows(brdf.isotropic, LobeOf::f, lobes, soft, threads, progress);
+}
+
+/// The mixtures of f cos at all places, as the material has them.
+std::vector<LobeMixture> mixtures_of(const ScatteredBrdf& brdf, const LobeRows& rows) {
+  const ScatteredLobes lobes(brdf, 0);
+  std::vector<LobeMixture> mixtures(places_of(rows));
+  for (size_t place = 0; place < mixtures.size(); ++place) {
+    lobes.gather(lobes.place(Vec3(view_at(rows, place))), mixtures[place]);
+  }
+  return mixtures;
+}
+
+/// Its Gaussians; Abel-Poisson kernels as those of their mean cosine.
+std::vector<LightGaussian> gaussians_of(const LobeMixture& mixture) {
+  std::vector<LightGaussian> gaussians;
+  for (int j = 0; j < mixture.count; ++j) {
+    const auto own = static_cast<double>(mixture.bandwidth[j]), whole = kernel_integral(mixture.kernel, own);
+    const bool is_gaussian = mixture.kernel == Kernel::gaussian;
+    gaussians.push_back({.center = Vec3d(mixture.x[j], mixture.y[j], mixture.z[j]),
+                         .bandwidth = is_gaussian ? own : gaussian_bandwidth_of_mean(1 - own),
+                         .color = whole * Vec3d(mixture.r[j], mixture.g[j], mixture.b[j])});
+  }
+  return gaussians;
+}
+
+/// The material has nothing of its lobes below the horizon, so the broad part takes away what soft ones have there.
+void write_mixture(const LobeMixture& mixture, const BroadPart& broad, float* to) {
+  const auto gaussians = gaussians_of(mixture);
+  std::vector<LightGaussian> soft;
+  std::copy_if(gaussians.begin(), gaussians.end(), std::back_inserter(soft),
+               [](const LightGaussian& g) { return g.bandwidth < kSoft; });
+  auto fitted = broad.fitted([&](const Vec3d& wl) { return wl.z > 0 ? Vec3d(0.0) : -value_of(soft, wl); });
+  fitted.cosine += kPiD * Vec3d(mixture.diffuse_r, mixture.diffuse_g, mixture.diffuse_b);
+  write_lobes(fitted, gaussians, to);
+}
+
+LobeRows rows_of(const ScatteredBrdf& brdf, int threads, Progress& progress) {
+  LobeRows rows{.isotropic = brdf.isotropic, .side = brdf.isotropic ? kNearAngles : kNearGrid, .blends = false};
+  const auto mixtures = mixtures_of(brdf, rows);
+  for (const LobeMixture& mixture : mixtures) rows.lobes = std::max(rows.lobes, mixture.count + BroadPart::kLobes);
+  rows.pixels = pixels_of(rows);
+  const BroadPart broad;
+  parallel_for_each(mixtures.size(), threads, progress, [&](size_t place) {
+    write_mixture(mixtures[place], broad, rows.pixels.at(0, static_cast<uint32_t>(place)));
+  });
+  return rows;
+}
+
+}  // namespace
+
+LobeRows lobe_rows(const Model& model, int threads, Progress& progress) {
+  if (const auto* parametric = std::get_if<ParametricBrdf>(&model.body)) {
+    return rows_of(*parametric, threads, progress);
+  }
+  if (const auto* scattered = std::get_if<ScatteredBrdf>(&model.body)) return rows_of(*scattered, threads, progress);
+  throw Error(Status::invalid_argument, "The model of a BTF has no rows of lobes; models of BRDFs have.");
+}
+
+LobeRows lobe_rows(const PrincipledParameters& parameters, int threads, Progress& progress) {
+  const GgxLobes ggx(parameters);
+  const auto lobes = [&](const Vec3d& wv) { return ggx.lobes(wv); };
+  const auto soft = [&](const Lobes& soft_lobes, const Vec3d& wl, const Vec3d& wv) {
+    if (soft_lobes.size() == GgxLobes::kLobes) return ggx.f(wl, wv);
+    return ggx.base(wl, wv) + ggx.growth(wl, wv) * value_of(soft_lobes, wl, wv) / wl.z;
+  };
+  return blended_rows(true, LobeOf::f_cosine, lobes, soft, threads, progress);
+}
+
+}  // namespace velour
