@@ -16,23 +16,6 @@ def start(folder):
     window.run(folder, (ball_in_a_sky, lamps, grey, edits, refusals))
 
 
-def _shown():
-    return viewport.the_one()._real_time
-
-
-def _is_finished():
-    shown = _shown() if tuple(viewport.addon("engine.viewport")._all) else None
-    if shown is None or shown._live is None:
-        return False
-    drawing = shown._drawing
-    return drawing._targets is not None and not drawing.is_waiting(shown._live.scene)
-
-
-def _finished():
-    yield from viewport.until(_is_finished, "nothing is drawn in real time")
-    yield 0.3
-
-
 def _show():
     bpy.context.scene.velour.viewport_mode = "REAL_TIME"
     bpy.context.scene.render.preview_pixel_size = "4"
@@ -41,7 +24,7 @@ def _show():
 
 def _pixels():
     """[height x width x 4] of what was drawn."""
-    targets = _shown()._drawing._targets
+    targets = viewport.real_time()._drawing._targets
     width, height = targets.size
     buffer = targets.mean().read()
     buffer.dimensions = width * height * 4
@@ -136,10 +119,10 @@ def ball_in_a_sky(folder):
     _sky(folder)
     _ball(scenes.measured_material((_DATA / "paint.velour").read_bytes()))
     _show()
-    yield from _finished()
+    yield from viewport.real_time_finished()
     window.screenshot(folder, "ball")
     drawn = _pixels()
-    same = _error(drawn, _traced(_equirectangular(_shown()._drawing.mixture)))
+    same = _error(drawn, _traced(_equirectangular(viewport.real_time()._drawing.mixture)))
     picture = _error(drawn, _traced())
     print(f"relative L2: {same:.4f} under the mixture, {picture:.4f} under the picture", flush=True)
     assert same < 0.03, same
@@ -161,7 +144,7 @@ def lamps(folder):
         obj.rotation_euler = (0.98, 0, 0.9)  # towards the middle
         bpy.context.scene.collection.objects.link(obj)
         _show()
-        yield from _finished()
+        yield from viewport.real_time_finished()
         yield 0.3
         window.screenshot(folder, f"lamp-{kind.lower()}")
         error = _error(_pixels(), _traced())
@@ -176,7 +159,7 @@ def grey(folder):
         bpy.data.objects.remove(bpy.data.objects[name])
     scenes.set_world((0.18, 0.18, 0.18))
     _show()
-    yield from _finished()
+    yield from viewport.real_time_finished()
     values = 255 * viewport.middle(window.screenshot(folder, "grey"))
     assert np.abs(values - 118).max() <= 1, (values.min(), values.max())
 
@@ -187,7 +170,7 @@ def edits(folder):
     cube = bpy.data.objects["Cube"]
     cube.active_material = bpy.data.materials["Material"]
     _show()
-    yield from _finished()
+    yield from viewport.real_time_finished()
     last = _pixels()
 
     def turn():
@@ -206,7 +189,7 @@ def edits(folder):
     for edit in (turn, paint, brighten, darken):
         edit()
         yield 0.3
-        yield from _finished()
+        yield from viewport.real_time_finished()
         seen = _pixels()
         assert np.abs(seen - last).max() > 0.02, edit.__name__
         window.screenshot(folder, f"edit-{edit.__name__}")
@@ -227,5 +210,5 @@ def refusals(folder):
     bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
     yield from viewport.finished()
     bpy.context.scene.velour.viewport_mode = "REAL_TIME"
-    yield from _finished()
+    yield from viewport.real_time_finished()
     assert not viewport.the_one()._not_real_time

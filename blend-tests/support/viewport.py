@@ -49,6 +49,25 @@ def the_one():
     return found
 
 
+def real_time():
+    """The RealtimeViewport of the only 3D viewport; None: it is not in real time."""
+    found = tuple(addon("engine.viewport")._all)
+    return found[0]._real_time if found else None
+
+
+def _is_drawn():
+    shown = real_time()
+    if shown is None or shown._live is None:
+        return False
+    return shown._drawing._targets is not None and not shown._drawing.is_waiting(shown._live.scene)
+
+
+def real_time_finished():
+    """Turns until all of a picture in real time is on the screen."""
+    yield from until(_is_drawn, "nothing is drawn in real time")
+    yield 0.3
+
+
 def samples():
     """Of the picture on the screen; 0: there is none."""
     found = tuple(addon("engine.viewport")._all)

@@ -113,7 +113,16 @@ def _text(scene: str, result: dict) -> str:
         memory = ", ".join(f"{mib:.0f}" for mib in result["restarts"]["mib"])
         count = result["restarts"]["count"]
         lines.append(f"Switched off and on {count} times; MiB after each tenth of them: {memory}.")
+    if "real_time" in result:
+        lines += ["", _real_time_text(result["real_time"])]
     return "\n".join([*lines, ""])
+
+
+def _real_time_text(result: dict) -> str:
+    seconds, (width, height) = statistics.median(result["seconds"]), result["size"]
+    return f"""In real time ([realtime.md](realtime.md)) a picture of {width} x {height} of it takes
+{1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; asked are 30 on a modest
+graphics processor."""
 
 
 def _row(name: str, runs: list[dict]) -> list[str]:

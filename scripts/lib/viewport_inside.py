@@ -18,6 +18,7 @@ import viewport_scenes
 from support import blender, viewport, window
 
 SAMPLES = 8
+PICTURE = (1280, 720)  # in real time
 REPEATS = 5  # of each change; the median counts
 _TURN = 0.005
 _PATIENCE = 120
@@ -93,6 +94,7 @@ def _measure(folder, task, result):
     result["mib"] = _resident_mib()
     if task["restarts"]:
         result["restarts"] = yield from _restarted(watch, task["restarts"])
+        result["real_time"] = yield from _real_time()
 
 
 def _repeated(watch, change):
@@ -118,6 +120,23 @@ def _restarted(watch, count):
         if (i + 1) % max(count // 10, 1) == 0:
             memory.append(_resident_mib())
     return {"count": count, "mib": memory}
+
+
+def _real_time():
+    """Seconds of a picture in real time: drawn anew and read back, so that all of it has ended."""
+    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
+    yield from viewport.real_time_finished()
+    shown, (width, height) = viewport.real_time(), PICTURE
+    with viewport.override():
+        context = bpy.context
+        frame = viewport.addon("export.viewport").viewport_frame(context, context.evaluated_depsgraph_get())
+    drawing, view, seconds = shown._drawing, frame.view._replace(width=width, height=height), []
+    for _ in range(REPEATS):
+        begin = time.monotonic()
+        drawing.restart()
+        drawing.draw(shown._live.scene, view, 1.0, True).read()
+        seconds.append(time.monotonic() - begin)
+    return {"size": PICTURE, "seconds": seconds}
 
 
 def _resident_mib():
