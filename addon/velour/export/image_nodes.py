@@ -80,7 +80,8 @@ def _mapping_matrix(plug):
         raise UnsupportedError(f"something is linked to '{node.name}'")
     rotation = Euler(node.inputs["Rotation"].default_value).to_matrix().to_4x4()
     scale = Matrix.Diagonal((*node.inputs["Scale"].default_value, 1.0))
-    shift = Matrix.Translation(node.inputs["Location"].default_value)
+    location = node.inputs.get("Location")  # newer Blenders find it only where the type uses it
+    shift = Matrix.Translation(location.default_value) if location is not None else Matrix()
     kinds = {
         "POINT": lambda: shift @ rotation @ scale,
         "TEXTURE": lambda: (shift @ rotation @ scale).inverted_safe(),
