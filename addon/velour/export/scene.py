@@ -39,6 +39,7 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True, 
             refuse_black(depsgraph, objects, materials, world_shines, notes)
         view.add_to(scene)
         _note_scene(depsgraph.scene_eval, notes)
+        _note_layer(depsgraph.view_layer_eval, notes)
         check_break()
         scene.commit()
         info = scene.info()
@@ -67,3 +68,12 @@ def _surroundings(camera, owner):
 def _note_scene(scene, notes):
     if scene.render.use_motion_blur:
         notes.add(f"Scene '{scene.name}': motion blur is not supported; ignored.")
+
+
+def _note_layer(layer, notes):
+    """What it overrides; materials are honoured."""
+    owner = f"View layer '{layer.name}'"
+    if getattr(layer, "world_override", None):  # 4.3 and newer
+        notes.add(f"{owner}: a world of its own is not supported; the scene's world is used.")
+    if layer.samples:
+        notes.add(f"{owner}: a number of samples of its own is not supported; the scene's is used.")
