@@ -7,6 +7,7 @@ from parity import engines, stage
 from parity.case import ParityTest
 from support import scenes
 
+_SINCE_5 = {"IndexOB": "Object Index", "IndexMA": "Material Index"}
 _MOST_OFF = 0.005  # of the pixels: where edges meet, one picture shows what no neighbour of the other does
 
 
@@ -37,10 +38,15 @@ class Passes(ParityTest):
         for engine in ("CYCLES", "VELOUR"):
             self.scene.render.engine = engine
             self.layer.update_render_passes()
+            name = name if name in self._sockets() else _SINCE_5.get(name, name)
             self.show(name)
             self.scene.cycles.samples = self.scene.velour.samples = engines.SAMPLES[engine] * samples
             found.append(scenes.render(self.folder, f"{name}-{engine.lower()}")[..., :channels])
         return found
+
+    def _sockets(self):
+        nodes = scenes.compositor(self.scene).nodes
+        return next(node for node in nodes if node.bl_idname == "CompositorNodeRLayers").outputs
 
     def _assert_near(self, theirs, ours, slack):
         """Each pixel lies between what Cycles has of its neighbours: a first sample may show one of them."""

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import bpy
+
 
 class LayerPass(NamedTuple):
     name: str
@@ -15,6 +17,11 @@ class LayerPass(NamedTuple):
         return len(self.letters)
 
 
+# Blender 5.0 spells them out, and no property tells.
+_INDEX_NAMES = ("IndexOB", "IndexMA") if bpy.app.version < (5, 0) else ("Object Index", "Material Index")
+_OBJECT_INDEX = LayerPass(_INDEX_NAMES[0], "X", "VALUE", "IndexOB", "object_index")
+_MATERIAL_INDEX = LayerPass(_INDEX_NAMES[1], "X", "VALUE", "IndexMA", "material_index")
+
 # The switches of a view layer, and what each switches on.
 _SWITCHES = (
     ("use_pass_z", (LayerPass("Depth", "Z", "VALUE", "Depth"),)),
@@ -23,8 +30,8 @@ _SWITCHES = (
     ("use_pass_normal", (LayerPass("Normal", "XYZ", "VECTOR", "Normal"),)),
     ("use_pass_vector", (LayerPass("Vector", "XYZW", "VECTOR", None),)),
     ("use_pass_uv", (LayerPass("UV", "UVA", "VECTOR", "UV", "uv"),)),
-    ("use_pass_object_index", (LayerPass("IndexOB", "X", "VALUE", "IndexOB", "object_index"),)),
-    ("use_pass_material_index", (LayerPass("IndexMA", "X", "VALUE", "IndexMA", "material_index"),)),
+    ("use_pass_object_index", (_OBJECT_INDEX,)),
+    ("use_pass_material_index", (_MATERIAL_INDEX,)),
 )
 _OWN_SWITCHES = (  # of Velour's settings
     ("use_pass_albedo", (LayerPass("Albedo", "RGB", "COLOR", "Albedo", "albedo"),)),
