@@ -122,7 +122,7 @@ class Drawing:
         shader.uniform_sampler("lamps", self._lamps)
         first = 0
         for group in scene.groups:
-            for slot, batch in enumerate(scene.meshes[group.mesh].batches(gpu, shader)):
+            for slot, batch in enumerate(scene.meshes[group.mesh].batches(gpu)):
                 material = group.materials[min(slot, len(group.materials) - 1)]
                 if batch is None or material is None:
                     continue

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+_ATTRIBUTES = {"position": 3, "normal": 3, "uv": 2}  # of the surface shader
+
 
 def split_meshes(meshes):
     """Of what Scene.add_meshes takes, for each mesh its arrays by name, flat; None: not given."""
@@ -47,10 +49,12 @@ class GpuMesh:
             normals[self.triangles[smooth == 0]] = 0
         return normals
 
-    def batches(self, gpu, shader):
+    def batches(self, gpu):
         """Of each slot its GPUBatch; None: it has no triangle."""
         if self._batches is None:
-            form = shader.format_calc()
+            form = gpu.types.GPUVertFormat()
+            for name, count in _ATTRIBUTES.items():
+                form.attr_add(id=name, comp_type="F32", len=count, fetch_mode="FLOAT")
             vertices = gpu.types.GPUVertBuf(form, len(self.positions))
             vertices.attr_fill("position", np.ascontiguousarray(self.positions, np.float32))
             vertices.attr_fill("normal", np.ascontiguousarray(self.normals, np.float32))
