@@ -69,7 +69,7 @@ shading, megabytes of the whole scene.
 ## With the tile's BTF
 
 The geometry has the tile's own materials, the others show its BTF: {extent.texels} x {extent.texels} texels
-under 81 x 81 directions, of one side, as `velour capture` and `velour compress` make it unasked.
+under 81 x 81 directions, captured from above alone, compressed as `velour compress` does unasked.
 {_ratios(rows, "BTF")}
 
 {of_btf}
