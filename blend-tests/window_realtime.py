@@ -1,4 +1,4 @@
-"""The viewport in real time: beside the ray tracer under the same light, without shadows; what it refuses."""
+"""The viewport in real time: beside the ray tracer under the same light, without shadows."""
 
 from pathlib import Path
 
@@ -13,13 +13,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (ball_in_a_sky, lamps, grey, edits, refusals))
-
-
-def _show():
-    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
-    bpy.context.scene.render.preview_pixel_size = "4"
-    viewport.show()
+    window.run(folder, (ball_in_a_sky, lamps, grey, edits))
 
 
 def _pixels():
@@ -47,6 +41,11 @@ def _equirectangular(mixture, height=512):
     for lobe in mixture:
         pixels += np.exp(lobe[3] * (w @ lobe[:3] - 1))[..., None] * lobe[4:]
     return pixels.astype(np.float32)
+
+
+def _mixture():
+    """[lobes x 7] Centre, bandwidth and colour of what the viewport is lit by."""
+    return np.array(viewport.real_time()._drawing.light_report["mixture"]).reshape(-1, 7)
 
 
 def _traced(light=None, samples=1024):
@@ -118,11 +117,11 @@ def ball_in_a_sky(folder):
     """Within three hundredths of the ray tracer that is lit by the same mixture."""
     _sky(folder)
     _ball(scenes.measured_material((_DATA / "paint.velour").read_bytes()))
-    _show()
+    viewport.show_real_time()
     yield from viewport.real_time_finished()
     window.screenshot(folder, "ball")
     drawn = _pixels()
-    same = _error(drawn, _traced(_equirectangular(viewport.real_time()._drawing.mixture)))
+    same = _error(drawn, _traced(_equirectangular(_mixture())))
     picture = _error(drawn, _traced())
     print(f"relative L2: {same:.4f} under the mixture, {picture:.4f} under the picture", flush=True)
     assert same < 0.03, same
@@ -143,7 +142,7 @@ def lamps(folder):
         obj.location = (5, -4, 4)
         obj.rotation_euler = (0.98, 0, 0.9)  # towards the middle
         bpy.context.scene.collection.objects.link(obj)
-        _show()
+        viewport.show_real_time()
         yield from viewport.real_time_finished()
         yield 0.3
         window.screenshot(folder, f"lamp-{kind.lower()}")
@@ -158,7 +157,7 @@ def grey(folder):
     for name in ("Cube", "Light"):
         bpy.data.objects.remove(bpy.data.objects[name])
     scenes.set_world((0.18, 0.18, 0.18))
-    _show()
+    viewport.show_real_time()
     yield from viewport.real_time_finished()
     values = 255 * viewport.middle(window.screenshot(folder, "grey"))
     assert np.abs(values - 118).max() <= 1, (values.min(), values.max())
@@ -169,7 +168,7 @@ def edits(folder):
     scenes.set_world((0.5, 0.7, 1.0), 0.5)
     cube = bpy.data.objects["Cube"]
     cube.active_material = bpy.data.materials["Material"]
-    _show()
+    viewport.show_real_time()
     yield from viewport.real_time_finished()
     last = _pixels()
 
@@ -194,21 +193,3 @@ def edits(folder):
         assert np.abs(seen - last).max() > 0.02, edit.__name__
         window.screenshot(folder, f"edit-{edit.__name__}")
         last = seen
-
-
-def refusals(folder):
-    """A BTF is shown by the ray tracer, with a sentence; back in real time once it is gone."""
-    scenes.set_world()
-    cube = bpy.data.objects["Cube"]
-    plain = cube.active_material
-    cube.active_material = scenes.measured_material((_DATA / "weave.velour").read_bytes())
-    _show()
-    yield from viewport.until(lambda: viewport.samples() > 0, "the ray tracer shows nothing")
-    assert "BTF" in viewport.the_one()._not_real_time, viewport.the_one()._not_real_time
-    window.screenshot(folder, "refused")
-    cube.active_material = plain
-    bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
-    yield from viewport.finished()
-    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
-    yield from viewport.real_time_finished()
-    assert not viewport.the_one()._not_real_time

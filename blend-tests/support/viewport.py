@@ -43,6 +43,13 @@ def show(samples=64):
     return view
 
 
+def show_real_time():
+    """The same by the graphics processor; pixels are large, for here that is the processor."""
+    scene = bpy.context.scene
+    scene.velour.viewport_mode, scene.render.preview_pixel_size = "REAL_TIME", "4"
+    show()
+
+
 def the_one():
     """The Viewport of the only 3D viewport."""
     (found,) = tuple(addon("engine.viewport")._all)

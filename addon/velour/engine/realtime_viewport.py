@@ -58,7 +58,7 @@ class RealtimeViewport:
         if not is_ready:
             return "Preparing real time"
         self._show(depsgraph.scene_eval, frame)
-        return self._line(scene)
+        return self._line()
 
     def turn(self):
         """Between redraws. False: there is nothing to wait for."""
@@ -89,7 +89,12 @@ class RealtimeViewport:
         engine.unbind_display_space_shader()
         gpu.state.blend_set("NONE")
 
-    @staticmethod
-    def _line(scene):
-        simpler = sum(look.is_simpler for look in scene.looks)
-        return f"Real time, {simpler} other materials simplified" if simpler else "Real time"
+    def _line(self):
+        light = self._drawing.light_report
+        said = ["Real time"]
+        if light.get("relative_l2", 0.0) > 0.0:
+            said.append(f"the world as {light['lobes']} lobes, {100 * light['relative_l2']:.1f} % off")
+        simpler = sum(look.is_simpler for look in self._live.scene.looks)
+        if simpler:
+            said.append(f"{simpler} other materials simplified")
+        return "; ".join(said)

@@ -21,7 +21,7 @@ class Drawing:
         self._cache_folder = cache_folder
         self._rows = {}  # of each Job of lobes: texture and report
         self._light = None  # texture
-        self.mixture = None  # [lobes x 7] that is in it: centre, bandwidth, colour
+        self.light_report = {}  # of the job that made it
         self._light_job = None
         self._light_version = None  # of the world that the job is of
         self._targets = None
@@ -60,7 +60,7 @@ class Drawing:
             self._light_version = scene.world_version
         if self._light_job and self._light_job.wait(timeout=0):
             self._light = _texture(gpu, self._light_job.result_table())
-            self.mixture = np.array(self._light_job.report()["mixture"], float).reshape(-1, 7)
+            self.light_report = self._light_job.report()
             self._light_job.close()
             self._light_job = None
             self.restart()

@@ -88,51 +88,98 @@ class ReceivedLight {
   std::array<float, kAngles> by_angle_;
 };
 
-/// The mixture as the products' kernel takes it: amplitudes 1, as many lobes as lanes.
+constexpr float kLeast = 1e-5f;  // of the mean radiance: what a lobe of the sky may be left out for
+
+/// A part of a mixture as the products' kernel takes it: amplitudes 1, as many lobes as lanes.
 class Lobes {
  public:
-  explicit Lobes(const SkyMixture& sky) : coefficient_(sky.coefficient) {
-    for (size_t k = 0; k < sky.size(); ++k) lobes_.add({sky.center[k], sky.bandwidth[k], 1.0f});
+  /// Those that add at least a luminance of `least` to the mean over Gaussians of this bandwidth, anywhere within
+  /// `reach` radians of `center`.
+  Lobes(const SkyMixture& sky, float least, float bandwidth, const Vec3& center, float reach)
+      : bandwidth_(bandwidth),
+        amplitude_(1 / static_cast<float>(kernel_integral(Kernel::gaussian, static_cast<double>(bandwidth)))) {
+    for (size_t k = 0; k < sky.size(); ++k) {
+      const float angle = std::acos(std::clamp(glm::dot(center, sky.center[k]), -1.0f, 1.0f)) - reach;
+      const float both = bandwidth * sky.bandwidth[k] / (bandwidth + sky.bandwidth[k]);
+      const float least_exponent = angle > 0 ? both * (1 - std::cos(angle)) : 0;
+      if (luminance(sky.coefficient[k]) * std::exp(-least_exponent) < least) continue;
+      lobes_.add({sky.center[k], sky.bandwidth[k], 1.0f});
+      coefficient_.push_back(sky.coefficient[k]);
+    }
     while (lobes_.size() % LobeProducts::kLanes != 0) {
       lobes_.add({{0, 0, 1}, 1, 0});
       coefficient_.emplace_back(0.0f);
     }
   }
 
-  /// The sky's mean over a Gaussian density about `center`.
-  Rgb mean(const Vec3& center, float bandwidth, LobeProducts& products) const {
-    const auto whole = static_cast<float>(kernel_integral(Kernel::gaussian, static_cast<double>(bandwidth)));
+  /// Their mean over a Gaussian density about `center`.
+  Rgb mean(const Vec3& center, LobeProducts& products) const {
     products.count = 0;
-    multiply_lobes({center, bandwidth, 1 / whole}, lobes_, 0, static_cast<int>(lobes_.size()), nullptr, products);
+    multiply_lobes({center, bandwidth_, amplitude_}, lobes_, 0, static_cast<int>(lobes_.size()), nullptr, products);
     Rgb sum(0.0f);
     for (size_t k = 0; k < coefficient_.size(); ++k) sum += products.mass[k] * coefficient_[k];
     return sum;
   }
 
  private:
+  float bandwidth_, amplitude_;
   GaussianLobes lobes_;
   std::vector<Rgb> coefficient_;
 };
 
-void fill_level(int level, int y, const Map& map, const SkyMixture& sky, const Lobes& lobes,
-                const std::vector<ReceivedLight>& received, const Environment& environment, TablePixels& pixels) {
-  LobeProducts products;
-  for (int x = -1; x <= map.side; ++x) {
-    const Vec3 w = direction_at(x, y, map.side);
-    Rgb mean(0.0f);
-    if (level == LightLevels::kSky) {
-      mean = environment.radiance(w);
-    } else if (level == LightLevels::kCosine) {
-      for (size_t k = 0; k < sky.size(); ++k) {
-        mean += received[k].at(glm::dot(w, sky.center[k])) * sky.coefficient[k];
-      }
-    } else {
-      mean = lobes.mean(w, LightLevels::bandwidth(level), products);
-    }
-    float* const to = pixels.at(static_cast<uint32_t>(map.x + 1 + x), static_cast<uint32_t>(map.y + 1 + y));
-    for (int c = 0; c < 3; ++c) to[c] = mean[c];
-    to[3] = 1;
+float mean_luminance(const SkyMixture& sky) {
+  double sum = 0;
+  for (size_t k = 0; k < sky.size(); ++k) {
+    sum += static_cast<double>(luminance(sky.coefficient[k])) *
+           kernel_integral(Kernel::gaussian, static_cast<double>(sky.bandwidth[k]));
   }
+  return static_cast<float>(sum / (4 * kPiD));
+}
+
+/// Pixels of a level that are made together; (x, y) from -1, border included.
+struct Block {
+  static constexpr int kSide = 16;
+  int level, x, y, x_end, y_end;
+};
+
+std::vector<Block> blocks_of(const std::array<Map, LightLevels::kCount>& maps) {
+  std::vector<Block> blocks;
+  for (int level = 0; level < LightLevels::kCount; ++level) {
+    const int end = maps[static_cast<size_t>(level)].side + 1;
+    for (int y = -1; y < end; y += Block::kSide) {
+      for (int x = -1; x < end; x += Block::kSide) {
+        blocks.push_back({level, x, y, std::min(x + Block::kSide, end), std::min(y + Block::kSide, end)});
+      }
+    }
+  }
+  return blocks;
+}
+
+/// Calls `value`(direction) for the pixels of a block.
+template <typename Value>
+void fill(const Block& block, const Map& map, TablePixels& pixels, const Value& value) {
+  for (int y = block.y; y < block.y_end; ++y) {
+    for (int x = block.x; x < block.x_end; ++x) {
+      const Rgb mean = value(direction_at(x, y, map.side));
+      float* const to = pixels.at(static_cast<uint32_t>(map.x + 1 + x), static_cast<uint32_t>(map.y + 1 + y));
+      for (int c = 0; c < 3; ++c) to[c] = mean[c];
+      to[3] = 1;
+    }
+  }
+}
+
+/// The lobes that count in a block: by its corners, for those of the border lie elsewhere on the sphere than its
+/// middle.
+Lobes lobes_in(const Block& block, const Map& map, const SkyMixture& sky, float least) {
+  const Vec3 center = direction_at((block.x + block.x_end - 1) / 2, (block.y + block.y_end - 1) / 2, map.side);
+  float reach = 0;
+  for (int y = block.y; y < block.y_end; ++y) {
+    for (int x = block.x; x < block.x_end; ++x) {
+      reach = std::max(reach, glm::length(direction_at(x, y, map.side) - center));
+    }
+  }
+  // An angle of a chord, and no less.
+  return {sky, least, LightLevels::bandwidth(block.level), center, 2 * std::asin(std::min(reach / 2, 1.0f)) + 1e-3f};
 }
 
 }  // namespace
@@ -148,23 +195,32 @@ TablePixels light_map(const SkyMixture& sky, const Environment& environment, int
   uint32_t width, height;
   const auto maps = placed_maps(width, height);
   TablePixels pixels(width, height);
-  const Lobes lobes(sky);
-  const std::vector<ReceivedLight> received(sky.bandwidth.begin(), sky.bandwidth.end());
-  struct Row {
-    int level, y;
-  };
-  std::vector<Row> rows;
   for (int level = 0; level < LightLevels::kCount; ++level) {
     const Map& map = maps[static_cast<size_t>(level)];
     float* const entry = pixels.at(static_cast<uint32_t>(level), 0);
     entry[0] = static_cast<float>(map.x + 1);
     entry[1] = static_cast<float>(map.y + 1);
     entry[2] = static_cast<float>(map.side);
-    for (int y = -1; y <= map.side; ++y) rows.push_back({level, y});
   }
-  parallel_for_each(rows.size(), threads, progress, [&](size_t i) {
-    const Row& row = rows[i];
-    fill_level(row.level, row.y, maps[static_cast<size_t>(row.level)], sky, lobes, received, environment, pixels);
+  const std::vector<ReceivedLight> received(sky.bandwidth.begin(), sky.bandwidth.end());
+  const auto blocks = blocks_of(maps);
+  const float least = kLeast * mean_luminance(sky);
+  parallel_for_each(blocks.size(), threads, progress, [&](size_t i) {
+    const Block& block = blocks[i];
+    const Map& map = maps[static_cast<size_t>(block.level)];
+    if (block.level == LightLevels::kSky) {
+      fill(block, map, pixels, [&](const Vec3& w) { return environment.radiance(w); });
+    } else if (block.level == LightLevels::kCosine) {
+      fill(block, map, pixels, [&](const Vec3& w) {
+        Rgb sum(0.0f);
+        for (size_t k = 0; k < sky.size(); ++k) sum += received[k].at(glm::dot(w, sky.center[k])) * sky.coefficient[k];
+        return sum;
+      });
+    } else {
+      const Lobes lobes = lobes_in(block, map, sky, least);
+      LobeProducts products;
+      fill(block, map, pixels, [&](const Vec3& w) { return lobes.mean(w, products); });
+    }
   });
   return pixels;
 }

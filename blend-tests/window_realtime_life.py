@@ -1,0 +1,58 @@
+"""The viewport in real time: that nothing is left of it, and what it leaves to the ray tracer."""
+
+from pathlib import Path
+
+import bpy
+
+from support import scenes, viewport, window
+
+_DATA = Path(__file__).parent / "scenes/data"
+
+
+def start(folder):
+    """Called by the harness once the window is there."""
+    window.run(folder, (restarts, refusals))
+
+
+def restarts(folder):
+    """Switched off and on, and from one mode to the other, again and again: nothing is left behind."""
+    scenes.set_world((0.5, 0.7, 1.0), 0.5)
+    viewport.show_real_time()
+    yield from viewport.real_time_finished()
+    settings, shading, memory = bpy.context.scene.velour, viewport.space().shading, []
+    for i in range(8):
+        if i % 2:
+            shading.type = "SOLID"
+            yield 0.05
+            shading.type = "RENDERED"
+        else:
+            settings.viewport_mode = "RAY_TRACED"
+            yield from viewport.until(lambda: viewport.samples() > 0, "the ray tracer shows nothing")
+            settings.viewport_mode = "REAL_TIME"
+        yield from viewport.real_time_finished()
+        memory.append(_resident_mib())
+    print("MiB after each:", *(round(mib) for mib in memory), flush=True)
+    assert memory[-1] - memory[3] < 20, memory
+
+
+def _resident_mib():
+    lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
+    return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS")) / 1024
+
+
+def refusals(folder):
+    """A BTF is shown by the ray tracer, with a sentence; back in real time once it is gone."""
+    scenes.set_world()
+    cube = bpy.data.objects["Cube"]
+    plain = cube.active_material
+    cube.active_material = scenes.measured_material((_DATA / "weave.velour").read_bytes())
+    viewport.show_real_time()
+    yield from viewport.until(lambda: viewport.samples() > 0, "the ray tracer shows nothing")
+    assert "BTF" in viewport.the_one()._not_real_time, viewport.the_one()._not_real_time
+    window.screenshot(folder, "refused")
+    cube.active_material = plain
+    bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
+    yield from viewport.finished()
+    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
+    yield from viewport.real_time_finished()
+    assert not viewport.the_one()._not_real_time
