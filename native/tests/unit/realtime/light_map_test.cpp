@@ -4,24 +4,18 @@
 
 #include "sphere/directions.h"
 #include "srbf/kernel.h"
+#include "support/sky_lobes.h"
 #include "support/table_shader.h"
 
 namespace velour {
 namespace {
 
 SkyMixture sky_with_sun() {
-  SkyMixture sky;
-  const auto add = [&](const Vec3& center, float bandwidth, const Rgb& coefficient) {
-    sky.center.push_back(glm::normalize(center));
-    sky.bandwidth.push_back(bandwidth);
-    sky.coefficient.push_back(coefficient);
-  };
-  add({0, 0, 1}, 0, Rgb(0.1f, 0.2f, 0.3f));
-  add({0.2f, 0.1f, 1}, 1.5f, Rgb(0.5f, 0.6f, 0.9f));
-  add({1, -0.5f, 0.8f}, 3000, Rgb(900, 800, 600));
-  add({-1, 0.3f, 0.2f}, 40, Rgb(3, 1, 0.5f));
-  add({-0.2f, -0.9f, -0.4f}, 12, Rgb(0.2f, 0.7f, 0.1f));
-  return sky;
+  return test::sky_of({{{0, 0, 1}, 0, Rgb(0.1f, 0.2f, 0.3f)},
+                       {{0.2f, 0.1f, 1}, 1.5f, Rgb(0.5f, 0.6f, 0.9f)},
+                       {{1, -0.5f, 0.8f}, 3000, Rgb(900, 800, 600)},
+                       {{-1, 0.3f, 0.2f}, 40, Rgb(3, 1, 0.5f)},
+                       {{-0.2f, -0.9f, -0.4f}, 12, Rgb(0.2f, 0.7f, 0.1f)}});
 }
 
 /// The mean over a Gaussian density, by the closed form in double.

@@ -11,23 +11,17 @@
 #include "sphere/directions.h"
 #include "support/example_srbf.h"
 #include "support/parametric_models.h"
+#include "support/sky_lobes.h"
 #include "support/table_shader.h"
 
 namespace velour {
 namespace {
 
 SkyMixture soft_sky() {
-  SkyMixture sky;
-  const auto add = [&](const Vec3& center, float bandwidth, const Rgb& coefficient) {
-    sky.center.push_back(glm::normalize(center));
-    sky.bandwidth.push_back(bandwidth);
-    sky.coefficient.push_back(coefficient);
-  };
-  add({0.2f, 0.1f, 1}, 0.7f, Rgb(0.3f, 0.4f, 0.6f));
-  add({1, -0.5f, 0.8f}, 700, Rgb(200, 180, 120));
-  add({-1, 0.3f, 0.2f}, 40, Rgb(3, 1, 0.5f));
-  add({0.3f, 0.9f, 0.1f}, 12, Rgb(0.2f, 0.7f, 0.1f));
-  return sky;
+  return test::sky_of({{{0.2f, 0.1f, 1}, 0.7f, Rgb(0.3f, 0.4f, 0.6f)},
+                       {{1, -0.5f, 0.8f}, 700, Rgb(200, 180, 120)},
+                       {{-1, 0.3f, 0.2f}, 40, Rgb(3, 1, 0.5f)},
+                       {{0.3f, 0.9f, 0.1f}, 12, Rgb(0.2f, 0.7f, 0.1f)}});
 }
 
 Rgb radiance(const SkyMixture& sky, const Vec3& w) {
