@@ -85,6 +85,8 @@ class Presets(BlenderTest):
             added = [library for library in self._libraries if library.path not in self._known]
             self.assertEqual([library.name for library in added], ["Velour Presets"])
         self.assertEqual(Path(added[0].path).resolve(), path.parent.resolve())
+        if hasattr(added[0], "import_method"):
+            self.assertTrue(added[0].import_method.startswith("APPEND"))
 
     def test_the_add_ons_own_folder_is_the_default(self):
         presets = importlib.import_module("velour.core.presets")

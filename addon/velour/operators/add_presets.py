@@ -62,5 +62,13 @@ def _add(preferences, folder):
     bpy.ops.preferences.asset_library_add(directory=str(folder))
     library = library_of(preferences, folder)
     library.name = presets.NAME
-    if hasattr(library, "import_method"):  # models belong to the file that shows them
+    if hasattr(library, "import_method"):
+        _prefer_appending(library)
+
+
+def _prefer_appending(library):
+    """Models belong to the file that shows them."""
+    try:
         library.import_method = "APPEND_REUSE"
+    except TypeError:  # newer Blenders offer it no more, though they list it
+        library.import_method = "APPEND"
