@@ -6,27 +6,14 @@ import contextlib
 import dataclasses
 import hashlib
 import json
-import shutil
 import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
 from preset_table import Preset, Surface, Weave
+from tile_btf import model_of_tile
 from velour.core import files
-from velour.native import (
-    Btf,
-    Measurement,
-    Model,
-    Scene,
-    Tile,
-    capture_job,
-    compress_job,
-    directions,
-    fit_job,
-    library,
-    microsurface_job,
-    votf_job,
-)
+from velour.native import Measurement, Model, Scene, Tile, fit_job, library, microsurface_job, votf_job
 
 _RECIPE = 2  # counts up with each change, here or in the library, that changes models
 _UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
@@ -127,34 +114,24 @@ class Workshop:
             tile = opened.enter_context(Tile.create(weave.kind, **weave.shape))
             scene = opened.enter_context(Scene())
             _add(tile, [opened.enter_context(Model.load(yarn)) for yarn in yarns], scene)
-            look, seconds = self._look(scene, tile, opened)
-            return self._with_outline(path, scene, tile, look, seconds)
+            look, seconds = self._look(scene, tile)
+            return self._with_outline(path, scene, tile, opened.enter_context(look), seconds)
 
-    def _look(self, scene: Scene, tile: Tile, opened: contextlib.ExitStack) -> tuple[Model, float]:
-        """What the repeated tile looks like from above, as a model of its BTF."""
-        folder = Path(tempfile.mkdtemp(prefix="capture-", dir=self.work))
-        opened.callback(shutil.rmtree, folder, ignore_errors=True)
-        sizes, info = self._sizes, tile.info()
-        around = directions(str(sizes.directions))
-        with capture_job(
-            scene,
-            folder / "tile.btf",
-            texels=sizes.texels,
-            views=around,
-            lights=around,
-            samples=sizes.samples,
-            bounces=2,
-            sides="one",
-            period=info["period"],
-            source=info["kind"],
-            seed=1,
-            threads=self._threads,
-        ) as job:
-            seconds = job.run()["seconds"]
-        btf = opened.enter_context(Btf.load(folder / "tile.btf"))
-        job = opened.enter_context(compress_job(btf, seed=1, threads=self._threads))
-        seconds += job.run()["seconds"]
-        return opened.enter_context(job.result_model()), seconds
+    def _look(self, scene: Scene, tile: Tile) -> tuple[Model, float]:
+        """What the repeated tile looks like from above, and the seconds that it took."""
+        sizes = self._sizes
+        with tempfile.TemporaryDirectory(prefix="capture-", dir=self.work) as folder:
+            return model_of_tile(
+                scene,
+                tile.info(),
+                Path(folder) / "tile.btf",
+                sizes.directions,
+                seed=1,
+                threads=self._threads,
+                texels=sizes.texels,
+                samples=sizes.samples,
+                bounces=2,
+            )
 
     def _with_outline(self, path: Path, scene: Scene, tile: Tile, look: Model, seconds: float) -> Path:
         info = tile.info()

@@ -8,22 +8,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from progress import Progress
-from velour.native import (
-    Btf,
-    Measurement,
-    Model,
-    Scene,
-    Tile,
-    capture_job,
-    compress_job,
-    directions,
-    fit_job,
-    microsurface_job,
-    votf_job,
-)
+from tile_btf import model_of_tile
+from velour.native import Measurement, Model, Scene, Tile, fit_job, microsurface_job, votf_job
 
 _UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
-_DIRECTIONS = "81"  # Bonn's, of views and of lights
+_DIRECTIONS = 81  # Bonn's, of views and of lights
 
 
 class Look(NamedTuple):
@@ -65,15 +54,10 @@ def looks(
 
 def _btf(scene: Scene, info: dict, path: Path, texels: int) -> Model:
     if not path.exists():
-        around = directions(_DIRECTIONS)
         data = path.with_suffix(".btf")
-        options = {"views": around, "lights": around, "sides": "one", "period": info["period"], "resume": 1}
-        with capture_job(scene, data, texels=texels, source=info["kind"], **options) as job:
-            job.run()
-        with Btf.load(data) as btf, compress_job(btf) as job:
-            job.run()
-            with job.result_model() as fitted:
-                fitted.save(path)
+        fitted, _seconds = model_of_tile(scene, info, data, _DIRECTIONS, texels=texels, resume=1)
+        with fitted:
+            fitted.save(path)
     return Model.load(path)
 
 

@@ -1,0 +1,38 @@
+// Colours, maps and bits as callers give them.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "job/error.h"
+#include "scene/affine.h"
+#include "sphere/vec.h"
+#include "velour/velour.h"
+
+namespace velour::capi {
+
+inline constexpr uint32_t kRays = VLR_HIDDEN_FROM_CAMERA | VLR_HIDDEN_FROM_BOUNCES | VLR_HIDDEN_FROM_SHADOWS;
+
+/// Throws Error(invalid_argument) for bits that are not among `known`.
+inline void require_hidden(uint32_t hidden_from, uint32_t known) {
+  if ((hidden_from & ~known) == 0) return;
+  throw Error(Status::invalid_argument,
+              "hidden_from is " + std::to_string(hidden_from) + ", which has bits that are no VLR_HIDDEN value.");
+}
+
+inline Rgb color_from(const float* c) { return {c[0], c[1], c[2]}; }
+
+/// Null: the identity.
+inline Mat3 matrix_from_rows(const float* m) {
+  if (!m) return Mat3(1.0f);
+  return {m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]};
+}
+
+/// `m` [3 x 4, row-major].
+inline Affine affine_from(const float* m) {
+  Affine map;
+  std::copy(m, m + 12, map.m);
+  return map;
+}
+
+}  // namespace velour::capi

@@ -1,0 +1,34 @@
+"""What a tile looks like from above once it is repeated without end: the model of its BTF."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from velour.native import Btf, Model, Scene, capture_job, compress_job, directions
+
+
+def model_of_tile(
+    scene: Scene, tile: dict, data: Path, around: int, seed: int = 0, threads: int = 0, **capture
+) -> tuple[Model, float]:
+    """Captures the front of a committed scene that holds the tile into `data` and compresses that.
+
+    `tile`: its info(); `around`: of so many views and lights; `capture`: further options of capture_job().
+    Also gives the seconds.
+    """
+    angles = directions(str(around))
+    with capture_job(
+        scene,
+        data,
+        views=angles,
+        lights=angles,
+        sides="one",
+        period=tile["period"],
+        source=tile["kind"],
+        seed=seed,
+        threads=threads,
+        **capture,
+    ) as job:
+        seconds = job.run()["seconds"]
+    with Btf.load(data) as btf, compress_job(btf, seed=seed, threads=threads) as job:
+        seconds += job.run()["seconds"]
+        return job.result_model(), seconds
