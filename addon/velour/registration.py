@@ -2,11 +2,11 @@
 
 import bpy
 
-from . import engine, operators, properties, ui
+from . import engine, handlers, operators, properties, ui
 from .native import library
 
 # Each rank has CLASSES, and attach() / detach() for what is not a class: properties, menu entries, panels.
-_RANKS = (properties, operators, engine, ui)
+_RANKS = (properties, operators, handlers, engine, ui)
 _cli_command = None
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from . import table
 from .errors import LibraryError, VelourError
 from .mapped_file import is_replaced
-from .version import ABI_VERSION, VERSION, version_text
+from .version import ABI_VERSION, packed, version_text
 
 _FILE_NAMES = {"Linux": "libvelour.so", "Darwin": "libvelour.dylib", "Windows": "velour.dll"}
 _loaded: ctypes.CDLL | None = None
@@ -99,8 +99,7 @@ def _check_version(library: ctypes.CDLL, where: str, remedy: str) -> None:
     except AttributeError as error:
         raise LibraryError(f"{where} is not a Velour library ({error}); {remedy}.") from error
     version.restype = abi.restype = ctypes.c_uint32
-    expected = VERSION[0] * 10000 + VERSION[1] * 100 + VERSION[2]
-    if (version(), abi()) != (expected, ABI_VERSION):
+    if (version(), abi()) != (packed(), ABI_VERSION):
         raise LibraryError(
             f"The Velour library {where} is version {version_text(version())} (interface {abi()}), but this"
             f" package needs {version_text()} (interface {ABI_VERSION}); {remedy}."

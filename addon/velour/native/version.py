@@ -4,6 +4,11 @@ VERSION = (0, 1, 0)
 ABI_VERSION = 7
 
 
+def packed(version: tuple[int, int, int] = VERSION) -> int:
+    """As vlr_version() packs it."""
+    return version[0] * 10000 + version[1] * 100 + version[2]
+
+
 def version_text(packed: int | None = None) -> str:
     """ "0.1.0" of VERSION, or of a number packed as vlr_version() packs it."""
     if packed is None:

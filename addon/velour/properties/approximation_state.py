@@ -3,12 +3,15 @@
 import bpy
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, StringProperty
 
+from .saved_by import saved_by
+
 VIEW_ANGLES = ("5", "30", "60", "75", "85")  # degrees
 
 
 class VelourApproximationState(bpy.types.PropertyGroup):
     """`node_tree.velour`. Errors below 0: not known."""
 
+    saved_by: saved_by()
     is_approximation: BoolProperty()
     fitted: StringProperty()  # JSON of operators/approximation_look; empty: an older Velour made it
     model: StringProperty()  # SHA-256 of the model's file; empty: none is fitted yet

@@ -3,10 +3,13 @@
 import bpy
 from bpy.props import BoolProperty, StringProperty
 
+from .saved_by import saved_by
+
 
 class VelourFileSettings(bpy.types.PropertyGroup):
     """`image.velour`."""
 
+    saved_by: saved_by()
     sha256: StringProperty(
         name="SHA-256",
         description="Of the file when it was chosen or fitted; empty: not checked."

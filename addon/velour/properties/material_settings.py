@@ -13,6 +13,7 @@ from bpy.props import (
 
 from .changed import changed, look_changed
 from .placement_settings import VelourPlacementSettings
+from .saved_by import saved_by
 
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
@@ -25,6 +26,7 @@ MODELS = (
 class VelourMaterialSettings(bpy.types.PropertyGroup):
     """`node.velour`; the model itself is `node.image`."""
 
+    saved_by: saved_by()
     enabled: BoolProperty(
         name="Measured Material",
         description="Render the material of this node from the measured model in its image",

@@ -3,6 +3,8 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
+from .saved_by import saved_by
+
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
 
@@ -16,6 +18,7 @@ def _redraw_viewports(_settings, context):
 class VelourRenderSettings(bpy.types.PropertyGroup):
     """`scene.velour`."""
 
+    saved_by: saved_by()
     strategy: EnumProperty(
         name="Strategy",
         description="How light directions are drawn. All strategies converge to the same picture",

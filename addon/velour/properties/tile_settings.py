@@ -11,6 +11,8 @@ from bpy.props import (
     StringProperty,
 )
 
+from .saved_by import saved_by
+
 SIDES = (
     ("AUTOMATIC", "As Needed", "Both where light can pass through the tile", 0),
     ("ONE", "Front", "Seen and lit from above alone", 1),
@@ -32,6 +34,7 @@ _OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 class VelourTileSettings(bpy.types.PropertyGroup):
     """`object.velour`, `collection.velour`."""
 
+    saved_by: saved_by()
     period: FloatVectorProperty(
         name="Period",
         size=2,

@@ -23,6 +23,7 @@ from .render_panel import (
     VELOUR_RENDER_PT_check,
     VELOUR_RENDER_PT_film,
     VELOUR_RENDER_PT_library,
+    VELOUR_RENDER_PT_newer,
     VELOUR_RENDER_PT_sampling,
 )
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
@@ -31,6 +32,7 @@ from .tile_panel import VELOUR_COLLECTION_PT_tile, VELOUR_OBJECT_PT_tile
 CLASSES = (
     VelourPreferences,
     VELOUR_RENDER_PT_library,
+    VELOUR_RENDER_PT_newer,
     VELOUR_RENDER_PT_sampling,
     VELOUR_RENDER_PT_film,
     VELOUR_RENDER_PT_check,

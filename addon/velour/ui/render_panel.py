@@ -3,6 +3,7 @@
 import bpy
 
 from ..engine.engine import VelourRenderEngine
+from ..handlers.saved_files import newer_sentence
 from ..operators.check_scene import VELOUR_OT_check_scene
 from . import library_state
 from .text import draw_sentence
@@ -30,6 +31,19 @@ class VELOUR_RENDER_PT_library(_RenderPanel, bpy.types.Panel):
 
     def draw(self, context):
         draw_sentence(context, self.layout, library_state.problem(), icon="ERROR")
+
+
+class VELOUR_RENDER_PT_newer(_RenderPanel, bpy.types.Panel):
+    """Only there when a later release has saved the scene."""
+
+    bl_label = "From a Newer Velour"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and newer_sentence(context.scene.velour.saved_by) is not None
+
+    def draw(self, context):
+        draw_sentence(context, self.layout, newer_sentence(context.scene.velour.saved_by), icon="ERROR")
 
 
 class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
