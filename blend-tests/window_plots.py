@@ -1,6 +1,7 @@
 """The plots of the material panel: drawn to the pixel, once, in the theme's colours."""
 
 import os
+import time
 
 import bpy
 import numpy as np
@@ -10,7 +11,7 @@ from support import plots, scenes, window
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (each_plot, light_theme, slider))
+    window.run(folder, (each_plot, light_theme, slider, in_the_background, overtaken))
 
 
 def each_plot(folder):
@@ -62,3 +63,58 @@ def slider(folder):
     window.screenshot(folder, "slider")
     assert len(plots.pictures()) > len(before)
     assert not np.array_equal(plots.pictures()[-1], before[-1])
+
+
+_HELD_SECONDS = 0.1  # of the processor that a turn of the plots may take from the main thread
+
+
+def in_the_background(folder):
+    """The event loop goes round while a measurement is read and albedos are worked out."""
+    plots.material()
+    preview = plots.preview()
+    yield from plots.show("ORDER")
+    preview.forget()
+    turn, seconds = preview._turn, []
+
+    def timed():
+        start = time.thread_time()
+        wait = turn()
+        seconds.append(time.thread_time() - start)
+        return wait
+
+    preview._turn = timed
+    bpy.context.window_manager.velour.plot.kind = "ALBEDO"
+    _redraw()
+    fractions = set()
+    for _ in range(2000):
+        yield 0.0
+        fractions |= {work.fraction for work in preview._works.values() if work.fraction is not None}
+        if fractions and preview.is_at_rest():
+            break
+    preview._turn = turn
+    window.screenshot(folder, "albedo-at-rest")
+    assert len(fractions) > 3, f"the plot was made at once, not beside the window: {sorted(fractions)}"
+    assert max(seconds) < _HELD_SECONDS, f"a turn held the window for {max(seconds):.3f} s"
+
+
+def overtaken(folder):
+    """A slider that moves on leaves no queue behind: of all its places the last alone is waited for."""
+    plots.material()
+    yield from plots.show("LOBES")
+    preview, before = plots.preview(), len(plots.pictures())
+    node = scenes.velour_node(bpy.data.materials["Paint"])
+    for degrees in range(10, 60):
+        bpy.context.window_manager.velour.plot.view = np.radians(degrees)
+        preview.plot_picture(bpy.context, node.image, node.velour.measurement, "LOBES", 300)
+    assert len(preview._waiting) + len(preview._works) <= 2, (preview._waiting, preview._works)
+    yield from plots.drawn()
+    assert len(plots.pictures()) <= before + 4, "places that the slider has left were drawn"
+    (angle, _azimuth) = [wanted.angles for wanted in preview._pictures if wanted.style[0] == ("side", 300)][
+        -1
+    ]
+    assert abs(np.degrees(angle) - 59) < 1e-3, np.degrees(angle)
+
+
+def _redraw():
+    for area in window.first().screen.areas:
+        area.tag_redraw()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from command_line import refused, velour
 from conftest import ROOT
-from velour.native import Measurement, Model, Plot, VelourError, images, table
+from velour.native import Measurement, Model, Plot, VelourError, images, measurement_job, plot_job, table
 
 BTF_MODEL = ROOT / "blend-tests/scenes/data/weave.velour"
 DARK = {"background": (0.19, 0.19, 0.19), "foreground": (0.9, 0.9, 0.9)}
@@ -82,6 +82,47 @@ def test_errors_and_albedos_are_those_of_the_fit(model):
     channels = [_series(data, f"model {channel}") for channel in ("red", "green", "blue")]
     for angle, albedo in info["albedo_by_view_angle"].items():
         assert max(channel[int(angle), 1] for channel in channels) == pytest.approx(albedo, rel=1e-4)
+
+
+@pytest.mark.parametrize("kind", table.PLOTS)
+def test_a_job_makes_the_same_plot(model, measurement, measurement_file, kind):
+    with measurement_job(measurement_file) as reading:
+        assert reading.run() == measurement.info()
+        with reading.result_measurement() as read, plot_job(model, kind, read, view=0.7, azimuth=0.2) as job:
+            report = job.run()
+            with job.result_plot() as plot, Plot.of(model, kind, measurement, 0.7, 0.2) as same:
+                assert plot.data() == same.data() == report
+
+
+def test_a_job_gives_nothing_that_it_has_not_made(model, measurement_file, tmp_path):
+    with plot_job(model, "order") as job:
+        with pytest.raises(VelourError, match="never started"):
+            job.result_plot()
+        job.run()
+        with pytest.raises(VelourError, match="reads no measurement"):
+            job.result_measurement()
+        with pytest.raises(VelourError, match="makes no model"):
+            job.result_model()
+    (tmp_path / "broken.binary").write_bytes(b"\0" * 40)
+    with measurement_job(tmp_path / "broken.binary") as job:
+        with pytest.raises(VelourError, match=r"broken\.binary"):
+            job.run()
+        with pytest.raises(VelourError, match="broken"):
+            job.result_measurement()
+
+
+def test_an_albedo_that_is_not_wanted_any_more_ends_soon(model, measurement):
+    with plot_job(model, "albedo", measurement) as job:
+        job.start()
+        fractions = [job.poll().fraction]
+        while job.poll().running and fractions[-1] < 0.05:
+            fractions.append(job.poll().fraction)
+        assert fractions == sorted(fractions)
+        job.cancel()
+        with pytest.raises(VelourError) as caught:
+            job.wait()
+        assert caught.value.cancelled
+        assert job.run()["plot"] == "albedo"  # may be started again
 
 
 @pytest.mark.parametrize("kind", table.PLOTS)

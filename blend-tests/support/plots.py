@@ -43,7 +43,7 @@ def drawn():
     """The turns until nothing is left to draw."""
     yield 0.5
     for _ in range(10 * _SECONDS):
-        if not preview()._waiting and preview()._pictures:
+        if preview().is_at_rest() and preview()._pictures:
             break
         yield 0.1
     yield 0.5

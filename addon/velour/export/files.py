@@ -10,7 +10,7 @@ import tempfile
 
 import bpy
 
-from ..native import Btf, Measurement, Model, VelourError, library
+from ..native import Btf, Measurement, Model, VelourError, library, measurement_job
 from .notes import ExportError
 
 FIND = "put it back, or use File > External Data > Find Missing Files"
@@ -82,6 +82,59 @@ def _read_raw(kind, image, owner):
     return raw
 
 
+class MeasurementReading:
+    """A job, to be used as one, that reads what read_measurement() does.
+
+    Waiting for it raises nothing but a cancel: what is wrong with the file is said by result().
+    """
+
+    def __init__(self, image, owner):
+        self._owner, self._error = owner, None
+        self._named, self._expected = _name_of_file(image), image.velour.sha256  # undo may replace the image
+        with contextlib.ExitStack() as until_read:
+            path = until_read.enter_context(measurement_path(image, owner))
+            self._job = measurement_job(path)
+            self._opened = until_read.pop_all()
+
+    def start(self):
+        self._job.start()
+        return self
+
+    def poll(self):
+        return self._job.poll()
+
+    def cancel(self):
+        self._job.cancel()
+
+    def wait(self, progress=None, timeout=None):
+        """As Job.wait()."""
+        try:
+            return self._job.wait(progress, timeout)
+        except VelourError as error:
+            if error.cancelled:
+                raise
+            self._error = error
+            return True
+
+    def result(self):
+        """The measurement, once the job has ended."""
+        if self._error is not None:
+            raise ExportError(f"{self._owner}: {self._error}") from self._error
+        measurement = self._job.result_measurement()
+        _refuse_other(measurement.info()["sha256"], self._expected, self._named, self._owner)
+        return measurement
+
+    def close(self):
+        self._job.close()
+        self._opened.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_exception):
+        self.close()
+
+
 def measurement_info(image, owner):
     """What the library knows of the measurement or BTF that `image` names; its "kind" says which it is."""
     try:
@@ -108,9 +161,16 @@ def measurement_path(image, owner):
 
 
 def _refuse_change(image, digest, owner):
-    expected = image.velour.sha256
+    _refuse_other(digest, image.velour.sha256, _name_of_file(image), owner)
+
+
+def _refuse_other(digest, expected, named, owner):
     if expected and digest != expected:
         raise ExportError(
-            f"{owner}: the file {absolute_path(image) or image.name!r} has changed since it was chosen;"
+            f"{owner}: the file {named} has changed since it was chosen;"
             " restore it, or accept it with 'Accept Changed File' in the material's Model panel."
         )
+
+
+def _name_of_file(image):
+    return absolute_path(image) or repr(image.name)

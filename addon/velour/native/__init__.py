@@ -10,9 +10,11 @@ from .job import (
     compare_job,
     compare_peer_job,
     fit_job,
+    measurement_job,
     microsurface_job,
     model_peer_job,
     observe_job,
+    plot_job,
     render_job,
 )
 from .measurement import Measurement
@@ -61,9 +63,11 @@ __all__ = [
     "library",
     "light_map_job",
     "lobe_rows_job",
+    "measurement_job",
     "microsurface_job",
     "model_peer_job",
     "observe_job",
+    "plot_job",
     "principled_rows_job",
     "render_job",
     "votf_data_job",

@@ -20,6 +20,7 @@ from .measurement import Measurement
 from .model import Model
 from .observation import Observation
 from .passes import Passes, channels_of
+from .plot import Plot, plot_arguments
 
 _SLICE_SECONDS = 0.1  # how long a signal (Ctrl-C) may have to wait for the interpreter
 
@@ -105,6 +106,14 @@ class Job(Handle):
         """The model of a finished fit."""
         return Model._create("vlr_job_result_model", self.pointer)
 
+    def result_measurement(self) -> Measurement:
+        """What a finished measurement_job() has read."""
+        return Measurement._create("vlr_job_result_measurement", self.pointer)
+
+    def result_plot(self) -> Plot:
+        """The plot of a finished plot_job()."""
+        return Plot._create("vlr_job_result_plot", self.pointer)
+
     def result_observation(self) -> Observation:
         """The observation of a finished observe_job()."""
         return Observation._create("vlr_job_result_observation", self.pointer)
@@ -145,6 +154,16 @@ class Job(Handle):
         self.cancel()
         with contextlib.suppress(VelourError):  # "cancelled": the reason is already on its way up
             self._wait_once(-1.0)
+
+
+def measurement_job(path: str | os.PathLike) -> Job:
+    """Reads a measurement, as Measurement.load() does. Result: result_measurement()."""
+    return Job._create("vlr_measurement_load_create_job", path_bytes(path))
+
+
+def plot_job(model: Model, kind: str, measurement: Measurement | None = None, **view: float) -> Job:
+    """As Plot.of(). Result: result_plot()."""
+    return Job._create("vlr_plot_create_job", *plot_arguments(model, kind, measurement, **view))
 
 
 def fit_job(measurement: Measurement, **options) -> Job:

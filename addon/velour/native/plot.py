@@ -36,9 +36,7 @@ class Plot(Handle):
         azimuth: float = 0.0,
     ) -> Plot:
         """`kind`: lobes, order, view-error, albedo. Angles in radians. VelourError: there is no such plot."""
-        number = choice("kind", kind, table.PLOTS)
-        measured = None if measurement is None else measurement.pointer
-        return cls._create("vlr_plot_create", model.pointer, measured, number, view, azimuth)
+        return cls._create("vlr_plot_create", *plot_arguments(model, kind, measurement, view, azimuth))
 
     def data(self) -> dict:
         """plot, polar, x and y {column, label, logarithmic, range}, series [{name, x, y, chosen}]."""
@@ -54,6 +52,18 @@ class Plot(Handle):
     def save(self, path: str | os.PathLike, **style) -> None:
         """By extension: .png, .svg, .csv. Atomic."""
         self._lib.vlr_plot_save(self.pointer, byref(_style(style)), path_bytes(path))
+
+
+def plot_arguments(
+    model: Model,
+    kind: str,
+    measurement: Measurement | None = None,
+    view: float = math.radians(30),
+    azimuth: float = 0.0,
+) -> tuple:
+    """As the library takes them."""
+    measured = None if measurement is None else measurement.pointer
+    return model.pointer, measured, choice("kind", kind, table.PLOTS), view, azimuth
 
 
 def _style(values: dict) -> table.PlotStyle:

@@ -7,29 +7,11 @@ from ..core.approximation import Steps
 from ..export import ExportError
 from ..export.files import content, read_model, sha256
 from . import approximation_group, measured
-from .background_job import OneJob
+from .background_job import JobsInSteps
 from .job_target import JobTarget
 
 
-class Approximates(OneJob):
-    """Mixin of an operator whose last jobs are the `_steps` of an approximation."""
-
-    _steps = None  # none: no approximation is wanted
-    _next = None
-
-    def _advance(self):
-        """Whether another job is to be run before the approximation is there."""
-        self._next = self._steps.next_job() if self._steps else None
-        return self._next is not None
-
-    def _goes_on(self):
-        if self._next is None:
-            return False
-        self._job, self._next = self._next, None
-        return True
-
-
-class MakesModel(Approximates):
+class MakesModel(JobsInSteps):
     """Mixin of an operator whose first job makes a model, which comes with its approximation or not at all.
 
     It is for the material of `_target`; `_put()` takes `_data`, `_info` and the first job's `_report`.
@@ -55,7 +37,7 @@ class MakesModel(Approximates):
             approximation_group.put(material, self._steps.result, sha256(self._data))
 
 
-class VELOUR_OT_approximate(Approximates, bpy.types.Operator):
+class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.approximate"
     bl_label = "Approximate"
     bl_description = (

@@ -166,6 +166,24 @@ class OneJob(BackgroundJob):
         return {"CANCELLED"}
 
 
+class JobsInSteps(OneJob):
+    """Mixin of an operator whose last jobs are those of `_steps`: next_job() gives each, at the end None."""
+
+    _steps = None  # none: they are not wanted
+    _next = None
+
+    def _advance(self):
+        """Whether another job is to be run before the steps' result is there."""
+        self._next = self._steps.next_job() if self._steps else None
+        return self._next is not None
+
+    def _goes_on(self):
+        if self._next is None:
+            return False
+        self._job, self._next = self._next, None
+        return True
+
+
 def console_progress():
     """Prints a line when the stage changes and about once a second."""
     last = {"stage": None, "time": 0.0}

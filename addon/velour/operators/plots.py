@@ -8,39 +8,46 @@ from bpy_extras.io_utils import ExportHelper
 
 from ..export import ExportError
 from ..export.nodes import velour_node
-from ..native import VelourError
 from ..properties.plot_settings import plot_azimuth, plot_kind, plot_view
 from . import measured
-from .model_plots import PlotSource, measurement_for, plot_name
+from .background_job import JobsInSteps
+from .model_plots import PlotSource, PlotSteps, measurement_for, plot_name
 from .plot_colors import theme_colors
 
 _KINDS_OF_FILES = (".png", ".svg", ".csv")
 
 
-class _OfMaterial:
-    """What both have: which plot of which material."""
+class _OfMaterial(JobsInSteps):
+    """What both have: which plot of which material. `_use(plot)` takes it."""
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
     kind: plot_kind()
     view: plot_view()
     azimuth: plot_azimuth()
 
-    def execute(self, context):
+    _what = "The plot"
+
+    def _begin(self, context):
         material = measured.find_material(context, self.material)
         node = velour_node(material)
         if node is None or node.image is None:
-            self.report({"ERROR"}, "There is no model to plot; fit or import one first.")
-            return {"CANCELLED"}
-        measurement = measurement_for(self.kind, node.velour)
-        try:
-            with PlotSource(node.image, measurement, f"Material '{material.name}'") as source:
-                if source.missing:
-                    self.report({"WARNING"}, source.missing)
-                with source.plot(self.kind, self.view, self.azimuth) as plot:
-                    self._use(context, plot, material.name)
-        except (ExportError, VelourError) as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            raise ExportError("There is no model to plot; fit or import one first.")
+        self._subject = material.name
+        source = PlotSource(
+            node.image, measurement_for(self.kind, node.velour), f"Material '{material.name}'"
+        )
+        self._steps = PlotSteps(source, self.kind, self.view, self.azimuth)
+        self._advance()
+        self._goes_on()
+
+    def _finish(self):
+        if self._advance():
+            return None
+        if self._steps.source.missing:
+            self.report({"WARNING"}, self._steps.source.missing)
+        with self._steps.plot as plot:
+            self._use(plot)
+        self._steps.source.close()
         return {"FINISHED"}
 
 
@@ -54,7 +61,31 @@ class VELOUR_OT_save_plot(_OfMaterial, bpy.types.Operator, ExportHelper):
     filter_glob: StringProperty(default="*.png;*.svg;*.csv", options={"HIDDEN"})
     side: IntProperty(name="Size", description="Of a picture: pixels", default=800, min=64, max=8192)
 
-    def _use(self, _context, plot, _name):
+    _asks = False
+
+    def invoke(self, context, event):
+        """A file browser asks for the file, unless it is known."""
+        if self.properties.is_property_set("filepath"):
+            return JobsInSteps.invoke(self, context, event)
+        material = measured.find_material(context, self.material)
+        self.material = material.name if material else ""
+        self._asks = True
+        return ExportHelper.invoke(self, context, event)
+
+    def execute(self, context):
+        if not self._asks:
+            return JobsInSteps.execute(self, context)
+        # Blender ends what its file browser has asked for when this returns: another one does the work.
+        bpy.ops.velour.save_plot(
+            "INVOKE_DEFAULT", **self.as_keywords(ignore=("check_existing", "filter_glob"))
+        )
+        return {"FINISHED"}
+
+    def cancel(self, context):
+        if not self._asks:
+            JobsInSteps.cancel(self, context)
+
+    def _use(self, plot):
         path = bpy.path.abspath(self.filepath)
         plot.save(
             path if path.lower().endswith(_KINDS_OF_FILES) else path + self.filename_ext, side=self.side
@@ -68,9 +99,10 @@ class VELOUR_OT_enlarge_plot(_OfMaterial, bpy.types.Operator):
 
     side: IntProperty(name="Size", description="Pixels", default=1024, min=64, max=8192)
 
-    def _use(self, context, plot, name):
+    def _use(self, plot):
+        context = bpy.context
         pixels = plot.draw(side=self.side, **theme_colors(context.preferences))
-        image = _image(f"{name} {plot_name(self.kind)}", self.side)
+        image = _image(f"{self._subject} {plot_name(self.kind)}", self.side)
         image.pixels.foreach_set(pixels.ravel())
         image.pack()  # or Blender asks about it at the end
         if not bpy.app.background:

@@ -16,6 +16,8 @@ def draw_plot(context, layout, model, measurement, kind):
     picture = plot_picture(context, model, measurement, kind, _side(scale, unit))
     if picture.icon or not picture.sentence:
         layout.template_icon(picture.icon, scale=scale)  # as high while there is none yet
+    if picture.icon == 0 and not picture.sentence:
+        layout.label(text="Drawing the plot...", icon="TIME")
     if picture.sentence:
         draw_sentence(context, layout, picture.sentence, icon="INFO")
 

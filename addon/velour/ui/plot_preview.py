@@ -1,4 +1,4 @@
-"""Plots as icons, which is what a panel shows: made between two redraws, once a content, size and theme."""
+"""Plots as icons, which is what a panel shows: once a content, size and theme, by jobs between redraws."""
 
 from typing import NamedTuple
 
@@ -6,15 +6,16 @@ import bpy.utils.previews
 
 from ..export import ExportError
 from ..native import VelourError
-from ..operators.model_plots import PlotSource
 from ..operators.plot_colors import theme_colors
+from .plot_work import PlotWork, close_source
 from .summaries import identity, name_of, redraw_panels
 
 _KEPT = 64  # pictures; of 400 pixels 2.5 MB each
+_TURN_SECONDS = 0.02
 _previews = None
 _pictures = {}  # _Wanted: _Made; oldest first
-_waiting = {}  # _Wanted: names of the images of model and measurement
-_source = (None, None)  # what was asked for last, open: (identities, PlotSource)
+_waiting = {}  # _Wanted: names of the images of model and measurement; what was asked for last comes first
+_works = {}  # _Wanted: PlotWork; one at most
 
 
 class _Wanted(NamedTuple):
@@ -38,14 +39,29 @@ class PlotPicture(NamedTuple):
 def plot_picture(context, model, measurement, kind, side):
     """The plot `side` pixels wide in the theme's colours, of image datablocks. Cheap: for draw()."""
     wanted = _wanted(context, model, measurement, kind, side)
-    if wanted not in _pictures and wanted not in _waiting:
+    if wanted not in _pictures and wanted not in _works:
+        _forget_other_angles(wanted)
         _waiting[wanted] = name_of(model), measurement and name_of(measurement)
-        if not bpy.app.timers.is_registered(_draw_waiting):
-            bpy.app.timers.register(_draw_waiting)
+    if not is_at_rest() and not bpy.app.timers.is_registered(_turn):
+        bpy.app.timers.register(_turn, persistent=True)
     made = _pictures.get(wanted) or _before(wanted)
     if made is None:
         return PlotPicture(0, None)
     return PlotPicture(_previews[made.name].icon_id if made.name else 0, made.sentence)
+
+
+def is_at_rest():
+    """Whether all that was asked for is there."""
+    return not _waiting and not _works
+
+
+def _forget_other_angles(wanted):
+    """Those that a slider has left behind."""
+    for asked in [w for w in _waiting if w._replace(angles=wanted.angles) == wanted]:
+        del _waiting[asked]
+    for asked, work in _works.items():
+        if asked._replace(angles=wanted.angles) == wanted:
+            work.cancel()
 
 
 def _before(wanted):
@@ -74,59 +90,50 @@ def forget():
     global _previews
     _pictures.clear()
     _waiting.clear()
-    _close_source()
-    if bpy.app.timers.is_registered(_draw_waiting):
-        bpy.app.timers.unregister(_draw_waiting)
+    _works.clear()
+    close_source()
+    if bpy.app.timers.is_registered(_turn):
+        bpy.app.timers.unregister(_turn)
     if _previews is not None:
         bpy.utils.previews.remove(_previews)
         _previews = None
 
 
-def _draw_waiting():
-    """A timer: runs on the main thread between two redraws."""
+def _turn():
+    """A timer: runs on the main thread between two redraws, and waits for nothing."""
+    if not _works:
+        wanted, names = _waiting.popitem()
+        _works[wanted] = PlotWork(wanted, *names)
+    wanted, work = next(iter(_works.items()))
+    try:
+        pixels = work.step()
+    except (ExportError, VelourError) as error:
+        del _works[wanted]
+        if work.cancelled:
+            redraw_panels()  # which may want it again by now
+        else:
+            _keep(wanted, _Made(None, str(error)))
+    else:
+        if pixels is not None:
+            del _works[wanted]
+            _keep(wanted, _Made(_preview(repr(wanted), pixels), work.missing))
+    return None if is_at_rest() else _TURN_SECONDS
+
+
+def _preview(name, pixels):
     global _previews
     if _previews is None:
         _previews = bpy.utils.previews.new()
-    for wanted, names in _waiting.items():
-        _pictures[wanted] = _drawn(wanted, *names)
-    _waiting.clear()
+    preview = _previews.new(name)
+    preview.image_size = pixels.shape[1], pixels.shape[0]
+    preview.image_pixels_float.foreach_set(pixels.ravel())
+    return name
+
+
+def _keep(wanted, made):
+    _pictures[wanted] = made
     while len(_pictures) > _KEPT:
         oldest = _pictures.pop(next(iter(_pictures)))
         if oldest.name:
             del _previews[oldest.name]
     redraw_panels()
-
-
-def _drawn(wanted, model, measurement):
-    try:
-        source = _opened(wanted, model, measurement)
-        with source.plot(wanted.kind, *wanted.angles) as plot:
-            pixels = plot.draw(**dict(wanted.style))
-    except (ExportError, VelourError) as error:
-        return _Made(None, str(error))
-    name = repr(wanted)
-    preview = _previews.new(name)
-    preview.image_size = pixels.shape[1], pixels.shape[0]
-    preview.image_pixels_float.foreach_set(pixels.ravel())
-    return _Made(name, source.missing)
-
-
-def _opened(wanted, model, measurement):
-    """The source that is open already, or another one in its place: a slider asks for one many times."""
-    global _source
-    known = wanted.model, wanted.measurement
-    if _source[0] != known:
-        _close_source()
-        images = bpy.data.images
-        if model not in images:
-            raise ExportError("The model is gone.")
-        measured = images.get(measurement) if measurement else None
-        _source = known, PlotSource(images[model], measured, f"Model '{images[model].name}'")
-    return _source[1]
-
-
-def _close_source():
-    global _source
-    if _source[1] is not None:
-        _source[1].close()
-    _source = (None, None)

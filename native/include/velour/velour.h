@@ -78,6 +78,9 @@ VLR_API vlr_status vlr_select_simd(const char* target);
 
 /* Reads a measurement file; the format is recognised from its content. */
 VLR_API vlr_status vlr_measurement_load(const char* path, vlr_measurement** out);
+/* The same in the background; vlr_job_result_measurement gives it. JSON: as vlr_measurement_info_json. A cancel is
+ * heeded once the file is read. */
+VLR_API vlr_status vlr_measurement_load_create_job(const char* path, vlr_job** out);
 VLR_API void vlr_measurement_free(vlr_measurement* measurement);
 /* JSON: kind "measurement", format, name, path, sha256, bytes, isotropic, entries {total, valid, negative, not_finite,
  * below_horizon, out_of_gamut}, details {...}. */
@@ -193,6 +196,8 @@ VLR_API vlr_status vlr_job_wait(vlr_job* job, double timeout_seconds, vlr_progre
 VLR_API vlr_status vlr_job_report_json(vlr_job* job, const char** json);
 /* The model of a finished fit; a new handle. */
 VLR_API vlr_status vlr_job_result_model(const vlr_job* job, vlr_model** out);
+/* The measurement that a finished job has read; a new handle. */
+VLR_API vlr_status vlr_job_result_measurement(const vlr_job* job, vlr_measurement** out);
 /* The table of a finished vlr_light_map_create_job or vlr_lobe_rows_create_job: [height][width][4] floats, which belong
  * to the job. */
 VLR_API vlr_status vlr_job_result_table(const vlr_job* job, const float** rgba, uint32_t* width, uint32_t* height);
@@ -890,6 +895,11 @@ enum {
  * VLR_UNSUPPORTED with the reason where the model has no such plot: BTFs have VLR_PLOT_ORDER alone. */
 VLR_API vlr_status vlr_plot_create(const vlr_model* model, const vlr_measurement* measurement, int32_t kind,
                                    double view, double azimuth, vlr_plot** out);
+/* The same in the background; vlr_job_result_plot gives it. JSON: as vlr_plot_json. Albedos take seconds. */
+VLR_API vlr_status vlr_plot_create_job(const vlr_model* model, const vlr_measurement* measurement, int32_t kind,
+                                       double view, double azimuth, vlr_job** out);
+/* The plot of a finished job; a new handle. */
+VLR_API vlr_status vlr_job_result_plot(const vlr_job* job, vlr_plot** out);
 VLR_API void vlr_plot_free(vlr_plot* plot);
 /* JSON: plot ("lobes", "order", "view-error", "albedo"), polar, x and y {column, label, logarithmic, range [low,
  * high]}, series [{name, x [..], y [..], chosen (the number of a point, or null)}]. Angles in degrees, f in 1/sr. */
@@ -934,7 +944,8 @@ VLR_API vlr_status vlr_image_write_part(const char* path, uint32_t width, uint32
                                         const float* pixels, const vlr_image_frame* frame, const char* const* texts,
                                         uint32_t text_count);
 /* What the header of an OpenEXR file says: width, height, channels [names, in the order of vlr_image_read], frame
- * {width, height, x, y}, texts {name: text}. The text is this thread's until its next call. */
+ * {width, height, x, y}, texts {name: text}, multi_part (there are further parts, of which nothing is said). The text
+ * is this thread's until its next call. */
 VLR_API vlr_status vlr_image_header_json(const char* path, const char** json);
 /* rmse and relmse of linear RGB: relmse = mean((x - r)^2 / (r^2 + 0.01 mean(r)^2)). Pixel counts must agree. */
 VLR_API vlr_status vlr_image_compare(uint64_t pixel_count, uint32_t channels, const float* pixels,

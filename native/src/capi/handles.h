@@ -82,6 +82,8 @@ struct JobOutput {
   std::string report;
   std::shared_ptr<const Model> model;
   std::shared_ptr<const SceneObservation> observation;
+  std::shared_ptr<const Measurement> measurement;
+  std::shared_ptr<const Plot> plot;
   std::shared_ptr<const TablePixels> table;
   std::shared_ptr<const Film> film;                // set when the job is made
   std::atomic<bool> stop{false};                   // of a render: to end at a whole pass
@@ -101,6 +103,16 @@ struct JobOutput {
     const std::lock_guard lock(mutex);
     report = std::move(json);
     observation = std::move(result);
+  }
+  void set(std::string json, std::shared_ptr<const Measurement> result) {
+    const std::lock_guard lock(mutex);
+    report = std::move(json);
+    measurement = std::move(result);
+  }
+  void set(std::string json, std::shared_ptr<const Plot> result) {
+    const std::lock_guard lock(mutex);
+    report = std::move(json);
+    plot = std::move(result);
   }
 };
 

@@ -19,6 +19,31 @@ vlr_status vlr_measurement_load(const char* path, vlr_measurement** out) {
   });
 }
 
+vlr_status vlr_measurement_load_create_job(const char* path, vlr_job** out) {
+  return guard([&] {
+    require(path, "path");
+    require(out, "out");
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, file = std::string(path)](Progress& progress) {
+      progress.stage("reading", 0, 1);
+      const auto measurement = load_measurement(file);
+      progress.check();
+      output->set(measurement_json(*measurement), measurement);
+    });
+  });
+}
+
+vlr_status vlr_job_result_measurement(const vlr_job* job, vlr_measurement** out) {
+  return guard([&] {
+    require(job, "job");
+    require(out, "out");
+    job->job.rethrow();
+    const std::lock_guard lock(job->output->mutex);
+    if (!job->output->measurement) throw Error(Status::invalid_state, "This job reads no measurement.");
+    *out = new vlr_measurement{job->output->measurement, {}};
+  });
+}
+
 void vlr_measurement_free(vlr_measurement* measurement) { delete measurement; }
 
 vlr_status vlr_measurement_info_json(vlr_measurement* measurement, const char** json) {

@@ -96,7 +96,35 @@ vlr_status vlr_plot_create(const vlr_model* model, const vlr_measurement* measur
     require(model, "model");
     require(out, "out");
     const Measurement* measured = measurement ? measurement->measurement.get() : nullptr;
-    *out = new vlr_plot{make_plot(kind_of(kind), model->model, measured, {view, azimuth}), {}};
+    Progress unwatched;
+    *out = new vlr_plot{make_plot(kind_of(kind), model->model, measured, {view, azimuth}, unwatched), {}};
+  });
+}
+
+vlr_status vlr_plot_create_job(const vlr_model* model, const vlr_measurement* measurement, int32_t kind, double view,
+                               double azimuth, vlr_job** out) {
+  return guard([&] {
+    require(model, "model");
+    require(out, "out");
+    const auto measured = measurement ? measurement->measurement : nullptr;
+    auto output = std::make_shared<JobOutput>();
+    const auto task = [output, measured, plotted = kind_of(kind), of = model->model,
+                       at = PlotView{view, azimuth}](Progress& progress) {
+      const auto plot = std::make_shared<const Plot>(make_plot(plotted, of, measured.get(), at, progress));
+      output->set(text(plot_json(*plot)), plot);
+    };
+    *out = new vlr_job(output, task);
+  });
+}
+
+vlr_status vlr_job_result_plot(const vlr_job* job, vlr_plot** out) {
+  return guard([&] {
+    require(job, "job");
+    require(out, "out");
+    job->job.rethrow();
+    const std::lock_guard lock(job->output->mutex);
+    if (!job->output->plot) throw Error(Status::invalid_state, "This job makes no plot.");
+    *out = new vlr_plot{*job->output->plot, {}};
   });
 }
 

@@ -40,17 +40,25 @@ double largest_of(const Plot& plot) {
 
 }  // namespace
 
-Plot albedo_plot(const Material& material, const Measurement* measurement, double phi) {
+Plot albedo_plot(const Material& material, const Measurement* measurement, double phi, Progress& progress) {
   const auto view = [phi](int degrees) {
     return direction(static_cast<float>(radians_from(static_cast<double>(degrees))), static_cast<float>(phi));
   };
+  const double last = measurement ? 2.0 * kLast : kLast;  // views of the model, then those of the measurement
   std::vector<std::pair<int, Vec3d>> modelled, measured;
-  for (int d = 0; d <= kLast; d += kStep) modelled.emplace_back(d, directional_albedo(material, view(d)));
+  for (int d = 0; d <= kLast; d += kStep) {
+    progress.check();
+    modelled.emplace_back(d, directional_albedo(material, view(d)));
+    progress.update(d / last);
+  }
   for (int d = 0; measurement && d <= kLast; d += kMeasuredStep) {
+    progress.check();
+    progress.update((kLast + d) / last);
     if (!measurement->covers_view(static_cast<float>(radians_from(static_cast<double>(d))))) continue;
     const MeasuredAlbedo albedo = directional_albedo(*measurement, view(d));
     if (albedo.covered >= kLeastCovered) measured.emplace_back(d, albedo.albedo);
   }
+  progress.update(1.0);
   Plot plot{.kind = "albedo"};
   plot.x = {"theta_v_degrees", "view angle, degrees", false, 0, 90};
   plot.y = {"albedo", "albedo"};

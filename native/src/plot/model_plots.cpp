@@ -25,13 +25,14 @@ void check_view(const PlotView& view) {
 }  // namespace
 
 Plot make_plot(PlotKind kind, const std::shared_ptr<const Model>& model, const Measurement* measurement,
-               const PlotView& view) {
+               const PlotView& view, Progress& progress) {
+  progress.stage("plotting", 0, 1);
   if (kind == PlotKind::order) return order_plot(*model);
   require_brdf(*model, kind);
   if (kind == PlotKind::view_error) return view_error_plot(model->fit);
   check_view(view);
   if (kind == PlotKind::lobes) return lobes_plot(model, measurement, view);
-  return albedo_plot(*make_material(model, 0), measurement, view.phi);
+  return albedo_plot(*make_material(model, 0), measurement, view.phi, progress);
 }
 
 }  // namespace velour

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "brdf/measurement.h"
+#include "job/progress.h"
 #include "model/model.h"
 #include "plot/plot.h"
 
@@ -26,8 +27,9 @@ struct PlotView {
 };
 
 /// Numbers that only the measurement has are there when it is given. Throws Error(unsupported) with one sentence where
-/// the model has nothing of the kind, Error(invalid_argument) for a view that is not above the horizon.
+/// the model has nothing of the kind, Error(invalid_argument) for a view that is not above the horizon. Albedos take
+/// seconds, lobes of a scattered model the time that its material takes to make.
 Plot make_plot(PlotKind kind, const std::shared_ptr<const Model>& model, const Measurement* measurement,
-               const PlotView& view);
+               const PlotView& view, Progress& progress);
 
 }  // namespace velour

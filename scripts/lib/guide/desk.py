@@ -6,7 +6,8 @@ import importlib
 from pathlib import Path
 
 import bpy
-from support import framebuffer, inputs, window
+import numpy as np
+from support import framebuffer, inputs, scenes, window
 
 from . import headers, panels
 
@@ -91,7 +92,7 @@ class Desk:
         bpy.context.window_manager.velour.plot.kind = kind
         area("PROPERTIES").tag_redraw()
         yield 1.0
-        while preview._waiting:
+        while not preview.is_at_rest():
             yield 0.2
         yield 0.8
 
@@ -131,6 +132,14 @@ class Desk:
 
     def picture_of_window(self, name: str, height: int | None = WINDOW_HEIGHT, width: int | None = None):
         self._write(name, self._screen()[:height, :width])
+
+    def side_by_side(self, name: str, parts: list[str]):
+        """Renders of one size in a row, as one picture; they are gone then."""
+        paths = [self.folder / f"{part}.png" for part in parts]
+        pixels = [(255 * scenes.read(path)[..., :3]).round().astype(np.uint8) for path in paths]
+        for path in paths:
+            path.unlink()
+        framebuffer.write_png(self.folder / f"{name}.png", np.concatenate(pixels, axis=1))
 
     def _move_border(self, x: int, y: int, delta: int):
         yield from self.point(x, y)

@@ -1,8 +1,7 @@
 """The same measurement with several tolerances, side by side."""
 
 import bpy
-import numpy as np
-from support import framebuffer, scenes
+from support import scenes
 
 from . import scene
 from .desk import inside
@@ -32,15 +31,7 @@ def steps(desk, measurement, facts):
     scenes.velour_node(material).velour.use_reference = True
     scene.render(desk.folder, "part-measured")
     scenes.velour_node(material).velour.use_reference = False
-    _side_by_side(desk.folder, [*(f"part-{number}" for number in range(len(FITS))), "part-measured"])
+    parts = [*(f"part-{number}" for number in range(len(FITS))), "part-measured"]
+    desk.side_by_side("tolerances", parts)
     yield from desk.plot("ORDER")
     desk.picture_of_panels("size_plot", "MATERIAL", "Plots")
-
-
-def _side_by_side(folder, names):
-    pictures = [
-        (255 * scenes.read(folder / f"{name}.png")[..., :3]).round().astype(np.uint8) for name in names
-    ]
-    for name in names:
-        (folder / f"{name}.png").unlink()
-    framebuffer.write_png(folder / "tolerances.png", np.concatenate(pictures, axis=1))

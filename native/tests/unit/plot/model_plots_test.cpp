@@ -31,6 +31,12 @@ ParametricBrdf symmetric_model() {
 
 PlotView view_of(double theta, double phi = 0) { return {radians_from(theta), radians_from(phi)}; }
 
+Plot plotted(PlotKind kind, const std::shared_ptr<const Model>& model, const Measurement* measurement,
+             const PlotView& view) {
+  Progress unwatched;
+  return make_plot(kind, model, measurement, view, unwatched);
+}
+
 const PlotSeries& series_of(const Plot& plot, const std::string& name) {
   for (const PlotSeries& series : plot.series) {
     if (series.name == name) return series;
@@ -42,7 +48,7 @@ class LobesPlot : public testing::TestWithParam<std::shared_ptr<const Model>> {}
 
 TEST_P(LobesPlot, LobesAddUpToTheModel) {
   for (const PlotView& view : {view_of(0), view_of(30, 40), view_of(75, -120)}) {
-    const Plot plot = make_plot(PlotKind::lobes, GetParam(), nullptr, view);
+    const Plot plot = plotted(PlotKind::lobes, GetParam(), nullptr, view);
     const PlotSeries& model = series_of(plot, "model");
     double largest = 0;
     for (const PlotPoint& p : model.points) largest = std::max(largest, p.y);
@@ -64,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Models, LobesPlot,
 
 TEST(LobesPlot, TheHighlightLiesOppositeToTheViewer) {
   const auto model = model_of(parametric_model(true, {{LobeSpace::half, 1000, Rgb(5)}}));
-  const Plot plot = make_plot(PlotKind::lobes, model, nullptr, view_of(40));
+  const Plot plot = plotted(PlotKind::lobes, model, nullptr, view_of(40));
   const auto& points = series_of(plot, "model").points;
   const auto peak = std::ranges::max_element(points, {}, &PlotPoint::y);
   EXPECT_NEAR(peak->x, 40, 1.0);
@@ -74,7 +80,7 @@ TEST(LobesPlot, TheHighlightLiesOppositeToTheViewer) {
 
 TEST(LobesPlot, AFlatMaterialHasALinearRadius) {
   const auto model = model_of(parametric_model(true, {{LobeSpace::light, 1e-4f, Rgb(0.3f)}}));
-  const Plot plot = make_plot(PlotKind::lobes, model, nullptr, view_of(40));
+  const Plot plot = plotted(PlotKind::lobes, model, nullptr, view_of(40));
   EXPECT_FALSE(plot.y.logarithmic);
   EXPECT_EQ(plot.y.low, 0);
 }
@@ -82,7 +88,7 @@ TEST(LobesPlot, AFlatMaterialHasALinearRadius) {
 TEST(LobesPlot, PointsAreThoseOfTheMeasurement) {
   const AnalyticMeasurement measurement(ggx(0.2f, 0.2f));
   const auto model = model_of(isotropic_model());
-  const Plot plot = make_plot(PlotKind::lobes, model, &measurement, view_of(30));
+  const Plot plot = plotted(PlotKind::lobes, model, &measurement, view_of(30));
   const auto& points = series_of(plot, "measured").points;
   EXPECT_GT(points.size(), 80u);
   for (const PlotPoint& p : points) {
@@ -96,7 +102,7 @@ TEST(LobesPlot, PointsAreThoseOfTheMeasurement) {
 TEST(LobesPlot, WhatIsNotCoveredHasNoPoint) {
   AnalyticMeasurement measurement(lambert);
   measurement.set_coverage([](const DirectionPair& p) { return p.wl.x > 0; });
-  const Plot plot = make_plot(PlotKind::lobes, model_of(isotropic_model()), &measurement, view_of(30));
+  const Plot plot = plotted(PlotKind::lobes, model_of(isotropic_model()), &measurement, view_of(30));
   for (const PlotPoint& p : series_of(plot, "measured").points) EXPECT_LT(p.x, 0) << "+x is the viewer's side";
 }
 
@@ -119,7 +125,7 @@ class FewSamples final : public AnalyticMeasurement {
 
 TEST(LobesPlot, OfScatteredSamplesShowsThoseNearViewAndPlane) {
   const FewSamples measurement;
-  const Plot plot = make_plot(PlotKind::lobes, model_of(isotropic_model()), &measurement, view_of(30));
+  const Plot plot = plotted(PlotKind::lobes, model_of(isotropic_model()), &measurement, view_of(30));
   const auto& points = series_of(plot, "measured").points;
   ASSERT_EQ(points.size(), 2u);
   EXPECT_NEAR(points[0].x, -20, 0.01);
@@ -131,7 +137,7 @@ TEST(AlbedoPlot, OfALambertianSurfaceIsItsColour) {
   // f = 0.25 / pi, as nearly constant as a lobe can be.
   const auto model = model_of(parametric_model(true, {{LobeSpace::light, 1e-4f, Rgb(0.25f, 0.5f, 0.75f) / kPi}}));
   const AnalyticMeasurement measurement(lambert);
-  const Plot plot = make_plot(PlotKind::albedo, model, &measurement, {});
+  const Plot plot = plotted(PlotKind::albedo, model, &measurement, {});
   EXPECT_EQ(series_of(plot, "model red").points.size(), 90u);
   for (const auto& [name, albedo] : {std::pair("model red", 0.25), std::pair("model blue", 0.75),
                                      std::pair("measured red", 0.5), std::pair("measured blue", 0.3)}) {
@@ -142,7 +148,7 @@ TEST(AlbedoPlot, OfALambertianSurfaceIsItsColour) {
 TEST(AlbedoPlot, HasNoMeasuredPointWhereLightsAreMissing) {
   AnalyticMeasurement measurement(lambert);
   measurement.set_coverage([](const DirectionPair& p) { return p.wl.x > -0.3f || p.wv.z > 0.9f; });
-  const Plot plot = make_plot(PlotKind::albedo, model_of(isotropic_model()), &measurement, {});
+  const Plot plot = plotted(PlotKind::albedo, model_of(isotropic_model()), &measurement, {});
   const auto& points = series_of(plot, "measured green").points;
   ASSERT_EQ(points.size(), 6u) << "0 to 25 degrees";
   EXPECT_EQ(points.back().x, 25);
@@ -154,7 +160,7 @@ TEST(ModelPlots, OfABtfThereIsOnlyTheOrder) {
   model->btf.emplace();
   for (const PlotKind kind : {PlotKind::lobes, PlotKind::view_error, PlotKind::albedo}) {
     try {
-      make_plot(kind, model, nullptr, {});
+      plotted(kind, model, nullptr, {});
       FAIL() << "no refusal";
     } catch (const Error& error) {
       EXPECT_EQ(error.status(), Status::unsupported);
@@ -163,8 +169,18 @@ TEST(ModelPlots, OfABtfThereIsOnlyTheOrder) {
   }
 }
 
+TEST(AlbedoPlot, TellsHowFarItIsAndCanBeCancelled) {
+  const AnalyticMeasurement measurement(lambert);
+  Progress progress;
+  make_plot(PlotKind::albedo, model_of(isotropic_model()), &measurement, {}, progress);
+  EXPECT_DOUBLE_EQ(progress.fraction(), 1.0);
+  Progress cancelled;
+  cancelled.cancel();
+  EXPECT_THROW(make_plot(PlotKind::albedo, model_of(isotropic_model()), nullptr, {}, cancelled), Error);
+}
+
 TEST(ModelPlots, AViewBelowTheHorizonIsRefused) {
-  EXPECT_THROW(make_plot(PlotKind::lobes, model_of(isotropic_model()), nullptr, view_of(90)), Error);
+  EXPECT_THROW(plotted(PlotKind::lobes, model_of(isotropic_model()), nullptr, view_of(90)), Error);
 }
 
 }  // namespace
