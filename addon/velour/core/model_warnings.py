@@ -4,20 +4,35 @@ from __future__ import annotations
 
 import re
 
+from .plain_words import plain
+
 # A line a view, and a list of all fitted views: beside a table of errors they say it twice.
 _MISSED = re.compile(r"view (\d+) degrees: relative L2 |fitted views that miss the tolerance")
+_UNSEEN = re.compile(r"view (\d+) degrees: the measurement does not cover it")
 
 
 def panel_warnings(info: dict) -> list[str]:
     """Of a model's info as the library gives it."""
-    missed = [_MISSED.match(warning) for warning in info["warnings"]]
-    others = [warning for warning, match in zip(info["warnings"], missed, strict=True) if not match]
-    if not any(missed):
-        return others
-    angles = [f"{match[1]}\N{DEGREE SIGN}" for match in missed if match and match[1]]
-    where = f" at {', '.join(angles)}" if angles else " between the reported views"
-    remedy = "More lobes may help (Max Lobes); the plot Size shows what each brings."
-    return [f"The tolerance of {info['tolerance']:g} is missed{where}. {remedy}", *others]
+    missed, unseen, others = [], [], []
+    for warning in info["warnings"]:
+        if match := _MISSED.match(warning):
+            missed.append(match[1])
+        elif match := _UNSEEN.match(warning):
+            unseen.append(match[1])
+        else:
+            others.append(plain(warning))
+    if unseen:
+        guess = f"The measurement has no view at {_angles(unseen)}: what the model shows there is a guess."
+        others.insert(0, f"{guess} Take a more complete measurement, or show other angles.")
+    if missed:
+        where = f"at {_angles(missed)}" if any(missed) else "between the reported views"
+        remedy = "Raise Max Lobes and fit again; the plot Size shows what more would bring."
+        others.insert(0, f"The tolerance of {info['tolerance']:g} is missed {where}. {remedy}")
+    return others
+
+
+def _angles(degrees: list[str | None]) -> str:
+    return ", ".join(f"{angle}\N{DEGREE SIGN}" for angle in degrees if angle)
 
 
 def gain_warning(albedo_max: float | None, gain: tuple[float, float, float]) -> str | None:

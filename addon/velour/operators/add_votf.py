@@ -3,6 +3,7 @@
 import bpy
 from bpy.props import IntProperty, StringProperty
 
+from ..core.plain_words import plain
 from ..export import ExportError
 from ..export.files import read_model
 from ..export.tiles import export_tile
@@ -73,7 +74,7 @@ class VELOUR_OT_add_votf(MakesModel, bpy.types.Operator):
         if node is None:
             return {"FINISHED"}
         self._put_approximation(material)
-        for sentence in (*self._notes, *report["warnings"]):
+        for sentence in (*self._notes, *map(plain, report["warnings"])):
             self.report({"WARNING"}, sentence)
         self.report(
             {"INFO"},

@@ -5,6 +5,7 @@ import os
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
+from ..core.plain_words import plain
 from ..export.tiles import export_tile
 from ..native import capture_job, directions
 from ..properties.tile_settings import SIDES
@@ -106,7 +107,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     def _finish(self):
         with self._job:
             report = self._job.report()
-        for sentence in (*self._notes, *report["warnings"]):
+        for sentence in (*self._notes, *map(plain, report["warnings"])):
             self.report({"WARNING"}, sentence)
         self.report(
             {"INFO"},

@@ -7,6 +7,7 @@ import os
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from ..core.plain_words import plain
 from ..native import Btf, compress_job
 from ..properties.tile_settings import METHODS, SHAPE_OF
 from . import measured
@@ -141,7 +142,7 @@ class VELOUR_OT_compress_btf(MakesModel, bpy.types.Operator):
         if not (self.assign and assign(bpy.context, material, slot)):
             material.use_fake_user = True
         for sentence in report["warnings"]:
-            self.report({"WARNING"}, sentence)
+            self.report({"WARNING"}, plain(sentence))
         unseen = report["psnr_held_out"]
         self.report(
             {"INFO"},

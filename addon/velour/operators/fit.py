@@ -3,6 +3,7 @@
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from ..core.model_warnings import panel_warnings
 from ..export import ExportError
 from ..export.files import measurement_path
 from ..export.nodes import velour_node
@@ -69,7 +70,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
             return {"FINISHED"}
         self._put_approximation(material)
         node.velour.measurement.velour.sha256 = self._digest
-        for warning in info["warnings"]:
+        for warning in panel_warnings(info):
             self.report({"WARNING"}, f"Material '{material.name}': {warning}")
         self.report({"INFO"}, f"Fitted '{material.name}': {info['lobes']} lobes, {len(data)} bytes.")
         return {"FINISHED"}

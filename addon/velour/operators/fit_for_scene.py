@@ -5,6 +5,7 @@ import time
 import bpy
 from bpy.props import BoolProperty, StringProperty
 
+from ..core.model_warnings import panel_warnings
 from ..export import ExportError
 from ..native import VelourError
 from . import measured
@@ -113,7 +114,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             smaller = info["parameter_bytes"] < info["scene"]["full_parameter_bytes"]
             if smaller:
                 self._work.keep(model)
-        for warning in info["warnings"]:  # also that nothing is smaller
+        for warning in panel_warnings(info):  # also that nothing is smaller
             self.report({"WARNING"}, f"Material '{self._work.material_name}': {warning}")
         if smaller:
             self.report({"INFO"}, _report(self._work, info))
@@ -161,7 +162,7 @@ def _report(work, info):
 def _time_and_error(info):
     scene = info["scene"]
     errors = f"{scene['picture_error']:.2g}, full {scene['full_picture_error']:.2g}"
-    return f", in {info['seconds']:.1f} s", f"picture error (relmse) {errors}"
+    return f", in {info['seconds']:.1f} s", f"picture error {errors}"
 
 
 def _texels_left(info):
