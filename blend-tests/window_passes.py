@@ -1,13 +1,15 @@
 """The switches of passes in the window."""
 
+import contextlib
+
 import bpy
 import numpy as np
 
-from support import window
+from support import scenes, window
 
 
 def start(folder):
-    window.run(folder, (switches, mist))
+    window.run(folder, (switches, mist, pass_index))
 
 
 def switches(folder):
@@ -29,3 +31,38 @@ def mist(folder):
     bpy.context.view_layer.use_pass_mist = True
     yield 0.5
     assert np.abs(window.screenshot(folder, "mist-after") - before).max() > 0.2
+
+
+def pass_index(folder):
+    """Blender's own settings of materials are other engines' panels; ours shows the number of the pass."""
+    panels = [
+        panel for panel in bpy.types.Panel.__subclasses__() if panel.__name__.endswith("MATERIAL_PT_settings")
+    ]
+    ours = bpy.types.VELOUR_MATERIAL_PT_settings
+    assert len(panels) > 1, panels
+    assert [panel for panel in panels if "VELOUR" in panel.COMPAT_ENGINES] == [ours]
+    cube = bpy.context.view_layer.objects["Cube"]
+    bpy.context.view_layer.objects.active = cube
+    cube.active_material = scenes.diffuse_material()  # whose Surface panel is short
+    bpy.context.preferences.view.show_tooltips = False
+    with _open(ours):
+        yield from window.show_properties("MATERIAL")
+        before = window.screenshot(folder, "pass-index-0")
+        cube.active_material.pass_index = 1234
+        yield 0.5
+        changed = np.argwhere(np.abs(window.screenshot(folder, "pass-index-1234") - before).max(axis=2) > 0.2)
+    assert len(changed) > 20, "the panel does not show the pass index"
+    height, width = np.ptp(changed, axis=0)
+    assert height < 30, f"{height} x {width} pixels changed: more than a number"
+
+
+@contextlib.contextmanager
+def _open(panel):
+    """It is folded at first."""
+    options = panel.bl_options
+    for wanted in (set(), options):
+        bpy.utils.unregister_class(panel)
+        panel.bl_options = wanted
+        bpy.utils.register_class(panel)
+        if not wanted:
+            yield

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from dataclasses import replace
 
 import inputs
@@ -188,6 +190,31 @@ def test_pictures_that_are_no_parts_are_refused(render, tmp_path, world_file):
     images.write(tmp_path / "picture.png", images.read(world_file))
     assert "picture.png" in refused("merge", tmp_path / "picture.png", "-o", merged)
     assert "nowhere.exr" in refused("merge", tmp_path / "nowhere.exr", "-o", merged)
+    assert not merged.exists()
+
+
+def test_files_of_several_layers_are_refused_whole(render, tmp_path):
+    """None is lost without a word: neither channels nor parts that another program has added."""
+    part, merged = render("--samples", RANGES[0]), tmp_path / "merged.exr"
+    header, pixels = images.header(part), images.read(part)
+    assert not header["multi_part"]
+    deep = tmp_path / "deep.exr"
+    images.write_part(
+        deep, np.concatenate([pixels, pixels[..., :2]], axis=2), header["frame"], header["texts"]
+    )
+    sentence = refused("merge", deep, *ranges(render)[1:], "-o", merged)
+    assert "deep.exr has the channels R, G, B, A, channel4, channel5" in sentence
+    assert not merged.exists()
+
+
+@pytest.mark.skipif(not shutil.which("oiiotool"), reason="oiiotool is not installed")
+def test_files_of_several_parts_are_refused_whole(render, tmp_path):
+    parts, merged = ranges(render), tmp_path / "merged.exr"
+    several = tmp_path / "several.exr"
+    subprocess.run(["oiiotool", str(parts[0]), str(parts[0]), "--siappend", "-o", str(several)], check=True)
+    assert images.header(several)["multi_part"]
+    assert picture_parts.MADE in images.header(several)["texts"]
+    assert "several.exr has further layers" in refused("merge", several, *parts[1:], "-o", merged)
     assert not merged.exists()
 
 

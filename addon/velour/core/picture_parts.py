@@ -23,6 +23,11 @@ from ..native.images import Frame
 from ..native.version import version_text
 
 MADE, SAMPLES, SIMD = "velour.render", "velour.samples", "velour.simd"
+_ONE_LAYER = (
+    ["Y"],
+    ["R", "G", "B"],
+    ["R", "G", "B", "A"],
+)  # channels that images.write_part() gives these names
 Range = tuple[int, int]
 
 
@@ -58,6 +63,7 @@ def write(path: str | os.PathLike, part: Part) -> None:
 def open_part(path: str | os.PathLike) -> Part:
     """The part that a file is; its pixels are read later. Raises a sentence where it says nothing of that."""
     header = images.header(path)
+    _check_one_layer(path, header)
     said = header["texts"]
     missing = next((name for name in (MADE, SAMPLES) if name not in said), None)
     if missing:
@@ -68,6 +74,20 @@ def open_part(path: str | os.PathLike) -> Part:
     if not (ranges and inside):
         raise refuse(f"{path}: what its header says of the part makes no sense.")
     return Part(str(path), made, ranges, frame, width, height, said.get(SIMD, ""), lambda: images.read(path))
+
+
+def _check_one_layer(path: str | os.PathLike, header: dict) -> None:
+    """Names are not kept, so no other layer would be."""
+    if header["multi_part"]:
+        more = "further layers in parts of their own"
+    elif header["channels"] not in _ONE_LAYER:
+        more = f"the channels {', '.join(header['channels'])}"
+    else:
+        return
+    raise refuse(
+        f"{path} has {more}: what is merged has one layer, as velour render writes it; join files of several"
+        " passes where they were rendered, or write the picture alone."
+    )
 
 
 def _parsed(made_text: str, ranges_text: str) -> tuple[dict, tuple[Range, ...]]:

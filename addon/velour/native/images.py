@@ -44,7 +44,7 @@ def write_part(path: str | os.PathLike, pixels: np.ndarray, frame: Frame, texts:
 
 
 def header(path: str | os.PathLike) -> dict:
-    """Of an OpenEXR file: width, height, channels (names), frame (a Frame), texts (by name)."""
+    """Of an OpenEXR file: width, height, channels (names), frame (a Frame), texts (by name), multi_part."""
     said = library.json_of(library.load().vlr_image_header_json, path_bytes(path))
     return said | {"frame": Frame(**said["frame"])}
 

@@ -96,6 +96,7 @@ vlr_status vlr_image_header_json(const char* path, const char** json) {
                  {"height", header.height},
                  {"channels", header.channels},
                  {"frame", {{"width", frame.width}, {"height", frame.height}, {"x", frame.x}, {"y", frame.y}}},
+                 {"multi_part", header.multi_part},
                  {"texts", header.texts}});
     *json = said.c_str();
   });

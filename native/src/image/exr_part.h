@@ -24,6 +24,7 @@ struct ExrHeader {
   std::vector<std::string> channels;  // as read_picture orders them
   PictureFrame frame;                 // they lie in the display window; where that is
   PictureTexts texts;
+  bool multi_part = false;  // the file has further parts, which none of this is of
 };
 
 /// Throws Error with the file's name; Error(bad_data) for another format.

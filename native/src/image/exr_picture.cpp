@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfVersion.h>
 
 #include <algorithm>
 #include <array>
@@ -96,6 +97,7 @@ class OpenExr : public OpenPicture {
     header.width = side(data.min.x, data.max.x);
     header.height = side(data.min.y, data.max.y);
     header.channels = names_;
+    header.multi_part = Imf::isMultiPart(file_.version());
     header.frame = {side(whole.min.x, whole.max.x), side(whole.min.y, whole.max.y),
                     static_cast<int>(int64_t{data.min.x} - whole.min.x),
                     static_cast<int>(int64_t{whole.max.y} - data.max.y)};

@@ -95,10 +95,11 @@ TEST(CParts, FilesSayWhereTheyLie) {
   ASSERT_EQ(VLR_OK, vlr_image_header_json(path.c_str(), &json)) << vlr_last_error();
   EXPECT_EQ(std::string(json),
             R"({"width":2,"height":3,"channels":["R","G","B","A"],"frame":{"width":10,"height":8,"x":1,"y":2},)"
-            R"("texts":{"velour.render":"{}","velour.samples":"0:8"}})");
+            R"("multi_part":false,"texts":{"velour.render":"{}","velour.samples":"0:8"}})");
   ASSERT_EQ(VLR_OK, vlr_image_write_part(path.c_str(), 2, 3, 4, pixels.data(), nullptr, nullptr, 0));
   ASSERT_EQ(VLR_OK, vlr_image_header_json(path.c_str(), &json)) << vlr_last_error();
-  EXPECT_NE(std::string(json).find(R"("frame":{"width":2,"height":3,"x":0,"y":0},"texts":{})"), std::string::npos);
+  EXPECT_NE(std::string(json).find(R"("frame":{"width":2,"height":3,"x":0,"y":0},"multi_part":false,"texts":{})"),
+            std::string::npos);
 
   frame.x = 9;  // beyond the right edge
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_image_write_part(path.c_str(), 2, 3, 4, pixels.data(), &frame, nullptr, 0));
