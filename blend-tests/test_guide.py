@@ -52,6 +52,13 @@ class Snippets(BlenderTest):
         self.assertLess(*sizes)
         self.assertTrue((self.folder / "iris_0.05.csv").is_file())
 
+    def test_scene_model(self):
+        self._run_page("scene_model.md")
+        reduced, full = (
+            inputs.native().Model.load(self.folder / f"iris{kind}.velour") for kind in (".scene", "")
+        )
+        self.assertLess(reduced.info()["parameter_bytes"], full.info()["parameter_bytes"])
+
     def test_cloth(self):
         self._run_page("cloth.md")
         self.assertGreater((self.folder / "weave.velour").stat().st_size, 10_000)
@@ -71,7 +78,7 @@ class Snippets(BlenderTest):
         self.assertEqual(len(list((self.folder / "frames").glob("shot_*.exr"))), 2)
 
     def test_no_page_is_left_out(self):
-        run = {"first_material.md", "tolerance.md", "cloth.md", "farm.md"}
+        run = {"first_material.md", "tolerance.md", "scene_model.md", "cloth.md", "farm.md"}
         self.assertEqual({page.name for page in guide.PAGES if guide.snippets(page)}, run)
 
     def test_a_wrong_snippet_is_seen(self):

@@ -52,6 +52,12 @@ def _tolerances(facts: dict) -> str:
     return table(["Tolerance", "Max Lobes", "Lobes", "Size", "Relative error"], rows)
 
 
+def _scene(facts: dict) -> str:
+    full, scene = facts["full"], facts["scene"]
+    share = f"{full / scene:.0f} times fewer"
+    return f"The table of the pictures: {scene} bytes of parameters in place of {full}, {share}.\n"
+
+
 def _tile(facts: dict) -> str:
     return (
         f"The weave of the pictures: the capture has {_mb(facts['capture_bytes'])}, the material"
@@ -64,6 +70,7 @@ _PAGES = {"tile": "cloth"}  # of a chapter that has none of its own
 _PARTS = {
     "first_material": {"fit": _first_material},
     "tolerance": {"tolerances": _tolerances},
+    "scene_model": {"scene": _scene},
     "tile": {"tile": _tile},
 }
 
