@@ -114,10 +114,17 @@ def test_materials_are_replaced_as_in_the_scene_of_the_library():
         assert scene.gains == [(1, 1, 1)]
 
 
-def test_what_real_time_does_not_show_is_refused(tmp_path):
+class _WithOutline:
+    def info(self):
+        return {"model": "parametric", "shell": {}}
+
+
+def test_what_real_time_does_not_show_is_refused():
     with RealtimeScene() as scene:
         with pytest.raises(UnshownError, match="BTF"):
             scene.add_btf_material(None)
+        with pytest.raises(UnshownError, match="outlines"):
+            scene.add_model_material(_WithOutline())
         with pytest.raises(UnshownError, match="measurements"):
             scene.add_measurement_material(None)
 

@@ -38,10 +38,10 @@ class RealtimeScene(Scene):
     """Takes what export/ says of a scene. The library's own scene in it has the world, and nothing else."""
 
     def __init__(self):
+        self.looks = []  # before anything that may fail: close() looks at them
         super().__init__()
         self.meshes = []  # GpuMesh; None: removed
         self.groups = []
-        self.looks = []
         self.gains = []
         self.lamps = []
         self.to_working = np.eye(3, dtype=np.float32)
@@ -95,8 +95,11 @@ class RealtimeScene(Scene):
     # ---- materials
 
     def add_model_material(self, model, neighbors=0):
-        if "texels" in model.info():
+        info = model.info()
+        if "texels" in info:
             raise UnshownError("materials with BTFs are shown by the ray tracer alone")
+        if "shell" in info:
+            raise UnshownError("materials with outlines are shown by the ray tracer alone")
         return self._add_look(Look(lobe_rows_job(model)))
 
     def add_measurement_material(self, measurement, proposal=None, neighbors=0):
@@ -127,7 +130,7 @@ class RealtimeScene(Scene):
         """Surfaces that glow light nothing else here."""
 
     def set_shell_softness(self, material, widths):
-        """Shells are of BTFs and outlines, which are refused."""
+        """Outlines are refused."""
 
     set_shell_tile = set_shell_softness
 
