@@ -13,7 +13,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (ball_in_a_sky, lamps, grey, edits))
+    window.run(folder, (ball_in_a_sky, btf, lamps, grey, edits))
 
 
 def _pixels():
@@ -126,6 +126,22 @@ def ball_in_a_sky(folder):
     print(f"relative L2: {same:.4f} under the mixture, {picture:.4f} under the picture", flush=True)
     assert same < 0.03, same
     assert picture < 0.05, picture
+
+
+def btf(folder):
+    """A plane of a weave by its maps, within three hundredths of the ray tracer as well."""
+    _sky(folder)
+    for name in ("Cube", "Light"):
+        bpy.data.objects.remove(bpy.data.objects[name])
+    with window.override():
+        scenes.add_plane(scenes.measured_material((_DATA / "weave.velour").read_bytes(), "Weave"), size=9.0)
+    viewport.show_real_time()
+    yield from viewport.real_time_finished()
+    window.screenshot(folder, "btf")
+    assert not viewport.the_one()._not_real_time, viewport.the_one()._not_real_time
+    error = _error(_pixels(), _traced(_equirectangular(_mixture())))
+    print(f"relative L2 of a BTF: {error:.4f}", flush=True)
+    assert error < 0.03, error
 
 
 def lamps(folder):

@@ -10,6 +10,7 @@ from velour.native import (
     Model,
     Scene,
     VelourError,
+    btf_maps_job,
     light_map_job,
     lobe_rows_job,
     principled_rows_job,
@@ -160,3 +161,22 @@ def test_lamps_keep_power_and_place():
 def test_models_of_btfs_have_no_rows():
     with pytest.raises(VelourError, match="no rows of lobes"):
         lobe_rows_job(Model.load(_WEAVE))
+
+
+def test_maps_of_a_btf_hold_its_terms():
+    with Model.load(_WEAVE) as model, btf_maps_job(model) as job:
+        report = job.run()
+        table = job.result_table()
+        coefficients = model.info()["coefficients"]
+    assert len(report["terms"]) == coefficients
+    assert report["layers"] == -(-coefficients // 4) + 1
+    assert report["levels"][0][1:] == [16, 16]
+    assert table.shape[0] == report["layers"] * 18
+    relief = table.reshape(report["layers"], 18, -1, 4)[-1, 1:17, 1:17, 0]
+    assert relief.min() >= report["bottom"] - 1e-6
+    assert relief.max() <= report["top"] + 1e-6
+
+
+def test_only_btfs_of_srbfs_have_maps(model_file):
+    with Model.load(model_file) as model, pytest.raises(VelourError, match="made of SRBFs"):
+        btf_maps_job(model)

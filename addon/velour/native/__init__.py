@@ -23,7 +23,7 @@ from .observation import Observation
 from .passes import INSTANCE_LABEL, MATERIAL_LABEL, Passes, cryptomatte_id
 from .plot import Plot
 from .progressive import Picture, ProgressiveJob
-from .realtime import light_map_job, lobe_rows_job, principled_rows_job
+from .realtime import btf_maps_job, light_map_job, lobe_rows_job, principled_rows_job
 from .scene import Scene
 from .shader import Shader
 from .texture import Texture, TextureSlot
@@ -50,6 +50,7 @@ __all__ = [
     "TextureSlot",
     "Tile",
     "VelourError",
+    "btf_maps_job",
     "capture_job",
     "compare_btf_job",
     "compare_job",

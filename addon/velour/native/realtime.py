@@ -22,6 +22,11 @@ def lobe_rows_job(model: Model) -> Job:
     return Job._create("vlr_lobe_rows_create_job", model.pointer)
 
 
+def btf_maps_job(model: Model) -> Job:
+    """Of the model of a BTF that is made of SRBFs. Result: result_table(), its layers one above the other."""
+    return Job._create("vlr_btf_maps_create_job", model.pointer)
+
+
 def principled_rows_job(base_color, **values) -> Job:
     """As lobe_rows_job, of a Principled material: base_color [3], metallic, roughness, specular."""
     desc = table.PrincipledDesc()

@@ -6,12 +6,15 @@ import numpy as np
 
 from ..native import light_map_job
 from .projection import jitter, view_projection
-from .shaders import sky_shader, surface_shader
+from .shaders import sky_shader
 from .targets import Targets, full_screen
+from .textures import texture
 
 _WIDTH = 1020  # pixels of a row of the texture of instances: whole instances
 _FLOATS = 4
 _MOST = 16  # pictures in a mean
+_NARROW, _MOST_NARROW = 60.0, 8  # bandwidth of lobes of the world, and how many
+_TURN = 2.39996 / _MOST * 5  # of directions of light from picture to picture, radians
 
 
 class Drawing:
@@ -19,7 +22,7 @@ class Drawing:
 
     def __init__(self, cache_folder):
         self._cache_folder = cache_folder
-        self._rows = {}  # of each Job of lobes: texture and report
+        self._tables = {}  # of each Job of a material
         self._light = None  # texture
         self.light_report = {}  # of the job that made it
         self._light_job = None
@@ -40,16 +43,16 @@ class Drawing:
         import gpu
 
         self._follow_light(gpu, scene)
-        jobs = {look.rows for look in scene.looks}
-        self._rows = {job: rows for job, rows in self._rows.items() if job in jobs}
-        for job in jobs - self._rows.keys():
+        looks = {look.job: look for look in scene.looks}
+        self._tables = {job: tables for job, tables in self._tables.items() if job in looks}
+        for job in looks.keys() - self._tables.keys():
             if job.wait(timeout=0):  # raises what went wrong
-                self._rows[job] = self._rows_texture(gpu, scene, job), job.report()
-        return self._light is not None and len(self._rows) == len(jobs)
+                self._tables[job] = looks[job].tables(gpu, job, scene.to_working)
+        return self._light is not None and len(self._tables) == len(looks)
 
     def is_waiting(self, scene):
         """Whether there will be more to draw without that anything changes."""
-        lacks_tables = len(self._rows) < len({look.rows for look in scene.looks})
+        lacks_tables = len(self._tables) < len({look.job for look in scene.looks})
         return self._light_job is not None or lacks_tables or self.count < _MOST
 
     def _follow_light(self, gpu, scene):
@@ -59,17 +62,11 @@ class Drawing:
             self._light_job = light_map_job(scene, self._cache_folder).start()
             self._light_version = scene.world_version
         if self._light_job and self._light_job.wait(timeout=0):
-            self._light = _texture(gpu, self._light_job.result_table())
+            self._light = texture(gpu, self._light_job.result_table())
             self.light_report = self._light_job.report()
             self._light_job.close()
             self._light_job = None
             self.restart()
-
-    @staticmethod
-    def _rows_texture(gpu, scene, job):
-        table = job.result_table()
-        table[:, 1::2, :3] = table[:, 1::2, :3] @ scene.to_working.T
-        return _texture(gpu, table)
 
     def restart(self):
         """What is drawn next is another picture than the last."""
@@ -112,35 +109,38 @@ class Drawing:
         gpu.state.depth_test_set("NONE")
 
     def _draw_surfaces(self, gpu, scene, matrix, eye, exposure):
-        shader = surface_shader()
-        shader.bind()
-        shader.uniform_float("view_projection", _columns(matrix))
-        shader.uniform_float("eye", eye)
-        shader.uniform_sampler("light_map", self._light)
-        shader.uniform_sampler("instances", self._instances_texture(gpu, scene))
-        self._lamps = _lamps_texture(gpu, scene.lamps)  # alive until all is drawn
-        shader.uniform_sampler("lamps", self._lamps)
+        narrow = _narrow_lobes(self.light_report["mixture"])
+        self._lamps = _lamps_texture(gpu, [*scene.lamps, *narrow])  # alive until all is drawn
+        for shader in {tables.shader() for tables in self._tables.values()}:
+            shader.bind()
+            shader.uniform_float("view_projection", _columns(matrix))
+            shader.uniform_float("eye", eye)
+            shader.uniform_sampler("light_map", self._light)
+            shader.uniform_sampler("instances", self._instances_texture(gpu, scene))
+            shader.uniform_sampler("lamps", self._lamps)
+            self._draw_groups(gpu, scene, shader, exposure, len(narrow))
+
+    def _draw_groups(self, gpu, scene, shader, exposure, narrow):
+        """Of what wears materials of the shader."""
         first = 0
         for group in scene.groups:
             for slot, batch in enumerate(scene.meshes[group.mesh].batches(gpu)):
                 material = group.materials[min(slot, len(group.materials) - 1)]
                 if batch is None or material is None:
                     continue
+                tables = self._tables[scene.looks[material].job]
+                if tables.shader() is not shader:
+                    continue
+                tables.bind(shader)
                 self._set_look(shader, scene, material, exposure)
-                _draw_instances(shader, batch, self._layout(scene, material), first, len(group.rows))
+                _draw_instances(shader, batch, tables.layout(narrow), first, len(group.rows))
             first += len(group.rows)
 
     def _set_look(self, shader, scene, material, exposure):
-        look = scene.looks[material]
-        shader.uniform_sampler("lobe_rows", self._rows[look.rows][0])
         gain = [exposure * channel for channel in scene.gains[material]]
         shader.uniform_float("gain", (*gain, float(len(scene.lamps))))
-        shader.uniform_float("emission", (*(exposure * channel for channel in look.emission), 0.0))
-
-    def _layout(self, scene, material):
-        report = self._rows[scene.looks[material].rows][1]
-        side = report["side"] if report["isotropic"] else -report["side"]
-        return report["lobes"], side, int(report["blends"])
+        emission = [exposure * channel for channel in scene.looks[material].emission]
+        shader.uniform_float("emission", (*emission, _TURN * self.count))
 
     def _instances_texture(self, gpu, scene):
         if self._instances is None or self._instances[0] is not scene.groups:
@@ -148,7 +148,7 @@ class Drawing:
             pixels = np.concatenate(rows)
             table = np.zeros((-(-len(pixels) // _WIDTH), _WIDTH, _FLOATS), np.float32)
             table.reshape(-1, _FLOATS)[: len(pixels)] = pixels
-            self._instances = scene.groups, _texture(gpu, table)
+            self._instances = scene.groups, texture(gpu, table)
         return self._instances[1]
 
     def _draw_sky(self, gpu, matrix, exposure):
@@ -179,12 +179,16 @@ def _columns(matrix):
 
 
 def _lamps_texture(gpu, lamps):
-    return _texture(gpu, np.concatenate(lamps)[None] if lamps else np.zeros((1, 4, _FLOATS), np.float32))
+    return texture(gpu, np.concatenate(lamps)[None] if lamps else np.zeros((1, 4, _FLOATS), np.float32))
 
 
-def _texture(gpu, table):
-    """Of [height x width x 4] float32."""
-    height, width = table.shape[:2]
-    values = np.ascontiguousarray(table, np.float32).reshape(-1)
-    data = gpu.types.Buffer("FLOAT", values.size, values)
-    return gpu.types.GPUTexture((width, height), format="RGBA32F", data=data)
+def _narrow_lobes(mixture):
+    """The brightest that are narrower than the directions of light of BTFs, as pixels of lamps."""
+    lobes = np.array(mixture, float).reshape(-1, 7)
+    lobes = lobes[lobes[:, 3] > _NARROW]
+    whole = 2 * np.pi / lobes[:, 3]
+    energy = lobes[:, 4:] * whole[:, None]
+    pixels = np.zeros((len(lobes), 4, 4), np.float32)
+    pixels[:, 0, :3] = lobes[:, :3]
+    pixels[:, 1, :3], pixels[:, 1, 3] = energy, lobes[:, 3]
+    return list(pixels[np.argsort(-energy.sum(axis=1))[:_MOST_NARROW]])

@@ -1,4 +1,4 @@
-"""Lamps as four pixels of a texture each (surface.frag.glsl)."""
+"""Lamps as four pixels of a texture each (site.glsl)."""
 
 import math
 

@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..native import Scene, lobe_rows_job, principled_rows_job
+from ..native import Scene, btf_maps_job, lobe_rows_job, principled_rows_job
 from .lamps import lamp_pixels
 from .meshes import GpuMesh, split_meshes
+from .tables import MOST_TERMS, BtfTables, LobeTables
 
 _UNPLACED = np.array(((1, 0, 0), (0, 1, 0)), np.float32)
 
@@ -19,9 +20,10 @@ class UnshownError(Exception):
 
 
 class Look(NamedTuple):
-    """A material: the job of its lobes, and what these are multiplied with."""
+    """A material: the job of its tables, and what these become."""
 
-    rows: object  # Job of the library
+    job: object  # of the library
+    tables: type = LobeTables
     emission: tuple = (0.0, 0.0, 0.0)
     is_simpler: bool = False  # than the ray tracer shows it
 
@@ -49,7 +51,7 @@ class RealtimeScene(Scene):
 
     def close(self):
         for look in self.looks:
-            look.rows.close()
+            look.job.close()
         self.looks = []
         super().close()
 
@@ -96,28 +98,30 @@ class RealtimeScene(Scene):
 
     def add_model_material(self, model, neighbors=0):
         info = model.info()
-        if "texels" in info:
-            raise UnshownError("materials with BTFs are shown by the ray tracer alone")
         if "shell" in info:
             raise UnshownError("materials with outlines are shown by the ray tracer alone")
-        return self._add_look(Look(lobe_rows_job(model)))
+        if "texels" not in info:
+            return self._add_look(Look(lobe_rows_job(model)))
+        if info["model"] != "srbf-btf" or info["coefficients"] > MOST_TERMS:
+            raise UnshownError("BTFs that are not made of SRBFs are shown by the ray tracer alone")
+        return self._add_look(Look(btf_maps_job(model), BtfTables))
 
     def add_measurement_material(self, measurement, proposal=None, neighbors=0):
         raise UnshownError("measurements themselves are shown by the ray tracer alone")
 
     def add_btf_material(self, btf, most_bytes=0):
-        raise UnshownError("materials with BTFs are shown by the ray tracer alone")
+        raise UnshownError("measured BTFs themselves are shown by the ray tracer alone")
 
     def add_textured_material(self, textures, **values):
         emission = tuple(values.pop("emission", (0.0, 0.0, 0.0)))
         is_simpler = bool(textures) or values.pop("alpha", 1.0) < 1.0
-        return self._add_look(Look(_rows_of(values), emission, is_simpler))
+        return self._add_look(Look(_rows_of(values), emission=emission, is_simpler=is_simpler))
 
     def add_shader_material(self, shader):
         return self._add_look(Look(_rows_of({}), is_simpler=True))
 
     def replace_material(self, material):
-        self.looks[material].rows.close()
+        self.looks[material].job.close()
         self.looks[material], self.gains[material] = self.looks.pop(), self.gains.pop()
 
     def set_gain(self, material, gain):
@@ -135,7 +139,7 @@ class RealtimeScene(Scene):
     set_shell_tile = set_shell_softness
 
     def _add_look(self, look):
-        look.rows.start()
+        look.job.start()
         self.looks.append(look)
         self.gains.append((1.0, 1.0, 1.0))
         return len(self.looks) - 1

@@ -11,28 +11,38 @@ def _source(*names):
 
 
 @cache
-def surface_shader():
-    """A GPUShader; raises where it does not compile."""
+def lobes_shader():
+    """Of BRDFs. A GPUShader; raises where it does not compile."""
+    return _surface_shader("lobes", (("FLOAT_2D", "lobe_rows"),))
+
+
+@cache
+def btf_shader():
+    return _surface_shader("btf", (("FLOAT_2D", "btf_terms"), ("FLOAT_2D_ARRAY", "btf_maps")))
+
+
+def _surface_shader(name, tables):
     import gpu
 
     info = gpu.types.GPUShaderCreateInfo()
-    for slot, name in enumerate(("instances", "light_map", "lobe_rows", "lamps")):
-        info.sampler(slot, "FLOAT_2D", name)
+    shared = (("FLOAT_2D", "instances"), ("FLOAT_2D", "light_map"), ("FLOAT_2D", "lamps"))
+    for slot, (kind, sampler) in enumerate((*shared, *tables)):
+        info.sampler(slot, kind, sampler)
     info.push_constant("MAT4", "view_projection")
     info.push_constant("VEC4", "eye")  # where it is, 1; or the direction towards it, 0
     info.push_constant("VEC4", "gain")  # and how many lamps there are
-    info.push_constant("VEC4", "emission")
+    info.push_constant("VEC4", "emission")  # and by what directions of light are turned, radians
     info.push_constant("IVEC4", "layout_")
-    for slot, (kind, name) in enumerate((("VEC3", "position"), ("VEC3", "normal"), ("VEC2", "uv"))):
-        info.vertex_in(slot, kind, name)
-    between = gpu.types.GPUStageInterfaceInfo("velour_surface")
+    for slot, (kind, attribute) in enumerate((("VEC3", "position"), ("VEC3", "normal"), ("VEC2", "uv"))):
+        info.vertex_in(slot, kind, attribute)
+    between = gpu.types.GPUStageInterfaceInfo(f"velour_{name}")
     between.smooth("VEC3", "world")
     between.smooth("VEC3", "shading_normal")
     between.smooth("VEC2", "coordinates")
     info.vertex_out(between)
     info.fragment_out(0, "VEC4", "pixel")
     info.vertex_source(_source("surface.vert"))
-    info.fragment_source(_source("light", "surface.frag"))
+    info.fragment_source(_source("light", "site", f"{name}.frag"))
     return gpu.shader.create_from_info(info)
 
 

@@ -880,6 +880,10 @@ VLR_API vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* 
 VLR_API vlr_status vlr_lobe_rows_create_job(const vlr_model* model, vlr_job** out);
 /* The same of a Principled material, without emission and alpha. */
 VLR_API vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, vlr_job** out);
+/* A BTF of SRBFs, seen and lit from above, as maps of its coefficients and relief; the table has `layers` of them, one
+ * above the other. JSON: layers, levels (of each x, width, height in a layer), terms (of each coefficient light, view,
+ * half, phase, in_tile, color), bottom, top, aspect, root. VLR_INVALID_ARGUMENT for other models. */
+VLR_API vlr_status vlr_btf_maps_create_job(const vlr_model* model, vlr_job** out);
 
 /* ---- plots of models ----------------------------------------------------------------------------------------- */
 

@@ -2,6 +2,7 @@
 #include "capi/handles.h"
 #include "capi/json_text.h"
 #include "capi/surfaces.h"
+#include "realtime/btf_maps.h"
 #include "realtime/light_map.h"
 #include "realtime/lobe_rows.h"
 #include "velour/velour.h"
@@ -23,6 +24,29 @@ std::string mixture_json(const SkyMixture& sky) {
                {"seconds", sky.seconds},
                {"cached", sky.cached},
                {"mixture", std::move(lobes)}});
+}
+
+Json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Json maps_json(const BtfMaps& maps, Companding companding) {
+  Json levels = Json::array(), terms = Json::array();
+  for (const BtfMaps::Level& level : maps.levels) levels.push_back({level.x, level.width, level.height});
+  for (const BtfMaps::Term& term : maps.terms) {
+    const MultivariateLobe& lobe = term.lobe;
+    terms.push_back({{"light", vector_json(lobe.light)},
+                     {"view", vector_json(lobe.view)},
+                     {"half", vector_json(lobe.half)},
+                     {"phase", lobe.phase},
+                     {"in_tile", term.in_tile},
+                     {"color", vector_json(term.color)}});
+  }
+  return {{"layers", maps.layers},
+          {"levels", std::move(levels)},
+          {"terms", std::move(terms)},
+          {"bottom", maps.bottom},
+          {"top", maps.top},
+          {"aspect", maps.aspect},
+          {"root", companding == Companding::root}};
 }
 
 /// A job of the rows that `make`(progress) makes.
@@ -69,6 +93,23 @@ vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, vlr_j
     require(out, "out");
     *out = rows_job(
         [parameters = parameters_of(*desc)](Progress& progress) { return lobe_rows(parameters, 0, progress); });
+  });
+}
+
+vlr_status vlr_btf_maps_create_job(const vlr_model* model, vlr_job** out) {
+  return guard([&] {
+    require(model, "model");
+    require(out, "out");
+    if (!std::holds_alternative<SrbfBtf>(model->model->body)) {
+      throw Error(Status::invalid_argument, "Only the models of BTFs that are made of SRBFs have maps.");
+    }
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, model = model->model](Progress&) {
+      const auto& btf = std::get<SrbfBtf>(model->body);
+      BtfMaps maps = btf_maps(btf);
+      const std::string json = text(maps_json(maps, btf.companding));
+      output->set(json, std::make_shared<const TablePixels>(std::move(maps.maps)));
+    });
   });
 }
 

@@ -45,21 +45,6 @@ Lobe lobe_at(Place place, int lobe)
   return Lobe(normalize(shape.xyz), shape.w, color);
 }
 
-// x along the tangent of the texture coordinates, of isotropic models along the view's azimuth.
-mat3 frame_about(vec3 n, vec3 view)
-{
-  vec3 x = is_isotropic() ? view : vec3(0);
-  if (!is_isotropic()) {
-    vec3 px = dFdx(world), py = dFdy(world);
-    vec2 tx = dFdx(coordinates), ty = dFdy(coordinates);
-    x = (px * ty.y - py * tx.y) * sign(tx.x * ty.y - tx.y * ty.x);
-  }
-  x -= dot(x, n) * n;
-  if (dot(x, x) < 1e-20) x = abs(n.x) < 0.9 ? vec3(1, 0, 0) - n.x * n : vec3(0, 1, 0) - n.y * n;
-  x = normalize(x);
-  return mat3(x, cross(n, x), n);
-}
-
 // Of a normalised Gaussian, or of the clipped cosine over pi; a lamp of an own bandwidth blurs both into one.
 float density(Lobe lobe, vec3 normal, vec3 center, vec3 light, float lamp_bandwidth)
 {
@@ -70,37 +55,11 @@ float density(Lobe lobe, vec3 normal, vec3 center, vec3 light, float lamp_bandwi
   return both / (2.0 * PI * (1.0 - exp(-2.0 * both))) * exp(-0.5 * both * dot(apart, apart));
 }
 
-// Irradiance of a plane that faces the lamp; `light`: unit, towards it; `bandwidth`: of what is seen of it.
-// Four pixels a lamp: place or direction, kind; colour, radius squared; axis, cosine of a spot's cone; its blend.
-vec3 lamp_light(int lamp, out vec3 light, out float bandwidth)
-{
-  vec4 where = texelFetch(lamps, ivec2(4 * lamp, 0), 0), color = texelFetch(lamps, ivec2(4 * lamp + 1, 0), 0);
-  vec4 axis = texelFetch(lamps, ivec2(4 * lamp + 2, 0), 0), more = texelFetch(lamps, ivec2(4 * lamp + 3, 0), 0);
-  if (where.w == 0.0) {
-    light = where.xyz;
-    bandwidth = 4.0 / max(color.w, 1e-6);
-    return color.rgb;
-  }
-  vec3 path = where.xyz - world;
-  float square = max(dot(path, path), 1e-8);
-  light = path * inversesqrt(square);
-  bandwidth = 4.0 * square / max(color.w, 1e-6 * square);
-  float leaves = dot(-light, axis.xyz);
-  float share = where.w == 2.0 ? max(leaves, 0.0) : where.w == 3.0 ? smoothstep(0.0, 1.0, (leaves - axis.w) / max(more.x, 1e-6)) : 1.0;
-  return color.rgb * share / square;
-}
-
 void main()
 {
-  vec3 view = eye.w > 0.0 ? normalize(eye.xyz - world) : eye.xyz;
-  vec3 flat_normal = normalize(cross(dFdx(world), dFdy(world)));
-  if (dot(flat_normal, view) < 0.0) flat_normal = -flat_normal;
-  vec3 n = dot(shading_normal, shading_normal) > 0.0 ? normalize(shading_normal) : flat_normal;
-  if (dot(n, flat_normal) < 0.0) n = -n;
-  // Interpolated normals may face away at an outline.
-  float facing = dot(n, view);
-  if (facing < 0.01) n = normalize(n + (0.01 - facing) * view);
-  mat3 frame = frame_about(n, view);
+  vec3 view = view_from_here(), n = normal_towards(view), along_u, along_v;
+  tangents(along_u, along_v);
+  mat3 frame = frame_about(n, is_isotropic() ? view : along_u);
   Place place = place_of(view * frame);
   int lamp_count = int(gain.w);
   vec3 sum = vec3(0);

@@ -1,0 +1,87 @@
+#include "realtime/btf_maps.h"
+
+#include <algorithm>
+
+#include "btf/relief.h"
+#include "image/half_image.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+constexpr uint32_t kPerLayer = 4, kBorder = 1;
+
+std::vector<BtfMaps::Term> terms_of(const SrbfBtf& btf, const SrbfSide& side) {
+  std::vector<BtfMaps::Term> terms;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (const uint16_t lobe : side.lobe[axis]) {
+      terms.push_back({side.lobes[lobe], lobe < side.tile_lobes, btf.axes[static_cast<int>(axis)]});
+    }
+  }
+  return terms;
+}
+
+/// Of a level whose texels repeat: the texel of a pixel, border included.
+uint32_t wrapped(uint32_t pixel, uint32_t size) { return (pixel + size - kBorder % size) % size; }
+
+/// Writes one layer's part of a level; `value`(texel x, texel y, to) gives its four numbers.
+template <typename Value>
+void write_level(TablePixels& maps, uint32_t first_row, const BtfMaps::Level& level, const Value& value) {
+  for (uint32_t y = 0; y < level.height + 2 * kBorder; ++y) {
+    for (uint32_t x = 0; x < level.width + 2 * kBorder; ++x) {
+      value(wrapped(x, level.width), wrapped(y, level.height), maps.at(level.x - kBorder + x, first_row + y));
+    }
+  }
+}
+
+Relief relief_of(const SrbfLevel& level, float aspect) {
+  std::vector<float> heights(level.relief.size());
+  halves_to_floats(level.relief, heights);
+  return {level.width, level.height, heights, aspect};
+}
+
+}  // namespace
+
+BtfMaps btf_maps(const SrbfBtf& btf) {
+  const auto number = serving_side(btf, false, false);
+  if (!number) throw Error(Status::invalid_argument, "The BTF has no side that is seen and lit from above.");
+  const SrbfSide& side = btf.sides[*number];
+  BtfMaps out;
+  out.terms = terms_of(btf, side);
+  out.aspect = tile_aspect(btf.grid);
+  const auto coefficients = static_cast<uint32_t>(out.terms.size());
+  out.layers = (coefficients + kPerLayer - 1) / kPerLayer + 1;
+  uint32_t width = 0;
+  for (const SrbfLevel& level : side.levels) {
+    out.levels.push_back({width + kBorder, level.width, level.height});
+    width += level.width + 2 * kBorder;
+  }
+  const uint32_t rows = side.levels[0].height + 2 * kBorder;
+  out.maps = TablePixels(width, rows * out.layers);
+  for (size_t i = 0; i < side.levels.size(); ++i) {
+    const SrbfLevel& level = side.levels[i];
+    const Relief relief = relief_of(level, out.aspect);
+    if (i == 0) {
+      const auto [low, high] = std::minmax_element(relief.heights().begin(), relief.heights().end());
+      out.bottom = *low;
+      out.top = *high;
+    }
+    for (uint32_t layer = 0; layer + 1 < out.layers; ++layer) {
+      write_level(out.maps, layer * rows, out.levels[i], [&](uint32_t x, uint32_t y, float* to) {
+        const size_t texel = size_t{y} * level.width + x;
+        for (uint32_t k = layer * kPerLayer; k < std::min(coefficients, (layer + 1) * kPerLayer); ++k) {
+          to[k % kPerLayer] = side.scale[k].value(level.value[texel * coefficients + k]);
+        }
+      });
+    }
+    write_level(out.maps, (out.layers - 1) * rows, out.levels[i], [&](uint32_t x, uint32_t y, float* to) {
+      const Vec2 slope = relief.slope(x, y);
+      to[0] = relief.height_of(x, y);
+      to[1] = slope.x;
+      to[2] = slope.y;
+    });
+  }
+  return out;
+}
+
+}  // namespace velour
