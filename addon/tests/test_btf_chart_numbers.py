@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import btf_chart_rows
 import numpy as np
 import pytest
 from btf_chart import methods
@@ -99,6 +100,14 @@ def test_results_are_compared_at_equal_bytes():
     assert results.gain("weave", 1000, "cta", "svd") is None
     assert results.gain("weave", 500, "cta", "svd", "psnr_unseen") is None
     assert results.ratios() == [500, 1000]
+
+
+def test_rows_are_read_as_they_were_written(tmp_path):
+    entries = [_entry("svd", 1 / 3), _entry("kcta 2", 21, tile="net", ratio=50, unseen=19)]
+    btf_chart_rows.write(tmp_path / "a.csv", Results(entries), {"machine": "A, B", "note": "", "commit": "c"})
+    conditions, found = btf_chart_rows.read(tmp_path / "a.csv")
+    assert found == entries
+    assert conditions == {"machine": "A, B", "note": "", "commit": "c"}
 
 
 def _found(entries: list[Entry]) -> dict:

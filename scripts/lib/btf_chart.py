@@ -10,10 +10,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import btf_chart_plot
+import btf_chart_rows
 import btf_chart_sheet
 import btf_chart_text
 import script
-from btf_chart_numbers import Method, Results
+from btf_chart_numbers import Entry, Method, Results
 from btf_chart_runs import QUICK, Extent, Study, Tile
 from renders import Settings
 from velour.native.table import COMPRESS_METHODS
@@ -23,6 +24,7 @@ MEMBERS = (None, 2, 3, 4)  # of K-CTA; None: sought
 SWITCHES = {
     "btf": "this chart",
     "kept": "writes what the fits say that are there, and makes no others",
+    "add": "keeps the rows of other ratios that the page in the output folder has",
 }
 _ORDER = ("svd", "svd-view", "srbf", "tucker", "cta", "kcta")
 
@@ -48,19 +50,19 @@ def main() -> int:
     contenders = methods(COMPRESS_METHODS, args.methods)
     study.announce(len(extent.tiles) + len(args.btf_set), len(contenders))
     tiles = [study.captured(kind) for kind in extent.tiles] + [study.measured(path) for path in args.btf_set]
-    results = Results([e for e in _entries(study, tiles, contenders, extent) if e])
+    taken_on, before = _before(args, extent)
+    results = Results(before + [e for e in _entries(study, tiles, contenders, extent) if e])
     images = args.output / "images"
     images.mkdir(parents=True, exist_ok=True)
     btf_chart_plot.draw(images / "chart_btf.png", results)
-    for tile in tiles:
+    for tile in tiles if extent.speed_ratio in extent.ratios else ():
         pictures = _pictures(study, tile, contenders, extent.speed_ratio)
         btf_chart_sheet.draw(
             images / f"chart_btf_{tile.name}.png", tile, pictures, results, extent.speed_ratio
         )
     interpolated = {tile.name: study.interpolated(tile) for tile in tiles}
-    btf_chart_text.write(
-        args.output, results, interpolated, run.conditions | {"note": args.note, "kept": args.kept}, extent
-    )
+    conditions = run.conditions | {"note": args.note, "kept": args.kept, "added_to": taken_on}
+    btf_chart_text.write(args.output, results, interpolated, conditions, extent)
     print(args.output / "chart_btf.md")
     return 0
 
@@ -82,9 +84,18 @@ def _extent(args: argparse.Namespace) -> Extent:
     extent = QUICK if args.quick else Extent()
     given = {name: getattr(args, name) for name in ("texels", "tiles", "ratios") if getattr(args, name)}
     extent = replace(extent, **{name: tuple(v) if name != "texels" else v for name, v in given.items()})
-    if extent.speed_ratio in extent.ratios:
+    if extent.speed_ratio in extent.ratios or args.add:
         return extent
     return replace(extent, speed_ratio=sorted(extent.ratios)[len(extent.ratios) // 2])
+
+
+def _before(args: argparse.Namespace, extent: Extent) -> tuple[str, list[Entry]]:
+    """Entries to add to, and when they were measured."""
+    if not args.add:
+        return "", []
+    conditions, entries = btf_chart_rows.read(args.output / btf_chart_rows.FILE)
+    taken_on = f"{conditions['date']}, commit {conditions['commit']}"
+    return taken_on, [e for e in entries if e.ratio not in extent.ratios]
 
 
 def _entries(study: Study, tiles: list[Tile], contenders: list[Method], extent: Extent):

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 
+import btf_chart_rows
 import btf_chart_scene
 import provenance
 from btf_chart_numbers import Entry, Results, verdicts
 from btf_chart_runs import WORLD, Extent
 from markdown_table import table
-from table_csv import csv_text
 from velour.core import files
 
 _WORDS = {True: "met", False: "missed", None: "not measured"}
@@ -18,18 +17,19 @@ _WORDS = {True: "met", False: "missed", None: "not measured"}
 
 def _origin(conditions: dict) -> str:
     """Where the numbers come from: a page of kept results is of as many runs as those were."""
-    sentence = provenance.sentence(conditions)
-    if not conditions["kept"]:
-        return sentence
-    return sentence.replace(
-        "All numbers come from one run:", "Written from kept results of several runs; this page:"
-    )
+    sentence, one_run = provenance.sentence(conditions), "All numbers come from one run:"
+    if conditions["kept"]:
+        sentence = sentence.replace(one_run, "Written from kept results of several runs; this page:")
+    if conditions["added_to"]:
+        sentence = sentence.replace(one_run, "The last run:")
+        sentence += f"\nIts rows were added to those of {conditions['added_to']}."
+    return sentence
 
 
 def write(
     folder: Path, results: Results, interpolated: dict[str, dict | None], conditions: dict, extent: Extent
 ) -> None:
-    files.write_text(folder / "chart_btf.csv", _csv(results, conditions))
+    btf_chart_rows.write(folder / btf_chart_rows.FILE, results, conditions)
     parts = [
         _head(conditions, extent),
         "![Errors against bytes](images/chart_btf.png)\n",
@@ -140,9 +140,3 @@ better of `mis` and `product`: threads times seconds of tracing and shading, rea
 {" and ".join(map(str, extent.speed_spp))} directions a pixel or continued.
 
 {table(header, rows)}"""
-
-
-def _csv(results: Results, conditions: dict) -> str:
-    header = [field.name for field in dataclasses.fields(Entry)]
-    rows = [[name, value, *[""] * (len(header) - 2)] for name, value in conditions.items()]
-    return csv_text(header, rows + [list(dataclasses.astuple(e)) for e in results.all()])

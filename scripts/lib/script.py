@@ -27,11 +27,11 @@ class Run:
 def arguments(
     name: str,
     documents: Path,
-    add: Callable[[argparse.ArgumentParser], None] = lambda _: None,
+    more: Callable[[argparse.ArgumentParser], None] = lambda _: None,
     part: str = "",
     **switches: str,
 ) -> argparse.Namespace:
-    """`switches`: what the script knows besides, with a help text each; `add`: of options with values.
+    """`switches`: what the script knows besides, with a help text each; `more`: adds options with values.
     `part`: of the script, whose results are kept for themselves."""
     parser = argparse.ArgumentParser(prog=name)
     parser.add_argument("--quick", action="store_true")
@@ -42,7 +42,7 @@ def arguments(
     parser.add_argument("--threads", metavar="T", type=int, default=min(2, threads()))
     for switch, text in switches.items():
         parser.add_argument(f"--{switch}", action="store_true", help=text)
-    add(parser)
+    more(parser)
     args = parser.parse_args()
     # A small version is for trying out; it must not replace the numbers of the whole one.
     args.work = args.work or ROOT / "build" / name / part / ("quick" if args.quick else "full")
