@@ -41,7 +41,7 @@ def _resident_mib():
 def refusals(folder):
     """What is too much is ray traced, with a sentence; in real time once the mode is chosen again."""
     scenes.set_world()
-    realtime = viewport.addon("engine.realtime_viewport")
+    realtime = viewport.addon("realtime.scene")
     most, realtime._MOST_DRAWS = realtime._MOST_DRAWS, 0
     try:
         viewport.show_real_time()

@@ -130,6 +130,19 @@ def test_what_real_time_does_not_show_is_refused():
             scene.add_measurement_material(None)
 
 
+def test_more_lamps_on_btfs_than_the_shader_holds_are_refused():
+    with RealtimeScene() as scene, Model.load(_WEAVE) as model:
+        scene.add_textured_material({}, base_color=(1, 0, 0))
+        for _ in range(9):
+            scene.add_light("sun", (1, 1, 1), np.eye(3, 4))
+        scene.check()
+        scene.add_model_material(model)
+        with pytest.raises(UnshownError, match="more than 8 lamps"):
+            scene.check()
+        scene.lamps.pop()
+        scene.check()
+
+
 def test_a_point_goes_where_the_window_says():
     matrix, eye = view_projection(_View)
     assert eye == (2, 3, 4, 1)

@@ -4,11 +4,9 @@ from ..export.film import film_exposure, hides_world
 from ..export.live import LiveExport
 from ..export.look import Look
 from ..export.viewport import viewport_frame
-from ..realtime import Drawing, RealtimeScene, UnshownError
+from ..realtime import Drawing, RealtimeScene
 from . import viewport_clock
 from .options import cache_folder
-
-_MOST_DRAWS = 20_000  # of instances: more are slower than rays
 
 
 class RealtimeViewport:
@@ -42,8 +40,7 @@ class RealtimeViewport:
                 self._live = LiveExport(depsgraph, look, RealtimeScene())
             elif changes:
                 self._live.update(changes, depsgraph, look)
-        if self._live.scene.draws > _MOST_DRAWS:
-            raise UnshownError(f"more than {_MOST_DRAWS:,} instances are shown by the ray tracer alone")
+        self._live.scene.check()
 
     def draw(self, context, depsgraph):
         """A sentence on how far it is."""

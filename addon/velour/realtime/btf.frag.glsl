@@ -91,7 +91,8 @@ void main()
     sums[i] = vec3(0);
   }
   int count = LIGHTS;
-  // Narrow lobes of the world are lamps: directions so far apart would blur them.
+  // Narrow lobes of the world are lamps: directions so far apart would blur them. RealtimeScene.check() has that all of
+  // them fit; what is written here never leaves the arrays.
   for (int narrow = 0; narrow < layout_.w; ++narrow) {
     int at = 4 * (int(gain.w) + narrow);
     vec3 axis = texelFetch(lamps, ivec2(at, 0), 0).xyz;
@@ -101,17 +102,17 @@ void main()
       arrives[i] -= PI / float(LIGHTS) * energy.rgb * product(frame * wl[i], max(lobe, 1.0), axis, energy.w);
     }
     vec3 local = axis * frame;
-    if (local.z <= 0.0) continue;
+    if (local.z <= 0.0 || count == LIGHTS + MOST_LAMPS) continue;
     wl[count] = local;
     arrives[count] = local.z * energy.rgb;
     sums[count++] = vec3(0);
   }
-  for (int lamp = 0; lamp < min(int(gain.w), MOST_LAMPS); ++lamp) {
+  for (int lamp = 0; lamp < int(gain.w); ++lamp) {
     vec3 light;
     float bandwidth;
     vec3 irradiance = lamp_light(lamp, light, bandwidth);
     vec3 local = light * frame;
-    if (local.z <= 0.0) continue;
+    if (local.z <= 0.0 || count == LIGHTS + MOST_LAMPS) continue;
     wl[count] = local;
     arrives[count] = local.z * irradiance;
     sums[count++] = vec3(0);

@@ -12,6 +12,8 @@ from .lamps import lamp_pixels
 from .meshes import GpuMesh, split_meshes
 from .tables import MOST_TERMS, BtfTables, LobeTables
 
+_MOST_DRAWS = 20_000  # of instances: more are slower than rays
+_MOST_LAMPS = 8  # on BTFs: with as many narrow lobes of the world all that btf.frag.glsl has room for
 _UNPLACED = np.array(((1, 0, 0), (0, 1, 0)), np.float32)
 
 
@@ -163,6 +165,13 @@ class RealtimeScene(Scene):
     def set_world_file(self, path, strength=1.0, world_to_image=None):
         super().set_world_file(path, strength, world_to_image)
         self.world_version += 1
+
+    def check(self):
+        """Raises UnshownError where the whole is too much."""
+        if self.draws > _MOST_DRAWS:
+            raise UnshownError(f"more than {_MOST_DRAWS:,} instances are shown by the ray tracer alone")
+        if len(self.lamps) > _MOST_LAMPS and any(look.tables is BtfTables for look in self.looks):
+            raise UnshownError(f"BTFs under more than {_MOST_LAMPS} lamps are shown by the ray tracer alone")
 
     @property
     def draws(self):
