@@ -118,7 +118,7 @@ class Workshop:
             return self._with_outline(path, scene, tile, opened.enter_context(look), seconds)
 
     def _look(self, scene: Scene, tile: Tile) -> tuple[Model, float]:
-        """What the repeated tile looks like from above, and the seconds that it took."""
+        """What the repeated tile looks like, and the seconds that it took."""
         sizes = self._sizes
         with tempfile.TemporaryDirectory(prefix="capture-", dir=self.work) as folder:
             return model_of_tile(

@@ -1,4 +1,4 @@
-"""What a tile looks like from above once it is repeated without end: the model of its BTF."""
+"""What a tile looks like once it is repeated without end: the model of its BTF."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from velour.native import Btf, Model, Scene, capture_job, compress_job, directio
 def model_of_tile(
     scene: Scene, tile: dict, data: Path, around: int, seed: int = 0, threads: int = 0, **capture
 ) -> tuple[Model, float]:
-    """Captures the front of a committed scene that holds the tile into `data` and compresses that.
+    """Captures a committed scene that holds the tile into `data`, from below too where one sees through, and
+    compresses that.
 
     `tile`: its info(); `around`: of so many views and lights; `capture`: further options of capture_job().
     Also gives the seconds.
@@ -21,7 +22,6 @@ def model_of_tile(
         data,
         views=angles,
         lights=angles,
-        sides="one",
         period=tile["period"],
         source=tile["kind"],
         seed=seed,

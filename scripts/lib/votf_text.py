@@ -69,7 +69,7 @@ shading, megabytes of the whole scene.
 ## With the tile's BTF
 
 The geometry has the tile's own materials, the others show its BTF: {extent.texels} x {extent.texels} texels
-under 81 x 81 directions, captured from above alone, compressed as `velour compress` does unasked.
+under 81 x 81 directions, captured and compressed as `velour` does unasked: of the net and the chain mail both sides.
 {_ratios(rows, "BTF")}
 
 {of_btf}
