@@ -173,7 +173,7 @@ def test_the_page_of_btfs_shows_what_was_measured(btf_chart):
         assert (btf_chart / "out/images" / name).stat().st_size > 5000
 
 
-def test_rows_are_added_to_those_of_other_ratios(btf_chart, data_folder):
+def test_rows_are_added_to_a_page(btf_chart, data_folder):
     folder = btf_chart / "added"
     shutil.copytree(btf_chart / "out", folder)
     table, sheet = folder / "chart_btf.csv", folder / "images/chart_btf_weave.png"

@@ -24,7 +24,7 @@ MEMBERS = (None, 2, 3, 4)  # of K-CTA; None: sought
 SWITCHES = {
     "btf": "this chart",
     "kept": "writes what the fits say that are there, and makes no others",
-    "add": "keeps the rows of other ratios that the page in the output folder has",
+    "add": "keeps all that the page in the output folder has and is not measured now",
 }
 _ORDER = ("svd", "svd-view", "srbf", "tucker", "cta", "kcta")
 
@@ -50,12 +50,12 @@ def main() -> int:
     contenders = methods(COMPRESS_METHODS, args.methods)
     study.announce(len(extent.tiles) + len(args.btf_set), len(contenders))
     tiles = [study.captured(kind) for kind in extent.tiles] + [study.measured(path) for path in args.btf_set]
-    taken_on, before = _before(args, extent)
+    taken_on, before = _before(args)
     results = Results(before + [e for e in _entries(study, tiles, contenders, extent) if e])
     images = args.output / "images"
     images.mkdir(parents=True, exist_ok=True)
     btf_chart_plot.draw(images / "chart_btf.png", results)
-    for tile in tiles if extent.speed_ratio in extent.ratios else ():
+    for tile in () if args.add else tiles:
         pictures = _pictures(study, tile, contenders, extent.speed_ratio)
         btf_chart_sheet.draw(
             images / f"chart_btf_{tile.name}.png", tile, pictures, results, extent.speed_ratio
@@ -89,13 +89,12 @@ def _extent(args: argparse.Namespace) -> Extent:
     return replace(extent, speed_ratio=sorted(extent.ratios)[len(extent.ratios) // 2])
 
 
-def _before(args: argparse.Namespace, extent: Extent) -> tuple[str, list[Entry]]:
+def _before(args: argparse.Namespace) -> tuple[str, list[Entry]]:
     """Entries to add to, and when they were measured."""
     if not args.add:
         return "", []
     conditions, entries = btf_chart_rows.read(args.output / btf_chart_rows.FILE)
-    taken_on = f"{conditions['date']}, commit {conditions['commit']}"
-    return taken_on, [e for e in entries if e.ratio not in extent.ratios]
+    return f"{conditions['date']}, commit {conditions['commit']}", entries
 
 
 def _entries(study: Study, tiles: list[Tile], contenders: list[Method], extent: Extent):

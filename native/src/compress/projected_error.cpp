@@ -4,6 +4,7 @@
 
 #include "compress/lobe_values.h"
 #include "job/parallel.h"
+#include "tensor/matrix_product.h"
 
 namespace velour {
 namespace {
@@ -56,8 +57,8 @@ ProjectedError::Part ProjectedError::of_point(size_t number, const std::vector<M
   const Eigen::MatrixXf column = values.at(point, point.pair.size());
   const Eigen::Map<const Eigen::VectorXf> truth(point.value[0].data(), column.rows());
   const float ridge = kRidge * static_cast<float>(column.rows());
-  Eigen::MatrixXf gram = Eigen::MatrixXf::Zero(count, count);
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(column.transpose());
+  Eigen::MatrixXf gram(count, count);
+  multiply_by_itself({column.data(), count, column.rows(), column.rows(), 1}, {gram.data(), count, count, 1, count});
   gram.diagonal().array() += ridge;
   const Eigen::VectorXf coefficient =
       gram.selfadjointView<Eigen::Lower>().ldlt().solve(column.transpose() * truth).eval();

@@ -7,6 +7,7 @@
 #include "compress/row_products.h"
 #include "job/parallel.h"
 #include "srbf/aligned_array.h"
+#include "tensor/matrix_product.h"
 
 namespace velour {
 namespace {
@@ -15,6 +16,8 @@ constexpr double kRidge = 1e-4;     // of coefficients, relative to a lobe of va
 constexpr double kSettled = 1e-12;  // of the rest's square: floats hold no better, and less would become 0 / 0
 constexpr size_t kTexels = 64;      // of a block of work: fixed, so that sums do not depend on threads
 constexpr size_t kSampled = 170;    // texels of a view that means are taken over, about
+constexpr size_t kTogether = 8;     // texels whose lobes are multiplied at once
+constexpr size_t kSums = 16;        // partial sums: fixed as well
 
 }  // namespace
 
@@ -188,21 +191,40 @@ void TexelSolver::gather(const float* padded, float* compact) const {
   for (size_t k = 0; k < column_.size(); ++k) compact[k] = padded[column_[k]];
 }
 
+/// Adds the products of any two lobes over sampled texels of a view and all lights, on and below the diagonal; gives
+/// the number of summands.
+size_t TexelSolver::add_products(size_t view, Eigen::MatrixXd& sum) const {
+  const std::vector<Place> place = places(view);
+  const std::vector<size_t> texels = sample(view);
+  const size_t lights = side_.light.size();
+  const Eigen::Index stride = stride_;
+  AlignedArray<float> rows(kTogether * lights * stride_);
+  RowMatrix product(stride, stride);
+  for (size_t first = 0; first < texels.size(); first += kTogether) {
+    const size_t count = std::min(kTogether, texels.size() - first);
+    for (size_t i = 0; i < count; ++i) {
+      write_rows(view, place[texels[first + i]], rows.data() + i * lights * stride_);
+    }
+    multiply_by_itself({rows.data(), stride, static_cast<Eigen::Index>(count * lights), 1, stride},
+                       {product.data(), stride, stride, stride, 1});
+    sum.triangularView<Eigen::Lower>() += product.cast<double>();
+  }
+  return texels.size() * lights;
+}
+
 /// From the mean of the products of any two lobes over sampled texels and pairs.
 void TexelSolver::set_coordinates() {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(stride_, stride_);
-  AlignedArray<float> values(side_.light.size() * stride_);
-  const Eigen::Map<const Eigen::MatrixXf> rows(values.data(), stride_, static_cast<Eigen::Index>(side_.light.size()));
-  uint64_t count = 0;
-  for (size_t v = 0; v < side_.view.size(); ++v) {
-    const std::vector<Place> place = places(v);
-    for (const size_t t : sample(v)) {
-      write_rows(v, place[t], values.data());
-      sum += (rows * rows.transpose()).cast<double>();
-      count += side_.light.size();
-    }
+  std::vector<Eigen::MatrixXd> part(kSums, Eigen::MatrixXd::Zero(stride_, stride_));
+  std::vector<size_t> count(kSums);
+  parallel_pieces(kSums, threads_, progress_, [&](size_t s) {
+    for (size_t v = s; v < side_.view.size(); v += kSums) count[s] += add_products(v, part[s]);
+  });
+  for (size_t s = 1; s < kSums; ++s) {
+    part[0].triangularView<Eigen::Lower>() += part[s];
+    count[0] += count[s];
   }
-  const Eigen::MatrixXd mean = sum / static_cast<double>(count);
+  const Eigen::MatrixXd sum = part[0].selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd mean = sum / static_cast<double>(count[0]);
   for (size_t a = 0, k = 0; a < 3; ++a) {
     const auto n = static_cast<Eigen::Index>(lobes_.lobe[a].size());
     Eigen::MatrixXd gram(n, n);

@@ -43,6 +43,7 @@ class TexelSolver {
   void accumulate(size_t view, const Values& values_of, RowMatrix& sums) const;
   RowMatrix normal_product(const RowMatrix& coefficient) const;
   RowMatrix whitened(const RowMatrix& m) const;
+  size_t add_products(size_t view, Eigen::MatrixXd& sum) const;
   void set_coordinates();
   void spread(const float* compact, float* padded) const;
   void gather(const float* padded, float* compact) const;
