@@ -69,7 +69,8 @@ shading, megabytes of the whole scene.
 ## With the tile's BTF
 
 The geometry has the tile's own materials, the others show its BTF: {extent.texels} x {extent.texels} texels
-under 81 x 81 directions, captured and compressed as `velour` does unasked: of the net and the chain mail both sides.
+under 81 x 81 directions, captured and compressed as `velour` does unasked: both sides of the net and the
+chain mail.
 {_ratios(rows, "BTF")}
 
 {of_btf}
