@@ -5,8 +5,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from support import scenes, viewport, window
-from support.inputs import native
+from support import realtime, scenes, viewport, window
 
 _DATA = Path(__file__).parent / "scenes/data"
 
@@ -14,75 +13,6 @@ _DATA = Path(__file__).parent / "scenes/data"
 def start(folder):
     """Called by the harness once the window is there."""
     window.run(folder, (ball_in_a_sky, btf, lamps, grey, edits))
-
-
-def _pixels():
-    """[height x width x 4] of what was drawn."""
-    targets = viewport.real_time()._drawing._targets
-    width, height = targets.size
-    buffer = targets.mean().read()
-    buffer.dimensions = width * height * 4
-    return np.array(buffer, np.float32).reshape(height, width, 4)
-
-
-def _equirectangular(mixture, height=512):
-    """[height x 2 height x 3], row 0 at the top: what a mixture of Gaussians is from all around."""
-    rows, columns = (np.arange(height) + 0.5) / height, (np.arange(2 * height) + 0.5) / (2 * height)
-    latitude, azimuth = np.pi * (0.5 - rows)[:, None], 2 * np.pi * (0.5 - columns)[None]
-    w = np.stack(
-        (
-            np.cos(latitude) * np.cos(azimuth),
-            np.cos(latitude) * np.sin(azimuth),
-            np.broadcast_to(np.sin(latitude), (height, 2 * height)),
-        ),
-        axis=-1,
-    )
-    pixels = np.zeros((height, 2 * height, 3))
-    for lobe in mixture:
-        pixels += np.exp(lobe[3] * (w @ lobe[:3] - 1))[..., None] * lobe[4:]
-    return pixels.astype(np.float32)
-
-
-def _mixture():
-    """[lobes x 7] Centre, bandwidth and colour of what the viewport is lit by."""
-    return np.array(viewport.real_time()._drawing.light_report["mixture"]).reshape(-1, 7)
-
-
-def _traced(light=None, samples=1024):
-    """The same view by the ray tracer, direct light alone; `light`: pixels in the world's place."""
-    lib = native()
-    export = viewport.addon("export.live"), viewport.addon("export.look"), viewport.addon("export.viewport")
-    with viewport.override():
-        context = bpy.context
-        depsgraph = context.evaluated_depsgraph_get()
-        live = export[0].LiveExport(depsgraph, export[1].Look(context, depsgraph))
-        frame = export[2].viewport_frame(context, depsgraph)
-    try:
-        if light is not None:
-            live.scene.set_world_pixels(light)
-        frame.view.add_to(live.scene)
-        live.scene.commit()
-        size = {"width": frame.view.width, "height": frame.view.height}
-        job = lib.render_job(live.scene, spp=samples, bounces=0, strategy="mis", **size)
-        job.run()
-        pixels = job.read_pass("Combined")
-        job.close()
-        return pixels
-    finally:
-        live.close()
-
-
-def _error(drawn, traced):
-    """Relative L2 of colours where both show objects alone, off their outlines."""
-    inside = np.ones(drawn.shape[:2], bool)
-    for picture in (drawn, traced):
-        whole = picture[..., 3] > 0.999
-        for axis in (0, 1):
-            for step in (-1, 1):
-                inside &= np.roll(whole, step, axis)
-    assert inside.sum() > 500, inside.sum()
-    difference = (drawn - traced)[inside][:, :3]
-    return np.linalg.norm(difference) / np.linalg.norm(traced[inside][:, :3])
 
 
 def _ball(material):
@@ -94,35 +24,16 @@ def _ball(material):
     return ball
 
 
-def _sky(folder):
-    """A world with a soft sun, saved as a picture."""
-    sun = (0.6, -0.5, 0.62)
-    mixture = np.array(
-        (
-            (0, 0, 1, 0.8, 0.5, 0.6, 0.9),
-            (*np.array(sun) / np.linalg.norm(sun), 300, 60, 50, 40),
-            (-1, 0, 0, 20, 0.8, 0.5, 0.2),
-        )
-    )
-    path = folder / "sky.exr"
-    native().images.write(path, np.ascontiguousarray(_equirectangular(mixture)[::-1]))
-    world = scenes.set_world()
-    node = world.node_tree.nodes.new("ShaderNodeTexEnvironment")
-    node.image = bpy.data.images.load(str(path))
-    world.node_tree.links.new(node.outputs[0], world.node_tree.nodes["Background"].inputs["Color"])
-    bpy.context.scene.render.film_transparent = True
-
-
 def ball_in_a_sky(folder):
     """Within three hundredths of the ray tracer that is lit by the same mixture."""
-    _sky(folder)
+    realtime.sky(folder)
     _ball(scenes.measured_material((_DATA / "paint.velour").read_bytes()))
     viewport.show_real_time()
     yield from viewport.real_time_finished()
     window.screenshot(folder, "ball")
-    drawn = _pixels()
-    same = _error(drawn, _traced(_equirectangular(_mixture())))
-    picture = _error(drawn, _traced())
+    drawn = realtime.pixels()
+    same = realtime.error(drawn, realtime.traced(realtime.equirectangular(realtime.mixture())))
+    picture = realtime.error(drawn, realtime.traced())
     print(f"relative L2: {same:.4f} under the mixture, {picture:.4f} under the picture", flush=True)
     assert same < 0.03, same
     assert picture < 0.05, picture
@@ -130,7 +41,7 @@ def ball_in_a_sky(folder):
 
 def btf(folder):
     """A plane of a weave by its maps, within three hundredths of the ray tracer as well."""
-    _sky(folder)
+    realtime.sky(folder)
     for name in ("Cube", "Light"):
         bpy.data.objects.remove(bpy.data.objects[name])
     with window.override():
@@ -139,7 +50,7 @@ def btf(folder):
     yield from viewport.real_time_finished()
     window.screenshot(folder, "btf")
     assert not viewport.the_one()._not_real_time, viewport.the_one()._not_real_time
-    error = _error(_pixels(), _traced(_equirectangular(_mixture())))
+    error = realtime.error(realtime.pixels(), realtime.traced(realtime.equirectangular(realtime.mixture())))
     print(f"relative L2 of a BTF: {error:.4f}", flush=True)
     assert error < 0.03, error
 
@@ -162,7 +73,7 @@ def lamps(folder):
         yield from viewport.real_time_finished()
         yield 0.3
         window.screenshot(folder, f"lamp-{kind.lower()}")
-        error = _error(_pixels(), _traced())
+        error = realtime.error(realtime.pixels(), realtime.traced())
         print(f"relative L2 under {kind}: {error:.4f}", flush=True)
         assert error < 0.06, (kind, error)
         bpy.data.objects.remove(obj)
@@ -186,7 +97,7 @@ def edits(folder):
     cube.active_material = bpy.data.materials["Material"]
     viewport.show_real_time()
     yield from viewport.real_time_finished()
-    last = _pixels()
+    last = realtime.pixels()
 
     def turn():
         cube.rotation_euler.z = 0.5
@@ -205,7 +116,7 @@ def edits(folder):
         edit()
         yield 0.3
         yield from viewport.real_time_finished()
-        seen = _pixels()
+        seen = realtime.pixels()
         assert np.abs(seen - last).max() > 0.02, edit.__name__
         window.screenshot(folder, f"edit-{edit.__name__}")
         last = seen

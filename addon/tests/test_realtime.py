@@ -9,16 +9,20 @@ from velour.core.mesh_queue import MeshQueue
 from velour.native import (
     Model,
     Scene,
+    Tile,
     VelourError,
     btf_maps_job,
     light_map_job,
     lobe_rows_job,
     principled_rows_job,
     render_job,
+    shell_maps_job,
+    votf_job,
 )
 from velour.realtime import RealtimeScene, UnshownError
 from velour.realtime.lamps import lamp_pixels
 from velour.realtime.projection import jitter, view_projection
+from velour.realtime.tile_widths import TileWidths
 
 _WEAVE = Path(__file__).parents[2] / "blend-tests/scenes/data/weave.velour"
 
@@ -92,6 +96,7 @@ def test_meshes_get_a_vertex_a_corner_and_no_normal_where_they_are_flat():
 
 def test_instances_carry_matrices_and_maps_of_texture_coordinates():
     with _added(_square()) as scene:
+        scene.add_textured_material({})
         matrix = np.arange(12, dtype=np.float32).reshape(3, 4)
         scene.add_instances(np.zeros(2, np.uint32), np.stack((matrix, matrix + 1)), [0])
         scene.add_instance(0, matrix, [0], [[[2, 0, 1], [0, 2, 0]]])
@@ -115,17 +120,79 @@ def test_materials_are_replaced_as_in_the_scene_of_the_library():
         assert scene.gains == [(1, 1, 1)]
 
 
-class _WithOutline:
-    def info(self):
-        return {"model": "parametric", "shell": {}}
+@pytest.fixture(scope="module")
+def wires(tmp_path_factory, model_file):
+    """A model with the outline of a coarse net."""
+    path = tmp_path_factory.mktemp("wires") / "wires.velour"
+    with Tile.create("net") as tile, Scene() as scene, Model.load(model_file) as model:
+        mesh, materials = tile.add_to(scene)
+        scene.add_instance(mesh, np.eye(3, 4), materials)
+        scene.commit()
+        with votf_job(scene, model, texels=48, period=tile.info()["period"], source="net") as job:
+            job.run()
+            with job.result_model() as outlined:
+                outlined.save(path)
+    return path
+
+
+def test_maps_of_an_outline_tell_where_it_is(wires):
+    with Model.load(wires) as model, shell_maps_job(model) as job:
+        report = job.run()
+        table = job.result_table().reshape(report["layers"], 50, 50, 4)
+        assert [48, 48, report["layers"]] == model.info()["shell"]["points"]
+        assert [report["bottom"], report["top"]] == model.info()["shell"]["heights"]
+    np.testing.assert_array_equal(table[:, :, 0], table[:, :, 48])
+    assert (table[0, ..., 0] > 0).all(), "there is wire at the bottom"
+    assert (table[..., 0] < 0).any(), "there is no wire"
+
+
+def test_models_without_outline_have_no_maps_of_it(model_file):
+    with Model.load(model_file) as model, pytest.raises(VelourError, match="no outline"):
+        shell_maps_job(model)
+
+
+def test_tiles_are_as_wide_as_texture_coordinates_say():
+    square = _square()
+    widths = TileWidths(square.positions, 2 * square.positions[:, :2], square.triangles, None)
+    wide, turned = np.diag((2.0, 3.0, 7.0, 1.0))[:3], np.array(((0, -2, 0, 5), (2, 0, 0, 0), (0, 0, 2, 0)))
+    found = widths.of_instances(np.stack((np.eye(3, 4), wide, turned)), 0, 0, 1.0, 1.0)
+    np.testing.assert_allclose(found, (0.5, 0.5 * np.sqrt(6), 1.0))
+    np.testing.assert_allclose(widths.of_instances(np.eye(3, 4)[None], 0, 0, 4.0, 0.25), 0.5)
+    assert widths.of_instances(np.eye(3, 4)[None], 1, 1, 1.0, 1.0) == 0
+
+
+def test_tops_of_shells_are_lifted_and_know_their_tiles(wires):
+    uvs = np.array(((0, 0), (2, 0), (2, 2), (0, 2)), np.float32)
+    with _added(_square(corner_uvs=uvs), _square()) as scene, Model.load(wires) as model:
+        outlined = scene.add_model_material(model)
+        for mesh in (0, 1):
+            scene.add_instance(mesh, 3 * np.eye(3, 4), [outlined])
+        placed, plain = scene.groups
+        scene.set_shell_tile(outlined, 0.25)
+        scene.clear_instances()
+        scene.add_instance(0, 3 * np.eye(3, 4), [outlined])
+        given = scene.groups[0]
+        lifts = scene.meshes[0].lifts
+        np.testing.assert_array_equal(lifts / np.linalg.norm(lifts, axis=1, keepdims=True), [(0, 0, 1)] * 4)
+    assert placed.in_shell
+    np.testing.assert_allclose(placed.rows[:, 3, 3], 1.5)
+    assert not plain.in_shell, "without texture coordinates there is no shell"
+    np.testing.assert_allclose(given.rows[:, 3, 3], 0.25)
+
+
+def test_outlines_that_come_or_go_ask_for_another_export(wires, model_file):
+    with _added(_square()) as scene, Model.load(wires) as outlined, Model.load(model_file) as plain:
+        for model, is_stale in ((plain, False), (plain, False), (outlined, True)):
+            scene.add_model_material(model)
+            if len(scene.looks) > 1:
+                scene.replace_material(0)
+            assert scene.is_stale == is_stale
 
 
 def test_what_real_time_does_not_show_is_refused():
     with RealtimeScene() as scene:
         with pytest.raises(UnshownError, match="BTF"):
             scene.add_btf_material(None)
-        with pytest.raises(UnshownError, match="outlines"):
-            scene.add_model_material(_WithOutline())
         with pytest.raises(UnshownError, match="measurements"):
             scene.add_measurement_material(None)
 

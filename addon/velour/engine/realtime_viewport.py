@@ -35,11 +35,11 @@ class RealtimeViewport:
             self._live = LiveExport(depsgraph, look, RealtimeScene())
         else:
             changes = self._live.changes(depsgraph, look)
-            if changes and changes.everything:
+            if changes and not changes.everything:
+                self._live.update(changes, depsgraph, look)
+            if changes and (changes.everything or self._live.scene.is_stale):
                 self.forget_scene()
                 self._live = LiveExport(depsgraph, look, RealtimeScene())
-            elif changes:
-                self._live.update(changes, depsgraph, look)
         self._live.scene.check()
 
     def draw(self, context, depsgraph):

@@ -23,7 +23,7 @@ from .observation import Observation
 from .passes import INSTANCE_LABEL, MATERIAL_LABEL, Passes, cryptomatte_id
 from .plot import Plot
 from .progressive import Picture, ProgressiveJob
-from .realtime import btf_maps_job, light_map_job, lobe_rows_job, principled_rows_job
+from .realtime import btf_maps_job, light_map_job, lobe_rows_job, principled_rows_job, shell_maps_job
 from .scene import Scene
 from .shader import Shader
 from .texture import Texture, TextureSlot
@@ -71,6 +71,7 @@ __all__ = [
     "plot_job",
     "principled_rows_job",
     "render_job",
+    "shell_maps_job",
     "votf_data_job",
     "votf_job",
 ]

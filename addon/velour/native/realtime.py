@@ -27,6 +27,11 @@ def btf_maps_job(model: Model) -> Job:
     return Job._create("vlr_btf_maps_create_job", model.pointer)
 
 
+def shell_maps_job(model: Model) -> Job:
+    """Of a model's outline. Result: result_table(), its layers one above the other, the lowest first."""
+    return Job._create("vlr_shell_maps_create_job", model.pointer)
+
+
 def principled_rows_job(base_color, **values) -> Job:
     """As lobe_rows_job, of a Principled material: base_color [3], metallic, roughness, specular."""
     desc = table.PrincipledDesc()

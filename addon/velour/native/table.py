@@ -581,6 +581,7 @@ STATUS_CALLS = {
     "vlr_lobe_rows_create_job": [_handle, _out_handle],
     "vlr_principled_rows_create_job": [POINTER(PrincipledDesc), _out_handle],
     "vlr_btf_maps_create_job": [_handle, _out_handle],
+    "vlr_shell_maps_create_job": [_handle, _out_handle],
     "vlr_job_result_table": [_handle, POINTER(_floats), _number, _number],
     "vlr_plot_create": [_handle, _handle, c_int32, c_double, c_double, _out_handle],
     "vlr_plot_create_job": [_handle, _handle, c_int32, c_double, c_double, _out_handle],

@@ -66,16 +66,15 @@ float product(vec3 a, float la, vec3 b, float lb)
 
 void main()
 {
-  vec3 view = view_from_here(), n = normal_towards(view), along_u, along_v;
-  tangents(along_u, along_v);
-  mat3 frame = frame_about(n, along_u);
-  if (dot(frame[1], along_v) < 0.0) frame[1] = -frame[1];
-  vec3 wv = view * frame;
-  int relief = textureSize(btf_maps, 0).z - 1;
   float level = level_of_pixel(texelFetch(btf_terms, ivec2(0, 0), 0).x - 1.0);
+  Site site = site_here(false);
+  mat3 frame = frame_about(site.normal, site.along_u);
+  if (dot(frame[1], site.along_v) < 0.0) frame[1] = -frame[1];
+  vec3 wv = site.view * frame;
+  int relief = textureSize(btf_maps, 0).z - 1;
   int fine = int(level);
   float part = level - float(fine);
-  vec2 texel = seen_texel(fine, coordinates - floor(coordinates), wv, relief), coarse = texel;
+  vec2 texel = seen_texel(fine, site.place - floor(site.place), wv, relief), coarse = texel;
   if (part > 0.0) coarse = (texel + 0.5) * level_info(fine + 1).yz / level_info(fine).yz - 0.5;
   vec2 slope = map_at(relief, fine, texel).yz;
   if (part > 0.0) slope = mix(slope, map_at(relief, fine + 1, coarse).yz, part);

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..native import light_map_job
@@ -15,6 +17,16 @@ _FLOATS = 4
 _MOST = 16  # pictures in a mean
 _NARROW, _MOST_NARROW = 60.0, 8  # bandwidth of lobes of the world, and how many
 _TURN = 2.39996 / _MOST * 5  # of directions of light from picture to picture, radians
+
+
+class _Draw(NamedTuple):
+    """Of a group's instances what one slot shows."""
+
+    batch: object
+    material: int
+    in_shell: bool
+    first: int
+    count: int
 
 
 class Drawing:
@@ -43,16 +55,16 @@ class Drawing:
         import gpu
 
         self._follow_light(gpu, scene)
-        looks = {look.job: look for look in scene.looks}
-        self._tables = {job: tables for job, tables in self._tables.items() if job in looks}
-        for job in looks.keys() - self._tables.keys():
+        wanted = _wanted(scene)
+        self._tables = {job: tables for job, tables in self._tables.items() if job in wanted}
+        for job in wanted.keys() - self._tables.keys():
             if job.wait(timeout=0):  # raises what went wrong
-                self._tables[job] = looks[job].tables(gpu, job, scene.to_working)
-        return self._light is not None and len(self._tables) == len(looks)
+                self._tables[job] = wanted[job](gpu, job, scene.to_working)
+        return self._light is not None and len(self._tables) == len(wanted)
 
     def is_waiting(self, scene):
         """Whether there will be more to draw without that anything changes."""
-        lacks_tables = len(self._tables) < len({look.job for look in scene.looks})
+        lacks_tables = len(self._tables) < len(_wanted(scene))
         return self._light_job is not None or lacks_tables or self.count < _MOST
 
     def _follow_light(self, gpu, scene):
@@ -111,30 +123,33 @@ class Drawing:
     def _draw_surfaces(self, gpu, scene, matrix, eye, exposure):
         narrow = _narrow_lobes(self.light_report["mixture"])
         self._lamps = _lamps_texture(gpu, [*scene.lamps, *narrow])  # alive until all is drawn
-        for shader in {tables.shader() for tables in self._tables.values()}:
+        for shader, draws in self._draws(gpu, scene).items():
             shader.bind()
             shader.uniform_float("view_projection", _columns(matrix))
             shader.uniform_float("eye", eye)
             shader.uniform_sampler("light_map", self._light)
             shader.uniform_sampler("instances", self._instances_texture(gpu, scene))
             shader.uniform_sampler("lamps", self._lamps)
-            self._draw_groups(gpu, scene, shader, exposure, len(narrow))
+            for draw in draws:
+                tables = [self._tables[job] for job, _ in scene.looks[draw.material].parts()]
+                for table in tables[: 1 + draw.in_shell]:
+                    table.bind(shader)
+                self._set_look(shader, scene, draw.material, exposure)
+                _draw_instances(shader, draw.batch, tables[0].layout(len(narrow)), draw.first, draw.count)
 
-    def _draw_groups(self, gpu, scene, shader, exposure, narrow):
-        """Of what wears materials of the shader."""
-        first = 0
+    def _draws(self, gpu, scene):
+        """By shader."""
+        draws, first = {}, 0
         for group in scene.groups:
             for slot, batch in enumerate(scene.meshes[group.mesh].batches(gpu)):
                 material = group.materials[min(slot, len(group.materials) - 1)]
                 if batch is None or material is None:
                     continue
-                tables = self._tables[scene.looks[material].job]
-                if tables.shader() is not shader:
-                    continue
-                tables.bind(shader)
-                self._set_look(shader, scene, material, exposure)
-                _draw_instances(shader, batch, tables.layout(narrow), first, len(group.rows))
+                shader = self._tables[scene.looks[material].job].shader(group.in_shell)
+                draw = _Draw(batch, material, group.in_shell, first, len(group.rows))
+                draws.setdefault(shader, []).append(draw)
             first += len(group.rows)
+        return draws
 
     def _set_look(self, shader, scene, material, exposure):
         gain = [exposure * channel for channel in scene.gains[material]]
@@ -158,6 +173,11 @@ class Drawing:
         shader.uniform_float("exposure", exposure)
         shader.uniform_sampler("light_map", self._light)
         full_screen(shader).draw(shader)
+
+
+def _wanted(scene):
+    """What becomes of which jobs' tables."""
+    return {job: tables for look in scene.looks for job, tables in look.parts()}
 
 
 def _draw_instances(shader, batch, layout, first, count):

@@ -57,10 +57,10 @@ float density(Lobe lobe, vec3 normal, vec3 center, vec3 light, float lamp_bandwi
 
 void main()
 {
-  vec3 view = view_from_here(), n = normal_towards(view), along_u, along_v;
-  tangents(along_u, along_v);
-  mat3 frame = frame_about(n, is_isotropic() ? view : along_u);
-  Place place = place_of(view * frame);
+  Site site = site_here(true);
+  vec3 n = site.normal;
+  mat3 frame = frame_about(n, is_isotropic() ? site.view : site.along_u);
+  Place place = place_of(site.view * frame);
   int lamp_count = int(gain.w);
   vec3 sum = vec3(0);
   for (int i = 0; i < layout_.y; ++i) {

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-_ATTRIBUTES = {"position": 3, "normal": 3, "uv": 2}  # of the surface shader
+from .tile_widths import TileWidths
+
+_ATTRIBUTES = {"position": 3, "normal": 3, "uv": 2, "lift": 3}  # of the surface shaders
 
 
 def split_meshes(meshes):
@@ -34,8 +36,29 @@ class GpuMesh:
         self.normals = self._corner_normals(get, vertices, corners)
         uvs = get("corner_uvs")
         self.uvs = np.zeros((corners, 2), np.float32) if uvs is None else uvs.reshape(-1, 2)
+        self.has_uvs = uvs is not None
         self.slots = get("material_slots")
+        self.lifts = self.widths = None  # of shells
+        self._vertices = vertices
         self._batches = None
+
+    def prepare_shell(self):
+        """Whether it can be drawn as the top of a shell: not once it was handed on without."""
+        if self.lifts is None and self.positions is not None:
+            self.lifts = self._lifted()
+            self.widths = TileWidths(self.positions, self.uvs, self.triangles, self.slots)
+        return self.lifts is not None
+
+    def _lifted(self):
+        """Of each corner the mean normal of its vertex's corners, not normalised."""
+        normals = self.normals[self.triangles]
+        corner = self.positions[self.triangles]
+        across = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-30)
+        normals = np.where((normals == 0).all(axis=2, keepdims=True), across[:, None], normals).reshape(-1, 3)
+        of_corner = self._vertices[self.triangles].reshape(-1)
+        sums = [np.bincount(of_corner, normals[:, axis]) for axis in range(3)]
+        return np.stack(sums, axis=1)[self._vertices].astype(np.float32)
 
     def _corner_normals(self, get, vertices, corners):
         """Zero where a triangle is flat: the shader then has its own."""
@@ -52,15 +75,17 @@ class GpuMesh:
     def batches(self, gpu):
         """Of each slot its GPUBatch; None: it has no triangle."""
         if self._batches is None:
+            arrays = {"position": self.positions, "normal": self.normals, "uv": self.uvs}
+            if self.lifts is not None:
+                arrays["lift"] = self.lifts
             form = gpu.types.GPUVertFormat()
-            for name, count in _ATTRIBUTES.items():
-                form.attr_add(id=name, comp_type="F32", len=count, fetch_mode="FLOAT")
+            for name in arrays:
+                form.attr_add(id=name, comp_type="F32", len=_ATTRIBUTES[name], fetch_mode="FLOAT")
             vertices = gpu.types.GPUVertBuf(form, len(self.positions))
-            vertices.attr_fill("position", np.ascontiguousarray(self.positions, np.float32))
-            vertices.attr_fill("normal", np.ascontiguousarray(self.normals, np.float32))
-            vertices.attr_fill("uv", np.ascontiguousarray(self.uvs, np.float32))
+            for name, array in arrays.items():
+                vertices.attr_fill(name, np.ascontiguousarray(array, np.float32))
             self._batches = [self._batch(gpu, vertices, triangles) for triangles in self._by_slot()]
-            self.positions = self.normals = self.uvs = None
+            self.positions = self.normals = self.uvs = self._vertices = None
         return self._batches
 
     def _by_slot(self):

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..native import Scene, btf_maps_job, lobe_rows_job, principled_rows_job
+from ..native import Scene, btf_maps_job, lobe_rows_job, principled_rows_job, shell_maps_job
 from .lamps import lamp_pixels
 from .meshes import GpuMesh, split_meshes
-from .tables import MOST_TERMS, BtfTables, LobeTables
+from .tables import MOST_TERMS, BtfTables, LobeTables, ShellTables
 
 _MOST_DRAWS = 20_000  # of instances: more are slower than rays
 _MOST_LAMPS = 8  # on BTFs: with as many narrow lobes of the world all that btf.frag.glsl has room for
@@ -28,14 +28,24 @@ class Look(NamedTuple):
     tables: type = LobeTables
     emission: tuple = (0.0, 0.0, 0.0)
     is_simpler: bool = False  # than the ray tracer shows it
+    shell: object = None  # the job of its outline
+    shell_aspect: float = 1.0
+    shell_tile: float = 0.0  # metres; 0: as the texture coordinates say
+
+    def parts(self):
+        """Each job, and what becomes of its table."""
+        return [(self.job, self.tables)] + ([(self.shell, ShellTables)] if self.shell else [])
 
 
 class Group(NamedTuple):
     """Instances that differ in where they are alone."""
 
     mesh: int
-    materials: tuple
-    rows: np.ndarray  # [instances x 5 x 4]: matrix, then the map of texture coordinates
+    materials: tuple  # None: the slot is not drawn
+    rows: (
+        np.ndarray
+    )  # [instances x 5 x 4]: matrix, then the map of texture coordinates; [3, 3]: a tile's width, metres
+    in_shell: bool  # what is drawn is the top of a shell
 
 
 class RealtimeScene(Scene):
@@ -50,10 +60,11 @@ class RealtimeScene(Scene):
         self.lamps = []
         self.to_working = np.eye(3, dtype=np.float32)
         self.world_version = 0
+        self.is_stale = False  # something changed that only another export shows
 
     def close(self):
         for look in self.looks:
-            look.job.close()
+            _close(look)
         self.looks = []
         super().close()
 
@@ -87,11 +98,28 @@ class RealtimeScene(Scene):
         """`only`: the slot that is drawn; None: all."""
         if "camera" in hidden or "holdout" in hidden:
             return
-        rows = np.zeros((len(matrices), 5, 4), np.float32)
-        rows[:, :3] = matrices
-        rows[:, 3:, :3] = placed
-        shown = tuple(m if only in (None, slot) else None for slot, m in enumerate(materials))
-        self.groups.append(Group(mesh, shown, rows))
+        slots = range(len(materials)) if only is None else (only,)
+        plain = []
+        for slot in slots:
+            widths = self._tile_widths(mesh, matrices, materials, slot, placed)
+            if widths is None or not widths.all():  # nothing tells how high the shell would be
+                plain.append(slot)
+            else:
+                self.groups.append(_group(mesh, matrices, materials, placed, [slot], widths))
+        if plain:
+            self.groups.append(_group(mesh, matrices, materials, placed, plain))
+
+    def _tile_widths(self, mesh, matrices, materials, slot, placed):
+        """Metres, of a material with an outline; None: it has none."""
+        look, gpu_mesh = self.looks[materials[slot]], self.meshes[mesh]
+        if not look.shell or not gpu_mesh.has_uvs:
+            return None
+        if not gpu_mesh.prepare_shell():
+            self.is_stale = True
+            return None
+        stretch = abs(np.linalg.det(np.asarray(placed, float)[:, :2]))
+        widths = gpu_mesh.widths.of_instances(matrices, slot, len(materials) - 1, stretch, look.shell_aspect)
+        return np.where(widths > 0, look.shell_tile, 0) if look.shell_tile > 0 else widths
 
     def clear_instances(self):
         self.groups = []
@@ -100,13 +128,16 @@ class RealtimeScene(Scene):
 
     def add_model_material(self, model, neighbors=0):
         info = model.info()
-        if "shell" in info:
-            raise UnshownError("materials with outlines are shown by the ray tracer alone")
         if "texels" not in info:
-            return self._add_look(Look(lobe_rows_job(model)))
-        if info["model"] != "srbf-btf" or info["coefficients"] > MOST_TERMS:
+            look = Look(lobe_rows_job(model))
+        elif info["model"] == "srbf-btf" and info["coefficients"] <= MOST_TERMS:
+            look = Look(btf_maps_job(model), BtfTables)
+        else:
             raise UnshownError("BTFs that are not made of SRBFs are shown by the ray tracer alone")
-        return self._add_look(Look(btf_maps_job(model), BtfTables))
+        if "shell" in info:
+            aspect = info["shell"]["points"][1] / info["shell"]["points"][0]
+            look = look._replace(shell=shell_maps_job(model), shell_aspect=aspect)
+        return self._add_look(look)
 
     def add_measurement_material(self, measurement, proposal=None, neighbors=0):
         raise UnshownError("measurements themselves are shown by the ray tracer alone")
@@ -123,7 +154,9 @@ class RealtimeScene(Scene):
         return self._add_look(Look(_rows_of({}), is_simpler=True))
 
     def replace_material(self, material):
-        self.looks[material].job.close()
+        before = self.looks[material]
+        _close(before)
+        self.is_stale |= bool(before.shell or self.looks[-1].shell)  # other surfaces
         self.looks[material], self.gains[material] = self.looks.pop(), self.gains.pop()
 
     def set_gain(self, material, gain):
@@ -135,13 +168,15 @@ class RealtimeScene(Scene):
     def set_drawn_to(self, material, drawn):
         """Surfaces that glow light nothing else here."""
 
-    def set_shell_softness(self, material, widths):
-        """Outlines are refused."""
+    def set_shell_tile(self, material, metres):
+        self.looks[material] = self.looks[material]._replace(shell_tile=metres)
 
-    set_shell_tile = set_shell_softness
+    def set_shell_softness(self, material, widths):
+        """Edges are hard."""
 
     def _add_look(self, look):
-        look.job.start()
+        for job, _tables in look.parts():
+            job.start()
         self.looks.append(look)
         self.gains.append((1.0, 1.0, 1.0))
         return len(self.looks) - 1
@@ -177,6 +212,22 @@ class RealtimeScene(Scene):
     def draws(self):
         """How many times something is drawn, where each instance is drawn by itself."""
         return sum(len(group.rows) * len(group.materials) for group in self.groups)
+
+
+def _group(mesh, matrices, materials, placed, slots, widths=None):
+    """Of what these slots show; `widths`: of tiles, where that is the top of a shell."""
+    rows = np.zeros((len(matrices), 5, 4), np.float32)
+    rows[:, :3] = matrices
+    rows[:, 3:, :3] = placed
+    if widths is not None:
+        rows[:, 3, 3] = widths
+    shown = tuple(m if slot in slots else None for slot, m in enumerate(materials))
+    return Group(mesh, shown, rows, widths is not None)
+
+
+def _close(look):
+    for job, _tables in look.parts():
+        job.close()
 
 
 def _rows_of(values):

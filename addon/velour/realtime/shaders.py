@@ -11,20 +11,26 @@ def _source(*names):
 
 
 @cache
-def lobes_shader():
+def lobes_shader(has_shell):
     """Of BRDFs. A GPUShader; raises where it does not compile."""
-    return _surface_shader("lobes", (("FLOAT_2D", "lobe_rows"),))
+    return _surface_shader("lobes", (("FLOAT_2D", "lobe_rows"),), has_shell)
 
 
 @cache
-def btf_shader():
-    return _surface_shader("btf", (("FLOAT_2D", "btf_terms"), ("FLOAT_2D_ARRAY", "btf_maps")))
+def btf_shader(has_shell):
+    return _surface_shader("btf", (("FLOAT_2D", "btf_terms"), ("FLOAT_2D_ARRAY", "btf_maps")), has_shell)
 
 
-def _surface_shader(name, tables):
+def _surface_shader(name, tables, has_shell):
+    """`has_shell`: of meshes that have the attribute `lift`, whose surface is in a shell over them."""
     import gpu
 
     info = gpu.types.GPUShaderCreateInfo()
+    surface, attributes = "smooth", (("VEC3", "position"), ("VEC3", "normal"), ("VEC2", "uv"))
+    if has_shell:
+        surface, attributes = "shell", (*attributes, ("VEC3", "lift"))
+        tables = (*tables, ("FLOAT_2D", "shell_terms"), ("FLOAT_3D", "shell_maps"))
+        info.define("SHELL")
     shared = (("FLOAT_2D", "instances"), ("FLOAT_2D", "light_map"), ("FLOAT_2D", "lamps"))
     for slot, (kind, sampler) in enumerate((*shared, *tables)):
         info.sampler(slot, kind, sampler)
@@ -33,16 +39,19 @@ def _surface_shader(name, tables):
     info.push_constant("VEC4", "gain")  # and how many lamps there are
     info.push_constant("VEC4", "emission")  # and by what directions of light are turned, radians
     info.push_constant("IVEC4", "layout_")
-    for slot, (kind, attribute) in enumerate((("VEC3", "position"), ("VEC3", "normal"), ("VEC2", "uv"))):
+    for slot, (kind, attribute) in enumerate(attributes):
         info.vertex_in(slot, kind, attribute)
-    between = gpu.types.GPUStageInterfaceInfo(f"velour_{name}")
+    between = gpu.types.GPUStageInterfaceInfo(f"velour_{name}_{surface}")
     between.smooth("VEC3", "world")
     between.smooth("VEC3", "shading_normal")
     between.smooth("VEC2", "coordinates")
+    if has_shell:
+        between.smooth("VEC3", "up")
+        between.smooth("FLOAT", "tile_width")
     info.vertex_out(between)
     info.fragment_out(0, "VEC4", "pixel")
     info.vertex_source(_source("surface.vert"))
-    info.fragment_source(_source("light", "site", f"{name}.frag"))
+    info.fragment_source(_source("light", "site", surface, f"{name}.frag"))
     return gpu.shader.create_from_info(info)
 
 

@@ -1,7 +1,20 @@
-// Where a pixel's surface is, and the lamps that light it.
+// What a pixel knows of its surface, and the lamps that light it.
+
+struct Site {
+  vec3 view, normal;        // towards the viewer
+  vec2 place;               // texture coordinates
+  vec3 along_u, along_v;    // where these grow, not normalised
+};
 
 // Towards the viewer.
 vec3 view_from_here() { return eye.w > 0.0 ? normalize(eye.xyz - world) : eye.xyz; }
+
+// Interpolated normals may face away at an outline.
+vec3 facing(vec3 n, vec3 view)
+{
+  float cosine = dot(n, view);
+  return cosine < 0.01 ? normalize(n + (0.01 - cosine) * view) : n;
+}
 
 vec3 normal_towards(vec3 view)
 {
@@ -9,9 +22,7 @@ vec3 normal_towards(vec3 view)
   if (dot(flat_normal, view) < 0.0) flat_normal = -flat_normal;
   vec3 n = dot(shading_normal, shading_normal) > 0.0 ? normalize(shading_normal) : flat_normal;
   if (dot(n, flat_normal) < 0.0) n = -n;
-  // Interpolated normals may face away at an outline.
-  float facing = dot(n, view);
-  return facing < 0.01 ? normalize(n + (0.01 - facing) * view) : n;
+  return facing(n, view);
 }
 
 // Where texture coordinates grow on the surface, not normalised: along u, and along v.

@@ -1,3 +1,4 @@
+// Of a mesh, or with SHELL of the top of its shell: shell.glsl.
 // layout_: first instance, lobes of a place, places along a side (negative: anisotropic), whether places blend.
 
 void main()
@@ -11,6 +12,11 @@ void main()
   mat3 cofactors = mat3(cross(row[1].xyz, row[2].xyz), cross(row[2].xyz, row[0].xyz), cross(row[0].xyz, row[1].xyz));
   float turn = sign(dot(row[0].xyz, cofactors[0]));
   shading_normal = turn * (normal * cofactors);
+#ifdef SHELL
+  tile_width = row[3].w;
+  up = normalize(turn * (lift * cofactors));
+  world += texelFetch(shell_terms, ivec2(0), 0).y * tile_width * up;
+#endif
   coordinates = vec2(dot(row[3].xyz, vec3(uv, 1)), dot(row[4].xyz, vec3(uv, 1)));
   gl_Position = view_projection * vec4(world, 1);
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .shaders import btf_shader, lobes_shader
-from .textures import array_texture, texture
+from .textures import array_texture, texture, volume_texture
 
 MOST_TERMS = 512  # of a BTF: a pixel looks at all of them
 _WORKING = 17  # pixel of the first row of terms
@@ -48,6 +48,20 @@ class BtfTables:
     def bind(self, shader):
         shader.uniform_sampler("btf_terms", self._terms)
         shader.uniform_sampler("btf_maps", self._maps)
+
+
+class ShellTables:
+    """Of an outline, beside those of its material."""
+
+    def __init__(self, gpu, job, _to_working):
+        table, report = job.result_table(), job.report()
+        terms = [report[name] for name in ("bottom", "top", "reference", "aspect")]
+        self._terms = texture(gpu, np.array(terms, np.float32).reshape(1, 1, 4))
+        self._maps = volume_texture(gpu, table.reshape(report["layers"], -1, *table.shape[1:]))
+
+    def bind(self, shader):
+        shader.uniform_sampler("shell_terms", self._terms)
+        shader.uniform_sampler("shell_maps", self._maps)
 
 
 def _terms(report, to_working):

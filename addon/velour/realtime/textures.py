@@ -16,6 +16,12 @@ def array_texture(gpu, tables):
     return gpu.types.GPUTexture((width, height), layers=layers, format="RGBA16F", data=data)
 
 
+def volume_texture(gpu, tables):
+    """Of [depth x height x width x 4]."""
+    depth, height, width = tables.shape[:3]
+    return gpu.types.GPUTexture((width, height, depth), format="RGBA16F", data=_buffer(gpu, tables))
+
+
 def _buffer(gpu, values):
     values = np.ascontiguousarray(values, np.float32).reshape(-1)
     return gpu.types.Buffer("FLOAT", values.size, values)

@@ -884,6 +884,11 @@ VLR_API vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* des
  * above the other. JSON: layers, levels (of each x, width, height in a layer), terms (of each coefficient light, view,
  * half, phase, in_tile, color), bottom, top, aspect, root. VLR_INVALID_ARGUMENT for other models. */
 VLR_API vlr_status vlr_btf_maps_create_job(const vlr_model* model, vlr_job** out);
+/* The outline (VOTF) of a model as a volume; the table has `layers` of it, the lowest first, one above the other, with
+ * a border of one pixel: distance to the structure in widths of the tile, and its slope along x, y, z. JSON: layers,
+ * bottom, top, reference (heights in widths), aspect. VLR_INVALID_ARGUMENT for models without outline, VLR_UNSUPPORTED
+ * for more than 2^23 pixels. */
+VLR_API vlr_status vlr_shell_maps_create_job(const vlr_model* model, vlr_job** out);
 
 /* ---- plots of models ----------------------------------------------------------------------------------------- */
 

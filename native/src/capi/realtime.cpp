@@ -5,6 +5,7 @@
 #include "realtime/btf_maps.h"
 #include "realtime/light_map.h"
 #include "realtime/lobe_rows.h"
+#include "realtime/shell_maps.h"
 #include "velour/velour.h"
 
 using namespace velour;
@@ -109,6 +110,24 @@ vlr_status vlr_btf_maps_create_job(const vlr_model* model, vlr_job** out) {
       BtfMaps maps = btf_maps(btf);
       const std::string json = text(maps_json(maps, btf.companding));
       output->set(json, std::make_shared<const TablePixels>(std::move(maps.maps)));
+    });
+  });
+}
+
+vlr_status vlr_shell_maps_create_job(const vlr_model* model, vlr_job** out) {
+  return guard([&] {
+    require(model, "model");
+    require(out, "out");
+    if (!model->model->shell) throw Error(Status::invalid_argument, "The model has no outline.");
+    auto output = std::make_shared<JobOutput>();
+    *out = new vlr_job(output, [output, volume = model->model->shell->volume](Progress&) {
+      const OcclusionVolume& v = *volume;
+      const std::string json = text({{"layers", v.depth},
+                                     {"bottom", v.bottom},
+                                     {"top", v.top},
+                                     {"reference", v.reference},
+                                     {"aspect", v.aspect}});
+      output->set(json, std::make_shared<const TablePixels>(shell_maps(v)));
     });
   });
 }

@@ -1,6 +1,7 @@
 // What a shader fetches, as a picture of four floats a pixel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

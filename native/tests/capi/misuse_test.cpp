@@ -30,6 +30,7 @@ TEST(Misuse, NullArgumentsAreNamed) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_lobe_rows_create_job(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_principled_rows_create_job(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_btf_maps_create_job(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shell_maps_create_job(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_result_table(nullptr, nullptr, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_start(nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_wait(nullptr, 0, nullptr, nullptr, nullptr));

@@ -1,0 +1,123 @@
+// Where a pixel's surface is: the structure that the view's ray meets in the shell (VOTF) under the top, which is what is
+// drawn; a ray that meets none goes on. As votf/shell_trace.h and render/shell_crossing.h have it, in steps of the
+// distance. shell_maps: native/src/realtime/shell_maps.h; shell_terms: bottom, top, reference, aspect.
+
+const int LOOKS = 160;  // a ray that glides along the structure for so long has met it
+const float WITHIN = 0.03, LEAST_STEP = 0.1;  // of the distance from point to point
+const float LEAST_COSINE = 0.15;
+
+vec4 shell_terms_here() { return texelFetch(shell_terms, ivec2(0), 0); }
+
+// Distance and slope at `q`, widths of the tile.
+vec4 shell_at(vec3 q)
+{
+  vec4 terms = shell_terms_here();
+  vec3 size = vec3(textureSize(shell_maps, 0));
+  vec2 periods = vec2(q.x, q.y / terms.w);
+  vec2 pixel = (periods - floor(periods)) * (size.xy - 2.0) + 1.0;
+  float height = clamp((q.z - terms.x) / (terms.y - terms.x), 0.0, 1.0) * (size.z - 1.0) + 0.5;
+  return textureLod(shell_maps, vec3(pixel, height) / size, 0.0);
+}
+
+// ShellRay, ShellWay.
+struct ShellWay {
+  vec2 place, along;
+  float sine, cosine, curvature, scale, begin, end;
+};
+
+// ShellRay::at, over the surface.
+vec3 way_at(ShellWay way, float s, float top)
+{
+  float a = s * way.sine, bent = way.curvature * a, far = abs(bent);
+  float b = max(1.0 - way.curvature * s * way.cosine, 0.1 * far);
+  float fall = s * (way.curvature * s - 2.0 * way.cosine);
+  float deeper = fall / (1.0 + sqrt(b * b + bent * bent));
+  float across = bent == 0.0 ? a : a * atan(far, b) / far;
+  return vec3(way.place + way.along * across, top + way.scale * deeper);
+}
+
+// How far behind the top's crossing the ray leaves the shell, metres; nothing where it leaves through the top again and
+// is seen from within: that way was decided where it came in.
+float way_end(ShellWay way, float depth, bool leaves)
+{
+  float down = depth / way.scale, fall = down * (2.0 - way.curvature * down);
+  float square = way.cosine * way.cosine - way.curvature * fall;
+  if (square >= 0.0) return fall / max(way.cosine + sqrt(square), 1e-6);
+  return leaves ? 0.0 : 2.0 * way.cosine / way.curvature;
+}
+
+// Whether the structure is met, and where.
+bool met(ShellWay way, float top, out float s)
+{
+  float pitch = 1.0 / float(textureSize(shell_maps, 0).x - 2), turn = way.end < way.begin ? -1.0 : 1.0;
+  float depth = top - shell_terms_here().x, radius = max(1.0 - max(way.curvature * depth, 0.0) / way.scale, 1.0 / 3.0);
+  float speed = length(vec2(length(way.along) * way.sine / (radius * radius),
+                            way.scale * (way.curvature < 0.0 ? 1.0 : way.cosine)));
+  float before = way.begin, free = 0.0;
+  s = way.begin;
+  for (int i = 0; i < LOOKS; ++i) {
+    float distance = shell_at(way_at(way, s, top)).x;
+    if (distance <= WITHIN * pitch) {
+      if (i > 0) s = mix(before, s, clamp(free / max(free - distance, 1e-9), 0.0, 1.0));
+      return true;
+    }
+    if ((way.end - s) * turn <= 0.0) return false;
+    before = s;
+    free = distance;
+    s += turn * max(distance, LEAST_STEP * pitch) / speed;
+    if ((way.end - s) * turn < 0.0) s = way.end;
+  }
+  return true;
+}
+
+// `on_structure`: the normal is the structure's own; else the smooth surface's, and the place where the ray crosses the plane
+// of the texels of a BTF.
+Site site_here(bool on_structure)
+{
+  Site site;
+  site.view = view_from_here();
+  tangents(site.along_u, site.along_v);
+  vec4 terms = shell_terms_here();
+  // What changes along x and y of the picture, in terms of ways along the surface.
+  vec3 px = dFdx(world), py = dFdy(world), across = cross(px, py), n = normalize(up);
+  float area = max(dot(across, across), 1e-30);
+  vec3 per_x = cross(py, across) / area, per_y = cross(across, px) / area;
+  vec2 uv_x = dFdx(coordinates), uv_y = dFdy(coordinates);
+  vec3 turn_x = dFdx(n), turn_y = dFdy(n);
+  bool leaves = dot(site.view, dot(across, n) < 0.0 ? -across : across) < 0.0;
+  vec3 down = leaves ? site.view : -site.view;
+
+  ShellWay way;
+  way.cosine = clamp(-dot(down, n), 0.0, 1.0);
+  way.sine = sqrt(1.0 - way.cosine * way.cosine);
+  way.scale = 1.0 / tile_width;
+  vec3 unit = down + way.cosine * n;
+  unit /= max(length(unit), 1e-9);
+  float a = dot(unit, per_x), b = dot(unit, per_y);
+  vec3 normal_turn = a * turn_x + b * turn_y;
+  vec2 widths = vec2(1.0, terms.w);
+  way.curvature = dot(normal_turn, unit);
+  way.place = widths * coordinates;
+  way.along = widths * (a * uv_x + b * uv_y);
+  float end = way_end(way, terms.y - terms.x, leaves), s = 0.0;
+  way.begin = leaves ? end : 0.0;
+  way.end = leaves ? 0.0 : end;
+  if (tile_width <= 0.0 || way.cosine <= 0.0 || end <= 0.0 || !met(way, terms.y, s)) discard;
+
+  vec3 q = way_at(way, s, terms.y), over = normalize(n + s * way.sine * normal_turn);
+  vec3 u_gradient = uv_x.x * per_x + uv_y.x * per_y, v_gradient = uv_x.y * per_x + uv_y.y * per_y;
+  if (on_structure) {
+    vec3 slope = shell_at(q).yzw;
+    vec3 own = slope.x * u_gradient + slope.y * terms.w * v_gradient + slope.z * way.scale * over;
+    site.normal = own / max(length(own), 1e-20);
+    site.place = q.xy / widths;
+  } else {
+    vec3 towards = -down;
+    float cosine = dot(towards, over);
+    vec3 to_plane = (towards - cosine * over) * ((terms.z - q.z) / (way.scale * max(cosine, LEAST_COSINE)));
+    site.normal = leaves ? -over : over;
+    site.place = q.xy / widths + vec2(dot(u_gradient, to_plane), dot(v_gradient, to_plane));
+  }
+  site.normal = facing(site.normal, site.view);
+  return site;
+}
