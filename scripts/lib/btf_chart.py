@@ -61,7 +61,8 @@ def main() -> int:
             images / f"chart_btf_{tile.name}.png", tile, pictures, results, extent.speed_ratio
         )
     interpolated = {tile.name: study.interpolated(tile) for tile in tiles}
-    conditions = run.conditions | {"note": args.note, "kept": args.kept, "added_to": taken_on}
+    added_to = "; ".join(taken for taken in taken_on if taken != _taken_on(run.conditions))
+    conditions = run.conditions | {"note": args.note, "kept": args.kept, "added_to": added_to}
     btf_chart_text.write(args.output, results, interpolated, conditions, extent)
     print(args.output / "chart_btf.md")
     return 0
@@ -89,12 +90,17 @@ def _extent(args: argparse.Namespace) -> Extent:
     return replace(extent, speed_ratio=sorted(extent.ratios)[len(extent.ratios) // 2])
 
 
-def _before(args: argparse.Namespace) -> tuple[str, list[Entry]]:
-    """Entries to add to, and when they were measured."""
+def _before(args: argparse.Namespace) -> tuple[list[str], list[Entry]]:
+    """When the entries were measured that are added to, and these."""
     if not args.add:
-        return "", []
+        return [], []
     conditions, entries = btf_chart_rows.read(args.output / btf_chart_rows.FILE)
-    return f"{conditions['date']}, commit {conditions['commit']}", entries
+    earlier = filter(None, conditions.get("added_to", "").split("; "))
+    return list(dict.fromkeys([_taken_on(conditions), *earlier])), entries
+
+
+def _taken_on(conditions: dict) -> str:
+    return f"{conditions['date']}, commit {conditions['commit']}"
 
 
 def _entries(study: Study, tiles: list[Tile], contenders: list[Method], extent: Extent):
