@@ -61,8 +61,7 @@ def main() -> int:
             images / f"chart_btf_{tile.name}.png", tile, pictures, results, extent.speed_ratio
         )
     interpolated = {tile.name: study.interpolated(tile) for tile in tiles}
-    added_to = "; ".join(taken for taken in taken_on if taken != _taken_on(run.conditions))
-    conditions = run.conditions | {"note": args.note, "kept": args.kept, "added_to": added_to}
+    conditions = run.conditions | {"note": args.note, "kept": args.kept, "added_to": "; ".join(taken_on)}
     btf_chart_text.write(args.output, results, interpolated, conditions, extent)
     print(args.output / "chart_btf.md")
     return 0
@@ -96,11 +95,8 @@ def _before(args: argparse.Namespace) -> tuple[list[str], list[Entry]]:
         return [], []
     conditions, entries = btf_chart_rows.read(args.output / btf_chart_rows.FILE)
     earlier = filter(None, conditions.get("added_to", "").split("; "))
-    return list(dict.fromkeys([_taken_on(conditions), *earlier])), entries
-
-
-def _taken_on(conditions: dict) -> str:
-    return f"{conditions['date']}, commit {conditions['commit']}"
+    before = f"{conditions['date']}, commit {conditions['commit']}"
+    return list(dict.fromkeys([before, *earlier])), entries
 
 
 def _entries(study: Study, tiles: list[Tile], contenders: list[Method], extent: Extent):
