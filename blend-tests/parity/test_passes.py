@@ -5,6 +5,7 @@ import numpy as np
 
 from parity import engines, stage
 from parity.case import ParityTest
+from parity.shaders import Tree
 from support import scenes
 
 _SINCE_5 = {"IndexOB": "Object Index", "IndexMA": "Material Index"}
@@ -66,6 +67,20 @@ class Passes(ParityTest):
                 theirs, ours = self._rendered("Denoising Normal")
                 self.assertLess(theirs[..., 2].min(), -0.9)  # of what faces the camera
                 self._assert_near(theirs, ours, 0.02)
+
+    def test_denoising_albedo(self):
+        """With what shines by itself: the sky, of which a transparent film has none, and a surface."""
+        tree = Tree(bpy.data.objects["Box ä"].active_material)
+        tree.end(tree.add(tree.diffuse((0.3, 0.2, 0.1)), tree.emission((1, 0.5, 0.2), 4)))
+        self.layer.cycles.denoising_store_passes = self.layer.velour.use_pass_denoising = True
+        for transparent in (False, True):
+            with self.subTest(transparent=transparent):
+                self.scene.render.film_transparent = transparent
+                theirs, ours = self._rendered("Denoising Albedo", 4)
+                np.testing.assert_allclose(theirs.max(axis=(0, 1)), (4.3, 2.2, 0.9), rtol=1e-5)
+                np.testing.assert_allclose(theirs[-1, 0], 0 if transparent else 0.3, rtol=1e-5)
+                # Directions below a smooth surface's own faces reflect nothing in Velour.
+                self._assert_near(theirs, ours, 0.01)
 
     def test_uv(self):
         for name in ("Ball", "Box ä"):

@@ -39,7 +39,7 @@ _OWN_SWITCHES = (  # of Velour's settings
         "use_pass_denoising",
         (
             LayerPass("Denoising Normal", "XYZ", "VECTOR", "Normal"),
-            LayerPass("Denoising Albedo", "RGB", "COLOR", "Albedo", "albedo"),
+            LayerPass("Denoising Albedo", "RGB", "COLOR", "Denoising Albedo", "denoising_albedo"),
         ),
     ),
     ("use_pass_error", (LayerPass("Error", "RGB", "COLOR", "Error", "error"),)),

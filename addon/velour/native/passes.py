@@ -25,6 +25,7 @@ _CHANNELS = {
     "Mist": 1,
     "Albedo": 3,
     "Error": 3,
+    "Denoising Albedo": 3,
 }
 # Passes come in levels of two ids: CryptoObject00, CryptoObject01, ...
 _CRYPTOMATTES = ("CryptoObject", "CryptoMaterial", "CryptoAsset")

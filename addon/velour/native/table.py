@@ -43,6 +43,7 @@ PASSES = {  # VLR_PASS_*
     "crypto_object": 128,
     "crypto_material": 256,
     "crypto_asset": 512,
+    "denoising_albedo": 1024,
 }
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")

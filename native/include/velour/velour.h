@@ -734,7 +734,9 @@ enum {
   VLR_PASS_CRYPTO_OBJECT =
       128, /* "CryptoObject00", "CryptoObject01", ... 4: two ids, each with its coverage behind it */
   VLR_PASS_CRYPTO_MATERIAL = 256, /* "CryptoMaterial00", ...: the same */
-  VLR_PASS_CRYPTO_ASSET = 512     /* "CryptoAsset00", ...: the same */
+  VLR_PASS_CRYPTO_ASSET = 512,    /* "CryptoAsset00", ...: the same */
+  VLR_PASS_DENOISING_ALBEDO =
+      1024 /* "Denoising Albedo" 3: albedo, and what surfaces and the sky shine by themselves; above 1 where they do */
 };
 
 typedef struct vlr_instance_label {

@@ -38,7 +38,7 @@ struct PixelSum {
   double variance() const;
 };
 
-/// What the passes of surfaces say of what one camera ray has met; as is: nothing.
+/// What the passes of surfaces say of what one camera ray has met; as is: nothing, before a black sky.
 struct SurfaceSample {
   Vec3 position{0.0f};  // world
   Vec3 uv{0.0f};        // and 1, where there are texture coordinates
@@ -46,6 +46,7 @@ struct SurfaceSample {
   float seen = 0;   // what is left of light that comes from there, mean of the channels
   float clear = 0;  // of that, what no mist covers
   Rgb albedo{0.0f};
+  Rgb shine{0.0f};  // what comes from there by itself: of a glowing surface, or of the sky where nothing was met
   float object_id = 0, material_id = 0, asset_id = 0;
 };
 

@@ -104,7 +104,7 @@ int Film::channels(std::string_view name) {
   throw Error(Status::invalid_argument,
               "There is no pass \"" + std::string(name) +
                   "\": Combined, Depth, Normal, Sample Count, Position, UV, IndexOB, IndexMA, Mist, Albedo, Error, "
-                  "CryptoObject00, CryptoMaterial00 and CryptoAsset00 are.");
+                  "Denoising Albedo, CryptoObject00, CryptoMaterial00 and CryptoAsset00 are.");
 }
 
 void Film::read_pass(std::string_view name, std::span<float> pixels) const {

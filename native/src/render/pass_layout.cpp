@@ -92,6 +92,14 @@ constexpr ValuePass kValues[] = {
        for (int c = 0; c < 3; ++c) out[c] = std::clamp(v[c] * sum.weight(), 0.0f, 1.0f);
      }},
     {pass::kError, "Error", 3, add_error, write_error},
+    // As Cycles has it, so that a denoiser sees the edges of what shines; it may be above 1.
+    {pass::kDenoisingAlbedo, "Denoising Albedo", 3,
+     [](const Ray& ray, float* v) {
+       for (int c = 0; c < 3; ++c) v[c] += ray.surface.albedo[c] + ray.surface.shine[c];
+     },
+     [](const float* v, const PixelSum& sum, float* out) {
+       for (int c = 0; c < 3; ++c) out[c] = v[c] * sum.weight();
+     }},
 };
 
 struct IdPass {
@@ -145,10 +153,17 @@ size_t PassLayout::floats(uint32_t bit) const {
   return static_cast<size_t>(value != std::end(kValues) ? value->channels : floats_of_ids(ranks_));
 }
 
-/// Where its floats begin.
-size_t PassLayout::place(uint32_t asked) const {
+/// Where its floats begin: values come before ids, each in the order of their tables.
+size_t PassLayout::place(uint32_t bit) const {
   size_t before = 0;
-  for (uint32_t bit = 1; bit < asked; bit *= 2) before += floats(bit);
+  for (const ValuePass& value : kValues) {
+    if (value.bit == bit) return before;
+    before += floats(value.bit);
+  }
+  for (const IdPass& ids : kIds) {
+    if (ids.bit == bit) return before;
+    before += floats(ids.bit);
+  }
   return before;
 }
 

@@ -190,6 +190,7 @@ void TileRenderer::add_background() {
       CameraSample& sample = samples_[missed_[i].sample];
       sample.radiance = missed_[i].throughput * radiance.get(static_cast<int>(i - start));
       sample.alpha = 1.0f;
+      if (!surfaces_.empty()) surfaces_[missed_[i].sample].shine = sample.radiance;
     }
   }
   if (!o.transparent && o.hide_world) {

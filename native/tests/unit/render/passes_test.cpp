@@ -18,7 +18,7 @@ namespace {
 constexpr size_t kSide = 8;
 constexpr const char* kNames[] = {"Position",     "UV",    "IndexOB",        "IndexMA",        "Mist",
                                   "Albedo",       "Error", "CryptoObject00", "CryptoObject01", "CryptoMaterial00",
-                                  "CryptoAsset02"};
+                                  "CryptoAsset02", "Denoising Albedo"};
 
 /// Everything, with labels for two instances and two materials.
 PassOptions all_passes() {
@@ -95,6 +95,26 @@ TEST(Passes, NothingIsAllMistAndNothingElse) {
   for (const char* name : kNames) {
     for (float value : read(*film, name)) EXPECT_EQ(value, name == std::string("Mist") ? 1.0f : 0.0f) << name;
   }
+}
+
+/// Of a square of albedo 0.6 and `alpha` that glows with 2, over nothing, before a sky of 1.
+std::vector<float> denoising_albedo(float alpha, bool transparent) {
+  SurfaceMaterial glowing = matte(0.6f, alpha);
+  glowing.emission = Rgb(2.0f);
+  const Scene scene = two_squares(std::move(glowing), test::shift({0, 0, 1}, {0.1f, 10, 1}), 0.001f);
+  RenderOptions options = options_of(64);
+  options.transparent = transparent;
+  return read(*rendered(scene, options), "Denoising Albedo");
+}
+
+TEST(Passes, DenoisingAlbedoCountsWhatShines) {
+  const size_t middle = kSide * kSide / 2 + kSide / 2, left = kSide * kSide / 2;
+  for (const bool transparent : {false, true}) {
+    const auto pixels = denoising_albedo(1, transparent);
+    EXPECT_NEAR(pixels[3 * middle], 2.6, 1e-5);
+    EXPECT_EQ(pixels[3 * left], transparent ? 0.0f : 1.0f);
+  }
+  EXPECT_NEAR(denoising_albedo(0.25f, false)[3 * middle], 0.25 * 2.6 + 0.75, 0.15);
 }
 
 TEST(Passes, MistIsLinearOrRooted) {
