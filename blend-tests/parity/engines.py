@@ -32,7 +32,7 @@ def _set_up_cycles(cycles, bounces):
 
 
 def _set_cycles_samples(cycles, count):
-    """Without its first, which is in the middle of the pixel whatever the seed: edges would be off by 1 / 2n."""
+    """Without the first, which is in the middle of the pixel whatever the seed: edges are off by 1 / 2n."""
     cycles.samples, cycles.sample_offset = count, 1
     if hasattr(cycles, "use_sample_subset"):  # where the offset is one into the samples, not beyond them
         cycles.samples, cycles.use_sample_subset, cycles.sample_subset_length = count + 1, True, count

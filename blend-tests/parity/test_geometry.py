@@ -8,7 +8,6 @@ import numpy as np
 from parity import stage
 from parity.case import ALWAYS, NEVER, ParityTest
 
-
 _SQUARE = [(-2, 0, -1), (2, 0, -1), (2, 0, 1), (-2, 0, 1)]
 
 
@@ -40,7 +39,7 @@ class Geometry(ParityTest):
         self.assert_approximate("Normals: smooth, coarse mesh", 0.7, exact=((4, 0), NEVER))
 
     def test_facing_away(self):
-        """Velour bends such normals towards the viewer, Cycles 3 further; newer ones bend none of a Diffuse BSDF."""
+        """Velour bends them towards the viewer, Cycles 3 further, newer ones none of a Diffuse BSDF."""
         sheet = stage.mesh(_SQUARE, [(0, 1, 2, 3)], stage.grey(0.7), "Sheet", smooth=True)
         sheet.rotation_euler.z = 1.2
         auto_smooth(sheet.data, math.pi)
@@ -138,7 +137,7 @@ class Sheet(ParityTest):
 
     def test_mixed(self):
         self.sheet.polygons.foreach_set("use_smooth", [i % 2 == 0 for i in range(36)])
-        # Cycles 4 takes normals of vertices, as before; Blender since 4.1, and Cycles 5, split them at flat faces.
+        # Cycles 4 goes on to take normals of vertices, where Blender since 4.1, and Cycles 5, split them.
         exact = (ALWAYS, (4, 1)) if bpy.app.version < (4, 1) else ((5, 0), NEVER)
         self.assert_approximate("Normals: flat and smooth faces", 15, exact=exact)
 

@@ -9,7 +9,7 @@ from parity import stage
 from parity.case import ParityTest
 
 
-class UvMaps(ParityTest):
+class WallTest(ParityTest):
     """A wall with two UV maps, one turned and twice as dense."""
 
     def setUp(self):
@@ -25,18 +25,24 @@ class UvMaps(ParityTest):
             layer = self.wall.data.uv_layers.new(name=name)
             layer.data.foreach_set("uv", values.ravel())
 
-    def _picture(self, interpolation="Linear", space="Non-Color"):
-        image = bpy.data.images.new("checker", 8, 8, float_buffer=True)
-        pixels = np.random.default_rng(2).uniform(0.1, 0.9, (8, 8, 4)).astype(np.float32)
-        pixels[..., 3] = 1
-        image.pixels.foreach_set(pixels.ravel())
-        image.pack()
+    def _node(self, image, interpolation="Closest"):
+        """Shows the colours of `image` on the wall."""
         tree = self.material.node_tree
         node = tree.nodes.new("ShaderNodeTexImage")
         node.image, node.interpolation = image, interpolation
         shader = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfDiffuse")
         tree.links.new(node.outputs[0], shader.inputs["Color"])
         return node
+
+
+class UvMaps(WallTest):
+    def _picture(self, interpolation="Linear"):
+        image = bpy.data.images.new("checker", 8, 8, float_buffer=True)
+        pixels = np.random.default_rng(2).uniform(0.1, 0.9, (8, 8, 4)).astype(np.float32)
+        pixels[..., 3] = 1
+        image.pixels.foreach_set(pixels.ravel())
+        image.pack()
+        return self._node(image, interpolation)
 
     def _uv_map(self, node, name):
         tree = self.material.node_tree
@@ -109,3 +115,56 @@ class UvMaps(ParityTest):
     def test_linear(self):
         self._picture()
         self.assert_parity("Image Texture: linear")
+
+
+class Alpha(WallTest):
+    """Pictures that are see-through in part, with and without the alpha being looked at."""
+
+    def _shown(self, is_float, mode, interpolation="Closest"):
+        image = bpy.data.images.new("veil", 8, 8, alpha=True, float_buffer=is_float)
+        pixels = np.random.default_rng(5).uniform(0.2, 0.9, (8, 8, 4)).astype(np.float32)
+        if is_float:
+            pixels[..., :3] *= pixels[..., 3:]
+        image.pixels.foreach_set(pixels.ravel())
+        image.alpha_mode = mode
+        image.pack()
+        return self._node(image, interpolation)
+
+    def _cut_out(self, node):
+        """Where the picture is see-through, so is the wall."""
+        tree = self.material.node_tree
+        mix, clear = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfTransparent")
+        surface = tree.nodes["Material Output"].inputs["Surface"]
+        tree.links.new(node.outputs["Alpha"], mix.inputs[0])
+        tree.links.new(clear.outputs[0], mix.inputs[1])
+        tree.links.new(surface.links[0].from_socket, mix.inputs[2])
+        tree.links.new(mix.outputs[0], surface)
+
+    def test_bytes(self):
+        self._shown(False, "STRAIGHT")
+        self.assert_parity("Image Texture: alpha of bytes, not looked at")
+
+    def test_cut_out_bytes(self):
+        self._cut_out(self._shown(False, "STRAIGHT"))
+        self.assert_parity("Image Texture: alpha of bytes, cut out")
+
+    def test_floats(self):
+        self._shown(True, "PREMUL")
+        self.assert_parity("Image Texture: alpha of floats, not looked at")
+
+    def test_cut_out_floats(self):
+        self._cut_out(self._shown(True, "PREMUL"))
+        self.assert_parity("Image Texture: alpha of floats, cut out")
+
+    def test_channel_packed(self):
+        self._cut_out(self._shown(False, "CHANNEL_PACKED"))
+        self.assert_parity("Image Texture: alpha is a channel of its own, cut out")
+
+    def test_none(self):
+        self._cut_out(self._shown(False, "NONE"))
+        self.assert_parity("Image Texture: no alpha")
+
+    def test_linear_cut_out(self):
+        """Cycles divides by alpha between texels, Velour at them."""
+        self._cut_out(self._shown(True, "PREMUL", "Linear"))
+        self.assert_approximate("Image Texture: alpha, cut out, linear", 10)

@@ -82,7 +82,8 @@ def _is_ours(identifier):
 
 
 def _written():
-    """text="..." and bl_label of Blender's panels: some names stand nowhere else."""
-    folder = Path(bpy.utils.system_resource("SCRIPTS")) / "startup"
-    sources = [file.read_text(encoding="utf-8") for file in folder.rglob("*.py")]
+    """text="..." and bl_label of Blender's panels, also of its extensions': some names stand nowhere else."""
+    scripts = Path(bpy.utils.system_resource("SCRIPTS"))
+    folders = (scripts / "startup", scripts / "addons_core/bl_pkg")  # the latter in 4.2 and newer
+    sources = [file.read_text(encoding="utf-8") for folder in folders for file in folder.rglob("*.py")]
     return {text for source in sources for text in re.findall(r'(?:text|bl_label)\s*=\s*"([^"]+)"', source)}

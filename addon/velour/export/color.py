@@ -30,12 +30,17 @@ def is_linear_rec709(space_name):
     return space_name in _LINEAR_REC709 and np.allclose(rec709_to_working(), np.eye(3), atol=1e-4)
 
 
+def is_data(space_name):
+    """Whether values in this colour space are no colours."""
+    return space_name in _DATA
+
+
 def bytes_to_working(pixels, space_name):
     """Working-space values of an 8-bit image's [... x channels] pixels, which Blender hands out undecoded.
 
     The second value is False where the colour space is not known here and sRGB was assumed.
     """
-    if space_name in _DATA:
+    if is_data(space_name):
         return pixels, True
     rgb = pixels[..., :3]
     if space_name not in _LINEAR_REC709:

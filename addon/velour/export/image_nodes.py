@@ -16,6 +16,7 @@ class Picture(NamedTuple):
 
     image: object  # bpy.types.Image
     alpha: bool  # its alpha, not its colour
+    beside_alpha: bool  # something looks at the node's alpha
     wrap: str
     filter: str
     uv_map: np.ndarray  # [2 x 3]: (u, v, 1) of the mesh to the picture's coordinates
@@ -37,6 +38,7 @@ def picture_of(plug):
     return Picture(
         node.image,
         plug.socket.name == "Alpha",
+        node.outputs["Alpha"].is_linked,
         _WRAPS[node.extension],
         "closest" if node.interpolation == "Closest" else "linear",
         *_uv_map(plug.input("Vector")),

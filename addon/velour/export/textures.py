@@ -17,7 +17,8 @@ class TextureTable:
 
     def slot(self, picture, is_color, owner, uv_maps):
         """Of a Picture of a material with these UvMaps; None where its image cannot be read: noted."""
-        key = (picture.image.as_pointer(), picture.alpha, picture.wrap, picture.filter, is_color)
+        channels = (picture.alpha, picture.beside_alpha, is_color)
+        key = (picture.image.as_pointer(), *channels, picture.wrap, picture.filter)
         if key not in self._textures:
             self._textures[key] = self._read(picture, is_color, owner)
         texture = self._textures[key]
@@ -30,7 +31,7 @@ class TextureTable:
         return TextureSlot(self._textures[color_set])
 
     def _read(self, picture, is_color, owner):
-        pixels = working_pixels(picture.image, self._notes)
+        pixels = working_pixels(picture.image, self._notes, picture.beside_alpha)
         if pixels is None:
             path = absolute_path(picture.image) or "no file"
             self._notes.add(

@@ -16,9 +16,12 @@ namespace velour {
 namespace {
 
 constexpr size_t kSide = 8;
-constexpr const char* kNames[] = {"Position",     "UV",    "IndexOB",        "IndexMA",        "Mist",
-                                  "Albedo",       "Error", "CryptoObject00", "CryptoObject01", "CryptoMaterial00",
-                                  "CryptoAsset02", "Denoising Albedo"};
+constexpr const char* kNames[] = {"Position",       "UV",
+                                  "IndexOB",        "IndexMA",
+                                  "Mist",           "Albedo",
+                                  "Error",          "CryptoObject00",
+                                  "CryptoObject01", "CryptoMaterial00",
+                                  "CryptoAsset02",  "Denoising Albedo"};
 
 /// Everything, with labels for two instances and two materials.
 PassOptions all_passes() {
