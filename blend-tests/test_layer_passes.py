@@ -144,6 +144,13 @@ class Compositor(PassesTest):
         normal = self.shown("Denoising Normal")
         np.testing.assert_allclose(scenes.middle(normal), (0, 0, -1), atol=1e-6)  # along the camera's axes
 
+    def test_samples_of_the_layer(self):
+        scenes.add_plane()
+        self.switch_on("sample_count")
+        for own, count in ((0, 64), (16, 16)):
+            self.layer.samples = own
+            np.testing.assert_array_equal(self.shown("Sample Count")[..., 0], count)
+
     def test_error_follows_exposure_and_samples(self):
         scenes.add_plane(scenes.diffuse_material())
         lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "AREA"))

@@ -202,17 +202,6 @@ class Notes(BlenderTest):
         bpy.context.scene.render.use_motion_blur = True
         self._said("motion blur")
 
-    def test_samples_of_a_layer(self):
-        bpy.context.view_layer.samples = 16
-        self._said("View layer 'ViewLayer'", "samples")
-
-    def test_world_of_a_layer(self):
-        layer = bpy.context.view_layer
-        if not hasattr(layer, "world_override"):
-            self.skipTest("view layers have no world of their own before Blender 4.3")
-        layer.world_override = bpy.data.worlds.new("Other")
-        self._said("View layer 'ViewLayer'", "world of its own")
-
     def test_hair(self):
         obj = scenes.add_sphere()
         obj.modifiers.new("Fur", "PARTICLE_SYSTEM")

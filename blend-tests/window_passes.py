@@ -7,9 +7,11 @@ import numpy as np
 
 from support import scenes, window
 
+_RIGHT_OF_ICONS = 200  # pixels; Blender draws that of a changed material anew, at the left
+
 
 def start(folder):
-    window.run(folder, (switches, mist, pass_index))
+    window.run(folder, (switches, override, mist, pass_index))
 
 
 def switches(folder):
@@ -21,6 +23,18 @@ def switches(folder):
     layer.velour.use_pass_denoising = layer.velour.use_pass_error = True
     yield 0.5
     assert np.abs(window.screenshot(folder, "passes-after") - before).max() > 0.2
+
+
+def override(folder):
+    """What a layer overrides can be set with Velour, too."""
+    layer = bpy.context.view_layer
+    with _open(bpy.types.VELOUR_VIEWLAYER_PT_override):
+        yield from window.show_properties("VIEW_LAYER")
+        before = window.screenshot(folder, "samples-0")
+        layer.samples = 1234
+        yield 0.5
+        changed = np.abs(window.screenshot(folder, "samples-1234") - before).max(axis=2) > 0.2
+    assert changed.sum() > 20, "the panel does not show the samples"
 
 
 def mist(folder):
@@ -50,7 +64,8 @@ def pass_index(folder):
         before = window.screenshot(folder, "pass-index-0")
         cube.active_material.pass_index = 1234
         yield 0.5
-        changed = np.argwhere(np.abs(window.screenshot(folder, "pass-index-1234") - before).max(axis=2) > 0.2)
+        changes = np.abs(window.screenshot(folder, "pass-index-1234") - before).max(axis=2) > 0.2
+    changed = np.argwhere(changes[:, _RIGHT_OF_ICONS:])
     assert len(changed) > 20, "the panel does not show the pass index"
     height, width = np.ptp(changed, axis=0)
     assert height < 30, f"{height} x {width} pixels changed: more than a number"

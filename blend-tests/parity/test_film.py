@@ -2,6 +2,8 @@
 
 import math
 
+import bpy
+
 from parity import stage
 from parity.case import ParityTest, TownTest
 
@@ -56,6 +58,15 @@ class Film(ParityTest):
     def test_without_sky(self):
         self.scene.view_layers[0].use_sky = False
         self.assert_parity("View layer: without sky")
+
+    def test_world_of_the_layer(self):
+        layer = self.scene.view_layers[0]
+        if not hasattr(layer, "world_override"):
+            self.skipTest("view layers have no world of their own before Blender 4.3")
+        layer.world_override = stage.world((0.9, 0.2, 0.1), 0.5)
+        self.scene.world = bpy.data.worlds["World"]
+        self.assertNotEqual(layer.world_override, self.scene.world)
+        self.assert_parity("View layer: world override")
 
     def test_exposure(self):
         self.scene.cycles.film_exposure = 1.7

@@ -53,7 +53,7 @@ def render_final(engine, depsgraph):
             note_missing_passes(depsgraph.view_layer_eval, notes)
             stamps = choose_models(native_scene, materials.reduced, view, depsgraph, notes, check_break)
             _say(notes)
-        options = final_options(scene, view, engine.is_preview)
+        options = final_options(depsgraph, view, engine.is_preview)
         with render_job(native_scene, passes and passes.passes, **options) as job:
             _render_layer(engine, depsgraph, job, view, options["spp"], surroundings, shown)
         result = engine.get_result()

@@ -4,30 +4,33 @@ import bpy
 
 from ..core.cache import user_cache_folder
 from ..export.film import hides_world
+from ..export.world import layer_world
 
 _WITHOUT_END = 1 << 24  # light directions a pixel: more than anybody waits for
 
 
-def final_options(scene, view, is_preview):
+def final_options(depsgraph, view, is_preview):
+    scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
     settings = scene.velour
     return {
-        **_common(scene, view),
-        "spp": settings.preview_samples if is_preview else settings.samples,
+        **_common(scene, layer, view),
+        "spp": settings.preview_samples if is_preview else layer.samples or settings.samples,
         "threads": scene.render.threads,
         "noise": 0.0 if is_preview or not settings.use_noise_target else settings.noise_target,
         "time_limit": settings.time_limit,
     }
 
 
-def viewport_options(scene, view):
+def viewport_options(depsgraph, view):
+    scene = depsgraph.scene_eval
     return {
-        **_common(scene, view),
+        **_common(scene, depsgraph.view_layer_eval, view),
         "spp": scene.velour.viewport_samples or _WITHOUT_END,
         "threads": max(1, scene.render.threads - 1),  # one is left to the interface
     }
 
 
-def _common(scene, view):
+def _common(scene, layer, view):
     settings = scene.velour
     return {
         "width": view.width,
@@ -41,7 +44,7 @@ def _common(scene, view):
         "sequence": settings.sequence.lower(),
         "cache_folder": cache_folder() if settings.use_cache else "",
         "transparent": int(scene.render.film_transparent),
-        "hide_world": int(hides_world(scene.world)),
+        "hide_world": int(hides_world(layer_world(scene, layer))),
     }
 
 

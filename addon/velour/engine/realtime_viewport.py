@@ -4,6 +4,7 @@ from ..export.film import film_exposure, hides_world
 from ..export.live import LiveExport
 from ..export.look import Look
 from ..export.viewport import viewport_frame
+from ..export.world import layer_world
 from ..realtime import Drawing, RealtimeScene
 from . import viewport_clock
 from .options import cache_folder
@@ -54,7 +55,7 @@ class RealtimeViewport:
         viewport_clock.watch(self)
         if not is_ready:
             return "Preparing real time"
-        self._show(depsgraph.scene_eval, frame)
+        self._show(depsgraph, frame)
         return self._line()
 
     def turn(self):
@@ -68,11 +69,13 @@ class RealtimeViewport:
     def pause(self):
         """Draws no more than Blender asks for."""
 
-    def _show(self, scene, frame):
+    def _show(self, depsgraph, frame):
         import gpu
         from gpu_extras.presets import draw_texture_2d
 
-        shows_world = not scene.render.film_transparent and not hides_world(scene.world)
+        scene = depsgraph.scene_eval
+        world = layer_world(scene, depsgraph.view_layer_eval)
+        shows_world = not scene.render.film_transparent and not hides_world(world)
         exposure = film_exposure(scene)
         key = frame.key(), exposure, shows_world
         if key != self._key:

@@ -182,7 +182,7 @@ class Viewport:
         if frame is None:
             self._close_job()
             return
-        options = viewport_options(depsgraph.scene_eval, frame.view)
+        options = viewport_options(depsgraph, frame.view)
         if self._job and options == self._options and frame.key() == self._key:
             return
         if self._job and options == self._options and self._key is not None and self._is_unseen():

@@ -3,6 +3,7 @@
 from .film import hides_world
 from .layer_passes import shows_more_than_light
 from .notes import ExportError
+from .world import layer_world, shown_world
 
 _NO_LIGHT = (
     "nothing shines in it: it has no light with any power, no glowing material and a black world, so its"
@@ -23,7 +24,7 @@ def refuse_black(depsgraph, objects, materials, world_shines, notes):
     reason = None
     if not (objects.shines or materials.glows or world_shines):
         reason, changes = _NO_LIGHT, _light_may_change(depsgraph.scene, all_objects)
-    elif not objects.is_seen and (not world_shines or hides_world(scene.world)):
+    elif not objects.is_seen and (not world_shines or hides_world(shown_world(depsgraph))):
         reason, changes = _NOTHING_SEEN, any(map(_faces_may_change, all_objects))
     if reason is None:
         return
@@ -59,7 +60,8 @@ def _has_animation(block):
 
 
 def _light_may_change(scene, objects):
-    if scene.world and is_animated(scene.world):
+    worlds = [scene.world, *(layer_world(scene, layer) for layer in scene.view_layers)]
+    if any(world and is_animated(world) for world in worlds):
         return True
     return any(_may_shine_later(obj) for obj in objects)
 

@@ -6,6 +6,7 @@ import bpy
 
 from .files import FIND
 from .notes import ExportError
+from .world import layer_world
 
 
 def refuse_missing_libraries(scene):
@@ -28,7 +29,8 @@ def _path(library):
 
 def _shown_by(scene):
     """Datablocks that a picture of the scene is made of, each once; what is gone has left a stand-in."""
-    waiting, seen = [scene.collection, scene.world], set()
+    worlds = [layer_world(scene, layer) for layer in scene.view_layers]
+    waiting, seen = [scene.collection, *worlds], set()
     while waiting:
         block = waiting.pop()
         if block is None or block.as_pointer() in seen:

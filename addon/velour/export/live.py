@@ -11,7 +11,7 @@ from .kept_meshes import KeptMeshes
 from .materials import MaterialTable
 from .notes import Notes
 from .objects import ObjectExport
-from .world import add_world
+from .world import add_world, shown_world
 
 _MOST_REMOVED = 4096  # numbers of meshes that are no longer there: then all begins anew
 
@@ -81,5 +81,4 @@ class LiveExport:
             turn = Matrix.Rotation(-light.turn - math.pi / 2, 3, "Z")
             self.scene.set_world_file(light.path, light.strength, turn)
         else:
-            has_sky = depsgraph.view_layer_eval.use_sky
-            add_world(self.scene, depsgraph.scene_eval.world if has_sky else None, Notes())
+            add_world(self.scene, shown_world(depsgraph), Notes())

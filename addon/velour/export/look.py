@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from .notes import ExportError
+from .world import layer_world
 
 
 class StudioLight(NamedTuple):
@@ -21,7 +22,7 @@ class Look:
         self._is_narrowed = space.local_view is not None or space.use_local_collections
         self.has_lights = shading.use_scene_lights_render
         self.studio_light = None if shading.use_scene_world_render else _studio_light(shading)
-        world = depsgraph.scene.world
+        world = layer_world(depsgraph.scene, depsgraph.view_layer)
         self._world = (world.as_pointer() if world else 0, depsgraph.view_layer.use_sky)
         self._scene = _scene_key(depsgraph)
         self._seen = self._all_seen(depsgraph)

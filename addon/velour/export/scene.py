@@ -9,7 +9,7 @@ from .libraries import refuse_missing_libraries
 from .materials import MaterialTable
 from .objects import ObjectExport
 from .pass_labels import AskedPasses, asked_passes
-from .world import add_world
+from .world import add_world, layer_world, shown_world
 
 
 class Export(NamedTuple):
@@ -33,13 +33,11 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True, 
         materials = MaterialTable(scene, notes, strict)
         objects = ObjectExport(scene, materials, notes, check_break, shows_uvs="uv" in asked)
         objects.add_all(depsgraph)
-        has_sky = depsgraph.view_layer_eval.use_sky
-        world_shines = add_world(scene, depsgraph.scene_eval.world if has_sky else None, notes)
+        world_shines = add_world(scene, shown_world(depsgraph), notes)
         if strict:
             refuse_black(depsgraph, objects, materials, world_shines, notes)
         view.add_to(scene)
         _note_scene(depsgraph.scene_eval, notes)
-        _note_layer(depsgraph.view_layer_eval, notes)
         check_break()
         scene.commit()
         info = scene.info()
@@ -48,7 +46,8 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True, 
         surroundings = _surroundings(depsgraph.scene.camera, objects.owner(info["camera_inside"]))
         if surroundings:
             notes.add(surroundings)
-        layer, world = depsgraph.view_layer_eval, depsgraph.scene_eval.world
+        layer = depsgraph.view_layer_eval
+        world = layer_world(depsgraph.scene_eval, layer)
         passes = asked_passes(asked, layer, world, objects, materials) if asked else None
         return Export(scene, materials, surroundings, passes)
     except BaseException:
@@ -68,12 +67,3 @@ def _surroundings(camera, owner):
 def _note_scene(scene, notes):
     if scene.render.use_motion_blur:
         notes.add(f"Scene '{scene.name}': motion blur is not supported; ignored.")
-
-
-def _note_layer(layer, notes):
-    """What it overrides; materials are honoured."""
-    owner = f"View layer '{layer.name}'"
-    if getattr(layer, "world_override", None):  # 4.3 and newer
-        notes.add(f"{owner}: a world of its own is not supported; the scene's world is used.")
-    if layer.samples:
-        notes.add(f"{owner}: a number of samples of its own is not supported; the scene's is used.")

@@ -15,6 +15,17 @@ from .pixels import working_pixels
 _RAYS = {"diffuse": "diffuse rays", "glossy": "glossy rays"}
 
 
+def layer_world(scene, layer):
+    """The view layer's own (4.3 and newer), or the scene's; None: there is none."""
+    return getattr(layer, "world_override", None) or scene.world
+
+
+def shown_world(depsgraph):
+    """The evaluated world that lights the view layer; None: it is black, or left out."""
+    layer = depsgraph.view_layer_eval
+    return layer_world(depsgraph.scene_eval, layer) if layer.use_sky else None
+
+
 def add_world(scene, world, notes):
     """Whether it shines."""
     _note_visibility(world, notes)

@@ -2,6 +2,7 @@
 
 from . import file_handler, library_state, placement_summary, plot_preview, progress, stock_panels, summaries
 from .approximation_panel import VELOUR_MATERIAL_PT_approximation
+from .layer_panels import VELOUR_VIEWLAYER_PT_filter, VELOUR_VIEWLAYER_PT_override
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_model,
@@ -36,6 +37,8 @@ CLASSES = (
     VELOUR_RENDER_PT_sampling,
     VELOUR_RENDER_PT_film,
     VELOUR_RENDER_PT_check,
+    VELOUR_VIEWLAYER_PT_filter,
+    VELOUR_VIEWLAYER_PT_override,
     VELOUR_VIEWLAYER_PT_passes,
     VELOUR_VIEWLAYER_PT_passes_data,
     VELOUR_VIEWLAYER_PT_passes_cryptomatte,

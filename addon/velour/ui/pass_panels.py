@@ -2,29 +2,18 @@
 
 import bpy
 
-from ..engine.engine import VelourRenderEngine
 from ..export.layer_passes import CRYPTOMATTES
+from .layer_panels import LayerPanel
 
 
-class _LayerPanel:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "view_layer"
-    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
-
-
-class VELOUR_VIEWLAYER_PT_passes(_LayerPanel, bpy.types.Panel):
+class VELOUR_VIEWLAYER_PT_passes(LayerPanel, bpy.types.Panel):
     bl_label = "Passes"
 
     def draw(self, context):
         pass
 
 
-class VELOUR_VIEWLAYER_PT_passes_data(_LayerPanel, bpy.types.Panel):
+class VELOUR_VIEWLAYER_PT_passes_data(LayerPanel, bpy.types.Panel):
     bl_label = "Data"
     bl_parent_id = "VELOUR_VIEWLAYER_PT_passes"
 
@@ -48,7 +37,7 @@ class VELOUR_VIEWLAYER_PT_passes_data(_LayerPanel, bpy.types.Panel):
         column.prop(layer.velour, "use_pass_denoising")
 
 
-class VELOUR_VIEWLAYER_PT_passes_cryptomatte(_LayerPanel, bpy.types.Panel):
+class VELOUR_VIEWLAYER_PT_passes_cryptomatte(LayerPanel, bpy.types.Panel):
     bl_label = "Cryptomatte"
     bl_parent_id = "VELOUR_VIEWLAYER_PT_passes"
 
@@ -65,7 +54,7 @@ class VELOUR_VIEWLAYER_PT_passes_cryptomatte(_LayerPanel, bpy.types.Panel):
         column.prop(layer, "pass_cryptomatte_depth", text="Levels")
 
 
-class VELOUR_WORLD_PT_mist(_LayerPanel, bpy.types.Panel):
+class VELOUR_WORLD_PT_mist(LayerPanel, bpy.types.Panel):
     bl_label = "Mist Pass"
     bl_context = "world"
     bl_options = {"DEFAULT_CLOSED"}
@@ -84,7 +73,7 @@ class VELOUR_WORLD_PT_mist(_LayerPanel, bpy.types.Panel):
         layout.prop(mist, "falloff")
 
 
-class VELOUR_MATERIAL_PT_settings(_LayerPanel, bpy.types.Panel):
+class VELOUR_MATERIAL_PT_settings(LayerPanel, bpy.types.Panel):
     bl_label = "Settings"
     bl_context = "material"
     bl_options = {"DEFAULT_CLOSED"}

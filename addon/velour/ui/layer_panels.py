@@ -1,0 +1,40 @@
+"""The view layer in the properties editor, in the words of Cycles: what it leaves out, what it overrides."""
+
+import bpy
+
+from ..engine.engine import VelourRenderEngine
+
+
+class LayerPanel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "view_layer"
+    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES
+
+
+class VELOUR_VIEWLAYER_PT_filter(LayerPanel, bpy.types.Panel):
+    bl_label = "Filter"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        self.layout.column(heading="Include").prop(context.view_layer, "use_sky", text="Environment")
+
+
+class VELOUR_VIEWLAYER_PT_override(LayerPanel, bpy.types.Panel):
+    bl_label = "Override"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, layer = self.layout, context.view_layer
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(layer, "material_override")
+        if hasattr(layer, "world_override"):  # 4.3 and newer
+            layout.prop(layer, "world_override")
+        layout.prop(layer, "samples")
