@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/ray_number.h"
+#include "votf/shell_depth.h"
 
 namespace velour {
 namespace {
@@ -105,17 +106,15 @@ Vec2 ShellCrossing::beyond_outline(const Vec2& texels) const {
   const Vec2 texel = Vec2(1, volume.aspect) / texels;
   // Half of what a texel's mean and the look-up between texels reach over.
   const float most = std::min(1.5f * std::max(texel.x, texel.y), 0.9f * volume.reach);
-  const ShellDepth inside = depth_behind(field(), way_, hit_.s, most);
-  const Vec2 across(inside.normal);
+  const ShellOutline outline = outline_beside(field(), way_, hit_.s, most);
+  const Vec2 across(outline.outside);
   const float square = glm::dot(across, across);
-  if (!(inside.depth < std::min(most, 1.5f * glm::length(across * texel))) || !(square > 0)) return Vec2(0.0f);
-  const Vec2 over = across * (2 * inside.depth / square);
+  if (!(outline.depth < std::min(most, 1.5f * glm::length(across * texel))) || !(square > 0)) return Vec2(0.0f);
+  const Vec2 over = across * (2 * outline.depth / square);
   // Where other structure lies behind, there is no outline.
   ShellWay beside = way_;
   beside.ray.place += over;
-  beside.begin = hit_.begin;
-  beside.own = 0;
-  if (trace_shell(field(), beside)) return Vec2(0.0f);
+  if (deepest_behind(field(), beside, hit_.begin, 0).depth > 0) return Vec2(0.0f);
   return over / Vec2(1, volume.aspect);
 }
 

@@ -182,12 +182,7 @@ void distances_simd(const ShellTable& table, const Vec3* places, size_t count, f
 
 Vec3 place_on_simd(const ShellRay& ray, float sine, float s) {
   const Few d;
-  const auto all = [&](float x) HWY_ATTR { return hn::Set(d, x); };
-  const PlaceLanes<Few> place =
-      place_on(d,
-               {all(ray.place.x), all(ray.place.y), all(ray.along.x), all(ray.along.y), all(sine), all(ray.cosine),
-                all(ray.curvature), all(ray.scale), all(ray.height)},
-               all(s));
+  const PlaceLanes<Few> place = place_on(d, ray_in_all(d, ray, sine), hn::Set(d, s));
   return {hn::GetLane(place.x), hn::GetLane(place.y), hn::GetLane(place.z)};
 }
 

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "votf/shell_field.h"
+#include "votf/shell_trace.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {
@@ -67,6 +68,14 @@ template <class D>
 struct RayLanes {
   hn::Vec<D> x, y, along_x, along_y, sine, cosine, curvature, scale, height;
 };
+
+/// One ray in all lanes.
+template <class D>
+HWY_INLINE RayLanes<D> ray_in_all(D d, const ShellRay& ray, float sine) {
+  const auto all = [&](float x) HWY_ATTR { return hn::Set(d, x); };
+  return {all(ray.place.x), all(ray.place.y),   all(ray.along.x), all(ray.along.y), all(sine),
+          all(ray.cosine),  all(ray.curvature), all(ray.scale),   all(ray.height)};
+}
 
 /// The angle of the right triangle with these legs, neither negative nor both 0, over `far`, which lies opposite;
 /// within 5e-6 of itself, by the polynomial of least such error.

@@ -11,7 +11,6 @@ namespace velour {
 namespace {
 
 constexpr float kOwnDepth = 2;  // pitches: how deep within the structure a ray may seem to start that starts on it
-constexpr int kMostLooks = 64;  // for the deepest place of a ray within the structure
 
 float squared(float x) { return x * x; }
 
@@ -79,29 +78,6 @@ ShellHit trace_shell(const ShellField& field, const ShellWay& way) {
   ShellHit hit;
   trace_shells(field, {&way, 1}, &hit);
   return hit;
-}
-
-ShellDepth depth_behind(const ShellField& field, const ShellWay& way, float s, float most) {
-  const OcclusionVolume& volume = field.volume();
-  const Vec3 top(0, 0, volume.top);
-  const float pitch = volume.pitch(), sign = way.end < s ? -1.0f : 1.0f;
-  ShellDepth deepest{0, Vec3(0.0f)};
-  Vec3 place = way.ray.at(s);
-  for (int i = 0; i < kMostLooks && (way.end - s) * sign > 0 && deepest.depth < most; ++i) {
-    const Vec3 at = way.ray.at(s);
-    const float depth = way.offset - field.distance(at + top);
-    if (depth > deepest.depth) {
-      deepest.depth = depth;
-      place = at;
-    }
-    s += sign * std::max(std::abs(depth), 0.5f * pitch) / way.speed;
-  }
-  deepest.depth = std::min(deepest.depth, most);
-  const Vec3 slope = field.gradient(place + top), along = glm::normalize(way.ray.at(s) - place);
-  const Vec3 across = slope - glm::dot(slope, along) * along;
-  const float length = glm::length(across);
-  if (length > 0) deepest.normal = across / length;
-  return deepest;
 }
 
 ShellWay line_through(const OcclusionVolume& volume, const Vec2& place, const Vec3& w) {

@@ -80,13 +80,6 @@ inline constexpr float kLeastShellStep = 0.1f;  // pitches: no step is shorter
 inline constexpr float kShellStride = 1.6f;     // distances that a step is long [KSK14]
 inline constexpr int kMostShellLooks = 4096;    // a ray that glides along a surface for so long has met it
 
-/// How deep within the structure, widths, a ray comes that meets it at `s` on its way; not more than `most`.
-struct ShellDepth {
-  float depth;
-  Vec3 normal;  // tile: towards the nearest outside, across the ray
-};
-ShellDepth depth_behind(const ShellField& field, const ShellWay& way, float s, float most);
-
 /// The line through `place` (widths) of the reference plane of a flat shell along unit `w`, w.z not 0.
 ShellWay line_through(const OcclusionVolume& volume, const Vec2& place, const Vec3& w);
 
