@@ -19,6 +19,7 @@ class HoledBtfMaterial final : public Material {
     point.folded = site.beyond_outline != Vec2(0.0f);
     if (!point.folded) return;
     if (!point.beyond) point.beyond = std::make_unique<PreparedBrdf>();
+    point.beyond->value_only = true;
     SurfaceSite beyond = site;
     beyond.uv += site.beyond_outline;
     btf_->prepare(wv, beyond, *point.beyond);

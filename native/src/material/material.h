@@ -43,6 +43,7 @@ struct PreparedBrdf {
   SrbfPoint srbf;                        // BTFs of multivariate SRBFs: the same
   TensorPoint tensor;                    // BTFs of clustered tensors: the same
   std::unique_ptr<PreparedBrdf> beyond;  // BTFs of open structure: the same beyond its outline, where `folded`
+  bool value_only = false;               // set before prepare(): nothing is drawn, and densities are 0
   bool folded = false;
   BtfTablePoint btf_table;                // BTFs themselves: what is blended at the site for the view
   std::unique_ptr<PreparedBrdf> through;  // where light comes through: the same for light from the other side

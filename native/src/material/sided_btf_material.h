@@ -6,6 +6,7 @@
 
 #include "material/btf_draws.h"
 #include "material/btf_light.h"
+#include "material/btf_look_table.h"
 #include "material/footprint_taps.h"
 #include "material/material.h"
 #include "sphere/random.h"
@@ -92,19 +93,22 @@ class SidedBtfMaterial final : public Material {
       evaluator_.add(taps.place(site.uv, i), taps.level, 1.0f / static_cast<float>(taps.count), p);
     }
     evaluator_.finish(p);
-    side->draws.fill(side->looks(evaluator_, p, side->draws), point.warped);
+    if (point.value_only) return;
+    BtfLook look{wv, evaluator_.normal(p), {}, 0};
+    if (side->draws.asks()) side->table.look_up(site.uv, taps.level, wv, look);
+    side->draws.fill(look, point.warped);
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     if (!(point.*kPoint).seen) return eval_unseen(wl, f, pdf);
-    eval_warped(point.warped, wl, f, pdf);  // its value, 0, is overwritten
+    eval_density(point, wl, f, pdf);
     for (int i = 0; i < wl.count; ++i) f.set(i, value(point, wl.get(i)));
   }
 
   Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
     if (!(point.*kPoint).seen) return {Rgb(0.0f), pdf_cosine_hemisphere(wl)};
-    Reflection result;
-    eval_warped(point.warped, wl, result.f, result.pdf);
+    Reflection result{};
+    if (!point.value_only) eval_warped(point.warped, wl, result.f, result.pdf);
     result.f = value(point, wl);
     return result;
   }
@@ -127,10 +131,20 @@ class SidedBtfMaterial final : public Material {
  private:
   struct Side {
     Side(const Evaluator& evaluator, uint32_t side)
-        : number(side), looks(evaluator, side), draws(looks.examples(evaluator, side)) {}
+        : number(side), looks(evaluator, side), draws(looks.examples(evaluator, side)) {
+      if (!draws.asks()) return;
+      table = BtfLookTable(evaluator.texels(), [&](const Vec2& uv, float level, const Vec3& wv) {
+        const auto point = std::make_unique_for_overwrite<typename Evaluator::Point>();
+        evaluator.begin(number, wv, *point);
+        evaluator.add(uv, level, 1, *point);
+        evaluator.finish(*point);
+        return looks(evaluator, *point, draws);
+      });
+    }
     uint32_t number;
     BtfLooks<Evaluator> looks;
     BtfDraws draws;
+    BtfLookTable table;  // empty unless draws.asks()
   };
 
   /// A BTF of one side shows it from behind as well.
@@ -140,6 +154,12 @@ class SidedBtfMaterial final : public Material {
 
   Rgb value(const PreparedBrdf& point, const Vec3& wl) const {
     return wl.z > 0 ? evaluator_.value(point.*kPoint, wl) : Rgb(0.0f);
+  }
+
+  /// The mixture's value, 0, is to be overwritten.
+  static void eval_density(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
+    if (!point.value_only) return eval_warped(point.warped, wl, f, pdf);
+    std::fill_n(pdf.v, wl.count, 0.0f);
   }
 
   static void eval_unseen(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {

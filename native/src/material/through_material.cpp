@@ -41,6 +41,7 @@ ThroughMaterial::ThroughMaterial(std::shared_ptr<const Material> reflected, std:
 void ThroughMaterial::prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const {
   if (!point.through) point.through = std::make_unique<PreparedBrdf>();
   reflected_->prepare(wv, site, point);
+  point.through->value_only = point.value_only;
   through_->prepare(wv, site, *point.through);
   point.through_share = share_[site.back];
 }

@@ -1,0 +1,89 @@
+#include "material/btf_look_table.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <span>
+
+namespace velour {
+namespace {
+
+// Of a woven cloth and of chain mail of 64 texels: half of the cells, or three views a side, cost 5 to 12 % of
+// variance, six views gain 2 %.
+constexpr uint32_t kMostCells = 64;  // along both axes
+constexpr uint32_t kViews = 4;       // along both axes of the disk
+constexpr float kRim = 0.95f;        // of the disk: what lies beyond is the outermost view
+
+/// Views on the unit disk, which keeps areas.
+size_t nearest_view(const Vec3& wv) {
+  const float sine = std::sqrt(wv.x * wv.x + wv.y * wv.y), radius = std::sqrt(std::max(0.0f, 1 - wv.z));
+  const float scale = sine > 0 ? radius / sine : 0.0f;
+  const auto cell = [&](float x) {
+    return std::min(static_cast<uint32_t>(std::max(0.0f, 0.5f * kViews * (1 + scale * x))), kViews - 1);
+  };
+  return size_t{cell(wv.y)} * kViews + cell(wv.x);
+}
+
+Vec3 view_in(size_t view) {
+  const auto middle = [](size_t i) { return (2 * static_cast<float>(i) + 1) / kViews - 1; };
+  const Vec2 at(middle(view % kViews), middle(view / kViews));
+  const float radius = std::min(glm::length(at), kRim), cosine = 1 - radius * radius;
+  const Vec2 across = at * (std::sqrt(1 - cosine * cosine) / std::max(glm::length(at), 1e-6f));
+  return {across.x, across.y, cosine};
+}
+
+uint32_t cell_of(float period, uint32_t cells) {
+  const float inside = std::isfinite(period) ? period - std::floor(period) : 0.0f;
+  return std::min(static_cast<uint32_t>(inside * static_cast<float>(cells)), cells - 1);
+}
+
+uint8_t byte_of(float strength, float most) {
+  return most > 0 ? static_cast<uint8_t>(std::lround(255 * std::clamp(strength / most, 0.0f, 1.0f))) : uint8_t{0};
+}
+
+}  // namespace
+
+BtfLookTable::BtfLookTable(const Vec2& texels, const Ask& ask) {
+  const float most = std::max(texels.x, texels.y);
+  cells_ = std::min(std::bit_ceil(static_cast<uint32_t>(most)), kMostCells);
+  finest_ = std::max(0.0f, std::log2(most / static_cast<float>(cells_)));
+  const auto levels = static_cast<uint32_t>(std::bit_width(cells_));
+  strengths_.resize(first_of(levels));
+  const auto fill = [&](uint32_t level, uint32_t cells, size_t cell) {
+    const Vec2 uv = (Vec2(cell % cells, cell / cells) + 0.5f) / static_cast<float>(cells);
+    for (size_t view = 0; view < kViews * kViews; ++view) {
+      const BtfLook look = ask(uv, finest_ + static_cast<float>(level), view_in(view));
+      const float largest = std::max(look.mirror, *std::ranges::max_element(look.broad));
+      Strengths& to = strengths_[first_of(level) + cell * kViews * kViews + view];
+      std::ranges::transform(look.broad, to.begin(), [&](float x) { return byte_of(x, largest); });
+      to.back() = byte_of(look.mirror, largest);
+    }
+  };
+  for (uint32_t level = 0; level < levels; ++level) {
+    const uint32_t cells = cells_ >> level;
+    // Isolated: while it waits, the thread takes no task that might hold what this one's caller does.
+    tbb::this_task_arena::isolate(
+        [&] { tbb::parallel_for(size_t{0}, size_t{cells} * cells, [&](size_t cell) { fill(level, cells, cell); }); });
+  }
+}
+
+size_t BtfLookTable::first_of(uint32_t level) const {
+  size_t cells = 0;
+  for (uint32_t l = 0; l < level; ++l) cells += size_t{cells_ >> l} * (cells_ >> l);
+  return cells * kViews * kViews;
+}
+
+void BtfLookTable::look_up(const Vec2& uv, float level, const Vec3& wv, BtfLook& look) const {
+  const auto last = static_cast<float>(std::bit_width(cells_) - 1);
+  const auto at = static_cast<uint32_t>(std::clamp(std::round(level - finest_), 0.0f, last));
+  const uint32_t cells = cells_ >> at;
+  const size_t cell = size_t{cell_of(uv.y, cells)} * cells + cell_of(uv.x, cells);
+  const Strengths& strengths = strengths_[first_of(at) + cell * kViews * kViews + nearest_view(wv)];
+  std::ranges::copy(std::span(strengths).first<BtfLook::kBroad>(), look.broad.begin());
+  look.mirror = strengths.back();
+}
+
+}  // namespace velour
