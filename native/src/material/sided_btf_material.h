@@ -22,12 +22,17 @@ class BtfLooks {
     for (size_t i = 0; i < BtfLook::kBroad; ++i) broad_[i] = evaluator.light(side, BtfDraws::centers()[i]);
   }
 
-  /// At a finished point; of `draws`, what it asks for.
-  BtfLook operator()(const Evaluator& evaluator, const typename Evaluator::Point& point, const BtfDraws& draws) const {
-    BtfLook look{point.wv, evaluator.normal(point), {}, 0};
-    if (draws.asks()) look_at_broad(evaluator, point, look);
-    if (draws.asks_mirror(look.wv, look.normal)) look_at_mirror(evaluator, point, look);
-    return look;
+  /// BtfLook::broad at a finished point.
+  BtfLookTable::Broad broad(const Evaluator& evaluator, const typename Evaluator::Point& point) const {
+    BtfLookTable::Broad broad;
+    for (size_t i = 0; i < broad.size(); ++i) {
+      broad[i] = luminance(evaluator.value(point, broad_[i])) * BtfDraws::centers()[i].z;
+    }
+    return broad;
+  }
+  /// BtfLook::mirror.
+  static float mirror(const Evaluator& evaluator, const typename Evaluator::Point& point, const Vec3& normal) {
+    return radiance(evaluator, point, BtfDraws::mirror(point.wv, normal));
   }
 
   /// Random places and views of `side`.
@@ -41,24 +46,15 @@ class BtfLooks {
       evaluator.begin(side, sample_cosine_hemisphere(random.next2()), *point);
       evaluator.add(uv, 0, 1, *point);
       evaluator.finish(*point);
-      BtfDraws::Example& example =
-          examples.emplace_back(BtfDraws::Example{{point->wv, evaluator.normal(*point), {}, 0}, {}});
-      look_at_broad(evaluator, *point, example.look);
-      look_at_mirror(evaluator, *point, example.look);
+      const Vec3 normal = evaluator.normal(*point);
+      BtfDraws::Example& example = examples.emplace_back(
+          BtfDraws::Example{{point->wv, normal, broad(evaluator, *point), mirror(evaluator, *point, normal)}, {}});
       for (const Vec3& wl : BtfDraws::even_lights()) example.f.push_back(radiance(evaluator, *point, wl));
     }
     return examples;
   }
 
  private:
-  void look_at_broad(const Evaluator& evaluator, const typename Evaluator::Point& point, BtfLook& look) const {
-    for (size_t i = 0; i < BtfLook::kBroad; ++i) {
-      look.broad[i] = luminance(evaluator.value(point, broad_[i])) * BtfDraws::centers()[i].z;
-    }
-  }
-  static void look_at_mirror(const Evaluator& evaluator, const typename Evaluator::Point& point, BtfLook& look) {
-    look.mirror = radiance(evaluator, point, BtfDraws::mirror(look.wv, look.normal));
-  }
   /// f cos of luminance.
   static float radiance(const Evaluator& evaluator, const typename Evaluator::Point& point, const Vec3& wl) {
     return wl.z > 0 ? luminance(evaluator.value(point, wl)) * wl.z : 0.0f;
@@ -95,7 +91,8 @@ class SidedBtfMaterial final : public Material {
     evaluator_.finish(p);
     if (point.value_only) return;
     BtfLook look{wv, evaluator_.normal(p), {}, 0};
-    if (side->draws.asks()) side->table.look_up(site.uv, taps.level, wv, look);
+    if (side->draws.asks()) look.broad = side->table.look_up(site.uv, taps.level, wv);
+    if (side->draws.asks_mirror(wv, look.normal)) look.mirror = side->looks.mirror(evaluator_, p, look.normal);
     side->draws.fill(look, point.warped);
   }
 
@@ -138,7 +135,7 @@ class SidedBtfMaterial final : public Material {
         evaluator.begin(number, wv, *point);
         evaluator.add(uv, level, 1, *point);
         evaluator.finish(*point);
-        return looks(evaluator, *point, draws);
+        return looks.broad(evaluator, *point);
       });
     }
     uint32_t number;
