@@ -3,29 +3,10 @@
 import bpy
 
 from support import inputs, scenes
-from support.blender import BlenderTest
+from support.notes import NotesTest
 
 
-class Notes(BlenderTest):
-    def setUp(self):
-        super().setUp()
-        scenes.use_engine(samples=8, size=8)
-        scenes.add_camera()
-        scenes.set_world()
-
-    def _notes(self):
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
-        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
-        notes = export.Notes()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        view = camera.final_view(depsgraph, notes)
-        export.export_scene(depsgraph, view, notes)[0].close()
-        return list(notes)
-
-    def _said(self, *words):
-        notes = self._notes()
-        self.assertTrue(any(all(word in note for word in words) for note in notes), notes)
-
+class Notes(NotesTest):
     def _material(self, shader):
         material = bpy.data.materials.new("Glass")
         material.use_nodes = True
@@ -39,11 +20,11 @@ class Notes(BlenderTest):
         material = bpy.data.materials.new("Plain")
         material.use_nodes = True
         scenes.add_sphere(material)
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
 
     def test_unsupported_shader(self):
         self._material("ShaderNodeBsdfGlass")
-        self._said("Material 'Glass'", "Glass BSDF", "rendered grey")
+        self.assert_said("Material 'Glass'", "Glass BSDF", "rendered grey")
 
     def test_linked_texture(self):
         material = self._material("ShaderNodeBsdfPrincipled")
@@ -53,7 +34,7 @@ class Notes(BlenderTest):
         )
         checker = tree.nodes.new("ShaderNodeTexChecker")
         tree.links.new(checker.outputs["Color"], node.inputs["Base Color"])
-        self._said("Material 'Glass'", node.name, "Base Color")
+        self.assert_said("Material 'Glass'", node.name, "Base Color")
 
     def _linked(self, idname, shader="ShaderNodeBsdfDiffuse", socket="Normal"):
         """A material of a shader with another node at one of its inputs; both nodes."""
@@ -65,22 +46,22 @@ class Notes(BlenderTest):
 
     def test_other_normals(self):
         node, bump = self._linked("ShaderNodeBump")
-        self._said("Material 'Glass'", node.name, "'Normal'", f"'{bump.name}' is not a Normal Map")
+        self.assert_said("Material 'Glass'", node.name, "'Normal'", f"'{bump.name}' is not a Normal Map")
 
     def test_spaces_of_normal_maps(self):
         glossy, normal_map = self._linked("ShaderNodeNormalMap", "ShaderNodeBsdfGlossy")
         glossy.distribution = "GGX"  # newer Blenders begin with another
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
         normal_map.space = "WORLD"
-        self._said("Material 'Glass'", normal_map.name, "tangent space")
+        self.assert_said("Material 'Glass'", normal_map.name, "tangent space")
 
     def test_distributions(self):
         tree = self._material("ShaderNodeBsdfGlossy").node_tree
         node = next(n for n in tree.nodes if hasattr(n, "distribution") and n.outputs[0].is_linked)
         node.distribution = "GGX"
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
         node.distribution = "BECKMANN"
-        self._said("Material 'Glass'", node.name, "'Beckmann' is shown as GGX")
+        self.assert_said("Material 'Glass'", node.name, "'Beckmann' is shown as GGX")
 
     def _shows_attribute(self, name, idname="ShaderNodeAttribute"):
         """A sphere of colours by an attribute; the object and the node."""
@@ -90,26 +71,28 @@ class Notes(BlenderTest):
 
     def test_missing_attribute(self):
         obj, _ = self._shows_attribute("paint")
-        self._said(f"Object '{obj.name}'", "no colours or numbers 'paint'", "material 'Glass'", "shows 0")
+        self.assert_said(
+            f"Object '{obj.name}'", "no colours or numbers 'paint'", "material 'Glass'", "shows 0"
+        )
         obj.data.attributes.new("paint", "FLOAT_COLOR", "POINT")
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
 
     def test_missing_colour_attribute(self):
         obj, _ = self._shows_attribute("", "ShaderNodeVertexColor")
-        self._said(f"Object '{obj.name}'", "no colour attribute", "material 'Glass'")
+        self.assert_said(f"Object '{obj.name}'", "no colour attribute", "material 'Glass'")
         obj.data.color_attributes.new("paint", "BYTE_COLOR", "CORNER")
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
 
     def test_attributes_of_objects(self):
         _, node = self._shows_attribute("paint")
         node.attribute_type = "OBJECT"
-        self._said("Material 'Glass'", "'Color'", f"'{node.name}' shows an attribute of type 'Object'")
+        self.assert_said("Material 'Glass'", "'Color'", f"'{node.name}' shows an attribute of type 'Object'")
 
     def test_attribute_in_the_place_of_a_normal_map(self):
         _, normal_map = self._linked("ShaderNodeNormalMap")
         tree = normal_map.id_data
         tree.links.new(tree.nodes.new("ShaderNodeVertexColor").outputs[0], normal_map.inputs["Color"])
-        self._said("Material 'Glass'", normal_map.name, "it is no picture")
+        self.assert_said("Material 'Glass'", normal_map.name, "it is no picture")
 
     def test_many_attributes(self):
         """Five in one material, of which four are shown."""
@@ -119,44 +102,44 @@ class Notes(BlenderTest):
         emission = "Emission Color" if "Emission Color" in node.inputs else "Emission"
         inputs_of = ("Base Color", "Metallic", "Roughness", "Alpha", emission)
         for i, socket in enumerate(inputs_of):
-            self.assertEqual(self._notes(), [])
+            self.assertEqual(self.notes(), [])
             shown = tree.nodes.new("ShaderNodeAttribute")
             shown.attribute_name = f"paint {i}"
             mesh.attributes.new(shown.attribute_name, "FLOAT_COLOR", "POINT")
             tree.links.new(shown.outputs["Color"], node.inputs[socket])
-        self._said("Material 'Glass'", "5 attributes", "beyond 4")
+        self.assert_said("Material 'Glass'", "5 attributes", "beyond 4")
 
     def test_unsupported_part_of_a_mix(self):
         tree = self._material("ShaderNodeMixShader").node_tree
         mix = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeMixShader")
         tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
         tree.links.new(tree.nodes.new("ShaderNodeBsdfTranslucent").outputs[0], mix.inputs[2])
-        self._said("Material 'Glass'", "Translucent BSDF", "rendered grey")
+        self.assert_said("Material 'Glass'", "Translucent BSDF", "rendered grey")
 
     def test_ignored_input(self):
         material = self._material("ShaderNodeBsdfPrincipled")
         for node in material.node_tree.nodes:
             if "Anisotropic" in node.inputs:
                 node.inputs["Anisotropic"].default_value = 0.5
-        self._said("Material 'Glass'", "'Anisotropic'")
+        self.assert_said("Material 'Glass'", "'Anisotropic'")
 
     def test_object_visibility(self):
         obj = scenes.add_sphere()
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
         obj.visible_camera = obj.visible_shadow = False
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
         obj.visible_glossy, obj.is_shadow_catcher = False, True
-        self._said("Object 'Sphere'", "hidden from glossy rays alone")
-        self._said("Object 'Sphere'", "a shadow catcher")
+        self.assert_said("Object 'Sphere'", "hidden from glossy rays alone")
+        self.assert_said("Object 'Sphere'", "a shadow catcher")
 
     def test_light_visibility(self):
         lamp = bpy.data.objects.new("Spot", bpy.data.lights.new("Spot", "SPOT"))
         bpy.context.scene.collection.objects.link(lamp)
         lamp.visible_camera = False  # it never is
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
         lamp.visible_glossy = False
-        self._said("Light 'Spot'", "hidden from glossy rays")
+        self.assert_said("Light 'Spot'", "hidden from glossy rays")
 
     def _picture_on(self, tree, uv_map, socket):
         """Links an image on that UV map, which the object has then, to an input."""
@@ -171,11 +154,11 @@ class Notes(BlenderTest):
         shader = next(n for n in tree.nodes if "Metallic" in n.inputs and n.outputs[0].is_linked)
         for socket, uv_map in zip(("Base Color", "Metallic", "Roughness", "Alpha"), "abcd", strict=True):
             self._picture_on(tree, uv_map, shader.inputs[socket])
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
         normal_map = tree.nodes.new("ShaderNodeNormalMap")
         tree.links.new(normal_map.outputs[0], shader.inputs["Normal"])
         self._picture_on(tree, "e", normal_map.inputs["Color"])
-        self._said("Material 'Glass'", "5 UV maps", "'a'")
+        self.assert_said("Material 'Glass'", "5 UV maps", "'a'")
 
     def test_normal_maps_on_several_uv_maps(self):
         tree = self._material("ShaderNodeAddShader").node_tree
@@ -189,24 +172,24 @@ class Notes(BlenderTest):
             tree.links.new(shader.outputs[0], add.inputs[i])
             tree.links.new(normal_map.outputs[0], shader.inputs["Normal"])
             self._picture_on(tree, uv_map, normal_map.inputs["Color"])
-        self._said("Material 'Glass'", "Normal Maps ask for several UV maps", "'a'")
+        self.assert_said("Material 'Glass'", "Normal Maps ask for several UV maps", "'a'")
 
     def test_light_factors(self):
         lamp = bpy.data.objects.new("Fill", bpy.data.lights.new("Fill", "POINT"))
         bpy.context.scene.collection.objects.link(lamp)
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(self.notes(), [])
         lamp.data.specular_factor = 0.0
-        self._said("Light 'Fill'", "specular")
+        self.assert_said("Light 'Fill'", "specular")
 
     def test_motion_blur(self):
         bpy.context.scene.render.use_motion_blur = True
-        self._said("motion blur")
+        self.assert_said("motion blur")
 
     def test_hair(self):
         obj = scenes.add_sphere()
         obj.modifiers.new("Fur", "PARTICLE_SYSTEM")
         obj.particle_systems[0].settings.type = "HAIR"
-        self._said("Object 'Sphere'", "hair")
+        self.assert_said("Object 'Sphere'", "hair")
 
     def test_adaptive_subdivision(self):
         if not hasattr(bpy.types.Object, "cycles"):
@@ -215,12 +198,12 @@ class Notes(BlenderTest):
         modifier = obj.modifiers.new("Subdivision", "SUBSURF")
         newer = hasattr(modifier, "use_adaptive_subdivision")  # 5.0 and newer
         (modifier if newer else obj.cycles).use_adaptive_subdivision = True
-        self._said("Object 'Sphere'", "adaptive subdivision")
+        self.assert_said("Object 'Sphere'", "adaptive subdivision")
 
     def test_volume(self):
         obj = bpy.data.objects.new("Fog", bpy.data.volumes.new("Fog"))
         bpy.context.scene.collection.objects.link(obj)
-        self._said("Object 'Fog'", "volumes")
+        self.assert_said("Object 'Fog'", "volumes")
 
     def test_world_mapping(self):
         tree = bpy.context.scene.world.node_tree
@@ -229,7 +212,7 @@ class Notes(BlenderTest):
         mapping.inputs["Location"].default_value = (1, 0, 0)
         tree.links.new(mapping.outputs[0], node.inputs["Vector"])
         tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
-        self._said("World 'World'", "only the rotation")
+        self.assert_said("World 'World'", "only the rotation")
 
     def test_missing_model_in_a_preview(self):
         """Previews render the approximation and say why."""

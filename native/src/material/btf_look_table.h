@@ -12,8 +12,8 @@ namespace velour {
 
 /// f cos of a side of a BTF under the broad lights that BtfDraws asks for, over cells of the tile, their pyramid, and
 /// views. Asking the BTF itself takes seven evaluations of it a point, where a path takes few lights from each: two
-/// fifths of a render's time, for a variance that is 2 to 4 % less. The mirror direction is not tabulated: highlights are
-/// too narrow for cells, and what misses one is a firefly. Memory: at most 0.6 MB. Immutable; thread-safe.
+/// fifths of a render's time, for a variance that is 2 to 4 % less. The mirror direction is not tabulated: highlights
+/// are too narrow for cells, and what misses one is a firefly. Memory: at most 0.6 MB. Immutable; thread-safe.
 class BtfLookTable {
  public:
   using Broad = std::array<float, BtfLook::kBroad>;

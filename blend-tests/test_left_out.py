@@ -1,0 +1,166 @@
+"""What is left out of a scene, or refused, is named: kinds of objects, links of lights, worlds, outputs."""
+
+import math
+import unittest
+
+import bpy
+from mathutils import Matrix
+
+from support import inputs, scenes
+from support.notes import NotesTest
+
+
+def _link(name, data):
+    obj = bpy.data.objects.new(name, data)
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
+
+
+def _first_of(*names):
+    """That data, which is called one or another name in the versions; None: there is none."""
+    return next((getattr(bpy.data, name) for name in names if hasattr(bpy.data, name)), None)
+
+
+class Objects(NotesTest):
+    def _left_out(self, words, *names):
+        data = _first_of(*names)
+        if data is None:
+            self.skipTest(f"this Blender makes no {words}")
+        _link("Fluff", data.new("Fluff"))
+        self.assert_said("Object 'Fluff'", words)
+
+    def test_point_clouds(self):
+        self._left_out("point clouds", "pointclouds")
+
+    def test_hair_curves(self):
+        self._left_out("hair curves", "hair_curves")
+
+    def test_grease_pencil(self):
+        # Blender 4.3 keeps the old kind beside the new one, which 5.0 has alone.
+        self._left_out("Grease Pencil", "grease_pencils_v3", "grease_pencils")
+
+    @unittest.skipUnless("light_linking" in bpy.types.Object.bl_rna.properties, "Blender 4.0 and newer")
+    def test_light_linking(self):
+        lamp = _link("Key", bpy.data.lights.new("Key", "POINT"))
+        self.assertEqual(self.notes(), [])
+        lamp.light_linking.receiver_collection = bpy.data.collections.new("Lit")
+        self.assert_said("Light 'Key'", "light linking")
+
+    def test_a_portal_is_no_lamp(self):
+        lamp = bpy.data.lights.new("Portal", "AREA")
+        if not hasattr(lamp, "cycles"):
+            self.skipTest("Cycles is not enabled")
+        _link("Portal", lamp)
+        lights = __import__(f"{inputs.ADDON}.export.lights", fromlist=["lights"])
+        for is_portal in (False, True):
+            lamp.cycles.is_portal = is_portal
+            lamp.update_tag()  # which a property of an add-on does not do by itself
+            self.assertEqual(self.notes(), [])
+            self.assertEqual(self._shines(lights, "Portal"), not is_portal)
+
+    def _shines(self, lights, name):
+        class Scene:
+            def add_light(self, *_args, **_values):
+                pass
+
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return lights.add_light(Scene(), bpy.data.objects[name].evaluated_get(depsgraph), Matrix(), [])
+
+
+class Materials(NotesTest):
+    def _tree(self):
+        material = bpy.data.materials.new("Bare")
+        material.use_nodes = True
+        scenes.add_sphere(material)
+        return material.node_tree
+
+    def test_without_a_surface_shader(self):
+        tree = self._tree()
+        tree.links.clear()
+        self.assert_said("Material 'Bare'", "no surface shader", "black")
+
+    def test_displacement(self):
+        tree = self._tree()
+        node = tree.nodes.new("ShaderNodeDisplacement")
+        tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Displacement"])
+        self.assert_said("Material 'Bare'", "isplacement")
+
+    def test_volume(self):
+        tree = self._tree()
+        node = tree.nodes.new("ShaderNodeVolumeScatter")
+        tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
+        self.assert_said("Material 'Bare'", "olume")
+
+
+class Worlds(NotesTest):
+    def _environment(self):
+        tree = bpy.context.scene.world.node_tree
+        node = tree.nodes.new("ShaderNodeTexEnvironment")
+        node.image = bpy.data.images.new("sky", 8, 4, float_buffer=True)
+        node.image.generated_color = (0.5, 0.5, 0.5, 1)
+        tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
+        return node
+
+    def _refused(self, words):
+        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
+        with self.assertRaisesRegex(export.ExportError, words):
+            self.notes()
+
+    def test_mirror_balls(self):
+        node = self._environment()
+        self.assertEqual(self.notes(), [])
+        node.projection = "MIRROR_BALL"
+        self._refused(f"World 'World': node '{node.name}' is a mirror ball")
+
+    def test_an_environment_without_an_image(self):
+        node = self._environment()
+        node.image = None
+        self._refused("has no image")
+
+    def test_coordinates(self):
+        node = self._environment()
+        tree = bpy.context.scene.world.node_tree
+        coordinates = tree.nodes.new("ShaderNodeTexCoord")
+        tree.links.new(coordinates.outputs["Generated"], node.inputs["Vector"])
+        self.assertEqual(self.notes(), [])
+        tree.links.new(coordinates.outputs["Window"], node.inputs["Vector"])
+        self.assert_said("World 'World'", "Window coordinates are not supported")
+
+    def test_hidden_from_diffuse_rays(self):
+        world = bpy.context.scene.world
+        if not hasattr(world, "cycles_visibility"):
+            self.skipTest("Cycles is not enabled")
+        world.cycles_visibility.diffuse = False
+        self.assert_said("World 'World'", "diffuse")
+
+
+class Cameras(NotesTest):
+    def test_stereoscopy_is_refused(self):
+        scenes.add_sphere()
+        bpy.context.scene.render.use_multiview = True
+        with self.assertRaisesRegex(RuntimeError, "Stereoscopy is not supported"):
+            bpy.ops.render.render()
+
+    def test_focus_on_a_bone(self):
+        armature = bpy.data.armatures.new("Puppet")
+        obj = _link("Puppet", armature)
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.object.mode_set(mode="EDIT")
+        bone = armature.edit_bones.new("Head")
+        bone.head, bone.tail = (0, 0, 2), (0, 0, 3)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        camera = bpy.context.scene.camera
+        camera.matrix_world = Matrix.Translation((0, 0, 10))
+        dof = camera.data.dof
+        dof.use_dof, dof.focus_object = True, obj
+        self.assertAlmostEqual(self._focus(), 10, places=4)
+        dof.focus_subtarget = "Head"
+        self.assertAlmostEqual(self._focus(), 8, places=4)
+        obj.rotation_euler = (math.pi, 0, 0)
+        self.assertAlmostEqual(self._focus(), 12, places=4)
+
+    def _focus(self):
+        aperture = __import__(f"{inputs.ADDON}.export.aperture", fromlist=["aperture"])
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        camera = bpy.context.scene.camera.evaluated_get(depsgraph)
+        return aperture.aperture(camera, depsgraph)["focus"]
