@@ -52,10 +52,11 @@ class Geometry(ParityTest):
         self.assert_parity("Normals: auto smooth")
 
     def test_sharp_edges(self):
-        obj = stage.sphere(segments=16, rings=8)
+        # Fine enough that few normals face away from the viewer, which is a question of its own.
+        obj = stage.sphere(segments=48, rings=24)
         auto_smooth(obj.data, math.pi)
-        for i, edge in enumerate(obj.data.edges):
-            edge.use_edge_sharp = i % 3 == 0
+        for edge in obj.data.edges:  # in newer Blenders they come in any order
+            edge.use_edge_sharp = sum(edge.vertices) % 3 == 0
         self.assert_parity("Normals: sharp edges")
 
     def test_custom(self):
