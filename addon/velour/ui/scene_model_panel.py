@@ -58,8 +58,12 @@ def _rows_of_brdf(info):
     scene, (begin, end) = info["scene"], info["view_range"]
     return (
         ("Picture error", f"{scene['picture_error']:.3g}, full model {scene['full_picture_error']:.3g}"),
-        ("Views", f"{begin:.0f} to {end:.0f}\N{DEGREE SIGN}, {scene['frames']} pictures"),
+        ("Views", f"{begin:.0f} to {end:.0f}\N{DEGREE SIGN}, {_pictures(scene)}"),
     )
+
+
+def _pictures(scene):
+    return "1 picture" if scene["frames"] == 1 else f"{scene['frames']} pictures"
 
 
 def _rows_of_btf(info):
@@ -68,7 +72,7 @@ def _rows_of_btf(info):
     finest = scene["surface"]["finest"] * max(full_width, full_height)
     rows = (
         ("Texels", f"{width} x {height}, full model {full_width} x {full_height}"),
-        ("Pixels", f"from {finest:.1f} of those on, {scene['frames']} pictures"),
+        ("Pixels", f"from {finest:.1f} of those on, {_pictures(scene)}"),
     )
     if not scene["seen_views_alone"]:
         return rows

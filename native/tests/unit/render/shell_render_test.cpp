@@ -63,14 +63,15 @@ struct Shot {
     scene.set_environment(Environment::constant(Rgb(1.0f)));
   }
   /// Of the middle `half` metres, seen from above.
-  double alpha(float half, int side = 64) {
+  double alpha(float half, int side = 64) { return test::mean_of(picture(half, side), 3); }
+  std::vector<float> picture(float half, int side = 64) {
     scene.set_camera(test::camera_above(half));
     scene.commit(1);
     RenderOptions options = test::small_options(Strategy::cosine, 16);
     options.width = options.height = side;
     options.split = 1;
     options.transparent = true;
-    return test::mean_of(test::rendered(scene, options), 3);
+    return test::rendered(scene, options);
   }
   Scene scene;
 };
@@ -81,6 +82,27 @@ TEST(ShellRender, OneSeesThroughBetweenWires) {
   EXPECT_NEAR(wires.alpha(0.25f), 2 * kRadius, 0.004);
   Shot solid(tiled_square(64), {.material = std::make_shared<test::Lambert>(0.5f)});
   EXPECT_EQ(solid.alpha(0.25f), 1.0);
+}
+
+/// Tiles of 4 pixels to 57 a pixel: the samples of a pixel see the share that is covered. They vary about as if each
+/// were decided by chance with that probability, which is what a pyramid of coverage would give them: less near a pixel
+/// a tile, over which they are spread, and more where its period beats with theirs.
+TEST(ShellRender, FromAfarThePixelsSamplesSeeWhatIsCovered) {
+  const double covered = 2 * static_cast<double>(kRadius), by_chance = covered * (1 - covered) / 16;
+  for (const float tiles_a_pixel : {0.25f, 1.0f, 2.0f, 7.3f, 32.0f, 57.3f}) {
+    Shot wires(tiled_square(256 * tiles_a_pixel), shelled(field_of(test::wires(64, kRadius))));
+    const std::vector<float> pixels = wires.picture(0.25f);
+    const double mean = test::mean_of(pixels, 3);
+    EXPECT_NEAR(mean, covered, 0.004) << tiles_a_pixel;
+    double variance = 0;
+    for (size_t i = 3; i < pixels.size(); i += 4) variance += std::pow(static_cast<double>(pixels[i]) - mean, 2);
+    variance /= static_cast<double>(pixels.size() / 4);
+    if (tiles_a_pixel < 1) {
+      EXPECT_GT(variance, 2 * by_chance) << "the wires themselves are seen";
+    } else {
+      EXPECT_LT(variance, (tiles_a_pixel == 32 ? 2 : 1.05) * by_chance) << tiles_a_pixel;
+    }
+  }
 }
 
 TEST(ShellRender, AClosedShellOnAFlatSurfaceHidesAllBehind) {
