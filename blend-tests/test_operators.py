@@ -1,7 +1,11 @@
 """Every operator, without a window."""
 
+import hashlib
+from unittest import mock
+
 import bpy
 from mathutils import Vector
+from velour.native import Measurement
 from velour.operators.slots import slot_along
 
 from support import inputs, scenes
@@ -54,6 +58,20 @@ class Operators(BlenderTest):
         self.assert_close(node.velour.tolerance, 0.1, 1e-6)
         self.assertEqual(node.velour.max_lobes, 3)
         self._check_model(node.image)
+
+    def test_fit_reads_the_measurement_in_a_job(self):
+        """However large it is, the window stays usable. A content that has changed is fitted as it is."""
+        path = self.folder / "paint.exr"
+        path.write_bytes(inputs.glossy_measurement().read_bytes())
+        bpy.ops.velour.load_material(filepath=str(path), fit=False)
+        measurement = scenes.velour_node(self.material).velour.measurement
+        measurement.velour.sha256 = "0" * 64
+        with mock.patch.object(Measurement, "load", side_effect=AssertionError("read at once")):
+            self.assertEqual(bpy.ops.velour.fit(tolerance=0.1, max_lobes=3), {"FINISHED"})
+        self.assertEqual(measurement.velour.sha256, hashlib.sha256(path.read_bytes()).hexdigest())
+        path.write_bytes(b"no measurement")
+        with self.assertRaisesRegex(RuntimeError, f"Material '{self.material.name}': .*paint.exr"):
+            bpy.ops.velour.fit()
 
     def test_fit_of_each_kind_of_model(self):
         bpy.ops.velour.load_material(filepath=str(inputs.glossy_measurement()), fit=False)

@@ -5,9 +5,9 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..core.model_warnings import panel_warnings
 from ..export import ExportError
-from ..export.files import measurement_path
+from ..export.files import MeasurementReading
 from ..export.nodes import velour_node
-from ..native import Measurement, fit_job
+from ..native import fit_job
 from ..properties.material_settings import MODELS
 from . import measured
 from .approximate import MakesModel
@@ -45,17 +45,24 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
         self._target = JobTarget(material, node)
         self._subject = material.name
         settings = self._settings(node)
-        with measurement_path(node.velour.measurement, owner) as path, Measurement.load(path) as measurement:
+        self._options = {
+            "tolerance": settings.tolerance,
+            "max_lobes": settings.max_lobes,
+            "seed": settings.seed,
+            **_model_options(settings),
+            "all_data": int(settings.use_all_data),
+            "threads": context.scene.render.threads,
+        }
+        self._job = self._reading = MeasurementReading(node.velour.measurement, owner, may_differ=True)
+
+    def _finish(self):
+        if self._reading is None:
+            return super()._finish()
+        with self._reading, self._reading.result() as measurement:
+            self._reading = None
             self._digest = measurement.info()["sha256"]
-            self._job = fit_job(
-                measurement,
-                tolerance=settings.tolerance,
-                max_lobes=settings.max_lobes,
-                seed=settings.seed,
-                **_model_options(settings),
-                all_data=int(settings.use_all_data),
-                threads=context.scene.render.threads,
-            )
+            self._next = fit_job(measurement, **self._options)
+        return None
 
     def _settings(self, node):
         for name in _SETTINGS:
