@@ -29,7 +29,10 @@ ShellDepth deepest_simd(const ShellTable& t, const ShellWay& way, float from, fl
   const float stride = std::max(t.pitch / way.speed, far / kMostDepthLooks);
   const V top = hn::Set(d, t.top), offset = hn::Set(d, way.offset), first = hn::Iota(d, 0);
   ShellDepth deepest{-std::numeric_limits<float>::infinity(), from};
-  for (float gone = 0; gone <= far && deepest.depth < most; gone += stride * static_cast<float>(hn::Lanes(d))) {
+  // Counted, so that a way on which the stride vanishes ends as well.
+  for (int look = 0; look <= kMostDepthLooks && deepest.depth < most; look += static_cast<int>(hn::Lanes(d))) {
+    const float gone = stride * static_cast<float>(look);
+    if (!(gone <= far)) break;
     const V ahead = hn::Min(hn::MulAdd(first, hn::Set(d, stride), hn::Set(d, gone)), hn::Set(d, far));
     const V s = hn::MulAdd(ahead, hn::Set(d, towards), hn::Set(d, from));
     PlaceLanes<Many> place = place_on(d, ray, s);

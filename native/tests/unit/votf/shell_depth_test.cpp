@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "sphere/directions.h"
 #include "sphere/random.h"
@@ -48,6 +49,14 @@ TEST(ShellDepth, EndsWhereItIsMoreThanAskedFor) {
   const ShellWay way = line_through(field.volume(), {0.5f, 0.5f}, {0, 0, 1});
   EXPECT_GE(deepest_behind(field, way, way.begin, pitch).depth, pitch);
   EXPECT_GT(deepest_behind(field, way, way.begin, 1).depth, 5 * pitch);
+}
+
+TEST(ShellDepth, EndsOnAWayThatIsOver) {
+  const ShellField field(test::wires(64, 0.1f));
+  ShellWay way = line_through(field.volume(), {0.5f, 0.5f}, {0, 0, 1});
+  const ShellDepth usual = deepest_behind(field, way, way.end, 1);
+  way.speed = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(deepest_behind(field, way, way.end, 1).depth, usual.depth);
 }
 
 TEST(ShellDepth, BackwardsItIsTheSame) {
