@@ -1,11 +1,12 @@
 """Every operator, without a window."""
 
 import hashlib
+import threading
 from unittest import mock
 
 import bpy
 from mathutils import Vector
-from velour.native import Measurement
+from velour.native import Btf, Measurement, library
 from velour.operators.slots import slot_along
 
 from support import inputs, scenes
@@ -132,6 +133,36 @@ class Operators(BlenderTest):
         stems = {name.removesuffix(".binary") for name in names}
         self.assertTrue(stems <= {material.name for material in bpy.data.materials})
         self.assertIn(self.material.name, stems)
+
+    def test_load_reads_beside_the_window(self):
+        """The same without a window, where the operator waits for it: no file is read by the main thread."""
+        threads, read = set(), library.file_info
+
+        def noted(path):
+            threads.add(threading.current_thread())
+            return read(path)
+
+        with mock.patch.object(library, "file_info", noted):
+            bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)
+        self.assertEqual(len(threads), 1)
+        self.assertNotIn(threading.main_thread(), threads)
+
+    def test_a_btf_is_opened_beside_the_window(self):
+        """By a job that says what is wrong with it."""
+        path, threads = self.folder / "cloth.btf", set()
+        path.write_bytes(b"no BTF")
+
+        def noted(*arguments, load=Btf.load):
+            threads.add(threading.current_thread())
+            return load(*arguments)
+
+        with (
+            mock.patch.object(Btf, "load", noted),
+            self.assertRaisesRegex(RuntimeError, "cloth.btf: is no BTF"),
+        ):
+            bpy.ops.velour.compress_btf(filepath=str(path))
+        self.assertEqual(len(threads), 1)
+        self.assertNotIn(threading.main_thread(), threads)
 
     def test_load_into_a_named_slot(self):
         cube, path = _two_sided_cube(), inputs.lambert_measurement()

@@ -76,6 +76,38 @@ def show_properties(tab):
     yield 0.7
 
 
+def choose_file(path):
+    """In the file browser that is open, as by its button."""
+    yield from _in_browser(lambda params: _fill(params, path), bpy.ops.file.execute)
+
+
+def leave_browser():
+    """Without a file."""
+    yield from _in_browser(lambda params: None, bpy.ops.file.cancel)
+
+
+def _fill(params, path):
+    params.directory, params.filename = str(path.parent).encode(), path.name
+
+
+def _in_browser(prepare, press):
+    window, area = _browser()
+    prepare(area.spaces.active.params)
+    yield 0.3  # it reads the folder
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        press()
+    yield 0.5
+
+
+def _browser():
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "FILE_BROWSER":
+                return window, area
+    raise AssertionError("no file browser is open")
+
+
 def scroll_down(pixels):
     """The largest editor."""
     area = max(first().screen.areas, key=lambda a: a.width * a.height)

@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import os
 import tempfile
+from typing import NamedTuple
 
 import bpy
 
@@ -28,19 +29,54 @@ def packed_bytes(image):
     return packed.data if packed is not None else None
 
 
+class StoredFile(NamedTuple):
+    """What is to be read of an image datablock, which undo may replace meanwhile: any thread may read it."""
+
+    owner: str  # begins the sentence when it cannot be had
+    name: str  # of the image
+    path: str
+    packed: bytes | None
+    expected: str  # the SHA-256 of what was loaded or fitted; "" where any content will do
+
+    @classmethod
+    def of(cls, image, owner):
+        return cls(owner, image.name, absolute_path(image), packed_bytes(image), image.velour.sha256)
+
+    def content(self):
+        """The file's bytes."""
+        if self.packed is not None:
+            return self.packed
+        try:
+            with open(self.path, "rb") as file:
+                return file.read()
+        except OSError as error:
+            named = repr(self.path or self.name)
+            raise ExportError(
+                f"{self.owner}: the file {named} cannot be read ({error.strerror}); {FIND}."
+            ) from error
+
+    def model_and_digest(self):
+        """The model in it, and the file's SHA-256; refuses a content that is not the expected one."""
+        data = self.content()
+        digest = sha256(data)
+        _refuse_other(digest, self.expected, self.path or repr(self.name), self.owner)
+        try:
+            return Model.from_bytes(data, self.name), digest
+        except VelourError as error:
+            raise ExportError(f"{self.owner}: {error}") from error
+
+    def model(self):
+        return self.model_and_digest()[0]
+
+    def model_info(self):
+        """What panels show of that model."""
+        with self.model() as model:
+            return model.info()
+
+
 def content(image, owner):
     """The bytes of the file that `image` stands for. `owner` begins the sentence when they cannot be had."""
-    data = packed_bytes(image)
-    if data is not None:
-        return data
-    path = absolute_path(image)
-    try:
-        with open(path, "rb") as file:
-            return file.read()
-    except OSError as error:
-        raise ExportError(
-            f"{owner}: the file {path or image.name!r} cannot be read ({error.strerror}); {FIND}."
-        ) from error
+    return StoredFile.of(image, owner).content()
 
 
 def is_there(image):
@@ -54,12 +90,7 @@ def sha256(data):
 
 def read_model(image, owner):
     """The model in `image`; refuses one that is not the file it was when it was loaded or fitted."""
-    data = content(image, owner)
-    _refuse_change(image, sha256(data), owner)
-    try:
-        return Model.from_bytes(data, image.name)
-    except VelourError as error:
-        raise ExportError(f"{owner}: {error}") from error
+    return StoredFile.of(image, owner).model()
 
 
 def read_measurement(image, owner):

@@ -4,8 +4,9 @@ import bpy
 from bpy.props import StringProperty
 
 from ..core.approximation import Steps
+from ..core.read_job import ReadJob
 from ..export import ExportError
-from ..export.files import content, read_model, sha256
+from ..export.files import StoredFile, sha256
 from . import approximation_group, measured
 from .background_job import JobsInSteps
 from .job_target import JobTarget
@@ -57,11 +58,12 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
             raise ExportError(f"{owner} is linked from another file; approximate it there, or make it local.")
         node = measured.modelled_node(material)
         self._target, self._subject = JobTarget(material, node), material.name
-        self._digest = sha256(content(node.image, owner))
-        self._steps = Steps(read_model(node.image, owner), approximation_group.has_layers())
-        self._job = self._steps.next_job()
+        self._job = self._reading = ReadJob(StoredFile.of(node.image, owner).model_and_digest)
 
     def _finish(self):
+        if self._reading is not None:
+            model, self._digest = self._reading.result()
+            self._reading, self._steps = None, Steps(model, approximation_group.has_layers())
         if self._advance():
             return None
         material, _node = self._target.find()

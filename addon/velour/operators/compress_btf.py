@@ -8,6 +8,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..core.plain_words import plain
+from ..core.read_job import ReadJob
 from ..native import Btf, compress_job
 from ..properties.tile_settings import METHODS, SHAPE_OF
 from . import measured
@@ -81,30 +82,31 @@ class VELOUR_OT_compress_btf(MakesModel, bpy.types.Operator):
         path = os.path.normpath(bpy.path.abspath(path))
         self._subject = os.path.splitext(os.path.basename(path))[0]
         self._path = measured.btf_file(path)
-        with contextlib.ExitStack() as opened:
-            btf = opened.enter_context(Btf.load(path))
-            held_out = self._held_out(tile, opened)
-            self._digest = btf.info()["sha256"]
-            asked = {
-                **self._asked_method(tile),
-                "tolerance": self._asked(tile, "tolerance"),
-                "bytes": int(self._asked(tile, "megabytes") * 1e6),
-            }
-            self._job = compress_job(
-                btf,
-                threads=context.scene.render.threads,
-                checkpoint=_checkpoint(self._digest, asked),
-                resume=1,
-                **asked,
-                **held_out,
-            )
+        self._asked_for = {
+            **self._asked_method(tile),
+            "tolerance": self._asked(tile, "tolerance"),
+            "bytes": int(self._asked(tile, "megabytes") * 1e6),
+        }
+        self._threads = context.scene.render.threads
+        folder = _held_out_of(tile)
+        self._job = self._reading = ReadJob(lambda: (Btf.load(path), folder and Btf.load(folder)))
 
-    def _held_out(self, tile, opened):
-        """Pairs to judge by that were captured beside the tile's BTF."""
-        if tile is None or not tile.owner.velour.held_out:
-            return {}
-        folder = held_out_folder(tile)
-        return {"held_out": opened.enter_context(Btf.load(folder))} if os.path.isdir(folder) else {}
+    def _finish(self):
+        if self._reading is None:
+            return super()._finish()
+        btf, held_out = self._reading.result()
+        self._reading = None
+        with btf, held_out or contextlib.nullcontext():
+            self._digest = btf.info()["sha256"]
+            self._next = compress_job(
+                btf,
+                threads=self._threads,
+                checkpoint=_checkpoint(self._digest, self._asked_for),
+                resume=1,
+                **self._asked_for,
+                **({"held_out": held_out} if held_out else {}),
+            )
+        return None
 
     def _asked_method(self, tile):
         """The method, and of clusters and members what it takes."""
@@ -151,6 +153,14 @@ class VELOUR_OT_compress_btf(MakesModel, bpy.types.Operator):
             + ("." if unseen is None else f"; {unseen:.1f} dB at pairs that it has not seen."),
         )
         return {"FINISHED"}
+
+
+def _held_out_of(tile):
+    """The folder of pairs to judge by that were captured beside the tile's BTF, or None."""
+    if tile is None or not tile.owner.velour.held_out:
+        return None
+    folder = held_out_folder(tile)
+    return folder if os.path.isdir(folder) else None
 
 
 def _checkpoint(digest, asked):

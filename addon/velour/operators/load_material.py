@@ -1,20 +1,53 @@
 """File > Import, or files dropped into a window: models and measurements become materials."""
 
 import os
+from typing import NamedTuple
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..native import VelourError, library
+from ..core.read_job import ReadJob
+from ..export import ExportError
+from ..export.files import sha256
+from ..native import library
 from . import measured
+from .background_job import OneJob
 from .slots import Slot, assign, slot_under
 
 # Never .exr: those are pictures to everyone else.
 DROPPED = (".velour", ".binary", ".bsdf", ".brdf", ".btf")
 
 
-class VELOUR_OT_load_material(bpy.types.Operator, ImportHelper):
+class _Found(NamedTuple):
+    """A file that is to become a material."""
+
+    path: str
+    kind: str
+    digest: str  # SHA-256
+    data: bytes | None  # of a model: its file
+
+    @property
+    def name(self):
+        return os.path.splitext(os.path.basename(self.path))[0]
+
+
+def _found(path):
+    """Runs beside the window."""
+    info = library.file_info(path)
+    if info["kind"] == "observation":
+        raise ExportError(f"{path}: is what a scene shows of a material; choose a model or a measurement.")
+    if info["kind"] != "model":
+        return _Found(path, info["kind"], info["sha256"], None)
+    try:
+        with open(path, "rb") as file:
+            data = file.read()
+    except OSError as error:
+        raise ExportError(f"{path}: cannot be read ({error.strerror}); choose it again.") from error
+    return _Found(path, info["kind"], sha256(data), data)
+
+
+class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     bl_idname = "velour.load_material"
     bl_label = "Import Measured Material"
     bl_description = "Make materials from model files (.velour) or measurements (MERL, RGL, Cornell, BTFs)"
@@ -45,30 +78,50 @@ class VELOUR_OT_load_material(bpy.types.Operator, ImportHelper):
     )
     slot: IntProperty(name="Slot", description="Its number, from 0", min=0, options={"HIDDEN", "SKIP_SAVE"})
 
+    _what = "The import"
+    _job = None
+    _asks = False
+
     def invoke(self, context, event):
         """What is dropped on an object goes into the slot under the cursor, elsewhere into none.
 
         Without files one is asked for them."""
         if not (self.properties.is_property_set("filepath") or self.files):
-            return super().invoke(context, event)
+            self._asks = True
+            return ImportHelper.invoke(self, context, event)
         if context.area is not None and context.area.type == "VIEW_3D":
             slot = slot_under(context, event)
             self.assign = slot is not None
             if slot is not None:
                 self.object, self.slot = slot
-        return self.execute(context)
+        return OneJob.invoke(self, context, event)
 
     def execute(self, context):
-        try:
-            kinds = {path: library.file_info(path) for path in self._paths()}
-            btfs = [path for path, info in kinds.items() if info["kind"] == "btf"]
-            materials = [self._load(path, info) for path, info in kinds.items() if path not in btfs]
-        except (VelourError, OSError) as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        if not self._asks:
+            return OneJob.execute(self, context)
+        # Blender ends what its file browser has asked for when this returns: another one does the work.
+        chosen = self.as_keywords(ignore=("check_existing", "filter_glob", "files"))
+        chosen["files"] = [{"name": file.name} for file in self.files]
+        with context.temp_override(area=None):  # nothing was dropped
+            bpy.ops.velour.load_material("INVOKE_DEFAULT", **chosen)
+        return {"CANCELLED"}  # no undo step: that is the other one's
+
+    def cancel(self, context):
+        if self._job is not None:
+            OneJob.cancel(self, context)
+
+    def _begin(self, _context):
+        paths = self._paths()
+        self._subject = os.path.basename(paths[0])
+        self._job = ReadJob(lambda: [_found(path) for path in paths])
+
+    def _finish(self):
+        found = self._job.result()
+        btfs = [file.path for file in found if file.kind == "btf"]
+        materials = [self._load(file) for file in found if file.kind != "btf"]
         slot = Slot(self.object, self.slot) if self.object else None
         for number, material in enumerate(materials):
-            if number > 0 or not self.assign or not assign(context, material, slot):
+            if number > 0 or not self.assign or not assign(bpy.context, material, slot):
                 material.use_fake_user = True
         unfitted = [m.name for m in materials if measured.ensure_node(m).image is None]
         jobs = [(bpy.ops.velour.fit, {"material": name}) for name in unfitted if self.fit]
@@ -87,23 +140,23 @@ class VELOUR_OT_load_material(bpy.types.Operator, ImportHelper):
         names = [file.name for file in self.files if file.name]
         return [os.path.join(self.directory, name) for name in names] or [bpy.path.abspath(self.filepath)]
 
-    def _load(self, path, info):
-        name = os.path.splitext(os.path.basename(path))[0]
-        if info["kind"] != "model":
-            image = measured.measurement_image(path, info["sha256"])
-            material = measured.new_material(name)
+    def _load(self, file):
+        if file.data is None:
+            image = measured.measurement_image(file.path, file.digest)
+            material = measured.new_material(file.name)
             measured.ensure_node(material).velour.measurement = image
             return material
-        with open(path, "rb") as file:
-            data = file.read()
-        image = measured.packed_model(data, name) if self.pack else measured.linked_model(path, data)
-        material = measured.new_material(name)
+        if self.pack:
+            image = measured.packed_model(file.data, file.name, file.digest)
+        else:
+            image = measured.linked_model(file.path, file.digest)
+        material = measured.new_material(file.name)
         measured.ensure_node(material).image = image
         return material
 
     def _run_all(self, jobs):
-        # One job may run in the background of a window; several are done one after the other.
-        mode = "INVOKE_DEFAULT" if len(jobs) == 1 and not bpy.app.background else "EXEC_DEFAULT"
+        """In a window they stand in line in the background."""
+        mode = "EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT"
         for operator, arguments in jobs:
             try:
                 operator(mode, **arguments)

@@ -70,12 +70,14 @@ def file_image(path, name=None):
     return image
 
 
-def packed_model(data, name):
-    """A new image datablock with the bytes of a model packed into it, as if read from //NAME.velour."""
+def packed_model(data, name, digest=None):
+    """A new image datablock with the bytes of a model packed into it, as if read from //NAME.velour.
+
+    `digest`: their SHA-256, where that is known."""
     image = file_image(f"//{bpy.path.clean_name(name)}.velour", name=f"{name}.velour")
     image.filepath_raw = f"//{bpy.path.clean_name(name)}.velour"
     image.pack(data=data, data_len=len(data))
-    image.velour.sha256 = sha256(data)
+    image.velour.sha256 = digest or sha256(data)
     return image
 
 
@@ -96,10 +98,10 @@ def put_model(data, target, report):
     return material, node
 
 
-def linked_model(path, data):
-    """A new image datablock that names a model file on disk, whose content is `data`."""
+def linked_model(path, digest):
+    """A new image datablock that names a model file on disk, whose content has that SHA-256."""
     image = file_image(path)
-    image.velour.sha256 = sha256(data)
+    image.velour.sha256 = digest
     return image
 
 

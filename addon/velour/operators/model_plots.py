@@ -1,7 +1,8 @@
 """Plots of the model in an image datablock, from the library's numbers."""
 
+from ..core.read_job import ReadJob
 from ..export import ExportError
-from ..export.files import MeasurementReading, read_model
+from ..export.files import MeasurementReading, StoredFile
 from ..native import plot_job
 
 _WITH_MEASUREMENT = ("LOBES", "ALBEDO")
@@ -25,17 +26,22 @@ class PlotSource:
     """
 
     def __init__(self, image, measurement, owner):
-        self.model, self.measurement = read_model(image, owner), None
-        self.reading = self.missing = None
-        if measurement is None or "texels" in self.model.info():  # BTFs have no plot with their measurement
-            return
-        try:
-            self.reading = MeasurementReading(measurement, owner)
-        except ExportError as error:
-            self.missing = str(error)
+        self.model = self.measurement = self.missing = self._of_measurement = None
+        if measurement is not None:
+            try:
+                self._of_measurement = MeasurementReading(measurement, owner)
+            except ExportError as error:
+                self.missing = str(error)
+        self.reading = ReadJob(StoredFile.of(image, owner).model)
 
-    def take_measurement(self):
-        """That its job has read. Without one there are plots of the model alone."""
+    def take(self):
+        """What its job has read. Without a measurement there are plots of the model alone."""
+        if self.model is None:
+            self.model = self.reading.result()
+            self.reading = self._of_measurement
+            if "texels" in self.model.info():  # BTFs have no plot with their measurement
+                self.reading = self.missing = None
+            return
         try:
             with self.reading:
                 self.measurement = self.reading.result()
@@ -44,7 +50,7 @@ class PlotSource:
         self.reading = None
 
     def close(self):
-        for handle in (self.reading, self.measurement, self.model):
+        for handle in (self.reading, self._of_measurement, self.measurement, self.model):
             if handle is not None:
                 handle.close()
 
@@ -63,9 +69,9 @@ class PlotSteps:
 
     def _run(self, name, view, azimuth):
         source = self.source
-        if source.reading is not None:
+        while source.reading is not None:
             yield source.reading
-            source.take_measurement()
+            source.take()
         with plot_job(source.model, name, source.measurement, view=view, azimuth=azimuth) as job:
             yield job
             self.plot = job.result_plot()

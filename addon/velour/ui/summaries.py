@@ -1,33 +1,42 @@
-"""What panels show of models, read once a content and never while drawing: see engine/write_lock.py."""
+"""What panels show of models: read once a content, beside the thread that draws (engine/write_lock.py)."""
 
 import os
 
 import bpy
 
+from ..core.read_job import ReadJob
 from ..export import ExportError
-from ..export.files import absolute_path, read_model
+from ..export.files import StoredFile, absolute_path
 from ..native import VelourError
 
 _KEPT = 64
+_TURN_SECONDS = 0.02
 _summaries = {}  # identity: info, or the sentence why there is none; oldest first
-_waiting = {}  # identity: name
+_waiting = {}  # identity: name; what was asked for last comes first
+_jobs = {}  # identity: ReadJob; one at most
 
 
 def model_summary(image):
-    """The model's info; the sentence why there is none; or None while it is not read yet."""
+    """The model's info; the sentence why there is none; None while it is not read yet. For draw()."""
     known = identity(image)
-    if known not in _summaries and known not in _waiting:
+    if known not in _summaries and known not in _jobs:
         _waiting[known] = name_of(image)
-        if not bpy.app.timers.is_registered(_read_waiting):
-            bpy.app.timers.register(_read_waiting)
+    if not is_at_rest() and not bpy.app.timers.is_registered(_turn):
+        bpy.app.timers.register(_turn, persistent=True)
     return _summaries.get(known)
+
+
+def is_at_rest():
+    """Whether all that was asked for is known."""
+    return not _waiting and not _jobs
 
 
 def forget():
     _summaries.clear()
     _waiting.clear()
-    if bpy.app.timers.is_registered(_read_waiting):
-        bpy.app.timers.unregister(_read_waiting)
+    _jobs.clear()
+    if bpy.app.timers.is_registered(_turn):
+        bpy.app.timers.unregister(_turn)
 
 
 def name_of(image):
@@ -47,13 +56,28 @@ def identity(image):
         return image.name, path, image.velour.sha256
 
 
-def _read_waiting():
-    """A timer: runs on the main thread between two redraws."""
-    for known, name in _waiting.items():
-        image = bpy.data.images.get(name)
-        if image is not None:
-            _summaries[known] = _read(image)
-    _waiting.clear()
+def _turn():
+    """A timer: runs on the main thread between two redraws, and waits for nothing."""
+    if not _jobs:
+        _begin(*_waiting.popitem())
+    for known, job in list(_jobs.items()):
+        try:
+            if job.wait(timeout=0.0):
+                _keep(known, job.result())
+        except (ExportError, VelourError) as error:
+            _keep(known, str(error))
+    return None if is_at_rest() else _TURN_SECONDS
+
+
+def _begin(known, name):
+    image = bpy.data.images.get(name)
+    if image is not None:
+        _jobs[known] = ReadJob(StoredFile.of(image, f"Model '{image.name}'").model_info).start()
+
+
+def _keep(known, summary):
+    del _jobs[known]
+    _summaries[known] = summary
     while len(_summaries) > _KEPT:
         del _summaries[next(iter(_summaries))]
     redraw_panels()
@@ -64,11 +88,3 @@ def redraw_panels():
         for area in window.screen.areas:
             if area.type == "PROPERTIES":
                 area.tag_redraw()
-
-
-def _read(image):
-    try:
-        with read_model(image, f"Model '{image.name}'") as model:
-            return model.info()
-    except (ExportError, VelourError) as error:
-        return str(error)
