@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "capi/json_text.h"
+#include "capi/model_reports.h"
 #include "capi/scene_reports.h"
 #include "model/order_json.h"
 

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "btf/direction_sets.h"
+#include "capi/capture_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/reports.h"
 #include "capture/btf_capture.h"
 
 using namespace velour;

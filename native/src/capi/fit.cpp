@@ -1,7 +1,8 @@
 // Fit, compare and capture jobs.
+#include "capi/capture_reports.h"
+#include "capi/fit_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/reports.h"
 #include "capture/microsurface.h"
 #include "fit/compare.h"
 #include "fit/fit_model.h"

@@ -37,7 +37,18 @@ Json details_json(const Measured& measured) {
   return details;
 }
 
-/// How many lobes or components a model has, and its bytes.
-Json size_json(const Model& model, uint64_t file_bytes);
+/// Relative errors by view angle, degrees, in the order of the angles and not of their texts.
+inline Json by_view_angle(const ErrorByViewAngle& errors) {
+  Json json = Json::object();
+  for (const char* angle : {"5", "30", "60", "75", "85"}) {
+    const auto found = errors.find(angle);
+    json[angle] = found != errors.end() ? or_null(found->second) : Json(nullptr);
+  }
+  return json;
+}
+
+inline Json views_json(const ViewRange& views) { return {views.begin, views.end}; }
+
+inline Json colour(const Rgb& c) { return {c.r, c.g, c.b}; }
 
 }  // namespace velour::capi

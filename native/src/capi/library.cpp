@@ -1,5 +1,7 @@
+#include <tbb/info.h>
+
 #include "capi/guard.h"
-#include "capi/reports.h"
+#include "capi/json_text.h"
 #include "job/job.h"
 #include "scene/embree_scene.h"
 #include "srbf/simd_target.h"
@@ -7,6 +9,20 @@
 
 using namespace velour;
 using namespace velour::capi;
+
+namespace {
+
+std::string system_json() {
+  const EmbreeInfo embree = embree_info();
+  return text({{"version", VELOUR_VERSION_TEXT},
+               {"embree", {{"version", embree.version}, {"path", embree.path}}},
+               {"simd", simd_target()},
+               {"simd_targets", simd_targets()},
+               {"threads", tbb::info::default_concurrency()},
+               {"build_type", VELOUR_BUILD_TYPE}});
+}
+
+}  // namespace
 
 uint32_t vlr_version() { return VELOUR_VERSION_NUMBER; }
 

@@ -4,12 +4,33 @@
 #include "capi/btf_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/reports.h"
+#include "capi/json_text.h"
+#include "capi/model_reports.h"
+#include "capi/scene_reports.h"
 #include "domain/observation_file.h"
 #include "model/model_file.h"
 
 using namespace velour;
 using namespace velour::capi;
+
+namespace {
+
+std::string measurement_json(const Measurement& measurement) {
+  const EntryCounts& n = measurement.counts();
+  Json json = source_json("measurement", measurement.provenance());
+  json.update(Json{{"isotropic", measurement.isotropic()},
+                   {"entries",
+                    {{"total", n.total},
+                     {"valid", n.valid},
+                     {"negative", n.negative},
+                     {"not_finite", n.not_finite},
+                     {"below_horizon", n.below_horizon},
+                     {"out_of_gamut", n.out_of_gamut}}},
+                   {"details", details_json(measurement)}});
+  return text(json);
+}
+
+}  // namespace
 
 vlr_status vlr_measurement_load(const char* path, vlr_measurement** out) {
   return guard([&] {

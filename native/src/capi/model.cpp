@@ -1,6 +1,6 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/reports.h"
+#include "capi/model_reports.h"
 #include "model/model_file.h"
 #include "model/model_material.h"
 #include "model/roughened_model.h"

@@ -6,7 +6,7 @@
 
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/reports.h"
+#include "capi/scene_reports.h"
 #include "domain/out_of_domain.h"
 #include "render/scene_observer.h"
 

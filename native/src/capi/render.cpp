@@ -3,7 +3,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/passes.h"
-#include "capi/reports.h"
+#include "capi/render_reports.h"
 #include "render/preparation.h"
 
 using namespace velour;

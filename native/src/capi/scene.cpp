@@ -3,7 +3,7 @@
 #include "capi/conversions.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/reports.h"
+#include "capi/render_reports.h"
 
 using namespace velour;
 using namespace velour::capi;

@@ -46,4 +46,40 @@ Json reduced_json(const SceneRecord& scene) {
   return json;
 }
 
+namespace {
+
+Json seen_views_json(const SceneDomain& domain) {
+  if (!(domain.weight() > 0.0)) return nullptr;
+  return views_json(view_range(domain));
+}
+
+Json own_json(const SceneObservation& observation) {
+  const SceneDomain& domain = observation.domain;
+  const double weight = domain.weight();
+  Json json = {{"frames", domain.frames},
+               {"camera_rays", domain.camera_rays},
+               {"hits", observation.hits.size()},
+               {"weight", weight},
+               {"share", domain.camera_rays > 0 ? weight / static_cast<double>(domain.camera_rays) : 0.0},
+               {"views", seen_views_json(domain)},
+               {"light_density", std::isfinite(domain.light_density) ? Json(domain.light_density) : Json(nullptr)},
+               {"hash", hash_text(domain.hash)}};
+  if (domain.surface.weight() > 0) json["surface"] = surface_json(domain.surface);
+  return json;
+}
+
+}  // namespace
+
+std::string observation_json(const SceneObservation& observation) {
+  Json json = {{"kind", "observation"}};
+  json.update(own_json(observation));
+  return text(json);
+}
+
+std::string observe_json(const SceneObservation& observation, double seconds) {
+  Json json = {{"seconds", seconds}};
+  json.update(own_json(observation));
+  return text(json);
+}
+
 }  // namespace velour::capi

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "capi/json_text.h"
+#include "domain/observation.h"
 #include "domain/surface_domain.h"
 #include "model/scene_record.h"
 
@@ -12,5 +13,9 @@ Json reduced_json(const SceneRecord& scene);
 
 /// Of a material that varies over its surface.
 Json surface_json(const SurfaceDomain& surface);
+
+std::string observation_json(const SceneObservation& observation);
+/// The same of the job that made it, which took `seconds`.
+std::string observe_json(const SceneObservation& observation, double seconds);
 
 }  // namespace velour::capi

@@ -4,7 +4,7 @@
 
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/reports.h"
+#include "capi/tile_reports.h"
 
 using namespace velour;
 using namespace velour::capi;

@@ -2,7 +2,7 @@
 
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/reports.h"
+#include "capi/model_reports.h"
 #include "capture/data_occlusion.h"
 #include "capture/occlusion_capture.h"
 
