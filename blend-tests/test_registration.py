@@ -27,6 +27,14 @@ class Registration(BlenderTest):
             enable_addon()
             self.assertEqual(self._traces(), before)
 
+    def test_own_panels_come_back(self):
+        """They are asked by their engines whether they are shown: those were lost with the add-on once."""
+        before = self._shown_for_engine()
+        self.assertIn("VELOUR_RENDER_PT_sampling", before)
+        addon_utils.disable(ADDON)
+        enable_addon()
+        self.assertEqual(self._shown_for_engine(), before)
+
     def test_stock_panels_are_open(self):
         panels = self._panels()
         for name in (
@@ -51,6 +59,11 @@ class Registration(BlenderTest):
 
     def _traces(self):
         return sorted(name for name in dir(bpy.types) if "VELOUR" in name.upper()), self._panels()
+
+    @staticmethod
+    def _shown_for_engine():
+        panels = [p for p in bpy.types.Panel.__subclasses__() if p.__name__.startswith("VELOUR")]
+        return sorted(panel.__name__ for panel in panels if "VELOUR" in getattr(panel, "COMPAT_ENGINES", ()))
 
     @staticmethod
     def _panels():

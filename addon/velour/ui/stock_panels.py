@@ -34,14 +34,19 @@ _BORROWED = {
 }
 
 
+_opened = []  # Velour's own panels are none of them, and stay what they are
+
+
 def open_to_engine():
-    for panel in _panels():
+    _opened.extend(_panels())
+    for panel in _opened:
         panel.COMPAT_ENGINES.add(_ENGINE)
 
 
 def close_to_engine():
-    for panel in bpy.types.Panel.__subclasses__():
-        getattr(panel, "COMPAT_ENGINES", set()).discard(_ENGINE)
+    for panel in _opened:
+        panel.COMPAT_ENGINES.discard(_ENGINE)
+    _opened.clear()
 
 
 def _panels():
