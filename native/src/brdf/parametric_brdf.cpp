@@ -25,6 +25,13 @@ void turn(WarpedLobe& lobe, double c, double s) {
                   s * s * k.xx + 2 * c * s * k.xy + c * c * k.yy};
 }
 
+WarpedLobe lobe_at(const ParametricBrdf& brdf, const Vec3d& wv, const ViewTaps& taps, int j) {
+  const double fade = brdf.isotropic ? pole_fade(wv) : 1.0, sine = std::hypot(wv.x, wv.y);
+  WarpedLobe lobe = lobe_of(parameters_at(brdf, taps, j), brdf.space[static_cast<size_t>(j)], fade);
+  if (brdf.isotropic && sine > 0) turn(lobe, wv.x / sine, wv.y / sine);
+  return lobe;
+}
+
 }  // namespace
 
 WarpedLobe lobe_of(const LobeParameters& p, LobeSpace space, double fade) {
@@ -44,16 +51,14 @@ void store_shape(const WarpedLobe& lobe, LobeParameters& p) {
   p[P::kStretchB] = stretch.y;
 }
 
+WarpedLobe lobe_at(const ParametricBrdf& brdf, const Vec3d& wv, int lobe) {
+  return lobe_at(brdf, wv, brdf.spline().at(wv), lobe);
+}
+
 std::vector<WarpedLobe> lobes_at(const ParametricBrdf& brdf, const Vec3d& wv) {
   const ViewTaps taps = brdf.spline().at(wv);
-  const double fade = brdf.isotropic ? pole_fade(wv) : 1.0;
-  const double sine = std::hypot(wv.x, wv.y);
   std::vector<WarpedLobe> lobes;
-  for (int j = 0; j < brdf.lobe_count(); ++j) {
-    WarpedLobe lobe = lobe_of(parameters_at(brdf, taps, j), brdf.space[static_cast<size_t>(j)], fade);
-    if (brdf.isotropic && sine > 0) turn(lobe, wv.x / sine, wv.y / sine);
-    lobes.push_back(lobe);
-  }
+  for (int j = 0; j < brdf.lobe_count(); ++j) lobes.push_back(lobe_at(brdf, wv, taps, j));
   return lobes;
 }
 

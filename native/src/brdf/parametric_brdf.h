@@ -63,5 +63,7 @@ Vec3d value_of(const std::vector<WarpedLobe>& lobes, const Vec3d& wl, const Vec3
 /// The lobes at `wv` (unit, above the horizon), in the surface's frame: the scalar reference. Isotropic models turn
 /// them by the view's azimuth.
 std::vector<WarpedLobe> lobes_at(const ParametricBrdf& brdf, const Vec3d& wv);
+/// One of them.
+WarpedLobe lobe_at(const ParametricBrdf& brdf, const Vec3d& wv, int lobe);
 
 }  // namespace velour

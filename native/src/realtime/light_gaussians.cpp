@@ -24,7 +24,7 @@ struct Row {
   /// Variance of places, over that of each Gaussian, that still adds up smoothly.
   double most() const { return variance * std::pow(kSteps * (n - 1) / 4, 2); }
 
-  static constexpr int kMost = 9;
+  static constexpr int kMost = 13;
   int n;
   double share[kMost], variance = 0;
 };
@@ -82,23 +82,45 @@ double gaussian_share(double bandwidth) {
 
 }  // namespace
 
-LobeReach lobe_reach(const WarpedLobe& lobe, const Vec3d& wv) {
-  LobeReach reach;
+ReachedLobe reached(const WarpedLobe& lobe, const Vec3d& wv) {
+  return reached(lobe, glm::dmat2(1 / std::sqrt(lobe.bandwidth)), wv);
+}
+
+ReachedLobe reached(const WarpedLobe& lobe, const glm::dmat2& deviations, const Vec3d& wv) {
+  ReachedLobe result{.lobe = lobe,
+                     .reach = {},
+                     .peak = lobe.coefficient,
+                     .curvature = glm::inverse(deviations * glm::transpose(deviations))};
   const auto center = unwarped(lobe, lobe.center, wv);
-  if (!center) return reach;
+  if (!center) return result;
+  LobeReach& reach = result.reach;
   reach.is_seen = true;
   const Frame frame = Frame::about(Vec3(lobe.center));
   const Vec3d x(frame.x), y(frame.y);
-  const double step = std::min(0.5 / std::sqrt(lobe.bandwidth), 0.2);
-  const Vec3d dx = spread(lobe, *center, x, step, wv), dy = spread(lobe, *center, y, step, wv);
-  // The longest axis of the ellipse that a circle of arguments becomes.
-  const double a = glm::dot(dx, dx), b = glm::dot(dx, dy), c = glm::dot(dy, dy);
+  const double step = std::min(0.5 * std::sqrt(std::abs(glm::determinant(deviations))), 0.2);
+  const glm::dmat2x3 light =
+      glm::dmat2x3(spread(lobe, *center, x, step, wv), spread(lobe, *center, y, step, wv)) * deviations;
+  // The longest axis of the ellipse that the unit circle becomes among lights.
+  const double a = glm::dot(light[0], light[0]), b = glm::dot(light[0], light[1]), c = glm::dot(light[1], light[1]);
   const double middle = (a + c) / 2, half = std::hypot((a - c) / 2, b);
   const double turn = 0.5 * std::atan2(2 * b, a - c);
-  reach.along = std::cos(turn) * x + std::sin(turn) * y;
-  reach.longer = std::sqrt(middle + half);
-  reach.shorter = std::sqrt(std::max(middle - half, 1e-4 * middle));
-  return reach;
+  const glm::dvec2 along = deviations * glm::dvec2(std::cos(turn), std::sin(turn));
+  const double deviation = glm::length(along);
+  result.lobe.bandwidth = 1 / (deviation * deviation);
+  result.lobe.coefficient *= std::abs(glm::determinant(deviations)) * result.lobe.bandwidth;  // of the same integral
+  reach.along = (along.x * x + along.y * y) / deviation;
+  reach.longer = std::sqrt(middle + half) / deviation;
+  reach.shorter = std::sqrt(std::max(middle - half, 1e-4 * middle)) / deviation;
+  return result;
+}
+
+Vec3d ReachedLobe::value(const Vec3d& wl, const Vec3d& wv) const {
+  const Frame frame = Frame::about(Vec3(lobe.center));
+  const Vec3d psi = warped(lobe, wl, wv);
+  const glm::dvec2 plane(glm::dot(psi, Vec3d(frame.x)), glm::dot(psi, Vec3d(frame.y)));
+  // As long as the chord, so that a round lobe is its kernel.
+  const glm::dvec2 apart = plane * (glm::length(psi - lobe.center) / std::max(glm::length(plane), 1e-12));
+  return peak * std::exp(-0.5 * glm::dot(apart, curvature * apart));
 }
 
 size_t gaussians_for(double ratio) {
@@ -107,15 +129,16 @@ size_t gaussians_for(double ratio) {
   return n;
 }
 
-void light_gaussians(const WarpedLobe& lobe, LobeOf of, const LobeReach& reach, const Vec3d& wv,
-                     std::span<LightGaussian> out) {
+void light_gaussians(const ReachedLobe& reached, LobeOf of, const Vec3d& wv, std::span<LightGaussian> out) {
+  const WarpedLobe& lobe = reached.lobe;
+  const LobeReach& reach = reached.reach;
   const Row row(out.size());
   // The variance of a row is that of its places and that of each: along they add up to the lobe's, across each has all.
   const double square = std::pow(reach.longer / reach.shorter, 2), places = std::min(square - 1, row.most());
   const double own = square / (1 + places);  // along, over that across; above 1 where the row is too short
   const double deviation = std::sqrt(1 / lobe.bandwidth);  // of the argument
   const double spread = row.n > 1 ? deviation * std::sqrt(places / (1 + places) / row.variance) : 0;
-  const double across = reach.bandwidth_across(lobe) / std::sqrt(own);
+  const double across = reached.bandwidth_across() / std::sqrt(own);
   const auto center = unwarped(lobe, lobe.center, wv);
   const double whole = kernel_integral(Kernel::gaussian, lobe.bandwidth), share = gaussian_share(across);
   for (int i = 0; i < row.n; ++i) {
@@ -124,7 +147,8 @@ void light_gaussians(const WarpedLobe& lobe, LobeOf of, const LobeReach& reach, 
     if (!wl) continue;
     const double area = 1 / warp_jacobian(lobe, *wl, wv), growth = area * warp_jacobian(lobe, *center, wv);
     g.center = *wl;
-    g.bandwidth = std::clamp(across / growth, 1.0, kMostBandwidth);
+    // A half vector's growth is all across: 2 would be the power, and 1 what keeps the row smooth along.
+    g.bandwidth = std::clamp(across / std::pow(growth, 1.5), 1.0, kMostBandwidth);
     g.color = share * whole * row.share[i] * area * lobe.coefficient;
     of == LobeOf::f ? multiply_by_cosine(g) : clip_at_horizon(g);
   }

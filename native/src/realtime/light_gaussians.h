@@ -20,17 +20,29 @@ struct LobeReach {
   Vec3d along{0.0};  // unit, of the argument: what becomes longest among lights
   double longer = 1, shorter = 1;
   bool is_seen = false;  // the lobe's centre has a light direction
-  double bandwidth_across(const WarpedLobe& lobe) const { return lobe.bandwidth / (shorter * shorter); }
 };
-LobeReach lobe_reach(const WarpedLobe& lobe, const Vec3d& wv);
+
+/// A lobe of the bandwidth that it has along; across it may be another one.
+struct ReachedLobe {
+  WarpedLobe lobe;
+  LobeReach reach;
+  Vec3d peak{0.0};
+  glm::dmat2 curvature{1.0};  // of minus the logarithm at the peak, in Frame::about(lobe.center)
+
+  double bandwidth_across() const { return lobe.bandwidth / (reach.shorter * reach.shorter); }
+  Vec3d value(const Vec3d& wl, const Vec3d& wv) const;
+};
+ReachedLobe reached(const WarpedLobe& lobe, const Vec3d& wv);
+/// Of a peak of `lobe`'s coefficient at its centre, about which the argument's deviations are the ellipse that
+/// `deviations` makes of the unit circle of Frame::about(lobe.center).
+ReachedLobe reached(const WarpedLobe& lobe, const glm::dmat2& deviations, const Vec3d& wv);
 
 /// Odd: as many Gaussians as resolve a lobe that is `ratio` times as long as wide.
 size_t gaussians_for(double ratio);
 /// What lobes are of.
 enum class LobeOf { f, f_cosine };
 /// Makes all of `out` of one lobe, seen from `wv`; black where it has nothing above the horizon.
-void light_gaussians(const WarpedLobe& lobe, LobeOf of, const LobeReach& reach, const Vec3d& wv,
-                     std::span<LightGaussian> out);
+void light_gaussians(const ReachedLobe& lobe, LobeOf of, const Vec3d& wv, std::span<LightGaussian> out);
 
 /// The sum of `gaussians` at `wl`.
 Vec3d value_of(std::span<const LightGaussian> gaussians, const Vec3d& wl);

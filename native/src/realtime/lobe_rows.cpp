@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 
 #include "job/error.h"
 #include "job/parallel.h"
 #include "material/scattered_lobes.h"
 #include "realtime/broad_part.h"
-#include "realtime/ggx_lobes.h"
 #include "realtime/light_map.h"
+#include "realtime/lobes_of_views.h"
 
 namespace velour {
 namespace {
@@ -64,20 +63,14 @@ TablePixels pixels_of(const LobeRows& rows) {
   return pixels;
 }
 
-using Lobes = std::vector<WarpedLobe>;
-using LobesAt = std::function<Lobes(const Vec3d& wv)>;
-/// What the soft ones of a view's lobes should reflect, and whatever no lobe does: f.
-using SoftValue = std::function<Vec3d(const Lobes& soft, const Vec3d& wl, const Vec3d& wv)>;
-
 /// How many Gaussians each lobe takes, for the view that needs most.
-std::vector<size_t> gaussians_of_lobes(const LobesAt& lobes_at_view, const LobeRows& rows) {
+std::vector<size_t> gaussians_of_lobes(const LobesOfViews& material, const LobeRows& rows) {
   std::vector<size_t> counts;
   for (size_t place = 0; place < places_of(rows); ++place) {
-    const Vec3d wv = view_at(rows, place);
-    const Lobes lobes = lobes_at_view(wv);
+    const auto lobes = material.lobes(view_at(rows, place));
     counts.resize(lobes.size(), 1);
     for (size_t j = 0; j < lobes.size(); ++j) {
-      const LobeReach reach = lobe_reach(lobes[j], wv);
+      const LobeReach& reach = lobes[j].reach;
       if (reach.is_seen) counts[j] = std::max(counts[j], gaussians_for(reach.longer / reach.shorter));
     }
   }
@@ -85,47 +78,37 @@ std::vector<size_t> gaussians_of_lobes(const LobesAt& lobes_at_view, const LobeR
 }
 
 /// The lobes of one place.
-void write_place(const Lobes& lobes, LobeOf of, const std::vector<size_t>& counts, const SoftValue& soft_value,
-                 const BroadPart& broad, const Vec3d& wv, float* to) {
+void write_place(const LobesOfViews& material, const std::vector<size_t>& counts, const BroadPart& broad,
+                 const Vec3d& wv, float* to) {
+  const auto lobes = material.lobes(wv);
   std::vector<LightGaussian> gaussians, soft_gaussians;
-  Lobes soft;
+  std::vector<bool> soft(lobes.size());
   for (size_t j = 0; j < lobes.size(); ++j) {
-    const LobeReach reach = lobe_reach(lobes[j], wv);
     std::vector<LightGaussian> row(counts[j]);
-    light_gaussians(lobes[j], of, reach, wv, row);
+    light_gaussians(lobes[j], material.of(), wv, row);
+    for (LightGaussian& g : row) g.color *= material.growth(lobes, j, g.center, wv);
     gaussians.insert(gaussians.end(), row.begin(), row.end());
-    if (reach.bandwidth_across(lobes[j]) > kSoft) continue;
-    soft.push_back(lobes[j]);
-    soft_gaussians.insert(soft_gaussians.end(), row.begin(), row.end());
+    soft[j] = lobes[j].bandwidth_across() <= kSoft;
+    if (soft[j]) soft_gaussians.insert(soft_gaussians.end(), row.begin(), row.end());
   }
   const auto fitted = broad.fitted([&](const Vec3d& wl) {
-    const Vec3d reflected = wl.z > 0 ? wl.z * soft_value(soft, wl, wv) : Vec3d(0.0);
+    const Vec3d reflected = wl.z > 0 ? wl.z * material.soft_value(soft, wl, wv) : Vec3d(0.0);
     return reflected - value_of(soft_gaussians, wl);
   });
   write_lobes(fitted, gaussians, to);
 }
 
-LobeRows blended_rows(bool isotropic, LobeOf of, const LobesAt& lobes_at_view, const SoftValue& soft_value, int threads,
-                      Progress& progress) {
+LobeRows blended_rows(bool isotropic, const LobesOfViews& material, int threads, Progress& progress) {
   LobeRows rows{.isotropic = isotropic, .side = isotropic ? kAngles : kGrid};
-  const auto counts = gaussians_of_lobes(lobes_at_view, rows);
+  const auto counts = gaussians_of_lobes(material, rows);
   const BroadPart broad;
   rows.lobes = BroadPart::kLobes;
   for (const size_t count : counts) rows.lobes += static_cast<int>(count);
   rows.pixels = pixels_of(rows);
   parallel_for_each(places_of(rows), threads, progress, [&](size_t place) {
-    const Vec3d wv = view_at(rows, place);
-    write_place(lobes_at_view(wv), of, counts, soft_value, broad, wv, rows.pixels.at(0, static_cast<uint32_t>(place)));
+    write_place(material, counts, broad, view_at(rows, place), rows.pixels.at(0, static_cast<uint32_t>(place)));
   });
   return rows;
-}
-
-LobeRows rows_of(const ParametricBrdf& brdf, int threads, Progress& progress) {
-  const auto lobes = [&](const Vec3d& wv) { return lobes_at(brdf, wv); };
-  const auto soft = [](const Lobes& lobes_of_view, const Vec3d& wl, const Vec3d& wv) {
-    return value_of(lobes_of_view, wl, wv);
-  };
-  return blended_rows(brdf.isotropic, LobeOf::f, lobes, soft, threads, progress);
 }
 
 /// The mixtures of f cos at all places, as the material has them.
@@ -178,20 +161,14 @@ LobeRows rows_of(const ScatteredBrdf& brdf, int threads, Progress& progress) {
 
 LobeRows lobe_rows(const Model& model, int threads, Progress& progress) {
   if (const auto* parametric = std::get_if<ParametricBrdf>(&model.body)) {
-    return rows_of(*parametric, threads, progress);
+    return blended_rows(parametric->isotropic, *lobes_of_views(*parametric), threads, progress);
   }
   if (const auto* scattered = std::get_if<ScatteredBrdf>(&model.body)) return rows_of(*scattered, threads, progress);
   throw Error(Status::invalid_argument, "The model of a BTF has no rows of lobes; models of BRDFs have.");
 }
 
 LobeRows lobe_rows(const PrincipledParameters& parameters, int threads, Progress& progress) {
-  const GgxLobes ggx(parameters);
-  const auto lobes = [&](const Vec3d& wv) { return ggx.lobes(wv); };
-  const auto soft = [&](const Lobes& soft_lobes, const Vec3d& wl, const Vec3d& wv) {
-    if (soft_lobes.size() == GgxLobes::kLobes) return ggx.f(wl, wv);
-    return ggx.base(wl, wv) + ggx.growth(wl, wv) * value_of(soft_lobes, wl, wv) / wl.z;
-  };
-  return blended_rows(true, LobeOf::f_cosine, lobes, soft, threads, progress);
+  return blended_rows(true, *lobes_of_views(parameters), threads, progress);
 }
 
 }  // namespace velour

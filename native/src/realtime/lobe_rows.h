@@ -28,7 +28,7 @@ struct LobeRows {
 /// along its longer axis, each as wide as it is across, with what the change of variables does at each; what these
 /// leave of f cos where they are broad is fitted by a clipped cosine and few Gaussians of fixed centres, least squares
 /// over the sphere. The fit's own scattered models have such lobes; Abel-Poisson kernels count as the Gaussians of
-/// their mean cosine. Symmetric models are shown as the lobes of the view alone, without those of the light. Throws
+/// their mean cosine. Symmetric models have the lobes of the light as well (realtime/exchanged_lobes.h). Throws
 /// Error(invalid_argument) for the model of a BTF.
 LobeRows lobe_rows(const Model& model, int threads, Progress& progress);
 /// Of the material of other objects: its GGX lobe as four lobes of half vectors.
