@@ -203,7 +203,7 @@ def test_files_of_several_layers_are_refused_whole(render, tmp_path):
         deep, np.concatenate([pixels, pixels[..., :2]], axis=2), header["frame"], header["texts"]
     )
     sentence = refused("merge", deep, *ranges(render)[1:], "-o", merged)
-    assert "deep.exr has the channels R, G, B, A, channel4, channel5" in sentence
+    assert "deep.exr has the channels R, G, B, A, channel004, channel005" in sentence
     assert not merged.exists()
 
 

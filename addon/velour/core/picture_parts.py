@@ -54,16 +54,26 @@ def write(path: str | os.PathLike, part: Part) -> None:
     """As images.write(); .exr files say what they are a part of. Without ranges they cannot be merged."""
     if Path(path).suffix != ".exr":
         return images.write(path, part.read())
+    images.write_part(path, part.read(), part.frame, texts_of(part))
+
+
+def texts_of(part: Part) -> dict[str, str]:
+    """Of a header that part_of() reads."""
     texts = {"velour.version": version_text(), MADE: json.dumps(part.made, sort_keys=True), SIMD: part.simd}
     if part.ranges:
         texts[SAMPLES] = ",".join(f"{begin}:{end}" for begin, end in part.ranges)
-    images.write_part(path, part.read(), part.frame, texts)
+    return texts
 
 
 def open_part(path: str | os.PathLike) -> Part:
     """The part that a file is; its pixels are read later. Raises a sentence where it says nothing of that."""
     header = images.header(path)
     _check_one_layer(path, header)
+    return part_of(path, header)
+
+
+def part_of(path: str | os.PathLike, header: dict) -> Part:
+    """What a header says; whatever the channels are."""
     said = header["texts"]
     missing = next((name for name in (MADE, SAMPLES) if name not in said), None)
     if missing:

@@ -8,6 +8,7 @@ from ..export import ExportError, visitor
 from ..native import VelourError
 from . import viewport_clock
 from .final import RenderCancelledError, render_final
+from .frame_parts import UnfinishedError
 from .passes import register_passes
 from .stamps import Stamps
 from .viewport import Viewport
@@ -44,7 +45,7 @@ class VelourRenderEngine(bpy.types.RenderEngine):
                 (visit or render_final)(self, depsgraph)
         except RenderCancelledError:
             pass  # Blender knows: it asked
-        except (ExportError, VelourError) as error:
+        except (ExportError, UnfinishedError, VelourError) as error:
             self._fail(str(error))
         except Exception as error:  # an exception alone would leave a black picture and exit status 0
             log.exception("render failed")

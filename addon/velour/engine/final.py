@@ -1,5 +1,6 @@
 """Final renders and material previews: export, render, deliver."""
 
+import functools
 import logging
 import time
 
@@ -11,6 +12,9 @@ from ..export.camera import final_view
 from ..export.film import film_exposure
 from ..export.layer_passes import COMBINED, layer_passes, note_missing_passes
 from ..native import render_job
+from . import memory
+from .arguments import arguments
+from .frame_parts import film, frame_parts
 from .options import final_options
 from .passes import Delivery, add_passes, stamp_cryptomattes
 from .scene_models import choose_models
@@ -54,34 +58,45 @@ def render_final(engine, depsgraph):
             stamps = choose_models(native_scene, materials.reduced, view, depsgraph, notes, check_break)
             _say(notes)
         options = final_options(depsgraph, view, engine.is_preview)
-        with render_job(native_scene, passes and passes.passes, **options) as job:
-            _render_layer(engine, depsgraph, job, view, options["spp"], surroundings, shown)
+        parts = None
+        if not engine.is_preview:
+            given = arguments()
+            parts = frame_parts(given, depsgraph, view, options, materials.models, shown)
+            estimate = memory.estimate(
+                native_scene, view, passes and passes.passes, shown, options["threads"], bool(parts)
+            )
+            engine.update_stats("Velour", memory.checked(estimate, given.memory))
+        make_job = functools.partial(render_job, native_scene, passes and passes.passes)
+        make_film = functools.partial(film, depsgraph, make_job, options, parts)
+        _render_layer(engine, depsgraph, view, shown, surroundings, make_film)
         result = engine.get_result()
-        engine.stamps.add(result, depsgraph, materials.models, stamps)
+        part = parts.asked if parts and not parts.is_whole else None
+        engine.stamps.add(result, depsgraph, materials.models, stamps, part)
         if passes:
             stamp_cryptomattes(result, depsgraph.view_layer_eval, passes.names)
 
 
-def _render_layer(engine, depsgraph, job, view, spp, surroundings, shown):
+def _render_layer(engine, depsgraph, view, shown, surroundings, film):
+    """`film(follow)` is that of frame_parts, which has follow(job, begin, end) wait for these samples."""
     layer = depsgraph.view_layer_eval
     add_passes(engine, layer, shown)
     result = engine.begin_result(0, 0, view.width, view.height, layer=layer.name)
-    delivery = Delivery(job, result, view, film_exposure(depsgraph.scene_eval))
+    delivery = Delivery(result, view, film_exposure(depsgraph.scene_eval))
     complete = False
     try:
-        job.start()
-        _follow(engine, delivery, spp)
-        refuse_dark_inside(depsgraph, job.read_pass("Combined"), "" if engine.is_preview else surroundings)
-        delivery.write(shown)
+        with film(functools.partial(_follow, engine, delivery)) as job:
+            refuse_dark_inside(
+                depsgraph, job.read_pass("Combined"), "" if engine.is_preview else surroundings
+            )
+            delivery.write(job, shown)
+            _say_report(engine, job)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)
-    _say_report(engine, job)
 
 
-def _follow(engine, delivery, spp):
+def _follow(engine, delivery, job, begin, end):
     """Until the job ends: Esc, progress, statistics, and with a window pictures in between."""
-    job = delivery.job
     statistics = _Clock(_STATISTICS_SECONDS)
     pictures = _Clock(_FIRST_PICTURE_SECONDS, growth=_PICTURE_GROWTH)
     while not job.wait(timeout=_POLL_SECONDS):
@@ -90,10 +105,10 @@ def _follow(engine, delivery, spp):
         state = job.poll()
         engine.update_progress(state.fraction)
         if statistics.rings():
-            engine.update_stats("Velour", _statistics(state, spp))
+            engine.update_stats("Velour", _statistics(state, begin, end))
             engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20)
         if not bpy.app.background and pictures.rings():
-            delivery.write([COMBINED])
+            delivery.write(job, [COMBINED])
             engine.update_result(delivery.result)
 
 
@@ -118,10 +133,10 @@ def _exported(info, seconds):
     return f"Exported {counts}, {size} in {seconds:.2f} s; {tracing} of it for tracing's hierarchies"
 
 
-def _statistics(state, spp):
+def _statistics(state, begin, end):
     left = state.seconds_left
     remaining = "" if left is None else f" | Remaining {int(left) // 60:02d}:{int(left) % 60:02d}"
-    return f"Sample {int(state.fraction * spp)}/{spp}{remaining}"
+    return f"Sample {begin + int(state.fraction * (end - begin))}/{end}{remaining}"
 
 
 def _say(notes):
@@ -130,6 +145,9 @@ def _say(notes):
 
 
 def _say_report(engine, job):
+    if job.poll().state == "ready":
+        engine.update_stats("Velour", "All samples were there")
+        return
     report = job.report()
     line = f"{report['spp_mean']:.0f} samples | {report['samples_per_second'] / 1e6:.1f} M samples/s"
     if report["blocks_unfinished"] is not None:

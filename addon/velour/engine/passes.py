@@ -8,7 +8,7 @@ import numpy as np
 
 from ..export.camera import View
 from ..export.layer_passes import COMBINED, CRYPTOMATTES, layer_passes
-from ..native import Job, cryptomatte_id
+from ..native import cryptomatte_id
 
 _OF_LIGHT = ("Combined", "Error")
 _ALONG_CAMERA = ("Denoising Normal",)  # as Cycles has it; Normal itself is along the world's axes
@@ -30,25 +30,24 @@ def add_passes(engine, layer, shown):
 class Delivery(NamedTuple):
     """From a job's film to Blender's result."""
 
-    job: Job
     result: bpy.types.RenderResult
     view: View
     exposure: float  # what light is multiplied by
 
-    def write(self, shown):
+    def write(self, job, shown):
         """As far as both have the LayerPasses `shown`."""
         by_name = {each.name: each for each in shown}
         for target in self.result.layers[0].passes:
             found = by_name.get(target.name)
             if found:
-                _fill(target.rect, self._pixels(found))
+                _fill(target.rect, self._pixels(job, found))
 
-    def _pixels(self, found):
+    def _pixels(self, job, found):
         """[pixels x channels]"""
         if found.source is None:
-            width, height = self.job.size
+            width, height = job.size
             return np.zeros((width * height, found.channels), np.float32)
-        pixels = self.job.read_pass(found.source).reshape(-1, found.channels)
+        pixels = job.read_pass(found.source).reshape(-1, found.channels)
         if found.name in _OF_LIGHT:
             pixels[:, :3] *= self.exposure
         return self.view.along_axes(pixels) if found.name in _ALONG_CAMERA else pixels

@@ -142,6 +142,23 @@ class Job(Handle):
         self._lib.vlr_job_read_pass(self.pointer, name.encode(), pointer(out), out.size)
         return out
 
+    def read_sums(self) -> np.ndarray:
+        """What the film has, for add_sums(): [height x width x numbers] float32."""
+        out = np.empty((self.size[1], self.size[0], self.sums_per_pixel()), np.float32)
+        self._lib.vlr_job_read_sums(self.pointer, pointer(out), out.size, None)
+        return out
+
+    def sums_per_pixel(self) -> int:
+        numbers = ctypes.c_uint32()
+        self._lib.vlr_job_read_sums(self.pointer, None, 0, ctypes.byref(numbers))
+        return numbers.value
+
+    def add_sums(self, sums: np.ndarray) -> None:
+        """Adds read_sums() of another run: of camera rays before those of this job, which is to be started,
+        or of camera rays after them, once it is done."""
+        sums = np.ascontiguousarray(sums, np.float32)
+        self._lib.vlr_job_add_sums(self.pointer, pointer(sums), sums.size)
+
     def _wait_once(self, seconds: float) -> bool:
         finished = ctypes.c_int32()
         no_callback = table.ProgressFunction()

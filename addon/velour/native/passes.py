@@ -76,6 +76,20 @@ def channels_of(name: str) -> int:
     return _CHANNELS[name]
 
 
+_SUMS = 12  # of every film: light, alpha, normal, depth, halves, numbers of rays
+_VALUES = {"position": 3, "uv": 3, "object_index": 1, "material_index": 1, "mist": 1, "albedo": 3, "error": 3}
+_VALUES |= {"denoising_albedo": 3}
+_SPARE_IDS = 2  # beyond those that are shown
+
+
+def sums_per_pixel(passes: Passes | None) -> int:
+    """Floats a pixel of a film, as Job.sums_per_pixel() tells once it is there."""
+    if passes is None:
+        return _SUMS
+    ids = 2 * (passes.cryptomatte_ranks + _SPARE_IDS)
+    return _SUMS + sum(_VALUES.get(name, ids) for name in passes.asked)
+
+
 class CryptomatteId(NamedTuple):
     hash: int  # MurmurHash3_x86_32 of the name
     value: float  # what passes hold

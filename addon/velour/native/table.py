@@ -570,6 +570,8 @@ STATUS_CALLS = {
     "vlr_progressive_restart": [_handle],
     "vlr_progressive_read": [_handle, _floats, c_uint64, POINTER(ProgressivePicture)],
     "vlr_job_read_pass": [_handle, c_char_p, _floats, c_uint64],
+    "vlr_job_read_sums": [_handle, _floats, c_uint64, POINTER(c_uint32)],
+    "vlr_job_add_sums": [_handle, _floats, c_uint64],
     "vlr_job_stop": [_handle],
     "vlr_observation_create": [_out_handle],
     "vlr_observation_load": [c_char_p, _out_handle],

@@ -807,6 +807,15 @@ VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_rende
  * channels, of a crop its own width and height. May be called while the job runs. */
 VLR_API vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels, uint64_t count);
 
+/* What a render's film has, as numbers that another one of the same size and passes can add: camera rays of a picture
+ * (samples_begin, samples_end) that several runs or machines share out. Copies `count` = width x height x per_pixel
+ * floats to `sums` unless it is NULL, and tells per_pixel unless that is. While the job runs, tiles are as far as they
+ * are. */
+VLR_API vlr_status vlr_job_read_sums(const vlr_job* job, float* sums, uint64_t count, uint32_t* per_pixel);
+/* Adds such sums of camera rays, those that come before of a job that is to be started, which then adds its own; or
+ * those that come after, once it is done. Not while it runs. */
+VLR_API vlr_status vlr_job_add_sums(vlr_job* job, const float* sums, uint64_t count);
+
 /* Asks a render to end at a whole pass, soon, with what it has: then it is done, and its report's spp says how many
  * light directions every pixel has. From any thread; a job that starts again does not know of it any more. */
 VLR_API vlr_status vlr_job_stop(vlr_job* job);

@@ -85,7 +85,8 @@ struct JobOutput {
   std::shared_ptr<const Measurement> measurement;
   std::shared_ptr<const Plot> plot;
   std::shared_ptr<const TablePixels> table;
-  std::shared_ptr<const Film> film;                // set when the job is made
+  std::shared_ptr<Film> film;                      // set when the job is made
+  bool onto_film = false;                          // of a render: adds to what its film has
   std::atomic<bool> stop{false};                   // of a render: to end at a whole pass
   std::shared_ptr<ProgressiveRender> progressive;  // likewise; thread-safe but for run() and restart()
 

@@ -4,6 +4,7 @@
 #include "capi/handles.h"
 #include "capi/passes.h"
 #include "capi/render_reports.h"
+#include "render/film_sums.h"
 #include "render/preparation.h"
 
 using namespace velour;
@@ -79,6 +80,7 @@ vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_option
     const auto task = [output, film, asked, source = std::shared_ptr<const Scene>(scene->scene)](Progress& progress) {
       RenderOptions options_of_run = asked;
       options_of_run.stop = &output->stop;
+      options_of_run.onto_film = output->onto_film;
       output->set(render_json(render(*source, options_of_run, *film, progress)));
     };
     *out = new vlr_job(output, task);
@@ -90,6 +92,36 @@ vlr_status vlr_job_stop(vlr_job* job) {
     require(job, "job");
     if (!job->output->film) throw Error(Status::invalid_state, "This job makes no picture that it could end with.");
     job->output->stop = true;
+  });
+}
+
+namespace {
+
+Film& film_of(const vlr_job* job) {
+  require(job, "job");
+  if (!job->output->film) throw Error(Status::invalid_state, "This job makes no picture.");
+  return *job->output->film;
+}
+
+}  // namespace
+
+vlr_status vlr_job_read_sums(const vlr_job* job, float* sums, uint64_t count, uint32_t* per_pixel) {
+  return guard([&] {
+    const Film& film = film_of(job);
+    if (per_pixel) *per_pixel = static_cast<uint32_t>(sums_per_pixel(film));
+    if (sums) read_sums(film, {sums, static_cast<size_t>(count)});
+  });
+}
+
+vlr_status vlr_job_add_sums(vlr_job* job, const float* sums, uint64_t count) {
+  return guard([&] {
+    Film& film = film_of(job);
+    require(sums, "sums");
+    if (job->job.poll().state == Job::State::running) {
+      throw Error(Status::invalid_state, "The job is running; what earlier ones have is added before or after.");
+    }
+    add_sums({sums, static_cast<size_t>(count)}, film);
+    job->output->onto_film = true;
   });
 }
 
@@ -139,17 +171,15 @@ vlr_status vlr_progressive_read(const vlr_job* job, float* pixels, uint64_t coun
 
 vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels, uint64_t count) {
   return guard([&] {
-    require(job, "job");
+    const Film& film = film_of(job);
     require(pass, "pass");
     require(pixels, "pixels");
-    const auto film = job->output->film;
-    if (!film) throw Error(Status::invalid_state, "This job makes no picture.");
-    const uint64_t expected = static_cast<uint64_t>(film->width()) * static_cast<uint64_t>(film->height()) *
+    const uint64_t expected = static_cast<uint64_t>(film.width()) * static_cast<uint64_t>(film.height()) *
                               static_cast<uint64_t>(Film::channels(pass));
     if (count != expected) {
       throw Error(Status::invalid_argument, std::string("Pass '") + pass + "' holds " + std::to_string(expected) +
                                                 " values, not " + std::to_string(count) + ".");
     }
-    film->read_pass(pass, {pixels, static_cast<size_t>(count)});
+    film.read_pass(pass, {pixels, static_cast<size_t>(count)});
   });
 }

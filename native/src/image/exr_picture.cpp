@@ -130,10 +130,13 @@ class OpenExr : public OpenPicture {
   std::vector<std::string> names_;
 };
 
+/// Names whose order in the alphabet is that of the channels, for that is how they are read.
 std::string channel_name(int channel, int channels) {
   constexpr std::array kColours{"R", "G", "B", "A"};
   if (channels == 1) return "Y";
-  return channel < 4 ? kColours[static_cast<size_t>(channel)] : "channel" + std::to_string(channel);
+  if (channel < 4) return kColours[static_cast<size_t>(channel)];
+  const std::string digits = std::to_string(channel);
+  return "channel" + std::string(3 - std::min<size_t>(digits.size(), 3), '0') + digits;
 }
 
 /// OpenEXR counts rows from the top.

@@ -12,6 +12,17 @@ void PixelSum::add(const CameraSample& sample) {
   directions += static_cast<uint32_t>(sample.directions);
 }
 
+void PixelSum::join(const PixelSum& later) {
+  if (camera_rays == 0) depth = later.depth;
+  radiance += later.radiance;
+  alpha += later.alpha;
+  normal += later.normal;
+  // The halves take turns: after an odd number of rays the next one belongs to the second.
+  for (uint32_t half = 0; half < 2; ++half) luminance[(camera_rays + half) % 2] += later.luminance[half];
+  camera_rays += later.camera_rays;
+  directions += later.directions;
+}
+
 double PixelSum::mean_luminance() const {
   return (static_cast<double>(luminance[0]) + static_cast<double>(luminance[1])) / camera_rays;
 }

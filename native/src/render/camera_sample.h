@@ -27,6 +27,8 @@ struct PixelSum {
   uint32_t camera_rays = 0, directions = 0;
 
   void add(const CameraSample& sample);
+  /// Adds the sum of camera rays that come after these.
+  void join(const PixelSum& later);
 
   /// A sum over the camera rays times this is their mean; 0 where there are none.
   float weight() const { return camera_rays > 0 ? 1.0f / static_cast<float>(camera_rays) : 0.0f; }

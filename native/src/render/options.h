@@ -48,6 +48,7 @@ struct RenderOptions {
   bool transparent = false;
   bool hide_world = false;  // camera rays that meet nothing are black
   bool measure_ray_share = false;
+  bool onto_film = false;  // adds to what the film has, whose camera rays come before
   /// Where `product` keeps its fits of skies; empty: nowhere. The picture does not depend on it.
   std::string cache_folder;
   int camera_rays_per_pass = 0;  // 0: chosen; the picture does not depend on it

@@ -46,12 +46,40 @@ void write_error(const float* v, const PixelSum& sum, float* out) {
   }
 }
 
+/// Camera rays, and such that come after them.
+struct Runs {
+  const PixelSum& before;
+  const PixelSum& later;
+};
+
+/// Of two runs the sum of squared differences from the mean of both (Chan, Golub and LeVeque).
+void join_error(const Runs& runs, float* v, const float* later) {
+  const double n = runs.before.camera_rays, m = runs.later.camera_rays;
+  if (m == 0.0) return;
+  for (int c = 0; c < 3; ++c) {
+    const double apart = n > 0.0 ? runs.before.radiance[c] / n - runs.later.radiance[c] / m : 0.0;
+    v[c] =
+        static_cast<float>(static_cast<double>(v[c]) + static_cast<double>(later[c]) + apart * apart * n * m / (n + m));
+  }
+}
+
+template <int channels>
+void join_first(const Runs& runs, float* v, const float* later) {
+  if (runs.before.camera_rays == 0) std::copy_n(later, channels, v);
+}
+
+template <int channels>
+void join_sums(const Runs& /*runs*/, float* v, const float* later) {
+  for (int c = 0; c < channels; ++c) v[c] += later[c];
+}
+
 /// A pass of `channels` values, of which a pixel keeps as many.
 struct ValuePass {
   uint32_t bit;
   std::string_view name;
   int channels;
   void (*add)(const Ray& ray, float* values);
+  void (*join)(const Runs& runs, float* values, const float* later);
   void (*write)(const float* values, const PixelSum& sum, float* out);
 };
 
@@ -65,8 +93,8 @@ constexpr ValuePass kValues[] = {
      [](const Ray& ray, float* v) {
        if (is_first(ray)) set(v, ray.surface.position);
      },
-     write_as_is<3>},
-    {pass::kUv, "UV", 3, [](const Ray& ray, float* v) { increase(v, ray.surface.uv); },
+     join_first<3>, write_as_is<3>},
+    {pass::kUv, "UV", 3, [](const Ray& ray, float* v) { increase(v, ray.surface.uv); }, join_sums<3>,
      [](const float* v, const PixelSum& sum, float* out) {
        for (int c = 0; c < 3; ++c) out[c] = v[c] * sum.weight();
      }},
@@ -74,13 +102,13 @@ constexpr ValuePass kValues[] = {
      [](const Ray& ray, float* v) {
        if (is_first(ray)) *v = ray.surface.object_index;
      },
-     write_as_is<1>},
+     join_first<1>, write_as_is<1>},
     {pass::kMaterialIndex, "IndexMA", 1,
      [](const Ray& ray, float* v) {
        if (is_first(ray)) *v = ray.surface.material_index;
      },
-     write_as_is<1>},
-    {pass::kMist, "Mist", 1, [](const Ray& ray, float* v) { *v += ray.surface.clear; },
+     join_first<1>, write_as_is<1>},
+    {pass::kMist, "Mist", 1, [](const Ray& ray, float* v) { *v += ray.surface.clear; }, join_sums<1>,
      [](const float* v, const PixelSum& sum, float* out) {
        *out = sum.camera_rays > 0 ? std::clamp(1.0f - *v * sum.weight(), 0.0f, 1.0f) : 0.0f;
      }},
@@ -88,15 +116,17 @@ constexpr ValuePass kValues[] = {
      [](const Ray& ray, float* v) {
        for (int c = 0; c < 3; ++c) v[c] += ray.surface.albedo[c];
      },
+     join_sums<3>,
      [](const float* v, const PixelSum& sum, float* out) {
        for (int c = 0; c < 3; ++c) out[c] = std::clamp(v[c] * sum.weight(), 0.0f, 1.0f);
      }},
-    {pass::kError, "Error", 3, add_error, write_error},
+    {pass::kError, "Error", 3, add_error, join_error, write_error},
     // As Cycles has it, so that a denoiser sees the edges of what shines; it may be above 1.
     {pass::kDenoisingAlbedo, "Denoising Albedo", 3,
      [](const Ray& ray, float* v) {
        for (int c = 0; c < 3; ++c) v[c] += ray.surface.albedo[c] + ray.surface.shine[c];
      },
+     join_sums<3>,
      [](const float* v, const PixelSum& sum, float* out) {
        for (int c = 0; c < 3; ++c) out[c] = v[c] * sum.weight();
      }},
@@ -191,6 +221,25 @@ void PassLayout::add(const SurfaceSample& surface, const CameraSample& sample, c
     if ((asked_ & ids.bit) == 0) continue;
     add_id(surface.*ids.id, surface.seen, {values, ids_a_pixel});
     values += ids_a_pixel;
+  }
+}
+
+void PassLayout::join(const PixelSum& before, std::span<float> values, const PixelSum& later,
+                      std::span<const float> later_values) const {
+  const Runs runs{before, later};
+  size_t at = 0;
+  for (const ValuePass& value : kValues) {
+    if ((asked_ & value.bit) == 0) continue;
+    value.join(runs, &values[at], &later_values[at]);
+    at += static_cast<size_t>(value.channels);
+  }
+  const auto ids_a_pixel = static_cast<size_t>(floats_of_ids(ranks_));
+  for (const IdPass& ids : kIds) {
+    if ((asked_ & ids.bit) == 0) continue;
+    for (size_t i = at; i < at + ids_a_pixel; i += 2) {
+      add_id(later_values[i], later_values[i + 1], values.subspan(at, ids_a_pixel));
+    }
+    at += ids_a_pixel;
   }
 }
 

@@ -27,6 +27,9 @@ class PassLayout {
 
   /// What a camera ray has brought, after those that `before` sums.
   void add(const SurfaceSample& surface, const CameraSample& sample, const PixelSum& before, float* values) const;
+  /// What the camera rays of `later` have brought, which come after those that `before` sums.
+  void join(const PixelSum& before, std::span<float> values, const PixelSum& later,
+            std::span<const float> later_values) const;
   /// The channels of a pass that it has, of one pixel after the other; `values` holds size() of each.
   void write(std::string_view pass, std::span<const PixelSum> sums, std::span<const float> values, float* out) const;
 

@@ -52,7 +52,8 @@ class Renderer {
         next_(context_.first_camera_ray()) {}
 
   RenderReport run() {
-    film_.clear();
+    if (!options_.onto_film) film_.clear();
+    before_ = film_.directions();
     prepare(context_, arena_, progress_, report_.stages);
     if (context_.sky) report_.sky = context_.sky_report;
     render_passes();
@@ -118,7 +119,7 @@ class Renderer {
       return std::min(static_cast<int64_t>(camera_ray) * options_.split, static_cast<int64_t>(options_.spp));
     };
     report_.spp = static_cast<uint64_t>(directions_before(next_) - directions_before(context_.first_camera_ray()));
-    const double samples = static_cast<double>(film_.directions());
+    const double samples = static_cast<double>(film_.directions() - before_);
     report_.spp_mean = samples / (static_cast<double>(film_.width()) * film_.height());
     report_.samples_per_second = report_.seconds > 0.0 ? samples / report_.seconds : 0.0;
     report_.noise = film_.noise();
@@ -136,8 +137,9 @@ class Renderer {
   tbb::enumerable_thread_specific<TileRenderer> renderers_{[this] { return TileRenderer(context_); }};
   RayShare share_{options_.measure_ray_share, options_.split};
   RenderReport report_;
-  int next_;         // camera ray of the active tiles
-  double work_ = 0;  // camera rays a pixel, summed over tiles
+  uint64_t before_ = 0;  // light directions that the film had
+  int next_;             // camera ray of the active tiles
+  double work_ = 0;      // camera rays a pixel, summed over tiles
 };
 
 }  // namespace

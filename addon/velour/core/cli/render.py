@@ -13,6 +13,7 @@ from ...native import Model, Scene, images, library, observe_job, render_job, ta
 from ...native.errors import refuse
 from .. import domain
 from ..cache import user_cache_folder
+from ..stopping import stopping
 from . import later, memory, numbers, output, render_part, scene, unfinished
 
 KEYS = (
@@ -87,7 +88,7 @@ def run(args: argparse.Namespace) -> dict:
         left = unfinished.left(part, before)
         loaded = time.perf_counter()
         job = handles.enter_context(render_job(described, **options, **render_part.options_of(left)))
-        with unfinished.stopping(job.start()):
+        with stopping(job.start()):
             output.log.info("Rendering the samples %d:%d.", *left.ranges[0])
             job.wait(output.progress_of(args))
         report = job.report()

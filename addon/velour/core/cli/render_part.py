@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from ...native.errors import refuse
 from ...native.images import Frame
 from ...native.job import render_options
 from ...native.version import version_text
+from ..files import sha256
 from ..picture_parts import Part, Range
 from . import numbers
 
@@ -118,7 +118,7 @@ def _made(args: argparse.Namespace, options: dict) -> dict:
     """All that the whole picture depends on, by the options' names; files by their contents."""
     raw = render_options(options)
     made = {name: value for name, value in vars(args).items() if name not in _ELSEWHERE}
-    made |= {name: _sha256(path) for name in _FILES if (path := getattr(args, name))}
+    made |= {name: sha256(path) for name in _FILES if (path := getattr(args, name))}
     made["material"] = _material_hash(args.material)
     made |= {name: getattr(raw, name) for name in _NUMBERS}
     made |= {name: names[getattr(raw, name)] for name, names in _NAMES.items()}
@@ -129,12 +129,4 @@ def _made(args: argparse.Namespace, options: dict) -> dict:
 def _material_hash(path: str) -> str:
     """A BTF may be many files, and knows the hash of all."""
     info = library.file_info(path)
-    return info["sha256"] if info["kind"] == "btf" else _sha256(path)
-
-
-def _sha256(path: str) -> str:
-    digest = hashlib.sha256()
-    with open(path, "rb") as file:
-        while block := file.read(1 << 20):
-            digest.update(block)
-    return digest.hexdigest()
+    return info["sha256"] if info["kind"] == "btf" else sha256(path)

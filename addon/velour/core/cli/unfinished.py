@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
-import signal
 from dataclasses import replace
 from pathlib import Path
 
-from ...native import Job
 from ...native.errors import refuse
 from ...native.images import Frame
 from .. import picture_parts
@@ -43,21 +40,6 @@ def kept(asked: Part) -> Part | None:
 def left(asked: Part, before: Part | None) -> Part:
     """What is still to be rendered."""
     return replace(asked, ranges=((before.ranges[0][1], asked.ranges[0][1]),)) if before else asked
-
-
-@contextlib.contextmanager
-def stopping(job: Job):
-    """Meanwhile the first SIGTERM ends a running render at a whole pass, and the second one the process."""
-
-    def stop(_number, _frame):
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        job.stop()
-
-    earlier = signal.signal(signal.SIGTERM, stop)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, earlier or signal.SIG_DFL)
 
 
 def deliver(asked: Part, before: Part | None, rendered: Part, report: dict) -> Part:

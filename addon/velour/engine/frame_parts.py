@@ -1,0 +1,123 @@
+"""Frames that several runs or machines share, and what a run that was ended leaves: docs/farm.md."""
+
+import contextlib
+from pathlib import Path
+
+import bpy
+
+from ..core.files import sha256
+from ..core.film_parts import FilmParts
+from ..core.stopping import stopping
+from ..native.errors import refuse
+from ..native.version import version_text
+
+_ELSEWHERE = {"threads", "time_limit", "cache_folder"}  # options that say nothing of the picture
+_superfluous = []  # files of a frame that is about to be written
+
+
+class UnfinishedError(Exception):
+    """One sentence: how far the frame came, and where that lies."""
+
+
+def frame_parts(given, depsgraph, view, options, models, shown):
+    """The FilmParts of the view layer; None: it is rendered at once, and keeps nothing."""
+    if not given.parts:
+        return None
+    if options["noise"]:
+        if given.samples:
+            raise refuse("A noise threshold looks at a whole picture; switch it off to render some samples.")
+        return None
+    scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
+    made = {name: value for name, value in options.items() if name not in _ELSEWHERE}
+    made |= {
+        "split": min(options["split"], options["spp"]),
+        "version": version_text(),
+        "blend": _blend_hash(),
+        "scene": scene.name,
+        "layer": layer.name,
+        "frame": scene.frame_current,
+        "models": models,
+        "passes": [each.name for each in shown],
+        "window": [float(edge) for edge in view.window],
+    }
+    name = f"{Path(bpy.data.filepath).stem}_{scene.name}_{layer.name}_{scene.frame_current:04d}"
+    return FilmParts(given.parts, name, made, (view.width, view.height), given.samples)
+
+
+def _blend_hash():
+    """Of the file that is open: parts of different states of it do not go together."""
+    if not bpy.data.filepath:
+        raise refuse("Parts of a frame are told apart by their .blend; save it first.")
+    return sha256(bpy.data.filepath)
+
+
+@contextlib.contextmanager
+def film(depsgraph, make_job, options, parts, follow):
+    """A render job whose film has all that is asked for; what others need of it is kept when the block has
+    ended well. `follow(job, begin, end)` waits until a job that renders these samples has ended."""
+    if not parts:
+        with make_job(**options) as job:
+            follow(job.start(), 0, options["spp"])
+            yield job
+        return
+    *gaps, last = parts.gaps or [None]
+    for gap in gaps:
+        with _job(make_job, options, gap) as job:
+            _render(job, parts, gap, follow)
+            parts.keep(job, gap, gap[1])
+    with _job(make_job, options, last or parts.asked) as job:
+        if last:
+            _render(job, parts, last, follow)
+        parts.complete(job, last)
+        yield job
+        _keep(parts, job, depsgraph.scene)
+
+
+def _keep(parts, job, scene):
+    """Of parts for who renders the rest; of layers in case that one of those to come is ended."""
+    files = parts.files
+    if not parts.is_whole or _layer_count(scene) > 1:
+        files = [parts.keep_all(job)]
+    if parts.is_whole:
+        _superfluous.extend(files)
+
+
+def _layer_count(scene):
+    return 1 if scene.render.use_single_layer else sum(layer.use for layer in scene.view_layers)
+
+
+def _job(make_job, options, gap):
+    return make_job(**{**options, "samples_begin": gap[0], "samples_end": gap[1]})
+
+
+def _render(job, parts, gap, follow):
+    parts.begin(job, gap)
+    with stopping(job.start()):
+        follow(job, *gap)
+    report = job.report()
+    end = gap[0] + report["spp"]
+    if end == gap[1]:
+        return
+    if not report["passes"]:
+        raise UnfinishedError("Stopped before a pass was done; nothing was written.")
+    path = parts.keep(job, gap, end)
+    raise UnfinishedError(
+        f"Stopped at sample {end} of {parts.asked[1]}; {path} has what there is, and the same command goes on"
+        " from there."
+    )
+
+
+@bpy.app.handlers.persistent
+def _forget_written(*_args):
+    """After Blender wrote the frame: a crash before that has lost nothing."""
+    for path in _superfluous:
+        path.unlink(missing_ok=True)
+    _superfluous.clear()
+
+
+def attach():
+    bpy.app.handlers.render_write.append(_forget_written)
+
+
+def detach():
+    bpy.app.handlers.render_write.remove(_forget_written)
