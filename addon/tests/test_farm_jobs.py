@@ -10,7 +10,7 @@ import sys
 import pytest
 from conftest import ROOT
 from farm import blender, flamenco, frame, openjd, program, ranges, slurm, status
-from farm.job import Job, JobError, load
+from farm.job import Job, JobError, Unit, load
 
 TOOLS = ROOT / "build/tools/bin/python"
 
@@ -44,7 +44,7 @@ def test_ranges():
 
 def test_a_job_is_read_as_it_was_saved(job):
     assert load(job.output) == load(job.folder) == load(job.folder / "job.json") == job
-    assert [job.task(number) for number in range(2)] == [[1, 3], [2, 7]]
+    assert [job.task(number) for number in range(2)] == [[(1, 0), (3, 0)], [(2, 0), (7, 0)]]
     with pytest.raises(JobError, match="no task 2"):
         job.task(2)
     (job.folder / "job.json").write_text('{"blend": 1}')
@@ -54,13 +54,15 @@ def test_a_job_is_read_as_it_was_saved(job):
 
 def test_the_command_of_a_frame(job):
     """-E makes a node without Velour fail; factory settings and scripts are what was asked for."""
-    command = blender.render(job, 7, job.partial(7) / "picture_")
+    command = blender.render(job, Unit(7), job.partial(7) / "picture_")
     assert command[command.index("-E") + 1] == "VELOUR"
     assert command[command.index("--addons") + 1] == "velour"
     assert command[command.index("-t") + 1] == "3"
     before = command.index("--python-exit-code"), command.index("--factory-startup"), command.index("-Y")
     assert max(before) < command.index("--addons") < command.index(job.blend) < command.index("-E")
-    assert command[-2:] == ["-f", "7"]
+    own = command.index("--")
+    assert command[own - 2 : own] == ["-f", "7"]
+    assert command[own + 1 :] == ["--velour-parts", str(job.film(7)), "--velour-memory", "700M"]
     job.preferences, job.scripts = True, True
     command = blender.start(job)
     assert "--factory-startup" not in command
@@ -106,6 +108,25 @@ def test_tasks_that_are_left(job):
     assert status.Status(done=[1], failed={}, left=[]).code == status.DONE
 
 
+def test_parts_are_dealt_out(job):
+    """In turn; a frame whose parts are all there still lacks its picture."""
+    job.parts, job.frames = 3, [1, 2]
+    first, second = job.task(0), job.task(1)
+    assert (first, second) == ([(1, 1), (1, 3), (2, 2)], [(1, 2), (2, 1), (2, 3)])
+    command = blender.render(job, first[1], job.partial(1) / "picture_")
+    assert command[command.index("--velour-samples") + 1] == "3/3"
+    assert len({job.log(unit) for unit in first + second}) == 6
+    now = status.Status(done=[2], failed={}, left=[1])
+    job.film(1).mkdir(parents=True)
+    for unit in first:
+        if unit.frame == 1:
+            job.part_done(unit).touch()
+    assert status.tasks_left(job, now) == [1]
+    job.part_done(second[0]).touch()
+    assert status.tasks_left(job, now) == [0, 1]
+    assert status.tasks_left(job, status.Status(done=[1, 2], failed={}, left=[])) == []
+
+
 def test_slurm_script(job):
     slurm.write(job)
     path = job.folder / slurm.SCRIPT
@@ -113,6 +134,7 @@ def test_slurm_script(job):
     lines = path.read_text().splitlines()
     assert "#SBATCH --mem=700M" in lines
     assert "#SBATCH --cpus-per-task=3" in lines
+    assert "#SBATCH --signal=B:TERM@120" in lines
     assert "#SBATCH --job-name=velour-a_shot" in lines
     assert f'#SBATCH --output="{job.output.parent}/100%% done/farm/logs/slurm-%A_%a.txt"' in lines
     job.threads = job.memory_mib = 0
@@ -185,9 +207,28 @@ def _check_job_type(job_type, submitted):
     assert set(submitted["settings"]) == set(keys)
 
 
+@pytest.mark.skipif(not shutil.which("node"), reason="node is not installed")
+def test_flamenco_parts(job):
+    job.parts = 2
+    job.save()
+    flamenco.write(job)
+    files = job.folder / flamenco.SCRIPT, job.folder / flamenco.SUBMISSION
+    done = subprocess.run(["node", "-e", _MANAGER, *files], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    tasks = json.loads(done.stdout)["tasks"]
+    assert [task["name"] for task in tasks][:3] == [
+        "frames 1, part 1",
+        "frames 1, part 2",
+        "frames 2, part 1",
+    ]
+    given = [frame._parse(task["commands"][0]["parameters"]["args"][1:]) for task in tasks]
+    assert [unit for each in given for unit in frame._units(job, each)] == job.units(job.frames)
+
+
 def _check_arguments(arguments, job, number, program_name):
     """They are what the frame program takes."""
     found = frame._parse(arguments)
+    assert frame._units(job, found) == [Unit(number)]
     assert load(found.job) == job
     assert (found.frames, found.blend, found.blender) == ([number], job.blend, program_name)
 
@@ -209,10 +250,11 @@ values = preprocess_job_parameters(
     allow_job_template_dir_walk_up=True)
 job = create_job(job_template=template, job_parameter_values=values)
 (step,) = job.steps
-space = StepParameterSpaceIterator(space=step.parameterSpace)
+space = list(StepParameterSpaceIterator(space=step.parameterSpace))
 run = step.script.actions.onRun
 print(json.dumps({
     "frames": [int(task["Frame"].value) for task in space],
+    "parts": [int(task["Part"].value) for task in space if "Part" in task],
     "parameters": {name: value.value for name, value in job.parameters.items()},
     "command": str(run.command), "args": [str(arg) for arg in run.args],
     "amounts": {a.name: float(a.min) for a in step.hostRequirements.amounts}}))
@@ -244,6 +286,16 @@ def test_openjd(job, openjd_model):
     started, *arguments = (_filled(text, {**values, "Task.Param.Frame": "7"}) for text in made["args"])
     assert started == str(job.folder / program.NAME)
     _check_arguments(arguments, job, 7, "blender")
+
+
+def test_openjd_parts(job, openjd_model):
+    job.parts = 3
+    openjd.write(job)
+    done = _openjd(job.folder / openjd.FILE)
+    assert done.returncode == 0, done.stderr
+    made = json.loads(done.stdout)
+    assert sorted(zip(made["frames"], made["parts"], strict=True)) == job.units(job.frames)
+    assert made["args"][made["args"].index("--part") + 1] == "{{Task.Param.Part}}"
 
 
 def _filled(text, values):

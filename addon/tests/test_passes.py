@@ -12,7 +12,9 @@ from velour.native import (
     VelourError,
     cryptomatte_id,
     render_job,
+    table,
 )
+from velour.native.passes import sums_per_pixel
 
 _CORNERS = np.array([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], np.float32)
 _TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
@@ -49,6 +51,22 @@ def test_labels_and_mist(scene):
         for name in ("Position", "CryptoAsset00", "CryptoObject03"):
             with pytest.raises(VelourError, match="not asked for"):
                 job.read_pass(name)
+
+
+@pytest.mark.parametrize(
+    "asked", [None, (), ("position", "mist"), ("crypto_asset", "error"), tuple(table.PASSES)]
+)
+def test_a_film_is_as_large_as_is_said_before(scene, asked):
+    passes = None if asked is None else Passes(frozenset(asked), cryptomatte_ranks=4)
+    with render_job(scene, passes, width=3, height=2) as job:
+        assert job.sums_per_pixel() == sums_per_pixel(passes)
+        assert job.read_sums().shape == (2, 3, sums_per_pixel(passes))
+
+
+def test_sums_of_another_film_are_refused(scene):
+    with render_job(scene, width=3, height=2) as job, render_job(scene, width=2, height=2) as other:
+        with pytest.raises(VelourError, match="72 numbers, not 48"):
+            job.add_sums(other.read_sums())
 
 
 def test_labels_of_another_kind_are_refused(scene):

@@ -55,27 +55,24 @@ class FilmParts:
         return [Path(part.name) for part in self._all]
 
     def begin(self, job: Job, gap: Range) -> None:
-        """Hands what ends where `gap` begins to `job`, which is to render it."""
-        before = self._before(gap)
-        if before:
-            job.add_sums(_sums(before, job))
+        """Hands all samples before `gap` to `job`, which is to render it. Gaps are rendered in order."""
+        for part in self._before(gap):
+            job.add_sums(_sums(part, job))
 
     def keep(self, job: Job, gap: Range, end: int) -> Path:
-        """Writes what begin() handed on and `job` has added up to `end`; the former file goes."""
+        """Writes what begin() handed on and `job` has added up to `end`; the former files go."""
         before = self._before(gap)
-        span = (before.ranges[0][0] if before else gap[0], end)
-        written = self._write(job, span)
-        if before:
-            self._remove([before])
+        written = self._write(job, (self.asked[0], end))
+        self._remove(before)
         self._all = self._found()
         self._kept = self._disjoint()
         return written
 
     def complete(self, job: Job, gap: Range | None) -> None:
         """Adds all that `job` does not have yet, which has rendered the last gap, or nothing."""
-        before = self._before(gap) if gap else None
+        before = self._before(gap) if gap else []
         for part in self._kept:
-            if part is not before:
+            if part not in before:
                 job.add_sums(_sums(part, job))
 
     def keep_all(self, job: Job) -> Path:
@@ -84,8 +81,8 @@ class FilmParts:
         self._remove([part for part in self._all if Path(part.name) != written])
         return written
 
-    def _before(self, gap: Range) -> Part | None:
-        return next((part for part in self._kept if part.ranges[0][1] == gap[0]), None)
+    def _before(self, gap: Range) -> list[Part]:
+        return [part for part in self._kept if part.ranges[0][1] <= gap[0]]
 
     def _write(self, job: Job, span: Range) -> Path:
         self._folder.mkdir(parents=True, exist_ok=True)

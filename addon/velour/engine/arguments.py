@@ -3,6 +3,7 @@
 import argparse
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import bpy
 
@@ -17,12 +18,40 @@ class _Parser(argparse.ArgumentParser):
         raise refuse(f"After --: {message}.")
 
 
+class Share(NamedTuple):
+    """Of all samples the `number`-th of `count` parts, from 1 on."""
+
+    number: int
+    count: int
+
+    def of(self, spp, split):
+        """Its range, in whole camera rays."""
+        rays = -(-spp // split)
+        if rays < self.count:
+            raise refuse(
+                f"Each pixel has {rays} camera rays ({spp} samples, {split} a ray), which cannot be shared"
+                f" out to {self.count} parts; take fewer."
+            )
+        begin, end = (rays * number // self.count * split for number in (self.number - 1, self.number))
+        return begin, min(end, spp)
+
+
+def _samples(text):
+    """BEGIN:END as a tuple, or K/N as a Share."""
+    if "/" not in text:
+        return numbers.span(text)
+    number, count = map(numbers.whole(1, 1 << 20), text.split("/", 1))
+    if number > count:
+        raise argparse.ArgumentTypeError(f"{text!r}: there are {count} parts")
+    return Share(number, count)
+
+
 def arguments():
-    """parts, samples, memory; each None where it is not given. With a window none is: nobody waits there."""
+    """`parts`, `samples`, `memory`; each None where it is not given, and all of them with a window."""
     parser = _Parser(prog="blender", add_help=False, allow_abbrev=False)
     add = parser.add_argument
     add("--velour-parts", dest="parts", type=Path)
-    add("--velour-samples", dest="samples", type=numbers.span)
+    add("--velour-samples", dest="samples", type=_samples)
     add("--velour-memory", dest="memory", type=numbers.size_in_bytes)
     behind = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv and bpy.app.background else []
     given, others = parser.parse_known_args(behind)

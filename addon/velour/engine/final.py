@@ -6,6 +6,7 @@ import time
 
 import bpy
 
+from ..core.memory_estimate import peak
 from ..export import ExportError, Notes, export_scene
 from ..export.black import refuse_dark_inside
 from ..export.camera import final_view
@@ -106,7 +107,7 @@ def _follow(engine, delivery, job, begin, end):
         engine.update_progress(state.fraction)
         if statistics.rings():
             engine.update_stats("Velour", _statistics(state, begin, end))
-            engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20)
+            engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20, memory_peak=peak() / 2**20)
         if not bpy.app.background and pictures.rings():
             delivery.write(job, [COMBINED])
             engine.update_result(delivery.result)

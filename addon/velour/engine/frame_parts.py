@@ -10,6 +10,7 @@ from ..core.film_parts import FilmParts
 from ..core.stopping import stopping
 from ..native.errors import refuse
 from ..native.version import version_text
+from .arguments import Share
 
 _ELSEWHERE = {"threads", "time_limit", "cache_folder"}  # options that say nothing of the picture
 _superfluous = []  # files of a frame that is about to be written
@@ -41,7 +42,10 @@ def frame_parts(given, depsgraph, view, options, models, shown):
         "window": [float(edge) for edge in view.window],
     }
     name = f"{Path(bpy.data.filepath).stem}_{scene.name}_{layer.name}_{scene.frame_current:04d}"
-    return FilmParts(given.parts, name, made, (view.width, view.height), given.samples)
+    asked = given.samples
+    if isinstance(asked, Share):
+        asked = asked.of(made["spp"], made["split"])
+    return FilmParts(given.parts, name, made, (view.width, view.height), asked)
 
 
 def _blend_hash():

@@ -74,8 +74,9 @@ Job::Snapshot Job::poll() const {
   if (state_ == State::done) s.fraction = 1.0;
   if (state_ != State::running) return s;
   s.fraction = std::min(s.fraction, 0.999);
-  constexpr double kEnoughToGuess = 0.02;
-  if (s.fraction > kEnoughToGuess) s.seconds_left = s.seconds * (1.0 - s.fraction) / s.fraction;
+  constexpr double kEnoughToGuess = 0.02, kSecondsToGuess = 3.0;
+  const bool known = s.fraction > kEnoughToGuess || (s.fraction > 0.0 && s.seconds > kSecondsToGuess);
+  if (known) s.seconds_left = s.seconds * (1.0 - s.fraction) / s.fraction;
   return s;
 }
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
 import signal
 import subprocess
+import threading
 from pathlib import Path
 
-from .job import Job
+from .job import Job, Unit
 
 # "Error: ..." of Blender 3 and 4, "... | ERROR ..." of 5, "ValueError: ..." of Python.
 _ERROR = re.compile(r"\b(?:\w*Error|ERROR)\b.*")
+stopped = threading.Event()  # SIGTERM has come
 FAILED = 7  # the exit status of a script that raises; Blender's own failures have 1
 
 
@@ -25,21 +28,28 @@ def start(job: Job) -> list[str]:
     return [*command, "--addons", job.addon, job.blend]
 
 
-def render(job: Job, frame: int, picture: Path) -> list[str]:
+def render(job: Job, unit: Unit, picture: Path) -> list[str]:
     """`picture`: its path without number and extension.
 
     -E: a node without Velour fails. Else Blender takes EEVEE, writes a picture and says that all is well.
     """
     command = [*start(job), "-E", "VELOUR", "-t", str(job.threads), "-o", f"{picture}####"]
-    return [*command, "-F", job.format, "-x", "1", "-f", str(frame)]
+    command += ["-F", job.format, "-x", "1", "-f", str(unit.frame)]
+    own = ["--velour-parts", str(job.film(unit.frame))]
+    if unit.part:
+        own += ["--velour-samples", f"{unit.part}/{job.parts}"]
+    if job.memory_mib:
+        own += ["--velour-memory", f"{job.memory_mib}M"]
+    return [*command, "--", *own]
 
 
 def execute(command: list[str], log: Path) -> int:
-    """The exit status; all that is said goes to `log`."""
+    """The exit status; all that is said goes to `log`. SIGTERM is handed on, and Blender's end waited for:
+    Velour keeps what it has of the frame."""
     log.parent.mkdir(parents=True, exist_ok=True)
     with open(log, "wb") as file:
         try:
-            done = subprocess.run(
+            child = subprocess.Popen(
                 command,
                 stdin=subprocess.DEVNULL,
                 stdout=file,
@@ -49,7 +59,25 @@ def execute(command: list[str], log: Path) -> int:
         except OSError as error:
             file.write(f"Error: {command[0]} cannot be started ({error.strerror})\n".encode())
             return 127
-    return done.returncode
+        with child, _handing_on(child):
+            try:
+                return child.wait()
+            except BaseException:
+                child.kill()
+                raise
+
+
+@contextlib.contextmanager
+def _handing_on(child: subprocess.Popen):
+    def stop(_number, _frame):
+        stopped.set()
+        child.terminate()
+
+    earlier = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, earlier or signal.SIG_DFL)
 
 
 def _environment(command: list[str]) -> dict[str, str]:

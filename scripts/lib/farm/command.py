@@ -36,6 +36,7 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
     add("--threads", type=_count, default=0, metavar="N", help="of a task (all that its node has)")
     add("--memory", type=_memory, default=0, metavar="SIZE", help="of a task, such as 8G (what Slurm gives)")
     add("--tasks", type=_count, default=1000, metavar="N", help="of the array at most (1000)")
+    add("--parts", type=_count, default=1, metavar="N", help="that a frame's samples are shared out to (1)")
     add("--blender", default="blender", metavar="PATH", help="the Blender to run, here and on the nodes")
     add("--addon", default="velour", metavar="MODULE", help="Velour's name there (velour)")
     add("--preferences", action="store_true", help="with user preferences, not factory settings")
@@ -60,7 +61,8 @@ def _submit(given: argparse.Namespace) -> int:
         return 0
     number = slurm.submit(found, left, given.sbatch)
     for frame in now.failed:
-        found.failure(frame).unlink(missing_ok=True)
+        for path in found.failures(frame):
+            path.unlink(missing_ok=True)
     print(f"Slurm's job {number}; how it stands: scripts/farm --status {found.output}")
     return 0
 

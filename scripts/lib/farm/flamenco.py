@@ -25,6 +25,8 @@ const JOB_TYPE = {
           description: "Frames to render. Examples: '47', '1-30', '3, 5-10, 47-327'" },
         { key: "chunk_size", type: "int32", default: 1, propargs: { min: 1 }, visible: "submission",
           description: "Frames of a task" },
+        { key: "parts", type: "int32", default: 1, propargs: { min: 1 }, visible: "web",
+          description: "That the samples of each frame are shared out to, as job.json has it" },
         { key: "blendfile", type: "string", required: true, visible: "web",
           description: "Path of the .blend" },
         { key: "python", type: "string", default: "python3", visible: "submission",
@@ -35,15 +37,19 @@ const JOB_TYPE = {
 function compileJob(job) {
     const settings = job.settings;
     for (const chunk of frameChunker(settings.frames, settings.chunk_size)) {
-        const task = author.Task(`frames ${chunk}`, "blender");
-        task.addCommand(author.Command("exec", {
-            exe: settings.python,
-            args: [
-                path.join(path.dirname(settings.job), "PROGRAM"), settings.job,
-                "--frames", chunk, "--blend", settings.blendfile, "--blender", "{blender}",
-            ],
-        }));
-        job.addTask(task);
+        for (let part = 1; part <= settings.parts; part++) {
+            const named = settings.parts > 1 ? `frames ${chunk}, part ${part}` : `frames ${chunk}`;
+            const task = author.Task(named, "blender");
+            task.addCommand(author.Command("exec", {
+                exe: settings.python,
+                args: [
+                    path.join(path.dirname(settings.job), "PROGRAM"), settings.job,
+                    "--frames", chunk, "--part", String(part),
+                    "--blend", settings.blendfile, "--blender", "{blender}",
+                ],
+            }));
+            job.addTask(task);
+        }
     }
 }
 """
@@ -60,6 +66,7 @@ def submission(job: Job) -> dict:
         "job": str(job.folder / "job.json"),
         "frames": ranges.words(job.frames),
         "chunk_size": 1,
+        "parts": job.parts,
         "blendfile": job.blend,
         "python": "python3",
     }

@@ -1,7 +1,8 @@
 """One task on a node: renders frames that are not done, checks each picture, and only then gives it its name.
 
-Runs alone, by Python's own library: frame.pyz of a job's folder, beside job.json. Exit status: 0 all frames
-are done; 1 one failed, with a sentence on stderr and in failed/; 2 wrong usage.
+Runs alone, by Python's own library: frame.pyz of a job's folder, beside job.json. Exit status: 0 all that was
+asked for is done; 1 something failed, with a sentence on stderr and in failed/; 2 wrong usage; 3 ended by
+SIGTERM, and the next run goes on from there.
 """
 
 from __future__ import annotations
@@ -12,9 +13,12 @@ import os
 import shutil
 import socket
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from . import blender, exr, job, ranges
+
+DONE, FAILED, UNFINISHED = 0, 1, 3  # exit statuses
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -22,11 +26,16 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         found = job.load(given.job)
         found.blend, found.blender = given.blend or found.blend, given.blender or found.blender
-        frames = found.task(given.task) if given.frames is None else given.frames
-        return max([_run(found, frame) for frame in frames])
+        units = _units(found, given)
     except (job.JobError, OSError) as error:
         print(f"farm: {error}", file=sys.stderr)
-        return 1
+        return FAILED
+    worst = DONE
+    for unit in units:
+        worst = max(worst, _run(found, unit))
+        if blender.stopped.is_set():
+            return UNFINISHED
+    return worst
 
 
 def _parse(arguments: list[str] | None) -> argparse.Namespace:
@@ -35,6 +44,7 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--task", type=int, metavar="N", help="the frames of a task, counted from 0")
     what.add_argument("--frames", type=_frames, metavar="LIST", help="such as 1-10,15")
+    parser.add_argument("--part", type=int, metavar="K", help="of --frames only this part, from 1 on")
     parser.add_argument("--blend", metavar="PATH", help="the .blend, where this node has it elsewhere")
     parser.add_argument("--blender", metavar="PATH", help="the Blender, where this node has it elsewhere")
     return parser.parse_args(arguments)
@@ -47,47 +57,99 @@ def _frames(text: str) -> list[int]:
         raise argparse.ArgumentTypeError(str(error)) from error
 
 
-def _run(task: job.Job, frame: int) -> int:
-    """The exit status of a frame."""
-    if not problem(task, task.picture(frame)):
-        print(f"frame {frame}: is done", flush=True)
-        return 0
+def _units(task: job.Job, given: argparse.Namespace) -> list[job.Unit]:
+    if given.frames is None:
+        return task.task(given.task)
+    if given.part is None:
+        return task.units(given.frames)
+    if given.part not in range(1, task.parts + 1):
+        raise job.JobError(f"there is no part {given.part}; frames of this job have {task.parts}.")
+    return [unit for unit in task.units(given.frames) if unit.part in (0, given.part)]
+
+
+def _run(task: job.Job, unit: job.Unit) -> int:
+    """The exit status of a frame, or of a part of it: the last one makes the picture of all."""
+    if not problem(task, task.picture(unit.frame)):
+        print(f"frame {unit.frame}: is done", flush=True)
+        return DONE
+    if not unit.part:
+        return _attempt(task, unit, _render)
+    if not task.part_done(unit).is_file():
+        status = _attempt(task, unit, _render_part)
+        if status:
+            return status
+    if all(task.part_done(part).is_file() for part in task.parts_of(unit.frame)):
+        return _attempt(task, job.Unit(unit.frame), _render)
+    return DONE
+
+
+def _attempt(task: job.Job, unit: job.Unit, render: Callable[[job.Job, job.Unit, Path], str]) -> int:
+    """The exit status. Nobody else writes to the folder that `render` makes its picture in."""
+    folder = task.partial(unit.frame) / f"{socket.gethostname()}-{os.getpid()}"
     try:
-        sentence = _render(task, frame)
+        folder.mkdir(parents=True, exist_ok=True)
+        sentence = render(task, unit, folder / "picture_")
     except OSError as error:
         sentence = str(error)
-    # Another run may have finished the frame, and cleared away what this one had.
-    if not sentence or not problem(task, task.picture(frame)):
-        task.failure(frame).unlink(missing_ok=True)
-        print(f"frame {frame}: {task.picture(frame)}", flush=True)
-        return 0
-    print(f"farm: frame {frame}: {sentence}", file=sys.stderr, flush=True)
-    task.failure(frame).parent.mkdir(exist_ok=True)
-    job.replace_text(task.failure(frame), sentence + "\n")
-    return 1
-
-
-def _render(task: job.Job, frame: int) -> str:
-    """What went wrong, or "". Nobody else writes to the folder that the picture is made in."""
-    folder = task.partial(frame) / f"{socket.gethostname()}-{os.getpid()}"
-    folder.mkdir(parents=True, exist_ok=True)
-    try:
-        status = blender.execute(blender.render(task, frame, folder / "picture_"), task.log(frame))
-        if status:
-            return f"{blender.ending(status, task.log(frame))}; {task.log(frame)} has all of it."
-        picture = folder / f"picture_{frame:04d}.exr"
-        wrong = problem(task, picture)
-        if wrong:
-            return f"the picture is not counted as done: {wrong}; {task.log(frame)} has what Blender said."
-        os.replace(picture, task.picture(frame))
-        shutil.rmtree(task.partial(frame), ignore_errors=True)  # what killed runs of this frame left, too
-        return ""
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+    # Another run may have finished the frame, and cleared away what this one had.
+    if not sentence or not problem(task, task.picture(unit.frame)):
+        task.failure(unit).unlink(missing_ok=True)
+        print(f"{unit}: {'rendered' if unit.part else task.picture(unit.frame)}", flush=True)
+        return DONE
+    if blender.stopped.is_set():
+        print(f"farm: {unit}: ended by SIGTERM; the next run goes on from there", file=sys.stderr, flush=True)
+        return UNFINISHED
+    print(f"farm: {unit}: {sentence}", file=sys.stderr, flush=True)
+    task.failure(unit).parent.mkdir(exist_ok=True)
+    job.replace_text(task.failure(unit), sentence + "\n")
+    return FAILED
+
+
+def _render(task: job.Job, unit: job.Unit, path: Path) -> str:
+    """What went wrong, or ""."""
+    wrong = _blender(task, unit, path)
+    if wrong:
+        return wrong
+    picture = Path(f"{path}{unit.frame:04d}.exr")
+    wrong = problem(task, picture)
+    if wrong:
+        return f"the picture is not counted as done: {wrong}; {task.log(unit)} has what Blender said."
+    os.replace(picture, task.picture(unit.frame))
+    shutil.rmtree(task.partial(unit.frame), ignore_errors=True)  # what killed runs left, too
+    return ""
+
+
+def _render_part(task: job.Job, unit: job.Unit, path: Path) -> str:
+    """Likewise. What counts is the film; the picture is held to the same as others, and forgotten."""
+    wrong = _blender(task, unit, path)
+    if wrong:
+        return wrong
+    wrong = _problem(task, Path(f"{path}{unit.frame:04d}.exr"))
+    if wrong:
+        return f"the part is not counted as done: {wrong}; {task.log(unit)} has what Blender said."
+    task.part_done(unit).touch()
+    return ""
+
+
+def _blender(task: job.Job, unit: job.Unit, path: Path) -> str:
+    status = blender.execute(blender.render(task, unit, path), task.log(unit))
+    return f"{blender.ending(status, task.log(unit))}; {task.log(unit)} has all of it." if status else ""
 
 
 def problem(task: job.Job, picture: Path) -> str:
     """Why a picture is none of this job, or not whole; "" of one that is done."""
+    return _problem(task, picture) or _not_all_samples(picture)
+
+
+def _not_all_samples(picture: Path) -> str:
+    samples = exr.text_attribute(picture, "velour.samples")
+    return f"it has the samples {samples} alone" if samples else ""
+
+
+def _problem(task: job.Job, picture: Path) -> str:
+    """Of a picture that may have some samples alone."""
     try:
         return _another_velour(task, exr.text_attribute(picture, "velour.version")) or (
             _other_models(task, exr.text_attribute(picture, "velour.models")) or _not_whole(picture)

@@ -6,12 +6,27 @@ import json
 import os
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 FOLDER = "farm"
 
 
 class JobError(RuntimeError):
     """One sentence: what is wrong and what to do."""
+
+
+class Unit(NamedTuple):
+    """What is rendered in one go."""
+
+    frame: int
+    part: int = 0  # of the job's, from 1 on; 0: the whole frame
+
+    @property
+    def name(self) -> str:
+        return f"{self.frame:04d}" + (f"_{self.part}" if self.part else "")
+
+    def __str__(self) -> str:
+        return f"frame {self.frame}" + (f", part {self.part}" if self.part else "")
 
 
 @dataclass
@@ -23,7 +38,8 @@ class Job:
     velour: str  # the version
     models: dict[str, list[str]]  # hashes of what each measured material of the .blend is rendered from
     frames: list[int]
-    tasks: int  # that the frames are dealt out to
+    tasks: int  # that the frames are dealt out to, or their parts
+    parts: int = 1  # that the samples of a frame are shared out to
     blender: str = "blender"  # on the nodes
     addon: str = "velour"  # its module: bl_ext.user_default.velour of an extension
     threads: int = 0  # of Blender; 0: all that the node has
@@ -39,22 +55,42 @@ class Job:
     def picture(self, frame: int) -> Path:
         return self.output / f"{self.name}_{frame:04d}.exr"
 
-    def failure(self, frame: int) -> Path:
-        """Says in a sentence why a frame failed, where it did."""
-        return self.folder / "failed" / f"{frame:04d}.txt"
+    def failure(self, unit: Unit) -> Path:
+        """Says in a sentence why it failed, where it did."""
+        return self.folder / "failed" / f"{unit.name}.txt"
 
-    def log(self, frame: int) -> Path:
-        return self.folder / "logs" / f"{frame:04d}.log"
+    def failures(self, frame: int) -> list[Path]:
+        """Those there are, of the frame and of its parts."""
+        units = [Unit(frame), *self.parts_of(frame)]
+        return [path for path in map(self.failure, units) if path.is_file()]
+
+    def log(self, unit: Unit) -> Path:
+        return self.folder / "logs" / f"{unit.name}.log"
 
     def partial(self, frame: int) -> Path:
         """Where pictures of a frame are until they are known to be good."""
         return self.folder / "partial" / f"{frame:04d}"
 
-    def task(self, number: int) -> list[int]:
-        """The frames of a task: they are dealt out in turn, so neighbours run side by side."""
+    def film(self, frame: int) -> Path:
+        """Where Velour keeps what parts have, and what runs leave that are ended."""
+        return self.partial(frame) / "film"
+
+    def part_done(self, unit: Unit) -> Path:
+        """Is there once the film has the part."""
+        return self.film(unit.frame) / f"{unit.part}-of-{self.parts}.done"
+
+    def parts_of(self, frame: int) -> list[Unit]:
+        """None of a frame that is rendered at once."""
+        return [Unit(frame, number) for number in range(1, self.parts + 1)] if self.parts > 1 else []
+
+    def units(self, frames: list[int]) -> list[Unit]:
+        return [unit for frame in frames for unit in self.parts_of(frame) or [Unit(frame)]]
+
+    def task(self, number: int) -> list[Unit]:
+        """What a task renders: all is dealt out in turn, so neighbours run side by side."""
         if number not in range(self.tasks):
             raise JobError(f"there is no task {number}; the job has {self.tasks}, counted from 0.")
-        return self.frames[number :: self.tasks]
+        return self.units(self.frames)[number :: self.tasks]
 
     def save(self) -> None:
         for name in ("failed", "logs", "partial"):

@@ -27,6 +27,7 @@ def make(given: argparse.Namespace) -> job.Job:
         models={},
         frames=given.frames or [],
         tasks=1,
+        parts=given.parts,
         blender=given.blender,
         addon=given.addon,
         threads=given.threads,
@@ -36,7 +37,7 @@ def make(given: argparse.Namespace) -> job.Job:
         folder=folder,
     )
     _ask_blender(made)
-    made.tasks = min(given.tasks, len(made.frames))
+    made.tasks = min(given.tasks, len(made.frames) * made.parts)
     if (folder / "job.json").is_file():
         _refuse_another(made, job.load(folder))
     made.save()
@@ -65,6 +66,7 @@ def _refuse_another(made: job.Job, before: job.Job) -> None:
         "velour": "Velour",
         "models": "model",
         "format": "format",
+        "parts": "number of parts",
     }
     other = [words for name, words in kept.items() if getattr(made, name) != getattr(before, name)]
     if other:

@@ -9,6 +9,7 @@ from .job import Job, replace_text
 
 FILE = "openjd.json"
 _LONGEST_NAME = 64
+_NOTICE_SECONDS = 120  # to end the pass and keep it
 
 
 def write(job: Job) -> None:
@@ -48,12 +49,18 @@ def _step(job: Job) -> dict:
     folder = f"{{{{Param.Output}}}}/{job.folder.name}"
     paths = ["--blend", "{{Param.Blend}}", "--blender", "{{Param.Blender}}"]
     frame = ["--frames", "{{Task.Param.Frame}}"]
-    run = {"command": "python3", "args": [f"{folder}/{program.NAME}", f"{folder}/job.json", *frame, *paths]}
+    space = [{"name": "Frame", "type": "INT", "range": "{{Param.Frames}}"}]
+    if job.parts > 1:
+        frame += ["--part", "{{Task.Param.Part}}"]
+        space.append({"name": "Part", "type": "INT", "range": f"1-{job.parts}"})
+    run = {
+        "command": "python3",
+        "args": [f"{folder}/{program.NAME}", f"{folder}/job.json", *frame, *paths],
+        "cancelation": {"mode": "NOTIFY_THEN_TERMINATE", "notifyPeriodInSeconds": _NOTICE_SECONDS},
+    }
     step = {
         "name": "Frames",
-        "parameterSpace": {
-            "taskParameterDefinitions": [{"name": "Frame", "type": "INT", "range": "{{Param.Frames}}"}]
-        },
+        "parameterSpace": {"taskParameterDefinitions": space},
         "script": {"actions": {"onRun": run}},
     }
     amounts = _amounts(job)

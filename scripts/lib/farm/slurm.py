@@ -10,6 +10,7 @@ from . import program, ranges
 from .job import Job, JobError, replace_text
 
 SCRIPT, SUBMITTED = "slurm.sh", "slurm.id"
+_NOTICE_SECONDS = 120  # to end the pass and keep it
 
 
 def write(job: Job) -> None:
@@ -24,6 +25,7 @@ def script(job: Job) -> str:
         f"#SBATCH --job-name=velour-{re.sub(r'[^A-Za-z0-9._-]', '_', job.name)}",
         f'#SBATCH --output="{said}/logs/slurm-%A_%a.txt"',
         "#SBATCH --nodes=1 --ntasks=1",
+        f"#SBATCH --signal=B:TERM@{_NOTICE_SECONDS}",  # to the program, which hands it on
     ]
     if job.threads:
         lines.append(f"#SBATCH --cpus-per-task={job.threads}")

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from . import frame, ranges
-from .job import Job
-
-DONE, FAILED, UNFINISHED = 0, 1, 3  # exit statuses
+from .frame import DONE, FAILED, UNFINISHED
+from .job import Job, Unit
 
 
 @dataclass(frozen=True)
@@ -37,17 +36,25 @@ def look(job: Job) -> Status:
     """Every picture is read: one that another program damaged is not done."""
     done, failed, left = [], {}, []
     for number in job.frames:
-        why = job.failure(number)
+        why = job.failures(number)
         if not frame.problem(job, job.picture(number)):
             done.append(number)
-        elif why.is_file():
-            failed[number] = why.read_text(encoding="utf-8").strip()
+        elif why:
+            failed[number] = " ".join(path.read_text(encoding="utf-8").strip() for path in why)
         else:
             left.append(number)
     return Status(done, failed, left)
 
 
 def tasks_left(job: Job, status: Status) -> list[int]:
-    """The tasks that have a frame to render."""
-    done = set(status.done)
-    return [number for number in range(job.tasks) if set(job.task(number)) - done]
+    """The tasks that have something to render."""
+    frames = set(job.frames) - set(status.done)
+    return [number for number in range(job.tasks) if any(_is_left(job, u, frames) for u in job.task(number))]
+
+
+def _is_left(job: Job, unit: Unit, frames: set[int]) -> bool:
+    if unit.frame not in frames:
+        return False
+    if not unit.part or not job.part_done(unit).is_file():
+        return True
+    return all(job.part_done(each).is_file() for each in job.parts_of(unit.frame))  # the picture is

@@ -1,0 +1,189 @@
+"""Final renders that several runs share out, or that are ended and gone on with; what a frame takes."""
+
+import re
+import resource
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest, run_blender
+
+_ROUNDING = 1e-6
+# A batch engine that ends Blender while it renders the second view layer.
+_END_LAYER = """
+import importlib, os, signal
+
+final = importlib.import_module("velour.engine.final")
+follow = final._follow
+
+def ended(engine, delivery, job, begin, end):
+    if delivery.result.layers[0].name == "Layer 1":
+        while job.poll().fraction < 0.05:
+            pass
+        os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), signal.SIGTERM)  # to a group, of which one hands it on
+    follow(engine, delivery, job, begin, end)
+
+final._follow = ended
+"""
+
+
+class FrameParts(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.parts = self.folder / "parts"
+
+    def _save(self, samples=40, size=64, layers=1, name="shot"):
+        """A scene with passes that are sums, such as are the first ray's, and ids; all in 32 bits."""
+        scene = scenes.use_engine(samples=samples, size=size)
+        scenes.add_camera()
+        scenes.add_sphere()
+        scenes.set_world()
+        for number in range(1, layers):
+            scene.view_layers.new(f"Layer {number}")
+        for layer in scene.view_layers:
+            layer.use_pass_z = layer.use_pass_position = layer.use_pass_cryptomatte_object = True
+            layer.velour.use_pass_error = True
+        settings = scene.render.image_settings
+        if hasattr(settings, "media_type"):  # 5.0 and newer
+            settings.media_type = "MULTI_LAYER_IMAGE"
+        settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+        path = self.folder / f"{name}.blend"
+        bpy.ops.wm.save_as_mainfile(filepath=str(path))
+        return path
+
+    def _render(self, blend, name, *options, before=(), status=0):
+        output = self.folder / f"{name}_####"
+        done = run_blender(blend, *before, "-E", "VELOUR", "-o", output, "-f", 1, "--", *options)
+        self.assertEqual(done.returncode, status, done.stdout)
+        self.assertEqual(self._path(name).exists(), status == 0)
+        return done.stdout
+
+    def _path(self, name):
+        return self.folder / f"{name}_0001.exr"
+
+    def _files(self):
+        return sorted(path.name.rpartition("_")[2] for path in self.parts.glob("*"))
+
+    def _channels(self, name):
+        """{channel: pixels}, of the first pass alone where each has a part of its own: 5.0 and newer."""
+        images = inputs.native().images
+        pixels = images.read(self._path(name))
+        names = images.header(self._path(name))["channels"]
+        return {name: pixels[..., number] for number, name in enumerate(names)}
+
+    def _assert_same(self, one, other, tolerance):
+        one, other = self._channels(one), self._channels(other)
+        self.assertEqual(one.keys(), other.keys())
+        self.assertGreaterEqual(len(one), 4 if bpy.app.version >= (5, 0) else 20)
+        for name, pixels in one.items():
+            scale = np.abs(pixels[pixels < 1e9]).max(initial=0)  # depth of the sky
+            difference = np.abs(pixels - other[name]).max()
+            self.assertLessEqual(difference, tolerance * scale, name)
+
+    def test_parts_make_the_frame(self):
+        blend = self._save()
+        self._render(blend, "whole")
+        for number in (3, 1, 2):  # as machines happen to end
+            self._render(
+                blend, f"part{number}", "--velour-parts", self.parts, "--velour-samples", f"{number}/3"
+            )
+        self.assertEqual(self._files(), ["0001.0-8.exr", "0001.24-40.exr", "0001.8-24.exr"])
+        said = self._render(blend, "merged", "--velour-parts", self.parts)
+        self.assertIn("All samples were there", said)
+        self._assert_same("merged", "whole", _ROUNDING)
+        self.assertEqual(self._files(), [])
+        header = inputs.native().images.header(self._path("part2"))
+        self.assertEqual(header["texts"]["velour.samples"], "8:24")
+        self.assertNotIn("velour.samples", inputs.native().images.header(self._path("merged"))["texts"])
+        apart = np.abs(self._first(self._channels("part2")) - self._first(self._channels("whole"))).max()
+        self.assertGreater(apart, 100 * _ROUNDING)
+
+    @staticmethod
+    def _first(channels):
+        return next(pixels for name, pixels in channels.items() if name.endswith("Combined.R"))
+
+    def test_what_is_missing_is_rendered(self):
+        """Two gaps, of which the second goes on where a part ends."""
+        blend = self._save()
+        self._render(blend, "whole")
+        self._render(blend, "part", "--velour-parts", self.parts, "--velour-samples", "8:24")
+        self._render(blend, "merged", "--velour-parts", self.parts)
+        self._assert_same("merged", "whole", _ROUNDING)
+
+    def test_an_ended_frame_goes_on(self):
+        """To the bits of a frame that nobody ended; with two view layers."""
+        blend = self._save(samples=4000, layers=2)
+        self._render(blend, "whole")
+        parts = ("--velour-parts", self.parts)
+        said = self._render(blend, "ended", *parts, before=("--python-expr", _END_LAYER), status=1)
+        found = re.search(r"Stopped at sample (\d+) of 4000; .* the same command goes on", said)
+        self.assertTrue(found, said)
+        self.assertEqual(self._files(), [f"0001.0-{found[1]}.exr", "0001.0-4000.exr"])
+        said = self._render(blend, "ended", "--velour-parts", self.parts)
+        self._assert_same("ended", "whole", 0)
+        self.assertEqual(self._files(), [])
+
+    def test_the_time_limit_ends_a_frame_that_keeps_its_parts(self):
+        blend = self._save(samples=100000)
+        bpy.context.scene.velour.time_limit = 0.2
+        bpy.ops.wm.save_mainfile()
+        self._render(blend, "limited")  # without: the picture as far as it is
+        said = self._render(blend, "kept", "--velour-parts", self.parts, status=1)
+        self.assertIn("the same command goes on from there", said)
+        self.assertEqual(len(self._files()), 1)
+
+    def test_another_state_is_refused(self):
+        blend = self._save()
+        self._render(blend, "part", "--velour-parts", self.parts, "--velour-samples", "0:8")
+        bpy.context.scene.velour.seed += 1
+        bpy.ops.wm.save_mainfile()
+        said = self._render(blend, "merged", "--velour-parts", self.parts, status=1)
+        self.assertIn("is not of this render: their blend differs", said)
+        self.assertIn("remove it, or name another folder", said)
+
+    def test_a_damaged_part_is_refused(self):
+        blend = self._save()
+        self._render(blend, "part", "--velour-parts", self.parts, "--velour-samples", "0:8")
+        (part,) = self.parts.iterdir()
+        whole = part.read_bytes()
+        for size in (len(whole) // 2, 100):
+            part.write_bytes(whole[:size])
+            self.assertIn(part.name, self._render(blend, "merged", "--velour-parts", self.parts, status=1))
+
+    def test_wrong_options(self):
+        blend = self._save()
+        folder = ("--velour-parts", self.parts)
+        for options, words in (
+            (("--velour-part", "1"), "there is no option --velour-part"),
+            (("--velour-samples", "0:8"), "needs a folder"),
+            ((*folder, "--velour-samples", "0:7"), "multiples of 8"),
+            ((*folder, "--velour-samples", "0:80"), "go beyond 40"),
+            ((*folder, "--velour-samples", "4/3"), "there are 3 parts"),
+            ((*folder, "--velour-samples", "1/6"), "5 camera rays"),
+            (("--velour-memory", "some"), "some"),
+        ):
+            with self.subTest(options=options):
+                self.assertIn(words, self._render(blend, "wrong", *options, status=1))
+        bpy.context.scene.velour.use_noise_target = True
+        bpy.ops.wm.save_mainfile()
+        said = self._render(blend, "wrong", *folder, "--velour-samples", "0:8", status=1)
+        self.assertIn("A noise threshold looks at a whole picture", said)
+
+    def test_memory_is_stated_and_limited(self):
+        blend = self._save(samples=8, size=1024)
+        said = self._render(blend, "stated")
+        stated = re.search(
+            r"Estimated memory: (\d+) MiB.*: blender \d+ MiB, scene .*, picture (\d+) MiB", said
+        )
+        self.assertTrue(stated, said)
+        self.assertGreater(int(stated[2]), 1024 * 1024 * 4 * 40 / 2**20)  # sums and passes
+        peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024  # this one's: others are smaller
+        self.assertLess(peak, int(stated[1]))
+        self.assertGreater(peak, int(stated[1]) / 1.5)
+        said = self._render(blend, "refused", "--velour-memory", "100M", status=1)
+        self.assertRegex(
+            said, r"would take about \d+ MiB of memory \(.*\), above its limit of 100 MiB \(--velour"
+        )
+        self._render(blend, "allowed", "--velour-memory", "8G")
