@@ -4,6 +4,7 @@ import bpy
 
 from .plot_preview import plot_picture
 from .text import draw_sentence
+from .units import button_height
 
 _LEAST, _MOST = 6, 24  # sides of a plot, in Blender's units of buttons
 _BESIDE = 3.2  # of these, what panel and editor need to the left and right
@@ -11,7 +12,7 @@ _BESIDE = 3.2  # of these, what panel and editor need to the left and right
 
 def draw_plot(context, layout, model, measurement, kind):
     """Of the model in an image datablock, as wide as the region; or the sentence why there is none."""
-    unit = _unit(context.preferences.system)
+    unit = button_height(context.preferences.system)
     scale = max(_LEAST, min(_MOST, int(context.region.width / unit - _BESIDE)))
     picture = plot_picture(context, model, measurement, kind, _side(scale, unit))
     if picture.icon or not picture.sentence:
@@ -26,11 +27,6 @@ def _side(scale, unit):
     """Pixels that Blender shows of an icon so large: it leaves a margin around it."""
     margin = 0.15 * unit if bpy.app.version >= (4, 0) else 4
     return int(scale * unit - 2 * margin)
-
-
-def _unit(system):
-    """Pixels of a button's height, as Blender rounds them."""
-    return round(18 * system.ui_scale) + 2 * int(system.pixel_size)
 
 
 def draw_chosen(layout, info):

@@ -1,0 +1,124 @@
+"""The window: sentences in panels fill the lines and are cut nowhere, whatever the scale of the interface."""
+
+import importlib
+from unittest import mock
+
+import bpy
+import numpy as np
+
+from support import inputs, window
+
+_TEXT = (
+    "Material 'Paint': the file '/home/someone/measurements/paint/blue-metallic-paint-of-a-car.velour' has"
+    " changed since it was chosen; restore it, or accept it with"
+    " 'Accept Changed File' in the material's Model panel."
+)
+_SLACK = 4  # pixels that glyphs leave free at the ends of a line
+_shown = {"text": "", "icon": "NONE", "active": True}
+
+
+class _Engine(bpy.types.RenderEngine):
+    """That no other panels are for."""
+
+    bl_idname = "TEST_ENGINE"
+    bl_label = "Test"
+
+
+class _Sentence(bpy.types.Panel):
+    bl_idname = "TEST_PT_sentence"
+    bl_label = "Sentence"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine == _Engine.bl_idname
+
+    def draw(self, context):
+        column = self.layout.column()
+        column.active = _shown["active"]
+        _text().draw_sentence(context, column, _shown["text"], _shown["icon"])
+
+
+def start(folder):
+    """Called by the harness once the window is there."""
+    bpy.utils.register_class(_Engine)
+    bpy.utils.register_class(_Sentence)
+    window.run(folder, (plain, large))
+
+
+def _text():
+    return importlib.import_module(f"{inputs.ADDON}.ui.text")
+
+
+def plain(folder):
+    yield from _each(folder, 1.0)
+
+
+def large(folder):
+    yield from _each(folder, 2.0)
+    bpy.context.preferences.view.ui_scale = 1.0
+
+
+def _each(folder, scale):
+    bpy.context.preferences.view.ui_scale = scale
+    yield from window.show_properties("RENDER")
+    areas = [area for area in window.first().screen.areas if area.type == "PROPERTIES"]
+    wide, narrow = sorted(areas, key=lambda area: -area.width)
+    narrow.spaces.active.context = "RENDER"
+    bpy.context.scene.render.engine = _Engine.bl_idname
+    for area in (wide, narrow):
+        for icon in ("NONE", "INFO"):
+            name = f"{scale:g}-{'wide' if area == wide else 'narrow'}-{icon.lower()}"
+            lines, pixels, region = yield from _drawn(folder, name, area, icon)
+            assert "".join(lines).replace(" ", "") == _TEXT.replace(" ", "")
+            assert pixels > _widest(lines) - _SLACK, (
+                f"{name}: lines of {_widest(lines)} are cut to {pixels} pixels"
+            )
+            if area == wide:
+                assert pixels > 0.8 * region.width, f"{name}: {pixels} of {region.width} pixels are used"
+    with mock.patch.object(_text(), "_BESIDE", 0.0):
+        lines, pixels, _region = yield from _drawn(folder, f"{scale:g}-control", wide, "INFO")
+    assert pixels < _widest(lines) - _SLACK, "the check would not see a line that is cut"
+
+
+def _widest(lines):
+    return max(_text()._width(line, _points()) for line in lines)
+
+
+def _points():
+    preferences = bpy.context.preferences
+    return preferences.ui_styles[0].widget.points * preferences.system.ui_scale
+
+
+def _unit():
+    return importlib.import_module(f"{inputs.ADDON}.ui.units").button_height(bpy.context.preferences.system)
+
+
+def _drawn(folder, name, area, icon):
+    """The lines that the panel in `area` has, the pixels across that they take, and its region."""
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    lines, wrap, pictures = {}, _text()._lines, []
+
+    def noted(*arguments):
+        found = lines[bpy.context.region.width] = wrap(*arguments)
+        return found
+
+    with mock.patch.object(_text(), "_lines", noted):
+        for active in (True, False):
+            _shown.update(text=_TEXT, icon=icon, active=active)
+            area.tag_redraw()
+            yield 0.6
+            pictures.append(window.screenshot(folder, f"{name}-{'bright' if active else 'grey'}"))
+    return lines[region.width], _extent(*pictures, region), region
+
+
+def _extent(bright, grey, region):
+    """Pixels from the first column that differs to the last: what was drawn of the text, an icon left out."""
+    rows, columns = slice(region.y, region.y + region.height), slice(region.x, region.x + region.width)
+    differs = np.abs(bright - grey).max(axis=2)[rows, columns] > 0.05
+    found = np.flatnonzero(differs.any(axis=0))
+    if _shown["icon"] != "NONE":
+        found = found[found > found[0] + _unit()]  # an icon is narrower, the text begins behind it
+    return int(found[-1] - found[0] + 1)
