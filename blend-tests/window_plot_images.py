@@ -1,8 +1,9 @@
-"""Plots without a measurement, of a BTF, and in an Image Editor."""
+"""Plots without a measurement, of a BTF, in an Image Editor, and saved by the file browser."""
 
 import os
 
 import bpy
+import numpy as np
 
 from support import plots, scenes, window
 
@@ -11,7 +12,7 @@ _WEAVE = os.path.join(os.path.dirname(__file__), "scenes/data/weave.velour")
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (gone_measurement, btf, enlarged))
+    window.run(folder, (gone_measurement, btf, enlarged, saved, not_saved))
 
 
 def gone_measurement(folder):
@@ -54,3 +55,52 @@ def enlarged(folder):
     with bpy.context.temp_override(window=windows[1]):
         bpy.ops.wm.window_close()
     yield 0.2
+
+
+def _ask_for_file(**settings):
+    """As the panel's button does."""
+    with window.override():
+        started = bpy.ops.velour.save_plot("INVOKE_DEFAULT", material="Paint", kind="ALBEDO", **settings)
+    assert started == {"RUNNING_MODAL"}, started
+    yield 0.5
+    assert not bpy.context.window_manager.velour.running, "the plot is made before its file is known"
+
+
+def _at_rest():
+    for _ in range(200):
+        yield 0.1
+        if not bpy.context.window_manager.velour.running:
+            return
+    raise AssertionError("the plot goes on")
+
+
+def saved(folder):
+    """A plot of the panel's settings, of the size that the browser asks for, as the file's name says."""
+    plots.material()
+    for name in ("albedo.png", "albedo.csv", "without-an-extension"):
+        yield from _ask_for_file(side=200)
+        yield from window.choose_file(folder / name)
+        yield from _at_rest()
+    image = bpy.data.images.load(str(folder / "albedo.png"))
+    assert tuple(image.size) == (200, 200), tuple(image.size)
+    pixels = np.array(image.pixels[:]).reshape(200, 200, 4)
+    assert pixels[..., :3].std() > 0.05, "the plot is empty"
+    assert (folder / "albedo.csv").read_text().count("\n") > 10
+    bpy.data.images.load(str(folder / "without-an-extension.png"))
+    assert len(bpy.context.window_manager.windows) == 1, "the browser is still there"
+
+
+def not_saved(folder):
+    """The browser is left without a file: nothing is made, nothing waits, and the next one is."""
+    plots.material()
+    yield from _ask_for_file()
+    yield from window.leave_browser()
+    yield from _at_rest()
+    state = bpy.context.window_manager.velour
+    assert (state.running, state.waiting) == (False, 0), (state.running, state.waiting)
+    assert not list(folder.glob("*.svg"))
+    assert len(bpy.context.window_manager.windows) == 1, "the browser is still there"
+    yield from _ask_for_file()
+    yield from window.choose_file(folder / "later.svg")
+    yield from _at_rest()
+    assert "<svg" in (folder / "later.svg").read_text()
