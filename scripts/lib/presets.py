@@ -22,6 +22,7 @@ from velour.native import images
 from velour_cli import ROOT
 
 _BUILT = ROOT / "build/presets"
+_PICTURE = ROOT / "docs/images/presets.png"
 _COST = {True: 10, False: 1}  # of a cloth and of another, in proportion: for the time that is left
 _COLUMNS = 6  # of the sheet of all previews
 _LICENCE = """The materials of this folder are in the public domain: CC0-1.0,
@@ -37,7 +38,10 @@ def main() -> int:
     _build(workshop, chosen)
     built = [preset for preset in PRESETS if workshop.report_of(preset)]
     previews = {preset: _preview(workshop, preset, 8 if args.quick else 1024, args.fresh) for preset in built}
-    _write_sheet(output / "work/sheet.png", list(previews.values()))
+    sheet = _sheet(list(previews.values()))
+    images.write(output / "work/sheet.png", sheet)
+    if args.docs:
+        images.write(_PICTURE, _half(sheet))
     write_library(output, workshop, previews)
     size = sum((output / name).stat().st_size for name in (LIBRARY_FILE, CATALOG_FILE, LICENCE_FILE))
     print(f"{output / LIBRARY_FILE}: {len(built)} of {len(PRESETS)} presets, {size / 1e6:.2f} MB in all")
@@ -53,6 +57,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--only", metavar="NAME[,NAME...]", default="", help="builds no others")
     parser.add_argument("--quick", action="store_true", help="small and coarse, to try the script")
     parser.add_argument("--fresh", action="store_true", help="builds anew what is kept")
+    parser.add_argument("--docs", action="store_true", help=f"writes {_PICTURE.relative_to(ROOT)}, too")
     parser.add_argument("--output", metavar="FOLDER", type=Path)
     parser.add_argument("--threads", metavar="T", type=int, default=threads())
     return parser.parse_args()
@@ -92,8 +97,8 @@ def _preview(workshop: Workshop, preset: Preset, spp: int, fresh: bool) -> Path:
     return path
 
 
-def _write_sheet(path: Path, previews: list[Path]) -> None:
-    """All previews, row by row from the top, in the order of the table."""
+def _sheet(previews: list[Path]) -> np.ndarray:
+    """All of them, row by row from the top, in the order of the table: linear RGB, row 0 at the bottom."""
     side = preset_preview.SIDE
     rows = -(-len(previews) // _COLUMNS)
     sheet = np.zeros((rows * side, _COLUMNS * side, 3), np.float32)
@@ -101,7 +106,12 @@ def _write_sheet(path: Path, previews: list[Path]) -> None:
         bottom = (rows - 1 - number // _COLUMNS) * side
         left = number % _COLUMNS * side
         sheet[bottom : bottom + side, left : left + side] = _linear(np.load(preview)[..., :3])
-    images.write(path, sheet)
+    return sheet
+
+
+def _half(pixels: np.ndarray) -> np.ndarray:
+    height, width, channels = pixels.shape
+    return pixels.reshape(height // 2, 2, width // 2, 2, channels).mean((1, 3)).astype(np.float32)
 
 
 def _linear(encoded: np.ndarray) -> np.ndarray:
