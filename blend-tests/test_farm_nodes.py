@@ -6,6 +6,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import bpy
+
 from support import process
 from support.farm import FarmTest
 
@@ -62,8 +64,23 @@ class Site(FarmTest):
         self.site.chmod(0o755)
 
     def test_read_only_site_and_home(self):
-        scripts, home = self.site / "scripts", self.site / "home"
+        scripts = self.site / "scripts"
         shutil.copytree(os.environ["VELOUR_STAGE"], scripts)
+        self._render_as_nobody(scripts, {"BLENDER_USER_SCRIPTS": str(scripts)})
+
+    @unittest.skipUnless(hasattr(bpy.utils, "extension_path_user"), "Blender has no extensions before 4.2")
+    def test_system_repository_of_extensions(self):
+        repositories = self.site / "extensions"
+        addon = Path(os.environ["VELOUR_STAGE"]) / "addons/velour"
+        shutil.copytree(addon, repositories / "system/velour")
+        self.edit_job(addon="bl_ext.system.velour")
+        nothing = self.site / "nothing"
+        nothing.mkdir()
+        variables = {"BLENDER_SYSTEM_EXTENSIONS": str(repositories), "BLENDER_USER_SCRIPTS": str(nothing)}
+        self._render_as_nobody(repositories, variables)
+
+    def _render_as_nobody(self, addon, variables):
+        home = self.site / "home"
         shutil.copytree(self.shots, self.site / "shots")
         home.mkdir()
         self.output = self.site / "shots/frames"
@@ -71,10 +88,9 @@ class Site(FarmTest):
         for path in (self.output, *self.output.rglob("*")):
             os.chown(path, _NOBODY, _NOBODY)
         nobody = ["setpriv", f"--reuid={_NOBODY}", f"--regid={_NOBODY}", "--clear-groups"]
-        refused = process.run([*nobody, "touch", home / "x", scripts / "x"])
+        refused = process.run([*nobody, "touch", home / "x", addon / "x"])
         self.assertEqual(refused.stdout.count("Permission denied"), 2, refused.stdout)
-        environment = {"BLENDER_USER_SCRIPTS": str(scripts), "HOME": str(home)}
-        node = self.node("--frames", 1, environment=environment, prefix=nobody)
+        node = self.node("--frames", 1, environment={**variables, "HOME": str(home)}, prefix=nobody)
         self.assertEqual(node.returncode, 0, node.stdout)
         self.assertEqual(self.pictures(), ["shot_0001.exr"])
         self.assertEqual(list(home.iterdir()), [])
