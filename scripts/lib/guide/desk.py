@@ -90,11 +90,13 @@ class Desk:
         """Until the plot is drawn."""
         preview = importlib.import_module(f"{inputs.ADDON}.ui.plot_preview")
         bpy.context.window_manager.velour.plot.kind = kind
-        area("PROPERTIES").tag_redraw()
-        yield 1.0
-        while not preview.is_at_rest():
+        for _ in range(5 * _PATIENCE):
+            area("PROPERTIES").tag_redraw()
             yield 0.2
-        yield 0.8
+            if preview.is_at_rest() and any(wanted.kind == kind for wanted in preview._pictures):
+                yield 0.8
+                return
+        raise TimeoutError(f"the plot {kind} is not drawn")
 
     def start(self, operator, **arguments):
         """A long action, as its button in the 3D viewport's window starts it."""
