@@ -49,8 +49,9 @@ std::vector<WarpedLobe> GgxLobes::lobes(const Vec3d& wv) const {
 
 Vec3d GgxLobes::growth(const Vec3d& wl, const Vec3d& wv) const {
   const double cosine = std::max(wv.z, 0.02);
+  // Without a reflectance at the normal it is 0 there, as the lobes are.
   return masking(wl.z, cosine) / masking(cosine, cosine) * fresnel(glm::dot(wl, glm::normalize(wl + wv))) /
-         fresnel(cosine);
+         glm::max(fresnel(cosine), Vec3d(1e-9));
 }
 
 Vec3d GgxLobes::base(const Vec3d& wl, const Vec3d& wv) const { return base_ ? value(*base_, wl, wv) : Vec3d(0.0); }

@@ -151,6 +151,7 @@ TEST(LobeRows, ShadePrincipledMaterials) {
     EXPECT_LT(shading_error({.metallic = metallic, .roughness = 0.5f}), 0.05) << metallic;
     EXPECT_LT(shading_error({.metallic = metallic, .roughness = 0.9f}), 0.03) << metallic;
   }
+  EXPECT_LT(shading_error({.roughness = 1, .specular = 0}), 0.03);
 }
 
 /// What the error is when a highlight is not what it should be: the test would see it.
