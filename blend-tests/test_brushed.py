@@ -132,6 +132,7 @@ class UvMaps(Brushed):
         self.assertEqual(self._notes(), [])
         while obj.data.uv_layers:
             obj.data.uv_layers.remove(obj.data.uv_layers[0])
+        obj.data.update_tag()  # Blender 5.2 does not see it by itself
         self._assert_alike(self._picture(), plain)  # from above u is x
         self._placement().rotation = np.pi / 2
         self._assert_unlike(self._picture(), plain)

@@ -44,11 +44,8 @@ def enlarged(folder):
     for kind in ("LOBES", "ALBEDO"):
         with window.override():
             assert bpy.ops.velour.enlarge_plot(material="Paint", kind=kind) == {"FINISHED"}
-        yield 1.0
+        yield from window.shown(f"Paint {kind.lower()}")
         assert len(windows) == 2
-        area = windows[1].screen.areas[0]
-        assert area.type == "IMAGE_EDITOR"
-        assert area.spaces.active.image.name == f"Paint {kind.lower()}"
         path = str(folder / f"enlarged-{kind.lower()}.png")
         with bpy.context.temp_override(window=windows[1], screen=windows[1].screen):
             bpy.ops.screen.screenshot(filepath=path)

@@ -109,7 +109,7 @@ def _fit(measurement, path, options):
 
 def _made(name, make):
     path = folder().parent / "inputs" / name
-    if not path.is_file():
+    if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = Path(f"{path}.{os.getpid()}")
         make(temporary)
@@ -128,16 +128,19 @@ def quarters_model(metres=0.5, **options):
     """
 
     def make(path):
-        capture = Path(f"{path}.btf")
-        _capture_quarters(capture, metres)
         velour = native()
-        with velour.Btf.load(capture) as btf, velour.compress_job(btf, **options) as job:
+        with velour.Btf.load(quarters_btf(metres)) as btf, velour.compress_job(btf, **options) as job:
             job.run()
             with job.result_model() as model:
                 path.write_bytes(model.bytes())
 
     name = "-".join(["quarters", f"{metres:g}", *map(str, options.values())])
     return _made(f"{name}-{library_file().stat().st_mtime_ns}.velour", make).read_bytes()
+
+
+def quarters_btf(metres=0.5):
+    """The BTF that it is of."""
+    return _made(f"quarters-{metres:g}.btf", lambda path: _capture_quarters(path, metres))
 
 
 def _capture_quarters(folder_of_btf, metres):

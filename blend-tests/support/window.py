@@ -128,3 +128,15 @@ def screenshot(folder, name):
     pixels = pixels / np.float32(255)
     assert pixels.std() > 0.02, "the screenshot is uniform"
     return pixels
+
+
+def shown(name):
+    """The turns until the second window has an Image Editor that shows the image of that name."""
+    windows = bpy.context.window_manager.windows
+    for _ in range(100):
+        yield 0.1
+        area = windows[1].screen.areas[0] if len(windows) > 1 else None
+        if area and area.type == "IMAGE_EDITOR" and getattr(area.spaces.active.image, "name", "") == name:
+            yield 1.0  # until it is drawn, all of it in view
+            return
+    raise AssertionError(f"no Image Editor shows {name}")

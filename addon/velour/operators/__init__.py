@@ -11,10 +11,12 @@ from .add_votf import VELOUR_OT_add_votf
 from .approximate import VELOUR_OT_approximate
 from .capture_btf import VELOUR_OT_capture_btf
 from .check_scene import VELOUR_OT_check_scene
+from .compare import VELOUR_OT_compare
 from .compress_btf import VELOUR_OT_compress_btf
 from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
+from .mark_asset import VELOUR_OT_mark_asset
 from .placement import VELOUR_OT_describe_placement, VELOUR_OT_keep_uv_density
 from .plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from .repeat_tile import VELOUR_OT_repeat_tile
@@ -30,6 +32,8 @@ CLASSES = (
     VELOUR_OT_save_model,
     VELOUR_OT_save_plot,
     VELOUR_OT_enlarge_plot,
+    VELOUR_OT_compare,
+    VELOUR_OT_mark_asset,
     VELOUR_OT_accept_file,
     VELOUR_OT_add_mesostructure,
     VELOUR_OT_add_presets,

@@ -1,7 +1,5 @@
 """Plots out of the panel: into files, and large into an Image Editor."""
 
-import functools
-
 import bpy
 from bpy.props import IntProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
@@ -13,6 +11,7 @@ from . import measured
 from .background_job import JobsInSteps
 from .model_plots import PlotSource, PlotSteps, measurement_for, plot_name
 from .plot_colors import theme_colors
+from .shown_image import made_image, show
 
 _KINDS_OF_FILES = (".png", ".svg", ".csv")
 
@@ -102,45 +101,8 @@ class VELOUR_OT_enlarge_plot(_OfMaterial, bpy.types.Operator):
     def _use(self, plot):
         context = bpy.context
         pixels = plot.draw(side=self.side, **theme_colors(context.preferences))
-        image = _image(f"{self._subject} {plot_name(self.kind)}", self.side)
+        image = made_image(f"{self._subject} {plot_name(self.kind)}", self.side, self.side)
         image.pixels.foreach_set(pixels.ravel())
         image.pack()  # or Blender asks about it at the end
         if not bpy.app.background:
-            _show(context, image)
-
-
-def _image(name, side):
-    """The one of that name, where it is a plot of this size, or a new one."""
-    image = bpy.data.images.get(name)
-    if image is None or not image.velour.is_plot or tuple(image.size) != (side, side):
-        image = bpy.data.images.new(name, side, side)
-        image.velour.is_plot = True
-    return image
-
-
-def _show(context, image):
-    """In an Image Editor that is open, or in a window of its own."""
-    windows = context.window_manager.windows
-    areas = [area for window in windows for area in window.screen.areas]
-    area = next((area for area in areas if area.type == "IMAGE_EDITOR"), None)
-    if area is None:
-        window = context.window or windows[0]
-        largest = max(window.screen.areas, key=lambda a: a.width * a.height)
-        with context.temp_override(window=window, area=largest):
-            bpy.ops.screen.area_dupli("INVOKE_DEFAULT")
-        area = windows[-1].screen.areas[0]
-        area.type = "IMAGE_EDITOR"
-    area.spaces.active.image = image
-    # The editor has its size once it has been drawn.
-    bpy.app.timers.register(functools.partial(_fit, image.name), first_interval=0.2)
-
-
-def _fit(name):
-    """All of the image in view, in the editors that show it."""
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type != "IMAGE_EDITOR" or getattr(area.spaces.active.image, "name", "") != name:
-                continue
-            region = next(region for region in area.regions if region.type == "WINDOW")
-            with bpy.context.temp_override(window=window, area=area, region=region):
-                bpy.ops.image.view_all(fit_view=True)
+            show(image)

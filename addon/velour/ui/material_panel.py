@@ -13,6 +13,7 @@ from ..operators.add_material import VELOUR_OT_add_material
 from ..operators.add_votf import VELOUR_OT_add_votf
 from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
+from ..operators.mark_asset import VELOUR_OT_mark_asset
 from ..operators.save_model import VELOUR_OT_save_model
 from .placement_summary import measured
 from .progress import draw_progress
@@ -117,6 +118,7 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
         for sentence in panel_warnings(info):
             draw_sentence(context, self.layout, sentence, icon="INFO")
         self.layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT")
+        self.layout.operator(VELOUR_OT_mark_asset.bl_idname, icon="ASSET_MANAGER")
 
 
 class VELOUR_MATERIAL_PT_outline(MaterialPanel, bpy.types.Panel):

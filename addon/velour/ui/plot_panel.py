@@ -3,11 +3,14 @@
 import bpy
 
 from ..export.nodes import velour_node
+from ..operators.compare import VELOUR_OT_compare, comparison_name
 from ..operators.model_plots import measurement_for
 from ..operators.plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from .draw_plot import draw_chosen, draw_plot
 from .material_panel import MaterialPanel
 from .summaries import model_summary
+
+_COMPARISON_UNITS = 10.0  # as high as so many buttons
 
 
 class VELOUR_MATERIAL_PT_plots(MaterialPanel, bpy.types.Panel):
@@ -36,6 +39,16 @@ class VELOUR_MATERIAL_PT_plots(MaterialPanel, bpy.types.Panel):
         for operator in (VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot):
             button = row.operator(operator.bl_idname)
             button.kind, button.view, button.azimuth = kind, settings.view, settings.azimuth
+        if node.velour.measurement is not None:
+            _draw_comparison(layout, context.material)
+
+
+def _draw_comparison(layout, material):
+    """Measured and model above the difference, as it was made last."""
+    image = bpy.data.images.get(comparison_name(material.name))
+    if image is not None and image.velour.is_plot and image.preview is not None:
+        layout.template_icon(image.preview.icon_id, scale=_COMPARISON_UNITS)
+    layout.operator(VELOUR_OT_compare.bl_idname)
 
 
 def _draw_view(layout, settings, info):

@@ -1,0 +1,65 @@
+"""Compare: a material's measurement and its model side by side, as an image."""
+
+import bpy
+from bpy.props import FloatProperty, IntProperty, StringProperty
+
+from . import measured
+from .background_job import JobsInSteps
+from .comparison import Comparison
+from .shown_image import made_image, show
+
+
+class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
+    bl_idname = "velour.compare"
+    bl_label = "Compare with the Measurement"
+    bl_description = (
+        "Show a ball as it was measured, as the model has it, and the difference, in an Image Editor"
+    )
+
+    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    side: IntProperty(name="Size", description="Of each of the three: pixels", default=512, min=64, max=4096)
+    samples: IntProperty(
+        name="Samples", description="Light directions a pixel", default=256, min=1, max=1 << 20
+    )
+    gain: FloatProperty(
+        name="Gain", description="What the difference is multiplied with", default=4.0, min=0.01
+    )
+
+    _what = "The comparison"
+
+    def _begin(self, context):
+        material = measured.wanted_material(context, self.material)
+        node = measured.modelled_node(material)
+        self._subject = material.name
+        threads = context.scene.render.threads
+        self._steps = Comparison(node, f"Material '{material.name}'", self.side, self.samples, threads)
+        self._advance()
+        self._goes_on()
+
+    def _finish(self):
+        if self._advance():
+            return None
+        image = made_image(comparison_name(self._subject), 3 * self.side, self.side, float_buffer=True)
+        image.use_view_as_render = True  # light, as a render: with the scene's view transform
+        image.pixels.foreach_set(self._steps.tiles(self.gain).ravel())
+        image.pack()  # or Blender asks about it at the end
+        _set_preview(image, self._steps.thumbnail(self.gain))
+        if not bpy.app.background:
+            show(image)
+        self.report(
+            {"INFO"},
+            f"'{self._subject}': measured, model, {self.gain:g} times the difference; the model is"
+            f" {self._steps.relative_l2:.2%} off on the ball.",
+        )
+        return {"FINISHED"}
+
+
+def comparison_name(material_name):
+    """Of the image."""
+    return f"{material_name} compared"
+
+
+def _set_preview(image, pixels):
+    preview = image.preview_ensure()
+    preview.image_size = pixels.shape[1], pixels.shape[0]
+    preview.image_pixels_float.foreach_set(pixels.ravel())

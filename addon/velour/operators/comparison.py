@@ -1,0 +1,101 @@
+"""A measurement, its model and the difference of both, on a ball."""
+
+import contextlib
+import functools
+
+import numpy as np
+
+from ..core.ball import ball_job, ball_scene, shown
+from ..core.read_job import ReadJob
+from ..export import ExportError
+from ..export.files import StoredFile, measurement_path
+from ..native import Btf, Measurement, VelourError, library
+
+_BACKDROP = 0.05  # linear, beside the balls
+_THUMBNAIL = 256  # pixels; previews are square
+
+
+class Comparison:
+    """Its jobs, each to be run before the next one is asked for; then the pictures."""
+
+    def __init__(self, node, owner, side, samples, threads):
+        self._owner, self._side, self._samples, self._threads = owner, side, samples, threads
+        if node.velour.measurement is None:
+            raise ExportError(f"{owner}: no measurement is chosen, so there is nothing to compare with.")
+        self._model = StoredFile.of(node.image, owner)
+        self._expected = node.velour.measurement.velour.sha256
+        self._until_read = contextlib.ExitStack()
+        self._path = self._until_read.enter_context(measurement_path(node.velour.measurement, owner))
+        self._balls = []  # measured, model: [side x side x 4], linear, premultiplied
+        self._jobs = self._run()
+
+    def next_job(self):
+        """None after the last."""
+        return next(self._jobs, None)
+
+    def _run(self):
+        with self._until_read:
+            reading = ReadJob(self._model.model)
+            yield reading
+            with reading.result() as model:
+                for add in (functools.partial(self._add_measured, model), _adding(model)):
+                    making = ReadJob(functools.partial(ball_scene, add))
+                    yield making
+                    with making.result() as scene, self._job(scene) as job:
+                        yield job
+                        self._balls.append(job.read_pass("Combined"))
+
+    def _job(self, scene):
+        return ball_job(scene, self._side, self._samples, self._threads)
+
+    def _add_measured(self, model, scene):
+        """On a thread of its own: what is measured may be large."""
+        try:
+            is_btf = library.file_info(self._path)["kind"] == "btf"
+            with (Btf if is_btf else Measurement).load(self._path) as measured:
+                if self._expected and measured.info()["sha256"] != self._expected:
+                    raise ExportError(
+                        f"{self._owner}: the measurement is not the file that was chosen; choose it anew."
+                    )
+                if is_btf:
+                    return scene.add_btf_material(measured)
+                return scene.add_measurement_material(measured, model)
+        except VelourError as error:
+            raise ExportError(f"{self._owner}: {error}") from error
+
+    @property
+    def relative_l2(self):
+        """Of the pixels of the ball."""
+        measured, model = (ball[..., :3] for ball in self._balls)
+        return float(np.linalg.norm(model - measured) / max(np.linalg.norm(measured), 1e-30))
+
+    def tiles(self, gain):
+        """Measured, model and `gain` times the absolute difference, from left to right: linear, opaque."""
+        measured, model = (_over_backdrop(ball) for ball in self._balls)
+        tiles = np.concatenate((measured, model, gain * np.abs(model - measured)), axis=1)
+        return np.concatenate((tiles, np.ones_like(tiles[..., :1])), axis=2)
+
+    def thumbnail(self, gain):
+        """Square, as previews have it: measured and model above the difference."""
+        half = _THUMBNAIL // 2
+        measured, model = (_resized(ball, half) for ball in self._balls)
+        difference = gain * np.abs(model - measured)
+        difference[..., 3] = np.maximum(measured[..., 3], model[..., 3])
+        picture = np.zeros((_THUMBNAIL, _THUMBNAIL, 4), np.float32)
+        picture[half:, :half], picture[half:, half:] = shown(measured), shown(model)
+        picture[:half, half // 2 : half // 2 + half] = shown(difference)
+        return picture
+
+
+def _adding(model):
+    return lambda scene: scene.add_model_material(model)
+
+
+def _over_backdrop(ball):
+    return ball[..., :3] + (1 - ball[..., 3:]) * _BACKDROP
+
+
+def _resized(pixels, side):
+    """The nearest of them: a thumbnail's noise is no matter."""
+    at = ((np.arange(side) + 0.5) * (len(pixels) / side)).astype(int)
+    return pixels[at][:, at]

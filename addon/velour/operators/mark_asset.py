@@ -1,0 +1,94 @@
+"""Mark as Asset: a measured material for asset browsers, with a picture of a ball of it."""
+
+import bpy
+from bpy.props import StringProperty
+
+from ..core.ball import ball_job, ball_scene, shown
+from ..core.read_job import ReadJob
+from ..export.files import StoredFile
+from . import measured
+from .background_job import JobsInSteps
+from .job_target import JobTarget
+
+_SIDE, _SAMPLES = 256, 256
+_TEXTS = ("author", "license", "description")
+
+
+class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
+    bl_idname = "velour.mark_asset"
+    bl_label = "Mark as Asset"
+    bl_description = "Offer the material in asset browsers, with a picture of a ball of it in a studio"
+    bl_options = {"REGISTER", "UNDO"}
+
+    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    # What is not given stays as it is.
+    author: StringProperty(name="Author", options={"SKIP_SAVE"})
+    license: StringProperty(name="License", options={"SKIP_SAVE"})
+    description: StringProperty(name="Description", options={"SKIP_SAVE"})
+    catalog: StringProperty(name="Catalog", description="Its UUID", options={"SKIP_SAVE"})
+    tags: StringProperty(name="Tags", description="With commas between them", options={"SKIP_SAVE"})
+
+    _what = "The picture of the asset"
+
+    def _begin(self, context):
+        material = measured.wanted_material(context, self.material)
+        node = measured.modelled_node(material)
+        self._target, self._subject = JobTarget(material, node), material.name
+        self._steps = _Picture(
+            StoredFile.of(node.image, f"Material '{material.name}'"), context.scene.render.threads
+        )
+        self._advance()
+        self._goes_on()
+
+    def _finish(self):
+        if self._advance():
+            return None
+        material, _node = self._target.find()
+        if material is None:
+            self.report({"WARNING"}, f"Material '{self._subject}' is gone, and no asset.")
+            return {"CANCELLED"}
+        self._describe(material)
+        preview = material.preview_ensure()
+        preview.image_size = _SIDE, _SIDE
+        preview.image_pixels_float.foreach_set(self._steps.pixels.ravel())
+        self.report({"INFO"}, f"'{material.name}' is an asset of this file.")
+        return {"FINISHED"}
+
+    def _describe(self, material):
+        is_new = material.asset_data is None
+        material.asset_mark()
+        asset = material.asset_data
+        if is_new:
+            asset.description = f"Measured: {self._steps.source}"
+            for tag in ("measured", "velour"):
+                asset.tags.new(tag, skip_if_exists=True)
+        for name in _TEXTS:
+            if getattr(self, name) and hasattr(asset, name):  # Blender 3.4 knows no license
+                setattr(asset, name, getattr(self, name))
+        if self.catalog:
+            asset.catalog_id = self.catalog
+        for tag in filter(None, (each.strip() for each in self.tags.split(","))):
+            asset.tags.new(tag, skip_if_exists=True)
+
+
+class _Picture:
+    """The jobs that render it; then `pixels`, and `source`: the name of what was measured."""
+
+    def __init__(self, stored, threads):
+        self._stored, self._threads = stored, threads
+        self.pixels = self.source = None
+        self._jobs = self._run()
+
+    def next_job(self):
+        return next(self._jobs, None)
+
+    def _run(self):
+        reading = ReadJob(self._stored.model)
+        yield reading
+        with reading.result() as model:
+            self.source = model.info()["source"]["name"]
+            making = ReadJob(lambda: ball_scene(lambda scene: scene.add_model_material(model)))
+            yield making
+            with making.result() as scene, ball_job(scene, _SIDE, _SAMPLES, self._threads) as job:
+                yield job
+                self.pixels = shown(job.read_pass("Combined"))

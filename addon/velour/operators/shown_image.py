@@ -1,0 +1,49 @@
+"""Images that operators make and show: in an Image Editor, large."""
+
+import functools
+
+import bpy
+
+
+def made_image(name, width, height, **options):
+    """The one of that name, where an operator made it in this size, or a new one; `options` as of
+    bpy.data.images.new()."""
+    image = bpy.data.images.get(name)
+    if image is None or not image.velour.is_plot or tuple(image.size) != (width, height):
+        image = bpy.data.images.new(name, width, height, **options)
+        image.velour.is_plot = True
+    return image
+
+
+def show(image):
+    """In an Image Editor that is open, or in a window of its own; as soon as the operator has ended: Blender
+    loses count of modal operators that open windows."""
+    bpy.app.timers.register(functools.partial(_show, image.name))
+
+
+def _show(name):
+    context, image = bpy.context, bpy.data.images.get(name)
+    if image is None:
+        return
+    windows = context.window_manager.windows
+    areas = [area for window in windows for area in window.screen.areas]
+    area = next((area for area in areas if area.type == "IMAGE_EDITOR"), None)
+    if area is None:
+        with context.temp_override(window=windows[0]):
+            bpy.ops.wm.window_new()
+        area = windows[-1].screen.areas[0]
+        area.type = "IMAGE_EDITOR"
+    area.spaces.active.image = image
+    # The editor has its size once it has been drawn.
+    bpy.app.timers.register(functools.partial(_fit, image.name), first_interval=0.2)
+
+
+def _fit(name):
+    """All of the image in view, in the editors that show it."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type != "IMAGE_EDITOR" or getattr(area.spaces.active.image, "name", "") != name:
+                continue
+            region = next(region for region in area.regions if region.type == "WINDOW")
+            with bpy.context.temp_override(window=window, area=area, region=region):
+                bpy.ops.image.view_all(fit_view=True)

@@ -1,0 +1,134 @@
+"""A material beside its measurement, and as an asset: pictures of a ball."""
+
+import contextlib
+import io
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+_SIDE = 64
+
+
+class BallTest(BlenderTest):
+    def _material(self, measurement, model=None, name="Paint"):
+        """Of that measurement, with a quick fit to it or to another one."""
+        bpy.ops.velour.load_material(filepath=str(measurement), assign=False)
+        (material,) = (m for m in bpy.data.materials if scenes.velour_node(m).velour.measurement)
+        material.name = name
+        node = scenes.velour_node(material)
+        other = scenes.measured_material(inputs.model_bytes(model or measurement), name="Other")
+        node.image = scenes.velour_node(other).image
+        return material
+
+    def _said(self, operator, **values):
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            self.assertEqual(operator(**values), {"FINISHED"})
+        return said.getvalue()
+
+    def _refused(self, words, operator, **values):
+        with self.assertRaises(RuntimeError) as caught:
+            operator(**values)
+        self.assertIn(words, str(caught.exception))
+
+
+class Compare(BallTest):
+    def _tiles(self, image):
+        """[side x side x 3] each, row 0 at the bottom."""
+        self.assertEqual(tuple(image.size), (3 * _SIDE, _SIDE))
+        pixels = np.empty(3 * _SIDE * _SIDE * 4, np.float32)
+        image.pixels.foreach_get(pixels)
+        return np.split(pixels.reshape(_SIDE, 3 * _SIDE, 4)[..., :3], 3, axis=1)
+
+    def _compared(self, material, **options):
+        self._said(bpy.ops.velour.compare, material=material.name, side=_SIDE, samples=64, **options)
+        return bpy.data.images[f"{material.name} compared"]
+
+    @staticmethod
+    def _off(measured, model):
+        return np.linalg.norm(model - measured) / np.linalg.norm(measured)
+
+    def test_a_fit_is_like_its_measurement(self):
+        material = self._material(inputs.glossy_measurement())
+        image = self._compared(material)
+        self.assertTrue(image.is_float)
+        self.assertTrue(image.use_view_as_render)
+        self.assertTrue(image.packed_file)
+        measured, model, difference = self._tiles(image)
+        np.testing.assert_allclose(difference, 4 * np.abs(model - measured), atol=1e-4)
+        self.assertLess(self._off(measured, model), 0.15)  # of four lobes
+        ball = measured[_SIDE // 2 - 8 : _SIDE // 2 + 8, _SIDE // 2 - 8 : _SIDE // 2 + 8]
+        self.assertGreater(ball[..., 2].mean(), 1.3 * ball[..., 0].mean())  # its base is blue
+        self.assertEqual(tuple(image.preview.image_size), (256, 256))
+        preview = np.array(image.preview.image_pixels_float).reshape(256, 256, 4)
+        self.assertGreater(preview[128:, :128, :3].std(), 0.05)
+        again = self._compared(material, gain=1.0)
+        self.assertEqual(again, image)
+        self.assertLess(self._tiles(again)[2].mean(), 0.5 * difference.mean())
+
+    def test_another_model_is_not(self):
+        material = self._material(inputs.glossy_measurement(), model=inputs.lambert_measurement())
+        measured, model, _difference = self._tiles(self._compared(material))
+        self.assertGreater(self._off(measured, model), 0.5)
+
+    def test_a_btf(self):
+        """Of four quarters, whose model is exact but for its rounding."""
+        bpy.ops.velour.load_material(filepath=str(inputs.quarters_btf()), assign=False)
+        (material,) = bpy.data.materials
+        model = scenes.measured_material(inputs.quarters_model(), name="Model")
+        scenes.velour_node(material).image = scenes.velour_node(model).image
+        measured, model, _difference = self._tiles(self._compared(material))
+        self.assertLess(self._off(measured, model), 0.05)
+        self.assertGreater(measured[20:44, 20:44].std(), 0.05)
+
+    def test_refusals(self):
+        material = self._material(inputs.glossy_measurement())
+        measurement = scenes.velour_node(material).velour.measurement
+        measurement.filepath_raw = "//gone.binary"
+        self._refused("gone.binary", bpy.ops.velour.compare, material="Paint")
+        scenes.velour_node(material).velour.measurement = None
+        self._refused("nothing to compare with", bpy.ops.velour.compare, material="Paint")
+        scenes.velour_node(material).image = None
+        self._refused("has no model", bpy.ops.velour.compare, material="Paint")
+
+
+class Asset(BallTest):
+    def test_a_material_becomes_an_asset(self):
+        material = self._material(inputs.glossy_measurement())
+        self._said(
+            bpy.ops.velour.mark_asset,
+            material="Paint",
+            author="A. Painter",
+            tags="car, blue",
+            license="CC0-1.0",
+        )
+        asset = material.asset_data
+        self.assertEqual(asset.author, "A. Painter")
+        self.assertEqual({tag.name for tag in asset.tags}, {"measured", "velour", "car", "blue"})
+        self.assertTrue(asset.description.startswith("Measured: "))
+        if hasattr(asset, "license"):
+            self.assertEqual(asset.license, "CC0-1.0")
+        self.assertEqual(tuple(material.preview.image_size), (256, 256))
+        pixels = np.array(material.preview.image_pixels_float).reshape(256, 256, 4)
+        self.assertTrue((pixels[..., 3] == 1).all())
+        middle, corner = pixels[96:160, 96:160, :3].mean((0, 1)), pixels[250:, 250:, :3].mean((0, 1))
+        self.assertGreater(middle[2], middle[0] + 0.05)
+        self.assertLess(np.ptp(corner), 0.01)  # the backdrop is grey
+
+    def test_what_is_given_once_stays(self):
+        material = self._material(inputs.glossy_measurement())
+        for values in ({"author": "A. Painter", "description": "Blue"}, {"tags": "later"}):
+            self._said(bpy.ops.velour.mark_asset, material="Paint", **values)
+        self.assertEqual(
+            (material.asset_data.author, material.asset_data.description), ("A. Painter", "Blue")
+        )
+        self.assertIn("later", {tag.name for tag in material.asset_data.tags})
+
+    def test_no_model(self):
+        material = self._material(inputs.glossy_measurement())
+        scenes.velour_node(material).image = None
+        self._refused("has no model", bpy.ops.velour.mark_asset, material="Paint")
+        self.assertIsNone(material.asset_data)
