@@ -6,10 +6,12 @@ import bpy
 
 from support import scenes, viewport, window
 
+_DATA = Path(__file__).parent / "scenes/data"
+
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (restarts, refusals))
+    window.run(folder, (restarts, refusals, cures))
 
 
 def restarts(folder):
@@ -46,7 +48,7 @@ def refusals(folder):
     try:
         viewport.show_real_time()
         yield from viewport.until(lambda: viewport.samples() > 0, "the ray tracer shows nothing")
-        assert "instances" in viewport.the_one()._not_real_time, viewport.the_one()._not_real_time
+        assert "instances" in viewport.the_one()._refusal.sentence, viewport.the_one()._refusal.sentence
         window.screenshot(folder, "refused")
     finally:
         realtime._MOST_DRAWS = most
@@ -54,4 +56,44 @@ def refusals(folder):
     yield from viewport.finished()
     bpy.context.scene.velour.viewport_mode = "REAL_TIME"
     yield from viewport.real_time_finished()
-    assert not viewport.the_one()._not_real_time
+    assert not viewport.the_one()._refusal
+
+
+def cures(folder):
+    """A ninth lamp on a BTF is too much, an eighth is not; what moves meanwhile is not tried anew."""
+    scenes.set_world((0.5, 0.7, 1.0), 0.5)
+    bpy.data.objects.remove(bpy.data.objects["Light"])
+    cube = bpy.data.objects["Cube"]
+    cube.active_material = scenes.measured_material((_DATA / "weave.velour").read_bytes(), "Weave")
+    weave = scenes.velour_node(cube.active_material).image
+    lamps = [_lamp(i) for i in range(9)]
+    viewport.show_real_time()
+    yield from viewport.until(lambda: viewport.samples() > 0, "the ray tracer shows nothing")
+    refusal = viewport.the_one()._refusal
+    assert "lamps" in refusal.sentence, refusal.sentence
+
+    lamps[0].location.x = 3
+    cube.rotation_euler.z = 0.5
+    lamps[1].data.energy = 20
+    yield from viewport.finished()
+    assert viewport.the_one()._refusal is refusal
+
+    bpy.data.objects.remove(lamps.pop())
+    yield from viewport.real_time_finished()
+    assert not viewport.the_one()._refusal
+
+    _lamp(8)
+    yield from viewport.until(lambda: viewport.samples() > 0, "the ray tracer shows nothing")
+    assert "lamps" in viewport.the_one()._refusal.sentence
+    cube.active_material = scenes.measured_material((_DATA / "paint.velour").read_bytes(), "Paint")
+    yield from viewport.real_time_finished()
+    assert not viewport.the_one()._refusal
+    scenes.velour_node(cube.active_material).image = weave
+    yield from viewport.until(lambda: viewport.the_one()._refusal, "the ninth lamp is shown")
+
+
+def _lamp(i):
+    lamp = bpy.data.objects.new(f"Lamp {i}", bpy.data.lights.new(f"Lamp {i}", "POINT"))
+    lamp.location = (i - 4, -3, 4)
+    bpy.context.scene.collection.objects.link(lamp)
+    return lamp

@@ -12,7 +12,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (net_of_paint, stones_of_a_btf, outline_comes_and_goes))
+    window.run(folder, (net_of_paint, net_of_its_btf, stones_of_a_btf, outline_comes_and_goes))
 
 
 def _ball_in(structure, material, radius=4.0):
@@ -31,6 +31,25 @@ def _ball_in(structure, material, radius=4.0):
     return ball
 
 
+def _plane_of_its_btf(folder, structure):
+    """A plane of a mesostructure's own BTF, with its outline."""
+    for obj in list(bpy.data.objects):
+        if obj.type != "CAMERA":
+            bpy.data.objects.remove(obj)
+    with window.override():
+        bpy.ops.velour.add_mesostructure(type=structure, count=2, resolution=8)
+        tile = bpy.context.object
+        settings = {"texels": 32, "views": 64, "lights": 64, "samples": 64, "bounces": 0, "sides": "ONE"}
+        path = folder / f"{structure.capitalize()}.btf"
+        assert bpy.ops.velour.capture_btf(directory=str(path), **settings) == {"FINISHED"}
+        assert bpy.ops.velour.compress_btf(filepath=str(path)) == {"FINISHED"}
+        material = bpy.data.materials[path.stem]
+        scenes.add_plane(material, size=9.0)
+    bpy.ops.velour.add_votf(material=material.name, structure=tile.name, texels=32)
+    bpy.data.objects.remove(tile)
+    scenes.velour_node(material).velour.placement.repeats = (2, 2)
+
+
 def _overlap(drawn, traced):
     """Soft intersection over union of alpha."""
     a, b = drawn[..., 3], traced[..., 3]
@@ -42,7 +61,7 @@ def _compared(folder, name):
     viewport.show_real_time()
     yield from viewport.real_time_finished()
     window.screenshot(folder, name)
-    assert not viewport.the_one()._not_real_time, viewport.the_one()._not_real_time
+    assert not viewport.the_one()._refusal, viewport.the_one()._refusal.sentence
     drawn = realtime.pixels()
     traced = realtime.traced(realtime.equirectangular(realtime.mixture()), samples=512)
     overlap, means = _overlap(drawn, traced), [picture[..., 3].mean() for picture in (drawn, traced)]
@@ -59,6 +78,48 @@ def net_of_paint(folder):
     height, width = drawn.shape[:2]
     middle = drawn[height // 2 - 20 : height // 2 + 20, width // 2 - 20 : width // 2 + 20, 3]
     assert middle.min() < 0.5 < middle.max()
+
+
+def net_of_its_btf(folder):
+    """What its texels hold beyond outlines is folded back: else a tenth of the light is missing.
+
+    A plane, for the far side of a ball is in its own shadow.
+    """
+    realtime.sky(folder)
+    _plane_of_its_btf(folder, "NET")
+    drawn, traced, _ = yield from _compared(folder, "net-btf")
+    share, error = _share(drawn, traced), realtime.error(drawn, traced)
+    _close_structure()
+    yield 0.3
+    yield from viewport.real_time_finished()
+    closed = _share(realtime.pixels(), traced)
+    print(
+        f"light {share:.4f} of the ray tracer's, {closed:.4f} not folded; relative L2: {error:.4f}",
+        flush=True,
+    )
+    assert abs(share - 1) < 0.02, share
+    assert closed < 0.95, closed
+    assert error < 0.11, error
+
+
+def _share(drawn, traced):
+    """Of the ray tracer's light, where both show structure alone."""
+    inside = (drawn[..., 3] > 0.999) & (traced[..., 3] > 0.999)
+    return drawn[inside][:, :3].sum() / traced[inside][:, :3].sum()
+
+
+def _close_structure():
+    """Tells the shader that rays cannot go through: nothing is folded."""
+    import gpu
+
+    shown, textures = viewport.real_time(), viewport.addon("realtime.textures")
+    (shell,) = (table for table in shown._drawing._tables.values() if type(table).__name__ == "ShellTables")
+    terms = np.array(shell._terms.read().to_list(), np.float32).reshape(1, 2, 4)
+    terms[0, 1, 1] = 0
+    shell._terms = textures.texture(gpu, terms)
+    shown._drawing.restart()
+    viewport.addon("engine.viewport_clock").watch(shown)
+    shown._engine().tag_redraw()
 
 
 def stones_of_a_btf(folder):

@@ -248,13 +248,14 @@ def test_maps_of_a_btf_hold_its_terms():
         report = job.run()
         table = job.result_table()
         coefficients = model.info()["coefficients"]
-    assert len(report["terms"]) == coefficients
-    assert report["layers"] == -(-coefficients // 4) + 1
+    (side,) = report["sides"]
+    assert len(side["terms"]) == coefficients
+    assert side["layers"] == -(-coefficients // 4) + 1
     assert report["levels"][0][1:] == [16, 16]
-    assert table.shape[0] == report["layers"] * 18
-    relief = table.reshape(report["layers"], 18, -1, 4)[-1, 1:17, 1:17, 0]
-    assert relief.min() >= report["bottom"] - 1e-6
-    assert relief.max() <= report["top"] + 1e-6
+    assert table.shape[0] == side["layers"] * 18
+    relief = table.reshape(side["layers"], 18, -1, 4)[-1, 1:17, 1:17, 0]
+    assert relief.min() >= side["bottom"] - 1e-6
+    assert relief.max() <= side["top"] + 1e-6
 
 
 def test_only_btfs_of_srbfs_have_maps(model_file):

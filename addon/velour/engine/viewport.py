@@ -20,6 +20,7 @@ from ..realtime import UnshownError
 from . import viewport_clock
 from .options import viewport_options
 from .realtime_viewport import RealtimeViewport
+from .refusal import Refusal
 from .viewport_picture import ViewportPicture
 
 log = logging.getLogger(__package__)
@@ -45,7 +46,7 @@ class Viewport:
         self._place = None  # in the region
         self._scene_error = self._view_error = ""
         self._real_time = None  # RealtimeViewport, where that shows the scene
-        self._not_real_time = ""  # why it does not, though it should
+        self._refusal = None  # why it does not, though it should
         _all.add(self)
 
     def close(self):
@@ -56,6 +57,8 @@ class Viewport:
 
     def update(self, context, depsgraph):
         """The scene has changed, or is shown for the first time."""
+        if self._refusal and self._refusal.may_be_over(depsgraph):
+            self._refusal = None
         if self._is_real_time(depsgraph, lambda shown: shown.update(context, depsgraph)):
             return
         self._scene_error = ""
@@ -81,18 +84,19 @@ class Viewport:
             self._view_error = _sentence(error)
             self._close_job()
         line = self._scene_error or self._view_error or self._progress()
-        self._engine().update_stats("Velour", "; ".join(filter(None, (self._not_real_time, line))))
+        said = self._refusal and self._refusal.sentence
+        self._engine().update_stats("Velour", "; ".join(filter(None, (said, line))))
 
     def _is_real_time(self, depsgraph, show):
         """Whether it is to be, and could be: `show` has been called with a RealtimeViewport.
 
-        What real time cannot show, the ray tracer does, with a sentence, until the mode is chosen anew.
+        What real time cannot show, the ray tracer does, with a sentence, until the Refusal may be over.
         """
         if depsgraph.scene.velour.viewport_mode != "REAL_TIME":
             self._drop_real_time()
-            self._not_real_time = ""
+            self._refusal = None
             return False
-        if self._not_real_time:
+        if self._refusal:
             return False
         try:
             if self._real_time is None:
@@ -101,10 +105,10 @@ class Viewport:
                 self._real_time = RealtimeViewport(self._engine)
             show(self._real_time)
             return True
-        except UnshownError as reason:
-            self._not_real_time = f"Not in real time: {reason}"
         except Exception as error:
-            self._not_real_time = f"Not in real time: {_sentence(error)}"
+            is_scene = isinstance(error, (UnshownError, ExportError, VelourError))
+            reason = str(error) if isinstance(error, UnshownError) else _sentence(error)
+            self._refusal = Refusal(reason, is_scene, depsgraph)
         self._drop_real_time()
         return False
 

@@ -1,10 +1,25 @@
 // Maps of a BTF of multivariate SRBFs (native/src/realtime/btf_maps.h, btf/srbf_btf.h), lit by the world and by lamps.
-// btf_terms, first row: how many levels, lowest and highest of the relief, aspect; then of each level x, width, height of
-// its map, and from pixel 17 on the columns of the matrix from Rec. 709 to the working space. Second row: of each coefficient light and phase; view and whether it is in the tile's frame; half and the sum
-// of all lengths; colour.
+// btf_terms, first row: how many levels, aspect; then of each level x, width, height of its map, and from pixel 17 on the
+// columns of the matrix from Rec. 709 to the working space. Then two rows a side, the one above first: how many
+// coefficients, first layer, lowest and highest of the relief; of each coefficient light and phase; view and whether it is
+// in the tile's frame; half and the sum of all lengths; colour.
 
 const int LIGHTS = 16, MOST_LAMPS = 16;
 const float GOLDEN = 2.39996323;
+
+struct Side {
+  int row, first, relief;  // of its coefficients; layers
+  int coefficients;
+  float bottom, top;
+};
+
+Side side_of(bool below)
+{
+  int row = below && layout_.y > 1 ? 3 : 1;
+  vec4 info = texelFetch(btf_terms, ivec2(0, row), 0);
+  int coefficients = int(info.x), first = int(info.y);
+  return Side(row + 1, first, first + (coefficients + 3) / 4, coefficients, info.z, info.w);
+}
 
 vec4 level_info(int level) { return texelFetch(btf_terms, ivec2(1 + level, 0), 0); }
 
@@ -17,18 +32,18 @@ vec4 map_at(int layer, int level, vec2 texel)
 }
 
 // Where the view's ray first is not above the relief: Relief::seen_texel, in steps of half a texel.
-vec2 seen_texel(int level, vec2 place, vec3 wv, int relief)
+vec2 seen_texel(Side side, int level, vec2 place, vec3 wv)
 {
-  vec4 tile = texelFetch(btf_terms, ivec2(0, 0), 0);
+  float aspect = texelFetch(btf_terms, ivec2(0, 0), 0).y, depth = side.bottom - side.top;
   vec2 size = level_info(level).yz;
-  vec2 shift = size * vec2(wv.x, wv.y / tile.w) / max(wv.z, 1e-4), on_plane = place * size - 0.5;
-  if (tile.z <= tile.y) return on_plane + tile.y * shift;
-  vec2 from = on_plane + tile.z * shift, way = (tile.y - tile.z) * shift;
+  vec2 shift = size * vec2(wv.x, wv.y / aspect) / max(wv.z, 1e-4), on_plane = place * size - 0.5;
+  if (depth >= 0.0) return on_plane + side.bottom * shift;
+  vec2 from = on_plane + side.top * shift, way = depth * shift;
   int steps = clamp(int(2.0 * max(abs(way.x), abs(way.y))) + 1, 2, 64);
-  float before = 0.0, gap_before = tile.z - map_at(relief, level, from).x;
+  float before = 0.0, gap_before = side.top - map_at(side.relief, level, from).x;
   for (int i = 1; i <= steps; ++i) {
     float when = float(i) / float(steps);
-    float gap = mix(tile.z, tile.y, when) - map_at(relief, level, from + when * way).x;
+    float gap = mix(side.top, side.bottom, when) - map_at(side.relief, level, from + when * way).x;
     if (gap <= 0.0) return from + mix(before, when, gap_before / max(gap_before - gap, 1e-9)) * way;
     before = when;
     gap_before = gap;
@@ -64,34 +79,29 @@ float product(vec3 a, float la, vec3 b, float lb)
   return both * la / (2.0 * PI * (1.0 - exp(-2.0 * la))) * lb / (2.0 * PI * (1.0 - exp(-2.0 * lb)));
 }
 
-void main()
-{
-  float level = level_of_pixel(texelFetch(btf_terms, ivec2(0, 0), 0).x - 1.0);
-  Site site = site_here(false);
-  mat3 frame = frame_about(site.normal, site.along_u);
-  if (dot(frame[1], site.along_v) < 0.0) frame[1] = -frame[1];
-  vec3 wv = site.view * frame;
-  int relief = textureSize(btf_maps, 0).z - 1;
-  int fine = int(level);
-  float part = level - float(fine);
-  vec2 texel = seen_texel(fine, site.place - floor(site.place), wv, relief), coarse = texel;
-  if (part > 0.0) coarse = (texel + 0.5) * level_info(fine + 1).yz / level_info(fine).yz - 0.5;
-  vec2 slope = map_at(relief, fine, texel).yz;
-  if (part > 0.0) slope = mix(slope, map_at(relief, fine + 1, coarse).yz, part);
-  mat3 turn = to_normal(slope);
+// Directions of light and what comes from them, times the cosine.
+vec3 wl[LIGHTS + MOST_LAMPS], arrives[LIGHTS + MOST_LAMPS];
+int count = 0;
 
-  // Even directions of the cosine, each for a lobe as wide as its share; then lamps. `emission.w` turns them.
-  vec3 wl[LIGHTS + MOST_LAMPS], arrives[LIGHTS + MOST_LAMPS], sums[LIGHTS + MOST_LAMPS];
+// RealtimeScene.check() has that all fit; what is written here never leaves the arrays.
+void add_lamp(vec3 local, vec3 irradiance)
+{
+  if (local.z <= 0.0 || count == LIGHTS + MOST_LAMPS) return;
+  wl[count] = local;
+  arrives[count++] = local.z * irradiance;
+}
+
+// Even directions of the cosine, each for a lobe as wide as its share; then lamps. `emission.w` turns them.
+void gather_light(mat3 frame)
+{
   for (int i = 0; i < LIGHTS; ++i) {
     float u = (float(i) + 0.5) / float(LIGHTS), azimuth = GOLDEN * float(i) + emission.w;
     wl[i] = vec3(sqrt(u) * vec2(cos(azimuth), sin(azimuth)), sqrt(1.0 - u));
     float lobe = 1.0 + LEVELS_OF_OCTAVE * log2(max(2.0 * float(LIGHTS) * wl[i].z, 1.0));
     arrives[i] = PI / float(LIGHTS) * mean_light(lobe, frame * wl[i]);
-    sums[i] = vec3(0);
   }
-  int count = LIGHTS;
-  // Narrow lobes of the world are lamps: directions so far apart would blur them. RealtimeScene.check() has that all of
-  // them fit; what is written here never leaves the arrays.
+  count = LIGHTS;
+  // Narrow lobes of the world are lamps: directions so far apart would blur them.
   for (int narrow = 0; narrow < layout_.w; ++narrow) {
     int at = 4 * (int(gain.w) + narrow);
     vec3 axis = texelFetch(lamps, ivec2(at, 0), 0).xyz;
@@ -100,31 +110,38 @@ void main()
       float lobe = 2.0 * float(LIGHTS) * wl[i].z;
       arrives[i] -= PI / float(LIGHTS) * energy.rgb * product(frame * wl[i], max(lobe, 1.0), axis, energy.w);
     }
-    vec3 local = axis * frame;
-    if (local.z <= 0.0 || count == LIGHTS + MOST_LAMPS) continue;
-    wl[count] = local;
-    arrives[count] = local.z * energy.rgb;
-    sums[count++] = vec3(0);
+    add_lamp(axis * frame, energy.rgb);
   }
   for (int lamp = 0; lamp < int(gain.w); ++lamp) {
     vec3 light;
     float bandwidth;
     vec3 irradiance = lamp_light(lamp, light, bandwidth);
-    vec3 local = light * frame;
-    if (local.z <= 0.0 || count == LIGHTS + MOST_LAMPS) continue;
-    wl[count] = local;
-    arrives[count] = local.z * irradiance;
-    sums[count++] = vec3(0);
+    add_lamp(light * frame, irradiance);
   }
+}
 
-  for (int layer = 0; layer < relief; ++layer) {
+// What the place of the tile reflects of that.
+vec3 reflected(Side side, vec2 place, float level, vec3 wv)
+{
+  int fine = int(level);
+  float part = level - float(fine);
+  vec2 texel = seen_texel(side, fine, place - floor(place), wv), coarse = texel;
+  if (part > 0.0) coarse = (texel + 0.5) * level_info(fine + 1).yz / level_info(fine).yz - 0.5;
+  vec2 slope = map_at(side.relief, fine, texel).yz;
+  if (part > 0.0) slope = mix(slope, map_at(side.relief, fine + 1, coarse).yz, part);
+  mat3 turn = to_normal(slope);
+
+  vec3 sums[LIGHTS + MOST_LAMPS];
+  for (int i = 0; i < count; ++i) sums[i] = vec3(0);
+  for (int layer = side.first; layer < side.relief; ++layer) {
     vec4 value = map_at(layer, fine, texel);
     if (part > 0.0) value = mix(value, map_at(layer, fine + 1, coarse), part);
-    for (int k = 0; k < 4 && 4 * layer + k < layout_.y; ++k) {
-      int at = 4 * (4 * layer + k);
-      vec4 of_light = texelFetch(btf_terms, ivec2(at, 1), 0), of_view = texelFetch(btf_terms, ivec2(at + 1, 1), 0);
-      vec4 of_half = texelFetch(btf_terms, ivec2(at + 2, 1), 0);
-      vec3 color = value[k] * texelFetch(btf_terms, ivec2(at + 3, 1), 0).rgb;
+    int first = 4 * (layer - side.first);
+    for (int k = 0; k < 4 && first + k < side.coefficients; ++k) {
+      int at = 4 * (first + k);
+      vec4 of_light = texelFetch(btf_terms, ivec2(at, side.row), 0), of_view = texelFetch(btf_terms, ivec2(at + 1, side.row), 0);
+      vec4 of_half = texelFetch(btf_terms, ivec2(at + 2, side.row), 0);
+      vec3 color = value[k] * texelFetch(btf_terms, ivec2(at + 3, side.row), 0).rgb;
       // What is of the relief's frame is turned into the tile's: dot(a, turn b) = dot(a turn, b).
       bool in_tile = of_view.w > 0.5;
       vec3 light = in_tile ? of_light.xyz : of_light.xyz * turn, half_way = in_tile ? of_half.xyz : of_half.xyz * turn;
@@ -143,5 +160,20 @@ void main()
     vec3 f = max(sums[i], vec3(0));
     sum += arrives[i] * (to_working * (layout_.z == 1 ? f * f : f));
   }
+  return sum;
+}
+
+void main()
+{
+  float level = level_of_pixel(texelFetch(btf_terms, ivec2(0, 0), 0).x - 1.0);
+  Site site = site_here(level_info(0).yz);
+  // At a point: a footprint would average the holes in once more.
+  if (site.is_holed) level = 0.0;
+  mat3 frame = frame_about(site.normal, site.along_u);
+  if (dot(frame[1], site.along_v) < 0.0) frame[1] = -frame[1];
+  vec3 wv = site.view * frame, sum = vec3(0);
+  Side side = side_of(site.is_behind);
+  gather_light(frame);
+  for (int i = 0; i < (site.beyond == vec2(0) ? 1 : 2); ++i) sum += reflected(side, site.place + float(i) * site.beyond, level, wv);
   pixel = vec4(gain.rgb * max(sum, vec3(0)), 1);
 }

@@ -57,7 +57,7 @@ float density(Lobe lobe, vec3 normal, vec3 center, vec3 light, float lamp_bandwi
 
 void main()
 {
-  Site site = site_here(true);
+  Site site = site_here(vec2(0));
   vec3 n = site.normal;
   mat3 frame = frame_about(n, is_isotropic() ? site.view : site.along_u);
   Place place = place_of(site.view * frame);

@@ -1,7 +1,9 @@
 // Where a pixel's surface is: the structure that the view's ray meets in the shell (VOTF) under the top, which is what is
 // drawn; a ray that meets none goes on. As votf/shell_trace.h and render/shell_crossing.h have it, in steps of the
-// distance. shell_maps: native/src/realtime/shell_maps.h; shell_terms: bottom, top, reference, aspect.
+// distance. shell_maps: native/src/realtime/shell_maps.h; shell_terms: bottom, top, reference, aspect; then the longest
+// distance that is told apart, and whether the structure is open.
 
+const int DEPTH_LOOKS = 64;
 const int LOOKS = 160;  // a ray that glides along the structure for so long has met it
 const float WITHIN = 0.03, LEAST_STEP = 0.1;  // of the distance from point to point
 const float LEAST_COSINE = 0.15;
@@ -23,6 +25,7 @@ vec4 shell_at(vec3 q)
 struct ShellWay {
   vec2 place, along;
   float sine, cosine, curvature, scale, begin, end;
+  float speed;  // at most, widths a metre
 };
 
 // ShellRay::at, over the surface.
@@ -46,13 +49,19 @@ float way_end(ShellWay way, float depth, bool leaves)
   return leaves ? 0.0 : 2.0 * way.cosine / way.curvature;
 }
 
+float pitch() { return 1.0 / float(textureSize(shell_maps, 0).x - 2); }
+
+float way_speed(ShellWay way, float depth)
+{
+  float radius = max(1.0 - max(way.curvature * depth, 0.0) / way.scale, 1.0 / 3.0);
+  return length(vec2(length(way.along) * way.sine / (radius * radius),
+                     way.scale * (way.curvature < 0.0 ? 1.0 : way.cosine)));
+}
+
 // Whether the structure is met, and where.
 bool met(ShellWay way, float top, out float s)
 {
-  float pitch = 1.0 / float(textureSize(shell_maps, 0).x - 2), turn = way.end < way.begin ? -1.0 : 1.0;
-  float depth = top - shell_terms_here().x, radius = max(1.0 - max(way.curvature * depth, 0.0) / way.scale, 1.0 / 3.0);
-  float speed = length(vec2(length(way.along) * way.sine / (radius * radius),
-                            way.scale * (way.curvature < 0.0 ? 1.0 : way.cosine)));
+  float pitch = pitch(), turn = way.end < way.begin ? -1.0 : 1.0;
   float before = way.begin, free = 0.0;
   s = way.begin;
   for (int i = 0; i < LOOKS; ++i) {
@@ -64,15 +73,60 @@ bool met(ShellWay way, float top, out float s)
     if ((way.end - s) * turn <= 0.0) return false;
     before = s;
     free = distance;
-    s += turn * max(distance, LEAST_STEP * pitch) / speed;
+    s += turn * max(distance, LEAST_STEP * pitch) / way.speed;
     if ((way.end - s) * turn < 0.0) s = way.end;
   }
   return true;
 }
 
-// `on_structure`: the normal is the structure's own; else the smooth surface's, and the place where the ray crosses the plane
-// of the texels of a BTF.
-Site site_here(bool on_structure)
+// How deep within the structure a way comes from `from` on, and where; once that is `most`, what lies further on is left
+// out. ShellDepth.
+vec2 deepest_behind(ShellWay way, float top, float from, float most)
+{
+  float far = abs(way.end - from), stride = max(pitch() / way.speed, far / float(DEPTH_LOOKS));
+  float turn = way.end < from ? -1.0 : 1.0;
+  vec2 deepest = vec2(-1e9, from);
+  for (int i = 0; i <= DEPTH_LOOKS && float(i - 1) * stride < far && deepest.x < most; ++i) {
+    float s = from + turn * min(float(i) * stride, far), depth = -shell_at(way_at(way, s, top)).x;
+    if (depth > deepest.x) deepest = vec2(depth, s);
+  }
+  return deepest;
+}
+
+// ShellField::gradient: within thin structure the slopes of the table are too smooth.
+vec3 slope_at(vec3 q)
+{
+  vec3 slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    vec3 half_pitch = vec3(0);
+    half_pitch[axis] = 0.5 * pitch();
+    slope[axis] = (shell_at(q + half_pitch).x - shell_at(q - half_pitch).x) / pitch();
+  }
+  return slope;
+}
+
+// ShellCrossing::beyond_outline.
+vec2 beyond_outline(ShellWay way, float top, float s, vec2 texels)
+{
+  vec2 widths = vec2(1.0, shell_terms_here().w), texel = widths / texels;
+  float most = min(1.5 * max(texel.x, texel.y), 0.9 * texelFetch(shell_terms, ivec2(1, 0), 0).x);
+  vec2 deepest = deepest_behind(way, top, s, most);
+  if (deepest.x >= most) return vec2(0);
+  vec3 place = way_at(way, deepest.y, top), slope = slope_at(place);
+  float ahead = (way.end < s ? -1.0 : 1.0) * pitch() / way.speed;
+  vec3 along = normalize(way_at(way, deepest.y + ahead, top) - place), across = slope - dot(slope, along) * along;
+  vec2 outside = across.xy / max(length(across), 1e-9);
+  float depth = max(deepest.x, 0.0), square = dot(outside, outside);
+  if (depth >= 1.5 * length(outside * texel) || square <= 0.0) return vec2(0);
+  vec2 over = outside * (2.0 * depth / square);
+  // Where other structure lies behind, there is no outline.
+  way.place += over;
+  return deepest_behind(way, top, way.begin, 0.0).x > 0.0 ? vec2(0) : over / widths;
+}
+
+// `texels`: of a BTF in a tile, whose place is where the ray crosses the plane of its texels, with the smooth surface's
+// normal; 0: of no BTF, the normal is the structure's own.
+Site site_here(vec2 texels)
 {
   Site site;
   site.view = view_from_here();
@@ -99,6 +153,7 @@ Site site_here(bool on_structure)
   way.curvature = dot(normal_turn, unit);
   way.place = widths * coordinates;
   way.along = widths * (a * uv_x + b * uv_y);
+  way.speed = way_speed(way, terms.y - terms.x);
   float end = way_end(way, terms.y - terms.x, leaves), s = 0.0;
   way.begin = leaves ? end : 0.0;
   way.end = leaves ? 0.0 : end;
@@ -106,7 +161,10 @@ Site site_here(bool on_structure)
 
   vec3 q = way_at(way, s, terms.y), over = normalize(n + s * way.sine * normal_turn);
   vec3 u_gradient = uv_x.x * per_x + uv_y.x * per_y, v_gradient = uv_x.y * per_x + uv_y.y * per_y;
-  if (on_structure) {
+  site.is_behind = leaves;
+  site.beyond = vec2(0);
+  site.is_holed = texels != vec2(0) && texelFetch(shell_terms, ivec2(1, 0), 0).y > 0.0;
+  if (texels == vec2(0)) {
     vec3 slope = shell_at(q).yzw;
     vec3 own = slope.x * u_gradient + slope.y * terms.w * v_gradient + slope.z * way.scale * over;
     site.normal = own / max(length(own), 1e-20);
@@ -117,6 +175,7 @@ Site site_here(bool on_structure)
     vec3 to_plane = (towards - cosine * over) * ((terms.z - q.z) / (way.scale * max(cosine, LEAST_COSINE)));
     site.normal = leaves ? -over : over;
     site.place = q.xy / widths + vec2(dot(u_gradient, to_plane), dot(v_gradient, to_plane));
+    if (site.is_holed) site.beyond = beyond_outline(way, terms.y, s, texels);
   }
   site.normal = facing(site.normal, site.view);
   return site;

@@ -4,6 +4,9 @@ struct Site {
   vec3 view, normal;        // towards the viewer
   vec2 place;               // texture coordinates
   vec3 along_u, along_v;    // where these grow, not normalised
+  bool is_behind;           // seen from where the surface's normal does not point to
+  bool is_holed;            // of a BTF, whose values are means with the holes of its structure
+  vec2 beyond;              // HoledBtfMaterial: from there to its mirror image beyond an outline; 0: none is near
 };
 
 // Towards the viewer.
@@ -16,11 +19,13 @@ vec3 facing(vec3 n, vec3 view)
   return cosine < 0.01 ? normalize(n + (0.01 - cosine) * view) : n;
 }
 
-vec3 normal_towards(vec3 view)
+vec3 normal_towards(vec3 view, out bool is_behind)
 {
   vec3 flat_normal = normalize(cross(dFdx(world), dFdy(world)));
   if (dot(flat_normal, view) < 0.0) flat_normal = -flat_normal;
-  vec3 n = dot(shading_normal, shading_normal) > 0.0 ? normalize(shading_normal) : flat_normal;
+  bool is_flat = dot(shading_normal, shading_normal) == 0.0;
+  vec3 n = is_flat ? flat_normal : normalize(shading_normal);
+  is_behind = is_flat ? !gl_FrontFacing : dot(n, flat_normal) < 0.0;
   if (dot(n, flat_normal) < 0.0) n = -n;
   return facing(n, view);
 }

@@ -1,11 +1,13 @@
 // Where a pixel's surface is: on the mesh itself.
 
-Site site_here(bool on_structure)
+Site site_here(vec2 texels)
 {
   Site site;
   site.view = view_from_here();
-  site.normal = normal_towards(site.view);
+  site.normal = normal_towards(site.view, site.is_behind);
   site.place = coordinates;
+  site.beyond = vec2(0);
+  site.is_holed = false;
   tangents(site.along_u, site.along_v);
   return site;
 }

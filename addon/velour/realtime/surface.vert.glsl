@@ -1,5 +1,6 @@
 // Of a mesh, or with SHELL of the top of its shell: shell.glsl.
-// layout_: first instance, lobes of a place, places along a side (negative: anisotropic), whether places blend.
+// layout_: first instance, then what the tables say (tables.py): of a BRDF lobes of a place, places along a side
+// (negative: anisotropic), whether places blend; of a BTF how many sides, whether roots are stored, narrow lobes.
 
 void main()
 {

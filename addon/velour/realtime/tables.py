@@ -31,15 +31,16 @@ class LobeTables:
 
 
 class BtfTables:
-    """Of a BTF of SRBFs."""
+    """Of a BTF of SRBFs: the side above, and the one below where there is one."""
 
     shader = staticmethod(btf_shader)
 
     def __init__(self, gpu, job, to_working):
         table, report = job.result_table(), job.report()
+        layers = sum(side["layers"] for side in report["sides"])
         self._terms = texture(gpu, _terms(report, to_working))
-        self._maps = array_texture(gpu, table.reshape(report["layers"], -1, *table.shape[1:]))
-        self._layout = len(report["terms"]), int(report["root"])
+        self._maps = array_texture(gpu, table.reshape(layers, -1, *table.shape[1:]))
+        self._layout = len(report["sides"]), int(report["root"])
 
     def layout(self, narrow):
         """`narrow`: how many lobes of the world stand behind the lamps."""
@@ -55,8 +56,8 @@ class ShellTables:
 
     def __init__(self, gpu, job, _to_working):
         table, report = job.result_table(), job.report()
-        terms = [report[name] for name in ("bottom", "top", "reference", "aspect")]
-        self._terms = texture(gpu, np.array(terms, np.float32).reshape(1, 1, 4))
+        terms = [report[name] for name in ("bottom", "top", "reference", "aspect", "reach", "open")]
+        self._terms = texture(gpu, np.array((*terms, 0, 0), np.float32).reshape(1, 2, 4))
         self._maps = volume_texture(gpu, table.reshape(report["layers"], -1, *table.shape[1:]))
 
     def bind(self, shader):
@@ -65,18 +66,27 @@ class ShellTables:
 
 
 def _terms(report, to_working):
-    """[2 x width x 4], as btf.frag.glsl reads it."""
-    terms, levels = report["terms"], report["levels"]
-    pixels = np.zeros((2, max(4 * len(terms), _WORKING + 3), 4), np.float32)
-    pixels[0, 0] = len(levels), report["bottom"], report["top"], report["aspect"]
+    """[rows x width x 4], as btf.frag.glsl reads it."""
+    sides, levels = report["sides"], report["levels"]
+    most = max(len(side["terms"]) for side in sides)
+    pixels = np.zeros((1 + 2 * len(sides), max(4 * most, _WORKING + 3), 4), np.float32)
+    pixels[0, 0, :2] = len(levels), report["aspect"]
     pixels[0, 1 : 1 + len(levels), :3] = levels
     pixels[0, _WORKING : _WORKING + 3, :3] = to_working.T
-    for i, term in enumerate(terms):
-        lengths = sum(np.linalg.norm(term[name]) for name in ("light", "view", "half")) + abs(term["phase"])
-        pixels[1, 4 * i : 4 * i + 4] = (
-            (*term["light"], term["phase"]),
-            (*term["view"], float(term["in_tile"])),
-            (*term["half"], lengths),
-            (*term["color"], 0.0),
-        )
+    layer = 0
+    for i, side in enumerate(sides):
+        pixels[1 + 2 * i, 0] = len(side["terms"]), layer, side["bottom"], side["top"]
+        layer += side["layers"]
+        for k, term in enumerate(side["terms"]):
+            pixels[2 + 2 * i, 4 * k : 4 * k + 4] = _term_pixels(term)
     return pixels
+
+
+def _term_pixels(term):
+    lengths = sum(np.linalg.norm(term[name]) for name in ("light", "view", "half")) + abs(term["phase"])
+    return (
+        (*term["light"], term["phase"]),
+        (*term["view"], float(term["in_tile"])),
+        (*term["half"], lengths),
+        (*term["color"], 0.0),
+    )

@@ -891,13 +891,15 @@ VLR_API vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* 
 VLR_API vlr_status vlr_lobe_rows_create_job(const vlr_model* model, vlr_job** out);
 /* The same of a Principled material, without emission and alpha. */
 VLR_API vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, vlr_job** out);
-/* A BTF of SRBFs, seen and lit from above, as maps of its coefficients and relief; the table has `layers` of them, one
- * above the other. JSON: layers, levels (of each x, width, height in a layer), terms (of each coefficient light, view,
- * half, phase, in_tile, color), bottom, top, aspect, root. VLR_INVALID_ARGUMENT for other models. */
+/* A BTF of SRBFs as maps of its coefficients and relief: seen and lit from above, and, where the BTF has that, from
+ * below; the table has the `layers` of each side, one above the other. JSON: levels (of each x, width, height in a
+ * layer), sides (of each layers, terms (of each coefficient light, view, half, phase, in_tile, color), bottom, top),
+ * aspect, root. VLR_INVALID_ARGUMENT for other models. */
 VLR_API vlr_status vlr_btf_maps_create_job(const vlr_model* model, vlr_job** out);
 /* The outline (VOTF) of a model as a volume; the table has `layers` of it, the lowest first, one above the other, with
  * a border of one pixel: distance to the structure in widths of the tile, and its slope along x, y, z. JSON: layers,
- * bottom, top, reference (heights in widths), aspect. VLR_INVALID_ARGUMENT for models without outline, VLR_UNSUPPORTED
+ * bottom, top, reference (heights in widths), aspect, reach (the longest distance that is told apart), open (whether
+ * rays can go through). VLR_INVALID_ARGUMENT for models without outline, VLR_UNSUPPORTED
  * for more than 2^23 pixels. */
 VLR_API vlr_status vlr_shell_maps_create_job(const vlr_model* model, vlr_job** out);
 

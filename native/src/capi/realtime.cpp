@@ -29,9 +29,8 @@ std::string mixture_json(const SkyMixture& sky) {
 
 Json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-Json maps_json(const BtfMaps& maps, Companding companding) {
-  Json levels = Json::array(), terms = Json::array();
-  for (const BtfMaps::Level& level : maps.levels) levels.push_back({level.x, level.width, level.height});
+Json terms_json(const BtfMaps& maps) {
+  Json terms = Json::array();
   for (const BtfMaps::Term& term : maps.terms) {
     const MultivariateLobe& lobe = term.lobe;
     terms.push_back({{"light", vector_json(lobe.light)},
@@ -41,13 +40,30 @@ Json maps_json(const BtfMaps& maps, Companding companding) {
                      {"in_tile", term.in_tile},
                      {"color", vector_json(term.color)}});
   }
-  return {{"layers", maps.layers},
-          {"levels", std::move(levels)},
-          {"terms", std::move(terms)},
-          {"bottom", maps.bottom},
-          {"top", maps.top},
-          {"aspect", maps.aspect},
+  return terms;
+}
+
+/// Levels are the same on both sides.
+Json maps_json(const std::vector<BtfMaps>& maps, Companding companding) {
+  Json levels = Json::array(), sides = Json::array();
+  for (const BtfMaps::Level& level : maps[0].levels) levels.push_back({level.x, level.width, level.height});
+  for (const BtfMaps& side : maps) {
+    sides.push_back({{"layers", side.layers}, {"terms", terms_json(side)}, {"bottom", side.bottom}, {"top", side.top}});
+  }
+  return {{"levels", std::move(levels)},
+          {"sides", std::move(sides)},
+          {"aspect", maps[0].aspect},
           {"root", companding == Companding::root}};
+}
+
+/// One above the other.
+TablePixels stacked(std::vector<BtfMaps> maps) {
+  TablePixels all = std::move(maps[0].maps);
+  for (size_t i = 1; i < maps.size(); ++i) {
+    all.height += maps[i].maps.height;
+    all.rgba.insert(all.rgba.end(), maps[i].maps.rgba.begin(), maps[i].maps.rgba.end());
+  }
+  return all;
 }
 
 /// A job of the rows that `make`(progress) makes.
@@ -107,9 +123,9 @@ vlr_status vlr_btf_maps_create_job(const vlr_model* model, vlr_job** out) {
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, model = model->model](Progress&) {
       const auto& btf = std::get<SrbfBtf>(model->body);
-      BtfMaps maps = btf_maps(btf);
+      auto maps = btf_maps(btf);
       const std::string json = text(maps_json(maps, btf.companding));
-      output->set(json, std::make_shared<const TablePixels>(std::move(maps.maps)));
+      output->set(json, std::make_shared<const TablePixels>(stacked(std::move(maps))));
     });
   });
 }
@@ -126,7 +142,9 @@ vlr_status vlr_shell_maps_create_job(const vlr_model* model, vlr_job** out) {
                                      {"bottom", v.bottom},
                                      {"top", v.top},
                                      {"reference", v.reference},
-                                     {"aspect", v.aspect}});
+                                     {"aspect", v.aspect},
+                                     {"reach", v.reach},
+                                     {"open", !v.closed}});
       output->set(json, std::make_shared<const TablePixels>(shell_maps(v)));
     });
   });

@@ -40,12 +40,7 @@ Relief relief_of(const SrbfLevel& level, float aspect) {
   return {level.width, level.height, heights, aspect};
 }
 
-}  // namespace
-
-BtfMaps btf_maps(const SrbfBtf& btf) {
-  const auto number = serving_side(btf, false, false);
-  if (!number) throw Error(Status::invalid_argument, "The BTF has no side that is seen and lit from above.");
-  const SrbfSide& side = btf.sides[*number];
+BtfMaps maps_of(const SrbfBtf& btf, const SrbfSide& side) {
   BtfMaps out;
   out.terms = terms_of(btf, side);
   out.aspect = tile_aspect(btf.grid);
@@ -82,6 +77,16 @@ BtfMaps btf_maps(const SrbfBtf& btf) {
     });
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<BtfMaps> btf_maps(const SrbfBtf& btf) {
+  const auto above = serving_side(btf, false, false), below = serving_side(btf, true, true);
+  if (!above) throw Error(Status::invalid_argument, "The BTF has no side that is seen and lit from above.");
+  std::vector<BtfMaps> sides{maps_of(btf, btf.sides[*above])};
+  if (below && below != above) sides.push_back(maps_of(btf, btf.sides[*below]));
+  return sides;
 }
 
 }  // namespace velour

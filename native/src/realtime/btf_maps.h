@@ -30,7 +30,8 @@ struct BtfMaps {
   TablePixels maps = {};
 };
 
-/// What is seen from above under light from above; throws Error(invalid_argument) of a BTF without that.
-BtfMaps btf_maps(const SrbfBtf& btf);
+/// What is seen from above under light from above, and, where the BTF has one of its own, what is seen from below under
+/// light from below: both are looked at mirrored to z > 0. Throws Error(invalid_argument) of a BTF without the first.
+std::vector<BtfMaps> btf_maps(const SrbfBtf& btf);
 
 }  // namespace velour

@@ -25,11 +25,10 @@ Rgb value_in(const BtfMaps& maps, const BtfMaps::Level& level, uint32_t x, uint3
   return {expanded(Companding::root, sum.x), expanded(Companding::root, sum.y), expanded(Companding::root, sum.z)};
 }
 
-TEST(BtfMaps, HoldWhatTheModelIs) {
-  const SrbfBtf btf = test::example_srbf();
-  const BtfMaps maps = btf_maps(btf);
-  ASSERT_EQ(maps.levels.size(), btf.sides[0].levels.size());
-  ASSERT_EQ(maps.terms.size(), btf.sides[0].coefficients());
+/// Of one side at the centres of all texels.
+void expect_values(const BtfMaps& maps, const SrbfBtf& btf, const SrbfSide& side) {
+  ASSERT_EQ(maps.levels.size(), side.levels.size());
+  ASSERT_EQ(maps.terms.size(), side.coefficients());
   const DirectionPair pair{glm::normalize(Vec3(0.3f, -0.4f, 0.8f)), Vec3(0, 0, 1)};  // straight from above: no parallax
   for (size_t i = 0; i < maps.levels.size(); ++i) {
     const BtfMaps::Level& level = maps.levels[i];
@@ -37,16 +36,40 @@ TEST(BtfMaps, HoldWhatTheModelIs) {
       for (uint32_t x = 0; x < level.width; ++x) {
         const Vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(level.width),
                       (static_cast<float>(y) + 0.5f) / static_cast<float>(level.height));
-        const Rgb exact = test::defined_value(btf, btf.sides[0], i, uv, pair),
-                  found = value_in(maps, level, x, y, pair);
+        const Rgb exact = test::defined_value(btf, side, i, uv, pair), found = value_in(maps, level, x, y, pair);
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], exact[c], 1e-4f + 1e-3f * exact[c]);
       }
     }
   }
 }
 
+TEST(BtfMaps, HoldWhatTheModelIs) {
+  const SrbfBtf btf = test::example_srbf();
+  const auto maps = btf_maps(btf);
+  ASSERT_EQ(maps.size(), 1u);
+  expect_values(maps[0], btf, btf.sides[0]);
+}
+
+TEST(BtfMaps, HoldTheSideBelow) {
+  const SrbfBtf btf = test::example_srbf(true);
+  const auto maps = btf_maps(btf);
+  ASSERT_EQ(maps.size(), 2u);
+  for (size_t i = 0; i < 2; ++i) {
+    const auto number = serving_side(btf, i == 1, i == 1);
+    ASSERT_TRUE(number);
+    expect_values(maps[i], btf, btf.sides[*number]);
+    EXPECT_EQ(maps[i].levels[0].width, maps[0].levels[0].width);
+  }
+}
+
+TEST(BtfMaps, ASideThatLooksAsTheOtherIsHeldOnce) {
+  SrbfBtf btf = test::example_srbf();
+  btf.shared.push_back({true, true, 0});
+  EXPECT_EQ(btf_maps(btf).size(), 1u);
+}
+
 TEST(BtfMaps, BordersRepeatTheTile) {
-  const BtfMaps maps = btf_maps(test::example_srbf());
+  const BtfMaps maps = btf_maps(test::example_srbf())[0];
   const uint32_t rows = maps.maps.height / maps.layers;
   for (const BtfMaps::Level& level : maps.levels) {
     for (uint32_t layer = 0; layer < maps.layers; ++layer) {
