@@ -24,7 +24,7 @@ def _blenders_normals(mesh):
         mesh.calc_normals_split()
         mesh.loops.foreach_get("normal", normals.reshape(-1))
     mesh.calc_loop_triangles()
-    by_corners = _newer(mesh) or mesh.use_auto_smooth
+    by_corners = _newer(mesh) or getattr(mesh, "use_auto_smooth", False)  # gone in 4.1
     return np.array(
         [
             [normals[corner] for corner in t.loops] if by_corners or t.use_smooth else [t.normal] * 3
