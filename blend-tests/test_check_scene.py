@@ -45,12 +45,11 @@ class CheckScene(BlenderTest):
 
     def _drawn(self):
         panel = types.SimpleNamespace(layout=_Layout())
-        screen = types.SimpleNamespace(system=types.SimpleNamespace(ui_scale=1.0))  # there is none here
         context = types.SimpleNamespace(
             window_manager=bpy.context.window_manager,
             scene=bpy.context.scene,
-            region=None,
-            preferences=screen,
+            region=types.SimpleNamespace(width=10000),  # there is none here; one line a sentence
+            preferences=bpy.context.preferences,
         )
         bpy.types.VELOUR_RENDER_PT_check.draw(panel, context)
         self.assertEqual(panel.layout.operators, ["velour.check_scene"])

@@ -93,7 +93,7 @@ def _fill(params, path):
 def _in_browser(prepare, press):
     window, area = _browser()
     prepare(area.spaces.active.params)
-    yield 0.3  # it reads the folder
+    yield 1.5  # it reads the folder, and makes previews, which an end in their midst may crash
     region = next(region for region in area.regions if region.type == "WINDOW")
     with bpy.context.temp_override(window=window, area=area, region=region):
         press()
