@@ -12,7 +12,11 @@ _WEAVE = os.path.join(os.path.dirname(__file__), "scenes/data/weave.velour")
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (gone_measurement, btf, enlarged, saved, not_saved))
+    if bpy.app.version >= (4, 0):
+        window.run(folder, (gone_measurement, btf, enlarged, saved, not_saved))
+    else:  # it crashed once, and hung once, as the browser was closed by a timer
+        reason = "Blender 3.4 does not bear file browsers that a timer closes"
+        window.run(folder, (gone_measurement, btf, enlarged), left_out=(saved, not_saved), reason=reason)
 
 
 def gone_measurement(folder):

@@ -13,9 +13,11 @@ import numpy as np
 from . import framebuffer, scenes
 
 
-def run(folder, tests):
-    """Starts the tests one after the other, writes the report and leaves Blender."""
+def run(folder, tests, left_out=(), reason=""):
+    """Starts the tests one after the other, writes the report and leaves Blender. Those that are `left_out`
+    for a `reason` count as skipped."""
     runner = _Runner(folder, tests)
+    runner.report.update(skipped=len(left_out), reasons=[reason] if reason else [])
     bpy.app.timers.register(runner.turn, first_interval=0.2, persistent=True)  # over file loads
 
 
