@@ -125,6 +125,20 @@ class FrameParts(BlenderTest):
         self._assert_same("ended", "whole", 0)
         self.assertEqual(self._files(), [])
 
+    def test_what_was_not_written_is_kept(self):
+        """A script renders frame 1 without a file, then writes frame 2: the parts of 1 are still there."""
+        blend = self._save()
+        self._render(blend, "part", "--velour-parts", self.parts, "--velour-samples", "0:8")
+        path = self.folder / "second.exr"
+        script = (
+            "import bpy; scene = bpy.context.scene; bpy.ops.render.render(); scene.frame_set(2);"
+            f" scene.render.filepath = {str(path)!r}; bpy.ops.render.render(write_still=True)"
+        )
+        done = run_blender(blend, "--python-expr", script, "--", "--velour-parts", self.parts)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertTrue(path.exists(), done.stdout)
+        self.assertEqual(self._files(), ["0001.0-8.exr"])
+
     def test_the_time_limit_ends_a_frame_that_keeps_its_parts(self):
         blend = self._save(samples=100000)
         bpy.context.scene.velour.time_limit = 0.2

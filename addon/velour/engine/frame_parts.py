@@ -112,6 +112,12 @@ def _render(job, parts, gap, follow):
 
 
 @bpy.app.handlers.persistent
+def _keep_unwritten(*_args):
+    """Before a frame: the one before may have ended without a file."""
+    _superfluous.clear()
+
+
+@bpy.app.handlers.persistent
 def _forget_written(*_args):
     """After Blender wrote the frame: a crash before that has lost nothing."""
     for path in _superfluous:
@@ -120,8 +126,10 @@ def _forget_written(*_args):
 
 
 def attach():
+    bpy.app.handlers.render_pre.append(_keep_unwritten)
     bpy.app.handlers.render_write.append(_forget_written)
 
 
 def detach():
     bpy.app.handlers.render_write.remove(_forget_written)
+    bpy.app.handlers.render_pre.remove(_keep_unwritten)
