@@ -99,19 +99,22 @@ void check_size(const std::string& name, const PartSize& size) {
     throw Error(Status::invalid_argument, "Tensor '" + name + "' is too long for OpenEXR.");
 }
 
-/// `first`: the first part's window, empty for that one.
-Imf::Header make_header(const std::string& name, const TensorPixels& pixels, const Imath::Box2i& first) {
+Imath::Box2i window_of(const PartSize& size) {
+  return {{0, 0}, {static_cast<int>(size.width) - 1, static_cast<int>(size.height) - 1}};
+}
+
+/// `first`: the size of the first part.
+Imf::Header make_header(const std::string& name, const TensorPixels& pixels, const PartSize& first) {
   const PartSize& size = pixels.size();
-  const Imath::Box2i window({0, 0}, {static_cast<int>(size.width) - 1, static_cast<int>(size.height) - 1});
   const bool is_pack = pixels.type() == Imf::UINT;
-  const bool within = first.isEmpty() || (first.intersects(window.min) && first.intersects(window.max));
-  Imf::Header header(first.isEmpty() ? window : first, window);
+  Imf::Header header(window_of(first), window_of(size));
   header.setName(name);
   header.setType(Imf::SCANLINEIMAGE);
   header.compression() = is_pack ? Imf::NO_COMPRESSION : Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = kZipLevel;
   Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
-  for (const auto& channel : within && !is_pack ? shown_names(size.channels) : hidden_names(size.channels))
+  const bool shown = !is_pack && covers(first, size);
+  for (const auto& channel : shown ? shown_names(size.channels) : hidden_names(size.channels))
     header.channels().insert(channel, Imf::Channel(pixels.type()));
   return header;
 }
@@ -127,8 +130,9 @@ class PartList {
     headers_.back().insert(kShapeAttribute, Imf::StringAttribute(shape_text(tensor.shape)));
   }
 
-  void add_pack(const std::vector<uint8_t>& pack) {
-    add_pixels(kPack, TensorPixels(pack));
+  /// It covers `part`.
+  void add_pack(const std::vector<uint8_t>& pack, const PartSize& part) {
+    add_pixels(kPack, TensorPixels(pack, part));
     headers_.back().insert(kCodingAttribute, Imf::StringAttribute(kPack));
   }
 
@@ -149,9 +153,8 @@ class PartList {
  private:
   void add_pixels(const std::string& name, TensorPixels pixels) {
     check_size(name, pixels.size());
-    const Imath::Box2i first = headers_.empty() ? Imath::Box2i() : headers_[0].displayWindow();
-    headers_.push_back(make_header(name, pixels, first));
     pixels_.push_back(std::move(pixels));
+    headers_.push_back(make_header(name, pixels_.back(), pixels_.front().size()));
   }
 
   static void write_part(Imf::OutputPart part, const TensorPixels& pixels) {
@@ -165,22 +168,48 @@ class PartList {
 
 bool is_open(const std::string& text) { return text.size() <= kLongestOpenText; }
 
-/// The first tensor that OpenEXR has a type for and short attributes are open, the rest is one part.
+/// The first of the smallest tensors that OpenEXR has a type for.
+const std::string& open_tensor(const TensorFile& file) {
+  const auto values = [](const auto& named) {
+    return named.second.precision == Precision::bytes ? SIZE_MAX : named.second.data.size();
+  };
+  const auto smallest = std::min_element(file.tensors.begin(), file.tensors.end(),
+                                         [&](const auto& a, const auto& b) { return values(a) < values(b); });
+  if (smallest->second.precision == Precision::bytes)
+    throw Error(Status::invalid_argument, "A packed file needs a tensor beside bytes.");
+  return smallest->first;
+}
+
+/// One tensor and short attributes are open, the rest is one part, which comes first, because it covers the tensor.
 void add_packed(const TensorFile& file, PartList& parts) {
-  const auto first = std::find_if(file.tensors.begin(), file.tensors.end(),
-                                  [](const auto& named) { return named.second.precision != Precision::bytes; });
-  if (first == file.tensors.end()) throw Error(Status::invalid_argument, "A packed file needs a tensor beside bytes.");
+  const std::string& name = open_tensor(file);
+  const Tensor& tensor = file.tensors.at(name);
   TensorFile pack{{}, file.tensors};
-  pack.tensors.erase(first->first);
-  parts.add(first->first, first->second);
+  pack.tensors.erase(name);
   std::map<std::string, std::string> open;
   for (const auto& [key, text] : file.attributes) (is_open(text) ? open : pack.attributes).emplace(key, text);
-  parts.add_pack(encode_pack(pack));
+  parts.add_pack(encode_pack(pack), part_size(tensor.shape));
+  parts.add(name, tensor);
   parts.describe(open);
 }
 
+/// The first tensor that covers all others; where there is none, the first one.
+const std::string& covering_tensor(const TensorFile& file) {
+  PartSize all;
+  for (const auto& [name, tensor] : file.tensors) {
+    const PartSize size = part_size(tensor.shape);
+    all = {std::max(all.width, size.width), std::max(all.height, size.height)};
+  }
+  const auto covering = std::find_if(file.tensors.begin(), file.tensors.end(),
+                                     [&](const auto& named) { return covers(part_size(named.second.shape), all); });
+  return (covering == file.tensors.end() ? file.tensors.begin() : covering)->first;
+}
+
 void add_all(const TensorFile& file, PartList& parts) {
-  for (const auto& [name, tensor] : file.tensors) parts.add(name, tensor);
+  const std::string& first = covering_tensor(file);
+  parts.add(first, file.tensors.at(first));
+  for (const auto& [name, tensor] : file.tensors)
+    if (name != first) parts.add(name, tensor);
   parts.describe(file.attributes);
 }
 

@@ -2,9 +2,11 @@
 //
 // In the file a tensor is one part with one channel "Y": its last dimension is the width, the others flattened are the
 // height, and the attribute "velour.shape" holds the shape. Three-component last dimensions are stored as channels R,
-// G, B instead, so that a viewer shows them in colour. Parts wider or higher than the first are not for viewers: their
-// channels are "value", or "value_x", "value_y", "value_z". Packed files have two parts: the first tensor that is not
-// of bytes, and a pack (tensor_pack.h) as integers of channel "value", whose attribute "velour.coding" is "pack".
+// G, B instead, so that a viewer shows them in colour. The first part is a tensor that covers all others
+// (tensor_pixels.h), where there is one: Blender makes room for the first part only, and reads all of them there. Parts
+// wider or higher than the first are not for viewers: their channels are "value", or "value_x", "value_y", "value_z".
+// Packed files have two parts: a pack (tensor_pack.h) as integers of channel "value", whose attribute "velour.coding"
+// is "pack", and the smallest tensor that is not of bytes. Readers take parts in any order.
 #pragma once
 
 #include <cstdint>

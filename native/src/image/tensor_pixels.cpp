@@ -2,18 +2,20 @@
 
 #include <Imath/half.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace velour {
 namespace {
 
-constexpr uint64_t kLongestRow = 1 << 20;  // words
+/// Words. What OpenEXR adds to a row is a three-thousandth of it, and no graphics processor refuses such a picture.
+constexpr uint64_t kLongestRow = 1 << 14;
 
-/// Rows of nearly the same length.
-PartSize words_size(uint64_t words) {
+/// Rows of nearly the same length that cover `part`.
+PartSize words_size(uint64_t words, const PartSize& part) {
   PartSize size;
-  size.height = (words + kLongestRow - 1) / kLongestRow;
-  size.width = (words + size.height - 1) / size.height;
+  size.height = std::max(part.height, (words + kLongestRow - 1) / kLongestRow);
+  size.width = std::max(part.width, (words + size.height - 1) / size.height);
   return size;
 }
 
@@ -43,8 +45,12 @@ TensorPixels::TensorPixels(const Tensor& tensor)
   data_ = reinterpret_cast<const char*>(halves_.data());
 }
 
-TensorPixels::TensorPixels(const std::vector<uint8_t>& pack)
-    : size_(words_size((pack.size() + sizeof(uint32_t) - 1) / sizeof(uint32_t))), type_(Imf::UINT) {
+bool covers(const PartSize& first, const PartSize& part) {
+  return part.width <= first.width && part.height <= first.height;
+}
+
+TensorPixels::TensorPixels(const std::vector<uint8_t>& pack, const PartSize& part)
+    : size_(words_size((pack.size() + sizeof(uint32_t) - 1) / sizeof(uint32_t), part)), type_(Imf::UINT) {
   words_.resize(size_.width * size_.height);
   std::memcpy(words_.data(), pack.data(), pack.size());
   data_ = reinterpret_cast<const char*>(words_.data());

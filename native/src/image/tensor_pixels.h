@@ -20,12 +20,16 @@ struct PartSize {
 /// Of a tensor.
 PartSize part_size(std::vector<uint64_t> shape);
 
+/// Blender makes room for the first part's pixels and writes every other part there, row by row of the first one's
+/// width: what is wider or higher lies beside it.
+bool covers(const PartSize& first, const PartSize& part);
+
 /// The pixels of one part, as they are written. Keeps a reference to a tensor.
 class TensorPixels {
  public:
   explicit TensorPixels(const Tensor& tensor);
-  /// Of a pack, filled up with zeros.
-  explicit TensorPixels(const std::vector<uint8_t>& pack);
+  /// Of a pack, filled up with zeros, so that it covers `part`.
+  TensorPixels(const std::vector<uint8_t>& pack, const PartSize& part);
 
   const PartSize& size() const { return size_; }
   Imf::PixelType type() const { return type_; }
@@ -44,9 +48,8 @@ Imf::FrameBuffer pixel_buffer(const char* data, Imf::PixelType type, const PartS
 
 /// Of parts that viewers show.
 ChannelNames shown_names(uint64_t channels);
-/// Of parts that reach beyond the first one. Blender 3.4 makes room for the first part's pixels and writes all others
-/// there, past its end; channels of names that it does not know it leaves out. In the order of the alphabet, in which
-/// they are stored.
+/// Of packs and of parts that the first one does not cover: Blender 3.4 leaves out channels of names that it does not
+/// know. In the order of the alphabet, in which they are stored.
 ChannelNames hidden_names(uint64_t channels);
 
 }  // namespace velour

@@ -1,6 +1,12 @@
 #include "image/exr_tensors.h"
 
 #include <gtest/gtest.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfStdIO.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +69,40 @@ size_t value_of(const std::vector<uint8_t>& bytes, const std::string& name, cons
 
 void put32(std::vector<uint8_t>& bytes, size_t at, uint32_t value) { std::memcpy(&bytes.at(at), &value, 4); }
 
+TensorFile packed_file() {
+  TensorFile file = sample_file();
+  file.packed = true;
+  file.attributes["velour.long"] = std::string(1000, 'x');
+  file.tensors["maps"] = {{2, 2, 3}, {0, 1 / 256.0f, 0.5f, 3 / 256.0f, 0, 0.25f, 0, 0, 0, 0, 0, 0}, Precision::bytes};
+  return file;
+}
+
+/// The same parts, the last one first.
+std::vector<uint8_t> reversed(const std::vector<uint8_t>& bytes) {
+  Imf::StdISStream from;
+  from.str({bytes.begin(), bytes.end()});
+  Imf::MultiPartInputFile in(from);
+  std::vector<Imf::Header> headers;
+  for (int i = in.parts(); i-- > 0;) headers.push_back(in.header(i));
+  Imf::StdOSStream to;
+  {
+    Imf::MultiPartOutputFile out(to, headers.data(), in.parts());
+    for (int i = 0; i < in.parts(); ++i) {
+      Imf::InputPart part(in, in.parts() - 1 - i);
+      Imf::OutputPart(out, i).copyPixels(part);
+    }
+  }
+  const std::string text = to.str();
+  return {text.begin(), text.end()};
+}
+
+/// Whether Blender has room for all parts where it makes room for the first.
+bool first_covers_all(const std::vector<ExrPart>& parts) {
+  return std::all_of(parts.begin(), parts.end(), [&](const ExrPart& part) {
+    return part.width <= parts[0].width && part.height <= parts[0].height;
+  });
+}
+
 TEST(ExrTensors, RoundTrip) {
   const auto bytes = encode_tensors(sample_file());
   EXPECT_TRUE(looks_like_exr(bytes));
@@ -70,16 +110,22 @@ TEST(ExrTensors, RoundTrip) {
 }
 
 TEST(ExrTensors, PackedFilesAreRead) {
-  TensorFile file = sample_file();
-  file.packed = true;
-  file.attributes["velour.long"] = std::string(1000, 'x');
-  file.tensors["maps"] = {{2, 2, 3}, {0, 1 / 256.0f, 0.5f, 3 / 256.0f, 0, 0.25f, 0, 0, 0, 0, 0, 0}, Precision::bytes};
-  const TensorFile back = decode_tensors(encode_tensors(file), "test");
+  const TensorFile back = decode_tensors(encode_tensors(packed_file()), "test");
   EXPECT_TRUE(back.packed);
-  expect_equal(file, back);
+  expect_equal(packed_file(), back);
 }
 
-TEST(ExrTensors, PackedFilesShowTheFirstTensorAndShortTexts) {
+TEST(ExrTensors, PartsAreReadInAnyOrder) {  // packs were the last ones once
+  for (const TensorFile& file : {sample_file(), packed_file()}) {
+    const auto bytes = reversed(encode_tensors(file));
+    EXPECT_NE(scan_exr(bytes, "test")[0].name, scan_exr(encode_tensors(file), "test")[0].name);
+    const TensorFile back = decode_tensors(bytes, "test");
+    EXPECT_EQ(back.packed, file.packed);
+    expect_equal(file, back);
+  }
+}
+
+TEST(ExrTensors, PackedFilesShowTheSmallestTensorAndShortTexts) {
   TensorFile file = sample_file();
   file.packed = true;
   file.attributes["velour.long"] = std::string(257, 'x');
@@ -87,14 +133,40 @@ TEST(ExrTensors, PackedFilesShowTheFirstTensorAndShortTexts) {
   const auto bytes = encode_tensors(file);
   const auto parts = scan_exr(bytes, "test");
   ASSERT_EQ(parts.size(), 2u);
-  EXPECT_EQ(parts[0].name, "cube");
-  EXPECT_EQ(parts[1].name, "pack");
-  EXPECT_EQ(parts[1].channels, std::vector<std::string>{"value"});  // which Blender 3.4 leaves out
+  EXPECT_EQ(parts[0].name, "pack");
+  EXPECT_EQ(parts[0].channels, std::vector<std::string>{"value"});  // which Blender 3.4 leaves out
+  EXPECT_EQ(parts[1].name, "one");
   const auto has = [&](const std::string& text) {
     return std::search(bytes.begin(), bytes.end(), text.begin(), text.end()) != bytes.end();
   };
   EXPECT_TRUE(has(file.attributes["velour.short"]));
   EXPECT_FALSE(has(file.attributes["velour.long"]));
+}
+
+TEST(ExrTensors, PacksCoverTheTensorBesideThem) {
+  for (const std::vector<uint64_t>& shape : {std::vector<uint64_t>{1000}, {500, 2}, {3, 3}, {40, 50, 3}}) {
+    TensorFile file;
+    file.packed = true;
+    file.tensors["beside"] = ramp(shape);
+    file.tensors["maps"] = {{1, 1}, {0}, Precision::bytes};
+    const auto bytes = encode_tensors(file);
+    EXPECT_TRUE(first_covers_all(scan_exr(bytes, "test")));
+    expect_equal(file, decode_tensors(bytes, "test"));
+  }
+  EXPECT_FALSE(first_covers_all(scan_exr(reversed(encode_tensors(packed_file())), "test")));
+}
+
+TEST(ExrTensors, RowsOfPacksHoldUpTo16384Words) {
+  TensorFile file;
+  file.packed = true;
+  file.tensors["a"] = ramp({1});
+  Tensor& noise = file.tensors["noise"] = {{100000}, {}};
+  for (uint32_t i = 0; i < 100000; ++i) noise.data.push_back(static_cast<float>(i * i * 2654435761u));
+  const ExrPart pack = scan_exr(encode_tensors(file), "test")[0];
+  EXPECT_GT(pack.width, 8192u);
+  EXPECT_LE(pack.width, 16384u);
+  EXPECT_GT(pack.height, 1u);
+  expect_equal(file, decode_tensors(encode_tensors(file), "test"));
 }
 
 TEST(ExrTensors, PackedFilesAreSmaller) {
@@ -115,7 +187,9 @@ TEST(ExrTensors, DamagedPacksAreRefused) {
   TensorFile file = sample_file();
   file.packed = true;
   const auto bytes = encode_tensors(file);
-  for (size_t at = bytes.size() - 1000; at < bytes.size() - 4; at += 7) {  // pixels of the pack: it is the last part
+  const size_t end =
+      bytes.size() - 16 - 4;  // behind the pack is one chunk of one value; its last word may be filled up
+  for (size_t at = end - 1000; at < end; at += 7) {
     auto damaged = bytes;
     damaged[at] ^= 0x10;
     EXPECT_NE(refusal(damaged).find("hostile.velour: part 'pack': its pack"), std::string::npos) << at;
@@ -136,8 +210,22 @@ TEST(ExrTensors, IntegersAreNoTensor) {
   EXPECT_EQ(back.tensors.size(), 1u);
 }
 
+TEST(ExrTensors, TheFirstPartCoversAllOthersWhereOneDoes) {
+  TensorFile file;
+  file.tensors = {{"a", ramp({7, 3})}, {"b", ramp({2, 3, 9})}, {"c", ramp({6, 9, 3})}, {"d", ramp({})}};
+  const auto parts = scan_exr(encode_tensors(file), "test");
+  EXPECT_TRUE(first_covers_all(parts));
+  std::string order;
+  for (const ExrPart& part : parts) {
+    order += part.name;
+    EXPECT_NE(part.channels[0].substr(0, 5), "value") << part.name;
+  }
+  EXPECT_EQ(order, "bacd");
+  expect_equal(file, decode_tensors(encode_tensors(file), "test"));
+}
+
 TEST(ExrTensors, OnlyPartsWithinTheFirstOneAreForViewers) {
-  TensorFile file = sample_file();  // the first is "cube": 6 x 20 pixels
+  TensorFile file = sample_file();  // none covers all others; the first is "cube": 6 x 20 pixels
   file.tensors["small.colour"] = ramp({5, 3});
   const auto bytes = encode_tensors(file);
   std::map<std::string, std::vector<std::string>> channels;
@@ -213,10 +301,11 @@ TEST(ExrTensors, RefusesToEncodeNonsense) {
 }
 
 TEST(ExrTensors, EveryTruncationIsRefused) {
-  const auto bytes = encode_tensors(sample_file());
-  for (size_t size = 0; size < bytes.size(); size += size < 4000 ? 1 : 97) {
-    const std::vector<uint8_t> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    EXPECT_NE(refusal(cut).find("hostile.velour"), std::string::npos) << size;
+  for (const auto& bytes : {encode_tensors(sample_file()), encode_tensors(packed_file())}) {
+    for (size_t size = 0; size < bytes.size(); size += size < 4000 ? 1 : 97) {
+      const std::vector<uint8_t> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+      EXPECT_NE(refusal(cut).find("hostile.velour"), std::string::npos) << size;
+    }
   }
 }
 
@@ -279,11 +368,13 @@ TEST(ExrTensors, EmptyChunkCannotClaimPixels) {
 }
 
 TEST(ExrTensors, DamagedPixelsAreRefusedOrRead) {
-  const auto good = encode_tensors(sample_file());
-  for (size_t at = 0; at < good.size(); at += 3) {
-    auto bytes = good;
-    bytes[at] = static_cast<uint8_t>(bytes[at] ^ 0x55);
-    refusal(bytes);  // any sentence or none: what counts is that nothing else happens
+  const auto packed = encode_tensors(packed_file());
+  for (const auto& good : {encode_tensors(sample_file()), packed, reversed(packed)}) {
+    for (size_t at = 0; at < good.size(); at += 3) {
+      auto bytes = good;
+      bytes[at] = static_cast<uint8_t>(bytes[at] ^ 0x55);
+      refusal(bytes);  // any sentence or none: what counts is that nothing else happens
+    }
   }
 }
 
