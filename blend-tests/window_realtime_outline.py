@@ -32,7 +32,7 @@ def _ball_in(structure, material, radius=4.0):
 
 
 def _plane_of_its_btf(folder, structure):
-    """A plane of a mesostructure's own BTF, with its outline."""
+    """A plane of a mesostructure's own BTF, with its outline; the hem, which has no sides, is far off."""
     for obj in list(bpy.data.objects):
         if obj.type != "CAMERA":
             bpy.data.objects.remove(obj)
@@ -44,10 +44,11 @@ def _plane_of_its_btf(folder, structure):
         assert bpy.ops.velour.capture_btf(directory=str(path), **settings) == {"FINISHED"}
         assert bpy.ops.velour.compress_btf(filepath=str(path)) == {"FINISHED"}
         material = bpy.data.materials[path.stem]
-        scenes.add_plane(material, size=9.0)
+        scenes.add_plane(material, size=54.0)
     bpy.ops.velour.add_votf(material=material.name, structure=tile.name, texels=32)
     bpy.data.objects.remove(tile)
-    scenes.velour_node(material).velour.placement.repeats = (2, 2)
+    scenes.velour_node(material).velour.placement.repeats = (12, 12)
+    viewport.space().region_3d.view_distance = 6
 
 
 def _overlap(drawn, traced):
@@ -56,14 +57,14 @@ def _overlap(drawn, traced):
     return np.minimum(a, b).sum() / np.maximum(a, b).sum()
 
 
-def _compared(folder, name):
+def _compared(folder, name, samples=512):
     """What is drawn, what the ray tracer makes of it, and the overlap of their alpha."""
     viewport.show_real_time()
     yield from viewport.real_time_finished()
     window.screenshot(folder, name)
     assert not viewport.the_one()._refusal, viewport.the_one()._refusal.sentence
     drawn = realtime.pixels()
-    traced = realtime.traced(realtime.equirectangular(realtime.mixture()), samples=512)
+    traced = realtime.traced(realtime.equirectangular(realtime.mixture()), samples=samples)
     overlap, means = _overlap(drawn, traced), [picture[..., 3].mean() for picture in (drawn, traced)]
     print(f"{name}: overlap {overlap:.4f}, mean alpha {means[0]:.4f} and {means[1]:.4f}", flush=True)
     return drawn, traced, overlap
@@ -87,7 +88,7 @@ def net_of_its_btf(folder):
     """
     realtime.sky(folder)
     _plane_of_its_btf(folder, "NET")
-    drawn, traced, _ = yield from _compared(folder, "net-btf")
+    drawn, traced, _ = yield from _compared(folder, "net-btf", samples=2048)
     share, error = _share(drawn, traced), realtime.error(drawn, traced)
     _close_structure()
     yield 0.3
@@ -99,7 +100,7 @@ def net_of_its_btf(folder):
     )
     assert abs(share - 1) < 0.02, share
     assert closed < 0.95, closed
-    assert error < 0.11, error
+    assert error < 0.03, error
 
 
 def _share(drawn, traced):
@@ -130,7 +131,7 @@ def stones_of_a_btf(folder):
     error = realtime.error(drawn, traced)
     print(f"relative L2: {error:.4f}", flush=True)
     assert overlap > 0.98, overlap
-    assert error < 0.06, error
+    assert error < 0.05, error
 
 
 def outline_comes_and_goes(folder):

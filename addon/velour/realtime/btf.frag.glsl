@@ -4,8 +4,9 @@
 // coefficients, first layer, lowest and highest of the relief; of each coefficient light and phase; view and whether it is
 // in the tile's frame; half and the sum of all lengths; colour.
 
-const int LIGHTS = 16, MOST_LAMPS = 16;
+const int LIGHTS = 16, MOST_LAMPS = 16, MOST_LINES = 128;
 const float GOLDEN = 2.39996323;
+const float TURN = 5.0 * GOLDEN / PICTURES;  // from picture to picture, radians
 
 struct Side {
   int row, first, relief;  // of its coefficients; layers
@@ -31,22 +32,29 @@ vec4 map_at(int layer, int level, vec2 texel)
   return textureLod(btf_maps, vec3((vec2(info.x, 1) + inside + 0.5) / vec2(textureSize(btf_maps, 0).xy), layer), 0.0);
 }
 
-// Where the view's ray first is not above the relief: Relief::seen_texel, in steps of half a texel.
+// Where the view's ray first is not above the relief: Relief::seen_texel, from line to line of the grid as relief_march.h
+// has it. Between lines the relief is bilinear, so steps of another length meet it elsewhere.
 vec2 seen_texel(Side side, int level, vec2 place, vec3 wv)
 {
   float aspect = texelFetch(btf_terms, ivec2(0, 0), 0).y, depth = side.bottom - side.top;
   vec2 size = level_info(level).yz;
   vec2 shift = size * vec2(wv.x, wv.y / aspect) / max(wv.z, 1e-4), on_plane = place * size - 0.5;
   if (depth >= 0.0) return on_plane + side.bottom * shift;
-  vec2 from = on_plane + side.top * shift, way = depth * shift;
-  int steps = clamp(int(2.0 * max(abs(way.x), abs(way.y))) + 1, 2, 64);
-  float before = 0.0, gap_before = side.top - map_at(side.relief, level, from).x;
-  for (int i = 1; i <= steps; ++i) {
-    float when = float(i) / float(steps);
-    float gap = mix(side.top, side.bottom, when) - map_at(side.relief, level, from + when * way).x;
-    if (gap <= 0.0) return from + mix(before, when, gap_before / max(gap_before - gap, 1e-9)) * way;
-    before = when;
+  vec2 from = on_plane + side.top * shift, way = depth * shift, rate = max(abs(way), 1e-6);
+  // Times of lines of columns and of rows, the last ones before the start first.
+  vec2 each = max(ceil(rate / float(MOST_LINES)), 1.0) / rate;
+  vec2 turn = vec2(way.x < 0.0 ? -1.0 : 1.0, way.y < 0.0 ? -1.0 : 1.0);
+  vec2 when = -abs(floor(turn * from) - turn * from) / rate;
+  float before = -1.0, gap_before = 1.0;
+  for (int i = 0; i < 2 * MOST_LINES + 2; ++i) {
+    float now = min(when.x, when.y);
+    float gap = mix(side.top, side.bottom, now) - map_at(side.relief, level, from + now * way).x;
+    if (gap <= 0.0) return from + max(mix(before, now, gap_before / max(gap_before - gap, 1e-9)), 0.0) * way;
+    before = now;
     gap_before = gap;
+    if (when.x <= when.y) when.x += each.x;
+    else when.y += each.y;
+    if (now > 1.0) break;
   }
   return from + way;
 }
@@ -83,6 +91,9 @@ float product(vec3 a, float la, vec3 b, float lb)
 vec3 wl[LIGHTS + MOST_LAMPS], arrives[LIGHTS + MOST_LAMPS];
 int count = 0;
 
+// Of the lobe of a direction: half of its share of a picture, for wider ones reach below the horizon.
+float bandwidth_of(vec3 local) { return max(4.0 * float(LIGHTS) * local.z, 1.0); }
+
 // RealtimeScene.check() has that all fit; what is written here never leaves the arrays.
 void add_lamp(vec3 local, vec3 irradiance)
 {
@@ -91,14 +102,14 @@ void add_lamp(vec3 local, vec3 irradiance)
   arrives[count++] = local.z * irradiance;
 }
 
-// Even directions of the cosine, each for a lobe as wide as its share; then lamps. `emission.w` turns them.
+// Even directions of the cosine, others in each picture of the mean, whose number is `emission.w`; then lamps.
 void gather_light(mat3 frame)
 {
+  float ring = (mod(7.0 * emission.w + 0.5 * PICTURES, PICTURES) + 0.5) / PICTURES;
   for (int i = 0; i < LIGHTS; ++i) {
-    float u = (float(i) + 0.5) / float(LIGHTS), azimuth = GOLDEN * float(i) + emission.w;
+    float u = (float(i) + ring) / float(LIGHTS), azimuth = GOLDEN * float(i) + TURN * emission.w;
     wl[i] = vec3(sqrt(u) * vec2(cos(azimuth), sin(azimuth)), sqrt(1.0 - u));
-    float lobe = 1.0 + LEVELS_OF_OCTAVE * log2(max(2.0 * float(LIGHTS) * wl[i].z, 1.0));
-    arrives[i] = PI / float(LIGHTS) * mean_light(lobe, frame * wl[i]);
+    arrives[i] = PI / float(LIGHTS) * mean_light(1.0 + LEVELS_OF_OCTAVE * log2(bandwidth_of(wl[i])), frame * wl[i]);
   }
   count = LIGHTS;
   // Narrow lobes of the world are lamps: directions so far apart would blur them.
@@ -107,8 +118,8 @@ void gather_light(mat3 frame)
     vec3 axis = texelFetch(lamps, ivec2(at, 0), 0).xyz;
     vec4 energy = texelFetch(lamps, ivec2(at + 1, 0), 0);
     for (int i = 0; i < LIGHTS; ++i) {
-      float lobe = 2.0 * float(LIGHTS) * wl[i].z;
-      arrives[i] -= PI / float(LIGHTS) * energy.rgb * product(frame * wl[i], max(lobe, 1.0), axis, energy.w);
+      float share = product(frame * wl[i], bandwidth_of(wl[i]), axis, energy.w);
+      arrives[i] -= PI / float(LIGHTS) * share * energy.rgb;
     }
     add_lamp(axis * frame, energy.rgb);
   }

@@ -8,15 +8,13 @@ import numpy as np
 
 from ..native import light_map_job
 from .projection import jitter, view_projection
-from .shaders import sky_shader
+from .shaders import PICTURES, sky_shader
 from .targets import Targets, full_screen
 from .textures import texture
 
 _WIDTH = 1020  # pixels of a row of the texture of instances: whole instances
 _FLOATS = 4
-_MOST = 16  # pictures in a mean
 _NARROW, _MOST_NARROW = 60.0, 8  # bandwidth of lobes of the world, and how many
-_TURN = 2.39996 / _MOST * 5  # of directions of light from picture to picture, radians
 
 
 class _Draw(NamedTuple):
@@ -65,7 +63,7 @@ class Drawing:
     def is_waiting(self, scene):
         """Whether there will be more to draw without that anything changes."""
         lacks_tables = len(self._tables) < len(_wanted(scene))
-        return self._light_job is not None or lacks_tables or self.count < _MOST
+        return self._light_job is not None or lacks_tables or self.count < PICTURES
 
     def _follow_light(self, gpu, scene):
         if self._light_version != scene.world_version:
@@ -87,7 +85,7 @@ class Drawing:
     def draw(self, scene, view, exposure, shows_world):
         """A texture of the view's size: scene-linear, premultiplied. Only once is_ready().
 
-        Since restart() pictures add up to a mean, which smooths edges; with _MOST it stays.
+        Since restart() pictures add up to a mean, which smooths edges; with PICTURES it stays.
         """
         import gpu
 
@@ -96,7 +94,7 @@ class Drawing:
             self._free_targets()
             self._targets = Targets(gpu, size)
             self.count = 0
-        if self.count < _MOST:
+        if self.count < PICTURES:
             with self._targets.drawn.bind():
                 self._draw_scene(gpu, scene, view, exposure, shows_world)
             self._targets.average(gpu, 1 / (self.count + 1))
@@ -155,7 +153,7 @@ class Drawing:
         gain = [exposure * channel for channel in scene.gains[material]]
         shader.uniform_float("gain", (*gain, float(len(scene.lamps))))
         emission = [exposure * channel for channel in scene.looks[material].emission]
-        shader.uniform_float("emission", (*emission, _TURN * self.count))
+        shader.uniform_float("emission", (*emission, float(self.count)))
 
     def _instances_texture(self, gpu, scene):
         if self._instances is None or self._instances[0] is not scene.groups:

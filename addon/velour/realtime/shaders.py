@@ -3,6 +3,7 @@
 from functools import cache
 from pathlib import Path
 
+PICTURES = 32  # in a mean
 _FOLDER = Path(__file__).parent
 
 
@@ -27,6 +28,7 @@ def _surface_shader(name, tables, has_shell):
 
     info = gpu.types.GPUShaderCreateInfo()
     surface, attributes = "smooth", (("VEC3", "position"), ("VEC3", "normal"), ("VEC2", "uv"))
+    info.define("PICTURES", f"{PICTURES}.0")
     if has_shell:
         surface, attributes = "shell", (*attributes, ("VEC3", "lift"))
         tables = (*tables, ("FLOAT_2D", "shell_terms"), ("FLOAT_3D", "shell_maps"))
@@ -37,7 +39,7 @@ def _surface_shader(name, tables, has_shell):
     info.push_constant("MAT4", "view_projection")
     info.push_constant("VEC4", "eye")  # where it is, 1; or the direction towards it, 0
     info.push_constant("VEC4", "gain")  # and how many lamps there are
-    info.push_constant("VEC4", "emission")  # and by what directions of light are turned, radians
+    info.push_constant("VEC4", "emission")  # and how many pictures there were before
     info.push_constant("IVEC4", "layout_")
     for slot, (kind, attribute) in enumerate(attributes):
         info.vertex_in(slot, kind, attribute)

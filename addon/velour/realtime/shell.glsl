@@ -6,7 +6,8 @@
 const int DEPTH_LOOKS = 64;
 const int LOOKS = 160;  // a ray that glides along the structure for so long has met it
 const float WITHIN = 0.03, LEAST_STEP = 0.1;  // of the distance from point to point
-const float LEAST_COSINE = 0.15;
+const float STRIDE = 1.6;                     // distances that a step is long
+const float LEAST_COSINE = 0.15, LEAST_DEPTH = 1e-3;
 
 vec4 shell_terms_here() { return texelFetch(shell_terms, ivec2(0), 0); }
 
@@ -58,23 +59,28 @@ float way_speed(ShellWay way, float depth)
                      way.scale * (way.curvature < 0.0 ? 1.0 : way.cosine)));
 }
 
-// Whether the structure is met, and where.
+// Whether the structure is met, and where: with the steps of votf/shell_march-inl.h, for near an outline the light is
+// sensitive to where.
 bool met(ShellWay way, float top, out float s)
 {
-  float pitch = pitch(), turn = way.end < way.begin ? -1.0 : 1.0;
-  float before = way.begin, free = 0.0;
+  float pitch = pitch(), turn = way.end < way.begin ? -1.0 : 1.0, per_speed = turn / way.speed;
+  float free = 0.0, stride = 0.0;  // the last look was `stride` before, in widths, and `free` of any surface
   s = way.begin;
   for (int i = 0; i < LOOKS; ++i) {
     float distance = shell_at(way_at(way, s, top)).x;
     if (distance <= WITHIN * pitch) {
-      if (i > 0) s = mix(before, s, clamp(free / max(free - distance, 1e-9), 0.0, 1.0));
+      if (i > 0) s -= per_speed * stride * min(1.0, distance / (distance - free));
       return true;
     }
-    if ((way.end - s) * turn <= 0.0) return false;
-    before = s;
-    free = distance;
-    s += turn * max(distance, LEAST_STEP * pitch) / way.speed;
-    if ((way.end - s) * turn < 0.0) s = way.end;
+    if (free + distance < stride) {  // between the two there may be something: back to what is free for certain
+      s -= per_speed * (stride - free);
+      stride = free;
+      continue;
+    }
+    free = max(distance, LEAST_STEP * pitch);
+    if ((s + per_speed * free - way.end) * turn >= 0.0) return false;
+    stride = min(STRIDE * free, (way.end - s) / per_speed);
+    s += per_speed * stride;
   }
   return true;
 }
@@ -116,12 +122,12 @@ vec2 beyond_outline(ShellWay way, float top, float s, vec2 texels)
   float ahead = (way.end < s ? -1.0 : 1.0) * pitch() / way.speed;
   vec3 along = normalize(way_at(way, deepest.y + ahead, top) - place), across = slope - dot(slope, along) * along;
   vec2 outside = across.xy / max(length(across), 1e-9);
-  float depth = max(deepest.x, 0.0), square = dot(outside, outside);
+  float depth = max(deepest.x, LEAST_DEPTH * pitch()), square = dot(outside, outside);
   if (depth >= 1.5 * length(outside * texel) || square <= 0.0) return vec2(0);
   vec2 over = outside * (2.0 * depth / square);
   // Where other structure lies behind, there is no outline.
   way.place += over;
-  return deepest_behind(way, top, way.begin, 0.0).x > 0.0 ? vec2(0) : over / widths;
+  return deepest_behind(way, top, way.begin, WITHIN * pitch()).x > WITHIN * pitch() ? vec2(0) : over / widths;
 }
 
 // `texels`: of a BTF in a tile, whose place is where the ray crosses the plane of its texels, with the smooth surface's

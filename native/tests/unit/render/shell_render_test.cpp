@@ -293,6 +293,26 @@ TEST(ShellRender, ABtfThatHoldsTheHolesIsLookedUpAtPoints) {
   EXPECT_GT(footprint(true), 0.0f);
 }
 
+TEST(ShellRender, UpToItsOutlineEveryPlaceHasItsMirrorImage) {
+  Shot wires(tiled_square(64),
+             {.material = std::make_shared<CoveredTexels>(), .shell = field_of(test::wires(64, kRadius))});
+  wires.scene.commit(1);
+  const float width = 2.0f / 64;
+  int met = 0;
+  for (int i = 0; i < 200; ++i) {
+    const float inside = 2e-5f * static_cast<float>(i - 50);  // of the outline, tiles
+    const Ray ray{{width * (0.5f + kRadius - inside), 0.3f * width, 2}, 0, {0, 0, -1}};
+    Hit hit;
+    VisibleRays(wires.scene).intersect({&ray, 1}, &hit);
+    if (hit.instance == kNoHit) continue;
+    ++met;
+    const Vec2 beyond = Vertex::seen(wires.scene, ray, hit, {0, 0.01f}, nullptr).site.beyond_outline;
+    EXPECT_GT(beyond.x, 0.0f) << inside;
+    EXPECT_NEAR(beyond.x, 2 * std::max(inside, 0.0f), 0.004f) << inside;
+  }
+  EXPECT_GT(met, 140);
+}
+
 TEST(ShellRender, WhatRaysHaveFoundIsWhatIsShaded) {
   Shot shot(tiled_sphere(64, 8), shelled(field_of(test::wires(64, kRadius))));
   shot.scene.set_shell_tile(0, 0.3f);
