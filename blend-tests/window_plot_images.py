@@ -14,7 +14,7 @@ def start(folder):
     """Called by the harness once the window is there."""
     if bpy.app.version >= (4, 0):
         window.run(folder, (gone_measurement, btf, enlarged, saved, not_saved))
-    else:  # it crashed once, and hung once, as the browser was closed by a timer
+    else:  # at times it crashes in taking a panel's handler from the window that closes; it hung once
         reason = "Blender 3.4 does not bear file browsers that a timer closes"
         window.run(folder, (gone_measurement, btf, enlarged), left_out=(saved, not_saved), reason=reason)
 
