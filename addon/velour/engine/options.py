@@ -1,8 +1,6 @@
 """A scene's settings as the options of a render job."""
 
-import bpy
-
-from ..core.cache import user_cache_folder
+from ..export.caches import cache_folder
 from ..export.film import hides_world
 from ..export.world import layer_world
 
@@ -46,12 +44,3 @@ def _common(scene, layer, view):
         "transparent": int(scene.render.film_transparent),
         "hide_world": int(hides_world(layer_world(scene, layer))),
     }
-
-
-def cache_folder():
-    """An extension's own folder where there are extensions, else the user's cache."""
-    package = __package__.rpartition(".")[0]
-    try:
-        return bpy.utils.extension_path_user(package, path="cache")
-    except (AttributeError, ValueError):  # Blender before 4.2; installed as a plain add-on
-        return user_cache_folder()

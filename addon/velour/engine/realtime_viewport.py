@@ -1,5 +1,6 @@
 """What one 3D viewport shows of the scene in real time, drawn by the graphics processor at each redraw."""
 
+from ..export.caches import cache_folder
 from ..export.film import film_exposure, hides_world
 from ..export.live import LiveExport
 from ..export.look import Look
@@ -7,7 +8,6 @@ from ..export.viewport import viewport_frame
 from ..export.world import layer_world
 from ..realtime import Drawing, RealtimeScene
 from . import viewport_clock
-from .options import cache_folder
 
 
 class RealtimeViewport:

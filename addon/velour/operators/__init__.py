@@ -9,6 +9,11 @@ from .add_mesostructure import VELOUR_OT_add_mesostructure
 from .add_presets import VELOUR_OT_add_presets
 from .add_votf import VELOUR_OT_add_votf
 from .approximate import VELOUR_OT_approximate
+from .browse import (
+    VELOUR_OT_choose_measurement,
+    VELOUR_OT_make_thumbnails,
+    VELOUR_OT_refresh_browser,
+)
 from .capture_btf import VELOUR_OT_capture_btf
 from .check_scene import VELOUR_OT_check_scene
 from .compare import VELOUR_OT_compare
@@ -34,6 +39,9 @@ CLASSES = (
     VELOUR_OT_enlarge_plot,
     VELOUR_OT_compare,
     VELOUR_OT_mark_asset,
+    VELOUR_OT_choose_measurement,
+    VELOUR_OT_make_thumbnails,
+    VELOUR_OT_refresh_browser,
     VELOUR_OT_accept_file,
     VELOUR_OT_add_mesostructure,
     VELOUR_OT_add_presets,

@@ -7,6 +7,7 @@ import bpy
 from bpy.props import BoolProperty, CollectionProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
+from ..core.measurement_files import INDICES, SUFFIXES
 from ..core.read_job import ReadJob
 from ..export import ExportError
 from ..export.files import sha256
@@ -14,9 +15,6 @@ from ..native import library
 from . import measured
 from .background_job import OneJob
 from .slots import Slot, assign, slot_under
-
-# Never .exr: those are pictures to everyone else.
-DROPPED = (".velour", ".binary", ".bsdf", ".brdf", ".btf")
 
 
 class _Found(NamedTuple):
@@ -55,7 +53,7 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
 
     filename_ext = ".velour"
     filter_glob: StringProperty(
-        default="*.velour;*.binary;*.bsdf;*.brdf;*.exr;*.btf;btf.json;btf.csv", options={"HIDDEN"}
+        default=";".join((*(f"*{suffix}" for suffix in (*SUFFIXES, ".exr")), *INDICES)), options={"HIDDEN"}
     )
     files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
     directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})

@@ -4,6 +4,7 @@ import os
 
 import bpy
 
+from ..core.measurement_files import INDICES
 from ..export import ExportError
 from ..export.files import absolute_path, sha256
 from ..export.nodes import active_output, velour_node
@@ -117,7 +118,7 @@ def measurement_image(path, digest):
 
 def btf_file(path):
     """The file that stands for a BTF: its index, where the BTF is a folder that has one."""
-    indices = (os.path.join(path, name) for name in ("btf.json", "btf.csv"))
+    indices = (os.path.join(path, name) for name in INDICES)
     return next((index for index in indices if os.path.isfile(index)), path)
 
 

@@ -3,6 +3,7 @@
 import bpy
 
 from .approximation_state import VelourApproximationState
+from .browser_settings import VelourBrowserSettings
 from .check_state import VelourCheckState, VelourSentence
 from .file_settings import VelourFileSettings
 from .job_state import VelourJobState
@@ -27,6 +28,7 @@ _POINTERS = (
 CLASSES = (
     VelourPlacementSettings,
     VelourPlotSettings,
+    VelourBrowserSettings,
     VelourSentence,
     VelourCheckState,
     *dict.fromkeys(group for _owner, group, _override in _POINTERS),

@@ -1,8 +1,11 @@
-"""What windows show: the work that runs in the background, which plot, what a check found. Never saved."""
+"""What windows show: the work in the background, which plot, what a check found, which measurements.
+
+Never saved."""
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
+from .browser_settings import VelourBrowserSettings
 from .check_state import VelourCheckState
 from .plot_settings import VelourPlotSettings
 
@@ -19,3 +22,4 @@ class VelourJobState(bpy.types.PropertyGroup):
     fraction: FloatProperty(name="Progress", subtype="FACTOR", min=0.0, max=1.0, options={"SKIP_SAVE"})
     plot: PointerProperty(type=VelourPlotSettings)
     checked: PointerProperty(type=VelourCheckState)
+    browser: PointerProperty(type=VelourBrowserSettings)

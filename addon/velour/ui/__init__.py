@@ -1,7 +1,17 @@
 """Panels and preferences."""
 
-from . import file_handler, library_state, placement_summary, plot_preview, progress, stock_panels, summaries
+from . import (
+    browser,
+    file_handler,
+    library_state,
+    placement_summary,
+    plot_preview,
+    progress,
+    stock_panels,
+    summaries,
+)
 from .approximation_panel import VELOUR_MATERIAL_PT_approximation
+from .browser_panel import VELOUR_MATERIAL_PT_browser
 from .layer_panels import VELOUR_VIEWLAYER_PT_filter, VELOUR_VIEWLAYER_PT_override
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
@@ -51,6 +61,7 @@ CLASSES = (
     VELOUR_MATERIAL_PT_outline,
     VELOUR_MATERIAL_PT_approximation,
     VELOUR_MATERIAL_PT_notes,
+    VELOUR_MATERIAL_PT_browser,
     VELOUR_MATERIAL_PT_surface,
     VELOUR_MATERIAL_PT_settings,
     VELOUR_OBJECT_PT_tile,
@@ -72,3 +83,4 @@ def detach():
     progress.detach()
     summaries.forget()
     plot_preview.forget()
+    browser.forget()

@@ -2,7 +2,8 @@
 
 import bpy
 
-from ..operators.load_material import DROPPED, VELOUR_OT_load_material
+from ..core.measurement_files import SUFFIXES
+from ..operators.load_material import VELOUR_OT_load_material
 
 CLASSES = ()
 
@@ -12,7 +13,7 @@ if hasattr(bpy.types, "FileHandler"):
         bl_idname = "VELOUR_FH_measured"
         bl_label = "Measured Material"
         bl_import_operator = VELOUR_OT_load_material.bl_idname
-        bl_file_extensions = ";".join(DROPPED)
+        bl_file_extensions = ";".join(SUFFIXES)
 
         @classmethod
         def poll_drop(cls, context):

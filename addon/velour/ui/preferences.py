@@ -1,6 +1,7 @@
-"""The add-on's preferences: is the library there, and which; the presets."""
+"""The add-on's preferences: is the library there, and which; the presets; the folder of measurements."""
 
 import bpy
+from bpy.props import StringProperty
 
 from ..core import presets
 from ..operators.add_presets import VELOUR_OT_add_presets, library_of, missing
@@ -11,6 +12,12 @@ from .text import draw_sentence
 class VelourPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__.rpartition(".")[0]
 
+    measurements: StringProperty(
+        name="Measurements",
+        description="The folder of measurements and models that the material's library shows",
+        subtype="DIR_PATH",
+    )
+
     def draw(self, context):
         problem = library_state.problem()
         if problem:
@@ -19,6 +26,7 @@ class VelourPreferences(bpy.types.AddonPreferences):
         column = self.layout.column(align=True)
         for line in library_state.lines():
             column.label(text=line)
+        self.layout.prop(self, "measurements")
         self._draw_presets(context)
 
     def _draw_presets(self, context):

@@ -1,0 +1,97 @@
+"""The measurements and models of a folder, found by their names: no file is opened."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+# Never .exr: those are pictures to everyone else.
+SUFFIXES = (".velour", ".binary", ".bsdf", ".brdf", ".btf")
+INDICES = ("btf.json", "btf.csv")  # each makes its folder one BTF; the first that is there counts
+MOST_ENTRIES = 100_000  # looked at: a folder may be the root of a file server
+_MOST_DEPTH = 8
+
+
+class MeasurementFile(NamedTuple):
+    """Changes whenever the content may have changed."""
+
+    path: str
+    name: str  # from the folder that was searched, without the suffix
+    bytes: int  # of a BTF that is a folder: of its index
+    modified: int  # nanoseconds
+
+
+class Found(NamedTuple):
+    files: tuple[MeasurementFile, ...]  # as people sort them: 2 before 10
+    problems: tuple[str, ...]  # a sentence each
+
+
+def find_measurements(folder: str | os.PathLike, stopped: Callable[[], bool] = lambda: False) -> Found:
+    """Of the folder and those below it. `stopped` ends the search, with what was found by then."""
+    search = _Search(os.path.abspath(folder), stopped)
+    search.run()
+    return Found(tuple(sorted(search.files, key=_order)), tuple(search.problems))
+
+
+def _order(file: MeasurementFile) -> list:
+    parts = re.split(r"(\d+)", file.name.casefold())
+    return [(int(part), part) if number % 2 else (0, part) for number, part in enumerate(parts)]
+
+
+class _Search:
+    def __init__(self, folder: str, stopped: Callable[[], bool]):
+        self._folder, self._stopped, self._looked_at = folder, stopped, 0
+        self.files, self.problems = [], []
+
+    def run(self) -> None:
+        waiting = [(self._folder, 0)]
+        while waiting and not self._stopped():
+            folder, depth = waiting.pop()
+            try:
+                below = self._look_into(folder)
+            except OSError as error:
+                self.problems.append(
+                    f"{folder}: cannot be read ({error.strerror}); check its name and its permissions."
+                )
+                continue
+            if self._looked_at >= MOST_ENTRIES:
+                self.problems.append(
+                    f"{self._folder}: only the first {MOST_ENTRIES:,} files were looked at; choose a folder"
+                    " further down."
+                )
+                return
+            if depth < _MOST_DEPTH:
+                waiting.extend((each, depth + 1) for each in below)
+
+    def _look_into(self, folder: str) -> list[str]:
+        """The folders in it that are to be searched as well."""
+        below, found, indices = [], [], {}
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                self._looked_at += 1
+                if self._looked_at >= MOST_ENTRIES or self._stopped():
+                    break
+                if entry.name in INDICES:
+                    indices[entry.name] = entry
+                elif entry.name.lower().endswith(SUFFIXES):
+                    found.append(entry)
+                elif not entry.name.startswith(".") and entry.is_dir(follow_symlinks=False):
+                    below.append(entry.path)
+        if indices:  # the rest belongs to the BTF
+            found, below = [next(indices[name] for name in INDICES if name in indices)], []
+        for entry in found:
+            self._add(entry)
+        return below
+
+    def _add(self, entry: os.DirEntry) -> None:
+        try:
+            if not entry.is_file():
+                return
+            state = entry.stat()
+        except OSError:  # gone meanwhile
+            return
+        named = os.path.dirname(entry.path) if entry.name in INDICES else os.path.splitext(entry.path)[0]
+        name = os.path.basename(named) if named == self._folder else os.path.relpath(named, self._folder)
+        self.files.append(MeasurementFile(entry.path, name, state.st_size, state.st_mtime_ns))

@@ -1,0 +1,49 @@
+"""Thumbnails of many files, made beside the thread that draws."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from ..native import Status, VelourError
+from ..native.job import JobState
+from .measurement_files import MeasurementFile
+from .read_job import ReadJob
+from .thumbnails import Thumbnail, thumbnail
+
+
+class ThumbnailJob(ReadJob):
+    """Makes those of `files` in their order and hands each to `receive`, on a thread of its own.
+
+    After a cancel the thread ends as soon as it has read what it reads."""
+
+    def __init__(
+        self,
+        files: Iterable[MeasurementFile],
+        cache: Path,
+        receive: Callable[[MeasurementFile, Thumbnail], object],
+        threads: int = 1,
+    ):
+        super().__init__(self._make_all)
+        self.files, self._cache, self._receive, self._threads = tuple(files), cache, receive, threads
+        self._done = 0
+
+    def poll(self) -> JobState:
+        state = super().poll()
+        if not state.running or not self._done:
+            return state._replace(stage="making pictures")
+        left = state.seconds / self._done * (len(self.files) - self._done)
+        return state._replace(
+            fraction=self._done / len(self.files), stage="making pictures", seconds_left=left
+        )
+
+    def _make_all(self) -> None:
+        self._done = 0
+        for file in self.files:
+            self._check()
+            self._receive(file, thumbnail(file, self._cache, self._check, self._threads))
+            self._done += 1
+
+    def _check(self) -> None:
+        if self._cancelled:
+            raise VelourError(Status.CANCELLED, "The pictures were cancelled.")

@@ -1,0 +1,121 @@
+"""A folder of measurements and models: what its browser does."""
+
+import os
+from pathlib import Path
+
+import bpy
+from bpy.props import StringProperty
+
+from ..core.measurement_files import find_measurements
+from ..core.read_job import ReadJob
+from ..core.thumbnail_job import ThumbnailJob
+from ..core.thumbnails import thumbnail_folder
+from ..export import ExportError
+from ..export.caches import cache_folder
+from .background_job import JobsInSteps
+
+_MOST_SENTENCES = 5
+
+
+def addon_preferences(context):
+    """Velour's; None where it runs without being an add-on of this Blender."""
+    addon = context.preferences.addons.get(__package__.rpartition(".")[0])
+    return addon.preferences if addon else None
+
+
+def measurement_folder(context):
+    """The one of the preferences, absolute; "" where none is chosen."""
+    preferences = addon_preferences(context)
+    chosen = preferences.measurements if preferences else ""
+    return os.path.normpath(bpy.path.abspath(chosen)) if chosen else ""
+
+
+class VELOUR_OT_choose_measurement(bpy.types.Operator):
+    bl_idname = "velour.choose_measurement"
+    bl_label = "Choose"
+    bl_options = {"INTERNAL"}
+
+    filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE"})
+
+    @classmethod
+    def description(cls, _context, properties):
+        return properties.filepath
+
+    def execute(self, context):
+        context.window_manager.velour.browser.chosen = self.filepath
+        return {"FINISHED"}
+
+
+class VELOUR_OT_refresh_browser(bpy.types.Operator):
+    bl_idname = "velour.refresh_browser"
+    bl_label = "Refresh"
+    bl_description = "Look through the folder anew"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context):
+        context.window_manager.velour.browser.visits += 1
+        return {"FINISHED"}
+
+
+class VELOUR_OT_make_thumbnails(JobsInSteps, bpy.types.Operator):
+    bl_idname = "velour.make_thumbnails"
+    bl_label = "Make All Pictures"
+    bl_description = (
+        "Make the pictures of all measurements and models in the folder now, not as they are looked"
+        " at. They are kept in a cache"
+    )
+
+    directory: StringProperty(
+        name="Folder", subtype="DIR_PATH", description="Empty: that of the preferences", options={"SKIP_SAVE"}
+    )
+
+    _what = "Making pictures"
+
+    def _begin(self, context):
+        folder = bpy.path.abspath(self.directory) or measurement_folder(context)
+        if not folder:
+            raise ExportError("No folder of measurements is chosen; choose one in the preferences of Velour.")
+        self._subject = os.path.basename(os.path.normpath(folder))
+        self._steps = _Pictures(folder, Path(cache_folder()), context.scene.render.threads)
+        self._advance()
+        self._goes_on()
+
+    def _finish(self):
+        if self._advance():
+            return None
+        pictures = self._steps
+        for sentence in pictures.sentences[:_MOST_SENTENCES]:
+            self.report({"WARNING"}, sentence)
+        rest = len(pictures.sentences) - _MOST_SENTENCES
+        more = f" {rest} more sentences were left out." if rest > 0 else ""
+        self.report(
+            {"INFO"},
+            f"{len(pictures.files)} files, {pictures.made} of them with a picture, in {pictures.kept}.{more}",
+        )
+        return {"FINISHED"}
+
+
+class _Pictures:
+    """The jobs that make them; then `files`, `made` and `sentences`. `kept`: their folder."""
+
+    def __init__(self, folder, cache, threads):
+        self._folder, self._cache, self._threads = folder, cache, threads
+        self.kept = thumbnail_folder(cache)
+        self.files, self.sentences, self.made = (), [], 0
+        self._jobs = self._run()
+
+    def next_job(self):
+        return next(self._jobs, None)
+
+    def _run(self):
+        finding = ReadJob(lambda: find_measurements(self._folder))
+        yield finding
+        self.files, problems = finding.result()
+        self.sentences += problems
+        yield ThumbnailJob(self.files, self._cache, self._count, self._threads)
+
+    def _count(self, _file, thumbnail):
+        """On the job's thread."""
+        self.made += thumbnail.pixels is not None
+        if thumbnail.sentence:
+            self.sentences.append(thumbnail.sentence)
