@@ -47,6 +47,7 @@ def _surface_shader(name, tables, has_shell):
     between.smooth("VEC3", "world")
     between.smooth("VEC3", "shading_normal")
     between.smooth("VEC2", "coordinates")
+    between.smooth("FLOAT", "handed")  # -1: of an instance that is mirrored
     if has_shell:
         between.smooth("VEC3", "up")
         between.smooth("FLOAT", "tile_width")

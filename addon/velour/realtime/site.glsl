@@ -25,7 +25,8 @@ vec3 normal_towards(vec3 view, out bool is_behind)
   if (dot(flat_normal, view) < 0.0) flat_normal = -flat_normal;
   bool is_flat = dot(shading_normal, shading_normal) == 0.0;
   vec3 n = is_flat ? flat_normal : normalize(shading_normal);
-  is_behind = is_flat ? !gl_FrontFacing : dot(n, flat_normal) < 0.0;
+  // A mirrored triangle goes round the other way.
+  is_behind = is_flat ? gl_FrontFacing == (handed < 0.0) : dot(n, flat_normal) < 0.0;
   if (dot(n, flat_normal) < 0.0) n = -n;
   return facing(n, view);
 }

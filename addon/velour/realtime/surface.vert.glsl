@@ -13,6 +13,7 @@ void main()
   mat3 cofactors = mat3(cross(row[1].xyz, row[2].xyz), cross(row[2].xyz, row[0].xyz), cross(row[0].xyz, row[1].xyz));
   float turn = sign(dot(row[0].xyz, cofactors[0]));
   shading_normal = turn * (normal * cofactors);
+  handed = turn;
 #ifdef SHELL
   tile_width = row[3].w;
   up = normalize(turn * (lift * cofactors));
