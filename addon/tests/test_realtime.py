@@ -1,6 +1,7 @@
 """Tables for shaders, and a scene as a graphics processor has it; drawing: blend-tests/window_realtime.py."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from velour.core.mesh_queue import MeshQueue
 from velour.native import (
     Model,
     Scene,
+    TextureSlot,
     Tile,
     VelourError,
     btf_maps_job,
@@ -21,7 +23,9 @@ from velour.native import (
 )
 from velour.realtime import RealtimeScene, UnshownError
 from velour.realtime.lamps import lamp_pixels
+from velour.realtime.pictures import GpuTexture
 from velour.realtime.projection import jitter, view_projection
+from velour.realtime.tables import LobeTables, PrincipledTables
 from velour.realtime.tile_widths import TileWidths
 
 _WEAVE = Path(__file__).parents[2] / "blend-tests/scenes/data/weave.velour"
@@ -70,6 +74,59 @@ def test_rows_of_a_white_diffuse_material_reflect_nearly_all_light():
     assert table.shape == (report["side"], 2 * report["lobes"], 4)
     albedo = table[:80, 1::2, :3].sum(axis=1)
     np.testing.assert_allclose(albedo, 1, atol=0.03)
+
+
+@pytest.mark.parametrize("metallic", [0.0, 0.4, 1.0])
+def test_rows_go_in_step_with_the_base_color(metallic):
+    """That is how pictures of it are drawn: between the rows of black and those of white."""
+
+    def rows(color):
+        with principled_rows_job(color, metallic=metallic, roughness=0.4) as job:
+            job.run()
+            return job.result_table()
+
+    color = (0.2, 0.5, 0.9)
+    black, white, found = rows((0, 0, 0)), rows((1, 1, 1)), rows(color)
+    np.testing.assert_allclose(found[:, ::2], black[:, ::2], atol=1e-5)
+    between = black[:, 1::2, :3] + (white - black)[:, 1::2, :3] * color
+    np.testing.assert_allclose(found[:, 1::2, :3], between, atol=2e-5)
+    assert np.abs(white - black)[:, 1::2].max() > 0.1
+
+
+def test_principled_colors_are_of_the_working_space_already_and_models_are_not():
+    buffers = SimpleNamespace(
+        Buffer=lambda _kind, _size, values: values, GPUTexture=lambda _size, format, data: data
+    )
+    gpu, twice = SimpleNamespace(types=buffers), 2 * np.eye(3, dtype=np.float32)
+    with principled_rows_job((0.2, 0.5, 0.9)) as job:
+        job.run()
+        table = job.result_table()
+        np.testing.assert_array_equal(PrincipledTables(gpu, job, twice)._rows, table.reshape(-1))
+        table[:, 1::2, :3] *= 2
+        np.testing.assert_array_equal(LobeTables(gpu, job, twice)._rows, table.reshape(-1))
+
+
+def test_a_picture_of_a_base_color_is_drawn_and_others_are_counted_as_simpler():
+    pixels = np.linspace(0, 1, 8 * 4 * 3, dtype=np.float32).reshape(4, 8, 3)
+    with RealtimeScene() as scene:
+        color, number = scene.texture(pixels), scene.texture(pixels, channel=0)
+        slot = TextureSlot(color, ((2, 0, 0), (0, 1, 0.5)))
+        scene.add_textured_material({"base_color": slot}, roughness=0.3)
+        scene.add_textured_material({"base_color": slot._replace(uv_set=1)})
+        scene.add_textured_material({"base_color": slot, "roughness": TextureSlot(number)})
+        drawn, on_other_set, with_roughness = scene.looks
+        assert [look.is_simpler for look in scene.looks] == [False, True, True]
+        assert [bool(look.picture) for look in (drawn, on_other_set, with_roughness)] == [True, False, True]
+        assert [len(look.parts()) for look in scene.looks] == [2, 1, 2]
+    assert drawn.white.closed
+    np.testing.assert_array_equal(color.colors[..., :3], pixels)
+
+
+def test_large_pictures_are_drawn_as_means():
+    pixels = np.random.default_rng(1).random((3, 5000, 1), np.float32)
+    made = GpuTexture.from_pixels(pixels)
+    assert made.colors.shape == (1, 1666, 4)
+    np.testing.assert_allclose(made.colors[0, 0, 1], pixels[:3, :3].mean(), rtol=1e-6)
 
 
 def test_jobs_without_a_table_say_so():

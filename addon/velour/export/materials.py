@@ -45,7 +45,7 @@ class MaterialTable:
         self._tiles = {}  # of materials that repeat over surfaces
         self._turns = {}  # of others that are anisotropic: radians
         self._textured = set()  # of others: those with textures
-        self._textures = TextureTable(notes)
+        self._textures = TextureTable(scene, notes)
         self.reduced = []
         self.models = {}  # hashes of the files of measured materials, by full name
         self.glows = False  # one of them may shine by itself

@@ -11,7 +11,8 @@ from .pixels import working_pixels
 class TextureTable:
     """Makes each texture once."""
 
-    def __init__(self, notes):
+    def __init__(self, scene, notes):
+        self._scene = scene
         self._notes = notes
         self._textures = {}
 
@@ -41,7 +42,7 @@ class TextureTable:
             return None
         options = {"wrap": picture.wrap, "filter": picture.filter}
         if is_color and not picture.alpha:
-            return Texture.from_pixels(pixels, **options)
+            return self._scene.texture(pixels, **options)
         number = pixels[..., 3] if picture.alpha else pixels[..., :3] @ luminance_weights()
         number = np.ascontiguousarray(number[..., None], np.float32)
-        return Texture.from_pixels(number, channel=-1 if is_color else 0, **options)
+        return self._scene.texture(number, channel=-1 if is_color else 0, **options)

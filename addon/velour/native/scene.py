@@ -21,7 +21,7 @@ from .measurement import Measurement
 from .mesh_descs import checked_mesh, mesh_descs
 from .model import Model
 from .shader import Shader, described
-from .texture import TextureSlot
+from .texture import Texture, TextureSlot
 
 _COLORS = {"color": 3, "size": 2, "window": 4, "cone_scale": 2}
 
@@ -170,6 +170,10 @@ class Scene(Handle):
         emission [3]: radiance; alpha: 0..1, the share of the surface that is there; rays pass the rest.
         """
         return self.add_textured_material({}, **values)
+
+    def texture(self, pixels: np.ndarray, **options) -> Texture:
+        """A texture for its materials: Texture.from_pixels."""
+        return Texture.from_pixels(pixels, **options)
 
     def add_textured_material(self, textures: dict[str, TextureSlot], **values) -> int:
         """As add_principled_material; textures of base_color, metallic, roughness, alpha go before values."""

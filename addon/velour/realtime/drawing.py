@@ -130,8 +130,9 @@ class Drawing:
             shader.uniform_sampler("lamps", self._lamps)
             for draw in draws:
                 tables = [self._tables[job] for job, _ in scene.looks[draw.material].parts()]
-                for table in tables[: 1 + draw.in_shell]:
-                    table.bind(shader)
+                for table in tables:
+                    if draw.in_shell or not table.is_shell:
+                        table.bind(shader)
                 self._set_look(shader, scene, draw.material, exposure)
                 _draw_instances(shader, draw.batch, tables[0].layout(len(narrow)), draw.first, draw.count)
 

@@ -24,10 +24,16 @@ Place place_of(vec3 wv)
   return Place(ivec2(low), at - low);
 }
 
+vec3 base_color = vec3(0);  // where that is a picture
+
 void add_row(int lobe, int row, float share, inout vec4 shape, inout vec3 color)
 {
   shape += share * texelFetch(lobe_rows, ivec2(2 * lobe, row), 0);
-  color += share * texelFetch(lobe_rows, ivec2(2 * lobe + 1, row), 0).rgb;
+  vec3 found = texelFetch(lobe_rows, ivec2(2 * lobe + 1, row), 0).rgb;
+#ifdef PICTURE
+  found = mix(found, texelFetch(white_rows, ivec2(2 * lobe + 1, row), 0).rgb, base_color);
+#endif
+  color += share * found;
 }
 
 Lobe lobe_at(Place place, int lobe)
@@ -61,6 +67,9 @@ void main()
   vec3 n = site.normal;
   mat3 frame = frame_about(n, is_isotropic() ? site.view : site.along_u);
   Place place = place_of(site.view * frame);
+#ifdef PICTURE
+  base_color = picture_color(site.place);
+#endif
   int lamp_count = int(gain.w);
   vec3 sum = vec3(0);
   for (int i = 0; i < layout_.y; ++i) {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,16 @@ import numpy as np
 from ..native import Scene, btf_maps_job, lobe_rows_job, principled_rows_job, shell_maps_job
 from .lamps import lamp_pixels
 from .meshes import GpuMesh, split_meshes
-from .tables import MOST_TERMS, BtfTables, LobeTables, ShellTables
+from .pictures import GpuTexture, Picture
+from .tables import (
+    MOST_TERMS,
+    BlackTables,
+    BtfTables,
+    LobeTables,
+    PrincipledTables,
+    ShellTables,
+    WhiteTables,
+)
 
 _MOST_DRAWS = 20_000  # of instances: more are slower than rays
 _MOST_LAMPS = 8  # on BTFs: with as many narrow lobes of the world all that btf.frag.glsl has room for
@@ -28,13 +38,20 @@ class Look(NamedTuple):
     tables: type = LobeTables
     emission: tuple = (0.0, 0.0, 0.0)
     is_simpler: bool = False  # than the ray tracer shows it
+    white: object = None  # the job of it where `picture` is white; `job` is of it where that is black
+    picture: Picture | None = None  # of its base colour
     shell: object = None  # the job of its outline
     shell_aspect: float = 1.0
     shell_tile: float = 0.0  # metres; 0: as the texture coordinates say
 
     def parts(self):
         """Each job, and what becomes of its table."""
-        return [(self.job, self.tables)] + ([(self.shell, ShellTables)] if self.shell else [])
+        parts = [(self.job, self.tables)]
+        if self.picture:
+            parts.append((self.white, partial(WhiteTables, self.picture)))
+        if self.shell:
+            parts.append((self.shell, ShellTables))
+        return parts
 
 
 class Group(NamedTuple):
@@ -145,13 +162,22 @@ class RealtimeScene(Scene):
     def add_btf_material(self, btf, most_bytes=0):
         raise UnshownError("measured BTFs themselves are shown by the ray tracer alone")
 
+    def texture(self, pixels, **options):
+        return GpuTexture.from_pixels(pixels, **options)
+
     def add_textured_material(self, textures, **values):
         emission = tuple(values.pop("emission", (0.0, 0.0, 0.0)))
-        is_simpler = bool(textures) or values.pop("alpha", 1.0) < 1.0
-        return self._add_look(Look(_rows_of(values), emission=emission, is_simpler=is_simpler))
+        slot = textures.get("base_color")
+        is_drawn = slot is not None and Picture.can_be(slot)
+        is_simpler = len(textures) > is_drawn or values.pop("alpha", 1.0) < 1.0
+        if not is_drawn:
+            return self._add_look(Look(_rows_of(values), PrincipledTables, emission, is_simpler))
+        black, white = (_rows_of({**values, "base_color": (c, c, c)}) for c in (0.0, 1.0))
+        look = Look(black, BlackTables, emission, is_simpler)
+        return self._add_look(look._replace(white=white, picture=Picture(slot)))
 
     def add_shader_material(self, shader):
-        return self._add_look(Look(_rows_of({}), is_simpler=True))
+        return self._add_look(Look(_rows_of({}), PrincipledTables, is_simpler=True))
 
     def replace_material(self, material):
         before = self.looks[material]

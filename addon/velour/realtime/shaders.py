@@ -18,16 +18,25 @@ def lobes_shader(has_shell):
 
 
 @cache
+def picture_shader(_has_shell):
+    """The same of those whose base colour is a picture; they have no shell."""
+    more = (("FLOAT_2D", "white_rows"), ("FLOAT_2D", "picture"), ("FLOAT_2D", "picture_terms"))
+    return _surface_shader("lobes", (("FLOAT_2D", "lobe_rows"), *more), False, ("PICTURE",))
+
+
+@cache
 def btf_shader(has_shell):
     return _surface_shader("btf", (("FLOAT_2D", "btf_terms"), ("FLOAT_2D_ARRAY", "btf_maps")), has_shell)
 
 
-def _surface_shader(name, tables, has_shell):
+def _surface_shader(name, tables, has_shell, defines=()):
     """`has_shell`: of meshes that have the attribute `lift`, whose surface is in a shell over them."""
     import gpu
 
     info = gpu.types.GPUShaderCreateInfo()
     surface, attributes = "smooth", (("VEC3", "position"), ("VEC3", "normal"), ("VEC2", "uv"))
+    for define in defines:
+        info.define(define)
     info.define("PICTURES", f"{PICTURES}.0")
     if has_shell:
         surface, attributes = "shell", (*attributes, ("VEC3", "lift"))
@@ -54,7 +63,7 @@ def _surface_shader(name, tables, has_shell):
     info.vertex_out(between)
     info.fragment_out(0, "VEC4", "pixel")
     info.vertex_source(_source("surface.vert"))
-    info.fragment_source(_source("light", "site", surface, f"{name}.frag"))
+    info.fragment_source(_source("light", "site", surface, "picture", f"{name}.frag"))
     return gpu.shader.create_from_info(info)
 
 

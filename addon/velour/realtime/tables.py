@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .shaders import btf_shader, lobes_shader
+from .shaders import btf_shader, lobes_shader, picture_shader
 from .textures import array_texture, texture, volume_texture
 
 MOST_TERMS = 512  # of a BTF: a pixel looks at all of them
@@ -15,6 +15,7 @@ class LobeTables:
     """Of a BRDF."""
 
     shader = staticmethod(lobes_shader)
+    is_shell = False
 
     def __init__(self, gpu, job, to_working):
         table, report = job.result_table(), job.report()
@@ -30,10 +31,38 @@ class LobeTables:
         shader.uniform_sampler("lobe_rows", self._rows)
 
 
+class PrincipledTables(LobeTables):
+    """Of a Principled material, whose colours are those of the working space."""
+
+    def __init__(self, gpu, job, _to_working):
+        super().__init__(gpu, job, np.eye(3, dtype=np.float32))
+
+
+class BlackTables(PrincipledTables):
+    """Of one whose base colour is a picture: what it is where that is black."""
+
+    shader = staticmethod(picture_shader)
+
+
+class WhiteTables:
+    """And where it is white; between the two colours go in step with the picture's."""
+
+    is_shell = False
+
+    def __init__(self, picture, gpu, job, _to_working):
+        self._gpu, self._picture = gpu, picture
+        self._rows = texture(gpu, job.result_table())
+
+    def bind(self, shader):
+        shader.uniform_sampler("white_rows", self._rows)
+        self._picture.bind(self._gpu, shader)
+
+
 class BtfTables:
     """Of a BTF of SRBFs: the side above, and the one below where there is one."""
 
     shader = staticmethod(btf_shader)
+    is_shell = False
 
     def __init__(self, gpu, job, to_working):
         table, report = job.result_table(), job.report()
@@ -53,6 +82,8 @@ class BtfTables:
 
 class ShellTables:
     """Of an outline, beside those of its material."""
+
+    is_shell = True
 
     def __init__(self, gpu, job, _to_working):
         table, report = job.result_table(), job.report()

@@ -9,6 +9,12 @@ def texture(gpu, table):
     return gpu.types.GPUTexture((width, height), format="RGBA32F", data=_buffer(gpu, table))
 
 
+def half_texture(gpu, table):
+    """The same in half floats."""
+    height, width = table.shape[:2]
+    return gpu.types.GPUTexture((width, height), format="RGBA16F", data=_buffer(gpu, table))
+
+
 def array_texture(gpu, tables):
     """Of [layers x height x width x 4]."""
     layers, height, width = tables.shape[:3]

@@ -1,0 +1,65 @@
+"""Pictures of base colours."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..native import Texture
+from ..native.table import FILTERS, WRAPS
+from .textures import half_texture, texture
+
+_MOST = 2048  # pixels of a side
+
+
+class GpuTexture(Texture):
+    """A texture of the library whose colours can be drawn, too."""
+
+    colors = None  # [height x width x 4]; None: it is no colour
+
+    @classmethod
+    def from_pixels(cls, pixels, **options):
+        made = super().from_pixels(pixels, **options)
+        if options.get("channel", -1) < 0:
+            made.colors = _colors(pixels)
+            made.terms = (
+                WRAPS.index(options.get("wrap", "repeat")),
+                FILTERS.index(options.get("filter", "linear")),
+            )
+        return made
+
+
+class Picture:
+    """Of a TextureSlot with a GpuTexture on the first set of texture coordinates."""
+
+    def __init__(self, slot):
+        self._texture, self._uv_map = slot.texture, np.asarray(slot.uv_map, np.float32)
+        self._on_gpu = None
+
+    @staticmethod
+    def can_be(slot):
+        return slot.uv_set == 0 and getattr(slot.texture, "colors", None) is not None
+
+    def bind(self, gpu, shader):
+        if self._on_gpu is None:
+            terms = np.zeros((1, 2, 4), np.float32)
+            terms[0, :, :3], terms[0, :, 3] = self._uv_map, self._texture.terms
+            self._on_gpu = half_texture(gpu, self._texture.colors), texture(gpu, terms)
+        shader.uniform_sampler("picture", self._on_gpu[0])
+        shader.uniform_sampler("picture_terms", self._on_gpu[1])
+
+
+def _colors(pixels):
+    """Of [height x width x channels]; of one or two the first. Larger than _MOST: means of squares."""
+    step = -(-max(pixels.shape[:2]) // _MOST)
+    height, width = (max(size // step, 1) for size in pixels.shape[:2])
+    found = np.ones((height, width, 4), np.float32)
+    channels = 3 if pixels.shape[2] >= 3 else 1
+    found[..., :3] = _means(pixels[..., :channels], step, height, width)
+    return found
+
+
+def _means(pixels, step, height, width):
+    if step == 1:
+        return pixels
+    squares = pixels[: height * step, : width * step]
+    return squares.reshape(height, step, width, step, -1).mean(axis=(1, 3))
