@@ -88,7 +88,7 @@ def net_of_its_btf(folder):
     """
     realtime.sky(folder)
     _plane_of_its_btf(folder, "NET")
-    drawn, traced, _ = yield from _compared(folder, "net-btf", samples=1024)
+    drawn, traced, _ = yield from _compared(folder, "net-btf", samples=2048)
     share, error = _share(drawn, traced), realtime.error(drawn, traced)
     _close_structure()
     yield 0.3
