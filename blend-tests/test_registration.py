@@ -40,12 +40,14 @@ class Registration(BlenderTest):
         for name in (
             "RENDER_PT_output",
             "DATA_PT_lens",
-            "DATA_PT_EEVEE_light",
+            "DATA_PT_camera_dof",
+            "DATA_PT_camera_dof_aperture",
             "EEVEE_MATERIAL_PT_context_material",
         ):
             if hasattr(bpy.types, name):
                 self.assertIn(name, panels)
         self.assertNotIn("RENDER_PT_freestyle", panels)
+        self.assertNotIn("DATA_PT_light", panels)  # nor where a node editor's panel was made of it
 
     def test_engine_is_listed(self):
         bpy.context.scene.render.engine = "VELOUR"

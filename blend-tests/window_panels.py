@@ -44,7 +44,13 @@ def panels(folder):
 
 def stock_panels(folder):
     """Blender's own panels for light, camera, world and output, with our engine."""
-    for name, tab in (("Light", "DATA"), ("Camera", "DATA"), ("Cube", "WORLD"), ("Cube", "OUTPUT")):
+    for name, tab in (
+        ("Light", "DATA"),
+        ("Camera", "DATA"),
+        ("Cube", "OBJECT"),
+        ("Cube", "WORLD"),
+        ("Cube", "OUTPUT"),
+    ):
         bpy.context.view_layer.objects.active = bpy.context.view_layer.objects[name]
         yield from window.show_properties(tab)
         window.screenshot(folder, f"stock-{name.lower()}-{tab.lower()}")

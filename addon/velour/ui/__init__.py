@@ -20,6 +20,7 @@ from .material_panel import (
     VELOUR_MATERIAL_PT_outline,
     VELOUR_MATERIAL_PT_surface,
 )
+from .object_panels import VELOUR_LIGHT_PT_light, VELOUR_OBJECT_PT_ray_visibility
 from .pass_panels import (
     VELOUR_MATERIAL_PT_settings,
     VELOUR_VIEWLAYER_PT_passes,
@@ -64,6 +65,8 @@ CLASSES = (
     VELOUR_MATERIAL_PT_browser,
     VELOUR_MATERIAL_PT_surface,
     VELOUR_MATERIAL_PT_settings,
+    VELOUR_LIGHT_PT_light,
+    VELOUR_OBJECT_PT_ray_visibility,
     VELOUR_OBJECT_PT_tile,
     VELOUR_COLLECTION_PT_tile,
     *file_handler.CLASSES,

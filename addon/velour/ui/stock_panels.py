@@ -23,13 +23,14 @@ _EXCLUDED = {
     "VIEWLAYER_PT_freestyle_linestyle",
     "VIEWLAYER_PT_layer_passes",
     "MATERIAL_PT_freestyle",
-    "DATA_PT_light",  # the one of EEVEE, borrowed below, shows the same and more
+    "DATA_PT_light",  # Velour's own shows more
 }
 # Panels of other engines that suit Velour as they are.
 _BORROWED = {
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_WORLD_PT_surface",
-    "DATA_PT_EEVEE_light",
+    "DATA_PT_camera_dof",
+    "DATA_PT_camera_dof_aperture",
     "WORLD_PT_context_world",
 }
 
@@ -52,6 +53,7 @@ def close_to_engine():
 def _panels():
     for panel in bpy.types.Panel.__subclasses__():
         engines = getattr(panel, "COMPAT_ENGINES", ())
-        name = panel.__name__
+        # Those of node editors share their engines with the one that they were made of.
+        name = panel.__name__.removeprefix("NODE_")
         if name in _BORROWED or ("BLENDER_RENDER" in engines and name not in _EXCLUDED):
             yield panel
