@@ -7,7 +7,7 @@ const int DEPTH_LOOKS = 64;
 const int LOOKS = 160;  // a ray that glides along the structure for so long has met it
 const float WITHIN = 0.03, LEAST_STEP = 0.1;  // of the distance from point to point
 const float STRIDE = 1.6;                     // distances that a step is long
-const float LEAST_COSINE = 0.15, LEAST_DEPTH = 1e-3;
+const float LEAST_COSINE = 0.15;
 
 vec4 shell_terms_here() { return texelFetch(shell_terms, ivec2(0), 0); }
 
@@ -122,12 +122,12 @@ vec2 beyond_outline(ShellWay way, float top, float s, vec2 texels)
   float ahead = (way.end < s ? -1.0 : 1.0) * pitch() / way.speed;
   vec3 along = normalize(way_at(way, deepest.y + ahead, top) - place), across = slope - dot(slope, along) * along;
   vec2 outside = across.xy / max(length(across), 1e-9);
-  float depth = max(deepest.x, LEAST_DEPTH * pitch()), square = dot(outside, outside);
-  if (depth >= 1.5 * length(outside * texel) || square <= 0.0) return vec2(0);
+  float depth = deepest.x, square = dot(outside, outside);
+  if (depth <= 0.0 || depth >= 1.5 * length(outside * texel) || square <= 0.0) return vec2(0);
   vec2 over = outside * (2.0 * depth / square);
   // Where other structure lies behind, there is no outline.
   way.place += over;
-  return deepest_behind(way, top, way.begin, WITHIN * pitch()).x > WITHIN * pitch() ? vec2(0) : over / widths;
+  return deepest_behind(way, top, way.begin, 0.0).x > 0.0 ? vec2(0) : over / widths;
 }
 
 // `texels`: of a BTF in a tile, whose place is where the ray crosses the plane of its texels, with the smooth surface's

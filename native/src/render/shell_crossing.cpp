@@ -14,8 +14,6 @@ constexpr float kLeastCosine = 0.15f;
 /// Pitches: where rays start from a structure, so that they do not meet it again at once.
 constexpr float kOffStructure = 0.3f;
 
-/// Pitches: no mirror image is nearer, for one at no distance says that there is none.
-constexpr float kLeastDepth = 1e-3f;
 /// Of the radius of the top, what is left of it below.
 constexpr float kLeastRadius = 0.1f;
 
@@ -109,17 +107,14 @@ Vec2 ShellCrossing::beyond_outline(const Vec2& texels) const {
   // Half of what a texel's mean and the look-up between texels reach over.
   const float most = std::min(1.5f * std::max(texel.x, texel.y), 0.9f * volume.reach);
   const ShellOutline outline = outline_beside(field(), way_, hit_.s, most);
-  // On the outline itself a place is its own mirror image, and counts twice.
-  const float depth = std::max(outline.depth, kLeastDepth * volume.pitch());
   const Vec2 across(outline.outside);
   const float square = glm::dot(across, across);
-  if (!(depth < std::min(most, 1.5f * glm::length(across * texel))) || !(square > 0)) return Vec2(0.0f);
-  const Vec2 over = across * (2 * depth / square);
+  if (!(outline.depth < std::min(most, 1.5f * glm::length(across * texel))) || !(square > 0)) return Vec2(0.0f);
+  const Vec2 over = across * (2 * outline.depth / square);
   // Where other structure lies behind, there is no outline.
   ShellWay beside = way_;
   beside.ray.place += over;
-  const float within = kWithinShell * volume.pitch();
-  if (deepest_behind(field(), beside, hit_.begin, within).depth > within) return Vec2(0.0f);
+  if (deepest_behind(field(), beside, hit_.begin, 0).depth > 0) return Vec2(0.0f);
   return over / Vec2(1, volume.aspect);
 }
 

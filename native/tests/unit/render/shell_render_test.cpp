@@ -307,7 +307,11 @@ TEST(ShellRender, UpToItsOutlineEveryPlaceHasItsMirrorImage) {
     if (hit.instance == kNoHit) continue;
     ++met;
     const Vec2 beyond = Vertex::seen(wires.scene, ray, hit, {0, 0.01f}, nullptr).site.beyond_outline;
-    EXPECT_GT(beyond.x, 0.0f) << inside;
+    if (inside > 2e-4f) {
+      EXPECT_GT(beyond.x, 0.0f) << inside;
+    } else if (inside < -2e-4f) {
+      EXPECT_EQ(beyond.x, 0.0f) << inside;  // met within the march's tolerance alone
+    }
     EXPECT_NEAR(beyond.x, 2 * std::max(inside, 0.0f), 0.004f) << inside;
   }
   EXPECT_GT(met, 140);
