@@ -3,6 +3,7 @@
 #include "btf/btf_folder.h"
 #include "btf/view_file.h"
 #include "file/file.h"
+#include "image/image_stack_file.h"
 #include "job/error.h"
 
 namespace velour {

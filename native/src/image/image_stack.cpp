@@ -2,38 +2,22 @@
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
-#include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
-#include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
-#include <algorithm>
-#include <array>
 #include <cstring>
 
 #include "file/atomic_file.h"
 #include "image/exr_errors.h"
 #include "image/exr_output.h"
-#include "image/exr_scan.h"
+#include "image/stack_layout.h"
 #include "job/error.h"
 
 namespace velour {
 namespace {
-
-/// Before the pixels of a row: the number of the part, where there are several, the row, the bytes of the pixels.
-uint64_t chunk_head(size_t parts) { return parts > 1 ? 12 : 8; }
-
-constexpr uint64_t kMostHeaderBytes = uint64_t{1} << 14;
-
-/// As OpenEXR stores them: in alphabetical order.
-std::vector<std::string> stored_channels(const ImageStack& stack) {
-  return stack.channels == 3 ? std::vector<std::string>{"B", "G", "R"} : std::vector<std::string>{"Y"};
-}
-
-uint64_t value_bytes(const ImageStack& stack) { return stack.value == StackValue::half ? 2 : 4; }
 
 Imf::Header header_of(const ImageStack& stack, const Imath::Box2i& display) {
   const Imath::Box2i window({0, 0},
@@ -57,36 +41,61 @@ std::vector<Imf::Header> headers_of(std::span<const ImageStack> stacks) {
   return headers;
 }
 
-void flip_rows(uint64_t row_bytes, std::span<uint8_t> image) {
-  uint8_t* low = image.data();
-  uint8_t* high = low + image.size() - row_bytes;
-  for (; low < high; low += row_bytes, high -= row_bytes) std::swap_ranges(low, low + row_bytes, high);
-}
-
-/// `rows`: the image at the top of those that are still to be written, in the file's order.
-void write_image(Imf::OutputPart& part, const ImageStack& stack, uint64_t image, std::span<uint8_t> rows) {
-  const auto type = stack.value == StackValue::half ? Imf::HALF : Imf::FLOAT;
-  const size_t pixel_bytes = stack.channels * value_bytes(stack);
-  const Imath::Box2i window({0, static_cast<int>(image * stack.height)},
-                            {static_cast<int>(stack.width) - 1, static_cast<int>((image + 1) * stack.height) - 1});
-  Imf::FrameBuffer buffer;
-  const std::vector<std::string> names = stored_channels(stack);
-  for (size_t c = 0; c < names.size(); ++c) {
-    uint8_t* channel = rows.data() + (names.size() - 1 - c) * value_bytes(stack);  // in memory: R, G, B
-    buffer.insert(names[c], Imf::Slice::Make(type, channel, window, pixel_bytes, stack.row_bytes()));
+/// Channels lie beside one another in memory, and behind one another in a row of the file.
+template <typename Value>
+void separate(const uint8_t* row, uint64_t width, uint8_t* planes) {
+  const auto* from = reinterpret_cast<const Value*>(row);
+  auto* to = reinterpret_cast<Value*>(planes);
+  for (uint64_t x = 0; x < width; ++x) {
+    to[x] = from[3 * x + 2];
+    to[width + x] = from[3 * x + 1];
+    to[2 * width + x] = from[3 * x];
   }
-  part.setFrameBuffer(buffer);
-  part.writePixels(static_cast<int>(stack.height));
 }
 
-void write_stack(Imf::OutputPart part, const ImageStack& stack, std::span<const uint8_t> pixels,
-                 const Progress& progress) {
-  std::vector<uint8_t> image(stack.image_bytes());
+void store_row(const ImageStack& stack, const uint8_t* row, uint8_t* planes) {
+  if (stack.channels == 1) {
+    std::memcpy(planes, row, stack.row_bytes());
+  } else if (stack.value == StackValue::half) {
+    separate<uint16_t>(row, stack.width, planes);
+  } else {
+    separate<uint32_t>(row, stack.width, planes);
+  }
+}
+
+/// Where they end, and the chunk tables begin, which OpenEXR leaves room for.
+uint64_t write_headers(AtomicFile& file, const std::string& path, std::span<const Imf::Header> headers,
+                       std::span<const ImageStack> stacks) {
+  ExrOutput stream(file, path);
+  const Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
+  return stream.tellp() - StackLayout(stacks, 0).chunk(0, 0);
+}
+
+void write_tables(AtomicFile& file, const StackLayout& layout, std::span<const ImageStack> stacks) {
+  file.seek(layout.tables());
+  std::vector<uint64_t> table;
+  for (size_t i = 0; i < stacks.size(); ++i) {
+    table.resize(stacks[i].images * stacks[i].height);
+    for (size_t y = 0; y < table.size(); ++y) table[y] = layout.chunk(i, y);
+    file.write({reinterpret_cast<const uint8_t*>(table.data()), 8 * table.size()});
+  }
+}
+
+/// OpenEXR's own writing hands over each row to threads that Blender has started: two thirds of what a capture of
+/// small texels took.
+void write_stack(AtomicFile& file, const StackLayout& layout, const ImageStack& stack, size_t index,
+                 std::span<const uint8_t> pixels, const Progress& progress) {
+  const uint64_t row_bytes = stack.row_bytes();
+  std::vector<uint8_t> chunks(stack.height * layout.step(index));
   for (uint64_t i = 0; i < stack.images; ++i) {
     progress.check();
-    std::memcpy(image.data(), pixels.data() + i * image.size(), image.size());
-    flip_rows(stack.row_bytes(), image);
-    write_image(part, stack, i, image);
+    const uint8_t* image = pixels.data() + i * stack.image_bytes();
+    for (uint64_t row = 0; row < stack.height; ++row) {
+      uint8_t* chunk = chunks.data() + row * layout.step(index);
+      layout.write_head(index, i * stack.height + row, chunk);
+      store_row(stack, image + (stack.height - 1 - row) * row_bytes, chunk + layout.head_bytes());
+    }
+    file.write(chunks);
   }
 }
 
@@ -97,43 +106,6 @@ void check_sizes(const std::string& path, const ImageStack& stack, std::span<con
   if (sized && pixels.size() == stack.images * stack.image_bytes()) return;
   throw Error(Status::invalid_argument, path + ": part '" + stack.name + "' has " + std::to_string(pixels.size()) +
                                             " bytes, which are not those of its images.");
-}
-
-/// Channels lie behind one another in a row of the file, and beside one another in memory.
-template <typename Value>
-void interleave(const uint8_t* planes, uint64_t width, uint8_t* row) {
-  const auto* from = reinterpret_cast<const Value*>(planes);
-  auto* to = reinterpret_cast<Value*>(row);
-  for (uint64_t x = 0; x < width; ++x) {
-    to[3 * x] = from[2 * width + x];
-    to[3 * x + 1] = from[width + x];
-    to[3 * x + 2] = from[x];
-  }
-}
-
-void copy_row(const ImageStack& stack, const uint8_t* planes, uint8_t* row) {
-  if (stack.channels == 1) {
-    std::memcpy(row, planes, stack.row_bytes());
-  } else if (stack.value == StackValue::half) {
-    interleave<uint16_t>(planes, stack.width, row);
-  } else {
-    interleave<uint32_t>(planes, stack.width, row);
-  }
-}
-
-/// Whether `chunk` begins with the last numbers of `expected`, as many as its head has.
-bool is_chunk(const uint8_t* chunk, uint64_t head, const std::array<int32_t, 3>& expected) {
-  const uint64_t skipped = sizeof(expected) - head;
-  return std::memcmp(chunk, reinterpret_cast<const uint8_t*>(expected.data()) + skipped, head) == 0;
-}
-
-[[noreturn]] void refuse(const std::string& path, const std::string& what) {
-  throw Error(Status::bad_data, path + ": " + what);
-}
-
-bool agrees(const ExrPart& part, const ImageStack& stack) {
-  return part.name == stack.name && part.channels == stored_channels(stack) && part.value_bytes == value_bytes(stack) &&
-         !part.integers && part.width == stack.width && part.height == stack.height * stack.images && !part.compressed;
 }
 
 }  // namespace
@@ -147,84 +119,11 @@ void write_image_stacks(const std::string& path, std::span<const ImageStack> sta
   AtomicFile file(path);
   const auto sentence = [&](const char* why) { return path + ": OpenEXR cannot write the images: " + why; };
   with_exr_errors(Status::io, sentence, [&] {
-    ExrOutput stream(file, path);
-    Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
-    for (size_t i = 0; i < stacks.size(); ++i) {
-      write_stack(Imf::OutputPart(out, static_cast<int>(i)), stacks[i], pixels[i], progress);
-    }
+    const StackLayout layout(stacks, write_headers(file, path, headers, stacks));
+    write_tables(file, layout, stacks);
+    for (size_t i = 0; i < stacks.size(); ++i) write_stack(file, layout, stacks[i], i, pixels[i], progress);
   });
   file.commit();
-}
-
-ImageStackFile::ImageStackFile(const std::string& path, std::vector<ImageStack> stacks)
-    : file_(path), stacks_(std::move(stacks)) {
-  std::vector<uint8_t> head(std::min(kMostHeaderBytes, file_.size()));
-  file_.read(0, head);
-  check_headers(head);
-}
-
-void ImageStackFile::check_headers(std::span<const uint8_t> head) {
-  const ExrHeaders headers = scan_exr_headers(head, file_.path());
-  const bool same = std::equal(headers.parts.begin(), headers.parts.end(), stacks_.begin(), stacks_.end(), agrees);
-  if (!same) refuse(file_.path(), "its parts are not the ones that the index asks for; it belongs to something else.");
-  uint64_t end = headers.bytes;
-  for (const ImageStack& stack : stacks_) end += 8 * stack.images * stack.height;
-  for (const ImageStack& stack : stacks_) {
-    begin_.push_back(end);
-    end += stack.images * stack.height * (chunk_head(stacks_.size()) + stack.row_bytes());
-  }
-  if (end != file_.size()) {
-    refuse(file_.path(), "holds " + std::to_string(file_.size()) + " bytes where its images take " +
-                             std::to_string(end) + "; it is truncated or damaged.");
-  }
-  tables_ = headers.bytes;
-}
-
-void ImageStackFile::check_chunk_tables() const {
-  constexpr uint64_t kPiece = 8192;
-  uint64_t position = tables_;
-  std::vector<uint64_t> table(kPiece);
-  for (size_t s = 0; s < stacks_.size(); ++s) {
-    const uint64_t rows = stacks_[s].images * stacks_[s].height;
-    const uint64_t step = chunk_head(stacks_.size()) + stacks_[s].row_bytes();
-    for (uint64_t row = 0; row < rows; row += table.size()) {
-      table.resize(std::min(kPiece, rows - row));
-      file_.read(position, {reinterpret_cast<uint8_t*>(table.data()), 8 * table.size()});
-      for (uint64_t i = 0; i < table.size(); ++i) {
-        if (table[i] == begin_[s] + (row + i) * step) continue;
-        refuse(file_.path(), "the chunk table of part '" + stacks_[s].name + "' is not in order; the file is damaged.");
-      }
-      position += 8 * table.size();
-    }
-    table.resize(kPiece);
-  }
-}
-
-/// The rows of one image as they lie in the file, the top one first.
-void ImageStackFile::read_image(size_t index, uint64_t image, std::span<uint8_t> chunks,
-                                std::span<uint8_t> pixels) const {
-  const ImageStack& stack = stacks_[index];
-  const uint64_t row_bytes = stack.row_bytes(), head = chunk_head(stacks_.size()), step = head + row_bytes;
-  file_.read(begin_[index] + image * stack.height * step, chunks);
-  for (uint64_t row = 0; row < stack.height; ++row) {
-    const uint8_t* chunk = chunks.data() + row * step;
-    const uint64_t y = image * stack.height + row;
-    if (!is_chunk(chunk, head,
-                  {static_cast<int32_t>(index), static_cast<int32_t>(y), static_cast<int32_t>(row_bytes)})) {
-      refuse(file_.path(), "row " + std::to_string(y) + " of part '" + stack.name + "' is damaged.");
-    }
-    copy_row(stack, chunk + head, pixels.data() + (stack.height - 1 - row) * row_bytes);
-  }
-}
-
-void ImageStackFile::read(size_t stack, uint64_t first, std::span<uint8_t> pixels) const {
-  const ImageStack& of = stacks_[stack];
-  const uint64_t bytes = of.image_bytes(), count = pixels.size() / bytes;
-  if (first > of.images || count > of.images - first || count * bytes != pixels.size()) {
-    throw Error(Status::invalid_argument, file_.path() + ": part '" + of.name + "' does not have those images.");
-  }
-  std::vector<uint8_t> chunks(of.height * (chunk_head(stacks_.size()) + of.row_bytes()));
-  for (uint64_t i = 0; i < count; ++i) read_image(stack, first + i, chunks, pixels.subspan(i * bytes, bytes));
 }
 
 }  // namespace velour

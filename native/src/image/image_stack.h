@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "file/random_access_file.h"
 #include "job/progress.h"
 
 namespace velour {
@@ -27,7 +26,8 @@ struct ImageStack {
   uint64_t channels = 1;  // or 3
   uint64_t width = 0, height = 0, images = 0;
 
-  uint64_t row_bytes() const { return width * channels * (value == StackValue::half ? 2 : 4); }
+  uint64_t value_bytes() const { return value == StackValue::half ? 2 : 4; }
+  uint64_t row_bytes() const { return width * channels * value_bytes(); }
   uint64_t image_bytes() const { return height * row_bytes(); }
   bool operator==(const ImageStack&) const = default;
 };
@@ -39,28 +39,5 @@ using ImageAttributes = std::map<std::string, std::string>;
 void write_image_stacks(const std::string& path, std::span<const ImageStack> stacks,
                         std::span<const std::span<const uint8_t>> pixels, const ImageAttributes& attributes = {},
                         const Progress& progress = Progress());
-
-/// An open file of stacks. Calls are thread-safe.
-class ImageStackFile {
- public:
-  /// Throws Error(bad_data) unless the file's headers and size are those of exactly these stacks.
-  ImageStackFile(const std::string& path, std::vector<ImageStack> stacks);
-
-  /// Images [first, first + pixels.size() / image_bytes()) of stacks[stack].
-  void read(size_t stack, uint64_t first, std::span<uint8_t> pixels) const;
-  /// Throws Error(bad_data) unless the chunk tables, by which other programs find rows, say what is true. Nothing here
-  /// needs them; once, when a file is met, is enough.
-  void check_chunk_tables() const;
-  uint64_t bytes() const { return file_.size(); }
-
- private:
-  void check_headers(std::span<const uint8_t> head);
-  void read_image(size_t index, uint64_t image, std::span<uint8_t> chunks, std::span<uint8_t> pixels) const;
-
-  RandomAccessFile file_;
-  std::vector<ImageStack> stacks_;
-  uint64_t tables_ = 0;          // where the chunk tables begin
-  std::vector<uint64_t> begin_;  // of each stack's first chunk
-};
 
 }  // namespace velour
