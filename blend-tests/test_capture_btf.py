@@ -1,6 +1,8 @@
 """Tiles of Blender captured as BTFs."""
 
+import contextlib
 import importlib
+import io
 import json
 
 import bpy
@@ -70,6 +72,23 @@ class CaptureBtf(BlenderTest):
             written = sum(file.stat().st_size for file in (self.folder / f"tile-{samples}.btf").iterdir())
             told = panel.capture_bytes(bpy.context.object.velour)
             self.assertLess(abs(written / told - 1), 0.1, (written, told))
+
+    def test_an_estimate_before_it_begins(self):
+        """By small captures that leave no trace; it is of these settings alone."""
+        self._plane(size=2)
+        obj = bpy.context.object
+        settings, state = obj.velour, bpy.context.window_manager.velour
+        settings.texels, settings.views, settings.lights = 16, 8, 20
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            self.assertEqual(bpy.ops.velour.estimate_capture(), {"FINISHED"})
+        self.assertRegex(said.getvalue(), r"'Plane': About \d+ seconds, \d+ MB on disk, \d+ MB of memory")
+        self.assertIn(state.estimate, said.getvalue())
+        tiles = importlib.import_module(f"{inputs.ADDON}.operators.tiles")
+        self.assertEqual(state.estimated, tiles.captured_as(obj))
+        settings.texels = 17
+        self.assertNotEqual(state.estimated, tiles.captured_as(obj))
+        self.assertEqual(settings.directory, "")
 
     def test_size_is_that_of_the_scene_in_metres(self):
         self._plane(size=2)

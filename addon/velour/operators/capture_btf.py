@@ -7,12 +7,12 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ..core.plain_words import plain
 from ..export.tiles import export_tile
-from ..native import capture_job, directions
+from ..native import capture_job
 from ..properties.tile_settings import SIDES
 from .background_job import OneJob
-from .tiles import find_tile, held_out_folder, tile_folder
+from .tiles import CAPTURE_NUMBERS, capture_options, find_tile, held_out_folder, tile_folder
 
-_SETTINGS = ("directory", "texels", "views", "lights", "samples", "bounces", "sides", "use_approximate")
+_SETTINGS = ("directory", *CAPTURE_NUMBERS, "sides", "use_approximate")
 
 
 class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
@@ -65,20 +65,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         scene, place, self._notes = export_tile(
             tile, context.evaluated_depsgraph_get(), settings.use_approximate
         )
-        options = {
-            "origin": place.origin,
-            "period": place.period,
-            "source": self._subject,
-            "texels": settings.texels,
-            "views": directions(str(settings.views)),
-            "lights": directions(str(settings.lights)),
-            "samples": settings.samples,
-            "bounces": settings.bounces,
-            "sides": settings.sides.lower(),
-            "seed": self.seed,
-            "threads": context.scene.render.threads,
-            "resume": self.resume,
-        }
+        options = {**capture_options(context, tile, place), "seed": self.seed, "resume": self.resume}
         with scene:
             self._job = capture_job(scene, self._folder, held_out=self.held_out, **options)
             if settings.held_out and not self.held_out:

@@ -6,6 +6,9 @@ import bpy
 
 from ..export import ExportError
 from ..export.tiles import collection_tile, object_tile
+from ..native import directions
+
+CAPTURE_NUMBERS = ("texels", "views", "lights", "samples", "bounces")
 
 
 def find_tile(context, collection_name):
@@ -38,3 +41,26 @@ def tile_folder(tile):
 def held_out_folder(tile):
     """Where the pairs go that models of its BTF are judged by: beside it."""
     return tile_folder(tile).removesuffix(".btf") + ".held-out.btf"
+
+
+def capture_options(context, tile, place):
+    """Options of capture_job, by the settings of the tile. `place`: where export_tile() has put it."""
+    settings = tile.owner.velour
+    return {
+        "origin": place.origin,
+        "period": place.period,
+        "source": tile.owner.name,
+        "texels": settings.texels,
+        "views": directions(str(settings.views)),
+        "lights": directions(str(settings.lights)),
+        "samples": settings.samples,
+        "bounces": settings.bounces,
+        "sides": settings.sides.lower(),
+        "threads": context.scene.render.threads,
+    }
+
+
+def captured_as(owner):
+    """Changes with what a capture of the tile is asked for. For draw()."""
+    settings = owner.velour
+    return repr((owner.name, settings.sides, *(getattr(settings, name) for name in CAPTURE_NUMBERS)))

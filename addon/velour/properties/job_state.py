@@ -20,6 +20,8 @@ class VelourJobState(bpy.types.PropertyGroup):
     seconds_left: FloatProperty(default=-1.0, options={"SKIP_SAVE"})  # below 0: not known
     waiting: IntProperty(options={"SKIP_SAVE"})  # how many come after it
     fraction: FloatProperty(name="Progress", subtype="FACTOR", min=0.0, max=1.0, options={"SKIP_SAVE"})
+    estimate: StringProperty(options={"SKIP_SAVE"})  # of a capture
+    estimated: StringProperty(options={"SKIP_SAVE"})  # which one it is of
     plot: PointerProperty(type=VelourPlotSettings)
     checked: PointerProperty(type=VelourCheckState)
     browser: PointerProperty(type=VelourBrowserSettings)

@@ -2,16 +2,19 @@
 
 import bpy
 
+from ..core.capture_size import capture_bytes
 from ..engine.engine import VelourRenderEngine
 from ..export.objects import GEOMETRY
 from ..operators.capture_btf import VELOUR_OT_capture_btf
 from ..operators.compress_btf import VELOUR_OT_compress_btf
+from ..operators.estimate_capture import VELOUR_OT_estimate_capture
 from ..operators.repeat_tile import VELOUR_OT_repeat_tile, is_repeated
+from ..operators.tiles import captured_as
 from ..properties.tile_settings import SHAPE_OF
 from .draw_plot import draw_chosen, draw_plot
 from .progress import draw_progress
 from .summaries import model_summary
-from .text import data_size
+from .text import data_size, draw_sentence
 
 
 class TilePanel:
@@ -33,8 +36,13 @@ class TilePanel:
             column.prop(settings, name)
         column.prop(settings, "use_approximate")
         column.label(text=_size(settings), icon="INFO")
+        state = context.window_manager.velour
+        if state.estimate and state.estimated == captured_as(owner):
+            draw_sentence(context, layout, state.estimate, icon="TIME")
         draw_progress(context, layout)
-        layout.operator(VELOUR_OT_capture_btf.bl_idname, icon="PLAY").collection = collection_name
+        row = layout.row()
+        for operator, icon in ((VELOUR_OT_estimate_capture, "TIME"), (VELOUR_OT_capture_btf, "PLAY")):
+            row.operator(operator.bl_idname, icon=icon).collection = collection_name
         self._draw_material(context, layout, settings, collection_name)
 
     def _draw_material(self, context, layout, settings, collection_name):
@@ -75,15 +83,6 @@ class VELOUR_COLLECTION_PT_tile(TilePanel, bpy.types.Panel):
 
     def draw(self, context):
         self._draw(context, context.collection, context.collection.name)
-
-
-def capture_bytes(settings):
-    """What a capture of one side takes on disk, within a few per cent."""
-    row = 6 * settings.texels + 16  # colours as half floats, and what the file says of the row
-    if settings.samples > 1:
-        row += 2 * settings.texels + 16  # errors
-    maps = 12 * settings.texels**2  # coverage and heights
-    return settings.views * (settings.lights * settings.texels * row + maps)
 
 
 def _size(settings):
