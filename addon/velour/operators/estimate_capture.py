@@ -47,7 +47,7 @@ class VELOUR_OT_estimate_capture(JobsInSteps, bpy.types.Operator):
 
 
 class _Probes:
-    """The jobs of two small captures of a committed scene, which this owns; then what they `took`; `sides`."""
+    """The jobs of two small captures of a committed scene, which this owns; then `took` and `sides`."""
 
     def __init__(self, scene, numbers, options):
         self._scene, self._numbers, self._options = scene, numbers, options
