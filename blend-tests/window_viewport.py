@@ -14,6 +14,7 @@ def start(folder):
         grey,
         as_the_final_render,
         first_picture,
+        one_redraw,
         camera_view,
         render_region,
         error_line,
@@ -78,6 +79,28 @@ def first_picture(folder):
     yield 0.5
     assert not tuple(viewport.addon("engine.viewport")._all), "it is still there"
     assert viewport.is_idle()
+
+
+def one_redraw(folder):
+    """What a change looks like is in the redraw that Blender makes of it, where that is worked out soon enough."""
+    _colored_scene()
+    viewport.show()
+    yield from viewport.finished()
+    module, drawn = viewport.addon("engine.viewport"), []
+    draw, prompt = module.Viewport.draw, module._PROMPT
+
+    def watched(self, *given):
+        begin = time.monotonic()
+        draw(self, *given)
+        drawn.append(self._picture.shown_at >= begin)
+
+    module.Viewport.draw, module._PROMPT = watched, 30.0  # the machine may be busy
+    try:
+        bpy.data.lights["Light"].energy *= 3
+        yield from viewport.until(lambda: drawn, "the change is not drawn")
+    finally:
+        module.Viewport.draw, module._PROMPT = draw, prompt
+    assert drawn[0]
 
 
 def camera_view(folder):

@@ -36,7 +36,8 @@ class Stopwatch:
 
     def start(self):
         self.begin = time.monotonic()
-        self.export, self.held, self.seen = 0.0, 0.0, None
+        self.export, self.held = 0.0, 0.0
+        self.seen, self._is_drawn = None, False
 
     def _timed_update(self, shown, *given):
         begin = time.monotonic()
@@ -48,14 +49,15 @@ class Stopwatch:
         self._draw(shown, *given)
         end = time.monotonic()
         self.held = max(self.held, end - begin - (self.export - export))
-        if self.seen is None and shown._picture.shown_at >= begin:
-            self.seen = end - self.begin
+        self._is_drawn |= shown._picture.shown_at >= begin
 
     def until_seen(self):
-        while self.seen is None:
+        """Until the window is on the screen that a picture was drawn into: Blender's next turn comes after that."""
+        while not self._is_drawn:
             if time.monotonic() > self.begin + _PATIENCE:
                 raise TimeoutError("the viewport shows nothing")
             yield _TURN
+        self.seen = time.monotonic() - self.begin
 
     def row(self):
         return {"seen": self.seen, "export": self.export, "held": self.held}

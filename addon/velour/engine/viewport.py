@@ -28,6 +28,7 @@ log = logging.getLogger(__package__)
 _LEAST_SECONDS = 0.05  # between two pictures
 _SHARE = 0.1  # of the main thread's time, at most, for pictures that only grow less noisy
 _PATIENCE = 0.04  # seconds that a change waits for the first picture of the change before
+_PROMPT = 0.02  # and for its own, which then is in the redraw at hand: another takes Blender longer than that
 
 _all = weakref.WeakSet()
 
@@ -209,6 +210,7 @@ class Viewport:
             self._options = options
         self._key = frame.key()
         self._start()
+        self._await_first(_PROMPT)
 
     def _start(self):
         self._is_waiting = viewport_clock.is_paused()
@@ -220,11 +222,14 @@ class Viewport:
         """Stops the job; what it has to show is kept for the next redraw."""
         if self._job is None:
             return
-        end = time.monotonic() + _PATIENCE
-        while self._is_unseen() and time.monotonic() < end:
-            time.sleep(0.002)
+        self._await_first(_PATIENCE)
         self._job.stop()
         self._picture.take(self._job)
+
+    def _await_first(self, seconds):
+        end = time.monotonic() + seconds
+        while self._is_unseen() and time.monotonic() < end:
+            time.sleep(0.001)
 
     def _close_job(self):
         if self._job:
