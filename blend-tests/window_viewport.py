@@ -82,7 +82,7 @@ def first_picture(folder):
 
 
 def one_redraw(folder):
-    """What a change looks like is in the redraw that Blender makes of it, where that is worked out soon enough."""
+    """What a change looks like is in the redraw that Blender makes of it, if worked out by then."""
     _colored_scene()
     viewport.show()
     yield from viewport.finished()

@@ -52,7 +52,7 @@ class Stopwatch:
         self._is_drawn |= shown._picture.shown_at >= begin
 
     def until_seen(self):
-        """Until the window is on the screen that a picture was drawn into: Blender's next turn comes after that."""
+        """Until the window with a picture is on the screen: Blender's next turn comes after that."""
         while not self._is_drawn:
             if time.monotonic() > self.begin + _PATIENCE:
                 raise TimeoutError("the viewport shows nothing")
