@@ -7,9 +7,11 @@ is counted as if it stayed.
 from __future__ import annotations
 
 import os
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from ..native import images, library
+from ..native.errors import Status, VelourError
+from .memory_limit import Limit
 
 MIB = 1 << 20
 
@@ -25,27 +27,36 @@ _PIXEL = 96  # sums of a pixel, and the picture that is written
 _MERGED_PIXEL = 112  # beside what a side file has
 
 
-class Estimate(NamedTuple):
+@dataclass(frozen=True)
+class Estimate:
     """Bytes at the peak, of the whole process."""
 
-    program: int
-    mesh: int
-    material: int
-    world: int
-    picture: int
+    parts: dict[str, int]
+    remedies: dict[str, str]  # of each part, where it is the largest
 
     @property
     def total(self) -> int:
-        return sum(self)
+        return sum(self.parts.values())
 
     def __str__(self) -> str:
-        return ", ".join(f"{name} {size_text(value)}" for name, value in self._asdict().items())
+        return ", ".join(f"{name} {size_text(value)}" for name, value in self.parts.items())
 
     @property
     def remedy(self) -> str:
         """What helps most."""
-        parts = self._asdict()
-        return _REMEDIES[max(parts, key=parts.get)]
+        return self.remedies[max(self.parts, key=self.parts.get)]
+
+    def within(self, limit: Limit | None, what: str) -> str:
+        """A line that states it. Raises VelourError where `what` would take more than the limit."""
+        size = size_text(self.total)
+        if limit and self.total > limit.size:
+            raise VelourError(
+                Status.OUT_OF_MEMORY,
+                f"{what} would take about {size} of memory ({self}), above its limit of"
+                f" {size_text(limit.size)} ({limit.of}); {self.remedy}.",
+            )
+        at_most = f" of {size_text(limit.size)} ({limit.of})" if limit else ""
+        return f"Estimated memory: {size}{at_most}: {self}"
 
 
 _REMEDIES = {
@@ -69,13 +80,14 @@ def estimate(
     """`window`: pixels that are rendered, across and up; `goes_on`: beside those of a side file."""
     of_material = _material(material)  # opens the library, which is a part of the program
     width, height, channels = images.size(world)
-    return Estimate(
-        resident() + _STARTING + _THREAD * threads,
-        round(_MESH * os.path.getsize(mesh)),
-        of_material + (_MODEL * os.path.getsize(proposal) if proposal else 0),
-        width * height * (_WORLD_PIXEL + _WORLD_VALUE * channels),
-        window[0] * window[1] * (_PIXEL + (_MERGED_PIXEL if goes_on else 0)),
-    )
+    parts = {
+        "program": resident() + _STARTING + _THREAD * threads,
+        "mesh": round(_MESH * os.path.getsize(mesh)),
+        "material": of_material + (_MODEL * os.path.getsize(proposal) if proposal else 0),
+        "world": width * height * (_WORLD_PIXEL + _WORLD_VALUE * channels),
+        "picture": window[0] * window[1] * (_PIXEL + (_MERGED_PIXEL if goes_on else 0)),
+    }
+    return Estimate(parts, _REMEDIES)
 
 
 def _material(path: str) -> int:

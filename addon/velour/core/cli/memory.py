@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 import os
 
-from ...native.errors import Status, VelourError
 from .. import machine, memory_estimate
-from ..memory_estimate import Estimate, size_text
+from ..memory_estimate import Estimate
 from ..memory_limit import Limit, memory_limit
 from . import output, render_part, unfinished
 
@@ -19,16 +18,9 @@ def check(args: argparse.Namespace) -> Estimate:
         unfinished.side_file(args.output).exists(), args.threads or machine.threads(),
     )  # fmt: skip
     limit = Limit(args.memory, "--memory") if args.memory else memory_limit(os.environ)
-    at_most = f" of {size_text(limit.size)} ({limit.of})" if limit else ""
-    output.log.info("Estimated memory: %s%s: %s.", size_text(estimate.total), at_most, estimate)
-    if limit and estimate.total > limit.size:
-        raise VelourError(
-            Status.OUT_OF_MEMORY,
-            f"The render would take about {size_text(estimate.total)} of memory ({estimate}), "
-            f"above its limit of {size_text(limit.size)} ({limit.of}); {estimate.remedy}.",
-        )
+    output.log.info("%s.", estimate.within(limit, "The render"))
     return estimate
 
 
 def report(estimate: Estimate) -> dict:
-    return {"estimated": estimate.total, "parts": estimate._asdict(), "peak": memory_estimate.peak()}
+    return {"estimated": estimate.total, "parts": estimate.parts, "peak": memory_estimate.peak()}
