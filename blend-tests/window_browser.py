@@ -78,17 +78,6 @@ def _rest():
     raise AssertionError("the pictures are never there")
 
 
-def _timed(function, seconds):
-    def timed(*arguments):
-        start = time.thread_time()
-        try:
-            return function(*arguments)
-        finally:
-            seconds.append(time.thread_time() - start)
-
-    return timed
-
-
 def thousand_files(folder):
     """Listed at once; pictures only of those on this page and the next, and nothing holds the window up."""
     path = _folder(folder, "thousand", _FILES)
@@ -96,8 +85,8 @@ def thousand_files(folder):
     turns, draws = [], []
     begun = time.monotonic()
     with (
-        mock.patch.object(browser, "_turn", _timed(browser._turn, turns)),
-        mock.patch.object(panel, "_draw_files", _timed(panel._draw_files, draws)),
+        mock.patch.object(browser, "_turn", window.timed(browser._turn, turns)),
+        mock.patch.object(panel, "_draw_files", window.timed(panel._draw_files, draws)),
     ):
         yield from _show(path)
         while browser.found(str(path), bpy.context.window_manager.velour.browser.visits) is None:

@@ -2,7 +2,6 @@
 
 import importlib
 import threading
-import time
 from pathlib import Path
 from unittest import mock
 
@@ -84,24 +83,13 @@ def _held_summary():
     return _Held(_module("export.files").StoredFile, "content")
 
 
-def _timed(function, seconds):
-    def timed(*arguments):
-        start = time.thread_time()
-        try:
-            return function(*arguments)
-        finally:
-            seconds.append(time.thread_time() - start)
-
-    return timed
-
-
 def panel_reads_beside_the_window(folder):
     """No turn takes long, where reading the file at once does; the panel says so until it is read."""
     path = _file(folder)
     summaries, seconds = _module("ui.summaries"), []
     summaries.forget()
     held = _held_summary()
-    with mock.patch.object(summaries, "_turn", _timed(summaries._turn, seconds)):
+    with mock.patch.object(summaries, "_turn", window.timed(summaries._turn, seconds)):
         image = _shown(path)
         yield from window.show_properties("MATERIAL")
         assert summaries.model_summary(image) is None
@@ -114,7 +102,7 @@ def panel_reads_beside_the_window(folder):
     assert summaries.is_at_rest()
     print(f"turns held the window for {1e3 * max(seconds):.1f} ms at most")
     assert max(seconds) < _HELD_SECONDS, f"a turn held the window for {max(seconds):.3f} s"
-    _timed(_module("export.files").read_model, seconds)(image, "Control")
+    window.timed(_module("export.files").read_model, seconds)(image, "Control")
     print(f"reading at once takes {1e3 * seconds[-1]:.0f} ms")
     assert seconds[-1] > 5 * _HELD_SECONDS, "the check would not see a file read at once"
 
@@ -220,8 +208,8 @@ def import_beside_the_window(folder):
     path, seconds = _file(folder), []
     operator = _module("operators.load_material").VELOUR_OT_load_material
     with (
-        mock.patch.object(operator, "_begin", _timed(operator._begin, seconds)),
-        mock.patch.object(operator, "_step", _timed(operator._step, seconds)),
+        mock.patch.object(operator, "_begin", window.timed(operator._begin, seconds)),
+        mock.patch.object(operator, "_step", window.timed(operator._step, seconds)),
     ):
         held = _held_import()
         _import(path)

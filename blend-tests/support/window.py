@@ -5,6 +5,7 @@ A test is a generator that yields the seconds until its next turn.
 
 import json
 import sys
+import time
 import traceback
 
 import bpy
@@ -142,3 +143,16 @@ def shown(name):
             yield 1.0  # until it is drawn, all of it in view
             return
     raise AssertionError(f"no Image Editor shows {name}")
+
+
+def timed(function, seconds):
+    """`function`, which appends the main thread's own seconds of each call."""
+
+    def measured(*arguments):
+        start = time.thread_time()
+        try:
+            return function(*arguments)
+        finally:
+            seconds.append(time.thread_time() - start)
+
+    return measured
