@@ -124,13 +124,18 @@ def screenshot(folder, name):
 
     From the screen, which the window fills: since Blender 4 its own screenshots are black under Mesa.
     """
+    shown = pixels(folder)
+    framebuffer.write_png(folder / f"{name}.png", shown)
+    shown = shown / np.float32(255)
+    assert shown.std() > 0.02, "the screenshot is uniform"
+    return shown
+
+
+def pixels(folder):
+    """[height x width x 3] bytes of what the window shows, the lowest row first."""
     with override():
         bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
-    pixels = framebuffer.at_rest(folder / framebuffer.FILE)
-    framebuffer.write_png(folder / f"{name}.png", pixels)
-    pixels = pixels / np.float32(255)
-    assert pixels.std() > 0.02, "the screenshot is uniform"
-    return pixels
+    return framebuffer.at_rest(folder / framebuffer.FILE)
 
 
 def shown(name):

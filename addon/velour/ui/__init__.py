@@ -4,6 +4,7 @@ from . import (
     browser,
     file_handler,
     library_state,
+    node_menu,
     placement_summary,
     plot_preview,
     progress,
@@ -13,6 +14,7 @@ from . import (
 from .approximation_panel import VELOUR_MATERIAL_PT_approximation
 from .browser_panel import VELOUR_MATERIAL_PT_browser
 from .layer_panels import VELOUR_VIEWLAYER_PT_filter, VELOUR_VIEWLAYER_PT_override
+from .light_panel import VELOUR_LIGHT_PT_light
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_model,
@@ -20,9 +22,8 @@ from .material_panel import (
     VELOUR_MATERIAL_PT_outline,
     VELOUR_MATERIAL_PT_surface,
 )
-from .object_panels import VELOUR_LIGHT_PT_light, VELOUR_OBJECT_PT_ray_visibility
+from .material_settings_panel import VELOUR_MATERIAL_PT_settings
 from .pass_panels import (
-    VELOUR_MATERIAL_PT_settings,
     VELOUR_VIEWLAYER_PT_passes,
     VELOUR_VIEWLAYER_PT_passes_cryptomatte,
     VELOUR_VIEWLAYER_PT_passes_data,
@@ -36,10 +37,12 @@ from .render_panel import (
     VELOUR_RENDER_PT_film,
     VELOUR_RENDER_PT_library,
     VELOUR_RENDER_PT_newer,
+    VELOUR_RENDER_PT_performance,
     VELOUR_RENDER_PT_sampling,
 )
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
 from .tile_panel import VELOUR_COLLECTION_PT_tile, VELOUR_OBJECT_PT_tile
+from .visibility_panels import VELOUR_OBJECT_PT_ray_visibility, VELOUR_WORLD_PT_ray_visibility
 
 CLASSES = (
     VelourPreferences,
@@ -48,6 +51,7 @@ CLASSES = (
     VELOUR_RENDER_PT_sampling,
     VELOUR_RENDER_PT_film,
     VELOUR_RENDER_PT_check,
+    VELOUR_RENDER_PT_performance,
     VELOUR_VIEWLAYER_PT_filter,
     VELOUR_VIEWLAYER_PT_override,
     VELOUR_VIEWLAYER_PT_passes,
@@ -67,6 +71,7 @@ CLASSES = (
     VELOUR_MATERIAL_PT_settings,
     VELOUR_LIGHT_PT_light,
     VELOUR_OBJECT_PT_ray_visibility,
+    VELOUR_WORLD_PT_ray_visibility,
     VELOUR_OBJECT_PT_tile,
     VELOUR_COLLECTION_PT_tile,
     *file_handler.CLASSES,
@@ -78,9 +83,11 @@ def attach():
     progress.attach()
     placement_summary.attach()
     stock_panels.open_to_engine()
+    node_menu.open_to_engine()
 
 
 def detach():
+    node_menu.close_to_engine()
     stock_panels.close_to_engine()
     placement_summary.detach()
     progress.detach()

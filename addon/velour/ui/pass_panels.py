@@ -1,4 +1,4 @@
-"""Passes in the properties editor, in the order and words of Cycles: of the layer, of mist, of materials."""
+"""Passes in the properties editor, in the order and words of Cycles: of the layer, and of mist."""
 
 import bpy
 
@@ -71,17 +71,3 @@ class VELOUR_WORLD_PT_mist(LayerPanel, bpy.types.Panel):
         column.prop(mist, "start")
         column.prop(mist, "depth")
         layout.prop(mist, "falloff")
-
-
-class VELOUR_MATERIAL_PT_settings(LayerPanel, bpy.types.Panel):
-    bl_label = "Settings"
-    bl_context = "material"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and context.material is not None
-
-    def draw(self, context):
-        self.layout.use_property_split = True
-        self.layout.prop(context.material, "pass_index")

@@ -8,6 +8,14 @@ from ..operators.check_scene import VELOUR_OT_check_scene
 from . import library_state
 from .text import draw_sentence
 
+_COMPOSITOR = (  # 4.3 and newer; those of denoising 5.2
+    "compositor_device",
+    "compositor_precision",
+    "compositor_denoise_device",
+    "compositor_denoise_preview_quality",
+    "compositor_denoise_final_quality",
+)
+
 
 class _RenderPanel:
     bl_space_type = "PROPERTIES"
@@ -103,3 +111,23 @@ class VELOUR_RENDER_PT_check(_RenderPanel, bpy.types.Panel):
             draw_sentence(context, layout, sentence.text, icon="ERROR" if sentence.is_refusal else "INFO")
         if not checked.sentences:
             layout.label(text=f"Nothing, in frame {checked.frame}.", icon="CHECKMARK")
+
+
+class VELOUR_RENDER_PT_performance(_RenderPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, render = self.layout, context.scene.render
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column()
+        column.prop(render, "threads_mode")
+        count = column.row()
+        count.enabled = render.threads_mode == "FIXED"
+        count.prop(render, "threads")
+        layout.prop(render, "preview_pixel_size", text="Viewport Pixel Size")
+        column = layout.column()
+        for name in _COMPOSITOR:
+            if hasattr(render, name):
+                column.prop(render, name)

@@ -6,25 +6,20 @@ from ..engine.engine import VelourRenderEngine
 
 _ENGINE = VelourRenderEngine.bl_idname
 
-# Panels that list BLENDER_RENDER but whose settings Velour does not read.
+# Panels that list BLENDER_RENDER but whose settings Velour does not read; with a parent go its children.
 _EXCLUDED = {
-    "RENDER_PT_freestyle",
+    "OBJECT_PT_shading",  # light linking, 4.0 and newer
     "RENDER_PT_gpencil",
     "RENDER_PT_simplify_greasepencil",
-    "RENDER_PT_stereoscopy",
     "VIEWLAYER_PT_filter",
-    "VIEWLAYER_PT_freestyle",
-    "VIEWLAYER_PT_freestyle_edge_detection",
-    "VIEWLAYER_PT_freestyle_linesets",
-    "VIEWLAYER_PT_freestyle_lineset_collection",
-    "VIEWLAYER_PT_freestyle_lineset_edgetype",
-    "VIEWLAYER_PT_freestyle_lineset_facemarks",
-    "VIEWLAYER_PT_freestyle_lineset_visibilty",
-    "VIEWLAYER_PT_freestyle_linestyle",
     "VIEWLAYER_PT_layer_passes",
-    "MATERIAL_PT_freestyle",
-    "DATA_PT_light",  # Velour's own shows more
+    # Velour's own panel of lamps shows more.
+    "DATA_PT_area",
+    "DATA_PT_falloff_curve",
+    "DATA_PT_light",
+    "DATA_PT_spot",
 }
+_EXCLUDED_WORDS = ("freestyle", "stereoscopy")
 # Panels of other engines that suit Velour as they are.
 _BORROWED = {
     "EEVEE_MATERIAL_PT_context_material",
@@ -55,5 +50,9 @@ def _panels():
         engines = getattr(panel, "COMPAT_ENGINES", ())
         # Those of node editors share their engines with the one that they were made of.
         name = panel.__name__.removeprefix("NODE_")
-        if name in _BORROWED or ("BLENDER_RENDER" in engines and name not in _EXCLUDED):
+        if name in _BORROWED or ("BLENDER_RENDER" in engines and not _is_excluded(name)):
             yield panel
+
+
+def _is_excluded(name):
+    return name in _EXCLUDED or any(word in name for word in _EXCLUDED_WORDS)

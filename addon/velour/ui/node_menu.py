@@ -1,0 +1,48 @@
+"""The shaders that Velour renders, in the Add menu of a material's nodes.
+
+Blender 3.4 offers them to EEVEE and Cycles alone. The menus of 4.0 and newer ask for no engine but EEVEE.
+"""
+
+import bpy
+
+try:
+    import nodeitems_utils
+except ImportError:  # of older menus; the newest Blender that is tested still has it
+    nodeitems_utils = None
+
+from ..engine.engine import VelourRenderEngine
+from ..export.shaders.readers import READERS
+
+_RENDERED = {"ShaderNodeOutputMaterial", "ShaderNodeMixShader", "ShaderNodeAddShader", *READERS}
+
+_opened = []  # entries of the menu, and the what each asked before
+
+
+def open_to_engine():
+    for item in _items():
+        _opened.append((item, item.poll))
+        item.poll = _or_velour(item.poll)
+
+
+def close_to_engine():
+    for item, poll in _opened:
+        item.poll = poll
+    _opened.clear()
+
+
+def _items():
+    categories, *_ = getattr(nodeitems_utils, "_node_categories", {}).get("SHADER", ((),))
+    for category in categories:
+        for item in category.items(None):
+            if getattr(item, "nodetype", None) in _RENDERED and item.poll is not None:
+                yield item
+
+
+def _or_velour(poll):
+    return lambda context: (
+        poll(context)
+        or (
+            context.engine == VelourRenderEngine.bl_idname
+            and isinstance(context.space_data.id, bpy.types.Material)
+        )
+    )

@@ -1,0 +1,51 @@
+"""From which rays an object or a world is hidden: Blender has panels for that with Cycles alone."""
+
+import bpy
+
+from ..engine.engine import VelourRenderEngine
+from ..export.objects import GEOMETRY
+from .text import draw_sentence
+
+
+class _VisibilityPanel:
+    bl_label = "Ray Visibility"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
+
+
+class VELOUR_OBJECT_PT_ray_visibility(_VisibilityPanel, bpy.types.Panel):
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.object
+        return context.engine in cls.COMPAT_ENGINES and obj is not None and obj.type in GEOMETRY
+
+    def draw(self, context):
+        layout, obj = self.layout, context.object
+        layout.use_property_split = True
+        column = layout.column()
+        column.prop(obj, "visible_camera", text="Camera")
+        column.prop(obj, "visible_diffuse", text="Diffuse")
+        column.prop(obj, "visible_glossy", text="Glossy")
+        column.prop(obj, "visible_shadow", text="Shadow")
+        if obj.visible_diffuse != obj.visible_glossy:
+            draw_sentence(
+                context, layout, "Velour hides objects from diffuse and glossy rays together.", icon="INFO"
+            )
+
+
+class VELOUR_WORLD_PT_ray_visibility(_VisibilityPanel, bpy.types.Panel):
+    bl_context = "world"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        has_switch = hasattr(context.world, "cycles_visibility")  # kept with Cycles, while that is enabled
+        return context.engine in cls.COMPAT_ENGINES and has_switch
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.prop(context.world.cycles_visibility, "camera")

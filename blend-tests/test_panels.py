@@ -1,0 +1,169 @@
+"""What the Properties editor and the Add menu of shaders offer with Velour: what is rendered, and once."""
+
+import unittest
+from collections import Counter
+from types import SimpleNamespace
+
+import addon_utils
+import bpy
+
+from support import scenes
+from support.blender import ADDON, BlenderTest, enable_addon
+
+_LAMPS = {
+    "POINT": {"shadow_soft_size"},
+    "SUN": {"angle"},
+    "SPOT": {"shadow_soft_size", "spot_size", "spot_blend"},
+    "AREA": {"shape", "size", "size_y", "spread", "is_portal"},
+}
+_EVERY_LAMP = {"type", "color", "energy"}
+_NEWER = {"use_temperature", "temperature", "exposure", "normalize", "use_soft_falloff", "use_shadow"}
+_OF_NO_LAMP = ("context", "preview", "animation", "custom_props")
+_NOT_READ = ("freestyle", "stereoscopy", "DATA_PT_falloff_curve", "OBJECT_PT_shading", "EEVEE_light")
+_MENUS = ("NODE_MT_category_SH_NEW_SHADER", "NODE_MT_category_shader_shader")  # of 3.4, of 4.0 and newer
+_SHADERS = {"MixShader", "AddShader", "Emission"}
+_SHADERS |= {f"Bsdf{name}" for name in ("Principled", "Diffuse", "Glossy", "Transparent")}
+
+
+class _Layout:
+    """A layout, and the panel or menu with it: remembers which settings and nodes are put there."""
+
+    def __init__(self, cls=None):
+        self._cls, self.layout, self.props, self.operators = cls, self, [], []
+
+    def __getattr__(self, name):
+        if hasattr(self._cls, name):
+            return getattr(self._cls, name)
+        return lambda *_arguments, **_keywords: self
+
+    def prop(self, _owner, name, **_keywords):
+        self.props.append(name)
+
+    def operator(self, *_arguments, **_keywords):
+        self.operators.append(SimpleNamespace())
+        return self.operators[-1]
+
+
+class Panels(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = scenes.use_engine()
+
+    def test_lamps(self):
+        for kind, shape in _LAMPS.items():
+            lamp = bpy.data.lights.new(kind, kind)
+            if kind == "AREA":
+                lamp.shape = "ELLIPSE"
+            shown = self._shown("data", light=lamp)
+            wanted = _EVERY_LAMP | shape | {name for name in _NEWER if hasattr(lamp, name)}
+            self.assertEqual({name: shown[name] for name in wanted}, dict.fromkeys(wanted, 1), kind)
+            self.assertFalse({name for name in shown if name.endswith("_factor")}, kind)
+
+    def test_shadow_taken_away_by_cycles(self):
+        lamp = bpy.data.lights.new("Lamp", "POINT")
+        if not hasattr(lamp.cycles, "cast_shadow"):
+            self.skipTest("one switch for all engines")
+        self.assertEqual(self._shown("data", light=lamp)["cast_shadow"], 0)
+        lamp.cycles.cast_shadow = False
+        self.assertEqual(self._shown("data", light=lamp)["cast_shadow"], 1)
+
+    def test_world(self):
+        world = bpy.data.worlds.new("World")
+        self.assertEqual(self._shown("world", world=world)["camera"], 1)
+
+    def test_material(self):
+        material = bpy.data.materials.new("Plain")
+        shown = self._shown("material", material=material)
+        self.assertEqual(shown["emission_sampling"] + shown["sample_as_light"], 1)
+        has_correction = hasattr(material.cycles, "use_bump_map_correction")
+        self.assertEqual(shown["use_bump_map_correction"], int(has_correction))
+
+    def test_threads(self):
+        shown = self._shown("render")
+        for name in ("threads_mode", "threads", "preview_pixel_size", "film_transparent", "film_exposure"):
+            self.assertEqual(shown[name], 1, name)
+
+    def test_what_is_not_read_is_not_shown(self):
+        names = [p.__name__ for p in bpy.types.Panel.__subclasses__() if self._is_ours(p)]
+        self.assertEqual([n for n in names if any(word in n for word in _NOT_READ)], [])
+
+    def _shown(self, tab, **context):
+        """How often each setting stands in a tab."""
+        manager = bpy.context.window_manager
+        nothing = {"object": None, "light": None, "world": None, "material": None}
+        context = SimpleNamespace(
+            engine="VELOUR", scene=self.scene, window_manager=manager, **{**nothing, **context}
+        )
+        return Counter(
+            name
+            for panel in self._panels_of(tab)
+            if panel.__module__.startswith("velour.") or self._is_of_lamps(panel)
+            for name in self._drawn(panel, context)
+        )
+
+    def _panels_of(self, tab):
+        found = {p.__name__: p for p in bpy.types.Panel.__subclasses__() if self._is_ours(p)}
+        parents = {name: getattr(panel, "bl_parent_id", "") for name, panel in found.items()}
+        return [
+            panel
+            for name, panel in found.items()
+            if getattr(panel, "bl_context", "") == tab and (not parents[name] or parents[name] in found)
+        ]
+
+    @staticmethod
+    def _is_of_lamps(panel):
+        is_stock = panel.__module__ == "bl_ui.properties_data_light"
+        return is_stock and not any(word in panel.__name__ for word in _OF_NO_LAMP)
+
+    @staticmethod
+    def _is_ours(panel):
+        return "VELOUR" in getattr(panel, "COMPAT_ENGINES", ())
+
+    @staticmethod
+    def _drawn(panel, context):
+        if hasattr(panel, "poll") and not panel.poll(context):
+            return []
+        layout = _Layout(panel)
+        panel.draw(layout, context)
+        return layout.props
+
+
+class AddMenu(BlenderTest):
+    def test_of_materials(self):
+        self.assertLessEqual(_SHADERS, self._offered(bpy.data.materials.new("Plain")))
+
+    def test_of_worlds(self):
+        offered = self._offered(bpy.data.worlds.new("World"))
+        self.assertIn("Background", offered)
+        self.assertNotIn("BsdfDiffuse", offered)
+
+    def test_of_other_engines(self):
+        """They are as they were, with the add-on and without."""
+        material = bpy.data.materials.new("Plain")
+        engines = ("CYCLES", "BLENDER_WORKBENCH")
+        before = [self._offered(material, engine) for engine in engines]
+        addon_utils.disable(ADDON)
+        self.assertEqual([self._offered(material, engine) for engine in engines], before)
+        without = self._offered(material)
+        enable_addon()
+        self.assertLessEqual(without, self._offered(material))
+
+    @staticmethod
+    def _offered(owner, engine="VELOUR"):
+        kind = "WORLD" if isinstance(owner, bpy.types.World) else "OBJECT"
+        space = SimpleNamespace(
+            type="NODE_EDITOR",
+            tree_type="ShaderNodeTree",
+            shader_type=kind,
+            id=owner,
+            id_from=None if kind == "WORLD" else SimpleNamespace(type="MESH"),
+        )
+        menus = (getattr(bpy.types, name, None) for name in _MENUS)
+        menu = next(menu for menu in menus if menu is not None)
+        layout = _Layout(menu)
+        menu.draw(layout, SimpleNamespace(engine=engine, space_data=space))
+        return {operator.type.removeprefix("ShaderNode") for operator in layout.operators}
+
+
+if __name__ == "__main__":
+    unittest.main()
