@@ -1,8 +1,11 @@
 """The user guide: its snippets run, and what it names is what Blender and Velour show."""
 
+import os
 import shlex
 import shutil
+import tempfile
 from pathlib import Path
+from unittest import mock
 
 import bpy
 
@@ -46,6 +49,12 @@ class Snippets(BlenderTest):
         self.assertTrue((self.folder / "iris.velour").is_file())
         self.assertTrue((self.folder / "monkey_0001.png").is_file())
 
+    def test_library(self):
+        with tempfile.TemporaryDirectory() as cache, mock.patch.dict(os.environ, XDG_CACHE_HOME=cache):
+            self._run_page("library.md")
+            pictures = list(Path(cache).glob("velour/thumbnails-*/*.npz"))
+        self.assertEqual(len(pictures), 1)
+
     def test_tolerance(self):
         self._run_page("tolerance.md")
         sizes = [(self.folder / f"iris_{tolerance}.velour").stat().st_size for tolerance in (0.1, 0.02)]
@@ -78,7 +87,7 @@ class Snippets(BlenderTest):
         self.assertEqual(len(list((self.folder / "frames").glob("shot_*.exr"))), 2)
 
     def test_no_page_is_left_out(self):
-        run = {"first_material.md", "tolerance.md", "scene_model.md", "cloth.md", "farm.md"}
+        run = {"first_material.md", "library.md", "tolerance.md", "scene_model.md", "cloth.md", "farm.md"}
         self.assertEqual({page.name for page in guide.PAGES if guide.snippets(page)}, run)
 
     def test_a_wrong_snippet_is_seen(self):

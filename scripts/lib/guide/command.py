@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "blend-tests"))
 
 from support import process
 
-CHAPTERS = ("install", "first_material", "tolerance", "scene_model", "tile", "cloth")
+CHAPTERS = ("install", "first_material", "library", "tolerance", "scene_model", "tile", "cloth")
 MEASUREMENT = "brdf/cc_iris_purple_gem_rgb.bsdf"
 SCREEN = "1000x2300"  # wide enough for the whole window in a page, high enough for the longest panel
 SECONDS = 600
