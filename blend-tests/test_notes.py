@@ -141,6 +141,13 @@ class Notes(NotesTest):
         lamp.visible_glossy = False
         self.assert_said("Light 'Spot'", "hidden from glossy rays")
 
+    def test_world_without_shadows(self):
+        settings = bpy.context.scene.world.cycles
+        if not hasattr(settings, "use_shadows"):
+            self.skipTest("worlds cast shadows before Blender 5.2")
+        settings.use_shadows = False
+        self.assert_said(f"World '{bpy.context.scene.world.name}'", "casts no shadow")
+
     def _picture_on(self, tree, uv_map, socket):
         """Links an image on that UV map, which the object has then, to an input."""
         node, source = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeUVMap")

@@ -47,6 +47,8 @@ def _note_visibility(world, notes):
     for name, rays in _RAYS.items():
         if not getattr(visibility, name, True):
             notes.add(f"World '{world.name}': that it is hidden from {rays} is not supported; ignored.")
+    if not getattr(getattr(world, "cycles", None), "use_shadows", True):  # 5.2 and newer
+        notes.add(f"World '{world.name}': that it casts no shadow is not supported; ignored.")
 
 
 def _add_nodes(scene, world, notes):
