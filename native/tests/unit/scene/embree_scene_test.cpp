@@ -85,6 +85,30 @@ TEST(EmbreeScene, BatchesAgreeWithSingleRays) {
   EXPECT_GT(scene.bytes(), 30u * 36u);
 }
 
+TEST(EmbreeScene, CoherentBatchesAgreeWithSingleRays) {
+  EmbreeScene scene;
+  const uint32_t mesh = scene.add_mesh(kCorners, kTriangle);
+  for (int i = 0; i < 20; ++i) {
+    const auto at = static_cast<float>(i);
+    scene.add_instance(mesh, scaled({1, 0.5f + 0.02f * at, 1}, {0.7f * at, 0, 0.1f * at}));
+  }
+  scene.commit(1);
+  const Vec3 direction = glm::normalize(Vec3{0.3f, 0.2f, 1});
+  std::vector<Ray> rays;
+  for (int i = 0; i < 1003; ++i) {  // the last packet is not full, and some rays end before the next triangle
+    rays.push_back({{0.0127f * static_cast<float>(i), 0.0f, -1}, 0, direction, i % 3 == 0 ? 2.0f : 10.0f});
+  }
+  std::vector<uint8_t> blocked(rays.size());
+  scene.occluded_coherent(rays, blocked.data());
+  int blocked_count = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(blocked[i] != 0, scene.occluded(rays[i])) << i;
+    blocked_count += blocked[i];
+  }
+  EXPECT_GT(blocked_count, 100);
+  EXPECT_LT(blocked_count, 900);
+}
+
 TEST(EmbreeScene, RefusesIndicesOutsideTheMesh) {
   EmbreeScene scene;
   EXPECT_THROW(scene.add_mesh(kCorners, std::vector<glm::uvec3>{{0, 1, 3}}), Error);
