@@ -1,6 +1,7 @@
 // BTFs made of a formula, in memory.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 #include <vector>

@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(All, SidedBtfSampling, ::testing::ValuesIn(looks()));
 template <typename Kind>
 class SidedBtfDraws : public ::testing::Test {
  protected:
-  static PreparedBrdf& prepared(const Material& material, float degrees, const SurfaceSite& site) {
+  static PreparedBrdf& prepared(const Material& material, float degrees, SurfaceSite site) {
     static const auto point = std::make_unique<PreparedBrdf>();
     material.prepare(test::view_at(degrees), site, *point);
     return *point;

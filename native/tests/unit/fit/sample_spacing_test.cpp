@@ -110,14 +110,13 @@ TEST(PictureWeights, TakeEveryBrightnessByItsRatio) {
   const auto samples = lights_of({0, 0, 1}, 1000, 1);
   const std::vector<float> weight = picture_weights(samples);
   ASSERT_EQ(weight.size(), samples.size());
-  double sum = 0, dim = 0, solid_angle = 0, square = 0, dim_square = 0;
+  double sum = 0, dim = 0, square = 0, dim_square = 0;
   for (size_t i = 0; i < samples.size(); ++i) {
     const double w = static_cast<double>(samples[i].weight), y = static_cast<double>(luminance(samples[i].value));
     const double part = w * static_cast<double>(weight[i]) * y * y;
     const bool is_dim = y < 10;
     sum += part, square += w * y * y;
     if (is_dim) dim += part, dim_square += w * y * y;
-    solid_angle += w;
   }
   EXPECT_NEAR(sum, 1, 1e-4);
   EXPECT_GT(dim, 0.5);                    // most directions are dim

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <string_view>
 
 #include "fit/evaluate.h"
 #include "job/error.h"
@@ -37,11 +39,11 @@ Plot plotted(PlotKind kind, const std::shared_ptr<const Model>& model, const Mea
   return make_plot(kind, model, measurement, view, unwatched);
 }
 
-const PlotSeries& series_of(const Plot& plot, const std::string& name) {
+const PlotSeries& series_of(const Plot& plot, std::string_view name) {
   for (const PlotSeries& series : plot.series) {
     if (series.name == name) return series;
   }
-  throw std::out_of_range(name);
+  throw std::out_of_range(std::string(name));
 }
 
 class LobesPlot : public testing::TestWithParam<std::shared_ptr<const Model>> {};
