@@ -91,6 +91,15 @@ class Materials(NotesTest):
         tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
         self.assert_said("Material 'Bare'", "olume")
 
+    def test_opaque_shadows_of_what_is_transparent(self):
+        tree = self._tree()
+        material = bpy.data.materials["Bare"]
+        owner = material if hasattr(material, "use_transparent_shadow") else material.cycles
+        owner.use_transparent_shadow = False
+        self.assertFalse(any("shadow" in note for note in self.notes()))  # nothing of it is transparent
+        tree.nodes["Principled BSDF"].inputs["Alpha"].default_value = 0.5
+        self.assert_said("Material 'Bare'", "opaque shadows")
+
 
 class Worlds(NotesTest):
     def _environment(self):

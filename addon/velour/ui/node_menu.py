@@ -15,7 +15,7 @@ from ..export.shaders.readers import READERS
 
 _RENDERED = {"ShaderNodeOutputMaterial", "ShaderNodeMixShader", "ShaderNodeAddShader", *READERS}
 
-_opened = []  # entries of the menu, and the what each asked before
+_opened = []  # entries of the menu, and what each asked before
 
 
 def open_to_engine():

@@ -2,7 +2,7 @@
 
 from ..nodes import active_output
 from ..plugs import Plug, fed_by
-from .layer import Factor, Layer, black, grey, simplified
+from .layer import Factor, Layer, black, grey, simplified, split
 from .readers import READERS
 from .values import Reader
 
@@ -29,7 +29,17 @@ def surface_layers(material, notes):
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
         notes.add(f"{owner}: it is mixed of more than {_MOST_LAYERS} shaders; rendered grey.")
         return [grey()]
+    if not _shadows_are_clear(material) and any(
+        part.kind == "transparent" for each in layers for part in split(each)
+    ):
+        notes.add(f"{owner}: opaque shadows of what is transparent are not supported; light passes.")
     return layers
+
+
+def _shadows_are_clear(material):
+    """Kept with Cycles before Blender 4.2."""
+    of_cycles = getattr(getattr(material, "cycles", None), "use_transparent_shadow", True)
+    return getattr(material, "use_transparent_shadow", of_cycles)
 
 
 def _without_nodes(material):
