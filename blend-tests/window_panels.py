@@ -122,7 +122,11 @@ def two_fits(folder):
     state = bpy.context.window_manager.velour
     assert (state.running, state.subject, state.waiting) == (True, "Paint", 1), (state.subject, state.waiting)
     bar = slice(0, 22)  # rows of the status bar, the lowest first
-    change = np.abs(window.screenshot(folder, "two-fits") - idle)
+    for _ in range(50):  # the machine may be busy
+        change = np.abs(window.screenshot(folder, "two-fits") - idle)
+        if change[bar].max() > 0.2:
+            break
+        yield 0.1
     assert change[bar].max() > 0.2, "the status bar shows nothing"
     bpy.ops.velour.cancel_fit()
     for _ in range(10 * _TURNS_SECONDS):
