@@ -12,7 +12,7 @@ _FORMATS = {"PNG": ".png", "OPEN_EXR": ".exr", "OPEN_EXR_MULTILAYER": ".exr"}
 # Makes the export raise what nobody foresaw.
 _BREAK_EXPORT = (
     "import importlib; final = importlib.import_module('velour.engine.final');"
-    " final.export_scene = lambda *a, **k: 1 / 0"
+    " final.final_view = lambda *a, **k: 1 / 0"
 )
 
 

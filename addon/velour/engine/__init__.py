@@ -1,6 +1,6 @@
 """The render engine."""
 
-from . import frame_parts, model_images, viewport, viewport_clock, write_lock
+from . import frame_parts, kept_scene, model_images, viewport, viewport_clock, write_lock
 from .engine import VelourRenderEngine
 
 CLASSES = (VelourRenderEngine,)
@@ -8,6 +8,7 @@ CLASSES = (VelourRenderEngine,)
 
 def attach():
     frame_parts.attach()
+    kept_scene.attach()
     model_images.attach()
     viewport.attach()
     write_lock.attach()
@@ -18,4 +19,5 @@ def detach():
     viewport_clock.detach()
     write_lock.detach()
     model_images.detach()
+    kept_scene.detach()
     frame_parts.detach()

@@ -9,6 +9,7 @@ from ..native import VelourError
 from . import viewport_clock
 from .final import RenderCancelledError, render_final
 from .frame_parts import UnfinishedError
+from .kept_scene import KeptScene
 from .passes import register_passes
 from .stamps import Stamps
 from .viewport import Viewport
@@ -28,11 +29,15 @@ class VelourRenderEngine(bpy.types.RenderEngine):
         super().__init__(*args, **kwargs)  # Blender 4.4 and newer pass arguments and need this call
         self._viewport = None
         self.stamps = Stamps()
+        self.kept_scene = KeptScene()
 
     def __del__(self):
         viewport = getattr(self, "_viewport", None)
         if viewport:
             viewport.close()
+        kept = getattr(self, "kept_scene", None)
+        if kept:
+            kept.close()
         parent = getattr(super(), "__del__", None)  # missing up to and including 5.2
         if parent:
             parent()

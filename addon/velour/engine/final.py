@@ -7,7 +7,7 @@ import time
 import bpy
 
 from ..core.memory_estimate import peak
-from ..export import ExportError, Notes, export_scene
+from ..export import ExportError
 from ..export.black import refuse_dark_inside
 from ..export.camera import final_view
 from ..export.film import film_exposure
@@ -36,10 +36,7 @@ def render_final(engine, depsgraph):
     scene = depsgraph.scene_eval
     if scene.render.use_multiview:
         raise ExportError("Stereoscopy is not supported; switch it off in Output > Stereoscopy.")
-    notes = Notes()
     engine.update_stats("Velour", "Exporting the scene")
-    view = final_view(depsgraph, notes)
-
     breaks = _Clock(_POLL_SECONDS)  # asked once an instance, which Blender's answer takes longer than
 
     def check_break():
@@ -49,9 +46,10 @@ def render_final(engine, depsgraph):
     begin = time.monotonic()
     shown = [COMBINED] if engine.is_preview else layer_passes(depsgraph.view_layer_eval)
     asked = {each.asks for each in shown if each.asks}
-    exported = export_scene(depsgraph, view, notes, check_break, not engine.is_preview, asked)
-    native_scene, materials, surroundings, passes = exported
-    with native_scene:
+    with engine.kept_scene.frame(depsgraph, not engine.is_preview, asked) as export:
+        notes = export.notes
+        view = final_view(depsgraph, notes)
+        native_scene, materials, surroundings, passes = export.take(depsgraph, view, check_break)
         engine.update_stats("Velour", _exported(native_scene.info(), time.monotonic() - begin))
         stamps = {}
         if not engine.is_preview:
@@ -141,7 +139,7 @@ def _statistics(state, begin, end):
 
 
 def _say(notes):
-    for note in notes:
+    for note in notes.unsaid():
         print(f"Velour: {note}", flush=True)
 
 

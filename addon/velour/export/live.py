@@ -13,8 +13,6 @@ from .notes import Notes
 from .objects import ObjectExport
 from .world import add_world, shown_world
 
-_MOST_REMOVED = 4096  # numbers of meshes that are no longer there: then all begins anew
-
 
 class LiveExport:
     """Not committed: whoever renders it does. The camera is for others to set."""
@@ -26,7 +24,6 @@ class LiveExport:
             set_working_space(self.scene)
             self._materials = MaterialTable(self.scene, Notes(), strict=False)
             self._meshes = KeptMeshes()
-            self._removed = 0
             self._look = look.key()
             self._add_objects(depsgraph, look)
             self._add_world(depsgraph, look)
@@ -43,7 +40,7 @@ class LiveExport:
         objects, world, scene = look.key()
         changes.objects |= objects != self._look[0]
         changes.world |= world != self._look[1]
-        changes.everything |= scene != self._look[2] or self._removed > _MOST_REMOVED
+        changes.everything |= scene != self._look[2] or self._meshes.are_worn
         return changes
 
     def update(self, changes, depsgraph, look):
@@ -64,9 +61,7 @@ class LiveExport:
         self.scene.clear_lights()
         self._meshes.begin(changed)
         self._export().add_shown(depsgraph, look.shows)
-        for number in self._meshes.drop_unused():
-            self.scene.remove_mesh(number)
-            self._removed += 1
+        self._meshes.remove_unused(self.scene)
 
     def _add_lights(self, depsgraph, look):
         self.scene.clear_lights()

@@ -24,7 +24,7 @@ class Look:
         self.studio_light = None if shading.use_scene_world_render else _studio_light(shading)
         world = layer_world(depsgraph.scene, depsgraph.view_layer)
         self._world = (world.as_pointer() if world else 0, depsgraph.view_layer.use_sky)
-        self._scene = _scene_key(depsgraph)
+        self._scene = scene_key(depsgraph)
         self._seen = self._all_seen(depsgraph)
 
     def key(self):
@@ -53,7 +53,7 @@ def _studio_light(shading):
     return StudioLight(light.path, shading.studio_light_intensity, shading.studio_light_rotate_z)
 
 
-def _scene_key(depsgraph):
+def scene_key(depsgraph):
     """What of the scene changes objects, beside themselves."""
     scene, layer = depsgraph.scene, depsgraph.view_layer
     override = layer.material_override

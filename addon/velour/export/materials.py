@@ -73,6 +73,10 @@ class MaterialTable:
         self.number(material)
         return self._colors.get(_key(material), ())
 
+    def has_pictures(self, material):
+        """Whether a material that has its number shows any."""
+        return _key(material) in self._textured
+
     def needs_coordinates(self, material):
         """Whether a material that has its number looks at texture coordinates."""
         key = _key(material)
@@ -104,9 +108,9 @@ class MaterialTable:
         self._turns.pop(key, None)
         self._textured.discard(key)
         self._colors.pop(key, None)
-        self.number(material)
+        added = self.number(material)
         self._scene.replace_material(number)
-        self._numbers[key] = number
+        self._numbers[key], self._labels[number] = number, self._labels.pop(added)
         # How tiles lie is told by settings of the material.
         return self._needs(key) != before or key in self._tiles
 

@@ -15,6 +15,7 @@ class Notes:
 
     def __init__(self):
         self._sentences = {}
+        self._said = 0
 
     def add(self, sentence):
         self._sentences[sentence] = None
@@ -24,3 +25,9 @@ class Notes:
 
     def __len__(self):
         return len(self._sentences)
+
+    def unsaid(self):
+        """Those that were not given by a call before."""
+        fresh = list(self)[self._said :]
+        self._said = len(self)
+        return fresh

@@ -5,11 +5,12 @@ from typing import NamedTuple
 from ..native import Scene
 from .black import refuse_black
 from .color import set_working_space
+from .kept_meshes import KeptMeshes
 from .libraries import refuse_missing_libraries
 from .materials import MaterialTable
 from .objects import ObjectExport
 from .pass_labels import AskedPasses, asked_passes
-from .world import add_world, layer_world, shown_world
+from .world import add_world, has_moving_picture, layer_world, shown_world
 
 
 class Export(NamedTuple):
@@ -19,40 +20,96 @@ class Export(NamedTuple):
     passes: AskedPasses | None  # None: none was asked for
 
 
-def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True, asked=()):
-    """What the depsgraph shows, seen through `view`, as an Export.
-
-    `check_break` is called often and raises to stop; `strict` refuses measured materials and libraries that
-    cannot be had, and what can only be black. `asked`: of table.PASSES.
-    """
-    if strict:
-        refuse_missing_libraries(depsgraph.scene)
-    scene = Scene()
+def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
+    """What the depsgraph shows, seen through `view`, as an Export, for whoever takes its scene."""
+    export = SceneExport(notes, strict)
     try:
-        set_working_space(scene)
-        materials = MaterialTable(scene, notes, strict)
-        objects = ObjectExport(scene, materials, notes, check_break, shows_uvs="uv" in asked)
-        objects.add_all(depsgraph)
-        world_shines = add_world(scene, shown_world(depsgraph), notes)
-        if strict:
-            refuse_black(depsgraph, objects, materials, world_shines, notes)
-        view.add_to(scene)
-        _note_scene(depsgraph.scene_eval, notes)
+        return export.take(depsgraph, view, check_break)
+    except BaseException:
+        export.close()
+        raise
+
+
+class SceneExport:
+    """The library's scene of renders; where frames follow, what has changed alone is taken anew.
+
+    `strict` refuses measured materials and libraries that cannot be had, and what can only be black.
+    `asked`: of table.PASSES.
+    """
+
+    def __init__(self, notes, strict=True, asked=()):
+        self.notes = notes
+        self._strict, self._asked = strict, asked
+        self.scene = Scene()
+        self.materials = MaterialTable(self.scene, notes, strict)
+        self._meshes = KeptMeshes()
+        self._changes = None  # since the frame before; None: there was none
+        self._world_shines = False
+
+    def close(self):
+        self.scene.close()
+
+    def follow(self, changes):
+        """The next take() is of another frame. False: all has to begin anew for what has changed.
+
+        Of images Blender tells no more, at times, than that materials may look different.
+        """
+        self._changes = changes
+        has_pictures = any(map(self.materials.has_pictures, changes.materials))
+        return not (changes.everything or has_pictures or self._meshes.are_worn)
+
+    def take(self, depsgraph, view, check_break=lambda: None):
+        """An Export; `check_break` is called often and raises to stop. After any error, close()."""
+        if self._strict:
+            refuse_missing_libraries(depsgraph.scene)
+        if self._changes is None:
+            set_working_space(self.scene)
+        else:
+            self._drop_changed()
+        objects = self._add_objects(depsgraph, check_break)
+        self._add_world(depsgraph)
+        if self._strict:
+            refuse_black(depsgraph, objects, self.materials, self._world_shines, self.notes)
+        view.add_to(self.scene)
+        _note_scene(depsgraph.scene_eval, self.notes)
         check_break()
-        scene.commit()
-        info = scene.info()
+        self.scene.commit()
+        info = self.scene.info()
         for warning in info["warnings"]:
-            notes.add(warning)
+            self.notes.add(warning)
         surroundings = _surroundings(depsgraph.scene.camera, objects.owner(info["camera_inside"]))
         if surroundings:
-            notes.add(surroundings)
+            self.notes.add(surroundings)
+        return Export(self.scene, self.materials, surroundings, self._passes(depsgraph, objects))
+
+    def _drop_changed(self):
+        for material in self._changes.materials:
+            self.materials.renew(material)
+        self.scene.clear_instances()
+        self.scene.clear_lights()
+        self._meshes.begin(self._changes.geometry)
+
+    def _add_objects(self, depsgraph, check_break):
+        shows_uvs = "uv" in self._asked
+        objects = ObjectExport(
+            self.scene, self.materials, self.notes, check_break, meshes=self._meshes, shows_uvs=shows_uvs
+        )
+        objects.add_all(depsgraph)
+        if self._changes is not None:
+            self._meshes.remove_unused(self.scene)
+        return objects
+
+    def _add_world(self, depsgraph):
+        world = shown_world(depsgraph)
+        if self._changes is None or self._changes.world or has_moving_picture(world):
+            self._world_shines = add_world(self.scene, world, self.notes)
+
+    def _passes(self, depsgraph, objects):
+        if not self._asked:
+            return None
         layer = depsgraph.view_layer_eval
         world = layer_world(depsgraph.scene_eval, layer)
-        passes = asked_passes(asked, layer, world, objects, materials) if asked else None
-        return Export(scene, materials, surroundings, passes)
-    except BaseException:
-        scene.close()
-        raise
+        return asked_passes(self._asked, layer, world, objects, self.materials)
 
 
 def _surroundings(camera, owner):

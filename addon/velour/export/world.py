@@ -26,6 +26,13 @@ def shown_world(depsgraph):
     return layer_world(depsgraph.scene_eval, layer) if layer.use_sky else None
 
 
+def has_moving_picture(world):
+    """Whether it shows another one in each frame, of which Blender tells nobody."""
+    tree = world.node_tree if world and world.use_nodes else None
+    images = [getattr(node, "image", None) for node in tree.nodes] if tree else []
+    return any(image and image.source in ("SEQUENCE", "MOVIE") for image in images)
+
+
 def add_world(scene, world, notes):
     """Whether it shines."""
     _note_visibility(world, notes)

@@ -126,6 +126,7 @@ class VELOUR_RENDER_PT_performance(_RenderPanel, bpy.types.Panel):
         count = column.row()
         count.enabled = render.threads_mode == "FIXED"
         count.prop(render, "threads")
+        layout.prop(render, "use_persistent_data", text="Persistent Data")
         layout.prop(render, "preview_pixel_size", text="Viewport Pixel Size")
         column = layout.column()
         for name in _COMPOSITOR:

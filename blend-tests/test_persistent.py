@@ -1,0 +1,210 @@
+"""Persistent Data: frames that go on from the one before are those that are exported whole."""
+
+import contextlib
+import importlib
+import io
+from unittest import mock
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+
+def _module(name):
+    return importlib.import_module(f"{inputs.ADDON}.{name}")
+
+
+class PersistentData(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = scenes.use_engine(samples=8, size=24)
+        self.scene.frame_start, self.scene.frame_end = 1, 3
+        scenes.add_camera(distance=8.0)
+        scenes.set_world((0.5, 0.7, 1.0), 0.4)
+        self.still = self._ball("Still", (-2, 0, 0), scenes.diffuse_material((0.8, 0.3, 0.1), "Orange"))
+        self.moving = self._ball("Moving", (2, 0, 0), scenes.diffuse_material((0.2, 0.6, 0.3), "Green"))
+        self.bending = self._ball("Bending", (0, 0, 2), scenes.diffuse_material((0.6, 0.6, 0.9), "Blue"))
+        bpy.ops.object.light_add(type="POINT", location=(0, -5, 4))
+        self.lamp = bpy.context.object.data
+        self.lamp.energy = 500
+
+    def _ball(self, name, location, material):
+        scenes.add_sphere(material)
+        ball = bpy.context.object
+        ball.name, ball.location = name, location
+        return ball
+
+    def _animate(self):
+        """Something of each kind that is followed."""
+        self._keys(self.moving, "location", (2, 0, 0), (3, 0, 1))
+        self.bending.shape_key_add(name="Basis")
+        bent = self.bending.shape_key_add(name="Bent")
+        for point in bent.data:
+            point.co.x *= 2
+        self._keys(bent, "value", 0.0, 1.0)
+        self._keys(self._color("Orange"), "default_value", (0.8, 0.3, 0.1, 1), (0.1, 0.3, 0.8, 1))
+        self._keys(self.lamp, "energy", 500.0, 900.0)
+        background = self.scene.world.node_tree.nodes["Background"]
+        self._keys(background.inputs["Strength"], "default_value", 0.4, 1.0)
+        late = self._ball("Late", (0, 0, -2), bpy.data.materials["Green"])
+        self._keys(late, "hide_render", True, False)
+
+    def _keys(self, owner, name, first, last):
+        for value, frame in ((first, 1), (last, 3)):
+            setattr(owner, name, value)
+            owner.keyframe_insert(name, frame=frame)
+
+    def _color(self, material):
+        nodes = bpy.data.materials[material].node_tree.nodes
+        return next(node for node in nodes if node.type == "BSDF_DIFFUSE").inputs["Color"]
+
+    def _pictures(self, is_persistent):
+        """Of all frames, and which objects' meshes each has added."""
+        self.scene.render.use_persistent_data = is_persistent
+        self.scene.render.image_settings.file_format = "OPEN_EXR"
+        self.scene.render.image_settings.color_depth = "32"
+        pictures, added = [], []
+        add = _module("core.mesh_queue").MeshQueue.add
+
+        def watched(queue, arrays, owner):
+            added[-1].append(owner)
+            return add(queue, arrays, owner)
+
+        with mock.patch.object(_module("core.mesh_queue").MeshQueue, "add", watched):
+            for frame in range(self.scene.frame_start, self.scene.frame_end + 1):
+                added.append([])
+                self.scene.frame_set(frame)
+                path = self.folder / f"{is_persistent}-{frame}.exr"
+                self.scene.render.filepath = str(path)
+                bpy.ops.render.render(write_still=True)
+                pictures.append(scenes.read(path))
+        return pictures, added
+
+    def _assert_same(self):
+        """Frames of a kept scene, beside those that are exported whole; what the former have added."""
+        kept, added = self._pictures(True)
+        whole, _ = self._pictures(False)
+        for ours, truth in zip(kept, whole, strict=True):
+            np.testing.assert_array_equal(ours, truth)
+        return kept, added
+
+    def test_an_animation(self):
+        self._animate()
+        pictures, added = self._assert_same()
+        self.assertEqual(sorted(added[0]), ["Bending", "Moving", "Still"])
+        self.assertEqual(added[1], ["Bending"])
+        self.assertEqual(sorted(added[2]), ["Bending", "Late"])
+        self.assertGreater(np.abs(pictures[0] - pictures[2]).max(), 0.1)
+
+    def test_nothing_is_left_of_geometry_that_changes(self):
+        self._animate()
+        sizes = []
+        take = _module("export.scene").SceneExport.take
+
+        def counted(*given):
+            exported = take(*given)
+            sizes.append(exported.scene.info()["bytes"])
+            return exported
+
+        with mock.patch.object(_module("export.scene").SceneExport, "take", counted):
+            self._assert_same()
+        np.testing.assert_allclose(sizes[:3], sizes[3:], rtol=0.05)
+
+    def test_without_it_all_is_exported_each_time(self):
+        _, added = self._pictures(False)
+        self.assertEqual([len(names) for names in added], [3, 3, 3])
+
+    def test_edits_between_frames(self):
+        self.scene.frame_end = 1
+        edits = (
+            lambda: setattr(self._color("Green"), "default_value", (0.9, 0.1, 0.1, 1)),
+            lambda: setattr(self.still.scale, "z", 2.0),
+            lambda: self._ball("New", (0, 0, -2), bpy.data.materials["Blue"]),
+            lambda: bpy.data.objects.remove(bpy.data.objects["Bending"]),
+            lambda: setattr(self.moving.material_slots[0], "material", bpy.data.materials["Orange"]),
+            lambda: setattr(self.scene, "world", None),
+        )
+        last, _ = self._pictures(True)
+        for edit in edits:
+            edit()
+            now, _ = self._assert_same()
+            self.assertGreater(np.abs(now[0] - last[0]).max(), 0.01)
+            last = now
+
+    def test_images_that_change(self):
+        self.scene.frame_end = 1
+        image = bpy.data.images.new("Checks", 4, 4)
+        tree = bpy.data.materials["Green"].node_tree
+        node = tree.nodes.new("ShaderNodeTexImage")
+        node.image = image
+        tree.links.new(node.outputs["Color"], self._color("Green"))
+        before, _ = self._pictures(True)
+        image.pixels = np.tile(np.float32([1, 0, 0, 1]), 16).tolist()
+        image.update_tag()
+        after, _ = self._assert_same()
+        self.assertGreater(np.abs(after[0] - before[0]).max(), 0.01)
+        image.colorspace_settings.name = "Non-Color"
+        image.pixels = np.tile(np.float32([0.2, 0.5, 0.7, 1]), 16).tolist()
+        image.update_tag()
+        raw, _ = self._assert_same()
+        image.colorspace_settings.name = "sRGB"
+        decoded, _ = self._assert_same()
+        self.assertGreater(np.abs(raw[0] - decoded[0]).max(), 0.01)
+
+    def test_another_model(self):
+        """The image of a measured node is of the node alone."""
+        self.scene.frame_end = 1
+        paint = scenes.measured_material(inputs.model_bytes(inputs.glossy_measurement()))
+        other = scenes.measured_material(inputs.model_bytes(inputs.lambert_measurement()), "Other")
+        self.still.material_slots[0].material = paint
+        before, _ = self._pictures(True)
+        scenes.velour_node(paint).image = scenes.velour_node(other).image
+        after, _ = self._assert_same()
+        self.assertGreater(np.abs(after[0] - before[0]).max(), 0.01)
+
+    def test_another_index(self):
+        self.scene.frame_end = 1
+        bpy.context.view_layer.use_pass_material_index = True
+        show = scenes.composite(self.scene)
+        layers = next(node for node in scenes.compositor(self.scene).nodes if node.type == "R_LAYERS")
+        show("IndexMA" if "IndexMA" in layers.outputs else "Material Index")
+        self._pictures(True)
+        bpy.data.materials["Orange"].pass_index = 7
+        after, _ = self._assert_same()
+        self.assertEqual(after[0][..., 0].max(), 7)
+
+    def test_nothing_is_kept_over_an_undo(self):
+        self.scene.frame_end = 1
+        self._pictures(True)
+        self.assertEqual(self._pictures(True)[1], [[]])
+        for handler in bpy.app.handlers.undo_post:
+            handler(self.scene, None)
+        self.assertEqual(len(self._pictures(True)[1][0]), 3)
+
+    def test_other_passes_begin_anew(self):
+        """Meshes of a UV pass have texture coordinates."""
+        self.scene.frame_end = 1
+        self._pictures(True)
+        bpy.context.view_layer.use_pass_uv = True
+        self.assertEqual(len(self._pictures(True)[1][0]), 3)
+
+    def test_warnings_are_said_once(self):
+        node = bpy.data.materials["Green"].node_tree.nodes.new("ShaderNodeBsdfGlass")
+        tree = bpy.data.materials["Green"].node_tree
+        tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        said = {}
+        for is_persistent in (True, False):
+            with contextlib.redirect_stdout(io.StringIO()) as out:
+                self._pictures(is_persistent)
+            said[is_persistent] = out.getvalue().count("is not supported; rendered grey")
+        self.assertEqual(said, {True: 1, False: 3})
+
+    def test_a_frame_that_fails_leaves_nothing_behind(self):
+        self.scene.frame_end = 1
+        self._pictures(True)
+        fails = mock.patch.object(_module("engine.final"), "final_view", side_effect=ZeroDivisionError)
+        with fails, self.assertRaises(RuntimeError):
+            bpy.ops.render.render()
+        self.assertEqual(len(self._pictures(True)[1][0]), 3)
