@@ -1,6 +1,8 @@
 """The node group that shows a measured material where there is no Velour."""
 
 import importlib
+import json
+from urllib.parse import unquote
 
 import bpy
 import numpy as np
@@ -274,6 +276,38 @@ class Group(Approximation):
         material = bpy.data.materials[name]
         self.assertEqual(tuple(material.diffuse_color), color)
         np.testing.assert_array_equal(_base_color(group_of(material)), color)
+
+
+class Exported(Approximation):
+    def _gltf(self):
+        """The file, as numbers and names."""
+        bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
+        path = self.folder / "exported.gltf"
+        bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLTF_SEPARATE")
+        return json.loads(path.read_text())
+
+    def test_gltf_files_carry_it(self):
+        self._import(self._model_file(inputs.model_bytes(inputs.plastic_measurement())))
+        shader = _principled(group_of(self.material))
+        (written,) = self._gltf()["materials"]
+        pbr = written["pbrMetallicRoughness"]
+        np.testing.assert_allclose(
+            pbr["baseColorFactor"][:3], shader.inputs["Base Color"].default_value[:3], 1e-5
+        )
+        for name, key in (("Metallic", "metallicFactor"), ("Roughness", "roughnessFactor")):
+            self.assertAlmostEqual(pbr.get(key, 1.0), shader.inputs[name].default_value, 5)
+
+    def test_gltf_files_carry_the_image_of_a_btf(self):
+        self._import(self._model_file(inputs.quarters_model()))
+        written = self._gltf()
+        (material,), (image,) = written["materials"], written["images"]
+        self.assertEqual(material["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0)
+        picture = scenes.read(self.folder / unquote(image["uri"]))
+        ours = next(
+            n for n in group_of(self.material).node_tree.nodes if n.bl_idname == "ShaderNodeTexImage"
+        ).image
+        self.assertEqual(picture.shape[:2], tuple(ours.size)[::-1])
+        self.assertGreater(picture[..., :3].std(), 0.05)
 
 
 class Refusals(Approximation):

@@ -23,3 +23,12 @@ def unregister():
     from . import registration
 
     registration.unregister()
+
+
+class glTF2ExportUserExtension:
+    """Blender's exporter asks each add-on for a class of that name."""
+
+    def gather_material_hook(self, gltf_material, material, export_settings):
+        from .operators.approximation_gltf import fill
+
+        fill(gltf_material, material, export_settings)

@@ -1,0 +1,34 @@
+"""What glTF files carry of a measured material: the approximation's colour, metallic, roughness and image.
+
+The exporter of Blender 4.0 and newer looks into groups by itself.
+"""
+
+from ..export.nodes import approximation_node
+
+
+def fill(gltf_material, material, export_settings):
+    """Of a material whose group the exporter has not looked into."""
+    node, pbr = approximation_node(material), gltf_material.pbr_metallic_roughness
+    if node is None or pbr is None or pbr.base_color_factor or pbr.base_color_texture:
+        return
+    shader = next(each for each in node.node_tree.nodes if each.bl_idname == "ShaderNodeBsdfPrincipled")
+    color, alpha = shader.inputs["Base Color"], shader.inputs["Alpha"]
+    pbr.base_color_factor = [*(min(max(c, 0.0), 1.0) for c in _factor(color)), 1.0]
+    pbr.metallic_factor = shader.inputs["Metallic"].default_value
+    pbr.roughness_factor = shader.inputs["Roughness"].default_value
+    pictured = tuple(socket for socket in (color, alpha) if socket.is_linked)
+    if pictured:
+        pbr.base_color_texture = _texture(pictured, export_settings)
+
+
+def _factor(color):
+    """What an image is multiplied by, or the colour itself."""
+    if color.is_linked:
+        *_, color = (socket for socket in color.links[0].from_node.inputs if socket.enabled)
+    return color.default_value[:3]
+
+
+def _texture(sockets, export_settings):
+    from io_scene_gltf2.blender.exp.gltf2_blender_gather_texture_info import gather_texture_info
+
+    return gather_texture_info(sockets[0], sockets, export_settings)[0]
