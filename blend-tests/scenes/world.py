@@ -34,14 +34,15 @@ def _surround(tree, image, angle):
     tree.links.new(environment.outputs[0], tree.nodes["Background"].inputs["Color"])
 
 
-def _image(name, pixels, space="Linear"):
-    """Packed, [height x width x 3]."""
+def _image(name, pixels, space=None):
+    """Packed, [height x width x 3]; without `space` linear, as images of floats are."""
     import bpy
     import numpy as np
 
     height, width = pixels.shape[:2]
     image = bpy.data.images.new(name, width, height, float_buffer=True)
-    image.colorspace_settings.name = space
+    if space:
+        image.colorspace_settings.name = space
     image.pixels.foreach_set(np.dstack([pixels, np.ones((height, width))]).astype(np.float32).ravel())
     image.pack()
     return image
