@@ -214,11 +214,14 @@ class Fits(PaintedPlane):
         """With persistent data Blender evaluates only what has changed."""
         self.scene.render.use_persistent_data = True
         bpy.ops.velour.fit_for_scene()
-        self.assertIn("rendered with that model", self.render()[1])
+        picture, said = self.render()
+        self.assertIn("rendered with that model", said)
         self.settings.use_scene_model = False
         self.assertNotIn("Paint", self.render()[1])
         self.settings.use_scene_model = True
-        self.assertIn("rendered with that model", self.render()[1])
+        again, said = self.render()
+        self.assertIn("rendered with that model", said)
+        np.testing.assert_array_equal(again, picture)
 
     def test_a_new_fit_switches_it_off(self):
         bpy.ops.velour.fit_for_scene()

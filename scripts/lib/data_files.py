@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from velour_cli import ROOT
@@ -28,14 +29,14 @@ def merl_names(data: Path) -> list[str]:
 
 
 def merl(data: Path, name: str) -> Path:
-    """A MERL-layout file, expanded once."""
+    """A MERL-layout file, expanded once, or by each of those who ask at once: what is there is whole."""
     path = _EXPANDED / f"{name}.binary"
     if not path.is_file():
-        # Beside, then renamed: what is there is whole.
-        partial = _EXPANDED / "partial"
-        expand = [sys.executable, data / "brdf/expand_merl.py", partial, name]
-        subprocess.run(expand, check=True, stdout=subprocess.DEVNULL)
-        os.replace(partial / path.name, path)
+        _EXPANDED.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=_EXPANDED, prefix="partial-") as own:
+            expand = [sys.executable, data / "brdf/expand_merl.py", own, name]
+            subprocess.run(expand, check=True, stdout=subprocess.DEVNULL)
+            os.replace(Path(own) / path.name, path)
     return path
 
 

@@ -108,11 +108,19 @@ class MaterialTable:
         self._turns.pop(key, None)
         self._textured.discard(key)
         self._colors.pop(key, None)
+        self._drop_reduced(number)
         added = self.number(material)
         self._scene.replace_material(number)
         self._numbers[key], self._labels[number] = number, self._labels.pop(added)
+        self.reduced = [e._replace(number=number) if e.number == added else e for e in self.reduced]
         # How tiles lie is told by settings of the material.
         return self._needs(key) != before or key in self._tiles
+
+    def _drop_reduced(self, number):
+        for entry in self.reduced:
+            if entry.number == number:
+                entry.model.close()
+        self.reduced = [entry for entry in self.reduced if entry.number != number]
 
     def _needs(self, key):
         placed = self._tiles.get(key), self._turns.get(key)

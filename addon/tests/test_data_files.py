@@ -1,0 +1,37 @@
+"""The test data that several runs expand at once."""
+
+from __future__ import annotations
+
+import threading
+
+import data_files
+
+_EXPAND = """
+import pathlib, sys, time
+out = pathlib.Path(sys.argv[1])
+out.mkdir(parents=True, exist_ok=True)
+with open(out / f"{sys.argv[2]}.binary", "w") as file:
+    for part in "half", " and half":
+        file.write(part)
+        file.flush()
+        time.sleep(0.3)
+"""
+
+
+def test_all_who_ask_at_once_find_it_whole(tmp_path, monkeypatch):
+    data = tmp_path / "data"
+    (data / "brdf").mkdir(parents=True)
+    (data / "brdf/expand_merl.py").write_text(_EXPAND)
+    monkeypatch.setattr(data_files, "_EXPANDED", tmp_path / "build/merl")
+    found = []
+
+    def ask():
+        found.append(data_files.merl(data, "nickel").read_text())
+
+    threads = [threading.Thread(target=ask) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == ["half and half"] * 4
+    assert [path.name for path in (tmp_path / "build/merl").iterdir()] == ["nickel.binary"]
