@@ -28,7 +28,7 @@ log = logging.getLogger(__package__)
 _LEAST_SECONDS = 0.05  # between two pictures
 _SHARE = 0.1  # of the main thread's time, at most, for pictures that only grow less noisy
 _PATIENCE = 0.04  # seconds that a change waits for the first picture of the change before
-_PROMPT = 0.02  # and for its own, which then is in the redraw at hand: another takes Blender longer than that
+_PROMPT = 0.04  # and for its own, which then is in the redraw at hand: another takes Blender longer than that
 
 _all = weakref.WeakSet()
 

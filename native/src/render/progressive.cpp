@@ -34,11 +34,10 @@ ProgressiveRender::Level::Level(int width, int height)
     : film(width, height), tiles(blocks_of(film.window())), done(tiles.size()) {}
 
 ProgressiveRender::ProgressiveRender(std::shared_ptr<Scene> scene, const RenderOptions& options)
-    : scene_(std::move(scene)), asked_(checked(options)), arena_(arena_concurrency(options.threads)) {
-  for (int d = first_divisor(asked_.width, asked_.height); d > 0; d /= 2) {
-    levels_.push_back(std::make_unique<Level>(part(asked_.width, d), part(asked_.height, d)));
-  }
-}
+    : scene_(std::move(scene)),
+      asked_(checked(options)),
+      arena_(arena_concurrency(options.threads)),
+      first_divisor_(first_divisor(asked_.width, asked_.height)) {}
 
 void ProgressiveRender::restart() {
   for (auto& level : levels_) {
@@ -85,6 +84,9 @@ void ProgressiveRender::set_options(const Level& level) {
 }
 
 void ProgressiveRender::render_level(Progress& progress) {
+  if (level_ == levels_.size()) {
+    levels_.push_back(std::make_unique<Level>(part(asked_.width, divisor()), part(asked_.height, divisor())));
+  }
   Level& level = *levels_[level_];
   set_options(level);
   if (level.least == 0 && std::ranges::all_of(level.done, [](int n) { return n == 0; })) level.film.clear();

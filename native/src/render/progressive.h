@@ -47,7 +47,8 @@ class ProgressiveRender {
     std::vector<int> done;  // camera rays a pixel, by tile
     int least = 0;          // of them
   };
-  bool is_last() const { return level_ + 1 == levels_.size(); }
+  int divisor() const { return first_divisor_ >> level_; }
+  bool is_last() const { return divisor() == 1; }
   void prepare_scene(Progress& progress);
   void set_options(const Level& level);
   void render_level(Progress& progress);
@@ -59,8 +60,9 @@ class ProgressiveRender {
   RenderOptions options_;  // of the level
   tbb::task_arena arena_;
   std::unique_ptr<RenderContext> context_;
-  uint64_t prepared_for_ = 0;  // revision of the scene
-  std::vector<std::unique_ptr<Level>> levels_;
+  uint64_t prepared_for_ = 0;                   // revision of the scene
+  const int first_divisor_;                     // of the picture's sides: a power of two
+  std::vector<std::unique_ptr<Level>> levels_;  // those that were begun: films are large
   size_t level_ = 0;
 
   mutable std::mutex mutex_;        // of what follows
