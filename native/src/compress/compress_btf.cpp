@@ -41,7 +41,7 @@ const char* name_of(CompressMethod method) {
 /// Names the measurement and all that the bits of the fit depend on. Whatever changes a fit's numbers changes
 /// kFitVersion.
 std::string checkpoint_key(const BtfMeasurement& measurement, const CompressOptions& options) {
-  constexpr int kFitVersion = 8;
+  constexpr int kFitVersion = 9;
   std::ostringstream key;
   key << kFitVersion << ' ' << measurement.provenance().sha256 << ' ' << measurement.raw_bytes() << ' '
       << name_of(options.method) << ' ' << static_cast<int>(options.companding) << ' ' << options.bytes << ' '

@@ -30,8 +30,8 @@ bool Pursuit::step(const Progress& progress) {
   std::vector<Eigen::VectorXf> gain(columns_.size());
   parallel_pieces(columns_.size(), threads_, progress, [&](size_t i) {
     const Eigen::VectorXf product = columns_[i].transpose() * rest_[i];
-    // Columns that are all but zero explain nothing, and rounding must not make them.
-    const float least = 1e-6f * static_cast<float>(rest_[i].size());
+    // Columns that are all but zero explain nothing, and rounding must not make them; nor do points that no view shows.
+    const float least = 1e-6f * static_cast<float>(std::max<Eigen::Index>(1, rest_[i].size()));
     gain[i] = product.array().square() / (norm_sq_[i].array() + least);
   });
   Eigen::VectorXf total = Eigen::VectorXf::Zero(open_.size());

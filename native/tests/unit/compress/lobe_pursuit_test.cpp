@@ -61,6 +61,16 @@ TEST(LobePursuit, LeavesLessWithEveryCandidate) {
   }
 }
 
+/// A gap of a relief may be hidden from all views.
+TEST(LobePursuit, IsNotDisturbedByPointsWithoutPairs) {
+  auto points = sparse_points(1);
+  const PursuitChoice alone = choice_of(points, 8);
+  points.insert(points.begin(), {RowMatrix(0, kCandidates), Eigen::VectorXf(0)});
+  const PursuitChoice choice = choice_of(points, 8);
+  EXPECT_EQ(choice.order, alone.order);
+  EXPECT_EQ(choice.left, alone.left);
+}
+
 /// What is left is what least squares leave.
 TEST(LobePursuit, ProjectsOntoAllThatWasChosen) {
   const auto points = sparse_points(1);
