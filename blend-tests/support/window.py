@@ -35,9 +35,10 @@ class _Runner:
                 if not self.tests:
                     self._leave()
                     return None
-                self.name = self.tests[0].__name__
+                test = self.tests.pop(0)
+                self.name = test.__name__
                 fresh_file()
-                self.current = self.tests.pop(0)(self.folder)
+                self.current = test(self.folder)
             return next(self.current)
         except StopIteration:
             self._count("passed")

@@ -3,7 +3,7 @@
 from . import frame_parts, kept_scene, model_images, viewport, viewport_clock, write_lock
 from .engine import VelourRenderEngine
 
-CLASSES = (VelourRenderEngine,)
+CLASSES = (VelourRenderEngine, write_lock.VELOUR_OT_allow_writes)
 
 
 def attach():

@@ -1,33 +1,97 @@
-"""A guard against a race in Blender between panels and render threads.
+"""The cure of a race in Blender between panels and render threads.
 
-While a panel draws, Blender forbids Python to write data; each call of a Python class saves that state and
-puts it back at its end. If a render thread enters Python in the middle of a drawing panel, it saves "no
-writes" and puts that back when the render ends: from then on no timer and no handler of any add-on can
-write. Seen in 3.4.1 within seconds while previews render and panels redraw.
+While a panel draws, Blender forbids Python to write data. Each call of a Python class saves that state and puts it
+back at its end. A render thread that enters Python in the middle of a panel, where draw() is slow or waits for the disk,
+saves "no writes"; if it outlasts the panel, it puts that back when nothing draws any more. From then on no timer and no
+handler of any add-on can write ("can't modify blend data in this state"), until Blender ends. Previews of any engine
+written in Python do it; seen in 3.4, and 5.2 has the same code.
 
-The interpreter hands over to a waiting thread after a switch interval, by default 5 ms, less than a slow
-panel takes. With a longer one the hand-over falls between two panels, where Blender releases the
-interpreter anyway.
+Nothing in Python allows writes again, but two calls that end out of order do, as they forbade them: Blender allows
+writes while it asks a property's getter. A poll() that another thread begins meanwhile saves that, and puts it back when
+the getter is over.
 """
 
-import sys
+import threading
 
 import bpy
 
-_SECONDS = 0.1
-_before = None
+_WAIT_SECONDS = 1.0  # for a thread to begin; it takes a tenth of a millisecond
+
+
+class VELOUR_OT_allow_writes(bpy.types.Operator):
+    bl_idname = "velour.allow_writes"
+    bl_label = "Allow Writes"
+    bl_description = "What Velour itself needs; nothing to press"
+    bl_options = {"INTERNAL"}
+
+    @classmethod
+    def poll(cls, _context):
+        if _cure is not None and threading.current_thread() is _cure.thread:
+            _cure.begun.set()
+            _cure.over.wait(_WAIT_SECONDS)
+        return False
+
+
+class _Cure:
+    """A poll() that lasts from begin() to end()."""
+
+    def __init__(self):
+        self.begun, self.over = threading.Event(), threading.Event()
+        self.thread = threading.Thread(target=bpy.ops.velour.allow_writes.poll, name="Velour: writes")
+
+    def begin(self):
+        self.thread.start()
+        self.begun.wait(_WAIT_SECONDS)
+
+    def end(self):
+        self.over.set()
+        if self.begun.is_set():
+            self.thread.join()
+
+
+_cure = None
 
 
 def attach():
     """Only with a window: without one nothing draws."""
-    global _before
-    if not bpy.app.background and sys.getswitchinterval() < _SECONDS:
-        _before = sys.getswitchinterval()
-        sys.setswitchinterval(_SECONDS)
+    if not bpy.app.background:
+        bpy.types.WindowManager.velour_write_lock = bpy.props.BoolProperty(get=_getter, options={"HIDDEN"})
+        bpy.app.timers.register(_turn, persistent=True)
 
 
 def detach():
-    global _before
-    if _before is not None:
-        sys.setswitchinterval(_before)
-        _before = None
+    if bpy.app.timers.is_registered(_turn):
+        bpy.app.timers.unregister(_turn)
+        del bpy.types.WindowManager.velour_write_lock
+
+
+def writes_are_forbidden():
+    """For timers, which nothing forbids to write. Takes a microsecond."""
+    try:
+        bpy.utils.register_class(object)  # is refused; this refusal comes first
+    except RuntimeError as refusal:
+        return "readonly" in str(refusal)
+    return False
+
+
+def _turn():
+    """Each turn of Blender's loop, so that timers behind this one can write."""
+    if writes_are_forbidden():
+        _allow_writes()
+    return 0.0
+
+
+def _allow_writes():
+    global _cure
+    _cure = _Cure()
+    try:
+        _ = bpy.context.window_manager.velour_write_lock
+    finally:
+        _cure.end()
+        _cure = None
+
+
+def _getter(_window_manager):
+    if _cure is not None and not _cure.begun.is_set():
+        _cure.begin()
+    return True
