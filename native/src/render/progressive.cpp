@@ -13,20 +13,10 @@
 namespace velour {
 namespace {
 
-/// Pixels of the coarsest level at most: a fraction of 0.2 s on one thread.
-constexpr int kFirstPixels = 16000;
 /// Light directions a pixel of the coarse levels: they are looked at for a moment only.
 constexpr int kCoarseDirections = 4;
 /// Camera rays a pixel of a pass at most.
 constexpr int kLargestPass = 8;
-
-int part(int side, int divisor) { return (side + divisor - 1) / divisor; }
-
-int first_divisor(int width, int height) {
-  int divisor = 1;
-  while (part(width, divisor) * part(height, divisor) > kFirstPixels) divisor *= 2;
-  return divisor;
-}
 
 }  // namespace
 
@@ -37,14 +27,19 @@ ProgressiveRender::ProgressiveRender(std::shared_ptr<Scene> scene, const RenderO
     : scene_(std::move(scene)),
       asked_(checked(options)),
       arena_(arena_concurrency(options.threads)),
-      first_divisor_(first_divisor(asked_.width, asked_.height)) {}
+      first_(asked_.width, asked_.height),
+      levels_(static_cast<size_t>(first_.last()) + 1),
+      begin_(first_.first()),
+      level_(begin_) {}
 
 void ProgressiveRender::restart() {
   for (auto& level : levels_) {
+    if (!level) continue;
     std::ranges::fill(level->done, 0);
     level->least = 0;
   }
-  level_ = 0;
+  level_ = begin_ = first_.first();
+  is_unseen_ = true;
   const std::lock_guard lock(mutex_);
   shown_ = beneath_ = nullptr;
   samples_ = 0;
@@ -53,11 +48,19 @@ void ProgressiveRender::restart() {
 void ProgressiveRender::run(Progress& progress) {
   prepare_scene(progress);
   progress.stage("render", 0.0, 1.0);
-  while (true) {
-    render_level(progress);
-    if (is_last()) return;
-    ++level_;
+  start_ = std::chrono::steady_clock::now();
+  try {
+    for (render_level(progress); !is_last(); render_level(progress)) ++level_;
+  } catch (...) {
+    measure_first(false);
+    throw;
   }
+}
+
+/// Has the next picture begin where that of this one suggests.
+void ProgressiveRender::measure_first(bool is_whole) {
+  if (!std::exchange(is_unseen_, false)) return;
+  first_.took(std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(), is_whole);
 }
 
 /// Its hierarchy, lights, and what the strategy needs: kept while the camera alone moves.
@@ -84,10 +87,12 @@ void ProgressiveRender::set_options(const Level& level) {
 }
 
 void ProgressiveRender::render_level(Progress& progress) {
-  if (level_ == levels_.size()) {
-    levels_.push_back(std::make_unique<Level>(part(asked_.width, divisor()), part(asked_.height, divisor())));
+  std::unique_ptr<Level>& made = levels_[static_cast<size_t>(level_)];
+  if (!made) {
+    const int divisor = first_.divisor(level_);
+    made = std::make_unique<Level>(divided(asked_.width, divisor), divided(asked_.height, divisor));
   }
-  Level& level = *levels_[level_];
+  Level& level = *made;
   set_options(level);
   if (level.least == 0 && std::ranges::all_of(level.done, [](int n) { return n == 0; })) level.film.clear();
   const int total = context_->camera_rays();
@@ -96,6 +101,7 @@ void ProgressiveRender::render_level(Progress& progress) {
     render_pass(level, target, progress);
     level.least = target;
     show();
+    measure_first(true);
     if (is_last()) progress.update(static_cast<double>(target) / total);
   }
 }
@@ -108,7 +114,7 @@ void ProgressiveRender::render_pass(Level& level, int target, Progress& progress
       if (done >= target) return;  // before a cancel
       renderers.local().render(level.tiles[t], done, target - done, level.film, nullptr, progress);
       done = target;
-      if (level_ > 0) show();
+      if (level_ > begin_) show();
     });
   });
 }
@@ -116,8 +122,9 @@ void ProgressiveRender::render_pass(Level& level, int target, Progress& progress
 /// Of the first level nothing but the whole: there is nothing beneath it.
 void ProgressiveRender::show() {
   const std::lock_guard lock(mutex_);
-  shown_ = levels_[level_].get();
-  beneath_ = shown_->least == 0 && level_ > 0 ? levels_[level_ - 1].get() : nullptr;
+  const auto level = static_cast<size_t>(level_);
+  shown_ = levels_[level].get();
+  beneath_ = shown_->least == 0 && level_ > begin_ ? levels_[level - 1].get() : nullptr;
   samples_ = is_last() ? static_cast<uint32_t>(std::min(shown_->least * asked_.split, asked_.spp)) : 0;
   ++version_;
 }

@@ -4,17 +4,20 @@
 #include <tbb/task_arena.h>
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
 
+#include "render/first_level.h"
 #include "render/tile_renderer.h"
 
 namespace velour {
 
 /// Goes through levels of half the pixels' size each, one camera ray a pixel, and then on at full size. Camera rays,
-/// strategies and light are those of render(): after all of spp its picture is the same, bit for bit.
+/// strategies and light are those of render(): after all of spp its picture is the same, bit for bit. How coarse it
+/// begins is what the picture before took.
 class ProgressiveRender {
  public:
   struct Picture {
@@ -47,23 +50,26 @@ class ProgressiveRender {
     std::vector<int> done;  // camera rays a pixel, by tile
     int least = 0;          // of them
   };
-  int divisor() const { return first_divisor_ >> level_; }
-  bool is_last() const { return divisor() == 1; }
+  bool is_last() const { return level_ == first_.last(); }
   void prepare_scene(Progress& progress);
   void set_options(const Level& level);
   void render_level(Progress& progress);
   void render_pass(Level& level, int target, Progress& progress);
   void show();
+  void measure_first(bool is_whole);
 
   const std::shared_ptr<Scene> scene_;
   const RenderOptions asked_;
   RenderOptions options_;  // of the level
   tbb::task_arena arena_;
   std::unique_ptr<RenderContext> context_;
-  uint64_t prepared_for_ = 0;                   // revision of the scene
-  const int first_divisor_;                     // of the picture's sides: a power of two
-  std::vector<std::unique_ptr<Level>> levels_;  // those that were begun: films are large
-  size_t level_ = 0;
+  uint64_t prepared_for_ = 0;  // revision of the scene
+  FirstLevel first_;
+  std::vector<std::unique_ptr<Level>> levels_;  // null: not begun, for films are large
+  int begin_;                                   // the level that the picture began at
+  int level_;
+  std::chrono::steady_clock::time_point start_;  // of the first level
+  bool is_unseen_ = true;
 
   mutable std::mutex mutex_;        // of what follows
   const Level* shown_ = nullptr;    // null: nothing yet

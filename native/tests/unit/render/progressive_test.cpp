@@ -165,6 +165,42 @@ TEST(Progressive, TakesUpWhatHasChanged) {
   EXPECT_EQ(run(), darker);
 }
 
+/// Takes its time wherever it is looked at.
+class SlowLambert : public test::Lambert {
+ public:
+  using Lambert::Lambert;
+  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
+    std::this_thread::sleep_for(std::chrono::microseconds(30));
+    Lambert::prepare(wv, site, point);
+  }
+};
+
+/// The width of the first picture that there is to see.
+int first_width(ProgressiveRender& render) {
+  Progress progress;
+  std::thread worker([&] { EXPECT_THROW(render.run(progress), Error); });
+  int width = 0;
+  while ((width = render.picture().width) == 0) std::this_thread::yield();
+  progress.cancel();
+  worker.join();
+  return width;
+}
+
+TEST(Progressive, BeginsCoarserWhereTheFirstPictureWasLate) {
+  const auto scene = lit_scene();
+  scene->set_material(0, {std::make_shared<SlowLambert>(0.5f), Rgb(0.0f), false});
+  const RenderOptions options = options_of(400, 300, 5);
+  ProgressiveRender render(scene, options);
+  EXPECT_EQ(first_width(render), 100);
+  render.restart();
+  EXPECT_EQ(first_width(render), 50);
+  scene->set_material(0, {std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), false});
+  render.restart();
+  Progress progress;
+  render.run(progress);
+  EXPECT_EQ(read(render, options), test::rendered(*scene, options));
+}
+
 TEST(Progressive, RefusesASmallBufferAndABadOption) {
   const auto scene = lit_scene();
   RenderOptions options = options_of(40, 30, 1);
