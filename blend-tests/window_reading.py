@@ -1,17 +1,11 @@
 """The window: files are read beside it, whatever becomes of them and of the .blend meanwhile."""
 
-import importlib
-import threading
-from pathlib import Path
 from unittest import mock
 
 import bpy
 
-from support import inputs, scenes, window
-
-_MODEL = Path(__file__).parent / "scenes/data/paint.velour"
-_LARGE = 100_000_000  # bytes
-_HELD_SECONDS = 0.01  # of the processor that a turn may take from the main thread
+from support import scenes, window
+from support.reading import HELD_SECONDS, MODEL, Held, large_file, module, shown
 
 
 def start(folder):
@@ -21,37 +15,9 @@ def start(folder):
     window.run(folder, (*panel, *imports, import_cancelled, several))
 
 
-def _module(name):
-    return importlib.import_module(f"{inputs.ADDON}.{name}")
-
-
-def _file(folder, name="large.velour", size=_LARGE):
-    """A model's file of that many bytes, of which most are zeros behind the model."""
-    path = folder / name
-    path.write_bytes(_MODEL.read_bytes())
-    with open(path, "r+b") as file:
-        file.truncate(size)
-    return path
-
-
-def _shown(path):
-    """The cube's material with a model that stays a file; its image."""
-    data = path.read_bytes()
-    measured = _module("operators.measured")
-    material = measured.new_material("Paint")
-    image = measured.linked_model(str(path), _module("export.files").sha256(data))
-    measured.ensure_node(material).image = image
-    cube = bpy.context.view_layer.objects["Cube"]
-    cube.active_material = material
-    bpy.context.view_layer.objects.active = cube
-    with window.override():
-        bpy.ops.ed.undo_push(message="a model")
-    return image
-
-
 def _known(image):
     """The turns until its summary is there, and the summary."""
-    summaries = _module("ui.summaries")
+    summaries = module("ui.summaries")
     for _ in range(200):
         summary = summaries.model_summary(image)
         if summary is not None:
@@ -60,37 +26,18 @@ def _known(image):
     raise AssertionError("the panel still waits for the model")
 
 
-class _Held:
-    """Reading does not begin before release(): what happens meanwhile, happens meanwhile."""
-
-    def __init__(self, owner, name):
-        self._go_on = threading.Event()
-        read = getattr(owner, name)
-
-        def held(*arguments):
-            assert self._go_on.wait(60)
-            return read(*arguments)
-
-        self._patch = mock.patch.object(owner, name, held)
-        self._patch.start()
-
-    def release(self):
-        self._go_on.set()
-        self._patch.stop()
-
-
 def _held_summary():
-    return _Held(_module("export.files").StoredFile, "content")
+    return Held(module("export.files").StoredFile, "content")
 
 
 def panel_reads_beside_the_window(folder):
     """No turn takes long, where reading the file at once does; the panel says so until it is read."""
-    path = _file(folder)
-    summaries, seconds = _module("ui.summaries"), []
+    path = large_file(folder)
+    summaries, seconds = module("ui.summaries"), []
     summaries.forget()
     held = _held_summary()
     with mock.patch.object(summaries, "_turn", window.timed(summaries._turn, seconds)):
-        image = _shown(path)
+        image = shown(path)
         yield from window.show_properties("MATERIAL")
         assert summaries.model_summary(image) is None
         window.screenshot(folder, "reading")
@@ -101,35 +48,35 @@ def panel_reads_beside_the_window(folder):
     assert summary["lobes"] > 0, summary
     assert summaries.is_at_rest()
     print(f"turns held the window for {1e3 * max(seconds):.1f} ms at most")
-    assert max(seconds) < _HELD_SECONDS, f"a turn held the window for {max(seconds):.3f} s"
-    window.timed(_module("export.files").read_model, seconds)(image, "Control")
+    assert max(seconds) < HELD_SECONDS, f"a turn held the window for {max(seconds):.3f} s"
+    window.timed(module("export.files").read_model, seconds)(image, "Control")
     print(f"reading at once takes {1e3 * seconds[-1]:.0f} ms")
-    assert seconds[-1] > 5 * _HELD_SECONDS, "the check would not see a file read at once"
+    assert seconds[-1] > 5 * HELD_SECONDS, "the check would not see a file read at once"
 
 
 def gone(folder):
     """The file goes while it waits to be read: a sentence, and the model once it is back."""
-    path = _file(folder, size=10_000)
+    path = large_file(folder, size=10_000)
     held = _held_summary()
-    image = _shown(path)
-    assert _module("ui.summaries").model_summary(image) is None
+    image = shown(path)
+    assert module("ui.summaries").model_summary(image) is None
     yield 0.2
     path.unlink()
     held.release()
     summary = yield from _known(image)
     assert "cannot be read" in summary, summary
-    _file(folder, size=10_000)
+    large_file(folder, size=10_000)
     assert (yield from _known(image))["lobes"] > 0
 
 
 def truncated(folder):
-    path = _file(folder, size=10_000)
+    path = large_file(folder, size=10_000)
     held = _held_summary()
-    image = _shown(path)
+    image = shown(path)
     image.velour.sha256 = ""  # or it would be refused for being another one
-    assert _module("ui.summaries").model_summary(image) is None
+    assert module("ui.summaries").model_summary(image) is None
     yield 0.2
-    path.write_bytes(_MODEL.read_bytes()[:1000])
+    path.write_bytes(MODEL.read_bytes()[:1000])
     held.release()
     summary = yield from _known(image)
     assert isinstance(summary, str), summary
@@ -139,7 +86,7 @@ def truncated(folder):
 def undone(folder):
     """The image is another one after an undo and a redo, and has the summary all the same."""
     held = _held_summary()
-    image = _shown(_file(folder, size=20_000))
+    image = shown(large_file(folder, size=20_000))
     yield from window.show_properties("MATERIAL")
     name = image.name
     bpy.context.view_layer.objects["Cube"].location.x = 3
@@ -155,10 +102,10 @@ def undone(folder):
 
 def deleted(folder):
     """Before it is read, and before its turn has come."""
-    summaries = _module("ui.summaries")
+    summaries = module("ui.summaries")
     for wait in (0.2, 0.0):
         held = _held_summary()
-        image = _shown(_file(folder, size=30_000))
+        image = shown(large_file(folder, size=30_000))
         assert summaries.model_summary(image) is None
         yield wait
         bpy.data.images.remove(image)
@@ -171,10 +118,10 @@ def deleted(folder):
 def loaded_file(folder):
     """Timers that do not outlive a file would leave the panel reading for ever."""
     path = str(folder / "shown.blend")
-    name = _shown(_file(folder, size=40_000)).name
+    name = shown(large_file(folder, size=40_000)).name
     bpy.ops.wm.save_as_mainfile(filepath=path)
-    _module("ui.summaries").forget()
-    assert _module("ui.summaries").model_summary(bpy.data.images[name]) is None
+    module("ui.summaries").forget()
+    assert module("ui.summaries").model_summary(bpy.data.images[name]) is None
     bpy.ops.wm.open_mainfile(filepath=path)
     assert (yield from _known(bpy.data.images[name]))["lobes"] > 0
 
@@ -186,7 +133,7 @@ def _import(path, **settings):
 
 
 def _held_import():
-    return _Held(_module("operators.load_material"), "_found")
+    return Held(module("operators.load_material"), "_found")
 
 
 def _end():
@@ -205,8 +152,8 @@ def _names():
 
 def import_beside_the_window(folder):
     """Neither its beginning nor a turn takes long, the one that makes the material included."""
-    path, seconds = _file(folder), []
-    operator = _module("operators.load_material").VELOUR_OT_load_material
+    path, seconds = large_file(folder), []
+    operator = module("operators.load_material").VELOUR_OT_load_material
     with (
         mock.patch.object(operator, "_begin", window.timed(operator._begin, seconds)),
         mock.patch.object(operator, "_step", window.timed(operator._step, seconds)),
@@ -224,12 +171,12 @@ def import_beside_the_window(folder):
     assert scenes.velour_node(material).image.velour.sha256
     assert bpy.context.view_layer.objects.active.active_material == material
     print(f"the import held the window for {1e3 * max(seconds):.1f} ms at most")
-    assert max(seconds) < _HELD_SECONDS, f"a turn held the window for {max(seconds):.3f} s"
+    assert max(seconds) < HELD_SECONDS, f"a turn held the window for {max(seconds):.3f} s"
 
 
 def import_from_browser(folder):
     """The files that the browser gives. Two undos take the material back: the approximation is the second."""
-    path = _file(folder, "chosen.velour", 50_000)
+    path = large_file(folder, "chosen.velour", 50_000)
     with window.override():
         bpy.ops.ed.undo_push(message="before")
         assert bpy.ops.velour.load_material("INVOKE_DEFAULT", fit=False) == {"RUNNING_MODAL"}
@@ -251,7 +198,7 @@ def import_undone(folder):
     held = _held_import()
     with window.override():
         bpy.ops.ed.undo_push(message="before")
-    _import(_file(folder, "undone.velour", 50_000), object="Cube")
+    _import(large_file(folder, "undone.velour", 50_000), object="Cube")
     bpy.data.objects["Cube"].location.x = 3
     with window.override():
         bpy.ops.ed.undo_push(message="moved")
@@ -264,21 +211,21 @@ def import_undone(folder):
 def import_loaded_file(folder):
     """Another file ends it, and the next one is not kept waiting."""
     held = _held_import()
-    _import(_file(folder, "lost.velour", 50_000))
+    _import(large_file(folder, "lost.velour", 50_000))
     yield 0.3
     window.fresh_file()
     held.release()
     yield 0.5
     assert not bpy.context.window_manager.velour.running
     assert "lost" not in _names()
-    _import(_file(folder, "next.velour", 50_000))
+    _import(large_file(folder, "next.velour", 50_000))
     yield from _end()
     assert "next" in _names()
 
 
 def import_gone(folder):
     """The file goes while it is read: nothing is made, and nothing runs."""
-    path = _file(folder, "gone.velour", 50_000)
+    path = large_file(folder, "gone.velour", 50_000)
     before, held = _names(), _held_import()
     _import(path)
     path.unlink()
@@ -289,7 +236,7 @@ def import_gone(folder):
 
 def import_cancelled(folder):
     before, held = _names(), _held_import()
-    _import(_file(folder, "cancelled.velour", 50_000))
+    _import(large_file(folder, "cancelled.velour", 50_000))
     yield 0.2
     bpy.ops.velour.cancel_fit()
     yield from _end()
@@ -300,12 +247,12 @@ def import_cancelled(folder):
 
 def several(folder):
     """What follows, of each file, stands in line beside the window."""
-    names = [_file(folder, f"{name}.velour", 50_000).name for name in ("one", "two")]
+    names = [large_file(folder, f"{name}.velour", 50_000).name for name in ("one", "two")]
     settings = {"directory": str(folder), "files": [{"name": name} for name in names]}
     with window.override():
         started = bpy.ops.velour.load_material("INVOKE_DEFAULT", **settings)
     assert started == {"RUNNING_MODAL"}, started
     yield from _end()
-    group = _module("export.nodes").approximation_node
+    group = module("export.nodes").approximation_node
     states = [group(bpy.data.materials[name]).node_tree.velour for name in ("one", "two")]
     assert all(state.fitted for state in states)

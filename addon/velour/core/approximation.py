@@ -10,6 +10,7 @@ import numpy as np
 
 from ..native import Job, Model, model_peer_job
 from .approximation_map import map_job, map_of, size_of
+from .read_job import ReadJob
 
 _GRAZING = math.cos(math.radians(82))  # where a metal's tint is told: [KHE21]
 _LEAST_DIFFUSE = 0.002  # albedo below which a base is not worth a node
@@ -65,12 +66,16 @@ class Steps:
         info = model.info()
         isotropic = info.get("isotropic", True)
         peer = ("principled" if has_layers else "plain_principled") if isotropic else "ggx"
-        with model_peer_job(model, peer) as job:
+        making = ReadJob(lambda: model_peer_job(model, peer))  # it tabulates the model
+        yield making
+        with making.result() as job:
             yield job
             report = job.report()
         values = {"principled": report[peer.removeprefix("plain_")]} if isotropic else from_ggx(report["ggx"])
         if size := size_of(info):
-            with map_job(model, size) as job:
+            making = ReadJob(lambda: map_job(model, size))
+            yield making
+            with making.result() as job:
                 yield job
                 picture = job.read_pass("Combined")
             values["tile_metres"] = info.get("tile_metres")

@@ -59,7 +59,7 @@ class StoredFile(NamedTuple):
         """The model in it, and the file's SHA-256; refuses a content that is not the expected one."""
         data = self.content()
         digest = sha256(data)
-        _refuse_other(digest, self.expected, self.path or repr(self.name), self.owner)
+        self.refuse_other(digest)
         try:
             return Model.from_bytes(data, self.name), digest
         except VelourError as error:
@@ -72,6 +72,49 @@ class StoredFile(NamedTuple):
         """What panels show of that model."""
         with self.model() as model:
             return model.info()
+
+    @property
+    def named(self):
+        return self.path or repr(self.name)
+
+    @contextlib.contextmanager
+    def readable_path(self):
+        """A path of it, which exists; packed bytes are written to a temporary file first."""
+        if self.packed is None:
+            if not os.path.exists(self.path):  # some BTFs are folders
+                raise ExportError(f"{self.owner}: the measurement {self.named} is missing; {FIND}.")
+            yield self.path
+            return
+        with tempfile.TemporaryDirectory(prefix="velour-") as folder:
+            path = os.path.join(folder, os.path.basename(self.path) or "measurement")
+            with open(path, "wb") as file:
+                file.write(self.packed)
+            yield path
+
+    def raw_info(self):
+        """What the library knows of the measurement or BTF in it; its "kind" says which it is."""
+        try:
+            with self.readable_path() as path:
+                return library.file_info(path)
+        except VelourError as error:
+            raise ExportError(f"{self.owner}: {error}") from error
+
+    def raw(self, kind):
+        """The Measurement or the Btf (`kind`) in it; refuses a content that is not the expected one."""
+        try:
+            with self.readable_path() as path:
+                raw = kind.load(path)
+            self.refuse_other(raw.info()["sha256"])
+        except VelourError as error:
+            raise ExportError(f"{self.owner}: {error}") from error
+        return raw
+
+    def refuse_other(self, digest):
+        if self.expected and digest != self.expected:
+            raise ExportError(
+                f"{self.owner}: the file {self.named} has changed since it was chosen;"
+                " restore it, or accept it with 'Accept Changed File' in the material's Model panel."
+            )
 
 
 def content(image, owner):
@@ -95,22 +138,12 @@ def read_model(image, owner):
 
 def read_measurement(image, owner):
     """As read_model, for raw measurements of BRDFs."""
-    return _read_raw(Measurement, image, owner)
+    return StoredFile.of(image, owner).raw(Measurement)
 
 
 def read_btf(image, owner):
     """As read_model, for captured and measured BTFs."""
-    return _read_raw(Btf, image, owner)
-
-
-def _read_raw(kind, image, owner):
-    try:
-        with measurement_path(image, owner) as path:
-            raw = kind.load(path)
-        _refuse_change(image, raw.info()["sha256"], owner)
-    except VelourError as error:
-        raise ExportError(f"{owner}: {error}") from error
-    return raw
+    return StoredFile.of(image, owner).raw(Btf)
 
 
 class MeasurementReading:
@@ -121,11 +154,12 @@ class MeasurementReading:
     """
 
     def __init__(self, image, owner, may_differ=False):
-        self._owner, self._error = owner, None
-        self._named = _name_of_file(image)
-        self._expected = None if may_differ else image.velour.sha256  # undo may replace the image
+        self._stored, self._error = StoredFile.of(image, owner), None
+        if may_differ:
+            self._stored = self._stored._replace(expected="")
         with contextlib.ExitStack() as until_read:
-            path = until_read.enter_context(measurement_path(image, owner))
+            path = until_read.enter_context(self._stored.readable_path())
+            self._stored = self._stored._replace(packed=None)  # they are in a file now
             self._job = measurement_job(path)
             self._opened = until_read.pop_all()
 
@@ -152,9 +186,9 @@ class MeasurementReading:
     def result(self):
         """The measurement, once the job has ended."""
         if self._error is not None:
-            raise ExportError(f"{self._owner}: {self._error}") from self._error
+            raise ExportError(f"{self._stored.owner}: {self._error}") from self._error
         measurement = self._job.result_measurement()
-        _refuse_other(measurement.info()["sha256"], self._expected, self._named, self._owner)
+        self._stored.refuse_other(measurement.info()["sha256"])
         return measurement
 
     def close(self):
@@ -169,41 +203,10 @@ class MeasurementReading:
 
 
 def measurement_info(image, owner):
-    """What the library knows of the measurement or BTF that `image` names; its "kind" says which it is."""
-    try:
-        with measurement_path(image, owner) as path:
-            return library.file_info(path)
-    except VelourError as error:
-        raise ExportError(f"{owner}: {error}") from error
+    """As StoredFile.raw_info()."""
+    return StoredFile.of(image, owner).raw_info()
 
 
-@contextlib.contextmanager
 def measurement_path(image, owner):
-    """A readable path of a measurement; packed bytes are written to a temporary file first."""
-    path = absolute_path(image)
-    if image.packed_file is None:
-        if not os.path.exists(path):  # some BTFs are folders
-            raise ExportError(f"{owner}: the measurement {path or image.name!r} is missing; {FIND}.")
-        yield path
-        return
-    with tempfile.TemporaryDirectory(prefix="velour-") as folder:
-        path = os.path.join(folder, os.path.basename(path) or "measurement")
-        with open(path, "wb") as file:
-            file.write(packed_bytes(image))
-        yield path
-
-
-def _refuse_change(image, digest, owner):
-    _refuse_other(digest, image.velour.sha256, _name_of_file(image), owner)
-
-
-def _refuse_other(digest, expected, named, owner):
-    if expected and digest != expected:
-        raise ExportError(
-            f"{owner}: the file {named} has changed since it was chosen;"
-            " restore it, or accept it with 'Accept Changed File' in the material's Model panel."
-        )
-
-
-def _name_of_file(image):
-    return absolute_path(image) or repr(image.name)
+    """As StoredFile.readable_path()."""
+    return StoredFile.of(image, owner).readable_path()

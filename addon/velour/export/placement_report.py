@@ -24,7 +24,6 @@ _SAME = 0.005  # of real size: nobody sees that
 class PlacementReport(NamedTuple):
     rows: tuple[tuple[str, str], ...]  # name and value, for people
     warnings: tuple[str, ...]
-    uv_density: tuple[float, float] | None = None  # of the object's UV map without its scale, 1/m
 
 
 def report_on(depsgraph, obj, material, tile):
@@ -34,18 +33,27 @@ def report_on(depsgraph, obj, material, tile):
     if metrics is None:
         return PlacementReport((), (missing_coordinates(obj, material.name),))
     rows, warnings = [_density_row(metrics)], _warnings(obj, material, shown.is_projected)
-    density = None if shown.is_projected else metrics.local.density()
     try:
         uv_map = tile_map(tile, metrics)
     except ExportError as error:
-        return PlacementReport(tuple(rows), (*warnings, str(error)), density)
+        return PlacementReport(tuple(rows), (*warnings, str(error)))
     tiles, lie = metrics.world.placed(uv_map), lie_on(tile, metrics, uv_map)
     rows += [_size_row(tile, tiles), _spread_row(lie), _texel_row(tile, lie)]
     of_faces = _of_faces(shown, tiles.scales() * shown.metres * _texels(tile))
     rows += [_camera_row(depsgraph, obj, of_faces), _stretch_row(lie)]
     if lie.is_stretched:
         warnings += (stretch_sentence(obj, tile, lie, shown.surface),)
-    return PlacementReport(tuple(rows), warnings, density)
+    return PlacementReport(tuple(rows), warnings)
+
+
+def uv_density_on(depsgraph, obj, material):
+    """Of the object's UV map without its scale, 1/m. Raises ExportError where it has none."""
+    shown = ShownSurface.of(depsgraph, obj, material)
+    if shown.metrics is None:
+        raise ExportError(missing_coordinates(obj, material.name))
+    if shown.is_projected:
+        raise ExportError(projected_onto(obj, material.name))
+    return shown.metrics.local.density()
 
 
 def report_on_brushed(depsgraph, obj, material):

@@ -4,12 +4,16 @@ import bpy
 from bpy.props import StringProperty
 
 from ..export import ExportError
-from ..export.files import content, measurement_info, sha256
+from ..export.files import StoredFile, absolute_path, sha256
 from ..export.nodes import velour_node
 from . import measured
+from .job_target import JobTarget
+from .reads_first import ReadsFirst
+
+_MEASUREMENT = "measurement"
 
 
-class VELOUR_OT_accept_file(bpy.types.Operator):
+class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
     bl_idname = "velour.accept_file"
     bl_label = "Accept Changed File"
     bl_description = "Take the model and the measurement as they are on disk now"
@@ -17,22 +21,43 @@ class VELOUR_OT_accept_file(bpy.types.Operator):
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
 
-    def execute(self, context):
+    def _read(self, context):
         material = measured.find_material(context, self.material)
         node = velour_node(material)
         if node is None:
-            self.report({"ERROR"}, "There is no measured material.")
-            return {"CANCELLED"}
-        try:
-            self._accept(node, f"Material '{material.name}'")
-        except ExportError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+            raise ExportError("There is no measured material.")
+        self._target, self._subject = JobTarget(material, node), material.name
+        owner = f"Material '{material.name}'"
+        stored = {role: StoredFile.of(image, owner) for role, image in _images(node)}
+        self._read_of = {role: _place(image) for role, image in _images(node)}
+        return lambda: {role: _digest(role, file) for role, file in stored.items()}
 
-    def _accept(self, node, owner):
-        for image in filter(None, (node.image, node.velour.scene_model)):
-            image.velour.sha256 = sha256(content(image, owner))
-        raw = node.velour.measurement
-        if raw is not None:
-            raw.velour.sha256 = measurement_info(raw, owner)["sha256"]
+    def _use(self, _context, digests):
+        material, node = self._target.find()
+        if material is None:
+            self.report({"WARNING"}, "The material is gone.")
+            return {"CANCELLED"}
+        accepted = 0
+        for role, image in _images(node):
+            if self._read_of.get(role) == _place(image):
+                image.velour.sha256 = digests[role]
+                accepted += 1
+            else:
+                sentence = f"'{image.name}' came to '{material.name}' meanwhile, and was not read."
+                self.report({"WARNING"}, sentence)
+        return {"FINISHED"} if accepted else {"CANCELLED"}
+
+
+def _images(node):
+    """What stands for files, by what it is to the material."""
+    roles = (("model", node.image), ("scene model", node.velour.scene_model))
+    return [(role, image) for role, image in (*roles, (_MEASUREMENT, node.velour.measurement)) if image]
+
+
+def _place(image):
+    """Says whether it is the file that was read, also after an undo, or where it has another name by now."""
+    return absolute_path(image), image.packed_file.size if image.packed_file else None
+
+
+def _digest(role, stored):
+    return stored.raw_info()["sha256"] if role == _MEASUREMENT else sha256(stored.content())

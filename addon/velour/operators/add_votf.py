@@ -4,8 +4,9 @@ import bpy
 from bpy.props import IntProperty, StringProperty
 
 from ..core.plain_words import plain
+from ..core.read_job import ReadJob
 from ..export import ExportError
-from ..export.files import read_model
+from ..export.files import StoredFile
 from ..export.tiles import export_tile
 from ..native import votf_job
 from . import measured
@@ -45,17 +46,23 @@ class VELOUR_OT_add_votf(MakesModel, bpy.types.Operator):
         tile = self._tile(context, node.velour, owner)
         if self.properties.is_property_set("texels"):
             node.velour.outline_texels = self.texels
+        # The structure as it is now; the model is read when its turn has come.
         scene, place, self._notes = export_tile(tile, context.evaluated_depsgraph_get(), approximate=True)
-        with scene, read_model(node.image, owner) as model:
-            self._job = votf_job(
-                scene,
-                model,
-                origin=place.origin,
-                period=place.period,
-                source=tile.owner.name,
-                texels=node.velour.outline_texels,
-                threads=context.scene.render.threads,
-            )
+        options = {
+            "origin": place.origin,
+            "period": place.period,
+            "source": tile.owner.name,
+            "texels": node.velour.outline_texels,
+            "threads": context.scene.render.threads,
+        }
+        stored = StoredFile.of(node.image, owner)
+        self._job = self._reading = ReadJob(lambda: _outline_job(scene, stored, options))
+
+    def _finish(self):
+        if self._reading is None:
+            return super()._finish()
+        self._next, self._reading = self._reading.result(), None
+        return None
 
     def _tile(self, context, settings, owner):
         if self.collection:
@@ -82,3 +89,9 @@ class VELOUR_OT_add_votf(MakesModel, bpy.types.Operator):
             f" {report['wrong']:.2%} of rays wrong.",
         )
         return {"FINISHED"}
+
+
+def _outline_job(scene, stored, options):
+    """Beside the window."""
+    with scene, stored.model() as model:
+        return votf_job(scene, model, **options)

@@ -67,7 +67,7 @@ class BackgroundJob:
         state = context.window_manager.velour
         state.fraction, state.stage = fraction, stage
         state.seconds_left = -1.0 if seconds_left is None else seconds_left
-        _redraw(context)
+        redraw(context)
 
     def _end(self, context, result):
         self._leave(context)
@@ -83,7 +83,7 @@ class BackgroundJob:
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
-        _redraw(context)
+        redraw(context)
 
 
 def _over_properties(context, event):
@@ -95,7 +95,7 @@ def _over_properties(context, event):
     return True  # the status bar, which is no area of the screen
 
 
-def _redraw(context):
+def redraw(context):
     """The panels and the status bar."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:

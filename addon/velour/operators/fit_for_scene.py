@@ -44,6 +44,8 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         """Waits for the model."""
         try:
             self._begin(context)
+            self._work.reading.start().wait()
+            self._work.take()
             while self._work.observe_next():
                 self._say_frame()
             self._start_fit(context)
@@ -53,7 +55,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             return self._fail(error)
 
     def invoke(self, context, _event):
-        """Some frames a tick, then the fit in the background."""
+        """The files and the fit beside the window; between them some frames a tick."""
         try:
             self._begin(context)
         except SharedMaterialError as error:
@@ -75,13 +77,19 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         self._work = SceneFit(material, context.scene, self.current_frame, self.shared)
 
     def _start(self, context):
-        """Nothing: each step looks at what is next."""
+        self._work.reading.start()
 
     def _stop(self):
         return self._cancelled()
 
     def _step(self, context):
-        """Some frames, the start of the fit, or a look at it."""
+        """A look at the files, some frames, the start of the fit, or a look at that."""
+        if not self._work.has_read:
+            if self._work.reading.wait(timeout=0.0):
+                self._work.take()
+            else:
+                self._show(context, "reading", 0.0)
+            return None
         if self._job is not None:
             state = self._job.poll()
             self._show(

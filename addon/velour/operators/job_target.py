@@ -5,6 +5,11 @@ import uuid
 import bpy
 
 
+def key_of(datablock):
+    """Its key in the list of bpy.data: no pointer, for undo replaces datablocks."""
+    return (datablock.name, datablock.library.filepath) if datablock.library else datablock.name
+
+
 class JobTarget:
     """A measured material's node, by a mark on it and by names: undo may replace any datablock."""
 

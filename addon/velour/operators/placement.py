@@ -4,30 +4,24 @@ import bpy
 from bpy.props import StringProperty
 
 from ..export import ExportError
-from ..export.files import read_model
+from ..export.files import StoredFile
 from ..export.nodes import velour_node
 from ..export.placement import Tile
-from ..export.placement_report import report_on
-from ..native import VelourError
+from ..export.placement_report import report_on, uv_density_on
 from . import measured
+from .job_target import key_of
+from .reads_first import ReadsFirst
 
 
-class PlacementOperator:
+class PlacementOperator(ReadsFirst):
+    """`_use_on(depsgraph, obj, material, tile)` takes what is asked about."""
+
     object: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
     material: StringProperty(
         name="Material", description="Empty: the object's active one", options={"SKIP_SAVE"}
     )
 
-    def execute(self, context):
-        try:
-            self._use(context)
-        except (ExportError, VelourError) as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
-
-    def _measured(self, context):
-        """The node of the material, and the PlacementReport of it on the object."""
+    def _read(self, context):
         obj = bpy.data.objects.get(self.object) if self.object else context.object
         if obj is None:
             raise ExportError(
@@ -37,12 +31,19 @@ class PlacementOperator:
         node = velour_node(material)
         if node is None or node.image is None:
             raise ExportError(f"Object '{obj.name}': there is no material with a model to place on it.")
-        owner = f"Material '{material.name}'"
-        with read_model(node.image, owner) as model:
-            tile = Tile.of(material, model.info())
+        self._subject, self._keys = material.name, (key_of(obj), key_of(material))
+        return StoredFile.of(node.image, f"Material '{material.name}'").model_info
+
+    def _use(self, context, info):
+        obj_key, material_key = self._keys
+        obj, material = bpy.data.objects.get(obj_key), bpy.data.materials.get(material_key)
+        if obj is None or velour_node(material) is None:
+            raise ExportError(f"The object or its material '{self._subject}' is gone.")
+        tile = Tile.of(material, info)
         if tile is None:
-            raise ExportError(f"{owner} is the same all over; it has no tiles to place.")
-        return node, report_on(context.evaluated_depsgraph_get(), obj, material, tile)
+            raise ExportError(f"Material '{material.name}' is the same all over; it has no tiles to place.")
+        self._use_on(context.evaluated_depsgraph_get(), obj, material, tile)
+        return {"FINISHED"}
 
 
 class VELOUR_OT_describe_placement(PlacementOperator, bpy.types.Operator):
@@ -51,8 +52,8 @@ class VELOUR_OT_describe_placement(PlacementOperator, bpy.types.Operator):
     bl_description = "Say how large the tiles of the material are on the object, and what is wrong with that"
     bl_options = {"REGISTER"}
 
-    def _use(self, context):
-        _node, report = self._measured(context)
+    def _use_on(self, *where):
+        report = report_on(*where)
         for name, value in report.rows:
             self.report({"INFO"}, f"{name}: {value}")
         for sentence in report.warnings:
@@ -68,8 +69,5 @@ class VELOUR_OT_keep_uv_density(PlacementOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    def _use(self, context):
-        node, report = self._measured(context)
-        if report.uv_density is None:
-            raise ExportError(report.warnings[0])
-        node.velour.placement.uv_density = report.uv_density
+    def _use_on(self, depsgraph, obj, material, _tile):
+        velour_node(material).velour.placement.uv_density = uv_density_on(depsgraph, obj, material)

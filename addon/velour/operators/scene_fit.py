@@ -2,12 +2,13 @@
 
 import bpy
 
+from ..core.read_job import ReadJob
 from ..export import ExportError, Notes, export_scene, visitor
 from ..export.camera import final_view
-from ..export.files import measurement_info, read_btf, read_measurement, read_model
+from ..export.files import StoredFile, absolute_path
 from ..export.nodes import velour_node
 from ..export.observe import observe
-from ..native import Btf, Observation, compress_job, fit_job
+from ..native import Btf, Measurement, Observation, compress_job, fit_job
 from . import measured
 from .job_target import JobTarget
 from .sharing import other_scenes
@@ -20,7 +21,9 @@ class SharedMaterialError(ExportError):
 
 
 class SceneFit:
-    """Observes frame after frame, then fits. Holds names and a mark: undo may replace any datablock."""
+    """Reads the files (the job `reading`, then take()), observes frame after frame, then fits.
+
+    Holds names and a mark: undo may replace any datablock."""
 
     def __init__(self, material, scene, current_frame=False, shared=False):
         _refuse_unfit(material)
@@ -35,13 +38,23 @@ class SceneFit:
         self.material_name, self.scene_name = material.name, scene.name
         self._target = JobTarget(material, velour_node(material))
         self.frames = [scene.frame_current] if current_frame else frame_range(scene)
-        self._measurement = _read_measurement(material)
+        self._model_before = _identity(velour_node(material).image)
+        self.reading, self._read = ReadJob(_reader(material)), None
         self.observation = Observation.of_nothing()
         self.done = 0  # frames
 
+    @property
+    def has_read(self):
+        return self._read is not None
+
+    def take(self):
+        """What the job has read: the measurement or BTF, and the full model."""
+        self._read = self.reading.result()
+        self.reading.close()
+
     def close(self):
-        self._measurement.close()
-        self.observation.close()
+        for handle in (*(self._read or ()), self.observation):
+            handle.close()
 
     def observe_next(self):
         """Adds what the next frame shows; False when there is none left."""
@@ -59,20 +72,17 @@ class SceneFit:
                 f" '{self.scene_name}'; nothing tells what its model is needed for."
             )
         _material, node = self._material()
-        with read_model(node.image, f"Material '{self.material_name}'") as full:
-            if full.info()["source"]["sha256"] != self._measurement.info()["sha256"]:
-                raise ExportError(
-                    f"Material '{self.material_name}': the full model is not of this measurement; press Fit."
-                )
-            if isinstance(self._measurement, Btf):
-                job = compress_job(
-                    self._measurement, for_scene=self.observation, full_model=full, threads=threads
-                )
-            else:
-                job = self._fit_job(full, node.velour, threads)
-            return job.start()
+        if node.image is None or _identity(node.image) != self._model_before:
+            raise ExportError(
+                f"Material '{self.material_name}' has another model than when this began; fit for the scene"
+                " again."
+            )
+        raw, full = self._read
+        if isinstance(raw, Btf):
+            return compress_job(raw, for_scene=self.observation, full_model=full, threads=threads).start()
+        return self._fit_job(raw, full, node.velour, threads).start()
 
-    def _fit_job(self, full, settings, threads):
+    def _fit_job(self, measurement, full, settings, threads):
         if full.info()["model"] != "parametric" and "shell" in full.info():
             raise ExportError(
                 f"Material '{self.material_name}': only a parametric model hands its outline (VOTF) on to a"
@@ -81,7 +91,7 @@ class SceneFit:
         # A model of another kind is no measure of a parametric one: without one the fit makes it first.
         measure = {"full_model": full} if full.info()["model"] == "parametric" else {}
         return fit_job(
-            self._measurement,
+            measurement,
             model="parametric",
             for_scene=self.observation,
             **measure,
@@ -150,19 +160,35 @@ def _refuse_unfit(material):
         raise ExportError(f"{owner} is linked from a library, where nothing can be kept; make it local.")
 
 
-def _read_measurement(material):
-    owner = f"Material '{material.name}'"
-    image = velour_node(material).velour.measurement
-    if measurement_info(image, owner)["kind"] == "btf":
-        return read_btf(image, owner)
-    measurement = read_measurement(image, owner)
+def _identity(image):
+    """Cheap, and another one where a model was put in its place."""
+    return absolute_path(image), image.velour.sha256
+
+
+def _reader(material):
+    """Reads the measurement and the full model, beside the window."""
+    node, owner = velour_node(material), f"Material '{material.name}'"
+    raw, full = (StoredFile.of(image, owner) for image in (node.velour.measurement, node.image))
+    return lambda: _of_one_content(_read_raw(raw), full)
+
+
+def _read_raw(stored):
+    if stored.raw_info()["kind"] == "btf":
+        return stored.raw(Btf)
+    measurement = stored.raw(Measurement)
     if not measurement.info()["isotropic"]:
-        measurement.close()
         raise ExportError(
-            f"{owner}: the measurement is anisotropic, and of a scene's views only the angle from the normal"
-            " is known, not the direction around it; use the full model."
+            f"{stored.owner}: the measurement is anisotropic, and of a scene's views only the angle from the"
+            " normal is known, not the direction around it; use the full model."
         )
     return measurement
+
+
+def _of_one_content(raw, stored):
+    model = stored.model()
+    if model.info()["source"]["sha256"] != raw.info()["sha256"]:
+        raise ExportError(f"{stored.owner}: the full model is not of this measurement; press Fit.")
+    return raw, model
 
 
 def _scenes(names):

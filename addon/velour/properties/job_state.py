@@ -20,6 +20,7 @@ class VelourJobState(bpy.types.PropertyGroup):
     seconds_left: FloatProperty(default=-1.0, options={"SKIP_SAVE"})  # below 0: not known
     waiting: IntProperty(options={"SKIP_SAVE"})  # how many come after it
     fraction: FloatProperty(name="Progress", subtype="FACTOR", min=0.0, max=1.0, options={"SKIP_SAVE"})
+    reading: StringProperty(options={"SKIP_SAVE"})  # name of what is read beside it; empty: nothing
     estimate: StringProperty(options={"SKIP_SAVE"})  # of a capture
     estimated: StringProperty(options={"SKIP_SAVE"})  # which one it is of
     plot: PointerProperty(type=VelourPlotSettings)

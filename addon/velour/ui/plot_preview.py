@@ -6,9 +6,10 @@ import bpy.utils.previews
 
 from ..export import ExportError
 from ..native import VelourError
+from ..operators.job_target import key_of
 from ..operators.plot_colors import theme_colors
 from .plot_work import PlotWork, close_source
-from .summaries import identity, name_of, redraw_panels
+from .summaries import identity, redraw_panels
 
 _KEPT = 64  # pictures; of 400 pixels 2.5 MB each
 _TURN_SECONDS = 0.02
@@ -41,7 +42,7 @@ def plot_picture(context, model, measurement, kind, side):
     wanted = _wanted(context, model, measurement, kind, side)
     if wanted not in _pictures and wanted not in _works:
         _forget_other_angles(wanted)
-        _waiting[wanted] = name_of(model), measurement and name_of(measurement)
+        _waiting[wanted] = key_of(model), measurement and key_of(measurement)
     if not is_at_rest() and not bpy.app.timers.is_registered(_turn):
         bpy.app.timers.register(_turn, persistent=True)
     made = _pictures.get(wanted) or _before(wanted)

@@ -30,7 +30,10 @@ def draw_progress(context, layout):
 
 
 def _draw_in_status_bar(header, context):
-    if context.window_manager.velour.running:
+    state = context.window_manager.velour
+    if state.reading:
+        header.layout.label(text=f"{state.reading}: reading", icon="TIME")
+    if state.running:
         header.layout.separator()
         draw_progress(context, header.layout)
 

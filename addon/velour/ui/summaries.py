@@ -8,6 +8,7 @@ from ..core.read_job import ReadJob
 from ..export import ExportError
 from ..export.files import StoredFile, absolute_path
 from ..native import VelourError
+from ..operators.job_target import key_of
 
 _KEPT = 64
 _TURN_SECONDS = 0.02
@@ -20,7 +21,7 @@ def model_summary(image):
     """The model's info; the sentence why there is none; None while it is not read yet. For draw()."""
     known = identity(image)
     if known not in _summaries and known not in _jobs:
-        _waiting[known] = name_of(image)
+        _waiting[known] = key_of(image)
     if not is_at_rest() and not bpy.app.timers.is_registered(_turn):
         bpy.app.timers.register(_turn, persistent=True)
     return _summaries.get(known)
@@ -37,11 +38,6 @@ def forget():
     _jobs.clear()
     if bpy.app.timers.is_registered(_turn):
         bpy.app.timers.unregister(_turn)
-
-
-def name_of(image):
-    """The key of the image in bpy.data.images. No pointer: undo replaces datablocks."""
-    return (image.name, image.library.filepath) if image.library else image.name
 
 
 def identity(image):

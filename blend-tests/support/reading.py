@@ -1,0 +1,63 @@
+"""Files that take long to read, and reading that does not begin before it may."""
+
+import importlib
+import threading
+from pathlib import Path
+from unittest import mock
+
+import bpy
+
+from . import inputs, window
+
+_DATA = Path(__file__).resolve().parent.parent / "scenes/data"
+MODEL, TILES = _DATA / "paint.velour", _DATA / "weave.velour"
+LARGE = 100_000_000  # bytes
+HELD_SECONDS = 0.01  # of the processor that a turn may take from the main thread
+
+
+def module(name):
+    """Of the add-on."""
+    return importlib.import_module(f"{inputs.ADDON}.{name}")
+
+
+def large_file(folder, name="large.velour", size=LARGE, model=None):
+    """A model's file of that many bytes, of which most are zeros behind the model."""
+    path = folder / name
+    path.write_bytes(model or MODEL.read_bytes())
+    with open(path, "r+b") as file:
+        file.truncate(size)
+    return path
+
+
+def shown(path):
+    """The cube's material with a model that stays a file; its image."""
+    data = path.read_bytes()
+    measured = module("operators.measured")
+    material = measured.new_material("Paint")
+    image = measured.linked_model(str(path), module("export.files").sha256(data))
+    measured.ensure_node(material).image = image
+    cube = bpy.context.view_layer.objects["Cube"]
+    cube.active_material = material
+    bpy.context.view_layer.objects.active = cube
+    with window.override():
+        bpy.ops.ed.undo_push(message="a model")
+    return image
+
+
+class Held:
+    """Reading does not begin before release(): what happens meanwhile, happens meanwhile."""
+
+    def __init__(self, owner, name):
+        self._go_on = threading.Event()
+        read = getattr(owner, name)
+
+        def held(*arguments):
+            assert self._go_on.wait(60)
+            return read(*arguments)
+
+        self._patch = mock.patch.object(owner, name, held)
+        self._patch.start()
+
+    def release(self):
+        self._go_on.set()
+        self._patch.stop()
