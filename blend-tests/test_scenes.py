@@ -10,9 +10,7 @@ from support import process
 from support.blender import BlenderTest
 
 HERE = Path(__file__).resolve().parent
-_PICTURE = (
-    "instances"  # which all versions of Blender show alike: other lamps than suns shine otherwise since 4.0
-)
+_PICTURE = "instances"
 _SUN, _BRIGHTER_SUN = '"SUN", 3,', '"SUN", 3.03,'
 _DIE = """QUANTITY = "a crash"
 def build(folder):
@@ -71,6 +69,26 @@ class Runner(BlenderTest):
             self.assertIn(words, done.stdout)
         for name in ("a_crash", "c_brighter", "e_same"):
             self.assertIn(name, (self.folder / "page/index.html").read_text())
+
+    def test_each_meaning_has_its_reference(self):
+        """What a scene means in this Blender is held against that reference, and no other will do."""
+        meant = self.picture() + '\nMEANINGS = ("", "other")\ndef meaning():\n    return "MEANT"\n'
+        self.add("a_other", meant.replace("MEANT", "other"))
+        for ending in (".exr", ".error.exr"):
+            path = self.scenes / f"references/a_other{ending}"
+            path.rename(self.scenes / f"references/a_other.other{ending}")
+            shutil.copy(HERE / f"scenes/references/sphere{ending}", path)
+        self.add("b_first", meant.replace("MEANT", ""))
+        self.add("c_without", meant.replace("MEANT", "other"))
+        self.add("d_unknown", meant.replace("MEANT", "strange"))
+        done = self.run_scenes()
+        for words in (
+            "ok: a_other, frame 1:",
+            "ok: b_first, frame 1:",
+            "FAILED: c_without, frame 1: c_without.other.exr: cannot read",
+            "FAILED: d_unknown: its MEANINGS lack 'strange'",
+        ):
+            self.assertIn(words, done.stdout)
 
     def test_update_makes_what_passes(self):
         self.add("brighter", self.brighter())

@@ -146,12 +146,17 @@ def test_committed_references_are_there_and_small():
     scenes = [scene.load(name) for name in scene.names()]
     assert len(scenes) >= 8
     for one in scenes:
-        assert bool(one.refusal) != bool(one.references)
-        for path in one.references.values():
+        assert bool(one.refusal) != bool(one.references())
+        for path in _references(one):
             assert path.stat().st_size + reference.error_path(path).stat().st_size <= 100_000
     kept = {path.name for path in (scene.SCENES / "references").iterdir()}
-    known = [path for one in scenes for path in one.references.values()]
+    known = [path for one in scenes for path in _references(one)]
     assert kept == {p.name for path in known for p in (path, reference.error_path(path))}
+
+
+def _references(one):
+    """In every Blender."""
+    return [path for meaning in one.meanings for path in one.references(meaning).values()]
 
 
 def test_process_that_hangs_ends_with_its_children(tmp_path):

@@ -26,7 +26,8 @@ def build(task):
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))  # what is beside the file is named relative to it
     module.build(blend.parent)
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    Path(task["report"]).write_text(json.dumps({"error": None}))
+    report = {"error": None, "meaning": getattr(module, "meaning", str)()}
+    Path(task["report"]).write_text(json.dumps(report))
 
 
 build(json.loads(sys.argv[sys.argv.index("--") + 1]))

@@ -20,12 +20,14 @@ def run(scene: Scene, blender: Installation, work: Path, pictures: int, update: 
     blend = work / f"{scene.name}.blend"
     try:
         task = {"scene": str(scene.path), "blend": str(blend)}
-        blender.run("inside_build.py", task, work)
+        meaning = blender.run("inside_build.py", task, work)["meaning"]
     except BlenderError as error:
         return [Outcome(scene.name, False, f"it cannot be built: {error}", scene.quantity)]
     if scene.refusal:
         return [_refused(scene, blender, blend)]
-    case = Case(scene.name, blend, scene.references, work, scene.quantity)
+    if meaning not in scene.meanings:
+        return [Outcome(scene.name, False, f"its MEANINGS lack {meaning!r}", scene.quantity)]
+    case = Case(scene.name, blend, scene.references(meaning), work, scene.quantity)
     if update:
         return check.update(case, blender, Settings(), MOST_BYTES)
     return [_sharp(outcome) for outcome in check.check(case, blender, Settings(), pictures)]

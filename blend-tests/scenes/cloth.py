@@ -9,7 +9,7 @@ def build(folder):
     from pathlib import Path
 
     from parity import stage
-    from support import scenes
+    from support import lamps, scenes
 
     scenes.use_picture(samples=256)
     weave = scenes.measured_material((Path(__file__).parent / "data/weave.velour").read_bytes(), "Weave")
@@ -17,7 +17,8 @@ def build(folder):
     placement.mode, placement.repeats = "REPEATS", (12, 12)
     _cloth(stage, weave)
     stage.camera((0, -4.5, 2.2), (1.12, 0, 0), 50)
-    stage.lamp("AREA", 250, (2, -1, 3), (0.1, 0.6, 0), shape="RECTANGLE", size=1, size_y=0.5)
+    watts = lamps.area_watts(250)
+    stage.lamp("AREA", watts, (2, -1, 3), (0.1, 0.6, 0), shape="RECTANGLE", size=1, size_y=0.5)
     scenes.set_world((0.7, 0.8, 1.0), 0.4)
 
 

@@ -5,7 +5,7 @@ QUANTITY = "alpha of a transparent film: edges, a half transparent pane, a holdo
 
 def build(folder):
     from parity import stage
-    from support import scenes
+    from support import lamps, scenes
 
     scene = scenes.use_picture(samples=512)
     scene.render.film_transparent = True
@@ -15,7 +15,7 @@ def build(folder):
     _pane(stage)
     holdout = stage.sphere(0.5, 0.7)
     holdout.location, holdout.is_holdout = (-0.5, -1.5, 0.6), True
-    stage.lamp("AREA", 500, (3, -4, 5), (0.7, 0, 0.6), size=1)
+    stage.lamp("AREA", lamps.area_watts(500), (3, -4, 5), (0.7, 0, 0.6), size=1)
     scenes.set_world((1, 0.9, 0.8), 0.4)
 
 

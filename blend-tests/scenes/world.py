@@ -1,6 +1,15 @@
 """A picture all around, another one on the ground."""
 
 QUANTITY = "a turned environment picture as light and background, an image texture and a normal map"
+MEANINGS = ("", "shadowed")  # of steep normals, where Velour follows Cycles
+
+
+def meaning():
+    import bpy
+
+    # Nothing tells of normals themselves: this came with them.
+    is_newer = "shadow_terminator_geometry_offset" in bpy.types.Object.bl_rna.properties
+    return "shadowed" if is_newer else ""
 
 
 def build(folder):
