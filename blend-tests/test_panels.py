@@ -83,6 +83,19 @@ class Panels(BlenderTest):
         for name in ("threads_mode", "threads", "preview_pixel_size", "film_transparent", "film_exposure"):
             self.assertEqual(shown[name], 1, name)
 
+    def test_simplify(self):
+        shown = self._shown("render")
+        for name in ("subdivision", "subdivision_render", "child_particles", "child_particles_render"):
+            self.assertEqual(shown[f"simplify_{name}"], 1, name)
+
+    def test_no_panel_of_blender_stands_above_sampling(self):
+        """Of those without an order Blender's own come first, for they were registered before."""
+        for panel in self._panels_of("render"):
+            is_below = getattr(panel, "bl_order", 0) > 0 or getattr(panel, "bl_parent_id", "")
+            is_title = "HIDE_HEADER" in getattr(panel, "bl_options", ())  # the choice of the engine
+            ours = panel.__module__.startswith("velour.")
+            self.assertTrue(ours or is_below or is_title, panel.__name__)
+
     def test_what_is_not_read_is_not_shown(self):
         names = [p.__name__ for p in bpy.types.Panel.__subclasses__() if self._is_ours(p)]
         self.assertEqual([n for n in names if any(word in n for word in _NOT_READ)], [])

@@ -39,6 +39,7 @@ from .render_panel import (
     VELOUR_RENDER_PT_newer,
     VELOUR_RENDER_PT_performance,
     VELOUR_RENDER_PT_sampling,
+    VELOUR_RENDER_PT_simplify,
 )
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
 from .tile_panel import VELOUR_COLLECTION_PT_tile, VELOUR_OBJECT_PT_tile
@@ -49,6 +50,7 @@ CLASSES = (
     VELOUR_RENDER_PT_library,
     VELOUR_RENDER_PT_newer,
     VELOUR_RENDER_PT_sampling,
+    VELOUR_RENDER_PT_simplify,
     VELOUR_RENDER_PT_film,
     VELOUR_RENDER_PT_check,
     VELOUR_RENDER_PT_performance,

@@ -87,6 +87,25 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         layout.prop(settings, "time_limit")
 
 
+class VELOUR_RENDER_PT_simplify(_RenderPanel, bpy.types.Panel):
+    """Blender's own would stand above Sampling: panels that give no order stand as they were registered."""
+
+    bl_label = "Simplify"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_simplify", text="")
+
+    def draw(self, context):
+        layout, render = self.layout, context.scene.render
+        layout.use_property_split = True
+        layout.active = render.use_simplify
+        for label, name in (("Max Subdivision", "subdivision"), ("Child Particles", "child_particles")):
+            column = layout.column(align=True)
+            column.prop(render, f"simplify_{name}", text=f"{label} Viewport")
+            column.prop(render, f"simplify_{name}_render", text="Render")
+
+
 class VELOUR_RENDER_PT_film(_RenderPanel, bpy.types.Panel):
     bl_label = "Film"
 

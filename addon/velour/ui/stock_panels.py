@@ -10,7 +10,10 @@ _ENGINE = VelourRenderEngine.bl_idname
 _EXCLUDED = {
     "OBJECT_PT_shading",  # light linking, 4.0 and newer
     "RENDER_PT_gpencil",
+    "RENDER_PT_simplify",  # Velour's own stands below Sampling
     "RENDER_PT_simplify_greasepencil",
+    "RENDER_PT_simplify_render",
+    "RENDER_PT_simplify_viewport",
     "VIEWLAYER_PT_filter",
     "VIEWLAYER_PT_layer_passes",
     # Velour's own panel of lamps shows more.
