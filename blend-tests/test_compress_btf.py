@@ -1,5 +1,10 @@
 """Materials made from BTFs."""
 
+import contextlib
+import io
+import os
+from unittest import mock
+
 import bpy
 import numpy as np
 
@@ -27,6 +32,28 @@ class CompressBtf(BlenderTest):
         self.assertEqual(bytes(image.packed_file.data[:4]), b"v/1\x01")
         self.assertTrue(bpy.data.materials["ribs"].use_fake_user)
         self.assertEqual({material.name for material in bpy.context.object.data.materials}, before)
+
+    def _estimate(self, **arguments):
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(bpy.ops.velour.estimate_fit(**arguments), {"FINISHED"})
+        return bpy.context.window_manager.velour.fit_estimate
+
+    def test_an_estimate_is_by_the_fits_that_were_made(self):
+        folder = self._captured(**_SMALLEST)
+        with mock.patch.dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache")):
+            before = self._estimate()
+            self.assertIn("No such fit was made here yet", before)
+            self.assertIn("MB of memory", before)
+            bpy.ops.velour.compress_btf()
+            self.assertIn("by one fit made here", self._estimate())
+            self.assertIn("by one fit made here", self._estimate(filepath=str(folder)))
+            self.assertIn("No such fit", self._estimate(method="SVD"))
+            self.assertEqual(bpy.context.object.velour.method, "SRBF")  # it was only asked about
+            self.assertIn("as large as the error takes", self._estimate(tolerance=0.2))
+            bpy.ops.velour.compress_btf()
+            self.assertIn("by 2 fits made here", self._estimate())
+        with self.assertRaisesRegex(RuntimeError, "nothing.btf"):
+            self._estimate(filepath=str(self.folder / "nothing.btf"))
 
     def test_bytes_are_bounded(self):
         self._captured()

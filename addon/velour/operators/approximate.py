@@ -24,6 +24,7 @@ class MakesModel(JobsInSteps):
         if self._data is None:
             with self._job:
                 model, self._report = self._job.result_model(), self._job.report()
+                self._seconds = self._job.poll().seconds
             self._data, self._info = model.bytes(), model.info()
             if self._wants_approximation():
                 self._steps = Steps(model, approximation_group.has_layers())

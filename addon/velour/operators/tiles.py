@@ -60,6 +60,13 @@ def capture_options(context, tile, place):
     }
 
 
+def fitted_as(owner):
+    """The same of what a material of it is asked for."""
+    settings = owner.velour
+    names = ("directory", "method", "clusters", "members", "tolerance", "megabytes")
+    return repr((captured_as(owner), *(getattr(settings, name) for name in names)))
+
+
 def captured_as(owner):
     """Changes with what a capture of the tile is asked for. For draw()."""
     settings = owner.velour

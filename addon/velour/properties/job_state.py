@@ -23,6 +23,8 @@ class VelourJobState(bpy.types.PropertyGroup):
     reading: StringProperty(options={"SKIP_SAVE"})  # name of what is read beside it; empty: nothing
     estimate: StringProperty(options={"SKIP_SAVE"})  # of a capture
     estimated: StringProperty(options={"SKIP_SAVE"})  # which one it is of
+    fit_estimate: StringProperty(options={"SKIP_SAVE"})  # of a fit of a BTF
+    fit_estimated: StringProperty(options={"SKIP_SAVE"})
     plot: PointerProperty(type=VelourPlotSettings)
     checked: PointerProperty(type=VelourCheckState)
     browser: PointerProperty(type=VelourBrowserSettings)

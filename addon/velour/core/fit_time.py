@@ -1,0 +1,122 @@
+"""How long the fit of a BTF will take: by those that were made on this machine.
+
+A smaller fit, made to find out, would mislead: it looks at fewer places, and tries other shapes. What fits of all
+sizes took is known, and grows with the values of the BTF to a power that was measured.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+from ..native.version import VERSION
+from .capture_size import duration
+
+_FILE = "fits-1.json"  # another form has another name
+_KEPT = 64
+_NEAREST = 3
+_POWER = {"srbf": 0.5, "kcta": 0.75}  # of the number of values that the seconds grow with; docs/blender.md
+_USUAL_POWER = 0.75
+_MISS = 1.6  # times too long or too short: of fits of a sixteenth to sixteen times the values
+_FAR = 16.0
+# Seconds of a weave of 64 x 64 texels under 81 x 81 directions on two cores, for who has made none.
+_WEAVE_VALUES = 64 * 64 * 81 * 81
+_WEAVE = {"srbf": 47.0}
+
+
+class Fit(NamedTuple):
+    """What its time follows from."""
+
+    method: str
+    values: int  # texels times pairs
+    searched: bool  # for a largest error: several fits
+    sized: bool  # whether a size was asked for
+    shaped: bool  # whether clusters are, of tensors; else many are tried
+    threads: int
+
+
+def fit_of(info: dict, asked: dict, threads: int) -> Fit:
+    """`info`: of the BTF; `asked`: options of compress_job()."""
+    return Fit(
+        asked["method"],
+        math.prod(info["texels"]) * info["pairs"],
+        asked["tolerance"] > 0,
+        asked["bytes"] > 0,
+        any(asked.get(name) for name in ("clusters", "members")),
+        threads or os.cpu_count() or 1,
+    )
+
+
+class _Made(NamedTuple):
+    fit: Fit
+    seconds: float
+
+
+def remember(folder: Path, fit: Fit, seconds: float) -> None:
+    """Adds one that was made, from its beginning to its end. Does without where nothing can be written."""
+    made = [*_known(folder), _Made(fit, seconds)][-_KEPT:]
+    text = json.dumps({"release": list(VERSION), "fits": [[*m.fit, m.seconds] for m in made]})
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile("w", dir=folder, suffix=".part", delete=False) as file:
+            file.write(text)
+        os.replace(file.name, folder / _FILE)
+
+
+def _known(folder: Path) -> list[_Made]:
+    """Those of this release, the oldest first; none where the file is damaged."""
+    try:
+        kept = json.loads((folder / _FILE).read_text(encoding="utf-8"))
+        if kept["release"] != list(VERSION):
+            return []
+        made = [_Made(Fit(*numbers[:-1]), float(numbers[-1])) for numbers in kept["fits"]]
+        return [m for m in made if m.seconds > 0 and m.fit.values > 0]
+    except (OSError, ValueError, TypeError, KeyError, IndexError):
+        return []
+
+
+class Range(NamedTuple):
+    """Seconds."""
+
+    least: float
+    most: float
+    made: int  # fits that it is from
+
+
+def expected(folder: Path, fit: Fit) -> Range | None:
+    """By the fits of this kind that come nearest in size; None: there are none."""
+    alike = [m for m in _known(folder) if m.fit._replace(values=0) == fit._replace(values=0)]
+    if not alike:
+        return None
+    alike.sort(key=lambda m: abs(math.log(fit.values / m.fit.values)))
+    told = [_scaled(m.seconds, fit, m.fit.values) for m in alike[:_NEAREST]]
+    nearest = alike[0].fit.values / fit.values
+    miss = _MISS if 1 / _FAR <= nearest <= _FAR else _MISS**2
+    return Range(min(told) / miss, max(told) * miss, len(told))
+
+
+def _scaled(seconds: float, fit: Fit, values: int) -> float:
+    return seconds * (fit.values / values) ** _POWER.get(fit.method, _USUAL_POWER)
+
+
+def time_text(folder: Path, fit: Fit) -> str:
+    """What artists are told."""
+    found = expected(folder, fit)
+    if found is not None:
+        fits = "one fit" if found.made == 1 else f"{found.made} fits"
+        return f"{_range_text(found)}, by {fits} made here"
+    known = _WEAVE.get(fit.method)
+    if known is None or fit.searched or fit.sized or fit.shaped:
+        return "no such fit was made here yet, so nothing tells how long it will take"
+    seconds = _scaled(known, fit, _WEAVE_VALUES)
+    return f"no such fit was made here yet; of a weave it took about {duration(seconds)} on two cores"
+
+
+def _range_text(found: Range) -> str:
+    least, most = duration(found.least), duration(found.most)
+    return f"about {most}" if least == most else f"{least} to {most}"
