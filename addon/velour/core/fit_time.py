@@ -1,7 +1,7 @@
 """How long the fit of a BTF will take: by those that were made on this machine.
 
-A smaller fit, made to find out, would mislead: it looks at fewer places, and tries other shapes. What fits of all
-sizes took is known, and grows with the values of the BTF to a power that was measured.
+A smaller fit, made to find out, would mislead: it looks at fewer places, and tries other shapes. What fits of
+all sizes took is known, and grows with the values of the BTF to a power that was measured.
 """
 
 from __future__ import annotations
