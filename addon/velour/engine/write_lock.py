@@ -65,10 +65,14 @@ def detach():
         del bpy.types.WindowManager.velour_write_lock
 
 
+class _NoClassOfBlender:
+    """No `object`: Blender looks into a dictionary that classes of Python itself lack since its 3.12."""
+
+
 def writes_are_forbidden():
     """For timers, which nothing forbids to write. Takes a microsecond."""
     try:
-        bpy.utils.register_class(object)  # is refused; this refusal comes first
+        bpy.utils.register_class(_NoClassOfBlender)  # is refused; this refusal comes first
     except RuntimeError as refusal:
         return "readonly" in str(refusal)
     return False
