@@ -14,7 +14,7 @@ def start(folder):
         bpy.utils.unregister_class(panel)
         panel.bl_options = set()  # open, to be looked at
         bpy.utils.register_class(panel)
-    window.run(folder, (add_and_repeat, another_type, capture_and_cancel, capture, material))
+    window.run(folder, (add_and_repeat, another_type, capture_and_cancel, capture, estimate, material))
 
 
 def _clear_view():
@@ -113,6 +113,32 @@ def capture(folder):
     assert (path / "btf.json").is_file()
     yield from window.show_properties("COLLECTION")
     window.screenshot(folder, "collection-panel")
+
+
+def estimate(folder):
+    """What a fit will take stands in the panel until something else is asked for."""
+    yield from _tile_in_properties("OBJECT")
+    small = {"texels": 8, "views": 12, "lights": 12, "samples": 4}
+    with window.override():
+        bpy.ops.velour.capture_btf(directory=str(folder / "estimated.btf"), **small)
+    yield 0.5
+    for _ in range(12):
+        window.scroll_down(40)
+    yield 0.3
+    before = window.screenshot(folder, "fit-before")
+    with window.override():
+        assert bpy.ops.velour.estimate_fit("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    for _ in range(_TURNS):
+        yield 0.1
+        if not bpy.context.window_manager.velour.reading:
+            break
+    assert "MB of memory" in bpy.context.window_manager.velour.fit_estimate
+    yield 0.5
+    told = window.screenshot(folder, "fit-estimate")
+    assert np.abs(told - before).max() > 0.2, "the panel shows nothing new"
+    bpy.context.object.velour.method = "SVD"
+    yield 0.5
+    assert np.abs(window.screenshot(folder, "fit-other") - told).max() > 0.2, "it is of another method"
 
 
 def _orange(picture):

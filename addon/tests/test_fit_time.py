@@ -6,7 +6,7 @@ import pytest
 from velour.core import fit_time
 from velour.core.fit_time import Fit, expected, fit_of, remember, time_text
 
-_FIT = Fit("srbf", 1_000_000, False, False, False, 2)
+_FIT = Fit("srbf", 1000, 1000, False, False, False, 2)
 
 
 def test_the_same_fit_takes_what_it_took(tmp_path):
@@ -15,15 +15,16 @@ def test_the_same_fit_takes_what_it_took(tmp_path):
     assert found.least < 40 < found.most
     assert found.most / found.least < 4
     assert found.made == 1
-    assert time_text(tmp_path, _FIT) == "25 seconds to 64 seconds, by one fit made here"
+    assert time_text(tmp_path, _FIT) == "27 seconds to 60 seconds, by one fit made here"
 
 
 def test_larger_ones_take_longer_but_not_in_proportion(tmp_path):
     remember(tmp_path, _FIT, 40.0)
-    larger = expected(tmp_path, _FIT._replace(values=4_000_000))
-    assert larger.least < 80 < larger.most
+    larger = expected(tmp_path, _FIT._replace(texels=4000))
+    assert larger.least < 80 < 100 < larger.most
     # The control: in proportion it were 160.
     assert larger.most < 160
+    assert expected(tmp_path, _FIT._replace(pairs=4000)).most > larger.most
 
 
 @pytest.mark.parametrize(
@@ -40,13 +41,13 @@ def test_the_nearest_in_size_count(tmp_path):
     """What is far away says less, and comes in only where nothing else is there."""
     for _ in range(3):
         remember(tmp_path, _FIT, 40.0)
-    remember(tmp_path, _FIT._replace(values=1000), 400.0)
+    remember(tmp_path, _FIT._replace(texels=1), 400.0)
     assert expected(tmp_path, _FIT) == expected(tmp_path, _FIT)._replace(made=3)
     assert expected(tmp_path, _FIT).most < 100
     far = tmp_path / "far"
-    remember(far, _FIT._replace(values=1000), 4.0)
+    remember(far, _FIT._replace(texels=1), 4.0)
     found = expected(far, _FIT)
-    near = expected(far, _FIT._replace(values=1000))
+    near = expected(far, _FIT._replace(texels=1))
     assert found.most / found.least > near.most / near.least
 
 
@@ -83,6 +84,6 @@ def test_without_a_folder_that_can_be_written(tmp_path):
 def test_what_a_fit_is():
     info = {"texels": [64, 32], "pairs": 100}
     asked = {"method": "kcta", "tolerance": 0.1, "bytes": 0, "clusters": 0, "members": 2}
-    assert fit_of(info, asked, 3) == Fit("kcta", 204_800, True, False, True, 3)
+    assert fit_of(info, asked, 3) == Fit("kcta", 2048, 100, True, False, True, 3)
     asked = {"method": "srbf", "tolerance": 0.0, "bytes": 10_000}
-    assert fit_of(info, asked, 3) == Fit("srbf", 204_800, False, True, False, 3)
+    assert fit_of(info, asked, 3) == Fit("srbf", 2048, 100, False, True, False, 3)

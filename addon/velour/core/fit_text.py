@@ -14,9 +14,13 @@ def fit_text(info: dict, asked: dict, threads: int, folder: Path) -> str:
     searched = asked["tolerance"] > 0
     memory = fit_memory(of, method, size, searched, threads)
     time = time_text(folder, fit_of(info, asked, threads))
-    parts = [time[0].upper() + time[1:], f"up to {memory / 1e6:,.0f} MB of memory beside the program"]
+    parts = [time[0].upper() + time[1:], f"about {memory / 1e6:,.0f} MB of memory beside the program"]
     if searched and not size:
         parts.append("a model as large as the error takes")
     else:
-        parts.append(f"a model of {most_bytes(of, method, size) / 1e6:,.2g} MB at most")
+        parts.append(f"a model of {_size(most_bytes(of, method, size))} at most")
     return "; ".join(parts)
+
+
+def _size(count: int) -> str:
+    return f"{count / 1e6:,.2f} MB" if count >= 100_000 else f"{count / 1e3:.0f} kB"

@@ -1,7 +1,7 @@
 """How long the fit of a BTF will take: by those that were made on this machine.
 
 A smaller fit, made to find out, would mislead: it looks at fewer places, and tries other shapes. What fits of
-all sizes took is known, and grows with the values of the BTF to a power that was measured.
+all sizes took is known, and grows with texels and with pairs to powers that were measured (docs/blender.md).
 """
 
 from __future__ import annotations
@@ -20,20 +20,21 @@ from .capture_size import duration
 _FILE = "fits-1.json"  # another form has another name
 _KEPT = 64
 _NEAREST = 3
-_POWER = {"srbf": 0.5, "kcta": 0.75}  # of the number of values that the seconds grow with; docs/blender.md
-_USUAL_POWER = 0.75
-_MISS = 1.6  # times too long or too short: of fits of a sixteenth to sixteen times the values
-_FAR = 16.0
-# Seconds of a weave of 64 x 64 texels under 81 x 81 directions on two cores, for who has made none.
-_WEAVE_VALUES = 64 * 64 * 81 * 81
-_WEAVE = {"srbf": 47.0}
+_POWERS = {"srbf": (0.65, 0.85), "kcta": (1.1, 0.75)}  # of texels, of pairs, that the seconds grow with
+_USUAL_POWERS = 0.9, 0.8
+_MISS, _USUAL_MISS = {"srbf": 1.5}, 2.0  # times too long or too short
+_FAR = 16.0  # times as large or small, what comes nearest: the miss is squared
+# Processor seconds of a weave of so many texels under so many pairs, for who has made none.
+_WEAVE_SIZE = 32 * 32, 81 * 81
+_WEAVE = {"srbf": 21.0, "kcta": 58.0}
 
 
 class Fit(NamedTuple):
     """What its time follows from."""
 
     method: str
-    values: int  # texels times pairs
+    texels: int
+    pairs: int
     searched: bool  # for a largest error: several fits
     sized: bool  # whether a size was asked for
     shaped: bool  # whether clusters are, of tensors; else many are tried
@@ -44,7 +45,8 @@ def fit_of(info: dict, asked: dict, threads: int) -> Fit:
     """`info`: of the BTF; `asked`: options of compress_job()."""
     return Fit(
         asked["method"],
-        math.prod(info["texels"]) * info["pairs"],
+        math.prod(info["texels"]),
+        info["pairs"],
         asked["tolerance"] > 0,
         asked["bytes"] > 0,
         any(asked.get(name) for name in ("clusters", "members")),
@@ -75,7 +77,7 @@ def _known(folder: Path) -> list[_Made]:
         if kept["release"] != list(VERSION):
             return []
         made = [_Made(Fit(*numbers[:-1]), float(numbers[-1])) for numbers in kept["fits"]]
-        return [m for m in made if m.seconds > 0 and m.fit.values > 0]
+        return [m for m in made if m.seconds > 0 and m.fit.texels * m.fit.pairs > 0]
     except (OSError, ValueError, TypeError, KeyError, IndexError):
         return []
 
@@ -90,18 +92,26 @@ class Range(NamedTuple):
 
 def expected(folder: Path, fit: Fit) -> Range | None:
     """By the fits of this kind that come nearest in size; None: there are none."""
-    alike = [m for m in _known(folder) if m.fit._replace(values=0) == fit._replace(values=0)]
+    alike = [
+        m for m in _known(folder) if m.fit._replace(texels=0, pairs=0) == fit._replace(texels=0, pairs=0)
+    ]
     if not alike:
         return None
-    alike.sort(key=lambda m: abs(math.log(fit.values / m.fit.values)))
-    told = [_scaled(m.seconds, fit, m.fit.values) for m in alike[:_NEAREST]]
-    nearest = alike[0].fit.values / fit.values
-    miss = _MISS if 1 / _FAR <= nearest <= _FAR else _MISS**2
+    alike.sort(key=lambda m: _distance(m.fit, fit))
+    told = [_scaled(m.seconds, fit, m.fit.texels, m.fit.pairs) for m in alike[:_NEAREST]]
+    miss = _MISS.get(fit.method, _USUAL_MISS)
+    if _distance(alike[0].fit, fit) > math.log(_FAR):
+        miss **= 2
     return Range(min(told) / miss, max(told) * miss, len(told))
 
 
-def _scaled(seconds: float, fit: Fit, values: int) -> float:
-    return seconds * (fit.values / values) ** _POWER.get(fit.method, _USUAL_POWER)
+def _distance(one: Fit, other: Fit) -> float:
+    return abs(math.log(one.texels / other.texels)) + abs(math.log(one.pairs / other.pairs))
+
+
+def _scaled(seconds: float, fit: Fit, texels: int, pairs: int) -> float:
+    of_texels, of_pairs = _POWERS.get(fit.method, _USUAL_POWERS)
+    return seconds * (fit.texels / texels) ** of_texels * (fit.pairs / pairs) ** of_pairs
 
 
 def time_text(folder: Path, fit: Fit) -> str:
@@ -113,8 +123,8 @@ def time_text(folder: Path, fit: Fit) -> str:
     known = _WEAVE.get(fit.method)
     if known is None or fit.searched or fit.sized or fit.shaped:
         return "no such fit was made here yet, so nothing tells how long it will take"
-    seconds = _scaled(known, fit, _WEAVE_VALUES)
-    return f"no such fit was made here yet; of a weave it took about {duration(seconds)} on two cores"
+    seconds = duration(_scaled(known, fit, *_WEAVE_SIZE))
+    return f"no such fit was made here yet; of a weave it took about {seconds} of one processor elsewhere"
 
 
 def _range_text(found: Range) -> str:
