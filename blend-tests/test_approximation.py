@@ -21,9 +21,11 @@ _NATIVE = {
     "ShaderNodeBsdfPrincipled",
     "ShaderNodeMapping",
     "ShaderNodeMix",
+    "ShaderNodeNormalMap",
     "ShaderNodeTangent",
     "ShaderNodeTexImage",
     "ShaderNodeUVMap",
+    "ShaderNodeVectorRotate",
 }
 
 _RENDER = """
@@ -167,6 +169,67 @@ class Tiles(WithoutVelour):
         self.assertGreater(right[:, 2:-2].min(), 0.5)  # the sun as well
 
 
+class Relief(WithoutVelour):
+    """Of BTFs: their normals, under a sun from the side."""
+
+    def setUp(self):
+        super().setUp()
+        bpy.data.objects.remove(self.obj)
+        self.obj = scenes.add_plane()
+        bpy.context.scene.camera.data.ortho_scale = 1.0
+        scenes.set_world(strength=0.0)
+        self.sun = bpy.data.objects["Sun"]
+        self.sun.data.angle, self.sun.rotation_euler = 0, (0, np.radians(60), 0.4)
+        self._import(self._model_file(inputs.weave_model()))
+
+    def _without(self):
+        """The error without the normal map, whose links are back afterwards."""
+        group = group_of(self.material).node_tree
+        relief = _node(group, "ShaderNodeNormalMap")
+        sockets = [link.to_socket for link in relief.outputs[0].links]
+        for socket in sockets:
+            group.links.remove(socket.links[0])
+        error = self._error("flat")
+        for socket in sockets:
+            group.links.new(relief.outputs[0], socket)
+        return error
+
+    def test_pictures_are_nearer_with_them(self):
+        self.assertLess(self._error("relief"), 0.75 * self._without())
+
+    def test_they_turn_with_the_tiles_and_no_repeats_change_them(self):
+        placement = scenes.velour_node(self.material).velour.placement
+        placement.repeats, placement.rotation = (2.0, 1.0), 2.0
+        right = self._error("turned")
+        self.assertLess(right, 0.8 * self._without())
+        _node(group_of(self.material).node_tree, "ShaderNodeVectorRotate").inputs["Angle"].default_value = 0
+        self.assertGreater(self._error("as they lay"), 1.25 * right)
+
+    def test_they_follow_the_uv_map(self):
+        placement = scenes.velour_node(self.material).velour.placement
+        placement.uv_map = "Other"
+        group = group_of(self.material).node_tree
+        self.assertEqual(_node(group, "ShaderNodeNormalMap").uv_map, "Other")
+
+    def test_their_image_is_of_numbers_and_goes_with_the_group(self):
+        group = group_of(self.material).node_tree
+        colors, normals = _images(group)
+        self.assertFalse(colors.colorspace_settings.is_data)
+        self.assertTrue(normals.colorspace_settings.is_data)
+        self.assertTrue(normals.packed_file)
+        tilts = 2 * np.array(normals.pixels).reshape(-1, 4)[:, :3] - 1
+        np.testing.assert_allclose((tilts**2).sum(-1), 1, atol=0.02)
+        bpy.ops.velour.approximate()
+        names = [image.name for image in bpy.data.images if image.name.startswith(f"{self.material.name} ")]
+        self.assertEqual(len(names), 2, "the ones before stay")
+
+    def test_what_is_flat_has_none(self):
+        self._import(self._model_file(inputs.quarters_model(), "quarters"))
+        kinds = {node.bl_idname for node in group_of(self.material).node_tree.nodes}
+        self.assertIn("ShaderNodeTexImage", kinds)
+        self.assertNotIn("ShaderNodeNormalMap", kinds)
+
+
 class Group(Approximation):
     def test_a_new_material_has_one(self):
         bpy.ops.velour.add_material()
@@ -177,6 +240,7 @@ class Group(Approximation):
         for name, data in (
             ("brushed", inputs.brushed_model()),
             ("quarters", inputs.quarters_model()),
+            ("weave", inputs.weave_model()),
             ("lambert", inputs.model_bytes(inputs.lambert_measurement())),
         ):
             group = group_of(self._import(self._model_file(data, name))).node_tree
@@ -309,6 +373,25 @@ class Exported(Approximation):
         self.assertEqual(picture.shape[:2], tuple(ours.size)[::-1])
         self.assertGreater(picture[..., :3].std(), 0.05)
 
+    def test_gltf_files_carry_normals(self):
+        self._import(self._model_file(inputs.weave_model()))
+        written = self._gltf()
+        (material,) = written["materials"]
+        textures = material["pbrMetallicRoughness"]["baseColorTexture"], material["normalTexture"]
+        self.assertNotIn("scale", textures[1])
+        images = [written["textures"][texture["index"]]["source"] for texture in textures]
+        self.assertNotEqual(*images)
+        path = self.folder / unquote(written["images"][images[1]]["uri"])
+        picture = bpy.data.images.load(str(path), check_existing=False)
+        picture.colorspace_settings.is_data = True
+        ours = _images(group_of(self.material).node_tree)[1]
+        np.testing.assert_allclose(picture.pixels, ours.pixels, atol=1.5 / 255)
+        self.assertGreater(np.std(np.array(ours.pixels).reshape(-1, 4)[:, 0]), 0.05)
+
+    def test_gltf_files_of_what_is_flat_carry_none(self):
+        self._import(self._model_file(inputs.quarters_model()))
+        self.assertNotIn("normalTexture", self._gltf()["materials"][0])
+
 
 class Refusals(Approximation):
     def _refused(self, words, **arguments):
@@ -333,7 +416,16 @@ class Refusals(Approximation):
 
 
 def _principled(node):
-    return next(n for n in node.node_tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
+    return _node(node.node_tree, "ShaderNodeBsdfPrincipled")
+
+
+def _node(group, idname):
+    return next(node for node in group.nodes if node.bl_idname == idname)
+
+
+def _images(group):
+    """Colours and normals."""
+    return [node.image for node in group.nodes if node.bl_idname == "ShaderNodeTexImage"]
 
 
 def _base_color(node):

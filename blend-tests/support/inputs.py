@@ -72,6 +72,11 @@ def brushed_model():
     return (Path(__file__).parent.parent / "scenes/data/brushed.velour").read_bytes()
 
 
+def weave_model():
+    """Of the BTF of a weave of two colours, 16 x 16 texels."""
+    return (Path(__file__).parent.parent / "scenes/data/weave.velour").read_bytes()
+
+
 def write_merl(path, f):
     """`f(theta_h, theta_d, phi_d)` gives three channels in 1/sr, broadcast over the table."""
     theta_h = (np.arange(90) / 90) ** 2 * (np.pi / 2)  # the table is square-root spaced in theta_h

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..native import Job, Model, model_peer_job
 from .approximation_map import map_job, map_of, size_of
+from .normal_map import NormalMapJob
 from .read_job import ReadJob
 
 _GRAZING = math.cos(math.radians(82))  # where a metal's tint is told: [KHE21]
@@ -25,6 +26,7 @@ class Approximation(NamedTuple):
     turned: bool = False  # the rougher direction is y
     diffuse: tuple = (0.0, 0.0, 0.0)  # of a diffuse base that is added
     color_map: np.ndarray | None = None  # RGBA of a tile in place of the base colour
+    normal_map: np.ndarray | None = None  # unit normals along the tile; None: not worth it
     tile_metres: tuple | None = None
     relative_l2: float | None = None  # against the model; None: it is no fit
     by_view_angle: dict = {}
@@ -78,8 +80,13 @@ class Steps:
             with making.result() as job:
                 yield job
                 picture = job.read_pass("Combined")
-            values["tile_metres"] = info.get("tile_metres")
-            values["color_map"] = map_of(picture, values["principled"]["base_color"])
+            colors = map_of(picture, values["principled"]["base_color"])
+            yield (job := NormalMapJob(model, values["principled"], values.get("diffuse"), colors))
+            values |= {
+                "color_map": colors,
+                "normal_map": job.result().normals,
+                "tile_metres": info.get("tile_metres"),
+            }
         self.result = Approximation(
             **values, relative_l2=report["relative_l2"], by_view_angle=report["by_view_angle"]
         )

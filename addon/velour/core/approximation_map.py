@@ -21,20 +21,30 @@ def size_of(info: dict) -> tuple[int, int] | None:
     return tuple(min(max(sides), _MOST_TEXELS) for sides in zip(*sizes, strict=True))
 
 
+def show_tile(scene: Scene, material: int) -> None:
+    """One tile of a material of an empty scene, seen from above, amid tiles that its outline may lean on."""
+    uvs = np.ascontiguousarray(_CORNERS[_TRIANGLES][..., :2])
+    mesh, _dropped = scene.add_mesh(_CORNERS, _TRIANGLES, corner_uvs=uvs)
+    scene.add_instance(mesh, np.eye(4), [material])
+    above = np.eye(4)
+    above[2, 3] = 2.0
+    scene.set_camera("orthographic", above, (0, 1, 0, 1), clip_start=0.01, clip_end=4.0)
+
+
+def tile_job(scene: Scene, size: tuple[int, int], samples: int) -> Job:
+    """A picture of the tile of a committed scene, each texel a pixel."""
+    return render_job(
+        scene, width=size[0], height=size[1], spp=samples, bounces=0, strategy="cosine", transparent=1
+    )
+
+
 def map_job(model: Model, size: tuple[int, int]) -> Job:
-    """A picture of one tile, each texel a pixel: its albedo, premultiplied, and how much of it is there."""
+    """A picture of one tile: its albedo, premultiplied, and how much of it is there."""
     with Scene() as scene:
-        uvs = np.ascontiguousarray(_CORNERS[_TRIANGLES][..., :2])
-        mesh, _dropped = scene.add_mesh(_CORNERS, _TRIANGLES, corner_uvs=uvs)
-        scene.add_instance(mesh, np.eye(4), [scene.add_model_material(model)])
+        show_tile(scene, scene.add_model_material(model))
         scene.set_world_color((1.0, 1.0, 1.0))
-        above = np.eye(4)
-        above[2, 3] = 2.0
-        scene.set_camera("orthographic", above, (0, 1, 0, 1), clip_start=0.01, clip_end=4.0)
         scene.commit()
-        return render_job(
-            scene, width=size[0], height=size[1], spp=_SAMPLES, bounces=0, strategy="cosine", transparent=1
-        )
+        return tile_job(scene, size, _SAMPLES)
 
 
 def map_of(picture: np.ndarray, base_color) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What glTF files carry of a measured material: the approximation's colour, metallic, roughness and image.
+"""What glTF files carry of a measured material: the approximation's colour, metallic, roughness and images.
 
 The exporter of Blender 4.0 and newer looks into groups by itself.
 """
@@ -18,7 +18,12 @@ def fill(gltf_material, material, export_settings):
     pbr.roughness_factor = shader.inputs["Roughness"].default_value
     pictured = tuple(socket for socket in (color, alpha) if socket.is_linked)
     if pictured:
-        pbr.base_color_texture = _texture(pictured, export_settings)
+        pbr.base_color_texture = _texture("gather_texture_info", pictured, export_settings)
+    if shader.inputs["Normal"].is_linked:
+        relief = (shader.inputs["Normal"],)
+        gltf_material.normal_texture = _texture(
+            "gather_material_normal_texture_info_class", relief, export_settings
+        )
 
 
 def _factor(color):
@@ -28,7 +33,7 @@ def _factor(color):
     return color.default_value[:3]
 
 
-def _texture(sockets, export_settings):
-    from io_scene_gltf2.blender.exp.gltf2_blender_gather_texture_info import gather_texture_info
+def _texture(gather, sockets, export_settings):
+    from io_scene_gltf2.blender.exp import gltf2_blender_gather_texture_info as infos
 
-    return gather_texture_info(sockets[0], sockets, export_settings)[0]
+    return getattr(infos, gather)(sockets[0], sockets, export_settings)[0]

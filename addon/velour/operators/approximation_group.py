@@ -3,10 +3,10 @@
 import bpy
 
 from ..core.approximation import UNFITTED
-from ..export.nodes import active_output, approximation_node
+from ..export.nodes import active_output, approximation_node, first_input
 from ..properties.approximation_state import VIEW_ANGLES
 from . import approximation_look
-from .approximation_image import add_image, add_texture, is_open
+from .approximation_image import add_image, add_mapping, add_normals, add_texture, is_open
 
 NAME = "Velour approximation"
 
@@ -65,16 +65,21 @@ def _group(approximation, material):
     shader.distribution = "GGX"  # as it was fitted: without light between facets
     if approximation.anisotropic > 0:
         _turn(group, shader)
+    base = group.nodes.new("ShaderNodeBsdfDiffuse") if max(approximation.diffuse) > 0 else None
     if approximation.color_map is not None:
-        _color(group, shader, approximation, material)
-    last = _with_base(group, shader) if max(approximation.diffuse) > 0 else shader
+        tiles = add_mapping(group)
+        _color(group, shader, tiles, approximation, material)
+        if approximation.normal_map is not None:
+            image = add_normals(f"{material.name} normals", approximation.normal_map)
+            _relief(group, add_texture(group, image, tiles, -320), shader, base)
+    last = _with_base(group, shader, base) if base else shader
     group.links.new(last.outputs[0], sink.inputs[0])
     return group
 
 
-def _color(group, shader, approximation, material):
+def _color(group, shader, tiles, approximation, material):
     pixels = approximation.color_map
-    texture = add_texture(group, add_image(f"{material.name} approximation", pixels))
+    texture = add_texture(group, add_image(f"{material.name} approximation", pixels), tiles)
     dye = group.nodes.new("ShaderNodeMix")
     dye.location = -180, 160
     dye.data_type, dye.blend_type, dye.clamp_result = "RGBA", "MULTIPLY", True
@@ -88,6 +93,19 @@ def _color(group, shader, approximation, material):
             material.blend_method = material.shadow_method = "HASHED"
 
 
+def _relief(group, texture, shader, base):
+    """Normals along the tile, which are turned as it is: tangents are those of the texture coordinates."""
+    turn, relief = group.nodes.new("ShaderNodeVectorRotate"), group.nodes.new("ShaderNodeNormalMap")
+    turn.rotation_type = "Z_AXIS"
+    turn.inputs["Center"].default_value = 0.5, 0.5, 0.5  # the colour of no tilt
+    turn.location, relief.location = (-360, -460), (-180, -460)
+    group.links.new(texture.outputs["Color"], turn.inputs["Vector"])
+    group.links.new(turn.outputs["Vector"], relief.inputs["Color"])
+    parts = [shader.inputs["Normal"], first_input(shader, "Coat Normal", "Clearcoat Normal")]
+    for socket in (*parts, *([base.inputs["Normal"]] if base else ())):
+        group.links.new(relief.outputs["Normal"], socket)
+
+
 def _turn(group, shader):
     """Along the texture coordinates, as measured materials lie."""
     tangent = group.nodes.new("ShaderNodeTangent")
@@ -96,8 +114,7 @@ def _turn(group, shader):
     group.links.new(tangent.outputs[0], shader.inputs["Tangent"])
 
 
-def _with_base(group, shader):
-    base = group.nodes.new("ShaderNodeBsdfDiffuse")
+def _with_base(group, shader, base):
     base.location = 0, 160
     both = group.nodes.new("ShaderNodeAddShader")
     both.location = 400, 0
@@ -107,7 +124,7 @@ def _with_base(group, shader):
 
 
 def _remove(group):
-    """Of a material's own, with its image; copies of the material keep them."""
+    """Of a material's own, with its images; copies of the material keep them."""
     if group is None or group.users > 0:
         return
     images = [node.image for node in group.nodes if node.bl_idname == "ShaderNodeTexImage" and node.image]

@@ -1,19 +1,34 @@
-"""The image of an approximation: base colour, and what of a tile is there."""
+"""The images of an approximation: base colour and what of a tile is there, and its normals."""
 
 import bpy
 import numpy as np
+
+from ..core.normal_map import encoded
 
 _KEPT_OPAQUE = 0.999  # a map of more is opaque but for noise
 
 
 def add_image(name, pixels):
     """A packed sRGB image of RGBA `pixels` [rows x columns x 4], linear Rec. 709, row 0 at the bottom."""
-    rows, columns = pixels.shape[:2]
-    image = bpy.data.images.new(name, columns, rows, alpha=True)
-    image.alpha_mode = "CHANNEL_PACKED"
     linear = pixels[..., :3]
-    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    image.pixels.foreach_set(np.dstack([encoded, pixels[..., 3]]).astype(np.float32).ravel())
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return _packed(name, np.dstack([srgb, pixels[..., 3]]), alpha=True)
+
+
+def add_normals(name, normals):
+    """A packed image of unit `normals` [rows x columns x 3]: of 8 bits, as glTF files have them.
+
+    Their steps are a quarter of a degree, what pictures tell of normals is vaguer.
+    """
+    return _packed(name, np.dstack([encoded(normals), np.ones(normals.shape[:2])]), is_data=True)
+
+
+def _packed(name, pixels, alpha=False, is_data=False):
+    rows, columns = pixels.shape[:2]
+    image = bpy.data.images.new(name, columns, rows, alpha=alpha, is_data=is_data)
+    if alpha:
+        image.alpha_mode = "CHANNEL_PACKED"
+    image.pixels.foreach_set(pixels.astype(np.float32).ravel())
     image.update()
     image.pack()
     return image
@@ -24,16 +39,22 @@ def is_open(pixels):
     return float(pixels[..., 3].mean()) < _KEPT_OPAQUE
 
 
-def add_texture(group, image):
-    """The image's node in a node group, behind those that say where its tiles lie."""
+def add_mapping(group):
+    """The nodes of a group that say where its tiles lie: their socket."""
     uvs, mapping = group.nodes.new("ShaderNodeUVMap"), group.nodes.new("ShaderNodeMapping")
-    texture = group.nodes.new("ShaderNodeTexImage")
-    for node, x in ((uvs, -1000), (mapping, -800), (texture, -500)):
+    for node, x in ((uvs, -1000), (mapping, -800)):
         node.location = x, 0
-    texture.image = image
     mapping.vector_type = "TEXTURE"  # the inverse: tiles are as large as this scale
     group.links.new(uvs.outputs["UV"], mapping.inputs["Vector"])
-    group.links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
+    return mapping.outputs["Vector"]
+
+
+def add_texture(group, image, tiles, y=0):
+    """The image's node; `tiles` is the socket of add_mapping."""
+    texture = group.nodes.new("ShaderNodeTexImage")
+    texture.location = -500, y
+    texture.image = image
+    group.links.new(tiles, texture.inputs["Vector"])
     return texture
 
 

@@ -88,6 +88,10 @@ def _show_mapping(mapping, shown, placement, _look):
     place(mapping, placement, shown["tile_metres"])
 
 
+def _show_turn(turn, _shown, placement, _look):
+    turn.inputs["Angle"].default_value = placement.rotation
+
+
 # Of each kind a group has one at most.
 _SHOW = {
     "ShaderNodeBsdfPrincipled": _show_principled,
@@ -95,7 +99,9 @@ _SHOW = {
     "ShaderNodeMix": _show_dye,
     "ShaderNodeUVMap": _show_uv_map,
     "ShaderNodeTangent": _show_uv_map,
+    "ShaderNodeNormalMap": _show_uv_map,
     "ShaderNodeMapping": _show_mapping,
+    "ShaderNodeVectorRotate": _show_turn,
 }
 
 
