@@ -32,7 +32,7 @@ def root_mean_square_slope(normals: np.ndarray) -> float:
 
 
 def _scaled(lights: np.ndarray, radiance: np.ndarray) -> np.ndarray:
-    """rho n [t x 3] of radiance [k x t] = rho n . l [Woo80, Eq. 8], by least squares over what is kept."""
+    """rho n [t x 3] of radiance [k x t] = rho n . l [Woo80], by least squares over what is kept."""
     count = len(lights)
     ranked = np.argsort(radiance, axis=0, kind="stable")
     kept = ranked[round(count * _DARKEST) : count - round(count * _BRIGHTEST)]
