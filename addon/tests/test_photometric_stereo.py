@@ -61,6 +61,13 @@ def test_highlights_and_cast_shadows_are_left_out(relief):
     assert np.median(plain) > 10
 
 
+def test_more_shadows_than_are_left_out_do_no_harm(relief):
+    radiance = lambert(relief)
+    radiance[np.random.default_rng(4).random(radiance.shape) < 0.3] = 0
+    assert ((radiance == 0).sum(axis=0) > 6).mean() > 0.5
+    assert np.percentile(angles(solved(radiance), relief), 90) < 1
+
+
 def test_nothing_is_told_by_what_is_black_or_not_there(relief):
     radiance, coverage = lambert(relief), np.ones((SIZE, SIZE))
     radiance[:, 3, 4] = 0

@@ -1,4 +1,4 @@
-"""Runs inside Blender: one model's approximation in Cycles, without normal map and with it, beside Velour's."""
+"""Runs inside Blender: one model's approximation in Cycles, without and with normal map, beside Velour's."""
 
 from __future__ import annotations
 

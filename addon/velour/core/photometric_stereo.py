@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-_DARKEST, _BRIGHTEST = 1 / 4, 1 / 2  # of a texel's pictures, left out as shadows and as highlights
+_DARKEST = 1 / 4  # of a texel's pictures, left out as shadows; all that are black
+_KEPT = 1 / 3  # of the others, the darkest: the rest may be highlights
 _LEAST_UP = 0.17  # cosine from the vertical: what seems steeper is an edge or a hole
 _LEAST_VOLUME = 1e-3  # determinant of the mean of l l^T: below it the lights kept lie in a plane
+_SHADOW = 1e-3  # of a texel's brightest picture
 _BLACK = 1e-3  # of the mean of all texels
 _TEXELS = 1 << 14  # that are solved at once
 
@@ -33,15 +35,16 @@ def root_mean_square_slope(normals: np.ndarray) -> float:
 
 def _scaled(lights: np.ndarray, radiance: np.ndarray) -> np.ndarray:
     """rho n [t x 3] of radiance [k x t] = rho n . l [Woo80], by least squares over what is kept."""
-    count = len(lights)
     ranked = np.argsort(radiance, axis=0, kind="stable")
-    kept = ranked[round(count * _DARKEST) : count - round(count * _BRIGHTEST)]
-    directions = lights[kept]  # [m x t x 3]
-    values = np.take_along_axis(radiance, kept, axis=0)
-    squares = np.einsum("mti,mtj->tij", directions, directions) / len(kept)
+    values, places = np.take_along_axis(radiance, ranked, axis=0), np.arange(len(lights))[:, None]
+    black = (values <= _SHADOW * values[-1]).sum(axis=0)
+    first = np.maximum(round(len(lights) * _DARKEST), black)
+    kept = (places >= first) & (places < first + np.ceil((len(lights) - first) * _KEPT))
+    directions = lights[ranked] * kept[..., None]  # [k x t x 3]
+    squares = np.einsum("kti,ktj->tij", directions, directions) / np.maximum(kept.sum(0), 1)[:, None, None]
     flat = np.linalg.det(squares) < _LEAST_VOLUME
-    squares[flat], products = np.eye(3), np.einsum("mti,mt->ti", directions, values) / len(kept)
-    products[flat] = 0
+    products = np.einsum("kti,kt->ti", directions, values) / np.maximum(kept.sum(0), 1)[:, None]
+    squares[flat], products[flat] = np.eye(3), 0
     return np.linalg.solve(squares, products[..., None])[..., 0]
 
 
