@@ -13,6 +13,14 @@ def rec709_to_working():
     return np.array(columns, np.float64).T
 
 
+def working_to_rec709(color):
+    """A colour of the working space, alpha or not, as three numbers in linear Rec. 709."""
+    matrix = rec709_to_working()
+    if np.allclose(matrix, np.eye(3), atol=1e-4):  # but for what Blender rounds
+        return tuple(color[:3])
+    return tuple(float(c) for c in np.linalg.inv(matrix) @ np.array(color[:3]))
+
+
 def set_working_space(scene):
     """Tells the library's `scene` in which space its colours are, where that is not Rec. 709."""
     working = rec709_to_working()

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import approximation_look
+from . import approximation_look, usd_hook
 from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
 from .add_mesostructure import VELOUR_OT_add_mesostructure
@@ -61,6 +61,7 @@ CLASSES = (
 
 def attach():
     approximation_look.attach()
+    usd_hook.attach()
     bpy.types.TOPBAR_MT_file_import.append(_draw_import)
     bpy.types.VIEW3D_MT_mesh_add.append(_draw_add_mesh)
 
@@ -68,6 +69,7 @@ def attach():
 def detach():
     bpy.types.VIEW3D_MT_mesh_add.remove(_draw_add_mesh)
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
+    usd_hook.detach()
     approximation_look.detach()
 
 

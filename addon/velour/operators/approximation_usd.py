@@ -1,0 +1,161 @@
+"""What USD files carry of a measured material: its approximation, as a UsdPreviewSurface.
+
+Blender's exporter does not look into groups, and writes a material without a surface.
+"""
+
+import os
+
+import numpy as np
+
+from ..export.color import working_to_rec709
+from ..export.nodes import approximation_node, first_input
+from .approximation_uv import chain
+
+_READER = "Velour_UV"
+
+
+def write(context, material, usd_material):
+    """Into a material that has no surface yet: one of the artist's own, or of Solid mode, stays.
+
+    context: of Blender's export. Returns whether anything was written.
+    """
+    node = approximation_node(material)
+    if node is None or _has_surface(usd_material):
+        return False
+    parts = {part.bl_idname: part for part in node.node_tree.nodes}
+    shader = _add(usd_material, "Velour_Approximation", "UsdPreviewSurface")
+    for name, (kind, value) in _inputs(parts).items():
+        shader.CreateInput(name, _type(kind)).Set(value)
+    if "ShaderNodeTexImage" in parts:
+        _write_image(context, usd_material, shader, parts)
+    output = shader.CreateOutput("surface", _type("Token"))
+    usd_material.CreateSurfaceOutput().ConnectToSource(output)
+    return True
+
+
+def choose_uvs(stage):
+    """Names of texture coordinates as the meshes have them: the export may have renamed the active ones."""
+    from pxr import Usd, UsdShade
+
+    for prim in Usd.PrimRange(stage.GetPseudoRoot()):
+        if not (prim.IsA(UsdShade.Material) and prim.GetChild(_READER)):
+            continue
+        wanted = UsdShade.Shader(prim.GetChild(_READER)).GetInput("varname")
+        names = _uv_names(stage, prim.GetPath())
+        if names and wanted.Get() not in names:
+            wanted.Set("st" if "st" in names else names[0])
+
+
+def _has_surface(usd_material):
+    return bool(usd_material.GetSurfaceOutput()) and usd_material.GetSurfaceOutput().HasConnectedSource()
+
+
+def _inputs(parts):
+    """What the preview's surface is told, of one value each: type and value by name."""
+    principled, base = parts["ShaderNodeBsdfPrincipled"], parts.get("ShaderNodeBsdfDiffuse")
+    color = working_to_rec709(principled.inputs["Base Color"].default_value)
+    values = {
+        "diffuseColor": ("Color3f", color),
+        "metallic": ("Float", principled.inputs["Metallic"].default_value),
+        "roughness": ("Float", principled.inputs["Roughness"].default_value),
+        "ior": ("Float", _ior(first_input(principled, "Specular IOR Level", "Specular").default_value)),
+        "clearcoat": ("Float", first_input(principled, "Coat Weight", "Clearcoat").default_value),
+        "clearcoatRoughness": (
+            "Float",
+            first_input(principled, "Coat Roughness", "Clearcoat Roughness").default_value,
+        ),
+    }
+    if base is not None:  # a metal and a diffuse surface added: only this workflow has both
+        del values["metallic"], values["ior"]
+        values["useSpecularWorkflow"] = ("Int", 1)
+        values["specularColor"] = ("Color3f", color)
+        values["diffuseColor"] = ("Color3f", working_to_rec709(base.inputs["Color"].default_value))
+    return values
+
+
+def _ior(level):
+    """Of a dielectric as bright from above as Blender's level says."""
+    f0 = np.sqrt(min(max(0.08 * level, 0.0), 0.99))
+    return float((1 + f0) / (1 - f0))
+
+
+def _write_image(context, usd_material, shader, parts):
+    texture = _add(usd_material, "Velour_Color", "UsdUVTexture")
+    texture.CreateInput("file", _type("Asset")).Set(_exported(context, parts["ShaderNodeTexImage"].image))
+    texture.CreateInput("sourceColorSpace", _type("Token")).Set("sRGB")
+    for name in ("wrapS", "wrapT"):
+        texture.CreateInput(name, _type("Token")).Set("repeat")
+    texture.CreateInput("scale", _type("Float4")).Set((*_dye(parts["ShaderNodeMix"]), 1.0))
+    uvs = _write_uvs(usd_material, parts)
+    texture.CreateInput("st", _type("Float2")).ConnectToSource(uvs)
+    color = texture.CreateOutput("rgb", _type("Float3"))
+    shader.CreateInput("diffuseColor", _type("Color3f")).ConnectToSource(color)
+    if parts["ShaderNodeBsdfPrincipled"].inputs["Alpha"].is_linked:
+        alpha = texture.CreateOutput("a", _type("Float"))
+        shader.CreateInput("opacity", _type("Float")).ConnectToSource(alpha)
+
+
+def _write_uvs(usd_material, parts):
+    """The output of the last node that places the image."""
+    from pxr import Tf
+
+    reader = _add(usd_material, _READER, "UsdPrimvarReader_float2")
+    name = parts["ShaderNodeUVMap"].uv_map
+    reader.CreateInput("varname", _type("String")).Set(Tf.MakeValidIdentifier(name) if name else "st")
+    output = reader.CreateOutput("result", _type("Float2"))
+    for number, step in enumerate(chain(parts["ShaderNodeMapping"])):
+        transform = _add(usd_material, f"Velour_Placement_{number + 1}", "UsdTransform2d")
+        transform.CreateInput("in", _type("Float2")).ConnectToSource(output)
+        transform.CreateInput("rotation", _type("Float")).Set(step.degrees)
+        transform.CreateInput("scale", _type("Float2")).Set(step.scale)
+        transform.CreateInput("translation", _type("Float2")).Set(step.translation)
+        output = transform.CreateOutput("result", _type("Float2"))
+    return output
+
+
+def _dye(mix):
+    colors = [socket for socket in mix.inputs if socket.enabled and socket.type == "RGBA"]
+    return working_to_rec709(colors[1].default_value)
+
+
+def _exported(context, image):
+    """The image's path as the file is to say it; written beside the file, as Blender writes textures."""
+    if hasattr(context, "export_texture"):
+        return context.export_texture(image)
+    folder = os.path.join(os.path.dirname(context.get_stage().GetRootLayer().realPath), "textures")
+    os.makedirs(folder, exist_ok=True)
+    name = "".join(c if c.isalnum() else "_" for c in image.name) + ".png"
+    with open(os.path.join(folder, name), "wb") as file:
+        file.write(image.packed_file.data)  # PNG: approximation_image packs no other
+    return f"./textures/{name}"
+
+
+def _uv_names(stage, path):
+    """Texture coordinates of meshes that have this material, on them or on some of their faces."""
+    from pxr import UsdGeom, UsdShade
+
+    names = []
+    for prim in stage.Traverse():
+        bound = UsdShade.MaterialBindingAPI(prim).GetDirectBindingRel().GetTargets()
+        if path not in bound:
+            continue
+        mesh = prim.GetParent() if prim.IsA(UsdGeom.Subset) else prim
+        for primvar in UsdGeom.PrimvarsAPI(mesh).GetPrimvars():
+            if primvar.GetTypeName().scalarType == _type("TexCoord2f"):
+                names.append(primvar.GetPrimvarName())
+    return names
+
+
+def _add(usd_material, name, kind):
+    from pxr import UsdShade
+
+    path = usd_material.GetPath().AppendChild(name)
+    shader = UsdShade.Shader.Define(usd_material.GetPrim().GetStage(), path)
+    shader.CreateIdAttr(kind)
+    return shader
+
+
+def _type(name):
+    from pxr import Sdf
+
+    return getattr(Sdf.ValueTypeNames, name)

@@ -1,0 +1,57 @@
+"""Has Blender's USD exporter ask for the approximation of measured materials, from 4.0 on."""
+
+import importlib.util
+
+import bpy
+
+from . import approximation_usd
+
+_registered = []
+
+
+class VELOUR_USD_approximation(getattr(bpy.types, "USDHook", object)):
+    bl_idname = "velour_approximation"
+    bl_label = "Velour Approximation"
+
+    @staticmethod
+    def on_material_export(export_context, bl_material, usd_material):
+        try:
+            return approximation_usd.write(export_context, bl_material, usd_material)
+        except Exception as error:  # an export goes on without it
+            return _sorry(f"the approximation of the material '{bl_material.name}' is", error)
+
+    @staticmethod
+    def on_export(export_context):
+        try:
+            approximation_usd.choose_uvs(export_context.get_stage())
+        except Exception as error:
+            return _sorry("the texture coordinates of approximations are", error)
+        return True
+
+
+def attach():
+    if _can_be_asked():
+        bpy.utils.register_class(VELOUR_USD_approximation)
+        _registered.append(VELOUR_USD_approximation)
+
+
+def detach():
+    while _registered:
+        bpy.utils.unregister_class(_registered.pop())
+
+
+def _can_be_asked():
+    """Without USD's Python modules, which builds as a module may lack, any hook lets an export abort."""
+    return hasattr(bpy.types, "USDHook") and all(map(_is_there, ("pxr", "pxr.Usd", "pxr.UsdShade")))
+
+
+def _is_there(module):
+    try:
+        return importlib.util.find_spec(module) is not None
+    except ImportError:
+        return False
+
+
+def _sorry(what, error):
+    print(f"Velour: {what} not in the USD file ({type(error).__name__}: {error}).", flush=True)
+    return False
