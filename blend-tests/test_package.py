@@ -50,7 +50,8 @@ class Package(BlenderTest):
         super().setUp()
         self.home = self.folder / "home"
         self.home.mkdir()
-        kept = {key: value for key, value in os.environ.items() if key in ("PATH", "LANG", "DISPLAY")}
+        names = ("PATH", "LANG", "DISPLAY", "VELOUR_BPY")  # the last: where Blender is the module bpy
+        kept = {key: value for key, value in os.environ.items() if key in names}
         self.environment = {**kept, "HOME": str(self.home), "TMPDIR": str(self.folder)}
 
     def _blender(self, *arguments):
@@ -69,6 +70,8 @@ class Package(BlenderTest):
             self._blender("-b", "--python-exit-code", "1", "--python-expr", _INSTALL.format(path=path))
 
     def test_renders_with_its_own_libraries(self):
+        if "VELOUR_BPY" in os.environ and bpy.app.version < (4, 3):
+            self.skipTest("as a module this Blender crashes when it reads preferences")
         self._install()
         script = _RENDER.format(picture=str(self.folder / "a.exr"))
         said = self._blender("-b", "--python-exit-code", "1", "--python-expr", script)

@@ -52,6 +52,8 @@ class VelourRenderEngine(bpy.types.RenderEngine):
             pass  # Blender knows: it asked
         except (ExportError, UnfinishedError, VelourError) as error:
             self._fail(str(error))
+        except KeyboardInterrupt:  # of Blender as a module: writing the file, it crashes if this goes up
+            self._fail("The render was interrupted.")
         except Exception as error:  # an exception alone would leave a black picture and exit status 0
             log.exception("render failed")
             self._fail(f"Velour failed unexpectedly: {type(error).__name__}: {error}")
