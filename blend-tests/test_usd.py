@@ -210,6 +210,23 @@ class Images(Usd):
             self.obj.data.materials[0] = before
             bpy.data.materials.remove(new)
 
+    def test_normals_are_written_as_they_are(self):
+        tilted = np.array((0.36, -0.48, 0.8))
+        pixels = {"color_map": np.ones((4, 4, 4)), "normal_map": np.broadcast_to(tilted, (4, 4, 3))}
+        group = self._approximation(**pixels)
+        material, values, _stage = self._exported()
+        self.assertIn("normal", values)
+        texture = self._node(material, "Velour_Normals")
+        told = {name: texture.GetInput(name).Get() for name in ("file", "scale", "bias", "sourceColorSpace")}
+        stored = scenes.read(self.folder / told["file"].path)[..., :3]
+        decoded = stored * np.array(told["scale"][:3]) + np.array(told["bias"][:3])
+        np.testing.assert_allclose(decoded, np.broadcast_to(tilted, (4, 4, 3)), atol=0.01)
+        self.assertEqual(told["sourceColorSpace"], "raw")
+        colors = self._node(material, "Velour_Color").GetInput("file").Get().path
+        np.testing.assert_allclose(scenes.read(self.folder / colors)[..., :3], 1, atol=0.01)
+        group.nodes.remove(next(n for n in group.nodes if n.bl_idname == "ShaderNodeVectorRotate"))
+        self.assertNotIn("normal", self._exported()[1])
+
     def test_names_of_texture_coordinates(self):
         self._quarters()
         self.obj.data.uv_layers[0].name = "First"

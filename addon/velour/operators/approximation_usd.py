@@ -26,8 +26,8 @@ def write(context, material, usd_material):
     shader = _add(usd_material, "Velour_Approximation", "UsdPreviewSurface")
     for name, (kind, value) in _inputs(parts).items():
         shader.CreateInput(name, _type(kind)).Set(value)
-    if "ShaderNodeTexImage" in parts:
-        _write_image(context, usd_material, shader, parts)
+    if "ShaderNodeMapping" in parts:
+        _write_images(context, usd_material, shader, parts)
     output = shader.CreateOutput("surface", _type("Token"))
     usd_material.CreateSurfaceOutput().ConnectToSource(output)
     return True
@@ -79,20 +79,29 @@ def _ior(level):
     return float((1 + f0) / (1 - f0))
 
 
-def _write_image(context, usd_material, shader, parts):
-    texture = _add(usd_material, "Velour_Color", "UsdUVTexture")
-    texture.CreateInput("file", _type("Asset")).Set(_exported(context, parts["ShaderNodeTexImage"].image))
-    texture.CreateInput("sourceColorSpace", _type("Token")).Set("sRGB")
-    for name in ("wrapS", "wrapT"):
-        texture.CreateInput(name, _type("Token")).Set("repeat")
-    texture.CreateInput("scale", _type("Float4")).Set((*_dye(parts["ShaderNodeMix"]), 1.0))
+def _write_images(context, usd_material, shader, parts):
+    def add(name, node, color_space, scale):
+        texture = _add(usd_material, name, "UsdUVTexture")
+        texture.CreateInput("file", _type("Asset")).Set(_exported(context, node.image))
+        texture.CreateInput("sourceColorSpace", _type("Token")).Set(color_space)
+        for wrap in ("wrapS", "wrapT"):
+            texture.CreateInput(wrap, _type("Token")).Set("repeat")
+        texture.CreateInput("scale", _type("Float4")).Set((*scale, 1.0))
+        texture.CreateInput("st", _type("Float2")).ConnectToSource(uvs)
+        return texture, texture.CreateOutput("rgb", _type("Float3"))
+
     uvs = _write_uvs(usd_material, parts)
-    texture.CreateInput("st", _type("Float2")).ConnectToSource(uvs)
-    color = texture.CreateOutput("rgb", _type("Float3"))
+    picture, dye = _colors(parts["ShaderNodeMix"])
+    texture, color = add("Velour_Color", _behind(picture), "sRGB", working_to_rec709(dye.default_value))
     shader.CreateInput("diffuseColor", _type("Color3f")).ConnectToSource(color)
     if parts["ShaderNodeBsdfPrincipled"].inputs["Alpha"].is_linked:
         alpha = texture.CreateOutput("a", _type("Float"))
         shader.CreateInput("opacity", _type("Float")).ConnectToSource(alpha)
+    if "ShaderNodeVectorRotate" in parts:
+        node = _behind(parts["ShaderNodeVectorRotate"].inputs["Vector"])
+        texture, normals = add("Velour_Normals", node, "raw", (2.0, 2.0, 2.0))
+        texture.CreateInput("bias", _type("Float4")).Set((-1.0, -1.0, -1.0, 0.0))
+        shader.CreateInput("normal", _type("Normal3f")).ConnectToSource(normals)
 
 
 def _write_uvs(usd_material, parts):
@@ -113,9 +122,14 @@ def _write_uvs(usd_material, parts):
     return output
 
 
-def _dye(mix):
-    colors = [socket for socket in mix.inputs if socket.enabled and socket.type == "RGBA"]
-    return working_to_rec709(colors[1].default_value)
+def _colors(mix):
+    """The sockets of what an image is multiplied by: the image's, and the other."""
+    return [socket for socket in mix.inputs if socket.enabled and socket.type == "RGBA"]
+
+
+def _behind(socket):
+    """The node that is linked to it."""
+    return socket.links[0].from_node
 
 
 def _exported(context, image):
