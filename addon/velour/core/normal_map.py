@@ -57,9 +57,11 @@ class NormalMapJob(ReadJob):
         with Scene() as scene:
             show_tile(scene, scene.add_model_material(self._model))
             lights = _rings(_RINGS, _AZIMUTHS)
-            pictures = [self._picture(scene, light) for light in lights]
-            radiance = np.stack([picture[..., :3] @ _LUMINANCE for picture in pictures])
-            normals = normals_of(lights, radiance, pictures[0][..., 3])
+            radiance = np.empty((len(lights), *self._size[::-1]), np.float32)
+            for light, seen in zip(lights, radiance, strict=True):
+                picture = self._picture(scene, light)
+                seen[:] = picture[..., :3] @ _LUMINANCE
+            normals = normals_of(lights, radiance, picture[..., 3])
             if root_mean_square_slope(normals) < _LEAST_SLOPE:
                 return NormalMap(None)
             judges = _rings(_JUDGES, _JUDGE_AZIMUTHS)
