@@ -14,7 +14,7 @@ from .photometric_stereo import normals_of, root_mean_square_slope
 from .read_job import ReadJob
 
 _MOST_TEXELS = 1024  # along a side: all pictures are held at once
-_SAMPLES = 4
+_SAMPLES = 1  # suns without extent: others would be the same
 _RINGS, _AZIMUTHS = (15, 35, 55, 75), 6  # a level texel keeps the third ring whole, and so stays level
 _JUDGES, _JUDGE_AZIMUTHS = (30, 60, 75), 3
 _LEAST_SLOPE = 0.02  # root mean square: about five steps of eight bits
