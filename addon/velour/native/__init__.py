@@ -1,7 +1,7 @@
 """The shared library as Python sees it. Importing this opens nothing; the first call does."""
 
 from . import images, library
-from .btf import Btf, compare_btf_job, compress_job, export_btf_job
+from .btf import Btf, compare_btf_job, compress_job, compress_size, export_btf_job
 from .capture import capture_job, directions, votf_data_job, votf_job
 from .errors import LibraryError, Status, VelourError
 from .job import (
@@ -56,6 +56,7 @@ __all__ = [
     "compare_job",
     "compare_peer_job",
     "compress_job",
+    "compress_size",
     "cryptomatte_id",
     "directions",
     "export_btf_job",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+from typing import NamedTuple
 
 import numpy as np
 
@@ -61,11 +62,31 @@ def export_btf_job(btf: Btf, path: str | os.PathLike) -> Job:
     return Job._create("vlr_btf_export_create_job", btf.pointer, path_bytes(path))
 
 
+class CompressSize(NamedTuple):
+    """What a fit is about to take, of all sides of the BTF."""
+
+    memory: int  # bytes that it holds at once where nothing limits it, the program as it was not counted
+    least_memory: int  # the least `memory` of its options that it can be kept to
+    bytes: int  # of all coefficients, at most
+
+
+def compress_size(btf: Btf, **options) -> CompressSize:
+    """Options as of compress_job. Nothing is read but the BTF's sizes."""
+    numbers = [ctypes.c_uint64() for _ in CompressSize._fields]
+    raw = ctypes.byref(_compress_options(options))
+    library.load().vlr_compress_size(btf.pointer, raw, *map(ctypes.byref, numbers))
+    return CompressSize(*(number.value for number in numbers))
+
+
 def compress_job(btf: Btf, **options) -> Job:
     """Options: method (table.COMPRESS_METHODS), companding (table.COMPANDINGS), tolerance, bytes, seed,
     threads, memory, checkpoint (a file that finished stages are kept in until the fit succeeds) and resume,
     held_out (a Btf of pairs that the fit does not see); for_scene (an Observation) and full_model (a Model)
     leave out what scenes do not resolve. Result: result_model()."""
+    return Job._create("vlr_compress_create_job", btf.pointer, ctypes.byref(_compress_options(options)))
+
+
+def _compress_options(options: dict) -> table.CompressOptions:
     raw = table.CompressOptions()
     library.load().vlr_compress_options_init(ctypes.byref(raw))
     for name, names in (("method", table.COMPRESS_METHODS), ("companding", table.COMPANDINGS)):
@@ -76,7 +97,7 @@ def compress_job(btf: Btf, **options) -> Job:
     for name in {"held_out", "for_scene", "full_model"} & options.keys():
         options[name] = options[name].pointer
     set_fields(raw, options)
-    return Job._create("vlr_compress_create_job", btf.pointer, ctypes.byref(raw))
+    return raw
 
 
 def compare_btf_job(btf: Btf, judged: Model | Btf) -> Job:

@@ -488,6 +488,7 @@ STATUS_CALLS = {
     "vlr_btf_read": [_handle, c_uint64, c_uint64, POINTER(c_uint16), c_uint64],
     "vlr_btf_export_create_job": [_handle, c_char_p, _out_handle],
     "vlr_compress_create_job": [_handle, POINTER(CompressOptions), _out_handle],
+    "vlr_compress_size": [_handle, POINTER(CompressOptions), *3 * [POINTER(c_uint64)]],
     "vlr_btf_compare_create_job": [_handle, _handle, _out_handle],
     "vlr_btf_compare_btf_create_job": [_handle, _handle, _out_handle],
     "vlr_job_start": [_handle],

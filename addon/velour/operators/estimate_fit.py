@@ -26,7 +26,7 @@ class VELOUR_OT_estimate_fit(AskedFit, ReadsFirst, bpy.types.Operator):
         self._subject = tile.owner.name if tile else Path(path).stem
         asked, threads, folder = self._options(tile), context.scene.render.threads, Path(cache_folder())
         self._key = fitted_as(tile.owner) if tile else ""
-        return lambda: fit_text(_info(path), asked, threads, folder)
+        return lambda: _text(path, asked, threads, folder)
 
     def _use(self, context, text):
         state = context.window_manager.velour
@@ -35,6 +35,6 @@ class VELOUR_OT_estimate_fit(AskedFit, ReadsFirst, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _info(path):
+def _text(path, *asked):
     with Btf.load(path) as btf:
-        return btf.info()
+        return fit_text(btf, *asked)

@@ -325,6 +325,12 @@ VLR_API void vlr_compress_options_init(vlr_compress_options* options);
  * full_texels [x, y] and surface (vlr_observation_info_json) in place of errors; psnr, ser and speed are then those of
  * the full model. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
+/* What such a fit is about to take, by the BTF's sizes alone, of all its sides: which ones are dark or alike is found
+ * by reading them. memory: bytes that it holds at once where nothing limits it, the process as it was not counted;
+ * least_memory: the least `memory` of the options that it can be kept to; bytes: of all coefficients, at most. Each may
+ * be NULL. Fails with VLR_UNSUPPORTED for a BTF whose views lack lights. */
+VLR_API vlr_status vlr_compress_size(const vlr_btf* btf, const vlr_compress_options* options, uint64_t* memory,
+                                     uint64_t* least_memory, uint64_t* bytes);
 /* Errors of a BTF's model against the BTF's own pairs. JSON: psnr, ser, relative_l2, brightness, p99, pairs. */
 VLR_API vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model, vlr_job** out);
 /* The same of another BTF of the same texels, interpolated between its own pairs; white is its own 99th percentile. */

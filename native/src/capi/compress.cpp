@@ -2,6 +2,7 @@
 #include "capi/btf_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "compress/make_fitter.h"
 #include "compress/scene_reduction.h"
 #include "model/model_file.h"
 
@@ -64,6 +65,18 @@ vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_option
       auto model = std::make_shared<const Model>(compress(*source, given, progress));
       output->set(compression_json(*model, encode_model(*model).size()), model);
     });
+  });
+}
+
+vlr_status vlr_compress_size(const vlr_btf* btf, const vlr_compress_options* options, uint64_t* memory,
+                             uint64_t* least_memory, uint64_t* bytes) {
+  return guard([&] {
+    require(btf, "btf");
+    const FitSize size =
+        fit_size(*btf->btf, converted(read_options(options, vlr_compress_options_init, "vlr_compress_options")));
+    if (memory) *memory = size.memory;
+    if (least_memory) *least_memory = size.least_memory;
+    if (bytes) *bytes = size.bytes;
   });
 }
 

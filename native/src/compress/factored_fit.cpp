@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "compress/brightening.h"
-#include "compress/fit_memory.h"
 #include "compress/side_views.h"
 #include "image/half_image.h"
 #include "job/error.h"
@@ -20,31 +19,66 @@ constexpr double kRounding = 1e-9;
 // What a small BTF gets where nobody asked for a size.
 constexpr uint64_t kUsualRatio = 200, kUsualLeast = 8;
 
+uint64_t component_bytes(const BtfMeasurement& measurement, bool by_view) {
+  const PairLayout& layout = measurement.layout();
+  const uint64_t rows = by_view ? layout.lights().size() : layout.pairs();
+  return (rows + pyramid_texels(measurement.grid())) * sizeof(HalfBits);
+}
+
+/// Components of any model.
+uint64_t most_ever(bool by_view) { return by_view ? FactoredBtf::kMaxOfViews : FactoredBtf::kMaxComponents; }
+
+uint64_t bytes_of(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view) {
+  if (options.bytes > 0) return options.bytes;
+  const uint64_t one = component_bytes(measurement, by_view);
+  if (options.tolerance > 0) return most_ever(by_view) * one;
+  return std::max(measurement.raw_bytes() / kUsualRatio, kUsualLeast * one);
+}
+
+/// Of as many components as are looked at where the memory allows it.
+FitExtent extent_of(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view) {
+  const uint64_t within = bytes_of(measurement, options, by_view) / component_bytes(measurement, by_view);
+  return {.texels = measurement.grid().texels(),
+          .pyramid_texels = pyramid_texels(measurement.grid()),
+          .pairs = measurement.layout().pairs(),
+          .lights = measurement.layout().lights().size(),
+          .coefficients = std::clamp<uint64_t>(within, 1, most_ever(by_view)),
+          .threads = static_cast<uint64_t>(arena_concurrency(options.threads)),
+          .by_view = by_view};
+}
+
+void require_complete_pairs(const PairLayout& layout) {
+  if (layout.complete()) return;
+  throw Error(Status::unsupported, "A decomposition needs every view under every light; the BTF has " +
+                                       std::to_string(layout.pairs()) + " pairs alone.");
+}
+
 }  // namespace
 
+FitSize factored_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view) {
+  require_complete_pairs(measurement.layout());
+  FitExtent extent = extent_of(measurement, options, by_view);
+  FitSize size{.memory = memory_for_components(extent), .bytes = bytes_of(measurement, options, by_view)};
+  if (options.tolerance > 0) extent.coefficients = 1;
+  size.least_memory = memory_for_components(extent);
+  return size;
+}
+
 FactoredFitter::FactoredFitter(const BtfMeasurement& measurement, const BtfFitOptions& options,
-                               FitCheckpoint& checkpoint, Progress& progress, uint64_t rows, size_t most_ever)
+                               FitCheckpoint& checkpoint, Progress& progress, bool by_view)
     : measurement_(measurement),
       options_(options),
       checkpoint_(checkpoint),
       progress_(progress),
       views_(measurement, options.companding, options.threads, progress),
-      one_((rows + pyramid_texels(measurement.grid())) * sizeof(HalfBits)),
-      most_ever_(most_ever) {
-  const PairLayout& layout = measurement.layout();
-  if (!layout.complete()) {
-    throw Error(Status::unsupported, "A decomposition needs every view under every light; the BTF has " +
-                                         std::to_string(layout.pairs()) + " pairs alone.");
-  }
+      by_view_(by_view),
+      one_(component_bytes(measurement, by_view)) {
+  require_complete_pairs(measurement.layout());
   curve_.points = {{1, one_, 0, 1}};
   bound(bytes(), "One component");
 }
 
-uint64_t FactoredFitter::bytes() const {
-  if (options_.bytes > 0) return options_.bytes;
-  if (options_.tolerance > 0) return most_ever_ * one_;
-  return std::max(measurement_.raw_bytes() / kUsualRatio, kUsualLeast * one_);
-}
+uint64_t FactoredFitter::bytes() const { return bytes_of(measurement_, options_, by_view_); }
 
 void FactoredFitter::find_axes() {
   const ColourAxes colours = find_colours(views_, measurement_.layout(), checkpoint_);
@@ -54,18 +88,11 @@ void FactoredFitter::find_axes() {
 }
 
 uint64_t FactoredFitter::most_components() const {
-  const uint64_t most = std::clamp<uint64_t>(bytes() / one_, 1, most_ever_);
-  if (options_.memory == 0) return most;
-  const FitExtent extent{.texels = measurement_.grid().texels(),
-                         .pyramid_texels = pyramid_texels(measurement_.grid()),
-                         .pairs = measurement_.layout().pairs(),
-                         .lights = measurement_.layout().lights().size(),
-                         .coefficients = most,
-                         .threads = static_cast<uint64_t>(arena_concurrency(options_.threads)),
-                         .by_view = by_view()};
+  const FitExtent extent = extent_of(measurement_, options_, by_view_);
+  if (options_.memory == 0) return extent.coefficients;
   if (options_.tolerance > 0) return components_within(options_.memory, extent);
   require_components(options_.memory, extent);
-  return most;
+  return extent.coefficients;
 }
 
 void FactoredFitter::rank(std::vector<Component> components, size_t most) {
@@ -98,7 +125,7 @@ void FactoredFitter::choose(size_t components, FactoredBtf& btf) {
   });
   for (const Component& c : chosen) {
     btf.axis.push_back(c.axis);
-    if (by_view()) btf.view.push_back(static_cast<uint16_t>(c.view));
+    if (by_view_) btf.view.push_back(static_cast<uint16_t>(c.view));
   }
   function_.resize(static_cast<Eigen::Index>(btf.function_rows()), static_cast<Eigen::Index>(chosen.size()));
   Eigen::VectorXf values(function_.rows());

@@ -4,9 +4,12 @@
 #include "btf/component_ranges.h"
 #include "compress/btf_fitter.h"
 #include "compress/colour_axes.h"
+#include "compress/fit_memory.h"
 #include "job/parallel.h"
 
 namespace velour {
+
+FitSize factored_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view);
 
 /// Functions of the pair are orthonormal, of all axes (and views) those of the most energy are chosen. Coarse levels
 /// are projections of the filtered measurement on the same functions, so they keep its mean.
@@ -22,11 +25,10 @@ class FactoredFitter : public BtfFitter {
     double energy;
   };
 
-  /// Arguments must outlive this. `rows`: entries of a component's function; `most_ever`: components of any
-  /// model. Throws Error(unsupported) for a layout that
+  /// Arguments must outlive this. `by_view`: a component serves one view. Throws Error(unsupported) for a layout that
   /// is not complete.
   FactoredFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
-                 Progress& progress, uint64_t rows, size_t most_ever);
+                 Progress& progress, bool by_view);
 
   /// Reads every view once.
   void find_axes();
@@ -41,14 +43,12 @@ class FactoredFitter : public BtfFitter {
   void rank(std::vector<Component> components, size_t most);
   /// Writes the values of a component's function.
   virtual void copy_function(const Component& component, Eigen::Ref<Eigen::VectorXf> values) const = 0;
-  virtual bool by_view() const = 0;
 
   const BtfMeasurement& measurement_;
   const BtfFitOptions options_;
   FitCheckpoint& checkpoint_;
   Progress& progress_;
   CompandedViews views_;
-  uint64_t one_;  // bytes of a component
   std::vector<float> f_;
   CompandedViews::Planes planes_;
 
@@ -66,7 +66,8 @@ class FactoredFitter : public BtfFitter {
   double cosine(Eigen::Index pair) const;
   double modelled(const FactoredBtf& btf, const ComponentRanges& ranges, size_t group, const RowMatrix& value) const;
 
-  const size_t most_ever_;
+  const bool by_view_;
+  const uint64_t one_;  // bytes of a component
   Mat3 axes_{1.0f};
   double all_ = 0;                 // sum of squares of all companded values
   std::vector<Component> ranked_;  // the strongest first

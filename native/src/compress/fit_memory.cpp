@@ -69,12 +69,15 @@ uint64_t view_svd_bytes(const FitExtent& e) {
   return kLibraries + reading_bytes(e) + functions + projecting + judging_bytes(e);
 }
 
-uint64_t factored_bytes(const FitExtent& e) { return e.by_view ? view_svd_bytes(e) : svd_bytes(e); }
-
 /// Slices, copies of a cluster's and what they are projected on, or points with what they are filled from.
 uint64_t clustering_bytes(const FitExtent& e, const TensorAllowance& allowance, uint64_t entries) {
   const uint64_t slices = std::min<uint64_t>(allowance.slices, e.texels) * entries * kFloat;
   return std::max(kSliceCopies * slices, slices + reading_bytes(e) + 2 * allowance.point_floats * kFloat);
+}
+
+void halve_slices(TensorAllowance& allowance) {
+  allowance.slices /= 2;
+  allowance.point_floats /= 2;
 }
 
 /// What views show of texels: where, what stands in, and of one view the values.
@@ -107,19 +110,25 @@ uint64_t search_bytes(const FitExtent& e, uint64_t points) {
 
 std::string megabytes(uint64_t bytes) { return std::to_string((bytes + 999999) / 1000000) + " MB"; }
 
+uint64_t memory_for_tensors(const FitExtent& extent, uint64_t entries, const TensorAllowance& allowance) {
+  return kLibraries + std::max(clustering_bytes(extent, allowance, entries),
+                               reading_bytes(extent) + std::max(tensor_texel_bytes(extent, allowance.functions),
+                                                                tensor_refit_bytes(extent, allowance.functions)));
+}
+
+TensorAllowance least_tensor_allowance() {
+  TensorAllowance allowance;
+  while (allowance.functions > kLeastFunctions) allowance.functions /= 2;
+  while (allowance.slices > kLeastSlices) halve_slices(allowance);
+  return allowance;
+}
+
 TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint64_t entries) {
   TensorAllowance allowance;
   if (memory == 0) return allowance;
-  const auto held = [&] {
-    return kLibraries + std::max(clustering_bytes(extent, allowance, entries),
-                                 reading_bytes(extent) + std::max(tensor_texel_bytes(extent, allowance.functions),
-                                                                  tensor_refit_bytes(extent, allowance.functions)));
-  };
+  const auto held = [&] { return memory_for_tensors(extent, entries, allowance); };
   while (held() > memory && allowance.functions > kLeastFunctions) allowance.functions /= 2;
-  while (held() > memory && allowance.slices > kLeastSlices) {
-    allowance.slices /= 2;
-    allowance.point_floats /= 2;
-  }
+  while (held() > memory && allowance.slices > kLeastSlices) halve_slices(allowance);
   if (held() > memory)
     refuse(
         memory, held(),
@@ -128,7 +137,7 @@ TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint6
 }
 
 uint32_t search_points_within(uint64_t memory, const FitExtent& extent) {
-  const uint64_t least = search_bytes(extent, kLeastPoints);
+  const uint64_t least = memory_for_least_points(extent);
   if (least > memory) {
     refuse(memory, least,
            "one view of " + std::to_string(extent.texels) + " texels under " + std::to_string(extent.lights) +
@@ -140,17 +149,23 @@ uint32_t search_points_within(uint64_t memory, const FitExtent& extent) {
 
 uint64_t memory_for_all_points(const FitExtent& extent) { return search_bytes(extent, kUsualPoints); }
 
+uint64_t memory_for_least_points(const FitExtent& extent) { return search_bytes(extent, kLeastPoints); }
+
+uint64_t memory_for_components(const FitExtent& extent) {
+  return extent.by_view ? view_svd_bytes(extent) : svd_bytes(extent);
+}
+
 void require_components(uint64_t memory, const FitExtent& extent) {
-  const uint64_t bytes = factored_bytes(extent);
+  const uint64_t bytes = memory_for_components(extent);
   if (bytes > memory) refuse(memory, bytes, std::to_string(extent.coefficients) + " components");
 }
 
 uint64_t components_within(uint64_t memory, FitExtent extent) {
   const uint64_t most = extent.coefficients;
-  while (extent.coefficients > 1 && factored_bytes(extent) > memory) --extent.coefficients;
-  if (factored_bytes(extent) <= memory) return std::min(most, extent.coefficients);
+  while (extent.coefficients > 1 && memory_for_components(extent) > memory) --extent.coefficients;
+  if (memory_for_components(extent) <= memory) return std::min(most, extent.coefficients);
   refuse(
-      memory, factored_bytes(extent),
+      memory, memory_for_components(extent),
       "one component of " + std::to_string(extent.texels) + " texels and " + std::to_string(extent.pairs) + " pairs");
 }
 

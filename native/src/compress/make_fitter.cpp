@@ -44,12 +44,21 @@ ShapeRange shapes_of(const CompressOptions& options) {
   return range;
 }
 
+bool has_tensors(CompressMethod method) {
+  return method == CompressMethod::tucker || method == CompressMethod::cta || method == CompressMethod::kcta;
+}
+
 }  // namespace
+
+FitSize fit_size(const BtfMeasurement& measurement, const CompressOptions& options) {
+  if (has_tensors(options.method)) return tensor_fit_size(measurement, options);
+  if (options.method == CompressMethod::srbf) return srbf_fit_size(measurement, options);
+  return factored_fit_size(measurement, options, options.method == CompressMethod::svd_view);
+}
 
 std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const CompressOptions& options,
                                        FitCheckpoint& checkpoint, Progress& progress) {
-  const bool tensors = options.method == CompressMethod::tucker || options.method == CompressMethod::cta ||
-                       options.method == CompressMethod::kcta;
+  const bool tensors = has_tensors(options.method);
   if (!tensors && (options.clusters > 0 || options.members > 0)) {
     throw Error(Status::invalid_argument, "Clusters and members are of the methods tucker, cta and kcta.");
   }

@@ -6,6 +6,7 @@
 #include "compress/btf_fitter.h"
 #include "compress/compress_btf.h"
 #include "compress/fit_checkpoint.h"
+#include "compress/fit_memory.h"
 
 namespace velour {
 
@@ -13,5 +14,8 @@ namespace velour {
 /// and members that the method has not.
 std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const CompressOptions& options,
                                        FitCheckpoint& checkpoint, Progress& progress);
+
+/// What such a fit is about to take; nothing is read. Throws Error(unsupported) for a layout that is not complete.
+FitSize fit_size(const BtfMeasurement& measurement, const CompressOptions& options);
 
 }  // namespace velour

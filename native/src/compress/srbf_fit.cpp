@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "compress/fit_memory.h"
 #include "compress/fitted_sides.h"
 #include "compress/lobe_checkpoint.h"
 #include "compress/relief_pyramid.h"
@@ -43,9 +42,39 @@ size_t most_coefficients(uint64_t bytes, uint64_t texels) {
   return static_cast<size_t>(std::clamp<uint64_t>(bytes / one, 1, kMostCoefficients));
 }
 
+/// That are looked at.
+size_t most_coefficients(const BtfMeasurement& measurement, const BtfFitOptions& options, uint64_t bytes) {
+  if (options.bytes == 0 && options.tolerance > 0) return kMostCoefficients;
+  return std::min(kBeyond * most_coefficients(bytes, pyramid_texels(measurement.grid())), kMostCoefficients);
+}
+
+/// `side`: one of so many.
+FitExtent extent_of(const BtfMeasurement& measurement, const BtfFitOptions& options, const SideDirections& side,
+                    size_t sides, size_t most) {
+  const PairLayout& layout = measurement.layout();
+  return {.texels = measurement.grid().texels(),
+          .pyramid_texels = pyramid_texels(measurement.grid()),
+          .pairs = layout.pairs(),
+          .lights = layout.lights().size(),
+          .sides = sides,
+          .points = points_for(measurement.grid()),
+          .point_pairs = std::min<uint64_t>(kPairs, side.view.size() * side.light.size()),
+          .coefficients = most,
+          .threads = static_cast<uint64_t>(arena_concurrency(options.threads))};
+}
+
 std::string side_stage(size_t side) { return "side." + std::to_string(side); }
 
 }  // namespace
+
+FitSize srbf_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options) {
+  require_complete(measurement.layout());
+  const std::vector<SideDirections> sides = sides_of(measurement.layout());
+  const uint64_t bytes = options.bytes > 0 ? options.bytes : usual_bytes(measurement, sides.size());
+  const size_t most = most_coefficients(measurement, options, bytes);
+  const FitExtent extent = extent_of(measurement, options, sides.front(), sides.size(), most);
+  return {memory_for_all_points(extent), memory_for_least_points(extent), bytes};
+}
 
 SrbfFitter::SrbfFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
                        Progress& progress)
@@ -65,7 +94,7 @@ SrbfFitter::SrbfFitter(const BtfMeasurement& measurement, const BtfFitOptions& o
   const uint64_t texels = pyramid_texels(measurement.grid());
   curve_.points = {{1, sides_.size() * srbf_side_bytes(texels, 1, 1), 0, 1}};
   bound(bytes, "The least model");
-  find_orders(bytes, all);
+  find_orders(bytes);
   shares_.emplace(demand_, texels);
   curve_ = shares_->curve();
   for (OrderPoint& point : curve_.points) point.relative_l2 *= kHeight;
@@ -83,9 +112,8 @@ void SrbfFitter::find_sides(const ColourAxes& colours) {
   }
 }
 
-void SrbfFitter::find_orders(uint64_t bytes, bool all) {
-  const size_t within = most_coefficients(bytes, pyramid_texels(measurement_.grid()));
-  const size_t most = all ? kMostCoefficients : std::min(kBeyond * within, kMostCoefficients);
+void SrbfFitter::find_orders(uint64_t bytes) {
+  const size_t most = most_coefficients(measurement_, options_, bytes);
   const LobeOrderOptions order{.most = most,
                                .least = std::pow(kBelow * options_.tolerance, 2.0),
                                .points = search_points(most),
@@ -111,17 +139,7 @@ void SrbfFitter::find_orders(uint64_t bytes, bool all) {
 uint32_t SrbfFitter::search_points(size_t most) {
   const uint32_t usual = LobeOrderOptions().points;
   if (options_.memory == 0) return usual;
-  const PairLayout& layout = measurement_.layout();
-  const uint64_t pairs = sides_[0].directions.view.size() * sides_[0].directions.light.size();
-  const FitExtent extent{.texels = measurement_.grid().texels(),
-                         .pyramid_texels = pyramid_texels(measurement_.grid()),
-                         .pairs = layout.pairs(),
-                         .lights = layout.lights().size(),
-                         .sides = sides_.size(),
-                         .points = points_for(measurement_.grid()),
-                         .point_pairs = std::min<uint64_t>(kPairs, pairs),
-                         .coefficients = most,
-                         .threads = static_cast<uint64_t>(arena_concurrency(options_.threads))};
+  const FitExtent extent = extent_of(measurement_, options_, sides_[0].directions, sides_.size(), most);
   const uint32_t points = search_points_within(options_.memory, extent);
   if (points < usual) {
     warnings_.push_back("within the memory allowed lobes are chosen by " + std::to_string(points) +

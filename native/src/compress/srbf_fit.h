@@ -5,11 +5,15 @@
 #include "btf/srbf_btf.h"
 #include "compress/btf_fitter.h"
 #include "compress/colour_axes.h"
+#include "compress/fit_memory.h"
 #include "compress/shared_lobes.h"
 #include "compress/side_shares.h"
 #include "compress/side_views.h"
 
 namespace velour {
+
+/// Of all sides of the layout: which ones are dark or alike is found by reading them.
+FitSize srbf_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options);
 
 /// Lobes that all texels share are chosen and refined by what random points of the surface show, then the texels of
 /// every level are solved for, each level from the coarser one. The sides of the surface share the bytes by need; light
@@ -30,7 +34,7 @@ class SrbfFitter final : public BtfFitter {
     std::vector<SurfacePoint> points;  // none while all that is made of them was kept
   };
   void find_sides(const ColourAxes& colours);
-  void find_orders(uint64_t bytes, bool all);
+  void find_orders(uint64_t bytes);
   uint32_t search_points(size_t most);
   const std::vector<SurfacePoint>& points_of(size_t side);
   SharedLobes lobes_of(size_t side, size_t coefficients, const std::string& stage);

@@ -38,8 +38,7 @@ void rotate(RowMatrix& response, Eigen::VectorXd& energy) {
 
 SvdFitter::SvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
                      Progress& progress)
-    : FactoredFitter(measurement, options, checkpoint, progress, measurement.layout().pairs(),
-                     FactoredBtf::kMaxComponents) {
+    : FactoredFitter(measurement, options, checkpoint, progress, false) {
   progress.stage("colours", 0, 0.1);
   find_axes();
   const uint64_t most = most_components();

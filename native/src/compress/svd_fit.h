@@ -26,7 +26,6 @@ class SvdFitter final : public FactoredFitter {
   };
 
   void copy_function(const Component& component, Eigen::Ref<Eigen::VectorXf> values) const override;
-  bool by_view() const override { return false; }
   void sketch(uint64_t components, double begin, double end);
   void start(Sketch& sketch, Eigen::Index columns, size_t axis) const;
   bool take_kept_bases(const std::string& stage, Eigen::Index columns);

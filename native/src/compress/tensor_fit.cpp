@@ -27,6 +27,25 @@ constexpr double kShare = 0.625;  // sides share the bytes by this power of thei
 constexpr double kColours = 0.15, kBases = 0.1, kReduced = 0.25, kShapes = 0.6, kFitted = 0.9,
                  kClusters = 0.5;  // where parts of the progress end
 
+FitExtent extent_of(const BtfMeasurement& measurement) {
+  return {.texels = measurement.grid().texels(),
+          .pyramid_texels = pyramid_texels(measurement.grid()),
+          .pairs = measurement.layout().pairs(),
+          .lights = measurement.layout().lights().size()};
+}
+
+/// Of a slice that clusters are sought in.
+uint64_t entries_of(const PairLayout& layout) {
+  const auto rank = [](size_t directions) { return std::min<uint64_t>(directions, kDirections); };
+  return rank(layout.views().size()) * rank(layout.lights().size()) * 3;
+}
+
+uint64_t bytes_of(const BtfMeasurement& measurement, const BtfFitOptions& options, size_t sides) {
+  if (options.bytes > 0) return options.bytes;
+  const uint64_t least = pyramid_texels(measurement.grid()) * kUsualTexel + kUsualCluster;
+  return std::max<uint64_t>(measurement.raw_bytes() / kUsualRatio, sides * least);
+}
+
 std::string side_stage(size_t side) { return "side." + std::to_string(side); }
 
 std::string text_of(const TensorShape& shape) {
@@ -39,6 +58,14 @@ std::string text_of(const TensorShape& shape) {
 
 }  // namespace
 
+FitSize tensor_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options) {
+  require_complete(measurement.layout());
+  const FitExtent extent = extent_of(measurement);
+  const uint64_t entries = entries_of(measurement.layout());
+  return {memory_for_tensors(extent, entries, {}), memory_for_tensors(extent, entries, least_tensor_allowance()),
+          bytes_of(measurement, options, sides_of(measurement.layout()).size())};
+}
+
 TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, const ShapeRange& range,
                            FitCheckpoint& checkpoint, Progress& progress)
     : measurement_(measurement),
@@ -47,22 +74,13 @@ TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOption
       progress_(progress),
       views_(measurement, options.companding, options.threads, progress) {
   require_complete(measurement.layout());
-  const FitExtent of_fit{.texels = measurement.grid().texels(),
-                         .pyramid_texels = pyramid_texels(measurement.grid()),
-                         .pairs = measurement.layout().pairs(),
-                         .lights = measurement.layout().lights().size()};
-  const auto rank = [](size_t directions) { return std::min<uint64_t>(directions, kDirections); };
-  allowance_ =
-      tensor_allowance(options.memory, of_fit, rank(measurement.layout().views().size()) * rank(of_fit.lights) * 3);
+  allowance_ = tensor_allowance(options.memory, extent_of(measurement), entries_of(measurement.layout()));
   progress.stage("colours", 0, kColours);
   const ColourAxes colours = find_colours(views_, measurement.layout(), checkpoint);
   axes_ = colours.axes;
   not_finite_ = colours.not_finite;
   find_sides(colours);
-  const uint64_t texels = pyramid_texels(measurement.grid());
-  const uint64_t usual =
-      std::max<uint64_t>(measurement.raw_bytes() / kUsualRatio, sides_.size() * (texels * kUsualTexel + kUsualCluster));
-  const uint64_t bytes = options.bytes > 0 ? options.bytes : usual;
+  const uint64_t bytes = bytes_of(measurement, options, sides_.size());
   uint64_t least = 0;
   for (size_t s = 0; s < sides_.size(); ++s) least += tensor_bytes({}, extent(s));
   curve_.points = {{1, least, 0, 1}};

@@ -11,6 +11,9 @@
 
 namespace velour {
 
+/// Of all sides of the layout: which ones are dark or alike is found by reading them.
+FitSize tensor_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options);
+
 /// Tucker, CTA and K-CTA, by the clusters and members that they may have. What some texels show, in bases of the views
 /// and lights, is clustered (tensor/cluster_fit.h); how many clusters of which ranks are worth their bytes is tried
 /// first; where that leaves two shapes close to each other, models of both are. Clusters are stored as half floats, and

@@ -20,8 +20,7 @@ uint64_t columns_of(const BtfMeasurement& measurement) {
 
 ViewSvdFitter::ViewSvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
                              Progress& progress)
-    : FactoredFitter(measurement, options, checkpoint, progress, measurement.layout().lights().size(),
-                     FactoredBtf::kMaxOfViews) {
+    : FactoredFitter(measurement, options, checkpoint, progress, true) {
   const uint64_t most = most_components();
   progress.stage("colours", 0, kColours);
   find_axes();

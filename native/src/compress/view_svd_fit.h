@@ -18,7 +18,6 @@ class ViewSvdFitter final : public FactoredFitter {
 
  private:
   void copy_function(const Component& component, Eigen::Ref<Eigen::VectorXf> values) const override;
-  bool by_view() const override { return true; }
   void decompose(uint32_t view, std::vector<Component>& components);
 
   std::vector<std::array<RowMatrix, 3>> function_of_;  // [view][axis]: light x column, orthonormal columns
