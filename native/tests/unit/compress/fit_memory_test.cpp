@@ -94,5 +94,15 @@ TEST(FitMemory, OfTensorsNamesTheLeastThatWouldDo) {
   EXPECT_NE(tensor_refusal(least - 2'000'000), "");
 }
 
+/// What is told before a fit is what it is refused by.
+TEST(FitMemory, LeastIsEnoughAndNoLessIs) {
+  const uint64_t of_tensors = memory_for_tensors(usual_extent(), kEntries, least_tensor_allowance());
+  EXPECT_EQ(tensor_refusal(of_tensors), "");
+  EXPECT_NE(tensor_refusal(of_tensors - 1), "");
+  const uint64_t of_points = memory_for_least_points(usual_extent());
+  EXPECT_EQ(refusal(of_points, usual_extent()), "");
+  EXPECT_NE(refusal(of_points - 1, usual_extent()), "");
+}
+
 }  // namespace
 }  // namespace velour
