@@ -10,11 +10,11 @@ import contextlib
 import json
 import math
 import os
-import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
 from ..native.version import VERSION
+from . import files
 from .capture_size import duration
 
 _FILE = "fits-1.json"  # another form has another name
@@ -65,9 +65,7 @@ def remember(folder: Path, fit: Fit, seconds: float) -> None:
     text = json.dumps({"release": list(VERSION), "fits": [[*m.fit, m.seconds] for m in made]})
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", dir=folder, suffix=".part", delete=False) as file:
-            file.write(text)
-        os.replace(file.name, folder / _FILE)
+        files.write_text(folder / _FILE, text)
 
 
 def _known(folder: Path) -> list[_Made]:
