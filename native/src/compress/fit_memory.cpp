@@ -69,9 +69,13 @@ uint64_t view_svd_bytes(const FitExtent& e) {
   return kLibraries + reading_bytes(e) + functions + projecting + judging_bytes(e);
 }
 
+uint64_t slice_bytes(const FitExtent& e, const TensorAllowance& allowance, uint64_t entries) {
+  return std::min<uint64_t>(allowance.slices, e.texels) * entries * kFloat;
+}
+
 /// Slices, copies of a cluster's and what they are projected on, or points with what they are filled from.
 uint64_t clustering_bytes(const FitExtent& e, const TensorAllowance& allowance, uint64_t entries) {
-  const uint64_t slices = std::min<uint64_t>(allowance.slices, e.texels) * entries * kFloat;
+  const uint64_t slices = slice_bytes(e, allowance, entries);
   return std::max(kSliceCopies * slices, slices + reading_bytes(e) + 2 * allowance.point_floats * kFloat);
 }
 
@@ -111,9 +115,11 @@ uint64_t search_bytes(const FitExtent& e, uint64_t points) {
 std::string megabytes(uint64_t bytes) { return std::to_string((bytes + 999999) / 1000000) + " MB"; }
 
 uint64_t memory_for_tensors(const FitExtent& extent, uint64_t entries, const TensorAllowance& allowance) {
+  const uint64_t texels =
+      std::max(tensor_texel_bytes(extent, allowance.functions), tensor_refit_bytes(extent, allowance.functions));
+  // Slices stay where another shape or size may be fitted.
   return kLibraries + std::max(clustering_bytes(extent, allowance, entries),
-                               reading_bytes(extent) + std::max(tensor_texel_bytes(extent, allowance.functions),
-                                                                tensor_refit_bytes(extent, allowance.functions)));
+                               slice_bytes(extent, allowance, entries) + reading_bytes(extent) + texels);
 }
 
 TensorAllowance least_tensor_allowance() {
