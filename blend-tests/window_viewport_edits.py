@@ -7,6 +7,8 @@ import numpy as np
 
 from support import scenes, viewport, window
 
+_SKY = "/studiolights/world/courtyard.exr"
+
 
 def start(folder):
     """Called by the harness once the window is there."""
@@ -50,8 +52,24 @@ def _world():
     bpy.context.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.2
 
 
+def _world_brighter():
+    bpy.context.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.9
+
+
 def _other_world():
     scenes.set_world((1.0, 0.5, 0.4), 0.4)
+
+
+def _sky():
+    world = bpy.context.scene.world.node_tree
+    picture, mapping = world.nodes.new("ShaderNodeTexEnvironment"), world.nodes.new("ShaderNodeMapping")
+    picture.image = bpy.data.images.load(bpy.utils.system_resource("DATAFILES") + _SKY)
+    world.links.new(mapping.outputs[0], picture.inputs["Vector"])
+    world.links.new(picture.outputs[0], world.nodes["Background"].inputs["Color"])
+
+
+def _sky_turns():
+    bpy.context.scene.world.node_tree.nodes["Mapping"].inputs["Rotation"].default_value[2] = 1
 
 
 def _vertex():
@@ -169,7 +187,8 @@ def _turned():
 
 
 _EDITS = (
-    *(_move, _energy, _lamp_moves, _color, _world, _other_world, _vertex, _modifier, _modifier_changes),
+    *(_move, _energy, _lamp_moves, _color, _world, _sky, _sky_turns, _world_brighter, _other_world),
+    *(_vertex, _modifier, _modifier_changes),
     *(_added, _removed, _hidden, _shown, _other_material, _glows, _instances, _instances_follow),
     *(_textured, _painted, _attribute, _attribute_changes),
     *(_scene_lights_off, _scene_lights_on, _film, _frame, _turned),

@@ -122,6 +122,23 @@ def content(image, owner):
     return StoredFile.of(image, owner).content()
 
 
+def file_stamp(path):
+    """Another one for another file, or another content; None: there is none."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return path, found.st_mtime_ns, found.st_size
+
+
+def stamp_of(image):
+    """Of what `image` (or None) stands for: another one where that may be something else."""
+    if image is None:
+        return None
+    packed = image.packed_file and image.packed_file.size
+    return image.original.as_pointer(), packed or file_stamp(absolute_path(image)), image.velour.sha256
+
+
 def is_there(image):
     """Whether the file that `image` (or None) stands for exists."""
     return image is not None and (image.packed_file is not None or os.path.exists(absolute_path(image)))

@@ -12,6 +12,7 @@ from .materials import MaterialTable
 from .notes import Notes
 from .objects import ObjectExport
 from .world import add_world, shown_world
+from .world_light import WorldLight
 
 
 class LiveExport:
@@ -24,6 +25,7 @@ class LiveExport:
             set_working_space(self.scene)
             self._materials = MaterialTable(self.scene, Notes(), strict=False)
             self._meshes = KeptMeshes()
+            self._world = WorldLight(self.scene)
             self._look = look.key()
             self._add_objects(depsgraph, look)
             self._add_world(depsgraph, look)
@@ -74,6 +76,6 @@ class LiveExport:
         light = look.studio_light
         if light:
             turn = Matrix.Rotation(-light.turn - math.pi / 2, 3, "Z")
-            self.scene.set_world_file(light.path, light.strength, turn)
+            self._world.set_file(light.path, light.strength, turn)
         else:
-            add_world(self.scene, shown_world(depsgraph), Notes())
+            add_world(self._world, shown_world(depsgraph), Notes())

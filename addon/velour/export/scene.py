@@ -11,6 +11,7 @@ from .materials import MaterialTable
 from .objects import ObjectExport
 from .pass_labels import AskedPasses, asked_passes
 from .world import add_world, has_moving_picture, layer_world, shown_world
+from .world_light import WorldLight
 
 
 class Export(NamedTuple):
@@ -43,6 +44,7 @@ class SceneExport:
         self.scene = Scene()
         self.materials = MaterialTable(self.scene, notes, strict)
         self._meshes = KeptMeshes()
+        self._world = WorldLight(self.scene)
         self._changes = None  # since the frame before; None: there was none
         self._world_shines = False
 
@@ -102,7 +104,7 @@ class SceneExport:
     def _add_world(self, depsgraph):
         world = shown_world(depsgraph)
         if self._changes is None or self._changes.world or has_moving_picture(world):
-            self._world_shines = add_world(self.scene, world, self.notes)
+            self._world_shines = add_world(self._world, world, self.notes)
 
     def _passes(self, depsgraph, objects):
         if not self._asked:

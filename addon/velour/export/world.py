@@ -33,18 +33,18 @@ def has_moving_picture(world):
     return any(image and image.source in ("SEQUENCE", "MOVIE") for image in images)
 
 
-def add_world(scene, world, notes):
-    """Whether it shines."""
+def add_world(light, world, notes):
+    """Whether it shines; `light`: WorldLight."""
     _note_visibility(world, notes)
     if world is None:
-        return _add_color(scene, (0.0, 0.0, 0.0))
+        return _add_color(light, (0.0, 0.0, 0.0))
     if not world.use_nodes or world.node_tree is None:
-        return _add_color(scene, tuple(world.color))
-    return _add_nodes(scene, world, notes)
+        return _add_color(light, tuple(world.color))
+    return _add_nodes(light, world, notes)
 
 
-def _add_color(scene, color):
-    scene.set_world_color(color)
+def _add_color(light, color):
+    light.set_color(color)
     return any(c != 0.0 for c in color)
 
 
@@ -58,7 +58,7 @@ def _note_visibility(world, notes):
         notes.add(f"World '{world.name}': that it casts no shadow is not supported; ignored.")
 
 
-def _add_nodes(scene, world, notes):
+def _add_nodes(light, world, notes):
     owner = f"World '{world.name}'"
     output = active_output(world.node_tree, "ShaderNodeOutputWorld")
     background = source(output.inputs["Surface"]) if output else None
@@ -67,22 +67,22 @@ def _add_nodes(scene, world, notes):
     if background is None or background.bl_idname != "ShaderNodeBackground":
         if background is not None:
             notes.add(f"{owner}: node '{background.name}' is not a Background; rendered black.")
-        return _add_color(scene, (0.0, 0.0, 0.0))
+        return _add_color(light, (0.0, 0.0, 0.0))
     if source(background.inputs["Strength"]):
         notes.add(f"{owner}: what is linked to the strength is not supported; its own value is used.")
     strength = background.inputs["Strength"].default_value
     color = source(background.inputs["Color"])
     if color is not None and color.bl_idname == "ShaderNodeTexEnvironment":
-        _add_environment(scene, owner, color, strength, notes)
+        _add_environment(light, owner, color, strength, notes)
         return strength != 0.0
     if color is not None:
         notes.add(
             f"{owner}: node '{color.name}' is not an Environment Texture; the Background's colour is used."
         )
-    return _add_color(scene, tuple(strength * c for c in background.inputs["Color"].default_value[:3]))
+    return _add_color(light, tuple(strength * c for c in background.inputs["Color"].default_value[:3]))
 
 
-def _add_environment(scene, owner, node, strength, notes):
+def _add_environment(light, owner, node, strength, notes):
     image = node.image
     if image is None:
         raise ExportError(f"{owner}: node '{node.name}' has no image; choose one, or unlink it.")
@@ -93,9 +93,9 @@ def _add_environment(scene, owner, node, strength, notes):
     rotation = _rotation(owner, node, notes)
     path = absolute_path(image)
     if _can_read_file(image, path):
-        scene.set_world_file(path, strength, rotation)
+        light.set_file(path, strength, rotation)
     else:
-        scene.set_world_pixels(_pixels(owner, image, path, notes), strength, rotation)
+        light.set_image(image, path, lambda: _pixels(owner, image, path, notes), strength, rotation)
 
 
 def _can_read_file(image, path):

@@ -223,6 +223,10 @@ class Scene(Handle):
         """As set_world_pixels, from an image file (HDR, EXR)."""
         self._lib.vlr_scene_load_world(self.pointer, path_bytes(path), strength, _rotation(world_to_image))
 
+    def place_world(self, strength: float, world_to_image=None) -> None:
+        """The picture that is there, lit and turned anew."""
+        self._lib.vlr_scene_place_world(self.pointer, strength, _rotation(world_to_image))
+
     # ---- camera
 
     def set_camera(self, kind: str, camera_to_world, window, **values) -> None:

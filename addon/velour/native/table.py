@@ -555,6 +555,7 @@ STATUS_CALLS = {
     "vlr_scene_set_world_color": [_handle, _floats],
     "vlr_scene_set_world_pixels": [_handle, c_uint32, c_uint32, c_uint32, _floats, c_float, _floats],
     "vlr_scene_load_world": [_handle, c_char_p, c_float, _floats],
+    "vlr_scene_place_world": [_handle, c_float, _floats],
     "vlr_scene_set_camera": [_handle, POINTER(CameraDesc)],
     "vlr_scene_look_at": [_handle, _floats, _floats, c_float, c_float],
     "vlr_scene_frame_camera": [_handle, c_float, c_uint32],

@@ -227,6 +227,10 @@ class RealtimeScene(Scene):
         super().set_world_file(path, strength, world_to_image)
         self.world_version += 1
 
+    def place_world(self, strength, world_to_image=None):
+        super().place_world(strength, world_to_image)
+        self.world_version += 1
+
     def check(self):
         """Raises UnshownError where the whole is too much."""
         if self.draws > _MOST_DRAWS:

@@ -481,6 +481,8 @@ VLR_API vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, 
                                               const float* pixels, float strength, const float* world_to_image);
 VLR_API vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, float strength,
                                         const float* world_to_image);
+/* The image that is there, lit and turned anew: it is not read again. Refused where the world is a colour. */
+VLR_API vlr_status vlr_scene_place_world(vlr_scene* scene, float strength, const float* world_to_image);
 
 enum { VLR_CAMERA_PERSPECTIVE = 0, VLR_CAMERA_ORTHOGRAPHIC = 1 };
 typedef struct vlr_camera_desc {

@@ -91,6 +91,14 @@ vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, uint32_t
   });
 }
 
+vlr_status vlr_scene_place_world(vlr_scene* scene, float strength, const float* world_to_image) {
+  return guard([&] {
+    require(scene, "scene");
+    const Environment& environment = scene->scene->environment();
+    scene->scene->set_environment(environment.placed(strength, matrix_from_rows(world_to_image)));
+  });
+}
+
 vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, float strength, const float* world_to_image) {
   return guard([&] {
     require(scene, "scene");

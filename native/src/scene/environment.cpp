@@ -12,18 +12,23 @@ namespace {
 
 constexpr float kUniformPdf = 0.25f / kPi;
 
-void check(const EquirectangularPixels& p, float strength, const Mat3& world_to_image) {
-  const auto fail = [](const char* sentence) { throw Error(Status::bad_data, sentence); };
+[[noreturn]] void fail(const char* sentence) { throw Error(Status::bad_data, sentence); }
+
+void check(const EquirectangularPixels& p) {
   if (p.width <= 0 || p.height <= 0) fail("The world's image has no pixels.");
   if (p.width > 65535 || p.height > 65535) fail("The world's image is more than 65535 pixels wide or high.");
   if (p.channels != 1 && p.channels != 3 && p.channels != 4) fail("The world's image needs 1, 3 or 4 channels.");
   const size_t count = static_cast<size_t>(p.width) * static_cast<size_t>(p.height) * static_cast<size_t>(p.channels);
   if (p.values.size() != count) fail("The world's image has another number of pixels than its size says.");
+}
+
+EnvironmentPlacement checked(float strength, const Mat3& world_to_image) {
   if (!std::isfinite(strength)) fail("The world's strength is not finite.");
   const Mat3 product = glm::transpose(world_to_image) * world_to_image - Mat3(1.0f);
   for (int i = 0; i < 9; ++i) {
     if (!(std::abs(product[i / 3][i % 3]) < 1e-3f)) fail("The world's turn is not a rotation.");
   }
+  return {std::max(strength, 0.0f), world_to_image};
 }
 
 /// A batch of one, for the scalar forms.
@@ -36,10 +41,6 @@ DirectionBatch single(const Vec3& d) {
 
 }  // namespace
 
-struct Environment::Image : EquirectangularImage {
-  using EquirectangularImage::EquirectangularImage;
-};
-
 Environment Environment::constant(const Rgb& radiance) {
   Environment e;
   for (int c = 0; c < 3; ++c) e.constant_[c] = std::isfinite(radiance[c]) ? std::max(radiance[c], 0.0f) : 0.0f;
@@ -48,27 +49,28 @@ Environment Environment::constant(const Rgb& radiance) {
 }
 
 Environment Environment::image(const EquirectangularPixels& pixels, float strength, const Mat3& world_to_image) {
-  check(pixels, strength, world_to_image);
+  check(pixels);
+  checked(strength, world_to_image);  // before the work
   Environment e;
-  e.image_ = std::make_shared<const Image>(pixels, strength, world_to_image);
-  e.mean_luminance_ = e.image_->mean_luminance();
+  e.image_ = std::make_shared<const EquirectangularImage>(pixels);
+  return e.placed(strength, world_to_image);
+}
+
+Environment Environment::placed(float strength, const Mat3& world_to_image) const {
+  if (!image_) throw Error(Status::invalid_argument, "The world has no image that could be placed otherwise.");
+  Environment e = *this;
+  e.placement_ = checked(strength, world_to_image);
+  e.mean_luminance_ = e.placement_.strength * image_->mean_luminance();
   return e;
 }
 
 Environment Environment::load(const std::string& path, float strength, const Mat3& world_to_image) {
   const Picture picture = read_picture(path);
-  const size_t row = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.channels);
-  std::vector<float> top_down;
-  top_down.reserve(picture.pixels.size());
-  for (int y = picture.height - 1; y >= 0; --y) {
-    const float* first = picture.pixels.data() + static_cast<size_t>(y) * row;
-    top_down.insert(top_down.end(), first, first + row);
-  }
-  return image({picture.width, picture.height, picture.channels, top_down}, strength, world_to_image);
+  return image({picture.width, picture.height, picture.channels, picture.pixels, true}, strength, world_to_image);
 }
 
 void Environment::look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const {
-  if (image_) return image_->look_up(world, radiance, pdf);
+  if (image_) return image_->look_up(placement_, world, radiance, pdf);
   for (int i = 0; i < world.count; ++i) {
     radiance.set(i, constant_);
     pdf.v[i] = kUniformPdf;
@@ -79,7 +81,7 @@ Rgb Environment::radiance(const Vec3& world) const {
   if (!image_) return constant_;
   RgbBatch radiance;
   ScalarBatch pdf;
-  image_->look_up(single(world), radiance, pdf);
+  image_->look_up(placement_, single(world), radiance, pdf);
   return radiance.get(0);
 }
 
@@ -87,12 +89,12 @@ float Environment::pdf(const Vec3& world) const {
   if (!image_) return kUniformPdf;
   RgbBatch radiance;
   ScalarBatch pdf;
-  image_->look_up(single(world), radiance, pdf);
+  image_->look_up(placement_, single(world), radiance, pdf);
   return pdf.v[0];
 }
 
 void Environment::sample(std::span<const Vec2> u, DirectionBatch& world) const {
-  if (image_) return image_->sample(u, world);
+  if (image_) return image_->sample(placement_, u, world);
   world.count = 0;
   for (const Vec2& v : u) world.push(sample_uniform_sphere(v));
   world.pad();
@@ -103,8 +105,6 @@ Vec3 Environment::sample(const Vec2& u) const {
   sample({&u, 1}, world);
   return world.get(0);
 }
-
-const EquirectangularImage* Environment::equirectangular() const { return image_.get(); }
 
 uint64_t Environment::bytes() const { return image_ ? image_->bytes() : 0; }
 

@@ -11,10 +11,17 @@ namespace velour {
 
 class EquirectangularImage;
 
-/// Borrowed pixels, row 0 at the top (+z), 3 or 4 channels interleaved (the 4th is not used) or 1 (grey).
+/// Borrowed pixels, 3 or 4 channels interleaved (the 4th is not used) or 1 (grey).
 struct EquirectangularPixels {
   int width = 0, height = 0, channels = 0;
   std::span<const float> values;
+  bool bottom_up = false;  // row 0 is the bottom (-z), else the top
+};
+
+/// How an image surrounds the scene.
+struct EnvironmentPlacement {
+  float strength = 1;         // radiance is that many times the image; below 0 it counts as 0
+  Mat3 world_to_image{1.0f};  // turns a world direction before the look-up
 };
 
 /// Radiance from every direction of the world (+z up). Immutable; copies share the image.
@@ -28,11 +35,13 @@ class Environment {
   Environment() = default;
   /// Negative and non-finite channels count as 0.
   static Environment constant(const Rgb& radiance);
-  /// Radiance is `strength` times the image. `world_to_image` turns a world direction before the look-up.
-  /// Throws Error(bad_data) on an empty image. Negative and non-finite pixels count as 0.
+  /// Throws Error(bad_data) on an empty image, or a placement that is none. Negative and non-finite pixels count as 0.
   static Environment image(const EquirectangularPixels& pixels, float strength, const Mat3& world_to_image);
   /// The same from a file that `image/` reads.
   static Environment load(const std::string& path, float strength, const Mat3& world_to_image);
+  /// The same image, which is shared, placed otherwise: costs nothing. Throws Error(invalid_argument) where there is
+  /// none.
+  Environment placed(float strength, const Mat3& world_to_image) const;
 
   /// Radiance and density (per solid angle, of `sample`) of each direction of `world`. The batch is padded.
   void look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const;
@@ -46,12 +55,13 @@ class Environment {
   /// Over the sphere.
   float mean_luminance() const { return mean_luminance_; }
   uint64_t bytes() const;
-  /// Null for a constant.
-  const EquirectangularImage* equirectangular() const;
+  /// Null for a constant. As it is by itself, not as it is placed.
+  const EquirectangularImage* equirectangular() const { return image_.get(); }
+  const EnvironmentPlacement& placement() const { return placement_; }
 
  private:
-  struct Image;
-  std::shared_ptr<const Image> image_;
+  std::shared_ptr<const EquirectangularImage> image_;
+  EnvironmentPlacement placement_;
   Rgb constant_{0.0f};
   float mean_luminance_ = 0.0f;
 };

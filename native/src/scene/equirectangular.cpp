@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "job/parallel.h"
 #include "scene/equirectangular_draws.h"
 
 namespace velour {
@@ -12,49 +13,50 @@ float clean(float value) { return std::isfinite(value) ? std::max(value, 0.0f) :
 
 }  // namespace
 
-EquirectangularImage::EquirectangularImage(const EquirectangularPixels& pixels, float strength,
-                                           const Mat3& world_to_image)
-    : width_(pixels.width),
-      height_(pixels.height),
-      stride_(static_cast<size_t>(pixels.width) + 2),
-      world_to_image_(world_to_image) {
-  store_texels(pixels, strength);
-  build_tables();
-}
-
-void EquirectangularImage::store_texels(const EquirectangularPixels& pixels, float strength) {
-  texels_.resize(stride_ * static_cast<size_t>(height_));
-  const int g = pixels.channels >= 3 ? 1 : 0, b = pixels.channels >= 3 ? 2 : 0;
-  const float* in = pixels.values.data();
-  for (int y = 0; y < height_; ++y) {
-    EnvironmentTexel* out = &texels_[static_cast<size_t>(y) * stride_];
-    const float sin_theta = static_cast<float>(std::sin(kPiD * (y + 0.5) / height_));
-    for (int x = 0; x < width_; ++x, in += pixels.channels) {
-      const Rgb c(clean(strength * in[0]), clean(strength * in[g]), clean(strength * in[b]));
-      out[x + 1] = {c.r, c.g, c.b, luminance(c) * sin_theta};
-    }
-    out[0] = out[width_];
-    out[width_ + 1] = out[1];
-  }
-}
-
-void EquirectangularImage::build_tables() {
+EquirectangularImage::EquirectangularImage(const EquirectangularPixels& pixels)
+    : width_(pixels.width), height_(pixels.height), stride_(static_cast<size_t>(pixels.width) + 2) {
   const size_t w = static_cast<size_t>(width_), h = static_cast<size_t>(height_);
+  texels_.resize(stride_ * h);
   row_cdf_.resize(h * (w + 1));
   row_guide_.resize(h * w);
-  std::vector<double> row_mean(h), mass(w);
-  for (size_t y = 0; y < h; ++y) {
-    const EnvironmentTexel* t = row(static_cast<int>(y));
-    for (size_t x = 0; x < w; ++x) mass[x] = 0.5 * (static_cast<double>(t[x].node) + t[x + 1].node);
-    row_mean[y] = build_cells(mass, &row_cdf_[y * (w + 1)], &row_guide_[y * w]) / static_cast<double>(w);
-  }
   row_node_.assign(h + 2, 0.0f);
-  std::copy(row_mean.begin(), row_mean.end(), row_node_.begin() + 1);
+  std::vector<double> mean(h);
+  parallel_pieces(h, 0, Progress(), [&](size_t y) {
+    store_row(pixels, static_cast<int>(y));
+    mean[y] = build_row(static_cast<int>(y));
+  });
+  build_marginal(mean);
+}
 
+void EquirectangularImage::store_row(const EquirectangularPixels& pixels, int y) {
+  const int g = pixels.channels >= 3 ? 1 : 0, b = pixels.channels >= 3 ? 2 : 0;
+  const auto stored = static_cast<size_t>(pixels.bottom_up ? height_ - 1 - y : y);
+  const float* in = pixels.values.data() + stored * static_cast<size_t>(width_) * static_cast<size_t>(pixels.channels);
+  EnvironmentTexel* out = &texels_[static_cast<size_t>(y) * stride_];
+  const float sin_theta = static_cast<float>(std::sin(kPiD * (y + 0.5) / height_));
+  for (int x = 0; x < width_; ++x, in += pixels.channels) {
+    const Rgb c(clean(in[0]), clean(in[g]), clean(in[b]));
+    out[x + 1] = {c.r, c.g, c.b, luminance(c) * sin_theta};
+  }
+  out[0] = out[width_];
+  out[width_ + 1] = out[1];
+}
+
+double EquirectangularImage::build_row(int y) {
+  const auto w = static_cast<size_t>(width_), at = static_cast<size_t>(y);
+  const EnvironmentTexel* t = row(y);
+  std::vector<double> mass(w);
+  for (size_t x = 0; x < w; ++x) mass[x] = 0.5 * (static_cast<double>(t[x].node) + t[x + 1].node);
+  return build_cells(mass, &row_cdf_[at * (w + 1)], &row_guide_[at * w]) / static_cast<double>(w);
+}
+
+void EquirectangularImage::build_marginal(const std::vector<double>& mean) {
+  const size_t h = mean.size();
+  std::copy(mean.begin(), mean.end(), row_node_.begin() + 1);
   std::vector<double> bands(h + 1);
-  bands.front() = 0.25 * row_mean.front();  // half a row, from 0 at the pole
-  bands.back() = 0.25 * row_mean.back();
-  for (size_t y = 1; y < h; ++y) bands[y] = 0.5 * (row_mean[y - 1] + row_mean[y]);
+  bands.front() = 0.25 * mean.front();  // half a row, from 0 at the pole
+  bands.back() = 0.25 * mean.back();
+  for (size_t y = 1; y < h; ++y) bands[y] = 0.5 * (mean[y - 1] + mean[y]);
   marginal_cdf_.resize(h + 2);
   marginal_guide_.resize(h + 1);
   const double total = build_cells(bands, marginal_cdf_.data(), marginal_guide_.data()) / static_cast<double>(h);
@@ -63,8 +65,9 @@ void EquirectangularImage::build_tables() {
   density_scale_ = total > 0.0 ? static_cast<float>(1.0 / (2.0 * kPiD * kPiD * total)) : 0.0f;
 }
 
-void EquirectangularImage::look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const {
-  equirectangular_look_up(*this, world, radiance, pdf);
+void EquirectangularImage::look_up(const EnvironmentPlacement& placement, const DirectionBatch& world,
+                                   RgbBatch& radiance, ScalarBatch& pdf) const {
+  equirectangular_look_up(*this, placement, world, radiance, pdf);
 }
 
 /// The column's cell, and what draw_columns reads of it.
@@ -82,7 +85,8 @@ void EquirectangularImage::find_column(EquirectangularDraws& draws, int i, int f
 
 // Passes, each of which calls for the memory of the next: tables and texels of a large image are in no near cache, and
 // their latency is paid once instead of once a direction.
-void EquirectangularImage::sample(std::span<const Vec2> u, DirectionBatch& world) const {
+void EquirectangularImage::sample(const EnvironmentPlacement& placement, std::span<const Vec2> u,
+                                  DirectionBatch& world) const {
   const int count = static_cast<int>(u.size()), padded = (count + 15) / 16 * 16;
   EquirectangularDraws draws;
   for (int i = 0; i < padded; ++i) {
@@ -102,7 +106,7 @@ void EquirectangularImage::sample(std::span<const Vec2> u, DirectionBatch& world
   }
   for (int i = 0; i < padded; ++i) find_column(draws, i, *guide[i]);
   draw_columns(width_, draws, padded);
-  equirectangular_directions(*this, draws.u, draws.v, count, world);
+  equirectangular_directions(placement.world_to_image, draws.u, draws.v, count, world);
   world.count = count;
   world.pad();
 }

@@ -20,29 +20,30 @@ struct alignas(16) EnvironmentTexel {
 
 class EquirectangularImage {
  public:
-  EquirectangularImage(const EquirectangularPixels& pixels, float strength, const Mat3& world_to_image);
+  explicit EquirectangularImage(const EquirectangularPixels& pixels);
 
-  void look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const;
+  void look_up(const EnvironmentPlacement& placement, const DirectionBatch& world, RgbBatch& radiance,
+               ScalarBatch& pdf) const;
   /// One direction for each of `u`.
-  void sample(std::span<const Vec2> u, DirectionBatch& world) const;
+  void sample(const EnvironmentPlacement& placement, std::span<const Vec2> u, DirectionBatch& world) const;
   float mean_luminance() const { return mean_luminance_; }
   uint64_t bytes() const;
 
   // What the SIMD kernels read.
   int width() const { return width_; }
   int height() const { return height_; }
-  const Mat3& world_to_image() const { return world_to_image_; }
   const EnvironmentTexel* row(int y) const { return &texels_[static_cast<size_t>(y) * stride_]; }
   float density_scale() const { return density_scale_; }
 
  private:
-  void store_texels(const EquirectangularPixels& pixels, float strength);
-  void build_tables();
+  void store_row(const EquirectangularPixels& pixels, int y);
+  /// The cells of row `y`; returns the mean node.
+  double build_row(int y);
+  void build_marginal(const std::vector<double>& mean);
   void find_column(EquirectangularDraws& draws, int i, int first) const;
 
   int width_, height_;
   size_t stride_;  // texels a stored row: W + 2, the last and the first column repeated on the other side
-  Mat3 world_to_image_;
   std::vector<EnvironmentTexel> texels_;
   float mean_luminance_ = 0;
   float density_scale_ = 0;  // pdf = node * density_scale_ / sin(theta)
@@ -64,14 +65,14 @@ struct alignas(64) EquirectangularCoordinates {
 // Kernels, run-time dispatched SIMD. Angles are within 8e-7 radians: a polynomial of our own, exact to 1.6e-8, in
 // float32.
 
-void equirectangular_coordinates(const EquirectangularImage& image, const DirectionBatch& world,
-                                 EquirectangularCoordinates& out);
+void equirectangular_coordinates(const EquirectangularImage& image, const Mat3& world_to_image,
+                                 const DirectionBatch& world, EquirectangularCoordinates& out);
 /// Bilinear radiance and density.
-void equirectangular_look_up(const EquirectangularImage& image, const DirectionBatch& world, RgbBatch& radiance,
-                             ScalarBatch& pdf);
+void equirectangular_look_up(const EquirectangularImage& image, const EnvironmentPlacement& placement,
+                             const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf);
 /// World directions of `count` places: columns `u`, rows `v` from the top, both as shares of the image's sides, padded
 /// to 16 and aligned.
-void equirectangular_directions(const EquirectangularImage& image, const float* u, const float* v, int count,
+void equirectangular_directions(const Mat3& world_to_image, const float* u, const float* v, int count,
                                 DirectionBatch& world);
 
 }  // namespace velour

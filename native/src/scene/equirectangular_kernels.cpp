@@ -1,5 +1,6 @@
 // Highway compiles this file once for each instruction set.
 #include <algorithm>
+#include <limits>
 
 #include "scene/equirectangular.h"
 
@@ -18,6 +19,8 @@ namespace velour {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr float kLargest = std::numeric_limits<float>::max();  // what overflows stays a number
 
 /// atan(a) / pi for a in [0, 1]: atan(a)/a as a polynomial of degree 8 in a^2, relative error 1.6e-8 (minimax by
 /// reweighted least squares).
@@ -52,10 +55,11 @@ HWY_INLINE V row_dot(D d, const Mat3& m, int row, V x, V y, V z) {
   return hn::MulAdd(hn::Set(d, m[2][row]), z, sum);
 }
 
-void coordinates_simd(const EquirectangularImage& image, const DirectionBatch& world, EquirectangularCoordinates& out) {
+void coordinates_simd(const EquirectangularImage& image, const Mat3& world_to_image, const DirectionBatch& world,
+                      EquirectangularCoordinates& out) {
   const hn::CappedTag<float, 8> d;
   const hn::RebindToSigned<decltype(d)> di;
-  const Mat3& m = image.world_to_image();
+  const Mat3& m = world_to_image;
   const auto half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
   const auto width = hn::Set(d, static_cast<float>(image.width()));
   const auto height = hn::Set(d, static_cast<float>(image.height()));
@@ -82,10 +86,10 @@ void coordinates_simd(const EquirectangularImage& image, const DirectionBatch& w
   }
 }
 
-void look_up_simd(const EquirectangularImage& image, const DirectionBatch& world, RgbBatch& radiance,
-                  ScalarBatch& pdf) {
+void look_up_simd(const EquirectangularImage& image, const EnvironmentPlacement& placement, const DirectionBatch& world,
+                  RgbBatch& radiance, ScalarBatch& pdf) {
   EquirectangularCoordinates at;
-  coordinates_simd(image, world, at);
+  coordinates_simd(image, placement.world_to_image, world, at);
   const float* above[DirectionBatch::kCapacity];
   const float* below[DirectionBatch::kCapacity];
   for (int i = 0; i < world.count; ++i) {
@@ -105,17 +109,17 @@ void look_up_simd(const EquirectangularImage& image, const DirectionBatch& world
       const auto a = hn::MulAdd(fx, hn::Sub(a1, a0), a0), b = hn::MulAdd(fx, hn::Sub(b1, b0), b0);
       hn::Store(hn::MulAdd(fy, hn::Sub(b, a), a), d, texel + c);
     }
-    radiance.r[i] = texel[0];
-    radiance.g[i] = texel[1];
-    radiance.b[i] = texel[2];
+    const auto lit = [&](float value) { return std::min(placement.strength * value, kLargest); };
+    radiance.r[i] = lit(texel[0]);
+    radiance.g[i] = lit(texel[1]);
+    radiance.b[i] = lit(texel[2]);
     pdf.v[i] = texel[3] * at.inverse_sin[i] * image.density_scale();
   }
 }
 
-void sky_directions_simd(const EquirectangularImage& image, const float* u, const float* v, int count,
-                         DirectionBatch& world) {
+void sky_directions_simd(const Mat3& world_to_image, const float* u, const float* v, int count, DirectionBatch& world) {
   const hn::CappedTag<float, 8> d;
-  const Mat3 image_to_world = glm::transpose(image.world_to_image());
+  const Mat3 image_to_world = glm::transpose(world_to_image);
   for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
     const auto theta = hn::Mul(hn::Load(d, v + at), hn::Set(d, kPi));
     const auto phi = hn::Mul(hn::Sub(hn::Set(d, 0.5f), hn::Load(d, u + at)), hn::Set(d, 2.0f * kPi));
@@ -138,19 +142,19 @@ HWY_EXPORT(coordinates_simd);
 HWY_EXPORT(look_up_simd);
 HWY_EXPORT(sky_directions_simd);
 
-void equirectangular_coordinates(const EquirectangularImage& image, const DirectionBatch& world,
-                                 EquirectangularCoordinates& out) {
-  VELOUR_SIMD_DISPATCH(coordinates_simd)(image, world, out);
+void equirectangular_coordinates(const EquirectangularImage& image, const Mat3& world_to_image,
+                                 const DirectionBatch& world, EquirectangularCoordinates& out) {
+  VELOUR_SIMD_DISPATCH(coordinates_simd)(image, world_to_image, world, out);
 }
 
-void equirectangular_look_up(const EquirectangularImage& image, const DirectionBatch& world, RgbBatch& radiance,
-                             ScalarBatch& pdf) {
-  VELOUR_SIMD_DISPATCH(look_up_simd)(image, world, radiance, pdf);
+void equirectangular_look_up(const EquirectangularImage& image, const EnvironmentPlacement& placement,
+                             const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) {
+  VELOUR_SIMD_DISPATCH(look_up_simd)(image, placement, world, radiance, pdf);
 }
 
-void equirectangular_directions(const EquirectangularImage& image, const float* u, const float* v, int count,
+void equirectangular_directions(const Mat3& world_to_image, const float* u, const float* v, int count,
                                 DirectionBatch& world) {
-  VELOUR_SIMD_DISPATCH(sky_directions_simd)(image, u, v, count, world);
+  VELOUR_SIMD_DISPATCH(sky_directions_simd)(world_to_image, u, v, count, world);
 }
 
 }  // namespace velour

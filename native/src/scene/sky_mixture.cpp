@@ -34,8 +34,10 @@ SkyMixture sky_mixture(const Environment& environment, const SkyFitOptions& opti
   }
   const auto start = std::chrono::steady_clock::now();
   SkyMixture sky = image_mixture(*image, options, cache_folder, progress);
-  const Mat3 image_to_world = glm::transpose(image->world_to_image());
+  const EnvironmentPlacement& placement = environment.placement();
+  const Mat3 image_to_world = glm::transpose(placement.world_to_image);
   for (Vec3& c : sky.center) c = glm::normalize(image_to_world * c);
+  for (Rgb& c : sky.coefficient) c *= placement.strength;
   sky.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return sky;
 }

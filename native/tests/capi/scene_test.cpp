@@ -51,6 +51,21 @@ TEST(CScene, ThreadsDoNotChangeABit) {
   EXPECT_EQ(0, std::memcmp(one.data(), three.data(), one.size() * sizeof(float)));
 }
 
+TEST(CScene, AWorldsImageIsPlacedAnewAndAColourIsNot) {
+  const TestScene scene;
+  vlr_scene* world = scene.scene;
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_scene_place_world(world, 1, nullptr));
+  const std::vector<float> grey(8, 0.25f);
+  ASSERT_EQ(VLR_OK, vlr_scene_set_world_pixels(world, 4, 2, 1, grey.data(), 1, nullptr)) << vlr_last_error();
+  ASSERT_EQ(VLR_OK, vlr_scene_place_world(world, 2, nullptr)) << vlr_last_error();
+  ASSERT_EQ(VLR_OK, vlr_scene_commit(world)) << vlr_last_error();
+  const auto pixels = rendered(scene, "Combined", 4, 2);
+  EXPECT_NEAR(pixels[0], 0.4f, 0.004f);
+  const float stretch[9] = {2, 0, 0, 0, 1, 0, 0, 0, 1};
+  EXPECT_EQ(VLR_BAD_DATA, vlr_scene_place_world(world, 2, stretch));
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_scene_place_world(nullptr, 2, nullptr));
+}
+
 TEST(CScene, WrongReadsAndScenesAreRefused) {
   const TestScene scene;
   vlr_job* job = scene.render_job(8, 8);

@@ -73,17 +73,49 @@ TEST(Environment, TurnAndStrength) {
   }
 }
 
+/// As if it had been read anew.
+TEST(Environment, IsPlacedAnew) {
+  const TestImage image = noise(32, 16);
+  const Mat3 quarter(Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1));
+  const Environment read = image.environment(3, quarter), placed = image.environment().placed(3, quarter);
+  EXPECT_EQ(placed.mean_luminance(), read.mean_luminance());
+  RandomStream random(7, 8, 9);
+  for (int i = 0; i < 200; ++i) {
+    const Vec2 u = random.next2();
+    const Vec3 w = read.sample(u);
+    EXPECT_EQ(placed.sample(u), w);
+    EXPECT_EQ(placed.radiance(w).g, read.radiance(w).g);
+    EXPECT_EQ(placed.pdf(w), read.pdf(w));
+  }
+  EXPECT_TRUE(placed.placed(0, quarter).black());
+  EXPECT_TRUE(placed.placed(-1, quarter).black());
+  EXPECT_EQ(placed.placed(-1, quarter).radiance({1, 0, 0}).r, 0);
+  EXPECT_THROW(Environment::constant(Rgb(1.0f)).placed(1, quarter), Error);
+  EXPECT_THROW(placed.placed(1, 2.0f * quarter), Error);
+}
+
+TEST(Environment, RowsMayBeginAtTheBottom) {
+  const TestImage image = noise(8, 4);
+  TestImage turned(8, 4);
+  for (int y = 0; y < 4; ++y) std::copy_n(&image.rgb[24 * (3 - y)], 24, &turned.rgb[24 * y]);
+  const Environment e = image.environment();
+  const Environment same = Environment::image({8, 4, 3, turned.rgb, true}, 1, Mat3(1.0f));
+  for (const Vec3& w : {Vec3(0, 0.6f, 0.8f), Vec3(0.6f, 0, -0.8f), Vec3(0, 0, 1)}) {
+    EXPECT_EQ(e.radiance(w).r, same.radiance(w).r);
+  }
+}
+
 TEST(Environment, CoordinatesMatchTheLibrary) {
   const Environment unused;
   const TestImage image(1024, 512);
-  const EquirectangularImage table({1024, 512, 3, image.rgb}, 1, Mat3(1.0f));
+  const EquirectangularImage table({1024, 512, 3, image.rgb});
   RandomStream random(1, 1, 1);
   double worst_u = 0, worst_v = 0;
   for (int round = 0; round < 400; ++round) {
     DirectionBatch batch;
     while (batch.count < 64) batch.push(sample_uniform_sphere(random.next2()));
     EquirectangularCoordinates at;
-    equirectangular_coordinates(table, batch, at);
+    equirectangular_coordinates(table, Mat3(1.0f), batch, at);
     for (int i = 0; i < 64; ++i) {
       const Vec3d d(batch.get(i));
       const double u = 0.5 - std::atan2(d.y, d.x) / (2 * kPiD), theta = std::acos(d.z / glm::length(d)) / kPiD;

@@ -13,10 +13,12 @@ constexpr int kWidth = 37, kHeight = 18;
 
 const Mat3 kTurn = glm::transpose(Mat3({0.36f, 0.48f, -0.8f}, {-0.8f, 0.6f, 0}, {0.48f, 0.64f, 0.6f}));
 
+const EnvironmentPlacement kPlacement{1.5f, kTurn};
+
 struct Fixture {
   std::vector<float> rgb;
   EquirectangularImage image;
-  Fixture() : rgb(noise()), image({kWidth, kHeight, 3, rgb}, 1.5f, kTurn) {}
+  Fixture() : rgb(noise()), image({kWidth, kHeight, 3, rgb}) {}
 
   static std::vector<float> noise() {
     std::vector<float> values(3 * kWidth * kHeight);
@@ -104,7 +106,7 @@ TEST(EquirectangularKernels, LookUpMatchesTheScalarReferenceOnEveryTarget) {
     for (const DirectionBatch& batch : batches()) {
       RgbBatch radiance;
       ScalarBatch pdf;
-      equirectangular_look_up(f.image, batch, radiance, pdf);
+      equirectangular_look_up(f.image, kPlacement, batch, radiance, pdf);
       for (int i = 0; i < batch.count; ++i) {
         const Place p = place_of(batch.get(i));
         const auto expected = bilinear(f, p);
@@ -126,7 +128,7 @@ TEST(EquirectangularKernels, CoordinatesMatchTheScalarReferenceOnEveryTarget) {
   test::on_every_simd_target([&] {
     for (const DirectionBatch& batch : batches()) {
       EquirectangularCoordinates at;
-      equirectangular_coordinates(f.image, batch, at);
+      equirectangular_coordinates(f.image, kTurn, batch, at);
       for (int i = 0; i < batch.count; ++i) {
         const Place p = place_of(batch.get(i));
         double x = at.x[i] + static_cast<double>(at.fx[i]) - 0.5;
@@ -151,7 +153,7 @@ TEST(EquirectangularKernels, DirectionsMatchTheScalarReferenceOnEveryTarget) {
     for (int i = 0; i < 64; ++i) u.v[i] = random.next(), v.v[i] = random.next();
     for (int count = 1; count <= 64; count += 9) {
       DirectionBatch world;
-      equirectangular_directions(f.image, u.v, v.v, count, world);
+      equirectangular_directions(kTurn, u.v, v.v, count, world);
       for (int i = 0; i < count; ++i) {
         const double theta = kPiD * static_cast<double>(v.v[i]), phi = 2 * kPiD * (0.5 - static_cast<double>(u.v[i]));
         const Vec3d in_image(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));

@@ -72,6 +72,18 @@ TEST(SkyMixture, FindsAKnownMixture) {
   EXPECT_LT(std::sqrt(error / norm), 0.06);
 }
 
+/// Whoever lights or turns a picture anew finds its fit in the cache.
+TEST(SkyMixture, OfAPictureThatIsPlacedAnewIsTheSame) {
+  const Mat3 turn(Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1));
+  const Environment environment = image_of(two_lobes, Mat3(1.0f), 64, 32);
+  const SkyMixture sky = fitted(environment), placed = fitted(environment.placed(2.5f, turn));
+  ASSERT_EQ(placed.size(), sky.size());
+  for (size_t k = 0; k < sky.size(); ++k) {
+    EXPECT_LT(glm::distance(turn * placed.center[k], sky.center[k]), 1e-6f);
+    EXPECT_EQ(placed.coefficient[k].g, 2.5f * sky.coefficient[k].g);
+  }
+}
+
 SkyMixture even() {
   SkyMixture sky;
   sky.center = {{0, 0, 1}};

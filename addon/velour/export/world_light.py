@@ -1,0 +1,54 @@
+"""What lights a scene from all around."""
+
+from .files import file_stamp
+
+
+class WorldLight:
+    """Of one library scene. Reading a picture takes seconds: one that it has is lit and turned anew."""
+
+    def __init__(self, scene):
+        self._scene = scene
+        self._picture = None  # the key of what the scene has; None: a colour, or what may change unseen
+
+    def set_color(self, color):
+        self._picture = None
+        self._scene.set_world_color(color)
+
+    def set_file(self, path, strength, rotation):
+        """`rotation` [3 x 3] from world directions to the picture's, or None."""
+        self._show(
+            file_stamp(path), strength, rotation, lambda *placed: self._scene.set_world_file(path, *placed)
+        )
+
+    def set_image(self, image, path, pixels, strength, rotation):
+        """`pixels()`: [height x width x 3] of `image` in the working space, row 0 at the top."""
+        self._show(
+            _image_key(image, path),
+            strength,
+            rotation,
+            lambda *placed: self._scene.set_world_pixels(pixels(), *placed),
+        )
+
+    def _show(self, key, strength, rotation, read):
+        if key is not None and key == self._picture:
+            self._scene.place_world(strength, rotation)
+            return
+        self._picture = None  # should it not be readable
+        read(strength, rotation)
+        self._picture = key
+
+
+def _image_key(image, path):
+    """None where its pixels are another frame's in each frame, or painted."""
+    if image.is_dirty or image.source in ("SEQUENCE", "MOVIE"):
+        return None
+    return (
+        image.as_pointer(),
+        image.source,
+        file_stamp(path),
+        image.packed_file and image.packed_file.size,
+        (image.generated_type, tuple(image.generated_color)),
+        image.colorspace_settings.name,
+        image.alpha_mode,
+        tuple(image.size),
+    )
