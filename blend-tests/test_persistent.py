@@ -3,6 +3,8 @@
 import contextlib
 import importlib
 import io
+import shutil
+from pathlib import Path
 from unittest import mock
 
 import bpy
@@ -153,6 +155,73 @@ class PersistentData(BlenderTest):
         decoded, _ = self._assert_same()
         self.assertGreater(np.abs(raw[0] - decoded[0]).max(), 0.01)
 
+    def _sky(self, name):
+        """A world of noise under `name`, whose node it returns, and the path of its file."""
+        path = self.folder / name
+        noise = np.random.default_rng(3).random((8, 16, 3), np.float32)
+        inputs.native().images.write(path, noise)
+        tree = self.scene.world.node_tree
+        node = tree.nodes.new("ShaderNodeTexEnvironment")
+        node.image = bpy.data.images.load(str(path))
+        tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
+        return node, path
+
+    def _assert_read(self, times):
+        """That a kept scene's frames are right, and read their sky so often."""
+        kind, read = _module("native").Scene, []
+
+        def watched(name):
+            method = getattr(kind, name)
+            return mock.patch.object(kind, name, lambda *given: (read.append(name), method(*given))[1])
+
+        with watched("set_world_file"), watched("set_world_pixels"):
+            kept, _ = self._pictures(True)
+            self.assertEqual(len(read), times)
+            whole, _ = self._pictures(False)
+        self.assertEqual(len(read), times + len(whole))
+        for ours, truth in zip(kept, whole, strict=True):
+            np.testing.assert_array_equal(ours, truth)
+        return kept
+
+    def _turn_sky(self, node):
+        tree = self.scene.world.node_tree
+        mapping = tree.nodes.new("ShaderNodeMapping")
+        tree.links.new(mapping.outputs[0], node.inputs["Vector"])
+        self._keys(mapping.inputs["Rotation"], "default_value", (0, 0, 0), (0, 0, 2))
+        self._keys(tree.nodes["Background"].inputs["Strength"], "default_value", 0.4, 1.0)
+
+    def test_a_sky_that_turns_is_read_once(self):
+        self._turn_sky(self._sky("sky.exr")[0])
+        pictures = self._assert_read(1)
+        self.assertGreater(np.abs(pictures[0] - pictures[2]).max(), 0.1)
+
+    def test_a_packed_sky_that_turns_is_read_once(self):
+        node, path = self._sky("packed.exr")
+        self._turn_sky(node)
+        node.image.pack()
+        path.unlink()
+        self._assert_read(1)
+
+    def test_a_sky_that_changes_is_read_anew(self):
+        self.scene.frame_end = 1
+        node, path = self._sky("changing.exr")
+        before = self._assert_read(1)
+        inputs.native().images.write(path, np.full((8, 16, 3), 2, np.float32))
+        node.image.reload()
+        after = self._assert_read(1)
+        self.assertGreater(np.abs(after[0] - before[0]).max(), 0.1)
+
+    def test_a_sky_that_is_painted_is_read_anew(self):
+        self.scene.frame_end = 1
+        node, _ = self._sky("painted.exr")
+        node.image.pack()
+        before = self._assert_read(1)
+        node.image.pixels = np.tile(np.float32([1, 0, 0, 1]), 128).tolist()
+        node.image.update_tag()
+        self.scene.world.update_tag()
+        after = self._assert_read(1)
+        self.assertGreater(np.abs(after[0] - before[0]).max(), 0.1)
+
     def test_another_model(self):
         """The image of a measured node is of the node alone."""
         self.scene.frame_end = 1
@@ -163,6 +232,60 @@ class PersistentData(BlenderTest):
         scenes.velour_node(paint).image = scenes.velour_node(other).image
         after, _ = self._assert_same()
         self.assertGreater(np.abs(after[0] - before[0]).max(), 0.01)
+
+    def test_a_model_is_read_once(self):
+        """A tint, and how a tile lies, say nothing of the files."""
+        files, reads = _module("export.files"), []
+        weave = scenes.measured_material((Path(__file__).parent / "scenes/data/weave.velour").read_bytes())
+        self.still.material_slots[0].material = weave
+        settings = scenes.velour_node(weave).velour
+        settings.placement.repeats = (2, 2)
+        node = f'nodes["{scenes.velour_node(weave).name}"].velour.'
+        for owner, path, values in (
+            (settings, "exposure", (0.0, 2.0)),
+            (settings, "tint", ((1, 1, 1), (1, 0.2, 0.1))),
+            (settings.placement, "placement.rotation", (0.0, 1.0)),
+        ):
+            for value, frame in zip(values, (1, 3), strict=True):
+                setattr(owner, path.rpartition(".")[2], value)
+                weave.node_tree.keyframe_insert(node + path, frame=frame)
+        read = files.read_model
+        with mock.patch.object(files, "read_model", lambda *given: (reads.append(1), read(*given))[1]):
+            kept, _ = self._pictures(True)
+        self.assertEqual(len(reads), 1)
+        whole, _ = self._pictures(False)
+        for ours, truth in zip(kept, whole, strict=True):
+            np.testing.assert_array_equal(ours, truth)
+        self.assertGreater(np.abs(kept[0] - kept[2]).max(), 0.1)
+
+    def test_what_models_are_read_for_is_read(self):
+        self.scene.frame_end = 1
+        paint = scenes.measured_material(inputs.model_bytes(inputs.glossy_measurement()))
+        self.still.material_slots[0].material = paint
+        settings = scenes.velour_node(paint).velour
+        before, _ = self._pictures(True)
+        for name, value in (("roughness", 0.5), ("use_reference", True), ("use_reference", False)):
+            if name == "use_reference" and value:
+                path = self.folder / "glossy.binary"
+                shutil.copy(inputs.glossy_measurement(), path)
+                settings.measurement = bpy.data.images.load(str(path))
+            setattr(settings, name, value)
+            after, _ = self._assert_same()
+            self.assertGreater(np.abs(after[0] - before[0]).max(), 0.001, name)
+            before = after
+
+    def test_a_material_that_is_measured_no_more(self):
+        self.scene.frame_end = 1
+        paint = scenes.measured_material(inputs.model_bytes(inputs.glossy_measurement()))
+        self.still.material_slots[0].material = paint
+        settings = scenes.velour_node(paint).velour
+        first, _ = self._pictures(True)
+        settings.enabled = False
+        plain, _ = self._assert_same()
+        settings.enabled = True
+        again, _ = self._assert_same()
+        np.testing.assert_array_equal(again[0], first[0])
+        self.assertGreater(np.abs(plain[0] - first[0]).max(), 0.01)
 
     def test_another_index(self):
         self.scene.frame_end = 1

@@ -1,11 +1,8 @@
 """Blender materials as numbers in the library's scene."""
 
-from typing import NamedTuple
-
-from ..core.model_warnings import roughness_reason
-from ..native import Model, Shader, VelourError
-from . import files
+from ..native import Shader, VelourError
 from .corner_colors import CornerColors, shader_colors
+from .measured_materials import MeasuredMaterials
 from .model_hashes import model_hashes
 from .nodes import velour_node
 from .notes import ExportError
@@ -15,16 +12,6 @@ from .shaders.relief import correction
 from .textures import TextureTable
 from .uv_maps import UNUSED, placed_map, shader_maps
 from .visibility import hidden_backs
-
-
-class Reduced(NamedTuple):
-    """A material that may render with its model for the scene."""
-
-    number: int  # of the material in the library's scene
-    name: str
-    model: Model  # the one for the scene; the full one is in the library's scene
-    neighbors: int
-    has_full: bool  # False: the full model is missing, and the other one is in its place
 
 
 class MaterialTable:
@@ -46,10 +33,14 @@ class MaterialTable:
         self._turns = {}  # of others that are anisotropic: radians
         self._textured = set()  # of others: those with textures
         self._textures = TextureTable(scene, notes)
-        self.reduced = []
+        self._measured = MeasuredMaterials(scene, notes)
         self.models = {}  # hashes of the files of measured materials, by full name
         self.glows = False  # one of them may shine by itself
         self.beyond_reflection = []  # sentences: what of mixed materials no BTF can hold
+
+    @property
+    def reduced(self):
+        return self._measured.reduced
 
     def find(self, material):
         """The number of a material of the .blend; None where nothing shows it."""
@@ -88,7 +79,7 @@ class MaterialTable:
         if key not in self._numbers:
             self._uv_maps[key] = placed_map(material)
             number = self._numbers[key] = self._add(material)
-            self._labels[number] = (material.name, material.pass_index) if material else (None, 0)
+            self._labels[number] = _label(material)
         return self._numbers[key]
 
     def labels(self):
@@ -103,24 +94,41 @@ class MaterialTable:
         key = _key(material)
         if key not in self._numbers:
             return False
-        before, number = self._needs(key), self._numbers.pop(key)
+        before = self._needs(key)
+        if not self._adjust(material):
+            self._add_anew(material)
+        # How tiles lie is told by settings of the material.
+        return self._needs(key) != before or key in self._tiles
+
+    def _adjust(self, material):
+        """Of a measured material, whether that is enough: its model is what it was."""
+        node, number = velour_node(material), self._numbers[_key(material)]
+        info = node and self._measured.adjust(material, node, number)
+        if not info:
+            return False
+        self._forget_needs(material)
+        self._uv_maps[_key(material)] = placed_map(material)
+        self._note_measured(material, info)
+        self._labels[number] = _label(material)
+        return True
+
+    def _add_anew(self, material):
+        key = _key(material)
+        number = self._numbers.pop(key)
+        self._forget_needs(material)
+        self._measured.forget(material)
+        self._measured.drop_reduced(number)
+        added = self.number(material)
+        self._scene.replace_material(number)
+        self._numbers[key], self._labels[number] = number, self._labels.pop(added)
+        self._measured.renumber(added, number)
+
+    def _forget_needs(self, material):
+        key = _key(material)
         self._tiles.pop(key, None)
         self._turns.pop(key, None)
         self._textured.discard(key)
         self._colors.pop(key, None)
-        self._drop_reduced(number)
-        added = self.number(material)
-        self._scene.replace_material(number)
-        self._numbers[key], self._labels[number] = number, self._labels.pop(added)
-        self.reduced = [e._replace(number=number) if e.number == added else e for e in self.reduced]
-        # How tiles lie is told by settings of the material.
-        return self._needs(key) != before or key in self._tiles
-
-    def _drop_reduced(self, number):
-        for entry in self.reduced:
-            if entry.number == number:
-                entry.model.close()
-        self.reduced = [entry for entry in self.reduced if entry.number != number]
 
     def _needs(self, key):
         placed = self._tiles.get(key), self._turns.get(key)
@@ -130,10 +138,8 @@ class MaterialTable:
         node = velour_node(material)
         if node is not None:
             try:
-                number = self._add_measured(material, node)
-                self._scene.set_gain(number, gain(node.velour))
-                self._scene.hide_backs(number, hidden_backs(material))
-                self.models[material.name_full] = model_hashes(material)
+                number, info = self._measured.add(material, node)
+                self._note_measured(material, info)
                 return number
             except (ExportError, VelourError) as error:
                 if self.strict:
@@ -195,50 +201,9 @@ class MaterialTable:
             self._textured.add(_key(material))
         return slot
 
-    def _add_measured(self, material, node):
-        settings = node.velour
-        owner = _owner(material)
-        if settings.use_reference:
-            self._note_roughness(settings, {}, owner)
-            return self._add_reference(material, node, owner)
-        if settings.use_scene_model and settings.scene_model is not None:
-            return self._add_pair(material, node, owner)
-        if node.image is None:
-            raise ExportError(
-                f"{owner}: node '{node.name}' has no model; press Fit, or choose a model as its image."
-            )
-        with self._read_model(node.image, settings, owner) as model:
-            info = model.info()
-            self._note_place(material, info)
-            return self._add_model(model, info, settings)
-
-    def _read_model(self, image, settings, owner):
-        """The model, as rough as the artist wants it."""
-        model = files.read_model(image, owner)
-        if settings.roughness == 0 or self._note_roughness(settings, model.info(), owner):
-            return model
-        with model:
-            return model.roughened(settings.roughness)
-
-    def _note_roughness(self, settings, info, owner):
-        """Whether the roughness offset cannot be had; it is noted where it is asked for."""
-        reason = roughness_reason(info, settings.use_reference)
-        if reason and settings.roughness > 0:
-            self._notes.add(f"{owner}: {reason}")
-        return reason is not None
-
-    def _add_pair(self, material, node, owner):
-        reduced = self._read_model(node.velour.scene_model, node.velour, owner)
-        has_full = files.is_there(node.image)
-        model = self._read_model(node.image, node.velour, owner) if has_full else reduced
-        info = model.info()
-        self._note_place(material, info)
-        number = self._add_model(model, info, node.velour)
-        self.reduced.append(Reduced(number, material.name, reduced, node.velour.neighbors, has_full))
-        return number
-
-    def _note_place(self, material, info):
+    def _note_measured(self, material, info):
         """What a measured material looks at of where it lies. `info`: of its model or measurement."""
+        self.models[material.name_full] = model_hashes(material)
         tile, key = Tile.of(material, info), _key(material)
         if tile:
             self._tiles[key] = tile
@@ -247,36 +212,9 @@ class MaterialTable:
         else:
             self._uv_maps[key] = UNUSED
 
-    def _add_model(self, model, info, settings):
-        number = self._scene.add_model_material(model, settings.neighbors)
-        if "shell" in info:
-            if settings.outline_width > 0:
-                self._scene.set_shell_tile(number, settings.outline_width)
-            self._scene.set_shell_softness(number, settings.outline_softness)
-        return number
 
-    def _add_reference(self, material, node, owner):
-        if node.velour.measurement is None:
-            raise ExportError(f"{owner}: 'Render from Measurement' is on, but no measurement is chosen.")
-        if files.measurement_info(node.velour.measurement, owner)["kind"] == "btf":
-            return self._add_btf(material, node.velour.measurement, owner)
-        proposal = files.read_model(node.image, owner) if node.image else None
-        with files.read_measurement(node.velour.measurement, owner) as measurement:
-            self._note_place(material, measurement.info())
-            return self._scene.add_measurement_material(measurement, proposal, node.velour.neighbors)
-
-    def _add_btf(self, material, image, owner):
-        try:
-            with files.read_btf(image, owner) as btf:
-                self._note_place(material, btf.info())
-                return self._scene.add_btf_material(btf)
-        except VelourError as error:
-            raise ExportError(f"{owner}: {error}") from error
-
-
-def gain(settings):
-    """What a measured material's reflection is multiplied with: the artist's tint and exposure."""
-    return tuple(channel * 2.0**settings.exposure for channel in settings.tint)
+def _label(material):
+    return (material.name, material.pass_index) if material else (None, 0)
 
 
 def _owner(material):

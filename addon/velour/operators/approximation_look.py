@@ -7,7 +7,7 @@ import bpy
 
 from ..core.approximation_look import Look, dyed, with_look
 from ..export.color import rec709_to_working
-from ..export.materials import gain
+from ..export.measured_materials import gain
 from ..export.nodes import approximation_node, first_input, velour_node
 from ..properties import changed
 from .approximation_image import place

@@ -4,7 +4,7 @@ import bpy
 
 from ..core.model_warnings import gain_warning, panel_warnings, roughness_reason
 from ..engine.engine import VelourRenderEngine
-from ..export.materials import gain
+from ..export.measured_materials import gain
 from ..export.nodes import active_output, velour_node
 from ..export.notes import Notes
 from ..export.shaders import surface_layers

@@ -62,6 +62,7 @@ void Scene::set_shell_tile(uint32_t material, float metres) {
   if (!(metres >= 0 && std::isfinite(metres))) {
     throw Error(Status::invalid_argument, "The tile of a shell cannot be " + std::to_string(metres) + " metres wide.");
   }
+  if (metres == surface.shell_tile) return;
   geometry_changed();
   surface.shell_tile = metres;
 }
