@@ -32,11 +32,14 @@ def ball_in_a_sky(folder):
     yield from viewport.real_time_finished()
     window.screenshot(folder, "ball")
     drawn = realtime.pixels()
-    same = realtime.error(drawn, realtime.traced(realtime.equirectangular(realtime.mixture())))
+    traced = realtime.traced(realtime.equirectangular(realtime.mixture()))
+    same = realtime.error(drawn, traced)
     picture = realtime.error(drawn, realtime.traced())
     print(f"relative L2: {same:.4f} under the mixture, {picture:.4f} under the picture", flush=True)
     assert same < 0.03, same
     assert picture < 0.05, picture
+    off = realtime.error(1.04 * drawn, traced)
+    assert 0.03 < off < 0.06, off  # what is off by more would be seen
 
 
 def btf(folder):

@@ -74,7 +74,7 @@ def base_colors(folder):
         error = _error()
         print(f"relative L2, {change}: {error:.4f}", flush=True)
         assert error < 0.03, (change, error)
-    assert realtime.error(realtime.pixels(), before) > 0.2, (
+    assert realtime.difference(before, realtime.pixels()) > 0.2, (
         "the bound would not tell one picture from another"
     )
 
@@ -97,4 +97,4 @@ def other_model(folder):
     error = _error(1024)
     print(f"relative L2 of another model: {error:.4f}", flush=True)
     assert error < 0.03, error
-    assert realtime.error(realtime.pixels(), before) > 0.1
+    assert realtime.difference(before, realtime.pixels()) > 0.1

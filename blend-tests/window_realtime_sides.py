@@ -29,7 +29,7 @@ def both_sides(folder):
         yield from viewport.real_time_finished()
         drawn = realtime.pixels()
         traced = realtime.traced(realtime.equirectangular(realtime.mixture()), samples=256)
-        colors = [picture[picture[..., 3] > 0.999][:, :3].mean(axis=0) for picture in (drawn, traced)]
+        colors = [picture[picture[..., 3] > 0.999][:, :3].mean(axis=0) for picture in (drawn, traced.mean)]
         error = realtime.error(drawn, traced)
         print(
             f"smooth {smooth}, turned {turn:.0f}, scale {scale}: {colors}, relative L2 {error:.4f}",

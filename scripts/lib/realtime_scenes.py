@@ -26,7 +26,7 @@ def net(folder):
     drawn = realtime.pixels()
     traced = realtime.traced(realtime.equirectangular(realtime.mixture()), samples=2048)
     print(f"real time: relative L2 {realtime.error(drawn, traced):.4f}", flush=True)
-    np.save(folder / "net.npy", np.stack((traced, drawn)))
+    np.save(folder / "net.npy", np.stack((traced.mean, drawn)))
 
 
 def paint(folder):

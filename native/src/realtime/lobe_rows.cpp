@@ -15,9 +15,9 @@ namespace velour {
 namespace {
 
 constexpr int kLobeFloats = 8;
-constexpr int kAngles = 91, kGrid = 33;           // of parametric models, which blend
+constexpr int kAngles = 91, kGrid = 49;           // of parametric models, which blend
 constexpr int kNearAngles = 361, kNearGrid = 65;  // of scattered ones, which do not
-constexpr double kSoft = 150;                     // bandwidths of light below which the broad part mends a lobe
+constexpr double kSoft = 300;                     // bandwidths of light below which the broad part mends a lobe
 
 size_t places_of(const LobeRows& rows) {
   const auto n = static_cast<size_t>(rows.side);
@@ -82,20 +82,58 @@ void write_place(const LobesOfViews& material, const std::vector<size_t>& counts
                  const Vec3d& wv, float* to) {
   const auto lobes = material.lobes(wv);
   std::vector<LightGaussian> gaussians, soft_gaussians;
-  std::vector<bool> soft(lobes.size());
+  std::vector<size_t> places;
+  std::vector<bool> is_soft(lobes.size());
   for (size_t j = 0; j < lobes.size(); ++j) {
     std::vector<LightGaussian> row(counts[j]);
     light_gaussians(lobes[j], material.of(), wv, row);
     for (LightGaussian& g : row) g.color *= material.growth(lobes, j, g.center, wv);
-    gaussians.insert(gaussians.end(), row.begin(), row.end());
-    soft[j] = lobes[j].bandwidth_across() <= kSoft;
-    if (soft[j]) soft_gaussians.insert(soft_gaussians.end(), row.begin(), row.end());
+    is_soft[j] = lobes[j].bandwidth_across() <= kSoft;
+    for (const LightGaussian& g : row) {
+      if (is_soft[j]) {
+        places.push_back(gaussians.size());
+        soft_gaussians.push_back(g);
+      }
+      gaussians.push_back(g);
+    }
   }
-  const auto fitted = broad.fitted([&](const Vec3d& wl) {
-    const Vec3d reflected = wl.z > 0 ? wl.z * material.soft_value(soft, wl, wv) : Vec3d(0.0);
-    return reflected - value_of(soft_gaussians, wl);
-  });
+  const auto slice = [&](const Vec3d& wl) {
+    return wl.z > 0 ? wl.z * material.soft_value(is_soft, wl, wv) : Vec3d(0.0);
+  };
+  const auto fitted = broad.fitted(slice, soft_gaussians);
+  for (size_t i = 0; i < places.size(); ++i) gaussians[places[i]] = soft_gaussians[i];
   write_lobes(fitted, gaussians, to);
+}
+
+bool is_black(const float* lobe) { return lobe[4] == 0 && lobe[5] == 0 && lobe[6] == 0; }
+
+/// The places beside one, those that share a side before those that share a corner.
+std::vector<uint32_t> beside(const LobeRows& rows, uint32_t place) {
+  constexpr int kSteps[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+  const int n = rows.side, last = rows.isotropic ? 0 : n - 1;
+  const int x = static_cast<int>(place) % n, y = static_cast<int>(place) / n;
+  std::vector<uint32_t> places;
+  for (const auto& [dx, dy] : kSteps) {
+    if (x + dx < 0 || x + dx >= n || y + dy < 0 || y + dy > last) continue;
+    places.push_back(static_cast<uint32_t>((y + dy) * n + x + dx));
+  }
+  return places;
+}
+
+/// Lobes that are black at a place get the shape that they have beside it: else a blend would have the shape of
+/// nothing.
+void shape_black_lobes(LobeRows& rows) {
+  const TablePixels before = rows.pixels;
+  for (uint32_t place = 0; place < places_of(rows); ++place) {
+    const auto around = beside(rows, place);
+    for (int j = 0; j < rows.lobes; ++j) {
+      const auto at = static_cast<uint32_t>(2 * j);
+      if (!is_black(before.at(at, place))) continue;
+      const auto lit =
+          std::find_if(around.begin(), around.end(), [&](uint32_t p) { return !is_black(before.at(at, p)); });
+      if (lit != around.end()) std::copy_n(before.at(at, *lit), 4, rows.pixels.at(at, place));
+    }
+  }
 }
 
 LobeRows blended_rows(bool isotropic, const LobesOfViews& material, int threads, Progress& progress) {
@@ -108,6 +146,7 @@ LobeRows blended_rows(bool isotropic, const LobesOfViews& material, int threads,
   parallel_for_each(places_of(rows), threads, progress, [&](size_t place) {
     write_place(material, counts, broad, view_at(rows, place), rows.pixels.at(0, static_cast<uint32_t>(place)));
   });
+  shape_black_lobes(rows);
   return rows;
 }
 
@@ -140,7 +179,7 @@ void write_mixture(const LobeMixture& mixture, const BroadPart& broad, float* to
   std::vector<LightGaussian> soft;
   std::copy_if(gaussians.begin(), gaussians.end(), std::back_inserter(soft),
                [](const LightGaussian& g) { return g.bandwidth < kSoft; });
-  auto fitted = broad.fitted([&](const Vec3d& wl) { return wl.z > 0 ? Vec3d(0.0) : -value_of(soft, wl); });
+  auto fitted = broad.fitted([&](const Vec3d& wl) { return wl.z > 0 ? Vec3d(0.0) : -value_of(soft, wl); }, {});
   fitted.cosine += kPiD * Vec3d(mixture.diffuse_r, mixture.diffuse_g, mixture.diffuse_b);
   write_lobes(fitted, gaussians, to);
 }
