@@ -36,7 +36,7 @@ def ball_in_a_sky(folder):
     same = realtime.error(drawn, traced)
     picture = realtime.error(drawn, realtime.traced())
     print(f"relative L2: {same:.4f} under the mixture, {picture:.4f} under the picture", flush=True)
-    assert same < 0.03, same
+    assert same < 0.02, same
     assert picture < 0.05, picture
     off = realtime.error(1.04 * drawn, traced)
     assert 0.03 < off < 0.06, off  # what is off by more would be seen
@@ -78,7 +78,7 @@ def lamps(folder):
         window.screenshot(folder, f"lamp-{kind.lower()}")
         error = realtime.error(realtime.pixels(), realtime.traced())
         print(f"relative L2 under {kind}: {error:.4f}", flush=True)
-        assert error < 0.06, (kind, error)
+        assert error < 0.02, (kind, error)
         bpy.data.objects.remove(obj)
 
 
