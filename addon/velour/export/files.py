@@ -135,8 +135,10 @@ def stamp_of(image):
     """Of what `image` (or None) stands for: another one where that may be something else."""
     if image is None:
         return None
-    packed = image.packed_file and image.packed_file.size
-    return image.original.as_pointer(), packed or file_stamp(absolute_path(image)), image.velour.sha256
+    packed = image.packed_file
+    content = packed.size if packed else file_stamp(absolute_path(image))
+    digest = image.velour.sha256 or (packed and sha256(packed.data))
+    return image.original.as_pointer(), content, digest
 
 
 def is_there(image):
