@@ -54,6 +54,12 @@ def _program(name):
     return shutil.which(name, path=f"{os.environ['PATH']}:/usr/sbin")
 
 
+def _version():
+    """The first number of the release: 22 of 22.05."""
+    said = subprocess.run([_program("slurmd"), "-V"], capture_output=True, text=True, check=True).stdout
+    return int(said.split()[-1].split(".")[0])
+
+
 class Slurm:
     """Raises RuntimeError with what the daemons said when no node comes up."""
 
@@ -77,6 +83,10 @@ class Slurm:
             daemon=_free_port(),
         )
         (self.folder / "slurm.conf").write_text(text)
+        if (
+            not any(Path("/sys/fs/cgroup").glob("*")) and _version() >= 24
+        ):  # these do not start without, unless told
+            (self.folder / "cgroup.conf").write_text("CgroupPlugin=disabled\n")
         for command in (["slurmctld", "-D", "-i"], ["slurmd", "-D"]):
             log = open(self.folder / f"{command[0]}.log", "wb")  # noqa: SIM115 - the daemon's own
             with log:
