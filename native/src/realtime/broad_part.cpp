@@ -25,7 +25,7 @@ std::vector<LightGaussian> rings() {
     for (int i = 0; i < kCounts[ring]; ++i) {
       const double phi = 2 * kPiD * i / kCounts[ring];
       const Vec3d center(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
-      gaussians.push_back({.center = center, .bandwidth = kBandwidth, .color = Vec3d(1.0)});
+      gaussians.push_back({.center = center, .bandwidth = kBandwidth, .color = Vec3d(1.0), .is_used = true});
     }
   }
   return gaussians;
@@ -64,7 +64,7 @@ BroadPart::Fitted BroadPart::fitted(const std::function<Vec3d(const Vec3d&)>& sl
   for (LightGaussian& g : own) {
     const Eigen::RowVectorXd density = density_at(g, points_);
     left -= density.transpose() * Eigen::RowVector3d(g.color.x, g.color.y, g.color.z);
-    if (g.bandwidth < kNarrowest && g.color != Vec3d(0.0)) mended.push_back(&g);
+    if (g.bandwidth < kNarrowest && g.is_used) mended.push_back(&g);
   }
   if (!mended.empty()) mend(mended, left);
   const Eigen::MatrixXd weights = solve_ * left;

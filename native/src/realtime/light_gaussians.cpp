@@ -10,6 +10,7 @@ namespace velour {
 namespace {
 
 constexpr double kMostBandwidth = 1e6;
+constexpr double kLeastAbove = 1e-9;        // of a Gaussian, above the horizon
 constexpr double kBroad = 8, kNarrow = 24;  // bandwidths
 constexpr double kSteps = 1.8;  // deviations of a Gaussian between two of a row: smooth to one in two hundred
 
@@ -50,6 +51,7 @@ void multiply_by_cosine(LightGaussian& g) {
   const double m = g.center.z, s = std::sqrt(std::max(1 - m * m, 0.0) / g.bandwidth);
   if (s < 1e-6) {
     g.color *= std::max(m, 0.0);
+    g.is_used = g.is_used && m > 0;
     return;
   }
   const double x = m / s, density = std::exp(-x * x / 2) / std::sqrt(2 * kPiD),
@@ -57,8 +59,9 @@ void multiply_by_cosine(LightGaussian& g) {
   const double first = s * density + m * above;  // moments of max(z, 0)
   const double second = (m * m + s * s) * above + m * s * density;
   const double third = (m * m + 2 * s * s) * s * density + m * (m * m + 3 * s * s) * above;
-  if (!(first > 1e-9)) {
+  if (!(first > kLeastAbove)) {
     g.color = Vec3d(0.0);
+    g.is_used = false;
     return;
   }
   const double mean = std::min(second / first, 1.0),
@@ -71,7 +74,9 @@ void multiply_by_cosine(LightGaussian& g) {
 
 void clip_at_horizon(LightGaussian& g) {
   const double deviation = std::sqrt(std::max(1 - g.center.z * g.center.z, 1e-12) / g.bandwidth);
-  g.color *= 0.5 * std::erfc(-g.center.z / deviation / std::sqrt(2.0));
+  const double above = 0.5 * std::erfc(-g.center.z / deviation / std::sqrt(2.0));
+  g.color *= above;
+  g.is_used = g.is_used && above > kLeastAbove;
 }
 
 /// Lobes broader than this are not Gaussians once the cosine is in; they are left to whoever fits what is broad.
@@ -146,6 +151,7 @@ void light_gaussians(const ReachedLobe& reached, LobeOf of, const Vec3d& wv, std
     const auto wl = center ? light_at(lobe, reach.along, row.x(i) * spread, wv) : std::nullopt;
     if (!wl) continue;
     const double area = 1 / warp_jacobian(lobe, *wl, wv), growth = area * warp_jacobian(lobe, *center, wv);
+    g.is_used = share > 0;
     g.center = *wl;
     // A half vector's growth is all across: 2 would be the power, and 1 what keeps the row smooth along.
     g.bandwidth = std::clamp(across / std::pow(growth, 1.5), 1.0, kMostBandwidth);

@@ -13,6 +13,9 @@ struct LightGaussian {
   Vec3d center{0, 0, 1};
   double bandwidth = 1;
   Vec3d color{0.0};
+  /// Else it stands for nothing: its lobe has no light there, or none above the horizon, or is left to the broad part.
+  /// It is black then, and lies anywhere.
+  bool is_used = false;
 };
 
 /// How a lobe lies over light directions about its own: what one radian of its argument is there, along and across.

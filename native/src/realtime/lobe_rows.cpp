@@ -38,18 +38,19 @@ Vec3d view_at(const LobeRows& rows, size_t place) {
   return {sine * disk.x, sine * disk.y, std::cos(theta)};
 }
 
-void write_lobe(const Vec3& center, float level, const Vec3& color, float* to) {
-  const float values[kLobeFloats] = {center.x, center.y, center.z, level, color.x, color.y, color.z, 0};
+void write_lobe(const Vec3& center, float level, const Vec3& color, bool is_used, float* to) {
+  const float used = is_used ? 1 : 0;
+  const float values[kLobeFloats] = {center.x, center.y, center.z, level, color.x, color.y, color.z, used};
   std::copy_n(values, kLobeFloats, to);
 }
 
 void write_lobe(const LightGaussian& g, float* to) {
-  write_lobe(Vec3(g.center), LightLevels::of(static_cast<float>(g.bandwidth)), Vec3(g.color), to);
+  write_lobe(Vec3(g.center), LightLevels::of(static_cast<float>(g.bandwidth)), Vec3(g.color), g.is_used, to);
 }
 
 /// All of a place.
 void write_lobes(const BroadPart::Fitted& broad, const std::vector<LightGaussian>& gaussians, float* to) {
-  write_lobe({0, 0, 1}, LightLevels::kCosine, Vec3(broad.cosine), to);
+  write_lobe({0, 0, 1}, LightLevels::kCosine, Vec3(broad.cosine), true, to);
   for (const LightGaussian& g : broad.gaussians) write_lobe(g, to += kLobeFloats);
   for (const LightGaussian& g : gaussians) write_lobe(g, to += kLobeFloats);
 }
@@ -58,7 +59,7 @@ void write_lobes(const BroadPart::Fitted& broad, const std::vector<LightGaussian
 TablePixels pixels_of(const LobeRows& rows) {
   TablePixels pixels(2 * static_cast<uint32_t>(rows.lobes), static_cast<uint32_t>(places_of(rows)));
   for (size_t i = 0; i < pixels.rgba.size(); i += kLobeFloats) {
-    write_lobe({0, 0, 1}, LightLevels::kBroadest, Vec3(0.0f), pixels.rgba.data() + i);
+    write_lobe({0, 0, 1}, LightLevels::kBroadest, Vec3(0.0f), false, pixels.rgba.data() + i);
   }
   return pixels;
 }
@@ -105,8 +106,6 @@ void write_place(const LobesOfViews& material, const std::vector<size_t>& counts
   write_lobes(fitted, gaussians, to);
 }
 
-bool is_black(const float* lobe) { return lobe[4] == 0 && lobe[5] == 0 && lobe[6] == 0; }
-
 /// The places beside one, those that share a side before those that share a corner.
 std::vector<uint32_t> beside(const LobeRows& rows, uint32_t place) {
   constexpr int kSteps[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
@@ -120,18 +119,18 @@ std::vector<uint32_t> beside(const LobeRows& rows, uint32_t place) {
   return places;
 }
 
-/// Lobes that are black at a place get the shape that they have beside it: else a blend would have the shape of
+/// Lobes that a place does not use get the shape that they have beside it: else a blend would have the shape of
 /// nothing.
-void shape_black_lobes(LobeRows& rows) {
+void shape_unused_lobes(LobeRows& rows) {
   const TablePixels before = rows.pixels;
+  const auto is_used = [&](uint32_t column, uint32_t place) { return before.at(column + 1, place)[3] != 0; };
   for (uint32_t place = 0; place < places_of(rows); ++place) {
     const auto around = beside(rows, place);
     for (int j = 0; j < rows.lobes; ++j) {
       const auto at = static_cast<uint32_t>(2 * j);
-      if (!is_black(before.at(at, place))) continue;
-      const auto lit =
-          std::find_if(around.begin(), around.end(), [&](uint32_t p) { return !is_black(before.at(at, p)); });
-      if (lit != around.end()) std::copy_n(before.at(at, *lit), 4, rows.pixels.at(at, place));
+      if (is_used(at, place)) continue;
+      const auto used = std::find_if(around.begin(), around.end(), [&](uint32_t p) { return is_used(at, p); });
+      if (used != around.end()) std::copy_n(before.at(at, *used), 4, rows.pixels.at(at, place));
     }
   }
 }
@@ -146,7 +145,7 @@ LobeRows blended_rows(bool isotropic, const LobesOfViews& material, int threads,
   parallel_for_each(places_of(rows), threads, progress, [&](size_t place) {
     write_place(material, counts, broad, view_at(rows, place), rows.pixels.at(0, static_cast<uint32_t>(place)));
   });
-  shape_black_lobes(rows);
+  shape_unused_lobes(rows);
   return rows;
 }
 
@@ -168,7 +167,8 @@ std::vector<LightGaussian> gaussians_of(const LobeMixture& mixture) {
     const bool is_gaussian = mixture.kernel == Kernel::gaussian;
     gaussians.push_back({.center = Vec3d(mixture.x[j], mixture.y[j], mixture.z[j]),
                          .bandwidth = is_gaussian ? own : gaussian_bandwidth_of_mean(1 - own),
-                         .color = whole * Vec3d(mixture.r[j], mixture.g[j], mixture.b[j])});
+                         .color = whole * Vec3d(mixture.r[j], mixture.g[j], mixture.b[j]),
+                         .is_used = true});
   }
   return gaussians;
 }

@@ -11,7 +11,8 @@ namespace velour {
 /// Reflected radiance is the sum over a place's lobes of colour times the light's mean over the lobe
 /// (realtime/light_map.h).
 ///
-/// Row = place of the view; a lobe is two pixels of it: centre (unit, in the view's frame) and level, then colour.
+/// Row = place of the view; a lobe is two pixels of it: centre (unit, in the view's frame) and level, then colour and
+/// whether it stands for anything (1, or 0 and black).
 /// Isotropic: the frame's x is along the view's azimuth, row r of n stands for the polar angle r / (n - 1) pi / 2.
 /// Otherwise the frame is the surface's, and place (i, j) of a grid of n x n for the view at (-1, -1) + 2 (i, j) /
 /// (n - 1) of the disk of views: its radius is the polar angle over pi / 2, and what lies outside counts as its rim.
