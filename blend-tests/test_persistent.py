@@ -258,11 +258,15 @@ class PersistentData(BlenderTest):
             np.testing.assert_array_equal(ours, truth)
         self.assertGreater(np.abs(kept[0] - kept[2]).max(), 0.1)
 
-    def test_what_models_are_read_for_is_read(self):
-        self.scene.frame_end = 1
+    def _wear_paint(self):
+        """The settings of a measured material that an object is given."""
         paint = scenes.measured_material(inputs.model_bytes(inputs.glossy_measurement()))
         self.still.material_slots[0].material = paint
-        settings = scenes.velour_node(paint).velour
+        return scenes.velour_node(paint).velour
+
+    def test_what_models_are_read_for_is_read(self):
+        self.scene.frame_end = 1
+        settings = self._wear_paint()
         before, _ = self._pictures(True)
         for name, value in (("roughness", 0.5), ("use_reference", True), ("use_reference", False)):
             if name == "use_reference" and value:
@@ -276,9 +280,7 @@ class PersistentData(BlenderTest):
 
     def test_a_material_that_is_measured_no_more(self):
         self.scene.frame_end = 1
-        paint = scenes.measured_material(inputs.model_bytes(inputs.glossy_measurement()))
-        self.still.material_slots[0].material = paint
-        settings = scenes.velour_node(paint).velour
+        settings = self._wear_paint()
         first, _ = self._pictures(True)
         settings.enabled = False
         plain, _ = self._assert_same()
