@@ -1,6 +1,7 @@
 """Edits in the rendered viewport: what was exported piece by piece is what a whole export makes."""
 
 import math
+import time
 
 import bpy
 import numpy as np
@@ -12,7 +13,7 @@ _SKY = "/studiolights/world/courtyard.exr"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (edits, undo, selection))
+    window.run(folder, (edits, undo, selection, during_a_build))
 
 
 def _scene():
@@ -255,3 +256,34 @@ def selection(folder):
     bpy.context.view_layer.objects.active = bpy.data.objects["Ball"]
     yield 0.3
     assert viewport.the_one()._job.picture().samples >= samples
+
+
+def during_a_build(folder):
+    """Edits do not wait for the hierarchy of a large mesh, which is built once."""
+    _scene()
+    with window.override():
+        bpy.ops.mesh.primitive_grid_add(x_subdivisions=1500, y_subdivisions=1500, size=20)
+    bpy.context.view_layer.objects.active.location.z = -2
+    engine_viewport = viewport.addon("engine.viewport").Viewport
+    update, held = engine_viewport.update, []
+
+    def timed(self, *given):
+        begin = time.monotonic()
+        update(self, *given)
+        held.append(time.monotonic() - begin)
+
+    engine_viewport.update = timed
+    try:
+        viewport.show(samples=8)
+        yield from viewport.until(lambda: held, "it is not exported")
+        begin = time.monotonic()
+        while viewport.samples() == 0:
+            bpy.data.lights["Light"].energy += 1
+            bpy.data.objects["Cube"].location.z += 0.01
+            yield viewport.TURN
+        built = time.monotonic() - begin
+    finally:
+        engine_viewport.update = update
+    assert len(held) > 5, held
+    assert max(held[1:]) < max(0.3 * built, 0.2), (held, built)
+    yield from viewport.finished()

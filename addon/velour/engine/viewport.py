@@ -5,6 +5,7 @@ library's scene, and the job starts anew, coarse first.
 """
 
 import logging
+import threading
 import time
 import weakref
 
@@ -38,6 +39,7 @@ class Viewport:
         self._engine = weakref.ref(engine)
         self._live = None  # LiveExport
         self._job = None
+        self._closing = threading.Lock()  # of the job, which other threads pause
         self._options = None  # of the job
         self._key = (
             None  # of the view that the job shows; None: of none, or of a scene before its last change
@@ -130,9 +132,9 @@ class Viewport:
 
     def pause(self):
         """Called from any thread; turn() goes on later."""
-        job = self._job
-        if job and not job.closed:
-            job.cancel()
+        with self._closing:
+            if self._job:
+                self._job.cancel()
 
     def turn(self):
         """Between redraws. False: there is nothing to wait for."""
@@ -232,9 +234,11 @@ class Viewport:
             time.sleep(0.001)
 
     def _close_job(self):
-        if self._job:
-            self._job.close()
-        self._job = self._options = self._key = None
+        with self._closing:
+            if self._job:
+                self._job.close()
+            self._job = None
+        self._options = self._key = None
         self._is_waiting = False
         self._picture.begin()
 

@@ -66,7 +66,7 @@ void ProgressiveRender::measure_first(bool is_whole) {
 /// Its hierarchy, lights, and what the strategy needs: kept while the camera alone moves.
 void ProgressiveRender::prepare_scene(Progress& progress) {
   progress.stage("hierarchy", 0.0, 0.0);
-  scene_->commit(asked_.threads);
+  scene_->commit(asked_.threads, &progress);
   progress.check();
   if (context_ && prepared_for_ == scene_->revision()) return;
   context_.reset();

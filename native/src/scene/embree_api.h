@@ -1,4 +1,4 @@
-// Embree's entry points, bound by dlsym. Included by embree_scene.cpp alone: nothing else sees Embree.
+// Embree's entry points, bound by dlsym. Included by embree_*.cpp alone: nothing else sees Embree.
 #pragma once
 
 #if VELOUR_EMBREE_MAJOR >= 4
@@ -22,14 +22,17 @@ struct EmbreeApi {
   VELOUR_EMBREE(rtcGetDeviceError);
   VELOUR_EMBREE(rtcSetDeviceMemoryMonitorFunction);
   VELOUR_EMBREE(rtcNewScene);
+  VELOUR_EMBREE(rtcRetainScene);
   VELOUR_EMBREE(rtcReleaseScene);
   VELOUR_EMBREE(rtcSetSceneFlags);
+  VELOUR_EMBREE(rtcSetSceneProgressMonitorFunction);
   VELOUR_EMBREE(rtcSetSceneBuildQuality);
   VELOUR_EMBREE(rtcJoinCommitScene);
   VELOUR_EMBREE(rtcNewGeometry);
   VELOUR_EMBREE(rtcReleaseGeometry);
   VELOUR_EMBREE(rtcCommitGeometry);
   VELOUR_EMBREE(rtcAttachGeometryByID);
+  VELOUR_EMBREE(rtcGetGeometry);
   VELOUR_EMBREE(rtcSetNewGeometryBuffer);
   VELOUR_EMBREE(rtcSetGeometryInstancedScene);
   VELOUR_EMBREE(rtcSetGeometryTransform);

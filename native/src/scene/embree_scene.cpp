@@ -1,24 +1,16 @@
 #include "scene/embree_scene.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cstring>
-#include <utility>
 #include <vector>
 
 #include "job/error.h"
 #include "job/threads.h"
-#include "scene/embree_api.h"
+#include "scene/embree_meshes.h"
 
 namespace velour {
 namespace {
 
 static_assert(RTC_INVALID_GEOMETRY_ID == kNoHit);
-
-bool count_bytes(void* counter, ssize_t bytes, bool /*post*/) {
-  static_cast<std::atomic<int64_t>*>(counter)->fetch_add(bytes, std::memory_order_relaxed);
-  return true;
-}
 
 /// Rays handed to Embree at once: their copies stay in the first-level cache.
 constexpr size_t kBatch = 64;
@@ -40,33 +32,6 @@ void to_embree(const Ray& ray, RTCRay& r) {
 
 }  // namespace
 
-/// Meshes with their hierarchies: what several scenes may share.
-struct EmbreeScene::Meshes {
-  const EmbreeApi& api = embree();
-  std::atomic<int64_t> bytes{0};
-  RTCDevice device = nullptr;
-  std::vector<RTCScene> scenes;
-  std::vector<uint32_t> unbuilt;  // of them, by number
-
-  Meshes() : device(api.rtcNewDevice(nullptr)) {
-    if (device == nullptr) throw Error(Status::unsupported, "Embree cannot run on this processor.");
-    api.rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
-  }
-  ~Meshes() {
-    for (RTCScene mesh : scenes) api.rtcReleaseScene(mesh);
-    api.rtcReleaseDevice(device);
-  }
-  Meshes(const Meshes&) = delete;
-  Meshes& operator=(const Meshes&) = delete;
-
-  void build(tbb::task_arena& arena) {
-    arena.execute([this] {
-      for (uint32_t number : unbuilt) api.rtcJoinCommitScene(scenes[number]);
-    });
-    unbuilt.clear();
-  }
-};
-
 struct EmbreeScene::Impl {
   struct Instance {
     uint32_t mesh;
@@ -75,7 +40,7 @@ struct EmbreeScene::Impl {
   };
 
   const EmbreeApi& api = embree();
-  std::shared_ptr<Meshes> meshes = std::make_shared<Meshes>();
+  std::shared_ptr<EmbreeMeshes> meshes = std::make_shared<EmbreeMeshes>();
   std::vector<Instance> instances;
   RTCScene top = nullptr;     // instances; stays null when `traced` is the only mesh itself
   RTCScene traced = nullptr;  // null until committed
@@ -91,59 +56,27 @@ struct EmbreeScene::Impl {
     traced = nullptr;
   }
 
-  RTCScene new_scene() const {
-    RTCScene scene = api.rtcNewScene(meshes->device);
-    api.rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    return scene;
-  }
-
-  void attach(RTCScene scene, RTCGeometry geometry, uint32_t id) const {
-    api.rtcCommitGeometry(geometry);
-    api.rtcAttachGeometryByID(scene, geometry, id);
-    api.rtcReleaseGeometry(geometry);
-  }
-
   RTCScene build_top() const {
-    RTCScene scene = new_scene();
+    RTCScene scene = meshes->new_scene();
     for (uint32_t i = 0; i < instances.size(); ++i) {
-      RTCGeometry geometry = api.rtcNewGeometry(meshes->device, RTC_GEOMETRY_TYPE_INSTANCE);
-      api.rtcSetGeometryInstancedScene(geometry, meshes->scenes[instances[i].mesh]);
+      RTCGeometry geometry = api.rtcNewGeometry(meshes->device(), RTC_GEOMETRY_TYPE_INSTANCE);
+      api.rtcSetGeometryInstancedScene(geometry, meshes->scene(instances[i].mesh));
       api.rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, instances[i].object_to_world.m);
-      attach(scene, geometry, i);
+      api.rtcCommitGeometry(geometry);
+      api.rtcAttachGeometryByID(scene, geometry, i);
+      api.rtcReleaseGeometry(geometry);
     }
     return scene;
   }
 
-  /// Of a mesh, not committed.
-  RTCScene mesh_scene(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) const {
-    for (const glm::uvec3& t : triangles) {
-      if (std::max({t.x, t.y, t.z}) >= positions.size()) {
-        throw Error(Status::invalid_argument, "A triangle names vertex " + std::to_string(std::max({t.x, t.y, t.z})) +
-                                                  " of a mesh with " + std::to_string(positions.size()) + ".");
-      }
-    }
-    RTCGeometry geometry = api.rtcNewGeometry(meshes->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    if (!triangles.empty()) {
-      void* vertex = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3),
-                                                 positions.size());
-      void* index = api.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                sizeof(glm::uvec3), triangles.size());
-      check();
-      std::memcpy(vertex, positions.data(), positions.size_bytes());
-      std::memcpy(index, triangles.data(), triangles.size_bytes());
-    }
-    RTCScene scene = new_scene();
-    attach(scene, geometry, 0);
-    return scene;
-  }
-
-  void check() const {
-    const RTCError error = api.rtcGetDeviceError(meshes->device);
-    if (error == RTC_ERROR_NONE) return;
-    if (error == RTC_ERROR_OUT_OF_MEMORY) {
-      throw Error(Status::out_of_memory, "Not enough memory to build the ray tracer's hierarchy.");
-    }
-    throw Error(Status::unknown, "Embree failed with its error " + std::to_string(error) + ".");
+  void commit_top(int threads) const {
+    RTCError error = RTC_ERROR_NONE;
+    tbb::task_arena arena(arena_concurrency(threads));
+    arena.execute([&] {  // another thread may do it, and has its own errors
+      api.rtcJoinCommitScene(top);
+      error = api.rtcGetDeviceError(meshes->device());
+    });
+    EmbreeMeshes::check(error);
   }
 
   void read_hit(const RTCRayHit& from, Hit& hit) const {
@@ -166,23 +99,17 @@ EmbreeScene::EmbreeScene() : impl_(std::make_unique<Impl>()) {}
 EmbreeScene::~EmbreeScene() = default;
 
 uint32_t EmbreeScene::add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
-  Meshes& meshes = *impl_->meshes;
-  meshes.scenes.push_back(impl_->mesh_scene(positions, triangles));
-  meshes.unbuilt.push_back(static_cast<uint32_t>(meshes.scenes.size() - 1));
-  return meshes.unbuilt.back();
+  return impl_->meshes->add(positions, triangles);
 }
 
 void EmbreeScene::set_mesh(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
-  Meshes& meshes = *impl_->meshes;
-  RTCScene scene = impl_->mesh_scene(positions, triangles);
-  impl_->api.rtcReleaseScene(std::exchange(meshes.scenes.at(number), scene));
-  meshes.unbuilt.push_back(number);
+  impl_->meshes->set(number, positions, triangles);
 }
 
 void EmbreeScene::share_meshes(const EmbreeScene& other) { impl_->meshes = other.impl_->meshes; }
 
 uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world) {
-  if (mesh >= impl_->meshes->scenes.size()) {
+  if (mesh >= impl_->meshes->size()) {
     throw Error(Status::invalid_argument, "There is no mesh " + std::to_string(mesh) + " to instance.");
   }
   impl_->instances.push_back({mesh, object_to_world, object_to_world.normal_map()});
@@ -191,18 +118,16 @@ uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world)
 
 void EmbreeScene::clear_instances() { impl_->instances.clear(); }
 
-void EmbreeScene::commit(int threads) {
+void EmbreeScene::commit(int threads, const Progress* progress) {
   Impl& s = *impl_;
   s.release_top();
-  tbb::task_arena arena(arena_concurrency(threads));
-  s.meshes->build(arena);
+  s.meshes->build(threads, progress);
   const bool direct = s.instances.size() == 1 && s.instances[0].object_to_world == Affine{};
   if (!direct) {
     s.top = s.build_top();
-    arena.execute([&s] { s.api.rtcJoinCommitScene(s.top); });
+    s.commit_top(threads);
   }
-  s.check();
-  s.traced = direct ? s.meshes->scenes[s.instances[0].mesh] : s.top;
+  s.traced = direct ? s.meshes->scene(s.instances[0].mesh) : s.top;
 }
 
 void EmbreeScene::intersect(const Ray& ray, Hit& hit) const { intersect({&ray, 1}, &hit); }
@@ -252,9 +177,7 @@ void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits) const {
   }
 }
 
-uint64_t EmbreeScene::bytes() const {
-  return static_cast<uint64_t>(std::max<int64_t>(0, impl_->meshes->bytes.load(std::memory_order_relaxed)));
-}
+uint64_t EmbreeScene::bytes() const { return static_cast<uint64_t>(std::max<int64_t>(0, impl_->meshes->bytes())); }
 
 EmbreeInfo embree_info() {
   const EmbreeApi& api = embree();

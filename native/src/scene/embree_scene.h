@@ -1,6 +1,6 @@
-// Rays. The only header over Embree; embree_scene.cpp alone (with its embree_api.h) sees Embree's own headers and hides
-// the difference between Embree 3 and 4. Embree is opened privately (dlopen + dlsym), so that another Embree already in
-// the process - Blender's - cannot be bound by accident.
+// Rays. The only header over Embree; embree_scene.cpp and embree_meshes.cpp (with embree_api.h) see Embree's own
+// headers and hide the difference between Embree 3 and 4. Embree is opened privately (dlopen + dlsym), so that another
+// Embree already in the process - Blender's - cannot be bound by accident.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "job/progress.h"
 #include "scene/affine.h"
 #include "sphere/vec.h"
 
@@ -55,8 +56,9 @@ class EmbreeScene {
   uint32_t add_instance(uint32_t mesh, const Affine& object_to_world);
   void clear_instances();
   /// Builds; uses at most `threads` threads (0: all). A scene whose only instance has the identity map is traced
-  /// without an instance level.
-  void commit(int threads);
+  /// without an instance level. Throws Error(cancelled) soon after `progress` was: what is
+  /// built of meshes goes on, and another commit() waits for it.
+  void commit(int threads, const Progress* progress = nullptr);
 
   void intersect(const Ray& ray, Hit& hit) const;
   bool occluded(const Ray& ray) const;
@@ -71,7 +73,6 @@ class EmbreeScene {
   uint64_t bytes() const;
 
  private:
-  struct Meshes;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

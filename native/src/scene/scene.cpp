@@ -79,7 +79,7 @@ void Scene::remove_mesh(uint32_t number) {
   }
   geometry_changed();
   meshes_[number] = Mesh(MeshArrays{});
-  if (number < is_traced_.size()) trace_mesh(number, false);
+  if (number < mesh_rays_.size()) trace(meshes_[number], false, mesh_rays_[number]);
 }
 
 uint32_t Scene::add_material(SurfaceMaterial material) {
@@ -198,45 +198,15 @@ void Scene::set_working_space(const Mat3& rec709_to_working) {
   if (rec709_to_working == Mat3(1.0f)) rec709_to_working_.reset();
 }
 
-void Scene::commit(int threads) {
+void Scene::commit(int threads, const Progress* progress) {
   if (committed()) return;
   const auto start = std::chrono::steady_clock::now();
   make_tangents();
-  if (geometry_changed_) build_rays(threads);
+  if (geometry_changed_) build_rays(threads, progress);
   committed_ = true;
   info_ = count();
   info_.bytes += rays_->bytes() + (sides_ ? sides_->bytes() : 0);
   info_.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-void Scene::build_rays(int threads) {
-  const bool had_tops = !lifted_.empty();
-  lift_shells();
-  // Tops have the numbers behind those of the meshes, so they hold on to nothing.
-  if (!rays_ || had_tops || !lifted_.empty()) {
-    rays_ = std::make_unique<EmbreeScene>();
-    is_traced_.clear();
-  }
-  std::vector<bool> traced(meshes_.size() + lifted_.size());
-  for (const Instance& i : instances_) traced[i.traced] = true;
-  for (uint32_t m = 0; m < traced.size(); ++m) trace_mesh(m, traced[m]);
-  rays_->clear_instances();
-  for (const Instance& i : instances_) rays_->add_instance(i.traced, i.object_to_world);
-  rays_->commit(threads);
-  build_sides(threads);
-  geometry_changed_ = false;
-  bounds_ = bounds_of_instances();
-}
-
-void Scene::trace_mesh(uint32_t number, bool is_traced) {
-  const Mesh& mesh = number < meshes_.size() ? meshes_[number] : lifted_[number - meshes_.size()];
-  if (number == is_traced_.size()) {
-    is_traced ? rays_->add_mesh(mesh.positions(), mesh.triangles()) : rays_->add_mesh({}, {});
-    is_traced_.push_back(is_traced);
-  } else if (is_traced_[number] != is_traced) {
-    is_traced ? rays_->set_mesh(number, mesh.positions(), mesh.triangles()) : rays_->set_mesh(number, {}, {});
-    is_traced_[number] = is_traced;
-  }
 }
 
 void Scene::make_tangents() {
@@ -246,7 +216,7 @@ void Scene::make_tangents() {
         std::ranges::none_of(i.materials, [&](uint32_t m) { return needs_tangents(materials_[m]); }))
       continue;
     mesh.make_tangents();
-    if (!lifted_.empty()) geometry_changed_ = true;  // tops have copies
+    drop_tops(i.mesh);  // they have copies
   }
 }
 
@@ -268,7 +238,7 @@ SceneInfo Scene::count() const {
   info.materials = materials_.size();
   info.bytes = environment_.bytes();
   for (const Instance& i : instances_) info.triangles += meshes_[i.mesh].triangles().size();
-  for (const Mesh& mesh : lifted_) info.bytes += mesh.bytes();
+  for (const auto& [key, top] : tops_) info.bytes += top.mesh.bytes();
   for (size_t m = 0; m < meshes_.size(); ++m) {
     info.bytes += meshes_[m].bytes();
     if (meshes_[m].dropped() == 0) continue;

@@ -1,18 +1,19 @@
 // Everything that a picture is made of, as plain arrays.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "job/progress.h"
 #include "material/texture_map.h"
 #include "scene/camera.h"
 #include "scene/embree_scene.h"
 #include "scene/environment.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
+#include "scene/shell_top.h"
 #include "votf/shell_field.h"
 
 namespace velour {
@@ -141,7 +142,8 @@ class Scene {
   void set_working_space(const Mat3& rec709_to_working);
 
   /// Checks the scene and builds the hierarchy with at most `threads` threads (0: all); nothing, if it is committed.
-  void commit(int threads = 0);
+  /// Throws Error(cancelled) soon after `progress` was; another commit() then goes on where that one ended.
+  void commit(int threads = 0, const Progress* progress = nullptr);
   bool committed() const { return committed_; }
   /// Another number after every change but that of the camera alone.
   uint64_t revision() const { return revision_; }
@@ -153,9 +155,10 @@ class Scene {
     std::vector<uint32_t> materials;
     std::vector<TextureMap> placements;  // as many, or none
     uint8_t hidden;
-    /// Set by commit(), where a material has a shell: the mesh's number with its top (traced_mesh), else `mesh`; and
-    /// how wide a tile of each slot's shell is, in metres.
-    uint32_t traced = 0;
+    /// Set by commit(): what rays meet in the place of the mesh, where a material has a shell; what of both the
+    /// hierarchy has, by its number there; and how wide a tile of each slot's shell is, in metres.
+    const ShellTop* top = nullptr;
+    uint32_t traced = kNoHit;
     std::vector<float> tile_width = {};
     uint32_t sides = kNoHit;  // number of the instance of their sides alone; kNoHit: the shell has none
   };
@@ -164,9 +167,7 @@ class Scene {
   const std::vector<Instance>& instances() const { return instances_; }
 
   /// What rays() has of an instance: its mesh, or the top of its shell with the sides.
-  const Mesh& traced_mesh(const Instance& i) const {
-    return i.traced < meshes_.size() ? meshes_[i.traced] : lifted_[i.traced - meshes_.size()];
-  }
+  const Mesh& traced_mesh(const Instance& i) const { return i.top != nullptr ? i.top->mesh : meshes_[i.mesh]; }
 
   const EmbreeScene& rays() const { return *rays_; }
   SurfacePoint surface(const Hit& hit) const;
@@ -215,17 +216,18 @@ class Scene {
  private:
   void changed();           // what is traced stays
   void geometry_changed();  // a mesh, an instance, a shell
-  void build_rays(int threads);
-  /// The hierarchy's copy of a mesh, or nothing of one that is not traced: all keep their numbers.
-  void trace_mesh(uint32_t number, bool is_traced);
+  void build_rays(int threads, const Progress* progress);
+  /// Has the hierarchy hold a mesh or a top, or not; `number`: where it does, else kNoHit.
+  void trace(const Mesh& mesh, bool is_traced, uint32_t& number);
+  void drop_tops(uint32_t mesh);
   SurfaceMaterial& with_shell(uint32_t material, const char* to_what);
   void make_tangents();
-  void lift_shells();
-  /// `tops`: the traced meshes so far, by all that they depend on.
-  void lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& tops);
+  void lift_shells(const Progress* progress);
+  void lift(Instance& instance);
   void build_sides(int threads);
+  ShellFolds folds(const Instance& instance, uint32_t slot, const ShellHeights& shell) const;
   /// A warning where the slot's shell is higher than the surface's radius of curvature.
-  void find_folds(const Instance& instance, uint32_t slot);
+  void warn_of_folds(const Instance& instance, uint32_t slot, const ShellHeights& shell);
   float tile_width(const Instance& instance, uint32_t slot) const;
   uint32_t slot(const Hit& hit) const;
   /// Null where texture coordinates are the mesh's own.
@@ -237,7 +239,7 @@ class Scene {
   SceneInfo count() const;
 
   std::vector<Mesh> meshes_;
-  std::vector<Mesh> lifted_;  // tops of shells, of a committed scene
+  ShellTops tops_;  // of a committed scene those that are shown
   std::vector<Instance> instances_;
   std::vector<SurfaceMaterial> materials_;
   std::vector<Light> lights_;
@@ -250,7 +252,8 @@ class Scene {
   bool committed_ = false, geometry_changed_ = true;
   uint64_t revision_ = 0;
   std::unique_ptr<EmbreeScene> rays_;
-  std::vector<bool> is_traced_;         // of the meshes that rays_ has: they are more than nothing
+  std::vector<uint32_t> mesh_rays_;     // numbers of the meshes in rays_; kNoHit: it does not have them
+  std::vector<uint32_t> free_rays_;     // numbers there of nothing
   std::unique_ptr<EmbreeScene> sides_;  // of shells, for next_side(); null: there are none
   Bounds bounds_;
   SceneInfo info_;

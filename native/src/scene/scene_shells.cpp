@@ -2,9 +2,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <limits>
-#include <map>
 #include <string>
+#include <utility>
 
 #include "job/error.h"
 #include "scene/scene.h"
@@ -20,29 +19,6 @@ Mat3 metric_of(const Affine& map) {
           {glm::dot(x, z), glm::dot(y, z), glm::dot(z, z)}};
 }
 
-/// Where a shell folds over itself: its height or depth exceeds the radius with which the surface bends there.
-struct Folds {
-  uint64_t triangles = 0, all = 0;
-  float least_radius = std::numeric_limits<float>::infinity();  // metres, of those triangles
-
-  void add(const Vec3 (&corner)[3], const Vec3 (&normal)[3], float bottom, float top) {
-    ++all;
-    float stretch = 1, radius = least_radius;
-    for (int k = 0; k < 3; ++k) {
-      const int next = (k + 1) % 3;
-      const Vec3 edge = corner[next] - corner[k];
-      const float curvature = glm::dot(normal[next] - normal[k], edge) / glm::dot(edge, edge);
-      const float least = 1 + std::min(curvature * bottom, curvature * top);
-      if (!(least < stretch)) continue;
-      stretch = least;
-      radius = std::min(least_radius, 1 / std::abs(curvature));
-    }
-    if (stretch > 0) return;
-    ++triangles;
-    least_radius = radius;
-  }
-};
-
 std::string in_metres(float length) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g m", static_cast<double>(length));
@@ -50,6 +26,23 @@ std::string in_metres(float length) {
 }
 
 }  // namespace
+
+void ShellFolds::add(const Vec3 (&corner)[3], const Vec3 (&normal)[3], const ShellHeights& shell) {
+  ++all;
+  float stretch = 1, radius = least_radius;
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    const Vec3 edge = corner[next] - corner[k];
+    const float curvature = glm::dot(normal[next] - normal[k], edge) / glm::dot(edge, edge);
+    const float least = 1 + std::min(curvature * shell.bottom, curvature * shell.top);
+    if (!(least < stretch)) continue;
+    stretch = least;
+    radius = std::min(least_radius, 1 / std::abs(curvature));
+  }
+  if (stretch > 0) return;
+  ++triangles;
+  least_radius = radius;
+}
 
 SurfaceMaterial& Scene::with_shell(uint32_t material, const char* to_what) {
   if (material < materials_.size() && materials_[material].shell) return materials_[material];
@@ -77,23 +70,23 @@ void Scene::set_shell_softness(uint32_t material, float widths) {
   surface.shell_softness = widths;
 }
 
-void Scene::lift_shells() {
-  lifted_.clear();
+void Scene::lift_shells(const Progress* progress) {
   unlifted_ = 0;
   shell_warnings_.clear();
-  std::map<std::vector<uint32_t>, uint32_t> tops;
+  for (auto& [key, top] : tops_) top.is_shown = false;
   for (Instance& instance : instances_) {
-    instance.traced = instance.mesh;
+    instance.top = nullptr;
     instance.tile_width.clear();
     const bool any =
         std::ranges::any_of(instance.materials, [&](uint32_t m) { return materials_[m].shell != nullptr; });
     if (!any) continue;
-    lift(instance, tops);
+    if (progress != nullptr) progress->check();
+    lift(instance);
     if (std::ranges::none_of(instance.tile_width, [](float width) { return width > 0; })) ++unlifted_;
   }
 }
 
-void Scene::lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& tops) {
+void Scene::lift(Instance& instance) {
   std::vector<ShellHeights> height(instance.materials.size());
   instance.tile_width.assign(instance.materials.size(), 0.0f);
   for (uint32_t s = 0; s < height.size(); ++s) {
@@ -110,21 +103,23 @@ void Scene::lift(Instance& instance, std::map<std::vector<uint32_t>, uint32_t>& 
     for (const float limit : {h.bottom, h.top}) key.push_back(std::bit_cast<uint32_t>(limit));
   }
   for (int i = 0; i < 9; ++i) key.push_back(std::bit_cast<uint32_t>(metric[i / 3][i % 3]));
-  const auto [entry, is_new] = tops.emplace(std::move(key), static_cast<uint32_t>(meshes_.size() + lifted_.size()));
-  instance.traced = entry->second;
-  if (!is_new) return;
-  lifted_.push_back(meshes_[instance.mesh].lifted(height, metric));
-  for (uint32_t s = 0; s < height.size(); ++s) {
-    if (instance.tile_width[s] > 0) find_folds(instance, s);
+  auto found = tops_.find(key);
+  if (found == tops_.end()) {
+    ShellTop top{meshes_[instance.mesh].lifted(height, metric), {}};
+    for (uint32_t s = 0; s < height.size(); ++s) top.folds.push_back(folds(instance, s, height[s]));
+    top.is_shown = false;
+    found = tops_.emplace(std::move(key), std::move(top)).first;
   }
+  instance.top = &found->second;
+  if (std::exchange(found->second.is_shown, true)) return;
+  for (uint32_t s = 0; s < height.size(); ++s) warn_of_folds(instance, s, height[s]);
 }
 
-void Scene::find_folds(const Instance& instance, uint32_t slot) {
+ShellFolds Scene::folds(const Instance& instance, uint32_t slot, const ShellHeights& shell) const {
+  ShellFolds folds;
+  if (!(instance.tile_width[slot] > 0)) return folds;
   const Mesh& mesh = meshes_[instance.mesh];
-  const OcclusionVolume& volume = materials_[instance.materials[slot]].shell->volume();
-  const float width = instance.tile_width[slot], bottom = volume.bottom * width, top = volume.top * width;
   const auto last = static_cast<uint32_t>(instance.materials.size() - 1);
-  Folds folds;
   for (uint32_t t = 0; t < mesh.triangles().size(); ++t) {
     if (std::min(mesh.material_slot(t), last) != slot) continue;
     const std::span<const Vec3, 3> local = mesh.corner_normals(t);
@@ -133,15 +128,20 @@ void Scene::find_folds(const Instance& instance, uint32_t slot) {
       corner[k] = instance.object_to_world.point(mesh.positions()[mesh.triangles()[t][k]]);
       normal[k] = glm::normalize(instance.normal_to_world * local[static_cast<size_t>(k)]);
     }
-    folds.add(corner, normal, bottom, top);
+    folds.add(corner, normal, shell);
   }
+  return folds;
+}
+
+void Scene::warn_of_folds(const Instance& instance, uint32_t slot, const ShellHeights& shell) {
+  const ShellFolds& folds = instance.top->folds[slot];
   if (folds.triangles == 0) return;
   shell_warnings_.push_back("The shell (VOTF) of material " + std::to_string(instance.materials[slot]) +
-                            " reaches from " + in_metres(bottom) + " to " + in_metres(top) +
+                            " reaches from " + in_metres(shell.bottom) + " to " + in_metres(shell.top) +
                             " over the surface and folds over itself on " + std::to_string(folds.triangles) + " of " +
                             std::to_string(folds.all) + " triangles, where the surface bends with radii down to " +
-                            in_metres(folds.least_radius) + "; make its tiles smaller (they are " + in_metres(width) +
-                            " wide).");
+                            in_metres(folds.least_radius) + "; make its tiles smaller (they are " +
+                            in_metres(instance.tile_width[slot]) + " wide).");
 }
 
 /// Of a tile that covers one unit of the texture coordinates, on average over the slot's triangles; 0 where they have

@@ -32,7 +32,7 @@ uint32_t add_sides(const Mesh& mesh, EmbreeScene& to) {
 
 void Scene::build_sides(int threads) {
   sides_.reset();
-  std::unordered_map<uint32_t, uint32_t> numbers;  // of traced meshes
+  std::unordered_map<uint32_t, uint32_t> numbers;  // by those in rays_
   for (Instance& instance : instances_) {
     instance.sides = kNoHit;
     const Mesh& mesh = traced_mesh(instance);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "job/error.h"
+#include "support/example_shell.h"
 #include "support/test_scene.h"
 
 namespace velour {
@@ -188,6 +189,85 @@ TEST(SceneChanges, MemoryDoesNotGrow) {
     scene.commit(2);
   }
   EXPECT_LT(scene.info().bytes, bytes + bytes / 2);
+}
+
+/// A square of `wide` tiles across whose wires stand over it, above the ground.
+void add_wires(Scene& scene, float wide) {
+  const std::vector<Vec3> p = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  const std::vector<glm::uvec3> t = {{0, 1, 2}, {0, 2, 3}};
+  std::vector<Vec2> uv;
+  for (const glm::uvec3& corner : t) {
+    for (int k = 0; k < 3; ++k) uv.push_back(wide * Vec2(p[corner[k]]));
+  }
+  const uint32_t wires = scene.add_material({.material = grey(0.8f),
+                                             .rec709_colors = false,
+                                             .shell = std::make_shared<const ShellField>(test::wires(64, 0.1f)),
+                                             .shell_shaded = true});
+  const uint32_t mesh = scene.add_mesh(Mesh({.positions = p, .triangles = t, .corner_uvs = uv}));
+  scene.add_instance(mesh, shift({0, 0, 0.5f}), {wires});
+}
+
+/// The scene of expect_same() with wires over the ground and the ball at `place`.
+void begin_with_wires(Scene& scene, const Vec3& place, float wide) {
+  begin(scene);
+  const uint32_t ground = scene.add_mesh(test::square(3)), ball = scene.add_mesh(test::sphere(12));
+  add_wires(scene, wide);
+  scene.add_instance(ground, {}, {0});
+  scene.add_instance(ball, shift(place), {1});
+}
+
+TEST(SceneChanges, AShellStaysWhereAnotherObjectMoves) {
+  Scene changed, fresh;
+  begin_with_wires(changed, {0, 0, 1}, 1);
+  changed.commit(2);
+  const Scene::Instance before = changed.instances()[0];
+  changed.clear_instances();
+  changed.add_instance(2, shift({0, 0, 0.5f}), {2});
+  changed.add_instance(0, {}, {0});
+  changed.add_instance(1, shift({0.5f, 0, 1}), {1});
+  changed.commit(2);
+  begin_with_wires(fresh, {0.5f, 0, 1}, 1);
+  fresh.commit(2);
+  ASSERT_NE(before.top, nullptr);
+  EXPECT_EQ(changed.instances()[0].top, before.top) << "its top was made anew";
+  EXPECT_EQ(changed.instances()[0].traced, before.traced);
+  const RenderOptions options = small_options(Strategy::mis, 16);
+  EXPECT_EQ(rendered(changed, options), rendered(fresh, options));
+}
+
+TEST(SceneChanges, AShellOfAnotherHeightIsMadeAnew) {
+  Scene changed, fresh;
+  begin_with_wires(changed, {0, 0, 1}, 1);
+  changed.commit(2);
+  const RenderOptions options = small_options(Strategy::mis, 16);
+  const std::vector<float> before = rendered(changed, options);
+  const uint64_t bytes = changed.info().bytes;
+  for (int i = 50; i >= 0; --i) {
+    changed.set_shell_tile(2, 1.5f + 0.01f * static_cast<float>(i));
+    changed.commit(2);
+  }
+  begin_with_wires(fresh, {0, 0, 1}, 1);
+  fresh.set_shell_tile(2, 1.5f);
+  fresh.commit(2);
+  const std::vector<float> after = rendered(changed, options);
+  EXPECT_NE(after, before);
+  EXPECT_EQ(after, rendered(fresh, options));
+  EXPECT_LT(changed.info().bytes, bytes + bytes / 2);
+}
+
+TEST(SceneChanges, AShellGivesWayToNone) {
+  Scene changed, fresh;
+  begin_with_wires(changed, {0, 0, 1}, 1);
+  changed.commit(2);
+  const SurfaceMaterial plain{.material = grey(0.8f), .rec709_colors = false};
+  changed.set_material(2, plain);
+  changed.commit(2);
+  begin_with_wires(fresh, {0, 0, 1}, 1);
+  fresh.set_material(2, plain);
+  fresh.commit(2);
+  EXPECT_EQ(changed.instances()[0].top, nullptr);
+  const RenderOptions options = small_options(Strategy::mis, 16);
+  EXPECT_EQ(rendered(changed, options), rendered(fresh, options));
 }
 
 TEST(SceneChanges, RefusesToRemoveWhatIsThere) {

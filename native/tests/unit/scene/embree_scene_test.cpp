@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <functional>
+#include <thread>
 #include <vector>
 
 #include "job/error.h"
@@ -119,6 +122,98 @@ TEST(EmbreeScene, EmptySceneMissesEverything) {
   EmbreeScene scene;
   scene.commit(1);
   EXPECT_FALSE(scene.occluded({{0, 0, 0}, 0, {0, 0, 1}}));
+}
+
+/// A hilly square of 2 x side x side triangles.
+struct Hills {
+  std::vector<Vec3> positions;
+  std::vector<glm::uvec3> triangles;
+  explicit Hills(uint32_t side);
+};
+
+Hills::Hills(uint32_t side) {
+  for (uint32_t y = 0; y <= side; ++y) {
+    for (uint32_t x = 0; x <= side; ++x) {
+      const Vec2 p = Vec2(x, y) / static_cast<float>(side);
+      positions.push_back({p, 0.05f * std::sin(40 * p.x) * std::sin(40 * p.y)});
+      if (x == side || y == side) continue;
+      const uint32_t a = y * (side + 1) + x, b = a + side + 1;
+      triangles.insert(triangles.end(), {{a, a + 1, b + 1}, {a, b + 1, b}});
+    }
+  }
+}
+
+void add_hills(EmbreeScene& scene, uint32_t side) {
+  const Hills hills(side);
+  scene.add_instance(scene.add_mesh(hills.positions, hills.triangles), scaled(Vec3(1), {0, 0, 1}));
+}
+
+double seconds(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Whether rays from above meet the same of both.
+void expect_same_hits(const EmbreeScene& one, const EmbreeScene& other) {
+  RandomStream random(1, 2, 3);
+  for (int i = 0; i < 1000; ++i) {
+    const Ray ray{{random.next(), random.next(), 3}, 0, {0, 0, -1}};
+    Hit a, b;
+    one.intersect(ray, a);
+    other.intersect(ray, b);
+    ASSERT_EQ(a.triangle, b.triangle);
+    ASSERT_EQ(a.distance, b.distance);
+  }
+}
+
+void expect_cancelled(EmbreeScene& scene, const Progress& progress) {
+  try {
+    scene.commit(2, &progress);
+    ADD_FAILURE() << "it was not cancelled";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::cancelled);
+  }
+}
+
+constexpr uint32_t kSide = 1000;
+
+TEST(EmbreeScene, ACancelEndsTheWaitAndTheBuildGoesOn) {
+  EmbreeScene whole, cancelled;
+  add_hills(whole, kSide);
+  const double needed = seconds([&] { whole.commit(2); });
+  add_hills(cancelled, kSide);
+  Progress progress;
+  progress.cancel();
+  EXPECT_LT(seconds([&] { expect_cancelled(cancelled, progress); }), needed / 4) << "a build takes " << needed << " s";
+  std::this_thread::sleep_for(std::chrono::duration<double>(2 * needed));
+  EXPECT_LT(seconds([&] { cancelled.commit(2); }), needed / 2) << "a build takes " << needed << " s";
+  expect_same_hits(whole, cancelled);
+}
+
+TEST(EmbreeScene, AMeshThatGivesWayIsNotBuilt) {
+  EmbreeScene small, changed;
+  add_hills(small, 10);
+  small.commit(2);
+  add_hills(changed, kSide);
+  Progress progress;
+  progress.cancel();
+  for (int i = 0; i < 5; ++i) {
+    expect_cancelled(changed, progress);
+    changed.set_mesh(0, kCorners, kTriangle);
+  }
+  const Hills hills(10);
+  changed.set_mesh(0, hills.positions, hills.triangles);
+  changed.commit(2);
+  expect_same_hits(small, changed);
+}
+
+TEST(EmbreeScene, ASceneMayGoWhileItIsBuilt) {
+  EmbreeScene scene;
+  add_hills(scene, kSide);
+  Progress progress;
+  progress.cancel();
+  expect_cancelled(scene, progress);
 }
 
 }  // namespace

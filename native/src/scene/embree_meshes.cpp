@@ -1,0 +1,211 @@
+#include "scene/embree_meshes.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "job/error.h"
+#include "job/threads.h"
+
+namespace velour {
+namespace {
+
+/// How long a cancel may have to wait.
+constexpr std::chrono::milliseconds kTurn{2};
+
+bool count_bytes(void* counter, ssize_t bytes, bool /*post*/) {
+  static_cast<std::atomic<int64_t>*>(counter)->fetch_add(bytes, std::memory_order_relaxed);
+  return true;
+}
+
+}  // namespace
+
+/// Of some scenes, one after the other, on a thread of its own.
+class EmbreeMeshes::Build {
+ public:
+  Build(RTCDevice device, const std::vector<RTCScene>& scenes, int threads) : device_(device), threads_(threads) {
+    for (RTCScene scene : scenes) items_.emplace_back(scene);
+    try {
+      thread_ = std::thread(&Build::run, this);
+    } catch (const std::system_error&) {
+      throw Error(Status::out_of_memory, "The system gave no thread to build the ray tracer's hierarchy.");
+    }
+    for (RTCScene scene : scenes) api_.rtcRetainScene(scene);
+  }
+  ~Build() {
+    keep({});
+    join();
+    for (const Item& item : items_) api_.rtcReleaseScene(item.scene);
+  }
+  Build(const Build&) = delete;
+  Build& operator=(const Build&) = delete;
+
+  /// Drops all but those of `scenes`.
+  void keep(const std::vector<RTCScene>& scenes) {
+    for (Item& item : items_) item.is_dropped = std::ranges::find(scenes, item.scene) == scenes.end();
+  }
+  bool ends_within(std::chrono::milliseconds time) {
+    std::unique_lock lock(mutex_);
+    return ended_.wait_for(lock, time, [this] { return has_ended_; });
+  }
+  void join() {
+    if (thread_.joinable()) thread_.join();
+  }
+  /// After join().
+  RTCError error() const { return error_; }
+  bool has_built(RTCScene scene) const {
+    return std::ranges::any_of(items_, [scene](const Item& i) { return i.scene == scene && i.is_built; });
+  }
+
+ private:
+  struct Item {
+    explicit Item(RTCScene of) : scene(of) {}
+    RTCScene scene;
+    std::atomic<bool> is_dropped{false};
+    bool is_built = false;
+  };
+
+  static bool goes_on(void* item, double /*fraction*/) { return !static_cast<const Item*>(item)->is_dropped; }
+
+  void run() {
+    tbb::task_arena arena(arena_concurrency(threads_));
+    for (Item& item : items_) {
+      if (item.is_dropped) continue;
+      const RTCError error = commit(item, arena);
+      item.is_built = error == RTC_ERROR_NONE;
+      if (item.is_built || error == RTC_ERROR_CANCELLED) continue;
+      error_ = error;
+      break;
+    }
+    const std::lock_guard lock(mutex_);
+    has_ended_ = true;
+    ended_.notify_all();
+  }
+
+  RTCError commit(Item& item, tbb::task_arena& arena) const {
+    RTCError error = RTC_ERROR_NONE;
+    arena.execute([&] {  // another thread may do it, and has its own errors
+      api_.rtcSetSceneProgressMonitorFunction(item.scene, goes_on, &item);
+      api_.rtcJoinCommitScene(item.scene);
+      api_.rtcSetSceneProgressMonitorFunction(item.scene, nullptr, nullptr);
+      error = api_.rtcGetDeviceError(device_);
+    });
+    return error;
+  }
+
+  const EmbreeApi& api_ = embree();
+  RTCDevice device_;
+  int threads_;
+  std::deque<Item> items_;
+  RTCError error_ = RTC_ERROR_NONE;
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool has_ended_ = false;
+  std::thread thread_;
+};
+
+EmbreeMeshes::EmbreeMeshes() : device_(api_.rtcNewDevice(nullptr)) {
+  if (device_ == nullptr) throw Error(Status::unsupported, "Embree cannot run on this processor.");
+  api_.rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
+}
+
+EmbreeMeshes::~EmbreeMeshes() {
+  build_.reset();
+  for (RTCScene scene : scenes_) api_.rtcReleaseScene(scene);
+  api_.rtcReleaseDevice(device_);
+}
+
+uint32_t EmbreeMeshes::add(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
+  scenes_.push_back(scene_of(positions, triangles));
+  unbuilt_.push_back(static_cast<uint32_t>(scenes_.size() - 1));
+  return unbuilt_.back();
+}
+
+void EmbreeMeshes::set(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
+  RTCScene fresh = scene_of(positions, triangles);
+  api_.rtcReleaseScene(std::exchange(scenes_.at(number), fresh));
+  if (std::ranges::find(unbuilt_, number) == unbuilt_.end()) unbuilt_.push_back(number);
+}
+
+void EmbreeMeshes::build(int threads, const Progress* progress) {
+  if (build_) {
+    build_->keep(unbuilt_scenes());
+    await(progress);
+  }
+  if (unbuilt_.empty()) return;
+  build_ = std::make_unique<Build>(device_, unbuilt_scenes(), threads);
+  await(progress);
+}
+
+std::vector<RTCScene> EmbreeMeshes::unbuilt_scenes() const {
+  std::vector<RTCScene> scenes;
+  for (uint32_t number : unbuilt_) scenes.push_back(scenes_[number]);
+  return scenes;
+}
+
+void EmbreeMeshes::await(const Progress* progress) {
+  while (!build_->ends_within(kTurn)) {
+    if (progress != nullptr) progress->check();
+  }
+  build_->join();
+  const RTCError error = build_->error();
+  std::erase_if(unbuilt_, [&](uint32_t number) { return build_->has_built(scenes_[number]); });
+  build_.reset();
+  if (error == RTC_ERROR_NONE) return;
+  for (uint32_t number : unbuilt_) renew(scenes_[number]);
+  check(error);
+}
+
+RTCScene EmbreeMeshes::new_scene() const {
+  RTCScene scene = api_.rtcNewScene(device_);
+  api_.rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  return scene;
+}
+
+RTCScene EmbreeMeshes::scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) const {
+  for (const glm::uvec3& t : triangles) {
+    if (std::max({t.x, t.y, t.z}) >= positions.size()) {
+      throw Error(Status::invalid_argument, "A triangle names vertex " + std::to_string(std::max({t.x, t.y, t.z})) +
+                                                " of a mesh with " + std::to_string(positions.size()) + ".");
+    }
+  }
+  RTCGeometry geometry = api_.rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  if (!triangles.empty()) {
+    void* vertex = api_.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3),
+                                                positions.size());
+    void* index = api_.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
+                                               triangles.size());
+    check(api_.rtcGetDeviceError(device_));
+    std::memcpy(vertex, positions.data(), positions.size_bytes());
+    std::memcpy(index, triangles.data(), triangles.size_bytes());
+  }
+  RTCScene scene = new_scene();
+  api_.rtcCommitGeometry(geometry);
+  api_.rtcAttachGeometryByID(scene, geometry, 0);
+  api_.rtcReleaseGeometry(geometry);
+  return scene;
+}
+
+/// In the place of a scene whose build has failed, of which Embree does not say what a second one does.
+void EmbreeMeshes::renew(RTCScene& scene) const {
+  RTCScene fresh = new_scene();
+  api_.rtcAttachGeometryByID(fresh, api_.rtcGetGeometry(scene, 0), 0);
+  api_.rtcReleaseScene(std::exchange(scene, fresh));
+}
+
+void EmbreeMeshes::check(RTCError error) {
+  if (error == RTC_ERROR_NONE) return;
+  if (error == RTC_ERROR_OUT_OF_MEMORY) {
+    throw Error(Status::out_of_memory, "Not enough memory to build the ray tracer's hierarchy.");
+  }
+  throw Error(Status::unknown, "Embree failed with its error " + std::to_string(error) + ".");
+}
+
+}  // namespace velour
