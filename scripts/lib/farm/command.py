@@ -49,6 +49,8 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
 
 def _submit(given: argparse.Namespace) -> int:
     found = make(given)
+    slurm.refuse_while_running(found)  # elements that wait read what is saved here when they begin
+    found.save()
     for writer in (program, slurm, flamenco, openjd):
         writer.write(found.folder if writer is program else found)
     now = status.look(found)

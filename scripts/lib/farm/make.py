@@ -13,7 +13,7 @@ HERE = Path(__file__).resolve().parent
 
 
 def make(given: argparse.Namespace) -> job.Job:
-    """Saves the job; one that is there must be of the same .blend, the same models and the same Velour."""
+    """Saves nothing; a job that is there must be of the same .blend, the same models and the same Velour."""
     blend = given.path.resolve()
     if not blend.is_file():
         raise job.JobError(f"{blend} is no file.")
@@ -40,7 +40,6 @@ def make(given: argparse.Namespace) -> job.Job:
     made.tasks = min(given.tasks, len(made.frames) * made.parts)
     if (folder / "job.json").is_file():
         _refuse_another(made, job.load(folder))
-    made.save()
     return made
 
 

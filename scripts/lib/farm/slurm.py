@@ -39,39 +39,37 @@ def script(job: Job) -> str:
 
 def submit(job: Job, tasks: list[int], options: list[str]) -> str:
     """The number of the job that Slurm made; raises JobError."""
-    running = still_running(job)
-    if running:
-        raise JobError(
-            f"Slurm's job {running} still renders this; wait for it, or end it with: scancel {running}"
-        )
     array = f"--array={ranges.words(tasks)}"
-    said = _slurm("sbatch", "--parsable", array, *options, str(job.folder / SCRIPT))
+    command = ["sbatch", "--parsable", array, *options, str(job.folder / SCRIPT)]
+    said = _slurm(*command, otherwise="; --no-submit only writes the job.")
     number = said.strip().split(";")[0]  # ";CLUSTER" follows where there are several
     replace_text(job.folder / SUBMITTED, number + "\n")
     return number
 
 
-def still_running(job: Job) -> str:
-    """The number of the job that was submitted last, while a part of it waits or runs; else ""."""
+def refuse_while_running(job: Job) -> None:
+    """Raises JobError while a part of what was submitted last waits or runs, or where nobody can say."""
     file = job.folder / SUBMITTED
     if not file.is_file():
-        return ""
+        return
     number = file.read_text(encoding="utf-8").strip()
     try:
-        return number if _slurm("squeue", "-h", "-o", "%t", "-j", number).strip() else ""
+        running = _slurm("squeue", "-h", "-o", "%t", "-j", number).strip()
     except JobError as error:
         if "Invalid job id" in str(error):  # Slurm has forgotten it
-            return ""
-        raise
+            return
+        raise JobError(f"{error}; if Slurm's job {number} is no more, remove {file}.") from error
+    if running:
+        raise JobError(
+            f"Slurm's job {number} still renders this; wait for it, or end it with: scancel {number}"
+        )
 
 
-def _slurm(*command: str) -> str:
+def _slurm(*command: str, otherwise: str = "") -> str:
     try:
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     except OSError as error:
-        raise JobError(
-            f"{command[0]} cannot be started ({error.strerror}); --no-submit only writes the job."
-        ) from error
+        raise JobError(f"{command[0]} cannot be started ({error.strerror}){otherwise}") from error
     if done.returncode:
         raise JobError(f"{command[0]} says: {' '.join((done.stderr or done.stdout).split())}")
     return done.stdout
