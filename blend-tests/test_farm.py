@@ -1,6 +1,5 @@
 """scripts/farm: frames that are done are kept, others are rendered; a job is for one state of a .blend."""
 
-import re
 from concurrent.futures import ThreadPoolExecutor
 
 import bpy
@@ -8,15 +7,6 @@ import numpy as np
 
 from support import inputs
 from support.farm import FarmTest
-
-_TURN = "    while not job.wait(timeout=_POLL_SECONDS):\n"
-# As an engine does: the program that runs Blender is told to end, once.
-_END_NODE = """
-        if job.poll().fraction > 0.05 and not _Clock.__dict__.get("told"):
-            _Clock.told = True
-            import os, signal
-            os.kill(os.getppid(), signal.SIGTERM)
-"""
 
 
 class Farm(FarmTest):
@@ -73,35 +63,9 @@ class Farm(FarmTest):
         self.assertIn(b"Empty", data)
         self.assertIn(bpy.data.images["paint.velour"].velour.sha256.encode(), data)
 
-    def _job_of(self, name, samples, *options):
-        """Of the same frames with as many samples; its pictures go to a folder of that name."""
-        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
-        bpy.context.scene.velour.samples = samples
-        bpy.ops.wm.save_mainfile()
-        self.output = self.folder / name
-        done = self.farm(self.blend, "--no-submit", "--threads", "1", "--output", self.output, *options)
-        self.assertEqual(done.returncode, 0, done.stdout)
-
-    def test_a_frame_that_the_engine_ends_goes_on(self):
-        self._job_of("ended", 2000)
-        ended = self.another_stage("ends", "engine/final.py", _TURN, _TURN + _END_NODE)
-        done = self.node("--frames", "1-2", environment=ended)
-        self.assertEqual(done.returncode, 3, done.stdout)
-        self.assertIn("frame 1: ended by SIGTERM; the next run goes on from there", done.stdout)
-        (film,) = (self.output / "farm/partial/0001/film").glob("*.exr")
-        status, said = self.status()
-        self.assertEqual((status, said.splitlines()[0]), (3, "not done yet: 1-3"))
-        done = self.node("--frames", "1")
-        self.assertEqual(done.returncode, 0, done.stdout)
-        self.assertFalse(film.exists())
-        log = (self.output / "farm/logs/0001.log").read_text()
-        first = int(re.search(r"Sample (\d+)/2000", log)[1])
-        self.assertGreaterEqual(first, int(re.search(r"\.0-(\d+)\.exr", film.name)[1]))
-        self._assert_like_one_run(0)
-
     def test_parts_of_a_frame(self):
         """Tasks that share a frame; the last one makes its picture."""
-        self._job_of("parts", 64, "--parts", "2", "--frames", "1-2")
+        self.job_of("parts", 64, "--parts", "2", "--frames", "1-2")
         for task, pictures in (
             (2, []),
             (1, []),
@@ -113,16 +77,7 @@ class Farm(FarmTest):
             self.assertEqual(self.pictures(), pictures)
         self.assertEqual(self.status(), (0, "2 of 2 frames done, 0 failed, 0 left\n"))
         self.assertFalse((self.output / "farm/partial/0001").exists())
-        self._assert_like_one_run(1e-3)  # half floats
-
-    def _assert_like_one_run(self, tolerance):
-        """The picture of frame 1."""
-        images = inputs.native().images
-        shared = images.read(self.picture(1))
-        self._job_of("whole", bpy.context.scene.velour.samples, "--frames", "1")
-        self.assertEqual(self.node("--frames", 1).returncode, 0)
-        whole = images.read(self.picture(1))
-        self.assertLessEqual(np.abs(shared - whole).max(), tolerance * whole.max())
+        self.assert_like_one_run(1e-3)  # half floats
 
     def test_another_blend(self):
         """What is half done is not finished from another state of the scene."""

@@ -61,7 +61,9 @@ class FarmSlurm(FarmTest):
         self.assertEqual(self._job(number)["ArrayTaskId"], "0-1")
         _, said = self._submit(status=1)
         self.assertIn(f"Slurm's job {number} still renders this", said)
-        self.assertEqual(self.status()[0], 3)
+        _, said = self._submit("--frames", "2", status=1)
+        self.assertIn(f"Slurm's job {number} still renders this", said)
+        self.assertIn("not done yet: 1-3", self.status()[1])  # the job is the one that waits
         self.slurm.run("scancel", number)
         self.slurm.wait_until_empty()
         self.assertIsNotNone(self._submit("--sbatch=--hold")[0])

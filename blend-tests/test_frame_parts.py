@@ -143,7 +143,11 @@ class FrameParts(BlenderTest):
         blend = self._save(samples=100000)
         bpy.context.scene.velour.time_limit = 0.2
         bpy.ops.wm.save_mainfile()
-        self._render(blend, "limited")  # without: the picture as far as it is
+        self._render(blend, "limited")  # without: the picture as far as it is, which says so
+        said = inputs.native().images.header(self._path("limited"))["texts"]["velour.samples"]
+        begin, end = map(int, said.split(":"))
+        self.assertEqual(begin, 0)
+        self.assertTrue(8 <= end < 100000 and end % 8 == 0, said)
         said = self._render(blend, "kept", "--velour-parts", self.parts, status=1)
         self.assertIn("the same command goes on from there", said)
         self.assertEqual(len(self._files()), 1)

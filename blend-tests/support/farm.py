@@ -6,8 +6,9 @@ import shutil
 from pathlib import Path
 
 import bpy
+import numpy as np
 
-from . import process, scenes
+from . import inputs, process, scenes
 from .blender import BlenderTest, folder
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -44,6 +45,30 @@ class FarmTest(BlenderTest):
         """The exit status, and what is said."""
         done = self.farm("--status", self.output)
         return done.returncode, done.stdout
+
+    def job_of(self, name, samples, *options, time_limit=0):
+        """Of the same frames with as many samples; its pictures go to a folder of that name. What is said."""
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
+        settings = bpy.context.scene.velour
+        settings.samples, settings.time_limit = samples, time_limit
+        return self.save_and_make(name, *options)
+
+    def save_and_make(self, name, *options, status=0):
+        """A job whose pictures go to a folder of that name; what is said."""
+        bpy.ops.wm.save_mainfile()
+        self.output = self.folder / name
+        done = self.farm(self.blend, "--no-submit", "--threads", "1", "--output", self.output, *options)
+        self.assertEqual(done.returncode, status, done.stdout)
+        return done.stdout
+
+    def assert_like_one_run(self, tolerance):
+        """The picture of frame 1."""
+        images = inputs.native().images
+        shared = images.read(self.picture(1))
+        self.job_of("whole", bpy.context.scene.velour.samples, "--frames", "1")
+        self.assertEqual(self.node("--frames", 1).returncode, 0)
+        whole = images.read(self.picture(1))
+        self.assertLessEqual(np.abs(shared - whole).max(), tolerance * whole.max())
 
     def edit_job(self, **changes):
         path = self.output / "farm/job.json"

@@ -67,16 +67,17 @@ def render_final(engine, depsgraph):
             engine.update_stats("Velour", memory.checked(estimate, given.memory))
         make_job = functools.partial(render_job, native_scene, passes and passes.passes)
         make_film = functools.partial(film, depsgraph, make_job, options, parts)
-        _render_layer(engine, depsgraph, view, shown, surroundings, make_film)
+        report = _render_layer(engine, depsgraph, view, shown, surroundings, make_film)
         result = engine.get_result()
-        part = parts.asked if parts and not parts.is_whole else None
+        part = _some_samples(parts, options, report)
         engine.stamps.add(result, depsgraph, materials.models, stamps, part)
         if passes:
             stamp_cryptomattes(result, depsgraph.view_layer_eval, passes.names)
 
 
 def _render_layer(engine, depsgraph, view, shown, surroundings, film):
-    """`film(follow)` is that of frame_parts, which has follow(job, begin, end) wait for these samples."""
+    """What the job reports; None: all samples were there. `film(follow)` is that of frame_parts, which has
+    follow(job, begin, end) wait for these samples."""
     layer = depsgraph.view_layer_eval
     add_passes(engine, layer, shown)
     result = engine.begin_result(0, 0, view.width, view.height, layer=layer.name)
@@ -88,10 +89,22 @@ def _render_layer(engine, depsgraph, view, shown, surroundings, film):
                 depsgraph, job.read_pass("Combined"), "" if engine.is_preview else surroundings
             )
             delivery.write(job, shown)
-            _say_report(engine, job)
+            report = None if job.poll().state == "ready" else job.report()
+            _say_report(engine, report)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)
+    return report
+
+
+def _some_samples(parts, options, report):
+    """The range of samples that the picture has alone: it is a part, or the time limit ended it. None: it has
+    all, or, with a noise threshold, another number in each pixel."""
+    if parts:
+        return None if parts.is_whole else parts.asked
+    if options["noise"] or report["spp"] == options["spp"]:
+        return None
+    return 0, report["spp"]
 
 
 def _follow(engine, delivery, job, begin, end):
@@ -143,11 +156,10 @@ def _say(notes):
         print(f"Velour: {note}", flush=True)
 
 
-def _say_report(engine, job):
-    if job.poll().state == "ready":
+def _say_report(engine, report):
+    if not report:
         engine.update_stats("Velour", "All samples were there")
         return
-    report = job.report()
     line = f"{report['spp_mean']:.0f} samples | {report['samples_per_second'] / 1e6:.1f} M samples/s"
     if report["blocks_unfinished"] is not None:
         line += f" | {report['blocks_unfinished']} blocks above the noise threshold"

@@ -9,12 +9,14 @@ import shutil
 import signal
 import subprocess
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 from .job import Job, Unit
 
 # "Error: ..." of Blender 3 and 4, "... | ERROR ..." of 5, "ValueError: ..." of Python.
 _ERROR = re.compile(r"\b(?:\w*Error|ERROR)\b.*")
+_OUT_OF_TIME = re.compile(r"Stopped at sample \d+ of \d+;")  # Velour's words once it has kept the film
 stopped = threading.Event()  # SIGTERM has come
 FAILED = 7  # the exit status of a script that raises; Blender's own failures have 1
 
@@ -45,9 +47,11 @@ def render(job: Job, unit: Unit, picture: Path) -> list[str]:
 
 def execute(command: list[str], log: Path) -> int:
     """The exit status; all that is said goes to `log`. SIGTERM is handed on, and Blender's end waited for:
-    Velour keeps what it has of the frame."""
+    Velour keeps what it has of the frame. After it nothing is started any more."""
     log.parent.mkdir(parents=True, exist_ok=True)
-    with open(log, "wb") as file:
+    with open(log, "wb") as file, heeding_sigterm() as children:
+        if stopped.is_set():
+            return -signal.SIGTERM
         try:
             child = subprocess.Popen(
                 command,
@@ -59,8 +63,11 @@ def execute(command: list[str], log: Path) -> int:
         except OSError as error:
             file.write(f"Error: {command[0]} cannot be started ({error.strerror})\n".encode())
             return 127
-        with child, _handing_on(child):
+        children.append(child)
+        with child:
             try:
+                if stopped.is_set():  # it came while Blender was started
+                    child.terminate()
                 return child.wait()
             except BaseException:
                 child.kill()
@@ -68,14 +75,18 @@ def execute(command: list[str], log: Path) -> int:
 
 
 @contextlib.contextmanager
-def _handing_on(child: subprocess.Popen):
+def heeding_sigterm() -> Iterator[list[subprocess.Popen]]:
+    """Meanwhile SIGTERM sets `stopped`, and ends nothing but the children in the list."""
+    children: list[subprocess.Popen] = []
+
     def stop(_number, _frame):
         stopped.set()
-        child.terminate()
+        for child in children:
+            child.terminate()
 
     earlier = signal.signal(signal.SIGTERM, stop)
     try:
-        yield
+        yield children
     finally:
         signal.signal(signal.SIGTERM, earlier or signal.SIG_DFL)
 
@@ -96,6 +107,15 @@ def ending(status: int, log: Path) -> str:
         words = f"Blender was ended by {signal.Signals(number).name}"
     else:
         words = f"Blender ended with status {status}"
+    error = _last_error(log)
+    return f"{words}: {error.rstrip('. ')}" if error else words
+
+
+def ran_out_of_time(log: Path) -> bool:
+    """Whether the .blend's own time limit ended Blender, so that the next run goes on from there."""
+    return bool(_OUT_OF_TIME.search(_last_error(log)))
+
+
+def _last_error(log: Path) -> str:
     said = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
-    errors = _ERROR.findall(said)
-    return f"{words}: {errors[-1].rstrip('. ')}" if errors else words
+    return ["", *_ERROR.findall(said)][-1]

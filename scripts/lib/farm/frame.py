@@ -2,7 +2,7 @@
 
 Runs alone, by Python's own library: frame.pyz of a job's folder, beside job.json. Exit status: 0 all that was
 asked for is done; 1 something failed, with a sentence on stderr and in failed/; 2 wrong usage; 3 ended by
-SIGTERM, and the next run goes on from there.
+SIGTERM or the .blend's time limit, nothing failed, and the next run goes on from there.
 """
 
 from __future__ import annotations
@@ -11,14 +11,20 @@ import argparse
 import json
 import os
 import shutil
-import socket
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 from . import blender, exr, job, ranges
 
 DONE, FAILED, UNFINISHED = 0, 1, 3  # exit statuses
+_ANOTHER_SECONDS = 60  # for another run to end Blender, and to look at its picture
+_BETTER_FIRST = (DONE, UNFINISHED, FAILED)
+
+
+class UnfinishedError(Exception):
+    """Why a frame that did not fail is not done: what it has is kept, and the next run goes on from there."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -30,12 +36,8 @@ def main(arguments: list[str] | None = None) -> int:
     except (job.JobError, OSError) as error:
         print(f"farm: {error}", file=sys.stderr)
         return FAILED
-    worst = DONE
-    for unit in units:
-        worst = max(worst, _run(found, unit))
-        if blender.stopped.is_set():
-            return UNFINISHED
-    return worst
+    with blender.heeding_sigterm():
+        return _run_all(found, units)
 
 
 def _parse(arguments: list[str] | None) -> argparse.Namespace:
@@ -67,6 +69,14 @@ def _units(task: job.Job, given: argparse.Namespace) -> list[job.Unit]:
     return [unit for unit in task.units(given.frames) if unit.part in (0, given.part)]
 
 
+def _run_all(task: job.Job, units: list[job.Unit]) -> int:
+    worst = DONE
+    for unit in units:
+        status = UNFINISHED if blender.stopped.is_set() else _run(task, unit)
+        worst = max(worst, status, key=_BETTER_FIRST.index)
+    return worst
+
+
 def _run(task: job.Job, unit: job.Unit) -> int:
     """The exit status of a frame, or of a part of it: the last one makes the picture of all."""
     if not problem(task, task.picture(unit.frame)):
@@ -85,23 +95,26 @@ def _run(task: job.Job, unit: job.Unit) -> int:
 
 def _attempt(task: job.Job, unit: job.Unit, render: Callable[[job.Job, job.Unit, Path], str]) -> int:
     """The exit status. Nobody else writes to the folder that `render` makes its picture in."""
-    folder = task.partial(unit.frame) / f"{socket.gethostname()}-{os.getpid()}"
+    folder = task.partial(unit.frame) / job.nobody_elses_name()
+    left = sentence = ""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         sentence = render(task, unit, folder / "picture_")
+    except UnfinishedError as why:
+        left = str(why)
     except OSError as error:
         sentence = str(error)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     # Another run may have finished the frame, and cleared away what this one had.
-    if not sentence or not problem(task, task.picture(unit.frame)):
+    if not (left or sentence) or not problem(task, task.picture(unit.frame)):
         task.failure(unit).unlink(missing_ok=True)
         print(f"{unit}: {'rendered' if unit.part else task.picture(unit.frame)}", flush=True)
         return DONE
-    if blender.stopped.is_set():
-        print(f"farm: {unit}: ended by SIGTERM; the next run goes on from there", file=sys.stderr, flush=True)
+    print(f"farm: {unit}: {left or sentence}", file=sys.stderr, flush=True)
+    if left:
+        task.failure(unit).unlink(missing_ok=True)  # of an attempt before
         return UNFINISHED
-    print(f"farm: {unit}: {sentence}", file=sys.stderr, flush=True)
     task.failure(unit).parent.mkdir(exist_ok=True)
     job.replace_text(task.failure(unit), sentence + "\n")
     return FAILED
@@ -134,8 +147,29 @@ def _render_part(task: job.Job, unit: job.Unit, path: Path) -> str:
 
 
 def _blender(task: job.Job, unit: job.Unit, path: Path) -> str:
-    status = blender.execute(blender.render(task, unit, path), task.log(unit))
-    return f"{blender.ending(status, task.log(unit))}; {task.log(unit)} has all of it." if status else ""
+    log, had_film = task.log(unit), _has_film(task, unit)
+    status = blender.execute(blender.render(task, unit, path), log)
+    if not status:
+        return ""
+    if blender.stopped.is_set():
+        raise UnfinishedError("ended by SIGTERM; the next run goes on from there")
+    if blender.ran_out_of_time(log):
+        raise UnfinishedError("ended by the .blend's own time limit; the next run goes on from there")
+    if had_film and not _has_film(task, unit):
+        _wait_for_another(task, unit)
+        raise UnfinishedError("another run finished the frame and took its film, but there is no picture")
+    return f"{blender.ending(status, log)}; {log} has all of it."
+
+
+def _has_film(task: job.Job, unit: job.Unit) -> bool:
+    return any(task.film(unit.frame).glob("*.exr"))
+
+
+def _wait_for_another(task: job.Job, unit: job.Unit) -> None:
+    """Its Velour removes the film as soon as Blender has written; its picture is looked at, then named."""
+    end = time.monotonic() + _ANOTHER_SECONDS
+    while problem(task, task.picture(unit.frame)) and time.monotonic() < end and not blender.stopped.is_set():
+        time.sleep(1)
 
 
 def problem(task: job.Job, picture: Path) -> str:

@@ -16,14 +16,24 @@ def look(addon):
         return {
             "error": f"there is no add-on {addon!r} in this Blender; install it, or name it with --addon."
         }
+    scene = bpy.context.scene
     hashes = importlib.import_module(f"{addon}.export.model_hashes").model_hashes
     models = {material.name_full: hashes(material) for material in bpy.data.materials}
-    scene = bpy.context.scene
     return {
         "velour": importlib.import_module(f"{addon}.native.version").version_text(),
         "models": {name: found for name, found in models.items() if found is not None},
         "frames": list(range(scene.frame_start, scene.frame_end + 1, scene.frame_step)),
+        "notes": notes(scene.velour),
     }
+
+
+def notes(settings):
+    if not settings.time_limit:
+        return []
+    limit = f"The .blend has a time limit of {settings.time_limit:g} s"
+    if settings.use_noise_target:
+        return [f"{limit}: a frame that it ends above the noise threshold counts as done."]
+    return [f"{limit}: a frame that it ends is left, and the next run goes on from there."]
 
 
 addon, report = sys.argv[sys.argv.index("--") + 1 :]

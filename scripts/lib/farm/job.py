@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import secrets
+import socket
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -117,7 +119,20 @@ def blend_state(path: str) -> list[int]:
 
 
 def replace_text(path: Path, text: str) -> None:
-    """The file is the old one or the new one, never a part."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, path)
+    replace_bytes(path, text.encode())
+
+
+def replace_bytes(path: Path, data: bytes) -> None:
+    """The file is the old one or the new one, never a part; nobody reads what a killed process leaves."""
+    temporary = path.with_name(f".{path.name}.{nobody_elses_name()}")
+    try:
+        temporary.write_bytes(data)
+        os.replace(temporary, path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def nobody_elses_name() -> str:
+    """For files of this process alone: nodes share folders, and have the same process ids."""
+    return f"{socket.gethostname()}-{secrets.token_hex(8)}"

@@ -53,6 +53,8 @@ def _ask_blender(made: job.Job) -> None:
         found = json.loads(report.read_text(encoding="utf-8"))
     if "error" in found:
         raise job.JobError(f"{made.blend}: {found['error']}")
+    for note in found["notes"]:
+        print(note)
     made.velour, made.models = found["velour"], found["models"]
     made.frames = made.frames or found["frames"]
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import io
-import os
 import zipfile
 from pathlib import Path
+
+from .job import replace_bytes
 
 HERE = Path(__file__).resolve().parent
 NAME = "frame.pyz"
@@ -19,6 +20,4 @@ def write(folder: Path) -> None:
         archive.writestr("__main__.py", _MAIN)
         for module in _MODULES:
             archive.write(HERE / f"{module}.py", f"farm/{module}.py")
-    temporary = folder / f".{NAME}.{os.getpid()}"
-    temporary.write_bytes(data.getvalue())
-    os.replace(temporary, folder / NAME)
+    replace_bytes(folder / NAME, data.getvalue())

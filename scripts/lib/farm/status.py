@@ -57,4 +57,5 @@ def _is_left(job: Job, unit: Unit, frames: set[int]) -> bool:
         return False
     if not unit.part or not job.part_done(unit).is_file():
         return True
-    return all(job.part_done(each).is_file() for each in job.parts_of(unit.frame))  # the picture is
+    # The picture is: one task is enough to make it of all parts.
+    return unit.part == 1 and all(job.part_done(each).is_file() for each in job.parts_of(unit.frame))
