@@ -1,5 +1,6 @@
 """scripts/farm: frames that are done are kept, others are rendered; a job is for one state of a .blend."""
 
+import wave
 from concurrent.futures import ThreadPoolExecutor
 
 import bpy
@@ -78,6 +79,28 @@ class Farm(FarmTest):
         self.assertEqual(self.status(), (0, "2 of 2 frames done, 0 failed, 0 left\n"))
         self.assertFalse((self.output / "farm/partial/0001").exists())
         self.assert_like_one_run(1e-3)  # half floats
+
+    def test_sequencer(self):
+        """Its pictures do not say what rendered them. Sounds alone put none out."""
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
+        scene, sound = bpy.context.scene, self.shots / "silence.wav"
+        with wave.open(str(sound), "wb") as file:
+            file.setparams((1, 2, 8000, 0, "NONE", ""))
+            file.writeframes(bytes(8000))
+        editor = scene.sequence_editor_create()
+        strips = editor.strips if hasattr(editor, "strips") else editor.sequences
+        strips.new_sound("silence", str(sound), 1, 1)
+        self.save_and_make("heard")
+        done = self.node("--frames", "1")
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+        strips.new_scene("all of it", scene, 2, 1)
+        said = self.save_and_make("seen", status=1)
+        self.assertIn("'Scene' puts out its sequencer (strip 'all of it')", said)
+        self.assertIn("switch off Output > Post Processing > Sequencer", said)
+        self.assertFalse(self.output.exists())
+        scene.render.use_sequencer = False
+        self.save_and_make("off")
 
     def test_another_blend(self):
         """What is half done is not finished from another state of the scene."""
