@@ -79,6 +79,21 @@ class CheckScene(BlenderTest):
             self.assertIn((False, words), found)
             self.assertIn(words, drawn)
 
+    def test_settings_of_view_layers(self):
+        """What only a render looks at, and Freestyle, which ended newer Blenders here."""
+        layer = bpy.context.view_layer
+        layer.use_pass_glossy_direct = True
+        layer.lightgroups.add(name="Key")
+        self.scene.render.use_freestyle = True
+        has_freestyle = bpy.app.build_options.freestyle
+        found = [text for _, text in self._found()]
+        self.assertEqual(len(found), 2 + has_freestyle, found)
+        self.assertEqual(sum("the pass" in text and "left out" in text for text in found), 2)
+        self.assertEqual(sum("Freestyle's strokes" in text for text in found), has_freestyle)
+        self.assertTrue(self.scene.render.use_freestyle)
+        layer.use_freestyle = False
+        self.assertFalse(any("Freestyle" in text for _, text in self._found()))
+
     def test_refusals(self):
         self.lamp.data.energy = 0.0
         ((is_refusal, text),) = self._found()

@@ -35,9 +35,18 @@ class Objects(NotesTest):
     def test_hair_curves(self):
         self._left_out("hair curves", "hair_curves")
 
-    def test_grease_pencil(self):
+    def test_grease_pencil_of_a_tile(self):
+        """In pictures Blender itself draws it (test_drawn_by_blender.py); of a capture nobody does."""
+        tiles = __import__(f"{inputs.ADDON}.export.tiles", fromlist=["tiles"])
         # Blender 4.3 keeps the old kind beside the new one, which 5.0 has alone.
-        self._left_out("Grease Pencil", "grease_pencils_v3", "grease_pencils")
+        pencils = _first_of("grease_pencils_v3", "grease_pencils")
+        scenes.add_plane(scenes.diffuse_material())
+        _link("Fluff", pencils.new("Fluff"))
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        source = tiles.collection_tile(bpy.context.scene.collection, depsgraph)
+        scene, _, notes = tiles.export_tile(source, depsgraph)
+        scene.close()
+        self.assertEqual(notes, ["Object 'Fluff': Grease Pencil strokes are not supported; left out."])
 
     @unittest.skipUnless("light_linking" in bpy.types.Object.bl_rna.properties, "Blender 4.0 and newer")
     def test_light_linking(self):

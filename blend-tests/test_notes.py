@@ -26,6 +26,16 @@ class Notes(NotesTest):
         self._material("ShaderNodeBsdfGlass")
         self.assert_said("Material 'Glass'", "Glass BSDF", "rendered grey")
 
+    def test_index_of_refraction(self):
+        tree = self._material("ShaderNodeBsdfPrincipled").node_tree
+        node = next(n for n in tree.nodes if "Base Color" in n.inputs and n.outputs[0].is_linked)
+        self.assertEqual(self.notes(), [])
+        node.inputs["IOR"].default_value = 2.0
+        if "Specular" in node.inputs:  # before 4.0, where it is of transmission alone
+            self.assertEqual(self.notes(), [])
+        else:
+            self.assert_said("Material 'Glass'", node.name, "'IOR' is not supported")
+
     def test_linked_texture(self):
         material = self._material("ShaderNodeBsdfPrincipled")
         tree = material.node_tree
@@ -187,6 +197,16 @@ class Notes(NotesTest):
         self.assertEqual(self.notes(), [])
         lamp.data.specular_factor = 0.0
         self.assert_said("Light 'Fill'", "specular")
+
+    def test_lamps_with_ies_files(self):
+        lamp = bpy.data.lights.new("Down", "SPOT")
+        bpy.context.scene.collection.objects.link(bpy.data.objects.new("Down", lamp))
+        lamp.use_nodes = True
+        tree = lamp.node_tree
+        self.assertEqual(self.notes(), [])
+        profile = tree.nodes.new("ShaderNodeTexIES")
+        tree.links.new(profile.outputs[0], tree.nodes["Emission"].inputs["Strength"])
+        self.assert_said("Light 'Down'", "shader nodes of lights are ignored", "IES")
 
     def test_motion_blur(self):
         bpy.context.scene.render.use_motion_blur = True

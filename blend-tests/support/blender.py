@@ -44,9 +44,9 @@ def child_command(*arguments, addons=True):
     return [*command, *map(str, arguments)]
 
 
-def run_blender(*arguments, addons=True, environment=None):
+def run_blender(*arguments, addons=True, environment=None, seconds=_CHILD_SECONDS):
     """A headless Blender of its own: CompletedProcess with both outputs as one text."""
-    return process.run(child_command(*arguments, addons=addons), environment, _CHILD_SECONDS)
+    return process.run(child_command(*arguments, addons=addons), environment, seconds)
 
 
 def interrupt_blender(*arguments, after):

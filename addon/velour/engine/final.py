@@ -12,6 +12,7 @@ from ..export.black import refuse_dark_inside
 from ..export.camera import final_view
 from ..export.film import film_exposure
 from ..export.layer_passes import COMBINED, layer_passes, note_missing_passes
+from ..export.unused_settings import note_strokes
 from ..native import render_job
 from . import memory
 from .arguments import arguments
@@ -54,6 +55,7 @@ def render_final(engine, depsgraph):
         stamps = {}
         if not engine.is_preview:
             note_missing_passes(depsgraph.view_layer_eval, notes)
+            note_strokes(scene, depsgraph.view_layer_eval, notes)
             stamps = choose_models(native_scene, materials.reduced, view, depsgraph, notes, check_break)
             _say(notes)
         options = final_options(depsgraph, view, engine.is_preview)

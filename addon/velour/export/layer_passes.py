@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import bpy
 
+from .notes import listed
+
 
 class LayerPass(NamedTuple):
     name: str
@@ -45,6 +47,10 @@ _OWN_SWITCHES = (  # of Velour's settings
     ("use_pass_error", (LayerPass("Error", "RGB", "COLOR", "Error", "error"),)),
     ("use_pass_sample_count", (LayerPass("Sample Count", "X", "VALUE", "Sample Count"),)),
 )
+_SWITCHED_APART = {  # by Cycles, and by Velour
+    "Denoising": ("denoising_store_passes", "use_pass_denoising"),
+    "Sample Count": ("pass_debug_sample_count", "use_pass_sample_count"),
+}
 CRYPTOMATTES = {"object": "CryptoObject", "material": "CryptoMaterial", "asset": "CryptoAsset"}
 
 COMBINED = LayerPass("Combined", "RGBA", "COLOR", "Combined")
@@ -66,12 +72,27 @@ def note_missing_passes(layer, notes):
     """What other engines would make, and Velour does not."""
     known = {switch for switch, _ in _SWITCHES} | {f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES}
     known |= {"use_pass_combined", "use_pass_cryptomatte_accurate"}
-    switches = [each for each in layer.bl_rna.properties if each.identifier.startswith("use_pass_")]
-    for each in switches:
-        if each.identifier not in known and getattr(layer, each.identifier):
-            notes.add(f"View layer '{layer.name}': the pass {each.name} is not supported; left out.")
+    known.add("use_pass_grease_pencil")  # 5.0 and newer: Blender makes it
+    owner = f"View layer '{layer.name}'"
+    cycles = getattr(layer, "cycles", None)
+    for name in (*_asked_passes(layer, known), *_asked_passes(cycles)):
+        notes.add(f"{owner}: the pass {name} is not supported; left out.")
+    for name, (theirs, own) in _SWITCHED_APART.items():
+        if getattr(cycles, theirs, False) and not getattr(layer.velour, own):
+            notes.add(f"{owner}: {name} is asked of Cycles alone, which has a switch of its own; left out.")
     if layer.aovs:
-        notes.add(f"View layer '{layer.name}': shader AOVs are not supported; left out.")
+        notes.add(f"{owner}: shader AOVs are not supported; left out.")
+    if layer.lightgroups:
+        names = listed([f"'{group.name}'" for group in layer.lightgroups])
+        notes.add(f"{owner}: light groups are not supported; the passes of {names} are left out.")
+
+
+def _asked_passes(owner, known=()):
+    """Names of those that are on, but for `known` switches; `owner` None: there are none."""
+    for each in owner.bl_rna.properties if owner else ():
+        is_pass = each.identifier.startswith("use_pass_") and each.identifier not in known
+        if is_pass and getattr(owner, each.identifier):
+            yield each.name
 
 
 def shows_more_than_light(layer):

@@ -7,6 +7,7 @@ import bpy
 from ..native import VelourError
 from .axes import column_lengths, unscaled
 from .notes import ExportError
+from .unused_settings import note_emitter
 
 # What lamps emit of their nominal power changed between 3.4 and 4.3, with the release that made spheres
 # of point lamps, and no property tells. Area lamps had a radiance of P / (4 A), a Lambert emitter's is
@@ -36,9 +37,12 @@ def add_light(scene, obj, matrix, notes):
         return False  # no lamp: it only shows Cycles where the sky comes in
     owner = f"Light '{obj.name}'"
     if lamp.use_nodes and lamp.node_tree and not _is_plain(lamp.node_tree):
-        notes.add(f"{owner}: shader nodes of lights are ignored; its colour and power are used.")
+        notes.add(
+            f"{owner}: shader nodes of lights are ignored, IES files too; its colour and power are used."
+        )
     if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):
         notes.add(f"{owner}: its diffuse, specular and volume factors are ignored.")
+    note_emitter(owner, getattr(lamp, "cycles", None), notes)
     kind, factor, values = _DESCRIBE[lamp.type](lamp, matrix)
     color = tuple(power(lamp, matrix) * factor * c for c in tinted(lamp))
     _note_shape(lamp, matrix, owner, notes)

@@ -10,17 +10,19 @@ from .lights import add_light
 from .meshes import has_colors, has_uv_map, has_uv_maps, object_arrays
 from .placement import Placements, missing_coordinates, projected_onto
 from .units import metres_per_unit
+from .unused_settings import note_pencil
 from .uv_maps import maps_of_slots, missing_map
 from .visibility import Visibility, note_light_visibility
 
 _FLAT = 1e-36  # determinants of instances that the library leaves out, and does not count
+_PENCIL = "Grease Pencil strokes"
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
     "CURVES": "hair curves",
     "POINTCLOUD": "point clouds",
     "VOLUME": "volumes",
-    "GPENCIL": "Grease Pencil",
-    "GREASEPENCIL": "Grease Pencil",
+    "GPENCIL": _PENCIL,
+    "GREASEPENCIL": _PENCIL,
     "LIGHT_PROBE": None,  # a helper of EEVEE's: nothing to say
 }
 
@@ -84,6 +86,7 @@ class ObjectExport:
         self._groups = InstanceGroups(scene, notes)
         self._placements = Placements(materials, notes)
         self._shows_uvs = shows_uvs
+        self._drawn = None  # the evaluated view layer, to whose picture Blender itself may add
         self.owners = []  # Owners of the instances in the scene
         self.shines = False  # a lamp has power
         self._seen = []  # places of meshes that the camera sees, if it looks there
@@ -102,7 +105,9 @@ class ObjectExport:
 
     def _add(self, depsgraph, is_wanted, geometry_alone=False):
         metres = metres_per_unit(depsgraph.scene)
-        override = depsgraph.view_layer_eval.material_override
+        layer = depsgraph.view_layer_eval
+        override = layer.material_override
+        self._drawn = None if geometry_alone else layer
         visibility = None if geometry_alone else Visibility(depsgraph.view_layer)
         for instance in depsgraph.object_instances:
             self._check_break()
@@ -235,7 +240,9 @@ class ObjectExport:
 
     def _note_unsupported(self, obj):
         kind = _UNSUPPORTED.get(obj.type)
-        if kind:
+        if kind == _PENCIL and self._drawn:
+            note_pencil(obj, self._drawn, self._notes)
+        elif kind:
             self._notes.add(f"Object '{obj.name}': {kind} are not supported; left out.")
 
 

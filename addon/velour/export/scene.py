@@ -10,6 +10,7 @@ from .libraries import refuse_missing_libraries
 from .materials import MaterialTable
 from .objects import ObjectExport
 from .pass_labels import AskedPasses, asked_passes
+from .unused_settings import note_layer, note_scene
 from .world import add_world, has_moving_picture, layer_world, shown_world
 from .world_light import WorldLight
 
@@ -73,7 +74,8 @@ class SceneExport:
         if self._strict:
             refuse_black(depsgraph, objects, self.materials, self._world_shines, self.notes)
         view.add_to(self.scene)
-        _note_scene(depsgraph.scene_eval, self.notes)
+        note_scene(depsgraph.scene_eval, self.notes)
+        note_layer(depsgraph.view_layer_eval, self.notes)
         check_break()
         self.scene.commit()
         info = self.scene.info()
@@ -121,8 +123,3 @@ def _surroundings(camera, owner):
         f"Camera '{camera.name}': it is inside of object '{owner}' and sees nothing else; move it out, hide"
         " the object from renders, or raise the camera's Clip Start."
     )
-
-
-def _note_scene(scene, notes):
-    if scene.render.use_motion_blur:
-        notes.add(f"Scene '{scene.name}': motion blur is not supported; ignored.")

@@ -65,6 +65,7 @@ def _copy(scene, frame, engine_id):
         copy.render.engine = engine_id
         copy.render.use_border = copy.render.use_compositing = copy.render.use_sequencer = False
         copy.render.use_single_layer = False
+        copy.render.use_freestyle = False  # strokes over no picture take seconds, and end Blender 4.3 and 5.2
         copy.render.use_persistent_data = False  # nothing of the copy may outlive it
         copy.frame_current = frame
         yield copy

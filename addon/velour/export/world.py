@@ -11,6 +11,7 @@ from .files import absolute_path
 from .nodes import active_output, output, source
 from .notes import ExportError
 from .pixels import working_pixels
+from .unused_settings import note_emitter
 
 _RAYS = {"diffuse": "diffuse rays", "glossy": "glossy rays"}
 
@@ -54,7 +55,10 @@ def _note_visibility(world, notes):
     for name, rays in _RAYS.items():
         if not getattr(visibility, name, True):
             notes.add(f"World '{world.name}': that it is hidden from {rays} is not supported; ignored.")
-    if not getattr(getattr(world, "cycles", None), "use_shadows", True):  # 5.2 and newer
+    cycles = getattr(world, "cycles", None)
+    if world:
+        note_emitter(f"World '{world.name}'", cycles, notes)
+    if not getattr(cycles, "use_shadows", True):  # 5.2 and newer
         notes.add(f"World '{world.name}': that it casts no shadow is not supported; ignored.")
 
 

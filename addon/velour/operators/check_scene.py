@@ -4,6 +4,8 @@ import bpy
 
 from ..export import ExportError, Notes, export_scene, visitor
 from ..export.camera import final_view
+from ..export.layer_passes import note_missing_passes
+from ..export.unused_settings import note_strokes
 from ..native import VelourError
 from .scene_fit import ENGINE
 
@@ -36,6 +38,7 @@ def _sentences(scene):
             export_scene(depsgraph, final_view(depsgraph, notes), notes).scene.close()
         except (ExportError, VelourError) as error:
             refused.add(str(error))
+        note_missing_passes(depsgraph.view_layer_eval, notes)
         names.add(depsgraph.scene.name)
 
     names = set()  # of the copy that is looked at
@@ -43,6 +46,9 @@ def _sentences(scene):
         visitor.visit_frame(scene, scene.frame_current, visit, ENGINE)
     except ExportError as error:
         refused.add(str(error))
+    for layer in scene.view_layers:
+        if layer.use:
+            note_strokes(scene, layer, notes)
     return tuple([_of_scene(sentence, names, scene) for sentence in each] for each in (notes, refused))
 
 

@@ -136,3 +136,10 @@ def _note_ignored(plug, reader):
             reader.note(plug, f"'{name}' is not supported; ignored.")
     for name in _LINK_ONLY:
         note_linked(plug, reader, name)
+    if plug.input("Specular IOR Level"):  # 4.0 and newer: before, IOR is of transmission alone
+        _note_ior(plug.input("IOR"), plug, reader)
+
+
+def _note_ior(socket, plug, reader):
+    if fed_by(socket) or abs(socket.socket.default_value - 1.5) > 1e-6:
+        reader.note(plug, "'IOR' is not supported; it reflects as one of 1.5.")
