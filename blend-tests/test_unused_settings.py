@@ -94,6 +94,11 @@ class Settings(NotesTest):
         (note,) = self._missing()
         self.assertIn("light groups are not supported; the passes of 'Key' and 'Rim' are left out", note)
 
+    def test_alpha_threshold(self):
+        self.layer.pass_alpha_threshold = 0.1
+        (note,) = self._missing()
+        self.assertIn("Alpha Threshold", note)
+
     def test_passes_of_cycles(self):
         self.layer.cycles.use_pass_volume_direct = True
         (note,) = self._missing()

@@ -47,6 +47,7 @@ _OWN_SWITCHES = (  # of Velour's settings
     ("use_pass_error", (LayerPass("Error", "RGB", "COLOR", "Error", "error"),)),
     ("use_pass_sample_count", (LayerPass("Sample Count", "X", "VALUE", "Sample Count"),)),
 )
+_ALPHA_THRESHOLD = 0.5  # of a new view layer
 _SWITCHED_APART = {  # by Cycles, and by Velour
     "Denoising": ("denoising_store_passes", "use_pass_denoising"),
     "Sample Count": ("pass_debug_sample_count", "use_pass_sample_count"),
@@ -80,6 +81,8 @@ def note_missing_passes(layer, notes):
     for name, (theirs, own) in _SWITCHED_APART.items():
         if getattr(cycles, theirs, False) and not getattr(layer.velour, own):
             notes.add(f"{owner}: {name} is asked of Cycles alone, which has a switch of its own; left out.")
+    if abs(layer.pass_alpha_threshold - _ALPHA_THRESHOLD) > 1e-6:
+        notes.add(f"{owner}: the Alpha Threshold of passes is not supported; ignored.")
     if layer.aovs:
         notes.add(f"{owner}: shader AOVs are not supported; left out.")
     if layer.lightgroups:
