@@ -150,7 +150,8 @@ def test_a_job_without_files_is_done(folder):
     assert job.poll().fraction == 1.0
 
 
-def test_a_cancelled_job_makes_no_more(folder, model_file):
+@pytest.mark.parametrize("end", [ThumbnailJob.cancel, ThumbnailJob.close])
+def test_a_cancelled_job_makes_no_more(folder, model_file, end):
     files = _several(folder, model_file, 2)
     received, first = [], threading.Event()
 
@@ -160,7 +161,7 @@ def test_a_cancelled_job_makes_no_more(folder, model_file):
 
     job = ThumbnailJob(files, _cache(folder), receive).start()
     assert first.wait(60)
-    job.cancel()
+    end(job)
     with pytest.raises(VelourError) as cancelled:
         job.wait()
     assert cancelled.value.status == Status.CANCELLED

@@ -6,8 +6,12 @@ import hashlib
 import json
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+
+from .read_job import check
+
+_BLOCK = 1 << 20  # bytes between two looks whether they are still wanted
 
 
 def write_atomic(path: str | os.PathLike, write: Callable[[Path], object]) -> None:
@@ -45,9 +49,29 @@ def _umask() -> int:
 
 
 def sha256(path: str | os.PathLike) -> str:
-    """Of the file's bytes, in hexadecimal digits."""
+    """Of the file's bytes, in hexadecimal digits. On the thread of a ReadJob a cancel ends it."""
     digest = hashlib.sha256()
-    with open(path, "rb") as file:
-        while block := file.read(1 << 20):
-            digest.update(block)
+    for block in _blocks(path):
+        digest.update(block)
     return digest.hexdigest()
+
+
+def sha256_of(data: bytes) -> str:
+    """As sha256(), of bytes."""
+    digest, view = hashlib.sha256(), memoryview(data)
+    for begin in range(0, len(view), _BLOCK):
+        check()
+        digest.update(view[begin : begin + _BLOCK])
+    return digest.hexdigest()
+
+
+def read_bytes(path: str | os.PathLike) -> bytes:
+    """All of the file. On the thread of a ReadJob a cancel ends it."""
+    return b"".join(_blocks(path))
+
+
+def _blocks(path: str | os.PathLike) -> Iterator[bytes]:
+    with open(path, "rb") as file:
+        while block := file.read(_BLOCK):
+            check()
+            yield block

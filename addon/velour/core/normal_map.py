@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..native import Model, Scene, Shader, Status, Texture, TextureSlot, VelourError
+from ..native import Model, Scene, Shader, Texture, TextureSlot
 from ..native.job import JobState
 from .approximation_map import show_tile, tile_job
 from .photometric_stereo import normals_of, root_mean_square_slope
-from .read_job import ReadJob
+from .read_job import ReadJob, check
 
 _MOST_TEXELS = 1024  # along a side: all pictures are held at once
 _SAMPLES = 1  # suns without extent: others would be the same
@@ -48,10 +48,6 @@ class NormalMapJob(ReadJob):
         return state._replace(
             fraction=self._done / self._all if state.running else state.fraction, stage="finding normals"
         )
-
-    def close(self) -> None:
-        self.cancel()  # the thread ends with the picture that it renders
-        super().close()
 
     def _make(self) -> NormalMap:
         with Scene() as scene:
@@ -98,13 +94,9 @@ class NormalMapJob(ReadJob):
         scene.add_light("sun", (math.pi,) * 3, _shining_from(light), angle=0.0)
         scene.commit()
         with tile_job(scene, self._size, _SAMPLES) as job:
-            job.start().wait(self._check)
+            job.start().wait(lambda _state: check())
             self._done += 1
             return job.read_pass("Combined")
-
-    def _check(self, _state: JobState) -> None:
-        if self._cancelled:
-            raise VelourError(Status.CANCELLED, "The normal map was cancelled.")
 
 
 def encoded(normals: np.ndarray) -> np.ndarray:

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from ..native import Status, VelourError
 from ..native.job import JobState
 from .measurement_files import MeasurementFile
-from .read_job import ReadJob
+from .read_job import ReadJob, check
 from .thumbnails import Thumbnail, thumbnail
 
 
 class ThumbnailJob(ReadJob):
     """Makes those of `files` in their order and hands each to `receive`, on a thread of its own.
 
-    After a cancel the thread ends as soon as it has read what it reads."""
+    After a cancel the thread ends as soon as the library has read the file that it reads."""
 
     def __init__(
         self,
@@ -40,10 +39,6 @@ class ThumbnailJob(ReadJob):
     def _make_all(self) -> None:
         self._done = 0
         for file in self.files:
-            self._check()
-            self._receive(file, thumbnail(file, self._cache, self._check, self._threads))
+            check()
+            self._receive(file, thumbnail(file, self._cache, check, self._threads))
             self._done += 1
-
-    def _check(self) -> None:
-        if self._cancelled:
-            raise VelourError(Status.CANCELLED, "The pictures were cancelled.")

@@ -4,13 +4,14 @@ Packed bytes come from memory; linked paths are resolved against the library the
 """
 
 import contextlib
-import hashlib
 import os
 import tempfile
 from typing import NamedTuple
 
 import bpy
 
+from ..core.files import read_bytes
+from ..core.files import sha256_of as sha256
 from ..native import Btf, Measurement, Model, VelourError, library, measurement_job
 from .notes import ExportError
 
@@ -47,8 +48,7 @@ class StoredFile(NamedTuple):
         if self.packed is not None:
             return self.packed
         try:
-            with open(self.path, "rb") as file:
-                return file.read()
+            return read_bytes(self.path)
         except OSError as error:
             named = repr(self.path or self.name)
             raise ExportError(
@@ -144,10 +144,6 @@ def stamp_of(image):
 def is_there(image):
     """Whether the file that `image` (or None) stands for exists."""
     return image is not None and (image.packed_file is not None or os.path.exists(absolute_path(image)))
-
-
-def sha256(data):
-    return hashlib.sha256(data).hexdigest()
 
 
 def read_model(image, owner):

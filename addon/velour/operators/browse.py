@@ -7,7 +7,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ..core.measurement_files import find_measurements
-from ..core.read_job import ReadJob
+from ..core.read_job import ReadJob, is_cancelled
 from ..core.thumbnail_job import ThumbnailJob
 from ..core.thumbnails import thumbnail_folder
 from ..export import ExportError
@@ -108,7 +108,7 @@ class _Pictures:
         return next(self._jobs, None)
 
     def _run(self):
-        finding = ReadJob(lambda: find_measurements(self._folder))
+        finding = ReadJob(lambda: find_measurements(self._folder, is_cancelled))
         yield finding
         self.files, problems = finding.result()
         self.sentences += problems

@@ -7,6 +7,7 @@ import bpy
 from bpy.props import BoolProperty, CollectionProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
+from ..core.files import read_bytes
 from ..core.measurement_files import INDICES, SUFFIXES
 from ..core.read_job import ReadJob
 from ..export import ExportError
@@ -38,8 +39,7 @@ def _found(path):
     if info["kind"] != "model":
         return _Found(path, info["kind"], info["sha256"], None)
     try:
-        with open(path, "rb") as file:
-            data = file.read()
+        data = read_bytes(path)
     except OSError as error:
         raise ExportError(f"{path}: cannot be read ({error.strerror}); choose it again.") from error
     return _Found(path, info["kind"], sha256(data), data)

@@ -53,6 +53,7 @@ class SceneFit:
         self.reading.close()
 
     def close(self):
+        self.reading.close()
         for handle in (*(self._read or ()), self.observation):
             handle.close()
 

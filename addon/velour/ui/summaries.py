@@ -35,6 +35,8 @@ def is_at_rest():
 def forget():
     _summaries.clear()
     _waiting.clear()
+    for job in _jobs.values():
+        job.close()
     _jobs.clear()
     if bpy.app.timers.is_registered(_turn):
         bpy.app.timers.unregister(_turn)

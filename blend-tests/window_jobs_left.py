@@ -1,0 +1,129 @@
+"""The window: jobs that are left behind, by another file and by the end of Blender."""
+
+import os
+import subprocess
+import threading
+import time
+from unittest import mock
+
+import bpy
+
+from support import window
+from support.reading import MODEL, module
+
+_QUITTING_SECONDS = 20  # what reads has 60, and Blender itself takes one or two
+
+
+def start(folder):
+    """Called by the harness once the window is there."""
+    window.run(folder, (pictures_of_another_file, quitting_while_reading, quitting_with_pictures))
+
+
+def _models(folder, name, count):
+    """A folder of them, none like another: what stands behind a model is no part of it."""
+    made = folder / name
+    made.mkdir()
+    for number in range(count):
+        (made / f"{number}.velour").write_bytes(MODEL.read_bytes() + bytes(number))
+    return made
+
+
+def pictures_of_another_file(folder):
+    """No more pictures are made once another file is loaded."""
+    os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
+    jobs, made, go_on = module("core.thumbnail_job"), [], threading.Event()
+    thumbnail = jobs.thumbnail
+
+    def counted(file, *arguments):
+        made.append(file.path)
+        assert go_on.wait(60)
+        return thumbnail(file, *arguments)
+
+    with mock.patch.object(jobs, "thumbnail", counted):
+        with window.override():
+            path = str(_models(folder, "pictures", 12))
+            assert bpy.ops.velour.make_thumbnails("INVOKE_DEFAULT", directory=path) == {"RUNNING_MODAL"}
+        for _ in range(100):
+            yield 0.1
+            if made:
+                break
+        window.fresh_file()
+        go_on.set()
+        yield 2.0
+    assert len(made) == 1, made
+    state = bpy.context.window_manager.velour
+    assert not state.running
+    assert state.waiting == 0
+
+
+# Quits 0.3 s after the job has begun, and says when.
+_CHILD = """
+import sys, time
+import addon_utils, bpy
+addon_utils.enable("velour", default_set=True)
+
+def begin():
+    {begin}
+    bpy.app.timers.register(leave, first_interval=0.3)
+
+def leave():
+    state = bpy.context.window_manager.velour
+    if not state.running or state.stage == "":
+        return 0.1
+    print("leaves at", time.time(), flush=True)
+    bpy.ops.wm.quit_blender()
+
+bpy.app.timers.register(begin, first_interval=0.5)
+"""
+
+
+def _quits(folder, name, begin):
+    """Turns until a Blender of its own, whose job these lines begin, has left: in time, with status 0."""
+    program, log = folder / f"{name}.py", folder / f"{name}.txt"
+    program.write_text(_CHILD.format(begin=begin.strip().replace("\n", "\n    ")))
+    command = [bpy.app.binary_path, "--factory-startup", "--window-geometry", "0", "0", "600", "400"]
+    with open(log, "wb") as output:
+        child = subprocess.Popen(
+            [*command, "--python", program],
+            env={**os.environ, "XDG_CACHE_HOME": str(folder / name)},
+            stdout=output,
+            stderr=subprocess.STDOUT,
+        )
+        try:
+            for _ in range(1200):
+                yield 0.1
+                if child.poll() is not None:
+                    break
+        finally:
+            child.kill()
+    said = log.read_text(errors="replace")
+    assert "leaves at" in said, said
+    seconds = time.time() - float(said.partition("leaves at")[2].split()[0])
+    print(f"{name}: left {seconds:.1f} s after it was told to, with status {child.returncode}")
+    assert child.returncode == 0, said
+    assert seconds < _QUITTING_SECONDS, said
+
+
+def quitting_while_reading(folder):
+    """In one piece, which nobody can stop."""
+    yield from _quits(
+        folder,
+        "reading",
+        f"""
+from velour.operators import load_material
+load_material._found = lambda path: time.sleep(60)
+bpy.ops.velour.load_material("INVOKE_DEFAULT", filepath={str(MODEL)!r})
+""",
+    )
+
+
+def quitting_with_pictures(folder):
+    """Their thread ends by itself, before the next one."""
+    path = _models(folder, "many", 200)
+    yield from _quits(
+        folder,
+        "making",
+        f"""
+bpy.ops.velour.make_thumbnails("INVOKE_DEFAULT", directory={str(path)!r})
+""",
+    )
