@@ -17,7 +17,7 @@ class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
     bl_idname = "velour.accept_file"
     bl_label = "Accept Changed File"
     bl_description = "Take the model and the measurement as they are on disk now"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
 

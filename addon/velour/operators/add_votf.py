@@ -22,7 +22,7 @@ class VELOUR_OT_add_votf(MakesModel, bpy.types.Operator):
         "Give the material's model the outline and the holes of the structure (VOTF). The model before it is"
         " not touched"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
     structure: StringProperty(

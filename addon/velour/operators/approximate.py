@@ -46,7 +46,7 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
         "Make the node group of a Principled BSDF that comes closest to the model: what EEVEE, Cycles and"
         " Solid mode show. Other nodes are not touched"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
 

@@ -15,6 +15,8 @@ class BackgroundJob:
 
     `_start(context)` begins the work when its turn has come; `_step(context)` gives what the operator
     returns, or None as long as the work goes on; `_stop()` gives that too, or None where a step will tell.
+
+    Never with REGISTER: Adjust Last Operation and Repeat Last call `execute`, which holds the window.
     """
 
     _timer = None

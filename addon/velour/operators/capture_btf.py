@@ -22,7 +22,6 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         "Trace how the tile, repeated without end, looks under every light from every view, and write it to a"
         " folder"
     )
-    bl_options = {"REGISTER"}
 
     collection: StringProperty(
         name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}

@@ -20,7 +20,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
     bl_idname = "velour.fit"
     bl_label = "Fit"
     bl_description = "Fit a model to the material's measurement. The model before it is not touched"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
     # Where given these replace the settings of the material; what is not given stays as it is.

@@ -23,7 +23,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         "Look at the material in all frames, view layers and instances of the scene, and fit a second,"
         " smaller model that holds for the views and lights found. The full model stays"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
     current_frame: BoolProperty(

@@ -18,7 +18,7 @@ class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.mark_asset"
     bl_label = "Mark as Asset"
     bl_description = "Offer the material in asset browsers, with a picture of a ball of it in a studio"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
     # What is not given stays as it is.

@@ -50,7 +50,6 @@ class VELOUR_OT_describe_placement(PlacementOperator, bpy.types.Operator):
     bl_idname = "velour.describe_placement"
     bl_label = "Describe Placement"
     bl_description = "Say how large the tiles of the material are on the object, and what is wrong with that"
-    bl_options = {"REGISTER"}
 
     def _use_on(self, *where):
         report = report_on(*where)
@@ -67,7 +66,7 @@ class VELOUR_OT_keep_uv_density(PlacementOperator, bpy.types.Operator):
         "Take the density of the object's texture coordinates as they are in this frame for all objects and"
         " frames, so that tiles do not creep over a mesh that deforms"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     def _use_on(self, depsgraph, obj, material, _tile):
         velour_node(material).velour.placement.uv_density = uv_density_on(depsgraph, obj, material)
