@@ -1,13 +1,20 @@
 """Every operator, without a window."""
 
 import hashlib
+import shutil
 import threading
 from unittest import mock
 
 import bpy
 from mathutils import Vector
+from velour import operators
+from velour.export import ExportError
 from velour.native import Btf, Measurement, library
-from velour.operators.slots import slot_along
+from velour.operators.background_job import BackgroundJob
+from velour.operators.fit import VELOUR_OT_fit
+from velour.operators.job_target import JobOwner
+from velour.operators.reads_first import ReadsFirst
+from velour.operators.slots import Slot, SlotTarget, slot_along
 
 from support import inputs, scenes
 from support.blender import BlenderTest
@@ -188,13 +195,57 @@ class Operators(BlenderTest):
             self.assertEqual(found, [(cube.name, 1), (cube.name, 0)])
         self.assertIsNone(slot_along(bpy.context, Vector((50, 0, 9)), Vector((0, 0, -1))))
 
-    def test_a_file_that_is_none_leaves_nothing_behind(self):
-        before = len(bpy.data.materials)
-        names = [inputs.lambert_measurement().name, "nothing.binary"]
-        folder = str(inputs.lambert_measurement().parent)
-        with self.assertRaisesRegex(RuntimeError, "nothing.binary"):
-            bpy.ops.velour.load_material(directory=folder, files=[{"name": name} for name in names])
-        self.assertEqual(len(bpy.data.materials), before)
+    def _refused(self, *words, operator=bpy.ops.velour.load_material, **arguments):
+        """The sentences, all in one report."""
+        with self.assertRaises(RuntimeError) as caught:
+            operator(**arguments)
+        for word in words:
+            self.assertIn(word, str(caught.exception))
+        return str(caught.exception)
+
+    def test_files_that_are_none_are_no_matter_to_the_others(self):
+        """They are named in one report, and leave nothing behind."""
+        folder, good = self.folder, inputs.lambert_measurement()
+        shutil.copy(good, folder / "good.binary")
+        (folder / "noise.bsdf").write_bytes(bytes(range(256)) * 40)
+        names = ("noise.bsdf", "good.binary", "nothing.binary")
+        said = self._refused(
+            "2 of 3 files were left out.",
+            "noise.bsdf",
+            "nothing.binary",
+            directory=str(folder),
+            files=[{"name": name} for name in names],
+            fit=False,
+        )
+        self.assertNotIn("good", said)
+        self.assertEqual(self.material.name, "good")
+        self.assertEqual({material.name for material in bpy.data.materials}, {"good"})
+
+    def test_files_that_are_all_none_leave_nothing_behind(self):
+        names = ("one.binary", "two.velour")
+        said = self._refused(
+            *names, directory=str(self.folder), files=[{"name": name} for name in names], fit=False
+        )
+        self.assertNotIn("left out", said)
+        self.assertEqual(len(bpy.data.materials), 0)
+        self.assertFalse(self.obj.velour.is_property_set("jobs"))
+
+    def test_a_fit_that_fails_is_no_matter_to_the_others(self):
+        """Without a window they are made one after the other, and one report names those that failed."""
+        for name in ("a.binary", "b.binary", "c.binary"):
+            shutil.copy(inputs.lambert_measurement(), self.folder / name)
+        begin = VELOUR_OT_fit._begin
+
+        def fails(operator, context):
+            if operator.material != "b":
+                raise ExportError(f"Material '{operator.material}': cannot be fitted.")
+            begin(operator, context)
+
+        files = [{"name": f"{name}.binary"} for name in "abc"]
+        with mock.patch.object(VELOUR_OT_fit, "_begin", fails):
+            self._refused("'a': cannot", "'c': cannot", directory=str(self.folder), files=files)
+        self.assertIsNone(scenes.velour_node(bpy.data.materials["a"]).image)
+        self._check_model(scenes.velour_node(bpy.data.materials["b"]).image)
 
     def test_save_model(self):
         bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)
@@ -224,6 +275,107 @@ class Operators(BlenderTest):
     def _info(self, image):
         with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
             return model.info()
+
+
+class Options(BlenderTest):
+    def test_none_that_waits_is_done_again(self):
+        """Adjust Last Operation and Repeat Last would wait in the window. One step of undo is no matter."""
+        waiting = [each for each in operators.CLASSES if issubclass(each, (BackgroundJob, ReadsFirst))]
+        self.assertIn(VELOUR_OT_fit, waiting)
+        names = [each.__name__ for each in waiting if "REGISTER" in getattr(each, "bl_options", ())]
+        self.assertEqual(names, [])
+        own = {
+            "fit",
+            "fit_for_scene",
+            "approximate",
+            "add_votf",
+            "compress_btf",
+            "load_material",
+            "mark_asset",
+        }
+        undone = {each.bl_idname for each in waiting if "UNDO" in getattr(each, "bl_options", ())}
+        self.assertEqual(own - {name.removeprefix("velour.") for name in undone}, set())
+
+
+class Slots(BlenderTest):
+    """Where a material goes that is ready later than it was asked for."""
+
+    def setUp(self):
+        super().setUp()
+        self.cube, self.said = _two_sided_cube(), []
+        self.cube.active_material_index = 1
+        self.target = SlotTarget(bpy.context)
+
+    def _put(self):
+        material = bpy.data.materials.new("New")
+        self.target.put(material, lambda kind, sentence: self.said.append((kind, sentence)))
+        return material
+
+    def _check_cube(self):
+        """The new material is in its second slot, and nothing is left of the mark."""
+        material = self._put()
+        self.assertEqual([slot.material.name for slot in self.cube.material_slots], ["Below", material.name])
+        self.assertFalse(self.cube.velour.is_property_set("jobs"))
+        self.assertEqual(self.said, [])
+
+    def test_whatever_is_selected_meanwhile(self):
+        other = scenes.add_plane()
+        self.cube.active_material_index = 0
+        self.assertEqual(bpy.context.object, other)
+        self._check_cube()
+        self.assertIsNone(other.active_material)
+
+    def test_whatever_it_is_called_meanwhile(self):
+        namesake, name = scenes.add_plane(), self.cube.name
+        self.cube.name = "Renamed"
+        namesake.name = name
+        self.assertEqual(namesake.name, name)
+        self._check_cube()
+        self.assertIsNone(namesake.active_material)
+
+    def test_a_copy_is_another_one(self):
+        copy = self.cube.copy()
+        copy.data, copy.name = self.cube.data.copy(), "A copy"  # comes first by name
+        bpy.context.collection.objects.link(copy)
+        self._check_cube()
+        self.assertEqual(copy.material_slots[1].material.name, "Above")
+        self.assertFalse(copy.velour.is_property_set("jobs"))
+
+    def test_another_one_in_its_place(self):
+        name = self.cube.name
+        bpy.data.objects.remove(self.cube)
+        other = scenes.add_plane()
+        other.name = name
+        material = self._put()
+        self.assertIsNone(other.active_material)
+        self.assertTrue(material.use_fake_user)
+        ((kind, sentence),) = self.said
+        self.assertEqual(kind, {"WARNING"})
+        self.assertIn(f"Slot 2 of object '{name}' is gone; material 'New'", sentence)
+
+    def test_a_slot_that_is_gone(self):
+        self.cube.data.materials.pop(index=1)
+        self.assertTrue(self._put().use_fake_user)
+        self.assertEqual([slot.material.name for slot in self.cube.material_slots], ["Below"])
+
+    def test_several_that_wait_for_one_object(self):
+        first, self.target = self.target, SlotTarget(bpy.context, Slot(self.cube.name, 0))
+        self.cube.name = "Renamed"
+        self.assertEqual(first.take(), (self.cube, 1))
+        self.assertEqual(self.target.take(), (self.cube, 0))
+        self.assertFalse(self.cube.velour.is_property_set("jobs"))
+
+    def test_an_undo_takes_the_mark_away(self):
+        self.cube.velour.property_unset("jobs")
+        self._check_cube()
+
+    def test_a_collection(self):
+        """The tile of a capture."""
+        collection = bpy.data.collections.new("Tile")
+        owner = JobOwner(collection)
+        collection.name = "Renamed"
+        bpy.data.collections.new("Tile")
+        self.assertEqual(owner.take(), collection)
 
 
 class Refusals(BlenderTest):

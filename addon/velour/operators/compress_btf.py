@@ -10,13 +10,14 @@ from bpy.props import BoolProperty, IntProperty, StringProperty
 
 from ..core.fit_time import fit_of, remember
 from ..core.plain_words import plain
-from ..core.read_job import ReadJob
+from ..core.read_job import ReadJob, check
 from ..export.caches import cache_folder
 from ..native import Btf, compress_job
 from . import measured
 from .approximate import MakesModel
 from .asked_fit import AskedFit
-from .slots import Slot, assign
+from .job_target import JobOwner
+from .slots import SlotTarget
 from .tiles import held_out_folder
 
 
@@ -24,7 +25,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
     bl_idname = "velour.compress_btf"
     bl_label = "Make Material from BTF"
     bl_description = "Fit a model to a captured or measured BTF and make a material of it"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     assign: BoolProperty(
         name="Assign",
@@ -40,8 +41,8 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
 
     def _begin(self, context):
         tile, path = self._chosen(context)
-        # By name: the owner may be another object after an undo.
-        self._owner = (type(tile.owner), tile.owner.name) if tile else None
+        self._owner = JobOwner(tile.owner) if tile else None
+        self._slot = SlotTarget.asked(context, self)
         self._subject = os.path.splitext(os.path.basename(path))[0]
         self._path = measured.btf_file(path)
         self._asked_for = self._options(tile)
@@ -71,10 +72,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
 
     def _remember(self, image):
         """For the tile's panel."""
-        if self._owner is None:
-            return
-        kind, name = self._owner
-        owner = (bpy.data.objects if issubclass(kind, bpy.types.Object) else bpy.data.collections).get(name)
+        owner = self._owner.take() if self._owner else None
         if owner is not None:
             owner.velour.model = image
 
@@ -91,8 +89,9 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         node.velour.measurement = measured.measurement_image(self._path, self._digest)
         self._put_approximation(material)
         self._remember(node.image)
-        slot = Slot(self.object, self.slot) if self.object else None
-        if not (self.assign and assign(bpy.context, material, slot)):
+        if self._slot:
+            self._slot.put(material, self.report)
+        else:
             material.use_fake_user = True
         for sentence in report["warnings"]:
             self.report({"WARNING"}, plain(sentence))
@@ -109,6 +108,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
 def _read(path, held_out):
     """Beside the window: the BTF, what is known of it, and the one to judge by or None."""
     btf = Btf.load(path)
+    check()
     return btf, btf.info(), held_out and Btf.load(held_out)
 
 

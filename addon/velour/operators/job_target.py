@@ -33,3 +33,38 @@ class JobTarget:
             for node in material.node_tree.nodes if material.node_tree else ():
                 if node.bl_idname == "ShaderNodeTexImage" and node.velour.job == self._mark:
                     yield material, node
+
+
+class JobOwner:
+    """An object or a collection, by one of the marks on it and by names: undo may replace any datablock."""
+
+    def __init__(self, owner):
+        self._list = "objects" if isinstance(owner, bpy.types.Object) else "collections"
+        self.name, self._names = owner.name, _names(owner)
+        self._mark = uuid.uuid4().hex
+        if owner.library is not None:  # goes by its names, which nobody changes
+            return
+        owner.velour.jobs = f"{owner.velour.jobs} {self._mark}".strip()  # others may wait for it as well
+
+    def take(self):
+        """The owner, also where it was renamed, without its mark; None where it is gone."""
+        owners = sorted(getattr(bpy.data, self._list), key=lambda owner: _names(owner) != self._names)
+        marked = [owner for owner in owners if self._mark in _marks(owner)]
+        for owner in marked:  # copies have it as well: the original, if it is called as it was, comes first
+            rest = [mark for mark in _marks(owner) if mark != self._mark]
+            owner.velour.jobs = " ".join(rest)
+            if not rest:
+                owner.velour.property_unset("jobs")
+        # An undo to what was before the mark takes it away.
+        return next(iter(marked or (owner for owner in owners if _names(owner) == self._names)), None)
+
+
+def _names(owner):
+    """Its own, and of an object its data's: one that was put in its place has others."""
+    data = getattr(owner, "data", None)
+    return key_of(owner), key_of(data) if data else None
+
+
+def _marks(owner):
+    # Looking into settings makes them.
+    return owner.velour.jobs.split() if owner.is_property_set("velour") else ()

@@ -9,13 +9,15 @@ from bpy_extras.io_utils import ImportHelper
 
 from ..core.files import read_bytes
 from ..core.measurement_files import INDICES, SUFFIXES
-from ..core.read_job import ReadJob
+from ..core.read_job import ReadJob, check
 from ..export import ExportError
 from ..export.files import sha256
-from ..native import library
+from ..native import VelourError, library
 from . import measured
 from .background_job import OneJob
-from .slots import Slot, assign, slot_under
+from .slots import SlotTarget, slot_under
+
+_MOST_SENTENCES = 10  # of a report
 
 
 class _Found(NamedTuple):
@@ -32,7 +34,6 @@ class _Found(NamedTuple):
 
 
 def _found(path):
-    """Runs beside the window."""
     info = library.file_info(path)
     if info["kind"] == "observation":
         raise ExportError(f"{path}: is what a scene shows of a material; choose a model or a measurement.")
@@ -45,11 +46,27 @@ def _found(path):
     return _Found(path, info["kind"], sha256(data), data)
 
 
+def _find(paths):
+    """What can be had of them, and a sentence for each of the others. Runs beside the window."""
+    found, sentences = [], []
+    for path in paths:
+        check()
+        try:
+            found.append(_found(path))
+        except (ExportError, VelourError) as error:
+            if isinstance(error, VelourError) and error.cancelled:
+                raise
+            sentences.append(str(error))
+    if found and sentences:
+        sentences.insert(0, f"{len(sentences)} of {len(paths)} files were left out.")
+    return found, sentences
+
+
 class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     bl_idname = "velour.load_material"
     bl_label = "Import Measured Material"
     bl_description = "Make materials from model files (.velour) or measurements (MERL, RGL, Cornell, BTFs)"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     filename_ext = ".velour"
     filter_glob: StringProperty(
@@ -108,31 +125,38 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
         if self._job is not None:
             OneJob.cancel(self, context)
 
-    def _begin(self, _context):
+    def _begin(self, context):
         paths = self._paths()
         self._subject = os.path.basename(paths[0])
-        self._job = ReadJob(lambda: [_found(path) for path in paths])
+        self._slot = SlotTarget.asked(context, self)
+        self._job = ReadJob(lambda: _find(paths))
 
     def _finish(self):
-        found = self._job.result()
+        found, self._sentences = self._job.result()
         btfs = [file.path for file in found if file.kind == "btf"]
         materials = [self._load(file) for file in found if file.kind != "btf"]
-        slot = Slot(self.object, self.slot) if self.object else None
         for number, material in enumerate(materials):
-            if number > 0 or not self.assign or not assign(bpy.context, material, slot):
+            if number == 0 and self._slot:
+                self._slot.put(material, self.report)
+            else:
                 material.use_fake_user = True
         unfitted = [m.name for m in materials if measured.ensure_node(m).image is None]
         jobs = [(bpy.ops.velour.fit, {"material": name}) for name in unfitted if self.fit]
         jobs += [
             (bpy.ops.velour.approximate, {"material": m.name}) for m in materials if m.name not in unfitted
         ]
-        for path in btfs:  # the first of all files takes the slot
-            place = {
-                "assign": self.assign and not materials and path == btfs[0],
-                **(slot._asdict() if slot else {}),
-            }
+        place = {} if materials else self._place()  # the first of all files takes the slot
+        for path in btfs:
             jobs.append((bpy.ops.velour.compress_btf, {"filepath": path, **place}))
-        return self._run_all(jobs)
+            place = {}
+        self._run_all(jobs)
+        self._say_all()
+        return {"FINISHED"} if found else {"CANCELLED"}
+
+    def _place(self):
+        """Arguments for the operator that makes the material."""
+        taken = self._slot.take() if self._slot else None
+        return {"assign": True, "object": taken[0].name, "slot": taken[1]} if taken else {}
 
     def _paths(self):
         names = [file.name for file in self.files if file.name]
@@ -153,12 +177,19 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
         return material
 
     def _run_all(self, jobs):
-        """In a window they stand in line in the background."""
+        """In a window they stand in line in the background. What one fails in is no matter to the others."""
         mode = "EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT"
         for operator, arguments in jobs:
             try:
                 operator(mode, **arguments)
             except RuntimeError as error:
-                self.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
-                return {"FINISHED"}  # the materials are there; their jobs can be tried again
-        return {"FINISHED"}
+                self._sentences.append(str(error).removeprefix("Error: ").strip())
+
+    def _say_all(self):
+        """In one report, what went wrong. What could be read is there, and its fit can be tried again."""
+        more = len(self._sentences) - _MOST_SENTENCES
+        said = self._sentences[:_MOST_SENTENCES]
+        if more > 0:
+            said.append(f"{more} more sentences were left out.")
+        if said:
+            self.report({"ERROR"}, " ".join(said))

@@ -1,4 +1,4 @@
-"""The material slot that an operator puts its material into: a named one, or the active one."""
+"""The material slot that an operator puts its material into: a named one, or that which is active."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ import bpy
 from bpy_extras import view3d_utils
 from mathutils import Vector
 
+from .job_target import JobOwner
+
 
 class Slot(NamedTuple):
-    """By name, since undo may replace any datablock. An object without slots gets its first one."""
+    """An object's, by name. One without slots gets its first one."""
 
     object: str
     slot: int
@@ -43,17 +45,54 @@ def takes_materials(obj) -> bool:
     return obj is not None and hasattr(obj.data, "materials") and obj.library is None
 
 
-def assign(context, material, slot: Slot | None = None) -> bool:
-    """Puts `material` into `slot`, or else into the active slot of the active object.
+class SlotTarget:
+    """A slot, fixed when a job begins: whatever is selected, renamed or undone until it ends."""
 
-    False, and the material kept by a fake user, where no such object takes materials.
-    """
-    obj = bpy.data.objects.get(slot.object) if slot else context.object
-    if not takes_materials(obj):
+    def __init__(self, context, slot: Slot | None = None):
+        """`slot`: None, or a number that its object has no slot for, is the active one."""
+        obj = bpy.data.objects.get(slot.object) if slot else context.object
+        self._owner = self._number = None
+        if takes_materials(obj):
+            self._owner, count = JobOwner(obj), len(obj.material_slots)
+            is_there = slot is not None and (slot.slot < count or count == 0)
+            self._number = slot.slot if is_there else obj.active_material_index
+
+    @classmethod
+    def asked(cls, context, operator):
+        """By the properties `assign`, `object` and `slot` of an operator; None: the material goes nowhere."""
+        if not operator.assign:
+            return None
+        return cls(context, Slot(operator.object, operator.slot) if operator.object else None)
+
+    def take(self):
+        """The object and the slot's number, once; None where there is none, or none any more."""
+        obj = self._owner.take() if self._owner else None
+        if not takes_materials(obj) or 0 < len(obj.material_slots) <= self._number:
+            return None
+        return obj, self._number
+
+    def put(self, material, report) -> None:
+        """Into it; where it is gone, or never was, a fake user keeps the material."""
+        taken = self.take()
+        if taken is not None:
+            _put(material, *taken)
+            return
         material.use_fake_user = True  # or it would be gone after saving
-        return False
-    if slot is None or slot.slot >= len(obj.material_slots):
-        obj.active_material = material
+        if self._owner:
+            where = f"Slot {self._number + 1} of object '{self._owner.name}'"
+            report({"WARNING"}, f"{where} is gone; material '{material.name}' is kept without an object.")
+
+
+def assign(context, material) -> None:
+    """Puts `material` into the active slot of the active object; a fake user keeps it where there is none."""
+    if takes_materials(context.object):
+        context.object.active_material = material
     else:
-        obj.material_slots[slot.slot].material = material
-    return True
+        material.use_fake_user = True  # or it would be gone after saving
+
+
+def _put(material, obj, number):
+    if obj.material_slots:
+        obj.material_slots[number].material = material
+    else:
+        obj.active_material = material

@@ -52,6 +52,9 @@ class VelourTileSettings(bpy.types.PropertyGroup):
         override=_OVERRIDABLE,
     )
 
+    # Marks of those whose results come here, with blanks between.
+    jobs: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
     # What a capture is asked for.
     directory: StringProperty(
         name="Folder",
