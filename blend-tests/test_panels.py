@@ -1,13 +1,19 @@
 """What the Properties editor and the Add menu of shaders offer with Velour: what is rendered, and once."""
 
+import functools
+import inspect
 import unittest
 from collections import Counter
 from types import SimpleNamespace
+from unittest import mock
 
 import addon_utils
 import bpy
+from velour.operators.background_job import TABS
+from velour.ui import material_panel
+from velour.ui.material_panel import VELOUR_MATERIAL_PT_measured
 
-from support import scenes
+from support import inputs, scenes
 from support.blender import ADDON, BlenderTest, enable_addon
 
 _LAMPS = {
@@ -33,14 +39,16 @@ class _Layout:
 
     def __getattr__(self, name):
         if hasattr(self._cls, name):
-            return getattr(self._cls, name)
+            found = getattr(self._cls, name)
+            is_method = inspect.isfunction(inspect.getattr_static(self._cls, name))
+            return functools.partial(found, self) if is_method else found
         return lambda *_arguments, **_keywords: self
 
     def prop(self, _owner, name, **_keywords):
         self.props.append(name)
 
-    def operator(self, *_arguments, **_keywords):
-        self.operators.append(SimpleNamespace())
+    def operator(self, name, **_keywords):
+        self.operators.append(SimpleNamespace(name=name))
         return self.operators[-1]
 
 
@@ -99,6 +107,52 @@ class Panels(BlenderTest):
     def test_what_is_not_read_is_not_shown(self):
         names = [p.__name__ for p in bpy.types.Panel.__subclasses__() if self._is_ours(p)]
         self.assertEqual([n for n in names if any(word in n for word in _NOT_READ)], [])
+
+    def test_a_running_job_is_shown(self):
+        """With its cross, of BTFs as of BRDFs; and Esc cancels over no other tab than those that show it."""
+        context, found = self._of_a_material(), set()
+        tabs = {getattr(panel, "bl_context", "") for panel in bpy.types.Panel.__subclasses__()}
+        for info in ({"texels": (8, 8)}, {}):
+            with mock.patch.object(material_panel, "model_summary", lambda _image, info=info: info):
+                self.assertNotIn("velour.cancel_fit", self._offered(VELOUR_MATERIAL_PT_measured, context))
+                context.window_manager.velour.running = True
+                offered = self._offered(VELOUR_MATERIAL_PT_measured, context)
+                found |= {tab for tab in tabs if self._shows_a_job(tab, context)}
+                context.window_manager.velour.running = False
+            self.assertEqual(offered.count("velour.cancel_fit"), 1, info)
+            self.assertEqual("velour.fit" in offered, "texels" not in info)
+        self.assertEqual({tab.upper() for tab in found}, set(TABS))
+
+    def _of_a_material(self):
+        """The context of a tab that shows a plane with a measured material."""
+        scenes.add_plane().active_material = scenes.measured_material(
+            inputs.model_bytes(inputs.lambert_measurement())
+        )
+        return SimpleNamespace(
+            engine="VELOUR",
+            scene=self.scene,
+            view_layer=bpy.context.view_layer,
+            window_manager=bpy.context.window_manager,
+            object=bpy.context.object,
+            material=bpy.context.object.active_material,
+            collection=bpy.data.collections.new("Tile"),
+            world=bpy.data.worlds.new("World"),
+            light=None,
+        )
+
+    def _shows_a_job(self, tab, context):
+        ours = [panel for panel in self._panels_of(tab) if panel.__module__.startswith("velour.ui.")]
+        return any(
+            "velour.cancel_fit" in self._offered(panel, context)
+            for panel in ours
+            if not getattr(panel, "bl_parent_id", "") and panel.poll(context)
+        )
+
+    @staticmethod
+    def _offered(panel, context):
+        layout = _Layout(panel)
+        panel.draw(layout, context)
+        return [operator.name for operator in layout.operators]
 
     def _shown(self, tab, **context):
         """How often each setting stands in a tab."""

@@ -1,9 +1,10 @@
-"""The window: jobs that are left behind, by another file and by the end of Blender."""
+"""The window: jobs that are left behind, by Esc, by another file and by the end of Blender."""
 
 import os
 import subprocess
 import threading
 import time
+from types import SimpleNamespace
 from unittest import mock
 
 import bpy
@@ -16,7 +17,32 @@ _QUITTING_SECONDS = 20  # what reads has 60, and Blender itself takes one or two
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (pictures_of_another_file, quitting_while_reading, quitting_with_pictures))
+    window.run(folder, (escape, pictures_of_another_file, quitting_while_reading, quitting_with_pictures))
+
+
+def escape(folder):
+    """Over a tab that shows the job, and over the status bar, which does so too; nowhere else."""
+    yield from window.show_properties("MATERIAL")
+    areas = window.first().screen.areas
+    area = max(areas, key=lambda each: each.width * each.height)
+    x, y = area.x + area.width // 2, area.y + area.height // 2
+    is_over = module("operators.background_job")._over_progress
+
+    def cancels(x, y):
+        with window.override():
+            return is_over(bpy.context, SimpleNamespace(mouse_x=x, mouse_y=y))
+
+    assert cancels(x, y)
+    area.spaces.active.context = "SCENE"
+    assert not cancels(x, y)
+    area.spaces.active.context = "OBJECT"
+    assert cancels(x, y)
+    area.type = "VIEW_3D"
+    assert not cancels(x, y)
+    assert cancels(x, 2), "the status bar"
+    top = max(each.y + each.height for each in areas)
+    assert top + 10 < window.first().height
+    assert not cancels(x, top + 10), "the top bar"
 
 
 def _models(folder, name, count):

@@ -7,6 +7,7 @@ import bpy
 from ..export import ExportError
 from ..native import VelourError
 
+TABS = ("MATERIAL", "OBJECT", "COLLECTION")  # of the Properties editor: their panels show the progress
 _line = []  # of those that run or wait, the first runs
 
 
@@ -62,7 +63,7 @@ class BackgroundJob:
     def _wants_to_stop(self, context, event):
         if _line[0] is not self._ticket or not context.window_manager.velour.running:
             return False
-        escaped = event.type == "ESC" and event.value == "PRESS" and _over_properties(context, event)
+        escaped = event.type == "ESC" and event.value == "PRESS" and _over_progress(context, event)
         return escaped or context.window_manager.velour.cancel_requested
 
     def _show(self, context, stage, fraction, seconds_left=None):
@@ -88,13 +89,15 @@ class BackgroundJob:
         redraw(context)
 
 
-def _over_properties(context, event):
-    """Esc belongs to whatever the cursor is over: the jobs' progress stands in the Properties editor."""
-    for area in context.window.screen.areas if context.window else ():
+def _over_progress(context, event):
+    """Esc belongs to whatever the cursor is over: a tab that shows the progress, or the status bar."""
+    areas = context.window.screen.areas if context.window else ()
+    for area in areas:
         inside = 0 <= event.mouse_x - area.x < area.width and 0 <= event.mouse_y - area.y < area.height
         if inside:
-            return area.type == "PROPERTIES"
-    return True  # the status bar, which is no area of the screen
+            return area.type == "PROPERTIES" and area.spaces.active.context in TABS
+    # The status bar is below all areas of the screen, the top bar above them.
+    return all(event.mouse_y < area.y for area in areas)
 
 
 def redraw(context):

@@ -52,7 +52,9 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         info = info if isinstance(info, dict) else {}
         if "texels" not in info:  # BTFs are fitted elsewhere
             _draw_fit_settings(layout.column(align=True), settings)
-            _draw_fit(context, layout)
+        draw_progress(context, layout)  # of BTFs, too
+        if "texels" not in info:
+            layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
             row = layout.row()
             row.active = info.get("model", "scattered") == "scattered"
             row.prop(settings, "neighbors")
@@ -86,11 +88,6 @@ def _draw_look(context, layout, settings, info):
     sentence = gain_warning(info.get("albedo_max"), gain(settings))
     if sentence:
         draw_sentence(context, layout, sentence, icon="ERROR")
-
-
-def _draw_fit(context, layout):
-    draw_progress(context, layout)
-    layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
 
 
 class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
