@@ -5,6 +5,7 @@ import io
 
 import bpy
 import numpy as np
+from velour.operators.compare import find_comparison
 
 from support import inputs, scenes
 from support.blender import BlenderTest
@@ -68,6 +69,36 @@ class Compare(BallTest):
         again = self._compared(material, gain=1.0)
         self.assertEqual(again, image)
         self.assertLess(self._tiles(again)[2].mean(), 0.5 * difference.mean())
+
+    def test_it_is_of_one_model(self):
+        """Whatever materials are called, and until another model is fitted."""
+        material = self._material(inputs.glossy_measurement())
+        node = scenes.velour_node(material)
+        image = self._compared(material)
+        self.assertEqual(find_comparison(node), image)
+        material.name = "Renamed"
+        self.assertEqual(find_comparison(node), image)
+        other = scenes.measured_material(inputs.model_bytes(inputs.lambert_measurement()), name="Paint")
+        scenes.velour_node(other).velour.measurement = node.velour.measurement
+        self.assertIsNone(find_comparison(scenes.velour_node(other)), "another material has its name now")
+        node.image = scenes.velour_node(other).image
+        self.assertIsNone(find_comparison(node), "another model")
+        node.image, node.velour.measurement = None, None
+        self.assertIsNone(find_comparison(node))
+
+    def test_another_size_is_the_same_image(self):
+        """Also where the name belongs to an image of the artist's."""
+        taken = bpy.data.images.new("Paint compared", 8, 8)
+        material = self._material(inputs.glossy_measurement())
+        for side in (_SIDE, 2 * _SIDE, _SIDE):
+            self._said(bpy.ops.velour.compare, material="Paint", side=side, samples=16)
+            image = find_comparison(scenes.velour_node(material))
+            self.assertEqual(tuple(image.size), (3 * side, side))
+            self.assertEqual([each for each in bpy.data.images if each.velour.is_plot], [image])
+        self.assertEqual(tuple(taken.size), (8, 8))
+        self.assertGreater(self._tiles(image)[0].std(), 0.05)
+        image.buffers_free()  # what is packed is as large
+        self.assertGreater(self._tiles(image)[0].std(), 0.05)
 
     def test_another_model_is_not(self):
         material = self._material(inputs.glossy_measurement(), model=inputs.lambert_measurement())

@@ -3,10 +3,11 @@
 import bpy
 from bpy.props import FloatProperty, IntProperty, StringProperty
 
+from ..export.files import absolute_path, file_stamp
 from . import measured
 from .background_job import JobsInSteps
 from .comparison import Comparison
-from .shown_image import made_image, show
+from .shown_image import all_made, made_image, show
 
 
 class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
@@ -30,7 +31,7 @@ class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
     def _begin(self, context):
         material = measured.wanted_material(context, self.material)
         node = measured.modelled_node(material)
-        self._subject = material.name
+        self._subject, self._compared = material.name, _compared(node)
         threads = context.scene.render.threads
         self._steps = Comparison(node, f"Material '{material.name}'", self.side, self.samples, threads)
         self._advance()
@@ -40,6 +41,7 @@ class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
         if self._advance():
             return None
         image = made_image(comparison_name(self._subject), 3 * self.side, self.side, float_buffer=True)
+        image.velour.compared = self._compared
         image.use_view_as_render = True  # light, as a render: with the scene's view transform
         image.pixels.foreach_set(self._steps.tiles(self.gain).ravel())
         image.pack()  # or Blender asks about it at the end
@@ -57,6 +59,22 @@ class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
 def comparison_name(material_name):
     """Of the image."""
     return f"{material_name} compared"
+
+
+def find_comparison(node):
+    """The image of its model beside its measurement, whichever material asked for it; None: there is none."""
+    wanted = _compared(node)
+    return next((image for image in all_made() if image.velour.compared == wanted), None)
+
+
+def _compared(node):
+    """Another text for another model or another measurement, by what the files are known by. For draw()."""
+    return " ".join(_content(image) for image in (node.image, node.velour.measurement) if image is not None)
+
+
+def _content(image):
+    packed = image.packed_file
+    return image.velour.sha256 or repr(packed.size if packed else file_stamp(absolute_path(image)))
 
 
 def _set_preview(image, pixels):

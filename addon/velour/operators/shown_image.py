@@ -6,13 +6,28 @@ import bpy
 
 
 def made_image(name, width, height, **options):
-    """The one of that name, where an operator made it in this size, or a new one; `options` as of
+    """The one that an operator made under that name, now of this size, or a new one; `options` as of
     bpy.data.images.new()."""
-    image = bpy.data.images.get(name)
-    if image is None or not image.velour.is_plot or tuple(image.size) != (width, height):
+    image = find_made(name)
+    if image is None:
         image = bpy.data.images.new(name, width, height, **options)
-        image.velour.is_plot = True
+        image.velour.is_plot, image.velour.made_as = True, name
+    elif tuple(image.size) != (width, height):
+        image.scale(width, height)
     return image
+
+
+def find_made(name):
+    """The one that an operator made under that name, whatever it is called now; None: there is none."""
+    for image in all_made():
+        if (image.velour.made_as or image.name) == name:
+            return image
+    return None
+
+
+def all_made():
+    """The images of this file that operators made."""
+    return [image for image in bpy.data.images if image.velour.is_plot and image.library is None]
 
 
 def show(image):

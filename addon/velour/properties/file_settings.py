@@ -17,3 +17,7 @@ class VelourFileSettings(bpy.types.PropertyGroup):
         override={"LIBRARY_OVERRIDABLE"},
     )
     is_plot: BoolProperty(options={"HIDDEN"})  # drawn by an operator, which may draw another one over it
+    made_as: StringProperty(
+        options={"HIDDEN"}
+    )  # the name that its operator asked for; it may have another one
+    compared: StringProperty(options={"HIDDEN"})  # a comparison: of which model with which measurement

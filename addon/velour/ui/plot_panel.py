@@ -3,12 +3,14 @@
 import bpy
 
 from ..export.nodes import velour_node
-from ..operators.compare import VELOUR_OT_compare, comparison_name
+from ..operators.compare import VELOUR_OT_compare, comparison_name, find_comparison
 from ..operators.model_plots import measurement_for
 from ..operators.plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
+from ..operators.shown_image import find_made
 from .draw_plot import draw_chosen, draw_plot
 from .material_panel import MaterialPanel
 from .summaries import model_summary
+from .text import draw_sentence
 
 _COMPARISON_UNITS = 10.0  # as high as so many buttons
 
@@ -40,14 +42,17 @@ class VELOUR_MATERIAL_PT_plots(MaterialPanel, bpy.types.Panel):
             button = row.operator(operator.bl_idname)
             button.kind, button.view, button.azimuth = kind, settings.view, settings.azimuth
         if node.velour.measurement is not None:
-            _draw_comparison(layout, context.material)
+            _draw_comparison(context, layout, node)
 
 
-def _draw_comparison(layout, material):
-    """Measured and model above the difference, as it was made last."""
-    image = bpy.data.images.get(comparison_name(material.name))
-    if image is not None and image.velour.is_plot and image.preview is not None:
+def _draw_comparison(context, layout, node):
+    """Measured and model above the difference, if that is of this model and this measurement."""
+    image = find_comparison(node)
+    if image is not None and image.preview is not None:
         layout.template_icon(image.preview.icon_id, scale=_COMPARISON_UNITS)
+    elif find_made(comparison_name(context.material.name)) is not None:
+        sentence = "The last comparison is of another model or measurement; compare again."
+        draw_sentence(context, layout, sentence, icon="INFO")
     layout.operator(VELOUR_OT_compare.bl_idname)
 
 
