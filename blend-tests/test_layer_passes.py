@@ -25,6 +25,9 @@ _CRYPTO = tuple(
 )
 
 
+_HALF, _FLOAT = 1, 2  # kinds of OpenEXR's channels
+
+
 class PassesTest(BlenderTest):
     def setUp(self):
         super().setUp()
@@ -38,6 +41,21 @@ class PassesTest(BlenderTest):
             setattr(self.layer.velour if name in _OWN_SWITCHES else self.layer, f"use_pass_{name}", True)
         self.layer.update_render_passes()
 
+    def layers_file(self, bits="32", codec="ZIP"):
+        """The scene as a multilayer file."""
+        self.layer.pass_cryptomatte_depth = 4
+        settings = self.scene.render.image_settings
+        if hasattr(settings, "media_type"):  # 5.0 and newer
+            settings.media_type = "MULTI_LAYER_IMAGE"
+        settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", bits
+        settings.exr_codec = codec
+        path = self.folder / f"layers-{bits}-{codec}.exr"
+        self.scene.render.filepath = str(path)
+        bpy.ops.render.render(write_still=True)
+        if hasattr(settings, "media_type"):
+            settings.media_type = "IMAGE"
+        return path
+
     def shown(self, name):
         if not hasattr(self, "_show"):
             self._show = scenes.composite(self.scene)
@@ -47,34 +65,30 @@ class PassesTest(BlenderTest):
 
 
 class Files(PassesTest):
-    def _rendered(self):
-        self.layer.pass_cryptomatte_depth = 4
-        settings = self.scene.render.image_settings
-        if hasattr(settings, "media_type"):  # 5.0 and newer
-            settings.media_type = "MULTI_LAYER_IMAGE"
-        settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
-        self.scene.render.filepath = str(self.folder / "layers.exr")
-        bpy.ops.render.render(write_still=True)
-        return self.folder / "layers.exr"
-
     def test_every_pass_is_in_a_multilayer_file(self):
         scenes.add_sphere(scenes.diffuse_material())
         self.switch_on(*_SWITCHES, *_OWN_SWITCHES)
-        header = self._rendered().read_bytes()[:20000]
+        header = self.layers_file().read_bytes()[:20000]
         newer = bpy.app.version >= (5, 0)
         for channel in _CHANNELS:
             name = _SINCE_5.get(channel, channel) if newer else channel
             self.assertIn(name.encode() + b"\0", header)
         for channel in _CRYPTO:
-            name, _, letter = channel.rpartition(".")
-            self.assertTrue(
-                any(f"{name}.{each}".encode() + b"\0" in header for each in (letter, letter.upper())), channel
-            )
+            self.assertIn(channel.encode() + b"\0", header)
         self.assertNotIn(b"CryptoObject02", header)
+
+    def test_only_colors_are_halved(self):
+        """Of half floats, whose ids are other ids, whose indices end at 2048 and whose places jump."""
+        scenes.add_sphere(scenes.diffuse_material())
+        self.switch_on(*_SWITCHES, *_OWN_SWITCHES)
+        kinds = _kinds(self.layers_file(bits="16"))
+        halved = {channel.split(".")[-2] for channel, kind in kinds.items() if kind == _HALF}
+        self.assertEqual(halved, {"Combined", "Albedo", "Denoising Albedo", "Error"})
+        self.assertEqual(set(kinds.values()), {_HALF, _FLOAT})
 
     def test_nothing_is_there_that_is_off(self):
         scenes.add_sphere(scenes.diffuse_material())
-        header = self._rendered().read_bytes()[:20000]
+        header = self.layers_file().read_bytes()[:20000]
         for channel in (*_CHANNELS[1:], *_SINCE_5.values(), *_CRYPTO):
             self.assertNotIn(channel.encode() + b"\0", header)
 
@@ -84,7 +98,7 @@ class Files(PassesTest):
         for name in names:
             scenes.add_plane(scenes.diffuse_material(name=f"Of {name}")).name = name
         self.switch_on("cryptomatte_object", "cryptomatte_material")
-        header = inputs.native().images.header(self._rendered())
+        header = inputs.native().images.header(self.layers_file())
         fields = {key: text for key, text in header["texts"].items() if key.startswith("cryptomatte/")}
         found = {}
         for key in {field.split("/")[1] for field in fields}:
@@ -98,6 +112,18 @@ class Files(PassesTest):
         ids = {name: inputs.native().cryptomatte_id(name).text for name in names}
         self.assertEqual(found[f"{self.layer.name}.CryptoObject"], ids)
         self.assertEqual(set(found[f"{self.layer.name}.CryptoMaterial"]), {f"Of {name}" for name in names})
+
+
+def _kinds(path):
+    """Of each channel of an OpenEXR file, whether of one part or of many."""
+    found = {}
+    for channels in path.read_bytes()[:20000].split(b"channels\0chlist\0")[1:]:
+        rest = channels[4:]
+        while rest[0]:
+            name, _, rest = rest.partition(b"\0")
+            found[name.decode()] = int.from_bytes(rest[:4], "little")
+            rest = rest[16:]
+    return found
 
 
 class Missing(PassesTest):
@@ -267,6 +293,18 @@ class Cryptomatte(PassesTest):
         self.assert_close(self._picked("Behind").mean(), 1 - expected, 0.1 * expected)
         self.assertEqual(net.name, "Net")
 
+    def test_ids_come_through_small_files(self):
+        """Of half floats, and of a codec that rounds colours: the node picks from them as from the render."""
+        self._net()
+        scenes.add_plane(scenes.diffuse_material(), size=8).name = "Behind"
+        self.switch_on("cryptomatte_object")
+        for codec in ("ZIP", "DWAA"):
+            path = self.layers_file(bits="16", codec=codec)
+            for name in ("Net", "Behind"):
+                picked = self._picked(name)
+                self.assertGreater(picked.max(), 0.01)
+                np.testing.assert_array_equal(self._picked(name, path), picked, f"{codec}, {name}")
+
     def _net(self):
         """Two crossed wires."""
         half = 0.025 * 4 / scenes.SIZE
@@ -282,13 +320,15 @@ class Cryptomatte(PassesTest):
         self.scene.collection.objects.link(net)
         return net
 
-    def _picked(self, name):
-        """What the compositor's Cryptomatte node makes of the render, given a name."""
+    def _picked(self, name, path=None):
+        """What the compositor's Cryptomatte node makes of the render, or of a file, given a name."""
         scenes.composite(self.scene)("Image")
         tree = scenes.compositor(self.scene)
         sink = next(link.to_socket for link in tree.links)
         node = tree.nodes.new("CompositorNodeCryptomatteV2")
         node.source, node.scene = "RENDER", self.scene
+        if path:
+            node.source, node.image = "IMAGE", bpy.data.images.load(str(path))
         node.layer_name = f"{self.layer.name}.CryptoObject"
         node.matte_id = name
         tree.links.new(node.outputs["Matte"], sink)

@@ -53,6 +53,8 @@ _SWITCHED_APART = {  # by Cycles, and by Velour
     "Sample Count": ("pass_debug_sample_count", "use_pass_sample_count"),
 }
 CRYPTOMATTES = {"object": "CryptoObject", "material": "CryptoMaterial", "asset": "CryptoAsset"}
+# Ids are no colours: in small letters neither Blender halves their floats nor OpenEXR's DWA rounds them.
+_IDS = "rgba"
 
 COMBINED = LayerPass("Combined", "RGBA", "COLOR", "Combined")
 
@@ -65,7 +67,7 @@ def layer_passes(layer):
     for kind, name in CRYPTOMATTES.items():
         if getattr(layer, f"use_pass_cryptomatte_{kind}"):
             names = (f"{name}{level:02d}" for level in range((layer.pass_cryptomatte_depth + 1) // 2))
-            found += [LayerPass(each, "RGBA", "COLOR", each, f"crypto_{kind}") for each in names]
+            found += [LayerPass(each, _IDS, "COLOR", each, f"crypto_{kind}") for each in names]
     return found
 
 
