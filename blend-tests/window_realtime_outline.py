@@ -115,7 +115,7 @@ def _close_structure():
     import gpu
 
     shown, textures = viewport.real_time(), viewport.addon("realtime.textures")
-    (shell,) = (table for table in shown._drawing._tables.values() if type(table).__name__ == "ShellTables")
+    (shell,) = (table for table in shown._drawing.tables.values() if type(table).__name__ == "ShellTables")
     terms = np.array(shell._terms.read().to_list(), np.float32).reshape(1, 2, 4)
     terms[0, 1, 1] = 0
     shell._terms = textures.texture(gpu, terms)

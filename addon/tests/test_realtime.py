@@ -22,6 +22,7 @@ from velour.native import (
     votf_job,
 )
 from velour.realtime import RealtimeScene, UnshownError
+from velour.realtime.kept_tables import KeptTables, Part
 from velour.realtime.lamps import lamp_pixels
 from velour.realtime.pictures import GpuTexture
 from velour.realtime.projection import jitter, view_projection
@@ -114,12 +115,69 @@ def test_a_picture_of_a_base_color_is_drawn_and_others_are_counted_as_simpler():
         scene.add_textured_material({"base_color": slot}, roughness=0.3)
         scene.add_textured_material({"base_color": slot._replace(uv_set=1)})
         scene.add_textured_material({"base_color": slot, "roughness": TextureSlot(number)})
-        drawn, on_other_set, with_roughness = scene.looks
         assert [look.is_simpler for look in scene.looks] == [False, True, True]
-        assert [bool(look.picture) for look in (drawn, on_other_set, with_roughness)] == [True, False, True]
-        assert [len(look.parts()) for look in scene.looks] == [2, 1, 2]
-    assert drawn.white.closed
+        assert [len(look.parts) for look in scene.looks] == [2, 1, 2]
     np.testing.assert_array_equal(color.colors[..., :3], pixels)
+
+
+class _Job:
+    """Of a table; done once it may be."""
+
+    def __init__(self, is_done=True):
+        self.is_done, self.closed = is_done, False
+
+    def start(self):
+        return self
+
+    def wait(self, timeout):
+        return self.is_done
+
+    def close(self):
+        self.closed = True
+
+
+def test_tables_are_made_once_and_go_when_nothing_shows_them():
+    kept, made, job = KeptTables(), [], _Job(is_done=False)
+    parts = [Part("a", lambda _gpu, job, _working: made.append(job) or job)]
+    kept.ask("a", lambda: job)
+    assert not kept.has(None, parts, None)
+    job.is_done = True
+    for _export in range(2):
+        kept.ask("a", lambda: pytest.fail("asked for again"))
+        assert kept.has(None, parts, None)
+    assert made == [job]
+    assert job.closed
+    late = _Job(is_done=False)
+    kept.ask("b", lambda: late)
+    assert kept.has(None, [], None)
+    assert late.closed, "nothing shows what it is for"
+    again = _Job(is_done=False)
+    kept.ask("a", lambda: again)
+    kept.close()
+    assert again.closed
+
+
+def test_tables_are_known_by_what_they_are_made_of(model_file):
+    def keys(change=lambda scene: None, color=0.5, turned=0.0):
+        pixels = np.full((2, 2, 3), color, np.float32)
+        with RealtimeScene() as scene, Model.load(model_file) as model:
+            change(scene)
+            slot = TextureSlot(scene.texture(pixels), ((1, 0, turned), (0, 1, 0)))
+            scene.add_textured_material({"base_color": slot}, roughness=0.3)
+            scene.add_model_material(model)
+            scene.set_world_pixels(pixels)
+            scene.place_world(2.0)
+            return [part.key for look in scene.looks for part in look.parts], scene.world_key
+
+    parts, world = keys()
+    assert len(set(parts)) == 3
+    assert keys() == (parts, world)
+    for other_parts, other_world in (keys(color=0.6), keys(turned=0.1)):
+        assert [a == b for a, b in zip(parts, other_parts, strict=True)] == [True, False, True]
+        assert (other_world == world) == (other_world == keys(turned=0.1)[1])
+    twice = keys(lambda scene: scene.set_working_space(2 * np.eye(3, dtype=np.float32)))
+    assert not set(twice[0]) & set(parts)
+    assert twice[1] != world
 
 
 def test_large_pictures_are_drawn_as_means():

@@ -66,7 +66,7 @@ def _is_drawn():
     shown = real_time()
     if shown is None or shown._live is None:
         return False
-    return shown._drawing._targets is not None and not shown._drawing.is_waiting(shown._live.scene)
+    return shown._drawing._targets is not None and not shown._drawing.is_waiting()
 
 
 def real_time_finished():

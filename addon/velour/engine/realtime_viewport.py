@@ -6,7 +6,7 @@ from ..export.live import LiveExport
 from ..export.look import Look
 from ..export.viewport import viewport_frame
 from ..export.world import layer_world
-from ..realtime import Drawing, RealtimeScene
+from ..realtime import Drawing, RealtimeScene, shaders
 from . import viewport_clock
 
 
@@ -14,6 +14,7 @@ class RealtimeViewport:
     """Raises UnshownError for what it cannot show, and whatever else goes wrong."""
 
     def __init__(self, engine_reference):
+        shaders.check()
         self._engine = engine_reference
         self._live = None
         self._drawing = Drawing(cache_folder())
@@ -22,26 +23,30 @@ class RealtimeViewport:
     def close(self):
         viewport_clock.forget(self)
         self.forget_scene()
+        self._drawing.close()
 
     def forget_scene(self):
+        """Light, tables and the last picture stay: the next export says what is still the same."""
         if self._live:
             self._live.close()
         self._live = None
-        self._drawing.close()
 
     def update(self, context, depsgraph):
         self._drawing.restart()
         look = Look(context, depsgraph)
         if self._live is None:
-            self._live = LiveExport(depsgraph, look, RealtimeScene())
+            self._live = self._exported(depsgraph, look)
         else:
             changes = self._live.changes(depsgraph, look)
             if changes and not changes.everything:
                 self._live.update(changes, depsgraph, look)
             if changes and (changes.everything or self._live.scene.is_stale):
                 self.forget_scene()
-                self._live = LiveExport(depsgraph, look, RealtimeScene())
+                self._live = self._exported(depsgraph, look)
         self._live.scene.check()
+
+    def _exported(self, depsgraph, look):
+        return LiveExport(depsgraph, look, RealtimeScene(self._drawing.tables))
 
     def draw(self, context, depsgraph):
         """A sentence on how far it is."""
@@ -53,10 +58,10 @@ class RealtimeViewport:
         scene = self._live.scene
         is_ready = self._drawing.is_ready(scene)
         viewport_clock.watch(self)
-        if not is_ready:
-            return "Preparing real time"
-        self._show(depsgraph, frame)
-        return self._line()
+        if is_ready:
+            self._draw(depsgraph, frame)
+        self._show(depsgraph.scene_eval, frame.place)
+        return self._line() if is_ready else "Preparing real time"
 
     def turn(self):
         """Between redraws. False: there is nothing to wait for."""
@@ -64,15 +69,12 @@ class RealtimeViewport:
         if engine is None or self._live is None:
             return False
         engine.tag_redraw()
-        return self._drawing.is_waiting(self._live.scene)
+        return self._drawing.is_waiting()
 
     def pause(self):
         """Draws no more than Blender asks for."""
 
-    def _show(self, depsgraph, frame):
-        import gpu
-        from gpu_extras.presets import draw_texture_2d
-
+    def _draw(self, depsgraph, frame):
         scene = depsgraph.scene_eval
         world = layer_world(scene, depsgraph.view_layer_eval)
         shows_world = not scene.render.film_transparent and not hides_world(world)
@@ -81,8 +83,16 @@ class RealtimeViewport:
         if key != self._key:
             self._drawing.restart()
             self._key = key
-        texture = self._drawing.draw(self._live.scene, frame.view, exposure, shows_world)
-        engine, place = self._engine(), frame.place
+        self._drawing.draw(self._live.scene, frame.view, exposure, shows_world)
+
+    def _show(self, scene, place):
+        """What was drawn last: of the scene of before, while this one is prepared."""
+        import gpu
+        from gpu_extras.presets import draw_texture_2d
+
+        texture, engine = self._drawing.last(), self._engine()
+        if texture is None:
+            return
         gpu.state.blend_set("ALPHA_PREMULT")
         engine.bind_display_space_shader(scene)
         draw_texture_2d(texture, place[:2], place[2], place[3])

@@ -4,6 +4,7 @@ import bpy
 
 from ..export.changes import Changes
 from ..export.nodes import velour_node
+from ..realtime import shaders
 
 
 class Refusal:
@@ -11,7 +12,7 @@ class Refusal:
 
     def __init__(self, reason, is_curable, depsgraph):
         self.sentence = f"Not in real time: {reason}"
-        self._known = _what_counts(depsgraph) if is_curable else None
+        self._known = _what_counts(depsgraph) if is_curable and shaders.all_compile() else None
 
     def may_be_over(self, depsgraph):
         """Of a changed scene: whether it has another number of objects or lamps, or another measurement.

@@ -1,6 +1,7 @@
 """The real-time viewport."""
 
 from .drawing import Drawing
-from .scene import RealtimeScene, UnshownError
+from .errors import UnshownError
+from .scene import RealtimeScene
 
 __all__ = ["Drawing", "RealtimeScene", "UnshownError"]

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..native import light_map_job
+from .kept_tables import KeptTables
 from .projection import jitter, view_projection
 from .shaders import PICTURES, sky_shader
 from .targets import Targets, full_screen
@@ -32,11 +33,12 @@ class Drawing:
 
     def __init__(self, cache_folder):
         self._cache_folder = cache_folder
-        self._tables = {}  # of each Job of a material
+        self.tables = KeptTables()  # of materials
         self._light = None  # texture
         self.light_report = {}  # of the job that made it
         self._light_job = None
-        self._light_version = None  # of the world that the job is of
+        self._light_key = None  # of the world that it is of, or the job
+        self._has_tables = False
         self._targets = None
         self.count = 0  # of pictures in the mean
         self._lamps = None  # texture
@@ -45,6 +47,7 @@ class Drawing:
     def close(self):
         if self._light_job:
             self._light_job.close()
+        self.tables.close()
         self._free_targets()
         self.__init__(self._cache_folder)
 
@@ -53,24 +56,19 @@ class Drawing:
         import gpu
 
         self._follow_light(gpu, scene)
-        wanted = _wanted(scene)
-        self._tables = {job: tables for job, tables in self._tables.items() if job in wanted}
-        for job in wanted.keys() - self._tables.keys():
-            if job.wait(timeout=0):  # raises what went wrong
-                self._tables[job] = wanted[job](gpu, job, scene.to_working)
-        return self._light is not None and len(self._tables) == len(wanted)
+        self._has_tables = self.tables.has(gpu, _parts(scene), scene.to_working)
+        return self._light is not None and self._has_tables
 
-    def is_waiting(self, scene):
+    def is_waiting(self):
         """Whether there will be more to draw without that anything changes."""
-        lacks_tables = len(self._tables) < len(_wanted(scene))
-        return self._light_job is not None or lacks_tables or self.count < PICTURES
+        return self._light_job is not None or not self._has_tables or self.count < PICTURES
 
     def _follow_light(self, gpu, scene):
-        if self._light_version != scene.world_version:
+        if self._light_key != scene.world_key:
             if self._light_job:
                 self._light_job.close()
             self._light_job = light_map_job(scene, self._cache_folder).start()
-            self._light_version = scene.world_version
+            self._light_key = scene.world_key
         if self._light_job and self._light_job.wait(timeout=0):
             self._light = texture(gpu, self._light_job.result_table())
             self.light_report = self._light_job.report()
@@ -101,6 +99,10 @@ class Drawing:
             self.count += 1
         return self._targets.mean()
 
+    def last(self):
+        """The texture that draw() made last; None: there is none."""
+        return self._targets.mean() if self._targets else None
+
     def _free_targets(self):
         if self._targets:
             self._targets.free()
@@ -112,11 +114,13 @@ class Drawing:
         gpu.state.blend_set("NONE")
         gpu.state.depth_test_set("LESS_EQUAL")
         gpu.state.depth_mask_set(True)
-        self._draw_surfaces(gpu, scene, matrix, eye, exposure)
-        if shows_world:
-            self._draw_sky(gpu, matrix, exposure)
-        gpu.state.depth_mask_set(False)
-        gpu.state.depth_test_set("NONE")
+        try:
+            self._draw_surfaces(gpu, scene, matrix, eye, exposure)
+            if shows_world:
+                self._draw_sky(gpu, matrix, exposure)
+        finally:  # what fails is followed by the ray tracer's picture
+            gpu.state.depth_mask_set(False)
+            gpu.state.depth_test_set("NONE")
 
     def _draw_surfaces(self, gpu, scene, matrix, eye, exposure):
         narrow = _narrow_lobes(self.light_report["mixture"])
@@ -129,7 +133,7 @@ class Drawing:
             shader.uniform_sampler("instances", self._instances_texture(gpu, scene))
             shader.uniform_sampler("lamps", self._lamps)
             for draw in draws:
-                tables = [self._tables[job] for job, _ in scene.looks[draw.material].parts()]
+                tables = [self.tables[part.key] for part in scene.looks[draw.material].parts]
                 for table in tables:
                     if draw.in_shell or not table.is_shell:
                         table.bind(shader)
@@ -144,7 +148,7 @@ class Drawing:
                 material = group.materials[min(slot, len(group.materials) - 1)]
                 if batch is None or material is None:
                     continue
-                shader = self._tables[scene.looks[material].job].shader(group.in_shell)
+                shader = self.tables[scene.looks[material].parts[0].key].shader(group.in_shell)
                 draw = _Draw(batch, material, group.in_shell, first, len(group.rows))
                 draws.setdefault(shader, []).append(draw)
             first += len(group.rows)
@@ -174,9 +178,8 @@ class Drawing:
         full_screen(shader).draw(shader)
 
 
-def _wanted(scene):
-    """What becomes of which jobs' tables."""
-    return {job: tables for look in scene.looks for job, tables in look.parts()}
+def _parts(scene):
+    return [part for look in scene.looks for part in look.parts]
 
 
 def _draw_instances(shader, batch, layout, first, count):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .errors import asking_for
 from .tile_widths import TileWidths
 
 _ATTRIBUTES = {"position": 3, "normal": 3, "uv": 2, "lift": 3}  # of the surface shaders
@@ -75,18 +76,22 @@ class GpuMesh:
     def batches(self, gpu):
         """Of each slot its GPUBatch; None: it has no triangle."""
         if self._batches is None:
-            arrays = {"position": self.positions, "normal": self.normals, "uv": self.uvs}
-            if self.lifts is not None:
-                arrays["lift"] = self.lifts
-            form = gpu.types.GPUVertFormat()
-            for name in arrays:
-                form.attr_add(id=name, comp_type="F32", len=_ATTRIBUTES[name], fetch_mode="FLOAT")
-            vertices = gpu.types.GPUVertBuf(form, len(self.positions))
-            for name, array in arrays.items():
-                vertices.attr_fill(name, np.ascontiguousarray(array, np.float32))
-            self._batches = [self._batch(gpu, vertices, triangles) for triangles in self._by_slot()]
+            with asking_for(f"a mesh of {len(self.triangles):,} triangles"):
+                self._batches = self._made_batches(gpu)
             self.positions = self.normals = self.uvs = self._vertices = None
         return self._batches
+
+    def _made_batches(self, gpu):
+        arrays = {"position": self.positions, "normal": self.normals, "uv": self.uvs}
+        if self.lifts is not None:
+            arrays["lift"] = self.lifts
+        form = gpu.types.GPUVertFormat()
+        for name in arrays:
+            form.attr_add(id=name, comp_type="F32", len=_ATTRIBUTES[name], fetch_mode="FLOAT")
+        vertices = gpu.types.GPUVertBuf(form, len(self.positions))
+        for name, array in arrays.items():
+            vertices.attr_fill(name, np.ascontiguousarray(array, np.float32))
+        return [self._batch(gpu, vertices, triangles) for triangles in self._by_slot()]
 
     def _by_slot(self):
         if self.slots is None:

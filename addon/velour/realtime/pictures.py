@@ -6,6 +6,7 @@ import numpy as np
 
 from ..native import Texture
 from ..native.table import FILTERS, WRAPS
+from .kept_tables import digest
 from .textures import half_texture, texture
 
 _MOST = 2048  # pixels of a side
@@ -25,6 +26,7 @@ class GpuTexture(Texture):
                 WRAPS.index(options.get("wrap", "repeat")),
                 FILTERS.index(options.get("filter", "linear")),
             )
+            made.key = digest(made.colors), made.colors.shape, made.terms
         return made
 
 
@@ -34,6 +36,7 @@ class Picture:
     def __init__(self, slot):
         self._texture, self._uv_map = slot.texture, np.asarray(slot.uv_map, np.float32)
         self._on_gpu = None
+        self.key = *slot.texture.key, self._uv_map.tobytes()
 
     @staticmethod
     def can_be(slot):

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+import os
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from ..native import Scene, btf_maps_job, lobe_rows_job, principled_rows_job, shell_maps_job
+from .errors import UnshownError
+from .kept_tables import KeptTables, Part, digest
 from .lamps import lamp_pixels
 from .meshes import GpuMesh, split_meshes
 from .pictures import GpuTexture, Picture
@@ -27,31 +31,18 @@ _MOST_LAMPS = 8  # on BTFs: with as many narrow lobes of the world all that btf.
 _UNPLACED = np.array(((1, 0, 0), (0, 1, 0)), np.float32)
 
 
-class UnshownError(Exception):
-    """Something that only the ray tracer shows; a sentence says what."""
-
-
 class Look(NamedTuple):
-    """A material: the job of its tables, and what these become."""
+    """A material."""
 
-    job: object  # of the library
-    tables: type = LobeTables
+    parts: tuple  # of Part; the first says how it is drawn, the last may be of its outline
     emission: tuple = (0.0, 0.0, 0.0)
     is_simpler: bool = False  # than the ray tracer shows it
-    white: object = None  # the job of it where `picture` is white; `job` is of it where that is black
-    picture: Picture | None = None  # of its base colour
-    shell: object = None  # the job of its outline
-    shell_aspect: float = 1.0
+    shell_aspect: float | None = None  # of its outline; None: it has none
     shell_tile: float = 0.0  # metres; 0: as the texture coordinates say
 
-    def parts(self):
-        """Each job, and what becomes of its table."""
-        parts = [(self.job, self.tables)]
-        if self.picture:
-            parts.append((self.white, partial(WhiteTables, self.picture)))
-        if self.shell:
-            parts.append((self.shell, ShellTables))
-        return parts
+    @property
+    def has_shell(self):
+        return self.shell_aspect is not None
 
 
 class Group(NamedTuple):
@@ -68,22 +59,19 @@ class Group(NamedTuple):
 class RealtimeScene(Scene):
     """Takes what export/ says of a scene. The library's own scene in it has the world, and nothing else."""
 
-    def __init__(self):
-        self.looks = []  # before anything that may fail: close() looks at them
+    def __init__(self, tables=None):
+        """`tables`: KeptTables, which it asks for what its materials need."""
         super().__init__()
+        self._tables = KeptTables() if tables is None else tables
+        self.looks = []
         self.meshes = []  # GpuMesh; None: removed
         self.groups = []
         self.gains = []
         self.lamps = []
         self.to_working = np.eye(3, dtype=np.float32)
-        self.world_version = 0
+        self._world = None  # what of it place_world() leaves as it is
+        self.world_key = None  # of all that it is made of
         self.is_stale = False  # something changed that only another export shows
-
-    def close(self):
-        for look in self.looks:
-            _close(look)
-        self.looks = []
-        super().close()
 
     def set_working_space(self, rec709_to_working):
         super().set_working_space(rec709_to_working)
@@ -129,7 +117,7 @@ class RealtimeScene(Scene):
     def _tile_widths(self, mesh, matrices, materials, slot, placed):
         """Metres, of a material with an outline; None: it has none."""
         look, gpu_mesh = self.looks[materials[slot]], self.meshes[mesh]
-        if not look.shell or not gpu_mesh.has_uvs:
+        if not look.has_shell or not gpu_mesh.has_uvs:
             return None
         if not gpu_mesh.prepare_shell():
             self.is_stale = True
@@ -144,17 +132,18 @@ class RealtimeScene(Scene):
     # ---- materials
 
     def add_model_material(self, model, neighbors=0):
-        info = model.info()
+        info, content = model.info(), digest(model.bytes())
         if "texels" not in info:
-            look = Look(lobe_rows_job(model))
+            parts = [self._part(content, LobeTables, lambda: lobe_rows_job(model))]
         elif info["model"] == "srbf-btf" and info["coefficients"] <= MOST_TERMS:
-            look = Look(btf_maps_job(model), BtfTables)
+            parts = [self._part(content, BtfTables, lambda: btf_maps_job(model))]
         else:
             raise UnshownError("BTFs that are not made of SRBFs are shown by the ray tracer alone")
+        aspect = None
         if "shell" in info:
             aspect = info["shell"]["points"][1] / info["shell"]["points"][0]
-            look = look._replace(shell=shell_maps_job(model), shell_aspect=aspect)
-        return self._add_look(look)
+            parts.append(self._part(content, ShellTables, lambda: shell_maps_job(model)))
+        return self._add_look(Look(tuple(parts), shell_aspect=aspect))
 
     def add_measurement_material(self, measurement, proposal=None, neighbors=0):
         raise UnshownError("measurements themselves are shown by the ray tracer alone")
@@ -171,18 +160,17 @@ class RealtimeScene(Scene):
         is_drawn = slot is not None and Picture.can_be(slot)
         is_simpler = len(textures) > is_drawn or values.pop("alpha", 1.0) < 1.0
         if not is_drawn:
-            return self._add_look(Look(_rows_of(values), PrincipledTables, emission, is_simpler))
-        black, white = (_rows_of({**values, "base_color": (c, c, c)}) for c in (0.0, 1.0))
-        look = Look(black, BlackTables, emission, is_simpler)
-        return self._add_look(look._replace(white=white, picture=Picture(slot)))
+            return self._add_look(Look((self._rows(values, PrincipledTables),), emission, is_simpler))
+        picture = Picture(slot)
+        black = self._rows({**values, "base_color": (0.0, 0.0, 0.0)}, BlackTables)
+        white = self._rows({**values, "base_color": (1.0, 1.0, 1.0)}, WhiteTables, picture)
+        return self._add_look(Look((black, white), emission, is_simpler))
 
     def add_shader_material(self, shader):
-        return self._add_look(Look(_rows_of({}), PrincipledTables, is_simpler=True))
+        return self._add_look(Look((self._rows({}, PrincipledTables),), is_simpler=True))
 
     def replace_material(self, material):
-        before = self.looks[material]
-        _close(before)
-        self.is_stale |= bool(before.shell or self.looks[-1].shell)  # other surfaces
+        self.is_stale |= self.looks[material].has_shell or self.looks[-1].has_shell  # other surfaces
         self.looks[material], self.gains[material] = self.looks.pop(), self.gains.pop()
 
     def set_gain(self, material, gain):
@@ -200,9 +188,20 @@ class RealtimeScene(Scene):
     def set_shell_softness(self, material, widths):
         """Edges are hard."""
 
+    def _part(self, content, tables, make_job, *shown):
+        """Begins what is to become `tables` of *shown."""
+        key = (tables, content, self.to_working.tobytes(), *(each.key for each in shown))
+        self._tables.ask(key, make_job)
+        return Part(key, partial(tables, *shown))
+
+    def _rows(self, values, tables, *shown):
+        """The Part of a Principled material of these numbers."""
+        values = _principled(values)
+        return self._part(
+            tuple(sorted(values.items())), tables, lambda: principled_rows_job(**values), *shown
+        )
+
     def _add_look(self, look):
-        for job, _tables in look.parts():
-            job.start()
         self.looks.append(look)
         self.gains.append((1.0, 1.0, 1.0))
         return len(self.looks) - 1
@@ -217,25 +216,32 @@ class RealtimeScene(Scene):
 
     def set_world_color(self, color):
         super().set_world_color(color)
-        self.world_version += 1
+        self._note_world(("color", *color))
 
     def set_world_pixels(self, pixels, strength=1.0, world_to_image=None):
         super().set_world_pixels(pixels, strength, world_to_image)
-        self.world_version += 1
+        self._note_world(("pixels", digest(pixels), pixels.shape), strength, world_to_image)
 
     def set_world_file(self, path, strength=1.0, world_to_image=None):
+        stamp = _stamp(path)  # of before it is read
         super().set_world_file(path, strength, world_to_image)
-        self.world_version += 1
+        self._note_world(("file", path, stamp), strength, world_to_image)
 
     def place_world(self, strength, world_to_image=None):
         super().place_world(strength, world_to_image)
-        self.world_version += 1
+        self._note_world(self._world, strength, world_to_image)
+
+    def _note_world(self, world, strength=1.0, world_to_image=None):
+        turn = None if world_to_image is None else np.asarray(world_to_image, np.float32).tobytes()
+        self._world, self.world_key = world, (world, strength, turn, self.to_working.tobytes())
 
     def check(self):
         """Raises UnshownError where the whole is too much."""
         if self.draws > _MOST_DRAWS:
             raise UnshownError(f"more than {_MOST_DRAWS:,} instances are shown by the ray tracer alone")
-        if len(self.lamps) > _MOST_LAMPS and any(look.tables is BtfTables for look in self.looks):
+        if len(self.lamps) > _MOST_LAMPS and any(
+            look.parts[0].tables.func is BtfTables for look in self.looks
+        ):
             raise UnshownError(f"BTFs under more than {_MOST_LAMPS} lamps are shown by the ray tracer alone")
 
     @property
@@ -255,14 +261,17 @@ def _group(mesh, matrices, materials, placed, slots, widths=None):
     return Group(mesh, shown, rows, widths is not None)
 
 
-def _close(look):
-    for job, _tables in look.parts():
-        job.close()
+def _stamp(path):
+    """Another one for another content; of no file too, which is refused by whoever reads it."""
+    with contextlib.suppress(OSError):
+        found = os.stat(path)
+        return found.st_mtime_ns, found.st_size
+    return None
 
 
-def _rows_of(values):
+def _principled(values):
+    """Of numbers of a material those that its rows are made of, as principled_rows_job takes them."""
     known = {name: values[name] for name in ("metallic", "roughness", "specular") if name in values}
     color = tuple(min(max(c, 0.0), 1.0) for c in values.get("base_color", (0.8, 0.8, 0.8)))
-    return principled_rows_job(
-        color, **{n: min(max(v, 0.0), 1.0) if math.isfinite(v) else 0.5 for n, v in known.items()}
-    )
+    numbers = {n: min(max(v, 0.0), 1.0) if math.isfinite(v) else 0.5 for n, v in known.items()}
+    return {"base_color": color, **numbers}

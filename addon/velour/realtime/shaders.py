@@ -1,30 +1,75 @@
 """The shaders, compiled once a session."""
 
-from functools import cache
+from functools import wraps
 from pathlib import Path
+
+from .errors import UnshownError, log
 
 PICTURES = 32  # in a mean
 _FOLDER = Path(__file__).parent
+
+_compiled = {}  # None: one that does not compile
+
+
+def _once(make):
+    """What does not compile is not tried again: a driver has no other answer, and says at length why."""
+
+    @wraps(make)
+    def shader(*arguments):
+        key = make.__name__, *arguments
+        if key not in _compiled:
+            _compiled[key] = _tried(make, arguments)
+        _check(_compiled[key])
+        return _compiled[key]
+
+    return shader
+
+
+def _tried(make, arguments):
+    try:
+        return make(*arguments)
+    except Exception as error:
+        log.error("%s%s does not compile", make.__name__, arguments, exc_info=error)
+    return None
+
+
+def _check(shader):
+    if shader is None:
+        raise UnshownError(
+            "the graphics driver does not compile Velour's shaders, so the ray tracer shows the scene; update"
+            " the driver, then start Blender again"
+        )
+
+
+def all_compile():
+    """Of those that were asked for so far."""
+    return None not in _compiled.values()
+
+
+def check():
+    """Raises UnshownError once one did not compile."""
+    for shader in _compiled.values():
+        _check(shader)
 
 
 def _source(*names):
     return "\n".join((_FOLDER / f"{name}.glsl").read_text(encoding="utf-8") for name in names)
 
 
-@cache
+@_once
 def lobes_shader(has_shell):
-    """Of BRDFs. A GPUShader; raises where it does not compile."""
+    """Of BRDFs. A GPUShader; raises UnshownError where it does not compile."""
     return _surface_shader("lobes", (("FLOAT_2D", "lobe_rows"),), has_shell)
 
 
-@cache
+@_once
 def picture_shader(_has_shell):
     """The same of those whose base colour is a picture; they have no shell."""
     more = (("FLOAT_2D", "white_rows"), ("FLOAT_2D", "picture"), ("FLOAT_2D", "picture_terms"))
     return _surface_shader("lobes", (("FLOAT_2D", "lobe_rows"), *more), False, ("PICTURE",))
 
 
-@cache
+@_once
 def btf_shader(has_shell):
     return _surface_shader("btf", (("FLOAT_2D", "btf_terms"), ("FLOAT_2D_ARRAY", "btf_maps")), has_shell)
 
@@ -67,7 +112,7 @@ def _surface_shader(name, tables, has_shell, defines=()):
     return gpu.shader.create_from_info(info)
 
 
-@cache
+@_once
 def sky_shader():
     import gpu
 
@@ -78,7 +123,7 @@ def sky_shader():
     return _full_screen(gpu, info, "light", "sky.frag")
 
 
-@cache
+@_once
 def average_shader():
     import gpu
 

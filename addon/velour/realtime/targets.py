@@ -1,5 +1,6 @@
 """The textures that are drawn into."""
 
+from .errors import asking_for
 from .shaders import average_shader
 
 
@@ -8,8 +9,9 @@ class Targets:
 
     def __init__(self, gpu, size):
         self.size = size
-        self.drawn = gpu.types.GPUOffScreen(*size, format="RGBA16F")
-        self._means = [gpu.types.GPUOffScreen(*size, format="RGBA32F") for _ in range(2)]
+        with asking_for(f"pictures of {size[0]} x {size[1]} pixels to draw into"):
+            self.drawn = gpu.types.GPUOffScreen(*size, format="RGBA16F")
+            self._means = [gpu.types.GPUOffScreen(*size, format="RGBA32F") for _ in range(2)]
 
     def free(self):
         for target in (self.drawn, *self._means):

@@ -2,32 +2,34 @@
 
 import numpy as np
 
+from .errors import asking_for
+
 
 def texture(gpu, table):
     """Of [height x width x 4]."""
     height, width = table.shape[:2]
-    return gpu.types.GPUTexture((width, height), format="RGBA32F", data=_buffer(gpu, table))
+    return _texture(gpu, (width, height), table, format="RGBA32F")
 
 
 def half_texture(gpu, table):
     """The same in half floats."""
     height, width = table.shape[:2]
-    return gpu.types.GPUTexture((width, height), format="RGBA16F", data=_buffer(gpu, table))
+    return _texture(gpu, (width, height), table, format="RGBA16F")
 
 
 def array_texture(gpu, tables):
     """Of [layers x height x width x 4]."""
     layers, height, width = tables.shape[:3]
-    data = _buffer(gpu, tables)
-    return gpu.types.GPUTexture((width, height), layers=layers, format="RGBA16F", data=data)
+    return _texture(gpu, (width, height), tables, layers=layers, format="RGBA16F")
 
 
 def volume_texture(gpu, tables):
     """Of [depth x height x width x 4]."""
     depth, height, width = tables.shape[:3]
-    return gpu.types.GPUTexture((width, height, depth), format="RGBA16F", data=_buffer(gpu, tables))
+    return _texture(gpu, (width, height, depth), tables, format="RGBA16F")
 
 
-def _buffer(gpu, values):
+def _texture(gpu, size, values, **kind):
     values = np.ascontiguousarray(values, np.float32).reshape(-1)
-    return gpu.types.Buffer("FLOAT", values.size, values)
+    with asking_for(f"a texture of {' x '.join(map(str, size))} pixels"):
+        return gpu.types.GPUTexture(size, data=gpu.types.Buffer("FLOAT", values.size, values), **kind)

@@ -1,0 +1,58 @@
+"""Tables of materials by what they are made of: another export of the same makes nothing anew."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Part(NamedTuple):
+    """Of a material: a table of the library, and what becomes of it."""
+
+    key: tuple  # of all that it is made of
+    tables: object  # called with gpu, the job, and the map to the working space
+
+
+class KeptTables:
+    """Those of a viewport, which outlive its scenes, and the jobs of those to come."""
+
+    def __init__(self):
+        self._jobs = {}
+        self._made = {}
+
+    def close(self):
+        for job in self._jobs.values():
+            job.close()
+        self.__init__()
+
+    def ask(self, key, make_job):
+        """Begins what is neither there nor on its way."""
+        if key not in self._made and key not in self._jobs:
+            self._jobs[key] = make_job().start()
+
+    def has(self, gpu, parts, to_working):
+        """Whether all Parts are there, which were asked for; others go."""
+        wanted = {part.key: part.tables for part in parts}
+        for key in self._jobs.keys() - wanted.keys():
+            self._jobs.pop(key).close()
+        self._made = {key: made for key, made in self._made.items() if key in wanted}
+        for key in tuple(self._jobs):
+            if self._jobs[key].wait(timeout=0):  # raises what went wrong
+                self._made[key] = wanted[key](gpu, self._jobs[key], to_working)
+                self._jobs.pop(key).close()
+        return not self._jobs
+
+    def __getitem__(self, key):
+        return self._made[key]
+
+    def values(self):
+        return self._made.values()
+
+
+def digest(content):
+    """Of bytes or an array: equal for equal content alone."""
+    return hashlib.blake2b(
+        np.ascontiguousarray(content) if isinstance(content, np.ndarray) else content
+    ).digest()

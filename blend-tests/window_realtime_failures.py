@@ -1,0 +1,157 @@
+"""The viewport in real time where the graphics processor refuses what it is asked: rays show the scene."""
+
+import logging
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes, viewport, window
+
+
+def start(folder):
+    """Called by the harness once the window is there."""
+    window.run(folder, (no_texture, no_pictures_to_draw_into, broken_shader))
+
+
+class _Log(logging.Handler):
+    """What Velour logs while it is entered."""
+
+    def __enter__(self):
+        self.records = []
+        logging.getLogger(inputs.ADDON).addHandler(self)
+        return self
+
+    def emit(self, record):
+        self.records.append(record)
+
+    def __exit__(self, *_exception):
+        logging.getLogger(inputs.ADDON).removeHandler(self)
+
+
+class _Failing:
+    """In the place of a type of gpu.types while it is entered: refuses, and counts how often.
+
+    `kept`: a format that others ask for.
+    """
+
+    def __init__(self, name, kept=None):
+        self._name, self._kept, self.count = name, kept, 0
+
+    def __enter__(self):
+        import gpu
+
+        self._before = getattr(gpu.types, self._name)
+        setattr(gpu.types, self._name, self)
+        return self
+
+    def __exit__(self, *_exception):
+        import gpu
+
+        setattr(gpu.types, self._name, self._before)
+
+    def __call__(self, *arguments, **values):
+        if values.get("format") == self._kept:
+            return self._before(*arguments, **values)
+        self.count += 1
+        raise RuntimeError("out of memory")
+
+
+def _set_up():
+    scenes.set_world((0.18, 0.18, 0.18))
+    for name in ("Cube", "Light"):
+        bpy.data.objects.remove(bpy.data.objects[name])
+    viewport.show_real_time()
+
+
+def _refused(folder, name, *words):
+    """Turns until rays show the scene, all of their samples, and the header has a sentence with `words`."""
+    yield from viewport.until(
+        lambda: viewport.samples() > 0 and viewport.the_one()._refusal, "the ray tracer shows nothing"
+    )
+    yield from viewport.finished()
+    sentence = viewport.the_one()._refusal.sentence
+    for each in ("Not in real time", "the ray tracer shows the scene", *words):
+        assert each in sentence, sentence
+    assert "unexpectedly" not in sentence, sentence
+    seen = window.screenshot(folder, name)
+    grey = 255 * viewport.middle(seen)
+    assert np.abs(grey - 118).max() <= 1, (grey.min(), grey.max())
+    assert len(bpy.context.window_manager.windows) == 1
+    width = _text_width(folder, f"{name}-text")
+    assert width > 4 * len(sentence), (width, sentence)
+
+
+def _text_width(folder, name):
+    """Pixels of the longest line at the top of the viewport, which shows nothing else there."""
+    overlay, region = viewport.space().overlay, viewport.region()
+    overlay.show_overlays = overlay.show_text = True
+    overlay.show_floor = overlay.show_axis_x = overlay.show_axis_y = overlay.show_cursor = False
+    shown = window.screenshot(folder, name)
+    overlay.show_overlays = False
+    top = shown[region.y + region.height - 200 : region.y + region.height - 60, region.x :][:, : region.width]
+    is_text = (top.min(axis=2) > 0.7).any(axis=0)
+    columns = np.flatnonzero(is_text[100 : region.width - 100])  # without tools and buttons
+    return int(columns.max() - columns.min()) if len(columns) else 0
+
+
+def _change_scene():
+    """In a way that a refusal takes as worth another look."""
+    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+    lamp.data.energy = 0
+    bpy.context.scene.collection.objects.link(lamp)
+
+
+def no_texture(folder):
+    with _Log() as log, _Failing("GPUTexture", kept="RGBA16F") as made:  # that of the ray tracer's pictures
+        _set_up()
+        yield from _refused(folder, "no-texture", "refuses a texture of", "choose Real Time again")
+        assert made.count == len(log.records) == 1, (made.count, log.records)
+    yield from _chosen_again()
+
+
+def no_pictures_to_draw_into(folder):
+    with _Log() as log, _Failing("GPUOffScreen") as made:
+        _set_up()
+        yield from _refused(folder, "no-pictures", "to draw into", "choose Real Time again")
+        assert made.count == len(log.records) == 1, (made.count, log.records)
+    yield from _chosen_again()
+
+
+def _chosen_again():
+    bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
+    yield from viewport.finished()
+    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
+    yield from viewport.real_time_finished()
+    assert not viewport.the_one()._refusal
+
+
+def broken_shader(folder):
+    """Told once, tried once: neither a changed scene nor the mode chosen again compiles it anew."""
+    shaders = viewport.addon("realtime.shaders")
+    shaders._compiled.clear()
+    read, compiled = shaders._source, []
+
+    def broken(*names):
+        compiled.append(names)
+        return read(*names) + "\nthis is no GLSL;\n"
+
+    shaders._source = broken
+    try:
+        with _Log() as log:
+            _set_up()
+            yield from _refused(folder, "broken-shader", "compile", "update the driver")
+            assert len(log.records) == 1, log.records
+            count = len(compiled)
+            _change_scene()
+            yield from viewport.finished()
+            assert viewport.the_one()._refusal
+            bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
+            yield from viewport.finished()
+            bpy.context.scene.velour.viewport_mode = "REAL_TIME"
+            yield from _refused(folder, "broken-shader-again", "compile", "update the driver")
+            assert len(log.records) == 1, log.records
+            assert len(compiled) == count, compiled
+    finally:
+        shaders._source = read
+        shaders._compiled.clear()
+    yield from _chosen_again()
