@@ -1,7 +1,11 @@
 """A material beside its measurement, and as an asset: pictures of a ball."""
 
 import contextlib
+import gc
+import importlib
 import io
+import threading
+from unittest import mock
 
 import bpy
 import numpy as np
@@ -163,3 +167,51 @@ class Asset(BallTest):
         scenes.velour_node(material).image = None
         self._refused("has no model", bpy.ops.velour.mark_asset, material="Paint")
         self.assertIsNone(material.asset_data)
+
+
+class Cancelled(BallTest):
+    """Between the steps of their jobs: a thread still makes the scene with the model."""
+
+    def _cancelled_while_a_scene_is_made(self, steps, before):
+        """Whether the scene's thread came to its end; `before`: how many jobs there are before it."""
+        begun, go_on, ended = threading.Event(), threading.Event(), []
+        kind = inputs.native().Scene
+        add = kind.add_model_material
+
+        def blocked(*arguments):
+            begun.set()
+            go_on.wait(10)
+            ended.append(add(*arguments))
+            return ended[-1]
+
+        for _ in range(before):
+            steps.next_job().start().wait()
+        with mock.patch.object(kind, "add_model_material", blocked):
+            making = steps.next_job().start()
+            begun.wait(10)
+            making.cancel()
+            making.close()
+            del steps, making
+            gc.collect()
+            go_on.set()
+            for thread in threading.enumerate():
+                if thread.name == "velour-read":
+                    thread.join()
+        return ended == [0]
+
+    def test_a_picture_of_an_asset(self):
+        node = scenes.velour_node(self._material(inputs.glossy_measurement()))
+        stored = _module("export.files").StoredFile.of(node.image, "Paint")
+        picture = _module("operators.mark_asset")._Picture
+        self.assertTrue(self._cancelled_while_a_scene_is_made(picture(stored, 1), before=1))
+
+    def test_a_comparison(self):
+        node = scenes.velour_node(self._material(inputs.glossy_measurement()))
+        comparison = _module("operators.comparison").Comparison
+        self.assertTrue(
+            self._cancelled_while_a_scene_is_made(comparison(node, "Paint", _SIDE, 4, 1), before=3)
+        )
+
+
+def _module(name):
+    return importlib.import_module(f"{inputs.ADDON}.{name}")

@@ -37,13 +37,13 @@ class Comparison:
         with self._until_read:
             reading = ReadJob(self._model.model)
             yield reading
-            with reading.result() as model:
-                for add in (functools.partial(self._add_measured, model), _adding(model)):
-                    making = ReadJob(functools.partial(ball_scene, add))
-                    yield making
-                    with making.result() as scene, self._job(scene) as job:
-                        yield job
-                        self._balls.append(job.read_pass("Combined"))
+            model = reading.result()  # not closed here: after a cancel, a thread may still read it
+            for add in (functools.partial(self._add_measured, model), _adding(model)):
+                making = ReadJob(functools.partial(ball_scene, add))
+                yield making
+                with making.result() as scene, self._job(scene) as job:
+                    yield job
+                    self._balls.append(job.read_pass("Combined"))
 
     def _job(self, scene):
         return ball_job(scene, self._side, self._samples, self._threads)

@@ -85,10 +85,10 @@ class _Picture:
     def _run(self):
         reading = ReadJob(self._stored.model)
         yield reading
-        with reading.result() as model:
-            self.source = model.info()["source"]["name"]
-            making = ReadJob(lambda: ball_scene(lambda scene: scene.add_model_material(model)))
-            yield making
-            with making.result() as scene, ball_job(scene, _SIDE, _SAMPLES, self._threads) as job:
-                yield job
-                self.pixels = shown(job.read_pass("Combined"))
+        model = reading.result()  # not closed here: after a cancel, a thread may still read it
+        self.source = model.info()["source"]["name"]
+        making = ReadJob(lambda: ball_scene(lambda scene: scene.add_model_material(model)))
+        yield making
+        with making.result() as scene, ball_job(scene, _SIDE, _SAMPLES, self._threads) as job:
+            yield job
+            self.pixels = shown(job.read_pass("Combined"))

@@ -5,7 +5,8 @@
  *
  * Handles are opaque. A handle keeps alive what it needs, so they may be freed in any order; freeing NULL is fine. A
  * handle may be used by one thread at a time, except that a vlr_job may be polled, cancelled and read from any thread.
- * Models and measurements are immutable and may be shared freely.
+ * Models and measurements are immutable and may be shared freely. Calls that take long keep what they read of a model,
+ * measurement, BTF or observation: once they have begun, another thread may free it.
  *
  * Options structs begin with their size: call the matching vlr_*_options_init() first, then change fields. Defaults
  * live in the library only. Arrays are borrowed for the call: float32, row-major, contiguous. Strings are UTF-8. A

@@ -65,7 +65,8 @@ vlr_status vlr_btf_angles(const vlr_btf* btf, double* angles, uint64_t count) {
   return guard([&] {
     require(btf, "btf");
     require(angles, "angles");
-    const PairLayout& layout = btf->btf->layout();
+    const auto source = kept(btf->btf);
+    const PairLayout& layout = source->layout();
     require_count("angles", count, 4 * layout.pairs());
     for (uint64_t p = 0; p < layout.pairs(); ++p) {
       const PolarAngles &light = layout.lights()[layout.light_of(p)], &view = layout.views()[layout.view_of(p)];
@@ -79,10 +80,10 @@ vlr_status vlr_btf_read(const vlr_btf* btf, uint64_t first, uint64_t pairs, uint
   return guard([&] {
     require(btf, "btf");
     require(halves, "halves");
-    const BtfMeasurement& source = *btf->btf;
-    if (pairs > source.layout().pairs()) throw Error(Status::invalid_argument, "There are not so many pairs.");
-    require_count("halves", count, pairs * source.grid().texels() * 3);
-    source.read_pairs(first, pairs, {halves, static_cast<size_t>(count)});
+    const auto source = kept(btf->btf);
+    if (pairs > source->layout().pairs()) throw Error(Status::invalid_argument, "There are not so many pairs.");
+    require_count("halves", count, pairs * source->grid().texels() * 3);
+    source->read_pairs(first, pairs, {halves, static_cast<size_t>(count)});
   });
 }
 

@@ -73,7 +73,7 @@ vlr_status vlr_compress_size(const vlr_btf* btf, const vlr_compress_options* opt
   return guard([&] {
     require(btf, "btf");
     const FitSize size =
-        fit_size(*btf->btf, converted(read_options(options, vlr_compress_options_init, "vlr_compress_options")));
+        fit_size(*kept(btf->btf), converted(read_options(options, vlr_compress_options_init, "vlr_compress_options")));
     if (memory) *memory = size.memory;
     if (least_memory) *least_memory = size.least_memory;
     if (bytes) *bytes = size.bytes;

@@ -132,8 +132,9 @@ vlr_status vlr_model_peer_create_job(const vlr_model* model, int32_t peer, vlr_j
   return guard([&] {
     require(model, "model");
     require(out, "out");
-    const auto* parametric = std::get_if<ParametricBrdf>(&model->model->body);
-    const auto source = std::make_shared<const MaterialMeasurement>(make_reflecting_material(model->model, 0),
+    const auto fitted = kept(model->model);
+    const auto* parametric = std::get_if<ParametricBrdf>(&fitted->body);
+    const auto source = std::make_shared<const MaterialMeasurement>(make_reflecting_material(fitted, 0),
                                                                     parametric ? parametric->views : ViewRange{});
     *out = peer_job(source, checked_peer(peer));
   });

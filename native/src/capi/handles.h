@@ -22,6 +22,17 @@
 #include "scene/scene.h"
 #include "tile/tile.h"
 
+namespace velour::capi {
+
+/// What a handle holds, kept for as long as the result lives. Calls that take long read through it: who frees the
+/// handle on another thread before they end, as one does who cancels, takes nothing from under them.
+template <typename T>
+std::shared_ptr<T> kept(std::shared_ptr<T> held) {
+  return held;
+}
+
+}  // namespace velour::capi
+
 struct vlr_measurement {
   std::shared_ptr<const velour::Measurement> measurement;
   std::string info;

@@ -86,8 +86,9 @@ vlr_status vlr_measurement_eval(const vlr_measurement* measurement, const float*
     require(valid, "valid");
     static_assert(sizeof(Vec3) == 3 * sizeof(float));
     const auto n = static_cast<size_t>(count);
-    measurement->measurement->eval({wv[0], wv[1], wv[2]}, {reinterpret_cast<const Vec3*>(wl), n},
-                                   {reinterpret_cast<Rgb*>(f), n}, {valid, n});
+    kept(measurement->measurement)
+        ->eval({wv[0], wv[1], wv[2]}, {reinterpret_cast<const Vec3*>(wl), n}, {reinterpret_cast<Rgb*>(f), n},
+               {valid, n});
   });
 }
 

@@ -63,7 +63,7 @@ vlr_status vlr_model_save(const vlr_model* model, const char* path) {
   return guard([&] {
     require(model, "model");
     require(path, "path");
-    save_model(*model->model, path);
+    save_model(*kept(model->model), path);
   });
 }
 
@@ -81,7 +81,7 @@ vlr_status vlr_model_roughened(const vlr_model* model, float roughness, vlr_mode
   return guard([&] {
     require(model, "model");
     require(out, "out");
-    *out = new_handle(roughened(*model->model, roughness));
+    *out = new_handle(roughened(*kept(model->model), roughness));
   });
 }
 
@@ -101,7 +101,7 @@ vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t coun
     require(wv, "wv");
     require(wl, "wl");
     require(f, "f");
-    const auto material = make_material(model->model, 0);
+    const auto material = make_material(kept(model->model), 0);
     const auto point = std::make_unique<PreparedBrdf>();
     material->prepare(checked_view(wv), *point);
     RgbBatch value;
@@ -128,7 +128,7 @@ vlr_status vlr_model_sample(const vlr_model* model, const float* wv, uint64_t co
     require(u, "u");
     require(wl, "wl");
     require(pdf, "pdf");
-    const auto material = make_material(model->model, 0);
+    const auto material = make_material(kept(model->model), 0);
     const auto point = std::make_unique<PreparedBrdf>();
     material->prepare(checked_view(wv), *point);
     for (uint64_t i = 0; i < count; ++i) {

@@ -40,7 +40,7 @@ vlr_status vlr_observation_save(const vlr_observation* observation, const char* 
   return guard([&] {
     require(observation, "observation");
     require(path, "path");
-    save_observation(*observation->observation, path);
+    save_observation(*kept(observation->observation), path);
   });
 }
 
@@ -137,6 +137,6 @@ vlr_status vlr_model_out_of_domain(const vlr_model* model, const vlr_observation
     require(model, "model");
     require(frame, "frame");
     require(share, "share");
-    *share = outside(*model->model, *frame->observation);
+    *share = outside(*kept(model->model), *kept(frame->observation));
   });
 }

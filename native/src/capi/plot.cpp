@@ -95,9 +95,9 @@ vlr_status vlr_plot_create(const vlr_model* model, const vlr_measurement* measur
   return guard([&] {
     require(model, "model");
     require(out, "out");
-    const Measurement* measured = measurement ? measurement->measurement.get() : nullptr;
+    const auto measured = measurement ? kept(measurement->measurement) : nullptr;
     Progress unwatched;
-    *out = new vlr_plot{make_plot(kind_of(kind), model->model, measured, {view, azimuth}, unwatched), {}};
+    *out = new vlr_plot{make_plot(kind_of(kind), kept(model->model), measured.get(), {view, azimuth}, unwatched), {}};
   });
 }
 

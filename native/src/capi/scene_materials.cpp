@@ -30,7 +30,7 @@ SurfaceMaterial brushed_if_anisotropic(SurfaceMaterial surface) {
   return surface;
 }
 
-SurfaceMaterial surface_of(const std::shared_ptr<const Model>& model, uint32_t neighbors) {
+SurfaceMaterial surface_of(std::shared_ptr<const Model> model, uint32_t neighbors) {
   SurfaceMaterial surface{.material = make_material(model, static_cast<int>(neighbors))};
   if (!model->shell) return brushed_if_anisotropic(std::move(surface));
   surface.shell = std::make_shared<const ShellField>(model->shell->volume);
@@ -55,7 +55,7 @@ vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model
     require(scene, "scene");
     require(model, "model");
     require(material, "material");
-    *material = scene->scene->add_material(surface_of(model->model, neighbors));
+    *material = scene->scene->add_material(surface_of(kept(model->model), neighbors));
   });
 }
 
@@ -64,7 +64,7 @@ vlr_status vlr_scene_set_model_material(vlr_scene* scene, uint32_t material, con
   return guard([&] {
     require(scene, "scene");
     require(model, "model");
-    scene->scene->set_material(material, surface_of(model->model, neighbors));
+    scene->scene->set_material(material, surface_of(kept(model->model), neighbors));
   });
 }
 
@@ -74,9 +74,10 @@ vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measur
     require(scene, "scene");
     require(measurement, "measurement");
     require(material, "material");
-    const auto model = proposal ? proposal->model : coarse_proposal(*measurement->measurement);
-    *material = scene->scene->add_material(brushed_if_anisotropic(
-        {.material = make_measured_material(measurement->measurement, model, static_cast<int>(neighbors))}));
+    const auto measured = kept(measurement->measurement);
+    const auto model = proposal ? kept(proposal->model) : coarse_proposal(*measured);
+    *material = scene->scene->add_material(
+        brushed_if_anisotropic({.material = make_measured_material(measured, model, static_cast<int>(neighbors))}));
   });
 }
 
@@ -85,7 +86,7 @@ vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint
     require(scene, "scene");
     require(btf, "btf");
     require(material, "material");
-    auto table = read_btf_table(*btf->btf, most_bytes != 0 ? most_bytes : kUsualTableBytes);
+    auto table = read_btf_table(*kept(btf->btf), most_bytes != 0 ? most_bytes : kUsualTableBytes);
     *material = scene->scene->add_material({.material = make_lit_from_both(std::move(table))});
   });
 }

@@ -1,10 +1,13 @@
 // Measurement -> fit -> model file -> model, through the C API alone.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "capi/test_scene.h"
@@ -95,6 +98,26 @@ TEST_P(RoundTrip, AModelTakesThePlaceOfAMaterialInACommittedScene) {
   EXPECT_GT(measured[2], measured[0] + 0.2) << "0.5 pi (0.3 - 0.1) of the base";
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_scene_set_model_material(scene.scene, 1, model_, 0));
   EXPECT_NE(std::strstr(vlr_last_error(), "no material 1"), nullptr) << vlr_last_error();
+}
+
+/// As an add-on does whose user cancels: `handle` is freed while `add` reads it.
+template <typename Add, typename Free, typename Handle>
+vlr_status status_when_freed_meanwhile(const Add& add, const Free& release, Handle*& handle) {
+  vlr_status status = VLR_UNKNOWN;
+  std::thread adding([&, borrowed = handle] { status = add(borrowed); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // of what takes some hundreds
+  release(std::exchange(handle, nullptr));
+  adding.join();
+  return status;
+}
+
+TEST_P(RoundTrip, WhatBecomesAMaterialMayBeFreedMeanwhile) {
+  const TestScene scene;
+  uint32_t material = 0;
+  const auto raw = [&](const vlr_measurement* measurement) {
+    return vlr_scene_add_measurement_material(scene.scene, measurement, nullptr, 0, &material);
+  };
+  EXPECT_EQ(VLR_OK, status_when_freed_meanwhile(raw, vlr_measurement_free, measurement_)) << vlr_last_error();
 }
 
 TEST_P(RoundTrip, TheModelIsCloseToTheMeasurement) {
