@@ -2,31 +2,44 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import hashlib
 import json
 import os
-import tempfile
+import secrets
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from .read_job import check
 
+_ATTEMPTS = 16
 _BLOCK = 1 << 20  # bytes between two looks whether they are still wanted
 
 
 def write_atomic(path: str | os.PathLike, write: Callable[[Path], object]) -> None:
     """Calls `write(temporary)` with a name beside `path`, then renames it; leaves no trace of a failure."""
     path = Path(path)
-    descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
-    os.close(descriptor)
-    temporary = Path(name)
+    temporary = _new_beside(path)
     try:
         write(temporary)
-        temporary.chmod(0o666 & ~_umask())  # mkstemp's 0600 is for secrets
         os.replace(temporary, path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def _new_beside(path: Path) -> Path:
+    """A new, empty file with a random name: no other machine that writes to the same folder has it.
+
+    As the umask has it, which mkstemp() does not ask: its files are for secrets.
+    """
+    for _ in range(_ATTEMPTS):
+        temporary = path.with_name(f".{path.stem}-{secrets.token_hex(8)}{path.suffix}")
+        with contextlib.suppress(FileExistsError):
+            os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+            return temporary
+    raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path))
 
 
 def write_text(path: str | os.PathLike, text: str) -> None:
@@ -40,12 +53,6 @@ def write_json(path: str | os.PathLike, report: dict) -> None:
 def json_text(report: dict) -> str:
     """Standard JSON: a number that is not finite is an error, not the word NaN."""
     return json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def sha256(path: str | os.PathLike) -> str:

@@ -2,8 +2,8 @@
 
 #include <fcntl.h>
 
-#include <atomic>
 #include <cerrno>
+#include <random>
 #include <system_error>
 
 #include "job/error.h"
@@ -24,16 +24,18 @@ std::filesystem::path write_target(const std::string& path) {
   return target;
 }
 
-/// A name beside the target that no other process or thread uses: renames are atomic within one folder only.
-std::string temporary_name(const std::filesystem::path& target) {
-  static std::atomic<uint64_t> counter{0};
-  return target.string() + ".velour-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
-}
-
-int create(const std::string& name, const std::string& path) {
-  const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (fd < 0) fail_with_code(path, "write", errno);
-  return fd;
+/// A new file beside the target, because renames are atomic within one folder only, and its name. The name is random:
+/// processes of other machines and containers, whose ids may be equal, write to the same folder, and what a killed one
+/// has left stays. Over a network a new file may be said to exist already: then another name.
+int create_beside(const std::filesystem::path& target, const std::string& path, std::string& name) {
+  constexpr int kAttempts = 16;
+  std::random_device random;
+  for (int attempt = 1;; ++attempt) {
+    name = target.string() + ".velour-" + std::to_string(random()) + "-" + std::to_string(random());
+    const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0) return fd;
+    if (errno != EEXIST || attempt == kAttempts) fail_with_code(path, "write", errno);
+  }
 }
 
 /// Makes the rename itself survive a power cut; a file system that cannot is no reason to fail.
@@ -46,10 +48,7 @@ void sync_folder(const std::filesystem::path& target) {
 }  // namespace
 
 AtomicFile::AtomicFile(std::string path)
-    : path_(std::move(path)),
-      target_(write_target(path_)),
-      temporary_(temporary_name(target_)),
-      fd_(create(temporary_, path_)) {}
+    : path_(std::move(path)), target_(write_target(path_)), fd_(create_beside(target_, path_, temporary_)) {}
 
 AtomicFile::~AtomicFile() {
   if (!committed_) ::unlink(temporary_.c_str());

@@ -1,6 +1,7 @@
 #include "file/file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -126,6 +127,18 @@ TEST(AtomicFile, WithoutACommitNothingRemains) {
   { AtomicFile(folder / "a.bin").write(bytes_of("new")); }
   EXPECT_EQ(read_file(folder / "a.bin"), bytes_of("old"));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST(AtomicFile, DoesNotStumbleOverWhatAKilledProcessHasLeft) {
+  const auto folder = test::scratch_folder();
+  const std::string path = folder / "a.bin";
+  // As a process with the same number names its files, in another container, or before a restart of the machine.
+  for (int i = 0; i < 64; ++i) {
+    std::ofstream(path + ".velour-" + std::to_string(::getpid()) + "-" + std::to_string(i)) << "left";
+  }
+  write_file(path, bytes_of("new"));
+  EXPECT_EQ(read_file(path), bytes_of("new"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 65);
 }
 
 TEST(RandomAccessFile, ReadsPartsAndNoMore) {
