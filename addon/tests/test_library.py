@@ -18,6 +18,9 @@ def _fresh_library():
     library.release()
 
 
+_OLD = "unsigned vlr_version(void) { return 7; } unsigned vlr_abi_version(void) { return 1; }"
+
+
 def _compile(compiler, folder, source: str):
     code, built = folder / "fake.c", folder / "libfake.so"
     code.write_text(source)
@@ -66,16 +69,24 @@ def test_a_missing_dependency_is_named(monkeypatch, tmp_path, compiler):
     assert "libfake.so" in _refusal(monkeypatch, built)
 
 
+# As Blender 3.4 updates add-ons, then as 4.2 and newer do extensions: the folder is moved, and deleted later.
+_REPLACE = "new = path + '.new'; shutil.copy(source, new); os.replace(new, path)"
+_MOVE = """
+folder = os.path.dirname(path)
+moved = os.path.join(os.path.dirname(folder), ".velour.~temp~")
+os.rename(folder, moved)
+os.mkdir(folder)
+shutil.copy(source, path)
+"""
+_DELETE = "shutil.rmtree(moved)"
 _UPDATE = """
-import os, shutil, sys
+import os, shutil
 from velour.native import LibraryError, library
-path = os.environ["VELOUR_LIBRARY"]
+path, source = os.environ["VELOUR_LIBRARY"], os.environ["SOURCE"]
 library.load()
 library.release()
 library.load()  # the same file
-new = path + ".new"
-shutil.copy(path, new)
-os.replace(new, path)
+{update}
 library.release()  # as an update of the add-on does
 try:
     library.load()
@@ -84,14 +95,21 @@ except LibraryError as error:
 """
 
 
-def test_an_update_asks_for_a_restart(tmp_path):
+@pytest.mark.parametrize("version", ["the same", "another"])
+@pytest.mark.parametrize("update", [_REPLACE, _MOVE, _MOVE + _DELETE], ids=["replaced", "moved", "deleted"])
+def test_an_update_asks_for_a_restart(tmp_path, compiler, update, version):
     """The loader would give out the library that is mapped, whatever the file is now."""
-    path = tmp_path / "libvelour.so"
+    path = tmp_path / "velour/libvelour.so"
+    path.parent.mkdir()
     shutil.copy(library.library_path(), path)
-    run = [sys.executable, "-c", _UPDATE]
-    environment = {**os.environ, "VELOUR_LIBRARY": str(path), "PYTHONPATH": os.pathsep.join(sys.path)}
-    done = subprocess.run(run, env=environment, capture_output=True, text=True, check=True)
+    source = library.library_path() if version == "the same" else _compile(compiler, tmp_path, _OLD)
+    run = [sys.executable, "-c", _UPDATE.format(update=update)]
+    variables = {"VELOUR_LIBRARY": path, "SOURCE": source, "PYTHONPATH": os.pathsep.join(sys.path)}
+    environment = {**os.environ, **{name: str(value) for name, value in variables.items()}}
+    done = subprocess.run(run, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
     assert "restart Blender" in done.stdout
+    assert "scripts/build" not in done.stdout
     assert str(path) in done.stdout
 
 
@@ -101,12 +119,7 @@ def test_foreign(monkeypatch, tmp_path, compiler):
 
 
 def test_old(monkeypatch, tmp_path, compiler):
-    path = _compile(
-        compiler,
-        tmp_path,
-        "unsigned vlr_version(void) { return 7; } unsigned vlr_abi_version(void) { return 1; }",
-    )
-    sentence = _refusal(monkeypatch, path)
+    sentence = _refusal(monkeypatch, _compile(compiler, tmp_path, _OLD))
     assert "0.0.7" in sentence
     assert "0.1.0" in sentence
 

@@ -71,16 +71,11 @@ def _open(path: Path) -> ctypes.CDLL:
     remedy = "build it with scripts/build, install the package for this platform, or unset VELOUR_LIBRARY"
     if not path.is_file():
         raise LibraryError(f"The Velour library {where} is not there; {remedy}.")
-    if is_replaced(path):  # the loader would give out the one before, and its functions may be others
-        raise LibraryError(
-            f"The Velour library {where} was replaced, as updates do, but this Blender has the one before"
-            " in use: restart Blender."
-        )
     try:
         library = ctypes.CDLL(str(path))
     except OSError as error:
         raise LibraryError(f"The Velour library {where} cannot be loaded ({error}); {remedy}.") from error
-    _check_version(library, where, remedy)
+    _check_version(library, path, where, remedy)
     try:
         table.bind(library)
     except AttributeError as error:
@@ -92,12 +87,17 @@ def _open(path: Path) -> ctypes.CDLL:
     return library
 
 
-def _check_version(library: ctypes.CDLL, where: str, remedy: str) -> None:
+def _check_version(library: ctypes.CDLL, path: Path, where: str, remedy: str) -> None:
     # Before anything else is bound: a foreign library may lack everything.
     try:
         version, abi = library.vlr_version, library.vlr_abi_version
     except AttributeError as error:
         raise LibraryError(f"{where} is not a Velour library ({error}); {remedy}.") from error
+    if is_replaced(path, version):  # the loader gives out what it has mapped under this name
+        raise LibraryError(
+            f"The Velour library {where} was replaced, as updates do, but this Blender has the one before"
+            " in use: restart Blender."
+        )
     version.restype = abi.restype = ctypes.c_uint32
     if (version(), abi()) != (packed(), ABI_VERSION):
         raise LibraryError(

@@ -2,16 +2,39 @@
 
 from __future__ import annotations
 
+import ctypes
+import mmap
 from pathlib import Path
 
 _MAPS = "/proc/self/maps"  # Linux; elsewhere nothing is known
 
 
-def is_replaced(path: Path) -> bool:
-    """Whether the process goes on with a file of this name that is no longer the one on disk."""
+def is_replaced(path: Path, function) -> bool:
+    """Whether `function` (of ctypes) lies in another file than the one that has the name now.
+
+    The name that the system has for what is mapped proves nothing: an update may move the old file before it
+    deletes it. Nor do the numbers of stat(), which are others for devices of btrfs and overlays. So the file
+    is mapped as well, and the system asked about both.
+    """
+    with open(path, "rb") as file, mmap.mmap(file.fileno(), 1, access=mmap.ACCESS_COPY) as mapped:
+        first = ctypes.c_char.from_buffer(mapped)
+        try:
+            now = _file_at(ctypes.addressof(first))
+        finally:
+            del first  # or `mapped` cannot be closed
+    return _file_at(ctypes.cast(function, ctypes.c_void_p).value) != now
+
+
+def _file_at(address: int) -> tuple[str, str] | None:
+    """Device and inode of what is mapped there; None: not known."""
     try:
         with open(_MAPS, encoding="utf-8", errors="surrogateescape") as file:
-            maps = file.read()
+            lines = file.readlines()
     except OSError:
-        return False
-    return path.exists() and f" {path.resolve()} (deleted)\n" in maps
+        return None
+    for line in lines:
+        span, _access, _offset, device, inode = line.split(maxsplit=5)[:5]
+        begin, end = (int(bound, 16) for bound in span.split("-"))
+        if begin <= address < end:
+            return device, inode
+    return None
