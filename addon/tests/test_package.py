@@ -49,6 +49,13 @@ def test_is_one_folder_that_older_and_newer_blenders_take(package, unpacked):
     assert not [*unpacked.rglob("__pycache__")]
 
 
+def test_names_its_folder(package):
+    """What Blender's Install removes before it extracts; else it writes over a library that is in use."""
+    (path,) = package[0][0].glob("*.zip")
+    with zipfile.ZipFile(path) as file:
+        assert [name for name in file.namelist() if name.endswith("/")] == ["velour/"]
+
+
 def test_every_library_is_inside(unpacked):
     inside = {path.name for path in (unpacked / "lib").iterdir()}
     assert {name for name in inside if name.startswith("libembree")}, inside

@@ -27,6 +27,7 @@ _OF_THE_SYSTEM = (
     "libstdc++.so",
     "libgcc_s.so",
 )
+_DOS_FOLDER = 0x10
 _OLDEST_DATE = (1980, 1, 1, 0, 0, 0)  # zips know none before; the same sources make the same bytes
 
 
@@ -111,9 +112,16 @@ def _write_licences(sources: list[Path], to: Path) -> None:
 
 
 def write_zip(path: Path, folder: Path) -> None:
-    """One folder in the zip, as add-ons of all versions of Blender have it."""
+    """One folder in the zip, as add-ons of all versions of Blender have it.
+
+    It is an entry, too: without one Blender's *Install* writes over the files of an older Velour in place of
+    removing them, which breaks the library under the Blender that has it mapped.
+    """
     partial = path.with_suffix(".partial")
     with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as out:
+        entry = zipfile.ZipInfo(f"{folder.name}/", _OLDEST_DATE)
+        entry.external_attr = 0o40755 << 16 | _DOS_FOLDER
+        out.writestr(entry, b"")
         for file in sorted(file for file in folder.rglob("*") if file.is_file()):
             entry = zipfile.ZipInfo(str(Path(folder.name) / file.relative_to(folder)), _OLDEST_DATE)
             entry.external_attr = 0o644 << 16
