@@ -39,7 +39,7 @@ def _register_cli_command():
     """`blender --command velour VERB ...`, from Blender 4.2 on."""
     global _cli_command
     if hasattr(bpy.utils, "register_cli_command"):
-        from .core.cli.main import main
+        from .core.cli.in_blender import main
 
         _cli_command = bpy.utils.register_cli_command("velour", main)
 

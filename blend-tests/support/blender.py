@@ -51,8 +51,13 @@ def run_blender(*arguments, addons=True, environment=None, seconds=_CHILD_SECOND
 
 def interrupt_blender(*arguments, after):
     """As run_blender, but sends Ctrl-C once the output holds `after`. Also says how long the end took."""
+    return interrupt(child_command(*arguments), after)
+
+
+def interrupt(command, after):
+    """(exit status, output, seconds from Ctrl-C to the end or None)"""
     child = subprocess.Popen(
-        child_command(*arguments),
+        command,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
