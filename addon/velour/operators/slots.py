@@ -10,6 +10,9 @@ from mathutils import Vector
 
 from .job_target import JobOwner
 
+_MOST_HIDDEN = 256  # faces of what a local view leaves out, one behind the other
+_STEP, _LEAST_STEP = 1e-5, 1e-6  # behind a face: of the way to it, and in the scene's unit
+
 
 class Slot(NamedTuple):
     """An object's, by name. One without slots gets its first one."""
@@ -20,9 +23,8 @@ class Slot(NamedTuple):
 
 def slot_under(context, event) -> Slot | None:
     """The slot of the face under the cursor; None outside of a 3D viewport, and where there is no object."""
-    region = next((region for region in context.area.regions if region.type == "WINDOW"), None)
-    view = context.space_data.region_3d if context.area.type == "VIEW_3D" else None
-    if region is None or view is None:
+    region, view = context.region, context.region_data  # each of a quad view has its own; a toolbar has none
+    if view is None:
         return None
     cursor = event.mouse_x - region.x, event.mouse_y - region.y
     origin = view3d_utils.region_2d_to_origin_3d(region, view, cursor)
@@ -32,13 +34,33 @@ def slot_under(context, event) -> Slot | None:
 def slot_along(context, origin: Vector, direction: Vector) -> Slot | None:
     """The slot of the first face that a ray meets: what is drawn, with modifiers and instances."""
     depsgraph = context.evaluated_depsgraph_get()
-    hit, _place, _normal, face, obj, _matrix = context.scene.ray_cast(depsgraph, origin, direction)
-    if not hit or not takes_materials(obj):
-        return None
-    mesh = obj.evaluated_get(depsgraph).data
+    for _ in range(_MOST_HIDDEN):
+        hit, place, _normal, face, obj, matrix = context.scene.ray_cast(depsgraph, origin, direction)
+        if not hit:
+            return None
+        if _is_drawn(context, depsgraph, obj, matrix):
+            return _slot_of(obj.evaluated_get(depsgraph), face) if takes_materials(obj) else None
+        origin = place + direction * max(_STEP * (place - origin).length, _LEAST_STEP)
+    return None
+
+
+def _slot_of(evaluated, face: int) -> Slot:
+    mesh = evaluated.data
     polygons = mesh.polygons if isinstance(mesh, bpy.types.Mesh) else ()
     number = polygons[face].material_index if 0 <= face < len(polygons) else 0
-    return Slot(obj.name, min(number, max(len(obj.material_slots) - 1, 0)))
+    return Slot(evaluated.name, min(number, max(len(evaluated.material_slots) - 1, 0)))
+
+
+def _is_drawn(context, depsgraph, obj, matrix) -> bool:
+    """Whether a viewport in local view shows this one: instances go by what they hang on."""
+    space = context.space_data
+    if getattr(space, "local_view", None) is None:
+        return True
+    return any(
+        (instance.parent or instance.object).local_view_get(space)
+        for instance in depsgraph.object_instances
+        if instance.object.original == obj.original and instance.matrix_world == matrix
+    )
 
 
 def takes_materials(obj) -> bool:
