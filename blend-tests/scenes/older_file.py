@@ -1,0 +1,11 @@
+"""A file that was saved in Blender 3.4, without its spot; the same picture in all Blenders."""
+
+QUANTITY = (
+    "a file of Blender 3.4: paint, metal, coat, sheen, glow, texture, auto smooth, area and point lamps"
+)
+
+
+def build(_folder):
+    from support import older_file
+
+    older_file.open_it()

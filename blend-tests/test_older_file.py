@@ -1,0 +1,85 @@
+"""A file that was saved in Blender 3.4 once: opened and rendered in this one, its picture is what it was."""
+
+import contextlib
+import io
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from support import judge, older_file, scenes
+from support.blender import BlenderTest
+
+REFERENCE = Path(__file__).parent / "scenes/references/older_file.exr"
+SEEDS = range(1, 5)
+
+
+class OlderFile(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        bpy.ops.preferences.addon_enable(module="cycles")
+        older_file.open_it()
+
+    def _renders(self):
+        """[seeds x height x width x channels], of the frame without the spot."""
+        scene, pictures = bpy.context.scene, []
+        scene.frame_set(older_file.BEFORE_SPOT)
+        for seed in SEEDS:
+            scene.velour.seed = seed
+            pictures.append(scenes.render(self.folder))
+        return np.array(pictures, np.float64)
+
+    def _verdict(self, renders):
+        from regression import reference
+
+        ours = judge.estimate(renders)
+        return judge.judge(ours, reference.read(REFERENCE, ours))
+
+    def _refused_without(self, change, *arguments):
+        older_file.open_it()
+        change(*arguments)
+        bpy.context.scene.velour.samples = 16  # are enough for what is that far off
+        self.assertFalse(self._verdict(self._renders()).agrees, (change.__name__, *arguments))
+
+    def test_its_picture_is_the_same(self):
+        self.assertEqual(bpy.data.version[:2], older_file.SAVED_BY)
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            renders = self._renders()
+        verdict = self._verdict(renders)
+        self.assertTrue(verdict.agrees, verdict)
+        self.assertFalse(self._verdict(renders * 1.01).agrees, "an exposure of 1 % is not seen")
+        self.assertRegex(said.getvalue(), "'Coat'.*ignored")
+        self.assertRegex(said.getvalue(), "'Sheen'.*ignored")
+
+    def test_all_that_is_in_it_counts(self):
+        """What would have been lost on the way would not go unseen."""
+        self._refused_without(_without_rims)
+        self._refused_without(_without_power, "AREA")
+        self._refused_without(_without_power, "POINT")
+        for name in ("Paint", "Metal", "Coat", "Sheen", "Glow", "Checkers", "Drum"):
+            self._refused_without(_plain, name)
+
+
+def _without_rims():
+    drum = bpy.data.objects["Drum"]
+    if hasattr(drum.data, "use_auto_smooth"):
+        drum.data.use_auto_smooth = False
+    else:
+        drum.modifiers.clear()
+
+
+def _without_power(kind):
+    lamp = next(light for light in bpy.data.lights if light.type == kind)
+    lamp.energy *= 0.9
+
+
+def _plain(name):
+    material = bpy.data.materials[name]
+    for user in bpy.data.meshes:
+        if material.name in user.materials:
+            user.materials[0] = _grey()
+
+
+def _grey():
+    return bpy.data.materials.get("Grey") or scenes.diffuse_material((0.5,) * 3, "Grey")
