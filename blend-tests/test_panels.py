@@ -1,7 +1,5 @@
 """What the Properties editor and the Add menu of shaders offer with Velour: what is rendered, and once."""
 
-import functools
-import inspect
 import unittest
 from collections import Counter
 from types import SimpleNamespace
@@ -15,6 +13,7 @@ from velour.ui.material_panel import VELOUR_MATERIAL_PT_measured
 
 from support import inputs, scenes
 from support.blender import ADDON, BlenderTest, enable_addon
+from support.panels import Layout
 
 _LAMPS = {
     "POINT": {"shadow_soft_size"},
@@ -29,27 +28,6 @@ _NOT_READ = ("freestyle", "stereoscopy", "DATA_PT_falloff_curve", "OBJECT_PT_sha
 _MENUS = ("NODE_MT_category_SH_NEW_SHADER", "NODE_MT_category_shader_shader")  # of 3.4, of 4.0 and newer
 _SHADERS = {"MixShader", "AddShader", "Emission"}
 _SHADERS |= {f"Bsdf{name}" for name in ("Principled", "Diffuse", "Glossy", "Transparent")}
-
-
-class _Layout:
-    """A layout, and the panel or menu with it: remembers which settings and nodes are put there."""
-
-    def __init__(self, cls=None):
-        self._cls, self.layout, self.props, self.operators = cls, self, [], []
-
-    def __getattr__(self, name):
-        if hasattr(self._cls, name):
-            found = getattr(self._cls, name)
-            is_method = inspect.isfunction(inspect.getattr_static(self._cls, name))
-            return functools.partial(found, self) if is_method else found
-        return lambda *_arguments, **_keywords: self
-
-    def prop(self, _owner, name, **_keywords):
-        self.props.append(name)
-
-    def operator(self, name, **_keywords):
-        self.operators.append(SimpleNamespace(name=name))
-        return self.operators[-1]
 
 
 class Panels(BlenderTest):
@@ -150,7 +128,7 @@ class Panels(BlenderTest):
 
     @staticmethod
     def _offered(panel, context):
-        layout = _Layout(panel)
+        layout = Layout(panel)
         panel.draw(layout, context)
         return [operator.name for operator in layout.operators]
 
@@ -190,7 +168,7 @@ class Panels(BlenderTest):
     def _drawn(panel, context):
         if hasattr(panel, "poll") and not panel.poll(context):
             return []
-        layout = _Layout(panel)
+        layout = Layout(panel)
         panel.draw(layout, context)
         return layout.props
 
@@ -227,7 +205,7 @@ class AddMenu(BlenderTest):
         )
         menus = (getattr(bpy.types, name, None) for name in _MENUS)
         menu = next(menu for menu in menus if menu is not None)
-        layout = _Layout(menu)
+        layout = Layout(menu)
         menu.draw(layout, SimpleNamespace(engine=engine, space_data=space))
         return {operator.type.removeprefix("ShaderNode") for operator in layout.operators}
 
