@@ -4,6 +4,7 @@ import importlib
 import shutil
 import sys
 import unittest.mock
+from collections import Counter
 from pathlib import Path
 
 import bpy
@@ -102,3 +103,53 @@ class Presets(BlenderTest):
         with self.assertRaisesRegex(RuntimeError, "scripts/presets"):
             bpy.ops.velour.add_presets(directory=str(self.folder / "library"))
         self.assertEqual(len(self._libraries), len(self._known))
+
+
+class WholeLibrary(BlenderTest):
+    """All 24 of the table, by the script that writes the library; models of the tests stand in for theirs."""
+
+    def test_has_all_materials_with_what_the_asset_browser_shows(self):
+        table, presets = _script("preset_table"), _script("presets")
+        preview = self.folder / "preview.npy"
+        np.save(preview, np.random.default_rng(1).random((256, 256, 4), np.float32))  # packs badly
+        presets.write_library(self.folder, _StandIns(self.folder), dict.fromkeys(table.PRESETS, preview))
+        with bpy.data.libraries.load(str(self.folder / "velour_presets.blend"), assets_only=True) as (
+            there,
+            got,
+        ):
+            got.materials = there.materials
+        found = Counter()
+        for preset, material in zip(
+            sorted(table.PRESETS, key=lambda preset: preset.name),
+            sorted(got.materials, key=lambda material: material.name),
+            strict=True,
+        ):
+            asset = material.asset_data
+            self.assertEqual(material.name, preset.name)
+            self.assertEqual(asset.catalog_id, table.CATALOGS[preset.catalog])
+            self.assertEqual(asset.author, "The Velour authors")
+            self.assertIn("CC0-1.0", asset.description)
+            self.assertEqual({tag.name for tag in asset.tags}, {*preset.tags, "velour"})
+            self.assertEqual(tuple(material.preview.image_size), (256, 256))
+            found[preset.catalog] += 1
+        self.assertEqual(sorted(found.values()), [4, 6, 6, 8])
+        size = sum(path.stat().st_size for path in self.folder.glob("*") if path != preview)
+        self.assertLess(size, presets.MOST_BYTES / 2)  # models of cloths, 0.4 to 1.3 MB each, take the rest
+        catalogs = (self.folder / "blender_assets.cats.txt").read_text()
+        self.assertTrue(all(number in catalogs for number in table.CATALOGS.values()))
+        self.assertIn("CC0-1.0", (self.folder / "LICENSE.txt").read_text())
+
+
+class _StandIns:
+    """In the place of a Workshop."""
+
+    def __init__(self, folder):
+        self.work = folder
+
+    @staticmethod
+    def model_path(preset):
+        data = Path(__file__).parent / "scenes/data"
+        if preset.catalog == "Cloths":
+            return data / "weave.velour"
+        is_brushed = getattr(preset.made_of, "anisotropy", 1.0) != 1.0
+        return data / ("brushed.velour" if is_brushed else "paint.velour")
