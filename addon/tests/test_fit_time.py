@@ -54,19 +54,20 @@ def test_the_nearest_in_size_count(tmp_path):
 def test_the_last_ones_are_kept(tmp_path):
     for seconds in range(1, 80):
         remember(tmp_path, _FIT, float(seconds))
-    (path,) = tmp_path.iterdir()
-    kept = json.loads(path.read_text())["fits"]
-    assert [numbers[-1] for numbers in kept] == list(range(16, 80))
+    kept = sorted((tmp_path / "fits-2").iterdir())
+    assert [json.loads(path.read_text())["seconds"] for path in kept] == list(range(16, 80))
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"release": [0, 1, 0], "fits": [["srbf", 1]]}'])
-def test_a_damaged_file_is_none(tmp_path, text):
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", "{}", '{"release": [0, 1, 0], "fit": ["srbf", 1], "seconds": 1}']
+)
+def test_a_damaged_one_is_none(tmp_path, text):
     remember(tmp_path, _FIT, 40.0)
-    (path,) = tmp_path.iterdir()
+    (path,) = (tmp_path / "fits-2").iterdir()
     path.write_text(text)
     assert expected(tmp_path, _FIT) is None
     remember(tmp_path, _FIT, 40.0)
-    assert expected(tmp_path, _FIT) is not None
+    assert expected(tmp_path, _FIT).made == 1
 
 
 def test_fits_of_other_releases_tell_nothing(tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ import pytest
 from velour.core.measurement_files import find_measurements
 from velour.core.thumbnail_job import ThumbnailJob
 from velour.core.thumbnails import SIDE, thumbnail, thumbnail_folder
-from velour.native import Status, VelourError
+from velour.native import Status, VelourError, images
 
 DISC = np.hypot(*np.mgrid[-1 : 1 : SIDE * 1j, -1 : 1 : SIDE * 1j]) < 0.8  # of the ball
 
@@ -79,6 +79,43 @@ def test_made_once_whatever_the_name_and_anew_for_another_content(folder, model_
     shutil.copy(measurement_file, folder / "b.velour")  # a file is what it holds
     with pytest.raises(AssertionError, match="made anew"):
         _of(folder, _refuse)
+
+
+def _write_set(folder, color):
+    """A BTF of one colour: but for the pictures, all are the same to the last byte."""
+    folder.mkdir(exist_ok=True)
+    lines = ["file,theta_l,phi_l,theta_v,phi_v"]
+    for pair in range(4):
+        images.write(folder / f"{pair}.exr", np.full((2, 2, 3), color, np.float32))
+        lines.append(f"{pair}.exr,{30 * (pair % 2)},0,{30 * (pair // 2)},0")
+    (folder / "btf.csv").write_text("\n".join(lines) + "\n")
+
+
+def _middle(thumbnail):
+    side = SIDE // 2
+    return thumbnail.pixels[side - 4 : side + 4, side - 4 : side + 4, :3].astype(float).mean((0, 1))
+
+
+def test_sets_with_equal_indices_have_pictures_of_their_own(folder):
+    _write_set(folder / "red", (0.4, 0.02, 0.02))
+    _write_set(folder / "blue", (0.02, 0.02, 0.4))
+    blue, red = (
+        _middle(thumbnail(file, _cache(folder), lambda: None)) for file in find_measurements(folder).files
+    )
+    assert red[0] > 2 * red[2]
+    assert blue[2] > 2 * blue[0]
+
+
+def test_a_set_whose_pictures_are_replaced_has_a_new_one(folder):
+    _write_set(folder / "set", (0.4, 0.02, 0.02))
+    index = folder / "set/btf.csv"
+    times = index.stat().st_atime_ns, index.stat().st_mtime_ns
+    red = _middle(_of(folder))
+    assert red[0] > 2 * red[2]
+    _write_set(folder / "set", (0.02, 0.02, 0.4))
+    os.utime(index, ns=times)
+    blue = _middle(_of(folder))
+    assert blue[2] > 2 * blue[0]
 
 
 @pytest.mark.parametrize("damage", [b"", b"PK\x05\x06" + bytes(18), b"no archive at all", None])

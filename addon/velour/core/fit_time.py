@@ -10,6 +10,8 @@ import contextlib
 import json
 import math
 import os
+import secrets
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,7 +19,7 @@ from ..native.version import VERSION
 from . import files
 from .capture_size import duration
 
-_FILE = "fits-1.json"  # another form has another name
+_FOLDER = "fits-2"  # another form has another name
 _KEPT = 64
 _NEAREST = 3
 _POWERS = {"srbf": (0.65, 0.85), "kcta": (1.1, 0.75)}  # of texels, of pairs, that the seconds grow with
@@ -60,24 +62,45 @@ class _Made(NamedTuple):
 
 
 def remember(folder: Path, fit: Fit, seconds: float) -> None:
-    """Adds one that was made, from its beginning to its end. Does without where nothing can be written."""
-    made = [*_known(folder), _Made(fit, seconds)][-_KEPT:]
-    text = json.dumps({"release": list(VERSION), "fits": [[*m.fit, m.seconds] for m in made]})
+    """Adds one that was made, from its beginning to its end. Does without where nothing can be written.
+
+    Each is a file of its own, which is never changed: others that end at the same time, on other machines as
+    well, lose nothing by it, and nobody waits.
+    """
+    kept = folder / _FOLDER
+    entry = {"release": list(VERSION), "fit": list(fit), "seconds": seconds}
     with contextlib.suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-        files.write_text(folder / _FILE, text)
+        kept.mkdir(parents=True, exist_ok=True)
+        # By time, to which a random number is added: clocks may agree.
+        files.write_json(kept / f"{time.time_ns():020}-{secrets.token_hex(4)}.json", entry)
+        for old in _entries(kept)[:-_KEPT]:
+            old.unlink(missing_ok=True)
+
+
+def _entries(kept: Path) -> list[Path]:
+    """The oldest first, without what is being written."""
+    return sorted(path for path in kept.glob("*.json") if not path.name.startswith("."))
 
 
 def _known(folder: Path) -> list[_Made]:
-    """Those of this release, the oldest first; none where the file is damaged."""
+    """Those of this release, the oldest first, without damaged ones."""
     try:
-        kept = json.loads((folder / _FILE).read_text(encoding="utf-8"))
-        if kept["release"] != list(VERSION):
-            return []
-        made = [_Made(Fit(*numbers[:-1]), float(numbers[-1])) for numbers in kept["fits"]]
-        return [m for m in made if m.seconds > 0 and m.fit.texels * m.fit.pairs > 0]
-    except (OSError, ValueError, TypeError, KeyError, IndexError):
+        read = [_made(path) for path in _entries(folder / _FOLDER)]
+    except OSError:
         return []
+    return [made for made in read if made is not None]
+
+
+def _made(path: Path) -> _Made | None:
+    try:
+        entry = json.loads(path.read_text(encoding="utf-8"))
+        made = _Made(Fit(*entry["fit"]), float(entry["seconds"]))
+        usable = (
+            entry["release"] == list(VERSION) and made.seconds > 0 and made.fit.texels * made.fit.pairs > 0
+        )
+    except (OSError, ValueError, TypeError, KeyError):  # another has just taken it away, or it is damaged
+        return None
+    return made if usable else None
 
 
 class Range(NamedTuple):
