@@ -3,6 +3,7 @@
 import bpy
 
 from . import engine, handlers, operators, properties, ui
+from .export.caches import cache_folder
 from .native import library
 
 # Each rank has CLASSES, and attach() / detach() for what is not a class: properties, menu entries, panels.
@@ -39,9 +40,15 @@ def _register_cli_command():
     """`blender --command velour VERB ...`, from Blender 4.2 on."""
     global _cli_command
     if hasattr(bpy.utils, "register_cli_command"):
-        from .core.cli.in_blender import main
+        _cli_command = bpy.utils.register_cli_command("velour", _run_command)
 
-        _cli_command = bpy.utils.register_cli_command("velour", main)
+
+def _run_command(arguments):
+    from .core.cache import keep_in
+    from .core.cli.in_blender import main
+
+    keep_in(cache_folder())
+    return main(arguments)
 
 
 def _unregister_cli_command():
