@@ -1,0 +1,75 @@
+"""One cache folder that several processes read and write at once, as machines do over a network."""
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+from velour.core import fit_time
+from velour.core.measurement_files import find_measurements
+from velour.core.thumbnails import thumbnail
+from velour.native import Scene, light_map_job
+
+_PROCESSES, _ROUNDS, _SKIES = 8, 3, 2
+_FIT = fit_time.Fit("srbf", 1000, 1000, False, False, False, 2)
+
+
+def _sky(number, cache):
+    """SHA-256 of the map of a fit of a world, or of what the cache has of it."""
+    pixels = np.full((8, 16, 3), 0.2, np.float32)
+    pixels[5, 3 + 4 * number] = 20.0
+    with Scene() as scene:
+        scene.set_world_pixels(pixels)
+        with light_map_job(scene, cache) as job:
+            job.run()
+            return hashlib.sha256(np.ascontiguousarray(job.result_table()).tobytes()).hexdigest()
+
+
+def _pictures(folder, cache):
+    made = [thumbnail(file, cache, lambda: None) for file in find_measurements(folder).files]
+    return [hashlib.sha256(each.pixels.tobytes()).hexdigest() for each in made]
+
+
+def _work(process, folder, cache):
+    """What one process sees, round by round; takes away results that others may be about to read."""
+    skies, pictures = [], []
+    for turn in range(_ROUNDS):
+        skies.append([_sky(number, cache) for number in range(_SKIES)])
+        pictures.append(_pictures(folder, cache))
+        fit_time.remember(cache, _FIT, float(1 + process * _ROUNDS + turn))
+        for path in [*cache.glob("sky-*"), *cache.glob("thumbnails-*/*.npz")][process % 2 :: 2]:
+            path.unlink(missing_ok=True)
+    return {"skies": skies, "pictures": pictures}
+
+
+def _begun(process, folder, cache):
+    command = [sys.executable, __file__, str(process), str(folder), str(cache)]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
+
+
+def test_eight_processes_share_a_cache(tmp_path, model_file):
+    folder, cache = tmp_path / "measurements", tmp_path / "cache"
+    folder.mkdir()
+    shutil.copy(model_file, folder)
+    expected = {
+        "skies": [[_sky(number, tmp_path / "own") for number in range(_SKIES)]] * _ROUNDS,
+        "pictures": [_pictures(folder, tmp_path / "own")] * _ROUNDS,
+    }
+    processes = [_begun(process, folder, cache) for process in range(_PROCESSES)]
+    seen = [process.communicate()[0] for process in processes]
+    assert [process.returncode for process in processes] == [0] * _PROCESSES
+    for each in seen:
+        assert json.loads(each) == expected
+    found = fit_time._known(cache)
+    assert sorted(made.seconds for made in found) == list(range(1, 1 + _PROCESSES * _ROUNDS))
+    left = [path for path in cache.rglob("*") if path.name.startswith(".") or ".velour-" in path.name]
+    assert left == []
+
+
+if __name__ == "__main__":
+    json.dump(_work(int(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])), sys.stdout)
