@@ -1,27 +1,10 @@
 """What is left out of a scene, said before it is rendered."""
 
-import types
-
 import bpy
 
 from support import scenes
 from support.blender import BlenderTest
-
-
-class _Layout:
-    """Remembers what is drawn."""
-
-    def __init__(self):
-        self.texts, self.operators = [], []
-
-    def column(self, **_settings):
-        return self
-
-    def label(self, text="", **_settings):
-        self.texts.append(text)
-
-    def operator(self, idname, **_settings):
-        self.operators.append(idname)
+from support.drawn import drawn
 
 
 class CheckScene(BlenderTest):
@@ -44,16 +27,9 @@ class CheckScene(BlenderTest):
         return [(sentence.is_refusal, sentence.text) for sentence in checked.sentences]
 
     def _drawn(self):
-        panel = types.SimpleNamespace(layout=_Layout())
-        context = types.SimpleNamespace(
-            window_manager=bpy.context.window_manager,
-            scene=bpy.context.scene,
-            region=types.SimpleNamespace(width=10000),  # there is none here; one line a sentence
-            preferences=bpy.context.preferences,
-        )
-        bpy.types.VELOUR_RENDER_PT_check.draw(panel, context)
-        self.assertEqual(panel.layout.operators, ["velour.check_scene"])
-        return " ".join(panel.layout.texts)
+        layout = drawn(bpy.types.VELOUR_RENDER_PT_check)
+        self.assertEqual(layout.operators, ["velour.check_scene"])
+        return " ".join(layout.texts)
 
     def test_nothing(self):
         self.assertEqual(self._drawn(), "")

@@ -2,9 +2,8 @@
 
 import contextlib
 
-from ..core import domain
 from ..export.camera import final_view
-from ..export.observe import observe
+from ..export.scene_models import served
 
 
 def choose_models(native_scene, reduced, view, depsgraph, notes, check_break):
@@ -14,39 +13,17 @@ def choose_models(native_scene, reduced, view, depsgraph, notes, check_break):
     """
     if not reduced:
         return {}
-    stamps, frame = {}, depsgraph.scene_eval.frame_current
+    stamps = {}
     with _seen_whole(native_scene, view, depsgraph, notes) as whole:
-        shares = [_share_outside(native_scene, entry, whole, depsgraph, check_break) for entry in reduced]
-    for entry, share in zip(reduced, shares, strict=True):
-        inside = domain.inside(share)
-        if inside:
+        found = served(native_scene, reduced, whole, depsgraph, check_break)
+    for entry, each in zip(reduced, found, strict=True):
+        if each.is_inside:
             native_scene.set_model_material(entry.number, entry.model, entry.neighbors)
         entry.model.close()
-        words = _words(inside, entry.has_full)
-        notes.add(
-            f"Material '{entry.name}', frame {frame}: {share:.2%} of what is seen of it is outside of"
-            f" what its model for the scene was fitted to; {words}."
-        )
-        stamps[entry.name] = f"{share:.2%} outside of its model's domain; {words}"
+        notes.add(each.sentence)
+        stamps[entry.name] = f"{each.share:.2%} outside of its model's domain; {each.words}"
     native_scene.commit()  # a model may have another outline than the one that it replaces
     return stamps
-
-
-def _share_outside(native_scene, entry, view, depsgraph, check_break):
-    with observe(native_scene, entry.number, view, depsgraph, check_break) as seen:
-        return entry.model.out_of_domain(seen)
-
-
-def _words(inside, has_full):
-    if inside:
-        return "rendered with that model"
-    more = f"that is more than {domain.LARGEST_SHARE:.1%}"
-    if has_full:
-        return f"{more}: rendered with the full model"
-    return (
-        f"{more}, but the full model is missing: rendered with that model,"
-        " which may be wrong; fit the material, or put the full model back"
-    )
 
 
 @contextlib.contextmanager

@@ -17,6 +17,7 @@ class Reduced(NamedTuple):
     model: Model  # the one for the scene; the full one is in the library's scene
     neighbors: int
     has_full: bool  # False: the full model is missing, and the other one is in its place
+    image: str  # name of the one that holds the model for the scene
 
 
 class _Known(NamedTuple):
@@ -103,11 +104,13 @@ class MeasuredMaterials:
         return reason is not None
 
     def _add_pair(self, material, node, owner):
-        reduced = self._read_model(node.velour.scene_model, node.velour, owner)
+        image = node.velour.scene_model
+        reduced = self._read_model(image, node.velour, owner)
         has_full = files.is_there(node.image)
         model = self._read_model(node.image, node.velour, owner) if has_full else reduced
         number = self._scene.add_model_material(model, node.velour.neighbors)
-        self.reduced.append(Reduced(number, material.name, reduced, node.velour.neighbors, has_full))
+        neighbors = node.velour.neighbors
+        self.reduced.append(Reduced(number, material.name, reduced, neighbors, has_full, image.name))
         return number, model.info()
 
     def _add_reference(self, node, owner):

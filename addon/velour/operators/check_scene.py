@@ -1,10 +1,11 @@
-"""What of a scene is not rendered, told without rendering."""
+"""What of a scene is not rendered as it is, told without rendering."""
 
 import bpy
 
 from ..export import ExportError, Notes, export_scene, visitor
 from ..export.camera import final_view
 from ..export.layer_passes import note_missing_passes
+from ..export.scene_models import served
 from ..export.unused_settings import note_strokes
 from ..native import VelourError
 from .scene_fit import ENGINE
@@ -14,14 +15,16 @@ class VELOUR_OT_check_scene(bpy.types.Operator):
     bl_idname = "velour.check_scene"
     bl_label = "Check Scene"
     bl_description = (
-        "Say what of the scene Velour leaves out in this frame, and what it refuses to render, without"
-        " rendering. Takes as long as the export of a render"
+        "Say what of the scene Velour leaves out in this frame, what it refuses to render, and which model"
+        " for the scene does not serve in it, without rendering. Takes as long as the export of a render, and a"
+        " look at what it shows of each material with a model for the scene"
     )
     bl_options = {"REGISTER"}
 
     def execute(self, context):
-        ignored, refused = _sentences(context.scene)
-        context.window_manager.velour.checked.keep(context.scene, ignored, refused)
+        check = _Check(context.scene)
+        ignored, refused = check.sentences(check.notes), check.sentences(check.refused)
+        context.window_manager.velour.checked.keep(context.scene, ignored, refused, check.served)
         for sentence in (*refused, *ignored):
             self.report({"WARNING"}, sentence)
         if not ignored and not refused:
@@ -29,30 +32,49 @@ class VELOUR_OT_check_scene(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _sentences(scene):
-    """What is ignored, and why there is no picture of the frame, each of all view layers that render."""
-    notes, refused = Notes(), Notes()
+class _Check:
+    """Of all view layers that render: what is ignored, why there is no picture of the frame, and how far
+    models for the scene serve (`served`)."""
 
-    def visit(_engine, depsgraph):
+    def __init__(self, scene):
+        self._scene, self._copies = scene, set()
+        self.notes, self.refused, self.served = Notes(), Notes(), []
         try:
-            export_scene(depsgraph, final_view(depsgraph, notes), notes).scene.close()
+            visitor.visit_frame(scene, scene.frame_current, self._visit, ENGINE)
+        except ExportError as error:
+            self.refused.add(str(error))
+        for layer in scene.view_layers:
+            if layer.use:
+                note_strokes(scene, layer, self.notes)
+
+    def sentences(self, notes):
+        return [self._of_scene(sentence) for sentence in notes]
+
+    def _visit(self, _engine, depsgraph):
+        try:
+            self._look(depsgraph)
         except (ExportError, VelourError) as error:
-            refused.add(str(error))
-        note_missing_passes(depsgraph.view_layer_eval, notes)
-        names.add(depsgraph.scene.name)
+            self.refused.add(str(error))
+        note_missing_passes(depsgraph.view_layer_eval, self.notes)
+        self._copies.add(depsgraph.scene.name)
 
-    names = set()  # of the copy that is looked at
-    try:
-        visitor.visit_frame(scene, scene.frame_current, visit, ENGINE)
-    except ExportError as error:
-        refused.add(str(error))
-    for layer in scene.view_layers:
-        if layer.use:
-            note_strokes(scene, layer, notes)
-    return tuple([_of_scene(sentence, names, scene) for sentence in each] for each in (notes, refused))
+    def _look(self, depsgraph):
+        view = final_view(depsgraph, self.notes)
+        export = export_scene(depsgraph, view, self.notes)
+        reduced = export.materials.reduced
+        with export.scene:
+            try:
+                found = served(export.scene, reduced, view, depsgraph)
+            finally:
+                for entry in reduced:
+                    entry.model.close()
+        for each in found:
+            if not each.is_inside:
+                self.notes.add(each.sentence)
+        self.served += found
 
-
-def _of_scene(sentence, copies, scene):
-    for name in copies:
-        sentence = sentence.replace(f"Scene '{name}'", f"Scene '{scene.name}'")
-    return sentence
+    def _of_scene(self, sentence):
+        """What is looked at is a copy."""
+        for name in self._copies:
+            sentence = sentence.replace(f"Scene '{name}'", f"Scene '{self._scene.name}'")
+        return sentence

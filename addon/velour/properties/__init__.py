@@ -4,7 +4,7 @@ import bpy
 
 from .approximation_state import VelourApproximationState
 from .browser_settings import VelourBrowserSettings
-from .check_state import VelourCheckState, VelourSentence
+from .check_state import VelourCheckState, VelourSentence, VelourServedModel
 from .file_settings import VelourFileSettings
 from .job_state import VelourJobState
 from .layer_settings import VelourLayerSettings
@@ -30,6 +30,7 @@ CLASSES = (
     VelourPlotSettings,
     VelourBrowserSettings,
     VelourSentence,
+    VelourServedModel,
     VelourCheckState,
     *dict.fromkeys(group for _owner, group, _override in _POINTERS),
 )

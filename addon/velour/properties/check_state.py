@@ -9,17 +9,39 @@ class VelourSentence(bpy.types.PropertyGroup):
     is_refusal: BoolProperty(options={"SKIP_SAVE"})
 
 
+class VelourServedModel(bpy.types.PropertyGroup):
+    """A model for the scene, in one view layer. Names, as below."""
+
+    material: StringProperty(options={"SKIP_SAVE"})
+    model: StringProperty(options={"SKIP_SAVE"})  # of the image; another one has not been looked at
+    text: StringProperty(options={"SKIP_SAVE"})
+    is_inside: BoolProperty(options={"SKIP_SAVE"})  # of what it was fitted to
+
+
 class VelourCheckState(bpy.types.PropertyGroup):
     """`window_manager.velour.checked`. A name, not a pointer: undo may replace the scene."""
 
     scene: StringProperty(options={"SKIP_SAVE"})  # empty: none was looked at
     frame: IntProperty(options={"SKIP_SAVE"})
     sentences: CollectionProperty(type=VelourSentence, options={"SKIP_SAVE"})
+    models: CollectionProperty(type=VelourServedModel, options={"SKIP_SAVE"})
 
-    def keep(self, scene, ignored, refused):
+    def keep(self, scene, ignored, refused, served):
+        """`served`: what export/scene_models.py says of models for the scene."""
         self.scene, self.frame = scene.name, scene.frame_current
         self.sentences.clear()
         for sentences, is_refusal in ((refused, True), (ignored, False)):
             for text in sentences:
                 item = self.sentences.add()
                 item.text, item.is_refusal = text, is_refusal
+        self.models.clear()
+        for each in served:
+            item = self.models.add()
+            item.material, item.model = each.name, each.image
+            item.text, item.is_inside = each.sentence, each.is_inside
+
+    def of_model(self, scene, material, image):
+        """What was found of a material's model for the scene; empty where that was not looked at."""
+        if self.scene != scene.name:
+            return []
+        return [m for m in self.models if (m.material, m.model) == (material.name, image.name)]

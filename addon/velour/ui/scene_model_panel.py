@@ -4,6 +4,7 @@ import bpy
 
 from ..export.nodes import velour_node
 from ..operators.accept_file import VELOUR_OT_accept_file
+from ..operators.check_scene import VELOUR_OT_check_scene
 from ..operators.fit_for_scene import VELOUR_OT_fit_for_scene
 from ..operators.save_model import VELOUR_OT_save_model
 from .material_panel import MaterialPanel, draw_rows
@@ -30,6 +31,8 @@ class VELOUR_MATERIAL_PT_scene_model(MaterialPanel, bpy.types.Panel):
         layout.prop(settings, "use_scene_model")
         layout.template_ID(settings, "scene_model", open="image.open")
         _draw_model(context, layout, model_summary(settings.scene_model))
+        if settings.use_scene_model:
+            _draw_served(context, layout, context.material, settings.scene_model)
 
 
 def _draw_model(context, layout, info):
@@ -46,6 +49,14 @@ def _draw_model(context, layout, info):
         return
     draw_rows(layout, _rows(info))
     layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT").for_scene = True
+
+
+def _draw_served(context, layout, material, image):
+    """Whether the model serves in the frame that was looked at last, and what helps where it does not."""
+    found = context.window_manager.velour.checked.of_model(context.scene, material, image)
+    for text, is_inside in dict.fromkeys((each.text, each.is_inside) for each in found):
+        draw_sentence(context, layout, text, icon="CHECKMARK" if is_inside else "ERROR")
+    layout.operator(VELOUR_OT_check_scene.bl_idname, icon="VIEWZOOM")
 
 
 def _rows(info):

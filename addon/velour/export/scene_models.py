@@ -1,0 +1,57 @@
+"""How far models for the scene serve in a frame: told from what it shows, without a picture."""
+
+from typing import NamedTuple
+
+from ..core import domain
+from .observe import observe
+
+
+class Served(NamedTuple):
+    """A material with a model for the scene, in one frame and view layer."""
+
+    name: str
+    image: str  # name of the model's
+    frame: int
+    share: float  # of what is seen of it, outside of what that model was fitted to
+    has_full: bool  # False: there is no full model to take in its place
+
+    @property
+    def is_inside(self):
+        return domain.inside(self.share)
+
+    @property
+    def words(self):
+        """What becomes of it."""
+        if self.is_inside:
+            return "rendered with that model"
+        more = f"that is more than {domain.LARGEST_SHARE:.1%}"
+        if self.has_full:
+            return f"{more}: rendered with the full model"
+        return f"{more}, but the full model is missing: rendered with that model, which may be wrong"
+
+    @property
+    def remedy(self):
+        if self.is_inside:
+            return ""
+        if self.has_full:
+            return "To use the smaller model here as well, press Fit for This Scene again."
+        return "Fit the material, or put the full model back."
+
+    @property
+    def sentence(self):
+        said = (
+            f"Material '{self.name}', frame {self.frame}: {self.share:.2%} of what is seen of it is outside"
+            f" of what its model for the scene was fitted to; {self.words}."
+        )
+        return f"{said} {self.remedy}".rstrip()
+
+
+def served(native_scene, reduced, view, depsgraph, check_break=lambda: None):
+    """Of each of `reduced` in a committed scene with its full models, seen through `view`."""
+    frame = depsgraph.scene_eval.frame_current
+    found = []
+    for entry in reduced:
+        with observe(native_scene, entry.number, view, depsgraph, check_break) as seen:
+            share = entry.model.out_of_domain(seen)
+        found.append(Served(entry.name, entry.image, frame, share, entry.has_full))
+    return found
