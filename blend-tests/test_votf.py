@@ -1,10 +1,14 @@
 """Materials with the outline and the holes of a tile."""
 
+import importlib
+import unittest.mock
+
 import bpy
 import numpy as np
 
 from support import inputs, scenes
 from support.blender import BlenderTest
+from support.drawn import drawn
 
 
 class Outline(BlenderTest):
@@ -111,6 +115,49 @@ class Outline(BlenderTest):
         folded = report(1.2 * 0.5 / -low)
         self.assertIn("folds", folded.warnings[0])
         self.assertEqual(dict(folded.rows)["Of the least radius"], "120%")
+
+    def test_an_estimate_before_it_begins(self):
+        """By small outlines, which change nothing; it is of this structure and these texels alone."""
+        node, state = scenes.velour_node(self.material), bpy.context.window_manager.velour
+        asked = importlib.import_module(f"{inputs.ADDON}.operators.asked_outline").outlined_as
+        before, images = node.image, len(bpy.data.images)
+        with self.assertRaisesRegex(RuntimeError, "choose the object"):
+            bpy.ops.velour.estimate_votf()
+        self.assertEqual(bpy.ops.velour.estimate_votf(structure=self.tile.name, texels=48), {"FINISHED"})
+        said = state.outline_estimate
+        self.assertRegex(said, r"^About \d+ (seconds|minutes).*MB of memory beside the scene; rays wrong")
+        self.assertEqual(state.outline_estimated, asked(self.material, self.tile, 48))
+        self.assertNotEqual(state.outline_estimated, asked(self.material, self.tile, 49))
+        self.assertEqual((node.image, len(bpy.data.images)), (before, images))
+        self.assertEqual((node.velour.structure, node.velour.outline_texels), (None, 128))
+        self.assertNotIn("estimate", " ".join(self._panel().texts), "another structure")
+        node.velour.structure, node.velour.outline_texels = self.tile, 48
+        self.assertIn(said, self._panel().texts)
+        bpy.ops.velour.add_votf()
+        points = " x ".join(map(str, self._info()["shell"]["points"]))
+        self.assertIn(f"({points} points)", said)
+
+    def test_its_curve_is_what_it_covers_from_above(self):
+        with self.assertRaisesRegex(RuntimeError, "no outline"):
+            bpy.ops.velour.save_plot(
+                material=self.material.name, kind="OUTLINE", filepath=str(self.folder / "no.csv")
+            )
+        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=48)
+        path = self.folder / "outline.csv"
+        bpy.ops.velour.save_plot(material=self.material.name, kind="OUTLINE", filepath=str(path))
+        rows = [line.split(",") for line in path.read_text().splitlines()[1:]]
+        mean = {float(x): float(y) for name, x, y, _ in rows if name == "mean"}
+        self.assertAlmostEqual(mean[0], self._solid(), delta=0.03)
+        self.assertGreater(mean[75], mean[0])
+        operators = self._panel().operators
+        self.assertEqual(operators[-2:], ["velour.enlarge_plot", "velour.save_plot"])
+
+    def _panel(self):
+        """As it is once the model is read."""
+        material = self.material
+        panel = importlib.import_module(f"{inputs.ADDON}.ui.outline_panel")
+        with unittest.mock.patch.object(panel, "model_summary", return_value=self._info()):
+            return drawn(panel.VELOUR_MATERIAL_PT_outline, material=material, object=bpy.context.object)
 
     def test_what_is_missing_is_said(self):
         with self.assertRaisesRegex(RuntimeError, "choose the object"):

@@ -19,7 +19,7 @@ def _ui(name):
 
 
 def _open_panel():
-    panel = _ui("material_panel").VELOUR_MATERIAL_PT_outline
+    panel = _ui("outline_panel").VELOUR_MATERIAL_PT_outline
     bpy.utils.unregister_class(panel)
     panel.bl_options = set()
     bpy.utils.register_class(panel)

@@ -10,7 +10,19 @@ import numpy as np
 import pytest
 from command_line import refused, velour
 from conftest import ROOT
-from velour.native import Measurement, Model, Plot, VelourError, images, measurement_job, plot_job, table
+from velour.native import (
+    Measurement,
+    Model,
+    Plot,
+    Scene,
+    Tile,
+    VelourError,
+    images,
+    measurement_job,
+    plot_job,
+    table,
+    votf_job,
+)
 
 BTF_MODEL = ROOT / "blend-tests/scenes/data/weave.velour"
 DARK = {"background": (0.19, 0.19, 0.19), "foreground": (0.9, 0.9, 0.9)}
@@ -18,8 +30,16 @@ DARK = {"background": (0.19, 0.19, 0.19), "foreground": (0.9, 0.9, 0.9)}
 
 @pytest.fixture(scope="module")
 def model(model_file):
-    with Model.load(model_file) as model:
-        yield model
+    """With an outline, so that it has every plot."""
+    with Model.load(model_file) as bare, Tile.create("net", resolution=6) as tile, Scene() as scene:
+        mesh, materials = tile.add_to(scene)
+        scene.add_instance(mesh, np.eye(4)[:3], materials)
+        scene.commit()
+        options = {"texels": 16, "reference_height": 0.0, "period": tile.info()["period"], "origin": (0, 0)}
+        with votf_job(scene, bare, **options) as job:
+            job.run()
+            with job.result_model() as model:
+                yield model
 
 
 @pytest.fixture(scope="module")
@@ -158,7 +178,9 @@ def test_colors_are_taken_and_kept_readable(model):
 
 def test_a_btf_has_its_error_against_bytes_and_says_so_of_the_rest(tmp_path):
     with Model.load(BTF_MODEL) as model:
-        for kind in set(table.PLOTS) - {"order"}:
+        with pytest.raises(VelourError, match="no outline"):
+            Plot.of(model, "outline")
+        for kind in set(table.PLOTS) - {"order", "outline"}:
             with pytest.raises(VelourError, match=r"BTF has no plot .*it has 'order'"):
                 Plot.of(model, kind)
         order = model.info()["order"]

@@ -16,9 +16,9 @@ def fit_text(btf: Btf, asked: dict, threads: int, folder: Path) -> str:
     if asked["tolerance"] > 0 and not asked["bytes"]:
         parts.append("a model as large as the error takes")
     else:
-        parts.append(f"a model of {_size(size.bytes)} at most")
+        parts.append(f"a model of {model_size(size.bytes)} at most")
     return "; ".join(parts)
 
 
-def _size(count: int) -> str:
+def model_size(count: int) -> str:
     return f"{count / 1e6:,.2f} MB" if count >= 100_000 else f"{count / 1e3:.0f} kB"

@@ -20,6 +20,7 @@ from .compare import VELOUR_OT_compare
 from .compress_btf import VELOUR_OT_compress_btf
 from .estimate_capture import VELOUR_OT_estimate_capture
 from .estimate_fit import VELOUR_OT_estimate_fit
+from .estimate_votf import VELOUR_OT_estimate_votf
 from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
@@ -50,6 +51,7 @@ CLASSES = (
     VELOUR_OT_repeat_tile,
     VELOUR_OT_estimate_capture,
     VELOUR_OT_estimate_fit,
+    VELOUR_OT_estimate_votf,
     VELOUR_OT_capture_btf,
     VELOUR_OT_compress_btf,
     VELOUR_OT_add_votf,

@@ -16,8 +16,8 @@ class VELOUR_OT_check_scene(bpy.types.Operator):
     bl_label = "Check Scene"
     bl_description = (
         "Say what of the scene Velour leaves out in this frame, what it refuses to render, and which model"
-        " for the scene does not serve in it, without rendering. Takes as long as the export of a render, and a"
-        " look at what it shows of each material with a model for the scene"
+        " for the scene does not serve in it, without rendering. Takes as long as the export of a render, and"
+        " a look at what it shows of each material with a model for the scene"
     )
     bl_options = {"REGISTER"}
 

@@ -25,6 +25,8 @@ class VelourJobState(bpy.types.PropertyGroup):
     estimated: StringProperty(options={"SKIP_SAVE"})  # which one it is of
     fit_estimate: StringProperty(options={"SKIP_SAVE"})  # of a fit of a BTF
     fit_estimated: StringProperty(options={"SKIP_SAVE"})
+    outline_estimate: StringProperty(options={"SKIP_SAVE"})  # of an outline
+    outline_estimated: StringProperty(options={"SKIP_SAVE"})
     plot: PointerProperty(type=VelourPlotSettings)
     checked: PointerProperty(type=VelourCheckState)
     browser: PointerProperty(type=VelourBrowserSettings)

@@ -11,6 +11,7 @@ PLOTS = (
     ("ORDER", "Size", "Error against the number of lobes (of a BTF: against bytes)", 1),
     ("VIEW_ERROR", "Error", "Error at five view angles, and the tolerance", 2),
     ("ALBEDO", "Albedo", "Share of the light from all sides that is reflected, against the view angle", 3),
+    ("OUTLINE", "Outline", "Share of the tile that its structure covers, against the view angle", 4),
 )
 
 

@@ -19,10 +19,10 @@ from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_notes,
-    VELOUR_MATERIAL_PT_outline,
     VELOUR_MATERIAL_PT_surface,
 )
 from .material_settings_panel import VELOUR_MATERIAL_PT_settings
+from .outline_panel import VELOUR_MATERIAL_PT_outline
 from .pass_panels import (
     VELOUR_VIEWLAYER_PT_passes,
     VELOUR_VIEWLAYER_PT_passes_cryptomatte,

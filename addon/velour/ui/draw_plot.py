@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..operators.plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from .plot_preview import plot_picture
 from .text import draw_sentence
 from .units import button_height
@@ -21,6 +22,14 @@ def draw_plot(context, layout, model, measurement, kind):
         layout.label(text="Drawing the plot...", icon="TIME")
     if picture.sentence:
         draw_sentence(context, layout, picture.sentence, icon="INFO")
+
+
+def draw_plot_buttons(layout, kind, settings):
+    """Of the active material's plot, as `window_manager.velour.plot` has its angles."""
+    row = layout.row()
+    for operator in (VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot):
+        button = row.operator(operator.bl_idname)
+        button.kind, button.view, button.azimuth = kind, settings.view, settings.azimuth
 
 
 def _side(scale, unit):

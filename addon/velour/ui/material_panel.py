@@ -10,12 +10,10 @@ from ..export.notes import Notes
 from ..export.shaders import surface_layers
 from ..operators.accept_file import VELOUR_OT_accept_file
 from ..operators.add_material import VELOUR_OT_add_material
-from ..operators.add_votf import VELOUR_OT_add_votf
 from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.mark_asset import VELOUR_OT_mark_asset
 from ..operators.save_model import VELOUR_OT_save_model
-from .placement_summary import measured
 from .progress import draw_progress
 from .summaries import model_summary
 from .text import draw_sentence
@@ -116,54 +114,6 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
             draw_sentence(context, self.layout, sentence, icon="INFO")
         self.layout.operator(VELOUR_OT_save_model.bl_idname, icon="EXPORT")
         self.layout.operator(VELOUR_OT_mark_asset.bl_idname, icon="ASSET_MANAGER")
-
-
-class VELOUR_MATERIAL_PT_outline(MaterialPanel, bpy.types.Panel):
-    bl_label = "Outline (VOTF)"
-    bl_parent_id = "VELOUR_MATERIAL_PT_measured"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return VELOUR_MATERIAL_PT_model.poll(context)
-
-    def draw(self, context):
-        layout, settings = self.layout, velour_node(context.material).velour
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        column = layout.column(align=True)
-        for name in ("structure", "outline_texels"):
-            column.prop(settings, name)
-        draw_progress(context, layout)
-        layout.operator(VELOUR_OT_add_votf.bl_idname, icon="MESH_GRID")
-        info = model_summary(velour_node(context.material).image)
-        if isinstance(info, dict) and "shell" in info:
-            column = layout.column(align=True)
-            for name in ("outline_width", "outline_softness"):
-                column.prop(settings, name)
-            draw_rows(layout, outline_rows(info["shell"]))
-            _draw_outline_here(context, layout)
-
-
-def _draw_outline_here(context, layout):
-    report = measured(context, context.material)
-    if report is None or report.outline is None:
-        return
-    box = layout.box()
-    box.label(text=f"On '{context.object.name}'")
-    draw_rows(box, report.outline.rows)
-    for sentence in report.outline.warnings:
-        draw_sentence(context, layout, sentence, icon="ERROR")
-
-
-def outline_rows(shell):
-    wrong, (low, high) = shell["wrong"], shell["heights"]
-    return (
-        ("Structure", shell["source"]),
-        ("Size", f"{shell['bytes'] / 1e6:.2f} MB, {' x '.join(map(str, shell['points']))} points"),
-        ("Height", f"{low:.3g} to {high:.3g} of the tile's width"),
-        ("Rays wrong", "not measured" if wrong is None else f"{wrong:.2%}"),
-    )
 
 
 def _draw_numbers(layout, info):

@@ -5,9 +5,9 @@ import bpy
 from ..export.nodes import velour_node
 from ..operators.compare import VELOUR_OT_compare, comparison_name, find_comparison
 from ..operators.model_plots import measurement_for
-from ..operators.plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from ..operators.shown_image import find_made
-from .draw_plot import draw_chosen, draw_plot
+from ..properties.plot_settings import PLOTS
+from .draw_plot import draw_chosen, draw_plot, draw_plot_buttons
 from .material_panel import MaterialPanel
 from .summaries import model_summary
 from .text import draw_sentence
@@ -32,15 +32,15 @@ class VELOUR_MATERIAL_PT_plots(MaterialPanel, bpy.types.Panel):
         if "texels" in info:
             kind = "ORDER"  # a BTF has no other
         else:
-            layout.row().prop(settings, "kind", expand=True)
+            row = layout.row(align=True)
+            for item in PLOTS:
+                if item[0] != "OUTLINE":  # stands with the outline
+                    row.prop_enum(settings, "kind", item[0])
             _draw_view(layout, settings, info)
         draw_plot(context, layout, node.image, measurement_for(kind, node.velour), kind)
         if kind == "ORDER":
             draw_chosen(layout, info)
-        row = layout.row()
-        for operator in (VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot):
-            button = row.operator(operator.bl_idname)
-            button.kind, button.view, button.azimuth = kind, settings.view, settings.azimuth
+        draw_plot_buttons(layout, kind, settings)
         if node.velour.measurement is not None:
             _draw_comparison(context, layout, node)
 

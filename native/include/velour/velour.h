@@ -919,11 +919,14 @@ enum {
                             * of its lobes, and what was measured */
   VLR_PLOT_ORDER = 1,      /* error against lobes (BTFs: against bytes) with the point that was chosen */
   VLR_PLOT_VIEW_ERROR = 2, /* relative L2 at 5, 30, 60, 75 and 85 degrees, and the tolerance */
-  VLR_PLOT_ALBEDO = 3      /* directional albedo of each channel against the view angle: the model, what was measured */
+  VLR_PLOT_ALBEDO = 3,     /* directional albedo of each channel against the view angle: the model, what was measured */
+  VLR_PLOT_OUTLINE = 4     /* share of the tile that its outline (VOTF) covers against the view angle: mean, least and
+                            * most of the azimuths */
 };
 /* The numbers of a plot (VLR_PLOT_*). `measurement` adds those that only it has; NULL: none. `view` is the polar angle
  * of the view of VLR_PLOT_LOBES, 0 to below pi/2; `azimuth` its azimuth, and that of the views of VLR_PLOT_ALBEDO.
- * VLR_UNSUPPORTED with the reason where the model has no such plot: BTFs have VLR_PLOT_ORDER alone. */
+ * VLR_UNSUPPORTED with the reason where the model has no such plot: BTFs have VLR_PLOT_ORDER, any
+ * model with an outline VLR_PLOT_OUTLINE. */
 VLR_API vlr_status vlr_plot_create(const vlr_model* model, const vlr_measurement* measurement, int32_t kind,
                                    double view, double azimuth, vlr_plot** out);
 /* The same in the background; vlr_job_result_plot gives it. JSON: as vlr_plot_json. Albedos take seconds. */
@@ -932,8 +935,9 @@ VLR_API vlr_status vlr_plot_create_job(const vlr_model* model, const vlr_measure
 /* The plot of a finished job; a new handle. */
 VLR_API vlr_status vlr_job_result_plot(const vlr_job* job, vlr_plot** out);
 VLR_API void vlr_plot_free(vlr_plot* plot);
-/* JSON: plot ("lobes", "order", "view-error", "albedo"), polar, x and y {column, label, logarithmic, range [low,
- * high]}, series [{name, x [..], y [..], chosen (the number of a point, or null)}]. Angles in degrees, f in 1/sr. */
+/* JSON: plot ("lobes", "order", "view-error", "albedo", "outline"), polar, x and y {column, label, logarithmic, range
+ * [low, high]}, series [{name, x [..], y [..], chosen (the number of a point, or null)}]. Angles in degrees, f in 1/sr.
+ */
 VLR_API vlr_status vlr_plot_json(vlr_plot* plot, const char** json);
 
 typedef struct vlr_plot_style {

@@ -146,6 +146,7 @@ bool NearestVectors::spread() {
 
 std::vector<float> NearestVectors::distances() const {
   std::vector<float> distance;
+  distance.reserve(square_.size());
   for (float s : square_) distance.push_back(std::sqrt(s));
   return distance;
 }

@@ -5,6 +5,7 @@
 #include "plot/albedo_plot.h"
 #include "plot/fit_plots.h"
 #include "plot/lobes_plot.h"
+#include "plot/outline_plot.h"
 
 namespace velour {
 namespace {
@@ -13,7 +14,7 @@ void require_brdf(const Model& model, PlotKind kind) {
   if (!is_btf(model)) return;
   throw Error(Status::unsupported, "The model of a BTF has no plot '" +
                                        std::string(kPlotNames[static_cast<size_t>(kind)]) +
-                                       "', which is of one BRDF; it has 'order'.");
+                                       "', which is of one BRDF; it has 'order', and 'outline' with a VOTF.");
 }
 
 void check_view(const PlotView& view) {
@@ -28,6 +29,7 @@ Plot make_plot(PlotKind kind, const std::shared_ptr<const Model>& model, const M
                const PlotView& view, Progress& progress) {
   progress.stage("plotting", 0, 1);
   if (kind == PlotKind::order) return order_plot(*model);
+  if (kind == PlotKind::outline) return outline_plot(*model, progress);
   require_brdf(*model, kind);
   if (kind == PlotKind::view_error) return view_error_plot(model->fit);
   check_view(view);

@@ -17,8 +17,9 @@ enum class PlotKind {
   order = 1,  // error against lobes (of a BTF: against bytes), and the point that the model is
   view_error = 2,  // relative L2 at the reported views, and the tolerance
   albedo = 3,      // directional albedo against the view angle, by channel: the model, and what was measured
+  outline = 4,     // share of the tile that the structure of its outline covers, against the view angle
 };
-inline constexpr std::array<const char*, 4> kPlotNames{"lobes", "order", "view-error", "albedo"};
+inline constexpr std::array<const char*, 5> kPlotNames{"lobes", "order", "view-error", "albedo", "outline"};
 
 /// Polar angle and azimuth, radians: of the lobes' view; of an albedo's views the azimuth. Isotropic models do not
 /// depend on the azimuth.

@@ -1,0 +1,80 @@
+"""What an outline (VOTF) is asked for: of which structure, for which material, how fine."""
+
+from typing import NamedTuple
+
+import bpy
+from bpy.props import IntProperty, StringProperty
+
+from ..export import ExportError
+from ..export.files import StoredFile
+from ..export.tiles import TileSource, export_tile
+from . import measured
+from .tiles import find_tile, tile_of
+
+
+class Asked(NamedTuple):
+    material: bpy.types.Material
+    node: bpy.types.Node
+    tile: TileSource
+    texels: int
+    model: StoredFile
+
+
+class AskedOutline:
+    """Mixin of an operator."""
+
+    _keeps = True  # in the settings of the material, what is given
+
+    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    structure: StringProperty(
+        name="Structure",
+        description="The object that is the tile; empty: the one that the material names",
+        options={"SKIP_SAVE"},
+    )
+    collection: StringProperty(
+        name="Collection", description="The tile, in place of an object", options={"SKIP_SAVE"}
+    )
+    texels: IntProperty(name="Texels", min=4, max=4096, default=128, options={"SKIP_SAVE"})
+
+    def _asked(self, context):
+        """Raises ExportError where there is no model, or no structure."""
+        material = measured.wanted_material(context, self.material)
+        owner = f"Material '{material.name}'"
+        node = measured.modelled_node(material)
+        tile, texels = self._tile(context, node.velour, owner), node.velour.outline_texels
+        if self.properties.is_property_set("texels"):
+            texels = self.texels
+            if self._keeps:
+                node.velour.outline_texels = texels
+        return Asked(material, node, tile, texels, StoredFile.of(node.image, owner))
+
+    def _tile(self, context, settings, owner):
+        if self.collection:
+            return find_tile(context, self.collection)
+        structure = settings.structure
+        if self.structure:
+            structure = bpy.data.objects.get(self.structure)
+            if structure is None:
+                raise ExportError(f"There is no object {self.structure!r} to take as a tile.")
+            if self._keeps:
+                settings.structure = structure
+        if structure is None:
+            raise ExportError(f"{owner}: choose the object that is the structure.")
+        return tile_of(context, structure)
+
+
+def export_structure(context, asked):
+    """A committed library scene of the structure as it is now, options of votf_job(), and the notes."""
+    scene, place, notes = export_tile(asked.tile, context.evaluated_depsgraph_get(), approximate=True)
+    options = {
+        "origin": place.origin,
+        "period": place.period,
+        "source": asked.tile.owner.name,
+        "threads": context.scene.render.threads,
+    }
+    return scene, options, notes
+
+
+def outlined_as(material, structure, texels):
+    """Changes with what an outline of a material is asked for. For draw()."""
+    return repr((material.name, structure and structure.name, texels))

@@ -1,0 +1,62 @@
+"""Estimate: what an outline will take, by small ones of the structure."""
+
+import bpy
+
+from ..core.outline_size import Made, outline_text, probes
+from ..core.read_job import ReadJob
+from ..native import votf_job
+from .approximation_group import is_wanted
+from .asked_outline import AskedOutline, export_structure, outlined_as
+from .background_job import JobsInSteps
+
+
+class VELOUR_OT_estimate_votf(AskedOutline, JobsInSteps, bpy.types.Operator):
+    bl_idname = "velour.estimate_votf"
+    bl_label = "Estimate"
+    bl_description = (
+        "Find out how long the outline will take, how much memory, how large it will be and how good coarser"
+        " ones are, by two small ones. Nothing is changed"
+    )
+
+    _keeps = False
+    _what = "The estimate"
+
+    def _begin(self, context):
+        asked = self._asked(context)
+        self._subject, self._texels = asked.material.name, asked.texels
+        self._key = outlined_as(asked.material, asked.tile.owner, asked.texels)
+        self._approximated = is_wanted(asked.material)
+        scene, options, _notes = export_structure(context, asked)
+        self._steps = _Probes(scene, asked, options)
+        self._advance()
+        self._goes_on()
+
+    def _finish(self):
+        if self._advance():
+            return None
+        text = outline_text(self._texels, self._steps.made, self._approximated)
+        state = bpy.context.window_manager.velour
+        state.outline_estimate, state.outline_estimated = text, self._key
+        self.report({"INFO"}, f"'{self._subject}': {text}")
+        return {"FINISHED"}
+
+
+class _Probes:
+    """The jobs of small outlines of a committed scene, which this owns; then `made`."""
+
+    def __init__(self, scene, asked, options):
+        self._scene, self._asked, self._options = scene, asked, options
+        self.made = ()
+        self._jobs = self._run()
+
+    def next_job(self):
+        return next(self._jobs, None)
+
+    def _run(self):
+        with self._scene as scene:
+            yield (reading := ReadJob(self._asked.model.model))
+            with reading.result() as model:
+                for probe in probes(self._asked.texels):
+                    with votf_job(scene, model, **self._options, **probe.options()) as job:
+                        yield job
+                        self.made += (Made.of(job.report(), job.poll().seconds),)
