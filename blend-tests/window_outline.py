@@ -37,7 +37,7 @@ def _measured():
 
 
 def _scroll_to_the_panel():
-    for _ in range(8):  # a turn moves by little
+    for _ in range(80):  # a turn moves by little
         window.scroll_down(600)
         yield 0.1
 
@@ -55,6 +55,7 @@ def outline_of_a_ball(folder):
         bpy.context.object.data.materials.append(material)
     scenes.use_engine(size=64)
     bpy.ops.velour.add_votf(material=material.name, structure=tile.name, texels=32)
+    bpy.ops.velour.estimate_votf(material=material.name)
     settings = scenes.velour_node(material).velour
     settings.outline_width = 0.1
     _open_panel()
