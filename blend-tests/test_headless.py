@@ -72,7 +72,7 @@ class Headless(BlenderTest):
         bpy.context.scene.velour.samples = 1 << 14
         self._save()
         text = self._render("-f", 1)
-        self.assertRegex(text, r"Fra: ?1 .* \| Sample \d+/16384 \| Remaining \d\d:\d\d")
+        self.assertRegex(text, r"Fra: ?1 .*\| Sample \d+/16384 \| Remaining \d\d:\d\d")
         self.assertRegex(text, r"samples \| .* M samples/s")
 
     def test_notes_on_the_console(self):
