@@ -15,7 +15,6 @@ from support.blender import BlenderTest
 SCRIPT = Path(__file__).resolve().parents[1] / "scripts/velour_in_blender.py"
 HAS_COMMANDS = hasattr(bpy.utils, "register_cli_command") and "VELOUR_BPY" not in os.environ
 SECONDS = 120
-SQUARE = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
 COARSE = ("--texels", 8, "--views", 16, "--lights", 16, "--samples", 1, "--bounces", 0, "--sides", "one")
 
 
@@ -41,7 +40,7 @@ class AsScript(BlenderTest):
 
     def _scene(self, model):
         mesh, world = self.folder / "square.obj", self.folder / "sky.exr"
-        mesh.write_text(SQUARE)
+        mesh.write_text(inputs.SQUARE)
         inputs.native().images.write(world, np.ones((4, 8, 3), np.float32))
         return "--mesh", mesh, "--material", model, "--world", world
 
@@ -53,7 +52,9 @@ class AsScript(BlenderTest):
         picture = self.folder / "square.exr"
         rendered = self._report("render", *self._scene(model), "--size", "16x12", "--spp", 8, "-o", picture)
         self.assertEqual(rendered["nan_samples"], 0)
-        self.assertEqual(inputs.native().images.read(picture).shape[:2], (12, 16))
+        pixels = inputs.native().images.read(picture)
+        self.assertEqual(pixels.shape[:2], (12, 16))
+        self.assertGreater(pixels[..., :3].std(), 0.01)  # of the square and the sky
 
     def test_of_a_btf(self):
         btf, model = self.folder / "weave.btf", self.folder / "weave.velour"

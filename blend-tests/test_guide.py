@@ -1,7 +1,6 @@
 """The user guide: its snippets run, and what it names is what Blender and Velour show."""
 
 import os
-import shlex
 import shutil
 import tempfile
 from pathlib import Path
@@ -9,16 +8,15 @@ from unittest import mock
 
 import bpy
 
-from support import blender, guide, inputs, labels, process
+from support import guide, inputs, labels
 from support.blender import BlenderTest
+from support.snippets import ROOT, SnippetTest
 
-ROOT = Path(__file__).resolve().parents[1]
 MEASUREMENT = "cc_iris_purple_gem_rgb.bsdf"  # the guide's; any will do, formats are recognised by content
-SECONDS = 120
 NEWER = {"Get Extensions", "Install from Disk..."}  # of 4.2 and newer; all others are 3.4's
 
 
-class Snippets(BlenderTest):
+class Snippets(SnippetTest):
     """Each page's, in order, in a folder of their own."""
 
     def _run_page(self, name):
@@ -29,20 +27,11 @@ class Snippets(BlenderTest):
         self.assertEqual({language for language, _ in found} - {"python", "sh"}, set())
         python = [text for language, text in found if language == "python"]
         if python:
-            self._run_python("\n".join(python))
+            self.run_python("\n".join(python))
         for language, text in found:
             if language == "sh":
-                self._run(["sh", "-e", "-c", text])
+                self.run_shell(text)
         return found
-
-    def _run_python(self, text):
-        path = self.folder / "snippets.py"
-        path.write_text(text)
-        self._run(blender.child_command("--python-exit-code", "1", "--python", path))
-
-    def _run(self, command):
-        done = process.run(["env", "-C", self.folder, *command], seconds=SECONDS)
-        self.assertEqual(done.returncode, 0, f"{shlex.join(map(str, command))}\n{done.stdout}")
 
     def test_first_material(self):
         self.assertEqual([language for language, _ in self._run_page("first_material.md")], ["python", "sh"])
@@ -92,9 +81,9 @@ class Snippets(BlenderTest):
 
     def test_a_wrong_snippet_is_seen(self):
         with self.assertRaises(AssertionError):
-            self._run_python("import bpy\nbpy.ops.velour.fit_all()")
+            self.run_python("import bpy\nbpy.ops.velour.fit_all()")
         with self.assertRaises(AssertionError):
-            self._run(["sh", "-e", "-c", "scripts/farm missing.blend --no-submit\ntrue"])
+            self.run_shell("scripts/farm missing.blend --no-submit\ntrue")
 
 
 class Labels(BlenderTest):

@@ -122,6 +122,8 @@ def _made(name, make):
     return path
 
 
+# Of an OBJ file: with texture coordinates, y up, rising away from the camera that frames it.
+SQUARE = "v -1 0 1\nv 1 0 1\nv 1 1 -1\nv -1 1 -1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
 QUARTERS = ((0.8, 0.4), (0.2, 0.1))  # rows from below: albedos of a tile's quarters
 QUARTER_TEXELS = 16  # along the tile's side
 
