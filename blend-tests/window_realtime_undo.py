@@ -45,6 +45,7 @@ def _shown(world=None):
     """A ball of paint before a plane with a picture, and the image of that."""
     if world is None:
         scenes.set_world((0.5, 0.7, 1.0), 0.5)
+    bpy.context.scene.render.film_transparent = True
     material = bpy.data.materials["Material"]
     for name in ("Cube", "Light"):
         bpy.data.objects.remove(bpy.data.objects[name])
@@ -116,18 +117,20 @@ def images(folder):
     before = realtime.pixels()
     other = bpy.data.images.new("Other", 8, 8)
     with _Made() as made:
-        other.generated_color = (1, 0, 0, 1)
-        other.update_tag()
-        yield 0.3
+        with _Lines() as lines:
+            other.generated_color = (1, 0, 0, 1)
+            other.update_tag()
+            yield from viewport.until(lambda: lines, "nothing is drawn of another image")
         yield from viewport.real_time_finished()
         assert not made, made
         np.testing.assert_array_equal(realtime.pixels(), before)
-        image.generated_type = "UV_GRID"
+        image.generated_type, image.generated_color = "BLANK", (0.8, 0.1, 0.1, 1)
         image.update_tag()
-        yield 0.3
+        yield from viewport.until(lambda: made, "nothing is made of the picture")
         yield from viewport.real_time_finished()
     assert made == ["principled_rows_job"], made
-    assert realtime.difference(before, realtime.pixels()) > 0.05
+    difference = realtime.difference(before, realtime.pixels())
+    assert difference > 0.2, difference
 
 
 def while_it_prepares(folder):

@@ -26,6 +26,7 @@ from velour.realtime.kept_tables import KeptTables, Part
 from velour.realtime.lamps import lamp_pixels
 from velour.realtime.pictures import GpuTexture
 from velour.realtime.projection import jitter, view_projection
+from velour.realtime.shaders import PICTURES
 from velour.realtime.tables import LobeTables, PrincipledTables
 from velour.realtime.tile_widths import TileWidths
 
@@ -339,10 +340,13 @@ def test_a_point_goes_where_the_window_says():
 
 
 def test_pictures_are_taken_all_over_a_pixel():
-    places = np.array([jitter(i) for i in range(16)])
-    assert np.abs(places).max() < 0.5
-    assert np.abs(places.mean(axis=0)).max() < 0.05
-    assert places.std(axis=0).min() > 0.25
+    places = np.array([jitter(i) for i in range(PICTURES)])
+    assert np.abs(places[0]).max() < 0.02
+    for axis in (0, 1):
+        np.testing.assert_array_equal(np.sort(places[:, axis]), (np.arange(PICTURES) + 0.5) / PICTURES - 0.5)
+    apart = np.abs(places[:, None] - places[None])
+    apart = np.linalg.norm(np.minimum(apart, 1 - apart), axis=2) + np.eye(PICTURES)
+    assert apart.min() > 0.17, "of 32 places 0.19 is the most there can be"
 
 
 def test_lamps_keep_power_and_place():

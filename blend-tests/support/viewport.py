@@ -69,9 +69,9 @@ def _is_drawn():
     return shown._drawing._targets is not None and not shown._drawing.is_waiting()
 
 
-def real_time_finished():
+def real_time_finished(patience=_PATIENCE):
     """Turns until all of a picture in real time is on the screen."""
-    yield from until(_is_drawn, "nothing is drawn in real time")
+    yield from until(_is_drawn, "nothing is drawn in real time", patience)
     yield 0.3
 
 
@@ -85,9 +85,9 @@ def is_idle():
     return not addon("engine.viewport_clock").viewports()
 
 
-def until(is_true, what):
+def until(is_true, what, patience=_PATIENCE):
     """Turns until `is_true()`."""
-    end = time.monotonic() + _PATIENCE
+    end = time.monotonic() + patience
     while not is_true():
         assert time.monotonic() < end, what
         yield TURN

@@ -6,7 +6,9 @@
 
 const int LIGHTS = 16, MOST_LAMPS = 16, MOST_LINES = 128;
 const float GOLDEN = 2.39996323;
-const float TURN = 5.0 * GOLDEN / PICTURES;  // from picture to picture, radians
+// From ring to ring, radians; PICTURES of them are GOLDEN and whole turns, so that all rings are one spiral,
+// whose 512 directions are the more even of the 32 numbers of whole turns that there are.
+const float TURN = (17.0 * 2.0 * PI + GOLDEN) / PICTURES;
 
 struct Side {
   int row, first, relief;  // of its coefficients; layers
@@ -105,9 +107,9 @@ void add_lamp(vec3 local, vec3 irradiance)
 // Even directions of the cosine, others in each picture of the mean, whose number is `emission.w`; then lamps.
 void gather_light(mat3 frame)
 {
-  float ring = (mod(7.0 * emission.w + 0.5 * PICTURES, PICTURES) + 0.5) / PICTURES;
+  float ring = mod(7.0 * emission.w + 0.5 * PICTURES, PICTURES);
   for (int i = 0; i < LIGHTS; ++i) {
-    float u = (float(i) + ring) / float(LIGHTS), azimuth = GOLDEN * float(i) + TURN * emission.w;
+    float u = (float(i) + (ring + 0.5) / PICTURES) / float(LIGHTS), azimuth = GOLDEN * float(i) + TURN * ring;
     wl[i] = vec3(sqrt(u) * vec2(cos(azimuth), sin(azimuth)), sqrt(1.0 - u));
     arrives[i] = PI / float(LIGHTS) * mean_light(1.0 + LEVELS_OF_OCTAVE * log2(bandwidth_of(wl[i])), frame * wl[i]);
   }

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from .shaders import PICTURES
+
 
 def jitter(i):
-    """Where in its pixel picture i is taken, -1/2 to 1/2 each way (Halton); the first one in the middle."""
-    return (0.0, 0.0) if i == 0 else (_radical_inverse(i, 2) - 0.5, _radical_inverse(i, 3) - 0.5)
+    """Where in its pixel picture i of PICTURES is taken, -1/2 to 1/2 each way; the first near the middle.
 
-
-def _radical_inverse(i, base):
-    value, digit = 0.0, 1.0 / base
-    while i:
-        value += digit * (i % base)
-        i //= base
-        digit /= base
-    return value
+    A lattice: with the rings of btf.frag.glsl, of step 7, the most even of three dimensions.
+    """
+    return tuple(((step * i + PICTURES // 2) % PICTURES + 0.5) / PICTURES - 0.5 for step in (21, 19))
 
 
 def view_projection(view, shift=(0.0, 0.0)):
