@@ -31,10 +31,12 @@ class Notes(NotesTest):
         node = next(n for n in tree.nodes if "Base Color" in n.inputs and n.outputs[0].is_linked)
         self.assertEqual(self.notes(), [])
         node.inputs["IOR"].default_value = 2.0
+        self.assertEqual(self.notes(), [])
+        node.inputs["IOR"].default_value = 0.8
         if "Specular" in node.inputs:  # before 4.0, where it is of transmission alone
             self.assertEqual(self.notes(), [])
         else:
-            self.assert_said("Material 'Glass'", node.name, "'IOR' is not supported")
+            self.assert_said("Material 'Glass'", node.name, "'IOR' below 1 is not supported", "1.25")
 
     def test_linked_texture(self):
         material = self._material("ShaderNodeBsdfPrincipled")

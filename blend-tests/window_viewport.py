@@ -70,7 +70,7 @@ def first_picture(folder):
     begin = time.monotonic()
     viewport.show(samples=256)
     yield from viewport.until(lambda: not viewport.is_idle(), "no job")
-    yield from viewport.until(lambda: viewport.the_one()._picture.shown_at > 0, "no picture")
+    yield from viewport.until(viewport.is_seen, "no picture")
     print("first picture after", time.monotonic() - begin, flush=True)
     yield from viewport.finished()
     window.screenshot(folder, "finished")

@@ -1,5 +1,6 @@
 """Edits in the rendered viewport: what was exported piece by piece is what a whole export makes."""
 
+import contextlib
 import math
 import time
 
@@ -13,7 +14,7 @@ _SKY = "/studiolights/world/courtyard.exr"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (edits, undo, selection, during_a_build))
+    window.run(folder, (edits, undo, selection, during_a_build, a_long_drag))
 
 
 def _scene():
@@ -277,7 +278,7 @@ def during_a_build(folder):
         viewport.show(samples=8)
         yield from viewport.until(lambda: held, "it is not exported")
         begin = time.monotonic()
-        while viewport.samples() == 0:
+        while not viewport.is_seen():
             bpy.data.lights["Light"].energy += 1
             bpy.data.objects["Cube"].location.z += 0.01
             yield viewport.TURN
@@ -287,3 +288,48 @@ def during_a_build(folder):
     assert len(held) > 5, held
     assert max(held[1:]) < max(0.3 * built, 0.2), (held, built)
     yield from viewport.finished()
+
+
+def a_long_drag(folder):
+    """What is dragged on and on is seen meanwhile, though a picture takes longer than a turn of the mouse."""
+    _scene()
+    viewport.show(samples=8)
+    bpy.context.scene.render.preview_pixel_size = "4"
+    yield from viewport.finished()
+    cube, pictures = bpy.data.objects["Cube"], set()
+    with _slow_pictures(0.4):
+        for _ in range(40):
+            cube.location.z += 0.05
+            yield 0.05
+            pictures.add(viewport.the_one()._picture.shown_at)
+    assert len(pictures) > 4, f"{len(pictures) - 1} pictures of 40 moves"
+    yield from viewport.finished()
+    last = viewport.pixels()
+    viewport.the_one().forget_scene()
+    yield from viewport.finished()
+    assert np.array_equal(viewport.pixels(), last), "the last move is not shown"
+
+
+@contextlib.contextmanager
+def _slow_pictures(seconds):
+    """As of a scene that takes long to get ready: a job runs on, and shows nothing, for so many seconds."""
+    job = viewport.addon("native.progressive").ProgressiveJob
+    start, poll, picture, began = job.start, job.poll, job.picture, {}
+
+    def started(self):
+        began[self] = time.monotonic()
+        start(self)
+
+    def late(ask, **until_then):
+        def asked(self):
+            found = ask(self)
+            is_late = time.monotonic() < began.get(self, 0.0) + seconds
+            return found._replace(**until_then) if is_late else found
+
+        return asked
+
+    job.start, job.poll, job.picture = started, late(poll, state="running"), late(picture, width=0)
+    try:
+        yield
+    finally:
+        job.start, job.poll, job.picture = start, poll, picture

@@ -1,5 +1,6 @@
 """What a single shader reflects, and its relief."""
 
+import bpy
 import numpy as np
 
 from parity import stage
@@ -150,3 +151,28 @@ class Reflecting(ShaderTest):
         inputs = {"Base_Color": (0.9, 0.6, 0.3, 1), "Metallic": 1.0, "Roughness": 0.4}
         self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", **inputs))
         self.assert_approximate("Principled BSDF: metal, roughness 0.4", 2)
+
+
+class IndexOfRefraction(ShaderTest):
+    """Of a Principled BSDF over black, at two levels."""
+
+    def setUp(self):
+        super().setUp()
+        if bpy.app.version < (4, 0, 0):
+            self.skipTest("before 4.0 it is of transmission alone")
+
+    def _glossy(self, index, level):
+        inputs = {"Base_Color": (0, 0, 0, 1), "Roughness": 0.5, "IOR": index, "Specular": level}
+        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", **inputs))
+
+    def test_low(self):
+        self._glossy(1.25, 0.5)
+        self.assert_parity("Principled BSDF: IOR 1.25")
+
+    def test_high(self):
+        self._glossy(2.4, 0.5)
+        self.assert_parity("Principled BSDF: IOR 2.4")
+
+    def test_high_of_another_level(self):
+        self._glossy(2.0, 0.8)
+        self.assert_parity("Principled BSDF: IOR 2, Specular IOR Level 0.8")

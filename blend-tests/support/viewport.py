@@ -81,6 +81,11 @@ def samples():
     return found[0]._picture.samples if found else 0
 
 
+def is_seen():
+    """Whether there was any picture, coarse as it may be."""
+    return the_one()._picture.shown_at > 0
+
+
 def is_idle():
     return not addon("engine.viewport_clock").viewports()
 

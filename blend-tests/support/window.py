@@ -13,6 +13,8 @@ import numpy as np
 
 from . import framebuffer, scenes
 
+_TEST_SECONDS = 150  # what turns on and on; the process has twice that
+
 
 def run(folder, tests, left_out=(), reason=""):
     """Starts the tests one after the other, writes the report and leaves Blender. Those that are `left_out`
@@ -38,7 +40,9 @@ class _Runner:
                 test = self.tests.pop(0)
                 self.name = test.__name__
                 fresh_file()
-                self.current = test(self.folder)
+                self.current, self.end = test(self.folder), time.monotonic() + _TEST_SECONDS
+            if time.monotonic() > self.end:
+                self.current.throw(TimeoutError(f"it has not ended within {_TEST_SECONDS} s"))
             return next(self.current)
         except StopIteration:
             self._count("passed")

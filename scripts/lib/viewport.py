@@ -108,6 +108,7 @@ not met is bold."""
 def _text(scene: str, result: dict) -> str:
     rows = [_row(name, runs) for name, runs in result["changes"].items()]
     lines = [f"### {SCENES[scene][0].upper()}{SCENES[scene][1:]}", "", table(HEADER, rows)]
+    lines.append(f"While the object moves on and on: {result['dragged']:.1f} pictures a second.")
     lines.append(f"Memory of Blender: {result['mib']:.0f} MiB.")
     if "restarts" in result:
         memory = ", ".join(f"{mib:.0f}" for mib in result["restarts"]["mib"])

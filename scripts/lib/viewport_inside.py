@@ -20,6 +20,7 @@ from support import blender, viewport, window
 SAMPLES = 8
 PICTURE = (1280, 720)  # in real time
 REPEATS = 5  # of each change; the median counts
+DRAG = 5.0  # seconds of a change that goes on and on
 _TURN = 0.005
 _PATIENCE = 120
 
@@ -92,6 +93,7 @@ def _measure(folder, task, result):
     result["size"] = [viewport.region().width, viewport.region().height]
     for name, change in viewport_scenes.CHANGES.items():
         result["changes"][name] = yield from _repeated(watch, change)
+    result["dragged"] = yield from _dragged(viewport_scenes.move_object)
     window.screenshot(folder, "viewport")
     result["mib"] = _resident_mib()
     if task["restarts"]:
@@ -108,6 +110,18 @@ def _repeated(watch, change):
         yield from viewport.finished()
         rows.append(watch.row())
     return rows
+
+
+def _dragged(change):
+    """Pictures a second while something changes in every turn of Blender's."""
+    shown, times, begin = viewport.the_one()._picture, set(), time.monotonic()
+    while time.monotonic() < begin + DRAG:
+        change(len(times))
+        yield _TURN
+        times.add(shown.shown_at)
+    rate = (len(times) - 1) / (time.monotonic() - begin)
+    yield from viewport.finished()
+    return rate
 
 
 def _restarted(watch, count):

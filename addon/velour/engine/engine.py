@@ -32,12 +32,11 @@ class VelourRenderEngine(bpy.types.RenderEngine):
         self.kept_scene = KeptScene()
 
     def __del__(self):
-        viewport = getattr(self, "_viewport", None)
-        if viewport:
-            viewport.close()
-        kept = getattr(self, "kept_scene", None)
-        if kept:
-            kept.close()
+        # Asked for as attributes they raise where Blender has freed its own half before, as when it ends.
+        own = object.__getattribute__(self, "__dict__")
+        for name in ("_viewport", "kept_scene"):
+            if own.get(name):
+                own[name].close()
         parent = getattr(super(), "__del__", None)  # missing up to and including 5.2
         if parent:
             parent()

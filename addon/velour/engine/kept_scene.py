@@ -9,7 +9,6 @@ import weakref
 import bpy
 
 from ..export import Notes
-from ..export.changes import Changes
 from ..export.look import scene_key
 from ..export.nodes import velour_node
 from ..export.scene import SceneExport
@@ -52,7 +51,7 @@ class KeptScene:
         if export is None:
             return None
         is_wanted = strict and _is_persistent(depsgraph) and self._key == _key(depsgraph, asked)
-        if is_wanted and not is_stale and export.follow(Changes(depsgraph.updates)):
+        if is_wanted and not is_stale and export.follow(depsgraph):
             return export
         export.close()
         return None

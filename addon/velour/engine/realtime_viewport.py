@@ -63,6 +63,10 @@ class RealtimeViewport:
         self._show(depsgraph.scene_eval, frame.place)
         return self._line() if is_ready else "Preparing real time"
 
+    def has_picture(self):
+        """Whether draw() has shown any, be it of the scene of before."""
+        return self._drawing.last() is not None
+
     def turn(self):
         """Between redraws. False: there is nothing to wait for."""
         engine = self._engine()

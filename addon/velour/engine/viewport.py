@@ -12,6 +12,7 @@ import weakref
 import bpy
 
 from ..export import ExportError
+from ..export.changes import Changes
 from ..export.film import film_exposure
 from ..export.live import LiveExport
 from ..export.look import Look
@@ -28,7 +29,8 @@ log = logging.getLogger(__package__)
 
 _LEAST_SECONDS = 0.05  # between two pictures
 _SHARE = 0.1  # of the main thread's time, at most, for pictures that only grow less noisy
-_PATIENCE = 0.04  # seconds that a change waits for the first picture of the change before
+_PATIENCE = 0.04  # seconds that a change holds Blender up for the first picture of the change before
+_LATEST = 2.0  # and that it waits beside: what is built so long may be wanted no more
 _PROMPT = 0.04  # and for its own, which then is in the redraw at hand: another takes Blender longer than that
 
 _all = weakref.WeakSet()
@@ -38,7 +40,9 @@ class Viewport:
     def __init__(self, engine):
         self._engine = weakref.ref(engine)
         self._live = None  # LiveExport
+        self._changes = Changes()  # that it has not taken up yet
         self._job = None
+        self._began = 0.0
         self._closing = threading.Lock()  # of the job, which other threads pause
         self._options = None  # of the job
         self._key = (
@@ -65,20 +69,19 @@ class Viewport:
         if self._is_real_time(depsgraph, lambda shown: shown.update(context, depsgraph)):
             return
         self._scene_error = ""
-        try:
-            self._take_up(depsgraph, Look(context, depsgraph))
-        except Exception as error:
-            self._scene_error = _sentence(error)
-            self._close_job()
-            self._drop_scene()
+        self._take_up(depsgraph, Look(context, depsgraph), is_told=True)
 
     def draw(self, context, depsgraph):
         lines = []
         if self._is_real_time(depsgraph, lambda shown: lines.append(shown.draw(context, depsgraph))):
+            if not self._real_time.has_picture():  # the ray tracer's stays meanwhile
+                self._draw_picture(depsgraph.scene_eval)
             self._engine().update_stats("Velour", lines[0])
             return
         if self._live is None and not self._scene_error:
             self.update(context, depsgraph)  # its scene was forgotten
+        elif self._changes:
+            self._take_up(depsgraph, Look(context, depsgraph), is_told=False)
         self._view_error = ""
         try:
             self._follow(context, depsgraph)
@@ -144,7 +147,7 @@ class Viewport:
         if viewport_clock.is_paused():
             self.pause()
             return True
-        if self._key is None:  # the scene has changed and is not committed: draw() starts the job
+        if self._key is None or (self._changes and not self._must_wait()):  # draw() takes that up
             engine.tag_redraw()
             return True
         state = self._job.poll().state
@@ -161,20 +164,39 @@ class Viewport:
             self._job
         )
 
-    def _take_up(self, depsgraph, look):
-        if self._live is None:
+    def _take_up(self, depsgraph, look, is_told):
+        """`is_told`: the depsgraph says what has changed."""
+        try:
+            if self._live is None:
+                self._export(depsgraph, look)
+                return
+            if is_told:
+                self._changes.add(self._live.changes(depsgraph, look))
+                if self._changes:
+                    self._await_first(_PATIENCE)
+            if self._changes and not self._must_wait():
+                self._change(depsgraph, look)
+        except Exception as error:
+            self._scene_error = _sentence(error)
             self._close_job()
-            self._live = LiveExport(depsgraph, look)
-            return
-        changes = self._live.changes(depsgraph, look)
-        if not changes:
-            return
+            self._drop_scene()
+
+    def _export(self, depsgraph, look):
+        self._close_job()
+        self._drop_scene()
+        self._live = LiveExport(depsgraph, look)
+
+    def _must_wait(self):
+        """Whether changes wait for the picture of those before, which turn() looks for: else changes that come
+        and come would show nothing."""
+        return self._is_unseen() and time.monotonic() < self._began + _LATEST
+
+    def _change(self, depsgraph, look):
+        changes, self._changes = self._changes, Changes()
         self._halt()
         self._key = None
         if changes.everything:
-            self._close_job()
-            self._drop_scene()
-            self._live = LiveExport(depsgraph, look)
+            self._export(depsgraph, look)
         else:
             self._live.update(changes, depsgraph, look)
 
@@ -202,6 +224,7 @@ class Viewport:
 
     def _restart(self, frame, options):
         if self._job:
+            self._await_first(_PATIENCE)
             self._halt()
         frame.view.add_to(self._live.scene)
         if self._job and options == self._options:
@@ -216,6 +239,7 @@ class Viewport:
 
     def _start(self):
         self._is_waiting = viewport_clock.is_paused()
+        self._began = time.monotonic()
         if not self._is_waiting:
             self._job.start()
         viewport_clock.watch(self)
@@ -224,7 +248,6 @@ class Viewport:
         """Stops the job; what it has to show is kept for the next redraw."""
         if self._job is None:
             return
-        self._await_first(_PATIENCE)
         self._job.stop()
         self._picture.take(self._job)
 
@@ -245,12 +268,16 @@ class Viewport:
     def _drop_scene(self):
         if self._live:
             self._live.close()
-        self._live = None
+        self._live, self._changes = None, Changes()
 
     def _show(self, scene):
         if self._job:
             self._picture.take(self._job)
-        if self._place and self._live:
+        if self._live:
+            self._draw_picture(scene)
+
+    def _draw_picture(self, scene):
+        if self._place:
             self._picture.draw(self._engine(), scene, self._place, film_exposure(scene))
 
     def _progress(self):

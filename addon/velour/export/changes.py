@@ -20,14 +20,27 @@ _WITHOUT_A_PICTURE = ("CAMERA", "SPEAKER", "LIGHT_PROBE", "ARMATURE", "LATTICE")
 
 
 class Changes:
-    """Of a depsgraph's updates."""
+    """Of a depsgraph's updates. Datablocks are pointers of the .blend's: those that Blender evaluates may be
+    gone when what was changed is taken up."""
 
-    def __init__(self, updates):
+    def __init__(self, updates=()):
         self.everything = self.objects = self.lights = self.world = self.scene = False
-        self.materials = []
-        self.geometry = set()  # pointers of objects of the .blend
+        self.materials = set()
+        self.geometry = set()  # objects
         for update in updates:
             self._add(update)
+
+    def add(self, later):
+        """Other Changes, made after these."""
+        for name, value in vars(later).items():
+            setattr(self, name, getattr(self, name) | value)
+
+    def changed_materials(self, depsgraph):
+        """As the depsgraph evaluates them now."""
+        if not self.materials:
+            return []
+        changed = (block for block in bpy.data.materials if block.as_pointer() in self.materials)
+        return [material.evaluated_get(depsgraph) for material in changed]
 
     def __bool__(self):
         return any((self.everything, self.objects, self.lights, self.world, self.materials))
@@ -41,7 +54,7 @@ class Changes:
         elif isinstance(block, bpy.types.World):
             self.world = True
         elif isinstance(block, bpy.types.Material):
-            self.materials.append(block)
+            self.materials.add(block.original.as_pointer())
         elif isinstance(block, bpy.types.Collection):
             self.objects = True
         elif isinstance(block, bpy.types.Scene):

@@ -47,7 +47,7 @@ class LiveExport:
 
     def update(self, changes, depsgraph, look):
         self._look = look.key()
-        if self._renew(changes.materials) or changes.objects:
+        if self._renew(changes.changed_materials(depsgraph)) or changes.objects:
             self._add_objects(depsgraph, look, changes.geometry)
         elif changes.lights:
             self._add_lights(depsgraph, look)

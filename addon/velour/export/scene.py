@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from ..native import Scene
 from .black import refuse_black
+from .changes import Changes
 from .color import set_working_space
 from .kept_meshes import KeptMeshes
 from .libraries import refuse_missing_libraries
@@ -52,13 +53,13 @@ class SceneExport:
     def close(self):
         self.scene.close()
 
-    def follow(self, changes):
+    def follow(self, depsgraph):
         """The next take() is of another frame. False: all has to begin anew for what has changed.
 
         Of images Blender tells no more, at times, than that materials may look different.
         """
-        self._changes = changes
-        has_pictures = any(map(self.materials.has_pictures, changes.materials))
+        self._changes = changes = Changes(depsgraph.updates)
+        has_pictures = any(map(self.materials.has_pictures, changes.changed_materials(depsgraph)))
         return not (changes.everything or has_pictures or self._meshes.are_worn)
 
     def take(self, depsgraph, view, check_break=lambda: None):
@@ -68,7 +69,7 @@ class SceneExport:
         if self._changes is None:
             set_working_space(self.scene)
         else:
-            self._drop_changed()
+            self._drop_changed(depsgraph)
         objects = self._add_objects(depsgraph, check_break)
         self._add_world(depsgraph)
         if self._strict:
@@ -86,8 +87,8 @@ class SceneExport:
             self.notes.add(surroundings)
         return Export(self.scene, self.materials, surroundings, self._passes(depsgraph, objects))
 
-    def _drop_changed(self):
-        for material in self._changes.materials:
+    def _drop_changed(self, depsgraph):
+        for material in self._changes.changed_materials(depsgraph):
             self.materials.renew(material)
         self.scene.clear_instances()
         self.scene.clear_lights()

@@ -165,7 +165,8 @@ class Scene(Handle):
         return self._numbered("vlr_scene_add_btf_material", btf.pointer, most_bytes)
 
     def add_principled_material(self, **values) -> int:
-        """base_color [3], metallic, roughness (alpha of GGX: its square), specular: 0..1.
+        """base_color [3], metallic, roughness (alpha of GGX: its square): 0..1; specular: 0..11.25, 0.5 is an
+        index of 1.5.
 
         emission [3]: radiance; alpha: 0..1, the share of the surface that is there; rays pass the rest.
         """

@@ -66,6 +66,7 @@ def _show_principled(shader, shown, placement, _look):
             socket.default_value = _rgba(value)
         elif name != "specular_tint":
             socket.default_value = value
+    shader.inputs["IOR"].default_value = 1.5  # which levels are fitted for; 1.45 by itself in Blender 4.0
     turns = placement.rotation / math.tau + (0.25 if shown["turned"] else 0.0)
     shader.inputs["Anisotropic"].default_value = shown["anisotropic"]
     shader.inputs["Anisotropic Rotation"].default_value = turns % 1.0 if shown["anisotropic"] > 0 else 0.0

@@ -28,6 +28,7 @@ from .tables import (
 
 _MOST_DRAWS = 20_000  # of instances: more are slower than rays
 _MOST_LAMPS = 8  # on BTFs: with as many narrow lobes of the world all that btf.frag.glsl has room for
+_MOST_SPECULAR = 11.25  # where the library ends: nine tenths at normal incidence
 _UNPLACED = np.array(((1, 0, 0), (0, 1, 0)), np.float32)
 
 
@@ -273,5 +274,8 @@ def _principled(values):
     """Of numbers of a material those that its rows are made of, as principled_rows_job takes them."""
     known = {name: values[name] for name in ("metallic", "roughness", "specular") if name in values}
     color = tuple(min(max(c, 0.0), 1.0) for c in values.get("base_color", (0.8, 0.8, 0.8)))
-    numbers = {n: min(max(v, 0.0), 1.0) if math.isfinite(v) else 0.5 for n, v in known.items()}
+    most = {"specular": _MOST_SPECULAR}
+    numbers = {
+        n: min(max(v, 0.0), most.get(n, 1.0)) if math.isfinite(v) else 0.5 for n, v in known.items()
+    }
     return {"base_color": color, **numbers}

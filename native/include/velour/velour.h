@@ -423,7 +423,7 @@ typedef struct vlr_principled_desc {
   float base_color[3]; /* working space */
   float metallic;      /* 0..1 */
   float roughness;     /* 0..1, Principled's: alpha = roughness^2 */
-  float specular;      /* Principled's 0..1, 0.5 = index 1.5 */
+  float specular;      /* 0..11.25: reflectance at normal incidence / 0.08; 0.5 = index 1.5 */
   float emission[3];   /* radiance, working space */
   float alpha;         /* 0..1: the share of the surface that is there; rays pass the rest */
 } vlr_principled_desc;

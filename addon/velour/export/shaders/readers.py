@@ -6,15 +6,14 @@ from ..plugs import fed_by
 from .layer import BLACK, Factor, Layer
 from .relief import read_relief
 
-# Our parameter: the names of Blender's input socket over the versions.
+# Our parameter: Blender's input, which a picture may give.
 _PRINCIPLED = {
-    "base_color": ("Base Color",),
-    "metallic": ("Metallic",),
-    "roughness": ("Roughness",),
-    "specular": ("Specular IOR Level", "Specular"),
-    "alpha": ("Alpha",),
+    "base_color": "Base Color",
+    "metallic": "Metallic",
+    "roughness": "Roughness",
+    "alpha": "Alpha",
 }
-_TEXTURED = ("base_color", "metallic", "roughness", "alpha")
+_USUAL_F0 = 0.04  # of an index of 1.5
 # Inputs that Velour does not render, and the value at which that makes no difference.
 _IGNORED = {
     "Subsurface": 0.0,
@@ -37,16 +36,25 @@ _LINK_ONLY = ("Clearcoat Normal", "Coat Normal", "Tangent")
 
 def _read_principled(plug, reader):
     values, pictures = {}, {}
-    for name, sockets in _PRINCIPLED.items():
-        socket = plug.input(*sockets)
-        if name in _TEXTURED:
-            values[name], picture = reader.number(socket)
-            pictures |= {name: picture} if picture else {}
-        else:
-            values[name] = reader.value(socket)
+    for name, socket in _PRINCIPLED.items():
+        values[name], picture = reader.number(plug.input(socket))
+        pictures |= {name: picture} if picture else {}
+    values["specular"] = _specular(plug, reader)
     glow = _glow(plug.input("Emission Color", "Emission"), plug.input("Emission Strength"), reader)
     _note_ignored(plug, reader)
     return [Layer("principled", values, pictures, relief=read_relief(plug, reader), glow=glow)]
+
+
+def _specular(plug, reader):
+    """0.5 is an index of 1.5, as in Blender: the level scales the reflectance that the index has at normal
+    incidence. Before 4.0 that is 4 %, and IOR is of transmission alone."""
+    level = reader.value(plug.input("Specular IOR Level", "Specular"))
+    if not plug.input("Specular IOR Level"):
+        return level
+    index = max(reader.value(plug.input("IOR")), 1e-3)
+    if index < 1.0:
+        reader.note(plug, f"'IOR' below 1 is not supported; it reflects as one of {1 / index:.3g}.")
+    return level * ((index - 1.0) / (index + 1.0)) ** 2 / _USUAL_F0
 
 
 def _read_diffuse(plug, reader):
@@ -136,10 +144,3 @@ def _note_ignored(plug, reader):
             reader.note(plug, f"'{name}' is not supported; ignored.")
     for name in _LINK_ONLY:
         note_linked(plug, reader, name)
-    if plug.input("Specular IOR Level"):  # 4.0 and newer: before, IOR is of transmission alone
-        _note_ior(plug.input("IOR"), plug, reader)
-
-
-def _note_ior(socket, plug, reader):
-    if fed_by(socket) or abs(socket.socket.default_value - 1.5) > 1e-6:
-        reader.note(plug, "'IOR' is not supported; it reflects as one of 1.5.")
