@@ -36,6 +36,8 @@ def test_this_tree_is_clean(check):
         ("native/src/model/a.cpp", "#include <OpenImageIO/imageio.h>\n"),
         ("native/src/brdf/a.cpp", "#include <ImfHeader.h>\n"),
         ("native/src/scene/scene.cpp", "#include <embree3/rtcore.h>\n"),
+        ("native/src/capture/a.cpp", "#include <sys/mman.h>\n"),
+        ("native/src/job/a.cpp", "#include <unistd.h>\n"),
         ("native/src/attic/a.cpp", "int a;\n"),
         ("addon/velour/core/a.py", "import bpy\n"),
         ("addon/velour/native/a.py", "def f():\n    from bpy.types import Object\n"),
@@ -54,6 +56,7 @@ def test_a_breach_is_found(check, tmp_path, name, text):
 def test_what_is_allowed_passes(check, tmp_path):
     _write(tmp_path, "native/src/image/a.cpp", "#include <OpenImageIO/imageio.h>\n#include <ImfHeader.h>\n")
     _write(tmp_path, "native/src/scene/embree_scene.cpp", "#include <embree3/rtcore.h>\n")
+    _write(tmp_path, "native/src/file/a.cpp", "#include <sys/mman.h>\n")
     _write(tmp_path, "native/src/render/a.cpp", '#include "scene/scene.h"\n#include "render/film.h"\n')
     _write(tmp_path, "addon/velour/ui/a.py", "import bpy\nfrom ..engine import engine\n")
     assert check.violations(tmp_path) == []

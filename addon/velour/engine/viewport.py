@@ -187,8 +187,8 @@ class Viewport:
         self._live = LiveExport(depsgraph, look)
 
     def _must_wait(self):
-        """Whether changes wait for the picture of those before, which turn() looks for: else changes that come
-        and come would show nothing."""
+        """Whether changes wait for the picture of those before, which turn() looks for: else changes that
+        come and come would show nothing."""
         return self._is_unseen() and time.monotonic() < self._began + _LATEST
 
     def _change(self, depsgraph, look):

@@ -5,7 +5,7 @@
 
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "job/memory.h"
+#include "file/process_memory.h"
 
 using namespace velour;
 using namespace velour::capi;

@@ -6,30 +6,26 @@
 #include <span>
 #include <string>
 
+#include "file/scratch_pages.h"
+
 namespace velour {
 
-/// Zeros at first. Above `limit` bytes the array is a mapped temporary file in `folder` that has no name, so that a
-/// killed capture leaves nothing; its pages are given back whenever release() is called.
+/// Zeros at first; above `limit` bytes as a temporary file in `folder`, as of ScratchPages.
 class ViewStore {
  public:
   /// Throws Error(io) when the file cannot be made.
-  ViewStore(uint64_t halves, uint64_t limit, const std::string& folder);
-  ~ViewStore();
-  ViewStore(const ViewStore&) = delete;
-  ViewStore& operator=(const ViewStore&) = delete;
+  ViewStore(uint64_t halves, uint64_t limit, const std::string& folder)
+      : halves_(halves), pages_(halves * sizeof(uint16_t), limit, folder) {}
 
-  std::span<uint16_t> halves() const { return {static_cast<uint16_t*>(data_), halves_}; }
+  std::span<uint16_t> halves() const { return {static_cast<uint16_t*>(pages_.data()), halves_}; }
   /// Takes the array out of the process's memory; it is read from the file again when used. Thread-safe.
-  void release() const;
+  void release() const { pages_.release(); }
   /// Runs `work`, which reads the array, and releases while it does.
   void read_by(const std::function<void()>& work) const;
 
  private:
-  uint64_t bytes() const { return halves_ * sizeof(uint16_t); }
-
   const uint64_t halves_;
-  bool in_file_ = false;
-  void* data_ = nullptr;  // pages of our own
+  const ScratchPages pages_;
 };
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-#include "job/memory.h"
+#include "file/process_memory.h"
 
 #include <unistd.h>
 
