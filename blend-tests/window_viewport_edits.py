@@ -46,6 +46,16 @@ def _lamp_moves():
     bpy.data.objects["Light"].location.x -= 4
 
 
+def _lamp_node():
+    lamp = bpy.data.lights["Light"]
+    lamp.use_nodes = True
+    lamp.node_tree.nodes["Emission"].inputs["Color"].default_value = (0.2, 0.9, 0.4, 1)
+
+
+def _lamp_node_changes():
+    bpy.data.lights["Light"].node_tree.nodes["Emission"].inputs["Strength"].default_value = 2.0
+
+
 def _color():
     _socket("Orange", "Color").default_value = (0.1, 0.2, 0.9, 1)
 
@@ -189,7 +199,8 @@ def _turned():
 
 
 _EDITS = (
-    *(_move, _energy, _lamp_moves, _color, _world, _sky, _sky_turns, _world_brighter, _other_world),
+    *(_move, _energy, _lamp_moves, _lamp_node, _lamp_node_changes, _color),
+    *(_world, _sky, _sky_turns, _world_brighter, _other_world),
     *(_vertex, _modifier, _modifier_changes),
     *(_added, _removed, _hidden, _shown, _other_material, _glows, _instances, _instances_follow),
     *(_textured, _painted, _attribute, _attribute_changes),

@@ -24,6 +24,19 @@ class Lights(BoxTest):
         stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=0.0, color=(1.0, 0.5, 0.2))
         self.assert_parity("Light: colour")
 
+    def test_emission_node(self):
+        """Multiplies what the lamp is; without one it is dark."""
+        lamp = stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=0.0, color=(1.0, 0.8, 0.6))
+        emission = self._tree(lamp).nodes["Emission"]
+        emission.inputs["Color"].default_value = (0.2, 0.9, 0.5, 1)
+        emission.inputs["Strength"].default_value = 1.5
+        self._tree(stage.lamp("POINT", 900, (-2, 0.5, 3), shadow_soft_size=0.0)).links.clear()
+        self.assert_parity("Light: Emission node, and none")
+
+    def _tree(self, lamp):
+        lamp.data.use_nodes = True
+        return lamp.data.node_tree
+
     def test_point(self):
         stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=0.0)
         self.assert_parity("Point: sharp")

@@ -15,7 +15,7 @@ _MOST_DEPTH = 8
 
 
 class MeasurementFile(NamedTuple):
-    """Changes whenever the content may have changed."""
+    """Changes whenever the file has; pictures that the index of a BTF names may change without it."""
 
     path: str
     name: str  # from the folder that was searched, without the suffix

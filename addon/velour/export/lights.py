@@ -6,6 +6,7 @@ import bpy
 
 from ..native import VelourError
 from .axes import column_lengths, unscaled
+from .light_nodes import emission_factor
 from .notes import ExportError
 from .unused_settings import note_emitter
 
@@ -18,33 +19,25 @@ _AREA_POWER = math.pi / 4 if _OLDER_LAMPS else 1.0
 _FACTORS = ("diffuse_factor", "specular_factor", "volume_factor")
 
 
-def _is_plain(tree):
-    """Whether the nodes say no more than the lamp: white Emission of strength 1, as every lamp of 5.x has."""
-    for node in tree.nodes:
-        if node.bl_idname == "ShaderNodeEmission":
-            values = (*node.inputs["Color"].default_value[:3], node.inputs["Strength"].default_value)
-            if any(socket.is_linked for socket in node.inputs) or any(value != 1.0 for value in values):
-                return False
-        elif node.bl_idname != "ShaderNodeOutputLight":
-            return False
-    return True
-
-
 def add_light(scene, obj, matrix, notes):
     """Whether it shines. `obj`: an evaluated lamp object, `matrix`: where this instance of it stands."""
     lamp = obj.data
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
         return False  # no lamp: it only shows Cycles where the sky comes in
     owner = f"Light '{obj.name}'"
-    if lamp.use_nodes and lamp.node_tree and not _is_plain(lamp.node_tree):
+    emission = emission_factor(lamp)
+    if emission is None:
         notes.add(
-            f"{owner}: shader nodes of lights are ignored, IES files too; its colour and power are used."
+            f"{owner}: shader nodes of lights are ignored, but for an Emission of constant values, IES files "
+            "too; its colour and power are used."
         )
+        emission = (1.0, 1.0, 1.0)
     if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):
         notes.add(f"{owner}: its diffuse, specular and volume factors are ignored.")
     note_emitter(owner, getattr(lamp, "cycles", None), notes)
     kind, factor, values = _DESCRIBE[lamp.type](lamp, matrix)
-    color = tuple(power(lamp, matrix) * factor * c for c in tinted(lamp))
+    watts = power(lamp, matrix) * factor
+    color = tuple(watts * c * e for c, e in zip(tinted(lamp), emission, strict=True))
     _note_shape(lamp, matrix, owner, notes)
     try:
         scene.add_light(kind, color, unscaled(matrix), casts_shadow=_casts_shadow(lamp), **values)

@@ -58,7 +58,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--noise", type=numbers.real(1e-6, 1e6), metavar="E", help="relative error of each block of pixels"
     )
     parser.add_argument(
-        "--cache", metavar="FOLDER", help="keeps fits of worlds (product); ${XDG_CACHE_HOME:-~/.cache}/velour"
+        "--cache",
+        metavar="FOLDER",
+        help="keeps fits of worlds (product); ${XDG_CACHE_HOME:-~/.cache}/velour, of an extension its own",
     )
     parser.add_argument(
         "--no-cache", dest="cache", action="store_const", const="", help="neither reads nor keeps them"
