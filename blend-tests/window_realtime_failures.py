@@ -10,7 +10,7 @@ from support import inputs, scenes, viewport, window
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (no_texture, no_pictures_to_draw_into, broken_shader))
+    window.run(folder, (no_texture, no_pictures_to_draw_into, lost_while_drawing, broken_shader))
 
 
 class _Log(logging.Handler):
@@ -77,21 +77,8 @@ def _refused(folder, name, *words):
     grey = 255 * viewport.middle(seen)
     assert np.abs(grey - 118).max() <= 1, (grey.min(), grey.max())
     assert len(bpy.context.window_manager.windows) == 1
-    width = _text_width(folder, f"{name}-text")
+    width = viewport.text_width(folder, f"{name}-text")
     assert width > 4 * len(sentence), (width, sentence)
-
-
-def _text_width(folder, name):
-    """Pixels of the longest line at the top of the viewport, which shows nothing else there."""
-    overlay, region = viewport.space().overlay, viewport.region()
-    overlay.show_overlays = overlay.show_text = True
-    overlay.show_floor = overlay.show_axis_x = overlay.show_axis_y = overlay.show_cursor = False
-    shown = window.screenshot(folder, name)
-    overlay.show_overlays = False
-    top = shown[region.y + region.height - 200 : region.y + region.height - 60, region.x :][:, : region.width]
-    is_text = (top.min(axis=2) > 0.7).any(axis=0)
-    columns = np.flatnonzero(is_text[100 : region.width - 100])  # without tools and buttons
-    return int(columns.max() - columns.min()) if len(columns) else 0
 
 
 def _change_scene():
@@ -114,6 +101,26 @@ def no_pictures_to_draw_into(folder):
         _set_up()
         yield from _refused(folder, "no-pictures", "to draw into", "choose Real Time again")
         assert made.count == len(log.records) == 1, (made.count, log.records)
+    yield from _chosen_again()
+
+
+def lost_while_drawing(folder):
+    """As Blender says it where the context is gone."""
+    drawing, asked = viewport.addon("realtime.drawing"), []
+    sky = drawing.full_screen
+
+    def lost(*_arguments):
+        asked.append(1)
+        raise RuntimeError("no active GPU context found")
+
+    drawing.full_screen = lost
+    try:
+        with _Log() as log:
+            _set_up()
+            yield from _refused(folder, "lost", "refuses a picture of", "choose Real Time again")
+            assert len(asked) == len(log.records) == 1, (asked, log.records)
+    finally:
+        drawing.full_screen = sky
     yield from _chosen_again()
 
 

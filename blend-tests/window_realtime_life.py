@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from support import scenes, viewport, window
 
@@ -11,7 +12,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (restarts, refusals, cures))
+    window.run(folder, (restarts, first_picture, refusals, cures))
 
 
 def restarts(folder):
@@ -38,6 +39,26 @@ def restarts(folder):
 def _resident_mib():
     lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS")) / 1024
+
+
+def first_picture(folder):
+    """Until it is there the ray tracer's is."""
+    scenes.set_world((0.5, 0.7, 1.0), 0.5)
+    viewport.show(samples=16)
+    yield from viewport.finished()
+    traced = viewport.middle(window.screenshot(folder, "traced"), half=100)
+    drawing = viewport.addon("realtime.drawing").Drawing
+    is_ready, asked = drawing.is_ready, []
+    drawing.is_ready = lambda self, scene: asked.append(is_ready(self, scene)) or False
+    try:
+        bpy.context.scene.velour.viewport_mode = "REAL_TIME"
+        yield from viewport.until(lambda: len(asked) > 2, "it does not begin")
+        meanwhile = viewport.middle(window.screenshot(folder, "meanwhile"), half=100)
+    finally:
+        drawing.is_ready = is_ready
+    assert np.abs(meanwhile - traced).max() < 0.01, np.abs(meanwhile - traced).max()
+    yield from viewport.real_time_finished()
+    assert viewport.real_time().has_picture()
 
 
 def refusals(folder):

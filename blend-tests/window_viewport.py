@@ -152,17 +152,17 @@ def render_region(folder):
 def error_line(folder):
     """One line while something is wrong, the picture when it is no longer."""
     _colored_scene()
-    view = viewport.show(samples=16)
-    view.overlay.show_overlays = True
-    view.region_3d.view_perspective = "CAMERA"
+    viewport.show(samples=16).region_3d.view_perspective = "CAMERA"
     camera = bpy.context.scene.camera.data
     camera.type = "PANO"
     yield 0.5
-    window.screenshot(folder, "error")
-    assert "panoramic" in viewport.the_one()._view_error
+    sentence = viewport.the_one()._view_error
+    assert "panoramic" in sentence
+    width = viewport.text_width(folder, "error")
+    assert width > 4 * len(sentence), (width, sentence)
     camera.type = "PERSP"
     yield from viewport.finished()
-    window.screenshot(folder, "error-gone")
+    assert viewport.text_width(folder, "error-gone") < width / 2
     assert not viewport.the_one()._view_error
     assert viewport.the_one()._picture.samples == 16
 

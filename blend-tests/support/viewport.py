@@ -123,3 +123,16 @@ def middle(screenshot, half=20):
     view = region()
     x, y = view.x + view.width // 2, view.y + view.height // 2
     return screenshot[y - half : y + half, x - half : x + half]
+
+
+def text_width(folder, name):
+    """Pixels of the longest line at the top of the viewport, which shows nothing else there."""
+    overlay, view = space().overlay, region()
+    overlay.show_overlays = overlay.show_text = True
+    overlay.show_floor = overlay.show_axis_x = overlay.show_axis_y = overlay.show_cursor = False
+    shown = window.screenshot(folder, name)
+    overlay.show_overlays = False
+    top = shown[view.y + view.height - 200 : view.y + view.height - 60, view.x :][:, : view.width]
+    is_text = (top.min(axis=2) > 0.7).any(axis=0)
+    columns = np.flatnonzero(is_text[100 : view.width - 100])  # without tools and buttons
+    return int(columns.max() - columns.min()) if len(columns) else 0

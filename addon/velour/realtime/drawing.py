@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..native import light_map_job
+from .errors import LOST, asking_for
 from .kept_tables import KeptTables
 from .projection import jitter, view_projection
 from .shaders import PICTURES, sky_shader
@@ -93,9 +94,10 @@ class Drawing:
             self._targets = Targets(gpu, size)
             self.count = 0
         if self.count < PICTURES:
-            with self._targets.drawn.bind():
-                self._draw_scene(gpu, scene, view, exposure, shows_world)
-            self._targets.average(gpu, 1 / (self.count + 1))
+            with asking_for(f"a picture of {size[0]} x {size[1]} pixels", LOST):
+                with self._targets.drawn.bind():
+                    self._draw_scene(gpu, scene, view, exposure, shows_world)
+                self._targets.average(gpu, 1 / (self.count + 1))
             self.count += 1
         return self._targets.mean()
 

@@ -10,12 +10,17 @@ class UnshownError(Exception):
     """Something that only the ray tracer shows; a sentence says what."""
 
 
+LOST = (RuntimeError, SystemError, ReferenceError)  # what Blender raises where its context is gone
+
+
 @contextlib.contextmanager
-def asking_for(what):
+def asking_for(what, errors=Exception):
     """Around what the graphics processor is asked to make: it may have no room, or be gone."""
     try:
         yield
-    except Exception as error:
+    except UnshownError:
+        raise
+    except errors as error:
         log.error("the graphics processor refuses %s", what, exc_info=error)
         raise UnshownError(
             f"the graphics processor refuses {what}, so the ray tracer shows the scene; close what else uses"
