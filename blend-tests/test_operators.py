@@ -12,7 +12,7 @@ from velour.export import ExportError
 from velour.native import Btf, Measurement, library
 from velour.operators.background_job import BackgroundJob
 from velour.operators.fit import VELOUR_OT_fit
-from velour.operators.job_target import JobOwner
+from velour.operators.job_target import JobOwner, JobTarget
 from velour.operators.reads_first import ReadsFirst
 from velour.operators.slots import Slot, SlotTarget, slot_along
 
@@ -376,6 +376,15 @@ class Slots(BlenderTest):
         collection.name = "Renamed"
         bpy.data.collections.new("Tile")
         self.assertEqual(owner.take(), collection)
+
+    def test_several_that_wait_for_one_material(self):
+        material = scenes.measured_material(b"", "Paint")
+        node = next(node for node in material.node_tree.nodes if node.bl_idname == "ShaderNodeTexImage")
+        targets = [JobTarget(material, node) for _ in range(2)]
+        material.name, node.name = "Renamed", "Other"
+        scenes.measured_material(b"", "Paint")
+        for target in targets:
+            self.assertEqual(target.find(), (material, node))
 
 
 class Refusals(BlenderTest):

@@ -4,6 +4,8 @@ import uuid
 
 import bpy
 
+_MOST_MARKS = 4  # on a node: of more jobs than run and wait
+
 
 def key_of(datablock):
     """Its key in the list of bpy.data: no pointer, for undo replaces datablocks."""
@@ -11,11 +13,12 @@ def key_of(datablock):
 
 
 class JobTarget:
-    """A measured material's node, by a mark on it and by names: undo may replace any datablock."""
+    """A measured material's node, by one of the marks on it and by names: undo may replace any datablock."""
 
     def __init__(self, material, node):
         self.material_name, self._node_name = material.name, node.name
-        self._mark = node.velour.job = uuid.uuid4().hex
+        self._mark = uuid.uuid4().hex
+        node.velour.job = " ".join([*node.velour.job.split(), self._mark][-_MOST_MARKS:])
 
     def find(self):
         """The material and its node, also where they were renamed; (None, None) where they are gone."""
@@ -31,7 +34,7 @@ class JobTarget:
         """A copy has the mark as well: the original, if it is still called what it was, comes first."""
         for material in sorted(bpy.data.materials, key=lambda m: m.name != self.material_name):
             for node in material.node_tree.nodes if material.node_tree else ():
-                if node.bl_idname == "ShaderNodeTexImage" and node.velour.job == self._mark:
+                if node.bl_idname == "ShaderNodeTexImage" and self._mark in node.velour.job.split():
                     yield material, node
 
 

@@ -114,7 +114,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         override=_OVERRIDE,
     )
     seed: IntProperty(name="Seed", description="Of the fit", default=0, min=0, override=_OVERRIDE)
-    job: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # the mark of the one whose result comes here
+    job: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # marks of those whose results come here
     scene_model: PointerProperty(
         name="Model for the Scene",
         description="A smaller model that holds for the views and lights of one scene. The full model stays"
