@@ -204,4 +204,8 @@ class FrameParts(BlenderTest):
         self.assertRegex(
             said, r"would take about \d+ MiB of memory \(.*\), above its limit of 100 MiB \(--velour"
         )
+        self.assertIn("not all exported yet", said)  # not after it, when the system may have ended Blender
         self._render(blend, "allowed", "--velour-memory", "8G")
+        above = int(stated[1]) - int(stated[2]) // 2
+        said = self._render(blend, "refused", "--velour-memory", f"{above}M", status=1)
+        self.assertRegex(said, r"The frame would take about \d+ MiB of memory \(.*, picture")

@@ -38,12 +38,18 @@ def render_final(engine, depsgraph):
     if scene.render.use_multiview:
         raise ExportError("Stereoscopy is not supported; switch it off in Output > Stereoscopy.")
     engine.update_stats("Velour", "Exporting the scene")
-    breaks = _Clock(_POLL_SECONDS)  # asked once an instance, which Blender's answer takes longer than
+    given = None if engine.is_preview else arguments()
+    limit = memory.MemoryLimit(given and given.memory)
+    breaks = _Clock(_POLL_SECONDS)  # asked once an instance, which the answers take longer than
 
     def check_break():
-        if breaks.rings() and engine.test_break():
+        if not breaks.rings():
+            return
+        if engine.test_break():
             raise RenderCancelledError
+        limit.check_export()
 
+    limit.check_export()
     begin = time.monotonic()
     shown = [COMBINED] if engine.is_preview else layer_passes(depsgraph.view_layer_eval)
     asked = {each.asks for each in shown if each.asks}
@@ -61,12 +67,11 @@ def render_final(engine, depsgraph):
         options = final_options(depsgraph, view, engine.is_preview)
         parts = None
         if not engine.is_preview:
-            given = arguments()
             parts = frame_parts(given, depsgraph, view, options, materials.models, shown)
             estimate = memory.estimate(
                 native_scene, view, passes and passes.passes, shown, options["threads"], bool(parts)
             )
-            engine.update_stats("Velour", memory.checked(estimate, given.memory))
+            engine.update_stats("Velour", limit.check(estimate))
         make_job = functools.partial(render_job, native_scene, passes and passes.passes)
         make_film = functools.partial(film, depsgraph, make_job, options, parts)
         report = _render_layer(engine, depsgraph, view, shown, surroundings, make_film)

@@ -32,7 +32,20 @@ def estimate(native_scene, view, passes, shown, threads, keeps_film):
     return Estimate(parts, _REMEDIES)
 
 
-def checked(found, asked):
-    """A line that states the Estimate. `asked`: the most it may be, in bytes; else what the system gives."""
-    limit = Limit(asked, "--velour-memory") if asked else memory_limit(os.environ)
-    return found.within(limit, "The frame")
+class MemoryLimit:
+    """Of a frame. `asked`: the most that may be taken, in bytes; else what the system gives."""
+
+    def __init__(self, asked):
+        self._limit = Limit(asked, "--velour-memory") if asked else memory_limit(os.environ)
+        self._before = resident()
+
+    def check_export(self):
+        """Raises VelourError where the scene is too large before all of it is exported: else the system would
+        end Blender, without a word, before anything is estimated."""
+        scene = max(0, resident() - self._before)
+        found = Estimate({"blender": self._before, "scene": scene}, _REMEDIES)
+        found.within(self._limit, "The frame, which is not all exported yet,")
+
+    def check(self, found):
+        """A line that states the Estimate; raises VelourError where that is too large."""
+        return found.within(self._limit, "The frame")
