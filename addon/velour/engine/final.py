@@ -125,10 +125,16 @@ def _follow(engine, delivery, job, begin, end):
         engine.update_progress(state.fraction)
         if statistics.rings():
             engine.update_stats("Velour", _statistics(state, begin, end))
-            engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20, memory_peak=peak() / 2**20)
+            _tell_memory(engine, state)
         if not bpy.app.background and pictures.rings():
             delivery.write(job, [COMBINED])
             engine.update_result(delivery.result)
+    _tell_memory(engine, job.poll())
+
+
+def _tell_memory(engine, state):
+    """Blender's statistics are in MiB."""
+    engine.update_memory_stats(memory_used=state.bytes_in_use / 2**20, memory_peak=peak() / 2**20)
 
 
 class _Clock:
