@@ -160,6 +160,10 @@ def error_line(folder):
     assert "panoramic" in sentence
     width = viewport.text_width(folder, "error")
     assert width > 4 * len(sentence), (width, sentence)
+    bpy.data.objects["Cube"].location.x += 1
+    yield 0.3
+    assert viewport.the_one()._view_error == sentence
+    assert not viewport.the_one()._scene_error
     camera.type = "PERSP"
     yield from viewport.finished()
     assert viewport.text_width(folder, "error-gone") < width / 2

@@ -4,6 +4,7 @@ The main thread exports and draws; a job of the library renders. A change stops 
 library's scene, and the job starts anew, coarse first.
 """
 
+import functools
 import logging
 import threading
 import time
@@ -73,9 +74,8 @@ class Viewport:
 
     def draw(self, context, depsgraph):
         lines = []
-        if self._is_real_time(depsgraph, lambda shown: lines.append(shown.draw(context, depsgraph))):
-            if not self._real_time.has_picture():  # the ray tracer's stays meanwhile
-                self._draw_picture(depsgraph.scene_eval)
+        show = functools.partial(self._draw_real_time, context, depsgraph)
+        if self._is_real_time(depsgraph, lambda shown: lines.append(show(shown))):
             self._engine().update_stats("Velour", lines[0])
             return
         if self._live is None and not self._scene_error:
@@ -92,6 +92,12 @@ class Viewport:
         line = self._scene_error or self._view_error or self._progress()
         said = self._refusal and self._refusal.sentence
         self._engine().update_stats("Velour", "; ".join(filter(None, (said, line))))
+
+    def _draw_real_time(self, context, depsgraph, shown):
+        line = shown.draw(context, depsgraph)
+        if not shown.has_picture():  # the ray tracer's stays meanwhile
+            self._draw_picture(depsgraph.scene_eval)
+        return line
 
     def _is_real_time(self, depsgraph, show):
         """Whether it is to be, and could be: `show` has been called with a RealtimeViewport.
@@ -214,18 +220,17 @@ class Viewport:
         options = viewport_options(depsgraph, frame.view)
         if self._job and options == self._options and frame.key() == self._key:
             return
-        if self._job and options == self._options and self._key is not None and self._is_unseen():
+        if options == self._options and self._key is not None and self._is_unseen():
             return  # turn() comes back to it: else a view that turns on and on would never be seen
         self._restart(frame, options)
 
     def _is_unseen(self):
-        """Whether the job runs and has nothing to show yet."""
-        return self._job.poll().running and self._job.picture().width == 0
+        """Whether a job runs and has nothing to show yet."""
+        return self._job is not None and self._job.poll().running and self._job.picture().width == 0
 
     def _restart(self, frame, options):
-        if self._job:
-            self._await_first(_PATIENCE)
-            self._halt()
+        self._await_first(_PATIENCE)
+        self._halt()
         frame.view.add_to(self._live.scene)
         if self._job and options == self._options:
             self._job.restart()
