@@ -74,7 +74,7 @@ def first_picture(folder):
     print("first picture after", time.monotonic() - begin, flush=True)
     yield from viewport.finished()
     window.screenshot(folder, "finished")
-    assert viewport.the_one()._picture.samples == 256
+    assert viewport.shown_picture().samples == 256
     viewport.space().shading.type = "SOLID"
     yield 0.5
     assert not tuple(viewport.addon("engine.viewport")._all), "it is still there"
@@ -92,7 +92,7 @@ def one_redraw(folder):
     def watched(self, *given):
         begin = time.monotonic()
         draw(self, *given)
-        drawn.append(self._picture.shown_at >= begin)
+        drawn.append(self._job.picture.shown_at >= begin)
 
     module.Viewport.draw, module._PROMPT = watched, 30.0  # the machine may be busy
     try:
@@ -168,7 +168,7 @@ def error_line(folder):
     yield from viewport.finished()
     assert viewport.text_width(folder, "error-gone") < width / 2
     assert not viewport.the_one()._view_error
-    assert viewport.the_one()._picture.samples == 16
+    assert viewport.shown_picture().samples == 16
 
 
 def rests(folder):
@@ -176,17 +176,17 @@ def rests(folder):
     _colored_scene()
     viewport.show(samples=1 << 20)
     yield from viewport.until(lambda: viewport.samples() > 8, "no picture")
-    before = viewport.the_one()._picture.samples
+    before = viewport.shown_picture().samples
     bpy.context.scene.velour.samples = 1 << 17
     with window.override():
         bpy.ops.render.render("INVOKE_DEFAULT")
     yield 0.5
     assert bpy.app.is_job_running("RENDER")
-    assert viewport.the_one()._job.poll().state == "cancelled"
+    assert viewport.job().poll().state == "cancelled"
     yield from viewport.until(lambda: not bpy.app.is_job_running("RENDER"), "the render does not end")
     yield 0.5
-    assert viewport.the_one()._job.poll().running
-    assert viewport.the_one()._job.picture().samples >= before
+    assert viewport.job().poll().running
+    assert viewport.job().picture().samples >= before
 
 
 def local_view(folder):

@@ -263,11 +263,11 @@ def selection(folder):
     _scene()
     viewport.show(samples=1 << 20)
     yield from viewport.until(lambda: viewport.samples() > 16, "no picture")
-    samples = viewport.the_one()._job.picture().samples
+    samples = viewport.job().picture().samples
     bpy.data.objects["Cube"].select_set(False)
     bpy.context.view_layer.objects.active = bpy.data.objects["Ball"]
     yield 0.3
-    assert viewport.the_one()._job.picture().samples >= samples
+    assert viewport.job().picture().samples >= samples
 
 
 def during_a_build(folder):
@@ -312,7 +312,7 @@ def a_long_drag(folder):
         for _ in range(40):
             cube.location.z += 0.05
             yield 0.05
-            pictures.add(viewport.the_one()._picture.shown_at)
+            pictures.add(viewport.shown_picture().shown_at)
     assert len(pictures) > 4, f"{len(pictures) - 1} pictures of 40 moves"
     yield from viewport.finished()
     last = viewport.pixels()

@@ -75,15 +75,25 @@ def real_time_finished(patience=_PATIENCE):
     yield 0.3
 
 
+def job():
+    """The library's ProgressiveJob of the only 3D viewport."""
+    return the_one()._job._job
+
+
+def shown_picture():
+    """Its ViewportPicture."""
+    return the_one()._job.picture
+
+
 def samples():
     """Of the picture on the screen; 0: there is none."""
     found = tuple(addon("engine.viewport")._all)
-    return found[0]._picture.samples if found else 0
+    return found[0]._job.picture.samples if found else 0
 
 
 def is_seen():
     """Whether there was any picture, coarse as it may be."""
-    return the_one()._picture.shown_at > 0
+    return shown_picture().shown_at > 0
 
 
 def is_idle():
@@ -113,7 +123,7 @@ def seen(last, what):
 
 def pixels():
     """[height x width x 4] scene-linear, of what the viewport shows."""
-    picture = the_one()._picture
+    picture = shown_picture()
     width, height = picture._size
     return picture._pixels[: 4 * width * height].reshape(height, width, 4).copy()
 

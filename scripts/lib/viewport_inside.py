@@ -50,7 +50,7 @@ class Stopwatch:
         self._draw(shown, *given)
         end = time.monotonic()
         self.held = max(self.held, end - begin - (self.export - export))
-        self._is_drawn |= shown._picture.shown_at >= begin
+        self._is_drawn |= shown._job.picture.shown_at >= begin
 
     def until_seen(self):
         """Until the window with a picture is on the screen: Blender's next turn comes after that."""
@@ -114,7 +114,7 @@ def _repeated(watch, change):
 
 def _dragged(change):
     """Pictures a second while something changes in every turn of Blender's."""
-    shown, times, begin = viewport.the_one()._picture, set(), time.monotonic()
+    shown, times, begin = viewport.shown_picture(), set(), time.monotonic()
     while time.monotonic() < begin + DRAG:
         change(len(times))
         yield _TURN

@@ -6,8 +6,6 @@ library's scene, and the job starts anew, coarse first.
 
 import functools
 import logging
-import threading
-import time
 import weakref
 
 import bpy
@@ -18,20 +16,17 @@ from ..export.film import film_exposure
 from ..export.live import LiveExport
 from ..export.look import Look
 from ..export.viewport import viewport_frame
-from ..native import ProgressiveJob, VelourError
+from ..native import VelourError
 from ..realtime import UnshownError
 from . import viewport_clock
 from .options import viewport_options
 from .realtime_viewport import RealtimeViewport
 from .refusal import Refusal
-from .viewport_picture import ViewportPicture
+from .viewport_job import ViewportJob
 
 log = logging.getLogger(__package__)
 
-_LEAST_SECONDS = 0.05  # between two pictures
-_SHARE = 0.1  # of the main thread's time, at most, for pictures that only grow less noisy
 _PATIENCE = 0.04  # seconds that a change holds Blender up for the first picture of the change before
-_LATEST = 2.0  # and that it waits beside: what is built so long may be wanted no more
 _PROMPT = 0.04  # and for its own, which then is in the redraw at hand: another takes Blender longer than that
 
 _all = weakref.WeakSet()
@@ -42,15 +37,10 @@ class Viewport:
         self._engine = weakref.ref(engine)
         self._live = None  # LiveExport
         self._changes = Changes()  # that it has not taken up yet
-        self._job = None
-        self._began = 0.0
-        self._closing = threading.Lock()  # of the job, which other threads pause
-        self._options = None  # of the job
+        self._job = ViewportJob()
         self._key = (
             None  # of the view that the job shows; None: of none, or of a scene before its last change
         )
-        self._is_waiting = False  # the job begins when it is no longer paused
-        self._picture = ViewportPicture()
         self._place = None  # in the region
         self._scene_error = self._view_error = ""
         self._real_time = None  # RealtimeViewport, where that shows the scene
@@ -141,34 +131,23 @@ class Viewport:
 
     def pause(self):
         """Called from any thread; turn() goes on later."""
-        with self._closing:
-            if self._job:
-                self._job.cancel()
+        self._job.pause()
 
     def turn(self):
         """Between redraws. False: there is nothing to wait for."""
         engine = self._engine()
-        if engine is None or self._job is None:
+        if engine is None or not self._job:
             return False
         if viewport_clock.is_paused():
             self.pause()
             return True
-        if self._key is None or (self._changes and not self._must_wait()):  # draw() takes that up
+        if self._key is None or (self._changes and not self._job.must_be_seen()):  # draw() takes that up
             engine.tag_redraw()
             return True
-        state = self._job.poll().state
-        if self._is_waiting or state == "cancelled":
-            self._start()
-        elif state == "failed" or self._is_due():
+        is_due, has_more = self._job.turn()
+        if is_due:
             engine.tag_redraw()
-        return state in ("running", "ready", "cancelled") or self._picture.is_behind(self._job)
-
-    def _is_due(self):
-        """Whether there is a picture worth the time that it takes to draw."""
-        waited = time.monotonic() - self._picture.shown_at
-        return waited > max(_LEAST_SECONDS, self._picture.seconds / _SHARE) and self._picture.is_behind(
-            self._job
-        )
+        return has_more
 
     def _take_up(self, depsgraph, look, is_told):
         """`is_told`: the depsgraph says what has changed."""
@@ -179,8 +158,8 @@ class Viewport:
             if is_told:
                 self._changes.add(self._live.changes(depsgraph, look))
                 if self._changes:
-                    self._await_first(_PATIENCE)
-            if self._changes and not self._must_wait():
+                    self._job.await_first(_PATIENCE)
+            if self._changes and not self._job.must_be_seen():  # else turn() comes back to them
                 self._change(depsgraph, look)
         except Exception as error:
             self._scene_error = _sentence(error)
@@ -192,14 +171,9 @@ class Viewport:
         self._drop_scene()
         self._live = LiveExport(depsgraph, look)
 
-    def _must_wait(self):
-        """Whether changes wait for the picture of those before, which turn() looks for: else changes that
-        come and come would show nothing."""
-        return self._is_unseen() and time.monotonic() < self._began + _LATEST
-
     def _change(self, depsgraph, look):
         changes, self._changes = self._changes, Changes()
-        self._halt()
+        self._job.halt()
         self._key = None
         if changes.everything:
             self._export(depsgraph, look)
@@ -210,65 +184,32 @@ class Viewport:
         """Takes up what the viewport looks through, and how it is rendered."""
         if self._live is None:
             return
-        if self._job and self._job.poll().state == "failed":
-            self._job.wait()  # raises
+        self._job.raise_failure()
         frame = viewport_frame(context, depsgraph)
         self._place = frame and frame.place
         if frame is None:
             self._close_job()
             return
         options = viewport_options(depsgraph, frame.view)
-        if self._job and options == self._options and frame.key() == self._key:
+        is_same = bool(self._job) and options == self._job.options
+        if is_same and frame.key() == self._key:
             return
-        if options == self._options and self._key is not None and self._is_unseen():
+        if is_same and self._key is not None and self._job.is_unseen():
             return  # turn() comes back to it: else a view that turns on and on would never be seen
         self._restart(frame, options)
 
-    def _is_unseen(self):
-        """Whether a job runs and has nothing to show yet."""
-        return self._job is not None and self._job.poll().running and self._job.picture().width == 0
-
     def _restart(self, frame, options):
-        self._await_first(_PATIENCE)
-        self._halt()
+        self._job.await_first(_PATIENCE)
+        self._job.halt()
         frame.view.add_to(self._live.scene)
-        if self._job and options == self._options:
-            self._job.restart()
-        else:
-            self._close_job()
-            self._job = ProgressiveJob.of(self._live.scene, **options)
-            self._options = options
+        self._job.restart(self._live.scene, options)
         self._key = frame.key()
-        self._start()
-        self._await_first(_PROMPT)
-
-    def _start(self):
-        self._is_waiting = viewport_clock.is_paused()
-        self._began = time.monotonic()
-        if not self._is_waiting:
-            self._job.start()
         viewport_clock.watch(self)
-
-    def _halt(self):
-        """Stops the job; what it has to show is kept for the next redraw."""
-        if self._job is None:
-            return
-        self._job.stop()
-        self._picture.take(self._job)
-
-    def _await_first(self, seconds):
-        end = time.monotonic() + seconds
-        while self._is_unseen() and time.monotonic() < end:
-            time.sleep(0.001)
+        self._job.await_first(_PROMPT)
 
     def _close_job(self):
-        with self._closing:
-            if self._job:
-                self._job.close()
-            self._job = None
-        self._options = self._key = None
-        self._is_waiting = False
-        self._picture.begin()
+        self._job.close()
+        self._key = None
 
     def _drop_scene(self):
         if self._live:
@@ -276,19 +217,18 @@ class Viewport:
         self._live, self._changes = None, Changes()
 
     def _show(self, scene):
-        if self._job:
-            self._picture.take(self._job)
+        self._job.take_picture()
         if self._live:
             self._draw_picture(scene)
 
     def _draw_picture(self, scene):
         if self._place:
-            self._picture.draw(self._engine(), scene, self._place, film_exposure(scene))
+            self._job.picture.draw(self._engine(), scene, self._place, film_exposure(scene))
 
     def _progress(self):
-        if self._options is None:
+        if not self._job:
             return ""
-        return f"Sample {self._picture.samples}/{self._options['spp']}"
+        return f"Sample {self._job.picture.samples}/{self._job.options['spp']}"
 
 
 def _sentence(error):
