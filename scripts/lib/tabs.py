@@ -1,5 +1,7 @@
 """For scripts/tabs, in a window of Blender: tabs of the Properties editor with Velour, and with Cycles."""
 
+import math
+
 import addon_utils
 import bl_ui
 import bpy
@@ -15,7 +17,7 @@ _RIM = 20  # rows
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (tabs,))
+    window.run(folder, (tabs,), seconds=math.inf)
 
 
 def tabs(folder):

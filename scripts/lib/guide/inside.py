@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import math
 import sys
 from pathlib import Path
 
@@ -36,7 +37,7 @@ def _start(folder, task):
             raise
         (folder / "facts.json").write_text(json.dumps(facts))
 
-    window.run(folder, (steps,))
+    window.run(folder, (steps,), seconds=math.inf)
 
 
 main()
