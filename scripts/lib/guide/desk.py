@@ -87,9 +87,13 @@ class Desk:
         yield 0.4
 
     def plot(self, kind: str):
-        """Until the plot is drawn."""
-        preview = importlib.import_module(f"{inputs.ADDON}.ui.plot_preview")
+        """Chooses it in the panel of plots, until it is drawn."""
         bpy.context.window_manager.velour.plot.kind = kind
+        yield from self.drawn(kind)
+
+    def drawn(self, kind: str):
+        """Until the plot that a panel shows is drawn."""
+        preview = importlib.import_module(f"{inputs.ADDON}.ui.plot_preview")
         for _ in range(5 * _PATIENCE):
             area("PROPERTIES").tag_redraw()
             yield 0.2

@@ -69,4 +69,5 @@ def _outline(desk, facts):
     yield from desk.plot("ORDER")
     desk.picture_of_panels("btf_model", "MATERIAL", "Model")
     yield from desk.fold("MATERIAL", "Outline (VOTF)", is_open=True)
+    yield from desk.drawn("OUTLINE")
     desk.picture_of_panels("outline", "MATERIAL", "Outline (VOTF)")
