@@ -16,7 +16,7 @@ namespace {
 
 /// A descriptor of a file that has no name any more.
 int nameless_file(const std::string& folder, uint64_t bytes) {
-  std::string name = folder + "/.velour-view-XXXXXX";
+  std::string name = folder + "/.velour-scratch-XXXXXX";
   const int file = mkstemp(name.data());
   if (file >= 0) unlink(name.c_str());
   // Allocated now: a full disk is a sentence here, and would be a signal when a page is touched.
