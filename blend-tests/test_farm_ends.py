@@ -1,7 +1,5 @@
 """scripts/farm: frames that an engine ends, or their own time limit, and that the next run goes on with."""
 
-import re
-
 import bpy
 
 from support.farm import FarmTest
@@ -27,13 +25,11 @@ class FarmEnds(FarmTest):
         (film,) = (self.output / "farm/partial/0001/film").glob("*.exr")
         status, said = self.status()
         self.assertEqual((status, said.splitlines()[0]), (3, "not done yet: 1-3"))
-        end = self._film_end(1)
+        end = self.film_end(1)
         done = self.node("--frames", "1")
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertFalse(film.exists())
-        log = (self.output / "farm/logs/0001.log").read_text()
-        first = int(re.search(r"Sample (\d+)/2000", log)[1])
-        self.assertGreaterEqual(first, end)
+        self.assertGreaterEqual(self.first_sample(1), end)
         self.assert_like_one_run(0)
 
     def test_a_frame_out_of_time_goes_on(self):
@@ -49,15 +45,11 @@ class FarmEnds(FarmTest):
         self.assertFalse(failure.exists())
         self.assertEqual(self.status(), (3, "not done yet: 1-3\n0 of 3 frames done, 0 failed, 3 left\n"))
         for end, code in ((1, 3), (2, 0)):
-            self.assertEqual(self._film_end(1), end)
+            self.assertEqual(self.film_end(1), end)
             done = self.node("--frames", "1")
             self.assertEqual(done.returncode, code, done.stdout)
         self.assertEqual(self.pictures(), ["shot_0001.exr"])
         self.assert_like_one_run(0)
-
-    def _film_end(self, frame):
-        (film,) = (self.output / f"farm/partial/{frame:04d}/film").glob("*.exr")
-        return int(re.search(r"\.0-(\d+)\.exr", film.name)[1])
 
     def test_a_noise_threshold_out_of_time(self):
         """It cannot be gone on with: what there is counts as done, and is told before."""

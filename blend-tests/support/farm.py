@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 from pathlib import Path
 
@@ -40,6 +41,17 @@ class FarmTest(BlenderTest):
 
     def pictures(self):
         return sorted(path.name for path in self.output.glob("*.exr"))
+
+    def film_end(self, frame):
+        """How many samples are kept of a frame that was ended."""
+        (film,) = (self.output / f"farm/partial/{frame:04d}/film").glob("*.exr")
+        return int(re.search(r"\.0-(\d+)\.exr", film.name)[1])
+
+    def first_sample(self, frame):
+        """The first that the latest run of a frame tells in its log; None before that."""
+        log = self.output / f"farm/logs/{frame:04d}.log"
+        found = re.search(r"Sample (\d+)/", log.read_text()) if log.is_file() else None
+        return found and int(found[1])
 
     def status(self):
         """The exit status, and what is said."""

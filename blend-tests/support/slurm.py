@@ -11,7 +11,7 @@ from pathlib import Path
 from . import process
 
 _PROGRAMS = ("slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "scancel")
-_SECONDS = 90  # for a node to come up, or a queue to become empty
+_SECONDS = 90  # for a node to come up, a pass to be rendered, or a queue to become empty
 
 _CONFIGURATION = """\
 ClusterName=velour
@@ -99,15 +99,16 @@ class Slurm:
                         stderr=subprocess.STDOUT,
                     )
                 )
-        self._wait(lambda: self.run("sinfo", "-h", "-o", "%T").strip() == "idle", "no node came up")
+        self.wait_until(lambda: self.run("sinfo", "-h", "-o", "%T").strip() == "idle", "no node came up")
 
     def run(self, *command):
         return process.run(command, self.environment, _SECONDS).stdout
 
     def wait_until_empty(self):
-        self._wait(lambda: not self.run("squeue", "-h").strip(), "the queue does not become empty")
+        self.wait_until(lambda: not self.run("squeue", "-h").strip(), "the queue does not become empty")
 
-    def _wait(self, done, sentence):
+    def wait_until(self, done, sentence):
+        """Raises RuntimeError with the sentence and what the daemons said, when they end or time is over."""
         end = time.monotonic() + _SECONDS
         while not done():
             if time.monotonic() > end or any(daemon.poll() is not None for daemon in self._daemons):
