@@ -61,12 +61,17 @@ class FarmSlurm(SlurmTest, FarmTest):
         self.assertEqual({frame: self.picture(frame).stat().st_mtime_ns for frame in (1, 3)}, kept)
         self.assertEqual(self._submit()[0], None)  # nothing is left
 
-    def test_a_frame_that_slurm_ends_goes_on(self):
-        """The signal comes as before a time limit: to the batch script alone, which hands it on."""
+    def _submit_long(self, *options):
+        """A job of one frame, which is being rendered."""
         self.job_of("ended", 4000, "--frames", "1")
         again = ("--output", self.output, "--frames", "1", "--threads", "1")
-        number, _ = self._submit(*again)
+        number, _ = self._submit(*again, *options)
         self.slurm.wait_until(lambda: self.first_sample(1), "no pass is rendered")
+        return number, again
+
+    def test_a_frame_that_slurm_ends_goes_on(self):
+        """The signal comes as before a time limit: to the batch script alone, which hands it on."""
+        number, again = self._submit_long()
         self.slurm.run("scancel", "--signal=TERM", "--batch", f"{number}_0")
         self.slurm.wait_until_empty()
         self.assertEqual(self.job(number)["ExitCode"], "3:0")
@@ -78,6 +83,15 @@ class FarmSlurm(SlurmTest, FarmTest):
         self.assertEqual(self.status(), (0, "1 of 1 frames done, 0 failed, 0 left\n"))
         self.assertGreaterEqual(self.first_sample(1), end)
         self.assert_like_one_run(0)
+
+    def test_a_frame_that_slurm_puts_back_is_kept(self):
+        """As for a more urgent job; it begins the task again after two minutes, which nobody waits for."""
+        number, again = self._submit_long("--sbatch=--requeue")
+        self.slurm.run("scontrol", "requeue", f"{number}_0")
+        self.slurm.wait_until(lambda: self.job(number)["JobState"] == "PENDING", "the task is not put back")
+        self.assertGreater(self.film_end(1), 0)
+        _, said = self._submit(*again, status=1)
+        self.assertIn(f"Slurm's job {number} still renders this", said)
 
     def test_what_waits_is_not_submitted_again(self):
         number, _ = self._submit("--sbatch=--hold", "--tasks", "2")
