@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from .. import files
-from .progress import ProgressBar
+from .progress import ProgressBar, ProgressLines
 
 log = logging.getLogger("velour")
 
@@ -21,9 +21,13 @@ def set_up_log(level: str) -> None:
     log.setLevel(level.upper())
 
 
-def progress_of(args: argparse.Namespace) -> ProgressBar | None:
-    """A bar where someone can see it."""
-    return ProgressBar(sys.stderr) if sys.stderr.isatty() and not args.quiet else None
+def progress_of(args: argparse.Namespace) -> ProgressBar | ProgressLines | None:
+    """A bar where someone can see it, lines where a log wants to know."""
+    if args.quiet:
+        return None
+    if sys.stderr.isatty():
+        return ProgressBar(sys.stderr)
+    return ProgressLines(log) if log.isEnabledFor(logging.INFO) else None
 
 
 def deliver(args: argparse.Namespace, report: dict) -> None:

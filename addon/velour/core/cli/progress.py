@@ -1,12 +1,27 @@
-"""One line that tells how far a job is."""
+"""Lines that tell how far a job is."""
 
 from __future__ import annotations
 
+import logging
 from typing import TextIO
 
 from ...native.job import JobState
 
 _WIDTH = 30
+_LINE_SECONDS = 10.0
+
+
+class ProgressLines:
+    """Called with the states of a job; a line of a log each ten seconds."""
+
+    def __init__(self, log: logging.Logger):
+        self._log = log
+        self._next = _LINE_SECONDS
+
+    def __call__(self, state: JobState) -> None:
+        if state.running and state.seconds >= self._next:
+            self._log.info("%s", text(state))
+            self._next = state.seconds + _LINE_SECONDS
 
 
 class ProgressBar:
@@ -16,16 +31,12 @@ class ProgressBar:
         self._stream = stream
 
     def __call__(self, state: JobState) -> None:
-        line = bar_line(state) if state.running else ""
+        full = round(_WIDTH * state.fraction)
+        line = f"[{'#' * full}{'.' * (_WIDTH - full)}] {text(state)}" if state.running else ""
         self._stream.write(f"\r\x1b[K{line}")
         self._stream.flush()
 
-    def close(self) -> None:
-        self._stream.write("\r\x1b[K")
-        self._stream.flush()
 
-
-def bar_line(state: JobState) -> str:
-    full = round(_WIDTH * state.fraction)
+def text(state: JobState) -> str:
     left = "" if state.seconds_left is None else f", {state.seconds_left:.0f} s left"
-    return f"[{'#' * full}{'.' * (_WIDTH - full)}] {state.fraction:4.0%} {state.stage}{left}"
+    return f"{state.fraction:4.0%} {state.stage}{left}"

@@ -1,0 +1,63 @@
+"""How the command line tells how far a job is."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import logging
+import sys
+
+import pytest
+from velour.core.cli import output
+from velour.core.cli.progress import ProgressBar, ProgressLines
+from velour.native.job import JobState
+
+
+def state(seconds: float, running: bool = True) -> JobState:
+    return JobState("running" if running else "done", seconds / 40, "rendering", seconds, 40 - seconds, 0)
+
+
+def tell(progress, *states: JobState) -> None:
+    for each in states:
+        progress(each)
+
+
+def test_lines_of_a_log_are_ten_seconds_apart(caplog):
+    caplog.set_level(logging.INFO, "velour-test")
+    times = [tenth / 10 for tenth in range(400)]
+    tell(ProgressLines(logging.getLogger("velour-test")), *map(state, times), state(40, running=False))
+    assert caplog.messages == [
+        " 25% rendering, 30 s left",
+        " 50% rendering, 20 s left",
+        " 75% rendering, 10 s left",
+    ]
+
+
+def test_the_bar_is_wiped_at_the_end():
+    stream = io.StringIO()
+    tell(ProgressBar(stream), state(20), state(40, running=False))
+    _, half, end = stream.getvalue().split("\r\x1b[K")
+    assert half == "[###############...............]  50% rendering, 20 s left"
+    assert end == ""
+
+
+@pytest.mark.parametrize(
+    ("terminal", "quiet", "level", "kind"),
+    [
+        (True, False, "warning", ProgressBar),
+        (True, True, "info", type(None)),
+        (False, False, "info", ProgressLines),
+        (False, False, "warning", type(None)),
+        (False, True, "info", type(None)),
+    ],
+)
+def test_who_is_told(monkeypatch, terminal, quiet, level, kind):
+    stream = io.StringIO()
+    stream.isatty = lambda: terminal
+    monkeypatch.setattr(sys, "stderr", stream)
+    before = output.log.level
+    output.log.setLevel(level.upper())
+    try:
+        assert isinstance(output.progress_of(argparse.Namespace(quiet=quiet)), kind)
+    finally:
+        output.log.setLevel(before)
