@@ -5,7 +5,7 @@ from unittest import mock
 import bpy
 
 from support import inputs, scenes, window
-from support.reading import HELD_SECONDS, TILES, Held, large_file, module, shown
+from support.reading import TILES, Held, check_turns, large_file, module, shown
 
 _ACCEPT = "accept_file.VELOUR_OT_accept_file"
 _KEEP = "placement.VELOUR_OT_keep_uv_density"
@@ -48,15 +48,6 @@ class _Timed:
     def __exit__(self, *_exception):
         for patch in self._patches:
             patch.stop()
-
-    def check(self, what, at_once):
-        """`at_once()` is the control: what it takes would be seen."""
-        longest, seconds = max(self.seconds), []
-        print(f"{what} held the window for {1e3 * longest:.1f} ms at most")
-        assert longest < HELD_SECONDS, f"a turn held the window for {longest:.3f} s"
-        window.timed(at_once, seconds)()
-        print(f"reading at once takes {1e3 * seconds[0]:.0f} ms")
-        assert seconds[0] > 5 * HELD_SECONDS, "the check would not see a file read at once"
 
 
 def _state():
@@ -101,7 +92,7 @@ def accept_beside_the_window(folder):
         yield from _rest()
     assert image.velour.sha256 == digest
     files = module("export.files")
-    timed.check("accepting", lambda: files.sha256(files.content(image, "Control")))
+    check_turns("accepting", timed.seconds, lambda: files.sha256(files.content(image, "Control")))
 
 
 def accept_undone(folder):
@@ -198,7 +189,9 @@ def density_beside_the_window(folder):
         yield from _rest()
     assert min(placement.uv_density) > 0.0
     image = scenes.velour_node(bpy.data.materials["Paint"]).image
-    timed.check("measuring", lambda: module("export.files").read_model(image, "Control").close())
+    check_turns(
+        "measuring", timed.seconds, lambda: module("export.files").read_model(image, "Control").close()
+    )
     with window.override():
         bpy.ops.ed.undo()
     placement = scenes.velour_node(bpy.data.materials["Paint"]).velour.placement
@@ -245,7 +238,9 @@ def outline_beside_the_window(folder):
     node = scenes.velour_node(bpy.data.materials["Paint"])
     with module("export.files").read_model(node.image, "Test") as model:
         assert "shell" in model.info()
-    timed.check("the outline", lambda: module("export.files").read_model(image, "Control").close())
+    check_turns(
+        "the outline", timed.seconds, lambda: module("export.files").read_model(image, "Control").close()
+    )
 
 
 def _is_model(image):
@@ -304,7 +299,7 @@ def scene_beside_the_window(folder):
         yield from _rest()
     assert _scene_model() is not None
     timed.seconds += begun.seconds
-    timed.check("the fit", lambda: module("export.files").read_model(image, "Control").close())
+    check_turns("the fit", timed.seconds, lambda: module("export.files").read_model(image, "Control").close())
 
 
 def scene_cancelled(folder):

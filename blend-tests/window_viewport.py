@@ -20,6 +20,7 @@ def start(folder):
         error_line,
         rests,
         local_view,
+        freed_engine,
     )
     window.run(folder, tests)
 
@@ -209,3 +210,20 @@ def local_view(folder):
     yield from viewport.finished()
     assert (everything, alone) == (2, 1), (everything, alone)
     assert viewport.the_one()._live.scene.info()["instances"] == 2
+
+
+def freed_engine(folder):
+    """Something keeps its Python half: its job ends all the same, and others are drawn, an undo included."""
+    _colored_scene()
+    viewport.show(samples=1 << 20)
+    yield from viewport.until(lambda: viewport.samples() > 0, "no picture")
+    freed = viewport.the_one()
+    engine, shading = freed._engine(), viewport.space().shading
+    shading.type = "SOLID"
+    yield from viewport.until(lambda: not freed._job, "its job goes on")
+    assert engine is not None
+    assert freed._engine() is None
+    shading.type = "RENDERED"
+    yield from viewport.until(lambda: viewport.samples() > 0, "the next shows nothing")
+    viewport.addon("engine.viewport")._forget_scenes()
+    yield from viewport.until(lambda: viewport.samples() > 0, "nothing is shown after an undo")

@@ -50,15 +50,20 @@ def show_real_time():
     show()
 
 
+def _shown():
+    """The Viewports of engines that Blender has."""
+    return [viewport for viewport in addon("engine.viewport")._all if viewport._engine()]
+
+
 def the_one():
     """The Viewport of the only 3D viewport."""
-    (found,) = tuple(addon("engine.viewport")._all)
+    (found,) = _shown()
     return found
 
 
 def real_time():
     """The RealtimeViewport of the only 3D viewport; None: it is not in real time."""
-    found = tuple(addon("engine.viewport")._all)
+    found = _shown()
     return found[0]._real_time if found else None
 
 
@@ -87,7 +92,7 @@ def shown_picture():
 
 def samples():
     """Of the picture on the screen; 0: there is none."""
-    found = tuple(addon("engine.viewport")._all)
+    found = _shown()
     return found[0]._job.picture.samples if found else 0
 
 

@@ -19,6 +19,7 @@ from ..export.viewport import viewport_frame
 from ..native import VelourError
 from ..realtime import UnshownError
 from . import viewport_clock
+from .engine_reference import engine_reference
 from .options import viewport_options
 from .realtime_viewport import RealtimeViewport
 from .refusal import Refusal
@@ -34,7 +35,7 @@ _all = weakref.WeakSet()
 
 class Viewport:
     def __init__(self, engine):
-        self._engine = weakref.ref(engine)
+        self._engine = engine_reference(engine)
         self._live = None  # LiveExport
         self._changes = Changes()  # that it has not taken up yet
         self._job = ViewportJob()
@@ -136,7 +137,9 @@ class Viewport:
     def turn(self):
         """Between redraws. False: there is nothing to wait for."""
         engine = self._engine()
-        if engine is None or not self._job:
+        if engine is None:
+            self._close_job()
+        if not self._job:
             return False
         if viewport_clock.is_paused():
             self.pause()

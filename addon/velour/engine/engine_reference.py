@@ -1,0 +1,24 @@
+"""The engine of a viewport, for as long as Blender has it."""
+
+import weakref
+
+
+def engine_reference(engine):
+    """A function: the engine, or None once Blender has freed it.
+
+    Its Python half may live on: in the frames of an exception that a log keeps, for one. Whatever is asked
+    of that raises ReferenceError.
+    """
+    found = weakref.ref(engine)
+
+    def living():
+        engine = found()
+        if engine is None:
+            return None
+        try:
+            engine.is_preview  # noqa: B018 - asks Blender
+        except ReferenceError:
+            return None
+        return engine
+
+    return living
