@@ -1,4 +1,4 @@
-"""A file that was saved in Blender 3.4, without its spot; the same picture in all Blenders."""
+"""A file of Blender 3.4 without its spot, of the IOR that it had; the same picture in all Blenders."""
 
 QUANTITY = (
     "a file of Blender 3.4: paint, metal, coat, sheen, glow, texture, auto smooth, area and point lamps"
@@ -9,3 +9,4 @@ def build(_folder):
     from support import older_file
 
     older_file.open_it()
+    older_file.use_index_of_old()

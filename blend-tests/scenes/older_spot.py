@@ -15,3 +15,4 @@ def build(_folder):
     from support import older_file
 
     older_file.open_it()
+    older_file.use_index_of_old()
