@@ -18,8 +18,7 @@ class OlderFile(BlenderTest):
     def setUp(self):
         super().setUp()
         bpy.ops.preferences.addon_enable(module="cycles")
-        older_file.open_it()
-        older_file.use_index_of_old()
+        older_file.open_with_old_index()
 
     def _renders(self):
         """[seeds x height x width x channels], of the frame without the spot."""
@@ -37,8 +36,7 @@ class OlderFile(BlenderTest):
         return judge.judge(ours, reference.read(REFERENCE, ours))
 
     def _refused_without(self, change, *arguments):
-        older_file.open_it()
-        older_file.use_index_of_old()
+        older_file.open_with_old_index()
         change(*arguments)
         bpy.context.scene.velour.samples = 16  # are enough for what is that far off
         self.assertFalse(self._verdict(self._renders()).agrees, (change.__name__, *arguments))
@@ -63,7 +61,6 @@ class OlderFile(BlenderTest):
         counts = "Specular IOR Level" in principled.inputs
         self.assertEqual(verdict.agrees, not counts, verdict)
         self.assertLess(verdict.percent, 1.5)
-        print(f"IOR: {verdict}")
 
     def test_all_that_is_in_it_counts(self):
         """What would have been lost on the way would not go unseen."""

@@ -8,5 +8,4 @@ QUANTITY = (
 def build(_folder):
     from support import older_file
 
-    older_file.open_it()
-    older_file.use_index_of_old()
+    older_file.open_with_old_index()

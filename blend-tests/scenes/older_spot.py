@@ -14,5 +14,4 @@ def meaning():
 def build(_folder):
     from support import older_file
 
-    older_file.open_it()
-    older_file.use_index_of_old()
+    older_file.open_with_old_index()

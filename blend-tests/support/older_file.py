@@ -18,11 +18,12 @@ def open_it():
     bpy.ops.wm.open_mainfile(filepath=str(BLEND), load_ui=False)
 
 
-def use_index_of_old():
+def open_with_old_index():
     """Since 4.0 the IOR of a Principled BSDF counts for what it reflects; before, all reflect as 1.5 does.
 
     Blender opens old files without a change: their IOR is 1.45 unless somebody set it.
     """
+    open_it()
     for material in bpy.data.materials:
         for node in material.node_tree.nodes if material.use_nodes else ():
             if "Specular IOR Level" in node.inputs:

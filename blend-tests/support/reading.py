@@ -12,7 +12,7 @@ from . import inputs, window
 _DATA = Path(__file__).resolve().parent.parent / "scenes/data"
 MODEL, TILES = _DATA / "paint.velour", _DATA / "weave.velour"
 LARGE = 100_000_000  # bytes
-_HELD_SHARE = 0.2  # that a turn may take from the main thread, of what reading at once takes from it
+_HELD_SHARE = 0.08  # that a turn may take from the main thread, of what reading at once takes from it
 
 
 def module(name):
