@@ -102,6 +102,65 @@ class Farm(FarmTest):
         scene.render.use_sequencer = False
         self.save_and_make("off")
 
+    def test_pictures_that_the_compositor_writes(self):
+        """The job does not look at them; parts would write them with some samples alone."""
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
+        scene = bpy.context.scene
+        if hasattr(scene, "compositing_node_group"):  # since Blender 5
+            tree = scene.compositing_node_group = bpy.data.node_groups.new("Comp", "CompositorNodeTree")
+        else:
+            scene.use_nodes = True
+            tree = scene.node_tree
+        inner = bpy.data.node_groups.new("Inner", "CompositorNodeTree")
+        node = inner.nodes.new("CompositorNodeOutputFile")
+        node.name = "Beside"
+        tree.nodes.new("CompositorNodeGroup").node_tree = inner
+        said = self.save_and_make("written")
+        self.assertIn("node 'Beside' writes pictures of its own, of which the job checks none", said)
+        said = self.save_and_make("shared", "--parts", "2", status=1)
+        self.assertIn("mute it, or leave --parts out", said)
+        node.mute = True
+        self.assertNotIn("Beside", self.save_and_make("muted", "--parts", "2"))
+
+    def test_a_noise_threshold_has_no_parts(self):
+        """Said before anything is submitted."""
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
+        bpy.context.scene.velour.use_noise_target = True
+        said = self.save_and_make("noisy", "--parts", "2", status=1)
+        self.assertIn("has a noise threshold, which looks at a whole picture", said)
+
+    def test_linked_libraries(self):
+        """Also what a library links: frames of another state of them are refused, and jobs without them."""
+        inner, outer = self.shots / "sets/inner.blend", self.shots / "outer.blend"
+        inner.parent.mkdir()
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
+        self._save_library(inner, bpy.data.meshes.new("Shared"))
+        mesh = self._link(inner, "meshes", "Shared")
+        self._save_library(outer, bpy.data.objects.new("Prop", mesh))
+        bpy.context.scene.collection.objects.link(self._link(outer, "objects", "Prop"))
+        self.save_and_make("linked")
+        self.assertEqual(set(self.saved_job()["libraries"]), {"outer.blend", "sets/inner.blend"})
+        self.assertEqual(self.node("--frames", "1").returncode, 0)
+        with open(inner, "ab") as file:
+            file.write(b"\0")
+        done = self.node("--frames", "2")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn(f"{inner} changed since the job was made", done.stdout)
+        inner.unlink()
+        done = self.farm(self.blend, "--no-submit", "--output", self.folder / "without")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn(f"the library {inner} cannot be read", done.stdout)
+
+    def _save_library(self, path, block):
+        """A file of this data-block, which the .blend that is open then has no more."""
+        bpy.data.libraries.write(str(path), {block}, path_remap="RELATIVE_ALL")
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
+
+    def _link(self, path, kind, name):
+        with bpy.data.libraries.load(str(path), link=True, relative=True) as (_found, wanted):
+            setattr(wanted, kind, [name])
+        return getattr(bpy.data, kind)[name]
+
     def test_another_blend(self):
         """What is half done is not finished from another state of the scene."""
         with open(self.blend, "ab") as file:

@@ -32,6 +32,17 @@ class FarmEnds(FarmTest):
         self.assertGreaterEqual(self.first_sample(1), end)
         self.assert_like_one_run(0)
 
+    def test_a_frame_that_is_ended_while_it_is_written(self):
+        """It is done, and no other begins."""
+        self.job_of("written", 64)
+        told = "def _forget_written(*_args):\n"
+        kill = "    import os, signal, time; os.kill(os.getppid(), signal.SIGTERM); time.sleep(1)\n"
+        docs = '    """After Blender wrote the frame: a crash before that has lost nothing."""\n'
+        ended = self.another_stage("writes", "engine/frame_parts.py", told + docs, told + kill)
+        done = self.node("--frames", "1-2", environment=ended)
+        self.assertEqual(done.returncode, 3, done.stdout)
+        self.assertEqual(self.status()[1].splitlines()[0], "not done yet: 2-3")
+
     def test_a_frame_out_of_time_goes_on(self):
         """Its own limit: it has not failed, and further runs get it done, to the bits of one run."""
         said = self.job_of("limited", 3, time_limit=_ONE_PASS)

@@ -2,6 +2,7 @@
 
 import re
 import resource
+import signal
 
 import bpy
 import numpy as np
@@ -26,6 +27,13 @@ def ended(engine, delivery, job, begin, end):
     follow(engine, delivery, job, begin, end)
 
 final._follow = ended
+"""
+# Likewise, once the last sample is rendered.
+_END_WRITING = """
+import os, signal
+import bpy
+
+bpy.app.handlers.render_post.append(lambda *_: os.kill(os.getpid(), signal.SIGTERM))
 """
 
 
@@ -57,7 +65,7 @@ class FrameParts(BlenderTest):
         output = self.folder / f"{name}_####"
         done = run_blender(blend, *before, "-E", "VELOUR", "-o", output, "-f", 1, "--", *options)
         self.assertEqual(done.returncode, status, done.stdout)
-        self.assertEqual(self._path(name).exists(), status == 0)
+        self.assertEqual(self._path(name).exists(), status in (0, -signal.SIGTERM))
         return done.stdout
 
     def _path(self, name):
@@ -123,6 +131,33 @@ class FrameParts(BlenderTest):
         self.assertEqual(self._files(), [f"0001.0-{found[1]}.exr", "0001.0-4000.exr"])
         said = self._render(blend, "ended", "--velour-parts", self.parts)
         self._assert_same("ended", "whole", 0)
+        self.assertEqual(self._files(), [])
+
+    def test_sigterm_while_blender_composites_and_writes(self):
+        """All is rendered, and nothing of it kept yet: Blender writes the frame, and ends then."""
+        blend = self._save()
+        command = ("--velour-parts", self.parts)
+        self._render(blend, "late", *command, before=("--python-expr", _END_WRITING), status=-signal.SIGTERM)
+        self._render(blend, "whole")
+        self._assert_same("late", "whole", 0)
+        # Of two frames the second does not begin.
+        script = (*("--python-expr", _END_WRITING), "-E", "VELOUR", "-o", self.folder / "anim_####")
+        done = run_blender(blend, *script, "-s", 1, "-e", 2, "-a", "--", *command)
+        self.assertEqual(done.returncode, -signal.SIGTERM, done.stdout)
+        self.assertEqual([path.name for path in self.folder.glob("anim_*")], ["anim_0001.exr"])
+
+    def test_parts_stay_where_they_are_asked_to(self):
+        blend = self._save()
+        command = ("--velour-parts", self.parts, "--velour-keep-parts")
+        self._render(blend, "part", *command, "--velour-samples", "0:8")
+        self._render(blend, "whole", *command)
+        self.assertEqual(self._files(), ["0001.0-8.exr"])
+
+    def test_a_long_name(self):
+        """Signs that become several bytes; file systems have 255 of a name."""
+        blend = self._save(name="布" * 30)
+        self._render(blend, "part", "--velour-parts", self.parts, "--velour-samples", "0:8")
+        self._render(blend, "merged", "--velour-parts", self.parts)
         self.assertEqual(self._files(), [])
 
     def test_what_was_not_written_is_kept(self):

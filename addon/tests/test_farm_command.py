@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 from conftest import ROOT  # noqa: F401 - puts scripts/lib on the path
 from farm import command, job
@@ -10,7 +12,8 @@ from farm import command, job
 _BLENDER = """#!/usr/bin/python3
 import json, sys
 with open(sys.argv[-1], "w") as file:
-    json.dump({"velour": "0.1.0", "models": {}, "frames": list(range(1, 101)), "notes": []}, file)
+    found = {"velour": "0.1.0", "blender": "3.4.1", "models": {}, "libraries": [], "notes": []}
+    json.dump({**found, "frames": list(range(1, 101))}, file)
 """
 
 
@@ -73,3 +76,45 @@ def test_a_slurm_that_does_not_answer(farm, tmp_path):
     assert "Unable to contact controller" in said
     assert f"remove {folder / 'slurm.id'}" in said
     assert _files(folder) == before
+
+
+@pytest.mark.parametrize("options", [("--scripts",), ("--preferences",), ("--parts", "2")])
+def test_another_way_of_rendering_is_another_job(farm, tmp_path, options):
+    farm("--no-submit")
+    before = _files(tmp_path / "frames/farm")
+    status, said = farm("--no-submit", *options)
+    assert status == 1
+    assert (
+        f"is of another {'number of parts' if len(options) > 1 else f'setting of {options[0]}'}: name" in said
+    )
+    assert _files(tmp_path / "frames/farm") == before
+
+
+def test_a_blend_is_known_by_what_is_in_it(farm, tmp_path):
+    """Not by its date, which copies change."""
+    blend = tmp_path / "shot.blend"
+    farm("--no-submit")
+    os.utime(blend, (1, 1))
+    assert farm("--no-submit")[0] == 0
+    blend.write_text("another scene")
+    status, said = farm("--no-submit")
+    assert (status, "is of another .blend" in said) == (1, True)
+
+
+@pytest.mark.parametrize("name", ['a "quote"', "{shot}", "back\\slash"])
+def test_paths_that_engines_read_otherwise(farm, tmp_path, name):
+    status, said = farm("--no-submit", "--output", str(tmp_path / name))
+    assert (status, "cannot be an --output" in said) == (1, True)
+    assert not (tmp_path / name).exists()
+
+
+def test_a_frame_that_fails_again_at_once_is_told(farm, tmp_path):
+    """Its first task may have failed before sbatch is back."""
+    farm("--no-submit")
+    notes = tmp_path / "frames/farm/failed"
+    (notes / "0001.txt").write_text("An attempt before.")
+    (notes / "0002.txt").write_text("An attempt before.")
+    _program(tmp_path / "programs/sbatch", f"#!/bin/sh\necho No lamp. > '{notes}/0002.txt'\necho 17\n")
+    assert farm()[0] == 0
+    assert [path.name for path in notes.iterdir()] == ["0002.txt"]
+    assert (notes / "0002.txt").read_text() == "No lamp.\n"

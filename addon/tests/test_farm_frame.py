@@ -6,24 +6,32 @@ import os
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import ROOT
-from farm import blender, frame, job, status
+from farm import blender, frame, job, sources, status
 
-_MODELS = {"velour.version": "0.1.0", "velour.models": "{}"}
+_STAMPS = {"velour.version": "0.1.0", "velour.blender": "3.4.1", "velour.models": "{}"}
+# What a Blender does that is none: out is where its picture goes, without number and extension.
+_OUT = 'while [ $# -gt 0 ]; do [ "$1" = -o ] && out=${2%%#*}; shift; done\n'
+_PROGRAM = "import sys; from farm import frame; sys.exit(frame.main(sys.argv[1:]))"
 
 
 @pytest.fixture
 def task(tmp_path) -> job.Job:
     """A job of two frames. Its Blender is what _blender_that() makes."""
+    blend = tmp_path / "shot.blend"
+    blend.write_text("a scene")
     made = job.Job(
-        blend=str(tmp_path / "shot.blend"),
-        blend_state=[1, 2],
+        blend=str(blend),
+        blend_hash=sources.sha256(blend),
+        libraries={},
         name="shot",
         format="OPEN_EXR",
         velour="0.1.0",
+        blender_version="3.4.9",
         models={},
         frames=[1, 2],
         tasks=2,
@@ -118,6 +126,16 @@ def test_nothing_is_started_after_sigterm(task, monkeypatch, tmp_path):
 
 
 @pytest.fixture
+def good(tmp_path) -> Path:
+    """A picture of any frame of the job."""
+    from velour.native import images
+
+    path = tmp_path / "good.exr"
+    images.write_part(path, np.ones((4, 6, 4), np.float32), images.Frame(6, 4), _STAMPS)
+    return path
+
+
+@pytest.fixture
 def shared(task):
     """A frame whose parts are all there: any task may make the picture."""
     task.parts = 2
@@ -128,27 +146,87 @@ def shared(task):
     return task
 
 
-def test_two_make_the_picture(shared, tmp_path):
-    """The other one was first: its Velour has removed the film, and it is still looking at its picture."""
-    from velour.native import images
-
-    good = tmp_path / "good.exr"
-    images.write_part(good, np.ones((4, 6, 4), np.float32), images.Frame(6, 4), _MODELS)
-    name = f"(sleep 1; mv '{good}' '{shared.picture(1)}') &"
-    _blender_that(shared, f"rm '{shared.film(1)}'/*.exr\n{name}\necho 'Error: shot.0-64.exr is gone'; exit 1")
+def test_two_make_the_picture(shared, good):
+    """The other one was first: it named its picture, and cleared away what there was of the frame."""
+    taken = f"mv '{good}' '{shared.picture(1)}'; rm -r '{shared.film(1)}'"
+    _blender_that(shared, f"{taken}; echo 'Error: shot.0-64.exr is gone'; exit 1")
     assert _run(shared, "--frames", "1", "--part", "2") == frame.DONE
     assert status.look(shared).done == [1]
     assert list((shared.folder / "failed").iterdir()) == []
 
 
-def test_another_run_that_was_killed(shared, monkeypatch):
-    """It had removed the film, and left no picture: the frame is left, and begins anew."""
-    monkeypatch.setattr(frame, "_ANOTHER_SECONDS", 0)
-    _blender_that(shared, f"rm '{shared.film(1)}'/*.exr; echo 'Error: shot.0-64.exr is gone'; exit 1")
-    assert _run(shared, "--frames", "1", "--part", "2") == frame.UNFINISHED
-    assert status.look(shared).left == [1, 2]
-    _blender_that(shared, "echo 'Error: no space'; exit 1")
+def test_film_stays_until_the_picture_is_looked_at(shared):
+    """A full disk, of which Blender says nothing."""
+    _blender_that(shared, "exit 0")
     assert _run(shared, "--frames", "1", "--part", "2") == frame.FAILED
+    assert "--velour-keep-parts" in blender.render(shared, job.Unit(1), shared.partial(1) / "picture_")
+    assert (shared.film(1) / "shot.0-64.exr").exists()
+
+
+def test_ended_while_blender_writes(task, good):
+    """The picture is whole: it is taken, and nothing else begins."""
+    _blender_that(task, f'{_OUT}cp "{good}" "$out"0001.exr; kill -TERM $PPID; exec sleep 60')
+    done = subprocess.run(
+        [sys.executable, "-c", _PROGRAM, task.folder / "job.json", "--frames", "1-2"],
+        env={**os.environ, "PYTHONPATH": str(ROOT / "scripts/lib")},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == frame.UNFINISHED, done.stderr
+    now = status.look(task)
+    assert (now.done, now.left) == ([1], [2])
+
+
+def test_a_blend_that_changed(task, good, capsys):
+    """Before the frame, and while it is rendered: neither becomes part of the sequence."""
+    blend = Path(task.blend)
+    picture = f'{_OUT}cp "{good}" "$out"0001.exr'
+    _blender_that(task, f'{picture}; echo more >> "{blend}"')
+    assert _run(task, "--frames", "1") == frame.FAILED
+    assert f"{blend} changed since the job was made" in capsys.readouterr().err
+    _blender_that(task, f'{picture}; touch "{task.folder / "started"}"')
+    assert _run(task, "--frames", "1") == frame.FAILED
+    assert not (task.folder / "started").exists()
+    blend.write_text("a scene")
+    assert _run(task, "--frames", "1") == frame.DONE
+    blend.unlink()
+    assert "cannot be read (No such file or directory)" in sources.changed(task)
+
+
+def test_a_library_that_changed(task):
+    """Those beside the .blend are looked for beside the node's."""
+    library = Path(task.blend).parent / "props/lib.blend"
+    library.parent.mkdir()
+    library.write_text("props")
+    absolute = Path(task.blend).with_name("set.blend")
+    absolute.write_text("a set")
+    task.libraries = sources.libraries(task.blend, ["props/lib.blend", str(absolute)])
+    assert sources.changed(task) == ""
+    library.write_text("others")
+    assert f"{library} changed" in sources.changed(task)
+    with pytest.raises(job.JobError, match=r"gone\.blend cannot be read .* bring it back"):
+        sources.libraries(task.blend, ["gone.blend"])
+
+
+def test_a_failure_that_cannot_be_noted(task, monkeypatch, capsys):
+    """The task's other frames are rendered all the same."""
+
+    def full(_path, _text):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(job, "replace_text", full)
+    _blender_that(task, "echo Error: no lamp; exit 1")
+    assert frame.main([str(task.folder / "job.json"), "--frames", "1-2"]) == frame.FAILED
+    said = capsys.readouterr().err
+    assert said.count("no lamp") == 2
+    assert said.count("cannot be written (No space left on device)") == 2
+
+
+def test_another_blender(task, good):
+    """Corrections of a release are no other one."""
+    assert frame.problem(task, good) == ""
+    task.blender_version = "4.3.2"
+    assert frame.problem(task, good) == "Blender 3.4.1 rendered it, the job is for 4.3.2"
 
 
 def test_nodes_with_the_same_process_id(tmp_path, monkeypatch):

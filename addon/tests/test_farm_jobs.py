@@ -9,7 +9,7 @@ import sys
 
 import pytest
 from conftest import ROOT
-from farm import blender, flamenco, frame, openjd, program, ranges, slurm, status
+from farm import blender, flamenco, frame, openjd, program, ranges, slurm, sources, status
 from farm.job import Job, JobError, Unit, load
 
 TOOLS = ROOT / "build/tools/bin/python"
@@ -17,12 +17,16 @@ TOOLS = ROOT / "build/tools/bin/python"
 
 @pytest.fixture
 def job(tmp_path) -> Job:
+    blend = tmp_path / "a shot.blend"
+    blend.write_text("a scene")
     made = Job(
-        blend=str(tmp_path / "a shot.blend"),
-        blend_state=[1, 2],
+        blend=str(blend),
+        blend_hash=sources.sha256(blend),
+        libraries={},
         name="a shot",
         format="OPEN_EXR",
         velour="0.1.0",
+        blender_version="3.4.1",
         models={"paint": ["12"]},
         frames=[1, 2, 3, 7],
         tasks=2,
@@ -37,6 +41,8 @@ def job(tmp_path) -> Job:
 def test_ranges():
     assert ranges.parse("7, 1-3,20-24:2,2") == [1, 2, 3, 7, 20, 22, 24]
     assert ranges.words([1, 2, 3, 7, 20, 22, 24]) == "1-3,7,20,22,24"
+    assert ranges.words([1, 2, 3, 7, 20, 22, 24], steps=True) == "1-3,7,20-24:2"
+    assert ranges.words([1, 3, 4, 9], steps=True) == "1,3-4,9"
     for text in ("", "a", "3-1", "1-", "-1", "1:2", "1-5:0", "1048575"):
         with pytest.raises(ValueError, match="frame"):
             ranges.parse(text)
@@ -62,7 +68,8 @@ def test_the_command_of_a_frame(job):
     assert max(before) < command.index("--addons") < command.index(job.blend) < command.index("-E")
     own = command.index("--")
     assert command[own - 2 : own] == ["-f", "7"]
-    assert command[own + 1 :] == ["--velour-parts", str(job.film(7)), "--velour-memory", "700M"]
+    films = ["--velour-parts", str(job.film(7)), "--velour-keep-parts"]
+    assert command[own + 1 :] == [*films, "--velour-memory", "700M"]
     job.preferences, job.scripts = True, True
     command = blender.start(job)
     assert "--factory-startup" not in command
@@ -296,6 +303,19 @@ def test_openjd_parts(job, openjd_model):
     made = json.loads(done.stdout)
     assert sorted(zip(made["frames"], made["parts"], strict=True)) == job.units(job.frames)
     assert made["args"][made["args"].index("--part") + 1] == "{{Task.Param.Part}}"
+
+
+def test_openjd_of_long_shots(job, openjd_model, capsys):
+    """Every second frame is a range with a step; what OpenJD's text cannot hold is not written, and said."""
+    job.frames, job.name = list(range(1, 1001, 2)), "a {{shot}}\tof night"
+    openjd.write(job)
+    done = _openjd(job.folder / openjd.FILE)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["frames"] == job.frames
+    job.frames = [number for number in range(1000) if number % 7 in (0, 1, 3)]
+    openjd.write(job)
+    assert not (job.folder / openjd.FILE).exists()
+    assert "OpenJD takes no list of frames that long" in capsys.readouterr().out
 
 
 def _filled(text, values):

@@ -82,9 +82,12 @@ class FarmTest(BlenderTest):
         whole = images.read(self.picture(1))
         self.assertLessEqual(np.abs(shared - whole).max(), tolerance * whole.max())
 
+    def saved_job(self):
+        """job.json as it is."""
+        return json.loads((self.output / "farm/job.json").read_text())
+
     def edit_job(self, **changes):
-        path = self.output / "farm/job.json"
-        path.write_text(json.dumps({**json.loads(path.read_text()), **changes}))
+        (self.output / "farm/job.json").write_text(json.dumps({**self.saved_job(), **changes}))
 
     def another_stage(self, name, file, before, after):
         """Variables for a copy of the staged add-on, in which `file` reads otherwise."""

@@ -8,6 +8,7 @@ up. Its header says what it is a part of, as picture_parts.py has it.
 from __future__ import annotations
 
 import glob
+import hashlib
 import json
 from itertools import pairwise
 from pathlib import Path
@@ -22,17 +23,25 @@ from . import picture_parts
 from .picture_parts import Part, Range
 
 _COLOURS = 4
+_LONGEST_NAME = 200  # of the 255 bytes that most file systems have
 
 
 class FilmParts:
     """Those of one frame's view layer within a range of samples."""
 
     def __init__(
-        self, folder: Path, name: str, made: dict, size: tuple[int, int], asked: Range | None = None
+        self,
+        folder: Path,
+        name: str,
+        made: dict,
+        size: tuple[int, int],
+        asked: Range | None = None,
+        stay: bool = False,
     ):
         """`name`: what its files' names begin with; `made`: all that the frame depends on, spp and split
-        among it; `asked`: all samples unless given. Raises a sentence where a file is of another frame."""
-        self._folder, self._name = folder, quote(name, safe="")
+        among it; `asked`: all samples unless given; `stay`: who asks for the frame removes the files.
+        Raises a sentence where a file is of another frame."""
+        self._folder, self._name, self.stay = folder, _file_name(name), stay
         self._made, self._size = json.loads(json.dumps(made)), size
         self.asked = asked or (0, made["spp"])
         self._check_asked()
@@ -131,6 +140,14 @@ class FilmParts:
             raise refuse(f"{text} go beyond {spp}, those of the scene; raise them there, or ask for fewer.")
         if any(at % split and at != spp for at in (begin, end)):
             raise refuse(f"{text} must begin and end at multiples of {split}, which share a camera ray.")
+
+
+def _file_name(name: str) -> str:
+    """Quoted, and no longer than file systems allow together with what follows it."""
+    quoted = quote(name, safe="")
+    if len(quoted) <= _LONGEST_NAME:
+        return quoted
+    return f"{quoted[: _LONGEST_NAME - 17]}-{hashlib.sha256(name.encode()).hexdigest()[:16]}"
 
 
 def _opened(path: Path) -> Part | None:

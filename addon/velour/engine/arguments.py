@@ -47,17 +47,19 @@ def _samples(text):
 
 
 def arguments():
-    """`parts`, `samples`, `memory`; each None where it is not given, and all of them with a window."""
+    """`parts`, `keep_parts`, `samples`, `memory`; None or False where not given, and with a window."""
     parser = _Parser(prog="blender", add_help=False, allow_abbrev=False)
     add = parser.add_argument
     add("--velour-parts", dest="parts", type=Path)
+    add("--velour-keep-parts", dest="keep_parts", action="store_true")
     add("--velour-samples", dest="samples", type=_samples)
     add("--velour-memory", dest="memory", type=numbers.size_in_bytes)
     behind = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv and bpy.app.background else []
     given, others = parser.parse_known_args(behind)
     unknown = next((each for each in others if each.startswith(_PREFIX)), None)
     if unknown:
-        raise refuse(f"After --: there is no option {unknown}; --velour-parts, -samples and -memory are.")
+        names = "--velour-parts, -keep-parts, -samples and -memory"
+        raise refuse(f"After --: there is no option {unknown}; {names} are.")
     if given.samples and not given.parts:
         raise refuse("After --: --velour-samples needs a folder to keep them in: --velour-parts FOLDER.")
     return given

@@ -7,13 +7,14 @@ import bpy
 
 from ..core.files import sha256
 from ..core.film_parts import FilmParts
-from ..core.stopping import stopping
+from ..core.stopping import Stopping
 from ..native.errors import refuse
 from ..native.version import version_text
 from .arguments import Share
 
 _ELSEWHERE = {"threads", "time_limit", "cache_folder"}  # options that say nothing of the picture
 _superfluous = []  # files of a frame that is about to be written
+_stopping = Stopping()  # until Blender has written the frame
 
 
 class UnfinishedError(Exception):
@@ -45,7 +46,7 @@ def frame_parts(given, depsgraph, view, options, models, shown):
     asked = given.samples
     if isinstance(asked, Share):
         asked = asked.of(made["spp"], made["split"])
-    return FilmParts(given.parts, name, made, (view.width, view.height), asked)
+    return FilmParts(given.parts, name, made, (view.width, view.height), asked, given.keep_parts)
 
 
 def _blend_hash():
@@ -64,17 +65,22 @@ def film(depsgraph, make_job, options, parts, follow):
             follow(job.start(), 0, options["spp"])
             yield job
         return
-    *gaps, last = parts.gaps or [None]
-    for gap in gaps:
-        with _job(make_job, options, gap) as job:
-            _render(job, parts, gap, follow)
-            parts.keep(job, gap, gap[1])
-    with _job(make_job, options, last or parts.asked) as job:
-        if last:
-            _render(job, parts, last, follow)
-        parts.complete(job, last)
-        yield job
-        _keep(parts, job, depsgraph.scene)
+    _stopping.hold()
+    try:
+        *gaps, last = parts.gaps or [None]
+        for gap in gaps:
+            with _job(make_job, options, gap) as job:
+                _render(job, parts, gap, follow)
+                parts.keep(job, gap, gap[1])
+        with _job(make_job, options, last or parts.asked) as job:
+            if last:
+                _render(job, parts, last, follow)
+            parts.complete(job, last)
+            yield job
+            _keep(parts, job, depsgraph.scene)
+    except BaseException:
+        _stopping.release()
+        raise
 
 
 def _keep(parts, job, scene):
@@ -82,7 +88,7 @@ def _keep(parts, job, scene):
     files = parts.files
     if not parts.is_whole or _layer_count(scene) > 1:
         files = [parts.keep_all(job)]
-    if parts.is_whole:
+    if parts.is_whole and not parts.stay:
         _superfluous.extend(files)
 
 
@@ -96,7 +102,7 @@ def _job(make_job, options, gap):
 
 def _render(job, parts, gap, follow):
     parts.begin(job, gap)
-    with stopping(job.start()):
+    with _stopping.rendering(job.start()):
         follow(job, *gap)
     report = job.report()
     end = gap[0] + report["spp"]
@@ -115,6 +121,7 @@ def _render(job, parts, gap, follow):
 def _keep_unwritten(*_args):
     """Before a frame: the one before may have ended without a file."""
     _superfluous.clear()
+    _stopping.release(obey=True)
 
 
 @bpy.app.handlers.persistent
@@ -123,13 +130,24 @@ def _forget_written(*_args):
     for path in _superfluous:
         path.unlink(missing_ok=True)
     _superfluous.clear()
+    _stopping.release(obey=True)
+
+
+@bpy.app.handlers.persistent
+def _obey(*_args):
+    """After what Blender was told to render, written or not."""
+    _stopping.release(obey=True)
 
 
 def attach():
     bpy.app.handlers.render_pre.append(_keep_unwritten)
     bpy.app.handlers.render_write.append(_forget_written)
+    bpy.app.handlers.render_complete.append(_obey)
+    bpy.app.handlers.render_cancel.append(_obey)
 
 
 def detach():
+    bpy.app.handlers.render_cancel.remove(_obey)
+    bpy.app.handlers.render_complete.remove(_obey)
     bpy.app.handlers.render_write.remove(_forget_written)
     bpy.app.handlers.render_pre.remove(_keep_unwritten)

@@ -2,6 +2,8 @@
 
 import json
 
+import bpy
+
 from ..native.version import version_text
 
 
@@ -25,6 +27,7 @@ class Stamps:
         self._models[layer] = models
         in_all = {name: hashes for layers in self._models.values() for name, hashes in layers.items()}
         result.stamp_data_add_field("velour.version", version_text())
+        result.stamp_data_add_field("velour.blender", ".".join(map(str, bpy.app.version)))
         result.stamp_data_add_field("velour.models", json.dumps(in_all, sort_keys=True))
         if part:
             result.stamp_data_add_field("velour.samples", f"{part[0]}:{part[1]}")

@@ -37,7 +37,8 @@ def render(job: Job, unit: Unit, picture: Path) -> list[str]:
     """
     command = [*start(job), "-E", "VELOUR", "-t", str(job.threads), "-o", f"{picture}####"]
     command += ["-F", job.format, "-x", "1", "-f", str(unit.frame)]
-    own = ["--velour-parts", str(job.film(unit.frame))]
+    # Nothing is lost of a picture that Blender could not write whole: who looks at it removes the film.
+    own = ["--velour-parts", str(job.film(unit.frame)), "--velour-keep-parts"]
     if unit.part:
         own += ["--velour-samples", f"{unit.part}/{job.parts}"]
     if job.memory_mib:

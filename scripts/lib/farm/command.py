@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import re
 import sys
 from pathlib import Path
@@ -61,12 +62,19 @@ def _submit(given: argparse.Namespace) -> int:
     if given.no_submit:
         print(f"The job is in {found.folder}.")
         return 0
+    old = {path: path.stat().st_mtime_ns for frame in now.failed for path in found.failures(frame)}
     number = slurm.submit(found, left, given.sbatch)
-    for frame in now.failed:
-        for path in found.failures(frame):
-            path.unlink(missing_ok=True)
+    _forget(old)
     print(f"Slurm's job {number}; how it stands: scripts/farm --status {found.output}")
     return 0
+
+
+def _forget(notes: dict[Path, int]) -> None:
+    """Failures that are to be rendered again, by when they were noted: some may have failed again by now."""
+    for path, noted in notes.items():
+        with contextlib.suppress(FileNotFoundError):
+            if path.stat().st_mtime_ns == noted:
+                path.unlink()
 
 
 def _say_status(found: job.Job) -> int:

@@ -78,9 +78,11 @@ def check_whole(path: str | os.PathLike) -> None:
     with open(path, "rb") as file:
         parts = _parts(file)
         tables = [struct.unpack(f"<{part.chunks}Q", _read(file, 8 * part.chunks)) for part in parts]
-        for number, (part, offsets) in enumerate(zip(parts, tables, strict=True)):
+        for number, part in enumerate(parts):
             expected = _chunk_starts(part)
-            found = {_check_chunk(file, offset, size, len(parts) > 1, number, part) for offset in offsets}
+            found = {
+                _check_chunk(file, offset, size, len(parts) > 1, number, part) for offset in tables[number]
+            }
             if found != expected:
                 raise ExrError("scanlines are missing")
 

@@ -30,7 +30,7 @@ const JOB_TYPE = {
         { key: "blendfile", type: "string", required: true, visible: "web",
           description: "Path of the .blend" },
         { key: "python", type: "string", default: "python3", visible: "submission",
-          description: "Python 3.10 or newer of the workers" },
+          description: "Python 3.9 or newer of the workers" },
     ]
 };
 

@@ -12,14 +12,12 @@ import json
 import os
 import shutil
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
-from . import blender, exr, job, ranges
+from . import blender, exr, job, ranges, sources
 
 DONE, FAILED, UNFINISHED = 0, 1, 3  # exit statuses
-_ANOTHER_SECONDS = 60  # for another run to end Blender, and to look at its picture
 _BETTER_FIRST = (DONE, UNFINISHED, FAILED)
 
 
@@ -115,17 +113,25 @@ def _attempt(task: job.Job, unit: job.Unit, render: Callable[[job.Job, job.Unit,
     if left:
         task.failure(unit).unlink(missing_ok=True)  # of an attempt before
         return UNFINISHED
-    task.failure(unit).parent.mkdir(exist_ok=True)
-    job.replace_text(task.failure(unit), sentence + "\n")
+    _note(task.failure(unit), sentence)
     return FAILED
+
+
+def _note(path: Path, sentence: str) -> None:
+    """What keeps a picture from being written, such as a full disk, may keep its failure from it, too."""
+    try:
+        path.parent.mkdir(exist_ok=True)
+        job.replace_text(path, sentence + "\n")
+    except OSError as error:
+        print(f"farm: {path} cannot be written ({error.strerror})", file=sys.stderr, flush=True)
 
 
 def _render(task: job.Job, unit: job.Unit, path: Path) -> str:
     """What went wrong, or ""."""
-    wrong = _blender(task, unit, path)
+    picture = Path(f"{path}{unit.frame:04d}.exr")
+    wrong = _blender(task, unit, path, lambda: not problem(task, picture))
     if wrong:
         return wrong
-    picture = Path(f"{path}{unit.frame:04d}.exr")
     wrong = problem(task, picture)
     if wrong:
         return f"the picture is not counted as done: {wrong}; {task.log(unit)} has what Blender said."
@@ -136,40 +142,32 @@ def _render(task: job.Job, unit: job.Unit, path: Path) -> str:
 
 def _render_part(task: job.Job, unit: job.Unit, path: Path) -> str:
     """Likewise. What counts is the film; the picture is held to the same as others, and forgotten."""
-    wrong = _blender(task, unit, path)
+    picture = Path(f"{path}{unit.frame:04d}.exr")
+    wrong = _blender(task, unit, path, lambda: not _problem(task, picture))
     if wrong:
         return wrong
-    wrong = _problem(task, Path(f"{path}{unit.frame:04d}.exr"))
+    wrong = _problem(task, picture)
     if wrong:
         return f"the part is not counted as done: {wrong}; {task.log(unit)} has what Blender said."
     task.part_done(unit).touch()
     return ""
 
 
-def _blender(task: job.Job, unit: job.Unit, path: Path) -> str:
-    log, had_film = task.log(unit), _has_film(task, unit)
+def _blender(task: job.Job, unit: job.Unit, path: Path, is_good: Callable[[], bool]) -> str:
+    """What went wrong, or ""; `is_good()` says whether the picture is as it should be."""
+    if wrong := sources.changed(task):
+        return wrong
+    log = task.log(unit)
     status = blender.execute(blender.render(task, unit, path), log)
     if not status:
-        return ""
+        return sources.changed(task)
     if blender.stopped.is_set():
+        if is_good():  # the signal came while Blender wrote it, and ended Blender then
+            return sources.changed(task)
         raise UnfinishedError("ended by SIGTERM; the next run goes on from there")
     if blender.ran_out_of_time(log):
         raise UnfinishedError("ended by the .blend's own time limit; the next run goes on from there")
-    if had_film and not _has_film(task, unit):
-        _wait_for_another(task, unit)
-        raise UnfinishedError("another run finished the frame and took its film, but there is no picture")
     return f"{blender.ending(status, log)}; {log} has all of it."
-
-
-def _has_film(task: job.Job, unit: job.Unit) -> bool:
-    return any(task.film(unit.frame).glob("*.exr"))
-
-
-def _wait_for_another(task: job.Job, unit: job.Unit) -> None:
-    """Its Velour removes the film as soon as Blender has written; its picture is looked at, then named."""
-    end = time.monotonic() + _ANOTHER_SECONDS
-    while problem(task, task.picture(unit.frame)) and time.monotonic() < end and not blender.stopped.is_set():
-        time.sleep(1)
 
 
 def problem(task: job.Job, picture: Path) -> str:
@@ -185,8 +183,11 @@ def _not_all_samples(picture: Path) -> str:
 def _problem(task: job.Job, picture: Path) -> str:
     """Of a picture that may have some samples alone."""
     try:
-        return _another_velour(task, exr.text_attribute(picture, "velour.version")) or (
-            _other_models(task, exr.text_attribute(picture, "velour.models")) or _not_whole(picture)
+        return (
+            _another_velour(task, exr.text_attribute(picture, "velour.version"))
+            or _another_blender(task, exr.text_attribute(picture, "velour.blender"))
+            or _other_models(task, exr.text_attribute(picture, "velour.models"))
+            or _not_whole(picture)
         )
     except FileNotFoundError:
         return "there is none"
@@ -200,6 +201,12 @@ def _another_velour(task: job.Job, version: str | None) -> str:
     if version != task.velour:
         return f"Velour {version} rendered it, the job is for {task.velour}"
     return ""
+
+
+def _another_blender(task: job.Job, version: str | None) -> str:
+    """The third number is of corrections alone."""
+    series, asked = (str(text).split(".")[:2] for text in (version, task.blender_version))
+    return "" if series == asked else f"Blender {version} rendered it, the job is for {task.blender_version}"
 
 
 def _other_models(task: job.Job, text: str | None) -> str:

@@ -1,6 +1,6 @@
 """Runs in Blender with a .blend open: what a job has to know of it, as JSON.
 
-Arguments after "--": the add-on's module, the file to write.
+Arguments after "--": the add-on's module, the number of parts of a frame, the file to write.
 """
 
 import importlib
@@ -14,9 +14,14 @@ _SEQUENCER = (
     "scene '{scene}' puts out its sequencer (strip '{strip}'), whose pictures do not say what rendered them;"
     " switch off Output > Post Processing > Sequencer, and save the .blend."
 )
+_NOISE = (
+    "scene '{scene}' has a noise threshold, which looks at a whole picture; switch it off, and save the"
+    " .blend, or leave --parts out."
+)
+_FILE_OUTPUT = "the compositor's node '{node}' writes pictures of its own"
 
 
-def look(addon):
+def look(addon, parts):
     if addon not in sys.modules:
         return {
             "error": f"there is no add-on {addon!r} in this Blender; install it, or name it with --addon."
@@ -25,13 +30,23 @@ def look(addon):
     strip = output_strip(scene)
     if strip:
         return {"error": _SEQUENCER.format(scene=scene.name, strip=strip.name)}
+    if parts > 1 and scene.velour.use_noise_target:
+        return {"error": _NOISE.format(scene=scene.name)}
+    node = file_output(scene)
+    if parts > 1 and node:
+        wrong = _FILE_OUTPUT.format(node=node.name)
+        return {"error": f"{wrong}, and would of some samples alone; mute it, or leave --parts out."}
     hashes = importlib.import_module(f"{addon}.export.model_hashes").model_hashes
     models = {material.name_full: hashes(material) for material in bpy.data.materials}
     return {
         "velour": importlib.import_module(f"{addon}.native.version").version_text(),
         "models": {name: found for name, found in models.items() if found is not None},
         "frames": list(range(scene.frame_start, scene.frame_end + 1, scene.frame_step)),
-        "notes": notes(scene.velour),
+        "blender": ".".join(map(str, bpy.app.version)),
+        "libraries": [
+            library.filepath.removeprefix("//") for library in bpy.data.libraries if is_file(library)
+        ],
+        "notes": notes(scene.velour, node),
     }
 
 
@@ -44,7 +59,39 @@ def output_strip(scene):
     return next((strip for strip in strips if strip.type != "SOUND"), None)
 
 
-def notes(settings):
+def is_file(library):
+    """Not what is packed into the .blend, by Blender 5 also single data-blocks."""
+    return not (library.packed_file or getattr(library, "is_archive", False))
+
+
+def file_output(scene):
+    """A node of the compositor that writes pictures, also one within a group; None if there is none."""
+    if not scene.render.use_compositing:
+        return None
+    if hasattr(scene, "compositing_node_group"):  # since Blender 5
+        trees = [scene.compositing_node_group]
+    else:
+        trees = [scene.node_tree if scene.use_nodes else None]
+    seen = []
+    while trees:
+        tree = trees.pop()
+        if tree is None or tree in seen:
+            continue
+        seen.append(tree)
+        nodes = [node for node in tree.nodes if not node.mute]
+        found = next((node for node in nodes if node.bl_idname == "CompositorNodeOutputFile"), None)
+        if found:
+            return found
+        trees += [node.node_tree for node in nodes if hasattr(node, "node_tree")]
+    return None
+
+
+def notes(settings, node):
+    own = [f"{_FILE_OUTPUT.format(node=node.name)}, of which the job checks none."] if node else []
+    return own + limit_notes(settings)
+
+
+def limit_notes(settings):
     if not settings.time_limit:
         return []
     limit = f"The .blend has a time limit of {settings.time_limit:g} s"
@@ -53,5 +100,5 @@ def notes(settings):
     return [f"{limit}: a frame that it ends is left, and the next run goes on from there."]
 
 
-addon, report = sys.argv[sys.argv.index("--") + 1 :]
-Path(report).write_text(json.dumps(look(addon)), encoding="utf-8")
+addon, parts, report = sys.argv[sys.argv.index("--") + 1 :]
+Path(report).write_text(json.dumps(look(addon, int(parts))), encoding="utf-8")

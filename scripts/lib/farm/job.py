@@ -34,10 +34,12 @@ class Unit(NamedTuple):
 @dataclass
 class Job:
     blend: str  # absolute path
-    blend_state: list[int]  # bytes and nanoseconds of the last change, when the job was made
+    blend_hash: str  # SHA-256, when the job was made
+    libraries: dict[str, str]  # that it links: SHA-256 by paths, such as begin with // in it without that
     name: str  # pictures are NAME_0012.exr
     format: str  # OPEN_EXR or OPEN_EXR_MULTILAYER
     velour: str  # the version
+    blender_version: str  # such as 3.4.1
     models: dict[str, list[str]]  # hashes of what each measured material of the .blend is rendered from
     frames: list[int]
     tasks: int  # that the frames are dealt out to, or their parts
@@ -111,11 +113,6 @@ def load(path: Path) -> Job:
         return Job(**json.loads(found.read_text(encoding="utf-8")), folder=found.resolve().parent)
     except (ValueError, TypeError) as error:
         raise JobError(f"{found} cannot be read ({error}); remove it, and make the job anew.") from error
-
-
-def blend_state(path: str) -> list[int]:
-    found = os.stat(path)
-    return [found.st_size, found.st_mtime_ns]
 
 
 def replace_text(path: Path, text: str) -> None:

@@ -7,7 +7,7 @@ import json
 import tempfile
 from pathlib import Path
 
-from . import blender, job
+from . import blender, job, sources
 
 HERE = Path(__file__).resolve().parent
 
@@ -18,12 +18,15 @@ def make(given: argparse.Namespace) -> job.Job:
     if not blend.is_file():
         raise job.JobError(f"{blend} is no file.")
     folder = (given.output or blend.parent / "frames").resolve() / job.FOLDER
+    _check_path(folder.parent)
     made = job.Job(
         blend=str(blend),
-        blend_state=job.blend_state(blend),
+        blend_hash=sources.sha256(blend),
+        libraries={},
         name=blend.stem,
         format=given.format,
         velour="",
+        blender_version="",
         models={},
         frames=given.frames or [],
         tasks=1,
@@ -43,10 +46,17 @@ def make(given: argparse.Namespace) -> job.Job:
     return made
 
 
+def _check_path(output: Path) -> None:
+    """Raises JobError: Slurm's scripts and the paths of Blender 5 read these signs otherwise."""
+    signs = sorted(set(str(output)) & set('"\\{}\n'))
+    if signs:
+        raise job.JobError(f"{output}: a path with {' '.join(map(repr, signs))} in it cannot be an --output.")
+
+
 def _ask_blender(made: job.Job) -> None:
     with tempfile.TemporaryDirectory(prefix="velour-farm-") as name:
         report, log = Path(name) / "report.json", Path(name) / "log.txt"
-        script = ["--python", str(HERE / "inside_blend.py"), "--", made.addon, str(report)]
+        script = ["--python", str(HERE / "inside_blend.py"), "--", made.addon, str(made.parts), str(report)]
         status = blender.execute([*blender.start(made), *script], log)
         if status or not report.is_file():
             raise job.JobError(f"{made.blend}: {blender.ending(status, log)}.")
@@ -55,7 +65,8 @@ def _ask_blender(made: job.Job) -> None:
         raise job.JobError(f"{made.blend}: {found['error']}")
     for note in found["notes"]:
         print(note)
-    made.velour, made.models = found["velour"], found["models"]
+    made.velour, made.models, made.blender_version = found["velour"], found["models"], found["blender"]
+    made.libraries = sources.libraries(made.blend, found["libraries"])
     made.frames = made.frames or found["frames"]
 
 
@@ -63,11 +74,15 @@ def _refuse_another(made: job.Job, before: job.Job) -> None:
     """Frames of two states of a scene must not become one sequence."""
     kept = {
         "blend": "path of the .blend",
-        "blend_state": ".blend",
+        "blend_hash": ".blend",
+        "libraries": "library",
         "velour": "Velour",
+        "blender_version": "Blender",
         "models": "model",
         "format": "format",
         "parts": "number of parts",
+        "preferences": "setting of --preferences",
+        "scripts": "setting of --scripts",
     }
     other = [words for name, words in kept.items() if getattr(made, name) != getattr(before, name)]
     if other:

@@ -3,26 +3,42 @@
 from __future__ import annotations
 
 import json
+import re
 
 from . import program, ranges
 from .job import Job, replace_text
 
 FILE = "openjd.json"
-_LONGEST_NAME = 64
+_LONGEST_NAME, _LONGEST_TEXT = 64, 1024  # characters
 _NOTICE_SECONDS = 120  # to end the pass and keep it
 
 
 def write(job: Job) -> None:
+    """Nothing where OpenJD could not read it: other engines may, so that is said, and no error."""
+    if len(_frames(job)) > _LONGEST_TEXT:
+        (job.folder / FILE).unlink(missing_ok=True)
+        print(f"{FILE} is not written: OpenJD takes no list of frames that long; make jobs of fewer frames.")
+        return
     replace_text(job.folder / FILE, json.dumps(template(job), indent=2, ensure_ascii=False) + "\n")
 
 
 def template(job: Job) -> dict:
     return {
         "specificationVersion": "jobtemplate-2023-09",
-        "name": f"velour {job.name}"[:_LONGEST_NAME],
+        "name": _name(job),
         "parameterDefinitions": _parameters(job),
         "steps": [_step(job)],
     }
+
+
+def _name(job: Job) -> str:
+    """Two braces would begin an expression, and control characters are refused."""
+    readable = re.sub(r"[\x00-\x1f\x7f-\x9f]|\{\{|\}\}", "_", job.name)
+    return f"velour {readable}"[:_LONGEST_NAME]
+
+
+def _frames(job: Job) -> str:
+    return ranges.words(job.frames, steps=True)
 
 
 def _parameters(job: Job) -> list[dict]:
@@ -39,7 +55,7 @@ def _parameters(job: Job) -> list[dict]:
         {
             "name": "Frames",
             "type": "STRING",
-            "default": ranges.words(job.frames),
+            "default": _frames(job),
             "description": "Such as 1-10,15.",
         },
     ]

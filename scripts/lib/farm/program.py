@@ -10,8 +10,16 @@ from .job import replace_bytes
 
 HERE = Path(__file__).resolve().parent
 NAME = "frame.pyz"
-_MODULES = ("__init__", "blender", "exr", "frame", "job", "ranges")
-_MAIN = "import sys\n\nfrom farm.frame import main\n\nsys.exit(main())\n"
+_MODULES = ("__init__", "blender", "exr", "frame", "job", "ranges", "sources")
+_MAIN = """\
+import sys
+
+if sys.version_info < (3, 9):
+    sys.exit("farm: nodes need Python 3.9 or newer, and this is %d.%d" % sys.version_info[:2])
+from farm.frame import main
+
+sys.exit(main())
+"""
 
 
 def write(folder: Path) -> None:

@@ -22,12 +22,23 @@ def parse(text: str) -> list[int]:
     return sorted(found)
 
 
-def words(numbers: list[int]) -> str:
-    """As short as may be without steps, which not every engine knows."""
-    runs: list[list[int]] = []
-    for number in sorted(numbers):
-        if runs and number == runs[-1][1] + 1:
-            runs[-1][1] = number
-        else:
-            runs.append([number, number])
-    return ",".join(f"{a}" if a == b else f"{a}-{b}" for a, b in runs)
+def words(numbers: list[int], steps: bool = False) -> str:
+    """As short as may be; without steps, which not every engine knows, unless they are asked for."""
+    left, found = sorted(numbers), []
+    while left:
+        count, step = _run(left, steps)
+        first, last = left[0], left[count - 1]
+        found.append(f"{first}" if count == 1 else f"{first}-{last}" + (f":{step}" if step > 1 else ""))
+        left = left[count:]
+    return ",".join(found)
+
+
+def _run(numbers: list[int], steps: bool) -> tuple[int, int]:
+    """How many of the first are equally far apart, and how far; two are a run only if they are neighbours."""
+    step = numbers[1] - numbers[0] if len(numbers) > 1 else 1
+    if step > 1 and not steps:
+        return 1, 1
+    count = 1
+    while count < len(numbers) and numbers[count] - numbers[count - 1] == step:
+        count += 1
+    return (count, step) if step == 1 or count > 2 else (1, 1)
