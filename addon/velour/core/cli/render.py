@@ -14,7 +14,7 @@ from ...native.errors import refuse
 from .. import domain
 from ..cache import user_cache_folder
 from ..stopping import stopping
-from . import later, memory, numbers, output, render_part, scene, unfinished
+from . import memory, numbers, output, render_part, scene, unfinished
 
 KEYS = (
     "seconds",
@@ -74,7 +74,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> dict:
-    later.only("--strategy", args.strategy, table.STRATEGIES)
     options = _options(args)
     render_part.check(args, options)
     output.check_writable(args.output)
