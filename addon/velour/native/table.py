@@ -56,6 +56,7 @@ LAYERS = ("principled", "diffuse", "glossy", "transparent", "emission")
 FACTORS = ("share", "rest", "gain")
 RELIEF_CORRECTIONS = ("turned", "faded", "shadowed", "as-it-is")
 STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product")
+MOST_SPLIT = 48  # of vlr_render_options.split
 
 _handle = c_void_p
 _out_handle = POINTER(c_void_p)

@@ -51,6 +51,8 @@ def main(arguments: list[str] | None = None) -> int:
         output.set_up_log("error" if args.quiet else args.log_level)
         if args.simd:
             library.select_simd(args.simd)
+        if args.json_file:
+            output.check_writable(args.json_file)
         output.deliver(args, args.run(args))
         sys.stdout.flush()
         return DONE

@@ -42,7 +42,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="OUT.exr", required=True, help=".exr or .png")
     parser.add_argument("--spp", type=numbers.whole(1), metavar="N", help="light directions a pixel")
     parser.add_argument(
-        "--split", type=numbers.whole(1, 1024), metavar="N", help="of them share a camera ray (8)"
+        "--split",
+        type=numbers.whole(1, table.MOST_SPLIT),
+        metavar="N",
+        help=f"of them share a camera ray (8), at most {table.MOST_SPLIT}",
     )
     parser.add_argument("--bounces", type=numbers.whole(0, 1024), metavar="B", help="0: direct light only")
     parser.add_argument("--strategy", choices=table.STRATEGIES, default="mis", help="mis")
