@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from velour.native import VelourError, arrays
-from velour.native.table import KERNELS, FitOptions
+from velour.native.structs import FitOptions
+from velour.native.table import KERNELS
 
 
 def test_a_good_array_passes_as_it_is():

@@ -36,6 +36,7 @@ OBSERVE = ["observe", *RENDER[1:-1], "o.json"]
         ["compare", "x", "--principled", "--ggx"],
         [*RENDER, "--size", "640"],
         [*RENDER, "--spp", "-1"],
+        [*RENDER, "--split", "49"],
         [*RENDER, "--strategy", "luck"],
         [*RENDER, "--camera", "1,2,3"],
         [*OBSERVE, "--spp", "8"],
@@ -171,6 +172,17 @@ def test_output_that_cannot_be_written_is_said_before_the_work(measurement_file,
     assert "does not exist" in refused("fit", measurement_file, "-o", tmp_path / "no/such/folder/m.velour")
     assert "is a folder" in refused("fit", measurement_file, "-o", tmp_path)
     assert time.monotonic() - start < 5
+
+
+def test_a_folder_that_lets_nobody_write_is_said_before_the_work(tmp_path, mesh_file, world_file, model_file):
+    """One of the kernel's own: root may write to any other."""
+    scene = ["--mesh", mesh_file, "--material", model_file, "--world", world_file]
+    long = ["render", *scene, "--size", "4096x4096", "--spp", 10**6]
+    for more in (["-o", "/proc/self/o.exr"], ["-o", tmp_path / "o.exr", "--json-file", "/proc/self/o.json"]):
+        sentence = refused(*long, *more)
+        assert more[-1] in sentence
+        assert "cannot be written to" in sentence
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_failed_fit_leaves_the_old_model(tmp_path):

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import os
+import re
+import subprocess
+
 import numpy as np
 import pytest
-from command_line import refused, velour
+from command_line import command, environment, refused, velour
 from velour.core.memory_limit import Limit, memory_limit
 from velour.native import images
 
@@ -63,6 +68,19 @@ def test_a_render_that_goes_on_from_a_side_file_takes_more(small):
     told = velour(*wide, "--json").json["memory"]
     assert told["peak"] <= told["estimated"] <= MOST * told["peak"]
     assert told["estimated"] - 112 * 1600 * 1200 < told["peak"]
+
+
+def test_a_terminal_is_told_the_estimate(small):
+    """With the level that a log has by default; stdout has the JSON alone."""
+    reader, terminal = os.openpty()
+    arguments = command(*render(small, "--json"))
+    done = subprocess.run(arguments, stdout=subprocess.PIPE, stderr=terminal, env=environment(), timeout=300)
+    said = os.read(reader, 1 << 16).decode()
+    os.close(terminal)
+    os.close(reader)
+    assert re.match(r"velour: Estimated memory: \d+ MiB.*: program \d+ MiB, .* picture \d+ KiB\.\r\n", said)
+    assert json.loads(done.stdout)["memory"]
+    assert velour(*render(small)).err == ""
 
 
 def test_more_than_the_limit_is_refused_before_anything_is_rendered(small):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from velour.core import machine, plots
+import plots
+from velour.core import machine
 
 
 def test_the_same_data_gives_the_same_picture(tmp_path):

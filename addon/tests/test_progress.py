@@ -8,7 +8,7 @@ import logging
 import sys
 
 import pytest
-from velour.core.cli import output
+from velour.core.cli import main, output
 from velour.core.cli.progress import ProgressBar, ProgressLines
 from velour.native.job import JobState
 
@@ -39,6 +39,49 @@ def test_the_bar_is_wiped_at_the_end():
     _, half, end = stream.getvalue().split("\r\x1b[K")
     assert half == "[###############...............]  50% rendering, 20 s left"
     assert end == ""
+
+
+@pytest.fixture
+def kept_log():
+    """The command line sets up the log of its process, which here is that of all tests."""
+    before = list(output.log.handlers), output.log.propagate, output.log.level
+    yield
+    output.log.handlers[:], output.log.propagate, level = before
+    output.log.setLevel(level)
+
+
+def test_the_bar_is_wiped_by_ctrl_c(monkeypatch, kept_log):
+    """Before the word about it, which would stand behind it."""
+    stream = io.StringIO()
+    stream.isatty = lambda: True
+    monkeypatch.setattr(sys, "stderr", stream)
+
+    def interrupted(args):
+        tell(output.progress_of(args), state(20))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(main.info, "run", interrupted)
+    assert main.main(["info", "x"]) == main.INTERRUPTED
+    assert stream.getvalue().endswith(" s left\r\x1b[Kvelour: Interrupted.\n")
+
+
+@pytest.mark.parametrize(
+    ("terminal", "quiet", "level", "said"),
+    [
+        (True, False, "warning", True),
+        (True, True, "info", False),
+        (False, False, "info", True),
+        (False, False, "warning", False),
+        (False, True, "warning", False),
+    ],
+)
+def test_who_is_told_a_line(monkeypatch, kept_log, terminal, quiet, level, said):
+    stream = io.StringIO()
+    stream.isatty = lambda: terminal
+    monkeypatch.setattr(sys, "stderr", stream)
+    output.set_up_log(level)
+    output.tell(argparse.Namespace(quiet=quiet), "a line.")
+    assert stream.getvalue() == ("velour: a line.\n" if said else "")
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import subprocess
 
 import header
 import pytest
-from velour.native import errors, table, version
+from velour.native import errors, structs, table, version
 
 
 def test_every_function_is_in_the_table_with_its_arguments():
@@ -24,7 +24,7 @@ def test_exactly_the_calls_that_return_a_status_are_checked():
 
 
 def test_struct_fields_have_the_names_and_order_of_the_header():
-    assert {n: [f for f, _ in s._fields_] for n, s in table.STRUCTS.items()} == header.structs()
+    assert {n: [f for f, _ in s._fields_] for n, s in structs.STRUCTS.items()} == header.structs()
 
 
 def test_sizes_and_offsets_agree_with_the_compiler(compiler, tmp_path):
@@ -41,7 +41,7 @@ def test_sizes_and_offsets_agree_with_the_compiler(compiler, tmp_path):
     include = header.HEADER.parents[1]
     subprocess.run([compiler, "-std=c99", f"-I{include}", source, "-o", tmp_path / "layout"], check=True)
     measured = json.loads(subprocess.check_output([tmp_path / "layout"]))
-    for name, struct in table.STRUCTS.items():
+    for name, struct in structs.STRUCTS.items():
         ours = {field: getattr(struct, field).offset for field, _ in struct._fields_}
         assert {**ours, "": ctypes.sizeof(struct)} == measured[name], name
 

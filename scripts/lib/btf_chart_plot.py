@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import plots
 from btf_chart_numbers import Results
-from velour.core import plots
 
 # What is drawn, and how its axis is called.
 VALUES = {

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import plots
 from btf_chart_numbers import Results, relative_error, widest_spread
 from display import display
 from flip_metric import exposure
-from velour.core import plots
 
 _CELL, _COLUMNS = 2.0, 5  # inches of a picture's width, at 100 dots an inch
 _FAR = 0.5  # error of pictures that differ everywhere: they do not choose the crop

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import plots
 from chart_result import DISSERTATION, Result
-from velour.core import plots
 
 
 def draw(path: Path, result: Result) -> None:

@@ -14,8 +14,9 @@ import demo_btf
 import demo_capture
 import demo_votf
 import headless_blender
+import plots
 from demo_difference import write_difference
-from velour.core import files, plots
+from velour.core import files
 from velour.core.machine import machine
 from velour.native import Measurement, VelourError, fit_job, library
 

@@ -12,8 +12,8 @@ from PIL import Image
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import headless_blender
+import plots
 from display import display
-from velour.core import plots
 from velour.native import VelourError, images
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import plots
 from display import display
 from markdown_table import small
-from velour.core import plots
 
 _CELL = 2.6  # inches of a picture's width, at 100 dots an inch
 _WORST = 0.2  # relative error that is drawn brightest

@@ -9,10 +9,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import data_files
 import measure_text
+import plots
 import provenance
 import script
 from table_csv import csv_text
-from velour.core import files, plots
+from velour.core import files
 from velour_cli import ROOT, velour
 
 WORK = ROOT / "build/measurements"

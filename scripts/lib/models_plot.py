@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import plots
 from model_runs import PEERS, TOLERANCE, Result
-from velour.core import plots
 
 # What a renderer evaluates of them: the lobes of the peers beside those of a fit.
 _PEER_LOBES = {"ggx": 1, "principled": 2}

@@ -6,11 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import plots
 import provenance
 from markdown_table import table
 from perceptual_runs import DEFAULT
 from table_csv import csv_text
-from velour.core import files, plots
+from velour.core import files
 
 
 def write(folder: Path, rows: list, thresholds, conditions: dict, extent) -> None:

@@ -13,10 +13,10 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import headless_blender
+import plots
 import provenance
 from display import display
 from geometry_error import GeometryError, geometry_error
-from velour.core import plots
 from velour.core.machine import threads
 from velour.native import VelourError, images
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import plots
 import provenance
 from display import display
 from markdown_table import table
-from velour.core import plots
 
 _BEHIND = 0.25  # radiance
 _CELL = 3.0  # inches, at 100 dots an inch

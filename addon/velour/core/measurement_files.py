@@ -8,7 +8,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 # Never .exr: those are pictures to everyone else.
-SUFFIXES = (".velour", ".binary", ".bsdf", ".brdf", ".btf")
+MODELS = (".velour",)
+MEASUREMENTS = (".binary", ".bsdf", ".brdf", ".btf")
+SUFFIXES = (*MODELS, *MEASUREMENTS)
 INDICES = ("btf.json", "btf.csv")  # each makes its folder one BTF; the first that is there counts
 MOST_ENTRIES = 100_000  # looked at: a folder may be the root of a file server
 _MOST_DEPTH = 8

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import library, table
+from . import library, structs, table
 from .arrays import small
 from .handle import Handle, choice, path_bytes, set_fields
 from .job import Job
@@ -25,7 +25,7 @@ class Btf(Handle):
         """Opens a folder of Velour's own, a folder of pictures named for their angles (UBO2003), a CSV index
         of pictures, or a .btf file of Bonn (UBO2014). Options: values (table.BTF_VALUES), colors
         (table.BTF_COLORS), gamma (0: the sRGB curve), tile_metres (x, y)."""
-        raw = table.BtfOptions()
+        raw = structs.BtfOptions()
         library.load().vlr_btf_options_init(ctypes.byref(raw))
         for name, names in (("values", table.BTF_VALUES), ("colors", table.BTF_COLORS)):
             if name in options:
@@ -86,8 +86,8 @@ def compress_job(btf: Btf, **options) -> Job:
     return Job._create("vlr_compress_create_job", btf.pointer, ctypes.byref(_compress_options(options)))
 
 
-def _compress_options(options: dict) -> table.CompressOptions:
-    raw = table.CompressOptions()
+def _compress_options(options: dict) -> structs.CompressOptions:
+    raw = structs.CompressOptions()
     library.load().vlr_compress_options_init(ctypes.byref(raw))
     for name, names in (("method", table.COMPRESS_METHODS), ("companding", table.COMPANDINGS)):
         if name in options:

@@ -8,7 +8,7 @@ from ctypes import POINTER, byref, c_double, c_uint64
 
 import numpy as np
 
-from . import library, table
+from . import library, structs, table
 from .handle import choice, path_bytes, set_fields
 from .job import Job
 
@@ -34,7 +34,7 @@ def capture_job(tile, path: str | os.PathLike, **options) -> Job:
     none: chosen), memory_limit (bytes of a view's images that are kept in memory), source (a name), seed,
     threads, resume, measure_ray_share.
     """
-    raw = table.CaptureOptions()
+    raw = structs.CaptureOptions()
     library.load().vlr_capture_options_init(byref(raw))
     arrays = {name: _angles(options.pop(name)) for name in ("views", "lights") if name in options}
     for name, array in arrays.items():
@@ -78,7 +78,7 @@ def votf_data_job(btf, model, **options) -> Job:
 
 
 def _votf_options(options: dict):
-    raw = table.VotfOptions()
+    raw = structs.VotfOptions()
     library.load().vlr_votf_options_init(byref(raw))
     if "source" in options:
         options["source"] = options["source"].encode()

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import library, table
+from . import library, structs
 from .arrays import checked, pointer
 from .errors import refuse
 from .handle import path_bytes
@@ -35,7 +35,7 @@ def write_part(path: str | os.PathLike, pixels: np.ndarray, frame: Frame, texts:
     """As write(), of .exr alone: says where the part lies, and `texts` in its header."""
     pixels = checked("pixels", pixels, (None, None, None))
     height, width, channels = pixels.shape
-    place = table.ImageFrame(**frame._asdict())
+    place = structs.ImageFrame(**frame._asdict())
     words = [word.encode() for pair in texts.items() for word in pair]
     library.load().vlr_image_write_part(
         path_bytes(path), width, height, channels, pointer(pixels), byref(place),

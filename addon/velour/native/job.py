@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import library, table
+from . import library, structs, table
 from .arrays import pointer, small
 from .errors import VelourError, refuse
 from .handle import Handle, choice, path_bytes, set_fields
@@ -56,7 +56,7 @@ class Job(Handle):
         return self
 
     def poll(self) -> JobState:
-        raw = table.JobStateStruct()
+        raw = structs.JobStateStruct()
         self._lib.vlr_job_poll(self.pointer, ctypes.byref(raw))
         return JobState(
             table.JOB_STATES[raw.state],
@@ -189,7 +189,7 @@ def fit_job(measurement: Measurement, **options) -> Job:
     symmetric (parametric);
     for_scene (an Observation) and full_model (a Model) reduce a parametric model to what scenes show. What is
     not given has the library's default. Result: result_model()."""
-    raw = _defaults(table.FitOptions, "vlr_fit_options_init")
+    raw = _defaults(structs.FitOptions, "vlr_fit_options_init")
     for name in {"for_scene", "full_model"} & options.keys():
         options[name] = options[name].pointer
     enums = {"model": table.MODELS, "kernel": table.KERNELS}
@@ -218,7 +218,7 @@ def model_peer_job(model: Model, peer: str) -> Job:
 def microsurface_job(path: str | os.PathLike, **options) -> Job:
     """Writes a virtual measurement to `path`. Options: roughness, anisotropy, metal, base_albedo, base_share,
     ior, flake_roughness, rays, seed, threads."""
-    raw = _defaults(table.MicrosurfaceOptions, "vlr_microsurface_options_init")
+    raw = _defaults(structs.MicrosurfaceOptions, "vlr_microsurface_options_init")
     if "metal" in options:
         options["metal"] = options["metal"].encode()
     if "base_albedo" in options:
@@ -240,8 +240,8 @@ def render_job(scene, passes: Passes | None = None, **options) -> Job:
     return Job._create("vlr_render_create_job", scene.pointer, ctypes.byref(raw), size=size)
 
 
-def render_options(options: dict) -> table.RenderOptions:
-    raw = _defaults(table.RenderOptions, "vlr_render_options_init")
+def render_options(options: dict) -> structs.RenderOptions:
+    raw = _defaults(structs.RenderOptions, "vlr_render_options_init")
     enums = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence": table.SEQUENCES}
     chosen = {name: choice(name, options[name], enums[name]) for name in enums.keys() & options.keys()}
     if options.get("cache_folder") is not None:
@@ -253,7 +253,7 @@ def render_options(options: dict) -> table.RenderOptions:
 def observe_job(scene, material: int, **options) -> Job:
     """Learns under which views and lights `scene`, which is committed, shows its material of that number.
     Options: width, height, bounces, threads, seed. Result: result_observation()."""
-    raw = _defaults(table.ObserveOptions, "vlr_observe_options_init")
+    raw = _defaults(structs.ObserveOptions, "vlr_observe_options_init")
     set_fields(raw, options)
     return Job._create("vlr_observe_create_job", scene.pointer, material, ctypes.byref(raw))
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from . import table
+from . import structs
 from .arrays import address, checked
 from .errors import refuse
 
@@ -48,7 +48,7 @@ def mesh_descs(meshes: Mapping[str, tuple]) -> np.ndarray:
         if name not in meshes:
             raise refuse(f"a mesh has no {name}.")
     sizes = {name: np.asarray(each, np.int64) for name, (_, each) in meshes.items()}
-    descs = np.zeros(len(sizes["positions"]), table.MeshDesc)
+    descs = np.zeros(len(sizes["positions"]), structs.MeshDesc)
     counts = _counts(sizes, len(descs))
     descs["struct_size"] = descs.itemsize
     for name, field in _COUNT_FIELDS.items():

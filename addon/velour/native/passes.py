@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import library, table
+from . import library, structs, table
 from .arrays import checked
 from .errors import refuse
 from .handle import set_fields
@@ -30,8 +30,8 @@ _CHANNELS = {
 # Passes come in levels of two ids: CryptoObject00, CryptoObject01, ...
 _CRYPTOMATTES = ("CryptoObject", "CryptoMaterial", "CryptoAsset")
 
-INSTANCE_LABEL = np.dtype(table.InstanceLabel)
-MATERIAL_LABEL = np.dtype(table.MaterialLabel)
+INSTANCE_LABEL = np.dtype(structs.InstanceLabel)
+MATERIAL_LABEL = np.dtype(structs.MaterialLabel)
 
 
 @dataclass
@@ -46,9 +46,9 @@ class Passes:
     instances: np.ndarray = field(default_factory=lambda: np.zeros(0, INSTANCE_LABEL))
     materials: np.ndarray = field(default_factory=lambda: np.zeros(0, MATERIAL_LABEL))
 
-    def raw(self) -> table.PassOptions:
+    def raw(self) -> structs.PassOptions:
         """Borrows the labels."""
-        raw = table.PassOptions()
+        raw = structs.PassOptions()
         library.load().vlr_pass_options_init(ctypes.byref(raw))
         start, depth, exponent = self.mist
         numbers = {

@@ -8,7 +8,7 @@ from ctypes import byref
 
 import numpy as np
 
-from . import library, table
+from . import library, structs, table
 from .arrays import pointer, small
 from .handle import Handle, choice, path_bytes
 from .measurement import Measurement
@@ -66,8 +66,8 @@ def plot_arguments(
     return model.pointer, measured, choice("kind", kind, table.PLOTS), view, azimuth
 
 
-def _style(values: dict) -> table.PlotStyle:
-    style = table.PlotStyle()
+def _style(values: dict) -> structs.PlotStyle:
+    style = structs.PlotStyle()
     library.load().vlr_plot_style_init(byref(style))
     for name, value in values.items():
         if name in _COLORS:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import table
+from . import structs
 from .arrays import pointer
 from .errors import refuse
 from .job import Job, render_options
@@ -51,7 +51,7 @@ class ProgressiveJob(Job):
         return self._read(pointer(out), out.size)
 
     def _read(self, pixels, count: int) -> Picture:
-        raw = table.ProgressivePicture()
+        raw = structs.ProgressivePicture()
         raw.struct_size = ctypes.sizeof(raw)
         self._lib.vlr_progressive_read(self.pointer, pixels, count, ctypes.byref(raw))
         return Picture(raw.width, raw.height, raw.samples, raw.version)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 
-from . import library, table
+from . import library, structs
 from .arrays import small
 from .handle import path_bytes, set_fields
 from .job import Job
@@ -34,7 +34,7 @@ def shell_maps_job(model: Model) -> Job:
 
 def principled_rows_job(base_color, **values) -> Job:
     """As lobe_rows_job, of a Principled material: base_color [3], metallic, roughness, specular."""
-    desc = table.PrincipledDesc()
+    desc = structs.PrincipledDesc()
     library.load().vlr_principled_desc_init(ctypes.byref(desc))
     set_fields(desc, {"base_color": small("base_color", base_color, 3), **values})
     return Job._create("vlr_principled_rows_create_job", ctypes.byref(desc))

@@ -12,7 +12,7 @@ from ctypes import byref, c_float, c_uint32
 
 import numpy as np
 
-from . import library, table
+from . import library, structs, table
 from .arrays import address, affine, checked, pointer, small
 from .btf import Btf
 from .errors import refuse
@@ -198,7 +198,7 @@ class Scene(Handle):
         axis. cone_scale [2]: how much wider than its angle a spot's cone is along its x and y.
         """
         values = {"type": choice("light", kind, table.LIGHTS), "color": color, **values}
-        desc = self._desc(table.LightDesc, "vlr_light_desc_init", values)
+        desc = self._desc(structs.LightDesc, "vlr_light_desc_init", values)
         desc.light_to_world = affine("light_to_world", light_to_world)
         self._lib.vlr_scene_add_light(self.pointer, byref(desc))
 
@@ -238,7 +238,7 @@ class Scene(Handle):
         is sharp, metres; blades, blade_rotation (radians), aperture_ratio (height over width): its shape.
         """
         values = {"type": choice("camera", kind, table.CAMERAS), "window": window, **values}
-        desc = self._desc(table.CameraDesc, "vlr_camera_desc_init", values)
+        desc = self._desc(structs.CameraDesc, "vlr_camera_desc_init", values)
         desc.camera_to_world = affine("camera_to_world", camera_to_world)
         self._lib.vlr_scene_set_camera(self.pointer, byref(desc))
 

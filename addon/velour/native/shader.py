@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ctypes import byref, pointer
 
-from . import table
+from . import structs, table
 from .arrays import small
 from .handle import Handle, choice, set_fields
 from .texture import IDENTITY, Texture, TextureSlot
@@ -39,7 +39,7 @@ class Shader(Handle):
         normal_correction: turned, faded, shadowed, as-it-is: what becomes of steep normals. interreflection:
         a rough diffuse layer keeps its energy.
         """
-        desc = table.LayerDesc()
+        desc = structs.LayerDesc()
         self._lib.vlr_layer_desc_init(byref(desc))
         surface, pictures = described(self._lib, textures or {}, values)
         desc.kind = choice("kind", kind, table.LAYERS)
@@ -58,7 +58,7 @@ class Shader(Handle):
 
         A texture of numbers goes before the value.
         """
-        desc = table.FactorDesc()
+        desc = structs.FactorDesc()
         self._lib.vlr_factor_desc_init(byref(desc))
         desc.kind, desc.value = choice("kind", kind, table.FACTORS), value
         if texture is not None:
@@ -69,7 +69,7 @@ class Shader(Handle):
 
 def described(lib, textures: dict[str, TextureSlot], values: dict):
     """PrincipledDesc and PrincipledTextures of these; they borrow the textures."""
-    desc, pictures = table.PrincipledDesc(), table.PrincipledTextures()
+    desc, pictures = structs.PrincipledDesc(), structs.PrincipledTextures()
     lib.vlr_principled_desc_init(byref(desc))
     lib.vlr_principled_textures_init(byref(pictures))
     set_fields(desc, {n: small(n, v, _COLORS[n]) if n in _COLORS else v for n, v in values.items()})

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import library, table
+from . import library, structs, table
 from .arrays import checked, pointer
 from .handle import Handle, choice, path_bytes, set_fields
 
@@ -54,7 +54,7 @@ class TextureSlot(NamedTuple):
 
 
 def _options(values: dict):
-    options = table.TextureOptions()
+    options = structs.TextureOptions()
     library.load().vlr_texture_options_init(byref(options))
     names = {"wrap": table.WRAPS, "filter": table.FILTERS}
     set_fields(options, {n: choice(n, v, names[n]) if n in names else v for n, v in values.items()})

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import library, table
+from . import library, structs
 from .handle import Handle, set_fields
 from .scene import Scene
 
@@ -41,14 +41,14 @@ class Tile(Handle):
 
         What is not said is the kind's own.
         """
-        options = table.TileOptions()
+        options = structs.TileOptions()
         library.load().vlr_tile_options_init(byref(options))
         set_fields(options, {"kind": kind.lower().encode(), **shape})
         return cls._create("vlr_tile_create", byref(options))
 
     def mesh(self) -> TileMesh:
         """Copies of the arrays."""
-        desc = table.MeshDesc()
+        desc = structs.MeshDesc()
         self._lib.vlr_tile_desc(self.pointer, byref(desc))
 
         def array(address, *shape, kind=c_float):

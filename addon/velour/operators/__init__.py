@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..core.measurement_files import SUFFIXES
 from . import approximation_look, usd_hook
 from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
@@ -76,9 +77,7 @@ def detach():
 
 
 def _draw_import(menu, _context):
-    menu.layout.operator(
-        VELOUR_OT_load_material.bl_idname, text="Measured Material (.velour, .binary, .bsdf, .brdf, .btf)"
-    )
+    menu.layout.operator(VELOUR_OT_load_material.bl_idname, text=f"Measured Material ({', '.join(SUFFIXES)})")
 
 
 def _draw_add_mesh(menu, _context):

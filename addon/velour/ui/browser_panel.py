@@ -4,6 +4,7 @@ import os
 
 import bpy
 
+from ..core.measurement_files import MEASUREMENTS, MODELS
 from ..operators.browse import (
     VELOUR_OT_choose_measurement,
     VELOUR_OT_make_thumbnails,
@@ -79,7 +80,8 @@ def _draw_files(context, layout, settings, files):
 def _nothing(files):
     if files:
         return "No name has all of these words."
-    return "No measurements (.binary, .bsdf, .brdf, .btf) or models (.velour) are in this folder or below it."
+    measurements, models = ", ".join(MEASUREMENTS), ", ".join(MODELS)
+    return f"No measurements ({measurements}) or models ({models}) are in this folder or below it."
 
 
 def _columns(context):

@@ -1,4 +1,5 @@
-/* Velour: measured materials. The only public header; pure C99.
+/* Velour: measured materials. The only public header, and longer than others, so that one file is all that a program
+ * needs; pure C99.
  *
  * Every call that can fail returns vlr_status; vlr_last_error() then holds one sentence for the user (file, field,
  * value, remedy), kept for the calling thread until its next failing call. Nothing here prints, exits or aborts.
@@ -199,8 +200,8 @@ VLR_API vlr_status vlr_job_report_json(vlr_job* job, const char** json);
 VLR_API vlr_status vlr_job_result_model(const vlr_job* job, vlr_model** out);
 /* The measurement that a finished job has read; a new handle. */
 VLR_API vlr_status vlr_job_result_measurement(const vlr_job* job, vlr_measurement** out);
-/* The table of a finished vlr_light_map_create_job or vlr_lobe_rows_create_job: [height][width][4] floats, which belong
- * to the job. */
+/* The table of a finished job of those that make tables for shaders (vlr_light_map_create_job and the four below it):
+ * [height][width][4] floats, which belong to the job. */
 VLR_API vlr_status vlr_job_result_table(const vlr_job* job, const float** rgba, uint32_t* width, uint32_t* height);
 /* Cancels if running, waits, frees. */
 VLR_API void vlr_job_free(vlr_job* job);
@@ -297,8 +298,9 @@ typedef struct vlr_compress_options {
                        * tolerance: whatever that takes */
   uint64_t seed;
   const vlr_btf* held_out; /* pairs that no fit has seen, of the same texels; NULL: none */
-  /* Leave out the levels that no ray of these scenes resolves; observed with a material of the BTF. NULL: for any
-   * scene. */
+  /* Make it as small as pictures of these scenes allow, observed with a material of the BTF: it is fitted anew at the
+   * resolution and for the views that they show, or the levels that no ray resolves are left out (docs/for_scene.md).
+   * NULL: for any scene. */
   const vlr_observation* for_scene;
   const vlr_model* full_model; /* with for_scene: the BTF's full model; NULL: it is fitted first */
   /* Of the relative L2 error of companded values (docs/conventions.md): the smallest model within it. 0: none. */
@@ -575,8 +577,15 @@ enum {
  * GAIN is any number that is not negative. */
 enum { VLR_FACTOR_SHARE = 0, VLR_FACTOR_REST = 1, VLR_FACTOR_GAIN = 2 };
 
-/* What keeps steep mapped normals from showing what cannot be there: see ReliefCorrection in material/normal_map.h. */
-enum { VLR_RELIEF_TURNED = 0, VLR_RELIEF_FADED = 1, VLR_RELIEF_SHADOWED = 2, VLR_RELIEF_AS_IT_IS = 3 };
+/* What keeps steep mapped normals from showing what cannot be there. */
+enum {
+  /* Normals are turned as far as mirror images need to stay above the surface, and diffuse light fades out before the
+   * surface's own horizon, as in Cycles of Blender 3 */
+  VLR_RELIEF_TURNED = 0,
+  VLR_RELIEF_FADED = 1,    /* the same, but normals of what is diffuse stay; Blender 4 */
+  VLR_RELIEF_SHADOWED = 2, /* the same, but diffuse light fades out as facets of GGX shadow each other; Blender 5 */
+  VLR_RELIEF_AS_IT_IS = 3  /* normals and light stay */
+};
 
 typedef struct vlr_layer_desc {
   uint32_t struct_size;

@@ -28,7 +28,7 @@ void vlr_render_options_init(vlr_render_options* options) {
 namespace {
 
 RenderOptions converted(const vlr_render_options& given) {
-  if (given.strategy < VLR_STRATEGY_UNIFORM || given.strategy > VLR_STRATEGY_PRODUCT) {
+  if (given.strategy < VLR_STRATEGY_UNIFORM || given.strategy > static_cast<int32_t>(kLastStrategy)) {
     throw Error(Status::invalid_argument,
                 "vlr_render_options.strategy is " + std::to_string(given.strategy) + ", not a VLR_STRATEGY value.");
   }

@@ -73,11 +73,6 @@ DenseTensor values_of_points(CompandedViews& views, const TensorSource& source, 
 
 }  // namespace
 
-double DirectionBasis::rest_share() const {
-  const double left = rest * static_cast<double>(vector.rows()), all = left + energy.sum();
-  return all > 0 ? left / all : 0.0;
-}
-
 std::vector<uint32_t> random_texels(uint64_t texels, size_t count, uint64_t seed) {
   std::vector<uint32_t> all(texels);
   std::iota(all.begin(), all.end(), 0u);

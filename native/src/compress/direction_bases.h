@@ -23,9 +23,6 @@ struct DirectionBasis {
   RowMatrix vector;        // direction x rank, orthonormal columns, the strongest first
   Eigen::VectorXd energy;  // of each, in the mean over texels
   double rest = 0;         // of a direction, in the mean: what they leave
-
-  /// Of all energy, what they leave.
-  double rest_share() const;
 };
 
 struct DirectionBases {

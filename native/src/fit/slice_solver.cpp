@@ -52,16 +52,6 @@ void SliceSolver::add_lobe(const LobeShape& shape) {
   solve(state_);
 }
 
-int SliceSolver::prune() {
-  std::vector<LobeShape> kept;
-  for (int j = 0; j < count(); ++j) {
-    if (state_.peaks.row(j).maxCoeff() > 0) kept.push_back(state_.shapes[static_cast<size_t>(j)]);
-  }
-  const int removed = count() - static_cast<int>(kept.size());
-  if (removed > 0) set_lobes(std::move(kept));
-  return removed;
-}
-
 double SliceSolver::relative_l2() const {
   const Eigen::Vector3d w(kChannelWeight.data());
   const double error = std::max(0.0, w.dot(state_.residual_products * w));

@@ -33,8 +33,6 @@ class SliceSolver {
   /// Replaces the lobes; peaks are solved anew.
   void set_lobes(std::vector<LobeShape> shapes);
   void add_lobe(const LobeShape& shape);
-  /// Removes lobes without any peak. Their number.
-  int prune();
 
   /// At most `steps` accepted or refused Levenberg-Marquardt steps. Ends early when the luminance error is at most
   /// `goal` (relative L2) or when a step gains less than `least_gain` of E. E never rises.

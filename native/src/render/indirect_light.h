@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render/direct_light.h"
+#include "render/paths_in_flight.h"
 
 namespace velour {
 
@@ -13,7 +13,7 @@ namespace velour {
 class IndirectLight {
  public:
   IndirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options)
-      : scene_(scene), visible_(scene), light_(scene, lighting, options, nullptr, {}) {}
+      : scene_(scene), flight_(scene, lighting, options, nullptr, {}) {}
 
   void clear();
   /// A ray that met a surface, `cone` at its origin; its radiance will be number `radiance().size()` so far. `numbers`:
@@ -22,29 +22,13 @@ class IndirectLight {
   /// Follows all paths over up to `surfaces` surfaces, one path a ray.
   void resolve(int surfaces);
   /// Of the rays, in the order of add().
-  const std::vector<CameraSample>& samples() const { return samples_; }
+  const std::vector<CameraSample>& samples() const { return flight_.samples; }
 
  private:
-  struct Path {
-    PathNumbers numbers;
-    Rgb throughput;
-    uint32_t sample;
-    RayCone cone;  // at the origin of its ray
-  };
   void meet_surfaces();
-  void gather(bool go_on);
-  void trace();
 
   const Scene& scene_;
-  const VisibleRays visible_;
-  DirectLight light_;
-  ShadowQueue shadows_;
-  std::vector<Path> paths_, next_;
-  std::vector<Ray> rays_, next_rays_;  // of the paths
-  std::vector<Hit> hits_;
-  std::vector<Rgb> passed_;  // of the rays, where they change their colour
-  std::vector<Receiver> receivers_;
-  std::vector<CameraSample> samples_;
+  PathsInFlight flight_;
 };
 
 }  // namespace velour

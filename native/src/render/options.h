@@ -21,9 +21,25 @@ enum class Strategy : int {  // values of velour.h
   mis_ggx = 7,               // as mis, with that lobe in the material's place
   product = 8,               // three quarters or less from BRDF times sky, the rest from lights and BRDF
 };
+inline constexpr Strategy kLastStrategy = Strategy::product;
 
 /// Some directions from the surface side, some from the lights.
-constexpr bool is_mixed(Strategy strategy) { return strategy == Strategy::mis || strategy >= Strategy::mis_ggx; }
+constexpr bool is_mixed(Strategy strategy) {
+  switch (strategy) {
+    case Strategy::mis:
+    case Strategy::mis_ggx:
+    case Strategy::product:
+      return true;
+    case Strategy::uniform:
+    case Strategy::cosine:
+    case Strategy::table:
+    case Strategy::srbf:
+    case Strategy::light:
+    case Strategy::ggx:
+      break;
+  }
+  return false;
+}
 
 /// Weights of mixed strategies (combination.h).
 enum class Heuristic : int { balance = 0, power = 1 };  // values of velour.h

@@ -80,7 +80,7 @@ RenderOptions checked(RenderOptions options) {
   require_range("split", options.split, 1, RenderOptions::kMaxSplit);
   require_range("bounces", options.bounces, 0, 1024);
   require_range("threads", options.threads, 0, 4096);
-  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(Strategy::product));
+  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(kLastStrategy));
   require_range("camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
   require_range("heuristic", static_cast<int>(options.heuristic), 0, static_cast<int>(Heuristic::power));
   require_range("sequence", static_cast<int>(options.sequence), 0, static_cast<int>(Sequence::sobol));

@@ -20,8 +20,7 @@ float covered(const Rgb& throughput) { return 1.0f - (throughput.r + throughput.
 TileRenderer::TileRenderer(const RenderContext& context)
     : context_(context),
       pixel_(context.scene, context.options.width, context.options.height, context.camera_rays()),
-      visible_(context.scene),
-      light_(context.scene, context.lighting, context.options, context.sky.get(), context.lights_part),
+      flight_(context.scene, context.lighting, context.options, context.sky.get(), context.lights_part),
       recorder_(context.scene) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
@@ -47,14 +46,11 @@ void TileRenderer::render(const PixelRect& tile, int first, int count, Film& fil
 
 void TileRenderer::render_run(const PixelRect& run, int first, int count, size_t pixel, RayLog* log) {
   start_paths(run, first, count);
-  for (int depth = 0; depth <= context_.options.bounces && !paths_.empty(); ++depth) {
+  for (int depth = 0; depth <= context_.options.bounces && !flight_.paths.empty(); ++depth) {
     trace(depth, log);
-    receivers_.clear();
-    for (size_t i = 0; i < paths_.size(); ++i) follow(i, depth);
-    gather(depth);
-    ray_count_ += shadows_.resolve(visible_, samples_, log);
-    paths_.swap(next_);
-    rays_.swap(next_rays_);
+    flight_.receivers.clear();
+    for (size_t i = 0; i < flight_.paths.size(); ++i) follow(i, depth);
+    ray_count_ += flight_.gather(depth < context_.options.bounces, log);
   }
   add_background();
   add_samples(count, pixel);
@@ -62,26 +58,29 @@ void TileRenderer::render_run(const PixelRect& run, int first, int count, size_t
 
 void TileRenderer::add_samples(int count, size_t pixel) {
   const PassLayout& layout = film_->layout();
-  for (size_t i = 0; i < samples_.size(); ++i) {
+  for (size_t i = 0; i < flight_.samples.size(); ++i) {
     const size_t at = pixel + i / static_cast<size_t>(count);
-    if (layout.size() > 0) layout.add(surfaces_[i], samples_[i], pixels_[at], values_.data() + at * layout.size());
-    pixels_[at].add(samples_[i]);
+    if (layout.size() > 0)
+      layout.add(surfaces_[i], flight_.samples[i], pixels_[at], values_.data() + at * layout.size());
+    pixels_[at].add(flight_.samples[i]);
   }
 }
 
 void TileRenderer::start_paths(const PixelRect& run, int first, int count) {
   const RenderOptions& o = context_.options;
-  paths_.clear();
-  samples_.clear();
+  flight_.paths.clear();
+  flight_.samples.clear();
   for (int x = run.x0; x < run.x1; ++x) {
     const uint64_t pixel = static_cast<uint64_t>(run.y0) * static_cast<uint64_t>(o.width) + static_cast<uint64_t>(x);
     for (int index = first; index < first + count; ++index) {
-      paths_.push_back(
-          {PathNumbers(o, pixel, static_cast<uint32_t>(index)), Rgb(1.0f), static_cast<uint32_t>(samples_.size()), {}});
-      samples_.emplace_back().directions = context_.directions(index);
+      flight_.paths.push_back({PathNumbers(o, pixel, static_cast<uint32_t>(index)),
+                               Rgb(1.0f),
+                               static_cast<uint32_t>(flight_.samples.size()),
+                               {}});
+      flight_.samples.emplace_back().directions = context_.directions(index);
     }
   }
-  if (film_->layout().size() > 0) surfaces_.assign(samples_.size(), SurfaceSample{});
+  if (film_->layout().size() > 0) surfaces_.assign(flight_.samples.size(), SurfaceSample{});
   aim_paths(run, count);
 }
 
@@ -90,15 +89,15 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
   const RenderOptions& o = context_.options;
   const Vec2 size(static_cast<float>(o.width), static_cast<float>(o.height));
   const auto pixel_of = [&](size_t path) { return Vec2(run.x0 + static_cast<int>(path) / count, run.y0); };
-  rays_.clear();
+  flight_.rays.clear();
   PointBatch points, lens;
   const Camera& camera = context_.scene.camera();
   const bool has_lens = camera.aperture.radius > 0.0f;
-  for (size_t first = 0; first < paths_.size(); first += PointBatch::kCapacity) {
-    const size_t end = std::min(paths_.size(), first + PointBatch::kCapacity);
+  for (size_t first = 0; first < flight_.paths.size(); first += PointBatch::kCapacity) {
+    const size_t end = std::min(flight_.paths.size(), first + PointBatch::kCapacity);
     const auto make = [&](Purpose purpose, PointBatch& batch) {
       batch.clear();
-      for (size_t i = first; i < end; ++i) paths_[i].numbers.point(purpose, batch);
+      for (size_t i = first; i < end; ++i) flight_.paths[i].numbers.point(purpose, batch);
       batch.resolve();
       return batch.points(0, batch.count());
     };
@@ -106,30 +105,26 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
     const auto on_lens = has_lens ? make(Purpose::lens, lens) : places;
     for (size_t i = first; i < end; ++i) {
       const Vec2 through = has_lens ? camera.aperture.sample(on_lens[i - first]) : Vec2(0.0f);
-      rays_.push_back(camera.ray((pixel_of(i) + places[i - first]) / size, through));
-      paths_[i].cone = pixel_.cone(rays_.back().direction);
+      flight_.rays.push_back(camera.ray((pixel_of(i) + places[i - first]) / size, through));
+      flight_.paths[i].cone = pixel_.cone(flight_.rays.back().direction);
     }
   }
 }
 
 void TileRenderer::trace(int depth, RayLog* log) {
-  hits_.resize(rays_.size());
-  if (log != nullptr) log->add(rays_, RayLog::Kind::nearest);
-  passed_.resize(visible_.tints() ? rays_.size() : 0);
-  visible_.intersect(rays_, hits_.data(), depth == 0 ? hidden::kFromCamera : hidden::kFromBounces,
-                     visible_.tints() ? passed_.data() : nullptr);
-  for (size_t i = 0; i < passed_.size(); ++i) paths_[i].throughput *= passed_[i];
-  ray_count_ += rays_.size();
+  if (log != nullptr) log->add(flight_.rays, RayLog::Kind::nearest);
+  flight_.trace(depth == 0 ? hidden::kFromCamera : hidden::kFromBounces);
+  ray_count_ += flight_.rays.size();
 }
 
 void TileRenderer::follow(size_t index, int depth) {
-  Path& path = paths_[index];
-  const Hit& hit = hits_[index];
-  CameraSample& sample = samples_[path.sample];
+  Path& path = flight_.paths[index];
+  const Hit& hit = flight_.hits[index];
+  CameraSample& sample = flight_.samples[path.sample];
   if (hit.instance == kNoHit) {
     if (depth == 0) {
       sample.alpha = covered(path.throughput);
-      missed_.push_back({path.sample, rays_[index].direction, path.throughput});
+      missed_.push_back({path.sample, flight_.rays[index].direction, path.throughput});
     }
     return;
   }
@@ -137,7 +132,7 @@ void TileRenderer::follow(size_t index, int depth) {
     sample.alpha = covered(path.throughput);
     return;
   }
-  Vertex vertex = Vertex::seen(context_.scene, rays_[index], hit, path.cone, depth == 0 ? &pixel_ : nullptr);
+  Vertex vertex = Vertex::seen(context_.scene, flight_.rays[index], hit, path.cone, depth == 0 ? &pixel_ : nullptr);
   const auto material = static_cast<size_t>(vertex.surface - context_.scene.materials().data());
   if (!context_.tables.empty()) vertex.table = context_.tables[material].get();
   if (!context_.ggx.empty()) vertex.ggx = context_.ggx[material].get();
@@ -149,29 +144,10 @@ void TileRenderer::follow(size_t index, int depth) {
       surfaces_[path.sample] = recorder_.record(film_->options(), vertex, hit, path.throughput, path.numbers);
     }
   }
-  if (depth == 0 || !light_.counts_glow(hit)) sample.radiance += path.throughput * vertex.emission();
+  if (depth == 0 || !flight_.light.counts_glow(hit)) sample.radiance += path.throughput * vertex.emission();
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);
-  receivers_.emplace_back(vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most), most);
-}
-
-void TileRenderer::gather(int depth) {
-  next_.clear();
-  next_rays_.clear();
-  const std::span<const Receiver> all(receivers_);
-  const size_t most = all.empty() ? 1 : DirectLight::receivers_of(all[0].full);
-  for (size_t first = 0; first < all.size(); first += most) {
-    const auto batch = all.subspan(first, std::min(most, all.size() - first));
-    light_.gather(batch, shadows_, samples_);
-    for (size_t k = 0; k < batch.size() && depth < context_.options.bounces; ++k) extend(batch[k], k);
-  }
-}
-
-void TileRenderer::extend(const Receiver& receiver, size_t place) {
-  const auto onward = light_.extend(receiver, place);
-  if (!onward) return;
-  receiver.numbers->next_vertex();
-  next_.push_back({*receiver.numbers, onward->throughput, receiver.sample, receiver.vertex.cone});
-  next_rays_.push_back(onward->ray);
+  flight_.receivers.emplace_back(vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most),
+                                 most);
 }
 
 void TileRenderer::add_background() {
@@ -187,14 +163,14 @@ void TileRenderer::add_background() {
     batch.pad();
     context_.scene.environment().look_up(batch, radiance, unused);
     for (size_t i = start; i < end; ++i) {
-      CameraSample& sample = samples_[missed_[i].sample];
+      CameraSample& sample = flight_.samples[missed_[i].sample];
       sample.radiance = missed_[i].throughput * radiance.get(static_cast<int>(i - start));
       sample.alpha = 1.0f;
       if (!surfaces_.empty()) surfaces_[missed_[i].sample].shine = sample.radiance;
     }
   }
   if (!o.transparent && o.hide_world) {
-    for (const Miss& miss : missed_) samples_[miss.sample].alpha = 1.0f;
+    for (const Miss& miss : missed_) flight_.samples[miss.sample].alpha = 1.0f;
   }
   missed_.clear();
 }

@@ -7,9 +7,8 @@
 #include "job/progress.h"
 #include "material/ggx_sampler.h"
 #include "material/table_sampler.h"
-#include "render/direct_light.h"
 #include "render/film.h"
-#include "render/ray_log.h"
+#include "render/paths_in_flight.h"
 #include "render/report.h"
 #include "render/surface_recorder.h"
 
@@ -52,21 +51,13 @@ class TileRenderer {
   void render(const PixelRect& tile, int first, int count, Film& film, RayLog* log, const Progress& progress);
 
   uint64_t rays() const { return ray_count_; }
-  uint64_t nan_samples() const { return light_.nan_samples(); }
+  uint64_t nan_samples() const { return flight_.light.nan_samples(); }
 
  private:
-  struct Path {
-    PathNumbers numbers;
-    Rgb throughput;
-    uint32_t sample;
-    RayCone cone;  // at the origin of its ray
-  };
   void start_paths(const PixelRect& run, int first, int count);
   void aim_paths(const PixelRect& run, int count);
   void trace(int depth, RayLog* log);
   void follow(size_t path, int depth);
-  void gather(int depth);
-  void extend(const Receiver& receiver, size_t place);
   void add_background();
   void render_run(const PixelRect& run, int first, int count, size_t pixel, RayLog* log);
   /// To the sums of the pixels from number `pixel` of the tile on.
@@ -74,15 +65,7 @@ class TileRenderer {
 
   const RenderContext& context_;
   const PixelFootprint pixel_;
-  const VisibleRays visible_;
-  DirectLight light_;
-  ShadowQueue shadows_;
-  std::vector<Path> paths_, next_;
-  std::vector<Ray> rays_, next_rays_;  // of the paths
-  std::vector<Hit> hits_;
-  std::vector<Rgb> passed_;  // of the rays, where they change their colour
-  std::vector<Receiver> receivers_;
-  std::vector<CameraSample> samples_;
+  PathsInFlight flight_;
   SurfaceRecorder recorder_;
   std::vector<SurfaceSample> surfaces_;  // of the samples, where the film has passes that tell of them
   struct Miss {

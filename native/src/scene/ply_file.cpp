@@ -181,6 +181,10 @@ std::vector<Element> read_header(Reader& reader) {
     } else if (word == "element") {
       Element element;
       if (!(words >> element.name >> element.count)) reader.refuse("an element of its header has no name and count.");
+      // A second list of vertices could have no normals, and corners would look for them past the end of the first's.
+      if (std::ranges::find(elements, element.name, &Element::name) != elements.end()) {
+        reader.refuse("its header has two elements named '" + element.name + "'; make them one.");
+      }
       elements.push_back(element);
     } else if (word == "property") {
       if (elements.empty()) reader.refuse("its header has a property before any element.");

@@ -30,10 +30,6 @@ uint32_t pascal(uint32_t x) {
 
 }  // namespace
 
-uint32_t sobol_first(uint32_t index) { return reversed(index); }
-
-uint32_t sobol_second(uint32_t index) { return reversed(pascal(index)); }
-
 uint32_t owen_scramble(uint32_t bits, uint32_t seed) { return reversed(carry_upwards(reversed(bits), seed)); }
 
 void sobol_points(uint64_t key, uint32_t first, std::span<Vec2> points) {
@@ -41,7 +37,7 @@ void sobol_points(uint64_t key, uint32_t first, std::span<Vec2> points) {
   const auto unit = [](uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
   for (uint32_t i = 0; i < points.size(); ++i) {
     const uint32_t index = owen_scramble(first + i, seeds.order);
-    // owen_scramble(sobol_first(index)), less two reversals that undo each other; the second alike.
+    // owen_scramble(reversed(index)), less two reversals that undo each other; the second alike.
     points[i] = {unit(reversed(carry_upwards(index, seeds.x))), unit(reversed(carry_upwards(pascal(index), seeds.y)))};
   }
 }

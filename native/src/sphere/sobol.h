@@ -9,12 +9,6 @@
 
 namespace velour {
 
-/// Coordinates of point `index` of Sobol's sequence [Sob67] as fractions of 2^32. The first is the radical inverse; the
-/// second has the generator matrix C(j, i) mod 2 (primitive polynomial x + 1), so no table is needed. Every aligned run
-/// of 2^m points is a (0, m, 2)-net: one point in every elementary interval of area 2^-m.
-uint32_t sobol_first(uint32_t index);
-uint32_t sobol_second(uint32_t index);
-
 /// Owen's nested uniform scrambling [Owe95] of the fraction `bits` / 2^32: every bit is flipped or not by a hash of the
 /// bits above it ([LK11] with the constants of [Bur20]). For each `bits` a bijection of `seed`, so a scrambled point is
 /// exactly uniform over the seeds.
@@ -32,9 +26,11 @@ struct SobolSeeds {
   static uint32_t upper(uint64_t bits) { return static_cast<uint32_t>(bits >> 32); }
 };
 
-/// Points `first`, `first` + 1, ... of the sequence, in [0, 1)^2: shuffled, which keeps aligned runs of 2^m together
-/// [Bur20 section 5], then each coordinate scrambled, all by `key`. Sequences of different keys are independent, so
-/// pairs of dimensions can be padded to more.
+/// Points `first`, `first` + 1, ... of Sobol's sequence [Sob67], in [0, 1)^2. The first coordinate is the radical
+/// inverse of the index; the second has the generator matrix C(j, i) mod 2 (primitive polynomial x + 1), so no table is
+/// needed. Every aligned run of 2^m points is a (0, m, 2)-net: one point in every elementary interval of area 2^-m.
+/// They are shuffled, which keeps aligned runs of 2^m together [Bur20 section 5], then each coordinate scrambled, all
+/// by `key`. Sequences of different keys are independent, so pairs of dimensions can be padded to more.
 void sobol_points(uint64_t key, uint32_t first, std::span<Vec2> points);
 
 }  // namespace velour

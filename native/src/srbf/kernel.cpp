@@ -15,17 +15,6 @@ double abel_poisson_value(double b, double d) {
   return (1 - b) * (1 + b) / (denominator * std::sqrt(denominator));
 }
 
-double abel_poisson_slope(double b, double d) {
-  const double denominator = abel_poisson_denominator(b, d);
-  return 3 * b * (1 - b) * (1 + b) / (denominator * denominator * std::sqrt(denominator));
-}
-
-double abel_poisson_bandwidth_slope(double b, double d) {
-  const double denominator = abel_poisson_denominator(b, d);
-  const double t_minus_b = (1 - b) - d;
-  return (3 * (1 - b) * (1 + b) * t_minus_b / denominator - 2 * b) / (denominator * std::sqrt(denominator));
-}
-
 /// d = -log(u + (1 - u) e^-2l) / l, method 6.2. Broad lobes need the form that keeps its digits where the logarithm is
 /// near 0; the others do not, and plain exp and log cost a third of expm1 and log1p.
 double gaussian_sample(double l, double u) {
@@ -61,14 +50,6 @@ double kernel_value(Kernel kernel, double bandwidth, double d) {
   return kernel == Kernel::gaussian ? std::exp(-bandwidth * d) : abel_poisson_value(bandwidth, d);
 }
 
-double kernel_slope(Kernel kernel, double bandwidth, double d) {
-  return kernel == Kernel::gaussian ? bandwidth * std::exp(-bandwidth * d) : abel_poisson_slope(bandwidth, d);
-}
-
-double kernel_bandwidth_slope(Kernel kernel, double bandwidth, double d) {
-  return kernel == Kernel::gaussian ? -d * std::exp(-bandwidth * d) : abel_poisson_bandwidth_slope(bandwidth, d);
-}
-
 double kernel_integral(Kernel kernel, double bandwidth) {
   if (kernel == Kernel::abel_poisson || bandwidth == 0) return 4 * kPiD;
   return -2 * kPiD * std::expm1(-2 * bandwidth) / bandwidth;
@@ -77,15 +58,6 @@ double kernel_integral(Kernel kernel, double bandwidth) {
 double kernel_sample(Kernel kernel, double bandwidth, double u) {
   const double d = kernel == Kernel::gaussian ? gaussian_sample(bandwidth, u) : abel_poisson_sample(bandwidth, u);
   return std::clamp(d, 0.0, 2.0);
-}
-
-double kernel_bandwidth_of_half_width(Kernel kernel, double half_width) {
-  const double sine = std::sin(0.5 * half_width);
-  const double d = 2 * sine * sine;
-  if (kernel == Kernel::gaussian) return std::log(2.0) / d;
-  // (1 - b)^2 + 2 b d = 2^(2/3) (1 - b)^2, that is b^2 - (2 + k) b + 1 = 0; the root below one, without cancellation.
-  const double k = 2 * d / (std::cbrt(4.0) - 1);
-  return 2 / (2 + k + std::sqrt(k * (k + 4)));
 }
 
 double gaussian_one_minus_mean(double l) {

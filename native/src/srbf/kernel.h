@@ -25,17 +25,11 @@ inline double one_minus_dot(const Vec3d& a, const Vec3d& b) {
 
 /// G(d).
 double kernel_value(Kernel kernel, double bandwidth, double d);
-/// dG / dt = -dG / dd.
-double kernel_slope(Kernel kernel, double bandwidth, double d);
-/// dG / dbandwidth.
-double kernel_bandwidth_slope(Kernel kernel, double bandwidth, double d);
 /// Integral of G over the sphere: (2 pi / l) (1 - exp(-2 l)) for the Gaussian (4 pi at l = 0), 4 pi for Abel-Poisson.
 double kernel_integral(Kernel kernel, double bandwidth);
 /// Inverse of the distribution of d for `u` in [0, 1): u = 0 gives d = 2 and u -> 1 gives d -> 0 for the Gaussian, the
 /// same sense for Abel-Poisson. Exact closed forms; stays in [0, 2].
 double kernel_sample(Kernel kernel, double bandwidth, double u);
-/// Bandwidth at which G falls to half its peak at angle `half_width` (radians).
-double kernel_bandwidth_of_half_width(Kernel kernel, double half_width);
 
 /// Of the Gaussian as a density: 1 - mean cosine about its centre, 1 - (coth(l) - 1 / l); and its inverse, between
 /// kMinMeanBandwidth and kMaxMeanBandwidth. [BDGS05]

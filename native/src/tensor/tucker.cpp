@@ -64,23 +64,6 @@ void hooi_sweep(const TensorView& view, Tucker& tucker, const TensorOptions& opt
   }
 }
 
-Tucker fit_tucker(const TensorView& view, const std::vector<Index>& ranks, int sweeps, double tolerance,
-                  const TensorOptions& options, const Progress& progress) {
-  Tucker tucker = truncated_hosvd(view, ranks, options, progress);
-  const double square = copied(view).squared_norm();
-  double kept = tucker.core.squared_norm();
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    progress.check();
-    Tucker next = tucker;
-    hooi_sweep(view, next, options, progress);
-    const double now = next.core.squared_norm();
-    if (now > kept) tucker = std::move(next);
-    if (!(now - kept > tolerance * square)) break;
-    kept = now;
-  }
-  return tucker;
-}
-
 DenseTensor expanded(const Tucker& tucker, const TensorOptions& options, const Progress& progress) {
   DenseTensor tensor = tucker.core;
   for (size_t mode = 0; mode < tucker.factor.size(); ++mode) {

@@ -21,10 +21,6 @@ Tucker truncated_hosvd(const TensorView& view, const std::vector<Index>& ranks, 
 /// raises the error (beyond rounding).
 void hooi_sweep(const TensorView& view, Tucker& tucker, const TensorOptions& options, const Progress& progress);
 
-/// truncated_hosvd, then sweeps until one gains less than `tolerance` of the tensor's square, or so many.
-Tucker fit_tucker(const TensorView& view, const std::vector<Index>& ranks, int sweeps, double tolerance,
-                  const TensorOptions& options, const Progress& progress);
-
 /// view times the transposed factors of all modes but `but` (none: order()). An empty factor leaves its mode alone.
 DenseTensor projected(const TensorView& view, const std::vector<RowMatrix>& factor, size_t but,
                       const TensorOptions& options, const Progress& progress);

@@ -27,6 +27,14 @@ inline DenseTensor random_tucker(const std::vector<Index>& extents, const std::v
   return expanded(tucker, {}, Progress());
 }
 
+/// truncated_hosvd, then so many sweeps.
+inline Tucker swept_tucker(const TensorView& view, const std::vector<Index>& ranks, int sweeps,
+                           const TensorOptions& options = {}) {
+  Tucker tucker = truncated_hosvd(view, ranks, options, Progress());
+  for (int sweep = 0; sweep < sweeps; ++sweep) hooi_sweep(view, tucker, options, Progress());
+  return tucker;
+}
+
 inline double squared_distance(const DenseTensor& a, const DenseTensor& b) {
   double sum = 0;
   for (size_t i = 0; i < a.data.size(); ++i) {

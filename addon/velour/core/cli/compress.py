@@ -45,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--held-out", metavar="BTF", help="pairs that the fit does not see, to judge it by")
     parser.add_argument(
         "--for-scene", metavar="SCENE.json",
-        help="leave out the levels that no ray of what was observed (velour observe) resolves",
+        help="as small as pictures of what was observed (velour observe) allow",
     )  # fmt: skip
     parser.add_argument(
         "--full-model", metavar="FULL", help="with --for-scene: the full model; without: it is fitted first"

@@ -16,7 +16,6 @@ from . import (
     export,
     fit,
     info,
-    later,
     merge,
     observe,
     output,
@@ -50,9 +49,10 @@ def main(arguments: list[str] | None = None) -> int:
     args = _parser().parse_args(arguments)
     try:
         output.set_up_log("error" if args.quiet else args.log_level)
-        later.refuse_later(args)
         if args.simd:
             library.select_simd(args.simd)
+        if args.json_file:
+            output.check_writable(args.json_file)
         output.deliver(args, args.run(args))
         sys.stdout.flush()
         return DONE

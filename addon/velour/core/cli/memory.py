@@ -18,7 +18,7 @@ def check(args: argparse.Namespace) -> Estimate:
         unfinished.side_file(args.output).exists(), args.threads or machine.threads(),
     )  # fmt: skip
     limit = Limit(args.memory, "--memory") if args.memory else memory_limit(os.environ)
-    output.log.info("%s.", estimate.within(limit, "The render"))
+    output.tell(args, f"{estimate.within(limit, 'The render')}.")
     return estimate
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import logging
 import sys
+import tempfile
 from pathlib import Path
 
 from .. import files
@@ -28,6 +29,16 @@ def progress_of(args: argparse.Namespace) -> ProgressBar | ProgressLines | None:
     if sys.stderr.isatty():
         return ProgressBar(sys.stderr)
     return ProgressLines(log) if log.isEnabledFor(logging.INFO) else None
+
+
+def tell(args: argparse.Namespace, line: str) -> None:
+    """Where someone can see it, as the bar, or a log wants to know."""
+    if args.quiet:
+        return
+    if sys.stderr.isatty():
+        print(f"velour: {line}", file=sys.stderr)
+    else:
+        log.info("%s", line)
 
 
 def deliver(args: argparse.Namespace, report: dict) -> None:
@@ -68,9 +79,19 @@ def _shown(value) -> str:
 
 
 def check_writable(path: str) -> None:
-    """Says before the long work, not after it, that the result cannot be written."""
+    """Says before the long work, not after it, that the result cannot be written.
+
+    Permissions do not tell: disks are mounted read-only, and servers have rules of their own.
+    """
     folder = Path(path).absolute().parent
     if not folder.is_dir():
         raise OSError(f"The folder {folder} of the output {path} does not exist; make it first.")
     if Path(path).is_dir():
         raise OSError(f"The output {path} is a folder; name a file.")
+    try:
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise OSError(
+            f"The folder {folder} of the output {path} cannot be written to ({error.strerror}); name another,"
+            " or change its permissions."
+        ) from error

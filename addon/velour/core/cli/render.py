@@ -14,7 +14,7 @@ from ...native.errors import refuse
 from .. import domain
 from ..cache import user_cache_folder
 from ..stopping import stopping
-from . import later, memory, numbers, output, render_part, scene, unfinished
+from . import memory, numbers, output, render_part, scene, unfinished
 
 KEYS = (
     "seconds",
@@ -42,7 +42,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="OUT.exr", required=True, help=".exr or .png")
     parser.add_argument("--spp", type=numbers.whole(1), metavar="N", help="light directions a pixel")
     parser.add_argument(
-        "--split", type=numbers.whole(1, 1024), metavar="N", help="of them share a camera ray (8)"
+        "--split",
+        type=numbers.whole(1, table.MOST_SPLIT),
+        metavar="N",
+        help=f"of them share a camera ray (8), at most {table.MOST_SPLIT}",
     )
     parser.add_argument("--bounces", type=numbers.whole(0, 1024), metavar="B", help="0: direct light only")
     parser.add_argument("--strategy", choices=table.STRATEGIES, default="mis", help="mis")
@@ -74,7 +77,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> dict:
-    later.only("--strategy", args.strategy, table.STRATEGIES)
     options = _options(args)
     render_part.check(args, options)
     output.check_writable(args.output)

@@ -6,7 +6,7 @@ import argparse
 import json
 from pathlib import Path
 
-from ...native import library, table
+from ...native import library, structs, table
 from ...native.errors import refuse
 from ...native.images import Frame
 from ...native.job import render_options
@@ -21,7 +21,7 @@ _NAMES = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence
 # What says nothing of the whole picture. All other options do, also those that are still to come.
 _ELSEWHERE = {
     "output", "samples", "crop", "threads", "time_limit", "memory", "cache", "reference",
-    "json", "json_file", "quiet", "log_level", "simd", "run", "later",
+    "json", "json_file", "quiet", "log_level", "simd", "run",
 }  # fmt: skip
 
 
@@ -59,7 +59,7 @@ def _check_crop(crop: tuple[int, int, int, int], picture: tuple[int, int]) -> No
         )
 
 
-def _check_samples(samples: Range, raw: table.RenderOptions) -> None:
+def _check_samples(samples: Range, raw: structs.RenderOptions) -> None:
     text = f"--samples {samples[0]}:{samples[1]}"
     if samples[1] > raw.spp:
         raise refuse(f"{text} goes beyond --spp {raw.spp}, the samples of the whole picture: give that, too.")

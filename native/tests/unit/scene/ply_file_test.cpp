@@ -87,12 +87,30 @@ TEST(PlyFile, RefusesLies) {
   for (const std::string& bytes :
        {with("vertex 4", "vertex 4000000000000"), with("vertex 4", "vertex -4"), with("face 1", "face 99999"),
         with("4 0 1 2 3", "4 0 1 2 4"), with("4 0 1 2 3", "4 0 1 2 -1"), with("4 0 1 2 3", "255 0 1 2 3"),
-        with("4 0 1 2 3", "4 0 1 2 x"), with("float z", "float depth"), with("uchar int", "uchar text"),
-        with("ascii", "binary_middle_endian"), with("element face 1", "element faces 1"),
-        std::string("property float x\nend_header\n")}) {
+        with("4 0 1 2 3", "-4 0 1 2 3"), with("4 0 1 2 3", "1e300 0 1 2 3"), with("4 0 1 2 3", "nan 0 1 2 3"),
+        with("face 1", "face 18446744073709551615"), with("4 0 1 2 3", "4 0 1 2 x"), with("float z", "float depth"),
+        with("uchar int", "uchar text"), with("ascii", "binary_middle_endian"),
+        with("element face 1", "element faces 1"), std::string("property float x\nend_header\n")}) {
     EXPECT_THROW(read_ply(written(bytes)), Error) << bytes;
   }
   EXPECT_THROW(read_ply("/nowhere/at_all.ply"), Error);
+}
+
+// The corners of a second list would look for normals and uvs that only the first has.
+TEST(PlyFile, RefusesTwoElementsOfOneName) {
+  const std::string more_vertices = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  std::string vertices = with("element face", more_vertices + "element face");
+  vertices.replace(vertices.find("4 0 1 2 3"), 9, "7 7 7\n4 0 1 2 4");
+  std::string faces = with("end_header", "element face 1\nproperty list uchar int vertex_indices\nend_header");
+  faces += "3 0 1 2\n";
+  for (const auto& [bytes, name] : {std::pair{vertices, "'vertex'"}, std::pair{faces, "'face'"}}) {
+    try {
+      read_ply(written(bytes));
+      ADD_FAILURE() << bytes;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
+  }
 }
 
 }  // namespace

@@ -38,15 +38,20 @@ TEST(Sobol, FollowsTheRecurrenceOfItsDirectionNumbers) {
   std::array<uint32_t, 32> direction{};
   uint32_t m = 1;
   for (uint32_t j = 0; j < 32; ++j, m = (m << 1) ^ m) direction[j] = m << (31 - j);
-  for (uint32_t index : {0u, 1u, 2u, 3u, 4u, 5u, 77u, 12345u, 0x87654321u, 0xffffffffu}) {
+  const uint64_t key = 3;
+  const SobolSeeds seeds(key);
+  const auto scrambled = [](uint32_t bits, uint32_t seed) {
+    return static_cast<float>(owen_scramble(bits, seed) >> 8) * 0x1p-24f;
+  };
+  for (uint32_t place : {0u, 1u, 2u, 3u, 4u, 5u, 77u, 12345u, 0x87654321u, 0xffffffffu}) {
+    const uint32_t index = owen_scramble(place, seeds.order);
     uint32_t second = 0, first = 0;
     for (uint32_t j = 0; j < 32; ++j) {
       if ((index >> j & 1u) == 0) continue;
       second ^= direction[j];
       first |= 1u << (31 - j);
     }
-    EXPECT_EQ(sobol_second(index), second) << index;
-    EXPECT_EQ(sobol_first(index), first) << index;
+    EXPECT_EQ(sequence(key, place, 1)[0], Vec2(scrambled(first, seeds.x), scrambled(second, seeds.y))) << place;
   }
 }
 

@@ -22,7 +22,7 @@ TEST(Tucker, RecoversATensorOfItsRanks) {
 
 TEST(Tucker, HasTheErrorThatItsCoreTells) {
   const DenseTensor tensor = test::random_tensor(kExtents, 2);
-  const Tucker tucker = fit_tucker(tensor.view(), kRanks, 5, 1e-6, {}, Progress());
+  const Tucker tucker = test::swept_tucker(tensor.view(), kRanks, 5);
   for (size_t mode = 0; mode < kRanks.size(); ++mode) {
     EXPECT_EQ(tucker.factor[mode].cols(), kRanks[mode]);
     EXPECT_LT(test::orthonormality_error(tucker.factor[mode]), 1e-5f);
@@ -48,15 +48,13 @@ TEST(Tucker, GetsNoWorseWithSweeps) {
 
 TEST(Tucker, OfTheExtentsIsExact) {
   const DenseTensor tensor = test::random_tensor({3, 4, 2}, 4);
-  const Tucker tucker = fit_tucker(tensor.view(), {3, 4, 2}, 1, 0, {}, Progress());
+  const Tucker tucker = test::swept_tucker(tensor.view(), {3, 4, 2}, 1);
   EXPECT_LT(test::squared_distance(expanded(tucker, {}, Progress()), tensor), 1e-10);
 }
 
 TEST(Tucker, IsTheSameForAnyNumberOfThreads) {
   const DenseTensor tensor = test::random_tensor({20, 30, 40}, 5);
-  const auto fit = [&](int threads) {
-    return fit_tucker(tensor.view(), {3, 4, 5}, 2, 0, {.threads = threads}, Progress());
-  };
+  const auto fit = [&](int threads) { return test::swept_tucker(tensor.view(), {3, 4, 5}, 2, {.threads = threads}); };
   const Tucker one = fit(1), two = fit(2);
   EXPECT_EQ(one.core.data, two.core.data);
   for (size_t mode = 0; mode < 3; ++mode) EXPECT_EQ(one.factor[mode], two.factor[mode]);

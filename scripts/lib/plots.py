@@ -7,8 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-
-from . import files
+from velour.core import files
 
 # One colour a strategy or model in all plots, distinguishable for the colour-blind (Okabe and Ito's palette).
 COLORS = {

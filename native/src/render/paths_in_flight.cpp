@@ -1,0 +1,38 @@
+#include "render/paths_in_flight.h"
+
+#include <algorithm>
+
+namespace velour {
+
+void PathsInFlight::trace(uint8_t kind) {
+  hits.resize(rays.size());
+  passed_.resize(visible.tints() ? rays.size() : 0);
+  visible.intersect(rays, hits.data(), kind, visible.tints() ? passed_.data() : nullptr);
+  for (size_t i = 0; i < passed_.size(); ++i) paths[i].throughput *= passed_[i];
+}
+
+size_t PathsInFlight::gather(bool go_on, RayLog* log) {
+  next_.clear();
+  next_rays_.clear();
+  const std::span<const Receiver> all(receivers);
+  const size_t most = all.empty() ? 1 : DirectLight::receivers_of(all[0].full);
+  for (size_t first = 0; first < all.size(); first += most) {
+    const auto batch = all.subspan(first, std::min(most, all.size() - first));
+    light.gather(batch, shadows_, samples);
+    for (size_t k = 0; k < batch.size() && go_on; ++k) extend(batch[k], k);
+  }
+  const size_t shadow_rays = shadows_.resolve(visible, samples, log);
+  paths.swap(next_);
+  rays.swap(next_rays_);
+  return shadow_rays;
+}
+
+void PathsInFlight::extend(const Receiver& receiver, size_t place) {
+  const auto onward = light.extend(receiver, place);
+  if (!onward) return;
+  receiver.numbers->next_vertex();
+  next_.push_back({*receiver.numbers, onward->throughput, receiver.sample, receiver.vertex.cone});
+  next_rays_.push_back(onward->ray);
+}
+
+}  // namespace velour

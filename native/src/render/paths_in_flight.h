@@ -1,0 +1,49 @@
+// Paths of one thread that go from surface to surface together.
+#pragma once
+
+#include <vector>
+
+#include "render/direct_light.h"
+#include "render/ray_log.h"
+#include "render/visible_rays.h"
+
+namespace velour {
+
+struct Path {
+  PathNumbers numbers;
+  Rgb throughput;
+  uint32_t sample;
+  RayCone cone;  // at the origin of its ray
+};
+
+/// Whoever has them makes `receivers` of the hits, in turns with trace() and gather(), and counts what surfaces emit.
+struct PathsInFlight {
+  /// `sky` and `lights_part` as of DirectLight.
+  PathsInFlight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkyProposals* sky,
+                std::span<const float> lights_part)
+      : visible(scene), light(scene, lighting, options, sky, lights_part) {}
+
+  /// Where the rays end, and what of their light comes through on the way. `kind`: a bit of `hidden`.
+  void trace(uint8_t kind);
+  /// Adds the light at the receivers to the samples. The paths then are those that go on from them, if they `go_on`,
+  /// else none. The number of shadow rays, which `log` (may be null) receives.
+  size_t gather(bool go_on, RayLog* log);
+
+  const VisibleRays visible;
+  DirectLight light;
+  std::vector<Path> paths;
+  std::vector<Ray> rays;            // of the paths
+  std::vector<Hit> hits;            // of the rays
+  std::vector<Receiver> receivers;  // with numbers of the paths
+  std::vector<CameraSample> samples;
+
+ private:
+  void extend(const Receiver& receiver, size_t place);
+
+  ShadowQueue shadows_;
+  std::vector<Path> next_;
+  std::vector<Ray> next_rays_;
+  std::vector<Rgb> passed_;  // of the rays, where they change their colour
+};
+
+}  // namespace velour
