@@ -831,7 +831,8 @@ VLR_API vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float
  * are. */
 VLR_API vlr_status vlr_job_read_sums(const vlr_job* job, float* sums, uint64_t count, uint32_t* per_pixel);
 /* Adds such sums of camera rays, those that come before of a job that is to be started, which then adds its own; or
- * those that come after, once it is done. Not while it runs. */
+ * those that come after, once it is done. Not while it runs. Once it has both such sums and camera rays of its own,
+ * which a new run would count twice, vlr_job_start refuses with VLR_INVALID_STATE. */
 VLR_API vlr_status vlr_job_add_sums(vlr_job* job, const float* sums, uint64_t count);
 
 /* Asks a render to end at a whole pass, soon, with what it has: then it is done, and its report's spp says how many

@@ -32,7 +32,7 @@ Json pairs_json(const PairLayout& layout) {
 }
 
 Json options_json(const std::string& options) {
-  Json json = Json::parse(options, nullptr, false);
+  Json json = parse_json(options);
   if (!json.is_object()) throw Error(Status::invalid_argument, "The options of a BTF must be a JSON object.");
   return json;
 }
@@ -162,8 +162,8 @@ BtfContent read_content(const JsonFields& fields, size_t views, const JsonSource
 }
 
 Json parsed(std::span<const uint8_t> bytes, const std::string& name) {
-  Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  if (json.is_object() && json.value("format", Json()) == kFormat) return json;
+  Json json = parse_json(bytes);
+  if (is_of_format(json, kFormat)) return json;
   throw Error(Status::bad_data, name + ": is not the index of a BTF, which is JSON of the format '" + kFormat +
                                     "'; it may be cut short. Capture the BTF anew, or copy the whole folder again.");
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "btf/tile_size.h"
 #include "btf/value_scale.h"
 #include "file/file.h"
 #include "image/picture.h"
@@ -88,7 +89,7 @@ std::optional<Vec2> tile_of(const BtfLoadOptions& options, const std::string& pi
   const auto text = read_picture_text(picture, kTileText);
   Vec2 tile;
   const bool read = text && std::sscanf(text->c_str(), "%f %f", &tile.x, &tile.y) == 2;
-  return read && tile.x > 0 && tile.y > 0 ? std::optional(tile) : std::nullopt;
+  return read && is_tile_size(tile) ? std::optional(tile) : std::nullopt;
 }
 
 /// CIE XYZ, D65 white of luminance 1, to linear Rec. 709 (IEC 61966-2-1).

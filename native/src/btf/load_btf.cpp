@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 
 #include "btf/btf_folder.h"
 #include "btf/csv_index.h"
 #include "btf/image_names.h"
 #include "btf/image_set.h"
+#include "btf/tile_size.h"
 #include "btf/ubo_file.h"
 #include "file/file.h"
 #include "job/error.h"
@@ -32,9 +32,7 @@ void check(const BtfLoadOptions& options) {
   if (options.curve.gamma && !(*options.curve.gamma >= 0.1f && *options.curve.gamma <= 10.0f)) {
     refuse("The gamma of a BTF's pictures must be from 0.1 to 10.");
   }
-  if (!options.tile_metres) return;
-  const Vec2 tile = *options.tile_metres;
-  if (!(tile.x > 0 && tile.y > 0 && std::isfinite(tile.x) && std::isfinite(tile.y))) {
+  if (options.tile_metres && !is_tile_size(*options.tile_metres)) {
     refuse("The size of a BTF's tile must be two positive numbers of metres.");
   }
 }

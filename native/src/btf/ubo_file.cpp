@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "btf/tile_size.h"
 #include "btf/ubo_header.h"
 #include "btf/value_scale.h"
 #include "file/file.h"
@@ -90,9 +91,8 @@ class UboFile : public BtfMeasurement {
   UboFile(const std::string& path, const BtfLoadOptions& options) : file_(path), header_(read_ubo_header(file_)) {
     layout_ = header_.layout;
     grid_ = {header_.width, header_.height, options.tile_metres};
-    if (!grid_.tile_metres && header_.pixels_per_mm > 0 && std::isfinite(header_.pixels_per_mm)) {
-      grid_.tile_metres = Vec2(header_.width, header_.height) / (1000.0f * header_.pixels_per_mm);
-    }
+    const Vec2 tile = Vec2(header_.width, header_.height) / (1000.0f * header_.pixels_per_mm);
+    if (!grid_.tile_metres && is_tile_size(tile)) grid_.tile_metres = tile;
     scale_ = options.values == BtfValues::automatic ? ValueScale{1, header_.cosine} : scale_of(options.values);
     provenance_ = {
         path,        std::filesystem::path(path).stem().string(), "ubo2014", header_.setup, sha256_of_file(path),

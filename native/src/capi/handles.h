@@ -98,9 +98,20 @@ struct JobOutput {
   std::shared_ptr<const TablePixels> table;
   std::shared_ptr<Film> film;                      // set when the job is made
   bool onto_film = false;                          // of a render: adds to what its film has
+  bool rendered = false;                           // a run has begun to put its own camera rays there
   std::atomic<bool> stop{false};                   // of a render: to end at a whole pass
   std::shared_ptr<ProgressiveRender> progressive;  // likewise; thread-safe but for run() and restart()
 
+  /// For a run that is to begin, where there is none.
+  void prepare() {
+    if (onto_film && rendered) {
+      throw Error(
+          Status::invalid_state,
+          "The job's picture holds sums that were added and camera rays of its own, which a new run would count "
+          "twice; make a new job.");
+    }
+    stop = false;
+  }
   void set(std::string json, std::shared_ptr<const Model> result = nullptr) {
     const std::lock_guard lock(mutex);
     report = std::move(json);

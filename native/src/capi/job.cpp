@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "capi/guard.h"
 #include "capi/handles.h"
@@ -34,8 +35,7 @@ bool wait_with_callback(vlr_job& handle, double timeout, vlr_progress_fn progres
 vlr_status vlr_job_start(vlr_job* job) {
   return guard([&] {
     require(job, "job");
-    job->output->stop = false;
-    job->job.start();
+    job->job.start([job] { job->output->prepare(); });
   });
 }
 
@@ -67,6 +67,7 @@ vlr_status vlr_job_cancel(vlr_job* job) {
 vlr_status vlr_job_wait(vlr_job* job, double timeout_seconds, vlr_progress_fn progress, void* user, int32_t* finished) {
   return guard([&] {
     require(job, "job");
+    if (std::isnan(timeout_seconds)) throw Error(Status::invalid_argument, "timeout_seconds is not a number.");
     const bool ended =
         progress ? wait_with_callback(*job, timeout_seconds, progress, user) : job->job.wait_for(timeout_seconds);
     if (finished) *finished = ended ? 1 : 0;

@@ -81,6 +81,7 @@ vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_option
       RenderOptions options_of_run = asked;
       options_of_run.stop = &output->stop;
       options_of_run.onto_film = output->onto_film;
+      output->rendered = true;
       output->set(render_json(render(*source, options_of_run, *film, progress)));
     };
     *out = new vlr_job(output, task);

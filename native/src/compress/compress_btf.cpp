@@ -5,6 +5,7 @@
 #include <string>
 
 #include "btf/pair_interpolation.h"
+#include "btf/repeated_directions.h"
 #include "btf/srbf_evaluator.h"
 #include "btf/tensor_evaluator.h"
 #include "compress/evaluation_rate.h"
@@ -105,6 +106,8 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
     record.warnings.push_back(std::to_string(fitter->not_finite()) +
                               " entries of the BTF are not finite; the mean of their image stands in for them.");
   }
+  const std::string repeated = repeated_directions(measurement.layout());
+  if (!repeated.empty()) record.warnings.push_back(repeated);
   for (const std::string& warning : fitter->warnings()) record.warnings.push_back(warning);
   for (const std::string& warning : checkpoint.warnings()) record.warnings.push_back(warning);
   if (!found.shortfall.empty()) record.warnings.push_back(found.shortfall);

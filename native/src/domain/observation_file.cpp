@@ -141,8 +141,8 @@ void read_terms(const JsonFields& fields, uint64_t count, SceneObservation& obse
 }
 
 Json parsed(std::span<const uint8_t> bytes, const std::string& name) {
-  Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  if (!json.is_object() || json.value("format", Json()) != kFormat) {
+  Json json = parse_json(bytes);
+  if (!is_of_format(json, kFormat)) {
     throw Error(Status::bad_data, name + ": is not an observation of a scene, which is JSON of the format '" + kFormat +
                                       "'; it may be cut short. Write one with 'velour observe'.");
   }

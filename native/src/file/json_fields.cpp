@@ -75,4 +75,26 @@ std::vector<uint8_t> JsonFields::bytes(const char* key, uint64_t count) const {
   return std::move(*bytes);
 }
 
+JsonFields::Json parse_json(std::span<const uint8_t> text) {
+  using Json = JsonFields::Json;
+  constexpr int kDeepest = 32;
+  bool too_deep = false;
+  const auto is_shallow = [&](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
+  Json json = Json::parse(text.begin(), text.end(), is_shallow, false);
+  return too_deep ? Json(Json::value_t::discarded) : json;
+}
+
+JsonFields::Json parse_json(const std::string& text) {
+  return parse_json({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+}
+
+bool is_of_format(const JsonFields::Json& json, const char* format) {
+  if (!json.is_object()) return false;
+  const auto found = json.find("format");
+  return found != json.end() && *found == format;
+}
+
 }  // namespace velour

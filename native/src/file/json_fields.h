@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,5 +54,13 @@ class JsonFields {
   const JsonSource& source_;
   std::string path_;
 };
+
+/// What all files are parsed with: discarded where `text` is no JSON, or nested more than 32 deep. nlohmann copies and
+/// writes what is nested by recursion, so a file must not choose how deep that goes.
+JsonFields::Json parse_json(std::span<const uint8_t> text);
+JsonFields::Json parse_json(const std::string& text);
+
+/// Whether `json` is an object that says it is of this format.
+bool is_of_format(const JsonFields::Json& json, const char* format);
 
 }  // namespace velour

@@ -128,8 +128,10 @@ void check_part(const ByteReader& in, const ExrPart& part, const PartLayout& lay
     fail(in, part, "dataWindow has " + std::to_string(part.width) + " columns, more than a chunk can hold.");
 }
 
-/// Each chunk lies in the file and is large enough for the pixels that it claims to hold.
-void check_chunks(ByteReader& in, const ExrPart& part, const PartLayout& layout, bool multi_part) {
+/// Each chunk lies in the file and is large enough for the pixels that it claims to hold. All together are no larger
+/// than the file, or entries of the tables could share a chunk and claim its pixels many times over. `left`: bytes that
+/// chunks before did not take.
+void check_chunks(ByteReader& in, const ExrPart& part, const PartLayout& layout, bool multi_part, uint64_t& left) {
   const uint64_t lines = layout.lines_per_chunk();
   const uint64_t chunk_count = (part.height + lines - 1) / lines;
   if (layout.chunk_count_claimed >= 0 && static_cast<uint64_t>(layout.chunk_count_claimed) != chunk_count)
@@ -148,6 +150,8 @@ void check_chunks(ByteReader& in, const ExrPart& part, const PartLayout& layout,
     chunk.take(4, "first row of a chunk");
     const auto stored = chunk.number<uint32_t>("size of a chunk");
     chunk.take(stored, "chunk " + std::to_string(i) + " of part '" + part.name + "'");
+    if (stored > left) fail(in, part, "its chunks and those before hold more bytes than the file; it is damaged.");
+    left -= stored;
     const uint64_t rows = std::min(lines, part.height - i * lines);
     if (rows * part.row_bytes() > uint64_t{stored} * kMaxDeflateRatio)
       fail(in, part,
@@ -193,8 +197,9 @@ ScannedHeaders read_headers(ByteReader& in) {
 std::vector<ExrPart> scan_exr(std::span<const uint8_t> bytes, const std::string& name) {
   ByteReader in(bytes, name);
   ScannedHeaders scanned = read_headers(in);
+  uint64_t left = bytes.size();
   for (size_t i = 0; i < scanned.parts.size(); ++i) {
-    check_chunks(in, scanned.parts[i], scanned.layouts[i], scanned.multi_part);
+    check_chunks(in, scanned.parts[i], scanned.layouts[i], scanned.multi_part, left);
   }
   return std::move(scanned.parts);
 }

@@ -103,7 +103,7 @@ class PackReader {
       : source_{where, "the file is damaged, make it anew."}, inflater_(bytes), left_(kMostInflated * bytes.size()) {}
 
   TensorFile read() {
-    const Json list = Json::parse(read_list(), nullptr, false);
+    const Json list = parse_json(read_list());
     if (!list.is_object()) damaged();
     const JsonFields fields(list, source_);
     TensorFile file;

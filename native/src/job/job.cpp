@@ -1,6 +1,7 @@
 #include "job/job.h"
 
 #include <atomic>
+#include <utility>
 
 namespace velour {
 
@@ -21,22 +22,24 @@ Job::~Job() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Job::start() {
+void Job::start(const std::function<void()>& before) {
   std::unique_lock lock(mutex_);
   if (state_ == State::running) throw Error(Status::invalid_state, "The job is already running.");
-  std::thread finished = std::move(thread_);
-  progress_ = std::make_shared<Progress>();
+  if (before) before();
+  auto progress = std::make_shared<Progress>();
+  std::thread finished;
+  running_jobs.fetch_add(1);
+  try {
+    finished = std::exchange(thread_, std::thread(&Job::run, this, progress));
+  } catch (const std::exception&) {
+    running_jobs.fetch_sub(1);
+    throw Error(Status::out_of_memory, "The system gave no thread for the job.");
+  }
+  // The new run cannot end before this lock does.
+  progress_ = std::move(progress);
   state_ = State::running;
   error_ = nullptr;
   start_ = Clock::now();
-  running_jobs.fetch_add(1);
-  try {
-    thread_ = std::thread(&Job::run, this, progress_);
-  } catch (const std::exception&) {
-    running_jobs.fetch_sub(1);
-    state_ = State::ready;
-    throw Error(Status::out_of_memory, "The system gave no thread for the job.");
-  }
   lock.unlock();
   if (finished.joinable()) finished.join();  // of the run before: already past its last line
 }
@@ -81,9 +84,10 @@ Job::Snapshot Job::poll() const {
 }
 
 bool Job::wait_for(double seconds) const {
+  constexpr double kForEver = 1e9;  // the clock counts nanoseconds in 64 bits
   std::unique_lock lock(mutex_);
   const auto ended = [this] { return state_ != State::running; };
-  if (seconds < 0.0) {
+  if (seconds < 0.0 || seconds > kForEver) {
     ended_.wait(lock, ended);
     return true;
   }

@@ -32,12 +32,14 @@ class Job {
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
-  /// Throws Error(invalid_state) while running. A finished job runs anew from nothing.
-  void start();
+  /// Throws Error(invalid_state) while running. A finished job runs anew from nothing. `before` is called once it is
+  /// certain that no run is under way, ahead of the new one, which what it throws prevents; it calls nothing of the
+  /// job.
+  void start(const std::function<void()>& before = {});
   void cancel();
   Snapshot poll() const;
 
-  /// True when the task has ended within `seconds` (negative: waits for ever).
+  /// True when the task has ended within `seconds` (negative, or more than 1e9: waits for ever).
   bool wait_for(double seconds) const;
   /// Rethrows what a failed or cancelled task ended with; Error(invalid_state) when it never ran or still runs.
   void rethrow() const;

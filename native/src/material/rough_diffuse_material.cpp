@@ -10,9 +10,11 @@ namespace {
 
 enum Parameter { kRed, kGreen, kBlue, kEven, kUneven, kManyRed, kManyGreen, kManyBlue };
 
+constexpr float kWhole = 0.5f * kPi - 2.0f / 3;  // of uneven_albedo: at the horizon
+
 /// The integral of s / t of the header times the cosine, over the hemisphere of light.
 float uneven_albedo(float cosine) {
-  if (cosine < 1e-6f) return 0.5f * kPi - 2.0f / 3 - cosine;
+  if (cosine < 1e-6f) return kWhole - cosine;
   const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.0f));
   return sine * (std::acos(std::min(cosine, 1.0f)) - 2.0f / 3 - sine * cosine) +
          2.0f / 3 * (sine / cosine) * (1 - sine * sine * sine);
@@ -28,7 +30,7 @@ class RoughDiffuseMaterial final : public Material {
     const float roughness = std::clamp(p_.roughness_texture.at(site, p_.roughness), 0.0f, 1.0f);
     point.wv = wv;
     for (int c = 0; c < 3; ++c) point.parameter[kRed + c] = color[c];
-    point.parameter[kEven] = 1 / (kPi + (0.5f * kPi - 2.0f / 3) * roughness);
+    point.parameter[kEven] = 1 / (kPi + kWhole * roughness);
     point.parameter[kUneven] = roughness * point.parameter[kEven];
     const Rgb many = p_.interreflection && roughness > 0 ? interreflected(point, color) : Rgb(0.0f);
     for (int c = 0; c < 3; ++c) point.parameter[kManyRed + c] = many[c];
@@ -44,7 +46,7 @@ class RoughDiffuseMaterial final : public Material {
       float s = wv.x * l.x + wv.y * l.y;
       if (s > 0) s /= std::max(wv.z, l.z);
       Rgb value = color * (point.parameter[kEven] + point.parameter[kUneven] * s);
-      if (any) value += many * (1 - albedo(point, l.z));
+      if (any) value += many * one_minus_albedo(point, uneven_albedo(l.z));
       f.set(i, l.z > 0 ? value : Rgb(0.0f));
       pdf.v[i] = std::max(l.z, 0.0f) / kPi;
     }
@@ -58,16 +60,16 @@ class RoughDiffuseMaterial final : public Material {
   bool isotropic() const override { return true; }
 
  private:
-  /// Of a white surface.
-  static float albedo(const PreparedBrdf& point, float cosine) {
-    return kPi * point.parameter[kEven] + point.parameter[kUneven] * uneven_albedo(cosine);
+  /// 1 - E of a white surface: A pi + B (pi/2 - 2/3) is 1, so that nothing cancels where it is nearly smooth.
+  static float one_minus_albedo(const PreparedBrdf& point, float uneven) {
+    return point.parameter[kUneven] * (kWhole - uneven);
   }
 
   /// All of it that the light has no part in.
   static Rgb interreflected(const PreparedBrdf& point, const Rgb& color) {
-    const float mean = kPi * point.parameter[kEven] + point.parameter[kUneven] * kMeanUnevenAlbedo;
-    return color * color * color * (mean / (1 - mean) * (1 - albedo(point, point.wv.z)) / kPi) /
-           (1.0f - color * (1 - mean));
+    const float lost = one_minus_albedo(point, kMeanUnevenAlbedo);                              // 1 - m
+    const float of_mean = (kWhole - uneven_albedo(point.wv.z)) / (kWhole - kMeanUnevenAlbedo);  // (1 - E) / (1 - m)
+    return color * color * color * ((1 - lost) * of_mean / kPi) / (1.0f - color * lost);
   }
 
   const RoughDiffuseParameters p_;

@@ -90,7 +90,7 @@ std::string btf_record_json(const BtfRecord& record) {
 
 BtfRecord parse_btf_record(const std::string& text, const std::string& where) {
   const JsonSource source{where, "the model file is damaged."};
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_json(text);
   if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object; " + source.remedy);
   const JsonFields fields(json, source);
   BtfRecord record;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "file/json_fields.h"
 #include "job/error.h"
 #include "model/order_json.h"
 
@@ -98,7 +99,7 @@ std::string fit_record_json(const FitRecord& record) {
 }
 
 FitRecord parse_fit_record(const std::string& text, const std::string& where) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_json(text);
   if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object.");
   const Reader reader(json, where);
   FitRecord record;

@@ -69,12 +69,12 @@ OrderCurve parse_order(const Json& json, const std::string& where) {
   for (size_t i = 0; i < lobes.size(); ++i) {
     order.points.push_back({static_cast<int>(lobes[i]), static_cast<uint64_t>(bytes[i]), worst[i], relative_l2[i]});
   }
-  const Json chosen = json.value("chosen", Json(nullptr));
-  if (chosen.is_null()) return order;
-  if (!chosen.is_number_unsigned() || chosen.get<uint64_t>() >= lobes.size()) {
+  const auto chosen = json.find("chosen");
+  if (chosen == json.end() || chosen->is_null()) return order;
+  if (!chosen->is_number_unsigned() || chosen->get<uint64_t>() >= lobes.size()) {
     throw Error(Status::bad_data, where + ": 'chosen' is not the number of a point.");
   }
-  order.chosen = chosen.get<size_t>();
+  order.chosen = chosen->get<size_t>();
   return order;
 }
 

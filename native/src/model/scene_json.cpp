@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "domain/hash_text.h"
+#include "file/json_fields.h"
 #include "job/error.h"
 #include "model/order_json.h"
 
@@ -145,7 +146,7 @@ std::string scene_record_json(const SceneRecord& record) {
 }
 
 SceneRecord parse_scene_record(const std::string& text, const std::string& where) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_json(text);
   if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object.");
   const Reader reader(json, where);
   SceneRecord record;

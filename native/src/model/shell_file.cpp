@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "file/json_fields.h"
+
 namespace velour {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr double kHighest = 1000;  // heights and lengths, widths of the tile
 class ShellJson {
  public:
   ShellJson(const ModelFields& fields, const std::string& text) : fields_(fields) {
-    json_ = Json::parse(text, nullptr, false);
+    json_ = parse_json(text);
     if (!json_.is_object()) fields.fail(std::string(kAttribute) + " is not a JSON object.");
   }
 

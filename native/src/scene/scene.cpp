@@ -104,7 +104,8 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
 }
 
 void Scene::replace_material(uint32_t number) {
-  if (number + 1 >= materials_.size()) refuse("There is no material " + std::to_string(number) + " to replace.");
+  if (materials_.empty() || number >= materials_.size() - 1)
+    refuse("There is no material " + std::to_string(number) + " to replace.");
   if (!have_same_tops(materials_[number], materials_.back())) geometry_changed();
   changed();
   materials_[number] = std::move(materials_.back());

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstring>
+#include <limits>
 #include <thread>
 #include <vector>
 
@@ -88,6 +89,26 @@ TEST(CJob, WaitingEndsInTime) {
   EXPECT_EQ(finished, 0);
   EXPECT_LT(state_of(job).fraction, 1.0);
   vlr_job_free(job);  // while running: cancels and waits
+}
+
+TEST(CJob, AnyNumberOfSecondsMayBeWaited) {
+  TestScene scene;
+  vlr_job* job = scene.render_job(64, 64);
+  const double infinite = std::numeric_limits<double>::infinity();
+  Calls calls;
+  for (const double seconds : {1e10, infinite}) {
+    for (const vlr_progress_fn progress : {vlr_progress_fn{}, vlr_progress_fn{record}}) {
+      ASSERT_EQ(VLR_OK, vlr_job_start(job));
+      int32_t finished = 0;
+      EXPECT_EQ(VLR_OK, vlr_job_wait(job, seconds, progress, &calls, &finished));
+      EXPECT_EQ(finished, 1) << seconds;
+      EXPECT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr));
+    }
+  }
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_job_wait(job, nan, nullptr, nullptr, nullptr));
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_job_wait(job, nan, record, &calls, nullptr));
+  vlr_job_free(job);
 }
 
 TEST(CJob, HandlesMayBeFreedInAnyOrder) {

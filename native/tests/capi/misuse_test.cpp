@@ -140,6 +140,22 @@ TEST(Misuse, StructsOfOtherSizesAreRefused) {
   vlr_scene_free(scene);
 }
 
+TEST(Misuse, MaterialsThatAreNotThereCannotBeReplaced) {
+  vlr_scene* scene = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_scene_create(&scene));
+  vlr_principled_desc desc;
+  vlr_principled_desc_init(&desc);
+  uint32_t number = 0;
+  for (int materials = 0; materials < 3; ++materials) {
+    for (const uint32_t none : {uint32_t{2}, UINT32_MAX - 1, UINT32_MAX}) {
+      EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_scene_replace_material(scene, none));
+    }
+    ASSERT_EQ(VLR_OK, vlr_scene_add_principled_material(scene, &desc, &number)) << vlr_last_error();
+  }
+  EXPECT_EQ(VLR_OK, vlr_scene_replace_material(scene, 1)) << vlr_last_error();
+  vlr_scene_free(scene);
+}
+
 TEST(Misuse, AnUnknownInstructionSetIsRefused) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_select_simd("ENIAC"));
   EXPECT_EQ(VLR_OK, vlr_select_simd("auto"));

@@ -85,6 +85,52 @@ TEST(CParts, AStoppedRenderIsDoneAndStartsAnewInFull) {
   vlr_job_free(job);
 }
 
+TEST(CParts, AStartThatIsRefusedForgetsNoStop) {
+  const TestScene scene;
+  vlr_job* job = scene.render_job(64, 1 << 24);
+  ASSERT_EQ(VLR_OK, vlr_job_start(job));
+  ASSERT_EQ(VLR_OK, vlr_job_stop(job));
+  const bool refused = vlr_job_start(job) == VLR_INVALID_STATE;
+  if (!refused) {
+    ASSERT_EQ(VLR_OK, vlr_job_stop(job));  // it was done already
+  }
+  int32_t finished = 0;
+  EXPECT_EQ(VLR_OK, vlr_job_wait(job, 60, nullptr, nullptr, &finished)) << vlr_last_error();
+  EXPECT_EQ(finished, 1);
+  vlr_job_free(job);
+}
+
+std::vector<float> sums_of(const vlr_job* job) {
+  uint32_t per_pixel = 0;
+  EXPECT_EQ(VLR_OK, vlr_job_read_sums(job, nullptr, 0, &per_pixel));
+  std::vector<float> sums(size_t{64} * per_pixel);
+  EXPECT_EQ(VLR_OK, vlr_job_read_sums(job, sums.data(), sums.size(), nullptr)) << vlr_last_error();
+  return sums;
+}
+
+TEST(CParts, WhatWasAddedIsNeverCountedTwice) {
+  const TestScene scene;
+  vlr_job* other = scene.render_job(8, 16);
+  ASSERT_EQ(VLR_OK, vlr_job_start(other));
+  ASSERT_EQ(VLR_OK, vlr_job_wait(other, -1, nullptr, nullptr, nullptr));
+  const std::vector<float> sums = sums_of(other);
+  vlr_job_free(other);
+  for (const bool before : {true, false}) {
+    vlr_job* job = scene.render_job(8, 64);
+    const auto add = [&] { ASSERT_EQ(VLR_OK, vlr_job_add_sums(job, sums.data(), sums.size())) << vlr_last_error(); };
+    if (before) add();
+    ASSERT_EQ(VLR_OK, vlr_job_start(job)) << vlr_last_error();
+    ASSERT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
+    if (!before) add();
+    EXPECT_EQ(VLR_INVALID_STATE, vlr_job_start(job));
+    EXPECT_NE(std::string(vlr_last_error()).find("make a new job"), std::string::npos) << vlr_last_error();
+    std::vector<float> counts(64);
+    ASSERT_EQ(VLR_OK, vlr_job_read_pass(job, "Sample Count", counts.data(), counts.size()));
+    for (float count : counts) EXPECT_EQ(count, 80);
+    vlr_job_free(job);
+  }
+}
+
 TEST(CParts, FilesSayWhereTheyLie) {
   const std::string path = scratch_folder() / "part.exr";
   const std::vector<float> pixels(2 * 3 * 4, 0.5f);

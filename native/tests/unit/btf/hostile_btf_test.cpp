@@ -55,6 +55,21 @@ TEST(HostileBtf, Index) {
   attack(path, path + "/btf.json", 400);
 }
 
+/// Not by the end of the stack.
+TEST(HostileBtf, IndexThatIsNestedDeep) {
+  const std::string path = test::scratch_folder() / "tile";
+  test::RandomBtf(test::small_index(), 1).write(path);
+  const Bytes good = read_file(path + "/btf.json");
+  const std::string whole(good.begin(), good.end());
+  const std::string deep = std::string(300000, '[') + std::string(300000, ']');
+  for (const std::string& text : {"{\"format\": " + deep + "}",
+                                  whole.substr(0, whole.rfind('}')) + ", \"options\": {\"nested\": " + deep + "}}"}) {
+    overwrite(path + "/btf.json", {text.begin(), text.end()});
+    const std::string message = test::message_of([&] { read_all(path); });
+    EXPECT_NE(message.find("is not the index of a BTF"), std::string::npos) << message.substr(0, 300);
+  }
+}
+
 TEST(HostileBtf, View) {
   const std::string path = test::scratch_folder() / "tile";
   test::RandomBtf(test::small_index(), 1).write(path);

@@ -8,8 +8,11 @@
 #include <fstream>
 
 #include "btf_support.h"
+#include "file/file.h"
+#include "image/exr_part.h"
 #include "image/picture.h"
 #include "support/test_data.h"
+#include "ubo_support.h"
 
 namespace velour {
 namespace {
@@ -96,6 +99,27 @@ TEST(LoadBtf, OptionsSayWhatNumbersMean) {
   options = {};
   options.tile_metres = Vec2(0.0f, 1.0f);
   EXPECT_NE(message_of([&] { load_btf(folder, options); }), "");
+}
+
+TEST(LoadBtf, SizesThatNoTileHasAreNotKnown) {
+  const auto folder = test::scratch_folder();
+  const std::string path = folder / "tl000 pl000 tv000 pv000.exr";
+  const Picture picture{2, 1, 3, {1, 1, 1, 1, 1, 1}};
+  const auto tile_of = [&](const std::string& text) {
+    write_exr_part(path, picture, {2, 1, 0, 0}, {{"velour.tile_metres", text}});
+    return load_btf(folder)->grid().tile_metres;
+  };
+  EXPECT_EQ(tile_of("0.02 0.01"), Vec2(0.02f, 0.01f));
+  for (const char* text : {"inf 1", "1 inf", "nan 1", "0 1", "1 -1", "1"})
+    EXPECT_EQ(tile_of(text), std::nullopt) << text;
+  const std::string file = folder / "a.btf";
+  for (const float pixels_per_mm : {0.0f, -1.0f, 1e-42f, 3e38f, INFINITY, NAN}) {
+    test::UboExample example;
+    example.pixels_per_mm = pixels_per_mm;
+    example.randomize(1);
+    write_file(file, example.bytes());
+    EXPECT_EQ(load_btf(file)->grid().tile_metres, std::nullopt) << pixels_per_mm;
+  }
 }
 
 TEST(LoadBtf, CsvIndicesMayLackPairs) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compress/compress_btf.h"
 #include "unit/compress/factored_fits.h"
 
 namespace velour {
@@ -68,6 +69,20 @@ TEST(SvdFit, IsNotPulledByEntriesThatAreNotFinite) {
   const test::FactoredFit found = fit(btf, {.bytes = 6000});
   EXPECT_GT(found.not_finite, 0u);
   EXPECT_LT(error_of(found.btf, btf), 1e-3);
+}
+
+TEST(SvdFit, DirectionsThatAreThereTwiceAreTold) {
+  CompressOptions options;
+  options.method = CompressMethod::svd;
+  const auto warnings = [&](const std::vector<PolarAngles>& views) {
+    const test::MemoryBtf btf({views, ring_directions(50, 7)}, kGrid, squared_products);
+    Progress progress;
+    return compress_btf(btf, options, progress).btf->warnings;
+  };
+  EXPECT_TRUE(warnings({{0, 0}, {30, 0}, {30, 120}, {30, 240}}).empty());
+  const auto told = warnings({{0, 0}, {0, 90}, {30, 0}, {30, 120}, {30, 240}});
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_NE(told[0].find("1 of its views, 0 of its lights"), std::string::npos) << told[0];
 }
 
 }  // namespace

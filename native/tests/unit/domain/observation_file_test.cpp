@@ -147,6 +147,8 @@ TEST(ObservationFile, OtherFilesAreNamedAsSuch) {
     expect_named(complaint_of(text), "velour observe");
   }
   expect_named(complaint_of(std::string(100000, '[')), "velour observe");
+  const std::string deep = std::string(300000, '[') + std::string(300000, ']');
+  expect_named(complaint_of(R"({"format": )" + deep + "}"), "velour observe");
   const auto folder = test::scratch_folder();
   write_file(folder / "x", bytes_of("{\"format\": \"gltf\"}"));
   EXPECT_FALSE(is_observation_file(folder / "x"));

@@ -367,6 +367,21 @@ TEST(ExrTensors, EmptyChunkCannotClaimPixels) {
   EXPECT_NE(refusal(bytes).find("too few"), std::string::npos) << refusal(bytes);
 }
 
+TEST(ExrTensors, ChunksCannotBeSharedByRows) {
+  TensorFile file;
+  file.tensors["zeros"] = {{160, 16384}, std::vector<float>(160 * 16384)};
+  auto bytes = encode_tensors(file);  // ten chunks of 1 MiB, a kilobyte each in the file
+  const size_t table = value_of(bytes, "velour.shape", "string") + 9 + 1, chunk = table + 10 * 8;
+  uint64_t first = 0;
+  std::memcpy(&first, &bytes.at(table), 8);
+  ASSERT_EQ(first, chunk);
+  uint32_t stored = 0;
+  std::memcpy(&stored, &bytes.at(chunk + 4), 4);
+  for (size_t i = 1; i < 10; ++i) std::memcpy(&bytes.at(table + 8 * i), &first, 8);
+  bytes.resize(chunk + 8 + stored);
+  EXPECT_NE(refusal(bytes).find("more bytes than the file"), std::string::npos) << refusal(bytes);
+}
+
 TEST(ExrTensors, DamagedPixelsAreRefusedOrRead) {
   const auto packed = encode_tensors(packed_file());
   for (const auto& good : {encode_tensors(sample_file()), packed, reversed(packed)}) {

@@ -1,8 +1,10 @@
 #include "job/job.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <chrono>
+#include <limits>
 
 namespace velour {
 namespace {
@@ -60,6 +62,56 @@ TEST(Job, KeepsTheSentenceOfAFailure) {
   } catch (const Error& error) {
     EXPECT_EQ(error.status(), Status::bad_data);
     EXPECT_STREQ(error.what(), "file.binary: too short.");
+  }
+}
+
+/// Threads that begin while this lives ask for a stack that no machine has.
+class NoThreads {
+ public:
+  NoThreads() {
+    pthread_getattr_default_np(&before_);
+    pthread_attr_t huge = before_;
+    pthread_attr_setstacksize(&huge, size_t{1} << 60);
+    EXPECT_EQ(pthread_setattr_default_np(&huge), 0);
+  }
+  ~NoThreads() { pthread_setattr_default_np(&before_); }
+
+ private:
+  pthread_attr_t before_;
+};
+
+TEST(Job, WithoutAThreadItStaysAsItWas) {
+  Job job([](Progress&) {});
+  for (const Job::State before : {Job::State::ready, Job::State::done}) {
+    {
+      const NoThreads none;
+      EXPECT_THROW(job.start(), Error);
+    }
+    EXPECT_EQ(job.poll().state, before);
+    EXPECT_EQ(Job::running_count(), 0);
+    job.start();
+    EXPECT_TRUE(job.wait_for(-1));
+    EXPECT_NO_THROW(job.rethrow());
+  }
+}
+
+TEST(Job, NothingIsMadeReadyForAStartThatIsRefused) {
+  Job job(work_until_cancelled);
+  int calls = 0;
+  job.start([&] { ++calls; });
+  EXPECT_THROW(job.start([&] { ++calls; }), Error);
+  EXPECT_EQ(calls, 1);
+  job.cancel();
+  job.wait_for(-1);
+  EXPECT_THROW(job.start([] { throw Error(Status::invalid_state, "no."); }), Error);
+  EXPECT_EQ(job.poll().state, Job::State::cancelled);
+}
+
+TEST(Job, WaitsAsLongAsTheClockCannotCount) {
+  for (const double seconds : {1e9, 1e10, 1e300, std::numeric_limits<double>::infinity()}) {
+    Job job([](Progress&) { std::this_thread::sleep_for(20ms); });
+    job.start();
+    EXPECT_TRUE(job.wait_for(seconds)) << seconds;
   }
 }
 

@@ -170,6 +170,15 @@ TEST(RoughDiffuseMaterial, KeepsItsEnergyByInterreflection) {
   EXPECT_NEAR(albedo(*make_rough_diffuse_material({Rgb(1), 0, true}), 0.5f), 1, 1e-4);
 }
 
+TEST(RoughDiffuseMaterial, NextToNoRoughnessIsNextToLambert) {
+  for (const float roughness : {1e-38f, 1e-12f, 1e-8f, 1e-7f, 2e-7f, 1e-5f}) {
+    const auto material = make_rough_diffuse_material({Rgb(0.8f), roughness, true});
+    for (const float theta_v : {0.0f, 0.7f, 1.5f}) {
+      EXPECT_NEAR(albedo(*material, theta_v), 0.8, 1e-4) << roughness << ' ' << theta_v;
+    }
+  }
+}
+
 /// The value of the formula at directions where it is short.
 TEST(RoughDiffuseMaterial, FollowsItsFormula) {
   const auto f = [](const Vec3& wl, const Vec3& wv) {

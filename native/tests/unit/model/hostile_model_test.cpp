@@ -182,6 +182,22 @@ TEST(HostileModel, TheOrderIsChecked) {
   }
 }
 
+/// Not by the end of the stack.
+TEST(HostileModel, WhatIsNestedDeepIsRefused) {
+  const std::string deep = std::string(300000, '[') + std::string(300000, ']');
+  const std::string columns = R"("lobes": [1], "parameter_bytes": [1], "worst": [1], "relative_l2": [1])";
+  expect_named(complaint(attribute("velour.fit", R"({"order": {"chosen": )" + deep + ", " + columns + "}}")),
+               "velour.fit");
+  const auto complaint_of_btf = [](const std::string& index) {
+    return complaint_of(test::example_btf_model(), attribute("velour.btf.index", index));
+  };
+  expect_named(complaint_of_btf(R"({"format": )" + deep + "}"), "format 'velour-btf'");
+  const TensorFile file = decode_tensors(encode_model(test::example_btf_model()), "example");
+  std::string index = file.attributes.at("velour.btf.index");
+  index.insert(index.rfind('}'), R"(, "options": {"nested": )" + deep + "}");
+  expect_named(complaint_of_btf(index), "format 'velour-btf'");
+}
+
 TEST(HostileModel, UnknownPartsAndAttributesAreIgnored) {
   EXPECT_EQ(complaint([](TensorFile& f) {
               f.tensors["future.part"] = {{2}, {1, 2}};

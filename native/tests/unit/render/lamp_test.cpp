@@ -125,6 +125,22 @@ TEST(Lamp, SphereLightsLikeAPointFromOutside) {
   EXPECT_NEAR(irradiance_by_samples(Lamp(light, 1)) / static_cast<double>(expected), 1, 5e-3);
 }
 
+/// Narrower than float directions resolve: what sample() rounds away from the rim still counts.
+TEST(Lamp, SmallBallsKeepTheirLightFromAfar) {
+  Light light;
+  light.type = Light::Type::point;
+  light.light_to_world = test::shift({600, -700, 400});
+  const double expected = static_cast<double>(Lamp(light, 1).irradiance(Vec3(0.0f)).perpendicular.r) * 400 /
+                          std::sqrt(600.0 * 600 + 700 * 700 + 400 * 400);
+  for (const float radius : {1.0f, 0.01f, 3e-3f, 1e-3f, 3e-4f, 1e-4f, 1e-6f}) {
+    for (const bool sphere : {true, false}) {
+      light.size.x = radius;
+      light.sphere = sphere;
+      EXPECT_NEAR(irradiance_by_samples(Lamp(light, 1)) / expected, 1, 1.5e-3) << radius;
+    }
+  }
+}
+
 TEST(Lamp, PowerOfAreaLampsIsWhatTheyEmit) {
   // One side, Lambertian: pi A L.
   const Lamp rectangle(lamp_above(Light::Type::rectangle, {2, 3}), 1);
