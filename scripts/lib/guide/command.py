@@ -20,7 +20,7 @@ from support import process
 CHAPTERS = ("install", "first_material", "library", "tolerance", "scene_model", "tile", "cloth")
 MEASUREMENT = "brdf/cc_iris_purple_gem_rgb.bsdf"
 SCREEN = "1000x2300"  # wide enough for the whole window in a page, high enough for the longest panel
-SECONDS = 600
+SECONDS = 1800  # a chapter, on a busy machine
 FILES = ROOT / "build/guide"
 
 
