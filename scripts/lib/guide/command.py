@@ -64,7 +64,7 @@ def _run(chapter: str, blender: str, measurement: Path, folder: Path) -> str:
         last = [line for line in log.read_text(errors="replace").splitlines() if line.strip()][-3:]
         return f"the chapter {chapter} failed; {log} ends: {' / '.join(last)}"
     for path in sorted(folder.glob("*.png")):
-        pictures.keep(path, ROOT / "docs/guide/images" / path.name)
+        pages.link(pictures.keep(path, pages.GUIDE / "images"))
     pages.write(chapter, json.loads((folder / "facts.json").read_text()))
     return ""
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 from generated import replaced
 from markdown_table import table
 from provenance import conditions
@@ -21,6 +24,15 @@ def write(chapter: str, facts: dict) -> None:
     for name, part in parts.items():
         text = replaced(text, name, part, "guide")
     files.write_text(page, text)
+
+
+def link(picture: Path) -> None:
+    """Where pages show it: it may be of another kind than before."""
+    for page in GUIDE.glob("*.md"):
+        text = page.read_text(encoding="utf-8")
+        linked = re.sub(rf"\(images/{picture.stem}\.\w+\)", f"(images/{picture.name})", text)
+        if linked != text:
+            files.write_text(page, linked)
 
 
 def _taken(facts: dict) -> str:

@@ -7,27 +7,27 @@ from pathlib import Path
 from PIL import Image
 
 MOST_BYTES = 150_000
-_OF_PANELS = (
-    2000  # colours at most; what has more shows a render, which a palette would dither or cut into steps
-)
+_OF_PANELS = 2000  # colours at most; more are a render, which a palette would dither or cut into steps
 _PALETTES = (256, 128, 64)  # colours, the best first
 _QUALITIES = (94, 90, 86, 80)
 
 
-def keep(path: Path, to: Path) -> None:
-    """The best that a page can carry: of panels a PNG with a palette, of what shows a render a JPEG."""
+def keep(path: Path, folder: Path) -> Path:
+    """As good as a page can carry it: panels as PNG with a palette, what shows a render as JPEG. Its file."""
     with Image.open(path) as opened:
         picture = opened.convert("RGB")
     is_render = picture.getcolors(_OF_PANELS) is None
-    to = to.with_suffix(".jpg" if is_render else ".png")
-    to.parent.mkdir(parents=True, exist_ok=True)
+    kinds = ("jpg", "png") if is_render else ("png", "jpg")
+    to, other = (folder / f"{path.stem}.{kind}" for kind in kinds)
+    folder.mkdir(parents=True, exist_ok=True)
     for level in _QUALITIES if is_render else _PALETTES:
         (_save_jpeg if is_render else _save_png)(picture, to, level)
         if to.stat().st_size <= MOST_BYTES:
             print(
                 f"  {to.name}: {picture.width} x {picture.height}, {to.stat().st_size // 1000} kB", flush=True
             )
-            return
+            other.unlink(missing_ok=True)
+            return to
     raise SystemExit(f"guide: {to} has {to.stat().st_size} bytes; {MOST_BYTES} is the most for a page.")
 
 
