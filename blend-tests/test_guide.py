@@ -24,13 +24,16 @@ class Snippets(SnippetTest):
         shutil.copy(inputs.glossy_measurement(), self.folder / MEASUREMENT)
         (self.folder / "scripts").symlink_to(ROOT / "scripts")
         found = guide.snippets(page)
-        self.assertEqual({language for language, _ in found} - {"python", "sh"}, set())
+        self.assertEqual({language for language, _ in found} - {"python", "sh", "text"}, set())
         python = [text for language, text in found if language == "python"]
         if python:
             self.run_python("\n".join(python))
+        printed = ""
         for language, text in found:
             if language == "sh":
-                self.run_shell(text)
+                printed = self.run_shell(text)
+            elif language == "text":
+                self.assertIn(text, printed)
         return found
 
     def test_first_material(self):
@@ -72,7 +75,7 @@ class Snippets(SnippetTest):
         scene.camera = bpy.context.object
         scene.render.engine, scene.velour.samples, scene.render.resolution_percentage = "VELOUR", 4, 3
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "shot.blend"))
-        self.assertEqual(len(self._run_page("farm.md")), 3)
+        self.assertEqual(len(self._run_page("farm.md")), 4)
         self.assertEqual(len(list((self.folder / "frames").glob("shot_*.exr"))), 2)
 
     def test_no_page_is_left_out(self):

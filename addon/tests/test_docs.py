@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from conftest import ROOT
+from PIL import Image, PngImagePlugin
+from velour.native.table import STRATEGIES
 
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
 SOURCES = [
@@ -24,9 +28,76 @@ def code() -> str:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
 def test_links_lead_somewhere(page):
-    targets = re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8"))
-    missing = [t for t in targets if "://" not in t and not (page.parent / t).exists()]
-    assert missing == []
+    targets = re.findall(r"\]\(([^)]+)\)", page.read_text(encoding="utf-8"))
+    assert [t for t in targets if "://" not in t and not _is_there(page, t)] == []
+
+
+def _is_there(page: Path, target: str) -> bool:
+    """The file of a link and, of a page, the heading."""
+    name, _, anchor = target.partition("#")
+    path = page.parent / name if name else page
+    return path.exists() and (not anchor or anchor in _anchors(path.read_text(encoding="utf-8")))
+
+
+def _anchors(text: str) -> set[str]:
+    """As GitHub makes them of headings: later ones of the same words are numbered."""
+    found = set()
+    for heading in re.findall(r"^#+ (.+)$", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S), flags=re.M):
+        words = re.sub(r"[^\w\- ]", "", re.sub(r"\[(.*?)\]\(.*?\)", r"\1", heading).lower()).replace(" ", "-")
+        found.add(next(each for each in _numbered(words) if each not in found))
+    return found
+
+
+def _numbered(words: str) -> Iterator[str]:
+    yield words
+    yield from (f"{words}-{number}" for number in itertools.count(1))
+
+
+def test_a_link_to_nowhere_is_seen(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text(
+        "# Its `title`\n\n## Of [this](that.md), too\n\n## Its title\n\n```sh\n# a comment\n```\n"
+    )
+    there = ("page.md", "#its-title", "#its-title-1", "page.md#of-this-too")
+    assert [target for target in there if not _is_there(page, target)] == []
+    nowhere = ("other.md", "other.md#its-title", "#its-title-2", "#a-comment", "page.md#of-that")
+    assert [target for target in nowhere if _is_there(page, target)] == []
+
+
+def test_every_page_is_in_the_index():
+    index = (ROOT / "docs/README.md").read_text(encoding="utf-8")
+    pages = [path.name for path in (ROOT / "docs").glob("*.md") if path.name != "README.md"]
+    assert [name for name in pages if f"({name})" not in index] == []
+
+
+def test_every_folder_of_code_says_what_it_is_for():
+    folders = {path.parent for path in SOURCES} - {ROOT / "native/include/velour", ROOT / "addon/velour"}
+    assert len(folders) > 20
+    assert [str(folder) for folder in folders if not (folder / "README.md").is_file()] == []
+
+
+def test_every_operator_is_documented():
+    """But for those that only panels use."""
+    page = (ROOT / "docs/blender.md").read_text(encoding="utf-8")
+    table = set(re.findall(r"`(velour\.\w+)`", "\n".join(re.findall(r"^\| `velour.*", page, flags=re.M))))
+    classes = [
+        text
+        for path in (ROOT / "addon/velour/operators").glob("*.py")
+        for text in re.split(r"^class ", path.read_text(encoding="utf-8"), flags=re.M)
+    ]
+    names = {
+        name
+        for text in classes
+        if '"INTERNAL"}' not in text
+        for name in re.findall(r'bl_idname = "(velour\..+)"', text)
+    }
+    assert len(names) > 20
+    assert names ^ table == set()
+
+
+def test_every_strategy_is_in_the_glossary():
+    text = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
+    assert f"directions of light are drawn: {', '.join(STRATEGIES)} |" in text
 
 
 def test_places_that_the_next_engineer_is_sent_to_exist():
@@ -53,15 +124,34 @@ def test_what_the_code_cites_is_in_the_bibliography(code):
 def test_every_option_of_the_command_line_is_documented():
     text = (ROOT / "docs/command_line.md").read_text(encoding="utf-8")
     verbs = (ROOT / "addon/velour/core/cli").glob("*.py")
-    source = "\n".join(path.read_text() for path in verbs if path.name != "compress.py")
+    source = "\n".join(path.read_text() for path in verbs)
     options = set(re.findall(r'add_argument\(\s*(?:"-o", )?"(--[a-z-]+)"', source)) - {
         "--output",
         "--version",
     }
-    assert options > {"--tolerance", "--world-rotation", "--json-file"}
+    assert options > {"--tolerance", "--world-rotation", "--json-file", "--companding"}
     assert sorted(option for option in options if option not in text) == []
 
 
+PRIVATE = re.compile(r"(?<![\w.~])/(root|home|tmp|opt|mnt)/")
+
+
 def test_no_private_paths():
-    private = re.compile(r"(?<![\w.~])/(root|home|tmp|opt|mnt)/")
-    assert [path.name for path in map(Path, PAGES) if private.search(path.read_text(encoding="utf-8"))] == []
+    assert [page.name for page in PAGES if PRIVATE.search(page.read_text(encoding="utf-8"))] == []
+
+
+def _says_where(path: Path) -> bool:
+    """Whether what a picture holds beside its pixels names a private path."""
+    with Image.open(path) as picture:
+        picture.load()  # what stands behind the pixels, too
+        return bool(PRIVATE.search(str(picture.info)))
+
+
+def test_no_private_paths_in_pictures(tmp_path):
+    pictures = [path for ending in ("png", "jpg") for path in (ROOT / "docs").rglob(f"*.{ending}")]
+    assert len(pictures) > 40
+    assert [path.name for path in pictures if _says_where(path)] == []
+    told = PngImagePlugin.PngInfo()
+    told.add_text("Software", "cut /tmp/a.png", zip=True)
+    Image.new("RGB", (1, 1)).save(tmp_path / "told.png", pnginfo=told)
+    assert _says_where(tmp_path / "told.png")

@@ -18,6 +18,16 @@ def test_views_that_are_not_covered_are_left_out(tmp_path):
     assert (tmp_path / "c.png").stat().st_size > 1000
 
 
+def test_errors_can_be_read_off(monkeypatch):
+    """Within one decade, too."""
+    drawn = []
+    monkeypatch.setattr(plots, "save", lambda figure, _: drawn.append(figure))
+    plots.error_by_view_angle("c.png", {"wool": {"5": 0.012, "85": 0.12}}, 0.02)
+    drawn[0].canvas.draw()
+    shown = {label.get_text() for axis in drawn[0].axes for label in axis.get_yticklabels()}
+    assert {"0.02", "0.05", "0.1"} <= shown
+
+
 def test_machine():
     assert "threads" in machine.machine()
     assert machine.threads() >= 1

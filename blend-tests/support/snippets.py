@@ -16,8 +16,10 @@ class SnippetTest(blender.BlenderTest):
         self._run(blender.child_command("--python-exit-code", "1", "--python", path))
 
     def run_shell(self, text):
-        self._run(["sh", "-e", "-c", text])
+        """What it prints."""
+        return self._run(["sh", "-e", "-c", text])
 
     def _run(self, command):
         done = process.run(["env", "-C", self.folder, *command], seconds=SECONDS)
         self.assertEqual(done.returncode, 0, f"{shlex.join(map(str, command))}\n{done.stdout}")
+        return done.stdout

@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import headless_blender
+import palette
 import plots
 from display import display
 from velour.native import VelourError, images
@@ -60,11 +60,7 @@ def _draw(path: Path, pictures: dict[str, np.ndarray]) -> None:
             axis.imshow(pixels, interpolation="nearest")
             axis.set_axis_off()
         axes[0, column].set_title(title, fontsize=9)
-    plots.save(figure, path, dpi=100)
-    with Image.open(path) as drawn:  # noise is most of the file
-        picture = drawn.convert("RGB")
-    small = picture.quantize(palette=picture.quantize(256), dither=Image.Dither.FLOYDSTEINBERG)
-    small.save(path, optimize=True)
+    palette.save(figure, path)
 
 
 if __name__ == "__main__":

@@ -75,6 +75,7 @@ def error_by_view_angle(
         axes.semilogy(angles, values, "o-", label=name)
     axes.axhline(tolerance, color="black", linewidth=0.8, linestyle=":", label=f"tolerance {tolerance:g}")
     axes.set(xlabel="view angle, degrees", ylabel="relative L2")
+    _label_errors(axes.yaxis)
     axes.legend()
     save(figure, path)
 
@@ -181,6 +182,15 @@ def _figure(columns: int = 1):
     for cell in axes.flat:
         cell.grid(which="both", alpha=0.25)
     return figure, list(axes.flat)
+
+
+def _label_errors(axis) -> None:
+    """1, 2 and 5 of each decade: powers of ten alone may be a single label."""
+    from matplotlib import ticker
+
+    axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter(ticker.FuncFormatter(lambda error, _: f"{error:g}"))
+    axis.set_minor_formatter(ticker.NullFormatter())
 
 
 def _pyplot():

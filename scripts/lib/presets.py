@@ -11,6 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import headless_blender
 import numpy as np
 import preset_preview
+import presets_sheet
 import script
 from preset_build import QUICK, Sizes, Workshop
 from preset_table import CATALOGS, PRESETS, Preset, Weave
@@ -41,7 +42,7 @@ def main() -> int:
     sheet = _sheet(list(previews.values()))
     images.write(output / "work/sheet.png", sheet)
     if args.docs:
-        images.write(_PICTURE, _half(sheet))
+        presets_sheet.draw(_PICTURE, {preset.name: np.load(path) for preset, path in previews.items()})
     write_library(output, workshop, previews)
     size = sum((output / name).stat().st_size for name in (LIBRARY_FILE, CATALOG_FILE, LICENCE_FILE))
     print(f"{output / LIBRARY_FILE}: {len(built)} of {len(PRESETS)} presets, {size / 1e6:.2f} MB in all")
@@ -107,11 +108,6 @@ def _sheet(previews: list[Path]) -> np.ndarray:
         left = number % _COLUMNS * side
         sheet[bottom : bottom + side, left : left + side] = _linear(np.load(preview)[..., :3])
     return sheet
-
-
-def _half(pixels: np.ndarray) -> np.ndarray:
-    height, width, channels = pixels.shape
-    return pixels.reshape(height // 2, 2, width // 2, 2, channels).mean((1, 3)).astype(np.float32)
 
 
 def _linear(encoded: np.ndarray) -> np.ndarray:

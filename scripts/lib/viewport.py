@@ -29,7 +29,7 @@ SCENES = {
     "objects": "5 million triangles in 500 objects, each with a mesh of its own",
     "instances": "100,000 instances of a sphere of 992 triangles",
 }
-SEEN, EXPORT, HELD = 0.2, 3.0, 0.05  # seconds that are asked for
+SEEN, EXPORT, HELD = 0.2, 3.0, 0.05  # seconds: the targets
 SCREEN = (1400, 1000)
 SECONDS = 3600
 HEADER = ["change", "seen after, s", "of it export, s", "Blender held up by a redraw, ms"]
@@ -99,7 +99,7 @@ def _measured(results: dict[str, dict], load: float) -> str:
     conditions = provenance.sentence(provenance.conditions(0, threads()))
     head = f"""{conditions} Blender {first["blender"]}, a viewport of {width} x {height}
 pixels, {first["samples"]} samples, drawn by Mesa on the processor. Medians of five.{busy}
-Asked: a change is seen within {SEEN} s, the first export of five million triangles takes less than
+Target: a change is seen within {SEEN} s, the first export of five million triangles takes less than
 {EXPORT:g} s, and a redraw holds Blender up for at most {1000 * HELD:.0f} ms apart from the export. What is
 not met is bold."""
     return "\n".join(["", head, "", *(_text(scene, result) for scene, result in results.items())])
@@ -122,7 +122,7 @@ def _text(scene: str, result: dict) -> str:
 def _real_time_text(result: dict) -> str:
     seconds, (width, height) = statistics.median(result["seconds"]), result["size"]
     return f"""In real time ([realtime.md](realtime.md)) a picture of {width} x {height} of it takes
-{1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; asked are 30 on a modest
+{1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; the target is 30 on a modest
 graphics processor."""
 
 

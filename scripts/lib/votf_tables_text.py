@@ -103,20 +103,20 @@ def _percent(share: float) -> str:
 
 
 def _verdict(result: dict) -> str:
-    """Ours, as fine as the texels, against what was asked."""
+    """Ours, as fine as the texels, against the targets."""
     ours, linear = result["candidates"][-1], result["candidates"][0]
     wrong, border = ours["stored"]["wrong"], ours["stored"]["border"]
     share = ours["unseen"]["wrong"] / max(linear["unseen"]["wrong"], 1e-12)
     look_ups = 1e3 / ours["nanoseconds"]["any"]
-    asked = {
+    targets = {
         f"{ours['packed'] / 1e6:.2f} MB deflated (under 1)": ours["packed"] < 1e6,
         f"{_percent(wrong)} wrong (at most 1 %)": wrong <= 0.01,
         f"borders {border:.2f} texels apart (at most 0.5)": border <= 0.5,
         f"{share:.2f} of what linear interpolation gets wrong at unseen views (at most 0.5)": share <= 0.5,
         f"{look_ups:.1f} million look-ups a second and core (at least 20)": look_ups >= 20,
     }
-    lines = [f"- {sentence}: {'met' if met else '**missed**'}.\n" for sentence, met in asked.items()]
-    return f"Distances, {result['texels']} a tile, against what was asked:\n\n{''.join(lines)}"
+    lines = [f"- {sentence}: {'met' if met else '**missed**'}.\n" for sentence, met in targets.items()]
+    return f"Distances, {result['texels']} a tile, against the targets:\n\n{''.join(lines)}"
 
 
 def _generation(c: dict) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import palette
 import plots
 import provenance
 from display import display
@@ -24,7 +25,7 @@ def draw(path: Path, sheet: list) -> None:
             seen = pixels[..., :3] + (1 - pixels[..., 3:]) * _BEHIND
             _show(cells[2 * row, column], seen, f"{title}, {surface}")
             _show(cells[2 * row + 1, column], _edge(seen, pictures[0][..., 3]), "the same, magnified")
-    plots.save(figure, path, dpi=100)
+    palette.save(figure, path)
 
 
 def _edge(picture: np.ndarray, alpha: np.ndarray) -> np.ndarray:

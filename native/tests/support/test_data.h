@@ -7,7 +7,7 @@
 
 namespace velour::test {
 
-/// Folder of real test inputs: $VELOUR_DATA, else ../shared/data beside the project; empty when absent.
+/// Folder of real test inputs: $VELOUR_DATA, else a folder shared/data beside the project; empty when absent.
 std::filesystem::path data_folder();
 
 /// Below the build folder, for files of tests.

@@ -20,7 +20,7 @@ from support import process
 CHAPTERS = ("install", "first_material", "library", "tolerance", "scene_model", "tile", "cloth")
 MEASUREMENT = "brdf/cc_iris_purple_gem_rgb.bsdf"
 SCREEN = "1000x2300"  # wide enough for the whole window in a page, high enough for the longest panel
-SECONDS = 600
+SECONDS = 1800  # a chapter, on a busy machine
 FILES = ROOT / "build/guide"
 
 
@@ -64,7 +64,7 @@ def _run(chapter: str, blender: str, measurement: Path, folder: Path) -> str:
         last = [line for line in log.read_text(errors="replace").splitlines() if line.strip()][-3:]
         return f"the chapter {chapter} failed; {log} ends: {' / '.join(last)}"
     for path in sorted(folder.glob("*.png")):
-        pictures.keep(path, ROOT / "docs/guide/images" / path.name)
+        pages.link(pictures.keep(path, pages.GUIDE / "images"))
     pages.write(chapter, json.loads((folder / "facts.json").read_text()))
     return ""
 

@@ -15,7 +15,7 @@ PROPERTIES_WIDTH = 440
 WINDOW_HEIGHT = 660  # of pictures of the whole window, the bar at its top included
 _HEADER = 13  # half the height of a panel's header
 _MARGIN = 6  # around panels on pictures
-_PATIENCE = 600  # seconds that a job may take
+_PATIENCE = 1200  # seconds that a job may take
 _CLICKS = 5
 
 

@@ -1,8 +1,6 @@
 """A folder of measurements, looked through in the Material tab."""
 
 import importlib
-import tempfile
-from pathlib import Path
 
 import bpy
 import data_files
@@ -12,6 +10,7 @@ from . import scene
 from .desk import inside
 
 _PANEL = "Library of Measurements"
+_FOLDER = "measurements"
 
 
 def steps(desk, measurement, facts):
@@ -20,17 +19,14 @@ def steps(desk, measurement, facts):
     with inside("VIEW_3D"):
         monkey = scene.add_monkey()
     monkey.active_material = bpy.data.materials.new("Material")
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary, "measurements")
-        folder.symlink_to(data_files.folder() / "brdf")
-        yield from _library(desk, folder, measurement.name)
-
-
-def _library(desk, folder, chosen):
+    (desk.folder / _FOLDER).symlink_to(data_files.folder() / "brdf")
+    bpy.ops.wm.save_as_mainfile(filepath=str(desk.folder / "library.blend"))
     browse = importlib.import_module(f"{inputs.ADDON}.operators.browse")
-    browse.addon_preferences(bpy.context).measurements = str(folder)
+    browse.addon_preferences(
+        bpy.context
+    ).measurements = f"//{_FOLDER}/"  # as Blender names what is beside a file
     settings = bpy.context.window_manager.velour.browser
-    settings.chosen = str(folder / chosen)
+    settings.chosen = str(desk.folder / _FOLDER / measurement.name)
     yield from desk.show("MATERIAL")
     yield from desk.fold("MATERIAL", _PANEL, is_open=True)
     yield from _all_pictures()

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 from generated import replaced
 from markdown_table import table
 from provenance import conditions
@@ -21,6 +24,15 @@ def write(chapter: str, facts: dict) -> None:
     for name, part in parts.items():
         text = replaced(text, name, part, "guide")
     files.write_text(page, text)
+
+
+def link(picture: Path) -> None:
+    """Where pages show it: it may be of another kind than before."""
+    for page in GUIDE.glob("*.md"):
+        text = page.read_text(encoding="utf-8")
+        linked = re.sub(rf"\(images/{picture.stem}\.\w+\)", f"(images/{picture.name})", text)
+        if linked != text:
+            files.write_text(page, linked)
 
 
 def _taken(facts: dict) -> str:
@@ -61,8 +73,9 @@ def _scene(facts: dict) -> str:
 def _tile(facts: dict) -> str:
     return (
         f"The weave of the pictures: the capture has {_mb(facts['capture_bytes'])}, the material"
-        f" {_mb(facts['model_bytes'])}\n(1:{facts['ratio']:.0f}), and {_mb(facts['outlined_bytes'])}"
-        " with its outline.\n"
+        f" {_mb(facts['model_bytes'])}, a\n{facts['capture_bytes'] / facts['model_bytes']:.0f}th of it."
+        f" **Size** tells 1:{facts['ratio']:.0f}: that is beside the captured values alone, as half floats.\n"
+        f"With its outline the material has {_mb(facts['outlined_bytes'])}.\n"
     )
 
 

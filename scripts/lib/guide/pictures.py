@@ -7,31 +7,34 @@ from pathlib import Path
 from PIL import Image
 
 MOST_BYTES = 150_000
-# Palettes, the best first: its colours, and whether they are dithered.
-_PALETTES = ((256, True), (256, False), (128, False), (64, False))
-_OF_A_RENDER = 20_000  # colours; panels have a few hundred, which dithering would blur
+_OF_PANELS = 2000  # colours at most; more are a render, which a palette would dither or cut into steps
+_PALETTES = (256, 128, 64)  # colours, the best first
+_QUALITIES = (94, 90, 86, 80)
 
 
-def keep(path: Path, to: Path) -> None:
-    """With the best palette that a page can carry: a third of the bytes, or less."""
-    to.parent.mkdir(parents=True, exist_ok=True)
+def keep(path: Path, folder: Path) -> Path:
+    """As good as a page can carry it: panels as PNG with a palette, what shows a render as JPEG. Its file."""
     with Image.open(path) as opened:
         picture = opened.convert("RGB")
-    is_render = picture.getcolors(_OF_A_RENDER) is None
-    for colors, is_dithered in _PALETTES:
-        if is_dithered and not is_render:
-            continue
-        _with_palette(picture, colors, is_dithered).save(to, optimize=True)
+    is_render = picture.getcolors(_OF_PANELS) is None
+    kinds = ("jpg", "png") if is_render else ("png", "jpg")
+    to, other = (folder / f"{path.stem}.{kind}" for kind in kinds)
+    folder.mkdir(parents=True, exist_ok=True)
+    for level in _QUALITIES if is_render else _PALETTES:
+        (_save_jpeg if is_render else _save_png)(picture, to, level)
         if to.stat().st_size <= MOST_BYTES:
             print(
                 f"  {to.name}: {picture.width} x {picture.height}, {to.stat().st_size // 1000} kB", flush=True
             )
-            return
+            other.unlink(missing_ok=True)
+            return to
     raise SystemExit(f"guide: {to} has {to.stat().st_size} bytes; {MOST_BYTES} is the most for a page.")
 
 
-def _with_palette(picture: Image.Image, colors: int, is_dithered: bool) -> Image.Image:
-    palette = picture.quantize(colors, method=Image.Quantize.MEDIANCUT)
-    if not is_dithered:
-        return palette
-    return picture.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
+def _save_png(picture: Image.Image, to: Path, colors: int) -> None:
+    picture.quantize(colors, method=Image.Quantize.MEDIANCUT).save(to, optimize=True)
+
+
+def _save_jpeg(picture: Image.Image, to: Path, quality: int) -> None:
+    """Colours as fine as brightness, for the letters of panels."""
+    picture.save(to, quality=quality, subsampling=0)

@@ -16,7 +16,7 @@ def start(samples: int = 128, size: tuple[int, int] = (640, 420)) -> bpy.types.S
         bpy.data.objects.remove(bpy.data.objects[name])
     scene = bpy.context.scene
     scene.render.engine = "VELOUR"
-    scene.velour.samples = scene.velour.viewport_samples = samples
+    scene.velour.samples = samples
     scene.render.resolution_x, scene.render.resolution_y = size
     return scene
 

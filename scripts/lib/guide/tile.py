@@ -54,20 +54,21 @@ def _material(desk, facts):
     yield from desk.job()
     info = model_info(scenes.velour_node(bpy.data.materials[MATERIAL]).image)
     facts["model_bytes"], facts["ratio"] = info["bytes"], info["raw_bytes"] / info["bytes"]
-
-
-def _outline(desk, facts):
     with inside("VIEW_3D"):
         bpy.ops.mesh.primitive_plane_add(size=4, location=(6, 1, 0))
-        plane = bpy.context.object
-        plane.active_material = bpy.data.materials[MATERIAL]
-        scenes.velour_node(plane.active_material).velour.structure = bpy.data.objects[TILE]
-    desk.start(bpy.ops.velour.add_votf)
-    yield from desk.job()
-    facts["outlined_bytes"] = model_info(scenes.velour_node(plane.active_material).image)["bytes"]
+        bpy.context.object.active_material = bpy.data.materials[MATERIAL]
     yield from desk.show("MATERIAL")
     yield from desk.plot("ORDER")
     desk.picture_of_panels("btf_model", "MATERIAL", "Model")
+
+
+def _outline(desk, facts):
+    node = scenes.velour_node(bpy.data.materials[MATERIAL])
+    node.velour.structure = bpy.data.objects[TILE]
+    desk.start(bpy.ops.velour.add_votf)
+    yield from desk.job()
+    facts["outlined_bytes"] = model_info(node.image)["bytes"]
+    yield from desk.show("MATERIAL")
     yield from desk.fold("MATERIAL", "Outline (VOTF)", is_open=True)
     yield from desk.drawn("OUTLINE")
     desk.picture_of_panels("outline", "MATERIAL", "Outline (VOTF)")
