@@ -10,6 +10,7 @@ from mathutils import Vector
 from velour import operators
 from velour.export import ExportError
 from velour.native import Btf, Measurement, library
+from velour.operators import measured
 from velour.operators.background_job import BackgroundJob
 from velour.operators.fit import VELOUR_OT_fit
 from velour.operators.job_target import JobOwner, JobTarget
@@ -424,6 +425,25 @@ class Refusals(BlenderTest):
         scenes.add_plane()
         bpy.ops.velour.add_material()
         self._refused(["no measurement"], bpy.ops.velour.fit)
+
+    def test_linked_materials(self):
+        """What is made of them would be gone with the next look into their file."""
+        scenes.add_plane()
+        path, model = str(self.folder / "library.blend"), inputs.model_bytes(inputs.lambert_measurement())
+        bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)
+        name = bpy.context.object.active_material.name
+        scenes.velour_node(bpy.data.materials[name]).image = measured.packed_model(model, "Model")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        with bpy.data.libraries.load(path, link=True) as (_source, target):
+            target.materials = [name]
+        tile = scenes.add_plane().name
+        before = scenes.velour_node(bpy.data.materials[name]).image
+        words = [f"'{name}' is linked", "make it local"]
+        self._refused(words, bpy.ops.velour.fit, material=name, max_lobes=2)
+        self._refused(words, bpy.ops.velour.add_votf, material=name, structure=tile, texels=8)
+        node = scenes.velour_node(bpy.data.materials[name])
+        self.assertEqual((node.image, node.velour.max_lobes, node.velour.structure), (before, 16, None))
 
     def test_fit_missing_measurement(self):
         scenes.add_plane()
