@@ -1,6 +1,8 @@
 """Every operator, without a window."""
 
+import contextlib
 import hashlib
+import io
 import shutil
 import threading
 from unittest import mock
@@ -184,6 +186,20 @@ class Operators(BlenderTest):
         bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False, assign=False)
         self.assertIsNone(self.material)
         self.assertTrue(bpy.data.materials[inputs.lambert_measurement().stem].use_fake_user)
+
+    def test_load_where_nothing_takes_a_material_says_so(self):
+        path, said = inputs.lambert_measurement(), io.StringIO()
+        bpy.ops.object.light_add(type="POINT")
+        name = bpy.context.object.name
+        with contextlib.redirect_stdout(said):
+            bpy.ops.velour.load_material(filepath=str(path), fit=False)
+        self.assertTrue(bpy.data.materials[path.stem].use_fake_user)
+        sentence = f"Object '{name}' takes no material; material '{path.stem}' is kept without an object."
+        self.assertIn(sentence, said.getvalue())
+        bpy.context.view_layer.objects.active = None
+        with contextlib.redirect_stdout(said):
+            bpy.ops.velour.load_material(filepath=str(path), fit=False)
+        self.assertIn("No object is active; material", said.getvalue())
 
     def test_a_slot_is_that_of_the_face_that_is_met(self):
         cube = _two_sided_cube()
