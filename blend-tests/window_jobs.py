@@ -1,5 +1,7 @@
 """The window: what becomes of a fit whose material, or file, changes while it runs."""
 
+from unittest import mock
+
 import bpy
 
 from support import inputs, scenes, window
@@ -134,21 +136,21 @@ def scene_removed(folder):
     assert _model("Paint") != before
 
 
-def _undo_is_one_step(before):
-    with window.override():
-        bpy.ops.ed.undo()
-    assert _model("Paint") == before, "the model came without an undo step"
-
-
 def measurement_cleared(folder):
-    """The model comes all the same, as one step."""
+    """The model comes all the same, as one step and without an error."""
     material, before = _cube_with_fit(**_QUICK)
     scenes.velour_node(material).velour.measurement = None
     with window.override():
         bpy.ops.ed.undo_push(message="cleared")
-    yield from _end()
+    fit, ended = module("operators.fit").VELOUR_OT_fit, []
+    put = fit._put
+    with mock.patch.object(fit, "_put", lambda operator: ended.append(put(operator)) or ended[-1]):
+        yield from _end()
+    assert ended == [{"FINISHED"}], "it has ended in an error"
     assert _model("Paint") != before, "the model is lost"
-    _undo_is_one_step(before)
+    with window.override():
+        bpy.ops.ed.undo()
+    assert _model("Paint") == before
 
 
 def measurement_replaced(folder):
