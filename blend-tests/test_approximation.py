@@ -2,6 +2,7 @@
 
 import importlib
 import json
+from unittest import mock
 from urllib.parse import unquote
 
 import bpy
@@ -9,6 +10,7 @@ import numpy as np
 
 from support import inputs, scenes
 from support.blender import BlenderTest, run_blender
+from support.drawn import drawn
 
 SIZE = 96
 _BLOCK = 8  # pixels: noise is far below what is looked for
@@ -268,6 +270,30 @@ class Group(Approximation):
         self.assertEqual(group.node_tree.name, "Velour approximation")
         self.assertTrue(group.outputs[0].is_linked)
         self.assertEqual(len(bpy.data.node_groups), 1, "the one before is left behind")
+
+    def test_the_panel_says_when_it_is_of_another_model(self):
+        """Also of one whose content nobody has vouched for, as of images that were opened by hand."""
+        module = importlib.import_module(f"{inputs.ADDON}.ui.approximation_panel")
+        files = importlib.import_module(f"{inputs.ADDON}.export.files")
+        old = "It is not of this model: refresh it."
+
+        def read(image):
+            return files.StoredFile.of(image, "Test").model_info()
+
+        def said():
+            with mock.patch.object(module, "model_summary", read):
+                return drawn(module.VELOUR_MATERIAL_PT_approximation, material=self.material).texts
+
+        self._import(self._model_file(inputs.model_bytes(inputs.lambert_measurement())))
+        self.assertNotIn(old, said())
+        image = bpy.data.images.load(
+            str(self._model_file(inputs.model_bytes(inputs.glossy_measurement()), "other"))
+        )
+        scenes.velour_node(self.material).image = image
+        self.assertEqual(image.velour.sha256, "")
+        self.assertIn(old, said())
+        bpy.ops.velour.approximate()
+        self.assertNotIn(old, said())
 
     def test_a_shader_of_the_artist_s_own_stays(self):
         self.obj.active_material = material = scenes.diffuse_material()

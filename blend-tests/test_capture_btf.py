@@ -11,6 +11,7 @@ from mathutils import Matrix
 
 from support import inputs, scenes
 from support.blender import BlenderTest
+from support.panels import Layout
 
 _SMALL = {"texels": 4, "views": 6, "lights": 6, "samples": 4, "bounces": 0, "sides": "ONE"}
 _COLOR = (0.8, 0.5, 0.2)
@@ -89,6 +90,23 @@ class CaptureBtf(BlenderTest):
         settings.texels = 17
         self.assertNotEqual(state.estimated, tiles.captured_as(obj))
         self.assertEqual(settings.directory, "")
+
+    def test_a_new_folder_leaves_what_is_there(self):
+        """Beside it, with a number, by a button of its own."""
+        obj = self._plane(size=2)
+        first = self._capture()
+        for number in (1, 2):
+            self.assertEqual(bpy.ops.velour.capture_btf(new_folder=True), {"FINISHED"})
+            folder = self.folder / f"tile.{number:03}.btf"
+            self.assertEqual(obj.velour.directory, str(folder))
+            self.assertEqual(self._files(json.loads((folder / "btf.json").read_text())), self._files(first))
+        with self.assertRaisesRegex(RuntimeError, "resume it, or give another folder"):
+            bpy.ops.velour.capture_btf()
+        panel = importlib.import_module(f"{inputs.ADDON}.ui.tile_panel").VELOUR_OBJECT_PT_tile
+        layout = Layout(panel)
+        panel.draw(layout, bpy.context)
+        buttons = [button for button in layout.operators if button.name == "velour.capture_btf"]
+        self.assertEqual([getattr(button, "new_folder", False) for button in buttons], [False, True])
 
     def test_size_is_that_of_the_scene_in_metres(self):
         self._plane(size=2)

@@ -33,6 +33,13 @@ class CompressBtf(BlenderTest):
         self.assertTrue(bpy.data.materials["ribs"].use_fake_user)
         self.assertEqual({material.name for material in bpy.context.object.data.materials}, before)
 
+    def test_it_is_named_as_the_folder_where_the_index_in_it_is_named(self):
+        """As imports do, and the browser."""
+        index = self._captured(**_SMALLEST) / "btf.json"
+        bpy.ops.velour.compress_btf(filepath=str(index))
+        bpy.ops.velour.load_material(filepath=str(index))
+        self.assertLessEqual({"ribs", "ribs.001"}, set(bpy.data.materials.keys()))
+
     def _estimate(self, **arguments):
         with contextlib.redirect_stdout(io.StringIO()):
             self.assertEqual(bpy.ops.velour.estimate_fit(**arguments), {"FINISHED"})

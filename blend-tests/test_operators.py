@@ -1,6 +1,8 @@
 """Every operator, without a window."""
 
+import contextlib
 import hashlib
+import io
 import shutil
 import threading
 from unittest import mock
@@ -10,6 +12,7 @@ from mathutils import Vector
 from velour import operators
 from velour.export import ExportError
 from velour.native import Btf, Measurement, library
+from velour.operators import measured
 from velour.operators.background_job import BackgroundJob
 from velour.operators.fit import VELOUR_OT_fit
 from velour.operators.job_target import JobOwner, JobTarget
@@ -183,6 +186,20 @@ class Operators(BlenderTest):
         bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False, assign=False)
         self.assertIsNone(self.material)
         self.assertTrue(bpy.data.materials[inputs.lambert_measurement().stem].use_fake_user)
+
+    def test_load_where_nothing_takes_a_material_says_so(self):
+        path, said = inputs.lambert_measurement(), io.StringIO()
+        bpy.ops.object.light_add(type="POINT")
+        name = bpy.context.object.name
+        with contextlib.redirect_stdout(said):
+            bpy.ops.velour.load_material(filepath=str(path), fit=False)
+        self.assertTrue(bpy.data.materials[path.stem].use_fake_user)
+        sentence = f"Object '{name}' takes no material; material '{path.stem}' is kept without an object."
+        self.assertIn(sentence, said.getvalue())
+        bpy.context.view_layer.objects.active = None
+        with contextlib.redirect_stdout(said):
+            bpy.ops.velour.load_material(filepath=str(path), fit=False)
+        self.assertIn("No object is active; material", said.getvalue())
 
     def test_a_slot_is_that_of_the_face_that_is_met(self):
         cube = _two_sided_cube()
@@ -424,6 +441,25 @@ class Refusals(BlenderTest):
         scenes.add_plane()
         bpy.ops.velour.add_material()
         self._refused(["no measurement"], bpy.ops.velour.fit)
+
+    def test_linked_materials(self):
+        """What is made of them would be gone with the next look into their file."""
+        scenes.add_plane()
+        path, model = str(self.folder / "library.blend"), inputs.model_bytes(inputs.lambert_measurement())
+        bpy.ops.velour.load_material(filepath=str(inputs.lambert_measurement()), fit=False)
+        name = bpy.context.object.active_material.name
+        scenes.velour_node(bpy.data.materials[name]).image = measured.packed_model(model, "Model")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        with bpy.data.libraries.load(path, link=True) as (_source, target):
+            target.materials = [name]
+        tile = scenes.add_plane().name
+        before = scenes.velour_node(bpy.data.materials[name]).image
+        words = [f"'{name}' is linked", "make it local"]
+        self._refused(words, bpy.ops.velour.fit, material=name, max_lobes=2)
+        self._refused(words, bpy.ops.velour.add_votf, material=name, structure=tile, texels=8)
+        node = scenes.velour_node(bpy.data.materials[name])
+        self.assertEqual((node.image, node.velour.max_lobes, node.velour.structure), (before, 16, None))
 
     def test_fit_missing_measurement(self):
         scenes.add_plane()

@@ -1,17 +1,22 @@
 """The window: what becomes of a fit whose material, or file, changes while it runs."""
 
+from unittest import mock
+
 import bpy
 
 from support import inputs, scenes, window
+from support.reading import module
 
 _TURNS = 600  # of 0.1 s that a fit may take
+_QUICK = {"tolerance": 0.2, "max_lobes": 2}
 
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(
-        folder, (renamed, copied, deleted, undone, new_file, loaded_file, scene_removed, scene_fit_renamed)
-    )
+    of_a_fit = (renamed, copied, deleted, undone, new_file, loaded_file, scene_removed)
+    of_its_measurement = (measurement_cleared, measurement_replaced)
+    in_line = (outline_after_a_fit, approximation_after_a_fit, scene_fit_after_a_fit, waiting_given_up)
+    window.run(folder, (*of_a_fit, *of_its_measurement, *in_line, scene_fit_renamed))
 
 
 def _cube_with_fit(**settings):
@@ -34,10 +39,11 @@ def _cube_with_fit(**settings):
 
 
 def _end():
-    """Turns until nothing runs."""
+    """Turns until nothing runs, nor waits."""
+    state = bpy.context.window_manager.velour
     for _ in range(_TURNS):
         yield 0.1
-        if not bpy.context.window_manager.velour.running:
+        if not state.running and not state.waiting:
             return
     raise AssertionError("the fit goes on")
 
@@ -130,8 +136,108 @@ def scene_removed(folder):
     assert _model("Paint") != before
 
 
+def measurement_cleared(folder):
+    """The model comes all the same, as one step and without an error."""
+    material, before = _cube_with_fit(**_QUICK)
+    scenes.velour_node(material).velour.measurement = None
+    with window.override():
+        bpy.ops.ed.undo_push(message="cleared")
+    fit, ended = module("operators.fit").VELOUR_OT_fit, []
+    put = fit._put
+    with mock.patch.object(fit, "_put", lambda operator: ended.append(put(operator)) or ended[-1]):
+        yield from _end()
+    assert ended == [{"FINISHED"}], "it has ended in an error"
+    assert _model("Paint") != before, "the model is lost"
+    with window.override():
+        bpy.ops.ed.undo()
+    assert _model("Paint") == before
+
+
+def measurement_replaced(folder):
+    """What is known of a file is not said of another one."""
+    material, before = _cube_with_fit(**_QUICK)
+    other = bpy.data.images.new("lambert.binary", 1, 1)
+    other.source, other.filepath_raw = "FILE", str(inputs.lambert_measurement())
+    scenes.velour_node(material).velour.measurement = other
+    yield from _end()
+    assert _model("Paint") != before
+    assert bpy.data.images["lambert.binary"].velour.sha256 == ""
+    with window.override():
+        assert bpy.ops.velour.fit(material="Paint", **_QUICK) == {"FINISHED"}
+
+
+def _info(material):
+    image = scenes.velour_node(material).image
+    with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
+        return model.info()
+
+
+def _invoke(operator, **arguments):
+    with window.override():
+        assert operator("INVOKE_DEFAULT", **arguments) == {"RUNNING_MODAL"}
+
+
+def outline_after_a_fit(folder):
+    """It comes to the model of the fit that it has waited for."""
+    with window.override():
+        bpy.ops.mesh.primitive_plane_add(size=0.5)
+        pane = bpy.context.object
+    pane.velour.period = (1, 1)
+    name = pane.name
+    material, _before = _cube_with_fit(**_QUICK)
+    had = _info(material)
+    _invoke(bpy.ops.velour.add_votf, material="Paint", structure=name, texels=8)
+    assert bpy.context.window_manager.velour.waiting == 1
+    yield from _end()
+    has = _info(bpy.data.materials["Paint"])
+    assert "shell" in has
+    assert (has["model"], has["lobes"]) != (had["model"], had["lobes"]), "it is of the model before"
+
+
+def approximation_after_a_fit(folder):
+    _material, before = _cube_with_fit(**_QUICK)
+    _invoke(bpy.ops.velour.approximate, material="Paint")
+    yield from _end()
+    material = bpy.data.materials["Paint"]
+    assert _model("Paint") != before
+    group = module("export.nodes").approximation_node(material).node_tree
+    assert group.velour.model == scenes.velour_node(material).image.velour.sha256, "it is of the model before"
+
+
+def scene_fit_after_a_fit(folder):
+    """It begins with the model of that, and looks at the frames when it is there."""
+    _material, before = _cube_with_fit(model="PARAMETRIC", tolerance=0.05, max_lobes=4)
+    scenes.use_engine()
+    _invoke(bpy.ops.velour.fit_for_scene, material="Paint", current_frame=True)
+    yield from _end()
+    assert _model("Paint") != before
+    assert scenes.velour_node(bpy.data.materials["Paint"]).velour.scene_model is not None
+
+
+def waiting_given_up(folder):
+    """All that wait leave the line, and what runs goes on."""
+    material, before = _cube_with_fit()
+    scenes.use_engine()
+    for name in ("Second", "Third"):
+        material.copy().name = name
+        _invoke(bpy.ops.velour.fit, material=name, **_QUICK)
+    _invoke(bpy.ops.velour.fit_for_scene, material="Paint", current_frame=True)
+    state = bpy.context.window_manager.velour
+    assert state.waiting == 3
+    bpy.ops.velour.cancel_waiting()
+    for _ in range(20):
+        yield 0.1
+        if not state.waiting:
+            break
+    assert (state.running, state.subject, state.waiting) == (True, "Paint", 0)
+    yield from _end()
+    assert _model("Paint") != before, "the first one was cancelled"
+    assert (_model("Second"), _model("Third")) == (before, before), "one that waited was made"
+    assert scenes.velour_node(bpy.data.materials["Paint"]).velour.scene_model is None
+
+
 def scene_fit_renamed(folder):
-    """A fit for the scene finds the material, too, and the model of one that is deleted is kept."""
+    """A fit for the scene finds the material and the scene, too, whatever they are called."""
     material, _before = _cube_with_fit(model="PARAMETRIC", tolerance=0.05, max_lobes=4)
     yield from _end()
     scenes.use_engine()
@@ -139,7 +245,7 @@ def scene_fit_renamed(folder):
         assert bpy.ops.velour.fit_for_scene("INVOKE_DEFAULT", material="Paint", current_frame=True) == {
             "RUNNING_MODAL"
         }
-    material.name = "Another"
+    material.name, bpy.context.scene.name = "Another", "Shot"
     yield from _end()
     assert scenes.velour_node(bpy.data.materials["Another"]).velour.scene_model is not None, (
         "the model is lost"

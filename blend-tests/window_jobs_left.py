@@ -9,7 +9,7 @@ from unittest import mock
 
 import bpy
 
-from support import window
+from support import inputs, window
 from support.reading import MODEL, module
 
 _QUITTING_SECONDS = 20  # what reads has 60, and Blender itself takes one or two
@@ -17,7 +17,8 @@ _QUITTING_SECONDS = 20  # what reads has 60, and Blender itself takes one or two
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (escape, pictures_of_another_file, quitting_while_reading, quitting_with_pictures))
+    quitting = (quitting_while_reading, quitting_with_pictures, quitting_a_fit, quitting_a_capture)
+    window.run(folder, (escape, pictures_of_another_file, *quitting))
 
 
 def escape(folder):
@@ -82,19 +83,21 @@ def pictures_of_another_file(folder):
     assert state.waiting == 0
 
 
-# Quits 0.3 s after the job has begun, and says when.
+# Quits 0.3 s after the job has begun, or is past what it begins with, and says when.
 _CHILD = """
 import sys, time
 import addon_utils, bpy
 addon_utils.enable("velour", default_set=True)
 
 def begin():
-    {begin}
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, screen=window.screen):
+        {begin}
     bpy.app.timers.register(leave, first_interval=0.3)
 
 def leave():
     state = bpy.context.window_manager.velour
-    if not state.running or state.stage == "":
+    if not state.running or state.stage in {before!r}:
         return 0.1
     print("leaves at", time.time(), flush=True)
     bpy.ops.wm.quit_blender()
@@ -103,10 +106,12 @@ bpy.app.timers.register(begin, first_interval=0.5)
 """
 
 
-def _quits(folder, name, begin):
-    """Turns until a Blender of its own, whose job these lines begin, has left: in time, with status 0."""
+def _quits(folder, name, begin, before=("",)):
+    """Turns until a Blender of its own, whose job these lines begin, has left: in time, with status 0.
+
+    `before`: stages of the job that it does not leave in."""
     program, log = folder / f"{name}.py", folder / f"{name}.txt"
-    program.write_text(_CHILD.format(begin=begin.strip().replace("\n", "\n    ")))
+    program.write_text(_CHILD.format(begin=begin.strip().replace("\n", "\n        "), before=before))
     command = [bpy.app.binary_path, "--factory-startup", "--window-geometry", "0", "0", "600", "400"]
     with open(log, "wb") as output:
         child = subprocess.Popen(
@@ -153,3 +158,30 @@ def quitting_with_pictures(folder):
 bpy.ops.velour.make_thumbnails("INVOKE_DEFAULT", directory={str(path)!r})
 """,
     )
+
+
+def quitting_a_fit(folder):
+    """The library's threads work on it."""
+    yield from _quits(
+        folder,
+        "fitting",
+        f"""
+bpy.ops.velour.load_material(filepath={str(inputs.glossy_measurement())!r}, fit=False)
+name = bpy.context.object.active_material.name
+bpy.ops.velour.fit("INVOKE_DEFAULT", material=name, model="SCATTERED", tolerance=0.0005, max_lobes=64)
+""",
+        before=("", "reading"),
+    )
+
+
+def quitting_a_capture(folder):
+    yield from _quits(
+        folder,
+        "capturing",
+        f"""
+bpy.ops.mesh.primitive_plane_add()
+path = {str(folder / "plane.btf")!r}
+bpy.ops.velour.capture_btf("INVOKE_DEFAULT", directory=path, texels=512, samples=1024)
+""",
+    )
+    assert (folder / "plane.btf/btf.json").is_file()

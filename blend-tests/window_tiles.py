@@ -1,5 +1,7 @@
 """The window: a tile as the artist adds it, changes its type, and sees it repeated."""
 
+import json
+
 import bpy
 import numpy as np
 
@@ -14,7 +16,8 @@ def start(folder):
         bpy.utils.unregister_class(panel)
         panel.bl_options = set()  # open, to be looked at
         bpy.utils.register_class(panel)
-    window.run(folder, (add_and_repeat, another_type, capture_and_cancel, capture, estimate, material))
+    added = (add_and_repeat, another_type)
+    window.run(folder, (*added, capture_and_cancel, capture_again, capture, estimate, material))
 
 
 def _clear_view():
@@ -100,6 +103,39 @@ def capture_and_cancel(folder):
             break
     assert not state.running, "the capture goes on"
     assert (path / "btf.json").is_file(), "nothing to resume"
+
+
+def _rest():
+    """Turns until nothing runs."""
+    for _ in range(_TURNS):
+        yield 0.1
+        if not bpy.context.window_manager.velour.running:
+            return
+    raise AssertionError("the capture goes on")
+
+
+def _is_whole(path):
+    return json.loads((path / "btf.json").read_text())["content"] is not None
+
+
+def capture_again(folder):
+    """The same button goes on with a capture that was cancelled, and does nothing again."""
+    tile = yield from _tile_in_properties("OBJECT")
+    path = _start_capture(folder / "again", texels=32, views=24, lights=24, samples=16)
+    for _ in range(_TURNS):
+        yield 0.02
+        done = {file: file.stat().st_mtime_ns for file in path.glob("view_*.exr")}
+        if len(done) >= 2:
+            break
+    bpy.ops.velour.cancel_fit()
+    yield from _rest()
+    assert not _is_whole(path), "it was not cancelled"
+    with window.override():
+        assert bpy.ops.velour.capture_btf("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    yield from _rest()
+    assert _is_whole(path), "it was not resumed"
+    assert all(file.stat().st_mtime_ns == time for file, time in done.items())
+    assert tile.velour.directory == str(path)
 
 
 def capture(folder):

@@ -69,9 +69,10 @@ class StoredFile(NamedTuple):
         return self.model_and_digest()[0]
 
     def model_info(self):
-        """What panels show of that model."""
-        with self.model() as model:
-            return model.info()
+        """What panels show of that model; and the SHA-256 of its file, as "file_sha256"."""
+        model, digest = self.model_and_digest()
+        with model:
+            return {**model.info(), "file_sha256": digest}
 
     @property
     def named(self):

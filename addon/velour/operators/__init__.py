@@ -22,7 +22,7 @@ from .compress_btf import VELOUR_OT_compress_btf
 from .estimate_capture import VELOUR_OT_estimate_capture
 from .estimate_fit import VELOUR_OT_estimate_fit
 from .estimate_votf import VELOUR_OT_estimate_votf
-from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
+from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_cancel_waiting, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
 from .mark_asset import VELOUR_OT_mark_asset
@@ -38,6 +38,7 @@ CLASSES = (
     VELOUR_OT_fit_for_scene,
     VELOUR_OT_approximate,
     VELOUR_OT_cancel_fit,
+    VELOUR_OT_cancel_waiting,
     VELOUR_OT_save_model,
     VELOUR_OT_save_plot,
     VELOUR_OT_enlarge_plot,

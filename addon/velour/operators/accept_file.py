@@ -4,7 +4,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ..export import ExportError
-from ..export.files import StoredFile, absolute_path, sha256
+from ..export.files import StoredFile, sha256
 from ..export.nodes import velour_node
 from . import measured
 from .job_target import JobTarget
@@ -29,7 +29,7 @@ class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
         self._target, self._subject = JobTarget(material, node), material.name
         owner = f"Material '{material.name}'"
         stored = {role: StoredFile.of(image, owner) for role, image in _images(node)}
-        self._read_of = {role: _place(image) for role, image in _images(node)}
+        self._read_of = {role: measured.place_of(image) for role, image in _images(node)}
         return lambda: {role: _digest(role, file) for role, file in stored.items()}
 
     def _use(self, _context, digests):
@@ -39,7 +39,7 @@ class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
             return {"CANCELLED"}
         accepted = 0
         for role, image in _images(node):
-            if self._read_of.get(role) == _place(image):
+            if self._read_of.get(role) == measured.place_of(image):
                 image.velour.sha256 = digests[role]
                 accepted += 1
             else:
@@ -52,11 +52,6 @@ def _images(node):
     """What stands for files, by what it is to the material."""
     roles = (("model", node.image), ("scene model", node.velour.scene_model))
     return [(role, image) for role, image in (*roles, (_MEASUREMENT, node.velour.measurement)) if image]
-
-
-def _place(image):
-    """Says whether it is the file that was read, also after an undo, or where it has another name by now."""
-    return absolute_path(image), image.packed_file.size if image.packed_file else None
 
 
 def _digest(role, stored):

@@ -1,5 +1,7 @@
 """Give a material's model the outline and the holes of a tile: in the background of a window, or at once."""
 
+import functools
+
 import bpy
 
 from ..core.plain_words import plain
@@ -25,9 +27,14 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
     def _begin(self, context):
         asked = self._asked(context)
         self._target, self._subject = JobTarget(asked.material, asked.node), asked.material.name
-        # The structure as it is now; the model is read when its turn has come.
+        # The structure as it is now; the model as the jobs before this one leave it.
         scene, options, self._notes = export_structure(context, asked)
-        self._job = self._reading = ReadJob(lambda: _outline_job(scene, asked, options))
+        self._outline = functools.partial(_outline_job, scene, texels=asked.texels, **options)
+
+    def _take_turn(self):
+        self._job = self._reading = ReadJob(
+            functools.partial(self._outline, measured.stored_model(self._target))
+        )
 
     def _finish(self):
         if self._reading is None:
@@ -51,7 +58,7 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _outline_job(scene, asked, options):
+def _outline_job(scene, stored, **options):
     """Beside the window."""
-    with scene, asked.model.model() as model:
-        return votf_job(scene, model, texels=asked.texels, **options)
+    with scene, stored.model() as model:
+        return votf_job(scene, model, **options)

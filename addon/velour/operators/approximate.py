@@ -6,7 +6,7 @@ from bpy.props import StringProperty
 from ..core.approximation import Steps
 from ..core.read_job import ReadJob
 from ..export import ExportError
-from ..export.files import StoredFile, sha256
+from ..export.files import sha256
 from . import approximation_group, measured
 from .background_job import JobsInSteps
 from .job_target import JobTarget
@@ -59,7 +59,9 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
             raise ExportError(f"{owner} is linked from another file; approximate it there, or make it local.")
         node = measured.modelled_node(material)
         self._target, self._subject = JobTarget(material, node), material.name
-        self._job = self._reading = ReadJob(StoredFile.of(node.image, owner).model_and_digest)
+
+    def _take_turn(self):
+        self._job = self._reading = ReadJob(measured.stored_model(self._target).model_and_digest)
 
     def _finish(self):
         if self._reading is not None:

@@ -6,7 +6,6 @@ import bpy
 from bpy.props import IntProperty, StringProperty
 
 from ..export import ExportError
-from ..export.files import StoredFile
 from ..export.tiles import TileSource, export_tile
 from . import measured
 from .tiles import find_tile, tile_of
@@ -17,7 +16,6 @@ class Asked(NamedTuple):
     node: bpy.types.Node
     tile: TileSource
     texels: int
-    model: StoredFile
 
 
 class AskedOutline:
@@ -39,6 +37,8 @@ class AskedOutline:
     def _asked(self, context):
         """Raises ExportError where there is no model, or no structure."""
         material = measured.wanted_material(context, self.material)
+        if self._keeps:
+            measured.refuse_linked(material)
         owner = f"Material '{material.name}'"
         node = measured.modelled_node(material)
         tile, texels = self._tile(context, node.velour, owner), node.velour.outline_texels
@@ -46,7 +46,7 @@ class AskedOutline:
             texels = self.texels
             if self._keeps:
                 node.velour.outline_texels = texels
-        return Asked(material, node, tile, texels, StoredFile.of(node.image, owner))
+        return Asked(material, node, tile, texels)
 
     def _tile(self, context, settings, owner):
         if self.collection:

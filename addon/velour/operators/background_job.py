@@ -5,10 +5,16 @@ import time
 import bpy
 
 from ..export import ExportError
-from ..native import VelourError
+from ..native import Status, VelourError
 
 TABS = ("MATERIAL", "OBJECT", "COLLECTION")  # of the Properties editor: their panels show the progress
 _line = []  # of those that run or wait, the first runs
+
+
+class _Ticket:
+    """A place in line."""
+
+    is_given_up = False
 
 
 class BackgroundJob:
@@ -26,19 +32,24 @@ class BackgroundJob:
     def _enter(self, context, subject):
         """What `invoke` returns once the work is ready to begin."""
         self._shown_as = subject
-        self._ticket = object()
+        self._ticket = _Ticket()
         _line.append(self._ticket)
         context.window_manager.velour.waiting = len(_line) - 1
         try:
             self._has_turn(context)
         except (ExportError, VelourError) as error:
             return self._end(context, self._fail(error))
+        except BaseException:
+            self._leave(context)
+            raise
         self._timer = context.window_manager.event_timer_add(0.1, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
         try:
+            if self._ticket.is_given_up:
+                raise VelourError(Status.CANCELLED, "It was taken out of the line.")
             result = self._wants_to_stop(context, event) and self._stop()
             if not result and event.type == "TIMER" and self._has_turn(context):
                 result = self._step(context)
@@ -89,6 +100,12 @@ class BackgroundJob:
         redraw(context)
 
 
+def give_up_waiting(context):
+    """All but the one that runs; each says so at its next turn."""
+    for ticket in _line[int(context.window_manager.velour.running) :]:
+        ticket.is_given_up = True
+
+
 def _over_progress(context, event):
     """Esc belongs to whatever the cursor is over: a tab that shows the progress, or the status bar."""
     areas = context.window.screen.areas if context.window else ()
@@ -114,9 +131,15 @@ def redraw(context):
 class OneJob(BackgroundJob):
     """Mixin of an operator that is one job of the library, or a few one after the other.
 
-    `_begin(context)` makes `_job`, not yet started, and sets `_subject`; `_finish()` takes the result,
-    `_what` is its name.
+    `_begin(context)` makes `_job`, not yet started, and sets `_subject`; where the jobs before it may change
+    what it reads, `_take_turn()` makes `_job`. `_finish()` takes the result, `_what` is its name.
     """
+
+    _job = None
+    _after_cancel = ""  # what may be done then
+
+    def _take_turn(self):
+        """Those before it are done."""
 
     def _goes_on(self):
         """Makes the next job `_job`, where there is one."""
@@ -126,6 +149,7 @@ class OneJob(BackgroundJob):
         """Waits for the result."""
         try:
             self._begin(context)
+            self._take_turn()
             while True:
                 self._job.start().wait(console_progress() if bpy.app.background else None)
                 result = self._finish()
@@ -145,9 +169,11 @@ class OneJob(BackgroundJob):
     def cancel(self, context):
         """Blender closes the window or loads another file."""
         self._leave(context)
-        self._job.close()
+        if self._job is not None:
+            self._job.close()
 
     def _start(self, _context):
+        self._take_turn()
         self._job.start()
 
     def _stop(self):
@@ -166,7 +192,7 @@ class OneJob(BackgroundJob):
 
     def _fail(self, error):
         cancelled = isinstance(error, VelourError) and error.cancelled
-        sentence = f"{self._what} was cancelled." if cancelled else str(error)
+        sentence = f"{self._what} was cancelled{self._after_cancel}." if cancelled else str(error)
         self.report({"WARNING" if cancelled else "ERROR"}, sentence)
         return {"CANCELLED"}
 

@@ -10,8 +10,9 @@ from ..export.tiles import export_tile
 from ..native import capture_job
 from ..properties.tile_settings import SIDES
 from .background_job import OneJob
-from .tiles import CAPTURE_NUMBERS, capture_options, find_tile, held_out_folder, tile_folder
+from .tiles import CAPTURE_NUMBERS, capture_options, find_tile, held_out_folder, new_folder, tile_folder
 
+_NEW_FOLDER = "Capture into a new folder. What the one before holds stays"
 _SETTINGS = ("directory", *CAPTURE_NUMBERS, "sides", "use_approximate")
 
 
@@ -46,12 +47,28 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     seed: IntProperty(name="Seed", min=0, options={"SKIP_SAVE"})
     resume: BoolProperty(
         name="Resume",
-        description="Go on with a capture of the same tile that was stopped",
+        description="Go on with a capture of the same tile that was stopped. Not given: in a window, yes",
+        options={"SKIP_SAVE"},
+    )
+    new_folder: BoolProperty(
+        name="New Folder",
+        description="Leave what the folder holds, and capture into a new one beside it, numbered",
         options={"SKIP_SAVE"},
     )
 
     _what = "The capture"
+    _after_cancel = "; Capture BTF goes on where it stopped"
     _later = None  # a job to start when the first has finished
+
+    @classmethod
+    def description(cls, _context, properties):
+        return _NEW_FOLDER if properties.new_folder else cls.bl_description
+
+    def invoke(self, context, event):
+        """Goes on with what was stopped: the library does so with a capture of this very tile alone."""
+        if not self.properties.is_property_set("resume"):
+            self.resume = True
+        return super().invoke(context, event)
 
     def _begin(self, context):
         tile = find_tile(context, self.collection)
@@ -64,6 +81,9 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         scene, place, self._notes = export_tile(
             tile, context.evaluated_depsgraph_get(), settings.use_approximate
         )
+        if self.new_folder:
+            settings.directory = new_folder(tile)
+            self._folder = self._folder_of(tile)
         options = {**capture_options(context, tile, place), "seed": self.seed, "resume": self.resume}
         with scene:
             self._job = capture_job(scene, self._folder, held_out=self.held_out, **options)
@@ -95,9 +115,11 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
             report = self._job.report()
         for sentence in (*self._notes, *map(plain, report["warnings"])):
             self.report({"WARNING"}, sentence)
+        resumed = report["views_resumed"]
+        there = f", of which {resumed} of {report['views']} views were there" if resumed else ""
         self.report(
             {"INFO"},
             f"Captured '{self._subject}' in {report['seconds']:.0f} s: {report['bytes'] / 1e6:.1f} MB in"
-            f" {self._folder}",
+            f" {self._folder}{there}",
         )
         return {"FINISHED"}

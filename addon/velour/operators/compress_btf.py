@@ -43,7 +43,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         tile, path = self._chosen(context)
         self._owner = JobOwner(tile.owner) if tile else None
         self._slot = SlotTarget.asked(context, self)
-        self._subject = os.path.splitext(os.path.basename(path))[0]
+        self._subject = measured.btf_name(path)
         self._path = measured.btf_file(path)
         self._asked_for = self._options(tile)
         self._threads = context.scene.render.threads

@@ -7,6 +7,7 @@ import bpy
 from ..core.fit_text import fit_text
 from ..export.caches import cache_folder
 from ..native import Btf
+from . import measured
 from .asked_fit import AskedFit
 from .reads_first import ReadsFirst
 from .tiles import fitted_as
@@ -23,7 +24,7 @@ class VELOUR_OT_estimate_fit(AskedFit, ReadsFirst, bpy.types.Operator):
 
     def _read(self, context):
         tile, path = self._chosen(context)
-        self._subject = tile.owner.name if tile else Path(path).stem
+        self._subject = tile.owner.name if tile else measured.btf_name(path)
         asked, threads, folder = self._options(tile), context.scene.render.threads, Path(cache_folder())
         self._key = fitted_as(tile.owner) if tile else ""
         return lambda: _text(path, asked, threads, folder)

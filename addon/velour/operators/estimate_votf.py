@@ -4,6 +4,7 @@ import bpy
 
 from ..core.outline_size import Made, outline_text, probes
 from ..core.read_job import ReadJob
+from ..export.files import StoredFile
 from ..native import votf_job
 from .approximation_group import is_wanted
 from .asked_outline import AskedOutline, export_structure, outlined_as
@@ -27,7 +28,8 @@ class VELOUR_OT_estimate_votf(AskedOutline, JobsInSteps, bpy.types.Operator):
         self._key = outlined_as(asked.material, asked.tile.owner, asked.texels)
         self._approximated = is_wanted(asked.material)
         scene, options, _notes = export_structure(context, asked)
-        self._steps = _Probes(scene, asked, options)
+        model = StoredFile.of(asked.node.image, f"Material '{asked.material.name}'")
+        self._steps = _Probes(scene, model, asked.texels, options)
         self._advance()
         self._goes_on()
 
@@ -44,8 +46,8 @@ class VELOUR_OT_estimate_votf(AskedOutline, JobsInSteps, bpy.types.Operator):
 class _Probes:
     """The jobs of small outlines of a committed scene, which this owns; then `made`."""
 
-    def __init__(self, scene, asked, options):
-        self._scene, self._asked, self._options = scene, asked, options
+    def __init__(self, scene, model, texels, options):
+        self._scene, self._model, self._texels, self._options = scene, model, texels, options
         self.made = ()
         self._jobs = self._run()
 
@@ -54,9 +56,9 @@ class _Probes:
 
     def _run(self):
         with self._scene as scene:
-            yield (reading := ReadJob(self._asked.model.model))
+            yield (reading := ReadJob(self._model.model))
             with reading.result() as model:
-                for probe in probes(self._asked.texels):
+                for probe in probes(self._texels):
                     with votf_job(scene, model, **self._options, **probe.options()) as job:
                         yield job
                         self.made += (Made.of(job.report(), job.poll().seconds),)

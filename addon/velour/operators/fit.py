@@ -11,6 +11,7 @@ from ..native import fit_job
 from ..properties.material_settings import MODELS
 from . import measured
 from .approximate import MakesModel
+from .background_job import give_up_waiting
 from .job_target import JobTarget
 
 _SETTINGS = ("model", "tolerance", "max_lobes", "kernel", "seed")
@@ -38,6 +39,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
 
     def _begin(self, context):
         material = measured.wanted_material(context, self.material)
+        measured.refuse_linked(material)
         node = velour_node(material)
         owner = f"Material '{material.name}'"
         if node is None or node.velour.measurement is None:
@@ -53,7 +55,9 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
             "all_data": int(settings.use_all_data),
             "threads": context.scene.render.threads,
         }
-        self._job = self._reading = MeasurementReading(node.velour.measurement, owner, may_differ=True)
+        measurement = node.velour.measurement
+        self._measured, self._place = measurement.name, measured.place_of(measurement)
+        self._job = self._reading = MeasurementReading(measurement, owner, may_differ=True)
 
     def _finish(self):
         if self._reading is None:
@@ -76,11 +80,22 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
         if node is None:
             return {"FINISHED"}
         self._put_approximation(material)
-        node.velour.measurement.velour.sha256 = self._digest
+        self._stamp(material, node.velour.measurement)
         for warning in panel_warnings(info):
             self.report({"WARNING"}, f"Material '{material.name}': {warning}")
         self.report({"INFO"}, f"Fitted '{material.name}': {info['lobes']} lobes, {len(data)} bytes.")
         return {"FINISHED"}
+
+    def _stamp(self, material, measurement):
+        """The measurement that was read, if the material still has it."""
+        if measured.place_of(measurement) == self._place:
+            measurement.velour.sha256 = self._digest
+            return
+        self.report(
+            {"WARNING"},
+            f"Material '{material.name}' has another measurement by now, or none; its model is of"
+            f" '{self._measured}'.",
+        )
 
 
 def _model_options(settings):
@@ -101,4 +116,14 @@ class VELOUR_OT_cancel_fit(bpy.types.Operator):
 
     def execute(self, context):
         context.window_manager.velour.cancel_requested = True
+        return {"FINISHED"}
+
+
+class VELOUR_OT_cancel_waiting(bpy.types.Operator):
+    bl_idname = "velour.cancel_waiting"
+    bl_label = "Cancel Waiting"
+    bl_description = "Take all fits, captures and imports that wait out of the line. What runs goes on"
+
+    def execute(self, context):
+        give_up_waiting(context)
         return {"FINISHED"}

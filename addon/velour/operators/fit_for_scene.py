@@ -44,7 +44,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         """Waits for the model."""
         try:
             self._begin(context)
-            self._work.reading.start().wait()
+            self._work.begin_reading().wait()
             self._work.take()
             while self._work.observe_next():
                 self._say_frame()
@@ -77,7 +77,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         self._work = SceneFit(material, context.scene, self.current_frame, self.shared)
 
     def _start(self, context):
-        self._work.reading.start()
+        self._work.begin_reading()
 
     def _stop(self):
         return self._cancelled()

@@ -5,6 +5,7 @@ import uuid
 import bpy
 
 _MOST_MARKS = 4  # on a node: of more jobs than run and wait
+_LISTS = {bpy.types.Object: "objects", bpy.types.Collection: "collections", bpy.types.Scene: "scenes"}
 
 
 def key_of(datablock):
@@ -39,27 +40,37 @@ class JobTarget:
 
 
 class JobOwner:
-    """An object or a collection, by one of the marks on it and by names: undo may replace any datablock."""
+    """An object, a collection or a scene, by one of the marks on it and by names: undo may replace any
+    datablock."""
 
     def __init__(self, owner):
-        self._list = "objects" if isinstance(owner, bpy.types.Object) else "collections"
+        self._list = next(name for kind, name in _LISTS.items() if isinstance(owner, kind))
         self.name, self._names = owner.name, _names(owner)
         self._mark = uuid.uuid4().hex
         if owner.library is not None:  # goes by its names, which nobody changes
             return
         owner.velour.jobs = f"{owner.velour.jobs} {self._mark}".strip()  # others may wait for it as well
 
+    def find(self):
+        """The owner, also where it was renamed; None where it is gone."""
+        owners = self._owners()
+        marked = (owner for owner in owners if self._mark in _marks(owner))
+        # An undo to what was before the mark takes it away.
+        return next(marked, None) or next((o for o in owners if _names(o) == self._names), None)
+
     def take(self):
-        """The owner, also where it was renamed, without its mark; None where it is gone."""
-        owners = sorted(getattr(bpy.data, self._list), key=lambda owner: _names(owner) != self._names)
-        marked = [owner for owner in owners if self._mark in _marks(owner)]
-        for owner in marked:  # copies have it as well: the original, if it is called as it was, comes first
+        """The owner as find() does, without its mark."""
+        found = self.find()
+        for owner in [owner for owner in self._owners() if self._mark in _marks(owner)]:
             rest = [mark for mark in _marks(owner) if mark != self._mark]
             owner.velour.jobs = " ".join(rest)
             if not rest:
                 owner.velour.property_unset("jobs")
-        # An undo to what was before the mark takes it away.
-        return next(iter(marked or (owner for owner in owners if _names(owner) == self._names)), None)
+        return found
+
+    def _owners(self):
+        """Copies have the mark as well: the original, if it is called as it was, comes first."""
+        return sorted(getattr(bpy.data, self._list), key=lambda owner: _names(owner) != self._names)
 
 
 def _names(owner):

@@ -94,7 +94,6 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     slot: IntProperty(name="Slot", description="Its number, from 0", min=0, options={"HIDDEN", "SKIP_SAVE"})
 
     _what = "The import"
-    _job = None
     _asks = False
 
     def invoke(self, context, event):
@@ -120,10 +119,6 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
         with context.temp_override(area=None):  # nothing was dropped
             bpy.ops.velour.load_material("INVOKE_DEFAULT", **chosen)
         return {"CANCELLED"}  # no undo step: that is the other one's
-
-    def cancel(self, context):
-        if self._job is not None:
-            OneJob.cancel(self, context)
 
     def _begin(self, context):
         paths = self._paths()
@@ -155,8 +150,13 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
 
     def _place(self):
         """Arguments for the operator that makes the material."""
-        taken = self._slot.take() if self._slot else None
-        return {"assign": True, "object": taken[0].name, "slot": taken[1]} if taken else {}
+        if self._slot is None:
+            return {}
+        taken = self._slot.take()
+        if taken is None:
+            self._slot.tell("the material", self.report)
+            return {}
+        return {"assign": True, "object": taken[0].name, "slot": taken[1]}
 
     def _paths(self):
         names = [file.name for file in self.files if file.name]

@@ -5,7 +5,6 @@ from bpy.props import StringProperty
 
 from ..core.ball import ball_job, ball_scene, shown
 from ..core.read_job import ReadJob
-from ..export.files import StoredFile
 from . import measured
 from .background_job import JobsInSteps
 from .job_target import JobTarget
@@ -34,9 +33,10 @@ class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
         material = measured.wanted_material(context, self.material)
         node = measured.modelled_node(material)
         self._target, self._subject = JobTarget(material, node), material.name
-        self._steps = _Picture(
-            StoredFile.of(node.image, f"Material '{material.name}'"), context.scene.render.threads
-        )
+        self._threads = context.scene.render.threads
+
+    def _take_turn(self):
+        self._steps = _Picture(measured.stored_model(self._target), self._threads)
         self._advance()
         self._goes_on()
 

@@ -6,7 +6,7 @@ import bpy
 
 from ..core.measurement_files import INDICES
 from ..export import ExportError
-from ..export.files import absolute_path, sha256
+from ..export.files import StoredFile, absolute_path, sha256
 from ..export.nodes import active_output, velour_node
 from . import approximation_group
 
@@ -33,8 +33,30 @@ def modelled_node(material):
     """The material's measured node; raises ExportError where it has no model."""
     node = velour_node(material)
     if node is None or node.image is None:
-        raise ExportError(f"Material '{material.name}' has no model; fit one, or choose one as its image.")
+        raise _no_model(material)
     return node
+
+
+def stored_model(target):
+    """The model of a JobTarget as it is now, to be read; raises ExportError where there is none."""
+    material, node = target.find()
+    if node is None:
+        raise ExportError(f"Material '{target.material_name}' is gone.")
+    if node.image is None:
+        raise _no_model(material)
+    return StoredFile.of(node.image, f"Material '{material.name}'")
+
+
+def _no_model(material):
+    return ExportError(f"Material '{material.name}' has no model; fit one, or choose one as its image.")
+
+
+def refuse_linked(material):
+    """Raises ExportError where what is made of it would be gone with the next look into its file."""
+    if material.library is not None:
+        raise ExportError(
+            f"Material '{material.name}' is linked from a library, where nothing can be kept; make it local."
+        )
 
 
 def new_material(name):
@@ -114,6 +136,19 @@ def measurement_image(path, digest):
     image = file_image(path)
     image.velour.sha256 = digest
     return image
+
+
+def place_of(image):
+    """Says whether it is the file that was read, also after an undo, or where it has another name by now."""
+    if image is None:
+        return None
+    return absolute_path(image), image.packed_file.size if image.packed_file else None
+
+
+def btf_name(path):
+    """What a BTF is called: as its folder, where the index in it stands for it."""
+    folder, name = os.path.split(path)
+    return os.path.splitext(os.path.basename(folder) if name in INDICES else name)[0]
 
 
 def btf_file(path):

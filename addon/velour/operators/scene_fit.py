@@ -1,7 +1,5 @@
 """The steps of a fit for a scene, for the operator that takes them at once or one at a time."""
 
-import bpy
-
 from ..core.read_job import ReadJob
 from ..export import ExportError, Notes, export_scene, visitor
 from ..export.camera import final_view
@@ -10,7 +8,7 @@ from ..export.nodes import velour_node
 from ..export.observe import observe
 from ..native import Btf, Measurement, Observation, compress_job, fit_job
 from . import measured
-from .job_target import JobTarget
+from .job_target import JobOwner, JobTarget
 from .sharing import other_scenes
 
 ENGINE = "VELOUR"
@@ -21,9 +19,9 @@ class SharedMaterialError(ExportError):
 
 
 class SceneFit:
-    """Reads the files (the job `reading`, then take()), observes frame after frame, then fits.
+    """Reads the files (begin_reading(), then take()), observes frame after frame, then fits.
 
-    Holds names and a mark: undo may replace any datablock."""
+    Holds names and marks: undo may replace any datablock."""
 
     def __init__(self, material, scene, current_frame=False, shared=False):
         _refuse_unfit(material)
@@ -36,12 +34,19 @@ class SceneFit:
                 " be fitted. Make the material single-user, or fit it even if shared (shared=True)."
             )
         self.material_name, self.scene_name = material.name, scene.name
-        self._target = JobTarget(material, velour_node(material))
+        self._target, self._owner = JobTarget(material, velour_node(material)), JobOwner(scene)
         self.frames = [scene.frame_current] if current_frame else frame_range(scene)
-        self._model_before = _identity(velour_node(material).image)
-        self.reading, self._read = ReadJob(_reader(material)), None
+        self.reading = self._read = None
         self.observation = Observation.of_nothing()
         self.done = 0  # frames
+
+    def begin_reading(self):
+        """The job, started: of the files that the material has now."""
+        material, node = self._material()
+        _refuse_unfit(material)
+        self._model_before = _identity(node.image)
+        self.reading = ReadJob(_reader(material)).start()
+        return self.reading
 
     @property
     def has_read(self):
@@ -53,12 +58,14 @@ class SceneFit:
         self.reading.close()
 
     def close(self):
-        self.reading.close()
+        if self.reading is not None:
+            self.reading.close()
         for handle in (*(self._read or ()), self.observation):
             handle.close()
 
     def observe_next(self):
         """Adds what the next frame shows; False when there is none left."""
+        self._refuse_another_model()
         if self.done == len(self.frames):
             return False
         visitor.visit_frame(self._scene(), self.frames[self.done], self._visit, ENGINE)
@@ -72,12 +79,8 @@ class SceneFit:
                 f"Material '{self.material_name}' is not seen in {self._range()} of scene"
                 f" '{self.scene_name}'; nothing tells what its model is needed for."
             )
-        _material, node = self._material()
-        if node.image is None or _identity(node.image) != self._model_before:
-            raise ExportError(
-                f"Material '{self.material_name}' has another model than when this began; fit for the scene"
-                " again."
-            )
+        self._owner.take()
+        node = self._refuse_another_model()
         raw, full = self._read
         if isinstance(raw, Btf):
             return compress_job(raw, for_scene=self.observation, full_model=full, threads=threads).start()
@@ -116,6 +119,16 @@ class SceneFit:
             )
         node.velour.scene_model, node.velour.use_scene_model = image, True
 
+    def _refuse_another_model(self):
+        """The node; raises ExportError where its model is not the one that was read."""
+        _material, node = self._material()
+        if node.image is None or _identity(node.image) != self._model_before:
+            raise ExportError(
+                f"Material '{self.material_name}' has another model than when this began; fit for the scene"
+                " again."
+            )
+        return node
+
     def _material(self):
         """The material and its node, whatever it is called now."""
         material, node = self._target.find()
@@ -125,9 +138,11 @@ class SceneFit:
         return material, node
 
     def _scene(self):
-        scene = bpy.data.scenes.get(self.scene_name)
+        """Whatever it is called now."""
+        scene = self._owner.find()
         if scene is None:
             raise ExportError(f"Scene '{self.scene_name}' is gone.")
+        self.scene_name = scene.name
         return scene
 
     def _visit(self, engine, depsgraph):
@@ -157,8 +172,7 @@ def _refuse_unfit(material):
         raise ExportError(f"{owner}: no measurement is chosen; use File > Import > Measured Material.")
     if node.image is None:
         raise ExportError(f"{owner}: it has no full model yet; press Fit first.")
-    if material.library is not None:
-        raise ExportError(f"{owner} is linked from a library, where nothing can be kept; make it local.")
+    measured.refuse_linked(material)
 
 
 def _identity(image):

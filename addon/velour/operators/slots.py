@@ -74,6 +74,7 @@ class SlotTarget:
         """`slot`: None, or a number that its object has no slot for, is the active one."""
         obj = bpy.data.objects.get(slot.object) if slot else context.object
         self._owner = self._number = None
+        self._why_none = _why_none(obj, slot)
         if takes_materials(obj):
             self._owner, count = JobOwner(obj), len(obj.material_slots)
             is_there = slot is not None and (slot.slot < count or count == 0)
@@ -100,9 +101,21 @@ class SlotTarget:
             _put(material, *taken)
             return
         material.use_fake_user = True  # or it would be gone after saving
+        self.tell(f"material '{material.name}'", report)
+
+    def tell(self, what, report) -> None:
+        """Why `what`, a material, does not come into it."""
+        why = self._why_none
         if self._owner:
-            where = f"Slot {self._number + 1} of object '{self._owner.name}'"
-            report({"WARNING"}, f"{where} is gone; material '{material.name}' is kept without an object.")
+            why = f"Slot {self._number + 1} of object '{self._owner.name}' is gone"
+        report({"WARNING"}, f"{why}; {what} is kept without an object.")
+
+
+def _why_none(obj, slot: Slot | None) -> str:
+    """Of what has no slots."""
+    if obj is not None:
+        return f"Object '{obj.name}' takes no material"
+    return f"There is no object '{slot.object}'" if slot else "No object is active"
 
 
 def assign(context, material) -> None:

@@ -1,6 +1,7 @@
 """Which tile an operator is for."""
 
 import os
+import re
 
 import bpy
 
@@ -40,7 +41,22 @@ def tile_folder(tile):
 
 def held_out_folder(tile):
     """Where the pairs go that models of its BTF are judged by: beside it."""
-    return tile_folder(tile).removesuffix(".btf") + ".held-out.btf"
+    return _held_out_beside(tile_folder(tile))
+
+
+def _held_out_beside(folder):
+    return folder.removesuffix(".btf") + ".held-out.btf"
+
+
+def new_folder(tile):
+    """A setting of the tile: the first folder, numbered as Blender does, where nothing was captured yet."""
+    folder = tile_folder(tile)
+    name = re.sub(r"\.\d{3,}$", "", folder.removesuffix(".btf"))
+    number = 0
+    while os.path.exists(folder) or os.path.exists(_held_out_beside(folder)):
+        number += 1
+        folder = f"{name}.{number:03}.btf"
+    return bpy.path.relpath(folder) if bpy.data.filepath else folder
 
 
 def capture_options(context, tile, place):

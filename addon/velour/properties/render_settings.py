@@ -1,7 +1,7 @@
 """How a scene is rendered."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from .saved_by import saved_by
 
@@ -178,3 +178,4 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
         unit="TIME_ABSOLUTE",
         override=_OVERRIDE,
     )
+    jobs: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # marks of those that look at the scene

@@ -6,6 +6,7 @@ from ..export.nodes import approximation_node, velour_node
 from ..operators.approximate import VELOUR_OT_approximate
 from ..properties.approximation_state import VIEW_ANGLES
 from .material_panel import MaterialPanel, VELOUR_MATERIAL_PT_model, draw_error_by_angle, draw_rows
+from .summaries import model_summary
 from .text import draw_sentence
 
 
@@ -28,7 +29,7 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
             draw_rows(layout, (("Relative error", f"{state.relative_l2:.3g}, against the model as fitted"),))
             errors = (error if error >= 0.0 else None for error in state.by_view_angle)
             draw_error_by_angle(layout.box(), dict(zip(VIEW_ANGLES, errors, strict=True)))
-        digest = velour_node(context.material).image.velour.sha256
+        digest = _digest(velour_node(context.material).image)
         if digest and digest != state.model:
             draw_sentence(context, layout, "It is not of this model: refresh it.", icon="ERROR")
         elif not state.fitted:
@@ -36,3 +37,9 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
                 context, layout, "An older Velour made it: refresh it, so that it follows Tint and Placement."
             )
         layout.operator(VELOUR_OT_approximate.bl_idname, text="Refresh", icon="FILE_REFRESH")
+
+
+def _digest(image):
+    """SHA-256 of a model's file, also where nobody has said which it should be; "" until it is read."""
+    info = model_summary(image)
+    return info["file_sha256"] if isinstance(info, dict) else image.velour.sha256

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..operators.fit import VELOUR_OT_cancel_fit
+from ..operators.fit import VELOUR_OT_cancel_fit, VELOUR_OT_cancel_waiting
 
 
 def attach():
@@ -14,7 +14,7 @@ def detach():
 
 
 def draw_progress(context, layout):
-    """What runs, how far it is, and a cross; nothing where none does. Operators that are called now wait."""
+    """What runs, how far it is, and a cross, with one for those that wait; nothing where none runs."""
     job = context.window_manager.velour
     if not job.running:
         return
@@ -27,6 +27,8 @@ def draw_progress(context, layout):
     else:
         row.prop(job, "fraction", text="", slider=True)
     row.operator(VELOUR_OT_cancel_fit.bl_idname, text="", icon="CANCEL")
+    if job.waiting:
+        layout.operator(VELOUR_OT_cancel_waiting.bl_idname, text=f"{job.waiting} Waiting", icon="CANCEL")
 
 
 def _draw_in_status_bar(header, context):
@@ -42,8 +44,6 @@ def _text(job):
     parts = [f"{job.subject}: {job.stage} {job.fraction:.0%}"]
     if job.seconds_left >= 0:
         parts.append(time_left(job.seconds_left))
-    if job.waiting:
-        parts.append(f"{job.waiting} waiting")
     return ", ".join(parts)
 
 

@@ -42,8 +42,11 @@ class TilePanel:
             draw_sentence(context, layout, state.estimate, icon="TIME")
         draw_progress(context, layout)
         row = layout.row()
-        for operator, icon in ((VELOUR_OT_estimate_capture, "TIME"), (VELOUR_OT_capture_btf, "PLAY")):
-            row.operator(operator.bl_idname, icon=icon).collection = collection_name
+        row.operator(VELOUR_OT_estimate_capture.bl_idname, icon="TIME").collection = collection_name
+        row = row.row(align=True)
+        row.operator(VELOUR_OT_capture_btf.bl_idname, icon="PLAY").collection = collection_name
+        anew = row.operator(VELOUR_OT_capture_btf.bl_idname, text="", icon="NEWFOLDER")
+        anew.collection, anew.new_folder = collection_name, True
         self._draw_material(context, layout, owner, collection_name)
 
     def _draw_material(self, context, layout, owner, collection_name):
