@@ -6,6 +6,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ..core.plain_words import plain
+from ..core.sizes import data_size
 from ..export.tiles import export_tile
 from ..native import capture_job
 from ..properties.tile_settings import SIDES
@@ -97,7 +98,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
             self.report({"WARNING"}, sentence)
         self.report(
             {"INFO"},
-            f"Captured '{self._subject}' in {report['seconds']:.0f} s: {report['bytes'] / 1e6:.1f} MB in"
+            f"Captured '{self._subject}' in {report['seconds']:.0f} s: {data_size(report['bytes'])} in"
             f" {self._folder}",
         )
         return {"FINISHED"}
