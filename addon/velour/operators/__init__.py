@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import approximation_look, usd_hook
+from . import approximation_look, repeat_tile, usd_hook
 from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
 from .add_mesostructure import VELOUR_OT_add_mesostructure
@@ -63,6 +63,7 @@ CLASSES = (
 
 def attach():
     approximation_look.attach()
+    repeat_tile.attach()
     usd_hook.attach()
     bpy.types.TOPBAR_MT_file_import.append(_draw_import)
     bpy.types.VIEW3D_MT_mesh_add.append(_draw_add_mesh)
@@ -72,6 +73,7 @@ def detach():
     bpy.types.VIEW3D_MT_mesh_add.remove(_draw_add_mesh)
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     usd_hook.detach()
+    repeat_tile.detach()
     approximation_look.detach()
 
 
