@@ -25,6 +25,7 @@ from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
 from .mark_asset import VELOUR_OT_mark_asset
+from .open_file import VELOUR_OT_open_measurement, VELOUR_OT_open_model, VELOUR_OT_open_scene_model
 from .placement import VELOUR_OT_describe_placement, VELOUR_OT_keep_uv_density
 from .plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from .repeat_tile import VELOUR_OT_repeat_tile
@@ -33,6 +34,9 @@ from .save_model import VELOUR_OT_save_model
 CLASSES = (
     VELOUR_OT_add_material,
     VELOUR_OT_load_material,
+    VELOUR_OT_open_measurement,
+    VELOUR_OT_open_model,
+    VELOUR_OT_open_scene_model,
     VELOUR_OT_fit,
     VELOUR_OT_fit_for_scene,
     VELOUR_OT_approximate,
