@@ -83,7 +83,7 @@ class CaptureBtf(BlenderTest):
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             self.assertEqual(bpy.ops.velour.estimate_capture(), {"FINISHED"})
-        self.assertRegex(said.getvalue(), r"'Plane': About \d+ seconds, \d+ MB on disk, \d+ MB of memory")
+        self.assertRegex(said.getvalue(), r"'Plane': About \d+ seconds, \d+ kB on disk, [\d.]+ kB of memory")
         self.assertIn(state.estimate, said.getvalue())
         tiles = importlib.import_module(f"{inputs.ADDON}.operators.tiles")
         self.assertEqual(state.estimated, tiles.captured_as(obj))
@@ -107,6 +107,46 @@ class CaptureBtf(BlenderTest):
         panel.draw(layout, bpy.context)
         buttons = [button for button in layout.operators if button.name == "velour.capture_btf"]
         self.assertEqual([getattr(button, "new_folder", False) for button in buttons], [False, True])
+
+    def test_an_estimate_is_of_the_tile_as_it_was(self):
+        self._plane(size=2)
+        obj = bpy.context.object
+        tiles = importlib.import_module(f"{inputs.ADDON}.operators.tiles")
+        told = {tiles.captured_as(obj)}
+        for name, value in (("held_out", 64), ("period", (3, 3)), ("use_approximate", True)):
+            setattr(obj.velour, name, value)
+            told.add(tiles.captured_as(obj))
+        self.assertEqual(len(told), 4)
+        obj.location.x = 5
+        bpy.context.view_layer.update()
+        self.assertIn(tiles.captured_as(obj), told)
+        modifier = obj.modifiers.new("Finer", "SUBSURF")
+        modifier.subdivision_type = "SIMPLE"
+        bpy.context.view_layer.update()
+        self.assertNotIn(tiles.captured_as(obj), told)
+
+    def test_the_estimate_counts_the_pairs_to_judge_by(self):
+        self._plane(size=2)
+        settings, state = bpy.context.object.velour, bpy.context.window_manager.velour
+        settings.texels, settings.views, settings.lights = 16, 8, 20
+        panel, told = importlib.import_module(f"{inputs.ADDON}.ui.tile_panel"), []
+        for settings.held_out in (0, 4000):
+            self._said(bpy.ops.velour.estimate_capture)
+            told.append((state.estimate.split(", ")[1], panel._size(settings)))
+        self.assertTrue(told[0][0].endswith("kB on disk"), told)
+        self.assertTrue(told[1][0].endswith("MB on disk"), told)
+        self.assertNotEqual(told[0][1], told[1][1])
+
+    def _said(self, operator):
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            self.assertEqual(operator(), {"FINISHED"})
+        return said.getvalue()
+
+    def test_a_period_along_one_axis_alone(self):
+        """The bounding box tells the other."""
+        self._plane(size=2).velour.period = (3, 0)
+        np.testing.assert_allclose(self._capture()["tile_metres"], [3, 2], rtol=1e-6)
 
     def test_size_is_that_of_the_scene_in_metres(self):
         self._plane(size=2)

@@ -74,6 +74,16 @@ class Compare(BallTest):
         self.assertEqual(again, image)
         self.assertLess(self._tiles(again)[2].mean(), 0.5 * difference.mean())
 
+    def test_in_a_wide_working_space(self):
+        """The balls are linear Rec. 709; pixels of the image are in Blender's space, here Rec. 2020."""
+        material = self._material(inputs.glossy_measurement())
+        plain = np.array(self._tiles(self._compared(material)))
+        wide = np.array(((0.6274, 0.3293, 0.0433), (0.0691, 0.9195, 0.0114), (0.0164, 0.0880, 0.8956)))
+        with mock.patch.object(_module("export.color"), "rec709_to_working", return_value=wide):
+            shown = np.array(self._tiles(self._compared(material)))
+        np.testing.assert_allclose(shown, plain @ wide.T, atol=1e-4)
+        self.assertGreater(np.abs(shown - plain).max(), 0.01)  # the control
+
     def test_it_is_of_one_model(self):
         """Whatever materials are called, and until another model is fitted."""
         material = self._material(inputs.glossy_measurement())
@@ -133,7 +143,7 @@ class Compare(BallTest):
 class Asset(BallTest):
     def test_a_material_becomes_an_asset(self):
         material = self._material(inputs.glossy_measurement())
-        self._said(
+        said = self._said(
             bpy.ops.velour.mark_asset,
             material="Paint",
             author="A. Painter",
@@ -146,6 +156,7 @@ class Asset(BallTest):
         self.assertTrue(asset.description.startswith("Measured: "))
         if hasattr(asset, "license"):
             self.assertEqual(asset.license, "CC0-1.0")
+        self.assertEqual("keeps no license" in said, not hasattr(asset, "license"))
         self.assertEqual(tuple(material.preview.image_size), (256, 256))
         pixels = np.array(material.preview.image_pixels_float).reshape(256, 256, 4)
         self.assertTrue((pixels[..., 3] == 1).all())

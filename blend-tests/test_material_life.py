@@ -109,9 +109,8 @@ class MaterialLife(BlenderTest):
         self._save()
         bpy.ops.file.pack_all()
         self._check(self.material)
-        with self._files().measurement_path(
-            scenes.velour_node(self.material).velour.measurement, "Test"
-        ) as path:
+        measurement = scenes.velour_node(self.material).velour.measurement
+        with self._files().StoredFile.of(measurement, "Test").readable_path() as path:
             self.assertEqual(Path(path).read_bytes(), self.measurement.read_bytes())
 
     def test_make_relative_and_save_elsewhere(self):

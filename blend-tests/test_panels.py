@@ -7,8 +7,9 @@ from unittest import mock
 
 import addon_utils
 import bpy
+from velour.operators import measured
 from velour.operators.background_job import TABS
-from velour.ui import material_panel
+from velour.ui import material_panel, summaries
 from velour.ui.material_panel import VELOUR_MATERIAL_PT_measured
 
 from support import inputs, scenes
@@ -101,6 +102,54 @@ class Panels(BlenderTest):
             self.assertEqual("velour.fit" in offered, "texels" not in info)
         self.assertEqual({tab.upper() for tab in found}, set(TABS))
 
+    def test_a_changed_measurement_can_be_accepted(self):
+        context = self._of_a_material()
+        path = self.folder / "paint.binary"
+        path.write_bytes(inputs.lambert_measurement().read_bytes())
+        with bpy.context.temp_override(material=context.material):
+            bpy.ops.velour.open_measurement(filepath=str(path))
+        self.assertNotIn("velour.accept_file", self._read_and_offered(context))
+        path.write_bytes(inputs.glossy_measurement().read_bytes())
+        self.assertIn("velour.accept_file", self._read_and_offered(context))
+        with bpy.context.temp_override(material=context.material):
+            bpy.ops.velour.accept_file()
+        self.assertNotIn("velour.accept_file", self._read_and_offered(context))
+        path.unlink()  # to accept it would not help
+        scenes.velour_node(context.material).velour.use_reference = True
+        self.assertNotIn("velour.accept_file", self._read_and_offered(context))
+
+    def test_a_model_that_is_missing_cannot_be_accepted(self):
+        context = self._of_a_material()
+        node = scenes.velour_node(context.material)
+        node.image = measured.linked_model(str(self.folder / "gone.velour"), "old")
+        panel = material_panel.VELOUR_MATERIAL_PT_model
+        self.assertEqual(self._read_and_offered(context, panel), [])
+        (self.folder / "gone.velour").write_bytes(inputs.model_bytes(inputs.lambert_measurement()))
+        self.assertEqual(self._read_and_offered(context, panel), ["velour.accept_file"])
+
+    def _read_and_offered(self, context, panel=VELOUR_MATERIAL_PT_measured):
+        """What the panel offers once the files are read."""
+        self._offered(panel, context)
+        while not summaries.is_at_rest():
+            summaries._turn()
+        return self._offered(panel, context)
+
+    def test_a_pinned_material(self):
+        """Its tab shows no object: panels are there but for what fills an object's slot."""
+        context = self._of_a_material()
+        on_object = self._names_of_panels(context)
+        context.object = None
+        pinned = self._names_of_panels(context)
+        self.assertEqual(on_object - pinned, {"VELOUR_MATERIAL_PT_browser"})
+        self.assertIn("VELOUR_MATERIAL_PT_measured", pinned)
+        self._offered(VELOUR_MATERIAL_PT_measured, context)
+        context.material = bpy.data.materials.new("Plain")
+        self.assertEqual(self._offered(VELOUR_MATERIAL_PT_measured, context), ["velour.add_material"])
+
+    def _names_of_panels(self, context):
+        ours = [panel for panel in self._panels_of("material") if panel.__module__.startswith("velour.ui.")]
+        return {panel.__name__ for panel in ours if panel.poll(context)}
+
     def _of_a_material(self):
         """The context of a tab that shows a plane with a measured material."""
         scenes.add_plane().active_material = scenes.measured_material(
@@ -129,7 +178,8 @@ class Panels(BlenderTest):
     @staticmethod
     def _offered(panel, context):
         layout = Layout(panel)
-        panel.draw(layout, context)
+        with mock.patch.object(material_panel, "draw_sentence"):  # it measures text, in a window
+            panel.draw(layout, context)
         return [operator.name for operator in layout.operators]
 
     def _shown(self, tab, **context):

@@ -1,6 +1,7 @@
 """Where tiles of BTFs lie on objects: pictures of a tile of four greys, what is measured and what is said."""
 
 import importlib
+import types
 import unittest.mock
 
 import bpy
@@ -11,6 +12,7 @@ from support import inputs, scenes
 from support.blender import BlenderTest
 
 SIZE = 64  # pixels of a picture two units wide
+_OF_PANELS = ("summaries", "placement_summary")
 
 
 def _export(name):
@@ -305,6 +307,28 @@ class Projected(Placed):
         bpy.context.view_layer.update()
         (note,) = self._notes()
         self.assertIn("Object 'Mball': it has no UV map", note)
+
+
+class Panel(Placed):
+    def test_a_linked_material_on_an_object_of_this_file(self):
+        """It is measured by its own name, which another one may have."""
+        blend = self.folder / "library.blend"
+        scenes.add_plane(self._material())
+        bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        with bpy.data.libraries.load(str(blend), link=True) as (_source, target):
+            target.materials = ["Quarters"]
+        (material,) = target.materials
+        obj = scenes.add_plane(material)
+        ui = {name: importlib.import_module(f"{inputs.ADDON}.ui.{name}") for name in _OF_PANELS}
+        context = types.SimpleNamespace(object=obj, scene=bpy.context.scene)
+        while ui["summaries"].model_summary(scenes.velour_node(material).image) is None:
+            ui["summaries"]._turn()
+        ui["placement_summary"]._changed = 0.0
+        ui["placement_summary"].measured(context, material)
+        ui["placement_summary"]._measure()
+        report = ui["placement_summary"].measured(context, material)
+        self.assertEqual(dict(report.placement.rows)["Tile here"], "2 x 2 m, 4 x 4 of real size")
 
 
 class Reports(Placed):

@@ -146,6 +146,40 @@ class ShowRepeated(BlenderTest):
         bpy.context.view_layer.update()
         self.assertIn((3.0, 1.0), self._places(obj))
 
+    def test_copies_follow_period_rotation_and_scale(self):
+        obj = _add(type="NET")
+        bpy.ops.velour.repeat_tile()
+        obj.velour.period = (0.5, 0.25)
+        self.assertEqual(self._places(obj)[0], (-1.0, -1.0))
+        obj.rotation_euler.z = np.pi / 2
+        obj.scale = (3, 3, 3)
+        self.assertIn((-3.0, 0.0), self._offsets(obj, turned=True))
+        self.assertIn((3.0, -3.0), self._offsets(obj, turned=True))
+        obj.velour.period = (0, 0)
+        side = 3 * max(obj.bound_box[k][0] for k in range(8)) - 3 * min(obj.bound_box[k][0] for k in range(8))
+        obj.rotation_euler.z = 0
+        bpy.context.view_layer.update()
+        empties = [o for o in bpy.data.objects if o.velour.is_repeat]
+        self.assert_close(max(e.matrix_world.translation.x for e in empties), side, 1e-5)
+
+    def _offsets(self, obj, turned):
+        """Along the tile's own x and y, in periods without its scale; `turned`: by a quarter."""
+        bpy.context.view_layer.update()
+        own = obj.velour.period
+        places = [o.matrix_world.translation for o in bpy.data.objects if o.velour.is_repeat]
+        steps = [(place.y, -place.x) if turned else place[:2] for place in places]
+        return [tuple(round(step[k] / own[k], 3) + 0.0 for k in (0, 1)) for step in steps]
+
+    def test_copies_of_a_collection_follow_its_period(self):
+        bpy.ops.mesh.primitive_cube_add(size=0.5)
+        collection = bpy.data.collections.new("Bricks")
+        bpy.context.scene.collection.children.link(collection)
+        collection.objects.link(bpy.context.object)
+        bpy.ops.velour.repeat_tile(collection="Bricks")
+        collection.velour.period = (2, 1)
+        places = {tuple(o.location[:2]) for o in bpy.data.objects if o.velour.is_repeat}
+        self.assertEqual(places, {(2.0 * x, 1.0 * y) for x in (-1, 0, 1) for y in (-1, 0, 1)} - {(0, 0)})
+
     def test_along_the_axes_of_the_tile(self):
         obj = _add(type="NET", rotation=(0, 0, np.pi / 2))
         obj.scale = (3, 3, 3)

@@ -142,7 +142,7 @@ def quitting_while_reading(folder):
         "reading",
         f"""
 from velour.operators import load_material
-load_material._found = lambda path: time.sleep(60)
+load_material.found_file = lambda path: time.sleep(60)
 bpy.ops.velour.load_material("INVOKE_DEFAULT", filepath={str(MODEL)!r})
 """,
     )

@@ -13,7 +13,8 @@ _TURNS_SECONDS = 60
 def start(folder):
     """Called by the harness once the window is there."""
     fits = (fit_and_cancel, two_fits, fit_and_undo, scene_fit_and_cancel, scene_fit_and_undo, shared_material)
-    window.run(folder, (panels, stock_panels, preferences, viewport, *fits, render))
+    chosen = pinned, opened
+    window.run(folder, (panels, stock_panels, preferences, viewport, *chosen, *fits, render))
 
 
 def _measured_cube():
@@ -64,6 +65,53 @@ def stock_panels(folder):
         with bpy.context.temp_override(window=window.first(), area=area, region=region):
             names = stock.shown(kind, bpy.context)
         assert stock.wrong(kind, names) == ([], []), (kind, stock.wrong(kind, names))
+
+
+def _over_properties():
+    """As a button of the large Properties editor."""
+    area = max(window.first().screen.areas, key=lambda a: a.width * a.height)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return bpy.context.temp_override(window=window.first(), area=area, region=region)
+
+
+def pinned(folder):
+    """A material that is pinned has its panels, and their buttons are for it."""
+    material = _measured_cube()
+    before = scenes.velour_node(material).image.name
+    yield from window.show_properties("MATERIAL")
+    with _over_properties():
+        space = bpy.context.space_data
+        space.use_pin_id, space.pin_id = True, material
+        bpy.context.view_layer.objects["Cube"].active_material = bpy.data.materials.new("Plain")
+    yield 0.5
+    window.screenshot(folder, "pinned")
+    with _over_properties():
+        assert bpy.context.object is None
+        assert "VELOUR_MATERIAL_PT_measured" in stock.shown("material", bpy.context)
+        assert bpy.ops.velour.fit("INVOKE_DEFAULT", tolerance=0.2, max_lobes=2) == {"RUNNING_MODAL"}
+    for _ in range(10 * _TURNS_SECONDS):
+        yield 0.1
+        if not bpy.context.window_manager.velour.running:
+            break
+    assert scenes.velour_node(material).image.name != before, "it was not fitted"
+
+
+def opened(folder):
+    """A measurement that is chosen in the file browser of the panel; a second one in another browser."""
+    settings = scenes.velour_node(_measured_cube()).velour
+    yield from window.show_properties("MATERIAL")
+    for name in ("one.binary", "two.binary"):
+        (folder / name).write_bytes(inputs.glossy_measurement().read_bytes())
+        with _over_properties():
+            assert bpy.ops.velour.open_measurement("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+        yield 0.5
+        yield from window.choose_file(folder / name)
+        for _ in range(10 * _TURNS_SECONDS):
+            yield 0.1
+            if settings.measurement.name == name:
+                break
+        assert settings.measurement.name == name, settings.measurement.name
+        assert settings.measurement.velour.sha256
 
 
 def preferences(folder):

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import bpy
 import numpy as np
+from velour.core.sizes import data_size
 
 from support import inputs, scenes, window
 
@@ -72,9 +73,9 @@ def model_rows(folder):
     assert rows["Tile"] == "500 x 500 mm", rows
     assert rows["Directions"] == "16 views, 16 lights", rows
     assert rows["Lobes"] == f"{info['lobes']}, {info['coefficients']} coefficients a texel", rows
-    assert rows["Side"] == f"front: {info['parameter_bytes'] / 1e6:.2f} MB", rows
+    assert rows["Side"] == f"front: {data_size(info['parameter_bytes'])} in memory", rows
     assert rows["Speed"].endswith("million a second, one core"), rows
-    assert rows["Size"] == f"{size / 1e6:.2f} MB, 1:{raw / size:.0f}", rows
+    assert rows["Size"] == f"{data_size(size)}, 1:{raw / size:.0f}", rows
     assert float(rows["PSNR"].removesuffix(" dB")) > 40, rows  # four greys: a constant holds them
     assert rows["Unseen pairs"] == "not measured", rows
     yield from _report()

@@ -129,7 +129,7 @@ def _import(path, **settings):
 
 
 def _held_import():
-    return Held(module("operators.load_material"), "_found")
+    return Held(module("operators.load_material"), "found_file")
 
 
 def _end():

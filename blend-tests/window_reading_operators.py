@@ -156,7 +156,7 @@ def accept_loaded_file(folder):
 def accept_while_another_works(folder):
     """It does not stand in line behind an import."""
     image, digest = _changed(folder, "changed.velour", 50_000)
-    held = Held(module("operators.load_material"), "_found")
+    held = Held(module("operators.load_material"), "found_file")
     _invoke(bpy.ops.velour.load_material, filepath=str(large_file(folder, "slow.velour", 50_000)), fit=False)
     _invoke(bpy.ops.velour.accept_file, material="Paint")
     for _ in range(100):

@@ -49,7 +49,7 @@ def _check(cube, plane, name):
 
 def import_of_a_model(folder):
     path = large_file(folder, "paint.velour", 50_000)
-    cube, plane, held = _begin(path, module("operators.load_material"), "_found")
+    cube, plane, held = _begin(path, module("operators.load_material"), "found_file")
     yield 0.3
     _swap(cube, plane)
     held.release()
@@ -77,7 +77,7 @@ def import_of_a_btf(folder):
 def undone(folder):
     """The mark goes with an undo to what was before; names are left."""
     path = large_file(folder, "undone.velour", 50_000)
-    cube, plane, held = _begin(path, module("operators.load_material"), "_found")
+    cube, plane, held = _begin(path, module("operators.load_material"), "found_file")
     plane.location.x = 3
     with window.override():
         bpy.ops.ed.undo_push(message="moved")

@@ -11,7 +11,7 @@ from support import inputs, window
 _TEXT = (
     "Material 'Paint': the file '/home/someone/measurements/paint/blue-metallic-paint-of-a-car.velour' has"
     " changed since it was chosen; restore it, or accept it with"
-    " 'Accept Changed File' in the material's Model panel."
+    " 'Accept Changed File' in the Material tab."
 )
 _SLACK = 4  # pixels that glyphs leave free at the ends of a line
 _shown = {"text": "", "icon": "NONE", "active": True}

@@ -11,6 +11,7 @@ from velour.core.capture_size import (
     capture_seconds,
     capture_text,
     duration,
+    pairs_bytes,
     probes,
     spread,
 )
@@ -18,7 +19,9 @@ from velour.native import Scene, capture_job, directions
 
 
 def _settings(**values):
-    return SimpleNamespace(**{"texels": 128, "views": 105, "lights": 105, "samples": 16, **values})
+    return SimpleNamespace(
+        **{"texels": 128, "views": 105, "lights": 105, "samples": 16, "held_out": 0, **values}
+    )
 
 
 def _sawtooth(scene):
@@ -30,11 +33,11 @@ def _sawtooth(scene):
     scene.commit()
 
 
-def _rays(path, texels, views, lights, bounces):
+def _rays(path, texels, views, lights, bounces, sides="one", held_out=0):
     options = {"texels": texels, "views": views, "lights": lights, "samples": 4, "bounces": bounces}
     with Scene() as scene:
         _sawtooth(scene)
-        with capture_job(scene, path, period=(1, 1), sides="one", **options) as job:
+        with capture_job(scene, path, period=(1, 1), sides=sides, held_out=held_out, **options) as job:
             return job.run()["rays"]
 
 
@@ -53,6 +56,24 @@ def test_rays_of_two_probes_tell_those_of_the_whole(tmp_path, bounces):
     few = probes(settings)[0]  # a control: in proportion to texels, views and lights alone
     alone = counted[0] * 80**2 * 16 * 32 / (few.texels**2 * few.views * few.lights)
     assert abs(alone / whole - 1) > 1.5 * abs(told / whole - 1)
+
+
+@pytest.mark.parametrize("sides", ["one", "two"])
+def test_pairs_to_judge_by_take_time_and_space(tmp_path, sides):
+    settings = _settings(texels=80, views=8, lights=32, samples=4, held_out=64)
+    views, lights = directions("8"), directions("32")
+    counted = []
+    for n, p in enumerate(probes(settings)):
+        few = spread(views, p.views), spread(lights, p.lights)
+        counted.append(_rays(tmp_path / f"{n}.btf", p.texels, *few, 1, sides=sides))
+    whole = _rays(tmp_path / "whole.btf", 80, views, lights, 1, sides=sides)
+    pairs = tmp_path / "pairs.btf"
+    whole += _rays(pairs, 80, views, lights, 1, sides=sides, held_out=64)
+    told = capture_seconds(settings, [Timed(rays, rays) for rays in counted], {"one": 1, "two": 2}[sides])
+    assert abs(told / whole - 1) < 0.15, (told, whole)
+    written = sum(file.stat().st_size for file in pairs.iterdir())
+    assert abs(pairs_bytes(settings) / written - 1) < 0.15, written
+    assert pairs_bytes(_settings()) == 0
 
 
 def test_small_captures_are_their_own_probes():

@@ -73,3 +73,11 @@ def test_what_cannot_be_made_rougher_is_told(info, reference, said):
 
     sentence = roughness_reason(info, reference)
     assert (sentence is None) if said is None else (said in sentence)
+
+
+def test_a_tolerance_is_told_in_plain_words():
+    from velour.core.model_warnings import tolerance_words
+
+    told = [tolerance_words(tolerance) for tolerance in (0.0005, 0.02, 0.1, 1.0)]
+    assert told[1].startswith("At most 2 % off up to 75\N{DEGREE SIGN}, twice that beyond: most pictures")
+    assert len({sentence.split(": ")[1] for sentence in told}) == 4

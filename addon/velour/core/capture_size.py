@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from .sizes import data_size
+
 _MOST_MEMORY = 1 << 30  # of a view's images; larger ones lie in a file in the folder
 _PROBE_TEXELS = 64
 _PROBE_VIEWS = 4
@@ -12,11 +14,20 @@ _PROBE_LIGHTS = (4, 16)
 
 def capture_bytes(settings) -> int:
     """What a capture of one side takes on disk, within a few per cent; of two sides four times as much."""
+    return settings.views * _view_bytes(settings, settings.lights)
+
+
+def pairs_bytes(settings) -> int:
+    """As much of the pairs to judge by, which are as many whatever the sides."""
+    return settings.held_out * _view_bytes(settings, lights=1)
+
+
+def _view_bytes(settings, lights: int) -> int:
     row = 6 * settings.texels + 16  # colours as half floats, and what the file says of the row
     if settings.samples > 1:
         row += 2 * settings.texels + 16  # errors
     maps = 12 * settings.texels**2  # coverage and heights
-    return settings.views * (settings.lights * settings.texels * row + maps)
+    return lights * settings.texels * row + maps
 
 
 def capture_memory(settings, sides: int) -> int:
@@ -46,22 +57,29 @@ class Timed(NamedTuple):
     whole: float  # the same, what comes before, and writing
 
 
-def capture_seconds(settings, took: tuple[Timed, Timed]) -> float:
-    """Of the whole capture, by what its probes took.
+def capture_seconds(settings, took: tuple[Timed, Timed], sides: int = 1) -> float:
+    """Of the whole capture with its pairs to judge by, by what its probes took, of so many sides.
 
     A texel of a view costs what its own rays do, whatever the lights, and as much again for each light, to
-    trace and to write. What comes before is done once, and is the same for all.
+    trace and to write. What comes before is done once a capture, and is the same for all.
     """
     few, many = probes(settings)
-    share = settings.views * settings.texels**2 / (few.views * few.texels**2)
-    before = max(took[0].whole - took[0].traced, 0.0)
+    own, light = _costs(few, many, took)
+    views = settings.views * (own + settings.lights * light)
+    # The probes' views and lights have mirror images below, the pairs have none.
+    pairs = settings.held_out * (own / sides + light / sides**2)
+    before = max(took[0].whole - took[0].traced, 0.0) * (2 if settings.held_out else 1)
+    return before + (views + pairs) * settings.texels**2 / (few.views * few.texels**2)
+
+
+def _costs(few: Probe, many: Probe, took: tuple[Timed, Timed]) -> tuple[float, float]:
+    """Seconds of the probes' views and texels: their own, and of each light."""
     if many.lights == few.lights:
-        return before + share * took[0].traced
+        return took[0].traced, 0.0
     more = many.lights - few.lights
     traced = max(took[1].traced - took[0].traced, 0.0) / more
     whole = max(took[1].whole - took[0].whole, traced * more) / more
-    own = max(took[0].traced - few.lights * traced, 0.0)
-    return before + share * (own + settings.lights * whole)
+    return max(took[0].traced - few.lights * traced, 0.0), whole
 
 
 def spread(directions, count: int):
@@ -71,11 +89,11 @@ def spread(directions, count: int):
 
 def capture_text(settings, took: tuple[Timed, Timed], sides: int) -> str:
     """What artists are told before they begin."""
-    disk = capture_bytes(settings) * sides**2
+    disk = capture_bytes(settings) * sides**2 + pairs_bytes(settings)
     memory = capture_memory(settings, sides)
     return (
-        f"About {duration(capture_seconds(settings, took))}, {disk / 1e6:,.0f} MB on disk,"
-        f" {memory / 1e6:,.0f} MB of memory beside the scene"
+        f"About {duration(capture_seconds(settings, took, sides))}, {data_size(disk)} on disk,"
+        f" {data_size(memory)} of memory beside the scene"
     )
 
 

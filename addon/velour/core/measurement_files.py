@@ -16,6 +16,12 @@ MOST_ENTRIES = 100_000  # looked at: a folder may be the root of a file server
 _MOST_DEPTH = 8
 
 
+def file_filter(without: str = "") -> str:
+    """For a file browser: all that a material can be made of, but for a suffix."""
+    suffixes = (suffix for suffix in (*SUFFIXES, ".exr") if suffix != without)
+    return ";".join((*(f"*{suffix}" for suffix in suffixes), *INDICES))
+
+
 class MeasurementFile(NamedTuple):
     """Changes whenever the file has; pictures that the index of a BTF names may change without it."""
 

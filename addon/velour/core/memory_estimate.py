@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from ..native import images, library
 from ..native.errors import Status, VelourError
 from .memory_limit import Limit
+from .sizes import limit_size
 
 MIB = 1 << 20
 
@@ -39,7 +40,7 @@ class Estimate:
         return sum(self.parts.values())
 
     def __str__(self) -> str:
-        return ", ".join(f"{name} {size_text(value)}" for name, value in self.parts.items())
+        return ", ".join(f"{name} {limit_size(value)}" for name, value in self.parts.items())
 
     @property
     def remedy(self) -> str:
@@ -48,14 +49,14 @@ class Estimate:
 
     def within(self, limit: Limit | None, what: str) -> str:
         """A line that states it. Raises VelourError where `what` would take more than the limit."""
-        size = size_text(self.total)
+        size = limit_size(self.total)
         if limit and self.total > limit.size:
             raise VelourError(
                 Status.OUT_OF_MEMORY,
                 f"{what} would take about {size} of memory ({self}), above its limit of"
-                f" {size_text(limit.size)} ({limit.of}); {self.remedy}.",
+                f" {limit_size(limit.size)} ({limit.of}); {self.remedy}.",
             )
-        at_most = f" of {size_text(limit.size)} ({limit.of})" if limit else ""
+        at_most = f" of {limit_size(limit.size)} ({limit.of})" if limit else ""
         return f"Estimated memory: {size}{at_most}: {self}"
 
 
@@ -98,14 +99,6 @@ def _material(path: str) -> int:
         return os.path.getsize(path) * _MEASUREMENT
     tables = sum(side.get("table_bytes") or 0 for side in info.get("sides", ()))
     return os.path.getsize(path) * (_BTF_MODEL if "texels" in info else _MODEL) + tables
-
-
-def size_text(size: float) -> str:
-    for unit in ("bytes", "KiB", "MiB"):
-        if size < 1024:
-            return f"{size:.0f} {unit}"
-        size /= 1024
-    return f"{size:.1f} GiB"
 
 
 def resident() -> int:

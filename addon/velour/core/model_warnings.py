@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 from .plain_words import plain
@@ -9,6 +10,12 @@ from .plain_words import plain
 # A line a view, and a list of all fitted views: beside a table of errors they say it twice.
 _MISSED = re.compile(r"view (\d+) degrees: relative L2 |fitted views that miss the tolerance")
 _UNSEEN = re.compile(r"view (\d+) degrees: the measurement does not cover it")
+_LOOKS = (  # the largest tolerance of each
+    (0.014, "most pictures look like the measurement, as at 0.02 already"),
+    (0.05, "most pictures look like the measurement"),
+    (0.2, "differences show side by side, hardly in the distance"),
+    (math.inf, "differences show"),
+)
 
 
 def panel_warnings(info: dict) -> list[str]:
@@ -41,6 +48,12 @@ def gain_warning(albedo_max: float | None, gain: tuple[float, float, float]) -> 
     if max(gain) <= 1.0 or brightest <= 1.0:
         return None
     return f"Reflects up to {brightest:.2g} times the light that falls on it; lower Tint or Exposure."
+
+
+def tolerance_words(tolerance: float) -> str:
+    """What a tolerance looks like; docs/perceptual.md has what was looked at."""
+    seen = next(words for most, words in _LOOKS if tolerance <= most)
+    return f"At most {100 * tolerance:.3g} % off up to 75\N{DEGREE SIGN}, twice that beyond: {seen}."
 
 
 def roughness_reason(info: dict, use_reference: bool) -> str | None:

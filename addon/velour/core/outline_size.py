@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from .capture_size import duration
-from .fit_text import model_size
+from .sizes import data_size
 
 _LEAST_TEXELS = 4
 # The library's: more is refused (native/src/votf/occlusion_volume.h).
@@ -101,7 +101,7 @@ def outline_text(texels: int, made: tuple[Made, Made, Made], approximated: bool)
         time += ", and a few seconds for the look in other engines"
     wrong = [f"{m.wrong:.2%} at {m.points[0]}" for m in made if m.wrong is not None]
     return (
-        f"{time}; {model_size(math.prod(points))} in the model ({size} points);"
-        f" {outline_memory(points) / 1e6:,.0f} MB of memory beside the scene;"
+        f"{time}; {data_size(math.prod(points))} in the model ({size} points);"
+        f" {data_size(outline_memory(points))} of memory beside the scene;"
         f" rays wrong with fewer texels: {', '.join(wrong)}"
     )

@@ -21,6 +21,12 @@ def working_to_rec709(color):
     return tuple(float(c) for c in np.linalg.inv(matrix) @ np.array(color[:3]))
 
 
+def rec709_pixels_to_working(pixels):
+    """[... x channels] of linear Rec. 709, alpha or not, in Blender's scene-linear working space."""
+    rgb = pixels[..., :3] @ rec709_to_working().T.astype(np.float32)
+    return np.concatenate((rgb, pixels[..., 3:]), axis=-1)
+
+
 def set_working_space(scene):
     """Tells the library's `scene` in which space its colours are, where that is not Rec. 709."""
     working = rec709_to_working()
@@ -53,7 +59,7 @@ def bytes_to_working(pixels, space_name):
     rgb = pixels[..., :3]
     if space_name not in _LINEAR_REC709:
         rgb = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1
-    pixels[..., :3] = rgb @ rec709_to_working().T.astype(np.float32)
+    pixels[..., :3] = rec709_pixels_to_working(rgb)
     return pixels, space_name in _LINEAR_REC709 or "sRGB" in space_name
 
 

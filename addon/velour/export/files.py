@@ -30,6 +30,10 @@ def packed_bytes(image):
     return packed.data if packed is not None else None
 
 
+class ChangedFileError(ExportError):
+    """The file is another one than that which was chosen, and can be accepted."""
+
+
 class StoredFile(NamedTuple):
     """What is to be read of an image datablock, which undo may replace meanwhile: any thread may read it."""
 
@@ -100,6 +104,12 @@ class StoredFile(NamedTuple):
         except VelourError as error:
             raise ExportError(f"{self.owner}: {error}") from error
 
+    def chosen_raw_info(self):
+        """As raw_info(); refuses a content that is not the expected one."""
+        info = self.raw_info()
+        self.refuse_other(info["sha256"])
+        return info
+
     def raw(self, kind):
         """The Measurement or the Btf (`kind`) in it; refuses a content that is not the expected one."""
         try:
@@ -112,9 +122,9 @@ class StoredFile(NamedTuple):
 
     def refuse_other(self, digest):
         if self.expected and digest != self.expected:
-            raise ExportError(
+            raise ChangedFileError(
                 f"{self.owner}: the file {self.named} has changed since it was chosen;"
-                " restore it, or accept it with 'Accept Changed File' in the material's Model panel."
+                " restore it, or accept it with 'Accept Changed File' in the Material tab."
             )
 
 
@@ -221,8 +231,3 @@ class MeasurementReading:
 def measurement_info(image, owner):
     """As StoredFile.raw_info()."""
     return StoredFile.of(image, owner).raw_info()
-
-
-def measurement_path(image, owner):
-    """As StoredFile.readable_path()."""
-    return StoredFile.of(image, owner).readable_path()

@@ -28,6 +28,7 @@ class TileSource(NamedTuple):
     to_tile: Matrix  # from the world to the tile's own axes: no scale
     origin: Vector  # corner of the cell, in the tile's axes
     period: tuple[float, float]
+    stretch: tuple[float, float]  # by the owner's scale, which is in the period
 
     @property
     def label(self):
@@ -87,12 +88,16 @@ def export_tile(source, depsgraph, approximate=False):
 
 
 def _tile(owner, objects, to_tile, stretch, depsgraph):
-    source = TileSource(owner, objects, to_tile, Vector(), (0.0, 0.0))
+    source = TileSource(owner, objects, to_tile, Vector(), (0.0, 0.0), stretch)
     given = owner.velour.period
-    if given[0] > 0 and given[1] > 0:
-        return source._replace(period=(given[0] * stretch[0], given[1] * stretch[1]))
-    low, high = _bounds(source, depsgraph)
-    return source._replace(origin=Vector((low.x, low.y, 0)), period=(high.x - low.x, high.y - low.y))
+    period = [given[k] * stretch[k] for k in (0, 1)]
+    origin = Vector((0, 0, 0))
+    if min(given) == 0:
+        low, high = _bounds(source, depsgraph)
+        for k in (0, 1):  # each axis for itself
+            if given[k] == 0:
+                origin[k], period[k] = low[k], high[k] - low[k]
+    return source._replace(origin=origin, period=tuple(period))
 
 
 def _bounds(source, depsgraph):

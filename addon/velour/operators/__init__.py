@@ -3,7 +3,7 @@
 import bpy
 
 from ..core.measurement_files import SUFFIXES
-from . import approximation_look, usd_hook
+from . import approximation_look, repeat_tile, usd_hook
 from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
 from .add_mesostructure import VELOUR_OT_add_mesostructure
@@ -26,6 +26,7 @@ from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_cancel_waiting, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
 from .mark_asset import VELOUR_OT_mark_asset
+from .open_file import VELOUR_OT_open_measurement, VELOUR_OT_open_model, VELOUR_OT_open_scene_model
 from .placement import VELOUR_OT_describe_placement, VELOUR_OT_keep_uv_density
 from .plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from .repeat_tile import VELOUR_OT_repeat_tile
@@ -34,6 +35,9 @@ from .save_model import VELOUR_OT_save_model
 CLASSES = (
     VELOUR_OT_add_material,
     VELOUR_OT_load_material,
+    VELOUR_OT_open_measurement,
+    VELOUR_OT_open_model,
+    VELOUR_OT_open_scene_model,
     VELOUR_OT_fit,
     VELOUR_OT_fit_for_scene,
     VELOUR_OT_approximate,
@@ -65,6 +69,7 @@ CLASSES = (
 
 def attach():
     approximation_look.attach()
+    repeat_tile.attach()
     usd_hook.attach()
     bpy.types.TOPBAR_MT_file_import.append(_draw_import)
     bpy.types.VIEW3D_MT_mesh_add.append(_draw_add_mesh)
@@ -74,6 +79,7 @@ def detach():
     bpy.types.VIEW3D_MT_mesh_add.remove(_draw_add_mesh)
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     usd_hook.detach()
+    repeat_tile.detach()
     approximation_look.detach()
 
 

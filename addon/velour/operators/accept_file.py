@@ -30,9 +30,14 @@ class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
         owner = f"Material '{material.name}'"
         stored = {role: StoredFile.of(image, owner) for role, image in _images(node)}
         self._read_of = {role: measured.place_of(image) for role, image in _images(node)}
-        return lambda: {role: _digest(role, file) for role, file in stored.items()}
+        return lambda: _digests(stored)
 
-    def _use(self, _context, digests):
+    def _use(self, _context, found):
+        digests, sentences = found
+        if sentences and not digests:
+            raise ExportError(" ".join(sentences))
+        for sentence in sentences:
+            self.report({"WARNING"}, sentence)
         material, node = self._target.find()
         if material is None:
             self.report({"WARNING"}, "The material is gone.")
@@ -40,8 +45,8 @@ class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
         accepted = 0
         for role, image in _images(node):
             if self._read_of.get(role) == measured.place_of(image):
-                image.velour.sha256 = digests[role]
-                accepted += 1
+                image.velour.sha256 = digests.get(role, image.velour.sha256)
+                accepted += role in digests
             else:
                 sentence = f"'{image.name}' came to '{material.name}' meanwhile, and was not read."
                 self.report({"WARNING"}, sentence)
@@ -52,6 +57,17 @@ def _images(node):
     """What stands for files, by what it is to the material."""
     roles = (("model", node.image), ("scene model", node.velour.scene_model))
     return [(role, image) for role, image in (*roles, (_MEASUREMENT, node.velour.measurement)) if image]
+
+
+def _digests(stored):
+    """By role; and a sentence for each file that cannot be had, which is no matter to the others."""
+    found, sentences = {}, []
+    for role, file in stored.items():
+        try:
+            found[role] = _digest(role, file)
+        except ExportError as error:
+            sentences.append(str(error))
+    return found, sentences
 
 
 def _digest(role, stored):

@@ -6,6 +6,7 @@ import bpy
 
 from ..core.plain_words import plain
 from ..core.read_job import ReadJob
+from ..core.sizes import data_size
 from ..native import votf_job
 from . import measured
 from .approximate import MakesModel
@@ -52,7 +53,7 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
             self.report({"WARNING"}, sentence)
         self.report(
             {"INFO"},
-            f"'{material.name}' has the outline of '{report['source']}': {report['bytes'] / 1e6:.2f} MB,"
+            f"'{material.name}' has the outline of '{report['source']}': {data_size(report['bytes'])},"
             f" {report['wrong']:.2%} of rays wrong.",
         )
         return {"FINISHED"}

@@ -6,6 +6,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ..core.plain_words import plain
+from ..core.sizes import data_size
 from ..export.tiles import export_tile
 from ..native import capture_job
 from ..properties.tile_settings import SIDES
@@ -119,7 +120,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         there = f", of which {resumed} of {report['views']} views were there" if resumed else ""
         self.report(
             {"INFO"},
-            f"Captured '{self._subject}' in {report['seconds']:.0f} s: {report['bytes'] / 1e6:.1f} MB in"
+            f"Captured '{self._subject}' in {report['seconds']:.0f} s: {data_size(report['bytes'])} in"
             f" {self._folder}{there}",
         )
         return {"FINISHED"}

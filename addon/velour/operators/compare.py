@@ -3,6 +3,7 @@
 import bpy
 from bpy.props import FloatProperty, IntProperty, StringProperty
 
+from ..export.color import rec709_pixels_to_working
 from ..export.files import absolute_path, file_stamp
 from . import measured
 from .background_job import JobsInSteps
@@ -43,7 +44,7 @@ class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
         image = made_image(comparison_name(self._subject), 3 * self.side, self.side, float_buffer=True)
         image.velour.compared = self._compared
         image.use_view_as_render = True  # light, as a render: with the scene's view transform
-        image.pixels.foreach_set(self._steps.tiles(self.gain).ravel())
+        image.pixels.foreach_set(rec709_pixels_to_working(self._steps.tiles(self.gain)).ravel())
         image.pack()  # or Blender asks about it at the end
         _set_preview(image, self._steps.thumbnail(self.gain))
         if not bpy.app.background:

@@ -8,7 +8,7 @@ import numpy as np
 from ..core.ball import ball_job, ball_scene, shown
 from ..core.read_job import ReadJob
 from ..export import ExportError
-from ..export.files import StoredFile, measurement_path
+from ..export.files import StoredFile
 from ..native import Btf, Measurement, VelourError, library
 
 _BACKDROP = 0.05  # linear, beside the balls
@@ -23,9 +23,9 @@ class Comparison:
         if node.velour.measurement is None:
             raise ExportError(f"{owner}: no measurement is chosen, so there is nothing to compare with.")
         self._model = StoredFile.of(node.image, owner)
-        self._expected = node.velour.measurement.velour.sha256
+        self._measurement = StoredFile.of(node.velour.measurement, owner)
         self._until_read = contextlib.ExitStack()
-        self._path = self._until_read.enter_context(measurement_path(node.velour.measurement, owner))
+        self._path = self._until_read.enter_context(self._measurement.readable_path())
         self._balls = []  # measured, model: [side x side x 4], linear, premultiplied
         self._jobs = self._run()
 
@@ -53,10 +53,7 @@ class Comparison:
         try:
             is_btf = library.file_info(self._path)["kind"] == "btf"
             with (Btf if is_btf else Measurement).load(self._path) as measured:
-                if self._expected and measured.info()["sha256"] != self._expected:
-                    raise ExportError(
-                        f"{self._owner}: the measurement is not the file that was chosen; choose it anew."
-                    )
+                self._measurement.refuse_other(measured.info()["sha256"])
                 if is_btf:
                     return scene.add_btf_material(measured)
                 return scene.add_measurement_material(measured, model)

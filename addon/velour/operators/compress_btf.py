@@ -11,6 +11,7 @@ from bpy.props import BoolProperty, IntProperty, StringProperty
 from ..core.fit_time import fit_of, remember
 from ..core.plain_words import plain
 from ..core.read_job import ReadJob, check
+from ..core.sizes import data_size
 from ..export.caches import cache_folder
 from ..native import Btf, compress_job
 from . import measured
@@ -98,7 +99,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         unseen = report["psnr_held_out"]
         self.report(
             {"INFO"},
-            f"Material '{material.name}': {len(data) / 1e6:.2f} MB, 1:{report['ratio']:.0f},"
+            f"Material '{material.name}': {data_size(len(data))}, 1:{report['ratio']:.0f},"
             f" {report['psnr']:.1f} dB, error {report['relative_l2']:.3f}"
             + ("." if unseen is None else f"; {unseen:.1f} dB at pairs that it has not seen."),
         )

@@ -30,7 +30,9 @@ class VELOUR_OT_estimate_capture(JobsInSteps, bpy.types.Operator):
         settings = tile.owner.velour
         self._subject, self._key = tile.owner.name, captured_as(tile.owner)
         # The artist may change the settings meanwhile.
-        self._numbers = SimpleNamespace(**{name: getattr(settings, name) for name in CAPTURE_NUMBERS})
+        self._numbers = SimpleNamespace(
+            **{name: getattr(settings, name) for name in (*CAPTURE_NUMBERS, "held_out")}
+        )
         scene, place, _notes = export_tile(tile, context.evaluated_depsgraph_get(), settings.use_approximate)
         self._steps = _Probes(scene, self._numbers, capture_options(context, tile, place))
         self._advance()

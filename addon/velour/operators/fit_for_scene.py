@@ -59,7 +59,8 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         try:
             self._begin(context)
         except SharedMaterialError as error:
-            _ask(context, str(error), self.material, self.current_frame)
+            material = measured.wanted_material(context, self.material)
+            _ask(context, str(error), material.name, self.current_frame)
             return {"CANCELLED"}
         except (ExportError, VelourError) as error:
             return self._fail(error)

@@ -8,7 +8,7 @@ from bpy.props import BoolProperty, CollectionProperty, IntProperty, StringPrope
 from bpy_extras.io_utils import ImportHelper
 
 from ..core.files import read_bytes
-from ..core.measurement_files import INDICES, SUFFIXES
+from ..core.measurement_files import file_filter
 from ..core.read_job import ReadJob, check
 from ..export import ExportError
 from ..export.files import sha256
@@ -33,7 +33,8 @@ class _Found(NamedTuple):
         return os.path.splitext(os.path.basename(self.path))[0]
 
 
-def _found(path):
+def found_file(path):
+    """What is to be known of a model, a measurement or a BTF; raises ExportError or VelourError."""
     info = library.file_info(path)
     if info["kind"] == "observation":
         raise ExportError(f"{path}: is what a scene shows of a material; choose a model or a measurement.")
@@ -52,7 +53,7 @@ def _find(paths):
     for path in paths:
         check()
         try:
-            found.append(_found(path))
+            found.append(found_file(path))
         except (ExportError, VelourError) as error:
             if isinstance(error, VelourError) and error.cancelled:
                 raise
@@ -69,9 +70,7 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     bl_options = {"UNDO"}
 
     filename_ext = ".velour"
-    filter_glob: StringProperty(
-        default=";".join((*(f"*{suffix}" for suffix in (*SUFFIXES, ".exr")), *INDICES)), options={"HIDDEN"}
-    )
+    filter_glob: StringProperty(default=file_filter(), options={"HIDDEN"})
     files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
     directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
     pack: BoolProperty(

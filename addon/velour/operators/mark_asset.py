@@ -63,8 +63,11 @@ class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
             for tag in ("measured", "velour"):
                 asset.tags.new(tag, skip_if_exists=True)
         for name in _TEXTS:
-            if getattr(self, name) and hasattr(asset, name):  # Blender 3.4 knows no license
+            if getattr(self, name) and hasattr(asset, name):
                 setattr(asset, name, getattr(self, name))
+            elif getattr(self, name):  # the licence, in Blender 3.4
+                sentence = f"this Blender keeps no {name} of assets; put it into the description"
+                self.report({"WARNING"}, f"Material '{material.name}': {sentence}.")
         if self.catalog:
             asset.catalog_id = self.catalog
         for tag in filter(None, (each.strip() for each in self.tags.split(","))):

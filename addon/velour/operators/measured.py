@@ -14,11 +14,13 @@ NODE_NAME = "Velour"
 
 
 def find_material(context, name):
-    """The material called `name`, or the active one when `name` is empty; None where there is none."""
+    """The material called `name`, or the active one when `name` is empty; None where there is none.
+
+    In a tab or a node editor the one that is shown is active: it may be pinned, and on no object."""
     if name:
         return bpy.data.materials.get(name)
-    obj = context.object
-    return obj.active_material if obj else None
+    shown, obj = getattr(context, "material", None), context.object
+    return shown or (obj.active_material if obj else None)
 
 
 def wanted_material(context, name):
@@ -114,11 +116,16 @@ def put_model(data, target, report):
         image.use_fake_user = True
         report({"WARNING"}, f"The material is gone; its model is kept as image '{image.name}'.")
         return None, None
+    set_model(node, image, report)
+    return material, node
+
+
+def set_model(node, image, report):
+    """Another model for the node of a material."""
     node.image = image
     if node.velour.use_scene_model:
         node.velour.use_scene_model = False
         report({"INFO"}, "The model for the scene is of the model before, and is switched off.")
-    return material, node
 
 
 def linked_model(path, digest):

@@ -1,11 +1,18 @@
-"""Shows a tile repeated: copies around it that follow every change of it."""
+"""Shows a tile repeated: copies around it that follow every change of it.
+
+Around an object drivers put them, so they follow its rotation and its scale, animated or not; also where
+files may not run Python, for they are simple expressions. Another Period puts them anew.
+"""
+
+import contextlib
 
 import bpy
 from bpy.props import StringProperty
 from mathutils import Vector
 
 from ..export import ExportError
-from .tiles import find_tile
+from ..properties import changed
+from .tiles import find_tile, tile_of
 
 _AROUND = [(x, y) for y in (-1, 0, 1) for x in (-1, 0, 1) if (x, y) != (0, 0)]
 
@@ -15,7 +22,8 @@ class VELOUR_OT_repeat_tile(bpy.types.Operator):
     bl_label = "Show Repeated"
     bl_description = (
         "Show the tile 3 x 3 times, as a capture sees it: copies around it that follow its changes and cannot"
-        " be selected. Press again to take them away"
+        " be selected. Without a Period they lie as far apart as its bounding box is large now. Press again"
+        " to take them away"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -69,16 +77,54 @@ def _take_away(owner):
 
 def _show(context, tile):
     holder = _holder(tile.owner)
-    to_world = tile.to_tile.inverted().to_3x3()
     home = _new_collection(f"{tile.owner.name} Repeats")
     context.scene.collection.children.link(home)
-    for x, y in _AROUND:
+    for _ in _AROUND:
         empty = bpy.data.objects.new(f"{tile.owner.name} Repeat", None)
         empty.velour.is_repeat = empty.hide_select = True
         empty.empty_display_size = 0
         empty.instance_type, empty.instance_collection = "COLLECTION", holder
-        empty.location = to_world @ Vector((x * tile.period[0], y * tile.period[1], 0))
         home.objects.link(empty)
+    _place(home, tile)
+
+
+def _place(home, tile):
+    """The copies in the collection `home`, each in its cell."""
+    is_object = isinstance(tile.owner, bpy.types.Object)
+    axes = tile.to_tile.inverted().to_3x3()
+    for empty, (x, y) in zip(home.objects, _AROUND, strict=False):
+        empty.location = axes @ Vector((x * tile.period[0], y * tile.period[1], 0))
+        for axis in range(3) if is_object else ():
+            _drive(empty, axis, (x, y), tile)
+
+
+def _drive(empty, axis, cell, tile):
+    """A coordinate of the copy by what the object's matrix has of it in its first two columns."""
+    empty.driver_remove("location", axis)
+    driver = empty.driver_add("location", axis).driver
+    terms = []
+    for k in (0, 1):
+        variable = driver.variables.new()
+        variable.name = f"along{k}"
+        variable.targets[0].id = tile.owner
+        variable.targets[0].data_path = f"matrix_world[{k}][{axis}]"  # column, row
+        unscaled = tile.period[k] / (tile.stretch[k] or 1.0)
+        terms.append(f"along{k} * {cell[k] * unscaled:.9g}")
+    driver.type, driver.expression = "SCRIPTED", " + ".join(terms)
+
+
+def _follow_period(owner):
+    for home in {collection for empty in _repeats(owner) for collection in empty.users_collection}:
+        with contextlib.suppress(ExportError):  # nothing is left of the tile
+            _place(home, tile_of(bpy.context, owner))
+
+
+def attach():
+    changed.period_listeners.append(_follow_period)
+
+
+def detach():
+    changed.period_listeners.remove(_follow_period)
 
 
 def _holder(owner):

@@ -23,6 +23,12 @@ class VELOUR_OT_save_model(bpy.types.Operator, ExportHelper):
         name="Model for the Scene", description="That one instead of the full model", options={"SKIP_SAVE"}
     )
 
+    def invoke(self, context, event):
+        """The file browser that asks for the file shows no material."""
+        material = measured.find_material(context, self.material)
+        self.material = material.name if material else ""
+        return ExportHelper.invoke(self, context, event)
+
     def execute(self, context):
         material = measured.find_material(context, self.material)
         node = velour_node(material)

@@ -25,9 +25,10 @@ def find_tile(context, collection_name):
     return object_tile(context.object, depsgraph)
 
 
-def tile_of(context, obj):
-    """The TileSource of an object."""
-    return object_tile(obj, context.evaluated_depsgraph_get())
+def tile_of(context, owner):
+    """The TileSource of an object or a collection."""
+    make = object_tile if isinstance(owner, bpy.types.Object) else collection_tile
+    return make(owner, context.evaluated_depsgraph_get())
 
 
 def tile_folder(tile):
@@ -80,10 +81,31 @@ def fitted_as(owner):
     """The same of what a material of it is asked for."""
     settings = owner.velour
     names = ("directory", "method", "clusters", "members", "tolerance", "megabytes")
-    return repr((captured_as(owner), *(getattr(settings, name) for name in names)))
+    return repr((_asked_of(owner), *(getattr(settings, name) for name in names)))
 
 
 def captured_as(owner):
-    """Changes with what a capture of the tile is asked for. For draw()."""
+    """Changes with what a capture of the tile is asked for, and with the tile. For draw()."""
+    return repr((_asked_of(owner), _geometry(owner)))
+
+
+def _asked_of(owner):
     settings = owner.velour
-    return repr((owner.name, settings.sides, *(getattr(settings, name) for name in CAPTURE_NUMBERS)))
+    names = (*CAPTURE_NUMBERS, "held_out", "sides", "use_approximate")
+    return owner.name, *settings.period, *(getattr(settings, name) for name in names)
+
+
+def _geometry(owner):
+    """Of what the tile is made of that which is known without a look at its vertices."""
+    if isinstance(owner, bpy.types.Object):
+        return _object_geometry(owner)  # where it is does not matter
+    parts = (obj for obj in owner.all_objects if not obj.velour.is_repeat)
+    return [(_object_geometry(obj), [*map(tuple, obj.matrix_world)]) for obj in parts]
+
+
+def _object_geometry(obj):
+    depsgraph = bpy.context.view_layer.depsgraph
+    data = obj.evaluated_get(depsgraph).data if depsgraph else obj.data
+    counts = [len(getattr(data, name, ())) for name in ("vertices", "polygons")]
+    materials = [slot.material and slot.material.name for slot in obj.material_slots]
+    return obj.name, *obj.dimensions, *counts, materials

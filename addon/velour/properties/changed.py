@@ -1,11 +1,20 @@
 """What happens when a setting of a material is changed."""
 
-listeners = []  # called with the node tree that the setting belongs to; those who do work put themselves here
+# Those who do work put themselves here.
+listeners = []  # called with the node tree that the setting belongs to
+period_listeners = []  # called with the object or collection
 
 
 def changed(settings, _context):
     """Python's properties do not say by themselves that evaluated copies are out of date."""
     settings.id_data.update_tag()
+
+
+def period_changed(settings, context):
+    """Of a tile, which may be shown repeated."""
+    changed(settings, context)
+    for listener in period_listeners:
+        listener(settings.id_data)
 
 
 def look_changed(settings, context):

@@ -44,7 +44,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
             (
                 "PRODUCT",
                 "Products",
-                "Half from the products of the material's lobes and the environment's, the rest as before",
+                "Up to three quarters from products of material and environment, the rest as before",
                 8,
             ),
         ),

@@ -11,6 +11,7 @@ from bpy.props import (
     StringProperty,
 )
 
+from .changed import period_changed
 from .saved_by import saved_by
 
 SIDES = (
@@ -42,7 +43,8 @@ class VelourTileSettings(bpy.types.PropertyGroup):
         subtype="XYZ",
         unit="LENGTH",
         description="After this distance along its own x and y the structure repeats. What crosses the border"
-        " of the tile is there once and sticks out. 0: the size of its bounding box",
+        " of the tile is there once and sticks out. 0: the size of its bounding box along that axis",
+        update=period_changed,
         override=_OVERRIDABLE,
     )
     is_repeat: BoolProperty(

@@ -5,6 +5,7 @@ import os
 import bpy
 
 from ..core.measurement_files import MEASUREMENTS, MODELS
+from ..core.sizes import data_size
 from ..operators.browse import (
     VELOUR_OT_choose_measurement,
     VELOUR_OT_make_thumbnails,
@@ -15,7 +16,7 @@ from ..operators.browse import (
 from ..operators.load_material import VELOUR_OT_load_material
 from . import browser
 from .material_panel import MaterialPanel
-from .text import data_size, draw_sentence
+from .text import draw_sentence
 from .units import button_height
 
 _ROWS = 3
@@ -27,6 +28,10 @@ _USES = {"measurement": "Use and Fit", "btf": "Use and Compress"}
 class VELOUR_MATERIAL_PT_browser(MaterialPanel, bpy.types.Panel):
     bl_label = "Library of Measurements"
     bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.object is not None  # whose slot is filled
 
     def draw(self, context):
         layout, preferences = self.layout, addon_preferences(context)

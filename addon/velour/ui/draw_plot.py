@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..core.sizes import data_size
 from ..operators.plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from .plot_preview import plot_picture
 from .text import draw_sentence
@@ -46,10 +47,10 @@ def draw_chosen(layout, info):
     at = order["chosen"]
     size = order["parameter_bytes"][at]
     if "texels" in info:
-        text = f"{size / 1e6:.3g} MB: error {order['relative_l2'][at]:.3g}"
+        text = f"{data_size(size)}: error {order['relative_l2'][at]:.3g}"
         text += _asked(order["relative_l2"][at], info["tolerance"])
     else:
-        text = f"{order['lobes'][at]} lobes, {size} bytes: {order['worst'][at]:.3g} of the tolerance"
+        text = f"{order['lobes'][at]} lobes, {data_size(size)}: {order['worst'][at]:.3g} of the tolerance"
     layout.label(text=text)
 
 

@@ -2,7 +2,8 @@
 
 import bpy
 
-from ..core.model_warnings import gain_warning, panel_warnings, roughness_reason
+from ..core.model_warnings import gain_warning, panel_warnings, roughness_reason, tolerance_words
+from ..core.sizes import data_size
 from ..engine.engine import VelourRenderEngine
 from ..export.measured_materials import gain
 from ..export.nodes import active_output, velour_node
@@ -13,9 +14,10 @@ from ..operators.add_material import VELOUR_OT_add_material
 from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.mark_asset import VELOUR_OT_mark_asset
+from ..operators.open_file import VELOUR_OT_open_measurement, VELOUR_OT_open_model
 from ..operators.save_model import VELOUR_OT_save_model
 from .progress import draw_progress
-from .summaries import model_summary
+from .summaries import is_changed, measurement_summary, model_summary
 from .text import draw_sentence
 
 
@@ -27,7 +29,8 @@ class MaterialPanel:
 
     @classmethod
     def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES and context.object is not None
+        is_there = context.object is not None or context.material is not None  # pinned, it is on no object
+        return context.engine in cls.COMPAT_ENGINES and is_there
 
 
 class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
@@ -41,15 +44,21 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         if node is None:
             row = layout.row()
             row.operator(VELOUR_OT_add_material.bl_idname)
-            row.operator(VELOUR_OT_load_material.bl_idname, text="Import...")
+            if context.object is not None:  # whose slot it fills
+                row.operator(VELOUR_OT_load_material.bl_idname, text="Import...")
             return
         settings = node.velour
-        layout.template_ID(settings, "measurement", open="image.open", text="Measurement")
-        layout.template_ID(node, "image", open="image.open", text="Model")
+        layout.template_ID(
+            settings, "measurement", open=VELOUR_OT_open_measurement.bl_idname, text="Measurement"
+        )
+        if settings.measurement is not None:
+            _draw_measurement(context, layout, settings)
+        layout.template_ID(node, "image", open=VELOUR_OT_open_model.bl_idname, text="Model")
         info = model_summary(node.image) if node.image is not None else None
         info = info if isinstance(info, dict) else {}
         if "texels" not in info:  # BTFs are fitted elsewhere
             _draw_fit_settings(layout.column(align=True), settings)
+            draw_sentence(context, layout, tolerance_words(settings.tolerance), icon="INFO")
         draw_progress(context, layout)  # of BTFs, too
         if "texels" not in info:
             layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
@@ -58,6 +67,23 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
             row.prop(settings, "neighbors")
         layout.column().prop(settings, "use_reference")
         _draw_look(context, layout, settings, info)
+
+
+def _draw_measurement(context, layout, settings):
+    """Why it is refused: where it is another file, or is to be rendered."""
+    image = settings.measurement
+    if not image.velour.sha256 and not settings.use_reference:
+        return
+    summary = measurement_summary(image)
+    if isinstance(summary, str) and (is_changed(image) or settings.use_reference):
+        draw_refusal(context, layout, image, summary)
+
+
+def draw_refusal(context, layout, image, sentence):
+    """Why a file is refused, and the button where that helps."""
+    draw_sentence(context, layout, sentence, icon="ERROR")
+    if is_changed(image):
+        layout.operator(VELOUR_OT_accept_file.bl_idname)
 
 
 def _draw_fit_settings(column, settings):
@@ -103,8 +129,7 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
             self.layout.label(text="Reading the model...", icon="TIME")
             return
         if isinstance(info, str):
-            draw_sentence(context, self.layout, info, icon="ERROR")
-            self.layout.operator(VELOUR_OT_accept_file.bl_idname)
+            draw_refusal(context, self.layout, velour_node(context.material).image, info)
             return
         if "texels" in info:
             draw_rows(self.layout, _btf_rows(info))
@@ -121,7 +146,7 @@ def _draw_numbers(layout, info):
         ("Source", info["source"]["name"]),
         ("Kind", info["model"].capitalize()),
         ("Lobes", _lobes(info)),
-        ("Size", f"{info['bytes'] / 1024:.1f} KiB"),
+        ("Size", data_size(info["bytes"])),
         ("Relative error", _number(info["relative_l2"])),
         ("Largest albedo", _number(info["albedo_max"])),
         ("Reciprocity error", _number(info["reciprocity"])),
@@ -139,7 +164,7 @@ def _btf_rows(info):
         ("Tile", "size not known" if tile is None else "{:.4g} x {:.4g} mm".format(*(1e3 * t for t in tile))),
         ("Directions", f"{info['views']} views, {info['lights']} lights"),
         *_btf_terms(info),
-        ("Size", f"{info['bytes'] / 1e6:.2f} MB, 1:{info['raw_bytes'] / info['bytes']:.0f}"),
+        ("Size", f"{data_size(info['bytes'])}, 1:{info['raw_bytes'] / info['bytes']:.0f}"),
         ("PSNR", f"{info['psnr']:.1f} dB"),
         ("Error", _relative_error(info["relative_l2"])),
         ("Unseen pairs", "not measured" if unseen is None else f"{unseen:.1f} dB"),
@@ -178,7 +203,7 @@ def _side_text(side, sides):
     """Where it is seen and lit from, and what it costs."""
     if side["as"] is not None:
         return f"{_side_name(side)}: looks as {_side_name(sides[side['as']])}, costs nothing"
-    return f"{_side_name(side)}: {side['parameter_bytes'] / 1e6:.2f} MB"
+    return f"{_side_name(side)}: {data_size(side['parameter_bytes'])} in memory"
 
 
 def _side_name(side):

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..core.sizes import data_size
 from ..export.nodes import velour_node
 from ..operators.add_votf import VELOUR_OT_add_votf
 from ..operators.asked_outline import outlined_as
@@ -55,7 +56,7 @@ def _draw_outline(context, layout, node, shell):
 
 
 def _draw_outline_here(context, layout):
-    report = measured(context, context.material)
+    report = measured(context, context.material) if context.object is not None else None
     if report is None or report.outline is None:
         return
     box = layout.box()
@@ -69,7 +70,7 @@ def outline_rows(shell):
     wrong, (low, high) = shell["wrong"], shell["heights"]
     return (
         ("Structure", shell["source"]),
-        ("Size", f"{shell['bytes'] / 1e6:.2f} MB, {' x '.join(map(str, shell['points']))} points"),
+        ("In Memory", f"{data_size(shell['bytes'])}, {' x '.join(map(str, shell['points']))} points"),
         ("Height", f"{low:.3g} to {high:.3g} of the tile's width"),
         ("Rays wrong", "not measured" if wrong is None else f"{wrong:.2%}"),
     )

@@ -29,14 +29,15 @@ class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
             if settings.mode == "REPEATS":
                 layout.column().prop(settings, "repeats")
             else:
-                _draw_real_size(layout, settings, info.get("tile_metres"))
+                _draw_real_size(layout, settings, info.get("tile_metres"), context.object)
         _draw_uv_map(layout, settings, context.object)
         layout.prop(settings, "rotation")
         if _has_tiles(info):
             layout.column().prop(settings, "offset")
             layout.prop(settings, settings.scale_property)
-        report = measured(context, context.material)
-        _draw_report(context, layout, report and report.placement)
+        if context.object is not None:
+            report = measured(context, context.material)
+            _draw_report(context, layout, report and report.placement)
 
 
 def _info(context):
@@ -52,13 +53,13 @@ def _has_tiles(info):
 
 def _draw_uv_map(layout, settings, obj):
     """To be chosen where there is something to choose from."""
-    if obj.type == "MESH":
+    if obj is not None and obj.type == "MESH":
         layout.prop_search(settings, "uv_map", obj.data, "uv_layers", icon="GROUP_UVS")
     else:
         layout.prop(settings, "uv_map")
 
 
-def _draw_real_size(layout, settings, own_metres):
+def _draw_real_size(layout, settings, own_metres, obj):
     column = layout.column()
     column.prop(settings, "tile_size", text="Tile Size (mm)")
     if min(settings.tile_size) == 0:
@@ -68,7 +69,8 @@ def _draw_real_size(layout, settings, own_metres):
         column.label(text=text, icon=icon)
     column = layout.column()
     column.prop(settings, "uv_density", text="UV Density (1/m)")
-    column.operator(VELOUR_OT_keep_uv_density.bl_idname, icon="PINNED")
+    if obj is not None:  # whose density it is
+        column.operator(VELOUR_OT_keep_uv_density.bl_idname, icon="PINNED")
 
 
 def _draw_report(context, layout, report):

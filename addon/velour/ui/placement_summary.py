@@ -12,6 +12,7 @@ from ..export.nodes import velour_node
 from ..export.outline_report import OutlineReport, outline_report_on
 from ..export.placement import Tile
 from ..export.placement_report import PlacementReport, report_on, report_on_brushed
+from ..operators.job_target import key_of
 from .summaries import model_summary
 
 _QUIET_SECONDS = 0.3  # while something is dragged nothing is measured
@@ -29,9 +30,10 @@ _changed = 0.0  # time.monotonic() of the last change
 
 
 def measured(context, material):
-    """Of the active object; None while there is nothing yet."""
+    """Of the active object, which there is; None while there is nothing yet."""
     global _key, _report, _is_fresh
-    key = (context.object.name_full, material.name_full, context.scene.name_full, context.scene.frame_current)
+    shown = (context.object, material, context.scene)
+    key = (*map(key_of, shown), context.scene.frame_current)
     if key != _key:
         _key, _report, _is_fresh = key, None, False
     if not _is_fresh and not bpy.app.timers.is_registered(_measure):

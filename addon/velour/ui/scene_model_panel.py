@@ -3,11 +3,11 @@
 import bpy
 
 from ..export.nodes import velour_node
-from ..operators.accept_file import VELOUR_OT_accept_file
 from ..operators.check_scene import VELOUR_OT_check_scene
 from ..operators.fit_for_scene import VELOUR_OT_fit_for_scene
+from ..operators.open_file import VELOUR_OT_open_scene_model
 from ..operators.save_model import VELOUR_OT_save_model
-from .material_panel import MaterialPanel, draw_rows
+from .material_panel import MaterialPanel, draw_refusal, draw_rows
 from .summaries import model_summary
 from .text import draw_sentence
 
@@ -29,19 +29,19 @@ class VELOUR_MATERIAL_PT_scene_model(MaterialPanel, bpy.types.Panel):
         if settings.scene_model is None:
             return
         layout.prop(settings, "use_scene_model")
-        layout.template_ID(settings, "scene_model", open="image.open")
-        _draw_model(context, layout, model_summary(settings.scene_model))
+        layout.template_ID(settings, "scene_model", open=VELOUR_OT_open_scene_model.bl_idname)
+        _draw_model(context, layout, settings.scene_model)
         if settings.use_scene_model:
             _draw_served(context, layout, context.material, settings.scene_model)
 
 
-def _draw_model(context, layout, info):
+def _draw_model(context, layout, image):
+    info = model_summary(image)
     if info is None:
         layout.label(text="Reading the model...", icon="TIME")
         return
     if isinstance(info, str):
-        draw_sentence(context, layout, info, icon="ERROR")
-        layout.operator(VELOUR_OT_accept_file.bl_idname)
+        draw_refusal(context, layout, image, info)
         return
     if info.get("scene") is None:
         sentence = "This model was not fitted for a scene; every frame takes it."

@@ -1,25 +1,50 @@
-"""What panels show of models: read once a content, beside the thread that draws (engine/write_lock.py)."""
+"""What panels show of models and measurements: read once a content, beside the thread that draws
+(engine/write_lock.py)."""
 
+import functools
 import os
+from typing import NamedTuple
 
 import bpy
 
 from ..core.read_job import ReadJob
 from ..export import ExportError
-from ..export.files import StoredFile, absolute_path
+from ..export.files import ChangedFileError, StoredFile, absolute_path
 from ..native import VelourError
 from ..operators.job_target import key_of
 
 _KEPT = 64
 _TURN_SECONDS = 0.02
-_summaries = {}  # identity: info, or the sentence why there is none; oldest first
-_waiting = {}  # identity: name; what was asked for last comes first
-_jobs = {}  # identity: ReadJob; one at most
+_READERS = {"Model": StoredFile.model_info, "Measurement": StoredFile.chosen_raw_info}
+# By _Asked.
+_summaries = {}  # info, or the sentence why there is none; oldest first
+_waiting = {}  # name; what was asked for last comes first
+_jobs = {}  # ReadJob; one of a kind at most
+_changed = set()  # of the sentences those that say that the file is another one
+
+
+class _Asked(NamedTuple):
+    kind: str  # of _READERS
+    identity: tuple
 
 
 def model_summary(image):
     """The model's info; the sentence why there is none; None while it is not read yet. For draw()."""
-    known = identity(image)
+    return _summary("Model", image)
+
+
+def measurement_summary(image):
+    """The same of a measurement or BTF, all of which is read."""
+    return _summary("Measurement", image)
+
+
+def is_changed(image):
+    """Whether there is no summary because the file has changed since it was chosen. For draw()."""
+    return any(_Asked(kind, identity(image)) in _changed for kind in _READERS)
+
+
+def _summary(kind, image):
+    known = _Asked(kind, identity(image))
     if known not in _summaries and known not in _jobs:
         _waiting[known] = key_of(image)
     if not is_at_rest() and not bpy.app.timers.is_registered(_turn):
@@ -34,6 +59,7 @@ def is_at_rest():
 
 def forget():
     _summaries.clear()
+    _changed.clear()
     _waiting.clear()
     for job in _jobs.values():
         job.close()
@@ -56,28 +82,39 @@ def identity(image):
 
 def _turn():
     """A timer: runs on the main thread between two redraws, and waits for nothing."""
-    if not _jobs:
-        _begin(*_waiting.popitem())
+    _begin_some()
     for known, job in list(_jobs.items()):
         try:
             if job.wait(timeout=0.0):
                 _keep(known, job.result())
         except (ExportError, VelourError) as error:
+            if isinstance(error, ChangedFileError):
+                _changed.add(known)
             _keep(known, str(error))
     return None if is_at_rest() else _TURN_SECONDS
+
+
+def _begin_some():
+    """One of each kind at a time: a measurement may be large, and keeps no model waiting."""
+    for known in reversed(tuple(_waiting)):
+        if all(known.kind != other.kind for other in _jobs):
+            _begin(known, _waiting.pop(known))
 
 
 def _begin(known, name):
     image = bpy.data.images.get(name)
     if image is not None:
-        _jobs[known] = ReadJob(StoredFile.of(image, f"Model '{image.name}'").model_info).start()
+        stored = StoredFile.of(image, f"{known.kind} '{image.name}'")
+        _jobs[known] = ReadJob(functools.partial(_READERS[known.kind], stored)).start()
 
 
 def _keep(known, summary):
     del _jobs[known]
     _summaries[known] = summary
     while len(_summaries) > _KEPT:
-        del _summaries[next(iter(_summaries))]
+        oldest = next(iter(_summaries))
+        del _summaries[oldest]
+        _changed.discard(oldest)
     redraw_panels()
 
 

@@ -49,9 +49,3 @@ def _width(text, points):
     """Pixels in Blender's own font."""
     blf.size(0, points)
     return blf.dimensions(0, text)[0]
-
-
-def data_size(count):
-    """Bytes in the largest unit of which they are at least ten, or in the smallest."""
-    unit, factor = ("MB", 1e6) if count >= 1e7 else ("kB", 1e3)
-    return f"{count / factor:,.0f} {unit}"

@@ -2,7 +2,8 @@
 
 import bpy
 
-from ..core.capture_size import capture_bytes
+from ..core.capture_size import capture_bytes, pairs_bytes
+from ..core.sizes import data_size
 from ..engine.engine import VelourRenderEngine
 from ..export.objects import GEOMETRY
 from ..operators.capture_btf import VELOUR_OT_capture_btf
@@ -15,7 +16,7 @@ from ..properties.tile_settings import SHAPE_OF
 from .draw_plot import draw_chosen, draw_plot
 from .progress import draw_progress
 from .summaries import model_summary
-from .text import data_size, draw_sentence
+from .text import draw_sentence
 
 
 class TilePanel:
@@ -95,7 +96,7 @@ class VELOUR_COLLECTION_PT_tile(TilePanel, bpy.types.Panel):
 
 
 def _size(settings):
-    """Of two sides all four pairs of hemispheres."""
-    front = capture_bytes(settings)
-    one, both = data_size(front), data_size(4 * front)
+    """Of two sides all four pairs of hemispheres; with the pairs to judge by."""
+    front, pairs = capture_bytes(settings), pairs_bytes(settings)
+    one, both = data_size(front + pairs), data_size(4 * front + pairs)
     return {"ONE": one, "TWO": both, "AUTOMATIC": f"{one}, with holes {both}"}[settings.sides]

@@ -1,0 +1,23 @@
+"""Numbers of bytes as people read them."""
+
+from __future__ import annotations
+
+_DECIMAL = ("bytes", "kB", "MB", "GB", "TB")
+
+
+def data_size(count: float) -> str:
+    """Of files and what they hold: powers of a thousand, three digits."""
+    size, unit = float(count), 0
+    while size >= 999.5 and unit + 1 < len(_DECIMAL):
+        size, unit = size / 1000, unit + 1
+    digits = 0 if unit == 0 or size >= 99.95 else 1 if size >= 9.995 else 2
+    return f"{size:,.{digits}f} {_DECIMAL[unit]}"
+
+
+def limit_size(size: float) -> str:
+    """Of memory beside its limit: powers of 1024, in which systems and batch queues give those."""
+    for unit in ("bytes", "KiB", "MiB"):
+        if size < 1024:
+            return f"{size:.0f} {unit}"
+        size /= 1024
+    return f"{size:.1f} GiB"
