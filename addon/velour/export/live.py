@@ -78,4 +78,4 @@ class LiveExport:
             turn = Matrix.Rotation(-light.turn - math.pi / 2, 3, "Z")
             self._world.set_file(light.path, light.strength, turn)
         else:
-            add_world(self._world, shown_world(depsgraph), Notes())
+            add_world(self._world, shown_world(depsgraph), depsgraph.scene.frame_current, Notes())
