@@ -100,6 +100,14 @@ class Materials(NotesTest):
         tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
         self.assert_said("Material 'Bare'", "olume")
 
+    def test_movies_and_sequences(self):
+        tree = self._tree()
+        node = tree.nodes.new("ShaderNodeTexImage")
+        node.image = bpy.data.images.new("clip", 4, 4)
+        tree.links.new(node.outputs[0], tree.nodes["Principled BSDF"].inputs["Base Color"])
+        for node.image.source in ("SEQUENCE", "MOVIE"):
+            self.assert_said("Material 'Bare'", "the image 'clip' is no single picture")
+
     def test_opaque_shadows_of_what_is_transparent(self):
         tree = self._tree()
         material = bpy.data.materials["Bare"]
@@ -129,6 +137,16 @@ class Worlds(NotesTest):
         self.assertEqual(self.notes(), [])
         node.projection = "MIRROR_BALL"
         self._refused(f"World 'World': node '{node.name}' is a mirror ball")
+
+    def test_movies_and_sequences(self):
+        """Those of OpenEXR files are rendered (test_render.py)."""
+        image = self._environment().image
+        image.source = "MOVIE"
+        self._refused("World 'World': the image 'sky' is a movie")
+        image.source, image.filepath = "SEQUENCE", "//sky0001.png"
+        self._refused("World 'World': the image 'sky' is .*convert its frames")
+        image.filepath = "//sky0007.exr"
+        self._refused("World 'World': the image 'sky' has no file '.*sky0001.exr' for frame 1")
 
     def test_an_environment_without_an_image(self):
         node = self._environment()

@@ -11,6 +11,7 @@ from velour.operators import measured
 from velour.operators.background_job import TABS
 from velour.ui import material_panel, summaries
 from velour.ui.material_panel import VELOUR_MATERIAL_PT_measured
+from velour.ui.viewport_panel import VELOUR_VIEW3D_PT_lighting
 
 from support import inputs, scenes
 from support.blender import ADDON, BlenderTest, enable_addon
@@ -74,6 +75,22 @@ class Panels(BlenderTest):
         shown = self._shown("render")
         for name in ("subdivision", "subdivision_render", "child_particles", "child_particles_render"):
             self.assertEqual(shown[f"simplify_{name}"], 1, name)
+
+    def test_lighting_of_a_rendered_viewport(self):
+        """As with Cycles, of whose settings World Opacity is not read."""
+        panel, switches = VELOUR_VIEW3D_PT_lighting, ["use_scene_lights_render", "use_scene_world_render"]
+        shading = SimpleNamespace(type="RENDERED", use_scene_world_render=True)
+        context = SimpleNamespace(engine="VELOUR", space_data=SimpleNamespace(shading=shading))
+        self.assertEqual(self._drawn(panel, context), switches)
+        shading.use_scene_world_render = False
+        shown = self._drawn(panel, context)
+        self.assertEqual(shown, [*switches, "studiolight_rotate_z", "studiolight_intensity"])
+        self.assertLessEqual(set(shown), set(bpy.types.View3DShading.bl_rna.properties.keys()))
+        self.assertTrue(panel.is_registered and hasattr(bpy.types, panel.bl_parent_id))
+        context.engine = "CYCLES"
+        self.assertEqual(self._drawn(panel, context), [])
+        context.engine, shading.type = "VELOUR", "MATERIAL"
+        self.assertEqual(self._drawn(panel, context), [])
 
     def test_no_panel_of_blender_stands_above_sampling(self):
         """Of those without an order Blender's own come first, for they were registered before."""

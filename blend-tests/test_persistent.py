@@ -178,6 +178,13 @@ class PersistentData(BlenderTest):
         tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
         return node, path
 
+    def _sequence(self):
+        """A world of two files whose second shows in frames 2 and 3, and its node."""
+        node, path = self._sky("sky0001.exr")
+        inputs.native().images.write(path.with_name("sky0002.exr"), np.full((8, 16, 3), 2, np.float32))
+        node.image.source, node.image_user.frame_duration = "SEQUENCE", 2
+        return node
+
     def _assert_read(self, times):
         """That a kept scene's frames are right, and read their sky so often."""
         kind, read = _module("native").Scene, []
@@ -222,6 +229,12 @@ class PersistentData(BlenderTest):
         node.image.reload()
         after = self._assert_read(1)
         self.assertGreater(np.abs(after[0] - before[0]).max(), 0.1)
+
+    def test_a_sky_that_is_a_sequence(self):
+        self._sequence()
+        pictures = self._assert_read(2)
+        self.assertGreater(np.abs(pictures[0] - pictures[1]).max(), 0.1)
+        np.testing.assert_array_equal(pictures[1], pictures[2])
 
     def test_a_sky_that_is_painted_is_read_anew(self):
         self.scene.frame_end = 1

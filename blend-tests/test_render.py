@@ -243,6 +243,45 @@ class World(BlenderTest):
         tree.links.new(mapping.outputs[0], node.inputs["Vector"])
         tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
 
+    def test_image_sequences(self):
+        """The file that a frame shows is that of Cycles: first frame, offset, and over again."""
+        import addon_utils
+
+        addon_utils.enable("cycles")
+        node = self._sequence((0.1, 0.3, 0.6, 1.0))
+        user, shown = node.image_user, []
+        user.frame_duration = 3
+        for start, offset, cyclic, frame in (
+            *((1, 0, False, 1), (1, 0, False, 9)),
+            *((4, 1, True, 3), (4, 1, True, 7)),
+        ):
+            user.frame_start, user.frame_offset, user.use_cyclic = start, offset, cyclic
+            bpy.context.scene.frame_set(frame)
+            ours, theirs = (self._level(engine) for engine in ("VELOUR", "CYCLES"))
+            self.assert_close(ours, theirs, 1e-3)
+            shown.append(round(ours, 1))
+        self.assertEqual(shown, [0.1, 0.6, 1.0, 0.3])
+
+    def _sequence(self, levels):
+        """The node of a world whose files are of one grey each."""
+        for number, level in enumerate(levels, 1):
+            path = self.folder / f"sky_{number:03}.exr"
+            inputs.native().images.write(path, np.full((4, 8, 3), level, np.float32))
+        tree = scenes.set_world().node_tree
+        node = tree.nodes.new("ShaderNodeTexEnvironment")
+        node.image = bpy.data.images.load(str(self.folder / "sky_001.exr"))
+        node.image.source = "SEQUENCE"
+        tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
+        scenes.add_camera()
+        return node
+
+    def _level(self, engine):
+        scene = scenes.use_engine(samples=1, size=4)
+        scene.render.engine = engine
+        scene.cycles.samples, scene.cycles.use_denoising = 1, False
+        scene.world.cycles.sampling_method = "NONE"  # its importance map alone would take seconds
+        return float(scenes.render(self.folder, engine)[..., 1].mean())
+
     def _bright_direction(self, engine):
         """Where the spot is seen: the brightest of six looks, and its centre there."""
         scene = scenes.use_engine(samples=16, size=48)

@@ -36,16 +36,9 @@ def grey(folder):
     assert np.abs(values - 118).max() <= 1, (values.min(), values.max())
 
 
-def _colored_scene():
-    scenes.set_world((0.5, 0.7, 1.0), 0.5)
-    cube = bpy.data.objects["Cube"]
-    cube.active_material = scenes.diffuse_material((0.8, 0.3, 0.1))
-    return cube
-
-
 def as_the_final_render(folder):
     """The same colours on the screen as in a saved picture, under Blender's default view transform."""
-    _colored_scene().scale = (4, 4, 4)  # the camera sees nothing else in the middle
+    viewport.colored_scene().scale = (4, 4, 4)  # the camera sees nothing else in the middle
     bpy.data.objects["Cube"].location = (0, 0, -3.5)
     default = bpy.context.scene.view_settings.view_transform
     viewport.show(samples=64)
@@ -67,7 +60,7 @@ def as_the_final_render(folder):
 
 def first_picture(folder):
     """Soon, coarse, and finer later; nothing of it is left when it is switched off."""
-    _colored_scene()
+    viewport.colored_scene()
     begin = time.monotonic()
     viewport.show(samples=256)
     yield from viewport.until(lambda: not viewport.is_idle(), "no job")
@@ -84,7 +77,7 @@ def first_picture(folder):
 
 def one_redraw(folder):
     """What a change looks like is in the redraw that Blender makes of it, if worked out by then."""
-    _colored_scene()
+    viewport.colored_scene()
     viewport.show()
     yield from viewport.finished()
     module, drawn = viewport.addon("engine.viewport"), []
@@ -106,7 +99,7 @@ def one_redraw(folder):
 
 def camera_view(folder):
     """Perspective, camera and orthographic views show the cube where Blender's own shading does."""
-    _colored_scene()
+    viewport.colored_scene()
     view = viewport.show(samples=8)
     bpy.context.scene.camera.data.show_passepartout = False
     for name in ("PERSP", "CAMERA", "ORTHO"):
@@ -120,20 +113,13 @@ def camera_view(folder):
         view.shading.type, view.shading.light = "SOLID", "FLAT"
         yield 0.5
         solid = window.screenshot(folder, f"view-{name.lower()}-solid")
-        ours, blenders = _shape(rendered), _shape(solid)
+        ours, blenders = viewport.shape(rendered), viewport.shape(solid)
         assert blenders.sum() > 2000
         assert np.count_nonzero(ours != blenders) < 0.02 * blenders.sum(), name
 
 
-def _shape(screenshot):
-    """Where the middle of the viewport differs from its upper left: the cube."""
-    view = viewport.region()
-    part = screenshot[view.y + 60 : view.y + view.height - 120, view.x + 100 : view.x + view.width - 100]
-    return np.abs(part - part[-1, 0]).max(-1) > 0.08
-
-
 def render_region(folder):
-    _colored_scene()
+    viewport.colored_scene()
     view = viewport.show(samples=16)
     view.use_render_border = True
     view.render_border_min_x, view.render_border_max_x = 0.25, 0.5
@@ -152,7 +138,7 @@ def render_region(folder):
 
 def error_line(folder):
     """One line while something is wrong, the picture when it is no longer."""
-    _colored_scene()
+    viewport.colored_scene()
     viewport.show(samples=16).region_3d.view_perspective = "CAMERA"
     camera = bpy.context.scene.camera.data
     camera.type = "PANO"
@@ -174,7 +160,7 @@ def error_line(folder):
 
 def rests(folder):
     """While a final render runs the viewport's job does not, and it goes on afterwards where it was."""
-    _colored_scene()
+    viewport.colored_scene()
     viewport.show(samples=1 << 20)
     yield from viewport.until(lambda: viewport.samples() > 8, "no picture")
     before = viewport.shown_picture().samples
@@ -192,7 +178,7 @@ def rests(folder):
 
 def local_view(folder):
     """Shows what is selected alone, and all again."""
-    _colored_scene()
+    viewport.colored_scene()
     with window.override():
         scenes.add_sphere(radius=2.0).location = (3, 0, 0)
         bpy.ops.object.select_all(action="DESELECT")
@@ -214,7 +200,7 @@ def local_view(folder):
 
 def freed_engine(folder):
     """Something keeps its Python half: its job ends all the same, and others are drawn, an undo included."""
-    _colored_scene()
+    viewport.colored_scene()
     viewport.show(samples=1 << 20)
     yield from viewport.until(lambda: viewport.samples() > 0, "no picture")
     freed = viewport.the_one()

@@ -183,6 +183,19 @@ def _scene_lights_on():
     viewport.space().shading.use_scene_lights_render = True
 
 
+def _studio_light():
+    shading = viewport.space().shading
+    shading.use_scene_world_render, shading.studio_light = False, "courtyard.exr"
+
+
+def _studio_light_turns():
+    viewport.space().shading.studiolight_rotate_z = 1.0
+
+
+def _scene_world():
+    viewport.space().shading.use_scene_world_render = True
+
+
 def _film():
     bpy.context.scene.render.film_transparent = True
 
@@ -204,7 +217,8 @@ _EDITS = (
     *(_vertex, _modifier, _modifier_changes),
     *(_added, _removed, _hidden, _shown, _other_material, _glows, _instances, _instances_follow),
     *(_textured, _painted, _attribute, _attribute_changes),
-    *(_scene_lights_off, _scene_lights_on, _film, _frame, _turned),
+    *(_scene_lights_off, _scene_lights_on, _studio_light, _studio_light_turns, _scene_world),
+    *(_film, _frame, _turned),
 )
 
 

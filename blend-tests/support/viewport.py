@@ -33,6 +33,14 @@ def override():
     return bpy.context.temp_override(window=window.first(), area=view, region=region())
 
 
+def colored_scene():
+    """An orange cube, which it returns, below a blue sky."""
+    scenes.set_world((0.5, 0.7, 1.0), 0.5)
+    cube = bpy.data.objects["Cube"]
+    cube.active_material = scenes.diffuse_material((0.8, 0.3, 0.1))
+    return cube
+
+
 def show(samples=64):
     """Switches the viewport on; overlays and widgets off, so that pixels are the picture's."""
     scene = scenes.use_engine(samples)
@@ -138,6 +146,13 @@ def middle(screenshot, half=20):
     view = region()
     x, y = view.x + view.width // 2, view.y + view.height // 2
     return screenshot[y - half : y + half, x - half : x + half]
+
+
+def shape(screenshot):
+    """Where the middle of the viewport differs from its upper left: the cube."""
+    view = region()
+    part = screenshot[view.y + 60 : view.y + view.height - 120, view.x + 100 : view.x + view.width - 100]
+    return np.abs(part - part[-1, 0]).max(-1) > 0.08
 
 
 def text_width(folder, name):

@@ -61,7 +61,7 @@ class Viewport:
         if self._is_real_time(depsgraph, lambda shown: shown.update(context, depsgraph)):
             return
         self._scene_error = ""
-        self._take_up(depsgraph, Look(context, depsgraph), is_told=True)
+        self._take_up(context, depsgraph, is_told=True)
 
     def draw(self, context, depsgraph):
         lines = []
@@ -72,7 +72,7 @@ class Viewport:
         if self._live is None and not self._scene_error:
             self.update(context, depsgraph)  # its scene was forgotten
         elif self._changes:
-            self._take_up(depsgraph, Look(context, depsgraph), is_told=False)
+            self._take_up(context, depsgraph, is_told=False)
         self._view_error = ""
         try:
             self._follow(context, depsgraph)
@@ -152,9 +152,10 @@ class Viewport:
             engine.tag_redraw()
         return has_more
 
-    def _take_up(self, depsgraph, look, is_told):
+    def _take_up(self, context, depsgraph, is_told):
         """`is_told`: the depsgraph says what has changed."""
         try:
+            look = Look(context, depsgraph)
             if self._live is None:
                 self._export(depsgraph, look)
                 return

@@ -16,6 +16,7 @@ class ViewportPicture:
         self._is_fresh = False  # it is not on the screen yet
         self._version = 0  # the job's
         self._texture = None
+        self._exposure = 1.0  # that it has
         self.samples = 0
         self.shown_at = self.seconds = 0.0  # when, and how long it took
 
@@ -46,9 +47,11 @@ class ViewportPicture:
 
         if self._is_fresh:
             begin = self.shown_at = time.monotonic()
-            self._texture = self._upload(gpu, exposure)
+            self._upload(gpu, exposure)
             self._is_fresh = False
             self.seconds += time.monotonic() - begin
+        elif self._texture and exposure != self._exposure:
+            self._upload(gpu, exposure)
         if self._texture is None:
             return
         gpu.state.blend_set("ALPHA_PREMULT")
@@ -59,8 +62,9 @@ class ViewportPicture:
 
     def _upload(self, gpu, exposure):
         values = self._pixels[: 4 * self._size[0] * self._size[1]]
-        if exposure != 1.0:
-            values.reshape(-1, 4)[:, :3] *= exposure
-        np.clip(values, -_HALF_MAX, _HALF_MAX, out=values)
+        if exposure != 1.0:  # the pixels stay: another may be asked for
+            values = (values.reshape(-1, 4) * np.float32((exposure, exposure, exposure, 1))).reshape(-1)
+        values = np.clip(values, -_HALF_MAX, _HALF_MAX)
         buffer = gpu.types.Buffer("FLOAT", values.size, values)
-        return gpu.types.GPUTexture(self._size, format="RGBA16F", data=buffer)
+        self._texture = gpu.types.GPUTexture(self._size, format="RGBA16F", data=buffer)
+        self._exposure = exposure

@@ -16,7 +16,23 @@ _SAID_ELSEWHERE = (
     bpy.types.NodeTree,
     bpy.types.Scene,
 )
+# What no picture shows; some are of newer Blenders.
+_NEVER_SHOWN = tuple(
+    getattr(bpy.types, name)
+    for name in (
+        *("GreasePencil", "GreasePencilv3", "Annotation", "FreestyleLineStyle"),
+        *("Curves", "PointCloud", "Volume", "LightProbe", "Speaker", "Sound"),
+    )
+    if hasattr(bpy.types, name)
+)
 _WITHOUT_A_PICTURE = ("CAMERA", "SPEAKER", "LIGHT_PROBE", "ARMATURE", "LATTICE")
+# Nor these, as they are: geometry nodes may make meshes of them, and instances.
+_LEFT_OUT = ("GPENCIL", "GREASEPENCIL", "CURVES", "POINTCLOUD", "VOLUME")
+
+
+def may_be_shown(obj):
+    """Whether a change of this object can be seen."""
+    return obj.type not in _WITHOUT_A_PICTURE and (obj.type not in _LEFT_OUT or bool(obj.modifiers))
 
 
 class Changes:
@@ -61,13 +77,13 @@ class Changes:
             self.scene = True
         elif isinstance(block, bpy.types.Image):
             self.everything |= block.type not in ("RENDER_RESULT", "COMPOSITING")
-        elif not isinstance(block, _SAID_ELSEWHERE):
+        elif not isinstance(block, (*_SAID_ELSEWHERE, *_NEVER_SHOWN)):
             self.everything |= update.is_updated_geometry or update.is_updated_shading
 
     def _add_object(self, obj, is_geometry):
         if obj.type == "LIGHT":
             self.lights = True
-        elif obj.type not in _WITHOUT_A_PICTURE:
+        elif may_be_shown(obj):
             self.objects = True
             if is_geometry:
                 self.geometry.add(obj.original.as_pointer())

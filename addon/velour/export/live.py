@@ -1,7 +1,6 @@
 """The library's scene of what a viewport shows, kept up with the .blend: what changed alone is taken anew."""
 
-import math
-
+import numpy as np
 from mathutils import Matrix
 
 from ..native import Scene
@@ -75,7 +74,7 @@ class LiveExport:
     def _add_world(self, depsgraph, look):
         light = look.studio_light
         if light:
-            turn = Matrix.Rotation(-light.turn - math.pi / 2, 3, "Z")
+            turn = np.array(Matrix.Rotation(light.turn, 3, "Z"), np.float32)
             self._world.set_file(light.path, light.strength, turn)
         else:
-            add_world(self._world, shown_world(depsgraph), Notes())
+            add_world(self._world, shown_world(depsgraph), depsgraph.scene.frame_current, Notes())

@@ -2,14 +2,17 @@
 
 from typing import NamedTuple
 
+from .changes import may_be_shown
 from .notes import ExportError
-from .world import layer_world
+from .world import has_moving_picture, layer_world
+
+_TYPE_SHOWN = "show_object_viewport_"
 
 
 class StudioLight(NamedTuple):
     path: str
     strength: float
-    turn: float  # about z, radians
+    turn: float  # of directions about z, radians
 
 
 class Look:
@@ -19,38 +22,56 @@ class Look:
         space = context.space_data
         shading = space.shading
         self._space = space
-        self._is_narrowed = space.local_view is not None or space.use_local_collections
         self.has_lights = shading.use_scene_lights_render
         self.studio_light = None if shading.use_scene_world_render else _studio_light(shading)
         world = layer_world(depsgraph.scene, depsgraph.view_layer)
-        self._world = (world.as_pointer() if world else 0, depsgraph.view_layer.use_sky)
+        frame = depsgraph.scene.frame_current if has_moving_picture(world) else None
+        self._world = (world.as_pointer() if world else 0, depsgraph.view_layer.use_sky, frame)
         self._scene = scene_key(depsgraph)
         self._seen = self._all_seen(depsgraph)
+        self._types = _shown_types(space)
 
     def key(self):
         """Of the objects, the world and the scene: equal while no datablock of these changes."""
-        return (self._seen, self.has_lights), (self.studio_light, *self._world), self._scene
+        return (self._seen, self._types, self.has_lights), (self.studio_light, *self._world), self._scene
 
     def shows(self, instance):
-        """Whether an instance of the depsgraph is there."""
-        obj = instance.parent if instance.is_instance else instance.object
-        if not instance.show_self or (obj.type == "LIGHT" and not self.has_lights):
+        """Whether an instance of the depsgraph is there.
+
+        Blender looks at its own type, and at its parent for local view and local collections.
+        """
+        if not instance.show_self:
             return False
-        return not self._is_narrowed or obj.visible_in_viewport_get(self._space)
+        obj = instance.object
+        return obj.visible_in_viewport_get(self._space) and (self.has_lights or obj.type != "LIGHT")
 
     def _all_seen(self, depsgraph):
-        """Blender tells of a change of visibility no more than that the scene changes."""
+        """Blender tells of a change of visibility no more than that the scene changes.
+
+        With its last modifier goes what geometry nodes made of an object that is left out without.
+        """
         layer, space = depsgraph.view_layer, self._space
         return frozenset(
-            obj.as_pointer() for obj in layer.objects if obj.visible_get(view_layer=layer, viewport=space)
+            (
+                obj.as_pointer(),
+                may_be_shown(obj),
+            )
+            for obj in layer.objects
+            if obj.visible_get(view_layer=layer, viewport=space)
         )
+
+
+def _shown_types(space):
+    """The types of objects that the viewport shows: of instances nothing else tells."""
+    names = (setting.identifier for setting in space.bl_rna.properties)
+    return frozenset(name for name in names if name.startswith(_TYPE_SHOWN) and getattr(space, name))
 
 
 def _studio_light(shading):
     light = shading.selected_studio_light
     if light is None or not light.path:
         raise ExportError("The viewport's studio light has no picture; choose another, or use Scene World.")
-    return StudioLight(light.path, shading.studio_light_intensity, shading.studio_light_rotate_z)
+    return StudioLight(light.path, shading.studiolight_intensity, shading.studiolight_rotate_z)
 
 
 def scene_key(depsgraph):

@@ -107,7 +107,8 @@ class SceneExport:
     def _add_world(self, depsgraph):
         world = shown_world(depsgraph)
         if self._changes is None or self._changes.world or has_moving_picture(world):
-            self._world_shines = add_world(self._world, world, self.notes)
+            frame = depsgraph.scene.frame_current
+            self._world_shines = add_world(self._world, world, frame, self.notes)
 
     def _passes(self, depsgraph, objects):
         if not self._asked:

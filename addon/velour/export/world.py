@@ -11,8 +11,10 @@ from .files import absolute_path
 from .nodes import active_output, output, source
 from .notes import ExportError
 from .pixels import working_pixels
+from .sequences import sequence_file, sequence_number
 from .unused_settings import note_emitter
 
+_MOVING = ("SEQUENCE", "MOVIE")
 _RAYS = {"diffuse": "diffuse rays", "glossy": "glossy rays"}
 
 
@@ -31,17 +33,17 @@ def has_moving_picture(world):
     """Whether it shows another one in each frame, of which Blender tells nobody."""
     tree = world.node_tree if world and world.use_nodes else None
     images = [getattr(node, "image", None) for node in tree.nodes] if tree else []
-    return any(image and image.source in ("SEQUENCE", "MOVIE") for image in images)
+    return any(image and image.source in _MOVING for image in images)
 
 
-def add_world(light, world, notes):
-    """Whether it shines; `light`: WorldLight."""
+def add_world(light, world, frame, notes):
+    """Whether it shines in that frame; `light`: WorldLight."""
     _note_visibility(world, notes)
     if world is None:
         return _add_color(light, (0.0, 0.0, 0.0))
     if not world.use_nodes or world.node_tree is None:
         return _add_color(light, tuple(world.color))
-    return _add_nodes(light, world, notes)
+    return _add_nodes(light, world, frame, notes)
 
 
 def _add_color(light, color):
@@ -62,7 +64,7 @@ def _note_visibility(world, notes):
         notes.add(f"World '{world.name}': that it casts no shadow is not supported; ignored.")
 
 
-def _add_nodes(light, world, notes):
+def _add_nodes(light, world, frame, notes):
     owner = f"World '{world.name}'"
     output = active_output(world.node_tree, "ShaderNodeOutputWorld")
     background = source(output.inputs["Surface"]) if output else None
@@ -77,7 +79,7 @@ def _add_nodes(light, world, notes):
     strength = background.inputs["Strength"].default_value
     color = source(background.inputs["Color"])
     if color is not None and color.bl_idname == "ShaderNodeTexEnvironment":
-        _add_environment(light, owner, color, strength, notes)
+        _add_environment(light, owner, color, strength, frame, notes)
         return strength != 0.0
     if color is not None:
         notes.add(
@@ -86,7 +88,7 @@ def _add_nodes(light, world, notes):
     return _add_color(light, tuple(strength * c for c in background.inputs["Color"].default_value[:3]))
 
 
-def _add_environment(light, owner, node, strength, notes):
+def _add_environment(light, owner, node, strength, frame, notes):
     image = node.image
     if image is None:
         raise ExportError(f"{owner}: node '{node.name}' has no image; choose one, or unlink it.")
@@ -96,7 +98,9 @@ def _add_environment(light, owner, node, strength, notes):
         )
     rotation = _rotation(owner, node, notes)
     path = absolute_path(image)
-    if _can_read_file(image, path):
+    if image.source in _MOVING:
+        light.set_file(_file_of_frame(owner, node, path, frame), strength, rotation)
+    elif _can_read_file(image, path):
         light.set_file(path, strength, rotation)
     else:
         light.set_image(image, path, lambda: _pixels(owner, image, path, notes), strength, rotation)
@@ -105,8 +109,28 @@ def _add_environment(light, owner, node, strength, notes):
 def _can_read_file(image, path):
     """The library reads the file itself where its numbers are the working space's: no copy here."""
     plain = image.source == "FILE" and image.packed_file is None and os.path.isfile(path)
-    linear_file = path.lower().endswith((".exr", ".hdr"))
-    return plain and linear_file and is_linear_rec709(image.colorspace_settings.name)
+    return plain and _is_linear(image, path)
+
+
+def _is_linear(image, path):
+    return path.lower().endswith((".exr", ".hdr")) and is_linear_rec709(image.colorspace_settings.name)
+
+
+def _file_of_frame(owner, node, path, frame):
+    """Of an image sequence: Blender itself hands out pixels of whichever frame it has shown last."""
+    image = node.image
+    if image.source == "MOVIE" or not _is_linear(image, path):
+        raise ExportError(
+            f"{owner}: the image '{image.name}' is a movie, or a sequence of other files than OpenEXR and"
+            " Radiance ones in linear Rec. 709, which is not supported; convert its frames, or use one image."
+        )
+    path = sequence_file(path, sequence_number(node.image_user, frame))
+    if not os.path.isfile(path):
+        raise ExportError(
+            f"{owner}: the image '{image.name}' has no file '{path}' for frame {frame}; put it back, or"
+            f" change the frames of node '{node.name}'."
+        )
+    return path
 
 
 def _pixels(owner, image, path, notes):

@@ -39,8 +39,8 @@ class WorldLight:
 
 
 def _image_key(image, path):
-    """None where its pixels are another frame's in each frame, or painted."""
-    if image.is_dirty or image.source in ("SEQUENCE", "MOVIE"):
+    """None where its pixels are painted."""
+    if image.is_dirty:
         return None
     return (
         image.as_pointer(),

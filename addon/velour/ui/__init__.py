@@ -43,6 +43,7 @@ from .render_panel import (
 )
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
 from .tile_panel import VELOUR_COLLECTION_PT_tile, VELOUR_OBJECT_PT_tile
+from .viewport_panel import VELOUR_VIEW3D_PT_lighting
 from .visibility_panels import VELOUR_OBJECT_PT_ray_visibility, VELOUR_WORLD_PT_ray_visibility
 
 CLASSES = (
@@ -74,6 +75,7 @@ CLASSES = (
     VELOUR_LIGHT_PT_light,
     VELOUR_OBJECT_PT_ray_visibility,
     VELOUR_WORLD_PT_ray_visibility,
+    VELOUR_VIEW3D_PT_lighting,
     VELOUR_OBJECT_PT_tile,
     VELOUR_COLLECTION_PT_tile,
     *file_handler.CLASSES,
