@@ -8,6 +8,7 @@ import numpy as np
 
 from ..native import light_map_job
 from .errors import LOST, asking_for
+from .job_line import JobLine
 from .kept_tables import KeptTables
 from .projection import jitter, view_projection
 from .shaders import PICTURES, sky_shader
@@ -34,7 +35,8 @@ class Drawing:
 
     def __init__(self, cache_folder):
         self._cache_folder = cache_folder
-        self.tables = KeptTables()  # of materials
+        self.jobs = JobLine()
+        self.tables = KeptTables(self.jobs)  # of materials
         self._light = None  # texture
         self.light_report = {}  # of the job that made it
         self._light_job = None
@@ -46,14 +48,16 @@ class Drawing:
         self._instances = None  # the groups that are in the texture, and it
 
     def close(self):
-        if self._light_job:
-            self._light_job.close()
+        self._drop_light_job()
         self.tables.close()
         self._free_targets()
         self.__init__(self._cache_folder)
 
     def is_ready(self, scene):
-        """Whether all tables are there that draw() needs; a changed world is drawn as it was until then."""
+        """Whether all tables are there that draw() needs; a changed world is drawn as it was until then.
+
+        `jobs` make them, once somebody lets those go on.
+        """
         import gpu
 
         self._follow_light(gpu, scene)
@@ -66,16 +70,19 @@ class Drawing:
 
     def _follow_light(self, gpu, scene):
         if self._light_key != scene.world_key:
-            if self._light_job:
-                self._light_job.close()
-            self._light_job = light_map_job(scene, self._cache_folder).start()
+            self._drop_light_job()
+            self._light_job = self.jobs.add(light_map_job(scene, self._cache_folder, scene.threads))
             self._light_key = scene.world_key
-        if self._light_job and self._light_job.wait(timeout=0):
+        if self._light_job and self.jobs.has(self._light_job):
             self._light = texture(gpu, self._light_job.result_table())
             self.light_report = self._light_job.report()
-            self._light_job.close()
-            self._light_job = None
+            self._drop_light_job()
             self.restart()
+
+    def _drop_light_job(self):
+        if self._light_job:
+            self.jobs.drop(self._light_job)
+        self._light_job = None
 
     def restart(self):
         """What is drawn next is another picture than the last."""

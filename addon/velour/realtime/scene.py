@@ -60,10 +60,11 @@ class Group(NamedTuple):
 class RealtimeScene(Scene):
     """Takes what export/ says of a scene. The library's own scene in it has the world, and nothing else."""
 
-    def __init__(self, tables=None):
-        """`tables`: KeptTables, which it asks for what its materials need."""
+    def __init__(self, tables=None, threads=0):
+        """`tables`: KeptTables, which it asks for what its materials need; `threads`: of a job, 0: all."""
         super().__init__()
         self._tables = KeptTables() if tables is None else tables
+        self.threads = threads
         self.looks = []
         self.meshes = []  # GpuMesh; None: removed
         self.groups = []
@@ -135,7 +136,7 @@ class RealtimeScene(Scene):
     def add_model_material(self, model, neighbors=0):
         info, content = model.info(), digest(model.bytes())
         if "texels" not in info:
-            parts = [self._part(content, LobeTables, lambda: lobe_rows_job(model))]
+            parts = [self._part(content, LobeTables, lambda: lobe_rows_job(model, self.threads))]
         elif info["model"] == "srbf-btf" and info["coefficients"] <= MOST_TERMS:
             parts = [self._part(content, BtfTables, lambda: btf_maps_job(model))]
         else:
@@ -198,9 +199,8 @@ class RealtimeScene(Scene):
     def _rows(self, values, tables, *shown):
         """The Part of a Principled material of these numbers."""
         values = _principled(values)
-        return self._part(
-            tuple(sorted(values.items())), tables, lambda: principled_rows_job(**values), *shown
-        )
+        key = tuple(sorted(values.items()))
+        return self._part(key, tables, lambda: principled_rows_job(threads=self.threads, **values), *shown)
 
     def _add_look(self, look):
         self.looks.append(look)
