@@ -309,11 +309,13 @@ def test_instances_carry_matrices_and_maps_of_texture_coordinates():
         scene.add_instances(np.zeros(2, np.uint32), np.stack((matrix, matrix + 1)), [0])
         scene.add_instance(0, matrix, [0], [[[2, 0, 1], [0, 2, 0]]])
         scene.add_instances(np.zeros(1, np.uint32), matrix[None], [0], hidden=("camera",))
-        many, one = scene.groups
-        assert scene.draws == 3
+        scene.add_instance(0, matrix, [0], hidden=("holdout",))
+        many, one, holdout = scene.groups
+        assert scene.draws == 4
     np.testing.assert_array_equal(many.rows[1, :3], matrix + 1)
     np.testing.assert_array_equal(many.rows[0, 3:, :3], ((1, 0, 0), (0, 1, 0)))
     np.testing.assert_array_equal(one.rows[0, 3:, :3], ((2, 0, 1), (0, 2, 0)))
+    assert (many.rows[:, 4, 3].max(), holdout.rows[0, 4, 3]) == (0, 1)
 
 
 def test_materials_are_replaced_as_in_the_scene_of_the_library():
@@ -447,6 +449,30 @@ def test_lamps_keep_power_and_place():
     np.testing.assert_allclose(point[:2], ((5, 6, 7, 1), (1, 0, 0, 0.25)), rtol=1e-6)
     sun = lamp_pixels("sun", (3, 2, 1), matrix, {"angle": 0.2})
     np.testing.assert_allclose(sun[:2], ((0, 0, 1, 0), (3, 2, 1, 0.01)), atol=1e-7)
+
+
+def test_lamps_keep_their_shape():
+    area = lamp_pixels("rectangle", (1, 1, 1), np.eye(3, 4), {"size": (1, 1), "spread": np.pi / 2})
+    focus = 1 / (1 - np.pi / 4)  # of radiance (1 - tan) along the normal
+    np.testing.assert_allclose(area[1:3, [0, 3]], ((focus / np.pi, 1 / np.pi), (0, 1)), atol=1e-6)
+    wide = lamp_pixels("disk", (1, 1, 1), np.eye(3, 4), {"size": (1, 1), "spread": np.pi})
+    assert wide[2, 3] == 0
+    spot = {"size": (0, 0), "angle": 1.0, "cone_scale": (2.0, 0.5), "cosine": 1}
+    scaled = lamp_pixels("spot", (1, 1, 1), np.eye(3, 4), spot)
+    np.testing.assert_allclose(scaled[3:], ((0.5, 0, 0, 0), (0, 2, 0, 1)), atol=1e-7)
+    even = lamp_pixels("spot", (1, 1, 1), np.eye(3, 4), {**spot, "cone_scale": (1.0, 1.0)})
+    assert not even[3:, :3].any()
+
+
+@pytest.mark.parametrize(
+    ("size", "spread", "count"), [((4, 1), 0.5, 1), ((1, 4), 0.5, 1), ((1, 1), 0.5, 0), ((4, 1), np.pi, 0)]
+)
+def test_long_lamps_of_a_spread_are_counted_as_simpler(size, spread, count):
+    with RealtimeScene() as scene:
+        scene.add_light("rectangle", (1, 1, 1), np.eye(3, 4), size=size, spread=spread)
+        assert scene.simpler_lamps == count
+        scene.clear_lights()
+        assert scene.simpler_lamps == 0
 
 
 def test_models_of_btfs_have_no_rows():

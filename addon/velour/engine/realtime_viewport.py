@@ -123,4 +123,6 @@ class RealtimeViewport:
         simpler = sum(look.is_simpler for look in self._live.scene.looks)
         if simpler:
             said.append(f"{simpler} other materials simplified")
+        if self._live.scene.simpler_lamps:
+            said.append(f"{self._live.scene.simpler_lamps} lamps simplified")
         return "; ".join(said)

@@ -10,6 +10,7 @@ from ..native import light_map_job
 from .errors import LOST, asking_for
 from .job_line import JobLine
 from .kept_tables import KeptTables
+from .lamps import PIXELS
 from .projection import jitter, view_projection
 from .shaders import PICTURES, sky_shader
 from .targets import Targets, full_screen
@@ -147,7 +148,8 @@ class Drawing:
                     if draw.in_shell or not table.is_shell:
                         table.bind(shader)
                 self._set_look(shader, scene, draw.material, exposure)
-                _draw_instances(shader, draw.batch, tables[0].layout(len(narrow)), draw.first, draw.count)
+                layout = tables[0].layout(len(narrow))
+                _draw_instances(shader, draw, layout, scene.looks[draw.material].hides_backs)
 
     def _draws(self, gpu, scene):
         """By shader."""
@@ -191,15 +193,20 @@ def _parts(scene):
     return [part for look in scene.looks for part in look.parts]
 
 
-def _draw_instances(shader, batch, layout, first, count):
-    many = getattr(batch, "draw_instanced", None)  # 3.6 and newer
+def _draw_instances(shader, draw, layout, hides_backs):
+    many = getattr(draw.batch, "draw_instanced", None)  # 3.6 and newer
     if many:
-        shader.uniform_int("layout_", (first, *layout))
-        many(shader, instance_count=count)
+        shader.uniform_int("layout_", (_first(draw.first, hides_backs), *layout))
+        many(shader, instance_count=draw.count)
         return
-    for i in range(first, first + count):
-        shader.uniform_int("layout_", (i, *layout))
-        batch.draw(shader)
+    for i in range(draw.first, draw.first + draw.count):
+        shader.uniform_int("layout_", (_first(i, hides_backs), *layout))
+        draw.batch.draw(shader)
+
+
+def _first(instance, hides_backs):
+    """As surface.vert.glsl takes it: uniforms have no room for more."""
+    return ~instance if hides_backs else instance
 
 
 def _columns(matrix):
@@ -210,7 +217,7 @@ def _columns(matrix):
 
 
 def _lamps_texture(gpu, lamps):
-    return texture(gpu, np.concatenate(lamps)[None] if lamps else np.zeros((1, 4, _FLOATS), np.float32))
+    return texture(gpu, np.concatenate(lamps)[None] if lamps else np.zeros((1, PIXELS, _FLOATS), np.float32))
 
 
 def _narrow_lobes(mixture):
@@ -219,7 +226,7 @@ def _narrow_lobes(mixture):
     lobes = lobes[lobes[:, 3] > _NARROW]
     whole = 2 * np.pi / lobes[:, 3]
     energy = lobes[:, 4:] * whole[:, None]
-    pixels = np.zeros((len(lobes), 4, 4), np.float32)
+    pixels = np.zeros((len(lobes), PIXELS, _FLOATS), np.float32)
     pixels[:, 0, :3] = lobes[:, :3]
     pixels[:, 1, :3], pixels[:, 1, 3] = energy, lobes[:, 3]
     return list(pixels[np.argsort(-energy.sum(axis=1))[:_MOST_NARROW]])
