@@ -83,8 +83,10 @@ class RealtimeViewport:
         if viewport_clock.is_paused():
             self.pause()
             return True
+        if not self._drawing.is_waiting():
+            return False  # another redraw would only ask for the next
         engine.tag_redraw()
-        return self._drawing.is_waiting()
+        return True
 
     def pause(self):
         """Called from any thread; draw() goes on later."""
