@@ -12,7 +12,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (ball_in_a_sky, btf, lamps, grey, edits))
+    window.run(folder, (ball_in_a_sky, btf, lamps, shaped_lamps, holdouts_and_backs, grey, edits))
 
 
 def _ball(material):
@@ -80,6 +80,85 @@ def lamps(folder):
         print(f"relative L2 under {kind}: {error:.4f}", flush=True)
         assert error < 0.02, (kind, error)
         bpy.data.objects.remove(obj)
+
+
+def shaped_lamps(folder):
+    """What leaves a lamp to the sides: all of it falls on a plane, beside what it does not reach."""
+    for name in ("Cube", "Light"):
+        bpy.data.objects.remove(bpy.data.objects[name])
+    with window.override():
+        scenes.add_plane(scenes.diffuse_material((0.8, 0.6, 0.4)), size=9.0)
+    scenes.set_world((0, 0, 0))
+    bpy.context.scene.render.film_transparent = True
+    lights = viewport.addon("export.lights")
+    made = lights._DESCRIBE["SPOT"]
+    cases = {
+        "spread": ("AREA", {"spread": np.radians(30), "size": 0.8}, 7.0, {}),
+        "wide-spread": ("AREA", {"spread": np.radians(120), "size": 0.8}, 2.5, {}),
+        "cosine": ("SPOT", {"spot_size": 2.6, "spot_blend": 0.3}, 2.5, {"cosine": 1}),
+        "scaled": (
+            "SPOT",
+            {"spot_size": 0.9, "shadow_soft_size": 0.0},
+            4.0,
+            {"cone_scale": (1.6, 0.5), "cosine": 0},
+        ),
+    }
+    for name, (kind, settings, height, values) in cases.items():
+        lamp = bpy.data.lights.new(name, kind)
+        lamp.energy = 800.0
+        for setting, value in settings.items():
+            setattr(lamp, setting, value)
+        obj = bpy.data.objects.new(name, lamp)
+        obj.location, obj.rotation_euler = (0.5, -0.3, height), (0.2, 0.1, 0.4)
+        bpy.context.scene.collection.objects.link(obj)
+        lights._DESCRIBE["SPOT"] = _describing(made, values)  # as other Blenders do
+        try:
+            viewport.show_real_time()
+            yield from viewport.real_time_finished()
+            yield 0.3
+            window.screenshot(folder, f"shaped-{name}")
+            error = realtime.error(realtime.pixels(), realtime.traced())
+        finally:
+            lights._DESCRIBE["SPOT"] = made
+        print(f"relative L2 under {name}: {error:.4f}", flush=True)
+        assert error < 0.03, (name, error)
+        bpy.data.objects.remove(obj)
+
+
+def _describing(made, values):
+    def describe(lamp, matrix):
+        kind, factor, known = made(lamp, matrix)
+        return kind, factor, {**known, **values}
+
+    return describe
+
+
+def holdouts_and_backs(folder):
+    """Of a holdout and what is behind it nothing is seen; of a back that is culled what is behind it."""
+    scenes.set_world((0.5, 0.7, 1.0), 0.5)
+    bpy.context.scene.render.film_transparent = True
+    cube = bpy.data.objects["Cube"]
+    cube.is_holdout, cube.location = True, (1.5, -1.5, 1.0)
+    with window.override():
+        scenes.add_plane(scenes.diffuse_material((0.8, 0.3, 0.1)), size=7.0)
+        culled = scenes.diffuse_material((0.1, 0.3, 0.8))
+        culled.use_backface_culling = True
+        for x, scale in ((-2.5, 1.0), (0.0, -1.0)):
+            for turn in (0.0, np.pi):
+                bpy.ops.mesh.primitive_plane_add(size=1.5, location=(x, turn / 2, 1.0), rotation=(turn, 0, 0))
+                plane = bpy.context.object
+                plane.scale.x = scale
+                plane.data.materials.append(culled)
+    viewport.show_real_time()
+    yield from viewport.real_time_finished()
+    window.screenshot(folder, "holdouts")
+    drawn, traced = realtime.pixels(), realtime.traced(samples=256).mean
+    alpha = np.abs(drawn[..., 3] - traced[..., 3])
+    blue = np.abs((drawn[..., 2] > drawn[..., 0]).astype(float) - (traced[..., 2] > traced[..., 0]))
+    print(f"alpha is off by {alpha.mean():.4f}, what is blue by {blue.mean():.4f}", flush=True)
+    assert (drawn[..., 2] > drawn[..., 0]).sum() > 100, "no front of what is culled is seen"
+    assert alpha.mean() < 0.005, alpha.mean()
+    assert blue.mean() < 0.005, blue.mean()
 
 
 def grey(folder):

@@ -5,14 +5,14 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from support import scenes, viewport, window
+from support import realtime, scenes, viewport, window
 
 _DATA = Path(__file__).parent / "scenes/data"
 
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (restarts, first_picture, refusals, cures))
+    window.run(folder, (restarts, freed_engine, first_picture, renders, no_frame, refusals, cures))
 
 
 def restarts(folder):
@@ -41,6 +41,63 @@ def _resident_mib():
     return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS")) / 1024
 
 
+def freed_engine(folder):
+    """Something keeps its Python half: what it holds goes all the same, once all of it is drawn."""
+    scenes.set_world((0.5, 0.7, 1.0), 0.5)
+    viewport.show_real_time()
+    yield from viewport.real_time_finished()
+    yield from viewport.until(viewport.is_idle, "it does not come to rest")
+    freed = viewport.the_one()
+    engine, shown = freed._engine(), freed._real_time
+    viewport.space().shading.type = "SOLID"
+    yield from viewport.until(lambda: freed._real_time is None, "it goes on")
+    assert engine is not None
+    assert shown._live is None
+    assert shown._drawing.last() is None
+
+
+def renders(folder):
+    """Light and tables leave the processor to them, then go on."""
+    realtime.shine(folder, np.random.default_rng(1).random((256, 512, 3), np.float32) ** 16)
+    drawing = viewport.addon("realtime.drawing")
+    made = []
+    light_map_job = drawing.light_map_job
+
+    def kept(*arguments):
+        made.append(light_map_job(*arguments))
+        return made[-1]
+
+    drawing.light_map_job = kept
+    try:
+        viewport.show_real_time()
+        yield from viewport.until(lambda: made and made[0].poll().running, "the light is not asked for")
+    finally:
+        drawing.light_map_job = light_map_job
+    with viewport.addon("engine.viewport_clock").paused():
+        yield from viewport.until(lambda: not made[0].poll().running, "the light goes on")
+        for _turn in range(5):
+            assert made[0].poll().state == "cancelled", made[0].poll().state
+            assert not viewport.real_time().has_picture()
+            yield 0.1
+    yield from viewport.real_time_finished()
+    assert not viewport.the_one()._refusal
+
+
+def no_frame(folder):
+    """Nothing of the region is to be rendered: nothing is drawn on and on."""
+    scenes.set_world((0.5, 0.7, 1.0), 0.5)
+    viewport.show_real_time()
+    yield from viewport.until(lambda: viewport.real_time() is not None, "it does not begin")
+    space, drawing = viewport.space(), viewport.real_time()._drawing
+    yield from viewport.until(lambda: drawing.count > 0, "nothing is drawn")
+    space.render_border_min_x = space.render_border_max_x = 0.5
+    space.use_render_border = True
+    yield from viewport.until(viewport.is_idle, "it does not come to rest", patience=5)
+    assert drawing.is_waiting(), "all was drawn before"
+    space.use_render_border = False
+    yield from viewport.real_time_finished()
+
+
 def first_picture(folder):
     """Until it is there the ray tracer's is."""
     scenes.set_world((0.5, 0.7, 1.0), 0.5)
@@ -64,15 +121,15 @@ def first_picture(folder):
 def refusals(folder):
     """What is too much is ray traced, with a sentence; in real time once the mode is chosen again."""
     scenes.set_world()
-    realtime = viewport.addon("realtime.scene")
-    most, realtime._MOST_DRAWS = realtime._MOST_DRAWS, 0
+    scene = viewport.addon("realtime.scene")
+    most, scene._MOST_DRAWS = scene._MOST_DRAWS, 0
     try:
         viewport.show_real_time()
         yield from viewport.until(lambda: viewport.samples() > 0, "the ray tracer shows nothing")
         assert "instances" in viewport.the_one()._refusal.sentence, viewport.the_one()._refusal.sentence
         window.screenshot(folder, "refused")
     finally:
-        realtime._MOST_DRAWS = most
+        scene._MOST_DRAWS = most
     bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
     yield from viewport.finished()
     bpy.context.scene.velour.viewport_mode = "REAL_TIME"
@@ -92,11 +149,18 @@ def cures(folder):
     refusal = viewport.the_one()._refusal
     assert "lamps" in refusal.sentence, refusal.sentence
 
-    lamps[0].location.x = 3
-    cube.rotation_euler.z = 0.5
-    lamps[1].data.energy = 20
-    yield from viewport.finished()
+    counting, asked = viewport.addon("engine.refusal"), []
+    numbers = counting._numbers
+    counting._numbers = lambda depsgraph: asked.append(1) or numbers(depsgraph)
+    try:
+        lamps[0].location.x = 3
+        cube.rotation_euler.z = 0.5
+        lamps[1].data.energy = 20
+        yield from viewport.finished()
+    finally:
+        counting._numbers = numbers
     assert viewport.the_one()._refusal is refusal
+    assert not asked, "instances were counted for what moves or shines otherwise"
 
     bpy.data.objects.remove(lamps.pop())
     yield from viewport.real_time_finished()

@@ -21,6 +21,7 @@ def start(folder):
         rests,
         local_view,
         freed_engine,
+        freed_engine_at_rest,
     )
     window.run(folder, tests)
 
@@ -213,3 +214,17 @@ def freed_engine(folder):
     yield from viewport.until(lambda: viewport.samples() > 0, "the next shows nothing")
     viewport.addon("engine.viewport")._forget_scenes()
     yield from viewport.until(lambda: viewport.samples() > 0, "nothing is shown after an undo")
+
+
+def freed_engine_at_rest(folder):
+    """Something keeps its Python half: scene and picture go although nothing is waited for any more."""
+    _colored_scene()
+    viewport.show(samples=16)
+    yield from viewport.finished()
+    freed = viewport.the_one()
+    engine = freed._engine()
+    assert freed._live is not None
+    viewport.space().shading.type = "SOLID"
+    yield from viewport.until(lambda: freed._live is None, "its scene stays", patience=10)
+    assert engine is not None
+    assert freed._job.picture._texture is None

@@ -1,5 +1,8 @@
 """Tables for shaders, and a scene as a graphics processor has it; drawing: blend-tests/window_realtime.py."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -22,6 +25,7 @@ from velour.native import (
     votf_job,
 )
 from velour.realtime import RealtimeScene, UnshownError
+from velour.realtime.job_line import JobLine
 from velour.realtime.kept_tables import KeptTables, Part
 from velour.realtime.lamps import lamp_pixels
 from velour.realtime.pictures import GpuTexture
@@ -130,6 +134,9 @@ class _Job:
     def start(self):
         return self
 
+    def poll(self):
+        return SimpleNamespace(state="done" if self.is_done else "running")
+
     def wait(self, timeout):
         return self.is_done
 
@@ -156,6 +163,91 @@ def test_tables_are_made_once_and_go_when_nothing_shows_them():
     kept.ask("a", lambda: again)
     kept.close()
     assert again.closed
+
+
+class _SlowJob:
+    """Runs until it is ended or cancelled."""
+
+    def __init__(self):
+        self.state, self.starts, self.closed = "ready", 0, False
+
+    def poll(self):
+        return SimpleNamespace(state=self.state)
+
+    def start(self):
+        self.state, self.starts = "running", self.starts + 1
+
+    def wait(self, timeout):
+        return self.state == "done"
+
+    def cancel(self):
+        if self.state == "running":
+            self.state = "cancelled"
+
+    def close(self):
+        self.closed = True
+
+
+def test_jobs_run_one_at_a_time_and_begin_anew_after_a_pause():
+    line, first, second = JobLine(), _SlowJob(), _SlowJob()
+    for job in (first, second):
+        line.add(job)
+    assert (first.starts, second.starts) == (0, 0), "nothing begins by itself"
+    line.go_on()
+    line.go_on()
+    assert (first.starts, second.starts) == (1, 0)
+    line.pause()
+    assert first.state == "cancelled"
+    assert not line.has(first), "a cancelled job has neither a result nor failed"
+    line.go_on()
+    assert first.starts == 2
+    first.state = "done"
+    line.go_on()
+    assert line.has(first)
+    assert second.starts == 1
+    line.drop(first)
+    assert first.closed
+    line.pause()
+    assert second.state == "cancelled"
+
+
+_WORKERS_SHARE = """
+import sys, threading, time
+from pathlib import Path
+import numpy as np
+from velour.native import Model, Scene, light_map_job, lobe_rows_job, principled_rows_job
+
+def workers_seconds():
+    tasks = Path("/proc/self/task").iterdir()
+    others = (task for task in tasks if int(task.name) != threading.get_native_id())
+    return sum(int((task / "schedstat").read_text().split()[0]) for task in others) * 1e-9
+
+threads = int(sys.argv[2])
+pixels = np.random.default_rng(1).random((64, 128, 3), np.float32)
+with Scene() as scene, Model.load(sys.argv[1]) as model:
+    scene.set_world_pixels(pixels)
+    before, workers_before = time.process_time(), workers_seconds()
+    for job in (
+        light_map_job(scene, None, threads),
+        lobe_rows_job(model, threads),
+        principled_rows_job((0.5, 0.5, 0.5), threads),
+    ):
+        with job:
+            job.run()
+    print((workers_seconds() - workers_before) / (time.process_time() - before))
+"""
+
+
+@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="one processor makes no other threads")
+@pytest.mark.parametrize(("threads", "low", "high"), [(1, 0.0, 0.05), (0, 0.1, 1.0)])
+def test_jobs_of_tables_take_no_more_threads_than_they_may(threads, low, high, model_file):
+    """Of the time that they take of processors, the share of others than their own thread, which is gone."""
+    command = [sys.executable, "-c", _WORKERS_SHARE, str(model_file), str(threads)]
+    path = os.pathsep.join(sys.path)
+    done = subprocess.run(
+        command, check=True, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": path}
+    )
+    assert low <= float(done.stdout) <= high, done.stdout
 
 
 def test_tables_are_known_by_what_they_are_made_of(model_file):
@@ -217,11 +309,13 @@ def test_instances_carry_matrices_and_maps_of_texture_coordinates():
         scene.add_instances(np.zeros(2, np.uint32), np.stack((matrix, matrix + 1)), [0])
         scene.add_instance(0, matrix, [0], [[[2, 0, 1], [0, 2, 0]]])
         scene.add_instances(np.zeros(1, np.uint32), matrix[None], [0], hidden=("camera",))
-        many, one = scene.groups
-        assert scene.draws == 3
+        scene.add_instance(0, matrix, [0], hidden=("holdout",))
+        many, one, holdout = scene.groups
+        assert scene.draws == 4
     np.testing.assert_array_equal(many.rows[1, :3], matrix + 1)
     np.testing.assert_array_equal(many.rows[0, 3:, :3], ((1, 0, 0), (0, 1, 0)))
     np.testing.assert_array_equal(one.rows[0, 3:, :3], ((2, 0, 1), (0, 2, 0)))
+    assert (many.rows[:, 4, 3].max(), holdout.rows[0, 4, 3]) == (0, 1)
 
 
 def test_materials_are_replaced_as_in_the_scene_of_the_library():
@@ -355,6 +449,30 @@ def test_lamps_keep_power_and_place():
     np.testing.assert_allclose(point[:2], ((5, 6, 7, 1), (1, 0, 0, 0.25)), rtol=1e-6)
     sun = lamp_pixels("sun", (3, 2, 1), matrix, {"angle": 0.2})
     np.testing.assert_allclose(sun[:2], ((0, 0, 1, 0), (3, 2, 1, 0.01)), atol=1e-7)
+
+
+def test_lamps_keep_their_shape():
+    area = lamp_pixels("rectangle", (1, 1, 1), np.eye(3, 4), {"size": (1, 1), "spread": np.pi / 2})
+    focus = 1 / (1 - np.pi / 4)  # of radiance (1 - tan) along the normal
+    np.testing.assert_allclose(area[1:3, [0, 3]], ((focus / np.pi, 1 / np.pi), (0, 1)), atol=1e-6)
+    wide = lamp_pixels("disk", (1, 1, 1), np.eye(3, 4), {"size": (1, 1), "spread": np.pi})
+    assert wide[2, 3] == 0
+    spot = {"size": (0, 0), "angle": 1.0, "cone_scale": (2.0, 0.5), "cosine": 1}
+    scaled = lamp_pixels("spot", (1, 1, 1), np.eye(3, 4), spot)
+    np.testing.assert_allclose(scaled[3:], ((0.5, 0, 0, 0), (0, 2, 0, 1)), atol=1e-7)
+    even = lamp_pixels("spot", (1, 1, 1), np.eye(3, 4), {**spot, "cone_scale": (1.0, 1.0)})
+    assert not even[3:, :3].any()
+
+
+@pytest.mark.parametrize(
+    ("size", "spread", "count"), [((4, 1), 0.5, 1), ((1, 4), 0.5, 1), ((1, 1), 0.5, 0), ((4, 1), np.pi, 0)]
+)
+def test_long_lamps_of_a_spread_are_counted_as_simpler(size, spread, count):
+    with RealtimeScene() as scene:
+        scene.add_light("rectangle", (1, 1, 1), np.eye(3, 4), size=size, spread=spread)
+        assert scene.simpler_lamps == count
+        scene.clear_lights()
+        assert scene.simpler_lamps == 0
 
 
 def test_models_of_btfs_have_no_rows():

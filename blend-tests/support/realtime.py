@@ -118,10 +118,15 @@ def sky(folder):
             (-1, 0, 0, 20, 0.8, 0.5, 0.2),
         )
     )
+    shine(folder, equirectangular(mixture))
+    bpy.context.scene.render.film_transparent = True
+
+
+def shine(folder, pixels):
+    """A world of pixels, row 0 at the top, saved as a picture."""
     path = folder / "sky.exr"
-    native().images.write(path, np.ascontiguousarray(equirectangular(mixture)[::-1]))
+    native().images.write(path, np.ascontiguousarray(pixels[::-1]))
     world = scenes.set_world()
     node = world.node_tree.nodes.new("ShaderNodeTexEnvironment")
     node.image = bpy.data.images.load(str(path))
     world.node_tree.links.new(node.outputs[0], world.node_tree.nodes["Background"].inputs["Color"])
-    bpy.context.scene.render.film_transparent = True

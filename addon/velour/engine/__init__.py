@@ -1,6 +1,6 @@
 """The render engine."""
 
-from . import frame_parts, kept_scene, model_images, viewport, viewport_clock, write_lock
+from . import frame_parts, freed_engines, kept_scene, model_images, viewport, viewport_clock, write_lock
 from .engine import VelourRenderEngine
 
 CLASSES = (VelourRenderEngine, write_lock.VELOUR_OT_allow_writes)
@@ -16,6 +16,7 @@ def attach():
 
 def detach():
     viewport.detach()
+    freed_engines.detach()
     viewport_clock.detach()
     write_lock.detach()
     model_images.detach()

@@ -24,8 +24,13 @@ def viewport_options(depsgraph, view):
     return {
         **_common(scene, depsgraph.view_layer_eval, view),
         "spp": scene.velour.viewport_samples or _WITHOUT_END,
-        "threads": max(1, scene.render.threads - 1),  # one is left to the interface
+        "threads": viewport_threads(scene),
     }
+
+
+def viewport_threads(scene):
+    """One is left to the interface."""
+    return max(1, scene.render.threads - 1)
 
 
 def _common(scene, layer, view):

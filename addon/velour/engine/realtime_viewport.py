@@ -8,6 +8,7 @@ from ..export.viewport import viewport_frame
 from ..export.world import layer_world
 from ..realtime import Drawing, RealtimeScene, shaders
 from . import viewport_clock
+from .options import viewport_threads
 
 
 class RealtimeViewport:
@@ -19,6 +20,7 @@ class RealtimeViewport:
         self._live = None
         self._drawing = Drawing(cache_folder())
         self._key = None  # of what was drawn last
+        self._has_frame = False  # else nothing of it is to be seen
 
     def close(self):
         viewport_clock.forget(self)
@@ -37,6 +39,7 @@ class RealtimeViewport:
         if self._live is None:
             self._live = self._exported(depsgraph, look)
         else:
+            self._live.scene.threads = viewport_threads(depsgraph.scene)
             changes = self._live.changes(depsgraph, look)
             if changes and not changes.everything:
                 self._live.update(changes, depsgraph, look)
@@ -46,17 +49,22 @@ class RealtimeViewport:
         self._live.scene.check()
 
     def _exported(self, depsgraph, look):
-        return LiveExport(depsgraph, look, RealtimeScene(self._drawing.tables))
+        scene = RealtimeScene(self._drawing.tables, viewport_threads(depsgraph.scene))
+        return LiveExport(depsgraph, look, scene)
 
     def draw(self, context, depsgraph):
         """A sentence on how far it is."""
         if self._live is None:
             self.update(context, depsgraph)
         frame = viewport_frame(context, depsgraph)
+        self._has_frame = frame is not None
         if frame is None:
+            self.pause()
             return ""
         scene = self._live.scene
         is_ready = self._drawing.is_ready(scene)
+        if not viewport_clock.is_paused():
+            self._drawing.jobs.go_on()
         viewport_clock.watch(self)
         if is_ready:
             self._draw(depsgraph, frame)
@@ -70,13 +78,19 @@ class RealtimeViewport:
     def turn(self):
         """Between redraws. False: there is nothing to wait for."""
         engine = self._engine()
-        if engine is None or self._live is None:
+        if engine is None or self._live is None or not self._has_frame:
             return False
+        if viewport_clock.is_paused():
+            self.pause()
+            return True
+        if not self._drawing.is_waiting():
+            return False  # another redraw would only ask for the next
         engine.tag_redraw()
-        return self._drawing.is_waiting()
+        return True
 
     def pause(self):
-        """Draws no more than Blender asks for."""
+        """Called from any thread; draw() goes on later."""
+        self._drawing.jobs.pause()
 
     def _draw(self, depsgraph, frame):
         scene = depsgraph.scene_eval
@@ -111,4 +125,6 @@ class RealtimeViewport:
         simpler = sum(look.is_simpler for look in self._live.scene.looks)
         if simpler:
             said.append(f"{simpler} other materials simplified")
+        if self._live.scene.simpler_lamps:
+            said.append(f"{self._live.scene.simpler_lamps} lamps simplified")
         return "; ".join(said)

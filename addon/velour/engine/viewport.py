@@ -18,7 +18,7 @@ from ..export.look import Look
 from ..export.viewport import viewport_frame
 from ..native import VelourError
 from ..realtime import UnshownError
-from . import viewport_clock
+from . import freed_engines, viewport_clock
 from .engine_reference import engine_reference
 from .options import viewport_options
 from .realtime_viewport import RealtimeViewport
@@ -47,12 +47,18 @@ class Viewport:
         self._real_time = None  # RealtimeViewport, where that shows the scene
         self._refusal = None  # why it does not, though it should
         _all.add(self)
+        freed_engines.watch(self)
 
     def close(self):
         viewport_clock.forget(self)
         self._drop_real_time()
         self._close_job()
+        self._job = ViewportJob()  # whose picture nobody sees
         self._drop_scene()
+
+    def is_freed(self):
+        """Whether Blender has no engine of it any more."""
+        return self._engine() is None
 
     def update(self, context, depsgraph):
         """The scene has changed, or is shown for the first time."""
@@ -138,7 +144,7 @@ class Viewport:
         """Between redraws. False: there is nothing to wait for."""
         engine = self._engine()
         if engine is None:
-            self._close_job()
+            self.close()
         if not self._job:
             return False
         if viewport_clock.is_paused():

@@ -1,4 +1,7 @@
-"""Tables for shaders: the light of a scene's world, BRDFs as rows of lobes (docs/realtime.md)."""
+"""Tables for shaders: the light of a scene's world, BRDFs as rows of lobes (docs/realtime.md).
+
+`threads`: 0: all; jobs without it take one.
+"""
 
 from __future__ import annotations
 
@@ -11,15 +14,15 @@ from .job import Job
 from .model import Model
 
 
-def light_map_job(scene, cache_folder=None) -> Job:
+def light_map_job(scene, cache_folder=None, threads=0) -> Job:
     """Of the world that `scene` has now. Result: result_table(); the report has the world's mixture."""
     folder = path_bytes(cache_folder) if cache_folder else None
-    return Job._create("vlr_light_map_create_job", scene.pointer, folder)
+    return Job._create("vlr_light_map_create_job", scene.pointer, folder, threads)
 
 
-def lobe_rows_job(model: Model) -> Job:
+def lobe_rows_job(model: Model, threads=0) -> Job:
     """Result: result_table(). Report: isotropic, side, blends, lobes. Not of the model of a BTF."""
-    return Job._create("vlr_lobe_rows_create_job", model.pointer)
+    return Job._create("vlr_lobe_rows_create_job", model.pointer, threads)
 
 
 def btf_maps_job(model: Model) -> Job:
@@ -32,9 +35,9 @@ def shell_maps_job(model: Model) -> Job:
     return Job._create("vlr_shell_maps_create_job", model.pointer)
 
 
-def principled_rows_job(base_color, **values) -> Job:
+def principled_rows_job(base_color, threads=0, **values) -> Job:
     """As lobe_rows_job, of a Principled material: base_color [3], metallic, roughness, specular."""
     desc = structs.PrincipledDesc()
     library.load().vlr_principled_desc_init(ctypes.byref(desc))
     set_fields(desc, {"base_color": small("base_color", base_color, 3), **values})
-    return Job._create("vlr_principled_rows_create_job", ctypes.byref(desc))
+    return Job._create("vlr_principled_rows_create_job", ctypes.byref(desc), threads)

@@ -116,9 +116,9 @@ void gather_light(mat3 frame)
   count = LIGHTS;
   // Narrow lobes of the world are lamps: directions so far apart would blur them.
   for (int narrow = 0; narrow < layout_.w; ++narrow) {
-    int at = 4 * (int(gain.w) + narrow);
-    vec3 axis = texelFetch(lamps, ivec2(at, 0), 0).xyz;
-    vec4 energy = texelFetch(lamps, ivec2(at + 1, 0), 0);
+    int lamp = int(gain.w) + narrow;
+    vec3 axis = lamp_pixel(lamp, 0).xyz;
+    vec4 energy = lamp_pixel(lamp, 1);
     for (int i = 0; i < LIGHTS; ++i) {
       float share = product(frame * wl[i], bandwidth_of(wl[i]), axis, energy.w);
       arrives[i] -= PI / float(LIGHTS) * share * energy.rgb;
@@ -188,5 +188,5 @@ void main()
   Side side = side_of(site.is_behind);
   gather_light(frame);
   for (int i = 0; i < (site.beyond == vec2(0) ? 1 : 2); ++i) sum += reflected(side, site.place + float(i) * site.beyond, level, wv);
-  pixel = vec4(gain.rgb * max(sum, vec3(0)), 1);
+  pixel = seen(gain.rgb * max(sum, vec3(0)));
 }

@@ -8,7 +8,9 @@ import numpy as np
 
 from ..native import light_map_job
 from .errors import LOST, asking_for
+from .job_line import JobLine
 from .kept_tables import KeptTables
+from .lamps import PIXELS
 from .projection import jitter, view_projection
 from .shaders import PICTURES, sky_shader
 from .targets import Targets, full_screen
@@ -34,7 +36,8 @@ class Drawing:
 
     def __init__(self, cache_folder):
         self._cache_folder = cache_folder
-        self.tables = KeptTables()  # of materials
+        self.jobs = JobLine()
+        self.tables = KeptTables(self.jobs)  # of materials
         self._light = None  # texture
         self.light_report = {}  # of the job that made it
         self._light_job = None
@@ -46,14 +49,16 @@ class Drawing:
         self._instances = None  # the groups that are in the texture, and it
 
     def close(self):
-        if self._light_job:
-            self._light_job.close()
+        self._drop_light_job()
         self.tables.close()
         self._free_targets()
         self.__init__(self._cache_folder)
 
     def is_ready(self, scene):
-        """Whether all tables are there that draw() needs; a changed world is drawn as it was until then."""
+        """Whether all tables are there that draw() needs; a changed world is drawn as it was until then.
+
+        `jobs` make them, once somebody lets those go on.
+        """
         import gpu
 
         self._follow_light(gpu, scene)
@@ -66,16 +71,19 @@ class Drawing:
 
     def _follow_light(self, gpu, scene):
         if self._light_key != scene.world_key:
-            if self._light_job:
-                self._light_job.close()
-            self._light_job = light_map_job(scene, self._cache_folder).start()
+            self._drop_light_job()
+            self._light_job = self.jobs.add(light_map_job(scene, self._cache_folder, scene.threads))
             self._light_key = scene.world_key
-        if self._light_job and self._light_job.wait(timeout=0):
+        if self._light_job and self.jobs.has(self._light_job):
             self._light = texture(gpu, self._light_job.result_table())
             self.light_report = self._light_job.report()
-            self._light_job.close()
-            self._light_job = None
+            self._drop_light_job()
             self.restart()
+
+    def _drop_light_job(self):
+        if self._light_job:
+            self.jobs.drop(self._light_job)
+        self._light_job = None
 
     def restart(self):
         """What is drawn next is another picture than the last."""
@@ -140,7 +148,8 @@ class Drawing:
                     if draw.in_shell or not table.is_shell:
                         table.bind(shader)
                 self._set_look(shader, scene, draw.material, exposure)
-                _draw_instances(shader, draw.batch, tables[0].layout(len(narrow)), draw.first, draw.count)
+                layout = tables[0].layout(len(narrow))
+                _draw_instances(shader, draw, layout, scene.looks[draw.material].hides_backs)
 
     def _draws(self, gpu, scene):
         """By shader."""
@@ -184,15 +193,20 @@ def _parts(scene):
     return [part for look in scene.looks for part in look.parts]
 
 
-def _draw_instances(shader, batch, layout, first, count):
-    many = getattr(batch, "draw_instanced", None)  # 3.6 and newer
+def _draw_instances(shader, draw, layout, hides_backs):
+    many = getattr(draw.batch, "draw_instanced", None)  # 3.6 and newer
     if many:
-        shader.uniform_int("layout_", (first, *layout))
-        many(shader, instance_count=count)
+        shader.uniform_int("layout_", (_first(draw.first, hides_backs), *layout))
+        many(shader, instance_count=draw.count)
         return
-    for i in range(first, first + count):
-        shader.uniform_int("layout_", (i, *layout))
-        batch.draw(shader)
+    for i in range(draw.first, draw.first + draw.count):
+        shader.uniform_int("layout_", (_first(i, hides_backs), *layout))
+        draw.batch.draw(shader)
+
+
+def _first(instance, hides_backs):
+    """As surface.vert.glsl takes it: uniforms have no room for more."""
+    return ~instance if hides_backs else instance
 
 
 def _columns(matrix):
@@ -203,7 +217,7 @@ def _columns(matrix):
 
 
 def _lamps_texture(gpu, lamps):
-    return texture(gpu, np.concatenate(lamps)[None] if lamps else np.zeros((1, 4, _FLOATS), np.float32))
+    return texture(gpu, np.concatenate(lamps)[None] if lamps else np.zeros((1, PIXELS, _FLOATS), np.float32))
 
 
 def _narrow_lobes(mixture):
@@ -212,7 +226,7 @@ def _narrow_lobes(mixture):
     lobes = lobes[lobes[:, 3] > _NARROW]
     whole = 2 * np.pi / lobes[:, 3]
     energy = lobes[:, 4:] * whole[:, None]
-    pixels = np.zeros((len(lobes), 4, 4), np.float32)
+    pixels = np.zeros((len(lobes), PIXELS, _FLOATS), np.float32)
     pixels[:, 0, :3] = lobes[:, :3]
     pixels[:, 1, :3], pixels[:, 1, 3] = energy, lobes[:, 3]
     return list(pixels[np.argsort(-energy.sum(axis=1))[:_MOST_NARROW]])

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .job_line import JobLine
+
 
 class Part(NamedTuple):
     """Of a material: a table of the library, and what becomes of it."""
@@ -18,30 +20,31 @@ class Part(NamedTuple):
 class KeptTables:
     """Those of a viewport, which outlive its scenes, and the jobs of those to come."""
 
-    def __init__(self):
+    def __init__(self, line=None):
+        self._line = JobLine() if line is None else line
         self._jobs = {}
         self._made = {}
 
     def close(self):
         for job in self._jobs.values():
-            job.close()
-        self.__init__()
+            self._line.drop(job)
+        self.__init__(self._line)
 
     def ask(self, key, make_job):
-        """Begins what is neither there nor on its way."""
+        """Puts what is neither there nor on its way into the line."""
         if key not in self._made and key not in self._jobs:
-            self._jobs[key] = make_job().start()
+            self._jobs[key] = self._line.add(make_job())
 
     def has(self, gpu, parts, to_working):
         """Whether all Parts are there, which were asked for; others go."""
         wanted = {part.key: part.tables for part in parts}
         for key in self._jobs.keys() - wanted.keys():
-            self._jobs.pop(key).close()
+            self._line.drop(self._jobs.pop(key))
         self._made = {key: made for key, made in self._made.items() if key in wanted}
         for key in tuple(self._jobs):
-            if self._jobs[key].wait(timeout=0):  # raises what went wrong
+            if self._line.has(self._jobs[key]):
                 self._made[key] = wanted[key](gpu, self._jobs[key], to_working)
-                self._jobs.pop(key).close()
+                self._line.drop(self._jobs.pop(key))
         return not self._jobs
 
     def __getitem__(self, key):

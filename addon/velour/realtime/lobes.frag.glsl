@@ -85,5 +85,5 @@ void main()
     }
     sum += lobe.color * light;
   }
-  pixel = vec4(gain.rgb * max(sum, vec3(0)) + emission.rgb, 1);
+  pixel = seen(gain.rgb * max(sum, vec3(0)) + emission.rgb);
 }

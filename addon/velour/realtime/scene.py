@@ -13,7 +13,7 @@ import numpy as np
 from ..native import Scene, btf_maps_job, lobe_rows_job, principled_rows_job, shell_maps_job
 from .errors import UnshownError
 from .kept_tables import KeptTables, Part, digest
-from .lamps import lamp_pixels
+from .lamps import is_simpler, lamp_pixels
 from .meshes import GpuMesh, split_meshes
 from .pictures import GpuTexture, Picture
 from .tables import (
@@ -40,6 +40,7 @@ class Look(NamedTuple):
     is_simpler: bool = False  # than the ray tracer shows it
     shell_aspect: float | None = None  # of its outline; None: it has none
     shell_tile: float = 0.0  # metres; 0: as the texture coordinates say
+    hides_backs: bool = False  # from the camera
 
     @property
     def has_shell(self):
@@ -51,24 +52,26 @@ class Group(NamedTuple):
 
     mesh: int
     materials: tuple  # None: the slot is not drawn
-    rows: (
-        np.ndarray
-    )  # [instances x 5 x 4]: matrix, then the map of texture coordinates; [3, 3]: a tile's width, metres
+    # [instances x 5 x 4]: matrix, then the map of texture coordinates; a tile's width, metres, at [3, 3],
+    # and at [4, 3] 1 of a holdout
+    rows: np.ndarray
     in_shell: bool  # what is drawn is the top of a shell
 
 
 class RealtimeScene(Scene):
     """Takes what export/ says of a scene. The library's own scene in it has the world, and nothing else."""
 
-    def __init__(self, tables=None):
-        """`tables`: KeptTables, which it asks for what its materials need."""
+    def __init__(self, tables=None, threads=0):
+        """`tables`: KeptTables, which it asks for what its materials need; `threads`: of a job, 0: all."""
         super().__init__()
+        self.threads = threads
         self._tables = KeptTables() if tables is None else tables
         self.looks = []
         self.meshes = []  # GpuMesh; None: removed
         self.groups = []
         self.gains = []
         self.lamps = []
+        self.simpler_lamps = 0  # than the ray tracer shows them
         self.to_working = np.eye(3, dtype=np.float32)
         self._world = None  # what of it place_world() leaves as it is
         self.world_key = None  # of all that it is made of
@@ -102,8 +105,9 @@ class RealtimeScene(Scene):
 
     def _add_group(self, mesh, matrices, materials, placed, hidden, only=None):
         """`only`: the slot that is drawn; None: all."""
-        if "camera" in hidden or "holdout" in hidden:
+        if "camera" in hidden:
             return
+        is_holdout = "holdout" in hidden
         slots = range(len(materials)) if only is None else (only,)
         plain = []
         for slot in slots:
@@ -111,9 +115,9 @@ class RealtimeScene(Scene):
             if widths is None or not widths.all():  # nothing tells how high the shell would be
                 plain.append(slot)
             else:
-                self.groups.append(_group(mesh, matrices, materials, placed, [slot], widths))
+                self.groups.append(_group(mesh, matrices, materials, placed, [slot], is_holdout, widths))
         if plain:
-            self.groups.append(_group(mesh, matrices, materials, placed, plain))
+            self.groups.append(_group(mesh, matrices, materials, placed, plain, is_holdout))
 
     def _tile_widths(self, mesh, matrices, materials, slot, placed):
         """Metres, of a material with an outline; None: it has none."""
@@ -135,7 +139,7 @@ class RealtimeScene(Scene):
     def add_model_material(self, model, neighbors=0):
         info, content = model.info(), digest(model.bytes())
         if "texels" not in info:
-            parts = [self._part(content, LobeTables, lambda: lobe_rows_job(model))]
+            parts = [self._part(content, LobeTables, lambda: lobe_rows_job(model, self.threads))]
         elif info["model"] == "srbf-btf" and info["coefficients"] <= MOST_TERMS:
             parts = [self._part(content, BtfTables, lambda: btf_maps_job(model))]
         else:
@@ -178,7 +182,8 @@ class RealtimeScene(Scene):
         self.gains[material] = tuple(gain)
 
     def hide_backs(self, material, hidden):
-        """Both sides are drawn."""
+        look = self.looks[material]
+        self.looks[material] = look._replace(hides_backs="camera" in hidden and not look.has_shell)
 
     def set_drawn_to(self, material, drawn):
         """Surfaces that glow light nothing else here."""
@@ -198,9 +203,8 @@ class RealtimeScene(Scene):
     def _rows(self, values, tables, *shown):
         """The Part of a Principled material of these numbers."""
         values = _principled(values)
-        return self._part(
-            tuple(sorted(values.items())), tables, lambda: principled_rows_job(**values), *shown
-        )
+        key = tuple(sorted(values.items()))
+        return self._part(key, tables, lambda: principled_rows_job(threads=self.threads, **values), *shown)
 
     def _add_look(self, look):
         self.looks.append(look)
@@ -211,9 +215,10 @@ class RealtimeScene(Scene):
 
     def add_light(self, kind, color, light_to_world, **values):
         self.lamps.append(lamp_pixels(kind, color, np.asarray(light_to_world, float).reshape(3, 4), values))
+        self.simpler_lamps += is_simpler(kind, values)
 
     def clear_lights(self):
-        self.lamps = []
+        self.lamps, self.simpler_lamps = [], 0
 
     def set_world_color(self, color):
         super().set_world_color(color)
@@ -251,11 +256,12 @@ class RealtimeScene(Scene):
         return sum(len(group.rows) * len(group.materials) for group in self.groups)
 
 
-def _group(mesh, matrices, materials, placed, slots, widths=None):
+def _group(mesh, matrices, materials, placed, slots, is_holdout, widths=None):
     """Of what these slots show; `widths`: of tiles, where that is the top of a shell."""
     rows = np.zeros((len(matrices), 5, 4), np.float32)
     rows[:, :3] = matrices
     rows[:, 3:, :3] = placed
+    rows[:, 4, 3] = is_holdout
     if widths is not None:
         rows[:, 3, 3] = widths
     shown = tuple(m if slot in slots else None for slot, m in enumerate(materials))

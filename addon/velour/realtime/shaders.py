@@ -102,6 +102,7 @@ def _surface_shader(name, tables, has_shell, defines=()):
     between.smooth("VEC3", "shading_normal")
     between.smooth("VEC2", "coordinates")
     between.smooth("FLOAT", "handed")  # -1: of an instance that is mirrored
+    between.smooth("FLOAT", "holdout")  # 1: of it and what is behind nothing is seen
     if has_shell:
         between.smooth("VEC3", "up")
         between.smooth("FLOAT", "tile_width")

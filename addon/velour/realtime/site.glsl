@@ -19,17 +19,22 @@ vec3 facing(vec3 n, vec3 view)
   return cosine < 0.01 ? normalize(n + (0.01 - cosine) * view) : n;
 }
 
+// A mirrored triangle goes round the other way.
+bool is_back() { return gl_FrontFacing == (handed < 0.0); }
+
 vec3 normal_towards(vec3 view, out bool is_behind)
 {
   vec3 flat_normal = normalize(cross(dFdx(world), dFdy(world)));
   if (dot(flat_normal, view) < 0.0) flat_normal = -flat_normal;
   bool is_flat = dot(shading_normal, shading_normal) == 0.0;
   vec3 n = is_flat ? flat_normal : normalize(shading_normal);
-  // A mirrored triangle goes round the other way.
-  is_behind = is_flat ? gl_FrontFacing == (handed < 0.0) : dot(n, flat_normal) < 0.0;
+  is_behind = is_flat ? is_back() : dot(n, flat_normal) < 0.0;
   if (dot(n, flat_normal) < 0.0) n = -n;
   return facing(n, view);
 }
+
+// What is seen of a surface that reflects `light`.
+vec4 seen(vec3 light) { return holdout > 0.5 ? vec4(0) : vec4(light, 1); }
 
 // Where texture coordinates grow on the surface, not normalised: along u, and along v.
 void tangents(out vec3 along_u, out vec3 along_v)
@@ -50,22 +55,60 @@ mat3 frame_about(vec3 n, vec3 along)
   return mat3(x, cross(n, x), n);
 }
 
+// Five pixels a lamp: place or direction, kind; colour, radius squared; axis, of a spot the cosine where its cone ends,
+// of an area the cotangent of half its spread (0: it shines everywhere); of a spot its axes over the scale of its cone
+// (0: that is 1), with the width of the rim, and whether its light falls with the cosine.
+const int LAMP_PIXELS = 5;
+const float SUN = 0.0, AREA = 2.0, SPOT = 3.0;
+
+vec4 lamp_pixel(int lamp, int i) { return texelFetch(lamps, ivec2(LAMP_PIXELS * lamp + i, 0), 0); }
+
+// Mean of max(t, 0) over a disk, where t goes up by `blur` from its middle to its edge and is `middle` there.
+float mean_above(float middle, float blur)
+{
+  if (abs(middle) >= blur) return max(middle, 0.0);
+  float y = middle / blur;
+  return blur * ((2.0 + y * y) * sqrt(1.0 - y * y) / (3.0 * PI) + y * (0.5 + asin(y) / PI));
+}
+
+// What a disk's spread leaves of its light, Lamp::falloff, in the mean over the disk, to 2 % where it is up to a third as
+// wide as what it lights; `path`, to its middle, and the radius squared become those of the part that shines here.
+float spread_share(vec4 axis, inout vec3 path, inout float radius_sq)
+{
+  float height = max(-dot(path, axis.xyz), 1e-6);
+  vec3 aside = -path - height * axis.xyz;
+  float off = axis.w / height * length(aside), size = axis.w / height * sqrt(radius_sq);
+  float far = sqrt(off * off + 0.3 * size * size), own = 0.6 / (0.6 + size * size);
+  path += (1.0 - own) * aside;
+  radius_sq *= own;
+  return mean_above(1.0 - far, size * off / max(far, 1e-6));
+}
+
+// Lamp::falloff of a spot; `direction`: from it, unit.
+float cone_share(int lamp, vec3 direction, vec4 axis)
+{
+  vec4 x = lamp_pixel(lamp, 3), y = lamp_pixel(lamp, 4);
+  float cosine = dot(direction, axis.xyz);
+  if (x.xyz != vec3(0)) cosine /= length(vec3(dot(direction, x.xyz), dot(direction, y.xyz), cosine));
+  return smoothstep(0.0, 1.0, (cosine - axis.w) / max(x.w, 1e-6)) * (y.w > 0.0 ? max(cosine, 0.0) : 1.0);
+}
+
 // Irradiance of a plane that faces the lamp; `light`: unit, towards it; `bandwidth`: of what is seen of it.
-// Four pixels a lamp: place or direction, kind; colour, radius squared; axis, cosine of a spot's cone; its blend.
 vec3 lamp_light(int lamp, out vec3 light, out float bandwidth)
 {
-  vec4 where = texelFetch(lamps, ivec2(4 * lamp, 0), 0), color = texelFetch(lamps, ivec2(4 * lamp + 1, 0), 0);
-  vec4 axis = texelFetch(lamps, ivec2(4 * lamp + 2, 0), 0), more = texelFetch(lamps, ivec2(4 * lamp + 3, 0), 0);
-  if (where.w == 0.0) {
+  vec4 where = lamp_pixel(lamp, 0), color = lamp_pixel(lamp, 1), axis = lamp_pixel(lamp, 2);
+  if (where.w == SUN) {
     light = where.xyz;
     bandwidth = 4.0 / max(color.w, 1e-6);
     return color.rgb;
   }
   vec3 path = where.xyz - world;
+  float radius_sq = color.w, share = 1.0;
+  if (where.w == AREA && axis.w > 0.0) share = spread_share(axis, path, radius_sq);
   float square = max(dot(path, path), 1e-8);
   light = path * inversesqrt(square);
-  bandwidth = 4.0 * square / max(color.w, 1e-6 * square);
-  float leaves = dot(-light, axis.xyz);
-  float share = where.w == 2.0 ? max(leaves, 0.0) : where.w == 3.0 ? smoothstep(0.0, 1.0, (leaves - axis.w) / max(more.x, 1e-6)) : 1.0;
+  bandwidth = 4.0 * square / max(radius_sq, 1e-6 * square);
+  if (where.w == AREA) share *= max(-dot(light, axis.xyz), 0.0);
+  if (where.w == SPOT) share = cone_share(lamp, -light, axis);
   return color.rgb * share / square;
 }

@@ -9,5 +9,6 @@ Site site_here(vec2 texels)
   site.beyond = vec2(0);
   site.is_holed = false;
   tangents(site.along_u, site.along_v);
+  if (layout_.x < 0 && is_back()) discard;
   return site;
 }

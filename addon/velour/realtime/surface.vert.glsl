@@ -1,10 +1,11 @@
 // Of a mesh, or with SHELL of the top of its shell: shell.glsl.
-// layout_: first instance, then what the tables say (tables.py): of a BRDF lobes of a place, places along a side
+// layout_: first instance, all its bits turned round where backs are hidden, then what the tables say (tables.py): of a BRDF lobes of a place, places along a side
 // (negative: anisotropic), whether places blend; of a BTF how many sides, whether roots are stored, narrow lobes.
 
 void main()
 {
-  int at = (layout_.x + gl_InstanceID) * 5;
+  int first = layout_.x < 0 ? ~layout_.x : layout_.x;
+  int at = (first + gl_InstanceID) * 5;
   int width = textureSize(instances, 0).x;
   vec4 row[5];
   for (int i = 0; i < 5; ++i) row[i] = texelFetch(instances, ivec2((at + i) % width, (at + i) / width), 0);
@@ -14,6 +15,7 @@ void main()
   float turn = sign(dot(row[0].xyz, cofactors[0]));
   shading_normal = turn * (normal * cofactors);
   handed = turn;
+  holdout = row[4].w;
 #ifdef SHELL
   tile_width = row[3].w;
   up = normalize(turn * (lift * cofactors));

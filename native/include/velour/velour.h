@@ -34,7 +34,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 7
+#define VLR_ABI_VERSION 8
 
 typedef int32_t vlr_status;
 enum {
@@ -902,14 +902,15 @@ VLR_API vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observatio
 
 /* The light of a scene's world as a shader looks it up (docs/realtime.md): averaged by the clipped cosine and by
  * Gaussian lobes, level by level, and the world itself. Of the world as it is when the job is made. cache_folder: as of
- * vlr_render_options. JSON: lobes, relative_l2, seconds and cached of the fit of the world's mixture; mixture: of each
- * lobe x, y, z, bandwidth, r, g, b. */
-VLR_API vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* cache_folder, vlr_job** out);
+ * vlr_render_options. threads, here and below: 0: all. JSON: lobes, relative_l2, seconds and cached of the fit of the
+ * world's mixture; mixture: of each lobe x, y, z, bandwidth, r, g, b. */
+VLR_API vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* cache_folder, uint32_t threads,
+                                            vlr_job** out);
 /* The lobes of a model of a BRDF at many views, as a shader sums them up. JSON: isotropic, side, blends, lobes.
  * VLR_INVALID_ARGUMENT for models of BTFs. */
-VLR_API vlr_status vlr_lobe_rows_create_job(const vlr_model* model, vlr_job** out);
+VLR_API vlr_status vlr_lobe_rows_create_job(const vlr_model* model, uint32_t threads, vlr_job** out);
 /* The same of a Principled material, without emission and alpha. */
-VLR_API vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, vlr_job** out);
+VLR_API vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, uint32_t threads, vlr_job** out);
 /* A BTF of SRBFs as maps of its coefficients and relief: seen and lit from above, and, where the BTF has that, from
  * below; the table has the `layers` of each side, one above the other. JSON: levels (of each x, width, height in a
  * layer), sides (of each layers, terms (of each coefficient light, view, half, phase, in_tile, color), bottom, top),

@@ -2,6 +2,7 @@
 #include "capi/handles.h"
 #include "capi/json_text.h"
 #include "capi/surfaces.h"
+#include "job/parallel.h"
 #include "realtime/btf_maps.h"
 #include "realtime/light_map.h"
 #include "realtime/lobe_rows.h"
@@ -80,36 +81,42 @@ vlr_job* rows_job(Make make) {
 
 }  // namespace
 
-vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* cache_folder, vlr_job** out) {
+vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* cache_folder, uint32_t threads, vlr_job** out) {
   return guard([&] {
     require(scene, "scene");
     require(out, "out");
     auto output = std::make_shared<JobOutput>();
-    *out = new vlr_job(output, [output, environment = scene->scene->environment(),
+    *out = new vlr_job(output, [output, environment = scene->scene->environment(), count = static_cast<int>(threads),
                                 folder = std::string(cache_folder ? cache_folder : "")](Progress& progress) {
-      const SkyMixture sky = sky_mixture(environment, {}, folder, progress);
-      output->set(mixture_json(sky), std::make_shared<const TablePixels>(light_map(sky, environment, 0, progress)));
+      in_one_arena(count, [&] {  // the fit has the threads of whoever calls it
+        const SkyMixture sky = sky_mixture(environment, {}, folder, progress);
+        output->set(mixture_json(sky),
+                    std::make_shared<const TablePixels>(light_map(sky, environment, count, progress)));
+      });
     });
   });
 }
 
-vlr_status vlr_lobe_rows_create_job(const vlr_model* model, vlr_job** out) {
+vlr_status vlr_lobe_rows_create_job(const vlr_model* model, uint32_t threads, vlr_job** out) {
   return guard([&] {
     require(model, "model");
     require(out, "out");
     if (is_btf(*model->model)) {
       throw Error(Status::invalid_argument, "The model of a BTF has no rows of lobes; models of BRDFs have.");
     }
-    *out = rows_job([model = model->model](Progress& progress) { return lobe_rows(*model, 0, progress); });
+    *out = rows_job([model = model->model, count = static_cast<int>(threads)](Progress& progress) {
+      return lobe_rows(*model, count, progress);
+    });
   });
 }
 
-vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, vlr_job** out) {
+vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, uint32_t threads, vlr_job** out) {
   return guard([&] {
     require(desc, "desc");
     require(out, "out");
-    *out = rows_job(
-        [parameters = parameters_of(*desc)](Progress& progress) { return lobe_rows(parameters, 0, progress); });
+    *out = rows_job([parameters = parameters_of(*desc), count = static_cast<int>(threads)](Progress& progress) {
+      return lobe_rows(parameters, count, progress);
+    });
   });
 }
 

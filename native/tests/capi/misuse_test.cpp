@@ -26,9 +26,9 @@ TEST(Misuse, NullArgumentsAreNamed) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_load_memory(nullptr, 0, nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_save(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_model_roughened(nullptr, 0, nullptr));
-  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_light_map_create_job(nullptr, nullptr, nullptr));
-  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_lobe_rows_create_job(nullptr, nullptr));
-  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_principled_rows_create_job(nullptr, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_light_map_create_job(nullptr, nullptr, 0, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_lobe_rows_create_job(nullptr, 0, nullptr));
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_principled_rows_create_job(nullptr, 0, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_btf_maps_create_job(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shell_maps_create_job(nullptr, nullptr));
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_job_result_table(nullptr, nullptr, nullptr, nullptr));
