@@ -218,7 +218,7 @@ def freed_engine(folder):
 
 def freed_engine_at_rest(folder):
     """Something keeps its Python half: scene and picture go although nothing is waited for any more."""
-    _colored_scene()
+    viewport.colored_scene()
     viewport.show(samples=16)
     yield from viewport.finished()
     freed = viewport.the_one()
