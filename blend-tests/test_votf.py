@@ -125,7 +125,7 @@ class Outline(BlenderTest):
             bpy.ops.velour.estimate_votf()
         self.assertEqual(bpy.ops.velour.estimate_votf(structure=self.tile.name, texels=48), {"FINISHED"})
         said = state.outline_estimate
-        self.assertRegex(said, r"^About \d+ (seconds|minutes).*MB of memory beside the scene; rays wrong")
+        self.assertRegex(said, r"^About \d+ (seconds|minutes).*[kM]B of memory beside the scene; rays wrong")
         self.assertEqual(state.outline_estimated, asked(self.material, self.tile, 48))
         self.assertNotEqual(state.outline_estimated, asked(self.material, self.tile, 49))
         self.assertEqual((node.image, len(bpy.data.images)), (before, images))
