@@ -5,8 +5,17 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from . import scenes, viewport
+from . import scenes, viewport, window
 from .inputs import native
+
+
+def ball(material):
+    """In the place of Blender's cube, and no lamp."""
+    for name in ("Cube", "Light"):
+        bpy.data.objects.remove(bpy.data.objects[name])
+    with window.override():
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=48, radius=2.0)
+        return scenes._finish(material, smooth=True)
 
 
 def pixels():
