@@ -171,8 +171,8 @@ def _unrelated_edits():
     yield pencil, (pencil.layers.new("Lines"), "opacity", 0.5)
     fog = bpy.data.volumes.new("Fog")
     yield fog, (fog.display, "density", 2.0)
-    kind = bpy.types.LightProbe.bl_rna.properties["type"].enum_items[0].identifier
-    probe = bpy.data.lightprobes.new("Probe", kind)
+    kinds = bpy.types.BlendDataProbes.bl_rna.functions["new"].parameters["type"].enum_items
+    probe = bpy.data.lightprobes.new("Probe", kinds[0].identifier)
     yield probe, (probe, "clip_start", 0.2)
 
 
