@@ -28,7 +28,6 @@ STRATEGY = {"strategy": "mis", "heuristic": "balance", "share": 0.5}
 BEST = {"strategy": "product"}
 # How far below the smallest error of the dissertation's strategy the reference's own must be.
 MARGIN = 10.0
-_FLOOR_RENDERS = 4  # of the model and of the measurement, for the fit's error
 
 
 @dataclass(frozen=True)
@@ -39,6 +38,7 @@ class Extent:
     spp: tuple[int, ...] = (200, 400, 600, 800, 1000)
     batch_spp: int = 2048
     batches: tuple[int, int] = (4, 24)  # at first, and at most
+    floor_renders: int = 4  # of the model and of the measurement, for the fit's error
     floor_spp: int = 128
     check_size: tuple[int, int] = (80, 60)
     check_batches: int = 16
@@ -48,7 +48,20 @@ class Extent:
     moment_runs: int = 4
 
 
-QUICK = Extent((96, 72), (8, 32), 64, (2, 3), 16, (16, 12), 3, 3000, 64, 64, 2)
+QUICK = Extent(
+    size=(96, 72),
+    spp=(8, 32),
+    batch_spp=64,
+    batches=(2, 3),
+    floor_renders=2,
+    floor_spp=16,
+    check_size=(16, 12),
+    check_batches=2,
+    uniform_spp=2000,
+    check_spp=64,
+    moment_rays=64,
+    moment_runs=2,
+)
 
 
 @dataclass(frozen=True)
@@ -114,7 +127,7 @@ def _announce(renders: Renders, extent: Extent) -> None:
     for spp in extent.spp:
         renders.expect(spp, count=len(SEQUENCES))
     renders.expect(extent.batch_spp, count=extent.batches[0])
-    renders.expect(extent.floor_spp, count=2 * _FLOOR_RENDERS)
+    renders.expect(extent.floor_spp, count=2 * extent.floor_renders)
 
 
 def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, extent: Extent) -> Figure:
@@ -133,7 +146,7 @@ def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, exte
                     for which in (scene, measured)
                 )
             )
-            for seed in range(renders.settings.seed, renders.settings.seed + _FLOOR_RENDERS)
+            for seed in range(renders.settings.seed, renders.settings.seed + extent.floor_renders)
         ]
     )
     errors = _converge(pictures, reference, extent.batches[1])
