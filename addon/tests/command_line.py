@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -31,6 +32,11 @@ def command(*arguments) -> list[str]:
 def hear_ctrl_c() -> None:
     """For preexec_fn: what a shell starts in the background is deaf to Ctrl-C, and so are its children."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def undated(page: str) -> str:
+    """What a script wrote, to be compared: midnight may come between two runs."""
+    return re.sub(r"\b\d{4}-\d\d-\d\d\b", "today", page)
 
 
 def environment(**more) -> dict:
