@@ -68,7 +68,7 @@ class Capture {
     if (const auto warning = seam_warning(tile_)) result_.warnings.push_back(*warning);
     const auto& materials = tile_.scene().materials();
     if (!std::ranges::all_of(materials, [](const SurfaceMaterial& m) { return m.material->opaque(); })) {
-      result_.warnings.push_back("A material of the tile lets rays through (alpha); its surface counts as solid.");
+      result_.warnings.emplace_back("A material of the tile lets rays through (alpha); its surface counts as solid.");
     }
   }
 

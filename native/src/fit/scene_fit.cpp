@@ -198,7 +198,7 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
     model = parametric_model(measurement, *search.best(), options, progress);
     model.shell = full.shell;
   } else {
-    model.fit.warnings.push_back("the scene needs all of the full model: nothing smaller makes pictures as good");
+    model.fit.warnings.emplace_back("the scene needs all of the full model: nothing smaller makes pictures as good");
   }
   const auto error = [](const std::vector<double>& shares) { return PictureError::estimate(shares).relmse; };
   model.scene =

@@ -255,7 +255,7 @@ SceneInfo Scene::count() const {
                             "their surface; they are shown without it.");
   }
   info.warnings.insert(info.warnings.end(), shell_warnings_.begin(), shell_warnings_.end());
-  if (environment_.black() && lights_.empty()) info.warnings.push_back(kNoLightWarning);
+  if (environment_.black() && lights_.empty()) info.warnings.emplace_back(kNoLightWarning);
   return info;
 }
 
