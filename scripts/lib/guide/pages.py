@@ -73,7 +73,7 @@ def _scene(facts: dict) -> str:
 def _tile(facts: dict) -> str:
     return (
         f"The weave of the pictures: the capture has {_mb(facts['capture_bytes'])}, the material"
-        f" {_mb(facts['model_bytes'])}, a\n{facts['capture_bytes'] / facts['model_bytes']:.0f}th of it."
+        f" {_mb(facts['model_bytes'])},\n{facts['capture_bytes'] / facts['model_bytes']:.0f} times less."
         f" **Size** tells 1:{facts['ratio']:.0f}: that is beside the captured values alone, as half floats.\n"
         f"With its outline the material has {_mb(facts['outlined_bytes'])}.\n"
     )
