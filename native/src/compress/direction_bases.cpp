@@ -1,13 +1,13 @@
 #include "compress/direction_bases.h"
 
 #include <algorithm>
-#include <Eigen/Eigenvalues>
 #include <numeric>
 
 #include "btf/srbf_btf.h"
 #include "compress/shown_views.h"
 #include "job/parallel.h"
 #include "sphere/random.h"
+#include "tensor/decompositions.h"
 #include "tensor/mode_product.h"
 
 namespace velour {
@@ -17,12 +17,12 @@ constexpr double kNothing = 1e-10;  // of the strongest energy: rounding
 
 /// The strongest eigenvectors of mean products.
 DirectionBasis basis_of(const Eigen::MatrixXd& products, Index rank) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(products);
-  const Eigen::VectorXd energy = solver.eigenvalues().reverse().cwiseMax(0.0);
+  const Eigenpairs pairs = eigenpairs(products);
+  const Eigen::VectorXd energy = pairs.value.cwiseMax(0.0);
   Index count = 1;
   while (count < std::min(rank, energy.size()) && energy[count] > kNothing * energy[0]) ++count;
   DirectionBasis basis;
-  basis.vector = solver.eigenvectors().rowwise().reverse().leftCols(count).cast<float>();
+  basis.vector = pairs.vector.leftCols(count).cast<float>();
   basis.energy = energy.head(count);
   basis.rest = energy.tail(energy.size() - count).sum() / static_cast<double>(energy.size());
   return basis;

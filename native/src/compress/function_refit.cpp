@@ -1,11 +1,11 @@
 #include "compress/function_refit.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <numeric>
 
 #include "compress/core_refit.h"
 #include "job/parallel.h"
+#include "tensor/decompositions.h"
 
 namespace velour {
 namespace {
@@ -27,10 +27,9 @@ Eigen::MatrixXd solved_near(Eigen::MatrixXd matrix, const Eigen::MatrixXd& right
 
 /// Makes columns orthonormal; what turns the new ones into the old.
 RowMatrix orthonormalised(RowMatrix& factor) {
-  const Index count = factor.cols();
-  const Eigen::HouseholderQR<Eigen::MatrixXf> qr(factor);
-  factor = qr.householderQ() * Eigen::MatrixXf::Identity(factor.rows(), count);
-  return qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+  QrParts parts = qr_parts(factor);
+  factor = std::move(parts.basis);
+  return std::move(parts.triangle);
 }
 
 class FunctionRefit {

@@ -1,12 +1,11 @@
 #include "compress/svd_fit.h"
 
 #include <algorithm>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <string>
 
 #include "job/parallel.h"
 #include "sphere/random.h"
+#include "tensor/decompositions.h"
 
 namespace velour {
 namespace {
@@ -15,18 +14,12 @@ constexpr int kPowerIterations = 2;
 constexpr int kOversampling = 8;     // columns beyond those asked for
 constexpr uint64_t kFirstLook = 32;  // components that are looked at first where an error is asked for
 
-void orthonormalise(RowMatrix& m) {
-  const Eigen::HouseholderQR<Eigen::MatrixXf> qr{Eigen::MatrixXf(m)};
-  m = qr.householderQ() * Eigen::MatrixXf::Identity(m.rows(), m.cols());
-}
-
 /// Turns the response into orthonormal functions of the pair, the strongest first.
 void rotate(RowMatrix& response, Eigen::VectorXd& energy) {
   const Eigen::MatrixXd exact = response.cast<double>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(exact.transpose() * exact);
-  energy = solver.eigenvalues().reverse().cwiseMax(0.0);
-  const Eigen::MatrixXd vectors = solver.eigenvectors().rowwise().reverse();
-  Eigen::MatrixXd functions = exact * vectors;
+  const Eigenpairs pairs = eigenpairs(exact.transpose() * exact);
+  energy = pairs.value.cwiseMax(0.0);
+  Eigen::MatrixXd functions = exact * pairs.vector;
   for (Eigen::Index c = 0; c < functions.cols(); ++c) {
     const double norm = std::sqrt(energy[c]);
     functions.col(c) *= norm > 0 ? 1 / norm : 0;
@@ -88,7 +81,7 @@ void SvdFitter::start(Sketch& sketch, Eigen::Index columns, size_t axis) const {
       sketch.basis(t, c) = u + v + random.next() - 1.5f;
     }
   }
-  orthonormalise(sketch.basis);
+  sketch.basis = orthonormal(sketch.basis);
 }
 
 bool SvdFitter::take_kept_bases(const std::string& stage, Eigen::Index columns) {
@@ -114,7 +107,7 @@ void SvdFitter::pass(bool onward) {
   if (!onward) return;
   for (Sketch& s : sketch_) {
     s.basis = s.image;
-    orthonormalise(s.basis);
+    s.basis = orthonormal(s.basis);
   }
 }
 

@@ -1,12 +1,11 @@
 #include "compress/texel_solver.h"
 
-#include <Eigen/Eigenvalues>
-
 #include "btf/bilinear_texels.h"
 #include "btf/srbf_btf.h"
 #include "compress/row_products.h"
 #include "job/parallel.h"
 #include "srbf/aligned_array.h"
+#include "tensor/decompositions.h"
 #include "tensor/matrix_product.h"
 
 namespace velour {
@@ -235,8 +234,7 @@ void TexelSolver::set_coordinates() {
     }
     gram.diagonal().array() += kRidge;
     products_[a] = gram.cast<float>();
-    whiten_[a] = n > 0 ? Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram).operatorInverseSqrt().cast<float>().eval()
-                       : Eigen::MatrixXf();
+    whiten_[a] = n > 0 ? inverse_root(gram).cast<float>().eval() : Eigen::MatrixXf();
     k += static_cast<size_t>(n);
   }
 }

@@ -1,8 +1,8 @@
 #include "compress/view_svd_fit.h"
 
 #include <algorithm>
-#include <Eigen/Eigenvalues>
 
+#include "tensor/decompositions.h"
 #include "tensor/mode_product.h"
 
 namespace velour {
@@ -42,9 +42,9 @@ void ViewSvdFitter::decompose(uint32_t view, std::vector<Component>& components)
   const auto columns = static_cast<Eigen::Index>(columns_of(measurement_));
   for (uint8_t a = 0; a < 3; ++a) {
     const TensorView plane(planes_[a].data(), {planes_[a].rows(), planes_[a].cols()});
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(slice_products(plane, 0, options_.threads, progress_));
-    function_of_[view][a] = solver.eigenvectors().rightCols(columns).rowwise().reverse().cast<float>();
-    const Eigen::VectorXd energy = solver.eigenvalues().reverse().cwiseMax(0.0);
+    const Eigenpairs pairs = eigenpairs(slice_products(plane, 0, options_.threads, progress_));
+    function_of_[view][a] = pairs.vector.leftCols(columns).cast<float>();
+    const Eigen::VectorXd energy = pairs.value.cwiseMax(0.0);
     for (Eigen::Index c = 0; c < columns; ++c) components.push_back({view, a, c, energy[c]});
   }
 }

@@ -9,6 +9,7 @@
 #include "tensor/cluster_choice.h"
 #include "tensor/cluster_rests.h"
 #include "tensor/cluster_start.h"
+#include "tensor/decompositions.h"
 #include "tensor/mode_product.h"
 
 namespace velour {

@@ -1,12 +1,11 @@
 #include "tensor/leading_eigenvectors.h"
 
 #include <algorithm>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <optional>
 
 #include "job/parallel.h"
 #include "sphere/random.h"
+#include "tensor/decompositions.h"
 
 namespace velour {
 namespace {
@@ -18,12 +17,7 @@ constexpr double kResidual = 1e-7;  // of the largest eigenvalue
 constexpr Index kRows = 128;        // of a piece of work
 
 Eigen::MatrixXd decomposed(const Eigen::MatrixXd& products, Index rank) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(products);
-  return solver.eigenvectors().rightCols(rank).rowwise().reverse();
-}
-
-Eigen::MatrixXd orthonormalised(const Eigen::MatrixXd& m) {
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(m).householderQ() * Eigen::MatrixXd::Identity(m.rows(), m.cols());
+  return eigenpairs(products).vector.leftCols(rank);
 }
 
 Eigen::MatrixXd random_block(Index rows, Index columns, uint64_t seed) {
@@ -41,7 +35,7 @@ class KrylovSpace {
   KrylovSpace(const Eigen::MatrixXd& products, Index block, Index most, const TensorOptions& options,
               const Progress& progress)
       : products_(products), options_(options), progress_(progress), basis_(products.rows(), most), image_(basis_) {
-    next_ = orthonormalised(random_block(products.rows(), block, options.seed));
+    next_ = orthonormal_doubles(random_block(products.rows(), block, options.seed));
   }
 
   bool has_room() const { return size_ + next_.cols() <= basis_.cols(); }
@@ -59,16 +53,16 @@ class KrylovSpace {
     // Once is not enough where little of the image lies beyond the space.
     for (int twice = 0; twice < 2; ++twice) {
       const auto before = basis_.leftCols(size_);
-      next_ = orthonormalised(next_ - before * (before.transpose() * next_).eval());
+      next_ = orthonormal_doubles(next_ - before * (before.transpose() * next_).eval());
     }
   }
 
   /// The vectors of the space that are nearest to eigenvectors; none while they are too far.
   std::optional<Eigen::MatrixXd> leading(Index rank) const {
     const auto basis = basis_.leftCols(size_), image = image_.leftCols(size_);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(basis.transpose() * image);
-    const Eigen::MatrixXd weight = solver.eigenvectors().rightCols(rank).rowwise().reverse();
-    const Eigen::VectorXd value = solver.eigenvalues().tail(rank).reverse();
+    const Eigenpairs pairs = eigenpairs(basis.transpose() * image);
+    const Eigen::MatrixXd weight = pairs.vector.leftCols(rank);
+    const Eigen::VectorXd value = pairs.value.head(rank);
     Eigen::MatrixXd vectors = basis * weight;
     const Eigen::MatrixXd residual = image * weight - vectors * value.asDiagonal();
     if (!(residual.colwise().norm().maxCoeff() <= kResidual * value[0])) return std::nullopt;

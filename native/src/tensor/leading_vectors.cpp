@@ -1,9 +1,9 @@
 #include "tensor/leading_vectors.h"
 
 #include <algorithm>
-#include <Eigen/QR>
 
 #include "sphere/random.h"
+#include "tensor/decompositions.h"
 #include "tensor/leading_eigenvectors.h"
 #include "tensor/mode_product.h"
 
@@ -53,11 +53,6 @@ RowMatrix leading_by_columns(const TensorView& view, size_t mode, Index rank, co
 }
 
 }  // namespace
-
-RowMatrix orthonormal(const RowMatrix& m) {
-  const Eigen::HouseholderQR<Eigen::MatrixXf> qr{Eigen::MatrixXf(m)};
-  return qr.householderQ() * Eigen::MatrixXf::Identity(m.rows(), m.cols());
-}
 
 RowMatrix random_range(const TensorView& view, size_t mode, Index columns, int powers, const TensorOptions& options,
                        const Progress& progress) {

@@ -25,7 +25,4 @@ RowMatrix leading_vectors(const TensorView& view, size_t mode, Index rank, const
 RowMatrix random_range(const TensorView& view, size_t mode, Index columns, int powers, const TensorOptions& options,
                        const Progress& progress);
 
-/// An orthonormal basis of the columns of `m`, as many columns.
-RowMatrix orthonormal(const RowMatrix& m);
-
 }  // namespace velour

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <algorithm>
-#include <Eigen/SVD>
 #include <vector>
 
 #include "compress/btf_compare.h"
 #include "compress/factored_fit.h"
 #include "sphere/random.h"
 #include "support/memory_btf.h"
+#include "support/singular_values.h"
 
 namespace velour::test {
 
@@ -67,8 +67,7 @@ inline Eigen::MatrixXd plane_of(const std::vector<float>& f, const Vec3& axis, E
 
 /// Appends the squares of a matrix' singular values.
 inline void add_energies(const Eigen::MatrixXd& matrix, std::vector<double>& energy) {
-  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
-  for (const double value : values) energy.push_back(value * value);
+  for (const double value : singular_values(matrix)) energy.push_back(value * value);
 }
 
 /// Squared error of a model at all pairs.

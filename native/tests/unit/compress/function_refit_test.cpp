@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <Eigen/QR>
 
 #include "compress/core_refit.h"
+#include "tensor/decompositions.h"
 
 namespace velour {
 namespace {
@@ -13,10 +13,7 @@ namespace {
 constexpr Index kViews = 9, kLights = 11, kTexels = 60, kClusters = 3, kRank = 4, kViewRank = 3, kLightRank = 5,
                 kColors = 2;
 
-RowMatrix orthonormal_rows(Index rows, Index columns) {
-  const RowMatrix random = RowMatrix::Random(rows, columns);
-  return Eigen::HouseholderQR<Eigen::MatrixXf>(random).householderQ() * Eigen::MatrixXf::Identity(rows, columns);
-}
+RowMatrix orthonormal_rows(Index rows, Index columns) { return orthonormal(RowMatrix::Random(rows, columns)); }
 
 std::vector<DirectionCluster> random_clusters(unsigned seed) {
   std::srand(seed);  // Eigen draws from it

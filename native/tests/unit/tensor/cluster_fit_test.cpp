@@ -7,6 +7,7 @@
 #include "job/error.h"
 #include "support/random_tensor.h"
 #include "tensor/cluster_choice.h"
+#include "tensor/decompositions.h"
 
 namespace velour {
 namespace {

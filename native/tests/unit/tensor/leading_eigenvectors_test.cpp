@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-
 #include "support/random_tensor.h"
+#include "tensor/decompositions.h"
 
 namespace velour {
 namespace {
@@ -15,7 +13,7 @@ constexpr Index kSide = 400, kRank = 12;
 /// Of these eigenvalues.
 Eigen::MatrixXd symmetric(const Eigen::VectorXd& value) {
   const Eigen::MatrixXd random = test::random_matrix(value.size(), value.size(), 4).cast<double>();
-  const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(random).householderQ();
+  const Eigen::MatrixXd q = orthonormal_doubles(random);
   return q * value.asDiagonal() * q.transpose();
 }
 

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
-
 #include "support/random_tensor.h"
+#include "support/singular_values.h"
+#include "tensor/decompositions.h"
 #include "tensor/mode_product.h"
 
 namespace velour {
@@ -18,7 +18,7 @@ double kept(const DenseTensor& matrix, const RowMatrix& basis) {
 Eigen::VectorXd exact_squares(const DenseTensor& matrix) {
   const Eigen::MatrixXd m =
       Eigen::Map<const RowMatrix>(matrix.data.data(), matrix.extent[0], matrix.extent[1]).cast<double>();
-  return Eigen::BDCSVD<Eigen::MatrixXd>(m).singularValues().array().square();
+  return test::singular_values(m).array().square();
 }
 
 /// Singular values that fall as those of images do: 1 / (1 + i).

@@ -1,0 +1,12 @@
+// What matrices are held against.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace velour::test {
+
+/// The largest first, to rounding of doubles, by Jacobi rotations, which nothing in the library uses. Of a few hundred
+/// rows or columns.
+Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix);
+
+}  // namespace velour::test
