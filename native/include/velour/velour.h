@@ -798,7 +798,7 @@ typedef struct vlr_render_options {
   double time_limit;         /* seconds, 0: none; stops at a whole pass */
   int32_t transparent;       /* 1: rays that meet nothing leave alpha 0 */
   int32_t measure_ray_share; /* 1: record 1 tile in 16 and replay its rays */
-  int32_t heuristic;         /* of VLR_STRATEGY_MIS: VLR_HEURISTIC_* */
+  int32_t heuristic;         /* of VLR_STRATEGY_MIS, for the environment: VLR_HEURISTIC_* */
   int32_t sequence;          /* VLR_SEQUENCE_* */
   double share;              /* of VLR_STRATEGY_MIS: share of the directions that the lights draw; 0..1; 0.5 */
   double noise;              /* relative error at which a block of 16 x 16 pixels gets no more samples; 0: off */

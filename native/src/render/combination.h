@@ -22,6 +22,11 @@ inline float effective_density(Heuristic heuristic, const float (&q)[3], Drawer 
   return d;
 }
 
+/// How lamps and surfaces that glow are weighed, whatever is chosen for the environment. What is drawn towards one has
+/// hardly any noise of its own where nothing stands before it, and the few directions of the surface that find it were
+/// most of the noise under the balance heuristic: up to 12 times its variance (docs/rendering.md).
+inline constexpr Heuristic kLampHeuristic = Heuristic::power;
+
 /// Of `product`, where the sky gives all light: lamps take from it. Six of eight directions; what is left defends
 /// against light and shadow that no lobe tells of.
 inline constexpr float kProductShare = 0.75f;

@@ -165,15 +165,17 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
 
 void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
   terms_.look_up(lighting_, options_.heuristic);
-  const auto add = [&](int i, const Rgb& radiance, float far, bool casts_shadow) {
-    queue(receivers[terms_.receiver[i]], terms_.world.get(i), terms_.weight.v[i] * radiance * terms_.reflected.get(i),
-          far, casts_shadow, output);
+  const auto add = [&](int i, const Rgb& weighed, float far, bool casts_shadow) {
+    queue(receivers[terms_.receiver[i]], terms_.world.get(i), weighed * terms_.reflected.get(i), far, casts_shadow,
+          output);
   };
   for (int i = 0; i < terms_.world.count; ++i) {
-    add(i, terms_.environment.get(i), std::numeric_limits<float>::infinity(), true);
+    add(i, terms_.weight.v[i] * terms_.environment.get(i), std::numeric_limits<float>::infinity(), true);
   }
   for (const LampHit& hit : terms_.lamp_hits) {
-    add(hit.direction, hit.lamp->radiance(terms_.world.get(hit.direction)), hit.distance, hit.lamp->casts_shadow());
+    const int i = hit.direction;
+    const Rgb radiance = hit.lamp->radiance(terms_.world.get(i));
+    add(i, terms_.lamp_weight.v[i] * radiance, hit.distance, hit.lamp->casts_shadow());
   }
 }
 
@@ -183,7 +185,7 @@ void DirectLight::settle_glow(std::span<const Receiver> receivers, Output output
   for (int i = 0; i < count; ++i) {
     rays[i] = receivers[terms_.receiver[i]].vertex.ray(terms_.world.get(i), std::numeric_limits<float>::infinity());
   }
-  terms_.look_up_glow(lighting_, options_.heuristic, aims_, {rays, static_cast<size_t>(count)});
+  terms_.look_up_glow(lighting_, aims_, {rays, static_cast<size_t>(count)});
   for (const LightTerms::Glow& g : terms_.glow) {
     const Receiver& receiver = receivers[terms_.receiver[g.direction]];
     const auto [radiance, far] = lighting_.glow().light(rays[g.direction], g.hit, receiver.vertex.cone);

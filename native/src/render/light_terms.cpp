@@ -2,29 +2,32 @@
 
 namespace velour {
 
+float LightTerms::weighed(Heuristic heuristic, int direction, float light_pdf) const {
+  const float q[3] = {product.v[direction], surface.v[direction], light_share.v[direction] * light_pdf};
+  const float density = effective_density(heuristic, q, drawer[direction]);
+  // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
+  return density == 0.0f ? 0.0f : 1.0f / density;
+}
+
 void LightTerms::look_up(const Lighting& lighting, Heuristic heuristic) {
   const int count = world.count;
   if (count == 0) return;
   world.pad();
   ScalarBatch light_pdf;
   lighting.look_up({position, static_cast<size_t>(count)}, world, environment, light_pdf, lamp_hits);
-  for (int i = 0; i < count; ++i) {
-    const float q[3] = {product.v[i], surface.v[i], light_share.v[i] * light_pdf.v[i]};
-    const float density = effective_density(heuristic, q, drawer[i]);
-    // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
-    weight.v[i] = density == 0.0f || aim[i] != 0 ? 0.0f : 1.0f / density;
+  for (int i = 0; i < count; ++i) weight.v[i] = aim[i] != 0 ? 0.0f : weighed(heuristic, i, light_pdf.v[i]);
+  for (const LampHit& hit : lamp_hits) {
+    const int i = hit.direction;
+    lamp_weight.v[i] = aim[i] != 0 ? 0.0f : weighed(kLampHeuristic, i, light_pdf.v[i]);
   }
 }
 
-void LightTerms::look_up_glow(const Lighting& lighting, Heuristic heuristic, std::span<const Hit> aims,
-                              std::span<const Ray> rays) {
+void LightTerms::look_up_glow(const Lighting& lighting, std::span<const Hit> aims, std::span<const Ray> rays) {
   find_glow(lighting.glow(), aims, rays);
   for (Glow& g : glow) {
     const int i = g.direction;
     const float pdf = light_share.v[i] > 0.0f ? lighting.glow_pdf(position[i], world.get(i), g.hit) : 0.0f;
-    const float q[3] = {product.v[i], surface.v[i], light_share.v[i] * pdf};
-    const float density = effective_density(heuristic, q, drawer[i]);
-    g.weight = density == 0.0f ? 0.0f : 1.0f / density;
+    g.weight = weighed(kLampHeuristic, i, pdf);
   }
 }
 

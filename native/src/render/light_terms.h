@@ -13,7 +13,8 @@ namespace velour {
 /// once, so that the sky's texels of all are on their way together and vectors are full.
 ///
 /// Directions that are aimed at surfaces that glow bring their light alone, those that the lights draw otherwise bring
-/// none of it, and the others bring both: each kind of light is weighed with the densities of those that bring it.
+/// none of it, and the others bring both: each kind of light is weighed with the densities of those that bring it, the
+/// environment by the `heuristic` that is chosen, lamps and surfaces by kLampHeuristic.
 struct alignas(64) LightTerms {
   DirectionBatch world;
   RgbBatch reflected;            // throughput f cos / n of n directions
@@ -25,8 +26,8 @@ struct alignas(64) LightTerms {
   uint8_t aim[DirectionBatch::kCapacity];       // 0: none; else 1 + its number among the aims (Lighting::sample)
 
   // What look_up() finds.
-  RgbBatch environment;  // radiance
-  ScalarBatch weight;    // 1 / d
+  RgbBatch environment;             // radiance
+  ScalarBatch weight, lamp_weight;  // 1 / d: of the environment, and of lamps where one is met
   std::vector<LampHit> lamp_hits;
   struct Glow {
     int direction;
@@ -42,10 +43,11 @@ struct alignas(64) LightTerms {
   }
   void look_up(const Lighting& lighting, Heuristic heuristic);
   /// `rays`: along the directions, as they leave their vertices.
-  void look_up_glow(const Lighting& lighting, Heuristic heuristic, std::span<const Hit> aims,
-                    std::span<const Ray> rays);
+  void look_up_glow(const Lighting& lighting, std::span<const Hit> aims, std::span<const Ray> rays);
 
  private:
+  /// 1 / d, with the density of whoever draws towards the light.
+  float weighed(Heuristic heuristic, int direction, float light_pdf) const;
   void find_glow(const GlowingSurfaces& surfaces, std::span<const Hit> aims, std::span<const Ray> rays);
   std::vector<GlowHit> found_;
 };

@@ -42,7 +42,7 @@ constexpr bool is_mixed(Strategy strategy) {
 }
 
 /// Weights of mixed strategies (combination.h).
-enum class Heuristic : int { balance = 0, power = 1 };  // values of velour.h
+enum class Heuristic : int { balance = 0, power = 1 };  // of the environment; values of velour.h
 
 /// Where random numbers come from (path_numbers.h).
 enum class Sequence : int { random = 0, sobol = 1 };  // values of velour.h
