@@ -118,9 +118,8 @@ void HitLightEstimator::add_lights(const Vertex& vertex) {
 Rgb HitLightEstimator::passed_from(const Vertex& vertex, const LampHit& lamp) const {
   if (!lamp.lamp->casts_shadow()) return Rgb(1.0f);
   const Hit& hit = hits_[lamp.direction];
-  if (hit.instance != kNoHit && hit.distance < lamp.distance) return Rgb(0.0f);
-  if (!visible_.tints()) return Rgb(1.0f);
-  // What the direction passed on its way to the hit may stand behind the lamp.
+  if (!visible_.dims()) return Rgb(hit.instance != kNoHit && hit.distance < lamp.distance ? 0.0f : 1.0f);
+  // What the direction met or passed on its way was drawn, and may stand behind the lamp.
   Rgb passed;
   return visible_.occluded(vertex.ray(world_.get(lamp.direction), lamp.distance), &passed) ? Rgb(0.0f) : passed;
 }

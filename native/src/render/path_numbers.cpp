@@ -26,6 +26,11 @@ Vec2 PathNumbers::point(Purpose purpose) {
   return u;
 }
 
+RayDecisions PathNumbers::decisions() {
+  if (sequence_ == Sequence::random) return {random_.next_bits(), 0};
+  return {mix64(~key(Purpose::camera)), ray_};
+}
+
 PathNumbers::Deal PathNumbers::deal(Run run, float share, Purpose purpose) {
   const double part = static_cast<double>(share);
   if (sequence_ == Sequence::random) {

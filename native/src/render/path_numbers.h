@@ -6,6 +6,7 @@
 
 #include "render/options.h"
 #include "render/point_batch.h"
+#include "render/ray_number.h"
 #include "sphere/random.h"
 
 namespace velour {
@@ -54,6 +55,9 @@ class PathNumbers {
   };
   /// Deals `share` of the directions out, on average: each time one of the two nearest whole numbers of them.
   Deal deal(Run run, float share, Purpose purpose);
+
+  /// Of the ray that goes on from this vertex, before it has come to the next.
+  RayDecisions decisions();
 
   /// How many camera rays of the half came before this one.
   uint32_t ray() const { return ray_; }

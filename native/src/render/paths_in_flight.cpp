@@ -6,8 +6,10 @@ namespace velour {
 
 void PathsInFlight::trace(uint8_t kind) {
   hits.resize(rays.size());
-  passed_.resize(visible.tints() ? rays.size() : 0);
-  visible.intersect(rays, hits.data(), kind, visible.tints() ? passed_.data() : nullptr);
+  passed_.resize(visible.dims() ? rays.size() : 0);
+  decisions_.clear();
+  for (size_t i = 0; i < passed_.size(); ++i) decisions_.push_back(paths[i].numbers.decisions());
+  visible.intersect(rays, hits.data(), kind, visible.dims() ? passed_.data() : nullptr, decisions_);
   for (size_t i = 0; i < passed_.size(); ++i) paths[i].throughput *= passed_[i];
 }
 

@@ -43,7 +43,9 @@ struct PathsInFlight {
   ShadowQueue shadows_;
   std::vector<Path> next_;
   std::vector<Ray> next_rays_;
-  std::vector<Rgb> passed_;  // of the rays, where they change their colour
+  // Of the rays, where they may pass what they come to.
+  std::vector<Rgb> passed_;
+  std::vector<RayDecisions> decisions_;
 };
 
 }  // namespace velour

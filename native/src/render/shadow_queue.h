@@ -27,7 +27,7 @@ class ShadowQueue {
   std::vector<Rgb> light_;
   std::vector<uint32_t> sample_;
   std::vector<uint8_t> blocked_;
-  std::vector<Rgb> passed_;  // where rays change their colour
+  std::vector<Rgb> passed_;  // where rays may pass what they come to
 };
 
 }  // namespace velour

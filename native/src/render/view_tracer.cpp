@@ -20,9 +20,9 @@ void ViewTracer::follow(uint64_t first, uint64_t end, SeenWeights& seen) {
   start(first, end);
   for (int depth = 0; depth <= options_.bounces && !paths_.empty(); ++depth) {
     hits_.resize(rays_.size());
-    passed_.resize(visible_.tints() ? rays_.size() : 0);
+    passed_.resize(visible_.dims() ? rays_.size() : 0);
     visible_.intersect(rays_, hits_.data(), depth == 0 ? hidden::kFromCamera : hidden::kFromBounces,
-                       visible_.tints() ? passed_.data() : nullptr);
+                       visible_.dims() ? passed_.data() : nullptr);
     for (size_t i = 0; i < passed_.size(); ++i) paths_[i].throughput *= passed_[i];
     next_.clear();
     next_rays_.clear();

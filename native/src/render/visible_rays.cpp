@@ -4,7 +4,6 @@
 
 #include "render/point_site.h"
 #include "render/ray_beyond.h"
-#include "render/ray_number.h"
 #include "render/shell_crossing.h"
 
 namespace velour {
@@ -14,6 +13,11 @@ constexpr size_t kTogether = 128;
 
 /// Place `i` of an array that may be missing.
 Rgb* behind(Rgb* passed, size_t i) { return passed != nullptr ? passed + i : nullptr; }
+
+/// The part of an array that may be missing.
+std::span<const RayDecisions> part(std::span<const RayDecisions> all, size_t first, size_t count) {
+  return all.empty() ? all : all.subspan(first, count);
+}
 
 /// Ways through shells that are traced together, as long as they are of one field.
 class ShellWays {
@@ -57,11 +61,13 @@ struct VisibleRays::Pending {
   Hit hit[kTogether];
   Hit passed[kTogether];  // before
   uint8_t number[kTogether];
+  uint32_t decided[kTogether];  // about how many surfaces
 
   void add(const Ray& r, const Hit& h, size_t n) {
     ray[count] = r;
     hit[count] = h;
     passed[count] = Hit{};
+    decided[count] = 0;
     number[count++] = static_cast<uint8_t>(n);
   }
   void move(size_t from, size_t to) {
@@ -69,6 +75,7 @@ struct VisibleRays::Pending {
     hit[to] = hit[from];
     passed[to] = passed[from];
     number[to] = number[from];
+    decided[to] = decided[from];
   }
   /// Lets a ray go on behind its hit.
   void pass(size_t i) {
@@ -84,16 +91,18 @@ VisibleRays::VisibleRays(const Scene& scene)
       all_opaque_(!shells_ && std::ranges::all_of(
                                   scene.materials(),
                                   [](const SurfaceMaterial& m) { return m.material->opaque() && !m.hides_backs(); })),
-      tints_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.material->tints(); })) {
+      dims_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return !m.material->opaque(); })) {
   for (const Scene::Instance& i : scene.instances()) hidden_ |= i.hidden;
 }
 
-void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed) const {
+void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed,
+                            std::span<const RayDecisions> decisions) const {
   scene_.rays().intersect(rays, hits);
   if (passed != nullptr) std::fill_n(passed, rays.size(), Rgb(1.0f));
   if (sees_all(kind)) return;
   for (size_t done = 0; done < rays.size(); done += kTogether) {
-    pass_on(rays.subspan(done, std::min(kTogether, rays.size() - done)), hits + done, kind, behind(passed, done));
+    const size_t count = std::min(kTogether, rays.size() - done);
+    pass_on(rays.subspan(done, count), hits + done, kind, behind(passed, done), part(decisions, done, count));
   }
 }
 
@@ -135,23 +144,37 @@ void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked, Rgb
   }
 }
 
-bool VisibleRays::meets_surface(const Ray& ray, const Hit& hit, uint8_t kind, Rgb* passed) const {
+bool VisibleRays::meets_surface(Pending& pending, size_t i, uint8_t kind, Rgb* passed,
+                                std::span<const RayDecisions> decisions) const {
+  const Ray& ray = pending.ray[i];
+  const Hit& hit = pending.hit[i];
   if ((scene_.instances()[hit.instance].hidden & kind) != 0) return false;
   const SurfaceMaterial& surface = scene_.materials()[scene_.material(hit)];
   const Material& material = *surface.material;
   if (passes_back(surface, ray, hit, kind)) return false;
   if (material.opaque()) return true;
   const SurfaceSite site = point_site(scene_, hit, surface);
-  if (ray_number(ray, hit, RayDecision::alpha) < material.alpha(site)) return true;
-  if (passed != nullptr && material.tints()) *passed *= material.passing(site);
+  const float alpha = material.alpha(site);
+  Rgb& left = passed[pending.number[i]];
+  if (kind == hidden::kFromShadows) {
+    left *= 1.0f - alpha;
+    if (left == Rgb(0.0f)) return true;
+  } else {
+    const uint32_t before = pending.decided[i]++;
+    const float number =
+        decisions.empty() ? ray_number(ray, hit, RayDecision::alpha) : decisions[pending.number[i]].number(before);
+    if (number < alpha) return true;
+  }
+  if (material.tints()) left *= material.passing(site);
   return false;
 }
 
-void VisibleRays::decide(Pending& pending, uint8_t kind, bool* met, Rgb* passed) const {
+void VisibleRays::decide(Pending& pending, uint8_t kind, bool* met, Rgb* passed,
+                         std::span<const RayDecisions> decisions) const {
   ShellWays ways(pending.hit, met);
   for (size_t i = 0; i < pending.count; ++i) {
     const Hit& hit = pending.hit[i];
-    met[i] = !pending.again(i) && meets_surface(pending.ray[i], hit, kind, behind(passed, pending.number[i]));
+    met[i] = !pending.again(i) && meets_surface(pending, i, kind, passed, decisions);
     if (!met[i] || !shells_ || !scene_.has_shell(hit)) continue;
     const ShellCrossing crossing(scene_, pending.ray[i], hit);
     met[i] = false;
@@ -160,14 +183,15 @@ void VisibleRays::decide(Pending& pending, uint8_t kind, bool* met, Rgb* passed)
   ways.trace();
 }
 
-void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed) const {
+void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed,
+                          std::span<const RayDecisions> decisions) const {
   Pending pending;
   for (size_t i = 0; i < rays.size(); ++i) {
     if (hits[i].instance != kNoHit) pending.add(rays[i], hits[i], i);
   }
   bool met[kTogether];
   while (pending.count > 0) {
-    decide(pending, kind, met, passed);
+    decide(pending, kind, met, passed, decisions);
     size_t left = 0;
     for (size_t i = 0; i < pending.count; ++i) {
       hits[pending.number[i]] = pending.hit[i];

@@ -130,6 +130,27 @@ TEST(Transparency, LayersMultiply) {
   EXPECT_NEAR(test::mean_of(pixels, 3), 1 - 0.7 * 0.7 * 0.7, 4e-3);
 }
 
+/// How far the coverage of any pixel of a veil of `alpha` is from it, by 64 camera rays.
+double worst_coverage(float alpha, Sequence sequence) {
+  RenderOptions options = options_for(512);
+  options.sequence = sequence;
+  const auto pixels = test::rendered(veil({alpha}), options);
+  double worst = 0;
+  for (size_t i = 3; i < pixels.size(); i += 4) worst = std::max<double>(worst, std::abs(pixels[i] - alpha));
+  return worst;
+}
+
+TEST(Transparency, RaysOfAPixelAreSharedOutEvenly) {
+  for (const float alpha : {0.02f, 0.3f, 0.5f, 0.9f})
+    EXPECT_LE(worst_coverage(alpha, Sequence::sobol), 1.0 / 64) << alpha;
+  EXPECT_GT(worst_coverage(0.3f, Sequence::random), 3.0 / 64);
+}
+
+/// Also where every layer has its share exactly: those that pass the first one are any to the second.
+TEST(Transparency, LayersShareRaysOutIndependently) {
+  EXPECT_NEAR(test::mean_of(test::rendered(veil({0.5f}, 2), options_for(512)), 3), 0.75, 0.01);
+}
+
 TEST(Transparency, CutOutsAreExact) {
   const auto pixels = test::rendered(veil({1, 0, 0, 1}), options_for(64));
   for (size_t i = 0; i < 64; ++i) {
@@ -143,7 +164,7 @@ TEST(Transparency, ControlAnOpaqueSurfaceCoversAll) {
 }
 
 /// A floor under a veil, and a camera between them that looks down: only shadow rays meet the veil.
-double floor_under_veil(float alpha, const Light* lamp) {
+std::vector<float> floor_pixels(float alpha, const Light* lamp, int spp) {
   Scene scene;
   add(scene, test::square(0.5f), {}, matte(kAlbedo, {1}));
   add(scene, test::square(50), test::shift({0, 0, 2}), matte(0, {alpha}));
@@ -154,8 +175,10 @@ double floor_under_veil(float alpha, const Light* lamp) {
   }
   scene.set_camera(Camera::look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 0.5f, 1));
   scene.commit(1);
-  return test::mean_of(test::rendered(scene, options_for(8192)));
+  return test::rendered(scene, options_for(spp));
 }
+
+double floor_under_veil(float alpha, const Light* lamp) { return test::mean_of(floor_pixels(alpha, lamp, 8192)); }
 
 TEST(Transparency, ShadowsArePartial) {
   EXPECT_NEAR(floor_under_veil(0.25f, nullptr), 0.75 * kAlbedo, 5e-3);
@@ -164,6 +187,14 @@ TEST(Transparency, ShadowsArePartial) {
   EXPECT_NEAR(floor_under_veil(0.25f, &sun), 0.75 * open, 5e-3 * open);
   EXPECT_NEAR(floor_under_veil(0, &sun), open, 1e-3 * open);
   EXPECT_EQ(floor_under_veil(1, &sun), 0);
+}
+
+/// The veil dims the sun, which nothing is drawn for: all pixels are alike.
+TEST(Transparency, ShadowsOfVeilsHaveNoNoise) {
+  Light sun;
+  const auto pixels = floor_pixels(0.25f, &sun, 64);
+  const float expected = 0.75f * kAlbedo / kPi;
+  for (size_t i = 0; i < pixels.size(); i += 4) EXPECT_NEAR(pixels[i], expected, 1e-5f * expected) << i;
 }
 
 /// A wide lamp-lit floor sends its light through the veil to a lid above it.
