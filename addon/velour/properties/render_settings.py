@@ -62,7 +62,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     heuristic: EnumProperty(
         name="Heuristic",
-        description="How directions of material and lights are weighted against each other, for the light of the world",
+        description="How directions of material and lights are weighted against each other, of the world's light",
         items=(
             ("BALANCE", "Balance", "In proportion to the density", 0),
             ("POWER", "Power", "In proportion to the square of the density", 1),

@@ -55,8 +55,7 @@ class Desk:
         """A tab of the Properties editor."""
         area("PROPERTIES").spaces.active.context = tab
         yield 0.8
-        area("PROPERTIES").tag_redraw()
-        yield 0.4
+        yield from self._read()
 
     def fold(self, tab: str, label: str, is_open: bool):
         """Opens or closes a panel, by clicks on its header: it may still move while its editor is drawn."""
@@ -98,9 +97,20 @@ class Desk:
             area("PROPERTIES").tag_redraw()
             yield 0.2
             if preview.is_at_rest() and any(wanted.kind == kind for wanted in preview._pictures):
+                yield from self._read()
                 yield 0.8
                 return
         raise TimeoutError(f"the plot {kind} is not drawn")
+
+    def _read(self):
+        """Until panels have read what they tell of files."""
+        summaries = importlib.import_module(f"{inputs.ADDON}.ui.summaries")
+        for _ in range(_PATIENCE):
+            area("PROPERTIES").tag_redraw()
+            yield 0.4
+            if summaries.is_at_rest():
+                return
+        raise TimeoutError("the panels still read")
 
     def start(self, operator, **arguments):
         """A long action, as its button in the 3D viewport's window starts it."""

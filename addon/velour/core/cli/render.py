@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--share", type=numbers.real(0, 1), metavar="S", help="what the lights draw of mis (0.5)"
     )
-    parser.add_argument("--heuristic", choices=table.HEURISTICS, help="weights of mis, for the environment (balance)")
+    parser.add_argument("--heuristic", choices=table.HEURISTICS, help="weights of mis under a sky (balance)")
     parser.add_argument("--sequence", choices=table.SEQUENCES, help="of random numbers (sobol)")
     parser.add_argument("--seed", type=numbers.seed, metavar="K")
     parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
