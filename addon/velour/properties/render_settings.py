@@ -62,7 +62,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     heuristic: EnumProperty(
         name="Heuristic",
-        description="How directions of material and lights are weighted against each other, of the world's light",
+        description="How the world's light is weighted between directions of material and lights",
         items=(
             ("BALANCE", "Balance", "In proportion to the density", 0),
             ("POWER", "Power", "In proportion to the square of the density", 1),
