@@ -125,6 +125,10 @@ class Alpha(WallTest):
         pixels = np.random.default_rng(5).uniform(0.2, 0.9, (8, 8, 4)).astype(np.float32)
         if is_float:
             pixels[..., :3] *= pixels[..., 3:]
+        else:
+            # Cycles cuts off what colour times alpha is beyond whole bytes; of these nothing is.
+            pixels = np.round(pixels * 51) * 5 / 255
+            pixels[..., 3] = np.round(pixels[..., 3] * 5) / 5
         image.pixels.foreach_set(pixels.ravel())
         image.alpha_mode = mode
         image.pack()
