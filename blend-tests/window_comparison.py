@@ -30,9 +30,9 @@ def compared(folder):
     yield from window.shown("Paint compared")
     windows = bpy.context.window_manager.windows
     assert len(windows) == 2, len(windows)
-    with bpy.context.temp_override(window=windows[1], screen=windows[1].screen):
+    with window.in_context(window=windows[1], screen=windows[1].screen):
         bpy.ops.screen.screenshot(filepath=str(folder / "comparison.png"))
-    with bpy.context.temp_override(window=windows[1]):
+    with window.in_context(window=windows[1]):
         bpy.ops.wm.window_close()
     yield 0.5
     for _ in range(12):

@@ -41,7 +41,7 @@ def _regions(area, kind="WINDOW"):
 
 
 def _in(area, region):
-    return bpy.context.temp_override(window=window.first(), area=area, region=region)
+    return window.in_context(window=window.first(), area=area, region=region)
 
 
 def _place(region, at):

@@ -62,7 +62,7 @@ def stock_panels(folder):
         window.screenshot(folder, f"stock-{name.lower()}-{tab.lower()}")
         area = max(window.first().screen.areas, key=lambda a: a.width * a.height)
         region = next(region for region in area.regions if region.type == "WINDOW")
-        with bpy.context.temp_override(window=window.first(), area=area, region=region):
+        with window.in_context(window=window.first(), area=area, region=region):
             names = stock.shown(kind, bpy.context)
         assert stock.wrong(kind, names) == ([], []), (kind, stock.wrong(kind, names))
 
@@ -71,7 +71,7 @@ def _over_properties():
     """As a button of the large Properties editor."""
     area = max(window.first().screen.areas, key=lambda a: a.width * a.height)
     region = next(region for region in area.regions if region.type == "WINDOW")
-    return bpy.context.temp_override(window=window.first(), area=area, region=region)
+    return window.in_context(window=window.first(), area=area, region=region)
 
 
 def pinned(folder):

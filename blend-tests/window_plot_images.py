@@ -51,9 +51,9 @@ def enlarged(folder):
         yield from window.shown(f"Paint {kind.lower()}")
         assert len(windows) == 2
         path = str(folder / f"enlarged-{kind.lower()}.png")
-        with bpy.context.temp_override(window=windows[1], screen=windows[1].screen):
+        with window.in_context(window=windows[1], screen=windows[1].screen):
             bpy.ops.screen.screenshot(filepath=path)
-    with bpy.context.temp_override(window=windows[1]):
+    with window.in_context(window=windows[1]):
         bpy.ops.wm.window_close()
     yield 0.2
 

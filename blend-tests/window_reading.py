@@ -12,7 +12,7 @@ def start(folder):
     """Called by the harness once the window is there."""
     panel = (panel_reads_beside_the_window, gone, truncated, undone, deleted, loaded_file)
     imports = (import_beside_the_window, import_from_browser, import_undone, import_loaded_file, import_gone)
-    window.run(folder, (*panel, *imports, import_cancelled, several))
+    window.run(folder, (*panel, *imports, import_cancelled, several, beside_operators))
 
 
 def _known(image):
@@ -251,3 +251,23 @@ def several(folder):
     group = module("export.nodes").approximation_node
     states = [group(bpy.data.materials[name]).node_tree.velour for name in ("one", "two")]
     assert all(state.fitted for state in states)
+
+
+def beside_operators(folder):
+    """What Python calls in another context while a file is read: Blender 3.4 crashes unless reading pauses."""
+    check, steps = module("core.read_job").check, []
+
+    def read():
+        while True:
+            check()
+            steps.append(len(steps))
+
+    job = module("core.read_job").ReadJob(read).start()
+    for _ in range(10):
+        yield 0.02
+        with window.override():
+            begun = len(steps)
+            bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
+            assert len(steps) == begun
+    assert begun > 10, begun
+    job.cancel()

@@ -33,7 +33,7 @@ def _clear_view():
 
 def _in_view(area):
     region = next(region for region in area.regions if region.type == "WINDOW")
-    return bpy.context.temp_override(window=window.first(), area=area, region=region)
+    return window.in_context(window=window.first(), area=area, region=region)
 
 
 def _add(area, **arguments):

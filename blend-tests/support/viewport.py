@@ -30,7 +30,7 @@ def space():
 
 def override():
     view = area()
-    return bpy.context.temp_override(window=window.first(), area=view, region=region())
+    return window.in_context(window=window.first(), area=view, region=region())
 
 
 def colored_scene():

@@ -3,6 +3,7 @@
 A test is a generator that yields the seconds until its next turn.
 """
 
+import importlib
 import json
 import sys
 import time
@@ -12,6 +13,7 @@ import bpy
 import numpy as np
 
 from . import framebuffer, scenes
+from .blender import ADDON
 
 _TEST_SECONDS = 200  # that a test may turn on and on; its process has 300
 
@@ -69,9 +71,14 @@ def first():
     return bpy.context.window_manager.windows[0]
 
 
+def in_context(**members):
+    """temp_override() as the add-on itself may use it beside its threads."""
+    return importlib.import_module(f"{ADDON}.export.other_context").other_context(**members)
+
+
 def override():
     window = first()
-    return bpy.context.temp_override(window=window, screen=window.screen)
+    return in_context(window=window, screen=window.screen)
 
 
 def show_properties(tab):
@@ -103,7 +110,7 @@ def _in_browser(prepare, press):
     prepare(area.spaces.active.params)
     yield 1.5  # it reads the folder, and makes previews, which an end in their midst may crash
     region = next(region for region in area.regions if region.type == "WINDOW")
-    with bpy.context.temp_override(window=window, area=area, region=region):
+    with in_context(window=window, area=area, region=region):
         press()
     yield 0.5
 
@@ -120,7 +127,7 @@ def scroll_down(pixels):
     """The largest editor."""
     area = max(first().screen.areas, key=lambda a: a.width * a.height)
     region = next(region for region in area.regions if region.type == "WINDOW")
-    with bpy.context.temp_override(window=first(), area=area, region=region):
+    with in_context(window=first(), area=area, region=region):
         bpy.ops.view2d.scroll_down(deltay=pixels)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 from ..native import Status, VelourError
 from ..native.job import JobState, ProgressCallback
+from . import reading_gate
 
 _SLICE_SECONDS = 0.1  # between two calls of a progress callback
 _PATIENCE = 2.0  # seconds that the end of the process waits for threads
@@ -21,7 +22,10 @@ _all = weakref.WeakSet()
 def is_cancelled() -> bool:
     """Whether nobody wants any more what this thread reads; False on threads that are no ReadJob's."""
     cancelled = getattr(_of_thread, "cancelled", None)
-    return cancelled is not None and cancelled.is_set()
+    if cancelled is None:
+        return False
+    reading_gate.pause()
+    return cancelled.is_set()
 
 
 def check() -> None:
@@ -53,12 +57,13 @@ class ReadJob:
 
     def _run(self, cancelled: threading.Event) -> None:
         _of_thread.cancelled = cancelled
-        try:
-            result, error = self._read(), None
-        except Exception as raised:  # belongs to whoever waits
-            result, error = None, raised
-        if not cancelled.is_set():
-            self._result, self._error = result, error
+        with reading_gate.inside():
+            try:
+                result, error = self._read(), None
+            except Exception as raised:  # belongs to whoever waits
+                result, error = None, raised
+            if not cancelled.is_set():
+                self._result, self._error = result, error
 
     def poll(self) -> JobState:
         running = self._thread.is_alive()
@@ -73,7 +78,8 @@ class ReadJob:
         """As Job.wait(): raises what `read` raised."""
         end = math.inf if timeout is None else time.monotonic() + timeout
         while True:
-            self._thread.join(max(0.0, min(_SLICE_SECONDS, end - time.monotonic())))
+            with reading_gate.opened():
+                self._thread.join(max(0.0, min(_SLICE_SECONDS, end - time.monotonic())))
             if self._cancelled.is_set():
                 raise VelourError(Status.CANCELLED, "The reading was cancelled.")
             if progress:

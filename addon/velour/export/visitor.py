@@ -10,6 +10,7 @@ import contextlib
 import bpy
 
 from .notes import ExportError
+from .other_context import other_context
 
 _visit = None
 
@@ -34,7 +35,7 @@ def visit_frame(scene, frame, visit, engine_id):
         _kept_frame(scene),
         _copy(scene, frame, engine_id) as copy,
         _instead_of_rendering(guarded),
-        bpy.context.temp_override(scene=copy),  # Blender renders the frame of the context's scene
+        other_context(scene=copy),  # Blender renders the frame of the context's scene
     ):
         _render(copy)
     if errors:

@@ -12,6 +12,7 @@ from ..core.measurement_files import file_filter
 from ..core.read_job import ReadJob, check
 from ..export import ExportError
 from ..export.files import sha256
+from ..export.other_context import other_context
 from ..native import VelourError, library
 from . import measured
 from .background_job import OneJob
@@ -115,7 +116,7 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
         # Blender ends what its file browser has asked for when this returns: another one does the work.
         chosen = self.as_keywords(ignore=("check_existing", "filter_glob", "files"))
         chosen["files"] = [{"name": file.name} for file in self.files]
-        with context.temp_override(area=None):  # nothing was dropped
+        with other_context(area=None):  # nothing was dropped
             bpy.ops.velour.load_material("INVOKE_DEFAULT", **chosen)
         return {"CANCELLED"}  # no undo step: that is the other one's
 

@@ -4,6 +4,8 @@ import functools
 
 import bpy
 
+from ..export.other_context import other_context
+
 
 def made_image(name, width, height, **options):
     """The one that an operator made under that name, now of this size, or a new one; `options` as of
@@ -44,7 +46,7 @@ def _show(name):
     areas = [area for window in windows for area in window.screen.areas]
     area = next((area for area in areas if area.type == "IMAGE_EDITOR"), None)
     if area is None:
-        with context.temp_override(window=windows[0]):
+        with other_context(window=windows[0]):
             bpy.ops.wm.window_new()
         area = windows[-1].screen.areas[0]
         area.type = "IMAGE_EDITOR"
@@ -60,5 +62,5 @@ def _fit(name):
             if area.type != "IMAGE_EDITOR" or getattr(area.spaces.active.image, "name", "") != name:
                 continue
             region = next(region for region in area.regions if region.type == "WINDOW")
-            with bpy.context.temp_override(window=window, area=area, region=region):
+            with other_context(window=window, area=area, region=region):
                 bpy.ops.image.view_all(fit_view=True)

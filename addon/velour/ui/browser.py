@@ -12,7 +12,7 @@ import bpy.utils.previews
 import numpy as np
 
 from ..core.measurement_files import find_measurements
-from ..core.read_job import ReadJob
+from ..core.read_job import ReadJob, is_cancelled
 from ..core.thumbnail_job import ThumbnailJob
 from ..export.caches import cache_folder
 from ..native import VelourError
@@ -39,7 +39,7 @@ class Picture(NamedTuple):
 class _Search:
     def __init__(self, folder):
         self.stopped = False
-        self.job = ReadJob(lambda: find_measurements(folder, lambda: self.stopped)).start()
+        self.job = ReadJob(lambda: find_measurements(folder, lambda: self.stopped or is_cancelled())).start()
 
 
 class _Work:

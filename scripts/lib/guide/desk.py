@@ -26,7 +26,7 @@ def area(kind: str) -> bpy.types.Area:
 def inside(kind: str):
     """The context of what the artist does in an editor."""
     editor = area(kind)
-    return bpy.context.temp_override(window=window.first(), area=editor, region=main_region(editor))
+    return window.in_context(window=window.first(), area=editor, region=main_region(editor))
 
 
 def main_region(editor: bpy.types.Area) -> bpy.types.Region:
