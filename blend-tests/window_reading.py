@@ -254,7 +254,7 @@ def several(folder):
 
 
 def beside_operators(folder):
-    """What Python calls in another context while a file is read: Blender 3.4 crashes unless reading pauses."""
+    """Operators in another context while a file is read: Blender 3.4 crashes unless reading pauses."""
     check, steps = module("core.read_job").check, []
 
     def read():
