@@ -176,8 +176,43 @@ class CompressBtf(BlenderTest):
     def test_a_btf_is_no_measurement_to_fit(self):
         self._captured()
         bpy.ops.velour.compress_btf(assign=True, megabytes=0.02)
-        with self.assertRaisesRegex(RuntimeError, "btf.json"):
+        with self.assertRaisesRegex(RuntimeError, r"btf.json is a BTF.*compress_btf\(material='ribs'\)"):
             bpy.ops.velour.fit()
+
+    def test_the_btf_of_a_material_is_fitted_anew(self):
+        """With other settings, which the material keeps; the model before it stays as it was."""
+        folder = self._captured(**_SMALLEST)
+        bpy.ops.velour.compress_btf(filepath=str(folder), assign=True, megabytes=0.03)
+        material, count = bpy.data.materials["ribs"], len(bpy.data.materials)
+        node = scenes.velour_node(material)
+        before, data = node.image, bytes(node.image.packed_file.data)
+        self.assertAlmostEqual(node.velour.btf.megabytes, 0.03)
+        bpy.data.objects.remove(bpy.context.object)  # no tile is asked
+        self.assertEqual(bpy.ops.velour.compress_btf(material="ribs", method="SVD"), {"FINISHED"})
+        self.assertEqual(len(bpy.data.materials), count)
+        self.assertNotEqual(node.image, before)
+        self.assertEqual(bytes(before.packed_file.data), data)
+        self.assertEqual(self._model_info()["method"], "svd")
+        self.assertLessEqual(self._model_info()["parameter_bytes"], 30000)  # as it was asked for before
+        self.assertEqual(node.velour.btf.method, "SVD")
+        sizes = [self._estimate(material="ribs", **size) for size in ({}, {"megabytes": 0.04})]
+        self.assertNotEqual(*sizes)
+        self.assertAlmostEqual(node.velour.btf.megabytes, 0.03)  # it was only asked about
+        # As it is on disk by now.
+        index, digest = folder / "btf.json", node.velour.measurement.velour.sha256
+        index.write_text(index.read_text() + " ")
+        bpy.ops.velour.compress_btf(material="ribs")
+        self.assertEqual(self._model_info()["method"], "svd")
+        self.assertNotEqual(node.velour.measurement.velour.sha256, digest)
+        index.rename(folder / "away.json")
+        with self.assertRaisesRegex(RuntimeError, "btf.json.* is missing"):
+            bpy.ops.velour.compress_btf(material="ribs")
+
+    def test_a_material_without_a_btf_has_none_to_fit(self):
+        material = bpy.data.materials.new("Plain")
+        for operator in (bpy.ops.velour.compress_btf, bpy.ops.velour.estimate_fit):
+            with self.assertRaisesRegex(RuntimeError, f"{material.name}.*no BTF is chosen"):
+                operator(material=material.name)
 
     def test_what_is_not_a_btf_is_refused_with_its_name(self):
         with self.assertRaisesRegex(RuntimeError, "nowhere.btf"):

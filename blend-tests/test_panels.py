@@ -119,6 +119,17 @@ class Panels(BlenderTest):
             self.assertEqual("velour.fit" in offered, "texels" not in info)
         self.assertEqual({tab.upper() for tab in found}, set(TABS))
 
+    def test_a_material_of_a_btf_is_fitted_as_one(self):
+        """Before it has a model, too."""
+        context = self._of_a_material()
+        node = scenes.velour_node(context.material)
+        for name, is_btf in (("cloth.btf", True), ("cloth/btf.json", True), ("paint.binary", False)):
+            node.velour.measurement = measured.file_image(str(self.folder / name))
+            offered = self._offered(VELOUR_MATERIAL_PT_measured, context)
+            self.assertEqual("velour.compress_btf" in offered, is_btf, name)
+            self.assertEqual("velour.estimate_fit" in offered, is_btf, name)
+            self.assertEqual("velour.fit" in offered, not is_btf, name)
+
     def test_a_changed_measurement_can_be_accepted(self):
         context = self._of_a_material()
         path = self.folder / "paint.binary"

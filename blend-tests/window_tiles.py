@@ -17,7 +17,7 @@ def start(folder):
         panel.bl_options = set()  # open, to be looked at
         bpy.utils.register_class(panel)
     added = (add_and_repeat, another_type)
-    window.run(folder, (*added, capture_and_cancel, capture_again, capture, estimate, material))
+    window.run(folder, (*added, capture_and_cancel, capture_again, capture, estimate, material, fitted_anew))
 
 
 def _clear_view():
@@ -199,3 +199,42 @@ def material(folder):
         if _orange(window.screenshot(folder, "collection-curve")) > _orange(before) + 20:
             return
     raise AssertionError("no chosen point")
+
+
+def fitted_anew(folder):
+    """The BTF of a material, in its own panel: other settings, an estimate, a fit, and undo."""
+    yield from _tile_in_properties("OBJECT")
+    small = {"texels": 8, "views": 12, "lights": 12, "samples": 4}
+    with window.override():
+        bpy.ops.velour.capture_btf(directory=str(folder / "anew.btf"), **small)
+        bpy.ops.velour.compress_btf(assign=True, megabytes=0.03)
+        bpy.ops.ed.undo_push(message="a material of a BTF")
+    yield from window.show_properties("MATERIAL")
+    node = scenes.velour_node(bpy.data.materials["anew"])
+    before = node.image.name
+    node.velour.btf.method = "KCTA"
+    with window.override():
+        bpy.ops.ed.undo_push(message="another method")
+        assert bpy.ops.velour.estimate_fit("INVOKE_DEFAULT", material="anew") == {"RUNNING_MODAL"}
+    for _ in range(_TURNS):
+        yield 0.1
+        if not bpy.context.window_manager.velour.reading:
+            break
+    yield 0.5
+    window.screenshot(folder, "anew-estimate")
+    with window.override():
+        assert bpy.ops.velour.compress_btf("INVOKE_DEFAULT", material="anew") == {"RUNNING_MODAL"}
+    yield 0.3
+    window.screenshot(folder, "anew-running")
+    yield from _rest()
+    yield 0.5
+    window.screenshot(folder, "anew-fitted")
+    node = scenes.velour_node(bpy.data.materials["anew"])
+    assert node.image.name != before
+    assert len([m for m in bpy.data.materials if m.name.startswith("anew")]) == 1
+    with window.override():
+        bpy.ops.ed.undo()
+    yield 0.3
+    node = scenes.velour_node(bpy.data.materials["anew"])
+    assert node.image.name == before, node.image.name
+    assert node.velour.btf.method == "KCTA"

@@ -1,18 +1,42 @@
 """What a fit of a BTF is asked for: of which BTF, by which method, how large."""
 
+import functools
 import os
+from typing import Any, NamedTuple
 
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ..properties.tile_settings import METHODS, SHAPE_OF
+from ..export import ExportError
+from ..export.files import StoredFile, absolute_path
+from ..export.nodes import velour_node
+from ..native import Btf
+from ..properties.btf_fit_settings import METHODS, NAMES, SHAPE_OF
+from . import measured
 from .tiles import find_tile, tile_folder
+
+
+class Chosen(NamedTuple):
+    """The BTF, and who asks for its fit: a tile, a material that has a measurement, or neither."""
+
+    path: str
+    settings: Any = None  # BtfFitSettings; None: those of the operator
+    tile: Any = None  # TileSource
+    material: bpy.types.Material | None = None
+
+    def loading(self):
+        """Loads the BTF as it is by now; knows nothing of Blender."""
+        if self.material is None:
+            return functools.partial(Btf.load, self.path)
+        measurement = velour_node(self.material).velour.measurement
+        stored = StoredFile.of(measurement, f"Material '{self.material.name}'")
+        return functools.partial(stored._replace(expected="").raw, Btf)
 
 
 class AskedFit:
     """Mixin of an operator."""
 
-    _keeps = True  # in the settings of the tile, what is given
+    _keeps = True  # in the settings of the tile or the material, what is given
 
     filepath: StringProperty(
         name="BTF",
@@ -23,7 +47,12 @@ class AskedFit:
     collection: StringProperty(
         name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}
     )
-    # Where given these replace the settings of the tile, where there is one.
+    material: StringProperty(
+        name="Material",
+        description="Whose BTF is fitted anew. Empty: a new material is made, of the file or of the tile",
+        options={"SKIP_SAVE"},
+    )
+    # Where given these replace the settings of the tile or the material, where there is one.
     method: EnumProperty(name="Method", items=METHODS, default="SRBF", options={"SKIP_SAVE"})
     clusters: IntProperty(
         name="Clusters",
@@ -55,27 +84,59 @@ class AskedFit:
     )
 
     def _chosen(self, context):
-        """The tile, or None where a file is named; and the path of its BTF."""
-        tile = None if self.filepath else find_tile(context, self.collection)
-        return tile, os.path.normpath(bpy.path.abspath(self.filepath or tile_folder(tile)))
+        if self.material:
+            return self._of_material(measured.wanted_material(context, self.material))
+        if self.filepath:
+            return Chosen(_normal(self.filepath))
+        tile = find_tile(context, self.collection)
+        return Chosen(_normal(tile_folder(tile)), tile.owner.velour, tile)
 
-    def _options(self, tile):
-        """Of compress_job()."""
-        return {
-            **self._asked_method(tile),
-            "tolerance": self._asked(tile, "tolerance"),
-            "bytes": int(self._asked(tile, "megabytes") * 1e6),
-        }
+    def _of_material(self, material):
+        measured.refuse_linked(material)
+        node = velour_node(material)
+        if node is None or node.velour.measurement is None:
+            raise ExportError(
+                f"Material '{material.name}': no BTF is chosen; use File > Import > Measured Material."
+            )
+        path = _normal(absolute_path(node.velour.measurement))
+        return Chosen(path, node.velour.btf, material=material)
 
-    def _asked_method(self, tile):
-        """The method, and of clusters and members what it takes."""
-        method = self._asked(tile, "method")
-        taken = {name: self._asked(tile, name) for name in SHAPE_OF.get(method, ())}
-        return {"method": method.lower().replace("_", "-"), **taken}
+    def _asked(self, settings):
+        """By NAMES: what was given, or what the settings say."""
+        if settings is None:
+            return {name: getattr(self, name) for name in NAMES}
+        given = {name: getattr(self, name) for name in NAMES if self.properties.is_property_set(name)}
+        if self._keeps:
+            keep(given, settings)
+        return {**{name: getattr(settings, name) for name in NAMES}, **given}
 
-    def _asked(self, tile, name):
-        """What was given, or what the tile asks for."""
-        is_given = self.properties.is_property_set(name)
-        if tile and is_given and self._keeps:
-            setattr(tile.owner.velour, name, getattr(self, name))
-        return getattr(tile.owner.velour if tile and not is_given else self, name)
+
+def keep(asked, settings):
+    """For the next fit."""
+    for name, value in asked.items():
+        setattr(settings, name, value)
+
+
+def options_of(asked):
+    """Of compress_job(); of clusters and members what the method takes."""
+    return {
+        "method": asked["method"].lower().replace("_", "-"),
+        **{name: asked[name] for name in SHAPE_OF.get(asked["method"], ())},
+        "tolerance": asked["tolerance"],
+        "bytes": int(asked["megabytes"] * 1e6),
+    }
+
+
+def fitted_as(settings, *whose):
+    """Changes with what a fit is asked for. For draw()."""
+    return repr((*whose, *(getattr(settings, name) for name in NAMES)))
+
+
+def refitted_as(material):
+    """The same of a material's BTF."""
+    settings = velour_node(material).velour
+    return fitted_as(settings.btf, material.name, absolute_path(settings.measurement))
+
+
+def _normal(path):
+    return os.path.normpath(bpy.path.abspath(path))

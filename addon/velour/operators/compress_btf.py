@@ -1,6 +1,7 @@
 """Make a material from a BTF: in the background of a window, or at once without one."""
 
 import contextlib
+import functools
 import hashlib
 import os
 from pathlib import Path
@@ -9,23 +10,28 @@ import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
 from ..core.fit_time import fit_of, remember
+from ..core.measurement_files import INDICES
 from ..core.plain_words import plain
 from ..core.read_job import ReadJob, check
 from ..core.sizes import data_size
 from ..export.caches import cache_folder
+from ..export.nodes import velour_node
 from ..native import Btf, compress_job
 from . import measured
 from .approximate import MakesModel
-from .asked_fit import AskedFit
-from .job_target import JobOwner
+from .asked_fit import AskedFit, keep, options_of
+from .job_target import JobOwner, JobTarget
 from .slots import SlotTarget
-from .tiles import held_out_folder
+from .tiles import held_out_beside
 
 
 class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
     bl_idname = "velour.compress_btf"
     bl_label = "Make Material from BTF"
-    bl_description = "Fit a model to a captured or measured BTF and make a material of it"
+    bl_description = (
+        "Fit a model to a captured or measured BTF: a new material's, or that of the material it is of, whose"
+        " model before it is not touched"
+    )
     bl_options = {"UNDO"}
 
     assign: BoolProperty(
@@ -39,17 +45,21 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
     slot: IntProperty(name="Slot", description="Its number, from 0", min=0, options={"SKIP_SAVE"})
 
     _what = "Making the material"
+    _target = None  # the material whose model is fitted anew
 
     def _begin(self, context):
-        tile, path = self._chosen(context)
-        self._owner = JobOwner(tile.owner) if tile else None
+        chosen = self._chosen(context)
+        self._owner = JobOwner(chosen.tile.owner) if chosen.tile else None
+        if chosen.material:
+            node = velour_node(chosen.material)
+            self._target, self._what = JobTarget(chosen.material, node), "The fit"
+            self._read_file = measured.ReadFile.of(node.velour.measurement)
         self._slot = SlotTarget.asked(context, self)
-        self._subject = measured.btf_name(path)
-        self._path = measured.btf_file(path)
-        self._asked_for = self._options(tile)
+        self._subject = chosen.material.name if chosen.material else measured.btf_name(chosen.path)
+        self._path = measured.btf_file(chosen.path)
+        self._asked_for = self._asked(chosen.settings)
         self._threads = context.scene.render.threads
-        folder = _held_out_of(tile)
-        self._job = self._reading = ReadJob(lambda: _read(path, folder))
+        self._job = self._reading = ReadJob(functools.partial(_read, chosen.loading(), _held_out_of(chosen)))
 
     def _finish(self):
         if self._reading is None:
@@ -58,15 +68,16 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         self._reading = None
         with btf, held_out or contextlib.nullcontext():
             self._digest = info["sha256"]
-            checkpoint = _checkpoint(self._digest, self._asked_for)
+            options = options_of(self._asked_for)
+            checkpoint = _checkpoint(self._digest, options)
             # One that goes on with what another has done would tell too little.
-            self._fit = None if os.path.exists(checkpoint) else fit_of(info, self._asked_for, self._threads)
+            self._fit = None if os.path.exists(checkpoint) else fit_of(info, options, self._threads)
             self._next = compress_job(
                 btf,
                 threads=self._threads,
                 checkpoint=checkpoint,
                 resume=1,
-                **self._asked_for,
+                **options,
                 **({"held_out": held_out} if held_out else {}),
             )
         return None
@@ -78,46 +89,65 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
             owner.velour.model = image
 
     def _wants_approximation(self):
-        return True
+        return self._target is None or super()._wants_approximation()
 
     def _put(self):
-        data, report = self._data, self._report
         if self._fit is not None:
             remember(Path(cache_folder()), self._fit, self._seconds)
+        material = self._put_anew() if self._target else self._put_new()
+        if material is not None:
+            self._put_approximation(material)
+            self._say_what_it_is(material)
+        return {"FINISHED"}
+
+    def _put_anew(self):
+        """The material, if it is still there."""
+        material, node = measured.put_model(self._data, self._target, self.report)
+        if node is not None:
+            measured.after_fit(material, node, self._read_file, self._digest, self.report)
+        return material
+
+    def _put_new(self):
         material = measured.new_material(self._subject)
         node = measured.ensure_node(material)
-        node.image = measured.packed_model(data, self._subject)
+        node.image = measured.packed_model(self._data, self._subject)
         node.velour.measurement = measured.measurement_image(self._path, self._digest)
-        self._put_approximation(material)
+        keep(self._asked_for, node.velour.btf)
         self._remember(node.image)
         if self._slot:
             self._slot.put(material, self.report)
         else:
             material.use_fake_user = True
+        return material
+
+    def _say_what_it_is(self, material):
+        report = self._report
         for sentence in report["warnings"]:
             self.report({"WARNING"}, plain(sentence))
         unseen = report["psnr_held_out"]
         self.report(
             {"INFO"},
-            f"Material '{material.name}': {data_size(len(data))}, 1:{report['ratio']:.0f},"
+            f"Material '{material.name}': {data_size(len(self._data))}, 1:{report['ratio']:.0f},"
             f" {report['psnr']:.1f} dB, error {report['relative_l2']:.3f}"
             + ("." if unseen is None else f"; {unseen:.1f} dB at pairs that it has not seen."),
         )
-        return {"FINISHED"}
 
 
-def _read(path, held_out):
+def _read(load, held_out):
     """Beside the window: the BTF, what is known of it, and the one to judge by or None."""
-    btf = Btf.load(path)
+    btf = load()
     check()
     return btf, btf.info(), held_out and Btf.load(held_out)
 
 
-def _held_out_of(tile):
-    """The folder of pairs to judge by that were captured beside the tile's BTF, or None."""
-    if tile is None or not tile.owner.velour.held_out:
+def _held_out_of(chosen):
+    """The folder of pairs to judge by that were captured beside the BTF, or None."""
+    if chosen.tile and not chosen.tile.owner.velour.held_out:
+        return None  # there may be one of an earlier capture
+    if not (chosen.tile or chosen.material):
         return None
-    folder = held_out_folder(tile)
+    is_index = os.path.basename(chosen.path) in INDICES
+    folder = held_out_beside(os.path.dirname(chosen.path) if is_index else chosen.path)
     return folder if os.path.isdir(folder) else None
 
 

@@ -1,16 +1,16 @@
 """Estimate: what the fit of a BTF will take, by its size and by the fits that were made before."""
 
+import functools
 from pathlib import Path
 
 import bpy
 
 from ..core.fit_text import fit_text
 from ..export.caches import cache_folder
-from ..native import Btf
 from . import measured
-from .asked_fit import AskedFit
+from .asked_fit import AskedFit, fitted_as, options_of, refitted_as
 from .reads_first import ReadsFirst
-from .tiles import fitted_as
+from .tiles import asked_of
 
 
 class VELOUR_OT_estimate_fit(AskedFit, ReadsFirst, bpy.types.Operator):
@@ -23,11 +23,16 @@ class VELOUR_OT_estimate_fit(AskedFit, ReadsFirst, bpy.types.Operator):
     _keeps = False
 
     def _read(self, context):
-        tile, path = self._chosen(context)
-        self._subject = tile.owner.name if tile else measured.btf_name(path)
-        asked, threads, folder = self._options(tile), context.scene.render.threads, Path(cache_folder())
-        self._key = fitted_as(tile.owner) if tile else ""
-        return lambda: _text(path, asked, threads, folder)
+        chosen = self._chosen(context)
+        options = options_of(self._asked(chosen.settings))
+        self._subject, self._key = measured.btf_name(chosen.path), ""
+        if chosen.tile:
+            self._subject, self._key = chosen.tile.owner.name, captured_and_fitted_as(chosen.tile.owner)
+        if chosen.material:
+            self._subject, self._key = chosen.material.name, refitted_as(chosen.material)
+        return functools.partial(
+            _text, chosen.loading(), options, context.scene.render.threads, Path(cache_folder())
+        )
 
     def _use(self, context, text):
         state = context.window_manager.velour
@@ -36,6 +41,11 @@ class VELOUR_OT_estimate_fit(AskedFit, ReadsFirst, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _text(path, *asked):
-    with Btf.load(path) as btf:
+def captured_and_fitted_as(owner):
+    """Changes with what capture and fit of a tile are asked for. For draw()."""
+    return fitted_as(owner.velour, asked_of(owner), owner.velour.directory)
+
+
+def _text(load, *asked):
+    with load() as btf:
         return fit_text(btf, *asked)

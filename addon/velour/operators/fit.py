@@ -5,7 +5,7 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..core.model_warnings import panel_warnings
 from ..export import ExportError
-from ..export.files import MeasurementReading
+from ..export.files import MeasurementReading, absolute_path
 from ..export.nodes import velour_node
 from ..native import fit_job
 from ..properties.material_settings import MODELS
@@ -44,6 +44,10 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
         owner = f"Material '{material.name}'"
         if node is None or node.velour.measurement is None:
             raise ExportError(f"{owner}: no measurement is chosen; use File > Import > Measured Material.")
+        if measured.is_btf(node.velour.measurement):
+            path = absolute_path(node.velour.measurement)
+            call = f"bpy.ops.velour.compress_btf(material={material.name!r})"
+            raise ExportError(f"{owner}: {path} is a BTF, which {call} fits, and Fit in its panel.")
         self._target = JobTarget(material, node)
         self._subject = material.name
         settings = self._settings(node)
@@ -56,7 +60,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
             "threads": context.scene.render.threads,
         }
         measurement = node.velour.measurement
-        self._measured, self._place = measurement.name, measured.place_of(measurement)
+        self._read_file = measured.ReadFile.of(measurement)
         self._job = self._reading = MeasurementReading(measurement, owner, may_differ=True)
 
     def _finish(self):
@@ -80,22 +84,11 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
         if node is None:
             return {"FINISHED"}
         self._put_approximation(material)
-        self._stamp(material, node.velour.measurement)
+        measured.after_fit(material, node, self._read_file, self._digest, self.report)
         for warning in panel_warnings(info):
             self.report({"WARNING"}, f"Material '{material.name}': {warning}")
         self.report({"INFO"}, f"Fitted '{material.name}': {info['lobes']} lobes, {len(data)} bytes.")
         return {"FINISHED"}
-
-    def _stamp(self, material, measurement):
-        """The measurement that was read, if the material still has it."""
-        if measured.place_of(measurement) == self._place:
-            measurement.velour.sha256 = self._digest
-            return
-        self.report(
-            {"WARNING"},
-            f"Material '{material.name}' has another measurement by now, or none; its model is of"
-            f" '{self._measured}'.",
-        )
 
 
 def _model_options(settings):

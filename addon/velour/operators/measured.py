@@ -1,6 +1,7 @@
 """What the operators share: making measured materials and the image datablocks that stand for their files."""
 
 import os
+from typing import NamedTuple
 
 import bpy
 
@@ -150,6 +151,40 @@ def place_of(image):
     if image is None:
         return None
     return absolute_path(image), image.packed_file.size if image.packed_file else None
+
+
+class ReadFile(NamedTuple):
+    """Which measurement a job has read."""
+
+    name: str  # of the image
+    place: tuple
+
+    @classmethod
+    def of(cls, image):
+        return cls(image.name, place_of(image))
+
+
+def after_fit(material, node, read, digest, report):
+    """Keeps the hash of the measurement that a model was fitted to, if the material still has that one, and
+    says what the model before had."""
+    if node.velour.structure is not None:
+        sentence = "An outline (VOTF) stays with the model before; press Add Outline for the new one."
+        report({"INFO"}, f"Material '{material.name}': {sentence}")
+    measurement = node.velour.measurement
+    if place_of(measurement) == read.place:
+        measurement.velour.sha256 = digest
+        return
+    report(
+        {"WARNING"},
+        f"Material '{material.name}' has another measurement by now, or none; its model is of '{read.name}'.",
+    )
+
+
+def is_btf(image):
+    """Whether a measurement is a BTF, by its name. For draw()."""
+    path = absolute_path(image)
+    suffix, is_index = os.path.splitext(path)[1], os.path.basename(path) in INDICES
+    return is_index or suffix in (".btf", ".csv") or os.path.isdir(path)
 
 
 def btf_name(path):

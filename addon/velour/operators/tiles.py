@@ -42,10 +42,11 @@ def tile_folder(tile):
 
 def held_out_folder(tile):
     """Where the pairs go that models of its BTF are judged by: beside it."""
-    return _held_out_beside(tile_folder(tile))
+    return held_out_beside(tile_folder(tile))
 
 
-def _held_out_beside(folder):
+def held_out_beside(folder):
+    """The same of the folder that a BTF is."""
     return folder.removesuffix(".btf") + ".held-out.btf"
 
 
@@ -54,7 +55,7 @@ def new_folder(tile):
     folder = tile_folder(tile)
     name = re.sub(r"\.\d{3,}$", "", folder.removesuffix(".btf"))
     number = 0
-    while os.path.exists(folder) or os.path.exists(_held_out_beside(folder)):
+    while os.path.exists(folder) or os.path.exists(held_out_beside(folder)):
         number += 1
         folder = f"{name}.{number:03}.btf"
     return bpy.path.relpath(folder) if bpy.data.filepath else folder
@@ -77,19 +78,13 @@ def capture_options(context, tile, place):
     }
 
 
-def fitted_as(owner):
-    """The same of what a material of it is asked for."""
-    settings = owner.velour
-    names = ("directory", "method", "clusters", "members", "tolerance", "megabytes")
-    return repr((_asked_of(owner), *(getattr(settings, name) for name in names)))
-
-
 def captured_as(owner):
     """Changes with what a capture of the tile is asked for, and with the tile. For draw()."""
-    return repr((_asked_of(owner), _geometry(owner)))
+    return repr((asked_of(owner), _geometry(owner)))
 
 
-def _asked_of(owner):
+def asked_of(owner):
+    """What a capture of the tile is asked for. For draw()."""
     settings = owner.velour
     names = (*CAPTURE_NUMBERS, "held_out", "sides", "use_approximate")
     return owner.name, *settings.period, *(getattr(settings, name) for name in names)

@@ -4,6 +4,7 @@ import bpy
 
 from .approximation_state import VelourApproximationState
 from .browser_settings import VelourBrowserSettings
+from .btf_fit_settings import VelourBtfFitSettings
 from .check_state import VelourCheckState, VelourSentence, VelourServedModel
 from .file_settings import VelourFileSettings
 from .job_state import VelourJobState
@@ -27,6 +28,7 @@ _POINTERS = (
 # A group comes after those that it holds.
 CLASSES = (
     VelourPlacementSettings,
+    VelourBtfFitSettings,
     VelourPlotSettings,
     VelourBrowserSettings,
     VelourSentence,

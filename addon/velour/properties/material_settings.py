@@ -11,6 +11,7 @@ from bpy.props import (
     StringProperty,
 )
 
+from .btf_fit_settings import VelourBtfFitSettings
 from .changed import changed, look_changed
 from .placement_settings import VelourPlacementSettings
 from .saved_by import saved_by
@@ -114,6 +115,12 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         override=_OVERRIDE,
     )
     seed: IntProperty(name="Seed", description="Of the fit", default=0, min=0, override=_OVERRIDE)
+    btf: PointerProperty(
+        name="Fit of a BTF",
+        description="What a fit of the material's BTF is asked for",
+        type=VelourBtfFitSettings,
+        override=_OVERRIDE,
+    )
     job: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # marks of those whose results come here
     scene_model: PointerProperty(
         name="Model for the Scene",

@@ -4,13 +4,13 @@ import bpy
 from bpy.props import (
     BoolProperty,
     EnumProperty,
-    FloatProperty,
     FloatVectorProperty,
     IntProperty,
     PointerProperty,
     StringProperty,
 )
 
+from .btf_fit_settings import BtfFitSettings
 from .changed import period_changed
 from .saved_by import saved_by
 
@@ -19,21 +19,11 @@ SIDES = (
     ("ONE", "Front", "Seen and lit from above alone", 1),
     ("TWO", "Both", "Seen and lit from above and from below", 2),
 )
-# Numbers and, in lower case with hyphens, names are the library's.
-METHODS = (
-    ("SRBF", "SRBF", "Lobes of light and view over a relief: smallest, and smooth between directions", 1),
-    ("KCTA", "K-CTA", "Clustered tensors, of which a texel has a few", 4),
-    ("CTA", "CTA", "Clustered tensors, of which a texel has one", 3),
-    ("TUCKER", "Tucker", "One tensor decomposition for all texels", 2),
-    ("SVD", "SVD", "Truncated singular values", 0),
-    ("SVD_VIEW", "SVD by View", "Singular values of each view for itself", 5),
-)
-SHAPE_OF = {"CTA": ("clusters",), "KCTA": ("clusters", "members")}  # settings that a method takes
 _OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 
-class VelourTileSettings(bpy.types.PropertyGroup):
-    """`object.velour`, `collection.velour`."""
+class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
+    """`object.velour`, `collection.velour`; with what a material of the tile is asked for."""
 
     saved_by: saved_by()
     period: FloatVectorProperty(
@@ -116,48 +106,6 @@ class VelourTileSettings(bpy.types.PropertyGroup):
         override=_OVERRIDABLE,
     )
 
-    # What a material is asked for.
-    method: EnumProperty(
-        name="Method",
-        description="What the BTF is turned into",
-        items=METHODS,
-        default="SRBF",
-        override=_OVERRIDABLE,
-    )
-    clusters: IntProperty(
-        name="Clusters",
-        description="Of texels that look alike in how they turn with view and light. 0: what serves best",
-        min=0,
-        max=256,
-        override=_OVERRIDABLE,
-    )
-    members: IntProperty(
-        name="Clusters of a Texel",
-        description="How many a texel is made of. 0: what serves best",
-        min=0,
-        max=8,
-        override=_OVERRIDABLE,
-    )
-    tolerance: FloatProperty(
-        name="Largest Error",
-        description="The smallest material that differs from the BTF by no more than this part: 0.1 is about"
-        " a tenth of how bright things look. 0: as good as the size allows",
-        min=0.0,
-        max=0.9,
-        default=0.0,
-        precision=3,
-        step=1,
-        override=_OVERRIDABLE,
-    )
-    megabytes: FloatProperty(
-        name="Largest Size (MB)",
-        description="Of the material, at most. 0: a four-hundredth of the BTF; with a largest error, whatever"
-        " it takes",
-        min=0.0,
-        default=0.0,
-        precision=3,
-        override=_OVERRIDABLE,
-    )
     model: PointerProperty(
         name="Model",
         description="That was made of the tile last",

@@ -11,11 +11,14 @@ from ..export.notes import Notes
 from ..export.shaders import surface_layers
 from ..operators.accept_file import VELOUR_OT_accept_file
 from ..operators.add_material import VELOUR_OT_add_material
+from ..operators.asked_fit import refitted_as
 from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.mark_asset import VELOUR_OT_mark_asset
+from ..operators.measured import is_btf
 from ..operators.open_file import VELOUR_OT_open_measurement, VELOUR_OT_open_model
 from ..operators.save_model import VELOUR_OT_save_model
+from .draw_btf_fit import draw_btf_fit
 from .progress import draw_progress
 from .summaries import is_changed, measurement_summary, model_summary
 from .text import draw_sentence
@@ -56,15 +59,12 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         layout.template_ID(node, "image", open=VELOUR_OT_open_model.bl_idname, text="Model")
         info = model_summary(node.image) if node.image is not None else None
         info = info if isinstance(info, dict) else {}
-        if "texels" not in info:  # BTFs are fitted elsewhere
-            _draw_fit_settings(layout.column(align=True), settings)
-            draw_sentence(context, layout, tolerance_words(settings.tolerance), icon="INFO")
-        draw_progress(context, layout)  # of BTFs, too
-        if "texels" not in info:
-            layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
-            row = layout.row()
-            row.active = info.get("model", "scattered") == "scattered"
-            row.prop(settings, "neighbors")
+        if settings.measurement is not None and is_btf(settings.measurement):
+            _draw_btf(context, layout, settings)
+        elif "texels" in info:  # of which there is no BTF to fit
+            draw_progress(context, layout)
+        else:
+            _draw_brdf(context, layout, settings, info)
         layout.column().prop(settings, "use_reference")
         _draw_look(context, layout, settings, info)
 
@@ -84,6 +84,22 @@ def draw_refusal(context, layout, image, sentence):
     draw_sentence(context, layout, sentence, icon="ERROR")
     if is_changed(image):
         layout.operator(VELOUR_OT_accept_file.bl_idname)
+
+
+def _draw_btf(context, layout, settings):
+    key, name = refitted_as(context.material), context.material.name
+    draw_btf_fit(context, layout, settings.btf, key, (VELOUR_OT_fit.bl_label, "PLAY"), material=name)
+    draw_progress(context, layout)
+
+
+def _draw_brdf(context, layout, settings, info):
+    _draw_fit_settings(layout.column(align=True), settings)
+    draw_sentence(context, layout, tolerance_words(settings.tolerance), icon="INFO")
+    draw_progress(context, layout)
+    layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
+    row = layout.row()
+    row.active = info.get("model", "scattered") == "scattered"
+    row.prop(settings, "neighbors")
 
 
 def _draw_fit_settings(column, settings):

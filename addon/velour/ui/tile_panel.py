@@ -9,10 +9,10 @@ from ..export.objects import GEOMETRY
 from ..operators.capture_btf import VELOUR_OT_capture_btf
 from ..operators.compress_btf import VELOUR_OT_compress_btf
 from ..operators.estimate_capture import VELOUR_OT_estimate_capture
-from ..operators.estimate_fit import VELOUR_OT_estimate_fit
+from ..operators.estimate_fit import captured_and_fitted_as
 from ..operators.repeat_tile import VELOUR_OT_repeat_tile, is_repeated
-from ..operators.tiles import captured_as, fitted_as
-from ..properties.tile_settings import SHAPE_OF
+from ..operators.tiles import captured_as
+from .draw_btf_fit import draw_btf_fit
 from .draw_plot import draw_chosen, draw_plot
 from .progress import draw_progress
 from .summaries import model_summary
@@ -52,18 +52,9 @@ class TilePanel:
 
     def _draw_material(self, context, layout, owner, collection_name):
         """What a material of the capture is asked for, and what the last one was."""
-        settings = owner.velour
-        column = layout.column(align=True)
-        for name in ("method", *SHAPE_OF.get(settings.method, ())):
-            column.prop(settings, name)
-        column.prop(settings, "tolerance")
-        column.prop(settings, "megabytes")
-        state = context.window_manager.velour
-        if state.fit_estimate and state.fit_estimated == fitted_as(owner):
-            draw_sentence(context, layout, state.fit_estimate, icon="TIME")
-        row = layout.row()
-        for operator, icon in ((VELOUR_OT_estimate_fit, "TIME"), (VELOUR_OT_compress_btf, "MATERIAL")):
-            row.operator(operator.bl_idname, icon=icon).collection = collection_name
+        settings, button = owner.velour, (VELOUR_OT_compress_btf.bl_label, "MATERIAL")
+        key = captured_and_fitted_as(owner)
+        draw_btf_fit(context, layout, settings, key, button, collection=collection_name)
         info = model_summary(settings.model) if settings.model is not None else None
         if isinstance(info, dict) and "texels" in info:
             draw_plot(context, layout, settings.model, None, "ORDER")
