@@ -35,7 +35,7 @@ class CompressMethods(BlenderTest):
     def test_clustered_tensors_have_the_clusters_that_were_asked_for(self):
         tile = bpy.context.object
         tile.velour.members = 2
-        panel = importlib.import_module(f"{inputs.ADDON}.ui.material_panel")
+        panel = importlib.import_module(f"{inputs.ADDON}.ui.model_panel")
         for method, members in (("TUCKER", 1), ("CTA", 1), ("KCTA", 2)):
             with self.subTest(method=method):
                 bpy.ops.velour.compress_btf(method=method, clusters=3, megabytes=0.03)

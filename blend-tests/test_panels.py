@@ -9,7 +9,7 @@ import addon_utils
 import bpy
 from velour.operators import measured
 from velour.operators.background_job import TABS
-from velour.ui import material_panel, summaries
+from velour.ui import material_panel, model_panel, summaries
 from velour.ui.material_panel import VELOUR_MATERIAL_PT_measured
 from velour.ui.viewport_panel import VELOUR_VIEW3D_PT_lighting
 
@@ -150,7 +150,7 @@ class Panels(BlenderTest):
         context = self._of_a_material()
         node = scenes.velour_node(context.material)
         node.image = measured.linked_model(str(self.folder / "gone.velour"), "old")
-        panel = material_panel.VELOUR_MATERIAL_PT_model
+        panel = model_panel.VELOUR_MATERIAL_PT_model
         self.assertEqual(self._read_and_offered(context, panel), [])
         (self.folder / "gone.velour").write_bytes(inputs.model_bytes(inputs.lambert_measurement()))
         self.assertEqual(self._read_and_offered(context, panel), ["velour.accept_file"])

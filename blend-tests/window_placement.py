@@ -66,7 +66,7 @@ def model_rows(folder):
     material = bpy.data.materials["Quarters"]
     info = yield from _model_info(material)
     size = scenes.velour_node(material).image.packed_file.size
-    rows = dict(_ui("material_panel")._btf_rows(info))
+    rows = dict(_ui("model_panel")._btf_rows(info))
     raw = 6 * (inputs.QUARTER_TEXELS * 16) ** 2  # texels and pairs of half-float colours
     assert rows["Kind"] == "BTF, srbf", rows
     assert rows["Texels"] == "16 x 16", rows
@@ -120,8 +120,7 @@ def unknown_size(folder):
     window.screenshot(folder, "unknown-size")
     image = scenes.velour_node(bpy.data.materials["Quarters"]).image
     assert (
-        dict(_ui("material_panel")._btf_rows(_ui("summaries").model_summary(image)))["Tile"]
-        == "size not known"
+        dict(_ui("model_panel")._btf_rows(_ui("summaries").model_summary(image)))["Tile"] == "size not known"
     )
 
 

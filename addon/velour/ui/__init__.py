@@ -17,11 +17,11 @@ from .layer_panels import VELOUR_VIEWLAYER_PT_filter, VELOUR_VIEWLAYER_PT_overri
 from .light_panel import VELOUR_LIGHT_PT_light
 from .material_panel import (
     VELOUR_MATERIAL_PT_measured,
-    VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_surface,
 )
 from .material_settings_panel import VELOUR_MATERIAL_PT_settings
+from .model_panel import VELOUR_MATERIAL_PT_model
 from .outline_panel import VELOUR_MATERIAL_PT_outline
 from .pass_panels import (
     VELOUR_VIEWLAYER_PT_passes,

@@ -5,7 +5,8 @@ import bpy
 from ..export.nodes import approximation_node, velour_node
 from ..operators.approximate import VELOUR_OT_approximate
 from ..properties.approximation_state import VIEW_ANGLES
-from .material_panel import MaterialPanel, VELOUR_MATERIAL_PT_model, draw_error_by_angle, draw_rows
+from .material_panel import MaterialPanel
+from .model_panel import VELOUR_MATERIAL_PT_model, draw_error_by_angle, draw_rows
 from .summaries import model_summary
 from .text import draw_sentence
 

@@ -8,7 +8,8 @@ from ..operators.add_votf import VELOUR_OT_add_votf
 from ..operators.asked_outline import outlined_as
 from ..operators.estimate_votf import VELOUR_OT_estimate_votf
 from .draw_plot import draw_plot, draw_plot_buttons
-from .material_panel import MaterialPanel, VELOUR_MATERIAL_PT_model, draw_rows
+from .material_panel import MaterialPanel
+from .model_panel import VELOUR_MATERIAL_PT_model, draw_rows
 from .placement_summary import measured
 from .progress import draw_progress
 from .summaries import model_summary

@@ -4,7 +4,8 @@ import bpy
 
 from ..export.nodes import velour_node
 from ..operators.placement import VELOUR_OT_keep_uv_density
-from .material_panel import MaterialPanel, draw_rows
+from .material_panel import MaterialPanel
+from .model_panel import draw_rows
 from .placement_summary import measured
 from .summaries import model_summary
 from .text import draw_sentence

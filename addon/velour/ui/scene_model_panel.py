@@ -7,7 +7,8 @@ from ..operators.check_scene import VELOUR_OT_check_scene
 from ..operators.fit_for_scene import VELOUR_OT_fit_for_scene
 from ..operators.open_file import VELOUR_OT_open_scene_model
 from ..operators.save_model import VELOUR_OT_save_model
-from .material_panel import MaterialPanel, draw_refusal, draw_rows
+from .material_panel import MaterialPanel, draw_refusal
+from .model_panel import draw_rows
 from .summaries import model_summary
 from .text import draw_sentence
 
