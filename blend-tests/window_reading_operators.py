@@ -5,7 +5,7 @@ from unittest import mock
 import bpy
 
 from support import inputs, scenes, window
-from support.reading import TILES, Held, check_turns, large_file, module, shown
+from support.reading import LARGE, TILES, Held, check_turns, large_file, module, shown
 
 _ACCEPT = "accept_file.VELOUR_OT_accept_file"
 _KEEP = "placement.VELOUR_OT_keep_uv_density"
@@ -80,7 +80,7 @@ def _changed(folder, name, size):
 
 
 def accept_beside_the_window(folder):
-    image, digest = _changed(folder, "large.velour", 100_000_000)
+    image, digest = _changed(folder, "large.velour", LARGE)
     with _Timed(_class(_ACCEPT), "_read", "_use") as timed:
         held = _held_content()
         _invoke(bpy.ops.velour.accept_file)
@@ -179,7 +179,7 @@ def _tiles(folder, name, size):
 
 
 def density_beside_the_window(folder):
-    placement = _tiles(folder, "tiles.velour", 100_000_000)
+    placement = _tiles(folder, "tiles.velour", LARGE)
     with _Timed(_class(_KEEP), "_read", "_use") as timed:
         held = _held_content()
         _invoke(bpy.ops.velour.keep_uv_density)
@@ -230,7 +230,7 @@ def _begin_outline(folder, name, size):
 def outline_beside_the_window(folder):
     """Its beginning takes the structure from Blender; if it read the model, too, it would wait for ever."""
     with _Timed(_class("add_votf.VELOUR_OT_add_votf"), "_step") as timed:
-        image, held = _begin_outline(folder, "outlined.velour", 100_000_000)
+        image, held = _begin_outline(folder, "outlined.velour", LARGE)
         yield 0.3
         assert _state().stage == "reading", _state().stage
         held.release()
@@ -291,7 +291,7 @@ def scene_beside_the_window(folder):
     fit = module("operators.scene_fit").SceneFit
     operator = _class("fit_for_scene.VELOUR_OT_fit_for_scene")
     with _Timed(fit, "__init__", "take", "fit") as timed, _Timed(operator, "_begin", "_start") as begun:
-        image, held = _begin_scene_fit(folder, "full.velour", 100_000_000)
+        image, held = _begin_scene_fit(folder, "full.velour", LARGE)
         yield 0.3
         assert (_state().running, _state().stage) == (True, "reading")
         window.screenshot(folder, "scene-reading")

@@ -12,7 +12,7 @@ from . import inputs, window
 
 _DATA = Path(__file__).resolve().parent.parent / "scenes/data"
 MODEL, TILES = _DATA / "paint.velour", _DATA / "weave.velour"
-LARGE = 100_000_000  # bytes
+LARGE = 300_000_000  # bytes: beside them what a turn has to do anyway is little
 _HELD_SHARE = 0.08  # that a turn may take from the main thread, of what reading at once takes from it
 
 
