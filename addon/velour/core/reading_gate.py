@@ -39,22 +39,24 @@ def pause() -> None:
 def closed() -> Iterator[None]:
     """For the main thread: until its end no thread that reads is in Python, but for one that has come to no
     pause within a second."""
-    _close(1)
+    _count(1)
     try:
+        _wait()
         yield
     finally:
-        _open(1)
+        _count(-1)
 
 
 @contextlib.contextmanager
 def opened() -> Iterator[None]:
     """In the midst of closed(): what waits for a thread lets it go on."""
     before = _closed
-    _open(before)
+    _count(-before)
     try:
         yield
     finally:
-        _close(before)
+        _count(before)
+        _wait()
 
 
 def _enter() -> None:
@@ -71,19 +73,16 @@ def _leave() -> None:
         _changed.notify_all()
 
 
-def _close(times: int) -> None:
+def _count(more: int) -> None:
+    """Of closed() that last."""
     global _closed
-    if not times:
-        return
-    with _changed:
-        _closed += times
-        _changed.wait_for(lambda: not _inside, _PATIENCE)
+    if more:
+        with _changed:
+            _closed += more
+            _changed.notify_all()
 
 
-def _open(times: int) -> None:
-    global _closed
-    if not times:
-        return
+def _wait() -> None:
+    """Until no thread is inside, if there is to be none."""
     with _changed:
-        _closed -= times
-        _changed.notify_all()
+        _changed.wait_for(lambda: not (_closed and _inside), _PATIENCE)

@@ -10,7 +10,6 @@ import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
 from ..core.fit_time import fit_of, remember
-from ..core.measurement_files import INDICES
 from ..core.plain_words import plain
 from ..core.read_job import ReadJob, check
 from ..core.sizes import data_size
@@ -22,7 +21,7 @@ from .approximate import MakesModel
 from .asked_fit import AskedFit, keep, options_of
 from .job_target import JobOwner, JobTarget
 from .slots import SlotTarget
-from .tiles import held_out_beside
+from .tiles import held_out_folder
 
 
 class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
@@ -59,7 +58,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         self._path = measured.btf_file(chosen.path)
         self._asked_for = self._asked(chosen.settings)
         self._threads = context.scene.render.threads
-        self._job = self._reading = ReadJob(functools.partial(_read, chosen.loading(), _held_out_of(chosen)))
+        self._job = self._reading = ReadJob(functools.partial(_read, chosen.loading(), _held_out_of(chosen.tile)))
 
     def _finish(self):
         if self._reading is None:
@@ -140,14 +139,12 @@ def _read(load, held_out):
     return btf, btf.info(), held_out and Btf.load(held_out)
 
 
-def _held_out_of(chosen):
-    """The folder of pairs to judge by that were captured beside the BTF, or None."""
-    if chosen.tile and not chosen.tile.owner.velour.held_out:
-        return None  # there may be one of an earlier capture
-    if not (chosen.tile or chosen.material):
+def _held_out_of(tile):
+    """The folder of pairs to judge by that were captured beside the tile's BTF, or None. Of a BTF without its
+    tile nothing says whether what lies beside it is of the same capture."""
+    if tile is None or not tile.owner.velour.held_out:
         return None
-    is_index = os.path.basename(chosen.path) in INDICES
-    folder = held_out_beside(os.path.dirname(chosen.path) if is_index else chosen.path)
+    folder = held_out_folder(tile)
     return folder if os.path.isdir(folder) else None
 
 

@@ -42,11 +42,10 @@ def tile_folder(tile):
 
 def held_out_folder(tile):
     """Where the pairs go that models of its BTF are judged by: beside it."""
-    return held_out_beside(tile_folder(tile))
+    return _held_out_beside(tile_folder(tile))
 
 
-def held_out_beside(folder):
-    """The same of the folder that a BTF is."""
+def _held_out_beside(folder):
     return folder.removesuffix(".btf") + ".held-out.btf"
 
 
@@ -55,7 +54,7 @@ def new_folder(tile):
     folder = tile_folder(tile)
     name = re.sub(r"\.\d{3,}$", "", folder.removesuffix(".btf"))
     number = 0
-    while os.path.exists(folder) or os.path.exists(held_out_beside(folder)):
+    while os.path.exists(folder) or os.path.exists(_held_out_beside(folder)):
         number += 1
         folder = f"{name}.{number:03}.btf"
     return bpy.path.relpath(folder) if bpy.data.filepath else folder
