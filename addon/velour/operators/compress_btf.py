@@ -58,7 +58,9 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         self._path = measured.btf_file(chosen.path)
         self._asked_for = self._asked(chosen.settings)
         self._threads = context.scene.render.threads
-        self._job = self._reading = ReadJob(functools.partial(_read, chosen.loading(), _held_out_of(chosen.tile)))
+        self._job = self._reading = ReadJob(
+            functools.partial(_read, chosen.loading(), _held_out_of(chosen.tile))
+        )
 
     def _finish(self):
         if self._reading is None:
