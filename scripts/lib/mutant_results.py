@@ -1,0 +1,113 @@
+"""What a campaign of scripts/mutants has found so far: build/mutants/results.json."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import Counter
+from pathlib import Path
+
+import markdown_table
+from mutant_faults import Fault
+from mutant_tests import GROUPS, LONG_SUITE, Outcome
+
+SEEN = "seen"
+UNSEEN = "not seen by the nearest tests"
+SHORT_MISSED = "not seen by the short suite"  # the long one is still to come
+LONG = "only the long suite"
+MISSED = "missed"
+BROKEN = "does not build"
+UNPLANTED = "does not apply"
+
+
+class Results:
+    """Kept by the commit, and each fault by its patch, too. Whatever is of another one does not count."""
+
+    def __init__(self, path: Path, commit: str):
+        self._path, self.commit = path, commit
+        kept = _read(path)
+        self.faults: dict[str, dict] = kept.get("faults", {})
+        is_same = kept.get("commit") == commit
+        self.clean: dict[str, dict] = kept.get("clean", {}) if is_same else {}
+
+    def of(self, fault: Fault) -> dict | None:
+        found = self.faults.get(fault.name)
+        is_current = found and found["digest"] == fault.digest and found["commit"] == self.commit
+        return found if is_current else None
+
+    def state(self, fault: Fault) -> str | None:
+        found = self.of(fault)
+        return found["state"] if found else None
+
+    def keep(self, fault: Fault, state: str, seconds: float, by: str = "", case: str = "") -> None:
+        """`by`: the tests that saw it, `case`: the first of them that failed."""
+        before = self.of(fault) or {"seconds": 0.0}
+        self.faults[fault.name] = {
+            "digest": fault.digest,
+            "commit": self.commit,
+            "state": state,
+            "by": by,
+            "case": case,
+            "seconds": round(before["seconds"] + seconds, 1),
+        }
+        self._write()
+
+    def keep_clean(self, tests: str, found: Outcome) -> None:
+        """What `tests` found without a fault."""
+        self.clean[tests] = {"passed": found.passed, "failed": list(found.failed)}
+        self._write()
+
+    def is_usable(self, tests: str) -> bool:
+        """Whether a failure proves anything: a file has to pass without a fault, a group only in part."""
+        found = self.clean[tests]
+        return found["passed"] > 0 and (not found["failed"] or tests in (*GROUPS, LONG_SUITE))
+
+    def new_failures(self, tests: str, found: Outcome) -> list[str]:
+        """The cases that fail with a fault, and not without it."""
+        return [case for case in found.failed if case not in self.clean[tests]["failed"]]
+
+    def unusable(self) -> list[str]:
+        """A line about all tests that prove nothing."""
+        return [
+            f"not usable: {tests}: {', '.join(found['failed']) or 'no case'} "
+            f"{'fails without a fault, too' if found['failed'] else 'runs here'}"
+            for tests, found in self.clean.items()
+            if not self.is_usable(tests)
+        ]
+
+    def counts(self, faults: list[Fault]) -> str:
+        """The line that a campaign ends with."""
+        states = Counter(self.state(fault) or "not tried" for fault in faults)
+        return ", ".join(f"{count} {state}" for state, count in states.most_common())
+
+    def _write(self) -> None:
+        text = json.dumps({"commit": self.commit, "clean": self.clean, "faults": self.faults}, indent=1)
+        temporary = self._path.with_name(f".{self._path.name}.{os.getpid()}")
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        temporary.write_text(text + "\n", encoding="utf-8")
+        os.replace(temporary, self._path)
+
+
+def _read(path: Path) -> dict:
+    """Nothing where no campaign has begun, or where the file is damaged."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+
+
+def table(results: Results, faults: list[Fault]) -> str:
+    """Markdown: a row a fault, those of an older commit too, and which commits they are of."""
+    rows = [_row(fault, results.faults.get(fault.name)) for fault in faults]
+    commits = sorted({found["commit"][:8] for found in results.faults.values()})
+    header = ["Fault", "Folder", "What is wrong then", "Seen by", "Seconds"]
+    return markdown_table.table(header, rows) + f"\nCommit: {', '.join(commits) or 'no results yet'}\n"
+
+
+def _row(fault: Fault, found: dict | None) -> list[str]:
+    if found is None or found["digest"] != fault.digest:
+        return [fault.name, fault.folder, fault.planted, "not tried", ""]
+    seen = ", ".join(filter(None, (found["by"], found["case"]))) if found["by"] else found["state"]
+    if found["state"] == LONG:
+        seen = f"{LONG}: {found['case']}"
+    return [fault.name, fault.folder, fault.planted, seen, f"{found['seconds']:.0f}"]

@@ -1,0 +1,150 @@
+"""A copy of a commit with a build folder of its own, in which one fault at a time is planted."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import mutant_tests
+from mutant_tests import PRESET, Outcome, Run
+
+PLANTED = "VELOUR_MUTANT"  # the fault's name in the environment of its tests
+_BUILD_SECONDS = 7200
+_PATIENCE_SECONDS = 20
+
+
+class TreeError(RuntimeError):
+    """One sentence: why the copy cannot be used."""
+
+
+class BuildError(RuntimeError):
+    """The fault, or the commit without one, does not compile; the log says why."""
+
+
+class Tree:
+    """`root`: the repository; `folder`: where its copy lies."""
+
+    def __init__(self, root: Path, folder: Path):
+        self.root, self.folder = root, folder
+
+    def prepare(self, commit: str) -> None:
+        """Brings the copy to `commit`. It reads the objects of the repository, and adds nothing to it."""
+        if not (self.folder / ".git").is_dir():
+            shutil.rmtree(self.folder, ignore_errors=True)
+            _git(self.root, "clone", "--quiet", "--shared", "--no-checkout", str(self.root), str(self.folder))
+        _git(self.folder, "checkout", "--quiet", "--force", "--detach", commit)
+        self.restore()
+        self._share_tools()
+
+    def _share_tools(self) -> None:
+        """What scripts/setup has from PyPI is not downloaded once more."""
+        tools, shared = self.folder / "build/tools", self.root / "build/tools"
+        tools.parent.mkdir(exist_ok=True)
+        if shared.is_dir() and not tools.exists():
+            tools.symlink_to(shared)
+
+    def takes(self, patch: Path) -> bool:
+        """Whether the fault can be planted."""
+        command = ["git", "apply", "--check", str(patch)]
+        return subprocess.run(command, cwd=self.folder, capture_output=True, check=False).returncode == 0
+
+    @contextlib.contextmanager
+    def planted(self, patch: Path) -> Iterator[None]:
+        """Meanwhile the copy has the fault."""
+        try:
+            _git(self.folder, "apply", str(patch))
+            yield
+        finally:
+            self.restore()
+
+    def restore(self) -> None:
+        """Takes back whatever is planted."""
+        _git(self.folder, "checkout", "--quiet", "--", ".")
+        left = _git(self.folder, "status", "--porcelain")
+        if left:
+            raise TreeError(f"{self.folder} is not clean: {', '.join(left.split())}; remove that folder.")
+
+    def build(self, targets: tuple[str, ...], log: Path) -> None:
+        """Raises BuildError."""
+        command = ("scripts/build", PRESET, *targets)
+        if _execute(command, self.folder, dict(os.environ), log, _BUILD_SECONDS) != 0:
+            raise BuildError(f"{' '.join(command)} failed; {log} has what it said.")
+
+    def run(self, run: Run, log: Path, fault: str = "") -> Outcome:
+        """Builds what the run needs and runs it; all output is added to `log`. Raises BuildError."""
+        if run.targets:
+            self.build(run.targets, log)
+        report, own_log = self.folder / run.report, log.with_suffix(".last")
+        _remove(report)  # of a run before
+        report.parent.mkdir(parents=True, exist_ok=True)
+        own_log.unlink(missing_ok=True)
+        status = _execute(run.command, self.folder, self._environment(fault), own_log, run.seconds)
+        found = mutant_tests.outcome(self.folder, run, status, own_log)
+        with log.open("ab") as whole:
+            whole.write(own_log.read_bytes())
+        own_log.unlink()
+        return found
+
+    def _environment(self, fault: str) -> dict[str, str]:
+        found = {**os.environ, "VELOUR_STAGE": str(self.folder / f"build/{PRESET}/blender")}
+        data = self.root.parent / "shared/data"
+        if "VELOUR_DATA" not in found and data.is_dir():
+            found["VELOUR_DATA"] = str(data)  # beside the repository, and not beside its copy
+        return {**found, PLANTED: fault} if fault else found
+
+
+def head(root: Path) -> str:
+    return _git(root, "rev-parse", "HEAD")
+
+
+def _git(folder: Path, *arguments: str) -> str:
+    done = subprocess.run(["git", *arguments], cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise TreeError(f"git {arguments[0]} failed in {folder}: {' '.join(done.stderr.split())}")
+    return done.stdout.strip()
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def _execute(
+    command: tuple[str, ...], folder: Path, variables: dict[str, str], log: Path, seconds: float
+) -> int | None:
+    """The exit status; None after `seconds`. Nothing that was started outlives this call."""
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with log.open("ab") as output:
+        process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env=variables,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+        try:
+            return process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return None
+        finally:
+            _end(process)
+
+
+def _end(process: subprocess.Popen) -> None:
+    """blend-tests/run ends its Blenders at Ctrl-C, and could not if it were killed at once."""
+    with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGINT)
+            process.wait(_PATIENCE_SECONDS)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)  # whatever of its children is left
+    process.wait()
