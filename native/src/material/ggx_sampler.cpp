@@ -14,7 +14,8 @@ namespace {
 constexpr float kDefensiveShare = 0.05f;
 
 SpecularAlbedo albedo_along_x(const GgxParameters& p, const Vec2& alpha, float scale) {
-  const float f0 = scale > 0 ? luminance(p.f0) / scale : 0, f90 = scale > 0 ? luminance(p.f90) / scale : 0;
+  if (scale == 0) return {};
+  const float f0 = luminance(p.f0) / scale, f90 = luminance(p.f90) / scale;
   return {alpha, [f0, f90](float cosine) { return f0 + (f90 - f0) * schlick_share(cosine); }};
 }
 

@@ -57,7 +57,10 @@ void PrincipledLobes::blend(const PrincipledParameters& parameters, const Princi
 }
 
 void PrincipledLobes::make_tables(bool dielectric, bool coat) {
-  if (dielectric) dielectric_ = {alpha(), [this](float cosine) { return dielectric_fresnel(cosine, eta_); }};
+  if (dielectric) {
+    dielectric_ = f0_ > 0 ? SpecularAlbedo(alpha(), [this](float cosine) { return dielectric_fresnel(cosine, eta_); })
+                          : SpecularAlbedo();
+  }
   if (coat) {
     coat_ = parameters_.coat > 0
                 ? SpecularAlbedo(coat_alpha(), [](float cosine) { return dielectric_fresnel(cosine, kCoatIndex); })

@@ -9,9 +9,9 @@ namespace velour {
 
 namespace {
 
-/// Mean of F G2 / G1 over visible normals: the integrand is smooth whatever the roughness.
-float integrate_albedo(const Vec3& wv, const Vec2& alpha, const Fresnel& fresnel) {
-  const Quadrature radius = gauss_legendre(24, 0, 1);
+/// Mean of F G2 / G1 over visible normals: the integrand is smooth whatever the roughness. `radius`: of the disk of
+/// visible normals, in [0, 1].
+float integrate_albedo(const Vec3& wv, const Vec2& alpha, const Fresnel& fresnel, const Quadrature& radius) {
   constexpr int kTurns = 24;  // half a circle's: the other side of the plane of incidence is its mirror image
   double sum = 0;
   for (size_t i = 0; i < radius.node.size(); ++i) {
@@ -33,10 +33,11 @@ float integrate_albedo(const Vec3& wv, const Vec2& alpha, const Fresnel& fresnel
 }  // namespace
 
 SpecularAlbedo::SpecularAlbedo(const Vec2& alpha, const Fresnel& fresnel) {
+  const Quadrature radius = gauss_legendre(24, 0, 1);
   for (size_t i = 0; i < kEntries; ++i) {
     const float root = static_cast<float>(i) / (kEntries - 1);
     const float cosine = root * root;
-    albedo_[i] = integrate_albedo({std::sqrt(1 - cosine * cosine), 0, cosine}, alpha, fresnel);
+    albedo_[i] = integrate_albedo({std::sqrt(1 - cosine * cosine), 0, cosine}, alpha, fresnel, radius);
   }
   mean_ = integrated();
 }
