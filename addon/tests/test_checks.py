@@ -1,46 +1,82 @@
-"""scripts/lib/count_tests.py counts cases, and a crash is never a pass."""
+"""scripts/test: cases are counted as they ended, a crash is never a pass, and --all goes on where it was."""
 
 from __future__ import annotations
 
-import count_tests
+import sys
+
 import pytest
+from checks import campaign, cases, groups, running
+from checks.cases import FAILED, PASSED, SKIPPED, Case
 
 
-def _report(path, *cases):
+def _report(path, *found):
     inner = "".join(
-        f'<testcase name="{name}" status="{status}">{child}</testcase>' for name, status, child in cases
+        f'<testcase name="{name}" status="{status}" time="1.5">{child}</testcase>'
+        for name, status, child in found
     )
     path.parent.mkdir(exist_ok=True)
     path.write_text(f"<testsuite>{inner}</testsuite>")
     return path
 
 
-def _counted(capsys, *paths):
-    count_tests.main([str(path) for path in paths])
-    return capsys.readouterr().out.strip()
-
-
 @pytest.mark.parametrize(
     ("ctest_child", "inner", "expected"),
     [
-        ("", [("a", "run", ""), ("b", "run", "<skipped/>"), ("c", "notrun", "")], "1 0 2"),
-        ("<failure/>", [("a", "run", ""), ("b", "run", "<failure/>")], "1 1 0"),
-        ("<failure/>", [("a", "run", "")], "0 1 0"),  # died after its report
-        ("<failure/>", [], "0 1 0"),  # died before it
+        ("", [("a", "run", ""), ("b", "run", "<skipped/>"), ("c", "notrun", "")], (1, 0, 2)),
+        ("<failure/>", [("a", "run", ""), ("b", "run", "<failure/>")], (1, 1, 0)),
+        ("<failure/>", [("a", "run", "")], (0, 1, 0)),  # died after its report
+        ("<failure/>", [], (0, 1, 0)),  # died before it
     ],
 )
-def test_counts(tmp_path, capsys, ctest_child, inner, expected):
+def test_counts(tmp_path, ctest_child, inner, expected):
     ctest = _report(tmp_path / "ctest.xml", ("sphere", "run", ctest_child))
     if inner:
         _report(tmp_path / "native/test_sphere.xml", *inner)
-    (tmp_path / "native").mkdir(exist_ok=True)
-    assert _counted(capsys, ctest, tmp_path / "native").splitlines()[0] == expected
+    counts = cases.count(cases.of_ctest(ctest, tmp_path / "native"))
+    assert tuple(counts[outcome] for outcome in (PASSED, FAILED, SKIPPED)) == expected
 
 
-def test_reasons_are_told(tmp_path, capsys):
-    report = _report(tmp_path / "python.xml", ("a", "run", '<skipped message="no test data: nickel"/>'))
-    assert _counted(capsys, report).splitlines() == ["0 0 1", "skipped: 1 x no test data: nickel"]
+def test_reasons_are_counted(tmp_path):
+    skipped = '<skipped message="no test data: nickel"/>'
+    report = _report(tmp_path / "python.xml", ("a", "run", skipped), ("b", "run", skipped))
+    assert cases.reasons(cases.of_report(report)) == ["skipped: 2 x no test data: nickel"]
 
 
-def test_missing_reports_count_nothing(tmp_path, capsys):
-    assert _counted(capsys, tmp_path / "none.xml") == "0 0 0"
+def test_times_are_read(tmp_path):
+    (case,) = cases.of_report(_report(tmp_path / "one.xml", ("a", "run", "")))
+    assert case == Case("a", PASSED, 1.5)
+    assert cases.slowest([case, Case("b", PASSED, 2.0)], 1) == [Case("b", PASSED, 2.0)]
+
+
+def test_a_cut_report_has_no_cases(tmp_path):
+    (tmp_path / "cut.xml").write_text("<testsuite><testcase")
+    assert cases.of_report(tmp_path / "cut.xml") == cases.of_report(tmp_path / "none.xml") == []
+
+
+def test_a_tool_that_fails_without_a_failed_test_is_a_failure(tmp_path, capsys):
+    passed = [Case("a", PASSED)]
+    judged = groups._judged("ctest", 8, passed, tmp_path / "none.log")
+    assert cases.count(judged) == {PASSED: 1, FAILED: 1}
+    assert groups._judged("ctest", 0, passed, tmp_path / "none.log") == passed
+
+
+def test_a_check_that_fails_shows_its_log(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(groups.Run, "results", tmp_path)
+    command = (sys.executable, "-c", "print('what is wrong'); raise SystemExit(1)")
+    assert groups.check(groups.Run(), "style", *command).outcome == FAILED
+    assert "what is wrong" in capsys.readouterr().out
+
+
+def test_progress_is_read_from_the_log():
+    assert running.last(r"\[ *(\d+%)\]", "of the tests")("... [ 12%]\n... [ 45%]\n") == "45% of the tests"
+    assert running.matches(r": (ok|FAILED), ", "files")("a: ok, 3 passed\nb: FAILED, 1\nnoise\n") == "2 files"
+
+
+def test_a_stopped_campaign_goes_on(tmp_path):
+    file = tmp_path / "all.json"
+    campaign.Campaign(file, "sources").keep("native", [Case("a", PASSED, 1.0)])
+    assert campaign.Campaign(file, "sources").kept("native") == [Case("a", PASSED, 1.0)]
+    assert campaign.Campaign(file, "sources").kept("python") is None
+    assert campaign.Campaign(file, "others").kept("native") is None
+    file.write_text("{")
+    assert campaign.Campaign(file, "sources").kept("native") is None

@@ -9,7 +9,7 @@ from pathlib import Path
 # What Python compiles of the add-on, once for all processes: it takes as long as Blender itself to start.
 _BYTECODE = Path(__file__).resolve().parents[2] / "build/bytecode"
 
-_running = set()  # of execute()
+_running = set()  # that have been started and not stopped
 
 
 def environment(blender, stage=None):
@@ -41,28 +41,32 @@ def run(command, variables=None, seconds=None):
 def execute(command, variables, log, seconds):
     """The exit status; None when it took too long. All output is in `log`. Its own children go with it."""
     with log.open("wb") as output:
-        process = subprocess.Popen(
-            command,
-            env=variables,
-            stdin=subprocess.DEVNULL,
-            stdout=output,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
-        _running.add(process)
+        process = start(command, variables, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)
         try:
             return process.wait(seconds)
         except subprocess.TimeoutExpired:
             output.write(f"\nkilled after {seconds} s\n".encode())
             return None
         finally:
-            _kill(process)
-            process.wait()
-            _running.discard(process)
+            stop(process)
+
+
+def start(command, variables, **streams):
+    """A process that stop() ends together with its children."""
+    process = subprocess.Popen(command, env=variables, start_new_session=True, **streams)
+    _running.add(process)
+    return process
+
+
+def stop(process):
+    """Ends a process of start() and its children."""
+    _kill(process)
+    process.wait()
+    _running.discard(process)
 
 
 def stop_all():
-    """Ends what other threads have execute() wait for."""
+    """Ends what other threads wait for."""
     for process in list(_running):
         _kill(process)
 

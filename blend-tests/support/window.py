@@ -4,32 +4,33 @@ A test is a generator that yields the seconds until its next turn.
 """
 
 import importlib
-import json
+import os
 import sys
 import time
 import traceback
+from pathlib import Path
 
 import bpy
 import numpy as np
 
-from . import framebuffer, scenes
+from . import framebuffer, report, scenes
 from .blender import ADDON
 
 _TEST_SECONDS = 200  # that a test may turn on and on; its process has 300
 
 
 def run(folder, tests, left_out=(), reason="", seconds=_TEST_SECONDS):
-    """Starts the tests one after the other, each of so many seconds at most, writes the report and leaves
-    Blender. Those that are `left_out` for a `reason` count as skipped."""
+    """Starts the tests one after the other, each of so many seconds at most, and writes the report. Those
+    `left_out` for a `reason` count as skipped."""
     runner = _Runner(folder, tests, seconds)
-    runner.report.update(skipped=len(left_out), reasons=[reason] if reason else [])
+    runner.found = [report.Test(test.__name__, report.SKIPPED, reason=reason) for test in left_out]
     bpy.app.timers.register(runner.turn, first_interval=0.2, persistent=True)  # over file loads
 
 
 class _Runner:
     def __init__(self, folder, tests, seconds):
         self.folder, self.tests, self.seconds = folder, list(tests), seconds
-        self.report = {"passed": 0, "failed": 0, "skipped": 0, "reasons": []}
+        self.found = []
         self.current = None
 
     def turn(self):
@@ -37,30 +38,30 @@ class _Runner:
         try:
             if self.current is None:
                 if not self.tests:
-                    self._leave()
+                    report.write(self.folder, self.found)
                     return None
-                test = self.tests.pop(0)
-                self.name = test.__name__
-                fresh_file()
-                self.current, self.end = test(self.folder), time.monotonic() + self.seconds
+                self._begin(self.tests.pop(0))
             if time.monotonic() > self.end:
                 self.current.throw(TimeoutError(f"it has not ended within {self.seconds} s"))
             return next(self.current)
         except StopIteration:
-            self._count("passed")
+            self._end(report.PASSED)
         except Exception:
             traceback.print_exc(file=sys.stdout)
-            self._count("failed")
+            self._end(report.FAILED)
         return 0.1
 
-    def _count(self, outcome):
-        print(f"{self.name} ... {outcome}", flush=True)
-        self.report[outcome] += 1
-        self.current = None
+    def _begin(self, test):
+        self.name, self.start = test.__name__, time.monotonic()
+        self.end = self.start + self.seconds
+        fresh_file()
+        self.current = test(self.folder)
 
-    def _leave(self):
-        (self.folder / "report.json").write_text(json.dumps(self.report))
-        bpy.ops.wm.quit_blender()
+    def _end(self, outcome):
+        seconds = time.monotonic() - self.start
+        print(f"{self.name} ... {outcome}, {seconds:.1f} s", flush=True)
+        self.found.append(report.Test(self.name, outcome, seconds))
+        self.current = None
 
 
 def fresh_file():
@@ -149,7 +150,8 @@ def pixels(folder):
     """[height x width x 3] bytes of what the window shows, the lowest row first."""
     with override():
         bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
-    return framebuffer.at_rest(folder / framebuffer.FILE)
+    # Where Xvfb keeps it: in the folder of the test unless somebody else started the server.
+    return framebuffer.at_rest(Path(os.environ.get("VELOUR_SCREEN", folder)) / framebuffer.FILE)
 
 
 def shown(name):

@@ -1,0 +1,119 @@
+"""Blenders that run files of tests one after the other. No Blender is needed to import this."""
+
+import os
+import selectors
+import shutil
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+from . import process
+
+_HARNESS = Path(__file__).resolve().parent / "harness.py"
+_SCREEN = "1400x1000"
+_START_SECONDS = 60
+
+
+class Screen:
+    """An X server that nobody sees; it takes the first display that is free."""
+
+    def __init__(self):
+        self._folder = tempfile.TemporaryDirectory(prefix="velour-screen-")
+        receiving, sending = os.pipe()
+        # It writes the number of its display as soon as it takes clients.
+        options = ["-displayfd", str(sending), "-screen", "0", f"{_SCREEN}x24", "-fbdir", self._folder.name]
+        self._server = process.start(
+            ["Xvfb", *options, "-nolisten", "tcp"],
+            dict(os.environ),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            pass_fds=(sending,),
+        )
+        os.close(sending)
+        with os.fdopen(receiving) as answer:
+            number = answer.readline().strip()
+        if not number:
+            self.close()
+            raise RuntimeError("Xvfb does not start")
+        self.variables = {"DISPLAY": f":{number}", "VELOUR_SCREEN": self._folder.name}
+
+    def close(self):
+        process.stop(self._server)
+        self._folder.cleanup()
+
+
+class Session:
+    """One Blender, started for the first file, and again after a file that needs a process of its own, dies
+    or takes too long. With a Screen it has a window."""
+
+    def __init__(self, blender, stage, screen=None):
+        self._blender, self._stage, self._screen = blender, stage, screen
+        self._process = None
+
+    def run(self, path, folder, seconds, alone):
+        """Runs a file of tests. None, or what went wrong with the process itself."""
+        if alone:
+            self.close()
+        if self._process is None:
+            self._start(folder)
+        try:
+            self._process.stdin.write(f"{path}\t{folder}\n".encode())
+            self._process.stdin.flush()
+        except BrokenPipeError:
+            pass  # told below, as its end
+        trouble = self._answer(seconds)
+        if alone or trouble:
+            self.close(wait=not trouble)
+        return trouble
+
+    def close(self, wait=True):
+        """Lets it leave by itself, or not."""
+        if self._process is None:
+            return
+        running, self._process = self._process, None
+        try:
+            running.stdin.close()
+            if wait:
+                running.wait(_START_SECONDS)
+        except (BrokenPipeError, subprocess.TimeoutExpired):
+            pass
+        finally:
+            running.stdout.close()
+            process.stop(running)
+
+    def _start(self, folder):
+        variables = process.environment(self._blender, self._stage)
+        command = [self._blender, "--factory-startup"]
+        if self._screen:
+            variables |= self._screen.variables
+            command += ["--window-geometry", "0", "0", *_SCREEN.split("x")]
+        else:
+            # What is typed and waited for in a window goes before.
+            command = ["nice", "-n", "15", *command, "-b"]
+        command += ["--python-exit-code", "1", "--python", str(_HARNESS), "--", "--orders"]
+        with (folder / "start.txt").open("wb") as errors:
+            self._process = process.start(
+                command, variables, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors
+            )
+
+    def _answer(self, seconds):
+        """Waits for the end of a file: None, or what ended the process before."""
+        end = time.monotonic() + seconds
+        output = self._process.stdout.fileno()
+        said = b""
+        with selectors.DefaultSelector() as selector:
+            selector.register(output, selectors.EVENT_READ)
+            while not said.endswith(b"done\n"):
+                if not selector.select(end - time.monotonic()):
+                    return f"killed after {seconds} s"
+                part = os.read(output, 4096)
+                if not part:
+                    return f"Blender ended with status {self._process.wait()}"
+                said += part
+        return None
+
+
+def has_screens():
+    return shutil.which("Xvfb") is not None

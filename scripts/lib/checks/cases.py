@@ -1,0 +1,76 @@
+"""Test cases as the reports of ctest, GoogleTest, pytest and blend-tests/run have them."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+PASSED, FAILED, SKIPPED = "passed", "failed", "skipped"
+
+
+class Case(NamedTuple):
+    name: str
+    outcome: str  # PASSED, FAILED or SKIPPED
+    seconds: float = 0.0
+    reason: str = ""  # of a skipped one
+
+    @classmethod
+    def of(cls, element: ElementTree.Element) -> Case:
+        name = ".".join(filter(None, (element.get("classname"), element.get("name"))))
+        return cls(name, _outcome(element), float(element.get("time", 0)), _reason(element))
+
+
+def _outcome(element: ElementTree.Element) -> str:
+    tags = {child.tag for child in element}
+    if tags & {"failure", "error"}:
+        return FAILED
+    if "skipped" in tags or element.get("status") in ("notrun", "disabled"):
+        return SKIPPED
+    return PASSED
+
+
+def _reason(element: ElementTree.Element) -> str:
+    skipped = element.find("skipped")
+    if skipped is None:
+        return ""
+    text = skipped.get("message") or skipped.text or ""
+    return " ".join(text.split()[-12:]) or "without a reason"
+
+
+def of_report(path: Path) -> list[Case]:
+    """The cases of a JUnit report; none where it is missing or was not written to its end."""
+    try:
+        return [Case.of(element) for element in ElementTree.parse(path).iter("testcase")]
+    except (OSError, ElementTree.ParseError):
+        return []
+
+
+def of_ctest(path: Path, programs: Path) -> list[Case]:
+    """The cases of ctest's report.
+
+    A GoogleTest program is one test to ctest: where its own report, test_NAME.xml in the folder `programs`,
+    agrees with ctest, its cases take its place. A crash or a time-out stays a failure.
+    """
+    found = []
+    for case in of_report(path):
+        inner = of_report(programs / f"test_{case.name.rpartition('.')[2]}.xml")
+        agrees = inner and (case.outcome != FAILED or any(one.outcome == FAILED for one in inner))
+        found += inner if agrees else [case]
+    return found
+
+
+def count(cases: Iterable[Case]) -> Counter:
+    return Counter(case.outcome for case in cases)
+
+
+def reasons(cases: Iterable[Case]) -> list[str]:
+    """A sentence for each reason why tests were skipped."""
+    found = Counter(case.reason for case in cases if case.outcome == SKIPPED)
+    return [f"skipped: {number} x {reason}" for reason, number in sorted(found.items())]
+
+
+def slowest(cases: Iterable[Case], number: int) -> list[Case]:
+    return sorted(cases, key=lambda case: case.seconds, reverse=True)[:number]

@@ -1,0 +1,176 @@
+"""The groups of tests: each runs its tools and returns the cases that they report."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import cases, running
+from .cases import FAILED, PASSED, SKIPPED, Case
+
+ROOT = Path(__file__).resolve().parents[3]
+PYTHON = "/usr/bin/python3"
+_NOT_HERE = (3, 124)  # what scripts/blenders exits with where a Blender cannot be had, and timeout
+_SETUP_SECONDS = 1800
+# Lines of blend-tests/run that a failure does not need.
+_PASSED = r": ok, [0-9]+ passed|^Warning: [0-9]+ x "
+
+
+@dataclass
+class Run:
+    """What all groups share."""
+
+    preset: str = "release"
+    long: bool = False  # also the tests that only scripts/test --all runs
+    scenes: Sequence[str] = ()
+    update: bool = False
+
+    @property
+    def build(self) -> Path:
+        return ROOT / "build" / self.preset
+
+    @property
+    def results(self) -> Path:
+        return self.build / "tests"
+
+    @property
+    def variables(self) -> dict[str, str]:
+        found = {
+            "VELOUR_STAGE": str(self.build / "blender"),
+            "VELOUR_TEST_ARTIFACTS": str(self.results / "artifacts"),
+        }
+        return {**found, "VELOUR_LONG_TESTS": "1"} if self.long else found
+
+
+def check(run: Run, name: str, *command: str | Path) -> Case:
+    """One test that a command passes by its exit status."""
+    log, start = run.results / f"{name}.log", time.monotonic()
+    status = running.run(command, log, **run.variables)
+    if status != 0:
+        running.say(f"FAILED: {name}")
+        running.show_end(log)
+    return Case(name, PASSED if status == 0 else FAILED, time.monotonic() - start)
+
+
+def skipped(name: str, reason: str) -> Case:
+    return Case(name, SKIPPED, reason=f"{name}: {reason}")
+
+
+def style(run: Run) -> list[Case]:
+    native = sorted(path for end in ("h", "cpp", "c") for path in (ROOT / "native").rglob(f"*.{end}"))
+    found = [
+        check(run, "clang-format", "clang-format", "--dry-run", "-Werror", *native),
+        check(run, "layers", ROOT / "scripts/check_layers"),
+        check(run, "mutants", ROOT / "scripts/mutants", "--check"),
+    ]
+    own = ROOT / "build/tools/bin/ruff"
+    ruff = own if os.access(own, os.X_OK) else shutil.which("ruff")
+    if ruff is None:
+        return [*found, skipped("ruff", "it is not installed and cannot be had from PyPI")]
+    places = [ROOT / "addon", ROOT / "scripts", ROOT / "blend-tests", *_python_programs()]
+    found.append(check(run, "ruff", ruff, "check", "--no-cache", *places))
+    found.append(check(run, "ruff-format", ruff, "format", "--no-cache", "--check", *places))
+    return found
+
+
+def _python_programs() -> list[Path]:
+    """Those without a suffix."""
+    files = [
+        path for folder in ("scripts", "blend-tests") for path in (ROOT / folder).iterdir() if path.is_file()
+    ]
+    heads = {path: path.read_bytes()[:64].splitlines() for path in files if not path.suffix}
+    return sorted(
+        path for path, head in heads.items() if head and head[0].startswith(b"#!") and b"python3" in head[0]
+    )
+
+
+def native(run: Run) -> list[Case]:
+    programs, report, log = run.results / "native", run.results / "ctest.xml", run.results / "native.log"
+    shutil.rmtree(programs, ignore_errors=True)
+    jobs = str(os.cpu_count() or 1)
+    command = ["ctest", "--test-dir", run.build, "-j", jobs, "--output-on-failure", "--output-junit", report]
+    progress = running.last(r"(\d+/\d+) Test ", "test programs")
+    report.unlink(missing_ok=True)
+    status = running.run(command, log, progress, **run.variables, GTEST_OUTPUT=f"xml:{programs}/")
+    return _judged("ctest", status, cases.of_ctest(report, programs), log)
+
+
+def python(run: Run) -> list[Case]:
+    report, log = run.results / "python.xml", run.results / "python.log"
+    report.unlink(missing_ok=True)
+    # A file's tests share what takes long to make.
+    command = [PYTHON, "-m", "pytest", "-n", "2", "--dist", "loadfile", "--junitxml", report]
+    status = running.run(command, log, running.last(r"\[ *(\d+%)\]", "of the tests"), **run.variables)
+    return _judged("pytest", status, cases.of_report(report), log)
+
+
+def blender(run: Run) -> list[Case]:
+    package = check(run, "package", ROOT / "scripts/package")  # one test has Blender install it
+    return [package, *_in_blender(run, "blender", [])]
+
+
+def _in_blender(run: Run, name: str, before: Sequence[str | Path], *options: str | Path) -> list[Case]:
+    report, log = run.results / f"{name}.xml", run.results / f"{name}.log"
+    report.unlink(missing_ok=True)
+    command = [*before, PYTHON, ROOT / "blend-tests/run", "--junit", report, *options]
+    status = running.run(command, log, running.matches(r": (ok|FAILED), ", "files"), **run.variables)
+    return _judged(name, status, cases.of_report(report), log, leave_out=_PASSED)
+
+
+def scenes(run: Run) -> list[Case]:
+    update = ["--update"] if run.update else []
+    return _scenes(run, "scenes", [], *update, *run.scenes)
+
+
+def _scenes(run: Run, name: str, before: Sequence[str | Path], *options: str | Path) -> list[Case]:
+    report, log = run.results / f"{name}.xml", run.results / f"{name}.log"
+    report.unlink(missing_ok=True)
+    command = [*before, PYTHON, ROOT / "blend-tests/run_scenes", "--junit", report, *options]
+    status = running.run(command, log, running.matches(r"^  [\d.]+ s$", "scenes"), **run.variables)
+    if run.scenes or run.update:
+        running.show_end(log)
+    return _judged(name, status, cases.of_report(report), log)
+
+
+def other_blender(run: Run, version: str) -> list[Case]:
+    """The groups blender and scenes with the package, where nothing is installed that Velour is built with."""
+    limit = ["timeout", str(_SETUP_SECONDS)]
+    status = running.run(
+        [*limit, ROOT / "scripts/blenders", version], run.results / f"blender-{version}-setup.log"
+    )
+    if status in _NOT_HERE:
+        return [skipped(f"Blender {version}", "it cannot be set up here")]
+    package = check(run, "package", ROOT / "scripts/package")
+    if package.outcome == FAILED:
+        return [package]
+    files = ROOT / f"build/blend-tests-{version}"
+    stage = f"VELOUR_STAGE={ROOT / 'build/package/blender'}"
+    before = [ROOT / "scripts/blenders", "--run", version, "env", stage]
+    return [
+        *_in_blender(run, f"blender-{version}", before, "--files", files),
+        *_scenes(run, f"scenes-{version}", before, "--output", files / "scenes"),
+    ]
+
+
+def _judged(name: str, status: int, found: list[Case], log: Path, leave_out: str | None = None) -> list[Case]:
+    """A run that failed without a failed test counts as one."""
+    if status == 0:
+        return found
+    running.show_end(log, leave_out)
+    running.say(f"all of it: {log}")
+    if not any(case.outcome == FAILED for case in found):
+        found = [*found, Case(f"{name} (exit status {status})", FAILED)]
+    return found
+
+
+GROUPS: dict[str, Callable[[Run], list[Case]]] = {
+    "style": style,
+    "native": native,
+    "python": python,
+    "blender": blender,
+    "scenes": scenes,
+}

@@ -1,0 +1,92 @@
+"""Runs commands whose output goes to a log, and says how far they are."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+_SAY_SECONDS = 15  # between two lines of progress
+_END_LINES = 100  # of a log that are shown after a failure
+
+
+def say(text: str) -> None:
+    print(text, flush=True)
+
+
+def run(
+    command: Sequence[str | Path], log: Path, progress: Callable[[str], str] | None = None, **variables: str
+) -> int:
+    """The exit status. `progress` makes a sentence from what the log holds so far; Ctrl-C ends the command's
+    children as well."""
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with log.open("wb") as output:
+        child = subprocess.Popen(
+            [str(part) for part in command],
+            env={**os.environ, **variables},
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+    ended = threading.Event()
+    watcher = threading.Thread(target=_watch, args=(log, progress, ended), daemon=True)
+    if progress:
+        watcher.start()
+    try:
+        return child.wait()
+    finally:
+        ended.set()
+        _end(child)
+
+
+def _end(child: subprocess.Popen) -> None:
+    """Whatever is left of its group: first as by Ctrl-C, so that it can clean up."""
+    if child.poll() is not None:
+        return
+    for number, patience in ((signal.SIGINT, 10), (signal.SIGKILL, None)):
+        try:
+            os.killpg(child.pid, number)
+            child.wait(patience)
+            return
+        except ProcessLookupError:
+            return
+        except subprocess.TimeoutExpired:
+            continue
+
+
+def _watch(log: Path, progress: Callable[[str], str], ended: threading.Event) -> None:
+    start = time.monotonic()
+    while not ended.wait(_SAY_SECONDS):
+        say(f"  {time.monotonic() - start:4.0f} s  {progress(log.read_text(errors='replace'))}")
+
+
+def matches(pattern: str, what: str) -> Callable[[str], str]:
+    """Progress by counting the lines that match."""
+    compiled = re.compile(pattern, re.MULTILINE)
+    return lambda text: f"{len(compiled.findall(text))} {what}"
+
+
+def last(pattern: str, what: str) -> Callable[[str], str]:
+    """Progress by the last match of a pattern with one group."""
+    compiled = re.compile(pattern)
+
+    def progress(text: str) -> str:
+        found = compiled.findall(text)
+        return f"{found[-1] if found else 0} {what}"
+
+    return progress
+
+
+def show_end(log: Path, leave_out: str | None = None) -> None:
+    lines = log.read_text(errors="replace").splitlines() if log.is_file() else []
+    if leave_out:
+        lines = [line for line in lines if not re.search(leave_out, line)]
+    sys.stdout.write("".join(f"{line}\n" for line in lines[-_END_LINES:]))
+    sys.stdout.flush()

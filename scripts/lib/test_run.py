@@ -1,0 +1,118 @@
+"""scripts/test: sets up, builds, runs the groups of tests, and counts."""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import time
+
+from checks import campaign, cases, groups
+from checks.cases import FAILED, PASSED, SKIPPED, Case
+from checks.groups import GROUPS, ROOT, Run
+from checks.running import say
+
+SLOWEST = 20
+OTHER_BLENDERS = ("4.3", "5.2", "4.5")
+
+
+class Total:
+    """All cases so far, and how they are told."""
+
+    def __init__(self) -> None:
+        self._cases: list[Case] = []
+
+    def add(self, name: str, found: list[Case], seconds: float) -> None:
+        self._cases += found
+        counts = cases.count(found)
+        for case in cases.slowest(found, SLOWEST):
+            say(f"  {case.seconds:7.1f} s  {case.name}")
+        for sentence in cases.reasons(found):
+            say(sentence)
+        told = ", ".join(f"{counts[outcome]} {outcome}" for outcome in (PASSED, FAILED, SKIPPED))
+        say(f"{name}: {told}, {seconds:.0f} s")
+
+    def last_line(self) -> str:
+        counts = cases.count(self._cases)
+        return f"{counts[PASSED]} passed, {counts[FAILED]} failed, {counts[SKIPPED]} not run"
+
+    @property
+    def failed(self) -> bool:
+        return cases.count(self._cases)[FAILED] > 0
+
+
+def main() -> int:
+    arguments = _arguments()
+    start, total = time.monotonic(), Total()
+    run = Run(arguments.preset, arguments.all, arguments.scene, arguments.update)
+    run.results.mkdir(parents=True, exist_ok=True)
+    kept = campaign.Campaign(run.results / "all.json", campaign.sources()) if arguments.all else None
+    if subprocess.run([ROOT / "scripts/setup", "--tests"]).returncode != 0:
+        return 1
+    say(f"set-up took {time.monotonic() - start:.0f} s")
+    built = True
+    if arguments.groups != ["style"] or arguments.blender:
+        built = _build(run, total, "native" in arguments.groups)
+    for name in arguments.groups:
+        needs_build = name != "style"
+        _step(name, kept, total, built or not needs_build, lambda name=name: GROUPS[name](run))
+    for version in arguments.blender:
+        _step(f"blender {version}", kept, total, built, lambda v=version: groups.other_blender(run, v))
+    say(f"all of it took {(time.monotonic() - start) / 60:.1f} minutes")
+    say(total.last_line())
+    return 1 if total.failed else 0
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="scripts/test", add_help=False)
+    parser.add_argument("--preset", default="release")
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("--blender", action="append", default=[], metavar="VERSION")
+    parser.add_argument("--scene", action="append", default=[], metavar="NAME")
+    parser.add_argument("--update", action="store_true")
+    parser.add_argument("groups", nargs="*", metavar="GROUP")
+    arguments = parser.parse_args()
+    for unknown in set(arguments.groups) - set(GROUPS):
+        parser.error(f"there is no group {unknown!r}; the groups are {', '.join(GROUPS)}")
+    if arguments.scene and "scenes" not in arguments.groups:
+        arguments.groups.append("scenes")
+    if arguments.all and (arguments.groups or arguments.blender):
+        parser.error("--all runs everything: name no group and no Blender with it")
+    if not arguments.groups and not arguments.blender:
+        arguments.groups = list(GROUPS)
+    if arguments.all:
+        arguments.blender = list(OTHER_BLENDERS)
+    if arguments.update and "scenes" not in arguments.groups:
+        parser.error("--update is for the group scenes")
+    return arguments
+
+
+def _build(run: Run, total: Total, with_native_tests: bool) -> bool:
+    start = time.monotonic()
+    targets = [] if with_native_tests else ["velour", "uniform_moments"]
+    status = subprocess.run([ROOT / "scripts/build", run.preset, *targets]).returncode
+    seconds = time.monotonic() - start
+    total.add("build", [Case("build", FAILED if status else PASSED, seconds)], seconds)
+    return status == 0
+
+
+def _step(name: str, kept: campaign.Campaign | None, total: Total, is_built: bool, work) -> None:
+    say(f"== {name}")
+    start = time.monotonic()
+    found = kept.kept(name) if kept else None
+    if found is not None:
+        say(f"{name} passed in an earlier run of these sources")
+    elif is_built:
+        found = work()
+        if kept and found and not cases.count(found)[FAILED]:
+            kept.keep(name, found)
+    else:
+        found = [groups.skipped(name, "nothing was built")]
+    total.add(name, found, time.monotonic() - start)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)
