@@ -107,3 +107,10 @@ def test_median_of_students_t_squared():
 def test_limit_bounds_the_family():
     # 1e-3 / 36 two-sided, from tables: 4.19 standard errors.
     assert judge.z_limit(36) == pytest.approx(4.19, abs=0.01)
+
+
+def test_a_block_off_by_what_it_says_it_sees_is_refused(known):
+    """In 99 of 100 cases; a third of it is not (the control)."""
+    sees = next(verdicts(known))[0].sees
+    assert sum(verdict.agrees for verdict, _ in verdicts(known, gain=1 + sees / 100)) <= 2
+    assert sum(verdict.agrees for verdict, _ in verdicts(known, gain=1 + sees / 300)) > RUNS / 2

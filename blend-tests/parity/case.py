@@ -13,6 +13,7 @@ from support.judge import judge_renders
 from . import engines, stage
 
 ALWAYS, NEVER = (0,), (99,)
+SEEN = 2.0  # per cent: a block that is off by it, or less, is seen by each comparison
 
 
 class ParityTest(blender.BlenderTest):
@@ -38,6 +39,7 @@ class ParityTest(blender.BlenderTest):
         verdict = self.verdict(samples)
         record(feature, verdict, "honoured")
         self.assertTrue(verdict.agrees, f"{feature}: {verdict}")
+        self.assertLess(verdict.sees, SEEN, f"{feature}: it needs more samples. {verdict}")
 
     def assert_approximate(self, feature, most_percent, samples=1, exact=None):
         """A known mismatch, which may not grow. `exact`: the Blender from which on there is none, and the one
@@ -84,7 +86,13 @@ class BoxTest(ParityTest):
 
 def record(feature, verdict, word):
     """A line for the table of docs/blender_support.md."""
-    row = {"feature": feature, "verdict": word, "percent": verdict.percent, "z": verdict.z}
+    row = {
+        "feature": feature,
+        "verdict": word,
+        "percent": verdict.percent,
+        "z": verdict.z,
+        "sees": verdict.sees,
+    }
     row["blender"] = bpy.app.version_string
     with (blender.folder() / "rows.jsonl").open("a") as file:
         file.write(json.dumps(row) + "\n")

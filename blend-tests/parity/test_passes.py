@@ -41,7 +41,7 @@ class Passes(ParityTest):
             self.layer.update_render_passes()
             name = name if name in self._sockets() else _SINCE_5.get(name, name)
             self.show(name)
-            self.scene.cycles.samples = self.scene.velour.samples = engines.SAMPLES[engine] * samples
+            self.scene.cycles.samples = self.scene.velour.samples = engines.SAMPLES * samples
             found.append(scenes.render(self.folder, f"{name}-{engine.lower()}")[..., :channels])
         return found
 

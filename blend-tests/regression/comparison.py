@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from support.judge import BLOCK, WHOLE, Estimate, Verdict, judge, z_limit
+from support.judge import BLOCK, POWER, WHOLE, Estimate, Verdict, judge, z_limit
 
-_POWER = 2.326  # standard errors beyond the limit for 99 of 100 cases
 _CHANNELS = {"colour": slice(0, 3), "alpha": slice(3, 4)}
 
 
@@ -53,7 +52,7 @@ def smallest_factor(ours: Estimate, reference: Estimate, limit: float) -> float:
     variance = sum(side.variance.sum(axis=(0, 1)) for side in sides) / count**2
     mean = np.abs(sides[1].mean).mean(axis=(0, 1))
     relative = np.sqrt(variance) / np.maximum(mean, 1e-30) + sides[1].rounding
-    return float(100 * (limit + _POWER) * relative.min())
+    return float(100 * (limit + POWER) * relative.min())
 
 
 def _largest(verdicts: list[Verdict]) -> float:

@@ -8,7 +8,6 @@ all else that is said goes to FOLDER/log.txt. The process ends with the orders.
 import importlib.util
 import os
 import sys
-import time
 import traceback
 import unittest
 from pathlib import Path
@@ -32,14 +31,12 @@ class Result(unittest.TextTestResult):
 
     def startTest(self, test):  # noqa: N802  (unittest's name)
         super().startTest(test)
-        self._start, self._outcome = time.monotonic(), report.PASSED
+        self._clock, self._outcome = report.Clock(), report.PASSED
 
     def stopTest(self, test):  # noqa: N802
         super().stopTest(test)
         name = test.id().partition(".")[2]
-        self.tests.append(
-            report.Test(name, self._outcome, time.monotonic() - self._start, self._reason(test))
-        )
+        self.tests.append(report.Test(name, self._outcome, *self._clock.read(), self._reason(test)))
 
     def _reason(self, test):
         return next((reason for skipped, reason in self.skipped if skipped is test), "")

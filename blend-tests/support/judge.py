@@ -9,6 +9,7 @@ BLOCK = 16  # pixels along a side
 WHOLE = 1 << 30  # a block that holds any picture
 FAMILY_ERROR = 1e-3  # chance of any false alarm in all comparisons of a run of the tests
 MOST_COMPARISONS = 20_000  # of such a run: some 70 scenes of 48 blocks and 4 channels
+POWER = 2.326  # standard errors beyond the limit for 99 of 100 cases
 ROUNDING = 1e-5  # of the picture's mean: what float32 leaves of a block's mean, as a standard error
 HALF_ROUNDING = 2**-11 / np.sqrt(3)  # relative standard error of a half float
 
@@ -39,6 +40,7 @@ class Verdict(NamedTuple):
     percent: float  # largest difference of two blocks, of the second picture's mean
     block: tuple  # column, row and channel of the largest z
     rms: float  # of z over all blocks that vary: 1 where both are the same picture
+    sees: float  # factor, in per cent, that is refused in 99 of 100 cases where one block is off by it
     limit: float = Z_LIMIT  # that z may not exceed
 
     @property
@@ -97,11 +99,14 @@ def judge(first, second, limit=Z_LIMIT, block=BLOCK):
     z = normal_score(difference / np.sqrt(variance), variance**2 / np.maximum(squares, 1e-9 * variance**2))
     worst = np.unravel_index(np.argmax(z), z.shape)
     noisy = noise > 0
+    values = np.abs(_blocks(second.mean, block)) / count
+    relative = np.sqrt(variance) / np.maximum(values, 1e-3 * mean)  # what is all but black tells no factor
     return Verdict(
         float(z.max()),
         float(100 * difference.max() / mean),
         (int(worst[1]), int(worst[0]), int(worst[2])),
         float(np.sqrt((z[noisy] ** 2).mean())) if noisy.any() else 0.0,
+        float(100 * (limit + POWER) * relative.min()),
         limit,
     )
 

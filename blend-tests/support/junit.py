@@ -13,6 +13,7 @@ def write(path, files):
         for test in tests:
             case = ElementTree.SubElement(suite, "testcase", classname=name, name=test.name)
             case.set("time", f"{test.seconds:.3f}")
+            case.set("processor", f"{test.processor:.3f}")
             if test.outcome == report.FAILED:
                 ElementTree.SubElement(case, "failure")
             elif test.outcome == report.SKIPPED:

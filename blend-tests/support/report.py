@@ -2,6 +2,7 @@
 
 import json
 import os
+import time
 from typing import NamedTuple
 
 FILE = "report.json"
@@ -12,7 +13,19 @@ class Test(NamedTuple):
     name: str
     outcome: str  # PASSED, FAILED or SKIPPED
     seconds: float = 0.0
+    processor: float = 0.0  # seconds of all threads, and of child processes that have ended
     reason: str = ""  # why it was skipped
+
+
+class Clock:
+    """What a test takes, from here on."""
+
+    def __init__(self):
+        self._start, self._processor = time.monotonic(), sum(os.times()[:4])
+
+    def read(self):
+        """Seconds, and those of the processor."""
+        return time.monotonic() - self._start, sum(os.times()[:4]) - self._processor
 
 
 def write(folder, tests):

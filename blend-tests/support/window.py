@@ -52,15 +52,14 @@ class _Runner:
         return 0.1
 
     def _begin(self, test):
-        self.name, self.start = test.__name__, time.monotonic()
-        self.end = self.start + self.seconds
+        self.name, self.clock = test.__name__, report.Clock()
+        self.end = time.monotonic() + self.seconds
         fresh_file()
         self.current = test(self.folder)
 
     def _end(self, outcome):
-        seconds = time.monotonic() - self.start
-        print(f"{self.name} ... {outcome}, {seconds:.1f} s", flush=True)
-        self.found.append(report.Test(self.name, outcome, seconds))
+        self.found.append(report.Test(self.name, outcome, *self.clock.read()))
+        print(f"{self.name} ... {outcome}, {self.found[-1].seconds:.1f} s", flush=True)
         self.current = None
 
 

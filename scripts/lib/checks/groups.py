@@ -137,7 +137,7 @@ def _scenes(run: Run, name: str, before: Sequence[str | Path], *options: str | P
 
 
 def other_blender(run: Run, version: str) -> list[Case]:
-    """The groups blender and scenes with the package, where nothing is installed that Velour is built with."""
+    """The groups blender and scenes with the package, in a folder without what Velour is built with."""
     limit = ["timeout", str(_SETUP_SECONDS)]
     status = running.run(
         [*limit, ROOT / "scripts/blenders", version], run.results / f"blender-{version}-setup.log"

@@ -47,10 +47,13 @@ def run(
 
 
 def _end(child: subprocess.Popen) -> None:
-    """Whatever is left of its group: first as by Ctrl-C, so that it can clean up."""
+    """Whatever is left of its group; what it started in groups of their own is for it to end, in ten seconds.
+
+    Not by SIGINT, which processes started from a shell's background ignore.
+    """
     if child.poll() is not None:
         return
-    for number, patience in ((signal.SIGINT, 10), (signal.SIGKILL, None)):
+    for number, patience in ((signal.SIGTERM, 10), (signal.SIGKILL, None)):
         try:
             os.killpg(child.pid, number)
             child.wait(patience)
