@@ -13,40 +13,52 @@ from support.judge import judge_renders
 from . import engines, stage
 
 ALWAYS, NEVER = (0,), (99,)
-SEEN = 2.0  # per cent: a block that is off by it, or less, is seen by each comparison
+SEEN = 5.0
 
 
 class ParityTest(blender.BlenderTest):
     """Starts from an empty file set up for both engines."""
 
     bounces = 0
+    effort = engines.USUAL
 
     def setUp(self):
         super().setUp()
         addon_utils.enable("cycles")
-        self.scene = engines.set_up(self.bounces)
+        self.scene = engines.set_up(self.bounces, self.effort)
 
     def pictures(self, engine, samples=1, first_seed=0):
-        return engines.pictures(engine, self.folder, samples, first_seed)
+        return engines.pictures(engine, self.folder, samples, first_seed, self.effort)
 
     def verdict(self, samples=1):
         theirs = self.pictures("CYCLES", samples)
         self.assertGreater(float(theirs[..., :3].std(axis=(1, 2)).max()), 0.0, "The scene shows nothing.")
         return judge_renders(self.pictures("VELOUR", samples), theirs)
 
-    def assert_parity(self, feature, samples=1):
-        """Both engines render the scene as it is; no block may differ by more than chance."""
+    @contextlib.contextmanager
+    def whole_effort(self):
+        """Small mismatches are seen."""
+        before, self.effort = self.effort, engines.WHOLE
+        engines.set_size(self.effort)
+        yield
+        self.effort = before
+        engines.set_size(self.effort)
+
+    def assert_parity(self, feature, samples=1, seen=SEEN):
+        """Both engines render the scene as it is; no block may differ by more than chance. `seen`: per cent that
+        half of the blocks may be off by at most without being seen."""
         verdict = self.verdict(samples)
         record(feature, verdict, "honoured")
         self.assertTrue(verdict.agrees, f"{feature}: {verdict}")
-        self.assertLess(verdict.sees, SEEN, f"{feature}: it needs more samples. {verdict}")
+        self.assertLess(verdict.sees, seen, f"{feature}: it needs more samples. {verdict}")
 
     def assert_approximate(self, feature, most_percent, samples=1, exact=None):
         """A known mismatch, which may not grow. `exact`: the Blender from which on there is none, and the one
         from which on there is again."""
         if exact is not None and exact[0] <= bpy.app.version < exact[1]:
             return self.assert_parity(feature, samples)
-        verdict = self.verdict(samples)
+        with self.whole_effort():
+            verdict = self.verdict(samples)
         record(feature, verdict, "approximated")
         self.assertFalse(verdict.agrees, f"{feature} is exact by now: say so. {verdict}")
         self.assertLessEqual(verdict.percent, most_percent, f"{feature}: {verdict}")

@@ -1,27 +1,40 @@
 """One scene through either engine, set so that both are asked for the same picture."""
 
+from typing import NamedTuple
+
 import bpy
 import numpy as np
 
 from support import level, scenes
 
-# The short suite takes an eighth of the long one's time, for error bars twice as wide; what it sees is held
-# to a bound (case.py).
-SEEDS = 4 if level.LONG else 2
-SAMPLES = 64 if level.LONG else 32  # a pixel and seed
-WIDTH, HEIGHT = (128, 96) if level.LONG else (96, 72)
+
+class Effort(NamedTuple):
+    seeds: int
+    samples: int  # a pixel and seed
+    width: int
+    height: int
 
 
-def set_up(bounces=0):
+WHOLE = Effort(4, 64, 128, 96)
+# An eighth of the time, for error bars twice as wide: what they still see is held to a bound (case.py).
+QUICK = Effort(2, 32, 96, 72)
+USUAL = WHOLE if level.LONG else QUICK
+
+
+def set_up(bounces=0, effort=USUAL):
     """Both engines: a small picture, no clamping, no denoising, one box a pixel."""
     scene = bpy.context.scene
-    render = scene.render
-    render.resolution_x, render.resolution_y, render.resolution_percentage = WIDTH, HEIGHT, 100
+    set_size(effort)
     scene.view_settings.view_transform = "Standard"
     _set_up_cycles(scene.cycles, bounces)
     velour = scene.velour
     velour.bounces, velour.split = bounces, 1  # every direction has its own place in the pixel
     return scene
+
+
+def set_size(effort):
+    render = bpy.context.scene.render
+    render.resolution_x, render.resolution_y, render.resolution_percentage = effort.width, effort.height, 100
 
 
 def _set_up_cycles(cycles, bounces):
@@ -52,14 +65,14 @@ def _set_cycles_samples(cycles, count):
         cycles.samples, cycles.use_sample_subset, cycles.sample_subset_length = count + 1, True, count
 
 
-def pictures(engine, folder, samples=1, first_seed=0):
-    """[seeds x height x width x 4] of independent seeds, linear. `samples`: times the usual number."""
+def pictures(engine, folder, samples=1, first_seed=0, effort=USUAL):
+    """[seeds x height x width x 4] of independent seeds, linear. `samples`: times those of `effort`."""
     scene = bpy.context.scene
     scene.render.engine = engine
-    scene.velour.samples = int(SAMPLES * samples)
-    _set_cycles_samples(scene.cycles, int(SAMPLES * samples))
+    scene.velour.samples = int(effort.samples * samples)
+    _set_cycles_samples(scene.cycles, int(effort.samples * samples))
     found = []
-    for seed in range(first_seed, first_seed + SEEDS):
+    for seed in range(first_seed, first_seed + effort.seeds):
         scene.cycles.seed = scene.velour.seed = seed
         found.append(scenes.render(folder, f"{engine.lower()}{seed}"))
     return np.stack(found)

@@ -4,7 +4,7 @@ import math
 
 import bpy
 
-from parity import stage
+from parity import engines, stage
 from parity.case import ParityTest, TownTest
 
 
@@ -25,6 +25,7 @@ class Border(TownTest):
 
     def test_border_at_whole_pixels(self):
         """5/6 of 96 pixels are 80, though the nearest float is less: no row is left empty."""
+        engines.set_size(engines.WHOLE)
         render = self.scene.render
         render.use_crop_to_border, render.border_max_y = True, 5 / 6
         self.assertLess(render.border_max_y * 96, 80)

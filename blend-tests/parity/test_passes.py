@@ -13,6 +13,8 @@ _MOST_OFF = 0.005  # of the pixels: where edges meet, one picture shows what no 
 
 
 class Passes(ParityTest):
+    effort = engines.WHOLE  # each pixel is looked at
+
     def setUp(self):
         super().setUp()
         stage.ground(12)
@@ -41,7 +43,7 @@ class Passes(ParityTest):
             self.layer.update_render_passes()
             name = name if name in self._sockets() else _SINCE_5.get(name, name)
             self.show(name)
-            self.scene.cycles.samples = self.scene.velour.samples = engines.SAMPLES * samples
+            self.scene.cycles.samples = self.scene.velour.samples = engines.WHOLE.samples * samples
             found.append(scenes.render(self.folder, f"{name}-{engine.lower()}")[..., :channels])
         return found
 
