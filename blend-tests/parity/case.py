@@ -45,8 +45,8 @@ class ParityTest(blender.BlenderTest):
         engines.set_size(self.effort)
 
     def assert_parity(self, feature, samples=1, seen=SEEN):
-        """Both engines render the scene as it is; no block may differ by more than chance. `seen`: per cent that
-        half of the blocks may be off by at most without being seen."""
+        """Both engines render the scene as it is; no block may differ by more than chance. `seen`: per cent
+        that half of the blocks may be off by at most without being seen."""
         verdict = self.verdict(samples)
         record(feature, verdict, "honoured")
         self.assertTrue(verdict.agrees, f"{feature}: {verdict}")

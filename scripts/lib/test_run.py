@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import json
+import resource
 import subprocess
 import sys
 import time
+from collections.abc import Callable
+from pathlib import Path
 
 from checks import campaign, cases, groups
 from checks.cases import FAILED, PASSED, SKIPPED, Case
@@ -16,21 +20,47 @@ SLOWEST = 20
 OTHER_BLENDERS = ("4.3", "5.2", "4.5")
 
 
-class Total:
-    """All cases so far, and how they are told."""
+class Clock:
+    """Seconds since it was made, and those of the processor that child processes took."""
 
     def __init__(self) -> None:
-        self._cases: list[Case] = []
+        self._start, self._processor = time.monotonic(), self._children()
 
-    def add(self, name: str, found: list[Case], seconds: float) -> None:
+    def read(self) -> tuple[float, float]:
+        return time.monotonic() - self._start, self._children() - self._processor
+
+    @staticmethod
+    def _children() -> float:
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
+
+
+class Total:
+    """All cases so far, and how they are told. Times are kept for scripts/test_times."""
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+        self._cases: list[Case] = []
+        self._groups: dict[str, dict] = {}
+
+    def add(self, name: str, found: list[Case], clock: Clock) -> None:
         self._cases += found
         counts = cases.count(found)
+        seconds, processor = clock.read()
         for case in cases.slowest(found, SLOWEST):
             say(f"  {case.seconds:7.1f} s  {case.name}")
         for sentence in cases.reasons(found):
             say(sentence)
         told = ", ".join(f"{counts[outcome]} {outcome}" for outcome in (PASSED, FAILED, SKIPPED))
-        say(f"{name}: {told}, {seconds:.0f} s")
+        say(f"{name}: {told}, {seconds:.0f} s, {processor:.0f} s of processor time")
+        longest = cases.slowest(found, SLOWEST)
+        self._groups[name] = {
+            "tests": len(found),
+            "seconds": seconds,
+            "processor": processor,
+            "slowest": [(case.name, case.seconds) for case in longest],
+        }
+        self._file.write_text(json.dumps(self._groups, indent=1))
 
     def last_line(self) -> str:
         counts = cases.count(self._cases)
@@ -43,13 +73,14 @@ class Total:
 
 def main() -> int:
     arguments = _arguments()
-    start, total = time.monotonic(), Total()
+    clock = Clock()
     run = Run(arguments.preset, arguments.all, arguments.scene, arguments.update)
     run.results.mkdir(parents=True, exist_ok=True)
+    total = Total(run.results / "times.json")
     kept = campaign.Campaign(run.results / "all.json", campaign.sources()) if arguments.all else None
     if subprocess.run([ROOT / "scripts/setup", "--tests"]).returncode != 0:
         return 1
-    say(f"set-up took {time.monotonic() - start:.0f} s")
+    say(f"set-up took {clock.read()[0]:.0f} s")
     built = True
     if arguments.groups != ["style"] or arguments.blender:
         built = _build(run, total, "native" in arguments.groups)
@@ -58,7 +89,8 @@ def main() -> int:
         _step(name, kept, total, built or not needs_build, lambda name=name: GROUPS[name](run))
     for version in arguments.blender:
         _step(f"blender {version}", kept, total, built, lambda v=version: groups.other_blender(run, v))
-    say(f"all of it took {(time.monotonic() - start) / 60:.1f} minutes")
+    seconds, processor = clock.read()
+    say(f"{seconds / 60:.1f} minutes in all, {processor / 60:.1f} of processor time")
     say(total.last_line())
     return 1 if total.failed else 0
 
@@ -88,17 +120,22 @@ def _arguments() -> argparse.Namespace:
 
 
 def _build(run: Run, total: Total, with_native_tests: bool) -> bool:
-    start = time.monotonic()
+    clock = Clock()
     targets = [] if with_native_tests else ["velour", "uniform_moments"]
     status = subprocess.run([ROOT / "scripts/build", run.preset, *targets]).returncode
-    seconds = time.monotonic() - start
-    total.add("build", [Case("build", FAILED if status else PASSED, seconds)], seconds)
+    total.add("build", [Case("build", FAILED if status else PASSED, clock.read()[0])], clock)
     return status == 0
 
 
-def _step(name: str, kept: campaign.Campaign | None, total: Total, is_built: bool, work) -> None:
+def _step(
+    name: str,
+    kept: campaign.Campaign | None,
+    total: Total,
+    is_built: bool,
+    work: Callable[[], list[Case]],
+) -> None:
     say(f"== {name}")
-    start = time.monotonic()
+    clock = Clock()
     found = kept.kept(name) if kept else None
     if found is not None:
         say(f"{name} passed in an earlier run of these sources")
@@ -108,7 +145,7 @@ def _step(name: str, kept: campaign.Campaign | None, total: Total, is_built: boo
             kept.keep(name, found)
     else:
         found = [groups.skipped(name, "nothing was built")]
-    total.add(name, found, time.monotonic() - start)
+    total.add(name, found, clock)
 
 
 if __name__ == "__main__":
