@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -28,7 +29,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="blender_support")
     parser.add_argument("--last", action="store_true", help="of the last run of the tests")
     if not parser.parse_args().last:
-        status = subprocess.run([ROOT / "blend-tests/run", "parity"], check=False).returncode
+        long = os.environ | {"VELOUR_LONG_TESTS": "1"}
+        status = subprocess.run([ROOT / "blend-tests/run", "parity"], check=False, env=long).returncode
         if status:
             print("blender_support: tests of parity fail; the table stays as it is.", file=sys.stderr)
             return status

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -26,7 +27,9 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="velour-failures-") as folder:
         found = Path(folder) / "found.json"
         command = [_PROGRAM, "--gtest_filter=*AreSurvivedAndTold/*", f"--gtest_output=json:{found}"]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(
+            command, check=True, stdout=subprocess.DEVNULL, env=os.environ | {"VELOUR_LONG_TESTS": "1"}
+        )
         tests = json.loads(found.read_text(encoding="utf-8"))
     page = generated.replaced(_PAGE.read_text(encoding="utf-8"), "claims", part(tests), "failure_modes")
     files.write_text(_PAGE, page)

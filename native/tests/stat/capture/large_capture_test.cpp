@@ -11,6 +11,7 @@
 
 #include "job/job.h"
 #include "support/captured.h"
+#include "support/level.h"
 
 namespace velour {
 namespace {
@@ -76,6 +77,7 @@ double seconds_to_stop(Job& job) {
 #ifndef __SANITIZE_ADDRESS__  // whose own bookkeeping takes several times as much
 
 TEST(LargeCapture, OfTenMillionTrianglesHoldsThemOnceAndStopsSoon) {
+  VELOUR_LONG_TEST();
   const auto scene = tile_of(waves(2237), std::make_shared<test::Lambert>(0.8f));
   const uint64_t triangles = scene->meshes()[0].triangles().size();
   ASSERT_GE(triangles, 10'000'000u);

@@ -6,6 +6,7 @@
 
 #include "material/shader_layers.h"
 #include "render/lighting.h"
+#include "support/level.h"
 #include "support/polygon_irradiance.h"
 #include "support/proof_strategies.h"
 #include "support/renders.h"
@@ -62,6 +63,7 @@ TEST(GlowingSurfaces, AQuadLightsAFloorInClosedForm) {
     const Scene scene = floor_under(place);
     for (const NamedStrategy& s : test::all_strategies()) {
       const bool blind = s.strategy != Strategy::light && !is_mixed(s.strategy);
+      if (blind && k > 0 && !test::long_tests()) continue;  // what surfaces reflect does not know of lights
       RenderOptions options = test::small_options(s.strategy, blind ? 4096 : 1024);
       options.heuristic = s.heuristic;
       options.light_share = s.light_share;
@@ -124,6 +126,7 @@ test::PictureMeans pictures(const Scene& scene, const NamedStrategy& s, int spp,
 TEST(GlowingSurfaces, DrawnRaysChangeNothingButNoise) {
   test::ZTests tests, control;
   for (const int bounces : {0, 1}) {
+    if (bounces == 0 && !test::long_tests()) continue;  // a bounce has direct light, too
     const Scene drawn = gallery(true);
     const auto expected = pictures(gallery(false), {"cosine", Strategy::cosine}, 16384, 1'000'000, bounces);
     for (const NamedStrategy& s : test::all_strategies()) {

@@ -3,6 +3,7 @@
 #include "render/lights_part.h"
 #include "render/sky_proposals.h"
 #include "scene/sky_misfit.h"
+#include "support/level.h"
 #include "support/lobe_cells.h"
 #include "support/proof_materials.h"
 #include "support/renders.h"
@@ -204,6 +205,7 @@ TEST_F(ProductStrategy, AgreesWithMisForEverySplit) {
     const Scene scene = pair(uneven(1), lamp);
     const auto mis = measure(scene, Strategy::mis);
     for (const int split : {1, 3, 8}) {
+      if (split == 3 && !test::long_tests()) continue;
       compare(std::string(lamp ? "lamp " : "") + std::to_string(split), measure(scene, Strategy::product, split), mis,
               tests);
     }

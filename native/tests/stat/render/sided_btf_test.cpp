@@ -2,6 +2,7 @@
 // made.
 #include <gtest/gtest.h>
 
+#include "support/level.h"
 #include "support/sided_btfs.h"
 #include "support/strategy_agreement.h"
 
@@ -22,6 +23,7 @@ Scene finest_level(float light = 1) {
 }
 
 TYPED_TEST(SidedBtf, AllStrategiesHaveTheSameExpectation) {
+  if (std::is_same_v<TypeParam, test::SrbfKind>) VELOUR_LONG_TEST();  // Through has it in the short suite
   test::expect_strategies_agree(finest_level<TypeParam>(), 0.05);
 }
 

@@ -7,6 +7,7 @@
 #include "material/measured_btf_material.h"
 #include "sphere/frame.h"
 #include "support/captured.h"
+#include "support/level.h"
 #include "support/strategy_agreement.h"
 #include "support/through_btfs.h"
 
@@ -25,6 +26,7 @@ Scene finest_level(float light = 1) {
 }
 
 TYPED_TEST(Through, AllStrategiesHaveTheSameExpectation) {
+  if (std::is_same_v<TypeParam, test::TensorKind>) VELOUR_LONG_TEST();
   test::expect_strategies_agree(finest_level<TypeParam>(), 0.06);
 }
 

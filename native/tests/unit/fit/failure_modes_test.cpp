@@ -16,6 +16,7 @@
 #include "sphere/random.h"
 #include "sphere/warp.h"
 #include "support/hostile_measurements.h"
+#include "support/level.h"
 #include "support/materials.h"
 
 namespace velour {
@@ -168,6 +169,8 @@ bool keeps_its_tolerance(const FitRecord& record) {
 
 TEST_P(FailureModes, AreSurvivedAndTold) {
   const auto& [kind, hostile] = GetParam();
+  // A quarter of the time of all: another kind has this measurement, and this kind other mirrors.
+  if (kind.name == "parametric" && hostile.name == "near-mirror, anisotropic") VELOUR_LONG_TEST();
   Progress progress;
   const auto start = std::chrono::steady_clock::now();
   std::shared_ptr<const Model> model;
