@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import signal
 import subprocess
@@ -10,7 +11,7 @@ import time
 import inputs
 import numpy as np
 import pytest
-from command_line import command, environment, hear_ctrl_c, refused, velour
+from command_line import command, environment, hear_ctrl_c, program, refused, velour
 
 NOISE = random.Random(1).randbytes(4096)
 RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-o", "o.exr"]
@@ -79,6 +80,14 @@ def test_captures_that_cannot_be_are_refused_with_a_sentence(arguments, word, tm
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    ("arguments", "status"), [(["info", "/nowhere/wool.binary"], 1), (["fit", "x"], 2), (["--version"], 0)]
+)
+def test_a_process_ends_as_main_returns(arguments, status):
+    assert program(*arguments) == velour(*arguments)
+    assert program(*arguments).status == status
+
+
 def test_help_and_version():
     assert velour("--version").out.startswith("velour 0.")
     for verb in ("info", "fit", "compare", "render", "merge", "capture"):
@@ -86,7 +95,8 @@ def test_help_and_version():
 
 
 def test_missing_library(tmp_path):
-    assert "libvelour" in refused("info", "x", VELOUR_LIBRARY=str(tmp_path / "libvelour.so"))
+    library = str(tmp_path / "libvelour.so")
+    assert "libvelour" in refused("info", "x", run=program, VELOUR_LIBRARY=library)
 
 
 def test_a_missing_file_is_named():
@@ -194,26 +204,43 @@ def test_a_failed_fit_leaves_the_old_model(tmp_path):
     assert model.read_text() == "old"
 
 
-def _interrupted(arguments) -> tuple[int, str]:
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    process = subprocess.Popen(command(*arguments), env=environment(), preexec_fn=hear_ctrl_c, **pipes)
+def _interrupted(arguments, stage: str) -> int:
+    """The status of a run whose user, at a terminal, presses Ctrl-C when its progress bar shows the stage."""
+    reader, terminal = os.openpty()
+    process = subprocess.Popen(
+        command(*arguments), env=environment(), stderr=terminal, preexec_fn=hear_ctrl_c
+    )
+    os.close(terminal)
     try:
-        time.sleep(2.5)
-        assert process.poll() is None, process.communicate()[1]
+        said = _until(reader, f"% {stage}")
+        assert process.poll() is None, said
         process.send_signal(signal.SIGINT)
         start = time.monotonic()
-        _, err = process.communicate(timeout=30)
+        said = _until(reader)
+        status = process.wait(timeout=30)
         assert time.monotonic() - start < 3
-        return process.returncode, err
+        assert said.split("\r\x1b[K")[-1] == "velour: Interrupted.\r\n"  # in place of the bar
+        return status
     finally:
         process.kill()
+        os.close(reader)
+
+
+def _until(reader: int, word: str | None = None) -> str:
+    """What the process says up to the word, or to its end."""
+    said = ""
+    while word is None or word not in said:
+        try:
+            said += os.read(reader, 4096).decode()
+        except OSError:  # nobody has the terminal open any more
+            break
+    return said
 
 
 def test_interrupted_render(tmp_path, mesh_file, world_file, model_file):
     out = tmp_path / "o.exr"
     arguments = ["render", "--mesh", mesh_file, "--world", world_file, "--material", model_file, "-o", out]
-    status, err = _interrupted([*arguments, "--size", "1024x1024", "--spp", 100000])
-    assert (status, err) == (130, "velour: Interrupted.\n")
+    assert _interrupted([*arguments, "--size", "1024x1024", "--spp", 100000], "render") == 130
     assert not list(tmp_path.iterdir())
 
 
@@ -221,17 +248,15 @@ def test_interrupted_fit(tmp_path):
     sharp = inputs.write_merl(tmp_path / "sharp.binary", sharpness=5000.0, gloss=500.0)
     out = tmp_path / "m.velour"
     out.write_text("old")
-    status, _ = _interrupted(
-        ["fit", sharp, "-o", out, "--model", "scattered", "--max-lobes", 64, "--tolerance", 1e-6]
-    )
-    assert status == 130
+    arguments = ["fit", sharp, "-o", out, "--model", "scattered", "--max-lobes", 64, "--tolerance", 1e-6]
+    assert _interrupted(arguments, "fitting") == 130
     assert out.read_text() == "old"
     assert {p.name for p in tmp_path.iterdir()} == {"m.velour", "sharp.binary"}
 
 
 def test_interrupted_capture(tmp_path):
-    status, _ = _interrupted(["capture", "--microsurface", "--rays", 10**11, "-o", tmp_path / "c.binary"])
-    assert status == 130
+    arguments = ["capture", "--microsurface", "--rays", 10**11, "-o", tmp_path / "c.binary"]
+    assert _interrupted(arguments, "tracing") == 130
     assert not list(tmp_path.iterdir())
 
 

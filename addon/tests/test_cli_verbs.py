@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from command_line import velour
+from command_line import program, velour
 from velour.native import Model, images, table
 
 FIT_KEYS = [
@@ -85,7 +85,9 @@ def test_info_of_a_measurement(measurement_file):
 
 
 def test_info_of_a_model(model_file):
-    report = velour("info", model_file, "--json").json
+    result = program("info", model_file, "--json")
+    assert result == velour("info", model_file, "--json")
+    report = result.json
     assert report["kind"] == "model"
     assert report["bytes"] == model_file.stat().st_size
     assert report["source"]["name"] == "paint"
@@ -100,7 +102,7 @@ def test_info_for_people(model_file):
 
 def test_fit_and_compare(measurement_file, tmp_path):
     path = tmp_path / "paint.velour"
-    result = velour("fit", measurement_file, "-o", path, "--max-lobes", 3, "--seed", 7, "--json", "--quiet")
+    result = program("fit", measurement_file, "-o", path, "--max-lobes", 3, "--seed", 7, "--json", "--quiet")
     assert (result.status, result.err) == (0, "")
     assert list(result.json) == FIT_KEYS
     assert list(result.json["by_view_angle"]) == ANGLES
@@ -173,7 +175,7 @@ def test_views_that_miss_the_tolerance_are_warned_of_on_stderr(measurement_file,
 
 
 def test_render(render_arguments, tmp_path):
-    result = velour(*render_arguments, "--quiet")
+    result = program(*render_arguments, "--quiet")
     assert (result.status, result.err) == (0, "")
     assert list(result.json) == RENDER_KEYS
     assert result.json["rmse"] is None
@@ -327,7 +329,7 @@ def test_simd_can_be_pinned(render_arguments):
 
 
 def test_observe_tells_what_the_scene_asks_of_its_material(observe_arguments, tmp_path):
-    report = velour(*observe_arguments).json
+    report = program(*observe_arguments).json
     assert list(report) == OBSERVE_KEYS
     assert (report["frames"], report["hits"]) == (1, 1024)
     assert report["weight"] == pytest.approx(report["share"] * report["camera_rays"])

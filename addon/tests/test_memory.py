@@ -9,7 +9,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from command_line import command, environment, refused, velour
+from command_line import command, environment, program, refused, velour
 from velour.core.memory_limit import Limit, memory_limit
 from velour.native import images
 
@@ -55,7 +55,7 @@ def large(measurement_file, tmp_path):
 
 @pytest.mark.parametrize("part", ["mesh", "material", "world", "picture"])
 def test_the_estimate_is_no_less_than_the_peak_and_not_much_more(part, small, large):
-    told = velour(*render(small | large[part](), "--json")).json["memory"]
+    told = program(*render(small | large[part](), "--json")).json["memory"]
     assert list(told["parts"]) == ["program", "mesh", "material", "world", "picture"]
     assert told["estimated"] == sum(told["parts"].values())
     assert told["peak"] <= told["estimated"] <= MOST * told["peak"]
@@ -65,7 +65,7 @@ def test_the_estimate_is_no_less_than_the_peak_and_not_much_more(part, small, la
 def test_a_render_that_goes_on_from_a_side_file_takes_more(small):
     wide = render(small | {"size": "1600x1200"}, "--spp", 16)
     assert velour(*wide, "--time-limit", 1e-9).status == 3
-    told = velour(*wide, "--json").json["memory"]
+    told = program(*wide, "--json").json["memory"]
     assert told["peak"] <= told["estimated"] <= MOST * told["peak"]
     assert told["estimated"] - 112 * 1600 * 1200 < told["peak"]
 

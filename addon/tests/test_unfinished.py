@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -97,8 +99,13 @@ def test_pictures_with_a_noise_target_begin_anew(arguments, side, tmp_path):
     np.testing.assert_array_equal(images.read(tmp_path / "o.exr"), images.read(tmp_path / "whole.exr"))
 
 
+def _processor_seconds(pid: int) -> float:
+    user, system = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[11:13]
+    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+
 def _terminated(arguments) -> tuple[int, str]:
-    """Status and last line of a render that gets SIGTERM half a second after it began."""
+    """Status and last line of a render that gets SIGTERM in the midst of its samples."""
     process = subprocess.Popen(
         command(*arguments, "--log-level", "info"), env=environment(), stderr=subprocess.PIPE, text=True
     )
@@ -106,7 +113,9 @@ def _terminated(arguments) -> tuple[int, str]:
         for line in process.stderr:
             if "Rendering" in line:
                 break
-        time.sleep(0.5)
+        begun = _processor_seconds(process.pid)
+        while process.poll() is None and _processor_seconds(process.pid) < begun + 0.2:
+            time.sleep(0.01)
         process.send_signal(signal.SIGTERM)
         start = time.monotonic()
         _, err = process.communicate(timeout=60)
