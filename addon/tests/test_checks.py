@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 
 import pytest
+import test_times
 from checks import campaign, cases, groups, running
 from checks.cases import FAILED, PASSED, SKIPPED, Case
 
@@ -80,3 +81,22 @@ def test_a_stopped_campaign_goes_on(tmp_path):
     assert campaign.Campaign(file, "others").kept("native") is None
     file.write_text("{")
     assert campaign.Campaign(file, "sources").kept("native") is None
+
+
+def test_the_table_of_times_has_groups_their_sum_and_the_slowest():
+    groups = {
+        "style": {"tests": 5, "seconds": 12.4, "processor": 20.0, "slowest": [("layers", 1.25)]},
+        "native": {
+            "tests": 100,
+            "seconds": 300.0,
+            "processor": 590.0,
+            "slowest": [("Lobe.Integrates", 30.0)],
+        },
+    }
+    page = test_times.text(groups)
+    for line in (
+        "| style | 5 | 12 | 20 |",
+        "| all | 105 | 312 | 610 |",
+        "| native | Lobe.Integrates | 30.0 |",
+    ):
+        assert line in page
