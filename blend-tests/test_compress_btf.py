@@ -8,7 +8,7 @@ from unittest import mock
 import bpy
 import numpy as np
 
-from support import inputs, scenes
+from support import blender, inputs, scenes
 from support.blender import BlenderTest
 
 _SMALL = {"texels": 16, "views": 24, "lights": 24, "samples": 16, "bounces": 0, "sides": "ONE"}
@@ -24,7 +24,7 @@ class CompressBtf(BlenderTest):
         return folder
 
     def test_what_was_captured_of_a_tile_becomes_a_packed_model(self):
-        self._captured()
+        self._captured(**_SMALLEST)
         before = {material.name for material in bpy.context.object.data.materials}
         self.assertEqual(bpy.ops.velour.compress_btf(), {"FINISHED"})
         image = scenes.velour_node(bpy.data.materials["ribs"]).image
@@ -105,15 +105,27 @@ class CompressBtf(BlenderTest):
         bpy.ops.velour.compress_btf(megabytes=0.03)
         self.assertIsNone(self._model_info("ribs.001")["psnr_held_out"])
 
+    def _plane_of_ribs(self):
+        """The model's node in a scene that tests share: a plane wears it, not the tile that was captured."""
+        shared = blender.folder() / "shared"
+        if not shared.is_dir():
+            folder, self.folder = self.folder, shared
+            shared.mkdir()
+            btf = self._captured()
+            self.folder = folder
+            bpy.data.objects.remove(bpy.context.object)
+            scenes.use_engine(size=64)
+            scenes.add_plane(size=4)
+            bpy.ops.velour.compress_btf(filepath=str(btf), assign=True, megabytes=0.06)
+            scenes.set_world()
+            scenes.add_camera(ortho_scale=4)
+            bpy.ops.wm.save_as_mainfile(filepath=str(shared / "plane.blend"))
+        bpy.ops.wm.open_mainfile(filepath=str(shared / "plane.blend"))
+        return scenes.velour_node(bpy.data.materials["ribs"])
+
     def test_the_material_renders_on_another_object_under_its_texture_coordinates(self):
-        folder = self._captured()
-        bpy.data.objects.remove(bpy.context.object)
-        scenes.use_engine(size=64)
-        scenes.add_plane(size=4)
-        bpy.ops.velour.compress_btf(filepath=str(folder), assign=True, megabytes=0.06)
+        self._plane_of_ribs()
         self.assertEqual(bpy.context.object.active_material.name, "ribs")
-        scenes.set_world()
-        scenes.add_camera(ortho_scale=4)
         picture = scenes.render(self.folder)[:, :, :3]
         self.assertGreater(picture.min(), 0.01)
         # One tile covers the plane: its ribs run one way, so only across them is it uneven.
@@ -121,14 +133,7 @@ class CompressBtf(BlenderTest):
         self.assertGreater(max(spread), 5 * min(spread))
 
     def test_the_btf_itself_renders_in_place_of_its_model(self):
-        folder = self._captured()
-        bpy.data.objects.remove(bpy.context.object)
-        scenes.use_engine(size=64)
-        scenes.add_plane(size=4)
-        bpy.ops.velour.compress_btf(filepath=str(folder), assign=True, megabytes=0.06)
-        scenes.set_world()
-        scenes.add_camera(ortho_scale=4)
-        node = scenes.velour_node(bpy.data.materials["ribs"])
+        node = self._plane_of_ribs()
         model = scenes.render(self.folder, "model")[:, :, :3]
         node.velour.use_reference = True
         itself = scenes.render(self.folder, "itself")[:, :, :3]
@@ -138,14 +143,7 @@ class CompressBtf(BlenderTest):
         self.assertGreater(moved, 3 * np.abs(model - itself).mean())
 
     def test_the_btf_itself_is_placed_as_its_model_is(self):
-        folder = self._captured()
-        bpy.data.objects.remove(bpy.context.object)
-        scenes.use_engine(size=64)
-        scenes.add_plane(size=4)
-        bpy.ops.velour.compress_btf(filepath=str(folder), assign=True, megabytes=0.06)
-        scenes.set_world()
-        scenes.add_camera(ortho_scale=4)
-        node = scenes.velour_node(bpy.data.materials["ribs"])
+        node = self._plane_of_ribs()
         node.velour.use_reference = True
         plain = scenes.render(self.folder, "plain")[:, :, :3]
         node.velour.placement.rotation = np.pi / 2
@@ -156,7 +154,7 @@ class CompressBtf(BlenderTest):
         self.assertGreater(np.abs(model - plain).mean(), 3 * np.abs(model - turned).mean())
 
     def test_a_btf_that_changed_is_not_rendered_unless_accepted(self):
-        folder = self._captured()
+        folder = self._captured(**_SMALLEST)
         scenes.use_engine(samples=1, size=8)
         scenes.set_world()
         scenes.add_camera()
@@ -174,7 +172,7 @@ class CompressBtf(BlenderTest):
             scenes.render(self.folder)
 
     def test_a_btf_is_no_measurement_to_fit(self):
-        self._captured()
+        self._captured(**_SMALLEST)
         bpy.ops.velour.compress_btf(assign=True, megabytes=0.02)
         with self.assertRaisesRegex(RuntimeError, r"btf.json is a BTF.*compress_btf\(material='ribs'\)"):
             bpy.ops.velour.fit()
@@ -223,7 +221,7 @@ class CompressBtf(BlenderTest):
         self.assertNotIn("nowhere", bpy.data.materials)
 
     def test_importing_a_btf_makes_a_material_of_it(self):
-        path = self._captured()
+        path = self._captured(**_SMALLEST)
         bpy.ops.mesh.primitive_cube_add()
         cube = bpy.context.object
         for name in ("Front", "Back"):

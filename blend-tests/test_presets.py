@@ -3,6 +3,7 @@
 import importlib
 import shutil
 import sys
+import unittest
 import unittest.mock
 from collections import Counter
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from support import inputs
+from support import inputs, level
 from support.blender import BlenderTest, run_blender
 
 CATALOG = "6f3f5b36-31cf-4d4e-9a8b-6a1c0f5ad101"
@@ -105,6 +106,7 @@ class Presets(BlenderTest):
         self.assertEqual(len(self._libraries), len(self._known))
 
 
+@unittest.skipUnless(level.LONG, level.REASON)
 class WholeLibrary(BlenderTest):
     """All 24 of the table, by the script that writes the library; models of the tests stand in for theirs."""
 

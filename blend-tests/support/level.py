@@ -3,3 +3,5 @@
 import os
 
 LONG = bool(os.environ.get("VELOUR_LONG_TESTS"))
+
+REASON = "long: scripts/test --all runs it"
