@@ -3,12 +3,13 @@
 import contextlib
 import io
 import os
+import unittest
 from unittest import mock
 
 import bpy
 import numpy as np
 
-from support import blender, inputs, scenes
+from support import blender, inputs, level, scenes
 from support.blender import BlenderTest
 
 _SMALL = {"texels": 16, "views": 24, "lights": 24, "samples": 16, "bounces": 0, "sides": "ONE"}
@@ -62,6 +63,7 @@ class CompressBtf(BlenderTest):
         with self.assertRaisesRegex(RuntimeError, "nothing.btf"):
             self._estimate(filepath=str(self.folder / "nothing.btf"))
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_bytes_are_bounded(self):
         self._captured()
         bpy.ops.velour.compress_btf(megabytes=0.02)

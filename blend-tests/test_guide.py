@@ -3,12 +3,13 @@
 import os
 import shutil
 import tempfile
+import unittest
 from pathlib import Path
 from unittest import mock
 
 import bpy
 
-from support import guide, inputs, labels
+from support import guide, inputs, labels, level
 from support.blender import BlenderTest
 from support.snippets import ROOT, SnippetTest
 
@@ -36,6 +37,7 @@ class Snippets(SnippetTest):
                 self.assertIn(text, printed)
         return found
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_first_material(self):
         self.assertEqual([language for language, _ in self._run_page("first_material.md")], ["python", "sh"])
         self.assertTrue((self.folder / "iris.velour").is_file())
@@ -60,6 +62,7 @@ class Snippets(SnippetTest):
         )
         self.assertLess(reduced.info()["parameter_bytes"], full.info()["parameter_bytes"])
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_cloth(self):
         self._run_page("cloth.md")
         self.assertGreater((self.folder / "weave.velour").stat().st_size, 10_000)

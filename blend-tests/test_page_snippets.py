@@ -5,11 +5,12 @@ behind those of the page.
 """
 
 import shutil
+import unittest
 
 import bpy
 import numpy as np
 
-from support import guide, inputs, scenes
+from support import guide, inputs, level, scenes
 from support.snippets import ROOT, SnippetTest
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -90,6 +91,7 @@ class PageSnippets(SnippetTest):
             self.run_shell(text)
         self._has("bunny.exr", "weave.velour")
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_for_scene(self):
         self._inputs("table.obj", "far.obj")
         self.run_shell("scripts/velour capture weave --sides one -o weave")
@@ -99,6 +101,7 @@ class PageSnippets(SnippetTest):
             self._has(model, "frame.exr")
             (self.folder / "frame.exr").unlink()
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_votf(self):
         self._inputs("sphere.obj")
         of_geometry, of_data = self._runnable("votf.md")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 
-from support import process
+from support import level, process
 from support.blender import BlenderTest
 
 HERE = Path(__file__).resolve().parent
@@ -90,6 +90,7 @@ class Runner(BlenderTest):
         ):
             self.assertIn(words, done.stdout)
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_update_makes_what_passes(self):
         self.add("brighter", self.brighter())
         before = (self.scenes / "references/brighter.exr").read_bytes()
