@@ -233,7 +233,6 @@ def edits(folder):
         edit()
         yield from viewport.seen(last, edit.__name__)
         now = viewport.pixels()
-        window.screenshot(folder, f"edit{edit.__name__}")
         assert edit is _painted or viewport.the_one()._live is exported, f"{edit.__name__}: all exported anew"
         viewport.the_one().forget_scene()
         # Relations anew: else Blender 3.4 would not tell of changes of a picture only just shown.
@@ -288,7 +287,7 @@ def during_a_build(folder):
     """Edits do not wait for the hierarchy of a large mesh, which is built once."""
     _scene()
     with window.override():
-        bpy.ops.mesh.primitive_grid_add(x_subdivisions=1500, y_subdivisions=1500, size=20)
+        bpy.ops.mesh.primitive_grid_add(x_subdivisions=1000, y_subdivisions=1000, size=20)
     bpy.context.view_layer.objects.active.location.z = -2
     engine_viewport = viewport.addon("engine.viewport").Viewport
     update, held = engine_viewport.update, []
