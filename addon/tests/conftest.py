@@ -17,6 +17,16 @@ sys.path[:0] = [str(ADDONS), str(ROOT / "scripts/lib"), str(Path(__file__).paren
 
 import inputs  # noqa: E402
 
+LONG = "long: scripts/test --all runs it"
+
+
+def pytest_collection_modifyitems(items):
+    """Tests that are marked as long are left to scripts/test --all."""
+    if os.environ.get("VELOUR_LONG_TESTS") != "1":
+        for item in items:
+            if item.get_closest_marker("long"):
+                item.add_marker(pytest.mark.skip(reason=LONG))
+
 
 @pytest.fixture(scope="session")
 def measurement_file(tmp_path_factory) -> Path:

@@ -1,4 +1,4 @@
-"""Synthetic inputs."""
+"""Synthetic inputs, and one that the repository has."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+BTF_MODEL = Path(__file__).resolve().parents[2] / "blend-tests/scenes/data/weave.velour"
 MERL_SHAPE = (90, 90, 180)
 _MERL_SCALE = np.array([1.0, 1.15, 1.66]) / 1500.0
 
@@ -19,6 +20,14 @@ def write_merl(path: Path, color=(0.5, 0.2, 0.1), gloss=0.8, sharpness=60.0) -> 
         for channel in range(3):
             f = (color[channel] / np.pi + lobe) / _MERL_SCALE[channel]
             np.broadcast_to(f[:, None, None], MERL_SHAPE).astype("<f8").tofile(file)
+    return path
+
+
+def write_ribs(path: Path) -> Path:
+    """One of them, 1 x 1 across and 0.3 high: a tile whose capture takes little."""
+    corners = ["0 0 0", "0.7 0 0.3", "1 0 0", "0 1 0", "0.7 1 0.3", "1 1 0"]
+    faces = ["1 2 5", "1 5 4", "2 3 6", "2 6 5"]
+    path.write_text("".join(f"v {c}\n" for c in corners) + "".join(f"f {f}\n" for f in faces))
     return path
 
 

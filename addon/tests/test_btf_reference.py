@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from command_line import refused, velour
+from inputs import BTF_MODEL
+from kept import CORDUROY, LIGHTS, captured
 from velour.native import Btf, images
-
-LIGHTS = 40
 
 
 @pytest.fixture(scope="module")
@@ -16,14 +16,8 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def btf(folder):
-    path = folder / "corduroy.btf"
-    captured = velour(
-        "capture", "corduroy", "--texels", 12, "--views", 30, "--lights", LIGHTS, "--samples", 16,
-        "--sides", "one", "-o", path, "--quiet",
-    )  # fmt: skip
-    assert captured.status == 0, captured.err
-    return path
+def btf():
+    return captured(*CORDUROY, "--views", 30, "--seed", 1)
 
 
 @pytest.fixture(scope="module")
@@ -87,7 +81,6 @@ def test_refusals(folder, btf, scene):
     sentence = refused("render", *scene, "--material", btf, "--memory", 1000, "-o", output)
     assert "memory" in sentence
     assert "limit" in sentence
-    model = folder / "model.velour"
-    velour("compress", btf, "-o", model, "--bytes", 30000, "--quiet")
-    assert "--proposal" in refused("render", *scene, "--material", btf, "--proposal", model, "-o", output)
+    proposal = ["--proposal", BTF_MODEL]
+    assert "--proposal" in refused("render", *scene, "--material", btf, *proposal, "-o", output)
     assert not output.exists()

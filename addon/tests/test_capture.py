@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from command_line import refused, velour
+from inputs import write_ribs
 from velour.native import Btf
 
 PAIRS = 12
-COMMON = ["corduroy", "--texels", 8, "--samples", 4, "--sides", "one", "--quiet"]
+COMMON = ["--texels", 8, "--samples", 4, "--sides", "one", "--quiet"]
 
 
 @pytest.fixture(scope="module")
@@ -17,34 +18,38 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def held_out(folder):
+def ribs(folder):
+    return write_ribs(folder / "ribs.obj")
+
+
+@pytest.fixture(scope="module")
+def held_out(folder, ribs):
     path = folder / "held-out"
-    report = velour("capture", *COMMON, "--held-out", PAIRS, "-o", path, "--json").json
+    report = velour("capture", ribs, *COMMON, "--held-out", PAIRS, "-o", path, "--json").json
     assert (report["views"], report["lights"], report["pairs"]) == (PAIRS, PAIRS, PAIRS)
     return path
 
 
 @pytest.fixture(scope="module")
-def btf(folder):
+def btf(folder, ribs):
     path = folder / "fitted"
-    assert velour("capture", *COMMON, "--views", 12, "--lights", 12, "-o", path).status == 0
+    assert velour("capture", ribs, *COMMON, "--views", 12, "--lights", 12, "-o", path).status == 0
     return path
 
 
-def test_captures_reach_85_degrees_by_default(folder):
+def test_captures_reach_85_degrees_by_default(folder, ribs):
     path = folder / "default"
-    report = velour(
-        "capture", "corduroy", "--texels", 1, "--samples", 1, "--bounces", 0, "-o", path, "--json"
-    ).json
+    few = ["--texels", 1, "--samples", 1, "--bounces", 0]
+    report = velour("capture", ribs, *few, "-o", path, "--json").json
     assert report["pairs"] == 105 * 105
     with Btf.load(path) as loaded:
         angles = loaded.angles()
     assert angles[:, 0].max() == angles[:, 2].max() == 85
 
 
-def test_one_direction_makes_a_model(folder):
+def test_one_direction_makes_a_model(folder, ribs):
     path, model = folder / "single", folder / "single.velour"
-    assert velour("capture", *COMMON, "--views", 1, "--lights", 1, "-o", path).status == 0
+    assert velour("capture", ribs, *COMMON, "--views", 1, "--lights", 1, "-o", path).status == 0
     report = velour("compress", path, "-o", model, "--bytes", 100000, "--json").json
     assert report["psnr"] > 30
     assert velour("compare", path, path, "--json").json["pairs"] == 1
@@ -61,7 +66,8 @@ def test_every_view_has_a_light_of_its_own(held_out):
 
 def test_models_and_tables_are_judged_by_it(folder, btf, held_out):
     model = folder / "judged.velour"
-    compress = ["compress", btf, "-o", model, "--held-out", held_out, "--bytes", 20000, "--json"]
+    method = ["--method", "svd", "--bytes", 20000]
+    compress = ["compress", btf, "-o", model, "--held-out", held_out, *method, "--json"]
     report = velour(*compress).json
     assert report["psnr_held_out"] < report["psnr"]
     compared = velour("compare", held_out, model, "--json").json
@@ -70,7 +76,7 @@ def test_models_and_tables_are_judged_by_it(folder, btf, held_out):
     assert velour("compare", held_out, btf, "--json").json["pairs"] == PAIRS
 
 
-def test_refusals(folder, btf, held_out):
-    assert "--views" in refused("capture", *COMMON, "--held-out", 2, "--views", 3, "-o", folder / "no")
+def test_refusals(folder, ribs, btf, held_out):
+    assert "--views" in refused("capture", ribs, *COMMON, "--held-out", 2, "--views", 3, "-o", folder / "no")
     assert "pairs" in refused("compress", held_out, "-o", folder / "no.velour")
     assert "pairs" in refused("compare", btf, held_out)

@@ -35,6 +35,7 @@ def _sawtooth(scene):
 
 def _rays(path, texels, views, lights, bounces, sides="one", held_out=0):
     options = {"texels": texels, "views": views, "lights": lights, "samples": 4, "bounces": bounces}
+    options["reference_height"] = 0.1  # or it is sought, by rays of its own
     with Scene() as scene:
         _sawtooth(scene)
         with capture_job(scene, path, period=(1, 1), sides=sides, held_out=held_out, **options) as job:

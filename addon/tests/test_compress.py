@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from command_line import refused, velour
-from inputs import write_octahedron
+from inputs import write_octahedron, write_ribs
+from kept import CORDUROY, LIGHTS, captured
 from velour.native import Btf, Model, images
 
 TENSORS = ("tucker", "cta", "kcta")
@@ -18,13 +19,6 @@ COMPRESS_KEYS = [
     "evaluations_per_second", "seconds", "warnings", "tolerance", "order", "search",
 ]  # fmt: skip
 BYTES = {"srbf": 12000, "svd": 60000, "svd-view": 60000, **dict.fromkeys(TENSORS, 20000)}
-LIGHTS = 40
-
-
-def capture(path, views: int, seed: int):
-    common = ["--texels", 12, "--lights", LIGHTS, "--samples", 16, "--sides", "one", "--quiet"]
-    assert velour("capture", "corduroy", *common, "--views", views, "--seed", seed, "-o", path).status == 0
-    return path
 
 
 @pytest.fixture(scope="module")
@@ -33,13 +27,13 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def btf(folder):
-    return capture(folder / "fitted", 30, 1)
+def btf():
+    return captured(*CORDUROY, "--views", 30, "--seed", 1)
 
 
 @pytest.fixture(scope="module")
-def held_out(folder):
-    return capture(folder / "held-out", 9, 2)
+def held_out():
+    return captured(*CORDUROY, "--views", 9, "--seed", 2)
 
 
 @pytest.fixture(scope="module", params=["srbf", "svd", "svd-view", *TENSORS])
@@ -214,7 +208,7 @@ def test_what_cannot_be_is_refused_with_a_sentence(folder, btf, arguments, word)
 def other(folder):
     path = folder / "other"
     options = ["--texels", 8, "--views", 4, "--lights", 4, "--samples", 1, "--quiet"]
-    assert velour("capture", "corduroy", *options, "-o", path).status == 0
+    assert velour("capture", write_ribs(folder / "ribs.obj"), *options, "-o", path).status == 0
     return path
 
 

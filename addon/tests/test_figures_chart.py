@@ -1,4 +1,7 @@
-"""scripts/figures and scripts/chart, small, from end to end: they live, keep what is done, and go on."""
+"""scripts/figures and scripts/chart --quick on the test data: they keep what is done, and go on.
+
+test_campaigns.py has their short tests.
+"""
 
 from __future__ import annotations
 
@@ -6,31 +9,18 @@ import csv
 import os
 import shutil
 import subprocess
-import sys
 import time
 
 import pytest
 import uniform_moments
+from campaigns import run_script, script_command
 from command_line import environment, hear_ctrl_c, undated
-from conftest import ROOT
+
+pytestmark = pytest.mark.long
 
 
-def _command(name: str, folder, *more) -> list[str]:
-    program = ROOT / f"scripts/lib/{name}.py"
-    return [
-        sys.executable,
-        "-P",
-        str(program),
-        "--quick",
-        f"--work={folder}",
-        f"--output={folder}/out",
-        *more,
-    ]
-
-
-def _run(name: str, folder, *more, **env) -> str:
-    command = _command(name, folder, *more)
-    done = subprocess.run(command, capture_output=True, text=True, timeout=900, env=environment(**env))
+def _run(name: str, folder, *more, data) -> str:
+    done = run_script(name, folder, *more, data=data)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -40,15 +30,10 @@ def _rows(path) -> list[dict]:
         return list(csv.DictReader(file))
 
 
-@pytest.mark.parametrize("name", ["figures", "chart", "btf_chart"])
-def test_without_data_a_sentence(name, tmp_path):
-    assert "there is no test data" in _run(name, tmp_path, VELOUR_DATA=str(tmp_path / "none"))
-
-
 @pytest.fixture(scope="module")
 def figures(data_folder, tmp_path_factory):
     folder = tmp_path_factory.mktemp("figures")
-    _run("figures", folder, VELOUR_DATA=str(data_folder))
+    _run("figures", folder, data=data_folder)
     return folder
 
 
@@ -70,7 +55,7 @@ def test_figures_are_written(figures):
 def test_figures_are_not_rendered_twice(figures, data_folder):
     before = undated((figures / "out/README.md").read_text())
     start = time.monotonic()
-    said = _run("figures", figures, VELOUR_DATA=str(data_folder))
+    said = _run("figures", figures, data=data_folder)
     assert all("kept" in line for line in said.splitlines() if line.startswith("["))
     assert time.monotonic() - start < 30
     assert undated((figures / "out/README.md").read_text()) == before
@@ -82,7 +67,7 @@ def test_a_run_that_is_stopped_leaves_whole_files_and_goes_on(data_folder, tmp_p
     env = environment(VELOUR_DATA=str(data_folder))
     # A group of its own: Ctrl-C reaches the script and the render.
     process = subprocess.Popen(
-        _command("figures", tmp_path),
+        script_command("figures", tmp_path),
         env=env,
         stdout=subprocess.PIPE,
         text=True,
@@ -104,7 +89,7 @@ def test_a_run_that_is_stopped_leaves_whole_files_and_goes_on(data_folder, tmp_p
 @pytest.fixture(scope="module")
 def chart(data_folder, tmp_path_factory):
     folder = tmp_path_factory.mktemp("chart")
-    _run("chart", folder, VELOUR_DATA=str(data_folder))
+    _run("chart", folder, data=data_folder)
     return folder / "out"
 
 
@@ -150,7 +135,7 @@ def test_the_sun_survives_the_mixture(chart):
 @pytest.fixture(scope="module")
 def btf_chart(data_folder, tmp_path_factory):
     folder = tmp_path_factory.mktemp("btf_chart")
-    _run("btf_chart", folder, "--methods=svd,svd-view", VELOUR_DATA=str(data_folder))
+    _run("btf_chart", folder, "--methods=svd,svd-view", data=data_folder)
     return folder
 
 
@@ -179,7 +164,7 @@ def test_rows_are_added_to_a_page(btf_chart, data_folder):
     table, sheet = folder / "chart_btf.csv", folder / "images/chart_btf_weave.png"
     before, drawn = _rows(table), sheet.stat().st_mtime_ns
     more = ("--methods=svd", "--ratios=40", "--add", f"--output={folder}")
-    _run("btf_chart", btf_chart, *more, VELOUR_DATA=str(data_folder))
+    _run("btf_chart", btf_chart, *more, data=data_folder)
     kept = [row for row in before if row["ratio"]]
     assert [row for row in _rows(table) if row["ratio"]][: len(kept)] == kept
     assert {row["ratio"] for row in _rows(table) if row["method"] == "svd"} == {"10", "20", "40"}
@@ -188,5 +173,5 @@ def test_rows_are_added_to_a_page(btf_chart, data_folder):
 
 
 def test_what_was_fitted_is_kept(btf_chart, data_folder):
-    said = _run("btf_chart", btf_chart, "--methods=svd,svd-view", VELOUR_DATA=str(data_folder))
+    said = _run("btf_chart", btf_chart, "--methods=svd,svd-view", data=data_folder)
     assert all("kept" in line for line in said.splitlines() if line.startswith("["))

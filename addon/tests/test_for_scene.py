@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
-import sys
-
 import numpy as np
 import pytest
-from command_line import environment, velour
-from conftest import ROOT
+from campaigns import run_script
+from command_line import velour
 from inputs import write_merl
 from velour.native import Model, Observation, images
 
@@ -124,11 +120,9 @@ def test_what_makes_no_sense_is_refused(folder, reduced, arguments, word):
     assert not (folder / "no.velour").exists()
 
 
+@pytest.mark.long
 def test_the_script_writes_its_part_of_the_page(folder, tmp_path, data_folder):
-    work = tmp_path / "work"
-    command = [sys.executable, "-P", ROOT / "scripts/lib/for_scene.py", "--quick", "--work", work]
-    subprocess.run([*command, "--output", tmp_path], check=True, timeout=300, env=environment())
-    page = (tmp_path / "for_scene.md").read_text(encoding="utf-8")
+    assert run_script("for_scene", tmp_path, data=data_folder).returncode == 0
+    page = (tmp_path / "out/for_scene.md").read_text(encoding="utf-8")
     assert "moved camera" in page
-    assert (tmp_path / "for_scene.csv").is_file()
-    shutil.rmtree(work)
+    assert (tmp_path / "out/for_scene.csv").is_file()

@@ -9,7 +9,7 @@ import xml.etree.ElementTree
 import numpy as np
 import pytest
 from command_line import refused, velour
-from conftest import ROOT
+from inputs import BTF_MODEL
 from velour.native import (
     Measurement,
     Model,
@@ -24,7 +24,6 @@ from velour.native import (
     votf_job,
 )
 
-BTF_MODEL = ROOT / "blend-tests/scenes/data/weave.velour"
 DARK = {"background": (0.19, 0.19, 0.19), "foreground": (0.9, 0.9, 0.9)}
 
 

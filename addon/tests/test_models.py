@@ -1,16 +1,15 @@
-"""scripts/models: its own pieces against what is known, and a small run from end to end."""
+"""scripts/models: its own pieces against what is known, and a small run on the test data."""
 
 from __future__ import annotations
 
 import csv
 import re
-import subprocess
-import sys
 
 import models_tables
 import models_text
 import pytest
-from command_line import environment, undated
+from campaigns import only_kept, run_script
+from command_line import undated
 from conftest import ROOT
 from generated import replaced
 from model_runs import Result, Row
@@ -96,19 +95,6 @@ def test_pages_and_rows_are_written(results, tmp_path):
     }
 
 
-def _run(folder, data) -> subprocess.CompletedProcess:
-    program = ROOT / "scripts/lib/models.py"
-    command = [sys.executable, "-P", program, "--quick", f"--work={folder}", f"--output={folder}/out"]
-    env = environment(VELOUR_DATA=str(data))
-    return subprocess.run(command, capture_output=True, text=True, timeout=900, env=env)
-
-
-def test_without_data_a_sentence(tmp_path):
-    done = _run(tmp_path, tmp_path / "none")
-    assert done.returncode == 0
-    assert "there is no test data" in done.stdout
-
-
 def _page(folder) -> str:
     """Without the load of other programs, which is that of the moment."""
     page = (folder / "out/models.md").read_text(encoding="utf-8")
@@ -117,12 +103,12 @@ def _page(folder) -> str:
     )
 
 
+@pytest.mark.long
 def test_a_small_run_is_whole_and_is_not_repeated(data_folder, tmp_path):
-    assert _run(tmp_path, data_folder).returncode == 0
+    assert run_script("models", tmp_path, data=data_folder).returncode == 0
     page = _page(tmp_path)
     assert "| blue-metallic-paint | principled |" in page
     for picture in ("error_by_lobes", "error_by_bytes"):
         assert (tmp_path / f"out/models/{picture}.png").stat().st_size > 5000
-    again = _run(tmp_path, data_folder)
-    assert all("kept" in line for line in again.stdout.splitlines() if line.startswith("["))
+    assert only_kept(run_script("models", tmp_path, data=data_folder).stdout)
     assert undated(_page(tmp_path)) == undated(page)

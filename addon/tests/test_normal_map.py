@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from command_line import velour
 from velour.core import normal_map
 from velour.core.approximation import Steps
 from velour.core.normal_map import NormalMapJob
-from velour.native import Model, VelourError
+from velour.native import Model, Scene, Tile, VelourError, votf_job
 
 SIZE = 48
 
@@ -18,12 +17,17 @@ def paint(model_file):
 
 
 @pytest.fixture(scope="module")
-def wires(tmp_path_factory, model_file):
+def wires(paint):
     """A net of that paint: no BTF, but an outline."""
-    path = tmp_path_factory.mktemp("normals") / "net.velour"
-    velour("votf", "net", "--material", model_file, "--texels", SIZE, "-o", path)
-    with Model.load(path) as model:
-        yield model
+    with Tile.create("net") as tile, Scene() as scene:
+        mesh, materials = tile.add_to(scene)
+        scene.add_instance(mesh, np.eye(3, 4), materials)
+        scene.commit()
+        options = {"texels": SIZE, "period": tile.info()["period"], "reference_height": 0}
+        with votf_job(scene, paint, **options) as job:
+            job.run()
+            with job.result_model() as model:
+                yield model
 
 
 @pytest.fixture(scope="module")

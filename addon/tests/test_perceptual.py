@@ -1,16 +1,13 @@
-"""scripts/perceptual: the metric against what is known of it, and a small run from end to end."""
+"""scripts/perceptual: the metric against what is known of it, and a small run on the test data."""
 
 from __future__ import annotations
 
 import csv
-import subprocess
-import sys
 
 import flip_metric
 import numpy as np
 import pytest
-from command_line import environment
-from conftest import ROOT
+from campaigns import only_kept, run_script
 
 SIDE = 64
 EVERYWHERE = np.ones((SIDE, SIDE), bool)
@@ -83,20 +80,10 @@ def test_the_percentile_and_the_mean_are_the_objects(flip):
     assert Seen.of(reference, test, ~where).percentile > 0.2
 
 
-def _run(folder, **env) -> str:
-    program = ROOT / "scripts/lib/perceptual.py"
-    command = [sys.executable, "-P", program, "--quick", f"--work={folder}", f"--output={folder}/out"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=900, env=environment(**env))
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
-
-
-def test_without_data_a_sentence(tmp_path):
-    assert "there is no test data" in _run(tmp_path, VELOUR_DATA=str(tmp_path / "none"))
-
-
+@pytest.mark.long
 def test_a_small_run_is_whole_and_goes_on(flip, data_folder, tmp_path):
-    _run(tmp_path, VELOUR_DATA=str(data_folder))
+    done = run_script("perceptual", tmp_path, data=data_folder)
+    assert done.returncode == 0, done.stdout + done.stderr
     page = (tmp_path / "out/perceptual.md").read_text()
     assert "(perceptual/flip_by_error.png)" in page
     assert (tmp_path / "out/perceptual/flip_by_error.png").stat().st_size > 5000
@@ -109,5 +96,4 @@ def test_a_small_run_is_whole_and_goes_on(flip, data_folder, tmp_path):
         )
         assert float(fine["flip_mean"]) < float(coarse["flip_mean"])
         assert float(fine["flip_mean"]) < 0.5 * float(fine["noise_mean"])
-    again = _run(tmp_path, VELOUR_DATA=str(data_folder))
-    assert all("kept" in line for line in again.splitlines() if line.startswith("["))
+    assert only_kept(run_script("perceptual", tmp_path, data=data_folder).stdout)

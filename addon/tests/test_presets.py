@@ -59,6 +59,7 @@ def _preset(name):
     return next(preset for preset in PRESETS if preset.name == name)
 
 
+@pytest.mark.long
 def test_a_cloth_has_a_look_and_an_outline_and_is_made_once(workshop):
     tulle = _preset("Tulle")
     assert not workshop.is_built(tulle)

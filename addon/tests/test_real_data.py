@@ -25,6 +25,7 @@ def test_info(real_file):
     assert 0 < report["entries"]["valid"] <= report["entries"]["total"]
 
 
+@pytest.mark.long
 def test_fit_and_compare(real_file, tmp_path):
     model = tmp_path / "m.velour"
     fit = velour("fit", real_file, "-o", model, "--max-lobes", 4, "--json").json

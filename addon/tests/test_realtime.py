@@ -3,11 +3,11 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from inputs import BTF_MODEL
 from velour.core.mesh_arrays import MeshArrays
 from velour.core.mesh_queue import MeshQueue
 from velour.native import (
@@ -33,8 +33,6 @@ from velour.realtime.projection import jitter, view_projection
 from velour.realtime.shaders import PICTURES
 from velour.realtime.tables import LobeTables, PrincipledTables
 from velour.realtime.tile_widths import TileWidths
-
-_WEAVE = Path(__file__).parents[2] / "blend-tests/scenes/data/weave.velour"
 
 
 class _View:
@@ -338,7 +336,9 @@ def wires(tmp_path_factory, model_file):
         mesh, materials = tile.add_to(scene)
         scene.add_instance(mesh, np.eye(3, 4), materials)
         scene.commit()
-        with votf_job(scene, model, texels=48, period=tile.info()["period"], source="net") as job:
+        with votf_job(
+            scene, model, texels=48, period=tile.info()["period"], reference_height=0, source="net"
+        ) as job:
             job.run()
             with job.result_model() as outlined:
                 outlined.save(path)
@@ -408,7 +408,7 @@ def test_what_real_time_does_not_show_is_refused():
 
 
 def test_more_lamps_on_btfs_than_the_shader_holds_are_refused():
-    with RealtimeScene() as scene, Model.load(_WEAVE) as model:
+    with RealtimeScene() as scene, Model.load(BTF_MODEL) as model:
         scene.add_textured_material({}, base_color=(1, 0, 0))
         for _ in range(9):
             scene.add_light("sun", (1, 1, 1), np.eye(3, 4))
@@ -477,11 +477,11 @@ def test_long_lamps_of_a_spread_are_counted_as_simpler(size, spread, count):
 
 def test_models_of_btfs_have_no_rows():
     with pytest.raises(VelourError, match="no rows of lobes"):
-        lobe_rows_job(Model.load(_WEAVE))
+        lobe_rows_job(Model.load(BTF_MODEL))
 
 
 def test_maps_of_a_btf_hold_its_terms():
-    with Model.load(_WEAVE) as model, btf_maps_job(model) as job:
+    with Model.load(BTF_MODEL) as model, btf_maps_job(model) as job:
         report = job.run()
         table = job.result_table()
         coefficients = model.info()["coefficients"]

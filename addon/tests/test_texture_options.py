@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import refused, velour
-from inputs import write_octahedron
+from inputs import BTF_MODEL, write_octahedron
 from velour.core.placement import texture_map
 from velour.native import Scene, Status, VelourError, images
 
@@ -19,15 +19,6 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("placed")
 
 
-@pytest.fixture(scope="module")
-def model(folder):
-    common = ["--texels", 12, "--views", 16, "--lights", 16, "--samples", 4, "--sides", "one", "--quiet"]
-    assert velour("capture", "corduroy", *common, "-o", folder / "btf").status == 0
-    path = folder / "corduroy.velour"
-    assert velour("compress", folder / "btf", "-o", path, "--bytes", 30000, "--quiet").status == 0
-    return path
-
-
 def plane(path, uv_map=None):
     """Two metres wide; texture coordinates 0 to 1, taken through the map."""
     uvs = np.array([((x + 1) / 2, (y + 1) / 2, 1) for x, y in CORNERS])
@@ -37,30 +28,30 @@ def plane(path, uv_map=None):
     return path
 
 
-def rendered(mesh, model, world, *options):
+def rendered(mesh, material, world, *options):
     path = mesh.with_suffix(".exr")
     done = velour(
-        "render", "--mesh", mesh, "--up", "z", "--material", model, "--world", world, "--size", "32x32",
+        "render", "--mesh", mesh, "--up", "z", "--material", material, "--world", world, "--size", "32x32",
         "--spp", 64, "--camera", "0.3,-2,3,0,0,0,30", "-o", path, "--quiet", *options,
     )  # fmt: skip
     assert done.status == 0, done.err
     return images.read(path)[..., :3]
 
 
-def test_a_placed_mesh_is_the_mesh_whose_coordinates_were_moved(folder, model, world_file):
+def test_a_placed_mesh_is_the_mesh_whose_coordinates_were_moved(folder, world_file):
     options = ["--texture-scale", "3,2", "--texture-rotation", 25, "--texture-offset", "0.2,-0.4"]
-    placed = rendered(plane(folder / "placed.obj"), model, world_file, *options)
+    placed = rendered(plane(folder / "placed.obj"), BTF_MODEL, world_file, *options)
     uv_map = texture_map((3, 2), np.radians(25), (0.2, -0.4))
-    expected = rendered(plane(folder / "moved.obj", uv_map), model, world_file)
+    expected = rendered(plane(folder / "moved.obj", uv_map), BTF_MODEL, world_file)
     np.testing.assert_allclose(placed, expected, atol=2e-3 * expected.mean())
-    plain = rendered(plane(folder / "plain.obj"), model, world_file)
+    plain = rendered(plane(folder / "plain.obj"), BTF_MODEL, world_file)
     assert np.abs(plain - expected).mean() > 0.05 * expected.mean()
 
 
-def test_one_scale_is_of_both_axes(folder, model, world_file):
+def test_one_scale_is_of_both_axes(folder, world_file):
     mesh = plane(folder / "both.obj")
-    one = rendered(mesh, model, world_file, "--texture-scale", 3)
-    assert (one == rendered(mesh, model, world_file, "--texture-scale", "3,3")).all()
+    one = rendered(mesh, BTF_MODEL, world_file, "--texture-scale", 3)
+    assert (one == rendered(mesh, BTF_MODEL, world_file, "--texture-scale", "3,3")).all()
 
 
 def test_a_material_without_texture_cannot_be_placed(folder, model_file, world_file):
@@ -83,10 +74,10 @@ def test_an_anisotropic_brdf_can_be_turned(folder, world_file):
     assert "has no texture" in refused(*arguments, "-o", folder / "x.exr", "--texture-scale", 2)
 
 
-def test_a_mesh_without_coordinates_is_warned_of(folder, model, world_file):
+def test_a_mesh_without_coordinates_is_warned_of(folder, world_file):
     mesh = write_octahedron(folder / "octahedron.obj")
     done = velour(
-        "render", "--mesh", mesh, "--material", model, "--world", world_file, "--size", "8x8", "--spp", 8,
+        "render", "--mesh", mesh, "--material", BTF_MODEL, "--world", world_file, "--size", "8x8", "--spp", 8,
         "-o", folder / "x.exr",
     )  # fmt: skip
     assert done.status == 0

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import tail_bound
+import velour_cli
 from agreement import LUMINANCE, agreement
+from campaigns import run_in_this_process
 from progress import Progress
 from scenes import Scene
 from scipy import stats
@@ -111,10 +113,11 @@ def test_rare_events_pass_where_the_spread_of_renders_fails():
     assert spread_fails >= 5
 
 
-def test_two_per_cent_too_bright_is_refused_as_stated():
+@pytest.mark.parametrize("seeds", [3, pytest.param(20, marks=pytest.mark.long)])
+def test_two_per_cent_too_bright_is_refused_as_stated(seeds):
     everywhere = np.ones(PIXELS, bool)
     refused = 0
-    for seed in range(20):
+    for seed in range(seeds):
         batches, others, moments = _pictures(30, seed, 3000)
         found = uniform_agreement(batches.mean(axis=0), others, everywhere, moments, SAMPLES)
         assert found.factor_seen < 0.02
@@ -122,7 +125,7 @@ def test_two_per_cent_too_bright_is_refused_as_stated():
             batches.mean(axis=0), others * (1 + found.factor_seen), everywhere, moments, SAMPLES
         ).holds
         assert not uniform_agreement(batches.mean(axis=0), 1.02 * others, everywhere, moments, SAMPLES).holds
-    assert refused >= 18
+    assert refused >= 0.9 * seeds
 
 
 def test_one_wrong_pixel_is_refused():
@@ -152,9 +155,10 @@ def scene(mesh_file, world_file, measurement_file, model_file):
 
 
 @pytest.fixture
-def renders(tmp_path):
+def renders(tmp_path, monkeypatch):
     from renders import Renders, Settings
 
+    monkeypatch.setattr(velour_cli, "_run", run_in_this_process)
     return Renders(Settings(tmp_path / "kept", SIZE, 2, 1), Progress(), fresh=False)
 
 

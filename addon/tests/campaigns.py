@@ -1,0 +1,92 @@
+"""The measuring scripts on made-up data, as small as can be: from their options to their pages, in seconds.
+
+Their whole small runs on real data are long tests.
+"""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import data_files
+import inputs
+import numpy as np
+import pytest
+import script
+import velour_cli
+from command_line import environment, velour
+from conftest import ROOT
+
+_EXPAND = """
+import os, pathlib, sys
+os.symlink({paint!r}, pathlib.Path(sys.argv[1]) / f"{{sys.argv[2]}}.binary")
+"""
+
+
+def made_up_data(folder: Path, measurement: Path) -> Path:
+    """A folder laid out as the test data: every measurement is the same, every mesh an octahedron."""
+    from velour.native import images
+
+    for name in ("brdf", "mesh", "hdr"):
+        (folder / name).mkdir(parents=True)
+    (folder / "brdf/expand_merl.py").write_text(_EXPAND.format(paint=str(measurement)))
+    (folder / "brdf/blue-metallic-paint.nbrdf.npz").touch()
+    (folder / "brdf/krylon_blue.brdf").symlink_to(measurement)
+    for name in ("bunny", "buddha"):
+        inputs.write_octahedron(folder / f"mesh/{name}.obj")
+    sky = np.full((16, 32, 3), 0.2, np.float32)
+    sky[8:] = 1.0
+    sky[11, 20] = 30.0
+    for name in ("studio_small_03", "venice_sunset", "potsdamer_platz"):
+        images.write(folder / f"hdr/{name}.exr", sky)
+        (folder / f"hdr/{name}.exr").rename(folder / f"hdr/{name}_1k.hdr")  # told by what is in it
+    return folder
+
+
+class Campaign:
+    """Runs a script as `scripts/NAME --quick` does, in this process."""
+
+    def __init__(self, work: Path, output: Path, data: Path, monkeypatch: pytest.MonkeyPatch):
+        self.work, self.output, self._patch = work, output, monkeypatch
+        monkeypatch.setenv("VELOUR_DATA", str(data))
+        monkeypatch.setattr(data_files, "_EXPANDED", work / "merl")
+        monkeypatch.setattr(velour_cli, "_run", run_in_this_process)
+
+    def run(self, module, *options: str) -> int:
+        words = ["--quick", "--threads=2", f"--work={self.work}", f"--output={self.output}", *options]
+        self._patch.setattr(sys, "argv", [module.__name__, *words])
+        return script.guarded(module.__name__, module.main)
+
+    def rows(self, name: str) -> list[dict]:
+        with open(self.output / name, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def page(self, name: str) -> str:
+        return (self.output / name).read_text(encoding="utf-8")
+
+
+def run_in_this_process(*arguments, **_options) -> subprocess.CompletedProcess:
+    """In place of a process for each call."""
+    done = velour(*arguments, "--log-level", "error")
+    if done.status:
+        raise subprocess.CalledProcessError(done.status, arguments, done.out, done.err)
+    return subprocess.CompletedProcess(arguments, done.status, done.out, done.err)
+
+
+def only_kept(said: str) -> bool:
+    """Whether a second run made nothing again."""
+    lines = [line for line in said.splitlines() if line.startswith("[")]
+    return bool(lines) and all(line.endswith(": kept") for line in lines)
+
+
+def script_command(name: str, folder: Path, *more: str) -> list[str]:
+    program = str(ROOT / f"scripts/lib/{name}.py")
+    return [sys.executable, "-P", program, "--quick", f"--work={folder}", f"--output={folder}/out", *more]
+
+
+def run_script(name: str, folder: Path, *more: str, data: Path) -> subprocess.CompletedProcess:
+    """Runs a script in a process of its own, as its user does."""
+    command, env = script_command(name, folder, *more), environment(VELOUR_DATA=str(data))
+    return subprocess.run(command, capture_output=True, text=True, timeout=900, env=env)
