@@ -18,9 +18,9 @@ def start(folder):
     tests = [quad_view, toolbar, local_view, local_view_of_instances, import_under_the_cursor]
     newer = [handler, drop]
     if hasattr(bpy.types, "FileHandler"):
-        window.run(folder, [*tests, *newer])
+        window.run(folder, [*tests, *newer], viewport=True)
     else:
-        window.run(folder, tests, newer, "files can be dropped from Blender 4.1 on")
+        window.run(folder, tests, newer, "files can be dropped from Blender 4.1 on", viewport=True)
 
 
 def _cube(name, size=0.4, at=_AT):

@@ -14,7 +14,7 @@ def start(folder):
     """Called by the harness once the window is there."""
     fits = (fit_and_cancel, two_fits, fit_and_undo, scene_fit_and_cancel, scene_fit_and_undo, shared_material)
     chosen = pinned, opened
-    window.run(folder, (panels, stock_panels, preferences, viewport, *chosen, *fits, render))
+    window.run(folder, (panels, stock_panels, preferences, viewport, *chosen, *fits, render), viewport=True)
 
 
 def _measured_cube():

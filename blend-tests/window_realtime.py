@@ -12,7 +12,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (ball_in_a_sky, btf, holdouts_and_backs, grey, edits))
+    window.run(folder, (ball_in_a_sky, btf, holdouts_and_backs, grey, edits), viewport=True)
 
 
 def ball_in_a_sky(folder):

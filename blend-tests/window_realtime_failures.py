@@ -10,7 +10,9 @@ from support import inputs, scenes, viewport, window
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (no_texture, no_pictures_to_draw_into, lost_while_drawing, broken_shader))
+    window.run(
+        folder, (no_texture, no_pictures_to_draw_into, lost_while_drawing, broken_shader), viewport=True
+    )
 
 
 class _Log(logging.Handler):

@@ -12,7 +12,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (lamps, shaped_lamps))
+    window.run(folder, (lamps, shaped_lamps), viewport=True)
 
 
 def lamps(folder):

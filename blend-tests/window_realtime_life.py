@@ -12,7 +12,9 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (restarts, freed_engine, first_picture, renders, no_frame, refusals, cures))
+    window.run(
+        folder, (restarts, freed_engine, first_picture, renders, no_frame, refusals, cures), viewport=True
+    )
 
 
 def restarts(folder):

@@ -12,7 +12,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (net_of_paint, net_of_its_btf, outline_comes_and_goes))
+    window.run(folder, (net_of_paint, net_of_its_btf, outline_comes_and_goes), viewport=True)
 
 
 def _plane_of_its_btf(folder, structure):

@@ -12,7 +12,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (base_colors, other_model))
+    window.run(folder, (base_colors, other_model), viewport=True)
 
 
 def _checks(name, *colors):

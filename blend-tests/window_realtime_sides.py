@@ -11,7 +11,7 @@ _PLANES = ((False, 0, 1), (False, np.pi, 1), (False, 0, -1), (False, np.pi, -1),
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (both_sides,))
+    window.run(folder, (both_sides,), viewport=True)
 
 
 def both_sides(folder):

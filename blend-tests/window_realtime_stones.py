@@ -9,7 +9,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (stones_of_a_btf,))
+    window.run(folder, (stones_of_a_btf,), viewport=True)
 
 
 def stones_of_a_btf(folder):

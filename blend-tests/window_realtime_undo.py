@@ -13,7 +13,7 @@ _JOBS = ("lobe_rows_job", "principled_rows_job", "btf_maps_job", "shell_maps_job
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (undo, images, while_it_prepares))
+    window.run(folder, (undo, images, while_it_prepares), viewport=True)
 
 
 class _Made(list):

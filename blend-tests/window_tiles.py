@@ -17,7 +17,11 @@ def start(folder):
         panel.bl_options = set()  # open, to be looked at
         bpy.utils.register_class(panel)
     added = (add_and_repeat, another_type)
-    window.run(folder, (*added, capture_and_cancel, capture_again, capture, estimate, material, fitted_anew))
+    window.run(
+        folder,
+        (*added, capture_and_cancel, capture_again, capture, estimate, material, fitted_anew),
+        viewport=True,
+    )
 
 
 def _clear_view():

@@ -23,7 +23,7 @@ def start(folder):
         freed_engine,
         freed_engine_at_rest,
     )
-    window.run(folder, tests)
+    window.run(folder, tests, viewport=True)
 
 
 def grey(folder):

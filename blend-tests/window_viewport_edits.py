@@ -14,7 +14,7 @@ _SKY = "/studiolights/world/courtyard.exr"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (edits, undo, selection, during_a_build, a_long_drag))
+    window.run(folder, (edits, undo, selection, during_a_build, a_long_drag), viewport=True)
 
 
 def _scene():

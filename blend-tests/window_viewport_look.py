@@ -24,7 +24,7 @@ def start(folder):
         resized,
         border_of_the_camera,
     )
-    window.run(folder, tests)
+    window.run(folder, tests, viewport=True)
 
 
 def studio_light(folder):

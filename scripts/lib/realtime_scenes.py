@@ -16,7 +16,7 @@ _SECONDS = 3  # of measuring
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (net, paint), seconds=math.inf)
+    window.run(folder, (net, paint), seconds=math.inf, viewport=True)
 
 
 def net(folder):

@@ -79,7 +79,7 @@ def _start(folder, task):
         yield from _measure(folder, task, result)
         (folder / "result.json").write_text(json.dumps(result))
 
-    window.run(folder, (steps,), seconds=math.inf)
+    window.run(folder, (steps,), seconds=math.inf, viewport=True)
 
 
 def _measure(folder, task, result):
