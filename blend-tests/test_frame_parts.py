@@ -10,6 +10,7 @@ import numpy as np
 from support import inputs, scenes
 from support.blender import BlenderTest, run_blender
 
+OWN_PROCESS = "the largest of its child processes is measured"
 _ROUNDING = 1e-6
 # A batch engine that ends Blender while it renders the second view layer.
 _END_LAYER = """

@@ -243,7 +243,7 @@ def waits_for_renders(folder):
     """The processor is a render's as long as there is one."""
     browser, path = _module("ui.browser"), _folder(folder, "waits", 4)
     yield from _show("")
-    scenes.use_engine(samples=1 << 13, size=256)
+    scenes.use_engine(samples=1 << 13, size=128)
     with window.override():
         bpy.ops.render.render("INVOKE_DEFAULT")
     _module("operators.browse").addon_preferences(bpy.context).measurements = str(path)

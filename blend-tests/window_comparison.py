@@ -24,7 +24,7 @@ def compared(folder):
     plots.material()
     yield from plots.show("LOBES", scroll=10)
     with window.override():
-        assert bpy.ops.velour.compare("INVOKE_DEFAULT", side=256) == {"RUNNING_MODAL"}
+        assert bpy.ops.velour.compare("INVOKE_DEFAULT", side=128) == {"RUNNING_MODAL"}
     assert bpy.context.window_manager.velour.running
     yield from _until_done()
     yield from window.shown("Paint compared")

@@ -32,7 +32,7 @@ def _cube_with_fit(**settings):
     before = node.image.name
     with window.override():
         bpy.ops.ed.undo_push(message="before the fit")
-        settings = {"model": "SCATTERED", "tolerance": 0.001, "max_lobes": 8, **settings}
+        settings = {"model": "SCATTERED", "tolerance": 0.001, "max_lobes": 3, **settings}
         assert bpy.ops.velour.fit("INVOKE_DEFAULT", material=material.name, **settings) == {"RUNNING_MODAL"}
     assert bpy.context.window_manager.velour.running
     return material, before

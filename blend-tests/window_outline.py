@@ -37,8 +37,9 @@ def _measured():
 
 
 def _scroll_to_the_panel():
-    for _ in range(80):  # a turn moves by little
-        window.scroll_down(600)
+    for _ in range(8):
+        for _ in range(10):  # a turn of the wheel moves by little
+            window.scroll_down(600)
         yield 0.1
 
 

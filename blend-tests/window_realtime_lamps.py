@@ -9,6 +9,8 @@ from support import realtime, scenes, viewport, window
 
 _DATA = Path(__file__).parent / "scenes/data"
 
+LONG = "many pictures in real time, drawn without a graphics card"
+
 
 def start(folder):
     """Called by the harness once the window is there."""

@@ -8,6 +8,8 @@ from support import realtime, scenes, viewport, window
 # Whether it is smooth, its turn about x, and its scale along x.
 _PLANES = ((False, 0, 1), (False, np.pi, 1), (False, 0, -1), (False, np.pi, -1), (True, np.pi, -1))
 
+LONG = "many pictures in real time, drawn without a graphics card"
+
 
 def start(folder):
     """Called by the harness once the window is there."""

@@ -10,6 +10,8 @@ from support import realtime, scenes, viewport, window
 _DATA = Path(__file__).parent / "scenes/data"
 _JOBS = ("lobe_rows_job", "principled_rows_job", "btf_maps_job", "shell_maps_job")
 
+LONG = "many pictures in real time, drawn without a graphics card"
+
 
 def start(folder):
     """Called by the harness once the window is there."""
