@@ -49,14 +49,14 @@ class Campaign:
     """Runs a script as `scripts/NAME --quick` does, in this process."""
 
     def __init__(self, work: Path, output: Path, data: Path, monkeypatch: pytest.MonkeyPatch):
-        self.work, self.output, self._patch = work, output, monkeypatch
+        self.work, self.output, self.patch = work, output, monkeypatch
         monkeypatch.setenv("VELOUR_DATA", str(data))
         monkeypatch.setattr(data_files, "_EXPANDED", work / "merl")
         monkeypatch.setattr(velour_cli, "_run", run_in_this_process)
 
     def run(self, module, *options: str) -> int:
         words = ["--quick", "--threads=2", f"--work={self.work}", f"--output={self.output}", *options]
-        self._patch.setattr(sys, "argv", [module.__name__, *words])
+        self.patch.setattr(sys, "argv", [module.__name__, *words])
         return script.guarded(module.__name__, module.main)
 
     def rows(self, name: str) -> list[dict]:

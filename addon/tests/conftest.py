@@ -18,10 +18,15 @@ sys.path[:0] = [str(ADDONS), str(ROOT / "scripts/lib"), str(Path(__file__).paren
 import inputs  # noqa: E402
 
 LONG = "long: scripts/test --all runs it"
+# Files that take longest, which begin first, so that the workers of a run end together.
+SLOWEST = ("test_compress_size", "test_campaigns", "test_compress", "test_for_scene_btf", "test_cli_verbs",
+           "test_fit_size", "test_package", "test_shared_cache", "test_thumbnails")  # fmt: skip
 
 
 def pytest_collection_modifyitems(items):
-    """Tests that are marked as long are left to scripts/test --all."""
+    """Long tests are left to scripts/test --all."""
+    places = {name: place for place, name in enumerate(SLOWEST)}
+    items.sort(key=lambda item: places.get(item.path.stem, len(places)))
     if os.environ.get("VELOUR_LONG_TESTS") != "1":
         for item in items:
             if item.get_closest_marker("long"):

@@ -1,4 +1,4 @@
-"""Synthetic inputs, and one that the repository has."""
+"""Synthetic inputs, and models that the repository has."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-BTF_MODEL = Path(__file__).resolve().parents[2] / "blend-tests/scenes/data/weave.velour"
+_MODELS = Path(__file__).resolve().parents[2] / "blend-tests/scenes/data"
+BTF_MODEL, BRUSHED_MODEL = _MODELS / "weave.velour", _MODELS / "brushed.velour"
 MERL_SHAPE = (90, 90, 180)
 _MERL_SCALE = np.array([1.0, 1.15, 1.66]) / 1500.0
 

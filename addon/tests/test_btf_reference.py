@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from command_line import refused, velour
 from inputs import BTF_MODEL
-from kept import CORDUROY, LIGHTS, captured
+from kept import captured
 from velour.native import Btf, images
+
+LIGHTS = 40
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +19,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def btf():
-    return captured(*CORDUROY, "--views", 30, "--seed", 1)
+    return captured("corduroy", 12, 30, LIGHTS, 16, seed=1)
 
 
 @pytest.fixture(scope="module")

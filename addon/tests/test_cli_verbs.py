@@ -268,7 +268,7 @@ def test_camera_and_world_rotation(render_arguments, tmp_path):
 
 def test_capture(tmp_path):
     path = tmp_path / "rough.binary"
-    result = velour("capture", "--microsurface", "--rays", 200000, "--roughness", 0.4, "-o", path, "--json")
+    result = velour("capture", "--microsurface", "--rays", 20000, "--roughness", 0.4, "-o", path, "--json")
     assert result.status == 0, result.err
     assert {"seconds", "rays", "rays_per_second", "bytes"} <= set(result.json)
     assert result.json["bytes"] == path.stat().st_size

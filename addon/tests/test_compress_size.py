@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import command, environment, refused, velour
+from kept import captured
 from velour.native import Model
 
-BYTES = 20000
+BYTES = 10000
 
 
 @pytest.fixture(scope="module")
@@ -22,22 +23,15 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("size")
 
 
-def capture(path, texels, directions):
-    size = ["--texels", texels, "--views", directions, "--lights", directions]
-    done = velour("capture", "corduroy", *size, "--samples", 16, "--sides", "one", "-o", path, "--quiet")
-    assert done.status == 0, done.err
-    return path
+@pytest.fixture(scope="module")
+def btf():
+    return captured("corduroy", 12, 16, 16, 16)
 
 
 @pytest.fixture(scope="module")
-def btf(folder):
-    return capture(folder / "ribs", 12, 16)
-
-
-@pytest.fixture(scope="module")
-def large(folder):
+def large():
     """Enough points and pairs for a fit to take what it usually takes."""
-    return capture(folder / "large", 16, 24)
+    return captured("corduroy", 16, 24, 24, 16)
 
 
 @pytest.fixture(scope="module", params=["srbf", "svd"])
@@ -244,12 +238,15 @@ SHEET = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\
 
 @pytest.mark.parametrize(("tile", "shared"), [("sheet", True), ("net", False)])
 def test_a_side_that_looks_as_another_costs_nothing(folder, tile, shared):
-    (folder / "sheet.obj").write_text(SHEET)
-    source = folder / "sheet.obj" if tile == "sheet" else tile
-    common = ["--texels", 8, "--views", 12, "--lights", 12, "--samples", 4, "--sides", "two", "--quiet"]
-    assert velour("capture", source, *common, "-o", folder / f"{tile}.btf").status == 0
+    if tile == "sheet":
+        (folder / "sheet.obj").write_text(SHEET)
+        btf = folder / "sheet.btf"
+        common = ["--texels", 8, "--views", 12, "--lights", 12, "--samples", 4, "--sides", "two", "--quiet"]
+        assert velour("capture", folder / "sheet.obj", *common, "-o", btf).status == 0
+    else:
+        btf = captured(tile, 8, 12, 12, 4, "two")
     model = folder / f"{tile}.velour"
-    done = velour("compress", folder / f"{tile}.btf", "-o", model, "--bytes", 8000, "--quiet")
+    done = velour("compress", btf, "-o", model, "--bytes", 8000, "--quiet")
     assert done.status == 0, done.err
     info = velour("info", model, "--json").json
     above, below = (

@@ -12,7 +12,7 @@ from velour.native import Measurement, fit_job, images, microsurface_job
 @pytest.fixture(scope="module")
 def metal(tmp_path_factory):
     folder = tmp_path_factory.mktemp("metal")
-    with microsurface_job(folder / "metal.exr", rays=200_000) as job:
+    with microsurface_job(folder / "metal.exr", rays=60_000) as job:
         job.run()
     with Measurement.load(folder / "metal.exr") as measured, fit_job(measured, max_lobes=2) as job:
         job.run()

@@ -24,7 +24,9 @@ def btf(request, tmp_path_factory):
         scene.add_instance(mesh, np.eye(4), [paint])
         scene.commit()
         options = {"texels": texels, "views": directions(views), "lights": directions(lights)}
-        with capture_job(scene, path, period=(1, 1), sides=sides, samples=1, bounces=0, **options) as job:
+        with capture_job(
+            scene, path, period=(1, 1), sides=sides, samples=1, bounces=0, reference_height=0.1, **options
+        ) as job:
             job.run()
     with Btf.load(path) as found:
         yield found

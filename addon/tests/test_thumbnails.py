@@ -161,16 +161,15 @@ def test_a_file_that_is_gone_is_a_sentence(folder, model_file):
     assert "a.velour: cannot be read" in made.sentence
 
 
-def _several(folder, model_file, count):
+def _several(folder, model_file):
     """All of different contents."""
-    for number in range(count):
-        inputs.write_merl(folder / f"{number}.binary", color=(0.1 + 0.1 * number, 0.3, 0.3))
-    shutil.copy(model_file, folder / "z.velour")
+    for path in (inputs.BTF_MODEL, inputs.BRUSHED_MODEL, model_file):
+        shutil.copy(path, folder)
     return find_measurements(folder).files
 
 
 def test_a_job_hands_on_each_in_order(folder, model_file):
-    files = _several(folder, model_file, 2)
+    files = _several(folder, model_file)
     received = []
     job = ThumbnailJob(files, _cache(folder), lambda *made: received.append(made)).start()
     fractions = []
@@ -189,7 +188,7 @@ def test_a_job_without_files_is_done(folder):
 
 @pytest.mark.parametrize("end", [ThumbnailJob.cancel, ThumbnailJob.close])
 def test_a_cancelled_job_makes_no_more(folder, model_file, end):
-    files = _several(folder, model_file, 2)
+    files = _several(folder, model_file)
     received, first = [], threading.Event()
 
     def receive(file, _made):

@@ -100,17 +100,18 @@ def _pictures(expected: float, seed: int, height: float = 30_000.0):
     return *grey, shaped
 
 
-def test_rare_events_pass_where_the_spread_of_renders_fails():
+@pytest.mark.parametrize("seeds", [4, pytest.param(10, marks=pytest.mark.long)])
+def test_rare_events_pass_where_the_spread_of_renders_fails(seeds):
     everywhere = np.ones(PIXELS, bool)
     spread_fails = 0
-    for seed in range(10):
+    for seed in range(seeds):
         batches, others, moments = _pictures(0.5, seed)
         found = uniform_agreement(batches.mean(axis=0), others, everywhere, moments, SAMPLES)
         assert found.holds
         assert found.tests == 1202
         assert found.spread_of_z == pytest.approx(1, abs=0.15)
         spread_fails += not agreement(batches, others, everywhere).holds
-    assert spread_fails >= 5
+    assert spread_fails >= seeds / 2
 
 
 @pytest.mark.parametrize("seeds", [3, pytest.param(20, marks=pytest.mark.long)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from command_line import refused, velour
+from kept import captured
 from velour.native import Model, Scene, Tile, render_job, votf_job
 
 _UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
@@ -107,11 +108,8 @@ def test_what_is_wrong_is_said(model_file, tmp_path):
 
 
 @pytest.fixture(scope="module")
-def captured_net(tmp_path_factory):
-    path = tmp_path_factory.mktemp("votf") / "net.capture"
-    options = ("--texels", 96, "--views", 60, "--lights", 1, "--samples", 4, "--sides", "one")
-    velour("capture", "net", *options, "-o", path)
-    return path
+def captured_net():
+    return captured("net", 96, 60, 1, 4)
 
 
 def test_a_capture_tells_what_its_geometry_would(captured_net, made, model_file, tmp_path):
