@@ -64,8 +64,8 @@ class _Runner:
 
 
 def fresh_file(viewport=False):
-    """Blender's own start, with a 3D viewport for those who look at it: without a graphics card it takes 0.2 of
-    the 0.3 s of a redraw."""
+    """Blender's own start, with a 3D viewport for those who look at it: without a graphics card that takes
+    0.2 of the 0.3 s of a redraw."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     bpy.context.preferences.system.viewport_aa = "OFF"
     if not viewport:
