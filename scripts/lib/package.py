@@ -39,6 +39,7 @@ def main() -> int:
     shutil.copytree(BUILT / "blender/addons/velour", STAGED, ignore=shutil.ignore_patterns("__pycache__"))
     library = STAGED / "lib/libvelour.so"
     shutil.copy(BUILT / "portable/libvelour.so", library)
+    (STAGED / "lib/libvelour_openimageio.so").unlink()  # the portable library reads pictures itself
     sources = bundled(library)
     for source in sources:
         shutil.copy(source, library.parent / source.name)

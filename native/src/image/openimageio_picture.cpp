@@ -1,42 +1,52 @@
-// Pictures of all formats but OpenEXR's, by OpenImageIO.
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
+// Pictures of all formats but OpenEXR's, by the module that links OpenImageIO.
+#include "file/private_library.h"
 #include "image/open_picture.h"
+#include "image/openimageio_module.h"
 #include "job/error.h"
 
 namespace velour {
 namespace {
 
+const OpenImageIoModule& open_module() {
+  // Never closed: unloading 260 libraries at exit takes time, and OpenImageIO has threads.
+  static const auto& library =
+      *new PrivateLibrary("libvelour_openimageio.so",
+                          "run scripts/setup and scripts/build again, or use an OpenEXR file, which needs neither.");
+  return library.function<decltype(velour_openimageio_1)>("velour_openimageio_1")();
+}
+
+/// Opened by the first call; one that fails is followed by another attempt.
+const OpenImageIoModule& module_for(const std::string& path) {
+  try {
+    static const OpenImageIoModule& module = open_module();
+    return module;
+  } catch (const Error& error) {
+    throw Error(error.status(), path + ": needs OpenImageIO, but " + error.what());
+  }
+}
+
 class ByOpenImageIo : public OpenPicture {
  public:
-  explicit ByOpenImageIo(const std::string& path) : path_(path) {
-    OIIO::ImageSpec request;
-    request.attribute("oiio:UnassociatedAlpha",
-                      1);  // channels as stored: no product with alpha before the sRGB curve
-    input_ = OIIO::ImageInput::open(path, &request);
-    if (!input_) throw Error(Status::bad_data, input_error(path, OIIO::geterror()));
+  explicit ByOpenImageIo(const std::string& path) : path_(path), module_(module_for(path)) {
+    std::string error;
+    file_ = module_.open(path, error);
+    if (file_ == nullptr) throw Error(Status::bad_data, input_error(path, error));
   }
+  ~ByOpenImageIo() override { module_.close(file_); }
+  ByOpenImageIo(const ByOpenImageIo&) = delete;
+  ByOpenImageIo& operator=(const ByOpenImageIo&) = delete;
 
-  Format format() const override {
-    const OIIO::ImageSpec& spec = input_->spec();
-    return {spec.width, spec.height, spec.depth, spec.nchannels, !spec.format.is_floating_point(), spec.alpha_channel};
-  }
-
-  std::optional<std::string> text(const std::string& name) const override {
-    const OIIO::ParamValue* found = input_->spec().find_attribute(name, OIIO::TypeDesc::STRING);
-    return found ? std::optional(found->get_string()) : std::nullopt;
-  }
-
+  Format format() const override { return module_.format(*file_); }
+  std::optional<std::string> text(const std::string& name) const override { return module_.text(*file_, name); }
   void read(std::span<float> values) override {
-    const bool read = input_->read_image(0, 0, 0, input_->spec().nchannels, OIIO::TypeDesc::FLOAT, values.data());
-    // Of a JPEG or TIFF that ends early it says so, and that all is well.
-    if (!read || input_->has_error()) throw Error(Status::bad_data, input_error(path_, input_->geterror()));
+    std::string error;
+    if (!module_.read(*file_, values, error)) throw Error(Status::bad_data, input_error(path_, error));
   }
 
  private:
   std::string path_;
-  std::unique_ptr<OIIO::ImageInput> input_;
+  const OpenImageIoModule& module_;
+  OpenImageIoModule::File* file_;
 };
 
 }  // namespace
@@ -47,16 +57,9 @@ std::unique_ptr<OpenPicture> open_other_format(const std::string& path) {
 
 std::vector<uint8_t> png_of(const std::string& path, int width, int height, int channels,
                             std::span<const uint8_t> values) {
-  OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  auto output = OIIO::ImageOutput::create(path);
-  if (!output) throw Error(Status::unsupported, path + ": OpenImageIO cannot write this format here.");
-  output->set_ioproxy(&memory);
-  if (!output->open(path, spec) || !output->write_image(OIIO::TypeDesc::UINT8, values.data()) || !output->close())
-    throw Error(Status::io, path + ": cannot encode the picture: " + output->geterror());
+  std::string error;
+  auto bytes = module_for(path).encode_png(width, height, channels, values, error);
+  if (!error.empty()) throw Error(Status::unsupported, path + ": OpenImageIO cannot write this picture: " + error);
   return bytes;
 }
 

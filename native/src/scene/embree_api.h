@@ -7,7 +7,7 @@
 #include <embree3/rtcore.h>
 #endif
 
-#include "scene/private_library.h"
+#include "file/private_library.h"
 
 namespace velour {
 

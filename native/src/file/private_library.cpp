@@ -1,4 +1,4 @@
-#include "scene/private_library.h"
+#include "file/private_library.h"
 
 #include <dlfcn.h>
 #include <link.h>
