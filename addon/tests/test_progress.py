@@ -8,9 +8,9 @@ import logging
 import sys
 
 import pytest
-from velour.core.cli import main, output
+from velour.core.cli import info, main, output
 from velour.core.cli.progress import ProgressBar, ProgressLines
-from velour.native.job import JobState
+from velour.native.job_state import JobState
 
 
 def state(seconds: float, running: bool = True) -> JobState:
@@ -60,7 +60,7 @@ def test_the_bar_is_wiped_by_ctrl_c(monkeypatch, kept_log):
         tell(output.progress_of(args), state(20))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(main.info, "run", interrupted)
+    monkeypatch.setattr(info, "run", interrupted)
     assert main.main(["info", "x"]) == main.INTERRUPTED
     assert stream.getvalue().endswith(" s left\r\x1b[Kvelour: Interrupted.\n")
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..native import Model, Scene, Shader, Texture, TextureSlot
-from ..native.job import JobState
+from ..native.job_state import JobState
 from .approximation_map import show_tile, tile_job
 from .photometric_stereo import normals_of, root_mean_square_slope
 from .read_job import ReadJob, check

@@ -10,7 +10,7 @@ import weakref
 from collections.abc import Callable
 
 from ..native import Status, VelourError
-from ..native.job import JobState, ProgressCallback
+from ..native.job_state import JobState, ProgressCallback
 from . import reading_gate
 
 _SLICE_SECONDS = 0.1  # between two calls of a progress callback

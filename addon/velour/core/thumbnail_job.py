@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from ..native.job import JobState
+from ..native.job_state import JobState
 from .measurement_files import MeasurementFile
 from .read_job import ReadJob, check
 from .thumbnails import Thumbnail, thumbnail

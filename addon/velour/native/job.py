@@ -7,8 +7,6 @@ import ctypes
 import math
 import os
 import time
-from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +14,7 @@ from . import library, structs, table
 from .arrays import pointer, small
 from .errors import VelourError, refuse
 from .handle import Handle, choice, path_bytes, set_fields
+from .job_state import JobState, ProgressCallback
 from .measurement import Measurement
 from .model import Model
 from .observation import Observation
@@ -23,22 +22,6 @@ from .passes import Passes, channels_of
 from .plot import Plot, plot_arguments
 
 _SLICE_SECONDS = 0.1  # how long a signal (Ctrl-C) may have to wait for the interpreter
-
-
-class JobState(NamedTuple):
-    state: str  # one of table.JOB_STATES
-    fraction: float  # 0..1, never falls, 1 only when done
-    stage: str
-    seconds: float  # since the start
-    seconds_left: float | None  # estimate
-    bytes_in_use: int  # of the whole process
-
-    @property
-    def running(self) -> bool:
-        return self.state == "running"
-
-
-ProgressCallback = Callable[[JobState], object]
 
 
 class Job(Handle):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from ...native import Btf, table
+from ... import native
+from ...native import table
 from . import numbers
 
 _CURVES = {"srgb": 0.0, "linear": 1.0}
@@ -40,5 +41,5 @@ def given(args: argparse.Namespace) -> dict:
     return {name: value for name, value in names.items() if value is not None}
 
 
-def load(path: str, args: argparse.Namespace) -> Btf:
-    return Btf.load(path, **given(args))
+def load(path: str, args: argparse.Namespace) -> native.Btf:
+    return native.Btf.load(path, **given(args))

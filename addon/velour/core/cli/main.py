@@ -3,50 +3,37 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import os
 import sys
 
 from ...native import library
 from ...native.errors import VelourError
 from ...native.version import version_text
-from . import (
-    capture,
-    compare,
-    compress,
-    export,
-    fit,
-    info,
-    merge,
-    observe,
-    output,
-    plot,
-    render,
-    tile,
-    votf,
-)
-from .unfinished import UnfinishedError
+from . import output
+from .exit_status import DONE, FAILED, INTERRUPTED, UNFINISHED, UnfinishedError
 
-_VERBS = {
-    "info": (info, "what a measurement, BTF, model or observation holds"),
-    "fit": (fit, "fit a model to a measurement"),
-    "compare": (compare, "error of a model against a measurement or BTF"),
-    "plot": (plot, "draw what a model is made of, its error or its albedo"),
-    "render": (render, "render a mesh with a measured material under a world"),
-    "merge": (merge, "make one picture of parts that render wrote"),
-    "observe": (observe, "learn under which views and lights a scene shows its material"),
-    "capture": (capture, "make a measurement of a modelled surface"),
-    "votf": (votf, "add to a model the outline and the holes of a modelled surface"),
-    "tile": (tile, "make a procedural tile of mesostructure as a mesh"),
-    "export": (export, "write a BTF as a folder of pictures"),
-    "compress": (compress, "fit a model to a BTF"),
+_VERBS = {  # by module of this package
+    "info": "what a measurement, BTF, model or observation holds",
+    "fit": "fit a model to a measurement",
+    "compare": "error of a model against a measurement or BTF",
+    "plot": "draw what a model is made of, its error or its albedo",
+    "render": "render a mesh with a measured material under a world",
+    "merge": "make one picture of parts that render wrote",
+    "observe": "learn under which views and lights a scene shows its material",
+    "capture": "make a measurement of a modelled surface",
+    "votf": "add to a model the outline and the holes of a modelled surface",
+    "tile": "make a procedural tile of mesostructure as a mesh",
+    "export": "write a BTF as a folder of pictures",
+    "compress": "fit a model to a BTF",
 }
 _LEVELS = ("error", "warning", "info", "debug")
-DONE, FAILED, UNFINISHED, INTERRUPTED = 0, 1, 3, 130
 
 
 def main(arguments: list[str] | None = None) -> int:
     """The exit status: 0 done, 1 failed, 3 ended early, 130 interrupted. Wrong usage leaves with 2."""
-    args = _parser().parse_args(arguments)
+    arguments = sys.argv[1:] if arguments is None else arguments
+    args = _parser(arguments).parse_args(arguments)
     try:
         output.set_up_log("error" if args.quiet else args.log_level)
         if args.simd:
@@ -80,18 +67,26 @@ def _sentence(error: Exception) -> str:
     return " ".join(str(error).split()) or type(error).__name__
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(arguments: list[str]) -> argparse.ArgumentParser:
+    """Knows the options of the verb that `arguments` name; the others' modules take time to import."""
     parser = argparse.ArgumentParser(
         prog="velour", description="Measured materials: fit, judge and render.", allow_abbrev=False
     )
     parser.add_argument("--version", action="version", version=f"velour {version_text()}")
     verbs = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
-    for name, (module, help_text) in _VERBS.items():
+    wanted = next((argument for argument in arguments if not argument.startswith("-")), None)
+    for name, help_text in _VERBS.items():
         verb = verbs.add_parser(name, help=help_text, description=help_text, allow_abbrev=False)
-        module.add_arguments(verb)
-        _add_common(verb)
-        verb.set_defaults(run=module.run)
+        if name == wanted:
+            _add_options(verb, name)
     return parser
+
+
+def _add_options(verb: argparse.ArgumentParser, name: str) -> None:
+    module = importlib.import_module(f".{name}", __package__)
+    module.add_arguments(verb)
+    _add_common(verb)
+    verb.set_defaults(run=module.run)
 
 
 def _add_common(verb: argparse.ArgumentParser) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from typing import TextIO
 
-from ...native.job import JobState
+from ...native.job_state import JobState
 
 _WIDTH = 30
 _LINE_SECONDS = 10.0

@@ -10,10 +10,7 @@ from ...native.images import Frame
 from .. import picture_parts
 from ..picture_parts import Part
 from . import output, render_part
-
-
-class UnfinishedError(Exception):
-    """One sentence: how far the render came, and where that lies."""
+from .exit_status import UnfinishedError
 
 
 def side_file(path: str) -> Path:
