@@ -22,13 +22,91 @@ usage_if_asked() {
   done
 }
 
-# quietly LOG WHAT COMMAND...: runs with the output in LOG; shows its end, and dies, when the command fails.
-quietly() {
-  local log=$1 what=$2
-  shift 2
-  mkdir -p "$(dirname "$log")"
-  if ! "$@" >"$log" 2>&1; then
-    { grep -E -A 5 '(error|Error|FAILED|^E:)' "$log" || tail -n 40 "$log"; } | sed -n 1,40p >&2
-    die "$what failed; everything it said is in $log"
+# with_progress STAGE COUNTER LOG PROGRAM...: runs a program with its output in LOG and tells how far it is: on a terminal in
+# one line that changes, elsewhere in a line every ten seconds. `COUNTER LOG` prints "DONE TOTAL", or nothing while that is not
+# known. When the program fails, shows what LOG says about it, and dies. Ctrl-C and SIGTERM end the program as well.
+with_progress() {
+  if ! try_with_progress "$@"; then
+    show_failure "$3"
+    die "$1 failed; the whole log: $3"
   fi
+}
+
+# quietly LOG STAGE PROGRAM...: the same for what has nothing to count.
+quietly() { with_progress "$2" count_nothing "$1" "${@:3}"; }
+
+# try_with_progress STAGE COUNTER LOG PROGRAM...: the same, but a failure is the caller's: the program's exit status.
+try_with_progress() {
+  local stage=$1 counter=$2 log=$3 begin=$SECONDS status=0 stopped=0 reporting reporter program traps
+  shift 3
+  mkdir -p "$(dirname "$log")"
+  : >"$log"
+  # The reporter ends when this file is closed, whatever becomes of this shell.
+  exec {reporting}> >(report_progress "$stage" "$counter" "$log")
+  reporter=$!
+  # In the background, because only `wait` lets a trap act at once; and env because a shell makes its background deaf to Ctrl-C.
+  env --default-signal=INT,QUIT "$@" >"$log" 2>&1 {reporting}>&- &
+  program=$!
+  traps=$(trap -p INT TERM HUP)
+  trap 'stop_program INT 130' INT
+  trap 'stop_program TERM 143' TERM
+  trap 'stop_program HUP 129' HUP
+  wait "$program" || status=$?
+  # A trap ends the wait before the program has ended; waiting for what the shell has reaped may never end.
+  while ((stopped)) && [[ -e /proc/$program ]]; do wait "$program" || true; done
+  trap - INT TERM HUP
+  eval "$traps"
+  exec {reporting}>&-
+  wait "$reporter" || true
+  if ((stopped)); then
+    printf '%s: stopped while %s\n' "$(basename "$0")" "$stage" >&2
+    exit "$stopped"
+  fi
+  if ((status == 0 && SECONDS - begin >= progress_interval)); then say "$stage: done after $(duration $((SECONDS - begin)))"; fi
+  return "$status"
+}
+
+# Of try_with_progress. Ctrl-C has reached the program already; a signal for this shell alone has not.
+stop_program() {
+  stopped=$2
+  kill -s "$1" "$program" 2>/dev/null || true
+}
+
+show_failure() {
+  { grep -E -A 5 '(error|Error|FAILED|^E:)' "$1" || tail -n 40 "$1"; } | sed -n 1,40p >&2
+}
+
+# Seconds between two lines of progress; a line that changes does so each second.
+progress_interval=10
+
+# report_progress STAGE COUNTER LOG: tells the progress until its input is closed.
+report_progress() {
+  local interval=$progress_interval begin=$SECONDS before='' after='\n'
+  trap '' INT # there is something to clear away afterwards
+  if [[ -t 1 ]]; then interval=1 before='\r\e[K' after=''; fi
+  while read -rt "$interval" || (($? > 128)); do
+    printf "$before%s$after" "$(progress_line "$1" $((SECONDS - begin)) $("$2" "$3"))"
+  done
+  if [[ -t 1 ]]; then printf '\r\e[K'; fi
+}
+
+# progress_line STAGE SECONDS [DONE TOTAL]
+progress_line() {
+  local stage=$1 seconds=$2 done=${3:-0} total=${4:-0} left=''
+  if ((done)); then left=", about $(duration $((seconds * (total - done) / done))) left"; fi
+  if ((total)); then printf '[%3d/%d] ' "$done" "$total"; fi
+  printf '%s: %d s%s' "$stage" "$seconds" "$left"
+}
+
+# duration SECONDS: as scripts/lib/progress.py says it.
+duration() { if (($1 < 600)); then printf '%d s' "$1"; else printf '%d min' $((($1 + 30) / 60)); fi; }
+
+# Counters for with_progress.
+count_nothing() { :; }
+count_ninja() { grep -oE '^\[[0-9]+/[0-9]+\]' "$1" | tail -n 1 | tr '[/]' ' '; }
+count_apt() { # a package is fetched, unless it was before; unpacked; and set up
+  awk '/^Get:/ { fetched++ }
+    /^(Unpacking|Setting up) / { installed++ }
+    / newly installed, / { packages = $1 + $3 }
+    END { if (packages) print fetched + installed, (installed ? fetched : packages) + 2 * packages }' "$1"
 }

@@ -1,17 +1,30 @@
-"""Says which of how many, how long it took, and about how long the rest will."""
+"""Tells how much of a script's work is done, how long it took, and about how long the rest will take.
+
+Finished work has a line of its own. Unfinished work is told every ten seconds, on a terminal each second in a
+line that changes, as with_progress in common.sh does.
+"""
 
 from __future__ import annotations
 
+import sys
+import threading
 import time
 from contextlib import contextmanager
 
+_LINE_SECONDS = 10.0
+_CLEAR_LINE = "\r\x1b[K"
+
 
 class Progress:
-    """Work is announced with a cost in any unit; the time left follows from what the finished work took."""
+    """Work is announced with a cost in any unit; the time left follows from what the finished work took.
 
-    def __init__(self):
+    `rate`: seconds a unit of cost takes, to begin with.
+    """
+
+    def __init__(self, rate: float | None = None):
         self._count = self._expected = 0
         self._cost_left = self._cost_paid = self._seconds = 0.0
+        self._rate = rate
 
     def expect(self, cost: float, count: int = 1) -> None:
         self._expected += count
@@ -25,21 +38,53 @@ class Progress:
     @contextmanager
     def work(self, label: str, cost: float):
         start = time.monotonic()
-        yield
+        with self._telling(label, start):
+            yield
         seconds = time.monotonic() - start
         self._cost_paid += cost
         self._seconds += seconds
+        self._rate = self._seconds / self._cost_paid
         self._finish(cost)
         self._say(f"{label}: {seconds:.1f} s{self._left()}")
+
+    @contextmanager
+    def _telling(self, label: str, start: float):
+        """Meanwhile another thread tells that the work goes on."""
+        ended = threading.Event()
+        interval = 1.0 if sys.stdout.isatty() else _LINE_SECONDS
+
+        def tell() -> None:
+            while not ended.wait(interval):
+                seconds = time.monotonic() - start
+                self._say(f"{label}: {seconds:.0f} s{self._left(seconds)}", goes_on=True)
+
+        thread = threading.Thread(target=tell, daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()
 
     def _finish(self, cost: float) -> None:
         self._count += 1
         self._expected = max(self._expected, self._count)
         self._cost_left = max(self._cost_left - cost, 0.0)
 
-    def _left(self) -> str:
-        left = self._cost_left * self._seconds / self._cost_paid
-        return f", about {left / 60:.0f} min left" if left >= 90 else f", about {left:.0f} s left"
+    def _left(self, seconds: float = 0.0) -> str:
+        """`seconds`: what the work that goes on has taken already."""
+        if self._rate is None:
+            return ""
+        left = self._cost_left * self._rate - seconds
+        return f", about {duration(left)} left" if left > 0 else ""
 
-    def _say(self, text: str) -> None:
-        print(f"[{self._count:3d}/{self._expected}] {text}", flush=True)
+    def _say(self, text: str, goes_on: bool = False) -> None:
+        line = f"[{self._count:3d}/{self._expected}] {text}"
+        if sys.stdout.isatty():
+            print(f"{_CLEAR_LINE}{line}", end="" if goes_on else "\n", flush=True)
+        else:
+            print(line, flush=True)
+
+
+def duration(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 600 else f"{seconds / 60:.0f} min"
