@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Callable
 
 import bpy
 from blender_picture import measured_node
@@ -11,17 +12,21 @@ from blender_picture import measured_node
 NAME = "tile"  # of the material; the BTF lies in NAME.btf
 
 
-def capture_and_compress(folder: str, capture: dict, megabytes: float) -> dict:
-    """Seconds and bytes. `capture`: arguments of the operator; `megabytes`: 0 lets the library choose."""
+def capture_and_compress(
+    folder: str, capture: dict, megabytes: float, captured: Callable[[], None] = lambda: None
+) -> dict:
+    """Seconds and bytes. `capture`: arguments of the operator; `megabytes`: 0 lets the library choose.
+    `captured` is called before the fit."""
     btf = os.path.join(folder, f"{NAME}.btf")
     start = time.perf_counter()
     bpy.ops.velour.capture_btf(directory=btf, sides="ONE", **capture)
-    captured = time.perf_counter()
+    middle = time.perf_counter()
+    captured()
     bpy.ops.velour.compress_btf(filepath=btf, megabytes=megabytes)
-    compressed = time.perf_counter()
+    end = time.perf_counter()
     return {
-        "capture_seconds": captured - start,
-        "compress_seconds": compressed - captured,
+        "capture_seconds": middle - start,
+        "compress_seconds": end - middle,
         "btf_bytes": sum(entry.stat().st_size for entry in os.scandir(btf)),
         "model_bytes": measured_node(bpy.data.materials[NAME]).image.packed_file.size,
     }

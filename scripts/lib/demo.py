@@ -9,16 +9,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-import demo_blender
 import demo_btf
 import demo_capture
+import demo_material
 import demo_votf
 import headless_blender
-import plots
-from demo_difference import write_difference
-from velour.core import files
-from velour.core.machine import machine
-from velour.native import Measurement, VelourError, fit_job, library
+from demo_parts import Parts
+from progress import Progress
+from velour.native import VelourError
 
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "out/demo"
@@ -26,15 +24,19 @@ OUT = ROOT / "out/demo"
 
 def main() -> int:
     args = _parser().parse_args()
+    parts = Parts(Progress(rate=1.0), args.fresh)
+    tasks = _tasks(args)
+    _announce(args, tasks, parts.progress)
     try:
-        for source, folder in _tasks(args):
-            folder.mkdir(parents=True, exist_ok=True)
+        measured = demo_capture.default_measurement(parts) if _needs_default(args) else None
+        for source, folder in tasks:
+            capture = measured or demo_capture.Capture(source)
             if args.votf:
-                _demonstrate_votf(source, folder / "votf", args.fresh)
+                demo_votf.demonstrate(folder / "votf", capture.path, parts)
             else:
-                demonstrate(source, folder, args.fresh)
-        if not args.files and not args.votf:
-            demo_btf.demonstrate(OUT / "btf")
+                demo_material.demonstrate(folder, capture, parts)
+        if _has_btf(args):
+            demo_btf.demonstrate(OUT / "btf", parts)
     except KeyboardInterrupt:
         return 130
     except (VelourError, OSError, headless_blender.BlenderError) as error:
@@ -51,6 +53,14 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _needs_default(args: argparse.Namespace) -> bool:
+    return not args.files
+
+
+def _has_btf(args: argparse.Namespace) -> bool:
+    return not args.files and not args.votf
+
+
 def _tasks(args: argparse.Namespace) -> list[tuple[Path | None, Path]]:
     """Pairs of measurement (None: the default one) and output folder."""
     if len(args.files) < 2:
@@ -61,65 +71,13 @@ def _tasks(args: argparse.Namespace) -> list[tuple[Path | None, Path]]:
     return list(zip(args.files, folders, strict=True))
 
 
-def demonstrate(source: Path | None, folder: Path, fresh: bool) -> None:
-    if source is None:
-        capture = demo_capture.default_measurement(fresh)
-        measurement_file = capture.path
-    else:
-        capture, measurement_file = demo_capture.Capture(source, None, False), source
-    with Measurement.load(measurement_file) as measurement:
-        model_file = folder / "model.velour"
-        fit = _fit(measurement, model_file)
-    picture = demo_blender.render(model_file, measurement_file, folder)
-    rmse, relmse = write_difference(folder)
-    title = "sampling error of the demo's scene at a quarter of its size"
-    plots.error_against_time(folder / "error_against_time.png", picture["curves"], title)
-    report = {
-        "relative_l2": fit["relative_l2"],
-        "by_view_angle": fit["by_view_angle"],
-        "lobes": fit["lobes"],
-        "bytes": fit["bytes"],
-        "fit_seconds": fit["seconds"],
-        "render_seconds": picture["seconds"],
-        "samples_per_second": picture["samples_per_second"],
-        "relmse": relmse,
-        "rmse": rmse,
-        "capture_seconds": capture.seconds,
-        "cached": capture.cached,
-        "version": library.system()["version"],
-        "machine": machine(),
-    }
-    files.write_json(folder / "report.json", report)
-    _tell(folder, report, fit["warnings"])
-
-
-def _demonstrate_votf(source: Path | None, folder: Path, fresh: bool) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
-    metal = folder / "metal.velour"
-    with Measurement.load(source or demo_capture.default_measurement(fresh).path) as measurement:
-        _fit(measurement, metal)
-    demo_votf.demonstrate(folder, metal)
-
-
-def _fit(measurement: Measurement, path: Path) -> dict:
-    with fit_job(measurement) as job:
-        report = job.run()
-        with job.result_model() as model:
-            model.save(path)
-    return report
-
-
-def _tell(folder: Path, report: dict, warnings: list[str]) -> None:
-    errors = ", ".join(f"{a} deg {e:.3f}" for a, e in report["by_view_angle"].items() if e is not None)
-    print(f"fit     {report['lobes']} lobes, {report['bytes']} bytes, {report['fit_seconds']:.1f} s")
-    print(f"        error {errors}")
-    for warning in warnings:
-        print(f"        {warning}")
-    speed = report["samples_per_second"] / 1e6
-    print(f"render  {report['render_seconds']:.1f} s, {speed:.1f} M samples/s, relmse {report['relmse']:.2g}")
-    for name in ("model", "reference", "difference"):
-        print(f"        {folder / name}.png, .exr")
-    print(f"        {folder / 'error_against_time.png'}\n        {folder / 'report.json'}")
+def _announce(args: argparse.Namespace, tasks: list, progress: Progress) -> None:
+    if _needs_default(args):
+        progress.expect(demo_capture.COST)
+    for _ in tasks:
+        (demo_votf if args.votf else demo_material).PART.announce(progress)
+    if _has_btf(args):
+        demo_btf.PART.announce(progress)
 
 
 if __name__ == "__main__":

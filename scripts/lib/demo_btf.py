@@ -9,24 +9,49 @@ from pathlib import Path
 
 import headless_blender
 from demo_difference import write_difference
+from demo_parts import Part, Parts
+from steps import Steps
 from velour.core import files
 from velour.core.machine import machine
 from velour.native import library
 
+_STARTING, _COMPARING = "starting Blender for a BTF", "drawing the BTF's difference"
+PART = Part(
+    "btf",
+    {
+        _STARTING: 2,
+        "capturing a tile of weave": 20,
+        "fitting a model to its BTF": 10,
+        "rendering the BTF": 10,
+        "rendering the model of the BTF": 10,
+        _COMPARING: 1,
+    },
+    (
+        "tile.btf",
+        *(f"{name}.{suffix}" for name in ("model", "reference", "difference") for suffix in ("exr", "png")),
+    ),
+)
 
-def demonstrate(folder: Path) -> None:
-    shutil.rmtree(folder, ignore_errors=True)  # a capture goes over nothing
-    folder.mkdir(parents=True)
-    print("capturing a tile of weave ...", flush=True)
-    with tempfile.TemporaryDirectory(prefix="velour-demo-") as temporary:
-        taken = Path(temporary) / "report.json"
-        task = {"folder": str(folder.resolve()), "report": str(taken)}
-        headless_blender.run("demo_btf_scene.py", task, folder / "blender.log")
-        report = json.loads(taken.read_text())
-    report["rmse"], report["relmse"] = write_difference(folder)
+
+def demonstrate(folder: Path, parts: Parts) -> None:
+    report = parts.make(PART, folder, {}, lambda steps: _make(folder, steps))
     report |= {"version": library.system()["version"], "machine": machine()}
     files.write_json(folder / "report.json", report)
     _tell(folder, report)
+
+
+def _make(folder: Path, steps: Steps) -> dict:
+    shutil.rmtree(folder, ignore_errors=True)  # a capture goes over nothing
+    folder.mkdir(parents=True)
+    steps.begin(_STARTING)
+    with tempfile.TemporaryDirectory(prefix="velour-demo-") as temporary:
+        taken = Path(temporary) / "report.json"
+        task = {"folder": str(folder.resolve()), "report": str(taken)}
+        headless_blender.run("demo_btf_scene.py", task, folder / "blender.log", hear=steps.hear)
+        report = json.loads(taken.read_text())
+    steps.begin(_COMPARING)
+    report["rmse"], report["relmse"] = write_difference(folder)
+    return report
 
 
 def _tell(folder: Path, report: dict) -> None:

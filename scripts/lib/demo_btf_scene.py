@@ -14,6 +14,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from blender_picture import empty_scene, measured_node, render_picture
 from captured_tile import NAME, capture_and_compress
 from demo_scene import SIZE, add_camera, add_ground, add_subject, add_world
+from steps import print_step
 
 SAMPLES, BOUNCES = 96, 1
 CAPTURE = {"texels": 48, "views": 81, "lights": 81, "samples": 8, "bounces": 1}
@@ -28,7 +29,11 @@ def main(task: dict) -> None:
     add_camera(scene)
     add_world(scene)
     node = measured_node(bpy.data.materials[NAME])
-    for name, itself in (("reference", True), ("model", False)):
+    for name, itself, step in (
+        ("reference", True, "rendering the BTF"),
+        ("model", False, "rendering the model of the BTF"),
+    ):
+        print_step(step)
         node.velour.use_reference = itself
         report[f"{name}_seconds"] = render_picture(scene, task["folder"], name)["seconds"]
     with open(task["report"], "w") as file:
@@ -38,7 +43,10 @@ def main(task: dict) -> None:
 def _make_material(folder: str) -> dict:
     bpy.ops.velour.add_mesostructure(type="WEAVE")
     tile = bpy.context.object
-    report = capture_and_compress(folder, CAPTURE, 0)
+    print_step("capturing a tile of weave")
+    report = capture_and_compress(
+        folder, CAPTURE, 0, captured=lambda: print_step("fitting a model to its BTF")
+    )
     bpy.data.objects.remove(tile)
     return report
 

@@ -8,26 +8,29 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
+from demo_parts import Parts
 from velour.core import files
 from velour.native import library, microsurface_job
 
 SETTINGS = {"seed": 1}  # all else as the library has it
+COST = 10  # seconds on two cores
+_STEP = "capturing the default measurement"
 
 
 class Capture(NamedTuple):
     path: Path
-    seconds: float | None  # what the capture took when it was made; None: it is the user's own file
-    cached: bool
+    seconds: float | None = None  # what the capture took when it was made; None: it is the user's own file
+    cached: bool = False
 
 
-def default_measurement(fresh: bool) -> Capture:
+def default_measurement(parts: Parts) -> Capture:
     stem = _cache_folder() / f"microsurface-{_key()}"
     path, note = stem.with_suffix(".binary"), stem.with_suffix(".json")
-    if not fresh and path.is_file() and note.is_file():
+    if not parts.fresh and path.is_file() and note.is_file():
+        parts.progress.skip(_STEP, COST)
         return Capture(path, json.loads(note.read_text())["seconds"], True)
     path.parent.mkdir(parents=True, exist_ok=True)
-    print("capturing the default measurement ...", flush=True)
-    with microsurface_job(path, **SETTINGS) as job:
+    with parts.progress.work(_STEP, COST), microsurface_job(path, **SETTINGS) as job:
         report = job.run()
     files.write_json(note, report)
     return Capture(path, report["seconds"], False)

@@ -16,6 +16,7 @@ from velour.native import images, render_job
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 from blender_picture import empty_scene, measured_node, render_picture
+from steps import print_step
 
 SIZE = (640, 480)
 SAMPLES, BOUNCES = 384, 1
@@ -35,6 +36,7 @@ def main(task: dict) -> None:
     add_world(scene)
     node = _add_materials(subject, task["model"], task["measurement"])
     report = _render_pictures(scene, node, task["folder"])
+    print_step("taking error against time")
     report["curves"] = _curves(scene)
     with open(task["report"], "w") as file:
         json.dump(report, file)
@@ -106,8 +108,10 @@ def _add_materials(subject: bpy.types.Object, model: str, measurement: str) -> b
 
 def _render_pictures(scene: bpy.types.Scene, node: bpy.types.ShaderNodeTexImage, folder: str) -> dict:
     """model.{exr,png} and reference.{exr,png}; what the render of the model took."""
+    print_step("rendering the measurement")
     node.velour.use_reference = True
     render_picture(scene, folder, "reference")
+    print_step("rendering the model")
     node.velour.use_reference = False
     return render_picture(scene, folder, "model")
 

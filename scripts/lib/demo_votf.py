@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from pathlib import Path
 
+import demo_material
 import numpy as np
 from demo_difference import write_difference
+from demo_parts import Part, Parts
+from steps import Steps
 from velour.core import files
 from velour.core.machine import machine
 from velour.native import Model, Scene, Tile, images, library, render_job, votf_job
@@ -19,25 +23,50 @@ _CLOTH = 10  # tiles a side
 _UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
 
 
-def demonstrate(folder: Path, material: Path, size: tuple[int, int] = _SIZE, samples: int = _SAMPLES) -> dict:
-    """`material`: a model of a BRDF, which the net is made of."""
+PART = Part(
+    "votf",
+    {"fitting the metal": 3, "tracing the shell": 5, "rendering the shell": 10, "rendering the geometry": 20},
+    (
+        "metal.velour",
+        "net.velour",
+        *(f"{name}.{suffix}" for name in ("model", "reference", "difference") for suffix in ("exr", "png")),
+    ),
+)
+
+
+def demonstrate(folder: Path, measurement: Path, parts: Parts) -> None:
     folder.mkdir(parents=True, exist_ok=True)
+    report = parts.make(PART, folder, {"measurement": measurement}, lambda s: _make(folder, measurement, s))
+    report |= {"version": library.system()["version"], "machine": machine()}
+    files.write_json(folder / "report.json", report)
+    _tell(folder, report)
+
+
+def _make(folder: Path, measurement: Path, steps: Steps) -> dict:
+    metal = folder / "metal.velour"
+    steps.begin("fitting the metal")
+    demo_material.save_fit(measurement, metal)
+    return make_pictures(folder, metal, _SIZE, _SAMPLES, steps.begin)
+
+
+def make_pictures(
+    folder: Path, material: Path, size: tuple[int, int], samples: int, begin: Callable[[str], None]
+) -> dict:
+    """`material`: a model of a BRDF, for the net. `begin` is called with the name of each step."""
     report = {}
     with contextlib.ExitStack() as handles:
         plain = handles.enter_context(Model.load(material))
         tile = handles.enter_context(Tile.create("net"))
+        begin("tracing the shell")
         shell, report["votf"] = _with_shell(plain, tile)
         handles.enter_context(shell)
         shell.save(folder / "net.velour")
         for name, model in (("model", shell), ("reference", plain)):
-            print(f"rendering the {'shell' if model is shell else 'geometry'} ...", flush=True)
+            begin(f"rendering the {'shell' if model is shell else 'geometry'}")
             with Scene() as scene:
                 _add_objects(scene, tile, model, name == "reference")
                 report[name] = _render(scene, folder / name, size, samples)
     report["rmse"], report["relmse"] = write_difference(folder)
-    report |= {"version": library.system()["version"], "machine": machine()}
-    files.write_json(folder / "report.json", report)
-    _tell(folder, report)
     return report
 
 

@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -16,8 +17,15 @@ class BlenderError(RuntimeError):
     pass
 
 
-def run(script: str, task: dict, log: Path, options: list[str] | None = None) -> None:
-    """`script` lies in this folder and finds `task` as JSON after "--". `options`: more of Blender's own."""
+def run(
+    script: str,
+    task: dict,
+    log: Path,
+    options: list[str] | None = None,
+    hear: Callable[[str], None] = lambda line: None,
+) -> None:
+    """`script` lies in this folder and finds `task` as JSON after "--". `options`: more of Blender's own.
+    `hear` is called with each line that Blender or the script prints."""
     blender = shutil.which("blender")
     if not blender:
         raise BlenderError("blender is not installed; run scripts/setup")
@@ -27,12 +35,32 @@ def run(script: str, task: dict, log: Path, options: list[str] | None = None) ->
     # A distribution's Blender looks for its Python along PATH: not a version manager's, please.
     path = os.pathsep.join((str(Path(blender).resolve().parent), os.environ["PATH"]))
     environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(STAGE), "PATH": path}
-    with open(log, "w") as file:
-        done = subprocess.run(
-            command, stdout=file, stderr=subprocess.STDOUT, env=environment, stdin=subprocess.DEVNULL
-        )
-    if done.returncode:
+    status = _run(command, environment, log, hear)
+    if status:
         lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
-        raise BlenderError(
-            f"Blender failed with status {done.returncode}; {log} ends: {' / '.join(lines[-3:])}"
-        )
+        raise BlenderError(f"Blender failed with status {status}; {log} ends: {' / '.join(lines[-3:])}")
+
+
+def _run(command: list[str], environment: dict[str, str], log: Path, hear: Callable[[str], None]) -> int:
+    """The exit status. Kills Blender on any exception here: Ctrl-C itself ends only its current render."""
+    with (
+        open(log, "w") as file,
+        subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            env=environment,
+            text=True,
+            errors="replace",
+        ) as process,
+    ):
+        try:
+            for line in process.stdout:
+                file.write(line)
+                file.flush()
+                hear(line)
+        except BaseException:
+            process.kill()
+            raise
+    return process.returncode

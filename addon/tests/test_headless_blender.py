@@ -1,0 +1,49 @@
+"""How scripts run Blender, with a program in its place."""
+
+from __future__ import annotations
+
+import subprocess
+
+import headless_blender
+import pytest
+
+
+@pytest.fixture
+def blender(tmp_path, monkeypatch):
+    """Writes the program that is found as Blender."""
+
+    def write(script: str) -> None:
+        program = tmp_path / "blender"
+        program.write_text(f"#!/bin/bash\n{script}\n")
+        program.chmod(0o755)
+
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+    return write
+
+
+def test_its_lines_are_heard_and_kept(blender, tmp_path):
+    blender("echo said; echo warned >&2; echo ${@: -1}")
+    heard = []
+    headless_blender.run("demo_scene.py", {"size": 3}, tmp_path / "log", hear=heard.append)
+    assert heard == ["said\n", "warned\n", '{"size": 3}\n']
+    assert (tmp_path / "log").read_text() == "".join(heard)
+
+
+def test_its_failure_is_told_with_the_end_of_the_log(blender, tmp_path):
+    blender("echo one; echo; echo its reason; exit 7")
+    with pytest.raises(headless_blender.BlenderError) as caught:
+        headless_blender.run("demo_scene.py", {}, tmp_path / "log")
+    assert str(caught.value) == f"Blender failed with status 7; {tmp_path}/log ends: one / its reason"
+
+
+def test_it_does_not_outlive_ctrl_c(blender, tmp_path):
+    blender("trap '' INT; echo $$; exec sleep 60")
+
+    def interrupt(line: str) -> None:
+        heard.append(line)
+        raise KeyboardInterrupt
+
+    heard = []
+    with pytest.raises(KeyboardInterrupt):
+        headless_blender.run("demo_scene.py", {}, tmp_path / "log", hear=interrupt)
+    assert subprocess.run(["ps", "-p", heard[0].strip()], stdout=subprocess.DEVNULL).returncode == 1

@@ -1,0 +1,83 @@
+"""What a demonstration makes is kept, and made again only when something that it is made from has changed."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import renders
+import velour
+from progress import Progress
+from steps import Steps
+from velour.core import files
+
+_SCRIPTS = Path(__file__).resolve().parent
+_ADDON = Path(velour.__file__).parent
+
+
+@dataclass(frozen=True)
+class Part:
+    """Files that are made together."""
+
+    name: str
+    steps: Mapping[str, float]  # seconds that each takes on two cores
+    files: tuple[str, ...]  # left in the folder; may be folders
+
+    def announce(self, progress: Progress) -> None:
+        for cost in self.steps.values():
+            progress.expect(cost)
+
+
+class Parts:
+    """`fresh`: makes everything again."""
+
+    def __init__(self, progress: Progress, fresh: bool):
+        self.progress, self.fresh = progress, fresh
+
+    def make(
+        self, part: Part, folder: Path, inputs: Mapping[str, Path], run: Callable[[Steps], dict]
+    ) -> dict:
+        """The report of `run`, which makes the files of the part, and "kept": whether an earlier run with the
+        same inputs, options, scripts, add-on, library and machine did that."""
+        record = folder / f"{part.name}.kept.json"
+        key = renders.key({**inputs, "part": part, "code": _code()})
+        if not self.fresh and (report := _report(record, key)) is not None:
+            for step, cost in part.steps.items():
+                self.progress.skip(step, cost)
+            return {**report, "kept": True}
+        record.unlink(missing_ok=True)
+        with Steps(self.progress, part.steps) as steps:
+            report = run(steps)
+        hashes = {name: _hash(folder / name) for name in part.files}
+        files.write_json(record, {"key": key, "files": hashes, "report": report})
+        return {**report, "kept": False}
+
+
+def _report(record: Path, key: str) -> dict | None:
+    """None where there is no record of that key, or its files are gone or others."""
+    if not record.is_file():
+        return None
+    said = json.loads(record.read_text(encoding="utf-8"))
+    same = said["key"] == key and all(
+        _hash(record.with_name(name)) == value for name, value in said["files"].items()
+    )
+    return said["report"] if same else None
+
+
+def _hash(path: Path) -> str | None:
+    """Of a file, or of the names and contents of a folder's files; None where there is neither."""
+    if path.is_dir():
+        contents = [[file.name, files.sha256(file)] for file in sorted(path.iterdir())]
+        return hashlib.sha256(json.dumps(contents).encode()).hexdigest()
+    return files.sha256(path) if path.is_file() else None
+
+
+@functools.cache
+def _code() -> str:
+    """Of the scripts and of the add-on; renders.key() knows the library."""
+    sources = [*sorted(_SCRIPTS.glob("*.py")), *sorted(_ADDON.rglob("*.py"))]
+    return hashlib.sha256("".join(map(files.sha256, sources)).encode()).hexdigest()
