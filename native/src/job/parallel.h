@@ -33,7 +33,11 @@ void parallel_pieces(size_t count, int threads, const Progress& progress, const 
     for (size_t i = 0; i < count; ++i) piece(i);
     return;
   }
-  in_one_arena(threads, [&] { oneapi::tbb::parallel_for(size_t{0}, count, piece, oneapi::tbb::simple_partitioner()); });
+  // With a context of its own: an error in a loop around this one would else end this one, without an exception in
+  // here, and the caller would go on with pieces that were never done.
+  oneapi::tbb::task_group_context context(oneapi::tbb::task_group_context::isolated);
+  in_one_arena(threads,
+               [&] { oneapi::tbb::parallel_for(size_t{0}, count, piece, oneapi::tbb::simple_partitioner(), context); });
 }
 
 /// Calls `work(i)` for i in [0, count) on `threads` threads (0: all), reports progress and stops at a cancel. An

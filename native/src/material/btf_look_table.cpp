@@ -74,9 +74,13 @@ BtfLookTable::BtfLookTable(const Vec2& texels, const Ask& ask) {
   };
   for (uint32_t level = 0; level < levels; ++level) {
     const uint32_t cells = cells_ >> level;
-    // Isolated: while it waits, the thread takes no task that might hold what this one's caller does.
-    tbb::this_task_arena::isolate(
-        [&] { tbb::parallel_for(size_t{0}, size_t{cells} * cells, [&](size_t cell) { fill(level, cells, cell); }); });
+    // Isolated: while it waits, the thread takes no task that might hold what this one's caller does; and a render
+    // around it that is cancelled leaves no cell out.
+    tbb::task_group_context context(tbb::task_group_context::isolated);
+    tbb::this_task_arena::isolate([&] {
+      tbb::parallel_for(
+          size_t{0}, size_t{cells} * cells, [&](size_t cell) { fill(level, cells, cell); }, context);
+    });
   }
 }
 

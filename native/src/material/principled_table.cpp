@@ -32,8 +32,10 @@ PrincipledTable::PrincipledTable(const PrincipledParameters& parameters) : nodes
     p.roughness = roughness_at(static_cast<float>(i));
     nodes_[i] = first.with(p);
   };
-  // Isolated: while it waits, the thread takes no task that might ask for a table, too.
-  tbb::this_task_arena::isolate([&] { tbb::parallel_for(size_t{0}, nodes_.size(), make); });
+  // Isolated: while it waits, the thread takes no task that might ask for a table, too; and a render around it that is
+  // cancelled leaves no node out.
+  tbb::task_group_context context(tbb::task_group_context::isolated);
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(size_t{0}, nodes_.size(), make, context); });
 }
 
 std::shared_ptr<const PrincipledTable> PrincipledTable::shared(const PrincipledParameters& p) {

@@ -48,5 +48,24 @@ TEST_P(Pieces, AnErrorWithinComesOut) {
       Error);
 }
 
+TEST_P(Pieces, AnErrorBesideLeavesNoneOut) {
+  constexpr size_t kInner = 300;
+  std::atomic<bool> left_out{false};
+  const auto work = [&](size_t i) {
+    if (i == 5) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      throw Error(Status::bad_data, "no");
+    }
+    std::atomic<size_t> done{0};
+    parallel_pieces(kInner, GetParam(), progress_, [&](size_t) {
+      std::this_thread::sleep_for(std::chrono::microseconds(20));
+      ++done;
+    });
+    if (done != kInner) left_out = true;
+  };
+  EXPECT_THROW(parallel_pieces(6, GetParam(), progress_, work), Error);
+  EXPECT_FALSE(left_out);
+}
+
 }  // namespace
 }  // namespace velour
