@@ -7,7 +7,7 @@ import pytest
 from demo_parts import Part, Parts
 from progress import Progress
 
-PART = Part("it", {"first": 1, "second": 2}, ("file", "folder"))
+PART = Part("it", "the thing", {"first": 1, "second": 2}, ("file", "folder"))
 
 
 class Maker:
@@ -43,7 +43,7 @@ def maker(tmp_path):
 def test_is_kept(maker, capsys):
     capsys.readouterr()
     assert maker.make() == {"count": 1, "kept": True}
-    assert capsys.readouterr().out == "[  1/2] first: kept\n[  2/2] second: kept\n"
+    assert capsys.readouterr().out == "[  2/2] the thing, with the times of the run that made it: kept\n"
 
 
 def test_tells_its_steps(tmp_path, capsys):
@@ -70,7 +70,7 @@ def test_other_code(maker, monkeypatch):
 
 
 def test_another_version_of_the_part(maker):
-    assert maker.make(Part("it", {"first": 1, "second": 3}, PART.files))["count"] == 2
+    assert maker.make(Part("it", PART.title, {"first": 1, "second": 3}, PART.files))["count"] == 2
 
 
 def test_fresh(maker):

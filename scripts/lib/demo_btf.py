@@ -18,12 +18,13 @@ from velour.native import library
 _STARTING, _COMPARING = "starting Blender for a BTF", "drawing the BTF's difference"
 PART = Part(
     "btf",
+    "the BTF of a weave",
     {
         _STARTING: 2,
-        "capturing a tile of weave": 20,
-        "fitting a model to its BTF": 10,
-        "rendering the BTF": 10,
-        "rendering the model of the BTF": 10,
+        "capturing a tile of weave": 9,
+        "fitting a model to its BTF": 21,
+        "rendering the BTF": 7,
+        "rendering the model of the BTF": 6,
         _COMPARING: 1,
     },
     (

@@ -13,7 +13,7 @@ from velour.core import files
 from velour.native import library, microsurface_job
 
 SETTINGS = {"seed": 1}  # all else as the library has it
-COST = 10  # seconds on two cores
+COST = 7  # seconds on two cores
 _STEP = "capturing the default measurement"
 
 

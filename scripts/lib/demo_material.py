@@ -18,13 +18,14 @@ from velour.native import Measurement, fit_job, library
 
 PART = Part(
     "material",
+    "the measured material",
     {
-        "fitting the model": 3,
+        "fitting the model": 1,
         "starting Blender": 2,
-        "rendering the measurement": 20,
-        "rendering the model": 20,
-        "taking error against time": 30,
-        "drawing the difference and the plot": 3,
+        "rendering the measurement": 15,
+        "rendering the model": 14,
+        "taking error against time": 8,
+        "drawing the difference and the plot": 2,
     },
     (
         "model.velour",

@@ -24,6 +24,7 @@ class Part:
     """Files that are made together."""
 
     name: str
+    title: str
     steps: Mapping[str, float]  # seconds that each takes on two cores
     files: tuple[str, ...]  # left in the folder; may be folders
 
@@ -46,8 +47,8 @@ class Parts:
         record = folder / f"{part.name}.kept.json"
         key = renders.key({**inputs, "part": part, "code": _code()})
         if not self.fresh and (report := _report(record, key)) is not None:
-            for step, cost in part.steps.items():
-                self.progress.skip(step, cost)
+            label = f"{part.title}, with the times of the run that made it"
+            self.progress.skip(label, sum(part.steps.values()), len(part.steps))
             return {**report, "kept": True}
         record.unlink(missing_ok=True)
         with Steps(self.progress, part.steps) as steps:

@@ -25,6 +25,7 @@ _UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
 
 PART = Part(
     "votf",
+    "the wire net",
     {"fitting the metal": 3, "tracing the shell": 5, "rendering the shell": 10, "rendering the geometry": 20},
     (
         "metal.velour",

@@ -30,9 +30,9 @@ class Progress:
         self._expected += count
         self._cost_left += cost * count
 
-    def skip(self, label: str, cost: float) -> None:
-        """It was there already."""
-        self._finish(cost)
+    def skip(self, label: str, cost: float, count: int = 1) -> None:
+        """It was there already. `cost`: of all `count`."""
+        self._finish(cost, count)
         self._say(f"{label}: kept")
 
     @contextmanager
@@ -66,8 +66,8 @@ class Progress:
             ended.set()
             thread.join()
 
-    def _finish(self, cost: float) -> None:
-        self._count += 1
+    def _finish(self, cost: float, count: int = 1) -> None:
+        self._count += count
         self._expected = max(self._expected, self._count)
         self._cost_left = max(self._cost_left - cost, 0.0)
 
