@@ -73,7 +73,7 @@ stop_program() {
 }
 
 show_failure() {
-  { grep -E -A 5 '(error|Error|FAILED|^E:)' "$1" || tail -n 40 "$1"; } | sed -n 1,40p >&2
+  { grep -aE -A 5 '(error|Error|FAILED|^E:)' "$1" || tail -n 40 "$1"; } | sed -n 1,40p >&2
 }
 
 # Seconds between two lines of progress; a line that changes does so each second.
@@ -103,7 +103,7 @@ duration() { if (($1 < 600)); then printf '%d s' "$1"; else printf '%d min' $(((
 
 # Counters for with_progress.
 count_nothing() { :; }
-count_ninja() { grep -oE '^\[[0-9]+/[0-9]+\]' "$1" | tail -n 1 | tr '[/]' ' '; }
+count_ninja() { grep -aoE '^\[[0-9]+/[0-9]+\]' "$1" | tail -n 1 | tr '[/]' ' '; }
 count_apt() { # a package is fetched, unless it was before; unpacked; and set up
   awk '/^Get:/ { fetched++ }
     /^(Unpacking|Setting up) / { installed++ }
