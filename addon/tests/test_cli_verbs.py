@@ -142,6 +142,14 @@ def test_fit_options_reach_the_model(measurement_file, tmp_path):
     assert (info["tolerance"], info["all_data"], info["seed"]) == (0.5, True, 9)
 
 
+@pytest.mark.parametrize("switch", [(), ("--symmetric",)])
+def test_a_symmetric_fit_makes_a_symmetric_model(measurement_file, tmp_path, switch):
+    path = tmp_path / "m.velour"
+    assert velour("fit", measurement_file, "-o", path, "--max-lobes", 1, *switch).status == 0
+    with Model.load(path) as model:
+        assert model.info()["symmetric"] == bool(switch)
+
+
 @pytest.mark.parametrize("kind", table.MODELS)
 def test_a_fit_reports_its_error_against_lobes(measurement_file, tmp_path, kind):
     path = tmp_path / "m.velour"
