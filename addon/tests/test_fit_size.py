@@ -11,7 +11,7 @@ _THREADS = 2
 
 
 @pytest.fixture(
-    scope="module", params=[(16, "12", "20", "one"), (24, "10", "9", "two")], ids=["front", "both"]
+    scope="module", params=[(16, "12", "20", "one"), (16, "10", "9", "two")], ids=["front", "both"]
 )
 def btf(request, tmp_path_factory):
     texels, views, lights, sides = request.param

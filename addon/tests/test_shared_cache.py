@@ -15,7 +15,7 @@ from velour.core.measurement_files import find_measurements
 from velour.core.thumbnails import thumbnail
 from velour.native import Model, Scene, render_job
 
-_ROUNDS, _SKIES = 3, 2
+_SKIES = 2
 _FIT = fit_time.Fit("srbf", 1000, 1000, False, False, False, 2)
 
 
@@ -43,43 +43,43 @@ def _pictures(folder, cache):
     return [hashlib.sha256(each.pixels.tobytes()).hexdigest() for each in made]
 
 
-def _work(process, folder, cache):
+def _work(process, rounds, folder, cache):
     """What one process sees, round by round; takes away results that others may be about to read."""
     skies, pictures = [], []
-    for turn in range(_ROUNDS):
+    for turn in range(rounds):
         skies.append([_sky(number, next(folder.iterdir()), cache) for number in range(_SKIES)])
         pictures.append(_pictures(folder, cache))
-        fit_time.remember(cache, _FIT, float(1 + process * _ROUNDS + turn))
+        fit_time.remember(cache, _FIT, float(1 + process * rounds + turn))
         for path in [*cache.glob("sky-*"), *cache.glob("thumbnails-*/*.npz")][process % 2 :: 2]:
             path.unlink(missing_ok=True)
     return {"skies": skies, "pictures": pictures}
 
 
-def _begun(process, folder, cache):
-    command = [sys.executable, __file__, str(process), str(folder), str(cache)]
+def _begun(process, rounds, folder, cache):
+    command = [sys.executable, __file__, *map(str, (process, rounds, folder, cache))]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
 
 
-@pytest.mark.parametrize("count", [4, pytest.param(8, marks=pytest.mark.long)])
-def test_processes_share_a_cache(count, tmp_path, model_file):
+@pytest.mark.parametrize(("count", "rounds"), [(4, 2), pytest.param(8, 3, marks=pytest.mark.long)])
+def test_processes_share_a_cache(count, rounds, tmp_path, model_file):
     folder, cache = tmp_path / "measurements", tmp_path / "cache"
     folder.mkdir()
     shutil.copy(model_file, folder)
     expected = {
-        "skies": [[_sky(number, model_file, tmp_path / "own") for number in range(_SKIES)]] * _ROUNDS,
-        "pictures": [_pictures(folder, tmp_path / "own")] * _ROUNDS,
+        "skies": [[_sky(number, model_file, tmp_path / "own") for number in range(_SKIES)]] * rounds,
+        "pictures": [_pictures(folder, tmp_path / "own")] * rounds,
     }
-    processes = [_begun(process, folder, cache) for process in range(count)]
+    processes = [_begun(process, rounds, folder, cache) for process in range(count)]
     seen = [process.communicate()[0] for process in processes]
     assert [process.returncode for process in processes] == [0] * count
     for each in seen:
         assert json.loads(each) == expected
     found = fit_time._known(cache)
-    assert sorted(made.seconds for made in found) == list(range(1, 1 + count * _ROUNDS))
+    assert sorted(made.seconds for made in found) == list(range(1, 1 + count * rounds))
     left = [path for path in cache.rglob("*") if path.name.startswith(".") or ".velour-" in path.name]
     assert left == []
 
 
 if __name__ == "__main__":
-    json.dump(_work(int(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])), sys.stdout)
+    json.dump(_work(int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3]), Path(sys.argv[4])), sys.stdout)
