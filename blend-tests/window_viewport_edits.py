@@ -287,7 +287,7 @@ def during_a_build(folder):
     """Edits do not wait for the hierarchy of a large mesh, which is built once."""
     _scene()
     with window.override():
-        bpy.ops.mesh.primitive_grid_add(x_subdivisions=1000, y_subdivisions=1000, size=20)
+        bpy.ops.mesh.primitive_grid_add(x_subdivisions=1500, y_subdivisions=1500, size=20)
     bpy.context.view_layer.objects.active.location.z = -2
     engine_viewport = viewport.addon("engine.viewport").Viewport
     update, held = engine_viewport.update, []
