@@ -4,9 +4,6 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_C_STANDARD 99)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-set(CMAKE_CXX_VISIBILITY_PRESET hidden)
-set(CMAKE_C_VISIBILITY_PRESET hidden)
-set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
 if(NOT CMAKE_BUILD_TYPE)
@@ -17,6 +14,8 @@ add_library(velour_options INTERFACE)
 target_compile_options(velour_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -Werror
   $<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno>
+  # Symbols are hidden by version scripts, not here: native/tests links a library that exports all of them.
+  -fno-semantic-interposition
   # One rounding a written operation, so that inlining cannot change results between builds of one instruction set.
   -ffp-contract=off)
 if(VELOUR_SANITIZE)
@@ -33,22 +32,50 @@ if(CCACHE)
   set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
-# velour_library(NAME FILES... LINK ...): one folder of native/src, one static library. What a folder may use is what it
-# links; scripts/check_layers holds the includes to the same order.
+# join_sources(TARGET BATCH FILES...): compiles up to BATCH sources as one translation unit (a CMake unity build), which
+# halves compile time: headers are parsed and templates instantiated once. Names in anonymous namespaces and static names
+# must therefore be unique within a folder, and a type in an anonymous namespace cannot be a member of a type that a header
+# declares. Sources that define macros, as Highway's kernels do, stay separate.
+function(join_sources target batch)
+  list(FILTER ARGN INCLUDE REGEX "\\.cpp$")
+  foreach(source ${ARGN})
+    file(STRINGS ${source} macros REGEX "^#(define|include <hwy/foreach_target)" LIMIT_COUNT 1)
+    if(macros)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
+endfunction()
+
+# velour_library(NAME FILES... LINK ... [BATCH n]): one folder of native/src, one static library. What a folder may use is
+# what it links; scripts/check_layers holds the includes to the same order. BATCH, for join_sources(): fewer than 8 where
+# sources take long to compile, so that a change of one is compiled within 10 seconds.
 function(velour_library name)
-  cmake_parse_arguments(ARG "" "" "FILES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "BATCH" "FILES;LINK" ${ARGN})
+  if(NOT ARG_BATCH)
+    set(ARG_BATCH 8)
+  endif()
   add_library(velour_${name} STATIC ${ARG_FILES})
+  join_sources(velour_${name} ${ARG_BATCH} ${ARG_FILES})
   target_link_libraries(velour_${name} PUBLIC ${ARG_LINK} PRIVATE velour_options)
   target_include_directories(velour_${name} PUBLIC ${PROJECT_SOURCE_DIR}/native/src)
   share_precompiled(velour_${name} velour_precompiled)
 endfunction()
 
-# velour_test(NAME FILES... LINK ... [LABEL unit|stat|capi]): one GoogleTest program, one ctest entry.
+# velour_test(NAME FILES... [LINK ...] [LABEL unit|stat|capi] [OPTIMIZE]): one GoogleTest program, one ctest entry. A test
+# program is compiled without optimization, which halves its compile time: the time of a test should be spent in the library.
+# OPTIMIZE: for test programs that compute much themselves.
 function(velour_test name)
-  cmake_parse_arguments(ARG "" "LABEL" "FILES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "OPTIMIZE" "LABEL" "FILES;LINK" ${ARGN})
   add_executable(test_${name} ${ARG_FILES})
+  join_sources(test_${name} 8 ${ARG_FILES})
   target_link_libraries(test_${name} PRIVATE ${ARG_LINK} velour_test_support GTest::gtest_main velour_options)
-  share_precompiled(test_${name} velour_test_support)
+  if(ARG_OPTIMIZE)
+    share_precompiled(test_${name} velour_test_support)
+  else()
+    target_link_libraries(test_${name} PRIVATE velour_unoptimized)
+    share_precompiled(test_${name} velour_test_precompiled)
+  endif()
   add_test(NAME ${name} COMMAND test_${name})
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT 600)
 endfunction()

@@ -16,7 +16,7 @@ namespace velour {
 namespace {
 
 /// Fine enough that the table adds less than the interpolation's own error; docs/formats.md has the numbers.
-constexpr BrdfTableLayout kLayout{.theta_h = 90, .phi_h = 1, .theta_d = 60, .phi_d = 60};
+constexpr BrdfTableLayout kCornellLayout{.theta_h = 90, .phi_h = 1, .theta_d = 60, .phi_d = 60};
 constexpr double kMaxWavelengths = 10000;
 
 /// The numbers of a text, one after the other; comments are skipped.
@@ -138,7 +138,7 @@ HalfDiffTable tabulated(std::span<const ScatteredSample> samples, const std::str
   if (samples.size() < ScatteredInterpolant::kNeighbours)
     fail(path, "has " + std::to_string(samples.size()) + " valid samples; at least " +
                    std::to_string(ScatteredInterpolant::kNeighbours) + " are needed to interpolate.");
-  return {kLayout, resample_scattered(ScatteredInterpolant(samples), kLayout, progress)};
+  return {kCornellLayout, resample_scattered(ScatteredInterpolant(samples), kCornellLayout, progress)};
 }
 
 /// A table for eval, the samples themselves for the error of a fit.
@@ -180,14 +180,15 @@ class ScatteredMeasurement : public TableMeasurement {
 
 TableMeasurement::Details describe(const CornellText& text) {
   const auto whole = [](double v) { return std::to_string(std::lround(v)); };
-  return {{"table", std::to_string(text.rows.size() / text.row_size) + " irregular samples of " +
-                        std::to_string(text.wavelengths.size()) + " wavelengths, " + whole(text.wavelengths.front()) +
-                        " to " + whole(text.wavelengths.back()) + " nm"},
-          {"holds", "f without cosine, 1/sr, spectral; seen by the CIE 1931 observer as linear Rec. 709"},
-          {"invalid", "a sample that is not finite or of negative luminance"},
-          {"interpolation", "local linear regression over 16 samples in half and difference angles, tabulated at " +
-                                std::to_string(kLayout.theta_h) + " x " + std::to_string(kLayout.theta_d) + " x " +
-                                std::to_string(kLayout.phi_d) + " nodes"}};
+  return {
+      {"table", std::to_string(text.rows.size() / text.row_size) + " irregular samples of " +
+                    std::to_string(text.wavelengths.size()) + " wavelengths, " + whole(text.wavelengths.front()) +
+                    " to " + whole(text.wavelengths.back()) + " nm"},
+      {"holds", "f without cosine, 1/sr, spectral; seen by the CIE 1931 observer as linear Rec. 709"},
+      {"invalid", "a sample that is not finite or of negative luminance"},
+      {"interpolation", "local linear regression over 16 samples in half and difference angles, tabulated at " +
+                            std::to_string(kCornellLayout.theta_h) + " x " + std::to_string(kCornellLayout.theta_d) +
+                            " x " + std::to_string(kCornellLayout.phi_d) + " nodes"}};
 }
 
 /// The file's own words: the lines of comment before the first number.

@@ -11,7 +11,7 @@
 namespace velour {
 namespace {
 
-constexpr BrdfTableLayout kLayout{
+constexpr BrdfTableLayout kMerlLayout{
     .theta_h = MerlGrid::theta_h, .phi_h = 1, .theta_d = MerlGrid::theta_d, .phi_d = MerlGrid::phi_d};
 constexpr size_t kHeaderBytes = 3 * sizeof(int32_t);
 constexpr size_t kPlaneBytes = MerlGrid::size * sizeof(double);
@@ -48,7 +48,7 @@ class StoredPlanes {
 };
 
 std::vector<TableNode> read_nodes(const StoredPlanes& planes, EntryCounts& counts) {
-  const HorizonTest horizon(kLayout);
+  const HorizonTest horizon(kMerlLayout);
   std::vector<TableNode> nodes(MerlGrid::size);
   for (int i = 0; i < MerlGrid::theta_h; ++i)
     for (int j = 0; j < MerlGrid::theta_d; ++j)
@@ -74,7 +74,7 @@ TableMeasurement::Details describe() {
 
 }  // namespace
 
-DirectionPair MerlGrid::pair(int i, int j, int k) { return kLayout.pair(i, 0, j, k); }
+DirectionPair MerlGrid::pair(int i, int j, int k) { return kMerlLayout.pair(i, 0, j, k); }
 
 bool looks_like_merl(std::span<const uint8_t> head) {
   constexpr int32_t kDimensions[] = {90, 90, 180};
@@ -87,7 +87,7 @@ std::shared_ptr<const Measurement> read_merl(std::span<const uint8_t> bytes, Pro
   EntryCounts counts;
   auto nodes = read_nodes(StoredPlanes(in.take(3 * kPlaneBytes, "table").data()), counts);
   provenance.format = "merl";
-  return std::make_shared<TableMeasurement>(HalfDiffTable(kLayout, std::move(nodes)), std::move(provenance), counts,
+  return std::make_shared<TableMeasurement>(HalfDiffTable(kMerlLayout, std::move(nodes)), std::move(provenance), counts,
                                             describe());
 }
 
@@ -95,7 +95,7 @@ void write_merl(const std::string& path, std::span<const double> planes) {
   if (planes.size() != 3 * MerlGrid::size)
     throw Error(Status::invalid_argument, path + ": a MERL table has " + std::to_string(3 * MerlGrid::size) +
                                               " values, not " + std::to_string(planes.size()) + ".");
-  const HorizonTest horizon(kLayout);
+  const HorizonTest horizon(kMerlLayout);
   std::vector<double> stored(planes.size(), -1.0);
   for (size_t index = 0; index < MerlGrid::size; ++index) {
     const auto k = static_cast<int>(index % 180), j = static_cast<int>(index / 180 % 90);

@@ -56,8 +56,8 @@ float expand(double g) { return static_cast<float>(kLinearBelow * std::sinh(g));
 struct ScatteredInterpolant::Index {
   explicit Index(std::span<const ScatteredSample> samples);
 
-  size_t kdtree_get_point_count() const { return places.size(); }
-  double kdtree_get_pt(size_t i, size_t axis) const { return places[i].regression[axis]; }
+  size_t kdtree_get_point_count() const { return regression.size(); }
+  double kdtree_get_pt(size_t i, size_t axis) const { return regression[i][axis]; }
   template <class Box>
   bool kdtree_get_bbox(Box&) const {
     return false;
@@ -65,7 +65,7 @@ struct ScatteredInterpolant::Index {
 
   Rgb regress(const Point& here, const Nearest& nearest) const;
 
-  std::vector<Place> places;
+  std::vector<Point> regression, reach;       // Place
   std::vector<std::array<double, 3>> values;  // compressed
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Index>, Index, 3>;
   std::unique_ptr<Tree> tree;
@@ -73,7 +73,9 @@ struct ScatteredInterpolant::Index {
 
 ScatteredInterpolant::Index::Index(std::span<const ScatteredSample> samples) {
   for (const ScatteredSample& sample : samples) {
-    places.push_back(place_of(sample.wl, sample.wv));
+    const Place place = place_of(sample.wl, sample.wv);
+    regression.push_back(place.regression);
+    reach.push_back(place.reach);
     values.push_back({compress(sample.f.r), compress(sample.f.g), compress(sample.f.b)});
   }
   tree = std::make_unique<Tree>(3, *this);
@@ -95,7 +97,7 @@ std::optional<Rgb> ScatteredInterpolant::f(const Vec3& wl, const Vec3& wv) const
   Nearest nearest;
   (void)index_->tree->knnSearch(here.regression.data(), kCount, nearest.sample.data(), nearest.distance_sq.data());
   const bool in_reach = std::any_of(nearest.sample.begin(), nearest.sample.end(), [&](uint32_t n) {
-    return distance_sq(here.reach, index_->places[n].reach) <= kReach * kReach;
+    return distance_sq(here.reach, index_->reach[n]) <= kReach * kReach;
   });
   if (!in_reach) return std::nullopt;
   return index_->regress(here.regression, nearest);
@@ -108,7 +110,7 @@ Rgb ScatteredInterpolant::Index::regress(const Point& here, const Nearest& neare
   Eigen::Matrix<double, kCount, 1> weights;
   for (int i = 0; i < kCount; ++i) {
     const auto n = static_cast<size_t>(i);
-    const Point& there = places[nearest.sample[n]].regression;
+    const Point& there = regression[nearest.sample[n]];
     const auto& value = values[nearest.sample[n]];
     terms.row(i) << 1.0, there[0] - here[0], there[1] - here[1], there[2] - here[2];
     data.row(i) << value[0], value[1], value[2];

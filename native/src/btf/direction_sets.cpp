@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr double kLargestTheta = 89.89;  // what a PairLayout takes
+constexpr double kMaxTheta = 89.89;  // what a PairLayout takes
 
 }  // namespace
 
@@ -24,7 +24,7 @@ std::vector<PolarAngles> named_directions(const std::string& name) {
                                               "1 to " + std::to_string(kMaxDirections) + ".");
   }
   std::vector<PolarAngles> set = even_directions(count);
-  for (PolarAngles& d : set) d.theta = std::min(d.theta, kLargestTheta);
+  for (PolarAngles& d : set) d.theta = std::min(d.theta, kMaxTheta);
   return set;
 }
 

@@ -10,11 +10,11 @@
 namespace velour {
 namespace {
 
-constexpr uint64_t kSeed = 75;        // any: that it never changes makes numbers of two days comparable
-constexpr double kLargestTheta = 75;  // degrees
+constexpr uint64_t kSeed = 75;           // any: that it never changes makes numbers of two days comparable
+constexpr double kMaxHeldOutTheta = 75;  // degrees
 
 PolarAngles drawn_direction(RandomStream& random, bool two_sided) {
-  const double least_cosine = std::cos(radians_from(kLargestTheta));
+  const double least_cosine = std::cos(radians_from(kMaxHeldOutTheta));
   const double cosine = 1 - static_cast<double>(random.next()) * (1 - least_cosine);
   const double theta = std::acos(cosine) * (180 / kPiD), phi = 360 * static_cast<double>(random.next());
   const bool below = random.next() < 0.5f;

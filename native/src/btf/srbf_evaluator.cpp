@@ -42,12 +42,6 @@ uint32_t padded(size_t count) {
   return static_cast<uint32_t>((count + kByteRowPadding - 1) / kByteRowPadding * kByteRowPadding);
 }
 
-AlignedArray<float> zeros(size_t count) {
-  AlignedArray<float> floats(count);
-  std::fill_n(floats.data(), count, 0.0f);
-  return floats;
-}
-
 Relief relief_of(const SrbfBtf& btf, const SrbfLevel& level) {
   std::vector<float> heights(level.relief.size());
   halves_to_floats(level.relief, heights);
@@ -68,9 +62,9 @@ SrbfEvaluator::Side::Side(const SrbfBtf& btf, const SrbfSide& side)
     : tile(lobes_of(terms(side, true))),
       texel(lobes_of(terms(side, false))),
       stride(padded(tile.padded() + texel.size() + 4)),
-      least(zeros(stride)),
-      step(zeros(stride)),
-      color(zeros(size_t{3} * (tile.padded() + texel.padded()))) {
+      least(aligned_zeros(stride)),
+      step(aligned_zeros(stride)),
+      color(aligned_zeros(size_t{3} * (tile.padded() + texel.padded()))) {
   std::vector<uint32_t> place(side.coefficients());
   uint32_t next = 0;
   for (const bool in_tile : {true, false}) {

@@ -3,15 +3,10 @@
 #include <algorithm>
 
 #include "btf/tensor_factors.h"
+#include "btf/transposed.h"
 
 namespace velour {
 namespace {
-
-AlignedArray<float> zeros(size_t count) {
-  AlignedArray<float> floats(count);
-  std::fill_n(floats.data(), count, 0.0f);
-  return floats;
-}
 
 uint32_t count_on_side(const std::vector<PolarAngles>& directions, bool below) {
   return static_cast<uint32_t>(directions_on_side(directions, below).size());
@@ -75,27 +70,17 @@ void add_node(const TensorSide& side, const TensorFactors& factors, const float*
   }
 }
 
-/// [rank][light], of [light][rank]: sums over ranks then run along the lights.
-std::vector<float> transposed(const std::vector<float>& factor, size_t rank) {
-  const size_t lights = factor.size() / rank;
-  std::vector<float> turned(factor.size());
-  for (size_t l = 0; l < lights; ++l) {
-    for (size_t j = 0; j < rank; ++j) turned[j * lights + l] = factor[l * rank + j];
-  }
-  return turned;
-}
-
 }  // namespace
 
 TensorContraction::TensorContraction(const TensorBtf& btf, const TensorSide& side, uint64_t most_bytes)
     : views_(count_on_side(btf.layout.views(), side.view_below)),
       tables_(chosen(side, views_, count_on_side(btf.layout.lights(), side.light_below), most_bytes)),
-      least_(zeros(size_t{tables_.clusters} * padded_rank(tables_.rank))),
-      step_(zeros(least_.size())),
-      color_(zeros(size_t{tables_.clusters} * 3 * tables_.color_rank)),
-      view_(zeros(view_size(tables_, views_))),
-      table_(zeros(table_size(tables_, views_))),
-      light_(zeros(light_size(tables_, views_))) {
+      least_(aligned_zeros(size_t{tables_.clusters} * padded_rank(tables_.rank))),
+      step_(aligned_zeros(least_.size())),
+      color_(aligned_zeros(size_t{tables_.clusters} * 3 * tables_.color_rank)),
+      view_(aligned_zeros(view_size(tables_, views_))),
+      table_(aligned_zeros(table_size(tables_, views_))),
+      light_(aligned_zeros(light_size(tables_, views_))) {
   scale_from(side);
   for (size_t c = 0; c < tables_.clusters; ++c) fill_cluster(side, TensorFactors(btf, side.clusters[c]), c);
   tables_.least = least_.data();
@@ -154,6 +139,7 @@ void TensorContraction::fill_lights(const TensorSide& side, const TensorFactors&
 
 void TensorContraction::fill_pairs(const TensorSide& side, const TensorFactors& factors, size_t cluster) {
   const size_t rank = side.rank.light, colors = side.rank.color, lights = tables_.lights;
+  // Sums over ranks run along the lights.
   const std::vector<float> light = transposed(factors.light, rank);
   std::vector<float> node, sum(lights);
   for (size_t v = 0; v < views_; ++v) {

@@ -7,10 +7,8 @@
 #include "btf/tensor_factors.h"
 
 namespace velour {
-namespace {
-
 /// One level, ready to be looked up.
-struct Level {
+struct TensorEvaluator::Level {
   Level(const TensorBtf& btf, const TensorSide& side, const TensorLevel& from)
       : width(from.width), height(from.height) {
     const size_t texels = size_t{width} * height, value = size_t{side.members} * side.rank.texel;
@@ -45,8 +43,6 @@ struct Level {
   std::optional<Relief> relief;
   std::vector<Vec2> slope;  // [texel], where there is a relief
 };
-
-}  // namespace
 
 struct TensorEvaluator::Side {
   Side(const TensorBtf& btf, const TensorSide& from, uint64_t most_bytes)

@@ -53,6 +53,7 @@ class TensorEvaluator {
   static constexpr uint64_t kMostTableBytes = uint64_t{128} << 20;
 
  private:
+  struct Level;
   struct Side;
   std::shared_ptr<const TensorBtf> btf_;
   std::vector<std::unique_ptr<const Side>> sides_;

@@ -27,8 +27,12 @@ struct ByteFunction {
   std::vector<float> slope;  // [channel][rank]
 };
 
-struct SideImages {
-  SideImages(const TensorBtf& btf, const TensorSide& s)
+Vec3 mirrored_up(const Vec3& w) { return {w.x, w.y, std::abs(w.z)}; }
+
+}  // namespace
+
+struct TensorImages::Side {
+  Side(const TensorBtf& btf, const TensorSide& s)
       : side(s),
         views(directions_on_side(btf.layout.views(), s.view_below)),
         lights(directions_on_side(btf.layout.lights(), s.light_below)) {
@@ -99,13 +103,9 @@ struct SideImages {
   std::optional<Relief> relief;
 };
 
-Vec3 mirrored_up(const Vec3& w) { return {w.x, w.y, std::abs(w.z)}; }
-
-}  // namespace
-
 struct TensorImages::Impl {
   const TensorBtf& btf;
-  std::vector<SideImages> sides;
+  std::vector<Side> sides;
 };
 
 TensorImages::TensorImages(const TensorBtf& btf) {
@@ -121,7 +121,7 @@ void TensorImages::image(const DirectionPair& pair, std::vector<float>& rgb) con
   rgb.assign(btf.grid.texels() * 3, 0.0f);
   const auto number = serving_side(btf, pair.wv.z < 0, pair.wl.z < 0);
   if (!number) return;
-  const SideImages& side = impl_->sides[*number];
+  const Side& side = impl_->sides[*number];
   const Vec3 wv = mirrored_up(pair.wv), wl = mirrored_up(pair.wl);
   const std::vector<Vec3> sums = side.sums_of(side.views.at(wv), side.lights.at(wl));
   for (size_t t = 0; t < sums.size(); ++t) {

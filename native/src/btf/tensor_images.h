@@ -21,6 +21,7 @@ class TensorImages {
   void image(const DirectionPair& pair, std::vector<float>& rgb) const;
 
  private:
+  struct Side;
   struct Impl;
   std::unique_ptr<const Impl> impl_;
 };

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "btf/tile_size.h"
+#include "btf/transposed.h"
 #include "btf/ubo_header.h"
 #include "btf/value_scale.h"
 #include "file/file.h"
@@ -64,20 +65,6 @@ void copy_numbers(const std::vector<uint8_t>& bytes, std::vector<float>& floats)
     std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
     floats[i] = static_cast<float>(value);
   }
-}
-
-/// From [row][column] to [column][row]; some columns at a time, so that what is written stays in the cache.
-std::vector<float> transposed(const std::vector<float>& matrix, uint64_t columns) {
-  constexpr uint64_t kColumnsAtOnce = 16;
-  const uint64_t rows = matrix.size() / columns;
-  std::vector<float> result(matrix.size());
-  for (uint64_t first = 0; first < columns; first += kColumnsAtOnce) {
-    const uint64_t end = std::min(columns, first + kColumnsAtOnce);
-    for (uint64_t row = 0; row < rows; ++row) {
-      for (uint64_t k = first; k < end; ++k) result[k * rows + row] = matrix[row * columns + k];
-    }
-  }
-  return result;
 }
 
 /// The texels of some rows of the images, for all components: [component][texel] for each channel.

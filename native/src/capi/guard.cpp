@@ -37,6 +37,12 @@ void require(const void* pointer, const char* argument) {
   if (!pointer) throw Error(Status::invalid_argument, std::string(argument) + " is NULL.");
 }
 
+void require_choice(int32_t value, int32_t last, const char* field) {
+  if (value >= 0 && value <= last) return;
+  throw Error(Status::invalid_argument, std::string(field) + " is " + std::to_string(value) + "; it is one of 0 to " +
+                                            std::to_string(last) + ".");
+}
+
 }  // namespace velour::capi
 
 const char* vlr_last_error() { return velour::capi::last_error.c_str(); }

@@ -26,6 +26,9 @@ vlr_status guard(const Body& body) {
 /// Throws Error(invalid_argument) when `pointer` is null.
 void require(const void* pointer, const char* argument);
 
+/// Throws Error(invalid_argument) unless `value` is one of the choices 0 to `last`.
+void require_choice(int32_t value, int32_t last, const char* field);
+
 /// Reads an options struct of any earlier size: fields that the caller does not know keep their defaults. `initialize`
 /// is the public vlr_*_init of the struct. NULL gives the defaults. A larger struct comes from a newer header: refused.
 template <typename Options>

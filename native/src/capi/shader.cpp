@@ -44,7 +44,7 @@ std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> mat
 }
 
 PrincipledTextures textures_of(const vlr_layer_desc& layer) {
-  return converted(read_options(layer.textures, vlr_principled_textures_init, "vlr_principled_textures"));
+  return converted_textures(read_options(layer.textures, vlr_principled_textures_init, "vlr_principled_textures"));
 }
 
 LayerWeight& add_layer(ShaderLayers& layers, MeshSets& sets, const vlr_layer_desc& layer) {
@@ -59,12 +59,6 @@ LayerWeight& add_layer(ShaderLayers& layers, MeshSets& sets, const vlr_layer_des
   }
   layers.reflecting.push_back({with_normals(reflecting(layer, desc, textures), layer)});
   return layers.reflecting.back().weight;
-}
-
-void require_choice(int32_t value, int32_t last, const char* field) {
-  if (value >= 0 && value <= last) return;
-  throw Error(Status::invalid_argument, std::string(field) + " is " + std::to_string(value) + "; it is one of 0 to " +
-                                            std::to_string(last) + ".");
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ MeshSets sets_of(const PrincipledTextures& t) {
   return sets;
 }
 
-PrincipledTextures converted(const vlr_principled_textures& t) {
+PrincipledTextures converted_textures(const vlr_principled_textures& t) {
   return {color_slot(t.base_color, t.base_color_map, t.base_color_set, "vlr_principled_textures.base_color"),
           number_slot(t.metallic, t.metallic_map, t.metallic_set, "vlr_principled_textures.metallic"),
           number_slot(t.roughness, t.roughness_map, t.roughness_set, "vlr_principled_textures.roughness"),
@@ -83,7 +83,8 @@ vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principle
     require(scene, "scene");
     require(material, "material");
     const auto given = read_options(desc, vlr_principled_desc_init, "vlr_principled_desc");
-    const auto pictures = converted(read_options(textures, vlr_principled_textures_init, "vlr_principled_textures"));
+    const auto pictures =
+        converted_textures(read_options(textures, vlr_principled_textures_init, "vlr_principled_textures"));
     *material = scene->scene->add_material({.material = material_of(given, pictures),
                                             .emission = {given.emission[0], given.emission[1], given.emission[2]},
                                             .rec709_colors = false,

@@ -11,7 +11,7 @@ namespace velour::capi {
 /// texture coordinates beyond the last.
 TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field);
 TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field);
-PrincipledTextures converted(const vlr_principled_textures& textures);
+PrincipledTextures converted_textures(const vlr_principled_textures& textures);
 MeshSets sets_of(const PrincipledTextures& textures);
 
 PrincipledParameters parameters_of(const vlr_principled_desc& desc);

@@ -12,15 +12,9 @@ using namespace velour::capi;
 
 namespace {
 
-void require_choice(int32_t value, int32_t last, const char* field) {
-  if (value >= 0 && value <= last) return;
-  throw Error(Status::invalid_argument, "vlr_texture_options." + std::string(field) + " is " + std::to_string(value) +
-                                            "; it is one of 0 to " + std::to_string(last) + ".");
-}
-
 TextureOptions converted(const vlr_texture_options& options) {
-  require_choice(options.wrap, VLR_WRAP_MIRROR, "wrap");
-  require_choice(options.filter, VLR_FILTER_LINEAR, "filter");
+  require_choice(options.wrap, VLR_WRAP_MIRROR, "vlr_texture_options.wrap");
+  require_choice(options.filter, VLR_FILTER_LINEAR, "vlr_texture_options.filter");
   return {static_cast<TextureWrap>(options.wrap), static_cast<TextureFilter>(options.filter)};
 }
 

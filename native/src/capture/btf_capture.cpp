@@ -46,9 +46,9 @@ bool any_below(const std::vector<PolarAngles>& set) {
   return std::any_of(set.begin(), set.end(), [](const PolarAngles& d) { return d.theta > 90; });
 }
 
-class Capture {
+class BtfCapturer {
  public:
-  Capture(const Scene& scene, const BtfCaptureOptions& options, const std::string& path, Progress& progress)
+  BtfCapturer(const Scene& scene, const BtfCaptureOptions& options, const std::string& path, Progress& progress)
       : scene_(scene),
         options_(options),
         path_(path),
@@ -209,7 +209,7 @@ BtfCaptureReport capture_btf(const Scene& scene, const BtfCaptureOptions& option
   check_counts(options);
   BtfCaptureReport report;
   tbb::task_arena arena(arena_concurrency(options.threads));
-  arena.execute([&] { report = Capture(scene, options, path, progress).run(); });
+  arena.execute([&] { report = BtfCapturer(scene, options, path, progress).run(); });
   return report;
 }
 

@@ -39,9 +39,9 @@ std::vector<Triangle> triangles_of(const RepeatedTile& tile, double surface) {
   return triangles;
 }
 
-class Capture {
+class OcclusionCapturer {
  public:
-  Capture(const Scene& scene, const OcclusionCaptureOptions& options, Progress& progress)
+  OcclusionCapturer(const Scene& scene, const OcclusionCaptureOptions& options, Progress& progress)
       : options_(options),
         progress_(progress),
         tile_(scene, place_of(scene, options.place), options.threads, progress) {}
@@ -149,7 +149,7 @@ class Capture {
 OcclusionCapture capture_occlusion(const Scene& scene, const OcclusionCaptureOptions& options, Progress& progress) {
   OcclusionCapture capture;
   tbb::task_arena arena(arena_concurrency(options.threads));
-  arena.execute([&] { capture = Capture(scene, options, progress).run(); });
+  arena.execute([&] { capture = OcclusionCapturer(scene, options, progress).run(); });
   return capture;
 }
 

@@ -9,8 +9,6 @@
 namespace velour {
 namespace {
 
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(Status::invalid_argument, sentence); }
-
 constexpr float kTan85 = 11.43f;  // rays up to 85 degrees stay in the region, where memory allows
 constexpr int kMostAround = 3;
 constexpr float kMostPeriods = 100.0f;  // that geometry may span: every object is there once a period

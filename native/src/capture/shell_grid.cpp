@@ -13,8 +13,6 @@ namespace {
 constexpr float kReach = 8;  // of distances, pitches
 constexpr uint32_t kLeastTexels = 4;
 
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(Status::invalid_argument, sentence); }
-
 }  // namespace
 
 OcclusionVolume empty_shell(uint32_t texels, float aspect, float lowest, float highest) {

@@ -5,13 +5,13 @@
 namespace velour {
 namespace {
 
-constexpr double kRidge = 1e-6;  // of the mean square of a lobe
+constexpr double kRoundingRidge = 1e-6;  // of the mean square of a lobe
 
 }  // namespace
 
 Eigen::MatrixXf rounding_moves(const Eigen::MatrixXf& products) {
   Eigen::MatrixXd ridged = products.cast<double>();
-  ridged.diagonal().array() += kRidge * ridged.diagonal().mean();
+  ridged.diagonal().array() += kRoundingRidge * ridged.diagonal().mean();
   const auto n = ridged.rows();
   const Eigen::MatrixXd inverse = ridged.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
   Eigen::MatrixXd upper = inverse.llt().matrixU();

@@ -7,10 +7,11 @@
 namespace velour {
 namespace {
 
-constexpr int kSteps = 12;
-constexpr double kSettled = 1e-8;  // of the rest's square
-constexpr double kRidge = 1e-5;    // of the mean diagonal, over all clusters: what hardly any texel has stays as it is
-constexpr double kNothing = 1e-30;
+constexpr int kCoreSteps = 12;
+constexpr double kCoreConverged = 1e-8;  // of the rest's square
+constexpr double kCoreRidge =
+    1e-5;  // of the mean diagonal, over all clusters: what hardly any texel has stays as it is
+constexpr double kMinDiagonal = 1e-30;
 
 using Cores = std::vector<RowMatrix>;
 
@@ -31,7 +32,7 @@ class CoreRefit {
       : moments_(moments), threads_(threads), progress_(progress), cluster_(clusters), rank_(clusters[0].rank()) {
     double trace = 0;
     for (const ViewMoments& of : moments) trace += of.products.diagonal().cast<double>().sum();
-    ridge_ = kRidge * trace / static_cast<double>(moments.size() * clusters.size()) / static_cast<double>(rank_);
+    ridge_ = kCoreRidge * trace / static_cast<double>(moments.size() * clusters.size()) / static_cast<double>(rank_);
   }
 
   void solve();
@@ -106,7 +107,7 @@ std::vector<Eigen::MatrixXf> CoreRefit::inverse_means() const {
     Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(rank_, rank_);
     for (const ViewMoments& of : moments_) mean += of.products.block(first, first, rank_, rank_).cast<double>();
     mean /= static_cast<double>(moments_.size());
-    mean.diagonal().array() += ridge_ + kNothing;
+    mean.diagonal().array() += ridge_ + kMinDiagonal;
     inverse.push_back(mean.llt().solve(Eigen::MatrixXd::Identity(rank_, rank_)).cast<float>());
   }
   return inverse;
@@ -123,8 +124,8 @@ void CoreRefit::solve() {
   };
   Cores rest = gradient(), direction = conditioned(rest);
   double energy = dot(rest, direction);
-  const double settled = kSettled * energy;
-  for (int step = 0; step < kSteps && energy > settled; ++step) {
+  const double settled = kCoreConverged * energy;
+  for (int step = 0; step < kCoreSteps && energy > settled; ++step) {
     const Cores moved = product(direction);
     const auto length = static_cast<float>(energy / dot(direction, moved));
     for (size_t c = 0; c < cluster_.size(); ++c) cluster_[c].core += length * direction[c];

@@ -13,14 +13,14 @@
 namespace velour {
 namespace {
 
-constexpr double kNothing = 1e-10;  // of the strongest energy: rounding
+constexpr double kNegligible = 1e-10;  // of the strongest energy: rounding
 
 /// The strongest eigenvectors of mean products.
 DirectionBasis basis_of(const Eigen::MatrixXd& products, Index rank) {
   const Eigenpairs pairs = eigenpairs(products);
   const Eigen::VectorXd energy = pairs.value.cwiseMax(0.0);
   Index count = 1;
-  while (count < std::min(rank, energy.size()) && energy[count] > kNothing * energy[0]) ++count;
+  while (count < std::min(rank, energy.size()) && energy[count] > kNegligible * energy[0]) ++count;
   DirectionBasis basis;
   basis.vector = pairs.vector.leftCols(count).cast<float>();
   basis.energy = energy.head(count);

@@ -17,7 +17,7 @@ namespace {
 constexpr double kRounding = 1e-9;
 
 // What a small BTF gets where nobody asked for a size.
-constexpr uint64_t kUsualRatio = 200, kUsualLeast = 8;
+constexpr uint64_t kDefaultFactoredRatio = 200, kDefaultMinComponents = 8;
 
 uint64_t component_bytes(const BtfMeasurement& measurement, bool by_view) {
   const PairLayout& layout = measurement.layout();
@@ -32,7 +32,7 @@ uint64_t bytes_of(const BtfMeasurement& measurement, const BtfFitOptions& option
   if (options.bytes > 0) return options.bytes;
   const uint64_t one = component_bytes(measurement, by_view);
   if (options.tolerance > 0) return most_ever(by_view) * one;
-  return std::max(measurement.raw_bytes() / kUsualRatio, kUsualLeast * one);
+  return std::max(measurement.raw_bytes() / kDefaultFactoredRatio, kDefaultMinComponents * one);
 }
 
 /// Of as many components as are looked at where the memory allows it.

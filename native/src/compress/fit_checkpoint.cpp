@@ -31,6 +31,8 @@ std::optional<double> number_of(const float* words) {
 
 }  // namespace
 
+std::string side_stage(size_t side) { return "side." + std::to_string(side); }
+
 FitCheckpoint::FitCheckpoint(CheckpointOptions options) : options_(std::move(options)) {
   file_.attributes = {{kKind, kKindOfThis}, {kKey, options_.key}};
   if (options_.resume && !options_.path.empty()) read();

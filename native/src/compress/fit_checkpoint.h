@@ -17,6 +17,9 @@ struct CheckpointOptions {
   bool resume = false;  // what the file holds is used, where its key is this one
 };
 
+/// Name of the stage that fits side `side` of a BTF.
+std::string side_stage(size_t side);
+
 /// Results of stages by name. Whatever comes from the file is checked: what is missing or not as it should be is as if
 /// it had not been kept. Not thread-safe.
 class FitCheckpoint {

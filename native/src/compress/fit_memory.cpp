@@ -10,7 +10,7 @@ namespace velour {
 namespace {
 
 constexpr uint64_t kFloat = sizeof(float), kHalf = sizeof(HalfBits);
-constexpr uint32_t kUsualPoints = 64, kLeastPoints = 8;
+constexpr uint32_t kUsualPoints = 64, kMinPoints = 8;
 constexpr uint64_t kSliceCopies = 4;
 constexpr uint32_t kLeastFunctions = 40, kLeastSlices = 384;
 constexpr uint64_t kLibraries = 8 << 20;  // threads' stacks and pools, and what is small
@@ -155,7 +155,7 @@ uint32_t search_points_within(uint64_t memory, const FitExtent& extent) {
 
 uint64_t memory_for_all_points(const FitExtent& extent) { return search_bytes(extent, kUsualPoints); }
 
-uint64_t memory_for_least_points(const FitExtent& extent) { return search_bytes(extent, kLeastPoints); }
+uint64_t memory_for_least_points(const FitExtent& extent) { return search_bytes(extent, kMinPoints); }
 
 uint64_t memory_for_components(const FitExtent& extent) {
   return extent.by_view ? view_svd_bytes(extent) : svd_bytes(extent);

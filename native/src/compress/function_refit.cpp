@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr double kRidge = 1e-5;  // of the mean diagonal
+constexpr double kFunctionRidge = 1e-5;  // of the mean diagonal
 
 Eigen::MatrixXd sum_of(std::vector<Eigen::MatrixXd>& groups) {
   for (size_t g = 1; g < groups.size(); ++g) groups[0] += groups[g];
@@ -19,7 +19,7 @@ Eigen::MatrixXd sum_of(std::vector<Eigen::MatrixXd>& groups) {
 
 /// x of A x = b for a symmetric A that may have no inverse: it is near `start` where A says nothing.
 Eigen::MatrixXd solved_near(Eigen::MatrixXd matrix, const Eigen::MatrixXd& right, const Eigen::MatrixXd& start) {
-  const double ridge = kRidge * matrix.trace() / static_cast<double>(matrix.rows());
+  const double ridge = kFunctionRidge * matrix.trace() / static_cast<double>(matrix.rows());
   if (!(ridge > 0)) return start;
   matrix.diagonal().array() += ridge;
   return matrix.llt().solve(right + ridge * start);

@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr size_t kMost = 3 * SrbfBtf::kMaxLobes;
+constexpr size_t kMaxCandidates = 3 * SrbfBtf::kMaxLobes;
 
 std::string of_axis(const std::string& name, size_t axis) { return name + "." + std::to_string(axis); }
 
@@ -27,15 +27,15 @@ bool is_sound(const LobeOrder& order) {
 
 std::optional<LobeOrder> kept_order(const FitCheckpoint& checkpoint, const std::string& stage) {
   LobeOrder order;
-  const auto axis = checkpoint.wholes(stage + ".axis", kMost, 2);
-  const auto left = checkpoint.numbers(stage + ".left", kMost);
+  const auto axis = checkpoint.wholes(stage + ".axis", kMaxCandidates, 2);
+  const auto left = checkpoint.numbers(stage + ".left", kMaxCandidates);
   if (!axis || !left) return std::nullopt;
   for (const size_t a : *axis) order.axis.push_back(static_cast<uint8_t>(a));
   order.left = *left;
   for (size_t a = 0; a < 3; ++a) {
     // An axis without candidates has none to keep.
-    order.candidate[a] =
-        checkpoint.wholes(of_axis(stage + ".candidate", a), kMost, kLobeCandidates - 1).value_or(std::vector<size_t>());
+    order.candidate[a] = checkpoint.wholes(of_axis(stage + ".candidate", a), kMaxCandidates, kLobeCandidates - 1)
+                             .value_or(std::vector<size_t>());
   }
   return is_sound(order) ? std::optional(std::move(order)) : std::nullopt;
 }

@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr float kRidge = 1e-5f;  // of coefficients, relative to a lobe of value 1 everywhere
+constexpr float kTileRidge = 1e-5f;  // of coefficients, relative to a lobe of value 1 everywhere
 
 }  // namespace
 
@@ -56,7 +56,7 @@ ProjectedError::Part ProjectedError::of_point(size_t number, const std::vector<M
   if (point.pair.empty()) return part;
   const Eigen::MatrixXf column = values.at(point, point.pair.size());
   const Eigen::Map<const Eigen::VectorXf> truth(point.value[0].data(), column.rows());
-  const float ridge = kRidge * static_cast<float>(column.rows());
+  const float ridge = kTileRidge * static_cast<float>(column.rows());
   Eigen::MatrixXf gram(count, count);
   multiply_by_itself({column.data(), count, column.rows(), column.rows(), 1}, {gram.data(), count, count, 1, count});
   gram.diagonal().array() += ridge;

@@ -4,13 +4,13 @@
 
 #include "btf/srbf_btf.h"
 #include "compress/relief_gap.h"
+#include "compress/texel_pieces.h"
 #include "job/parallel.h"
 
 namespace velour {
 namespace {
 
-constexpr size_t kTexels = 64;  // of a piece of work
-constexpr Index kViews = 9;     // that are added at once
+constexpr Index kViews = 9;  // that are added at once
 constexpr size_t kGapPixels = 1000;
 constexpr double kLeastNoise = 1e-3;  // of the mean energy of a view
 
@@ -59,9 +59,9 @@ class Reduction {
   template <class Work>
   void pieces(const Work& work) const {
     const size_t count = reduced_.texel.size();
-    parallel_pieces((count + kTexels - 1) / kTexels, source_.threads, progress_, [&](size_t piece) {
-      const size_t end = std::min(count, (piece + 1) * kTexels);
-      for (size_t i = piece * kTexels; i < end; ++i) work(static_cast<Index>(i));
+    parallel_pieces((count + kTexelsPerPiece - 1) / kTexelsPerPiece, source_.threads, progress_, [&](size_t piece) {
+      const size_t end = std::min(count, (piece + 1) * kTexelsPerPiece);
+      for (size_t i = piece * kTexelsPerPiece; i < end; ++i) work(static_cast<Index>(i));
     });
   }
 

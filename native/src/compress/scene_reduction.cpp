@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr double kFitting = 0.7;  // of the progress, where the full model is fitted first
+constexpr double kFullFit = 0.7;  // of the progress, where the full model is fitted first
 
 const SceneObservation& checked(const CompressOptions& options) {
   if (options.for_scene->hits.empty()) {
@@ -40,12 +40,8 @@ Model checked_full_model(const BtfMeasurement& measurement, const Model& model) 
 
 Model full_model(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
   if (options.full_model) return checked_full_model(measurement, *options.full_model);
-  const Progress::Span fitting(progress, 0, kFitting);
+  const Progress::Span fitting(progress, 0, kFullFit);
   return compress_btf(measurement, options, progress);
-}
-
-uint64_t bytes_of(const ModelBody& model) {
-  return std::visit([](const auto& body) { return body.parameter_bytes(); }, model);
 }
 
 /// By a fit of its own where that serves the scenes, else by leaving out the `count` finest levels.
@@ -59,7 +55,7 @@ void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptio
   }
   ModelBody levels = without_finest(model.body, count);
   auto refit = refit_for_scene(measurement, model.body, levels, options, progress);
-  if (!refit || bytes_of(refit->body) > bytes_of(levels)) {
+  if (!refit || parameter_bytes(refit->body) > parameter_bytes(levels)) {
     model.body = std::move(levels);
     return;
   }
@@ -77,11 +73,11 @@ void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptio
 Model compress_for_scene(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
   const SceneObservation& observation = checked(options);
   Model model = full_model(measurement, options, progress);
-  const Progress::Span reducing(progress, options.full_model ? 0 : kFitting, 1.0);
+  const Progress::Span reducing(progress, options.full_model ? 0 : kFullFit, 1.0);
   progress.stage("scene", 0, 1);
   SceneRecord record;
   record.domain = observation.domain;
-  record.full_parameter_bytes = bytes_of(model.body);
+  record.full_parameter_bytes = parameter_bytes(model.body);
   record.full_texels = {grid_of(model)->width, grid_of(model)->height};
   const size_t count = unresolved_levels(model.body, observation.domain.surface);
   reduce(measurement, count, options, model, record, progress);

@@ -15,19 +15,15 @@
 namespace velour {
 namespace {
 
-constexpr uint64_t kMost = 64;  // parts of the full model's bytes
-constexpr double kSetup = 0.3;  // of the progress
-constexpr size_t kJudged = 15;  // the size that tells whether a relief helps
-constexpr int kMostTrials = 9;  // of least_size: doublings from kMost on, and two more
+constexpr uint64_t kMaxReduction = 64;  // parts of the full model's bytes
+constexpr double kRefitSetup = 0.3;     // of the progress
+constexpr size_t kJudgedSize = 15;      // the size that tells whether a relief helps
+constexpr int kMaxRefitTrials = 9;      // of least_size: doublings from kMaxReduction on, and two more
 
 CompressMethod method_of(const ModelBody& full) {
   const auto* factored = std::get_if<FactoredBtf>(&full);
   if (!factored) return CompressMethod::srbf;
   return factored->by_view() ? CompressMethod::svd_view : CompressMethod::svd;
-}
-
-uint64_t bytes_of(const ModelBody& body) {
-  return std::visit([](const auto& b) { return b.parameter_bytes(); }, body);
 }
 
 size_t levels_in(const FactoredBtf& btf) { return btf.levels.size(); }
@@ -58,7 +54,7 @@ class Refit {
     if (pictures_.empty()) return std::nullopt;
     full_error_ = error(full_);
     if (!std::isfinite(full_error_)) return std::nullopt;  // the BTF has entries that are not
-    auto fitter = fitter_within(bytes_of(levels));
+    auto fitter = fitter_within(parameter_bytes(levels));
     if (!fitter) return std::nullopt;
     if (options_.method == CompressMethod::srbf && seen_.has_structure()) fitter = better_of(std::move(fitter));
     least_size(fitter->largest() + 1, [&](size_t size) { return is_good(*fitter, size); });
@@ -75,9 +71,9 @@ class Refit {
   /// tiles are shown better as a plane. A fit of a size that does not depend on what is asked for tells.
   std::unique_ptr<BtfFitter> better_of(std::unique_ptr<BtfFitter> over_relief) {
     const double begin = done_;
-    done_ = kSetup;
+    done_ = kRefitSetup;
     const Progress::Span setups(progress_, begin, done_);
-    const size_t size = std::min(kJudged, over_relief->largest());
+    const size_t size = std::min(kJudgedSize, over_relief->largest());
     const double with_relief = error(over_relief->fit(size));
     options_.relief = false;
     auto on_plane = fitter_within(options_.bytes);
@@ -89,7 +85,7 @@ class Refit {
   /// Nothing where so few bytes hold no model.
   std::unique_ptr<BtfFitter> fitter_within(uint64_t bytes) {
     options_.bytes = bytes;
-    const Progress::Span setup(progress_, 0, kSetup / 3);
+    const Progress::Span setup(progress_, 0, kRefitSetup / 3);
     try {
       return make_fitter(seen_, options_, none_, progress_);
     } catch (const Error& refused) {
@@ -100,9 +96,9 @@ class Refit {
 
   /// Fits it, unless it is smaller than any that is tried. The smallest good one is kept, else the largest.
   bool is_good(BtfFitter& fitter, size_t size) {
-    if (fitter.curve().points[size].parameter_bytes < bytes_of(full_) / kMost) return false;
+    if (fitter.curve().points[size].parameter_bytes < parameter_bytes(full_) / kMaxReduction) return false;
     const double begin = done_;
-    done_ = std::min(1.0, begin + (1 - kSetup) / kMostTrials);
+    done_ = std::min(1.0, begin + (1 - kRefitSetup) / kMaxRefitTrials);
     const Progress::Span trial(progress_, begin, done_);
     SceneRefit refit{fitter.fit(size), 0, full_error_};
     refit.error = error(refit.body);
@@ -116,7 +112,7 @@ class Refit {
   CompressOptions options_;
   Progress& progress_;
   FitCheckpoint none_;
-  double done_ = kSetup / 3;  // of the progress
+  double done_ = kRefitSetup / 3;  // of the progress
   double full_error_ = 0;
   std::optional<SceneRefit> good_, last_;
   tbb::task_arena arena_;

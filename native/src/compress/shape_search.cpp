@@ -16,10 +16,10 @@
 namespace velour {
 namespace {
 
-constexpr Index kFitted = 1000, kJudged = 500;  // slices
-constexpr int kIterations = 3;                  // of a fit that a shape is judged by
-constexpr double kTolerance = 2e-3;
-constexpr size_t kMostTrials = 36;
+constexpr Index kFittedSlices = 1000, kJudgedSlices = 500;  // slices
+constexpr int kShapeIterations = 3;                         // of a fit that a shape is judged by
+constexpr double kShapeTolerance = 2e-3;
+constexpr size_t kMaxShapeTrials = 36;
 constexpr double kShareStep = 0.12, kLeastShare = 0.12, kMostShare = 0.96;
 // Of ReliefGap: texels are solved for on the images, which mends the rest. By trial: weave 0.26, corduroy 0.25, gravel
 // 0.30.
@@ -35,8 +35,8 @@ class ShapeSearch {
   ShapeSearch(const TensorView& slices, const ShapeSearchOptions& options, Progress& progress)
       : options_(options),
         progress_(progress),
-        fitted_(slices.range(0, 0, few(slices) ? slices.extent(0) : kFitted)),
-        judged_(few(slices) ? fitted_ : slices.range(0, kFitted, kJudged)) {}
+        fitted_(slices.range(0, 0, few(slices) ? slices.extent(0) : kFittedSlices)),
+        judged_(few(slices) ? fitted_ : slices.range(0, kFittedSlices, kJudgedSlices)) {}
 
   FoundShape run() {
     found_.relief_error = kLeftOfRelief * options_.relief_share;
@@ -63,7 +63,7 @@ class ShapeSearch {
   }
 
  private:
-  static bool few(const TensorView& slices) { return slices.extent(0) < kFitted + kJudged; }
+  static bool few(const TensorView& slices) { return slices.extent(0) < kFittedSlices + kJudgedSlices; }
 
   JudgedShape judged(const ShapeChoice& choice) {
     return {choice, *largest_shape(choice, options_.extent, options_.bytes), error(choice)};
@@ -71,7 +71,7 @@ class ShapeSearch {
 
   /// To the best that is found in so many trials.
   ShapeChoice walk(ShapeChoice best) {
-    const size_t most = found_.trials.size() + kMostTrials / std::size(kStarts);
+    const size_t most = found_.trials.size() + kMaxShapeTrials / std::size(kStarts);
     double least = error(best);
     for (bool better = true; better;) {
       better = false;
@@ -168,12 +168,12 @@ class ShapeSearch {
     const ClusterOptions fit{.clusters = shape.clusters,
                              .members = shape.members,
                              .ranks = {shape.rank.texel, shape.rank.view, shape.rank.light, shape.rank.color},
-                             .iterations = kIterations,
-                             .tolerance = kTolerance,
+                             .iterations = kShapeIterations,
+                             .tolerance = kShapeTolerance,
                              .coordinates = &coordinates,
                              .tensor = tensor};
-    const double done = static_cast<double>(found_.trials.size()) / kMostTrials;
-    const Progress::Span trial(progress_, done, std::min(1.0, done + 1.0 / kMostTrials));
+    const double done = static_cast<double>(found_.trials.size()) / kMaxShapeTrials;
+    const Progress::Span trial(progress_, done, std::min(1.0, done + 1.0 / kMaxShapeTrials));
     progress_.stage("shapes", 0, 1);
     ClusteredTensor found = fit_clusters(fitted_, fit, progress_).tensor;
     const double of_slices = relative_error(found, tensor);

@@ -1,12 +1,11 @@
 #include "compress/shown_texels.h"
 
 #include "compress/surface_points.h"
+#include "compress/texel_pieces.h"
 #include "job/parallel.h"
 
 namespace velour {
 namespace {
-
-constexpr size_t kTexels = 256;  // of a piece of work
 
 ShownTexel shown_texel(const Relief& relief, uint32_t texel, const Vec3& wv, float aspect) {
   if (is_plane(relief)) return {{{texel, texel, texel, texel}, {1, 0, 0, 0}}, true};
@@ -21,9 +20,9 @@ ShownTexel shown_texel(const Relief& relief, uint32_t texel, const Vec3& wv, flo
 std::vector<ShownTexel> shown_texels(const Relief& relief, const std::vector<uint32_t>& texels, const Vec3& wv,
                                      float aspect, int threads, const Progress& progress) {
   std::vector<ShownTexel> shown(texels.size());
-  parallel_pieces((texels.size() + kTexels - 1) / kTexels, threads, progress, [&](size_t piece) {
-    const size_t end = std::min(texels.size(), (piece + 1) * kTexels);
-    for (size_t i = piece * kTexels; i < end; ++i) shown[i] = shown_texel(relief, texels[i], wv, aspect);
+  parallel_pieces((texels.size() + kTexelsPerPiece - 1) / kTexelsPerPiece, threads, progress, [&](size_t piece) {
+    const size_t end = std::min(texels.size(), (piece + 1) * kTexelsPerPiece);
+    for (size_t i = piece * kTexelsPerPiece; i < end; ++i) shown[i] = shown_texel(relief, texels[i], wv, aspect);
   });
   return shown;
 }

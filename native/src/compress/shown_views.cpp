@@ -4,12 +4,11 @@
 #include <numeric>
 
 #include "btf/srbf_btf.h"
+#include "compress/texel_pieces.h"
 #include "job/parallel.h"
 
 namespace velour {
 namespace {
-
-constexpr size_t kTexels = 64;  // of a piece of work
 
 std::vector<uint32_t> numbers(size_t count) {
   std::vector<uint32_t> all(count);
@@ -63,8 +62,8 @@ ShownViews::Values ShownViews::values(Index view, const LevelImages& images, con
   for (size_t a = 0; a < 3; ++a) values[a] = RowMatrix::Zero(images.value[a].rows(), images.value[a].cols());
   const auto shown = shown_texels(relief_, numbers(texels_), source_.side.view[static_cast<size_t>(view)],
                                   tile_aspect(source_.grid), source_.threads, progress);
-  parallel_pieces((texels_ + kTexels - 1) / kTexels, source_.threads, progress, [&](size_t piece) {
-    for (size_t t = piece * kTexels; t < std::min(texels_, (piece + 1) * kTexels); ++t) {
+  parallel_pieces((texels_ + kTexelsPerPiece - 1) / kTexelsPerPiece, source_.threads, progress, [&](size_t piece) {
+    for (size_t t = piece * kTexelsPerPiece; t < std::min(texels_, (piece + 1) * kTexelsPerPiece); ++t) {
       if (!shown[t].shown) continue;
       for (size_t a = 0; a < 3; ++a) values[a].row(static_cast<Index>(t)) = blended(images.value[a], shown[t].at);
     }

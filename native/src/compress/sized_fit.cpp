@@ -8,7 +8,7 @@ namespace velour {
 namespace {
 
 constexpr size_t kCurvePoints = 40;  // stored of a curve
-constexpr double kFitting = 0.85;    // of a trial's progress; the rest measures it
+constexpr double kTrialFit = 0.85;   // of a trial's progress; the rest measures it
 
 std::string stage_of(size_t point) { return "fit." + std::to_string(point) + ".errors"; }
 
@@ -56,7 +56,7 @@ class Trials {
     std::optional<BtfErrors> errors = kept_errors(options_.checkpoint, point);
     if (!errors) {
       body = fit(point);
-      progress_.stage("errors", kFitting, 1);
+      progress_.stage("errors", kTrialFit, 1);
       errors = errors_of_(*body, progress_);
       keep_errors(options_.checkpoint, point, *errors);
     }
@@ -70,7 +70,7 @@ class Trials {
 
   ModelBody fit(size_t point) {
     const auto start = std::chrono::steady_clock::now();
-    const Progress::Span fitting(progress_, 0, kFitting);
+    const Progress::Span fitting(progress_, 0, kTrialFit);
     ModelBody body = fitter_.fit(point);
     best_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return body;

@@ -14,10 +14,10 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kMostPoints = 400, kLeastPoints = 24, kPairs = 900;  // that lobes are refined by
+constexpr uint32_t kMaxLobePoints = 400, kMinLobePoints = 24, kPairs = 900;  // that lobes are refined by
 constexpr uint64_t kTexelsOfAPoint = 4;  // few texels have little to say: their lobes take less time
 constexpr int kRefinements = 100;
-constexpr uint64_t kUsualRatio = 400, kUsualLeast = 16;
+constexpr uint64_t kDefaultSrbfRatio = 400, kDefaultMinLobes = 16;
 constexpr size_t kMostCoefficients = 2 * SrbfBtf::kMaxLobes;
 // Errors over all texels and pairs are larger than those that the points' order leaves: 1.3 to 1.9 times of captured
 // weaves and gravels. Fits correct this guess.
@@ -25,15 +25,15 @@ constexpr double kHeight = 1.4;
 // The curve goes on to models of twice the size, or to a third of the error that is looked for.
 constexpr size_t kBeyond = 2;
 constexpr double kBelow = 0.3;
-constexpr double kColours = 0.2, kPoints = 0.1, kLobes = 0.45;  // where parts of the progress end
+constexpr double kSrbfColors = 0.2, kPoints = 0.1, kLobes = 0.45;  // where parts of the progress end
 
 uint32_t points_for(const TexelGrid& grid) {
-  return static_cast<uint32_t>(std::clamp<uint64_t>(grid.texels() / kTexelsOfAPoint, kLeastPoints, kMostPoints));
+  return static_cast<uint32_t>(std::clamp<uint64_t>(grid.texels() / kTexelsOfAPoint, kMinLobePoints, kMaxLobePoints));
 }
 
 uint64_t usual_bytes(const BtfMeasurement& measurement, size_t sides) {
-  const uint64_t least = srbf_side_bytes(pyramid_texels(measurement.grid()), kUsualLeast, kUsualLeast);
-  return std::max(measurement.raw_bytes() / kUsualRatio, sides * least);
+  const uint64_t least = srbf_side_bytes(pyramid_texels(measurement.grid()), kDefaultMinLobes, kDefaultMinLobes);
+  return std::max(measurement.raw_bytes() / kDefaultSrbfRatio, sides * least);
 }
 
 /// Of one side that has all bytes, at most.
@@ -63,8 +63,6 @@ FitExtent extent_of(const BtfMeasurement& measurement, const BtfFitOptions& opti
           .threads = static_cast<uint64_t>(arena_concurrency(options.threads))};
 }
 
-std::string side_stage(size_t side) { return "side." + std::to_string(side); }
-
 }  // namespace
 
 FitSize srbf_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options) {
@@ -84,7 +82,7 @@ SrbfFitter::SrbfFitter(const BtfMeasurement& measurement, const BtfFitOptions& o
       progress_(progress),
       views_(measurement, options.companding, options.threads, progress) {
   require_complete(measurement.layout());
-  progress.stage("colours", 0, kColours);
+  progress.stage("colours", 0, kSrbfColors);
   const ColourAxes colours = find_colours(views_, measurement.layout(), checkpoint);
   axes_ = colours.axes;
   not_finite_ = colours.not_finite;
@@ -119,10 +117,10 @@ void SrbfFitter::find_orders(uint64_t bytes) {
                                .points = search_points(most),
                                .seed = options_.seed,
                                .threads = options_.threads};
-  const double share = (1 - kColours) / static_cast<double>(sides_.size());
+  const double share = (1 - kSrbfColors) / static_cast<double>(sides_.size());
   for (size_t s = 0; s < sides_.size(); ++s) {
-    const Progress::Span of_side(progress_, kColours + share * static_cast<double>(s),
-                                 kColours + share * static_cast<double>(s + 1));
+    const Progress::Span of_side(progress_, kSrbfColors + share * static_cast<double>(s),
+                                 kSrbfColors + share * static_cast<double>(s + 1));
     const std::string stage = side_stage(s) + ".order";
     std::optional<LobeOrder> kept = kept_order(checkpoint_, stage);
     if (!kept) {

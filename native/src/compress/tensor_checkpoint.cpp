@@ -7,7 +7,7 @@ namespace velour {
 namespace {
 
 constexpr size_t kJudgedNumbers = 8, kShapeNumbers = 2 * kJudgedNumbers + 3, kTrialNumbers = 8;
-constexpr size_t kMostTrials = 64;
+constexpr size_t kMaxKeptTrials = 64;
 
 void append(const TensorShape& shape, std::vector<double>& numbers) {
   for (const uint32_t n :
@@ -42,7 +42,7 @@ std::vector<std::vector<HalfBits>*> parts_of(TensorBtfCluster& c) { return {&c.v
 }  // namespace
 
 std::optional<FoundShape> kept_shape(const FitCheckpoint& checkpoint, const std::string& stage) {
-  const auto numbers = checkpoint.numbers(stage, kShapeNumbers + kMostTrials * kTrialNumbers);
+  const auto numbers = checkpoint.numbers(stage, kShapeNumbers + kMaxKeptTrials * kTrialNumbers);
   if (!numbers || numbers->size() < kShapeNumbers || (numbers->size() - kShapeNumbers) % kTrialNumbers != 0) {
     return std::nullopt;
   }

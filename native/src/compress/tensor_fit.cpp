@@ -15,16 +15,16 @@
 namespace velour {
 namespace {
 
-constexpr Index kDirections = 64;                       // of views, of lights: what clusters are sought in
-constexpr size_t kLeastPoints = 64, kMostPoints = 700;  // that bases are found by
-constexpr int kIterations = 30;
-constexpr double kTolerance = 1e-4;
-constexpr uint64_t kUsualRatio = 400, kUsualTexel = 16, kUsualCluster = 20000;
+constexpr Index kDirections = 64;                              // of views, of lights: what clusters are sought in
+constexpr size_t kMinBasisPoints = 64, kMaxBasisPoints = 700;  // that bases are found by
+constexpr int kTensorIterations = 30;
+constexpr double kTensorTolerance = 1e-4;
+constexpr uint64_t kDefaultTensorRatio = 400, kUsualTexel = 16, kUsualCluster = 20000;
 constexpr double kFinest = 20;    // of the measurement: the largest model that a tolerance is looked for with
 constexpr double kStep = 1.2;     // from a size to the next
 constexpr double kFall = 0.3;     // errors fall as the bytes to this power, about
 constexpr double kShare = 0.625;  // sides share the bytes by this power of their energies: then 2 kFall is best
-constexpr double kColours = 0.15, kBases = 0.1, kReduced = 0.25, kShapes = 0.6, kFitted = 0.9,
+constexpr double kTensorColors = 0.15, kBases = 0.1, kReduced = 0.25, kShapes = 0.6, kFitted = 0.9,
                  kClusters = 0.5;  // where parts of the progress end
 
 FitExtent extent_of(const BtfMeasurement& measurement) {
@@ -43,10 +43,8 @@ uint64_t entries_of(const PairLayout& layout) {
 uint64_t bytes_of(const BtfMeasurement& measurement, const BtfFitOptions& options, size_t sides) {
   if (options.bytes > 0) return options.bytes;
   const uint64_t least = pyramid_texels(measurement.grid()) * kUsualTexel + kUsualCluster;
-  return std::max<uint64_t>(measurement.raw_bytes() / kUsualRatio, sides * least);
+  return std::max<uint64_t>(measurement.raw_bytes() / kDefaultTensorRatio, sides * least);
 }
-
-std::string side_stage(size_t side) { return "side." + std::to_string(side); }
 
 std::string text_of(const TensorShape& shape) {
   std::string text = std::to_string(shape.clusters);
@@ -75,7 +73,7 @@ TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOption
       views_(measurement, options.companding, options.threads, progress) {
   require_complete(measurement.layout());
   allowance_ = tensor_allowance(options.memory, extent_of(measurement), entries_of(measurement.layout()));
-  progress.stage("colours", 0, kColours);
+  progress.stage("colours", 0, kTensorColors);
   const ColourAxes colours = find_colours(views_, measurement.layout(), checkpoint);
   axes_ = colours.axes;
   not_finite_ = colours.not_finite;
@@ -85,10 +83,10 @@ TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOption
   for (size_t s = 0; s < sides_.size(); ++s) least += tensor_bytes({}, extent(s));
   curve_.points = {{1, least, 0, 1}};
   bound(bytes, "The least model");
-  const double share = (1 - kColours) / static_cast<double>(sides_.size());
+  const double share = (1 - kTensorColors) / static_cast<double>(sides_.size());
   for (size_t s = 0; s < sides_.size(); ++s) {
-    const Progress::Span of_side(progress_, kColours + share * static_cast<double>(s),
-                                 kColours + share * static_cast<double>(s + 1));
+    const Progress::Span of_side(progress_, kTensorColors + share * static_cast<double>(s),
+                                 kTensorColors + share * static_cast<double>(s + 1));
     find_shape(s, side_bytes(s, bytes), range);
     settle_rival(s);
     shapes_.insert(shapes_.end(), sides_[s].found.trials.begin(), sides_[s].found.trials.end());
@@ -147,7 +145,7 @@ void TensorFitter::reduce(size_t side) {
   Side& of = sides_[side];
   if (of.reduced) return;
   const size_t a_point = of.directions.view.size() * of.directions.light.size() * 3;
-  const size_t points = std::clamp(allowance_.point_floats / a_point, kLeastPoints, kMostPoints);
+  const size_t points = std::clamp(allowance_.point_floats / a_point, kMinBasisPoints, kMaxBasisPoints);
   progress_.stage("directions", 0, kBases);
   of.bases = direction_bases(views_, source(side), kDirections, points, progress_);
   progress_.stage("texels in common", kBases, kReduced);
@@ -295,8 +293,8 @@ void TensorFitter::set_clusters(size_t side, const std::string& stage, TensorSid
                                         {.clusters = static_cast<Index>(fitted.clusters.size()),
                                          .members = fitted.members,
                                          .ranks = {rank.texel, rank.view, rank.light, rank.color},
-                                         .iterations = kIterations,
-                                         .tolerance = kTolerance,
+                                         .iterations = kTensorIterations,
+                                         .tolerance = kTensorTolerance,
                                          .tensor = {options_.seed, options_.threads}},
                                         progress_);
   fitted.clusters = stored_clusters(found.tensor, *of.bases);

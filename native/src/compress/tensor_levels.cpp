@@ -14,7 +14,7 @@
 namespace velour {
 namespace {
 
-constexpr double kReading = 0.4, kMoments = 0.7;  // of a stage's progress
+constexpr double kTensorReading = 0.4, kMoments = 0.7;  // of a stage's progress
 constexpr double kFirst = 0.35, kRefitted = 0.5, kSecond = 0.85;
 constexpr int kRounds = 2;
 
@@ -118,15 +118,15 @@ LevelFit::Solvers LevelFit::read_images(const TensorFunctions& functions, const 
     for (size_t l = 0; l < most; ++l) {
       if (solver[l]) solver[l]->add_view(static_cast<Index>(v), images[l], of_views);
     }
-    progress_.update(kReading * static_cast<double>(v + 1) / static_cast<double>(source_.side.view.size()));
+    progress_.update(kTensorReading * static_cast<double>(v + 1) / static_cast<double>(source_.side.view.size()));
   }
   return solver;
 }
 
 TensorTexelValues LevelFit::solved(const TensorTexels& solver, size_t level) {
   // A level costs four times the one after it: the finest takes three quarters of the time.
-  const double from = kReading + (1 - kReading) * std::pow(0.25, static_cast<double>(level + 1));
-  const double to = kReading + (1 - kReading) * std::pow(0.25, static_cast<double>(level));
+  const double from = kTensorReading + (1 - kTensorReading) * std::pow(0.25, static_cast<double>(level + 1));
+  const double to = kTensorReading + (1 - kTensorReading) * std::pow(0.25, static_cast<double>(level));
   return solver.solve(side_.members, [&](double part) { progress_.update(from + (to - from) * part); });
 }
 

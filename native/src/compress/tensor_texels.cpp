@@ -6,15 +6,15 @@
 #include <numeric>
 
 #include "btf/srbf_btf.h"
+#include "compress/texel_pieces.h"
 #include "job/parallel.h"
 
 namespace velour {
 namespace {
 
-constexpr float kRidge = 1e-3f;     // of coefficients; functions are of length 1 where all views show them
-constexpr int kSteps = 12;          // of the conjugate gradients
-constexpr double kSettled = 1e-10;  // of the rest's square
-constexpr size_t kTexels = 64;      // of a piece of work: fixed, so that sums do not depend on threads
+constexpr float kMemberRidge = 1e-3f;        // of coefficients; functions are of length 1 where all views show them
+constexpr int kMaxSteps = 12;                // of the conjugate gradients
+constexpr double kMembersConverged = 1e-10;  // of the rest's square
 
 /// Inverses of what the members of a texel are to each other, over all views: one for each set of members.
 class MemberInverses {
@@ -28,7 +28,8 @@ class MemberInverses {
       const auto [at, is_new] = known.try_emplace(set, inverse_.size());
       of_.push_back(at->second);
       if (!is_new) continue;
-      const Eigen::MatrixXf matrix = TensorFunctions::of_members(functions.products(), functions.rank(), set, kRidge);
+      const Eigen::MatrixXf matrix =
+          TensorFunctions::of_members(functions.products(), functions.rank(), set, kMemberRidge);
       inverse_.push_back(matrix.llt().solve(Eigen::MatrixXf::Identity(matrix.rows(), matrix.cols())));
     }
   }
@@ -93,16 +94,16 @@ TensorTexels::TensorTexels(const TensorSource& source, const SeenTexels& seen, c
 
 template <class Work>
 void TensorTexels::pieces(const Work& work) const {
-  parallel_pieces((texels() + kTexels - 1) / kTexels, source_.threads, progress_, [&](size_t piece) {
-    for (size_t t = piece * kTexels; t < std::min(texels(), (piece + 1) * kTexels); ++t) work(t);
+  parallel_pieces((texels() + kTexelsPerPiece - 1) / kTexelsPerPiece, source_.threads, progress_, [&](size_t piece) {
+    for (size_t t = piece * kTexelsPerPiece; t < std::min(texels(), (piece + 1) * kTexelsPerPiece); ++t) work(t);
   });
 }
 
 void TensorTexels::add_view(Index view, const LevelImages& images, const std::vector<FunctionsOfView>& functions) {
   RowMatrix moments(shows_.rows(), shows_.cols());
-  parallel_pieces((texels() + kTexels - 1) / kTexels, source_.threads, progress_, [&](size_t piece) {
-    const auto first = static_cast<Index>(piece * kTexels);
-    auto rows = moments.middleRows(first, std::min<Index>(kTexels, moments.rows() - first));
+  parallel_pieces((texels() + kTexelsPerPiece - 1) / kTexelsPerPiece, source_.threads, progress_, [&](size_t piece) {
+    const auto first = static_cast<Index>(piece * kTexelsPerPiece);
+    auto rows = moments.middleRows(first, std::min<Index>(kTexelsPerPiece, moments.rows() - first));
     rows.setZero();
     for (size_t a = 0; a < 3; ++a) {
       rows.noalias() +=
@@ -176,7 +177,7 @@ void TensorTexels::choose(size_t texel, TensorTexelValues& values) const {
         rest -= of.block(c, chosen[k]) * solution.segment(static_cast<Index>(k) * rank, rank);
       }
       Eigen::MatrixXf own = of.block(c, c);
-      own.diagonal().array() += kRidge;
+      own.diagonal().array() += kMemberRidge;
       const float gain = rest.dot(own.llt().solve(rest));
       if (gain <= most) continue;
       most = gain;
@@ -193,7 +194,7 @@ void TensorTexels::choose(size_t texel, TensorTexelValues& values) const {
             of.block(chosen[static_cast<size_t>(i)], chosen[static_cast<size_t>(j)]);
       }
     }
-    matrix.diagonal().array() += kRidge;
+    matrix.diagonal().array() += kMemberRidge;
     solution = matrix.llt().solve(right);
   }
   std::copy(chosen.begin(), chosen.end(), values.member.begin() + static_cast<ptrdiff_t>(texel * chosen.size()));
@@ -202,8 +203,8 @@ void TensorTexels::choose(size_t texel, TensorTexelValues& values) const {
 
 void TensorTexels::add_products(Index view, const TensorTexelValues& values, RowMatrix& sums) const {
   RowMatrix moments(shows_.rows(), shows_.cols());
-  parallel_pieces((texels() + kTexels - 1) / kTexels, source_.threads, progress_, [&](size_t piece) {
-    const size_t first = piece * kTexels, end = std::min(texels(), first + kTexels);
+  parallel_pieces((texels() + kTexelsPerPiece - 1) / kTexelsPerPiece, source_.threads, progress_, [&](size_t piece) {
+    const size_t first = piece * kTexelsPerPiece, end = std::min(texels(), first + kTexelsPerPiece);
     moments.middleRows(static_cast<Index>(first), static_cast<Index>(end - first)).noalias() =
         seen_.spread(view, first, end, values, functions_.count()) * functions_.products(view);
   });
@@ -226,7 +227,7 @@ void TensorTexels::add_products(Index view, const TensorTexelValues& values, Row
 }
 
 RowMatrix TensorTexels::normal_product(const TensorTexelValues& values) const {
-  RowMatrix product = kRidge * values.value;
+  RowMatrix product = kMemberRidge * values.value;
   for (Index v = 0; v < functions_.views(); ++v) {
     progress_.check();
     add_products(v, values, product);
@@ -249,8 +250,8 @@ void TensorTexels::refine(TensorTexelValues& values, const std::function<void(do
   RowMatrix turned = inverse.times(rest);
   TensorTexelValues direction{values.member, turned};
   double energy = dot(rest, turned);
-  const double settled = kSettled * energy;
-  for (int step = 0; step < kSteps && energy > settled; ++step) {
+  const double settled = kMembersConverged * energy;
+  for (int step = 0; step < kMaxSteps && energy > settled; ++step) {
     const RowMatrix product = normal_product(direction);
     const auto length = static_cast<float>(energy / dot(direction.value, product));
     values.value += length * direction.value;
@@ -259,7 +260,7 @@ void TensorTexels::refine(TensorTexelValues& values, const std::function<void(do
     const double now = dot(rest, turned);
     direction.value = turned + static_cast<float>(now / energy) * direction.value;
     energy = now;
-    after_step(static_cast<double>(step + 1) / kSteps);
+    after_step(static_cast<double>(step + 1) / kMaxSteps);
   }
 }
 
@@ -270,9 +271,9 @@ double modelled_squares(const TensorSource& source, const SeenTexels& seen, cons
   double sum = 0;
   for (Index v = 0; v < functions.views(); ++v) {
     const RowMatrix products = functions.weighed_products(v, cosine);
-    std::vector<double> part((seen.texels() + kTexels - 1) / kTexels);
+    std::vector<double> part((seen.texels() + kTexelsPerPiece - 1) / kTexelsPerPiece);
     parallel_pieces(part.size(), source.threads, progress, [&](size_t piece) {
-      const size_t first = piece * kTexels, end = std::min(seen.texels(), first + kTexels);
+      const size_t first = piece * kTexelsPerPiece, end = std::min(seen.texels(), first + kTexelsPerPiece);
       const RowMatrix rows = seen.spread(v, first, end, values, functions.count());
       part[piece] = dot(rows, rows * products);
     });

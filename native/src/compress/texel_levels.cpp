@@ -14,8 +14,8 @@
 namespace velour {
 namespace {
 
-constexpr int kSteps = 20, kCoarseSteps = 12;  // of the finest level, of coarser ones
-constexpr double kReading = 0.1;               // of the progress
+constexpr int kFinestSteps = 20, kCoarseSteps = 12;  // of the finest level, of coarser ones
+constexpr double kTexelReading = 0.1;                // of the progress
 
 /// Coefficients of a finer level, interpolated.
 RowMatrix refined(const RowMatrix& coarse, uint32_t width, uint32_t height, const Relief& fine) {
@@ -87,17 +87,17 @@ Solvers read_data(CompandedViews& views, const TexelLevelsInput& input, size_t l
     progress.check();
     read_side_view(views, input.grid, input.side, v, levels, images);
     for (size_t l = 0; l < levels; ++l) solver[l]->add_view(v, images[l]);
-    progress.update(kReading * static_cast<double>(v + 1) / static_cast<double>(count));
+    progress.update(kTexelReading * static_cast<double>(v + 1) / static_cast<double>(count));
   }
   return solver;
 }
 
 Solution solved(const TexelLevelsInput& input, TexelSolver& solver, const RowMatrix& start, size_t level,
                 Progress& progress) {
-  const int steps = level == 0 ? kSteps : kCoarseSteps;
+  const int steps = level == 0 ? kFinestSteps : kCoarseSteps;
   // A level costs four times the one before: the finest takes three quarters of the time.
-  const double from = kReading + (1 - kReading) * std::pow(0.25, static_cast<double>(level + 1));
-  const double to = kReading + (1 - kReading) * std::pow(0.25, static_cast<double>(level));
+  const double from = kTexelReading + (1 - kTexelReading) * std::pow(0.25, static_cast<double>(level + 1));
+  const double to = kTexelReading + (1 - kTexelReading) * std::pow(0.25, static_cast<double>(level));
   const auto after_step = [&](int step) { progress.update(from + (to - from) * (step + 1) / steps); };
   RowMatrix value = solver.solve(start, steps, after_step);
   progress.update(to);  // it may have settled early

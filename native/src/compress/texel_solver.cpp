@@ -3,6 +3,7 @@
 #include "btf/bilinear_texels.h"
 #include "btf/srbf_btf.h"
 #include "compress/row_products.h"
+#include "compress/texel_pieces.h"
 #include "job/parallel.h"
 #include "srbf/aligned_array.h"
 #include "tensor/decompositions.h"
@@ -11,12 +12,11 @@
 namespace velour {
 namespace {
 
-constexpr double kRidge = 1e-4;     // of coefficients, relative to a lobe of value 1 everywhere
-constexpr double kSettled = 1e-12;  // of the rest's square: floats hold no better, and less would become 0 / 0
-constexpr size_t kTexels = 64;      // of a block of work: fixed, so that sums do not depend on threads
-constexpr size_t kSampled = 170;    // texels of a view that means are taken over, about
-constexpr size_t kTogether = 8;     // texels whose lobes are multiplied at once
-constexpr size_t kSums = 16;        // partial sums: fixed as well
+constexpr double kLobeRidge = 1e-4;         // of coefficients, relative to a lobe of value 1 everywhere
+constexpr double kTexelsConverged = 1e-12;  // of the rest's square: floats hold no better, and less would become 0 / 0
+constexpr size_t kSampled = 170;            // texels of a view that means are taken over, about
+constexpr size_t kTogether = 8;             // texels whose lobes are multiplied at once
+constexpr size_t kSums = 16;                // partial sums: fixed as well
 
 }  // namespace
 
@@ -97,10 +97,10 @@ void TexelSolver::accumulate(size_t view, const Values& values_of, RowMatrix& su
     tile_.values(pair[l], tile_rows.data() + size_t{l} * stride_);
   }
   RowMatrix moment(static_cast<Eigen::Index>(place.size()), sums.cols());
-  parallel_pieces((place.size() + kTexels - 1) / kTexels, threads_, progress_, [&](size_t block) {
+  parallel_pieces((place.size() + kTexelsPerPiece - 1) / kTexelsPerPiece, threads_, progress_, [&](size_t block) {
     AlignedArray<float> rows(size_t{lights} * stride_), values(size_t{lights} * 3), sum(size_t{3} * stride_);
     std::copy_n(tile_rows.data(), size_t{lights} * stride_, rows.data());
-    for (size_t t = block * kTexels; t < std::min(place.size(), (block + 1) * kTexels); ++t) {
+    for (size_t t = block * kTexelsPerPiece; t < std::min(place.size(), (block + 1) * kTexelsPerPiece); ++t) {
       for (uint32_t l = 0; l < lights; ++l) {
         texel_.values(pair[l].turned(place[t].to_normal), rows.data() + size_t{l} * stride_ + tile_.padded());
       }
@@ -119,8 +119,8 @@ void TexelSolver::accumulate(size_t view, const Values& values_of, RowMatrix& su
   for (uint32_t t = 0; t < place.size(); ++t) {
     for (uint32_t i = 0; i < 4; ++i) source[next[place[t].texels.index[i]]++] = 4 * t + i;
   }
-  parallel_pieces((place.size() + kTexels - 1) / kTexels, threads_, progress_, [&](size_t block) {
-    for (size_t t = block * kTexels; t < std::min(place.size(), (block + 1) * kTexels); ++t) {
+  parallel_pieces((place.size() + kTexelsPerPiece - 1) / kTexelsPerPiece, threads_, progress_, [&](size_t block) {
+    for (size_t t = block * kTexelsPerPiece; t < std::min(place.size(), (block + 1) * kTexelsPerPiece); ++t) {
       for (uint32_t i = first[t]; i < first[t + 1]; ++i) {
         const float weight = place[source[i] / 4].texels.weight[source[i] % 4];
         sums.row(static_cast<Eigen::Index>(t)) += weight * moment.row(source[i] / 4);
@@ -232,7 +232,7 @@ void TexelSolver::set_coordinates() {
         gram(i, j) = mean(column_[k + static_cast<size_t>(i)] % stride_, column_[k + static_cast<size_t>(j)] % stride_);
       }
     }
-    gram.diagonal().array() += kRidge;
+    gram.diagonal().array() += kLobeRidge;
     products_[a] = gram.cast<float>();
     whiten_[a] = n > 0 ? inverse_root(gram).cast<float>().eval() : Eigen::MatrixXf();
     k += static_cast<size_t>(n);
@@ -251,12 +251,12 @@ RowMatrix TexelSolver::whitened(const RowMatrix& m) const {
 
 RowMatrix TexelSolver::solve(const RowMatrix& start, int steps, const std::function<void(int)>& after_step) {
   // A texel counts as if it were seen by this many views.
-  const auto ridge = static_cast<float>(kRidge * static_cast<double>(side_.light.size() * side_.view.size()) / 4);
+  const auto ridge = static_cast<float>(kLobeRidge * static_cast<double>(side_.light.size() * side_.view.size()) / 4);
   RowMatrix x = RowMatrix::Zero(start.rows(), start.cols());
   RowMatrix rest = whitened(data_ - normal_product(start));
   RowMatrix direction = rest;
   double energy = static_cast<double>(rest.squaredNorm());
-  const double settled = kSettled * energy;
+  const double settled = kTexelsConverged * energy;
   for (int step = 0; step < steps && energy > settled; ++step) {
     const RowMatrix product = whitened(normal_product(whitened(direction))) + ridge * direction;
     const double length = energy / static_cast<double>(direction.cwiseProduct(product).sum());

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "compress/texel_pieces.h"
 #include "job/parallel.h"
 
 namespace velour {
 namespace {
 
-constexpr size_t kTexels = 64;     // of a piece of work
 constexpr size_t kFunctions = 16;  // of a piece of work: fixed, as sums depend on it
 
 size_t pieces(size_t count, size_t of_piece) { return (count + of_piece - 1) / of_piece; }
@@ -22,8 +22,8 @@ void add_level(const SeenTexels& seen, Index view, const LevelImages& images, co
                float brightness, int threads, const Progress& progress, ViewMoments& moments) {
   const Index functions = moments.products.rows();
   RowMatrix spread(static_cast<Index>(seen.texels()), functions);
-  parallel_pieces(pieces(seen.texels(), kTexels), threads, progress, [&](size_t piece) {
-    const size_t first = piece * kTexels, end = std::min(seen.texels(), first + kTexels);
+  parallel_pieces(pieces(seen.texels(), kTexelsPerPiece), threads, progress, [&](size_t piece) {
+    const size_t first = piece * kTexelsPerPiece, end = std::min(seen.texels(), first + kTexelsPerPiece);
     spread.middleRows(static_cast<Index>(first), static_cast<Index>(end - first)) =
         seen.spread(view, first, end, values, functions);
   });

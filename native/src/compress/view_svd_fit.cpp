@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr double kColours = 0.3;  // where they end, of the progress
+constexpr double kViewColors = 0.3;  // where they end, of the progress
 
 /// How many components of a view are kept.
 uint64_t columns_of(const BtfMeasurement& measurement) {
@@ -22,9 +22,9 @@ ViewSvdFitter::ViewSvdFitter(const BtfMeasurement& measurement, const BtfFitOpti
                              Progress& progress)
     : FactoredFitter(measurement, options, checkpoint, progress, true) {
   const uint64_t most = most_components();
-  progress.stage("colours", 0, kColours);
+  progress.stage("colours", 0, kViewColors);
   find_axes();
-  progress.stage("directions", kColours, 1);
+  progress.stage("directions", kViewColors, 1);
   std::vector<Component> components;
   function_of_.resize(views_.views());
   for (uint32_t v = 0; v < views_.views(); ++v) {

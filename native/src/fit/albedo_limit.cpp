@@ -17,7 +17,7 @@ namespace {
 // What is aimed at: rounding to half floats and views in between stay below 1.
 constexpr double kGoal = 0.997;
 // Rounds of measuring the albedo; each ends with every measured view at the goal, to first order.
-constexpr int kRounds = 20;
+constexpr int kLimitRounds = 20;
 constexpr int kSweeps = 400;
 
 std::vector<Vec3> limited_views(const ParametricBrdf& brdf) {
@@ -90,7 +90,7 @@ bool limit_albedo(ParametricBrdf& brdf, int threads, const Progress& progress) {
   const std::vector<Vec3> views = limited_views(brdf);
   const auto nodes = static_cast<size_t>(brdf.spline().node_count());
   bool changed = false;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kLimitRounds; ++round) {
     const std::vector<Vec3d> albedo = albedos(brdf, views, threads, progress);
     bool above = false;
     for (int c = 0; c < 3; ++c) {

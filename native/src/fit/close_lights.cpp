@@ -11,10 +11,10 @@
 namespace velour {
 namespace {
 
-constexpr int kEvenLights = 4096, kRings = 72, kSpokes = 40;
+constexpr int kEvenLights = 4096, kCloseRings = 72, kCloseSpokes = 40;
 constexpr double kInnerRadius = 1e-4;  // radians; a Gaussian of bandwidth 1e8 is as wide
 
-CloseRings rings_about(const Vec3& axis) { return {axis, kInnerRadius, 0.5 * kPiD, kRings, kSpokes}; }
+CloseRings rings_about(const Vec3& axis) { return {axis, kInnerRadius, 0.5 * kPiD, kCloseRings, kCloseSpokes}; }
 
 constexpr int kOwnLights = 2048;
 

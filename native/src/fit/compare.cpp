@@ -14,7 +14,7 @@
 namespace velour {
 namespace {
 
-constexpr int kLights = 4096;
+constexpr int kComparedLights = 4096;
 constexpr uint64_t kLeastLights = 64;  // fewer tell nothing of a view
 // Lights that see less than a half or more than twice the energy miss a highlight or take one direction for all of it;
 // where fewer than two carry what is seen, the error is that of one direction.
@@ -59,13 +59,14 @@ ViewError error_of_view(const Measurement& measurement, const Material& material
 /// shares of lights and of energy.
 AzimuthErrors table_errors(const Measurement& measurement, const Material& material, int degrees, Progress& progress,
                            Comparison& out) {
-  const WeightedLights even{hemisphere_fibonacci(kLights), std::vector<double>(kLights, 2 * kPiD / kLights)};
+  const WeightedLights even{hemisphere_fibonacci(kComparedLights),
+                            std::vector<double>(kComparedLights, 2 * kPiD / kComparedLights)};
   AzimuthErrors errors, close_errors;
-  double seen = 0, energy = 0, covered = 0, carriers = kLights;
+  double seen = 0, energy = 0, covered = 0, carriers = kComparedLights;
   for (const Vec3& wv : reported_views(degrees, measurement.isotropic())) {
     errors.push_back(error_of_view(measurement, material, wv, even, progress));
     close_errors.push_back(error_of_view(measurement, material, wv, close_lights(material, wv), progress));
-    covered += static_cast<double>(errors.back().count()) / kLights;
+    covered += static_cast<double>(errors.back().count()) / kComparedLights;
     seen += errors.back().energy();
     carriers = std::min(carriers, errors.back().carriers());
     energy += close_errors.back().energy();

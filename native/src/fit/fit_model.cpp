@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-uint64_t size_of(const Model& model, const FitOptions& options) {
+uint64_t size_of_parametric(const Model& model, const FitOptions& options) {
   return options.size_of ? options.size_of(model) : std::get<ParametricBrdf>(model.body).parameter_bytes();
 }
 
@@ -23,7 +23,7 @@ uint64_t size_of(const Model& model, const FitOptions& options) {
 /// It is as small as it may be already.
 Model bounded_for_scene(const Measurement& measurement, const FitOptions& options, Progress& progress) {
   Model model = fit_for_scene(measurement, options, progress);
-  const uint64_t size = size_of(model, options);
+  const uint64_t size = size_of_parametric(model, options);
   if (options.max_bytes > 0 && size > options.max_bytes) refuse_bound(options, "for this scene", size);
   return model;
 }
@@ -32,7 +32,7 @@ Model bounded_for_scene(const Measurement& measurement, const FitOptions& option
 Model bounded_parametric(const Measurement& measurement, FitOptions options, Progress& progress) {
   while (true) {
     Model model = fit_parametric(measurement, options, progress);
-    const uint64_t size = size_of(model, options);
+    const uint64_t size = size_of_parametric(model, options);
     if (options.max_bytes == 0 || size <= options.max_bytes) return model;
     const auto& brdf = std::get<ParametricBrdf>(model.body);
     if (brdf.lobe_count() <= 1) refuse_bound(options, "of this measurement", size);

@@ -7,9 +7,9 @@
 namespace velour {
 namespace {
 
-constexpr double kLeast = 0.1, kMost = 10;
+constexpr double kMinImportance = 0.1, kMaxImportance = 10;
 // Light at grazing incidence brings little; its radiance is not to be overrated for that.
-constexpr float kLeastCosine = 0.05f;
+constexpr float kMinLightCosine = 0.05f;
 
 }  // namespace
 
@@ -18,11 +18,11 @@ LightImportance::LightImportance(const SceneObservation& observation)
   for (const ObservedHit& hit : observation.hits) {
     for (uint32_t i = hit.first; i < hit.last; ++i) {
       const Vec3& wl = observation.wl[i];
-      value_[bin(hit.wv, wl)] += static_cast<double>(luminance(observation.light[i]) / std::max(wl.z, kLeastCosine));
+      value_[bin(hit.wv, wl)] += static_cast<double>(luminance(observation.light[i]) / std::max(wl.z, kMinLightCosine));
     }
   }
   const double mean = std::accumulate(value_.begin(), value_.end(), 0.0) / static_cast<double>(value_.size());
-  for (double& v : value_) v = mean > 0 ? std::clamp(v / mean, kLeast, kMost) : 1;
+  for (double& v : value_) v = mean > 0 ? std::clamp(v / mean, kMinImportance, kMaxImportance) : 1;
 }
 
 size_t LightImportance::bin(const Vec3& wv, const Vec3& wl) {

@@ -13,8 +13,8 @@ namespace {
 using Index = Eigen::Index;
 
 // All trials take the first steps, the best one the rest.
-constexpr int kFirstSteps = 3, kSteps = 20;
-constexpr double kLeast = 3e-3;
+constexpr int kFirstSteps = 3, kGrowthSteps = 20;
+constexpr double kGrowthTolerance = 3e-3;
 
 /// One lobe more of each of the `spaces`, and one split in two, each after its first steps.
 std::vector<TrackedLobes> first_steps(const TrackedProblem& problem, const TrackedLobes& lobes,
@@ -24,7 +24,7 @@ std::vector<TrackedLobes> first_steps(const TrackedProblem& problem, const Track
     found[i] = i < spaces.size() ? with_best_lobe(problem, lobes, spaces[i]) : with_split_lobe(problem, lobes);
     if (!found[i]) return;
     TrackedProblem own = problem;
-    refine(own, *found[i], kFirstSteps, kLeast);
+    refine(own, *found[i], kFirstSteps, kGrowthTolerance);
   });
   std::vector<TrackedLobes> out;
   for (std::optional<TrackedLobes>& trial : found) {
@@ -39,7 +39,7 @@ bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const Lobe
   problem.evaluate(lobes.model, lobes.x);  // its residuals are what the search looks at
   std::vector<TrackedLobes> trials = first_steps(problem, lobes, spaces);
   const auto best = std::min_element(trials.begin(), trials.end(), costs_less);
-  if (best != trials.end()) refine(problem, *best, kSteps - kFirstSteps, kLeast);
+  if (best != trials.end()) refine(problem, *best, kGrowthSteps - kFirstSteps, kGrowthTolerance);
   const bool better = best != trials.end() && best->cost < lobes.cost;
   if (better) lobes = std::move(*best);
   problem.evaluate(lobes.model, lobes.x);
@@ -54,7 +54,7 @@ bool exchange_lobe(TrackedProblem& problem, TrackedLobes& lobes) {
     trial.cost = problem.evaluate(trial.model, trial.x);
     if (j == 0 || trial.cost < fewer.cost) fewer = std::move(trial);
   }
-  refine(problem, fewer, kSteps, kLeast);
+  refine(problem, fewer, kGrowthSteps, kGrowthTolerance);
   constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light};
   const bool better = add_lobe(problem, fewer, kBoth) && fewer.cost < lobes.cost;
   if (better) lobes = std::move(fewer);

@@ -12,17 +12,16 @@ namespace {
 
 using P = ParametricBrdf;
 
-constexpr double kChannel[3] = {0.2126, 0.7152, 0.0722};
 constexpr size_t kStride = 4;  // of the blocks of samples that the search looks at
 // A start below the best coefficient leaves room for the lobes that are there; none starts at nothing.
-constexpr double kShare = 0.7, kFloor = 1e-3;
+constexpr double kShare = 0.7, kPeakFloor = 1e-3;
 // So many of the candidates are fitted alone before one is chosen.
 constexpr size_t kTried = 3;
 constexpr int kTrySteps = 10;
 constexpr double kTryLeast = 3e-3;
 
 /// A lobe over all views, before the fit bends it.
-struct Candidate {
+struct LobeCandidate {
   enum class Follows { nothing, view, mirror };
   Follows follows = Follows::nothing;
   double log_bandwidth = 0;
@@ -48,33 +47,33 @@ std::vector<std::array<double, 2>> tilts(double angle, bool isotropic) {
   return out;
 }
 
-std::vector<Candidate> half_candidates(bool isotropic) {
+std::vector<LobeCandidate> half_candidates(bool isotropic) {
   using Ab = std::array<double, 2>;
   const auto stretches = isotropic ? std::vector<Ab>{{0, 0}, {0.4, 0}, {-0.4, 0}, {0.9, 0}, {-0.9, 0}}
                                    : std::vector<Ab>{{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
-  std::vector<Candidate> out;
+  std::vector<LobeCandidate> out;
   // The fit moves a bandwidth by a factor e a step.
   for (double bandwidth = 1; bandwidth < 1e5; bandwidth *= 2.7) {
     for (const double widths : {0.0, 0.7, 1.5}) {
       for (const auto& t : tilts(widths / std::sqrt(std::max(bandwidth, 4.0)), isotropic)) {
-        for (const auto& s : stretches) out.push_back({Candidate::Follows::nothing, std::log(bandwidth), t, s});
+        for (const auto& s : stretches) out.push_back({LobeCandidate::Follows::nothing, std::log(bandwidth), t, s});
       }
     }
   }
   return out;
 }
 
-std::vector<Candidate> light_candidates(bool isotropic) {
-  std::vector<Candidate> out;
+std::vector<LobeCandidate> light_candidates(bool isotropic) {
+  std::vector<LobeCandidate> out;
   for (const double bandwidth : {0.05, 1.0, 3.0, 8.0, 20.0, 60.0}) {
     for (const double angle : {0.0, 0.5, 1.0, 1.4}) {
       for (const auto& t : tilts(angle, isotropic)) {
-        out.push_back({Candidate::Follows::nothing, std::log(bandwidth), t, {}});
+        out.push_back({LobeCandidate::Follows::nothing, std::log(bandwidth), t, {}});
       }
     }
   }
   for (double bandwidth = 1; bandwidth < 1e5; bandwidth *= 2.7) {
-    for (const auto follows : {Candidate::Follows::view, Candidate::Follows::mirror}) {
+    for (const auto follows : {LobeCandidate::Follows::view, LobeCandidate::Follows::mirror}) {
       out.push_back({follows, std::log(bandwidth), {}, {}});
     }
   }
@@ -87,7 +86,7 @@ struct Start {
   double gain = 0;
 };
 
-Start start_at(LobeSpace space, const Candidate& candidate, const TrackedView& view) {
+Start start_at(LobeSpace space, const LobeCandidate& candidate, const TrackedView& view) {
   const float* residual[3] = {view.residual[0].data(), view.residual[1].data(), view.residual[2].data()};
   const Projection p = project_warped(candidate.at(space, view.wv), view.wv, view.samples, residual, kStride);
   Start start;
@@ -95,13 +94,13 @@ Start start_at(LobeSpace space, const Candidate& candidate, const TrackedView& v
   for (int c = 0; c < 3; ++c) {
     const double moment = std::max(p.moment[c], 0.0);
     start.coefficient[c] = moment / p.norm_sq;
-    start.gain += view.scale() * kChannel[c] * moment * start.coefficient[c];
+    start.gain += view.scale() * kLuminanceShare[c] * moment * start.coefficient[c];
   }
   return start;
 }
 
 /// The control values of the new lobe: [node][parameter].
-Eigen::MatrixXd control_values(LobeSpace space, const Candidate& candidate, const std::vector<TrackedView>& views,
+Eigen::MatrixXd control_values(LobeSpace space, const LobeCandidate& candidate, const std::vector<TrackedView>& views,
                                const P& model) {
   const ViewSpline spline = model.spline();
   std::vector<Start> starts;
@@ -127,7 +126,7 @@ Eigen::MatrixXd control_values(LobeSpace space, const Candidate& candidate, cons
   }
   for (int c = 0; c < 3; ++c) {
     through(P::kLogRed + c, [&](size_t i) {
-      const double floor = std::max(kFloor * most[static_cast<size_t>(c)], 1e-9);
+      const double floor = std::max(kPeakFloor * most[static_cast<size_t>(c)], 1e-9);
       return std::log(std::max(kShare * starts[i].coefficient[c], floor));
     });
   }
@@ -143,7 +142,7 @@ TrackedLobes alone(const TrackedLobes& lobes, LobeSpace space, const Eigen::Matr
 }
 
 /// The candidates that gain most, best first, one of each bandwidth and way to follow.
-std::vector<size_t> most_promising(const std::vector<Candidate>& all, const std::vector<double>& gain) {
+std::vector<size_t> most_promising(const std::vector<LobeCandidate>& all, const std::vector<double>& gain) {
   std::vector<size_t> best;
   for (size_t i = 0; i < all.size(); ++i) {
     if (!(gain[i] > 0)) continue;
@@ -163,7 +162,7 @@ std::vector<size_t> most_promising(const std::vector<Candidate>& all, const std:
 }  // namespace
 
 std::optional<TrackedLobes> with_best_lobe(const TrackedProblem& problem, const TrackedLobes& lobes, LobeSpace space) {
-  const std::vector<Candidate> all =
+  const std::vector<LobeCandidate> all =
       space == LobeSpace::half ? half_candidates(lobes.model.isotropic) : light_candidates(lobes.model.isotropic);
   std::vector<double> gain(all.size(), 0.0);
   parallel_pieces(all.size(), problem.threads(), problem.progress(), [&](size_t i) {

@@ -17,8 +17,8 @@ using P = ParametricBrdf;
 constexpr double kNarrower = 0.5, kApart = 0.3;
 // All lobes' halves take one step, those that gained most some more.
 constexpr size_t kKept = 3;
-constexpr int kSteps = 3;
-constexpr double kLeast = 1e-3;
+constexpr int kSplitSteps = 3;
+constexpr double kSplitTolerance = 1e-3;
 
 /// The half of `lobe`, one alone, to either `side` (1 or -1) of it.
 TrackedLobes half_of(const TrackedLobes& lobe, double side) {
@@ -43,7 +43,7 @@ struct Split {
 
   void refine_beside(const TrackedProblem& problem, const TrackedLobes& one, int steps) {
     TrackedProblem left = problem.remainder_with(one.model, one.x);
-    refine(left, halves, steps, kLeast);
+    refine(left, halves, steps, kSplitTolerance);
   }
 };
 
@@ -63,7 +63,7 @@ std::optional<TrackedLobes> with_split_lobe(const TrackedProblem& problem, const
   refine_all(1);
   std::stable_sort(splits.begin(), splits.end(), cheaper);
   splits.resize(std::min(splits.size(), kKept), {0, lobes});
-  refine_all(kSteps);
+  refine_all(kSplitSteps);
   const auto best = std::min_element(splits.begin(), splits.end(), cheaper);
   if (best == splits.end()) return std::nullopt;
   return joined(without_lobe(lobes, best->lobe), best->halves);

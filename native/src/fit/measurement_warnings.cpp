@@ -16,7 +16,7 @@ constexpr size_t kFewSamples = 500;   // some 60 of them held out, a dozen for e
 constexpr double kDarkest = 0.001;    // albedo; black velvet and soot are above
 constexpr double kBrokenReciprocity = 0.1;
 
-std::string number(double x) {
+std::string three_digits(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", x);
   return text;
@@ -55,7 +55,7 @@ void warn_of_noise(const Comparison& errors, double tolerance, std::vector<std::
   warnings.push_back("the measurement's own noise exceeds the tolerance at " + std::to_string(count) +
                      " of the reported views; at " + std::to_string(worst) +
                      " degrees values that symmetry or reciprocity makes equal differ by " +
-                     number(*errors.noise_by_view_angle.at(std::to_string(worst))) +
+                     three_digits(*errors.noise_by_view_angle.at(std::to_string(worst))) +
                      ": a smaller error there says nothing, a larger tolerance saves lobes");
 }
 
@@ -68,7 +68,7 @@ class Views {
   }
   bool empty() const { return count_ == 0; }
   std::string names() const { return (count_ == 1 ? "view " : "views ") + angles_ + " degrees"; }
-  std::string least() const { return number(least_); }
+  std::string least() const { return three_digits(least_); }
 
  private:
   std::string angles_;
@@ -111,7 +111,7 @@ void warn_of_darkness(double albedo, double error, std::vector<std::string>& war
   } else if (albedo == 0) {
     warnings.push_back("the measurement is black at every view; check that it is the right file");
   } else if (albedo < kDarkest) {
-    warnings.push_back("albedo at most " + number(albedo) +
+    warnings.push_back("albedo at most " + three_digits(albedo) +
                        " at every view, darker than any material we know of: check the measurement's scale");
   }
 }
@@ -125,11 +125,11 @@ bool is_not_reciprocal(const FitRecord& record) {
 void warn_of_reciprocity(const FitRecord& record, std::vector<std::string>& warnings) {
   if (is_not_reciprocal(record)) {
     warnings.push_back("the measurement is not reciprocal: exchanging light and view changes it by " +
-                       number(*record.measured_reciprocity) +
+                       three_digits(*record.measured_reciprocity) +
                        " (relative L2); the model follows it, and light paths traced from either end will differ");
   } else if (record.reciprocity > kBrokenReciprocity) {
     warnings.push_back("the model is not reciprocal: exchanging light and view changes it by " +
-                       number(record.reciprocity) + " (relative L2)");
+                       three_digits(record.reciprocity) + " (relative L2)");
   }
 }
 

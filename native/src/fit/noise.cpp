@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr int kLights = 4096;
+constexpr int kNoiseLights = 4096;
 constexpr double kPairDistance = kPiD / 180;  // of each angle of a pair of scattered samples
 
 /// Sums over pairs of equal quantities.
@@ -46,7 +46,7 @@ Vec3 mirrored(const Vec3& w, const Vec3& wv) {
 
 void add_table_pairs(const Measurement& measurement, const Vec3& wv, const Progress& progress, PairNoise& mirror,
                      PairNoise& reciprocal) {
-  const std::vector<Vec3> lights = hemisphere_fibonacci(kLights);
+  const std::vector<Vec3> lights = hemisphere_fibonacci(kNoiseLights);
   std::vector<Vec3> images(lights);
   for (Vec3& w : images) w = mirrored(w, wv);
   std::vector<Rgb> f(lights.size()), f_image(lights.size());

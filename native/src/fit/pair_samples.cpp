@@ -14,8 +14,8 @@ namespace {
 using Source =
     std::function<void(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> covered)>;
 
-constexpr int kRings = 32, kSpokes = 16;
-constexpr float kFloor = 1e-3f;  // of the mean f cos
+constexpr int kPairRings = 32, kPairSpokes = 16;
+constexpr float kSampleFloor = 1e-3f;  // of the mean f cos
 
 /// In the middles of five degrees, which is as far from the held-out views as can be.
 std::vector<Vec3> views_of(bool isotropic) {
@@ -32,7 +32,7 @@ std::vector<Vec3> views_of(bool isotropic) {
 
 /// The samples of one view; none where it is black.
 std::vector<PairSample> samples_of(const Source& source, const Vec3& wv) {
-  LightGrid grid = light_grid(wv, kRings, kSpokes);
+  LightGrid grid = light_grid(wv, kPairRings, kPairSpokes);
   std::vector<Rgb> f(grid.wl.size());
   std::vector<uint8_t> covered(grid.wl.size(), 1);
   source(wv, grid.wl, f, covered);
@@ -66,7 +66,7 @@ PairSamples all_samples(const Source& source, bool isotropic, int threads, Progr
   parallel_for_each(views.size(), threads, progress, [&](size_t i) { of_view[i] = samples_of(source, views[i]); });
   PairSamples all;
   for (const auto& some : of_view) all.samples.insert(all.samples.end(), some.begin(), some.end());
-  all.floor = kFloor * mean_of(all.samples);
+  all.floor = kSampleFloor * mean_of(all.samples);
   if (!(all.floor > 0)) all.samples.clear();
   return all;
 }

@@ -6,7 +6,7 @@ namespace velour {
 namespace {
 
 // Of the mean: below it a sample is lost beside what other lights show.
-constexpr double kFloor = 0.1;
+constexpr double kWeightFloor = 0.1;
 
 double luminance_of(const SliceSample& s) { return std::max(static_cast<double>(luminance(s.value)), 0.0); }
 
@@ -19,7 +19,7 @@ std::vector<float> picture_weights(std::span<const SliceSample> samples) {
     solid_angle += static_cast<double>(s.weight);
   }
   if (!(sum > 0)) return {};
-  const double floor = kFloor * sum / solid_angle;
+  const double floor = kWeightFloor * sum / solid_angle;
   std::vector<double> factors;
   for (const SliceSample& s : samples) {
     const double y = luminance_of(s);

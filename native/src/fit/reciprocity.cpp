@@ -9,10 +9,10 @@
 namespace velour {
 namespace {
 
-constexpr int kViews = 16, kRings = 32, kSpokes = 16;
+constexpr int kReciprocityViews = 16, kReciprocityRings = 32, kReciprocitySpokes = 16;
 
 std::vector<Vec3> views(bool isotropic) {
-  std::vector<Vec3> out = hemisphere_fibonacci(kViews);
+  std::vector<Vec3> out = hemisphere_fibonacci(kReciprocityViews);
   if (!isotropic) return out;
   for (Vec3& v : out) v = Vec3(std::sqrt(1 - v.z * v.z), 0, v.z);
   return out;
@@ -25,7 +25,7 @@ std::optional<double> error_of(bool isotropic, const Progress& progress, const L
   bool covered = false;
   for (const Vec3& wv : views(isotropic)) {
     progress.check();
-    const LightGrid lights = light_grid(wv, kRings, kSpokes);
+    const LightGrid lights = light_grid(wv, kReciprocityRings, kReciprocitySpokes);
     for (size_t i = 0; i < lights.wl.size(); ++i) {
       const Vec3& wl = lights.wl[i];
       const std::optional<double> there = f({wl, wv}), back = f({wv, wl});

@@ -8,14 +8,14 @@ namespace {
 
 constexpr float kNone = 1e30f;
 constexpr double kWideEnough = -100;  // an excess
-constexpr double kLeastCosine = 1e-3;
+constexpr double kMinCenterCosine = 1e-3;
 
 /// The light direction at the lobe's centre. Half vectors that face away from the view have none: the last one that
 /// does not stands for them.
 Vec3d light_at_center(const WarpedLobe& lobe, const Vec3d& wv) {
   const Vec3d center = argument_at(lobe, lobe.center);
   if (lobe.space == LobeSpace::light) return center;
-  return 2 * std::max(glm::dot(center, wv), kLeastCosine) * center - wv;
+  return 2 * std::max(glm::dot(center, wv), kMinCenterCosine) * center - wv;
 }
 
 WarpedLobe lobe_of(const WarpedShape& s) {

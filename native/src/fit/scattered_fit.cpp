@@ -16,7 +16,7 @@ namespace velour {
 namespace {
 
 // A slice is fitted a little tighter than asked, for what the interpolation between slices adds at the views between.
-constexpr double kGoalShare = 0.8;
+constexpr double kSliceGoalShare = 0.8;
 constexpr SliceGrid kGrid{96, 64};
 
 std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const FitOptions& options,
@@ -25,7 +25,7 @@ std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const
   parallel_for_each(slices.size(), options.threads, progress, [&](size_t i) {
     const double theta_v = std::acos(std::min(slices[i].wv.z, 1.0f));
     const SliceSamples samples(slices[i].samples);
-    const double goal = std::hypot(kGoalShare * tolerance_at(options.tolerance, theta_v), samples.gamut_error());
+    const double goal = std::hypot(kSliceGoalShare * tolerance_at(options.tolerance, theta_v), samples.gamut_error());
     paths[i] = {fit_slice(samples, {options.kernel, options.max_lobes, goal}, progress), slices[i].wv.z};
   });
   return paths;
@@ -47,16 +47,15 @@ Model reported(const Measurement& measurement, const FittedSlices& all, const Fi
   return model;
 }
 
-uint64_t size_of(const Model& model, const FitOptions& options) {
+uint64_t size_of_scattered(const Model& model, const FitOptions& options) {
   return options.size_of ? options.size_of(model) : std::get<ScatteredBrdf>(model.body).parameter_bytes();
 }
 
 /// The best model of `all` within options.max_bytes that a few tries find: a file's size is known only when it is made.
 Model bounded_model(const Measurement& measurement, const FittedSlices& all, const FitOptions& options,
                     Progress& progress) {
-  constexpr uint64_t kLobeBytes = ScatteredBrdf::kLobeBytes, kViewBytes = ScatteredBrdf::kViewBytes;
   const uint64_t whole = parameter_bytes(all);
-  for (uint64_t budget = std::max(kViewBytes, std::min(options.max_bytes, whole));;) {
+  for (uint64_t budget = std::max(ScatteredBrdf::kViewBytes, std::min(options.max_bytes, whole));;) {
     progress.check();
     const FittedSlices fitted = within(budget, all, measurement.isotropic(), options);
     Model model = reported(measurement, all, fitted, options, progress);
@@ -65,15 +64,15 @@ Model bounded_model(const Measurement& measurement, const FittedSlices& all, con
                                    std::to_string(fitted.slices.size()) + " views and " +
                                    std::to_string(std::get<ScatteredBrdf>(model.body).lobe_count()) + " lobes");
     }
-    const uint64_t size = size_of(model, options);
+    const uint64_t size = size_of_scattered(model, options);
     if (size <= options.max_bytes) return model;
-    if (budget == kViewBytes) {
+    if (budget == ScatteredBrdf::kViewBytes) {
       throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
                                                 "; the smallest model of this measurement takes " +
                                                 std::to_string(size) + ".");
     }
-    const uint64_t excess = size - options.max_bytes + kLobeBytes;
-    budget = budget > excess + kViewBytes ? budget - excess : kViewBytes;
+    const uint64_t excess = size - options.max_bytes + ScatteredBrdf::kLobeBytes;
+    budget = budget > excess + ScatteredBrdf::kViewBytes ? budget - excess : ScatteredBrdf::kViewBytes;
   }
 }
 

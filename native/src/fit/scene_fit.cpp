@@ -17,7 +17,7 @@ constexpr size_t kLeastViews = 4;
 // A view that was hardly seen keeps this share of the mean view's weight.
 constexpr double kLeastViewWeight = 0.05;
 // The pictures decide how many lobes are enough, so views are pushed beyond any tolerance.
-constexpr double kGoalShare = 0.1;
+constexpr double kSceneGoalShare = 0.1;
 
 // Standard errors that a model must stay below the bound: many are tried, and the luckiest would win.
 constexpr double kSure = 2;
@@ -75,7 +75,7 @@ class SceneSearch {
         judge_(judge),
         progress_(progress),
         full_shares_(judge.shares(full)) {
-    tracked_.tolerance *= kGoalShare;
+    tracked_.tolerance *= kSceneGoalShare;
     tracked_.seen_evenly = false;
     least_bytes_ = full.parameter_bytes();
   }

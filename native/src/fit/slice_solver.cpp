@@ -18,7 +18,7 @@ constexpr double kMinSharpness = 0.02;
 constexpr double kMaxPeakToSeen = 100;
 constexpr double kHole = 4;  // so many spacings of the samples from the nearest one
 // Column products are sums in float: below this share of its length a column is rounding.
-constexpr double kRidge = 1e-7;
+constexpr double kSliceRidge = 1e-7;
 // Longest step of one refinement: this many lobe widths, and a factor e of sharpness.
 constexpr double kMaxTurn = 1.0, kMaxLogStep = 1.0;
 
@@ -114,7 +114,7 @@ void SliceSolver::solve(State& state) const {
     state.peaks = Eigen::MatrixXd::Zero(static_cast<Index>(n + 1), 3);
   for (int c = 0; c < 3; ++c) {
     Eigen::VectorXd x = state.peaks.col(c);
-    solve_nnls(products, moments.col(c), kRidge, x);
+    solve_nnls(products, moments.col(c), kSliceRidge, x);
     state.peaks.col(c) = x;
     subtract_columns(all, {x.data(), n + 1}, targets[c], padded, state.residual[static_cast<size_t>(c)]);
   }
@@ -138,7 +138,7 @@ void SliceSolver::eliminate_peaks(const Eigen::MatrixXd& products, int channel, 
   std::vector<Index> derivative;
   for (const Index r : row) derivative.push_back(n + 1 + r);
   Eigen::MatrixXd values = products(term, term);
-  values.diagonal() *= 1 + kRidge;
+  values.diagonal() *= 1 + kSliceRidge;
   const Eigen::MatrixXd mixed = products(term, derivative);
   const Eigen::MatrixXd own = products(derivative, derivative);
   const Eigen::MatrixXd reduced = own - mixed.transpose() * values.ldlt().solve(mixed);
@@ -237,7 +237,7 @@ int SliceSolver::least_important() const {
   if (count() == 0) return -1;
   Eigen::MatrixXd products;
   gram(columns(state_), samples_.padded(), products);
-  products.diagonal() *= 1 + kRidge;
+  products.diagonal() *= 1 + kSliceRidge;
   const Eigen::MatrixXd inverse = products.inverse();
   int least = 0;
   double least_cost = std::numeric_limits<double>::infinity();

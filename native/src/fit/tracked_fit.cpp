@@ -14,9 +14,9 @@ namespace {
 using Index = Eigen::Index;
 
 // Views are fitted a little tighter than asked, for those between them and for what the fold has hidden.
-constexpr double kGoalShare = 0.8;
+constexpr double kViewGoalShare = 0.8;
 constexpr int kFirstLobes = 4;
-constexpr int kPolishSteps = 80, kRounds = 4, kRoundSteps = 8;
+constexpr int kPolishSteps = 80, kPolishRounds = 4, kRoundSteps = 8;
 // A model of few lobes is put in order before it grows on: so often lobes change places.
 constexpr int kExchanges = 4;
 constexpr double kPolishLeast = 3e-4;
@@ -37,7 +37,7 @@ OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes)
   for (const TrackedView& v : problem.views()) {
     if (v.guide) continue;
     const double error = reported_error(problem.views(), v);
-    point.worst = std::max(point.worst, kGoalShare * error / v.goal);
+    point.worst = std::max(point.worst, kViewGoalShare * error / v.goal);
     point.relative_l2 += v.wv.z * error;
     weight += v.wv.z;
   }
@@ -105,7 +105,7 @@ void grow_for_pictures(TrackedProblem& problem, TrackedLobes& lobes, int most, s
 /// The last word on a number of lobes: the views far from their goal brought nearer, then rounded.
 void polish(TrackedProblem& problem, TrackedLobes& lobes) {
   refine(problem, lobes, kPolishSteps, kPolishLeast);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kPolishRounds; ++round) {
     reweight(problem);
     refine(problem, lobes, kRoundSteps, kPolishLeast);
   }
@@ -122,7 +122,9 @@ void record_errors(const TrackedProblem& problem, TrackedFit& fit) {
   }
 }
 
-class Growth {
+}  // namespace
+
+class TrackedGrowth::Growth {
  public:
   Growth(TrackedProblem& problem, const TrackedFitOptions& options, Progress& progress)
       : problem_(problem), options_(options), progress_(progress) {
@@ -164,7 +166,7 @@ class Growth {
   const std::vector<OrderPoint>& points() const { return points_; }
 
  private:
-  bool good_enough() const { return points_.back().worst <= kGoalShare; }
+  bool good_enough() const { return points_.back().worst <= kViewGoalShare; }
 
   TrackedProblem& problem_;
   const TrackedFitOptions& options_;
@@ -174,6 +176,8 @@ class Growth {
   int idle_ = 0;       // lobes in turn that gained next to nothing
   bool done_ = false;  // no more lobes are wanted
 };
+
+namespace {
 
 /// What a symmetric model may err by against the folded values of a view, so that against what was measured it errs by
 /// `tolerance`, or, where that is more, by what mirror images differ by: sqrt(2) times `fold` (fit/noise.h). Never more
@@ -187,7 +191,7 @@ TrackedProblem problem_of(const std::vector<MeasuredSlice>& slices, const Tracke
                           const Progress& progress) {
   const auto goal = [&options](const MeasuredSlice& slice) {
     const double theta_v = std::acos(std::clamp(Vec3d(slice.wv).z, -1.0, 1.0));
-    return kGoalShare * beside_fold(tolerance_at(options.tolerance, theta_v), slice.fold);
+    return kViewGoalShare * beside_fold(tolerance_at(options.tolerance, theta_v), slice.fold);
   };
   const ViewSpline spline(options.isotropic, options.cells, options.views);
   return {slices, spline, goal, options.seen_evenly, options.threads, progress};

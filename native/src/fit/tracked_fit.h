@@ -39,6 +39,7 @@ class TrackedGrowth {
   TrackedFit fit(int most);
 
  private:
+  class Growth;
   struct State;
   std::unique_ptr<State> state_;
 };

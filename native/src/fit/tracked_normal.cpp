@@ -16,7 +16,7 @@ using P = ParametricBrdf;
 constexpr double kRelativeResidual = 3e-3;
 constexpr int kMostSteps = 80;
 // Of the mean diagonal: what the data leave open must not be singular, nor drift.
-constexpr float kRidge = 1e-6f;
+constexpr float kNormalRidge = 1e-6f;
 // Of a block's diagonal of ones, so that floats can hold its factors.
 constexpr float kBlockRidge = 1e-5f;
 // Of the rows of a view's matrix: the threads share what is larger, in so many runs.
@@ -133,7 +133,7 @@ Eigen::VectorXf TrackedNormal::product(const Eigen::VectorXf& x) const {
 
 Eigen::VectorXd TrackedNormal::step(double damping, const Eigen::VectorXd& free) const {
   const Eigen::VectorXf allowed = free.cast<float>();
-  const float ridge = kRidge * diagonal_.mean() + 1e-12f;
+  const float ridge = kNormalRidge * diagonal_.mean() + 1e-12f;
   const Eigen::VectorXf added = (static_cast<float>(damping) * diagonal_).array() + ridge;
   const Preconditioner preconditioned(*this, added, allowed);
   Eigen::VectorXf step = Eigen::VectorXf::Zero(gradient_.size());

@@ -13,9 +13,8 @@ namespace {
 using Index = Eigen::Index;
 using P = ParametricBrdf;
 
-constexpr double kChannel[3] = {0.2126, 0.7152, 0.0722};  // shares of the luminance
 // The parameters of a shape, in the order of fill_warped_slopes.
-constexpr int kShape[kWarpedSlopes] = {P::kLogBandwidth, P::kTiltX, P::kStretchA, P::kTiltY, P::kStretchB};
+constexpr int kSlopeParameter[kWarpedSlopes] = {P::kLogBandwidth, P::kTiltX, P::kStretchA, P::kTiltY, P::kStretchB};
 constexpr int kColor[3] = {P::kLogRed, P::kLogGreen, P::kLogBlue};
 
 int slopes_of(const P& model) { return model.isotropic ? 3 : kWarpedSlopes; }
@@ -83,8 +82,8 @@ void leave_residual(const Linear& linear, TrackedView& view) {
     subtract_columns(linear.columns.first(lobes), coefficients, view.samples.target(c), view.samples.padded(),
                      view.residual[c].data());
     const ResidualSums squares = residual_sums(view.residual[c], view.share);
-    plain += kChannel[c] * squares.shared;
-    pictures += kChannel[c] * (squares.all - squares.shared);
+    plain += kLuminanceShare[c] * squares.shared;
+    pictures += kLuminanceShare[c] * (squares.all - squares.shared);
   }
   view.error = std::sqrt(plain / view.energy);
   view.picture_error = std::sqrt(std::max(pictures, 0.0) / view.picture_share());
@@ -102,18 +101,18 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
 
   const Eigen::MatrixXd& beta = linear.coefficient;
   Eigen::MatrixXd weighted = beta;  // channel weight x coefficient
-  for (int c = 0; c < 3; ++c) weighted.col(c) *= kChannel[c];
+  for (int c = 0; c < 3; ++c) weighted.col(c) *= kLuminanceShare[c];
   const Eigen::MatrixXd mixed = weighted * beta.transpose();
   LocalNormal out{Eigen::MatrixXf::Zero(model.parameter_count() * lobes, model.parameter_count() * lobes),
                   Eigen::VectorXd::Zero(model.parameter_count() * lobes)};
   const auto slope_row = [&](Index j, int a) { return lobes + j * slopes + a; };
   for (Index j = 0; j < lobes; ++j) {
     for (int a = 0; a < slopes; ++a) {
-      const Index row = kShape[a] * lobes + j;
+      const Index row = kSlopeParameter[a] * lobes + j;
       out.gradient[row] = -moments.row(slope_row(j, a)).dot(weighted.row(j));
       for (Index k = 0; k < lobes; ++k) {
         for (int b = 0; b < slopes; ++b) {
-          out.hessian(row, kShape[b] * lobes + k) =
+          out.hessian(row, kSlopeParameter[b] * lobes + k) =
               static_cast<float>(mixed(j, k) * products(slope_row(j, a), slope_row(k, b)));
         }
         for (int c = 0; c < 3; ++c) {
@@ -135,10 +134,10 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
   for (Index j = 0; j < lobes; ++j) {
     const auto slope = linear.excess_slope.col(j);
     for (int a = 0; a < slopes; ++a) {
-      const Index row = kShape[a] * lobes + j;
+      const Index row = kSlopeParameter[a] * lobes + j;
       out.gradient[row] += hiding * linear.excess[j] * slope[a];
       for (int b = 0; b < slopes; ++b) {
-        out.hessian(row, kShape[b] * lobes + j) += static_cast<float>(hiding * slope[a] * slope[b]);
+        out.hessian(row, kSlopeParameter[b] * lobes + j) += static_cast<float>(hiding * slope[a] * slope[b]);
       }
     }
   }
@@ -210,7 +209,7 @@ double error_of(const ParametricBrdf& brdf, const TrackedView& view) {
     for (int c = 0; c < 3; ++c) {
       const double weight = static_cast<double>(samples.sqrt_weight()[i]);
       const double left = weight * wl.z * f[c] - static_cast<double>(samples.target(c)[i]);
-      sum += kChannel[c] * left * left * static_cast<double>(view.share[i]);
+      sum += kLuminanceShare[c] * left * left * static_cast<double>(view.share[i]);
     }
   }
   return std::sqrt(sum / view.energy);

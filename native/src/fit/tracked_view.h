@@ -19,6 +19,9 @@ inline constexpr double kHiding = 100;
 // Weight of a guide's squared error.
 inline constexpr double kGuideWeight = 0.01;
 
+// Weights of the channels in the luminance.
+inline constexpr double kLuminanceShare[3] = {0.2126, 0.7152, 0.0722};
+
 /// A view of the fit. `error` is the relative L2 of its f cos, channels weighted as in luminance: never below that of
 /// the luminance.
 struct TrackedView {

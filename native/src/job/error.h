@@ -30,4 +30,6 @@ class Error : public std::runtime_error {
   Status status_;
 };
 
+[[noreturn]] inline void refuse(const std::string& sentence) { throw Error(Status::invalid_argument, sentence); }
+
 }  // namespace velour

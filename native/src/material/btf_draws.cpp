@@ -15,7 +15,8 @@ namespace {
 // the least or next to it for both. Nineteen lobes gain a tenth more and cost three times the evaluations.
 constexpr float kBandwidth = 8.0f, kTilt = 0.85f;
 constexpr int kBroad = BtfLook::kBroad, kHalf = kBroad, kLobes = kBroad + 1;
-constexpr float kLeastCosine = 0.05f;  // of the view to the relief's normal: below it there is no highlight to speak of
+constexpr float kMinReliefCosine =
+    0.05f;  // of the view to the relief's normal: below it there is no highlight to speak of
 
 struct BroadLobes {
   std::array<Vec3, kBroad> center;
@@ -63,7 +64,7 @@ std::array<float, kLobes> masses(const BtfLook& look, float half_bandwidth) {
   }
   mass[kHalf] = 0;
   const float cosine = glm::dot(look.wv, look.normal);
-  if (half_bandwidth > 0 && cosine > kLeastCosine) {
+  if (half_bandwidth > 0 && cosine > kMinReliefCosine) {
     const float beyond = std::max(look.mirror - broad, 0.0f);
     mass[kHalf] = beyond * 4 * cosine * (2 * kPi / half_bandwidth);  // method of half-vector lobes: docs/equations.md
   }
@@ -152,7 +153,7 @@ BtfDraws::BtfDraws(const std::vector<Example>& examples) {
 }
 
 bool BtfDraws::asks_mirror(const Vec3& wv, const Vec3& normal) const {
-  return asks() && half_bandwidth_ > 0 && glm::dot(wv, normal) > kLeastCosine;
+  return asks() && half_bandwidth_ > 0 && glm::dot(wv, normal) > kMinReliefCosine;
 }
 
 void BtfDraws::fill(const BtfLook& look, WarpedMixture& mixture) const {

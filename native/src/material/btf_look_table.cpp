@@ -13,7 +13,7 @@ namespace {
 // Of a woven cloth and of chain mail of 64 texels: half of the cells costs 7 % of variance, three views a side 4 %; six
 // gain nothing.
 constexpr uint32_t kMostCells = 64;  // along both axes
-constexpr uint32_t kViews = 4;       // along both axes of the disk
+constexpr uint32_t kViewCells = 4;   // along both axes of the disk
 constexpr float kRim = 0.95f;        // of the disk: what lies beyond is the outermost view
 
 /// Views on the unit disk, which keeps areas.
@@ -21,14 +21,14 @@ size_t nearest_view(const Vec3& wv) {
   const float sine = std::sqrt(wv.x * wv.x + wv.y * wv.y), radius = std::sqrt(std::max(0.0f, 1 - wv.z));
   const float scale = sine > 0 ? radius / sine : 0.0f;
   const auto cell = [&](float x) {
-    return std::min(static_cast<uint32_t>(std::max(0.0f, 0.5f * kViews * (1 + scale * x))), kViews - 1);
+    return std::min(static_cast<uint32_t>(std::max(0.0f, 0.5f * kViewCells * (1 + scale * x))), kViewCells - 1);
   };
-  return size_t{cell(wv.y)} * kViews + cell(wv.x);
+  return size_t{cell(wv.y)} * kViewCells + cell(wv.x);
 }
 
 Vec3 view_in(size_t view) {
-  const auto middle = [](size_t i) { return (2 * static_cast<float>(i) + 1) / kViews - 1; };
-  const Vec2 at(middle(view % kViews), middle(view / kViews));
+  const auto middle = [](size_t i) { return (2 * static_cast<float>(i) + 1) / kViewCells - 1; };
+  const Vec2 at(middle(view % kViewCells), middle(view / kViewCells));
   const float radius = std::min(glm::length(at), kRim), cosine = 1 - radius * radius;
   const Vec2 across = at * (std::sqrt(1 - cosine * cosine) / std::max(glm::length(at), 1e-6f));
   return {across.x, across.y, cosine};
@@ -67,9 +67,10 @@ BtfLookTable::BtfLookTable(const Vec2& texels, const Ask& ask) {
   strengths_.resize(first_of(levels));
   const auto fill = [&](uint32_t level, uint32_t cells, size_t cell) {
     const Vec2 uv = (Vec2(cell % cells, cell / cells) + 0.5f) / static_cast<float>(cells);
-    for (size_t view = 0; view < kViews * kViews; ++view) {
+    for (size_t view = 0; view < kViewCells * kViewCells; ++view) {
       const Broad broad = ask(uv, finest_ + static_cast<float>(level), view_in(view));
-      std::ranges::transform(broad, strengths_[first_of(level) + cell * kViews * kViews + view].begin(), byte_of);
+      std::ranges::transform(broad, strengths_[first_of(level) + cell * kViewCells * kViewCells + view].begin(),
+                             byte_of);
     }
   };
   for (uint32_t level = 0; level < levels; ++level) {
@@ -87,7 +88,7 @@ BtfLookTable::BtfLookTable(const Vec2& texels, const Ask& ask) {
 size_t BtfLookTable::first_of(uint32_t level) const {
   size_t cells = 0;
   for (uint32_t l = 0; l < level; ++l) cells += size_t{cells_ >> l} * (cells_ >> l);
-  return cells * kViews * kViews;
+  return cells * kViewCells * kViewCells;
 }
 
 BtfLookTable::Broad BtfLookTable::look_up(const Vec2& uv, float level, const Vec3& wv) const {
@@ -96,7 +97,7 @@ BtfLookTable::Broad BtfLookTable::look_up(const Vec2& uv, float level, const Vec
   const uint32_t cells = cells_ >> at;
   const size_t cell = size_t{cell_of(uv.y, cells)} * cells + cell_of(uv.x, cells);
   Broad broad;
-  std::ranges::transform(strengths_[first_of(at) + cell * kViews * kViews + nearest_view(wv)], broad.begin(),
+  std::ranges::transform(strengths_[first_of(at) + cell * kViewCells * kViewCells + nearest_view(wv)], broad.begin(),
                          [](uint8_t byte) { return kOfByte.strength[byte]; });
   return broad;
 }

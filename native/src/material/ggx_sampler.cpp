@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "material/defensive_share.h"
 #include "material/ggx.h"
 #include "material/ggx_pdf.h"
 #include "sphere/discrete_choice.h"
@@ -10,8 +11,6 @@
 namespace velour {
 
 namespace {
-
-constexpr float kDefensiveShare = 0.05f;
 
 SpecularAlbedo albedo_along_x(const GgxParameters& p, const Vec2& alpha, float scale) {
   if (scale == 0) return {};

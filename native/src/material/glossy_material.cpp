@@ -7,9 +7,9 @@
 namespace velour {
 namespace {
 
-enum Parameter { kRed, kGreen, kBlue, kAlpha };
-
 class GlossyMaterial final : public Material {
+  enum Parameter { kRed, kGreen, kBlue, kAlpha };
+
  public:
   explicit GlossyMaterial(const GlossyParameters& p) : p_(p) {}
 

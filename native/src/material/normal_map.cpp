@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr float kLeastCosine = 1e-6f;      // of the surface's own normal: f is finite
+constexpr float kMinNormalCosine = 1e-6f;  // of the surface's own normal: f is finite
 constexpr float kLeastViewCosine = 1e-3f;  // of a viewer with the mapped normal
 
 class NormalMappedMaterial final : public Material {
@@ -37,7 +37,7 @@ class NormalMappedMaterial final : public Material {
     soften(point, wl, turned, f);
     for (int i = 0; i < wl.count; ++i) {
       const bool above = wl.z[i] > 0 && turned.z[i] > 0;
-      f.set(i, above ? f.get(i) * (turned.z[i] / std::max(wl.z[i], kLeastCosine)) : Rgb(0.0f));
+      f.set(i, above ? f.get(i) * (turned.z[i] / std::max(wl.z[i], kMinNormalCosine)) : Rgb(0.0f));
     }
   }
 

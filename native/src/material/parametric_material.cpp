@@ -81,9 +81,9 @@ class SymmetricMaterial final : public ParametricMaterial {
   }
 };
 
-class MeasuredMaterial final : public ParametricMaterial {
+class MeasuredParametricMaterial final : public ParametricMaterial {
  public:
-  MeasuredMaterial(std::shared_ptr<const Measurement> measurement, const ParametricBrdf& proposal)
+  MeasuredParametricMaterial(std::shared_ptr<const Measurement> measurement, const ParametricBrdf& proposal)
       : ParametricMaterial(proposal), measurement_(std::move(measurement)) {}
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
@@ -110,7 +110,7 @@ std::shared_ptr<const Material> make_parametric_material(const std::shared_ptr<c
 
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
                                                        const std::shared_ptr<const ParametricBrdf>& proposal) {
-  return std::make_shared<MeasuredMaterial>(std::move(measurement), *proposal);
+  return std::make_shared<MeasuredParametricMaterial>(std::move(measurement), *proposal);
 }
 
 }  // namespace velour

@@ -8,8 +8,6 @@
 namespace velour {
 namespace {
 
-enum Parameter { kRed, kGreen, kBlue, kEven, kUneven, kManyRed, kManyGreen, kManyBlue };
-
 constexpr float kWhole = 0.5f * kPi - 2.0f / 3;  // of uneven_albedo: at the horizon
 
 /// The integral of s / t of the header times the cosine, over the hemisphere of light.
@@ -22,6 +20,8 @@ float uneven_albedo(float cosine) {
 constexpr float kMeanUnevenAlbedo = (2 * kPi - 5.6f) / 3;  // weighted by the cosine
 
 class RoughDiffuseMaterial final : public Material {
+  enum Parameter { kRed, kGreen, kBlue, kEven, kUneven, kManyRed, kManyGreen, kManyBlue };
+
  public:
   explicit RoughDiffuseMaterial(const RoughDiffuseParameters& p) : p_(p) {}
 

@@ -3,14 +3,13 @@
 #include <algorithm>
 
 #include "job/error.h"
+#include "material/defensive_share.h"
 #include "sphere/frame.h"
 #include "srbf/few_lobes.h"
 
 namespace velour {
 
 namespace {
-
-constexpr float kDefensiveShare = 0.05f;  // method 6.2
 
 /// Relative L2 that the few lobes which samples are drawn from may err by; docs/rendering.md has what others cost.
 constexpr double kDrawsTolerance = 0.3;

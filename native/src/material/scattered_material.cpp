@@ -54,9 +54,10 @@ class ScatteredMaterial final : public LobeSampledMaterial {
   bool isotropic() const override { return lobes_.isotropic(); }
 };
 
-class MeasuredMaterial final : public LobeSampledMaterial {
+class MeasuredScatteredMaterial final : public LobeSampledMaterial {
  public:
-  MeasuredMaterial(std::shared_ptr<const Measurement> measurement, const ScatteredBrdf& proposal, int neighbors)
+  MeasuredScatteredMaterial(std::shared_ptr<const Measurement> measurement, const ScatteredBrdf& proposal,
+                            int neighbors)
       : LobeSampledMaterial(proposal, neighbors), measurement_(std::move(measurement)) {}
 
   void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
@@ -83,7 +84,7 @@ std::shared_ptr<const Material> make_scattered_material(std::shared_ptr<const Sc
 
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
                                                        std::shared_ptr<const ScatteredBrdf> proposal, int neighbors) {
-  return std::make_shared<MeasuredMaterial>(std::move(measurement), *proposal, neighbors);
+  return std::make_shared<MeasuredScatteredMaterial>(std::move(measurement), *proposal, neighbors);
 }
 
 }  // namespace velour

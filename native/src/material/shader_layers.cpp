@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kViews = 32, kDraws = 32;
+constexpr uint32_t kAlbedoViews = 32, kAlbedoDraws = 32;
 
 float brightest(const Rgb& c) { return std::max({c.r, c.g, c.b, 0.0f}); }
 
@@ -16,16 +16,16 @@ float brightest(const Rgb& c) { return std::max({c.r, c.g, c.b, 0.0f}); }
 float mean_albedo(const Material& material) {
   const auto point = std::make_unique<PreparedBrdf>();
   double sum = 0;
-  for (uint32_t i = 0; i < kViews; ++i) {
+  for (uint32_t i = 0; i < kAlbedoViews; ++i) {
     RandomStream random(1, i, 0);
     material.prepare(sample_cosine_hemisphere(random.next2()), *point);
-    for (uint32_t k = 0; k < kDraws; ++k) {
+    for (uint32_t k = 0; k < kAlbedoDraws; ++k) {
       const Vec3 wl = material.sample_one(*point, random.next2());
       const Material::Reflection of = material.eval_one(*point, wl);
       if (of.pdf > 0) sum += static_cast<double>(luminance(of.f) * std::abs(wl.z) / of.pdf);
     }
   }
-  return static_cast<float>(sum / (kViews * kDraws));
+  return static_cast<float>(sum / (kAlbedoViews * kAlbedoDraws));
 }
 
 class LayeredMaterial final : public Material {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "brdf/fast_atan2.h"
+#include "material/defensive_share.h"
 #include "material/half_vector_table.h"
 #include "sphere/discrete_choice.h"
 #include "sphere/warp.h"
@@ -16,7 +17,6 @@ namespace {
 
 constexpr int kMeridianViews = 90;
 constexpr int kPolarViews = 16, kAzimuthViews = 32;
-constexpr float kDefensiveShare = 0.05f;  // cosine: the density is positive wherever f may be
 
 /// Tables about a view with weights that sum to 1, and the azimuth of the frame that they were made in.
 struct ViewBlend {

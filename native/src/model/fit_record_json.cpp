@@ -21,9 +21,9 @@ Json errors_json(const ErrorByViewAngle& errors) {
 }
 
 /// Reads keys of one object and names what is wrong with them.
-class Reader {
+class FitRecordReader {
  public:
-  Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}
+  FitRecordReader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}
 
   void number(const char* key, double& out) const {
     if (const Json* v = find(key)) out = number_of(*v, key);
@@ -101,7 +101,7 @@ std::string fit_record_json(const FitRecord& record) {
 FitRecord parse_fit_record(const std::string& text, const std::string& where) {
   const Json json = parse_json(text);
   if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object.");
-  const Reader reader(json, where);
+  const FitRecordReader reader(json, where);
   FitRecord record;
   reader.number("relative_l2", record.relative_l2);
   reader.errors("by_view_angle", record.by_view_angle);

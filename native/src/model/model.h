@@ -65,6 +65,8 @@ struct Model {
   std::optional<ModelShell> shell = std::nullopt;
 };
 
+uint64_t parameter_bytes(const ModelBody& body);
+
 /// Whether the model holds for some scenes alone. One that was fitted for scenes which need all of the full model is
 /// that full model, and holds for any.
 bool is_reduced(const Model& model);

@@ -80,10 +80,12 @@ const TexelGrid* grid_of(const Model& model) {
   return with_btf(model.body, [](const auto& btf) { return &btf.grid; });
 }
 
+uint64_t parameter_bytes(const ModelBody& body) {
+  return std::visit([](const auto& b) { return b.parameter_bytes(); }, body);
+}
+
 bool is_reduced(const Model& model) {
-  if (!model.scene) return false;
-  const auto bytes = std::visit([](const auto& body) { return body.parameter_bytes(); }, model.body);
-  return bytes < model.scene->full_parameter_bytes;
+  return model.scene && parameter_bytes(model.body) < model.scene->full_parameter_bytes;
 }
 
 std::vector<uint8_t> encode_model(const Model& model) {

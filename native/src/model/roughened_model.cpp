@@ -13,8 +13,6 @@ std::string text_of(float roughness) {
   return text;
 }
 
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(Status::invalid_argument, sentence); }
-
 }  // namespace
 
 Model roughened(const Model& model, float roughness) {

@@ -12,7 +12,7 @@
 namespace velour {
 namespace {
 
-constexpr double kLeastCosine = 1e-4, kLeastLight = 1e-30;
+constexpr double kMinNodeCosine = 1e-4, kMinLight = 1e-30;
 constexpr int kMaxGridCells = 24;  // twice as many take four times as long
 
 using P = ParametricBrdf;
@@ -80,7 +80,7 @@ std::vector<Vec3d> lights_of(const ParametricBrdf& brdf, const Vec3d& wv) {
   return light;
 }
 
-double log_of(double light) { return std::log(std::max(light, kLeastLight)); }
+double log_of(double light) { return std::log(std::max(light, kMinLight)); }
 
 /// Gives each lobe of `rougher` about the light that it has in `brdf`: that of the nodes' views, as control values, so
 /// that the factor of a view lies between those of its nodes.
@@ -187,7 +187,7 @@ ParametricBrdf roughened(const ParametricBrdf& original, double roughness) {
   ParametricBrdf rougher = brdf;
   const ViewSpline spline = brdf.spline();
   for (int node = 0; node < spline.node_count(); ++node) {
-    const double cosine = std::max(std::cos(spline.view_of(node).theta), kLeastCosine);
+    const double cosine = std::max(std::cos(spline.view_of(node).theta), kMinNodeCosine);
     const double of_half = half_bandwidth_of_roughness(roughness);
     const double of_light = light_bandwidth_of_roughness(roughness, cosine);
     for (int lobe = 0; lobe < brdf.lobe_count(); ++lobe) {

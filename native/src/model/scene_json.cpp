@@ -54,9 +54,9 @@ void write_surface(const SceneRecord& record, Json& json) {
 }
 
 /// Reads keys and names what is wrong with them; none may be missing.
-class Reader {
+class SceneReader {
  public:
-  Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}
+  SceneReader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}
 
   double number(const char* key) const { return number_of(at(key), key); }
   double number_or_infinite(const char* key) const {
@@ -148,7 +148,7 @@ std::string scene_record_json(const SceneRecord& record) {
 SceneRecord parse_scene_record(const std::string& text, const std::string& where) {
   const Json json = parse_json(text);
   if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object.");
-  const Reader reader(json, where);
+  const SceneReader reader(json, where);
   SceneRecord record;
   record.domain.frames = reader.whole("frames");
   record.domain.camera_rays = reader.whole("camera_rays");

@@ -9,8 +9,8 @@ namespace velour {
 namespace {
 
 /// Names of the parts of side `number`.
-struct SideParts {
-  explicit SideParts(size_t number) : prefix(side_prefix(number)) {}
+struct SrbfSideParts {
+  explicit SrbfSideParts(size_t number) : prefix(side_prefix(number)) {}
   std::string lobes() const { return prefix + "lobes"; }
   std::string frames() const { return prefix + "frames"; }
   std::string coefficients() const { return prefix + "coefficients"; }
@@ -22,7 +22,7 @@ struct SideParts {
   std::string prefix;
 };
 
-void write_side(const SrbfSide& side, const SideParts& part, TensorFile& file) {
+void write_side(const SrbfSide& side, const SrbfSideParts& part, TensorFile& file) {
   Tensor& lobes = file.tensors[part.lobes()] = {{side.lobes.size(), MultivariateLobe::kNumbers}, {}};
   Tensor& frames = file.tensors[part.frames()] = {{side.lobes.size()}, {}, Precision::halves};
   for (size_t j = 0; j < side.lobes.size(); ++j) {
@@ -50,7 +50,7 @@ size_t lobe_numbers(const Tensor& lobes) {
   return lobes.shape.size() == 2 && lobes.shape[1] == kBefore ? kBefore : size_t{MultivariateLobe::kNumbers};
 }
 
-void read_lobes(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
+void read_lobes(const ModelFields& fields, const SrbfSideParts& part, SrbfSide& side) {
   constexpr float kSharpest = 1e6f;  // bandwidths of any use are far below
   const size_t numbers = lobe_numbers(fields.tensor(part.lobes()));
   const Tensor& lobes = fields.rows(part.lobes(), numbers);
@@ -76,7 +76,7 @@ void read_lobes(const ModelFields& fields, const SideParts& part, SrbfSide& side
   }
 }
 
-void read_coefficients(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
+void read_coefficients(const ModelFields& fields, const SrbfSideParts& part, SrbfSide& side) {
   const Tensor& tensor = fields.rows(part.coefficients(), 2);
   const size_t count = tensor.data.size() / 2;
   if (count > 3 * SrbfBtf::kMaxLobes) fields.fail(part.coefficients() + " has too many rows.");
@@ -97,7 +97,7 @@ void read_coefficients(const ModelFields& fields, const SideParts& part, SrbfSid
 }
 
 /// Files before 1.5 have half floats in place of bytes; they become bytes here.
-void read_half_values(const ModelFields& fields, const SideParts& part, SrbfSide& side) {
+void read_half_values(const ModelFields& fields, const SrbfSideParts& part, SrbfSide& side) {
   std::vector<std::vector<float>> values;
   for (size_t l = 0; l < side.levels.size(); ++l) {
     const SrbfLevel& level = side.levels[l];
@@ -108,7 +108,7 @@ void read_half_values(const ModelFields& fields, const SideParts& part, SrbfSide
   side.set_values(values);
 }
 
-SrbfSide read_side(const ModelFields& fields, const SideParts& part, const TexelGrid& grid) {
+SrbfSide read_side(const ModelFields& fields, const SrbfSideParts& part, const TexelGrid& grid) {
   SrbfSide side;
   read_lobes(fields, part, side);
   read_coefficients(fields, part, side);
@@ -133,7 +133,7 @@ SrbfSide read_side(const ModelFields& fields, const SideParts& part, const Texel
 void write_srbf_btf(const SrbfBtf& btf, TensorFile& file) {
   write_btf_frame({btf.layout, btf.grid, btf.companding, btf.axes}, file);
   write_side_table(side_table(btf), file);
-  for (size_t s = 0; s < btf.sides.size(); ++s) write_side(btf.sides[s], SideParts(s), file);
+  for (size_t s = 0; s < btf.sides.size(); ++s) write_side(btf.sides[s], SrbfSideParts(s), file);
 }
 
 SrbfBtf read_srbf_btf(const ModelFields& fields) {
@@ -141,7 +141,7 @@ SrbfBtf read_srbf_btf(const ModelFields& fields) {
   SrbfBtf btf{frame.layout, frame.grid, frame.companding, frame.axes, {}};
   SideTable table = read_side_table(fields);
   for (const SideTable::Place& place : table.sides) {
-    SrbfSide& side = btf.sides.emplace_back(read_side(fields, SideParts(btf.sides.size()), btf.grid));
+    SrbfSide& side = btf.sides.emplace_back(read_side(fields, SrbfSideParts(btf.sides.size()), btf.grid));
     side.view_below = place.view_below;
     side.light_below = place.light_below;
   }

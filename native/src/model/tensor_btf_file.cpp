@@ -9,8 +9,8 @@ namespace velour {
 namespace {
 
 /// Names of the parts of side `number`.
-struct SideParts {
-  explicit SideParts(size_t number) : prefix(side_prefix(number)) {}
+struct TensorSideParts {
+  explicit TensorSideParts(size_t number) : prefix(side_prefix(number)) {}
   std::string view() const { return prefix + "view"; }
   std::string light() const { return prefix + "light"; }
   std::string color() const { return prefix + "color"; }
@@ -39,7 +39,7 @@ void split(const std::vector<Value>& all, std::vector<Value> TensorBtfCluster::*
   }
 }
 
-void write_side(const TensorSide& side, const SideParts& part, TensorFile& file) {
+void write_side(const TensorSide& side, const TensorSideParts& part, TensorFile& file) {
   const uint64_t clusters = side.clusters.size();
   const auto write_halves = [&](const std::string& name, std::vector<HalfBits> TensorBtfCluster::*own, uint64_t rank) {
     const std::vector<HalfBits> halves = joined(side, own);
@@ -72,7 +72,7 @@ uint32_t extent_of(const ModelFields& fields, const std::string& part, size_t di
               std::to_string(dimension) + "; it must have 1 to " + std::to_string(most) + ".");
 }
 
-void check_ranks(const ModelFields& fields, const SideParts& part, const TensorSide& side) {
+void check_ranks(const ModelFields& fields, const TensorSideParts& part, const TensorSide& side) {
   for (const uint32_t rank : {side.rank.texel, side.rank.light}) {
     if (side.clusters.size() * padded_rank(rank) <= TensorBtf::kMaxClusterRanks) continue;
     fields.fail(part.core() + " has " + std::to_string(side.clusters.size()) + " clusters of rank " +
@@ -91,7 +91,7 @@ uint64_t directions_of(const ModelFields& fields, const std::vector<PolarAngles>
   return count;
 }
 
-void read_factors(const ModelFields& fields, const SideParts& part, const PairLayout& layout, TensorSide& side) {
+void read_factors(const ModelFields& fields, const TensorSideParts& part, const PairLayout& layout, TensorSide& side) {
   side.clusters.resize(extent_of(fields, part.core(), 3, 0, TensorBtf::kMaxClusters));
   side.rank = {extent_of(fields, part.core(), 3, 1, TensorBtf::kMaxRank),
                extent_of(fields, part.view(), 3, 2, TensorBtf::kMaxRank),
@@ -127,8 +127,8 @@ void check_members(const ModelFields& fields, const std::string& part, const Ten
   }
 }
 
-TensorLevel read_level(const ModelFields& fields, const SideParts& part, size_t number, uint32_t width, uint32_t height,
-                       const TensorSide& side) {
+TensorLevel read_level(const ModelFields& fields, const TensorSideParts& part, size_t number, uint32_t width,
+                       uint32_t height, const TensorSide& side) {
   TensorLevel level{width, height, {}, {}, {}};
   if (fields.has(part.relief(number))) level.relief = shaped_halves(fields, part.relief(number), {height, width});
   level.member = read_byte_maps(fields, part.members(number), side.members, width, height);
@@ -137,7 +137,7 @@ TensorLevel read_level(const ModelFields& fields, const SideParts& part, size_t 
   return level;
 }
 
-TensorSide read_side(const ModelFields& fields, const SideParts& part, const BtfFrame& frame,
+TensorSide read_side(const ModelFields& fields, const TensorSideParts& part, const BtfFrame& frame,
                      const SideTable::Place& place) {
   TensorSide side;
   side.view_below = place.view_below;
@@ -156,7 +156,7 @@ TensorSide read_side(const ModelFields& fields, const SideParts& part, const Btf
 void write_tensor_btf(const TensorBtf& btf, TensorFile& file) {
   write_btf_frame({btf.layout, btf.grid, btf.companding, btf.axes}, file);
   write_side_table(side_table(btf), file);
-  for (size_t s = 0; s < btf.sides.size(); ++s) write_side(btf.sides[s], SideParts(s), file);
+  for (size_t s = 0; s < btf.sides.size(); ++s) write_side(btf.sides[s], TensorSideParts(s), file);
 }
 
 TensorBtf read_tensor_btf(const ModelFields& fields) {
@@ -164,7 +164,7 @@ TensorBtf read_tensor_btf(const ModelFields& fields) {
   TensorBtf btf{frame.layout, frame.grid, frame.companding, frame.axes, {}};
   SideTable table = read_side_table(fields);
   for (const SideTable::Place& place : table.sides) {
-    btf.sides.push_back(read_side(fields, SideParts(btf.sides.size()), frame, place));
+    btf.sides.push_back(read_side(fields, TensorSideParts(btf.sides.size()), frame, place));
   }
   btf.shared = std::move(table.shared);
   return btf;

@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr int kStep = 1, kMeasuredStep = 5, kLast = 89;  // degrees
+constexpr int kModelStep = 1, kMeasuredStep = 5, kLastAlbedo = 89;  // degrees
 // An integral over less says nothing of the albedo.
 constexpr double kLeastCovered = 0.95;
 
@@ -44,16 +44,17 @@ Plot albedo_plot(const Material& material, const Measurement* measurement, doubl
   const auto view = [phi](int degrees) {
     return direction(static_cast<float>(radians_from(static_cast<double>(degrees))), static_cast<float>(phi));
   };
-  const double last = measurement ? 2.0 * kLast : kLast;  // views of the model, then those of the measurement
+  const double last =
+      measurement ? 2.0 * kLastAlbedo : kLastAlbedo;  // views of the model, then those of the measurement
   std::vector<std::pair<int, Vec3d>> modelled, measured;
-  for (int d = 0; d <= kLast; d += kStep) {
+  for (int d = 0; d <= kLastAlbedo; d += kModelStep) {
     progress.check();
     modelled.emplace_back(d, directional_albedo(material, view(d)));
     progress.update(d / last);
   }
-  for (int d = 0; measurement && d <= kLast; d += kMeasuredStep) {
+  for (int d = 0; measurement && d <= kLastAlbedo; d += kMeasuredStep) {
     progress.check();
-    progress.update((kLast + d) / last);
+    progress.update((kLastAlbedo + d) / last);
     if (!measurement->covers_view(static_cast<float>(radians_from(static_cast<double>(d))))) continue;
     const MeasuredAlbedo albedo = directional_albedo(*measurement, view(d));
     if (albedo.covered >= kLeastCovered) measured.emplace_back(d, albedo.albedo);

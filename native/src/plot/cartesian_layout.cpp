@@ -8,7 +8,7 @@ namespace velour {
 namespace {
 
 /// Inside of the axes; y down.
-struct Frame {
+struct PlotFrame {
   float left, top, right, bottom;
 };
 
@@ -19,10 +19,10 @@ std::vector<PlotTick> ticks_upwards(const Plot& plot, const Pen& pen, float heig
 }
 
 /// Between what is written around it.
-Frame frame_of(const Plot& plot, const Pen& pen) {
+PlotFrame frame_of(const Plot& plot, const Pen& pen) {
   const float side = pen.side(), margin = pen.margin(), line = pen.line_height();
   const float legend = pen.legend_height(plot, side - 2 * margin);
-  Frame frame{margin, margin + line + legend + 0.5f * pen.em(), side - margin, side - margin - 2 * line};
+  PlotFrame frame{margin, margin + line + legend + 0.5f * pen.em(), side - margin, side - margin - 2 * line};
   for (const PlotTick& tick : ticks_upwards(plot, pen, frame.bottom - frame.top)) {
     frame.left = std::max(frame.left, margin + pen.width_of(tick.text) + 0.5f * pen.em());
   }
@@ -31,12 +31,12 @@ Frame frame_of(const Plot& plot, const Pen& pen) {
   return frame;
 }
 
-Vec2 place(const Plot& plot, const Frame& frame, const PlotPoint& p) {
+Vec2 place(const Plot& plot, const PlotFrame& frame, const PlotPoint& p) {
   const auto x = static_cast<float>(place_on(plot.x, p.x)), y = static_cast<float>(place_on(plot.y, p.y));
   return {std::lerp(frame.left, frame.right, x), std::lerp(frame.bottom, frame.top, y)};
 }
 
-void draw_grid(const Plot& plot, const Frame& frame, Pen& pen) {
+void draw_grid(const Plot& plot, const PlotFrame& frame, Pen& pen) {
   for (const PlotTick& tick : ticks_upwards(plot, pen, frame.bottom - frame.top)) {
     const float y = place(plot, frame, {plot.x.low, tick.value}).y;
     pen.grid_line({{frame.left, y}, {frame.right, y}});
@@ -56,7 +56,7 @@ void draw_grid(const Plot& plot, const Frame& frame, Pen& pen) {
 }  // namespace
 
 void lay_out_cartesian(const Plot& plot, Pen& pen) {
-  const Frame frame = frame_of(plot, pen);
+  const PlotFrame frame = frame_of(plot, pen);
   const float margin = pen.margin(), first_baseline = margin + 0.9f * pen.em();
   pen.text(plot.y.label, {margin, first_baseline}, 0);
   pen.legend(plot, {margin, margin + pen.line_height()}, pen.side() - 2 * margin);

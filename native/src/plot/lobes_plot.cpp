@@ -12,7 +12,7 @@
 namespace velour {
 namespace {
 
-constexpr double kStep = 0.2;  // degrees
+constexpr double kCurveStep = 0.2;  // degrees
 // About the mirror direction and back to the viewer steps grow from this, so that the finest highlight has points.
 constexpr double kFinest = 0.002, kGrowth = 1.3;
 // A peak of this many means hides the rest on a linear radius.
@@ -22,7 +22,7 @@ constexpr double kFewestDecades = 2, kMostDecades = 4;
 /// Signed degrees, sorted.
 std::vector<double> plotted_angles(double view_degrees) {
   std::vector<double> angles;
-  const int steps = static_cast<int>(std::lround(180 / kStep));
+  const int steps = static_cast<int>(std::lround(180 / kCurveStep));
   for (int k = 1; k < steps; ++k) angles.push_back(-90 + 180.0 * k / steps);
   for (const double peak : {view_degrees, -view_degrees}) {
     angles.push_back(peak);

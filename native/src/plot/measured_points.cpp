@@ -7,18 +7,18 @@ namespace velour {
 namespace {
 
 constexpr double kNear = 2.5;  // degrees
-constexpr int kStep = 2, kLast = 88;
+constexpr int kPointStep = 2, kLastPoint = 88;
 
 double degrees_from(double radians) { return radians * 180 / kPiD; }
 
 std::vector<double> table_angles(double view_degrees) {
   std::vector<double> angles;
-  for (int a = -kLast; a <= kLast; a += kStep) angles.push_back(a);
+  for (int a = -kLastPoint; a <= kLastPoint; a += kPointStep) angles.push_back(a);
   for (const double away : {0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0}) {
     angles.push_back(view_degrees - away);
     angles.push_back(view_degrees + away);
   }
-  std::erase_if(angles, [](double a) { return std::abs(a) > kLast; });
+  std::erase_if(angles, [](double a) { return std::abs(a) > kLastPoint; });
   std::ranges::sort(angles);
   angles.erase(std::ranges::unique(angles).begin(), angles.end());
   return angles;

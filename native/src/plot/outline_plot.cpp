@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr int kStep = 3, kLast = 87;  // degrees
+constexpr int kOutlineStep = 3, kLastOutline = 87;  // degrees
 constexpr int kAzimuths = 12;
 constexpr uint32_t kTexels = 64;
 constexpr float kLongest = 4;  // tiles that are longer have no more texels
@@ -32,7 +32,7 @@ Plot outline_plot(const Model& model, Progress& progress) {
   const TileTexels texels = texels_of(field.volume());
   PlotSeries least{"least", PlotRole::level, PlotMark::dashes}, most{"most", PlotRole::level, PlotMark::dashes};
   PlotSeries mean{"mean", PlotRole::model, PlotMark::line};
-  for (int degrees = 0; degrees <= kLast; degrees += kStep) {
+  for (int degrees = 0; degrees <= kLastOutline; degrees += kOutlineStep) {
     double low = 1, high = 0, sum = 0;
     for (int i = 0; i < kAzimuths; ++i) {
       progress.check();
@@ -45,7 +45,7 @@ Plot outline_plot(const Model& model, Progress& progress) {
     least.points.push_back({angle, low});
     most.points.push_back({angle, high});
     mean.points.push_back({angle, sum / kAzimuths});
-    progress.update(angle / kLast);
+    progress.update(angle / kLastOutline);
   }
   Plot plot{.kind = "outline"};
   plot.x = {"theta_v_degrees", "view angle, degrees", false, 0, 90};

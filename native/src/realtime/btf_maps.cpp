@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kPerLayer = 4, kBorder = 1;
+constexpr uint32_t kPerLayer = 4;
 
 std::vector<BtfMaps::Term> terms_of(const SrbfBtf& btf, const SrbfSide& side) {
   std::vector<BtfMaps::Term> terms;
@@ -21,15 +21,13 @@ std::vector<BtfMaps::Term> terms_of(const SrbfBtf& btf, const SrbfSide& side) {
   return terms;
 }
 
-/// Of a level whose texels repeat: the texel of a pixel, border included.
-uint32_t wrapped(uint32_t pixel, uint32_t size) { return (pixel + size - kBorder % size) % size; }
-
 /// Writes one layer's part of a level; `value`(texel x, texel y, to) gives its four numbers.
 template <typename Value>
 void write_level(TablePixels& maps, uint32_t first_row, const BtfMaps::Level& level, const Value& value) {
-  for (uint32_t y = 0; y < level.height + 2 * kBorder; ++y) {
-    for (uint32_t x = 0; x < level.width + 2 * kBorder; ++x) {
-      value(wrapped(x, level.width), wrapped(y, level.height), maps.at(level.x - kBorder + x, first_row + y));
+  for (uint32_t y = 0; y < level.height + 2 * kTableBorder; ++y) {
+    for (uint32_t x = 0; x < level.width + 2 * kTableBorder; ++x) {
+      value(wrapped_texel(x, level.width), wrapped_texel(y, level.height),
+            maps.at(level.x - kTableBorder + x, first_row + y));
     }
   }
 }
@@ -48,10 +46,10 @@ BtfMaps maps_of(const SrbfBtf& btf, const SrbfSide& side) {
   out.layers = (coefficients + kPerLayer - 1) / kPerLayer + 1;
   uint32_t width = 0;
   for (const SrbfLevel& level : side.levels) {
-    out.levels.push_back({width + kBorder, level.width, level.height});
-    width += level.width + 2 * kBorder;
+    out.levels.push_back({width + kTableBorder, level.width, level.height});
+    width += level.width + 2 * kTableBorder;
   }
-  const uint32_t rows = side.levels[0].height + 2 * kBorder;
+  const uint32_t rows = side.levels[0].height + 2 * kTableBorder;
   out.maps = TablePixels(width, rows * out.layers);
   for (size_t i = 0; i < side.levels.size(); ++i) {
     const SrbfLevel& level = side.levels[i];

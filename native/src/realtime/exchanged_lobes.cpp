@@ -11,10 +11,10 @@ namespace velour {
 namespace {
 
 constexpr int kLights = 300;  // of the hemisphere, where Newton's method may begin
-constexpr int kSteps = 8;
-constexpr double kFarthest = 0.3;           // of a step, radians
-constexpr double kBroadest = 2;             // bandwidth of a peak
-constexpr double kLeast = -2, kMost = 1.5;  // logarithms of a growth
+constexpr int kMaxSteps = 8;
+constexpr double kFarthest = 0.3;                          // of a step, radians
+constexpr double kBroadest = 2;                            // bandwidth of a peak
+constexpr double kMinLogGrowth = -2, kMaxLogGrowth = 1.5;  // logarithms of a growth
 
 double sum_of(const Vec3d& color) { return color.x + color.y + color.z; }
 
@@ -109,7 +109,7 @@ std::optional<ReachedLobe> ExchangedLobes::at(int lobe, const Vec3d& wv) const {
     const auto peak = light(step.x, step.y);
     if (!peak) return std::nullopt;
     wl = *peak;
-    if (i < kSteps && glm::length(step) > 0.02 * deviation) continue;
+    if (i < kMaxSteps && glm::length(step) > 0.02 * deviation) continue;
     seen.center = warped(seen, wl, wv);
     seen.coefficient = own.coefficient / sum_of(own.coefficient) * std::exp(log_g.at + glm::dot(log_g.slope, step) / 2);
     return reached(seen, inverse_root(log_g.curvature), wv);
@@ -118,7 +118,7 @@ std::optional<ReachedLobe> ExchangedLobes::at(int lobe, const Vec3d& wv) const {
 
 double ExchangedLobes::growth(int lobe, const ReachedLobe& seen, const Vec3d& wl, const Vec3d& wv) const {
   const double log_growth = log_value(lobe_at(brdf_, wl, lobe), wl, wv) - std::log(sum_of(seen.value(wl, wv)));
-  return std::exp(std::clamp(log_growth, kLeast, kMost));
+  return std::exp(std::clamp(log_growth, kMinLogGrowth, kMaxLogGrowth));
 }
 
 }  // namespace velour

@@ -12,7 +12,7 @@ namespace {
 constexpr double kMostBandwidth = 1e6;
 constexpr double kLeastAbove = 1e-9;        // of a Gaussian, above the horizon
 constexpr double kBroad = 8, kNarrow = 24;  // bandwidths
-constexpr double kSteps = 1.8;  // deviations of a Gaussian between two of a row: smooth to one in two hundred
+constexpr double kRowSpacing = 1.8;  // deviations of a Gaussian between two of a row: smooth to one in two hundred
 
 /// Gaussians in a row: places x, in deviations of what they sample, and weights that sum to 1.
 struct Row {
@@ -23,7 +23,7 @@ struct Row {
   }
   double x(int i) const { return n > 1 ? 4.0 * i / (n - 1) - 2 : 0; }
   /// Variance of places, over that of each Gaussian, that still adds up smoothly.
-  double most() const { return variance * std::pow(kSteps * (n - 1) / 4, 2); }
+  double most() const { return variance * std::pow(kRowSpacing * (n - 1) / 4, 2); }
 
   static constexpr int kMost = 13;
   int n;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kCosineSide = 48, kSkySide = 1024, kLeastSide = 24, kMostSide = 640;
 constexpr double kPixelsOfDeviation = 3.5;  // of a lobe's; linear look-ups then err by 1/98 of its peak along each axis
-constexpr int kAngles = 256;                // of the table of a lobe's light on a receiver
+constexpr int kTableAngles = 256;           // of the table of a lobe's light on a receiver
 
 struct Map {
   int x, y, side;  // of the border's first pixel; without borders
@@ -59,8 +59,8 @@ class ReceivedLight {
   explicit ReceivedLight(double bandwidth) {
     constexpr int kZeniths = 64;
     const double least = std::max(bandwidth, 1e-4), whole = kernel_integral(Kernel::gaussian, least);
-    for (int a = 0; a < kAngles; ++a) {
-      const double angle = kPiD * a / (kAngles - 1);
+    for (int a = 0; a < kTableAngles; ++a) {
+      const double angle = kPiD * a / (kTableAngles - 1);
       double sum = 0;
       for (int i = 0; i < kZeniths; ++i) {
         const double d = kernel_sample(Kernel::gaussian, least, (i + 0.5) / kZeniths);
@@ -71,8 +71,8 @@ class ReceivedLight {
   }
 
   float at(float cosine) const {
-    const float place = std::acos(std::clamp(cosine, -1.0f, 1.0f)) / kPi * (kAngles - 1);
-    const auto first = std::min(static_cast<size_t>(place), size_t{kAngles - 2});
+    const float place = std::acos(std::clamp(cosine, -1.0f, 1.0f)) / kPi * (kTableAngles - 1);
+    const auto first = std::min(static_cast<size_t>(place), size_t{kTableAngles - 2});
     const float t = place - static_cast<float>(first);
     return (1 - t) * by_angle_[first] + t * by_angle_[first + 1];
   }
@@ -85,10 +85,10 @@ class ReceivedLight {
     const double edge = std::acos(-a / b);
     return (a * edge + b * std::sin(edge)) / kPiD;
   }
-  std::array<float, kAngles> by_angle_;
+  std::array<float, kTableAngles> by_angle_;
 };
 
-constexpr float kLeast = 1e-5f;  // of the mean radiance: what a lobe of the sky may be left out for
+constexpr float kMinLobeShare = 1e-5f;  // of the mean radiance: what a lobe of the sky may be left out for
 
 /// A part of a mixture as the products' kernel takes it: amplitudes 1, as many lobes as lanes.
 class Lobes {
@@ -204,7 +204,7 @@ TablePixels light_map(const SkyMixture& sky, const Environment& environment, int
   }
   const std::vector<ReceivedLight> received(sky.bandwidth.begin(), sky.bandwidth.end());
   const auto blocks = blocks_of(maps);
-  const float least = kLeast * mean_luminance(sky);
+  const float least = kMinLobeShare * mean_luminance(sky);
   parallel_for_each(blocks.size(), threads, progress, [&](size_t i) {
     const Block& block = blocks[i];
     const Map& map = maps[static_cast<size_t>(block.level)];

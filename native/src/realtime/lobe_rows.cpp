@@ -15,7 +15,7 @@ namespace velour {
 namespace {
 
 constexpr int kLobeFloats = 8;
-constexpr int kAngles = 91, kGrid = 49;           // of parametric models, which blend
+constexpr int kRowAngles = 91, kGrid = 49;        // of parametric models, which blend
 constexpr int kNearAngles = 361, kNearGrid = 65;  // of scattered ones, which do not
 constexpr double kSoft = 300;                     // bandwidths of light below which the broad part mends a lobe
 
@@ -136,7 +136,7 @@ void shape_unused_lobes(LobeRows& rows) {
 }
 
 LobeRows blended_rows(bool isotropic, const LobesOfViews& material, int threads, Progress& progress) {
-  LobeRows rows{.isotropic = isotropic, .side = isotropic ? kAngles : kGrid};
+  LobeRows rows{.isotropic = isotropic, .side = isotropic ? kRowAngles : kGrid};
   const auto counts = gaussians_of_lobes(material, rows);
   const BroadPart broad;
   rows.lobes = BroadPart::kLobes;

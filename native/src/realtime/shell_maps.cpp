@@ -8,11 +8,6 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kBorder = 1;
-
-/// The point of a pixel, border included.
-uint32_t wrapped(uint32_t pixel, uint32_t size) { return (pixel + size - kBorder) % size; }
-
 /// Distances by point, which repeat along x and y.
 class Distances {
  public:
@@ -41,7 +36,7 @@ class Distances {
 }  // namespace
 
 TablePixels shell_maps(const OcclusionVolume& volume) {
-  const uint32_t width = volume.width + 2 * kBorder, height = volume.height + 2 * kBorder;
+  const uint32_t width = volume.width + 2 * kTableBorder, height = volume.height + 2 * kTableBorder;
   const uint64_t pixels = uint64_t{width} * height * volume.depth;
   if (pixels > kMostShellPixels) {
     throw Error(Status::unsupported, "The outline has " + std::to_string(pixels) + " points; maps hold at most " +
@@ -52,7 +47,7 @@ TablePixels shell_maps(const OcclusionVolume& volume) {
   for (uint32_t z = 0; z < volume.depth; ++z) {
     for (uint32_t y = 0; y < height; ++y) {
       for (uint32_t x = 0; x < width; ++x) {
-        distances.write(wrapped(x, volume.width), wrapped(y, volume.height), z, maps.at(x, z * height + y));
+        distances.write(wrapped_texel(x, volume.width), wrapped_texel(y, volume.height), z, maps.at(x, z * height + y));
       }
     }
   }

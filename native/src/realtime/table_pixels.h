@@ -17,4 +17,9 @@ struct TablePixels {
   const float* at(uint32_t x, uint32_t y) const { return rgba.data() + 4 * (size_t{y} * width + x); }
 };
 
+/// Pixels around a table that repeats, which show its other side.
+inline constexpr uint32_t kTableBorder = 1;
+/// The texel that pixel `pixel` of a bordered row of `size` texels shows.
+inline uint32_t wrapped_texel(uint32_t pixel, uint32_t size) { return (pixel + size - kTableBorder) % size; }
+
 }  // namespace velour

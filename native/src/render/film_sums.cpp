@@ -11,7 +11,7 @@ namespace velour {
 namespace {
 
 constexpr size_t kOfPixel = 12;
-constexpr float kMostRays = 16777216.0f;  // above, floats are no whole numbers
+constexpr float kMaxWholeFloat = 16777216.0f;  // above, floats are no whole numbers
 
 void write(const PixelSum& p, float* out) {
   const float values[kOfPixel] = {p.radiance.r,
@@ -30,7 +30,7 @@ void write(const PixelSum& p, float* out) {
 }
 
 uint32_t count(float value) {
-  if (value >= 0.0f && value <= kMostRays && value == std::floor(value)) return static_cast<uint32_t>(value);
+  if (value >= 0.0f && value <= kMaxWholeFloat && value == std::floor(value)) return static_cast<uint32_t>(value);
   throw Error(Status::bad_data, "These are no sums of a film: a pixel has " + std::to_string(value) + " rays.");
 }
 

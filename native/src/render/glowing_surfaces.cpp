@@ -13,7 +13,7 @@ namespace velour {
 namespace {
 
 constexpr uint32_t kNone = GlowGroup::kNone;
-constexpr size_t kMostRays = 64;
+constexpr size_t kRayBatch = 64;
 
 /// Uniform in a triangle, without the fold of a square root [Hei19]: weights of its second and third corner.
 Vec2 in_triangle(float x, float y) { return y > x ? Vec2(0.5f * x, y - 0.5f * x) : Vec2(x - 0.5f * y, 0.5f * y); }
@@ -124,9 +124,9 @@ bool GlowingSurfaces::stops(const Hit& hit) const {
 }
 
 void GlowingSurfaces::meet(std::span<const Ray> rays, std::vector<GlowHit>& found) const {
-  Ray left[kMostRays];
-  Hit hit[kMostRays], passed[kMostRays];
-  size_t number[kMostRays], count = rays.size();
+  Ray left[kRayBatch];
+  Hit hit[kRayBatch], passed[kRayBatch];
+  size_t number[kRayBatch], count = rays.size();
   for (size_t i = 0; i < count; ++i) {
     left[i] = rays[i];
     number[i] = i;

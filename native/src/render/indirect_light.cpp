@@ -1,12 +1,6 @@
 #include "render/indirect_light.h"
 
 namespace velour {
-namespace {
-
-/// Light directions of a vertex, as beyond the first one of a camera ray.
-constexpr int kDirections = 2;
-
-}  // namespace
 
 void IndirectLight::clear() {
   flight_.paths.clear();
@@ -38,7 +32,8 @@ void IndirectLight::meet_surfaces() {
     const Vertex vertex = Vertex::seen(scene_, flight_.rays[i], flight_.hits[i], path.cone, nullptr);
     if (!flight_.light.counts_glow(flight_.hits[i]))
       flight_.samples[path.sample].radiance += path.throughput * vertex.emission();
-    flight_.receivers.emplace_back(vertex, &path.numbers, path.throughput, path.sample, kDirections, kDirections);
+    flight_.receivers.emplace_back(vertex, &path.numbers, path.throughput, path.sample, kIndirectDirections,
+                                   kIndirectDirections);
   }
 }
 

@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-constexpr double kBelowOne = 0x1.fffffffffffffp-1;
+constexpr double kDoubleBelowOne = 0x1.fffffffffffffp-1;
 constexpr uint32_t kNoParent = 0xffffffffu;
 
 int widest_axis(const Bounds& bounds) {
@@ -77,7 +77,7 @@ uint32_t LightTree::choose(const Vec3& position, double& x) const {
     const uint32_t left = node + 1, right = link_[node];
     const double p = share(left, right, position);
     const bool first = x < p;
-    x = std::min(first ? x / p : (x - p) / (1.0 - p), kBelowOne);
+    x = std::min(first ? x / p : (x - p) / (1.0 - p), kDoubleBelowOne);
     node = first ? left : right;
   }
   return link_[node] & ~kLeaf;

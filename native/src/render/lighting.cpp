@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr float kBelowOne = 0x1.fffffep-1f;
+constexpr float kFloatBelowOne = 0x1.fffffep-1f;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void Lighting::set_probabilities(float environment_power) {
 /// Whether `u` chooses the environment; what is left of it then chooses the direction.
 bool Lighting::choose_environment(Vec2& u) const {
   if (u.x >= environment_probability_) return false;
-  u.x = std::min(u.x / environment_probability_, kBelowOne);
+  u.x = std::min(u.x / environment_probability_, kFloatBelowOne);
   return true;
 }
 
@@ -54,7 +54,7 @@ Vec3 Lighting::sample_lamp(const Vec3& position, const Vec2& u) const {
   float left = u.x - environment_probability_;
   size_t chosen = 0;
   while (chosen + 1 < lamps_.size() && left >= probability_[chosen]) left -= probability_[chosen++];
-  return lamps_[chosen].sample(position, {std::min(left / probability_[chosen], kBelowOne), u.y});
+  return lamps_[chosen].sample(position, {std::min(left / probability_[chosen], kFloatBelowOne), u.y});
 }
 
 Vec3 Lighting::sample_glow(const Vec3& position, const Vec2& u, Hit* aim) const {

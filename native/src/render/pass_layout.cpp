@@ -16,7 +16,7 @@ float Mist::at(float distance) const {
 
 namespace {
 
-struct Ray {
+struct CameraRay {
   const SurfaceSample& surface;
   const CameraSample& sample;
   const PixelSum& before;
@@ -28,10 +28,10 @@ void set(float* v, const Vec3& x) {
 void increase(float* v, const Vec3& x) {
   for (int c = 0; c < 3; ++c) v[c] += x[c];
 }
-bool is_first(const Ray& ray) { return ray.before.camera_rays == 0; }
+bool is_first(const CameraRay& ray) { return ray.before.camera_rays == 0; }
 
 /// Sums of squared differences from the mean, as Welford: no digits are lost where errors are small.
-void add_error(const Ray& ray, float* v) {
+void add_error(const CameraRay& ray, float* v) {
   const float n = static_cast<float>(ray.before.camera_rays);
   for (int c = 0; c < 3; ++c) {
     const float x = ray.sample.radiance[c], sum = ray.before.radiance[c];
@@ -78,7 +78,7 @@ struct ValuePass {
   uint32_t bit;
   std::string_view name;
   int channels;
-  void (*add)(const Ray& ray, float* values);
+  void (*add)(const CameraRay& ray, float* values);
   void (*join)(const Runs& runs, float* values, const float* later);
   void (*write)(const float* values, const PixelSum& sum, float* out);
 };
@@ -90,30 +90,30 @@ void write_as_is(const float* v, const PixelSum& /*sum*/, float* out) {
 
 constexpr ValuePass kValues[] = {
     {pass::kPosition, "Position", 3,
-     [](const Ray& ray, float* v) {
+     [](const CameraRay& ray, float* v) {
        if (is_first(ray)) set(v, ray.surface.position);
      },
      join_first<3>, write_as_is<3>},
-    {pass::kUv, "UV", 3, [](const Ray& ray, float* v) { increase(v, ray.surface.uv); }, join_sums<3>,
+    {pass::kUv, "UV", 3, [](const CameraRay& ray, float* v) { increase(v, ray.surface.uv); }, join_sums<3>,
      [](const float* v, const PixelSum& sum, float* out) {
        for (int c = 0; c < 3; ++c) out[c] = v[c] * sum.weight();
      }},
     {pass::kObjectIndex, "IndexOB", 1,
-     [](const Ray& ray, float* v) {
+     [](const CameraRay& ray, float* v) {
        if (is_first(ray)) *v = ray.surface.object_index;
      },
      join_first<1>, write_as_is<1>},
     {pass::kMaterialIndex, "IndexMA", 1,
-     [](const Ray& ray, float* v) {
+     [](const CameraRay& ray, float* v) {
        if (is_first(ray)) *v = ray.surface.material_index;
      },
      join_first<1>, write_as_is<1>},
-    {pass::kMist, "Mist", 1, [](const Ray& ray, float* v) { *v += ray.surface.clear; }, join_sums<1>,
+    {pass::kMist, "Mist", 1, [](const CameraRay& ray, float* v) { *v += ray.surface.clear; }, join_sums<1>,
      [](const float* v, const PixelSum& sum, float* out) {
        *out = sum.camera_rays > 0 ? std::clamp(1.0f - *v * sum.weight(), 0.0f, 1.0f) : 0.0f;
      }},
     {pass::kAlbedo, "Albedo", 3,
-     [](const Ray& ray, float* v) {
+     [](const CameraRay& ray, float* v) {
        for (int c = 0; c < 3; ++c) v[c] += ray.surface.albedo[c];
      },
      join_sums<3>,
@@ -123,7 +123,7 @@ constexpr ValuePass kValues[] = {
     {pass::kError, "Error", 3, add_error, join_error, write_error},
     // As Cycles has it, so that a denoiser sees the edges of what shines; it may be above 1.
     {pass::kDenoisingAlbedo, "Denoising Albedo", 3,
-     [](const Ray& ray, float* v) {
+     [](const CameraRay& ray, float* v) {
        for (int c = 0; c < 3; ++c) v[c] += ray.surface.albedo[c] + ray.surface.shine[c];
      },
      join_sums<3>,
@@ -210,7 +210,7 @@ bool PassLayout::has(std::string_view name) const {
 
 void PassLayout::add(const SurfaceSample& surface, const CameraSample& sample, const PixelSum& before,
                      float* values) const {
-  const Ray ray{surface, sample, before};
+  const CameraRay ray{surface, sample, before};
   for (const ValuePass& value : kValues) {
     if ((asked_ & value.bit) == 0) continue;
     value.add(ray, values);

@@ -9,6 +9,10 @@
 
 namespace velour {
 
+/// Light directions of a vertex beyond the first: one from each side suffices for `mis`, and the many camera rays of a
+/// pixel average them.
+inline constexpr int kIndirectDirections = 2;
+
 struct Path {
   PathNumbers numbers;
   Rgb throughput;

@@ -10,13 +10,6 @@
 namespace velour {
 namespace {
 
-void require_range(const char* name, int value, int low, int high) {
-  if (value >= low && value <= high) return;
-  throw Error(Status::invalid_argument, "Render option " + std::string(name) + " is " + std::to_string(value) +
-                                            "; it must lie between " + std::to_string(low) + " and " +
-                                            std::to_string(high) + ".");
-}
-
 void prepare_tables(RenderContext& context, tbb::task_arena& arena, Progress& progress) {
   const auto& materials = context.scene.materials();
   context.tables.resize(materials.size());
@@ -59,6 +52,13 @@ SampleRange checked_samples(const RenderOptions& options) {
 
 }  // namespace
 
+void require_range(const char* options, const char* name, int value, int low, int high) {
+  if (value >= low && value <= high) return;
+  throw Error(Status::invalid_argument, std::string(options) + " option " + name + " is " + std::to_string(value) +
+                                            "; it must lie between " + std::to_string(low) + " and " +
+                                            std::to_string(high) + ".");
+}
+
 void check_crop(const RenderOptions& options) {
   const PixelRect crop = options.window();
   if (crop.x0 >= 0 && crop.y0 >= 0 && crop.width() > 0 && crop.height() > 0 && crop.x1 <= options.width &&
@@ -74,16 +74,16 @@ void check_crop(const RenderOptions& options) {
 
 RenderOptions checked(RenderOptions options) {
   constexpr int kMost = 1 << 30;
-  require_range("width", options.width, 1, 65536);
-  require_range("height", options.height, 1, 65536);
-  require_range("spp", options.spp, 1, kMost);
-  require_range("split", options.split, 1, RenderOptions::kMaxSplit);
-  require_range("bounces", options.bounces, 0, 1024);
-  require_range("threads", options.threads, 0, 4096);
-  require_range("strategy", static_cast<int>(options.strategy), 0, static_cast<int>(kLastStrategy));
-  require_range("camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
-  require_range("heuristic", static_cast<int>(options.heuristic), 0, static_cast<int>(Heuristic::power));
-  require_range("sequence", static_cast<int>(options.sequence), 0, static_cast<int>(Sequence::sobol));
+  require_range("Render", "width", options.width, 1, 65536);
+  require_range("Render", "height", options.height, 1, 65536);
+  require_range("Render", "spp", options.spp, 1, kMost);
+  require_range("Render", "split", options.split, 1, RenderOptions::kMaxSplit);
+  require_range("Render", "bounces", options.bounces, 0, 1024);
+  require_range("Render", "threads", options.threads, 0, 4096);
+  require_range("Render", "strategy", static_cast<int>(options.strategy), 0, static_cast<int>(kLastStrategy));
+  require_range("Render", "camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
+  require_range("Render", "heuristic", static_cast<int>(options.heuristic), 0, static_cast<int>(Heuristic::power));
+  require_range("Render", "sequence", static_cast<int>(options.sequence), 0, static_cast<int>(Sequence::sobol));
   if (!(options.light_share >= 0.0f && options.light_share <= 1.0f)) {
     throw Error(Status::invalid_argument,
                 "Render option share is " + std::to_string(options.light_share) + "; it must lie between 0 and 1.");

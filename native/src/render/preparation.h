@@ -13,9 +13,15 @@ namespace velour {
 /// Throws Error(invalid_argument) where the crop holds no pixels, or others than the picture's.
 void check_crop(const RenderOptions& options);
 
+/// Throws Error(invalid_argument) unless `low` <= `value` <= `high`. `options` and `name` are for the message.
+void require_range(const char* options, const char* name, int value, int low, int high);
+
 /// `options`, with no larger a split than there are directions, and the end of samples in numbers. Throws
 /// Error(invalid_argument) with the option at fault.
 RenderOptions checked(RenderOptions options);
+
+/// Camera rays per pixel of a full-size pass: a tile takes less than 10 ms, so that a cancel is seen soon.
+inline constexpr int kMaxPass = 8;
 
 /// What tables or fits before the first pass take of the whole, roughly.
 inline constexpr double kPreparation = 0.05;

@@ -15,8 +15,6 @@ namespace {
 
 /// Light directions a pixel of the coarse levels: they are looked at for a moment only.
 constexpr int kCoarseDirections = 4;
-/// Camera rays a pixel of a pass at most.
-constexpr int kLargestPass = 8;
 
 }  // namespace
 
@@ -97,7 +95,7 @@ void ProgressiveRender::render_level(Progress& progress) {
   if (level.least == 0 && std::ranges::all_of(level.done, [](int n) { return n == 0; })) level.film.clear();
   const int total = context_->camera_rays();
   while (level.least < total) {
-    const int target = std::min(level.least + std::clamp(level.least, 1, kLargestPass), total);
+    const int target = std::min(level.least + std::clamp(level.least, 1, kMaxPass), total);
     render_pass(level, target, progress);
     level.least = target;
     show();

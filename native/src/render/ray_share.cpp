@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-constexpr size_t kMostRays = 6'000'000;  // 190 MB
+constexpr size_t kMaxSharedRays = 6'000'000;  // 190 MB
 
 /// The top four bits of a golden-ratio hash: one tile in sixteen, in no column or row of the picture.
 bool one_in_sixteen(size_t tile) { return tile * 0x9e3779b97f4a7c15ULL >> 60 == 0; }
@@ -15,7 +15,7 @@ bool one_in_sixteen(size_t tile) { return tile * 0x9e3779b97f4a7c15ULL >> 60 == 
 bool RayShare::chosen(size_t tile) const {
   if (!enabled_ || !one_in_sixteen(tile)) return false;
   const std::lock_guard lock(mutex_);
-  return rays_ < kMostRays;
+  return rays_ < kMaxSharedRays;
 }
 
 RayShare::Record RayShare::new_record(const PixelRect& rect, int count) const {

@@ -19,9 +19,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Camera rays a pixel of a whole-grown pass: a tile stays below 10 ms, so a cancel is seen soon.
-constexpr int kLargestPass = 8;
-
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 RenderOptions checked_for(const Scene& scene, const RenderOptions& options, const Film& film) {
@@ -35,7 +32,7 @@ RenderOptions checked_for(const Scene& scene, const RenderOptions& options, cons
 /// Camera rays a pixel of the next pass: doubling, so that a first picture appears at once.
 int pass_size(const RenderOptions& options, int done, int left) {
   const int asked = options.camera_rays_per_pass;
-  const int grown = std::clamp(done, 1, kLargestPass);
+  const int grown = std::clamp(done, 1, kMaxPass);
   return std::min(asked > 0 ? asked : grown, left);
 }
 

@@ -11,6 +11,7 @@
 #include "domain/observation_hash.h"
 #include "job/threads.h"
 #include "render/hit_light.h"
+#include "render/preparation.h"
 #include "render/view_tracer.h"
 
 namespace velour {
@@ -20,13 +21,6 @@ namespace {
 constexpr double kPlaces = 65536;
 /// Camera rays that one task follows: a few milliseconds.
 constexpr uint64_t kRaysOfBlock = 256;
-
-void require_range(const char* name, int value, int low, int high) {
-  if (value >= low && value <= high) return;
-  throw Error(Status::invalid_argument, "Observe option " + std::string(name) + " is " + std::to_string(value) +
-                                            "; it must lie between " + std::to_string(low) + " and " +
-                                            std::to_string(high) + ".");
-}
 
 /// kPlaces cells, about as wide as high.
 CameraGrid grid_of(const ObserverOptions& options) {
@@ -137,10 +131,10 @@ class Observer {
 }  // namespace
 
 void check_observer(const Scene& scene, uint32_t material, const ObserverOptions& options) {
-  require_range("width", options.width, 1, 65536);
-  require_range("height", options.height, 1, 65536);
-  require_range("bounces", options.bounces, 0, 1024);
-  require_range("threads", options.threads, 0, 4096);
+  require_range("Observe", "width", options.width, 1, 65536);
+  require_range("Observe", "height", options.height, 1, 65536);
+  require_range("Observe", "bounces", options.bounces, 0, 1024);
+  require_range("Observe", "threads", options.threads, 0, 4096);
   if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is observed.");
   if (material >= scene.materials().size()) {
     throw Error(Status::invalid_argument, "Material " + std::to_string(material) +

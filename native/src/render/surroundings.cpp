@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-constexpr int kDirections = 128;
+constexpr int kProbes = 128;
 constexpr int kRaysOfSide = 8;   // through the picture, along each side
 constexpr int kMostHidden = 64;  // surfaces that a ray looks through
 
@@ -41,7 +41,7 @@ std::optional<uint32_t> surrounding_instance(const Scene& scene) {
     const Vec2 cell(static_cast<float>(i % kRaysOfSide), static_cast<float>(i / kRaysOfSide));
     if (back_met(scene, camera.ray((cell + 0.5f) / static_cast<float>(kRaysOfSide))) != found) return std::nullopt;
   }
-  for (const Vec3& direction : sphere_fibonacci(kDirections)) {
+  for (const Vec3& direction : sphere_fibonacci(kProbes)) {
     if (back_met(scene, {.origin = middle.origin, .direction = direction}) != found) return std::nullopt;
   }
   return found;

@@ -8,10 +8,6 @@ namespace {
 /// Camera rays in flight at once: enough that shadow rays leave in long batches, few enough to stay in the cache.
 constexpr int kRaysInFlight = 128;
 
-/// Light directions of a vertex beyond the first: one from each side suffices for `mis`, and the many camera rays of a
-/// pixel average them.
-constexpr int kIndirectDirections = 2;
-
 /// The alpha of what a camera ray has passed that goes on as `throughput`.
 float covered(const Rgb& throughput) { return 1.0f - (throughput.r + throughput.g + throughput.b) / 3.0f; }
 

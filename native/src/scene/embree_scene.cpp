@@ -13,7 +13,7 @@ namespace {
 static_assert(RTC_INVALID_GEOMETRY_ID == kNoHit);
 
 /// Rays handed to Embree at once: their copies stay in the first-level cache.
-constexpr size_t kBatch = 64;
+constexpr size_t kRayBatch = 64;
 
 void to_embree(const Ray& ray, RTCRay& r) {
   r.org_x = ray.origin.x;
@@ -143,9 +143,9 @@ namespace {
 /// `trace` gets a batch of Embree's own rays.
 template <typename Trace>
 void occluded_by_batches(std::span<const Ray> rays, uint8_t* blocked, const Trace& trace) {
-  RTCRay query[kBatch];
-  for (size_t done = 0; done < rays.size(); done += kBatch) {
-    const size_t count = std::min(kBatch, rays.size() - done);
+  RTCRay query[kRayBatch];
+  for (size_t done = 0; done < rays.size(); done += kRayBatch) {
+    const size_t count = std::min(kRayBatch, rays.size() - done);
     for (size_t i = 0; i < count; ++i) to_embree(rays[done + i], query[i]);
     trace(query, static_cast<unsigned>(count));
     for (size_t i = 0; i < count; ++i) blocked[done + i] = query[i].tfar < 0.0f;
@@ -165,9 +165,9 @@ void EmbreeScene::occluded_coherent(std::span<const Ray> rays, uint8_t* blocked)
 }
 
 void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits) const {
-  RTCRayHit query[kBatch];
-  for (size_t done = 0; done < rays.size(); done += kBatch) {
-    const size_t count = std::min(kBatch, rays.size() - done);
+  RTCRayHit query[kRayBatch];
+  for (size_t done = 0; done < rays.size(); done += kRayBatch) {
+    const size_t count = std::min(kRayBatch, rays.size() - done);
     for (size_t i = 0; i < count; ++i) {
       to_embree(rays[done + i], query[i].ray);
       query[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;

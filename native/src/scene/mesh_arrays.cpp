@@ -14,8 +14,6 @@ namespace {
 /// Embree's own bound on coordinates; beyond it triangles vanish silently.
 constexpr float kReach = 1.8e18f;
 
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(Status::invalid_argument, sentence); }
-
 void check_length(size_t found, size_t expected, const char* what) {
   if (found == 0 || found == expected) return;
   refuse("A mesh has " + std::to_string(found) + " " + what + " where its triangles need " + std::to_string(expected) +

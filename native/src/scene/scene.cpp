@@ -10,8 +10,6 @@
 namespace velour {
 namespace {
 
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(Status::invalid_argument, sentence); }
-
 /// Bound of the rounding error of a world coordinate made from terms of `magnitude`: a sum of three products in the
 /// object, then of three products and a shift in the world, is 8 roundings of their absolute values.
 float position_error(const Affine& map, const Vec3& magnitude) {

@@ -9,8 +9,8 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kDraws = 1024, kBatch = DirectionBatch::kCapacity;
-static_assert(kDraws % kBatch == 0);
+constexpr uint32_t kDraws = 1024, kDrawBatch = DirectionBatch::kCapacity;
+static_assert(kDraws % kDrawBatch == 0);
 
 std::unique_ptr<const LobeMixture> density_of(const SkyMixture& sky) {
   auto mixture = std::make_unique<LobeMixture>();
@@ -25,8 +25,8 @@ std::unique_ptr<const LobeMixture> density_of(const SkyMixture& sky) {
 double sky_misfit(const Environment& environment, const SkyMixture& sky) {
   const auto mixture = density_of(sky);
   double sum = 0;
-  for (uint32_t first = 0; first < kDraws; first += kBatch) {
-    Vec2 u[kBatch];
+  for (uint32_t first = 0; first < kDraws; first += kDrawBatch) {
+    Vec2 u[kDrawBatch];
     sobol_points(0, first, u);
     DirectionBatch world;
     environment.sample(u, world);
@@ -35,7 +35,7 @@ double sky_misfit(const Environment& environment, const SkyMixture& sky) {
     ScalarBatch own, lobes;
     environment.look_up(world, radiance, own);
     eval_density(*mixture, world, lobes);
-    for (uint32_t i = 0; i < kBatch; ++i) sum += static_cast<double>(own.v[i]) / static_cast<double>(lobes.v[i]);
+    for (uint32_t i = 0; i < kDrawBatch; ++i) sum += static_cast<double>(own.v[i]) / static_cast<double>(lobes.v[i]);
   }
   return sum / kDraws - 1;
 }

@@ -1,6 +1,7 @@
 // Arrays from the start of a cache line.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -26,5 +27,11 @@ class AlignedArray {
   size_t size_;
   std::unique_ptr<T, Free> data_;
 };
+
+inline AlignedArray<float> aligned_zeros(size_t count) {
+  AlignedArray<float> floats(count);
+  std::fill_n(floats.data(), count, 0.0f);
+  return floats;
+}
 
 }  // namespace velour

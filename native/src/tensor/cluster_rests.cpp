@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr Index kColumns = 1024;  // of a piece of work
+constexpr Index kRestColumns = 1024;  // of a piece of work
 
 /// The slices that have a cluster.
 struct Group {
@@ -61,8 +61,8 @@ DenseTensor cluster_rests(const TensorView& slices, const ClusteredTensor& tenso
   const std::vector<Group> groups = grouped(tensor, which, but);
   DenseTensor rests({static_cast<Index>(which.size()), entries});
   parallel_pieces(
-      static_cast<size_t>((entries + kColumns - 1) / kColumns), options.threads, progress, [&](size_t piece) {
-        const Index begin = static_cast<Index>(piece) * kColumns, count = std::min(kColumns, entries - begin);
+      static_cast<size_t>((entries + kRestColumns - 1) / kRestColumns), options.threads, progress, [&](size_t piece) {
+        const Index begin = static_cast<Index>(piece) * kRestColumns, count = std::min(kRestColumns, entries - begin);
         for (size_t i = 0; i < which.size(); ++i) {
           std::copy_n(slices.data() + which[i] * entries + begin, count,
                       rests.data.begin() + static_cast<Index>(i) * entries + begin);

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr Index kOversampling = 8;
+constexpr Index kBlockOversampling = 8;
 constexpr Index kLeastSide = 160;   // of a matrix that is worth it
 constexpr Index kLeastBlocks = 6;   // of which a space may consist before a decomposition would be cheaper
 constexpr double kResidual = 1e-7;  // of the largest eigenvalue
@@ -81,7 +81,7 @@ class KrylovSpace {
 
 Eigen::MatrixXd leading_eigenvectors(const Eigen::MatrixXd& products, Index rank, const TensorOptions& options,
                                      const Progress& progress) {
-  const Index side = products.rows(), block = rank + kOversampling, most = side / 2;
+  const Index side = products.rows(), block = rank + kBlockOversampling, most = side / 2;
   if (side < kLeastSide || kLeastBlocks * block > most) return decomposed(products, rank);
   KrylovSpace space(products, block, most, options, progress);
   while (space.has_room()) {

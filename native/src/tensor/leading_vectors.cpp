@@ -11,7 +11,7 @@ namespace velour {
 namespace {
 
 constexpr Index kSide = 1024;  // of a matrix of products that is decomposed
-constexpr Index kOversampling = 10;
+constexpr Index kSketchOversampling = 10;
 constexpr int kPowers = 3;
 
 /// The unfolding as a tensor of two modes: where it lies, or else in `storage`.
@@ -87,7 +87,7 @@ RowMatrix leading_vectors(const TensorView& view, size_t mode, Index rank, const
         .cast<float>();
   }
   if (columns <= kSide) return leading_by_columns(view, mode, rank, options, progress);
-  const Index wide = std::min({rank + kOversampling, rows, columns});
+  const Index wide = std::min({rank + kSketchOversampling, rows, columns});
   const RowMatrix basis = random_range(view, mode, wide, kPowers, options, progress);
   return leading_within(view, mode, basis, rank, options, progress);
 }

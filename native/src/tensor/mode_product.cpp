@@ -9,7 +9,7 @@ namespace velour {
 namespace {
 
 // Of a piece of work: fixed, so that sums do not depend on threads. A sum of products is written for each piece.
-constexpr Index kColumns = 256, kSummedColumns = 1024;
+constexpr Index kProductColumns = 256, kSummedColumns = 1024;
 constexpr size_t kBlocks = 64;          // small blocks of a piece
 constexpr size_t kSums = 32;            // partial sums, at most: fixed as well
 constexpr size_t kSumBytes = 64 << 20;  // of all of them, about
@@ -55,7 +55,7 @@ DenseTensor mode_product(const TensorView& view, size_t mode, const RowMatrix& m
   extents[mode] = matrix.rows();
   DenseTensor result(std::move(extents));
   const Unfolding from(view, mode), to(result.view(), mode, from);
-  const Pieces pieces(from, kColumns);
+  const Pieces pieces(from, kProductColumns);
   const StridedMatrix<const float> left{matrix.data(), matrix.rows(), matrix.cols(), matrix.cols(), 1};
   parallel_pieces(pieces.count(), threads, progress, [&](size_t piece) {
     pieces.visit(piece, [&](size_t block, Index begin, Index count) {

@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-constexpr Index kColumns = 16;  // enough
+constexpr Index kEnoughColumns = 16;  // enough
 
 }  // namespace
 
@@ -23,7 +23,7 @@ Unfolding::Unfolding(const TensorView& view, size_t mode) {
   const auto rank = [&](const Group& group) {
     Index extent = 1;
     for (size_t k = group.first; k <= group.second; ++k) extent *= view.extent(k);
-    return std::pair(std::min(extent, kColumns), -view.stride(group.second));
+    return std::pair(std::min(extent, kEnoughColumns), -view.stride(group.second));
   };
   for (size_t g = 1; g < group_.size(); ++g) {
     if (rank(group_[g]) > rank(group_[column_group_])) column_group_ = g;

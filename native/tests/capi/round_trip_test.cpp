@@ -75,16 +75,16 @@ INSTANTIATE_TEST_SUITE_P(Models, RoundTrip, ::testing::Values(VLR_MODEL_SCATTERE
 
 /// The mean colour of `scene`.
 std::vector<double> mean_of(const TestScene& scene) {
-  constexpr uint32_t kSize = 8;
-  vlr_job* job = scene.render_job(kSize, 256);
+  constexpr uint32_t kSide = 8;
+  vlr_job* job = scene.render_job(kSide, 256);
   EXPECT_EQ(VLR_OK, vlr_job_start(job)) << vlr_last_error();
   EXPECT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
-  std::vector<float> pixels(size_t{kSize} * kSize * 4);
+  std::vector<float> pixels(size_t{kSide} * kSide * 4);
   EXPECT_EQ(VLR_OK, vlr_job_read_pass(job, "Combined", pixels.data(), pixels.size())) << vlr_last_error();
   vlr_job_free(job);
   std::vector<double> mean(3);
   for (size_t i = 0; i < pixels.size(); ++i) {
-    if (i % 4 < 3) mean[i % 4] += static_cast<double>(pixels[i]) / (kSize * kSize);
+    if (i % 4 < 3) mean[i % 4] += static_cast<double>(pixels[i]) / (kSide * kSide);
   }
   return mean;
 }

@@ -15,7 +15,7 @@ TensorFileBuilder two_fields() {
   return builder;
 }
 
-std::string refusal(const std::vector<uint8_t>& bytes) {
+std::string refusal_of_bytes(const std::vector<uint8_t>& bytes) {
   return test::refusal([&] { TensorContainer(bytes, "x.bsdf"); });
 }
 
@@ -40,7 +40,7 @@ TEST(TensorFile, NamesTheMissingField) {
 TEST(TensorFile, EveryTruncationIsRefused) {
   const auto bytes = two_fields().bytes();
   for (size_t size = 0; size < bytes.size(); ++size)
-    EXPECT_NE(refusal({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}).find("x.bsdf"),
+    EXPECT_NE(refusal_of_bytes({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}).find("x.bsdf"),
               std::string::npos)
         << size;
 }
@@ -51,7 +51,7 @@ TEST(TensorFile, LyingEntries) {
   const auto with = [&](size_t position, uint64_t value, size_t size) {
     auto bytes = good;
     std::memcpy(&bytes.at(position), &value, size);
-    return refusal(bytes);
+    return refusal_of_bytes(bytes);
   };
   const size_t rank = at["a"] + 3, type = rank + 2, offset = type + 1, shape = offset + 8;
   for (const uint64_t lie : {uint64_t{7}, uint64_t{1} << 20, uint64_t{1} << 62, ~uint64_t{0}, uint64_t{0}})
@@ -71,13 +71,13 @@ TEST(TensorFile, OverlapIsALie) {
   uint64_t offset_a;
   std::memcpy(&offset_a, &bytes[at["a"] + 6], 8);
   std::memcpy(&bytes[at["t"] + 6], &offset_a, 8);
-  EXPECT_NE(refusal(bytes).find("inside the header or another field"), std::string::npos);
+  EXPECT_NE(refusal_of_bytes(bytes).find("inside the header or another field"), std::string::npos);
 }
 
 TEST(TensorFile, SameNameTwice) {
   TensorFileBuilder builder = two_fields();
   builder.floats("a", {1}, {1});
-  EXPECT_NE(refusal(builder.bytes()).find("occurs twice"), std::string::npos);
+  EXPECT_NE(refusal_of_bytes(builder.bytes()).find("occurs twice"), std::string::npos);
 }
 
 }  // namespace

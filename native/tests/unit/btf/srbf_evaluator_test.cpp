@@ -5,20 +5,16 @@
 #include <memory>
 
 #include "sphere/directions.h"
-#include "sphere/random.h"
 #include "support/example_srbf.h"
 #include "support/simd_targets.h"
+#include "unit/btf/random_pair.h"
 
 namespace velour {
 namespace {
 
-std::shared_ptr<const SrbfBtf> shared(SrbfBtf btf) { return std::make_shared<const SrbfBtf>(std::move(btf)); }
+using test::random_pair;
 
-DirectionPair random_pair(uint64_t i) {
-  RandomStream random(11, i, 0);
-  const Vec3 wl = direction(1.5f * random.next(), 2 * kPi * random.next());
-  return {wl, direction(1.4f * random.next(), 2 * kPi * random.next())};
-}
+std::shared_ptr<const SrbfBtf> shared(SrbfBtf btf) { return std::make_shared<const SrbfBtf>(std::move(btf)); }
 
 Rgb value_at(const SrbfEvaluator& evaluator, uint32_t side, const Vec2& uv, float level, const DirectionPair& pair) {
   const auto point = std::make_unique<SrbfPoint>();

@@ -9,17 +9,14 @@
 #include "sphere/directions.h"
 #include "support/example_tensor.h"
 #include "support/simd_targets.h"
+#include "unit/btf/random_pair.h"
 
 namespace velour {
 namespace {
 
-std::shared_ptr<const TensorBtf> shared(TensorBtf btf) { return std::make_shared<const TensorBtf>(std::move(btf)); }
+using test::random_pair;
 
-DirectionPair random_pair(uint64_t i) {
-  RandomStream random(11, i, 0);
-  const Vec3 wl = direction(1.5f * random.next(), 2 * kPi * random.next());
-  return {wl, direction(1.4f * random.next(), 2 * kPi * random.next())};
-}
+std::shared_ptr<const TensorBtf> shared(TensorBtf btf) { return std::make_shared<const TensorBtf>(std::move(btf)); }
 
 Rgb value_at(const TensorEvaluator& evaluator, uint32_t side, const Vec2& uv, float level, const DirectionPair& pair) {
   const auto point = std::make_unique<TensorPoint>();

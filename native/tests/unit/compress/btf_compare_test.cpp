@@ -10,13 +10,15 @@
 namespace velour {
 namespace {
 
-const TexelGrid kGrid{4, 2};
+const TexelGrid kComparedGrid{4, 2};
 
 PairLayout few_pairs() { return {ring_directions(30, 3), ring_directions(60, 4)}; }
 
 TEST(BtfCompare, MeasuresAKnownDifference) {
-  const test::MemoryBtf btf(few_pairs(), kGrid, [](auto&&...) { return Rgb(0.5f); });
-  const auto darker = [](const DirectionPair&, std::vector<float>& rgb) { rgb.assign(kGrid.texels() * 3, 0.25f); };
+  const test::MemoryBtf btf(few_pairs(), kComparedGrid, [](auto&&...) { return Rgb(0.5f); });
+  const auto darker = [](const DirectionPair&, std::vector<float>& rgb) {
+    rgb.assign(kComparedGrid.texels() * 3, 0.25f);
+  };
   Progress progress;
   const BtfErrors errors = compare_btf(btf, darker, {.p99 = 0.5}, 1, progress);
   EXPECT_NEAR(errors.ser, 0.25, 1e-12);
@@ -31,9 +33,9 @@ TEST(BtfCompare, MeasuresAKnownDifference) {
 
 TEST(BtfCompare, LeavesOutWhatIsNotFinite) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const test::MemoryBtf btf(few_pairs(), kGrid,
+  const test::MemoryBtf btf(few_pairs(), kComparedGrid,
                             [&](const DirectionPair&, uint32_t x, uint32_t) { return x == 0 ? Rgb(nan) : Rgb(0.5f); });
-  const auto same = [](const DirectionPair&, std::vector<float>& rgb) { rgb.assign(kGrid.texels() * 3, 0.5f); };
+  const auto same = [](const DirectionPair&, std::vector<float>& rgb) { rgb.assign(kComparedGrid.texels() * 3, 0.5f); };
   Progress progress;
   const BtfErrors errors = compare_btf(btf, same, {.p99 = 0.5}, 1, progress);
   EXPECT_EQ(errors.ser, 0.0);
@@ -42,9 +44,9 @@ TEST(BtfCompare, LeavesOutWhatIsNotFinite) {
 
 TEST(BtfCompare, FindsThePercentile) {
   uint32_t count = 0;  // 96 values of each channel, rising
-  const test::MemoryBtf btf(few_pairs(), kGrid, [&](auto&&...) { return Rgb(static_cast<float>(count++)); });
+  const test::MemoryBtf btf(few_pairs(), kComparedGrid, [&](auto&&...) { return Rgb(static_cast<float>(count++)); });
   EXPECT_EQ(percentile_99(btf, Progress()), 95.0);  // 0.99 x 96 = 95.04: the last
-  const test::MemoryBtf flat(few_pairs(), kGrid, [](auto&&...) { return Rgb(-1.0f, 0.25f, 0.25f); });
+  const test::MemoryBtf flat(few_pairs(), kComparedGrid, [](auto&&...) { return Rgb(-1.0f, 0.25f, 0.25f); });
   EXPECT_EQ(percentile_99(flat, Progress()), 0.25);
 }
 

@@ -10,7 +10,7 @@ namespace {
 constexpr size_t kLobes = 6, kTexels = 200;
 
 /// Gaussians over a line that overlap much: sums of large coefficients cancel.
-Eigen::MatrixXf lobes() {
+Eigen::MatrixXf random_lobes() {
   Eigen::MatrixXf values(100, kLobes);
   for (Eigen::Index i = 0; i < values.rows(); ++i) {
     for (Eigen::Index k = 0; k < values.cols(); ++k) {
@@ -23,7 +23,7 @@ Eigen::MatrixXf lobes() {
 
 /// Relative L2 error of the sums, with errors made up for or not.
 double error_of(bool feedback) {
-  const Eigen::MatrixXf g = lobes();
+  const Eigen::MatrixXf g = random_lobes();
   LobeProductMeans products;
   products[0] = g.transpose() * g / static_cast<float>(g.rows());
   if (!feedback) products[0] = products[0].diagonal().asDiagonal();

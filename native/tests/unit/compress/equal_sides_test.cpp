@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-const TexelGrid kGrid{8, 6};
+const TexelGrid kSidesGrid{8, 6};
 constexpr float kNoise = 0.02f;  // of a value, one standard deviation
 
 /// The same from both sides; light goes through.
@@ -22,18 +22,18 @@ Rgb symmetric(const DirectionPair& d, uint32_t x, uint32_t y) {
 /// With noise of its own at every texel and pair, and its standard errors; from below `shift` of itself more.
 class NoisyBtf final : public BtfMeasurement {
  public:
-  explicit NoisyBtf(float shift) : clean_(test::ringed_layout(true), kGrid, symmetric) {
+  explicit NoisyBtf(float shift) : clean_(test::ringed_layout(true), kSidesGrid, symmetric) {
     layout_ = clean_.layout();
-    grid_ = kGrid;
+    grid_ = kSidesGrid;
     for (uint64_t pair = 0; pair < layout_->pairs(); ++pair) add(pair, shift);
   }
   void read_pairs(uint64_t first, uint64_t count, std::span<HalfBits> values) const override {
-    const size_t image = kGrid.texels() * 3;
+    const size_t image = kSidesGrid.texels() * 3;
     floats_to_halves({values_.data() + first * image, count * image}, values);
   }
   bool has_errors() const override { return true; }
   bool read_errors(uint64_t first, uint64_t count, std::span<HalfBits> errors) const override {
-    floats_to_halves({errors_.data() + first * kGrid.texels(), count * kGrid.texels()}, errors);
+    floats_to_halves({errors_.data() + first * kSidesGrid.texels(), count * kSidesGrid.texels()}, errors);
     return true;
   }
 
@@ -41,10 +41,10 @@ class NoisyBtf final : public BtfMeasurement {
   void add(uint64_t pair, float shift) {
     const DirectionPair directions = layout_->directions(pair);
     const float mean = directions.wv.z < 0 ? 1 + shift : 1;
-    for (uint32_t t = 0; t < kGrid.texels(); ++t) {
+    for (uint32_t t = 0; t < kSidesGrid.texels(); ++t) {
       RandomStream random(7, pair, t);
       const float deviation = (random.next() - 0.5f) * std::sqrt(12.0f) * kNoise;
-      const Rgb f = symmetric(directions, t % kGrid.width, t / kGrid.width);
+      const Rgb f = symmetric(directions, t % kSidesGrid.width, t / kSidesGrid.width);
       for (const float c : {f.r, f.g, f.b}) values_.push_back(c * (mean + deviation));
       errors_.push_back(luminance(f) * kNoise);
     }
@@ -59,11 +59,11 @@ bool equal(const BtfMeasurement& btf, size_t a, size_t b) {
 }
 
 TEST(EqualSides, AreFoundWithoutNoise) {
-  const test::MemoryBtf same(test::ringed_layout(true), kGrid, symmetric);
+  const test::MemoryBtf same(test::ringed_layout(true), kSidesGrid, symmetric);
   EXPECT_TRUE(equal(same, 0, 2));   // reflection from above and from below
   EXPECT_TRUE(equal(same, 1, 3));   // through, down and up
   EXPECT_FALSE(equal(same, 0, 1));  // what is reflected and what goes through
-  EXPECT_FALSE(equal(test::striped_btf(kGrid, true), 0, 2));
+  EXPECT_FALSE(equal(test::striped_btf(kSidesGrid, true), 0, 2));
 }
 
 TEST(EqualSides, DifferWithinTheirNoise) {
@@ -76,12 +76,12 @@ TEST(EqualSides, DifferWithinTheirNoise) {
 TEST(EqualSides, NeedTheSameDirections) {
   std::vector<PolarAngles> views = ring_directions(30, 5);
   for (const PolarAngles& d : below(ring_directions(40, 5))) views.push_back(d);
-  const test::MemoryBtf btf({views, views}, kGrid, [](auto&&...) { return Rgb(1.0f); });
+  const test::MemoryBtf btf({views, views}, kSidesGrid, [](auto&&...) { return Rgb(1.0f); });
   EXPECT_FALSE(equal(btf, 0, 2));
 }
 
 TEST(EqualSides, TakeNoBytes) {
-  const test::MemoryBtf same(test::ringed_layout(true), kGrid, symmetric);
+  const test::MemoryBtf same(test::ringed_layout(true), kSidesGrid, symmetric);
   Progress progress;
   FitCheckpoint none;
   SrbfFitter fitter(same, {.bytes = 4000}, none, progress);

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr Index kViews = 9, kLights = 11, kTexels = 60, kClusters = 3, kRank = 4, kViewRank = 3, kLightRank = 5,
+constexpr Index kViews = 9, kLights = 11, kRefitTexels = 60, kClusters = 3, kRank = 4, kViewRank = 3, kLightRank = 5,
                 kColors = 2;
 
 RowMatrix orthonormal_rows(Index rows, Index columns) { return orthonormal(RowMatrix::Random(rows, columns)); }
@@ -29,12 +29,12 @@ std::vector<DirectionCluster> random_clusters(unsigned seed) {
 std::vector<ViewMoments> moments_of(const std::vector<DirectionCluster>& truth, float noise = 0) {
   std::vector<ViewMoments> moments;
   for (Index v = 0; v < kViews; ++v) {
-    const RowMatrix seen = RowMatrix::Random(kTexels, kClusters * kRank);
+    const RowMatrix seen = RowMatrix::Random(kRefitTexels, kClusters * kRank);
     const FunctionsOfView functions = functions_of_view(truth, v);
     ViewMoments& of = moments.emplace_back(kClusters * kRank, kLights);
     of.products = seen.transpose() * seen;
     for (size_t a = 0; a < 3; ++a) {
-      const RowMatrix images = seen * functions[a] + noise * RowMatrix::Random(kTexels, kLights);
+      const RowMatrix images = seen * functions[a] + noise * RowMatrix::Random(kRefitTexels, kLights);
       of.images[a] = seen.transpose() * images;
     }
   }

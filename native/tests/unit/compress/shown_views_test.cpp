@@ -8,12 +8,12 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kWidth = 12, kTexels = kWidth * kWidth;
+constexpr uint32_t kWidth = 12, kShownTexels = kWidth * kWidth;
 
 /// Walls along y, and what lies between them: columns 4 ... 7.
 Relief walls() {
   std::vector<float> heights;
-  for (uint32_t t = 0; t < kTexels; ++t) heights.push_back(t % kWidth < 4 || t % kWidth > 7 ? 0.6f : 0.0f);
+  for (uint32_t t = 0; t < kShownTexels; ++t) heights.push_back(t % kWidth < 4 || t % kWidth > 7 ? 0.6f : 0.0f);
   return {kWidth, kWidth, heights, 1};
 }
 
@@ -48,7 +48,7 @@ TensorSide two_functions() {
 /// 1.1 and 0.9 under the two lights along the normal, 1 from the sides.
 LevelImages image_of(Index view) {
   LevelImages images{kWidth, kWidth, {}};
-  for (RowMatrix& axis : images.value) axis = RowMatrix::Zero(kTexels, 2);
+  for (RowMatrix& axis : images.value) axis = RowMatrix::Zero(kShownTexels, 2);
   images.value[0].col(0).setConstant(view == 0 ? 1.1f : 1.0f);
   images.value[0].col(1).setConstant(view == 0 ? 0.9f : 1.0f);
   return images;
@@ -58,7 +58,7 @@ TEST(ShownViews, TheNearestViewThatShowsATexelStandsInForOneThatHidesIt) {
   const Tile tile;
   const ShownViews shown(tile.source, 0, tile.progress);
   EXPECT_FALSE(shown.all());
-  for (size_t t = 0; t < kTexels; ++t) {
+  for (size_t t = 0; t < kShownTexels; ++t) {
     EXPECT_EQ(shown.stand_in(t, 0), 0);
     if (between_walls(t) || t % kWidth == 1) {
       EXPECT_EQ(shown.stand_in(t, 2), between_walls(t) ? 0 : 2);
@@ -71,7 +71,7 @@ TEST(ShownViews, TheNearestViewThatShowsATexelStandsInForOneThatHidesIt) {
 
 TEST(ShownViews, OfAPlaneShowAll) {
   Tile tile;
-  tile.relief[0] = Relief(kWidth, kWidth, std::vector<float>(kTexels, 0.0f), 1);
+  tile.relief[0] = Relief(kWidth, kWidth, std::vector<float>(kShownTexels, 0.0f), 1);
   EXPECT_TRUE(ShownViews(tile.source, 0, tile.progress).all());
 }
 
@@ -87,7 +87,7 @@ TEST(ShownViews, WhatIsHiddenStaysWithinReason) {
   for (Index v = 0; v < 3; ++v) of_views.push_back(functions.of_view(v));
   for (Index v = 0; v < 3; ++v) texels.add_view(v, image_of(v), of_views);
   const TensorTexelValues values = texels.solve(1, [](double) {});
-  for (Index t = 0; t < Index{kTexels}; ++t) {
+  for (Index t = 0; t < Index{kShownTexels}; ++t) {
     if (!between_walls(static_cast<size_t>(t))) continue;
     const float hidden = (values.value.row(t) * of_views[2][0].col(0)).value();
     EXPECT_NEAR(hidden, 1, 1) << t;

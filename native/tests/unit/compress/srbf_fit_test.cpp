@@ -19,7 +19,7 @@
 namespace velour {
 namespace {
 
-constexpr uint64_t kBytes = 3000;
+constexpr uint64_t kSrbfBytes = 3000;
 
 struct SrbfFit {
   SrbfBtf btf;
@@ -27,7 +27,7 @@ struct SrbfFit {
 };
 
 /// Setting up is the first half of the progress.
-SrbfFit fit(const BtfMeasurement& btf, const BtfFitOptions& options, Progress& progress) {
+SrbfFit fit_srbf(const BtfMeasurement& btf, const BtfFitOptions& options, Progress& progress) {
   FitCheckpoint none;
   std::optional<SrbfFitter> fitter;
   {
@@ -38,9 +38,9 @@ SrbfFit fit(const BtfMeasurement& btf, const BtfFitOptions& options, Progress& p
   return {std::get<SrbfBtf>(fitter->fit(fitter->largest())), fitter->not_finite()};
 }
 
-SrbfFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
+SrbfFit fit_srbf(const BtfMeasurement& btf, const BtfFitOptions& options) {
   Progress progress;
-  return fit(btf, options, progress);
+  return fit_srbf(btf, options, progress);
 }
 
 std::shared_ptr<const SrbfBtf> shared(SrbfBtf btf) { return std::make_shared<const SrbfBtf>(std::move(btf)); }
@@ -62,7 +62,7 @@ std::vector<float> smooth(const SrbfLevel& level, size_t channels, float mean, f
 }
 
 /// A model over a plane, or over hills of `high` widths of the tile, 12 x 8 texels.
-SrbfBtf true_model(float high, bool two_sided = false) {
+SrbfBtf true_srbf(float high, bool two_sided = false) {
   SrbfBtf btf = test::example_srbf(two_sided);
   btf.layout = test::ringed_layout(two_sided);
   btf.grid = small_grid();
@@ -117,10 +117,10 @@ void expect_same(const SrbfBtf& a, const SrbfBtf& b) {
 
 /// Lobes are searched for, not given: a model recovers another one to a PSNR, not to its rounding.
 TEST(SrbfFit, RecoversABtfThatIsAModelOverAPlane) {
-  const test::MemoryBtf btf = images_of(true_model(0));
-  EXPECT_GT(errors_of(fit(btf, {.bytes = 10000}).btf, btf).psnr, 38);
+  const test::MemoryBtf btf = images_of(true_srbf(0));
+  EXPECT_GT(errors_of(fit_srbf(btf, {.bytes = 10000}).btf, btf).psnr, 38);
   // The control: one lobe is not enough.
-  EXPECT_LT(errors_of(fit(btf, {.bytes = 600}).btf, btf).psnr, 30);
+  EXPECT_LT(errors_of(fit_srbf(btf, {.bytes = 600}).btf, btf).psnr, 30);
 }
 
 /// As few lobes as find a relief's model do not find what depends on the phase angle as well.
@@ -133,17 +133,17 @@ SrbfBtf without_phases(SrbfBtf btf) {
 
 TEST(SrbfFit, RecoversABtfThatIsAModelOverARelief) {
   constexpr float kHigh = 0.09f;  // a ray at 60 degrees is displaced by up to two texels
-  const test::MemoryBtfWithRelief btf = with_relief(without_phases(true_model(kHigh)));
-  EXPECT_GT(errors_of(fit(btf, {.bytes = 3050}).btf, btf).psnr, 35);
+  const test::MemoryBtfWithRelief btf = with_relief(without_phases(true_srbf(kHigh)));
+  EXPECT_GT(errors_of(fit_srbf(btf, {.bytes = 3050}).btf, btf).psnr, 35);
   // The control: the same without its relief.
-  const test::MemoryBtf flat = images_of(without_phases(true_model(kHigh)));
-  EXPECT_LT(errors_of(fit(flat, {.bytes = 3050}).btf, flat).psnr, 26);
+  const test::MemoryBtf flat = images_of(without_phases(true_srbf(kHigh)));
+  EXPECT_LT(errors_of(fit_srbf(flat, {.bytes = 3050}).btf, flat).psnr, 26);
 }
 
 TEST(SrbfFit, KeepsToItsBytes) {
   const test::MemoryBtf btf = test::striped_btf(small_grid());
   for (const uint64_t bytes : {600, 3000}) {
-    const SrbfBtf model = fit(btf, {.bytes = bytes}).btf;
+    const SrbfBtf model = fit_srbf(btf, {.bytes = bytes}).btf;
     EXPECT_LE(model.parameter_bytes(), bytes);
     EXPECT_GT(model.parameter_bytes(), bytes / 2);
   }
@@ -153,31 +153,31 @@ TEST(SrbfFit, IsAsBrightAsWhatItLeavesOut) {
   uint64_t entry = 0;
   const auto noise = [&entry](auto&&...) { return Rgb(0.5f, 0.3f, 0.2f) * RandomStream(7, entry++, 0).next(); };
   const test::MemoryBtf btf(test::ringed_layout(), small_grid(), noise);
-  const BtfErrors errors = errors_of(fit(btf, {.bytes = 2000}).btf, btf);
+  const BtfErrors errors = errors_of(fit_srbf(btf, {.bytes = 2000}).btf, btf);
   EXPECT_NEAR(errors.brightness, 1, 0.01);
   EXPECT_GT(errors.ser, 0.1) << "the control: most of the spread of the roots, a ninth of their mean square, is lost";
 }
 
 TEST(SrbfFit, RefusesTooFewBytesWithASentence) {
   test::expect_refused(Status::invalid_argument, "100 were asked for",
-                       [] { fit(test::striped_btf(small_grid()), {.bytes = 100}); });
+                       [] { fit_srbf(test::striped_btf(small_grid()), {.bytes = 100}); });
 }
 
 TEST(SrbfFit, NeedsEveryPair) {
   const PairLayout holes(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}});
   test::expect_refused(Status::unsupported, "3 pairs",
-                       [&] { fit(test::MemoryBtf(holes, small_grid(), test::striped), {}); });
+                       [&] { fit_srbf(test::MemoryBtf(holes, small_grid(), test::striped), {}); });
 }
 
 TEST(SrbfFit, IsTheSameForAnyNumberOfThreads) {
   const test::MemoryBtf btf = test::striped_btf(small_grid());
-  const SrbfBtf one = fit(btf, {.bytes = kBytes, .threads = 1}).btf,
-                two = fit(btf, {.bytes = kBytes, .threads = 2}).btf;
+  const SrbfBtf one = fit_srbf(btf, {.bytes = kSrbfBytes, .threads = 1}).btf,
+                two = fit_srbf(btf, {.bytes = kSrbfBytes, .threads = 2}).btf;
   expect_same(one, two);
 }
 
 TEST(SrbfFit, IsFlatWithoutStructure) {
-  const SrbfBtf model = fit(test::striped_btf(small_grid()), {.bytes = kBytes}).btf;
+  const SrbfBtf model = fit_srbf(test::striped_btf(small_grid()), {.bytes = kSrbfBytes}).btf;
   ASSERT_EQ(model.sides.size(), 1u);
   for (const SrbfLevel& level : model.sides[0].levels) {
     for (const HalfBits h : level.relief) EXPECT_EQ(h, 0);
@@ -187,7 +187,7 @@ TEST(SrbfFit, IsFlatWithoutStructure) {
 }
 
 TEST(SrbfFit, HasTheReliefOfTheStructure) {
-  const SrbfBtf truth = true_model(0.05f);
+  const SrbfBtf truth = true_srbf(0.05f);
   const test::MemoryBtfWithRelief btf = with_relief(truth, true);
   const std::vector<Relief> pyramid = relief_pyramid(btf, sides_of(btf.layout()).at(0));
   ASSERT_EQ(pyramid.size(), 4u);  // 12 x 8, 6 x 4, 3 x 2, 1 x 1
@@ -207,9 +207,9 @@ TEST(SrbfFit, HasTheReliefOfTheStructure) {
 
 /// Reflection from both sides, and none through: the bytes are those of two sides.
 TEST(SrbfFit, OfTwoSidesFitsBoth) {
-  const SrbfBtf truth = true_model(0, true);
+  const SrbfBtf truth = true_srbf(0, true);
   const test::MemoryBtf btf = images_of(truth);
-  const SrbfBtf model = fit(btf, {.bytes = 10000}).btf;
+  const SrbfBtf model = fit_srbf(btf, {.bytes = 10000}).btf;
   ASSERT_EQ(model.sides.size(), 2u);
   EXPECT_GT(errors_of(model, btf).psnr, 35);
   const SrbfEvaluator evaluator(shared(model));
@@ -218,7 +218,7 @@ TEST(SrbfFit, OfTwoSidesFitsBoth) {
 
 TEST(SrbfFit, KeepsSidesThatLightGoesThroughTo) {
   const test::MemoryBtf btf = test::striped_btf({4, 4}, true);
-  const SrbfBtf model = fit(btf, {.bytes = 3000}).btf;
+  const SrbfBtf model = fit_srbf(btf, {.bytes = 3000}).btf;
   ASSERT_EQ(model.sides.size(), 4u);
   const SrbfEvaluator evaluator(shared(model));
   std::vector<float> rgb;
@@ -231,7 +231,7 @@ TEST(SrbfFit, KeepsSidesThatLightGoesThroughTo) {
 
 TEST(SrbfFit, OfABlackBtfIsBlack) {
   const test::MemoryBtf btf(test::ringed_layout(), small_grid(), [](auto&&...) { return Rgb(0.0f); });
-  const SrbfBtf model = fit(btf, {.bytes = kBytes}).btf;
+  const SrbfBtf model = fit_srbf(btf, {.bytes = kSrbfBytes}).btf;
   EXPECT_GE(model.sides.at(0).lobes.size(), 1u);  // the file has no parts without values
   const SrbfEvaluator evaluator(shared(model));
   std::vector<float> rgb;
@@ -241,7 +241,7 @@ TEST(SrbfFit, OfABlackBtfIsBlack) {
 
 TEST(SrbfFit, TakesASingleTexel) {
   const test::MemoryBtf btf = test::striped_btf({1, 1});
-  EXPECT_GT(errors_of(fit(btf, {}).btf, btf).psnr, 25);
+  EXPECT_GT(errors_of(fit_srbf(btf, {}).btf, btf).psnr, 25);
 }
 
 TEST(SrbfFit, IsNotPulledByEntriesThatAreNotFinite) {
@@ -251,15 +251,15 @@ TEST(SrbfFit, IsNotPulledByEntriesThatAreNotFinite) {
                               return x == 3 && y == 4 && pair.wl.x > 0 ? Rgb(nan) : test::striped(pair, x, y);
                             });
   const test::MemoryBtf whole = test::striped_btf(small_grid());
-  const SrbfFit found = fit(btf, {.bytes = kBytes});
+  const SrbfFit found = fit_srbf(btf, {.bytes = kSrbfBytes});
   EXPECT_GT(found.not_finite, 0u);
-  EXPECT_GT(errors_of(found.btf, btf).psnr, errors_of(fit(whole, {.bytes = kBytes}).btf, whole).psnr - 1);
+  EXPECT_GT(errors_of(found.btf, btf).psnr, errors_of(fit_srbf(whole, {.bytes = kSrbfBytes}).btf, whole).psnr - 1);
 }
 
 /// Every level under every light has the mean of the measurement, in f itself.
 TEST(SrbfFit, CoarseLevelsKeepTheMean) {
   const test::MemoryBtf btf = test::striped_btf(small_grid());
-  SrbfBtf model = fit(btf, {.bytes = kBytes, .companding = Companding::none}).btf;
+  SrbfBtf model = fit_srbf(btf, {.bytes = kSrbfBytes, .companding = Companding::none}).btf;
   std::vector<float> rgb, coarse;
   const SrbfEvaluator evaluator(shared(model));
   SrbfBtf last = model;
@@ -292,7 +292,7 @@ TEST(SrbfFit, ReportsRisingProgressAndEndsAtACancel) {
       std::this_thread::yield();
     }
   });
-  fit(btf, {.bytes = kBytes}, progress);
+  fit_srbf(btf, {.bytes = kSrbfBytes}, progress);
   done = true;
   watcher.join();
   EXPECT_NEAR(progress.fraction(), 1, 1e-6);
@@ -302,7 +302,7 @@ TEST(SrbfFit, ReportsRisingProgressAndEndsAtACancel) {
     while (cancelled.fraction() < 0.1) std::this_thread::yield();
     cancelled.cancel();
   });
-  test::expect_refused(Status::cancelled, "Cancelled", [&] { fit(btf, {.bytes = kBytes}, cancelled); });
+  test::expect_refused(Status::cancelled, "Cancelled", [&] { fit_srbf(btf, {.bytes = kSrbfBytes}, cancelled); });
   asks.join();
   EXPECT_LT(cancelled.fraction(), 1);
 }

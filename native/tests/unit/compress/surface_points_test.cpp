@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-const TexelGrid kGrid{8, 6};
+const TexelGrid kStripedGrid{8, 6};
 
 Relief plane(float height) { return {8, 6, std::vector<float>(48, height), 0.75f}; }
 
@@ -28,7 +28,7 @@ std::vector<SurfacePoint> points_of(const BtfMeasurement& btf, const Relief& rel
 }
 
 test::MemoryBtf uniform(const Rgb& f) {
-  return {test::ringed_layout(), kGrid, [f](auto&&...) { return f; }};
+  return {test::ringed_layout(), kStripedGrid, [f](auto&&...) { return f; }};
 }
 
 TEST(SidesOf, AreFourForDirectionsOnBothSides) {
@@ -49,12 +49,12 @@ TEST(SidesOf, AreFourForDirectionsOnBothSides) {
 }
 
 TEST(SideViews, AreFilteredFromLevelToLevel) {
-  const test::MemoryBtf btf = test::striped_btf(kGrid);
+  const test::MemoryBtf btf = test::striped_btf(kStripedGrid);
   Progress progress;
   CompandedViews views(btf, Companding::none, 1, progress);
   const SideDirections side = sides_of(btf.layout()).at(0);
   std::vector<LevelImages> images;
-  read_side_view(views, kGrid, side, 2, 4, images);
+  read_side_view(views, kStripedGrid, side, 2, 4, images);
   const Eigen::RowVectorXf mean = images[0].value[1].colwise().mean();
   EXPECT_EQ(images[3].width, 1u);
   EXPECT_LT((images[3].value[1].row(0) - mean).norm(), 1e-4f * mean.norm());
@@ -111,7 +111,7 @@ TEST(SurfacePoints, AreThoseOfTheirSeed) {
 }
 
 TEST(SharedLobes, ShareTheCoefficientsOut) {
-  const test::MemoryBtf btf = test::striped_btf(kGrid);
+  const test::MemoryBtf btf = test::striped_btf(kStripedGrid);
   const auto points = points_of(btf, plane(0), {.points = 24, .pairs = 1000, .seed = 1});
   Progress progress;
   const LobeOrder order = order_lobes(points, {.most = 20, .seed = 1, .threads = 2}, progress);

@@ -16,7 +16,7 @@ using test::kGrid;
 using test::noise;
 using test::small_layout;
 
-test::FactoredFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
+test::FactoredFit fit_svd(const BtfMeasurement& btf, const BtfFitOptions& options) {
   return test::fit<SvdFitter>(btf, options);
 }
 
@@ -31,17 +31,17 @@ Rgb squared_products(const DirectionPair& pair, uint32_t x, uint32_t y) {
 
 TEST(SvdFit, RecoversAProductsSquareToTheRoundingOfHalves) {
   const test::MemoryBtf btf(small_layout(), kGrid, squared_products);
-  const test::FactoredFit found = fit(btf, {.bytes = 4 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid))});
+  const test::FactoredFit found = fit_svd(btf, {.bytes = 4 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid))});
   EXPECT_EQ(found.btf.components(), 4u);
   EXPECT_LT(error_of(found.btf, btf), 1e-6);
   // The control: three products are not two.
-  EXPECT_GT(error_of(fit(btf, {.bytes = 2 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid))}).btf, btf), 1e-4);
+  EXPECT_GT(error_of(fit_svd(btf, {.bytes = 2 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid))}).btf, btf), 1e-4);
 }
 
 TEST(SvdFit, IsAsBrightAsWhatItLeavesOut) {
   const test::MemoryBtf btf(small_layout(), kGrid, noise);
   const uint64_t bytes = 6 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid));
-  const BtfErrors errors = errors_of(fit(btf, {.bytes = bytes}).btf, btf);
+  const BtfErrors errors = errors_of(fit_svd(btf, {.bytes = bytes}).btf, btf);
   EXPECT_NEAR(errors.brightness, 1, 2e-3);
   EXPECT_GT(errors.ser, 0.1) << "the control: most of the spread of the roots, a ninth of their mean square, is lost";
 }
@@ -51,7 +51,7 @@ TEST(SvdFit, LosesNoMoreThanTheExactDecomposition) {
   const auto pairs = static_cast<Eigen::Index>(btf.layout().pairs());
   const auto texels = static_cast<Eigen::Index>(kGrid.texels());
   const test::FactoredFit found =
-      fit(btf, {.bytes = 30 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid)), .companding = Companding::none});
+      fit_svd(btf, {.bytes = 30 * 2 * (btf.layout().pairs() + pyramid_texels(kGrid)), .companding = Companding::none});
   const std::vector<float> f = test::values_of(btf);
   std::vector<double> energy;
   for (int a = 0; a < 3; ++a) {
@@ -66,7 +66,7 @@ TEST(SvdFit, IsNotPulledByEntriesThatAreNotFinite) {
   const test::MemoryBtf btf(small_layout(), kGrid, [&](const DirectionPair& pair, uint32_t x, uint32_t y) {
     return x == 3 && y == 4 && pair.wl.x > 0 ? Rgb(nan) : squared_products(pair, x, y);
   });
-  const test::FactoredFit found = fit(btf, {.bytes = 6000});
+  const test::FactoredFit found = fit_svd(btf, {.bytes = 6000});
   EXPECT_GT(found.not_finite, 0u);
   EXPECT_LT(error_of(found.btf, btf), 1e-3);
 }

@@ -15,7 +15,7 @@ using test::kGrid;
 using test::noise;
 using test::small_layout;
 
-test::FactoredFit fit(const BtfMeasurement& btf, const BtfFitOptions& options) {
+test::FactoredFit fit_view_svd(const BtfMeasurement& btf, const BtfFitOptions& options) {
   return test::fit<ViewSvdFitter>(btf, options);
 }
 
@@ -32,12 +32,12 @@ Rgb squared_product_of_view(const DirectionPair& pair, uint32_t x, uint32_t y) {
 
 TEST(ViewSvdFit, RecoversAProductOfEachViewToTheRoundingOfHalves) {
   const test::MemoryBtf btf(small_layout(), kGrid, squared_product_of_view);
-  const test::FactoredFit found = fit(btf, {.bytes = bytes_of(5, btf)});
+  const test::FactoredFit found = fit_view_svd(btf, {.bytes = bytes_of(5, btf)});
   EXPECT_EQ(found.btf.view, (std::vector<uint16_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(found.btf.pair_value.size(), 5u * 7u);
   EXPECT_LT(errors_of(found.btf, btf).ser, 1e-6);
   // The control: without its component a view is black.
-  EXPECT_GT(errors_of(fit(btf, {.bytes = bytes_of(4, btf)}).btf, btf).ser, 0.1);
+  EXPECT_GT(errors_of(fit_view_svd(btf, {.bytes = bytes_of(4, btf)}).btf, btf).ser, 0.1);
 }
 
 /// The squares of singular values of every view's matrices.
@@ -58,7 +58,8 @@ std::vector<double> energies(const BtfMeasurement& btf, const Mat3& axes) {
 TEST(ViewSvdFit, LeavesWhatTheDenseDecompositionOfEachViewDoes) {
   const test::MemoryBtf btf(small_layout(), kGrid, noise);
   for (const size_t components : {20u, 50u}) {
-    const test::FactoredFit found = fit(btf, {.bytes = bytes_of(components, btf), .companding = Companding::none});
+    const test::FactoredFit found =
+        fit_view_svd(btf, {.bytes = bytes_of(components, btf), .companding = Companding::none});
     ASSERT_EQ(found.btf.components(), components);
     const double left = test::left_out(energies(btf, found.btf.axes), components);
     const double error = test::squared_error(found.btf, btf);
@@ -81,14 +82,14 @@ TEST(ViewSvdFit, ItsCurveIsTheErrorOfEverySize) {
 
 TEST(ViewSvdFit, EachViewIsAsBrightAsWhatItLeavesOut) {
   const test::MemoryBtf btf(small_layout(), kGrid, noise);
-  const test::FactoredFit found = fit(btf, {.bytes = bytes_of(15, btf)});
+  const test::FactoredFit found = fit_view_svd(btf, {.bytes = bytes_of(15, btf)});
   ASSERT_EQ(std::set(found.btf.view.begin(), found.btf.view.end()).size(), 5u);
   EXPECT_NEAR(errors_of(found.btf, btf).brightness, 1, 2e-3);
 }
 
 TEST(ViewSvdFit, OfABlackBtfIsBlack) {
   const test::MemoryBtf btf(small_layout(), kGrid, [](const DirectionPair&, uint32_t, uint32_t) { return Rgb(0.0f); });
-  const test::FactoredFit found = fit(btf, {.bytes = 9000});
+  const test::FactoredFit found = fit_view_svd(btf, {.bytes = 9000});
   std::vector<float> image;
   FactoredImages(found.btf).image(btf.layout().directions(3), image);
   for (const float f : image) EXPECT_EQ(f, 0.0f);

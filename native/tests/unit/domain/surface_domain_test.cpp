@@ -12,7 +12,7 @@ namespace velour {
 namespace {
 
 /// Weight 1 at each of these widths of a look-up, as shares of the tile's side.
-SurfaceDomain seen_at(const std::vector<double>& widths) {
+SurfaceDomain seen_with_widths(const std::vector<double>& widths) {
   SurfaceDomain domain;
   for (const double w : widths) add_seen(domain, static_cast<float>(std::log2(w * 65536)), Vec2(0.5f), 1);
   return domain;
@@ -20,14 +20,14 @@ SurfaceDomain seen_at(const std::vector<double>& widths) {
 
 TEST(SurfaceDomain, TheFinestLookUpIsKnownToAnEighthOfAnOctave) {
   for (const double width : {0.9, 0.3, 0.031, 1e-4, 2e-5}) {
-    const double found = finest_footprint(seen_at({width, 0.9}));
+    const double found = finest_footprint(seen_with_widths({width, 0.9}));
     EXPECT_GT(found, width * 0.9999);
     EXPECT_LE(found, width * std::exp2(0.1251)) << width;
   }
 }
 
 TEST(SurfaceDomain, WhatHardlyCountsIsLeftOut) {
-  SurfaceDomain domain = seen_at({0.25});
+  SurfaceDomain domain = seen_with_widths({0.25});
   add_seen(domain, 2, Vec2(0.5f), 0.9e-4);
   EXPECT_GT(finest_footprint(domain), 0.25);
   add_seen(domain, 2, Vec2(0.5f), 0.2e-4);
@@ -40,7 +40,7 @@ TEST(SurfaceDomain, NothingSeenIsInfinitelyCoarseButCannotBeServed) {
 }
 
 TEST(SurfaceDomain, ResolutionIsEnoughForItsOwnFinestLookUps) {
-  const SurfaceDomain domain = seen_at({1.0 / 32, 1.0 / 8, 1.0 / 8, 1.0 / 8});
+  const SurfaceDomain domain = seen_with_widths({1.0 / 32, 1.0 / 8, 1.0 / 8, 1.0 / 8});
   EXPECT_TRUE(resolves(64, finest_footprint(domain)));
   EXPECT_FALSE(resolves(32, finest_footprint(domain)));
   EXPECT_EQ(share_finer_than(domain, 64), 0);
@@ -68,8 +68,8 @@ TEST(SurfaceDomain, PlacesRepeatWithTheTile) {
 }
 
 TEST(SurfaceDomain, FramesAddUp) {
-  SurfaceDomain sum = seen_at({0.1});
-  merge(sum, seen_at({0.01, 0.1}));
+  SurfaceDomain sum = seen_with_widths({0.1});
+  merge(sum, seen_with_widths({0.01, 0.1}));
   EXPECT_EQ(sum.weight(), 3);
   EXPECT_NEAR(share_finer_than(sum, 64), 1.0 / 3, 1e-12);
 }
@@ -79,7 +79,7 @@ TEST(OutOfResolution, AFrameWithoutTheMaterialIsNowhereOutside) {
   EXPECT_EQ(out_of_resolution(1, frame), 0);
   frame.domain.view[3] = 1;  // seen, but nobody knows how finely
   EXPECT_EQ(out_of_resolution(1, frame), 1);
-  frame.domain.surface = seen_at({0.5});
+  frame.domain.surface = seen_with_widths({0.5});
   EXPECT_EQ(out_of_resolution(4, frame), 0);
   EXPECT_EQ(out_of_resolution(2, frame), 1);
 }

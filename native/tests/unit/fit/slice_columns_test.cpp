@@ -7,20 +7,17 @@
 #include "fit/stored_lobe.h"
 #include "sphere/directions.h"
 #include "srbf/simd_target.h"
+#include "unit/fit/shape_value.h"
 
 namespace velour {
 namespace {
+
+using test::shape_value;
 
 SliceSamples unit_samples(int n) {
   std::vector<SliceSample> samples;
   for (const Vec3& w : hemisphere_fibonacci(n)) samples.push_back({w, 1.0f, Rgb(1, 2, 3)});
   return SliceSamples(samples);
-}
-
-/// The formula of LobeShape, in double.
-double shape_value(Kernel kernel, const LobeShape& s, const Vec3d& w) {
-  const double kd = s.sharpness * one_minus_dot(w, s.center);
-  return kernel == Kernel::gaussian ? std::exp(-kd) : std::pow(1 + 2.0 / 3.0 * kd, -1.5);
 }
 
 /// Centres that floats hold exactly: their rounding is not what is tested here.

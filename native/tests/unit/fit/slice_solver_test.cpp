@@ -6,10 +6,12 @@
 
 #include "sphere/directions.h"
 #include "sphere/random.h"
+#include "unit/fit/shape_value.h"
 
 namespace velour {
 namespace {
 
+using test::shape_value;
 using Lobes = std::vector<SliceLobe>;
 
 Vec3d unit(double x, double y, double z) { return glm::normalize(Vec3d(x, y, z)); }
@@ -18,11 +20,6 @@ Lobes three_lobes() {
   return {{{unit(0.5, 0, 0.8), 60}, {2, 1.5, 1}},
           {{unit(-0.3, 0.4, 0.7), 12}, {0.5, 0.7, 0.9}},
           {{unit(0.1, -0.2, 0.9), 1}, {0.2, 0.1, 0.3}}};
-}
-
-double shape_value(Kernel kernel, const LobeShape& s, const Vec3d& w) {
-  const double kd = s.sharpness * one_minus_dot(w, s.center);
-  return kernel == Kernel::gaussian ? std::exp(-kd) : std::pow(1 + 2.0 / 3.0 * kd, -1.5);
 }
 
 SliceSamples samples_of(Kernel kernel, const Lobes& lobes, int n, const Mat3& turn = Mat3(1)) {

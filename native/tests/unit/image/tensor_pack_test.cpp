@@ -41,7 +41,7 @@ TensorFile sample_pack() {
   return file;
 }
 
-void expect_equal(const TensorFile& a, const TensorFile& b) {
+void expect_same_tensors(const TensorFile& a, const TensorFile& b) {
   EXPECT_EQ(a.attributes, b.attributes);
   ASSERT_EQ(a.tensors.size(), b.tensors.size());
   for (const auto& [name, tensor] : a.tensors) {
@@ -76,8 +76,8 @@ std::vector<uint8_t> pack_of(const std::string& list, size_t zeros) {
 }
 
 TEST(TensorPack, RoundTrip) {
-  expect_equal(sample_pack(), decode_pack(encode_pack(sample_pack()), "test"));
-  expect_equal({}, decode_pack(encode_pack({}), "test"));
+  expect_same_tensors(sample_pack(), decode_pack(encode_pack(sample_pack()), "test"));
+  expect_same_tensors({}, decode_pack(encode_pack({}), "test"));
   EXPECT_EQ(encode_pack(sample_pack()), encode_pack(sample_pack()));
 }
 
@@ -85,7 +85,7 @@ TEST(TensorPack, MapsOfEverySizeKeepTheirBytes) {
   for (const auto& [rows, columns] : {std::pair<uint64_t, uint64_t>{64, 48}, {1, 1}, {1, 7}, {5, 1}, {2, 3}}) {
     TensorFile file;
     file.tensors["maps"] = maps_of_bytes(rows, columns);
-    expect_equal(file, decode_pack(encode_pack(file), "test"));
+    expect_same_tensors(file, decode_pack(encode_pack(file), "test"));
   }
 }
 
@@ -107,7 +107,7 @@ TEST(TensorPack, LongStreamsAreWhole) {
   file.tensors["a"] = maps_of_bytes(400, 300);  // many steps of output, then other strategies
   file.tensors["b"] = {{3 * 400 * 300}, file.tensors["a"].data, Precision::halves};
   file.tensors["c"] = maps_of_bytes(300, 400);
-  expect_equal(file, decode_pack(encode_pack(file), "test"));
+  expect_same_tensors(file, decode_pack(encode_pack(file), "test"));
 }
 
 TEST(TensorPack, EveryDamageAndTruncationIsRefused) {
@@ -118,7 +118,7 @@ TEST(TensorPack, EveryDamageAndTruncationIsRefused) {
     damaged[at] ^= 0x20;
     const std::string why = refusal(damaged);
     if (why.empty())
-      expect_equal(sample_pack(), decode_pack(damaged, "test"));  // bits between the end and the checksum
+      expect_same_tensors(sample_pack(), decode_pack(damaged, "test"));  // bits between the end and the checksum
     else
       EXPECT_NE(why.find("hostile"), std::string::npos) << at;
   }
@@ -127,7 +127,7 @@ TEST(TensorPack, EveryDamageAndTruncationIsRefused) {
 TEST(TensorPack, WhatFollowsIsNotLookedAt) {
   auto pack = encode_pack(sample_pack());
   pack.insert(pack.end(), {0, 0, 0});
-  expect_equal(sample_pack(), decode_pack(pack, "test"));
+  expect_same_tensors(sample_pack(), decode_pack(pack, "test"));
 }
 
 TEST(TensorPack, ListsThatLieAreRefused) {

@@ -6,11 +6,12 @@
 #include "job/error.h"
 #include "model/model_file.h"
 #include "unit/model/example_model.h"
+#include "unit/model/refusals.h"
 
 namespace velour {
 namespace {
 
-Model after_a_round_trip(const Model& model) { return decode_model(encode_model(model), "test.velour"); }
+using test::after_a_round_trip;
 
 /// The sentence that refuses a model after `change`.
 template <class Change>

@@ -11,15 +11,15 @@ namespace velour {
 namespace {
 
 using test::expect_named;
-using Change = test::FileChange;
+using test::FileChange;
+using test::set_value;
 const auto complaint_of = test::refusal_of;
-const auto set = test::set_value;
 
-std::string complaint(const Change& change, Kernel kernel = Kernel::gaussian) {
+std::string complaint(const FileChange& change, Kernel kernel = Kernel::gaussian) {
   return complaint_of(test::example_model(kernel), change);
 }
 
-std::string parametric_complaint(const Change& change) { return complaint_of(test::example_parametric(), change); }
+std::string parametric_complaint(const FileChange& change) { return complaint_of(test::example_parametric(), change); }
 
 auto attribute(const std::string& key, const std::string& value) {
   return [=](TensorFile& file) { file.attributes[key] = value; };
@@ -32,19 +32,19 @@ TEST(HostileModel, TheUnchangedExampleIsAccepted) {
 
 TEST(HostileModel, ValuesOutOfRangeAreNamed) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
-  expect_named(complaint(set("lobes.center", 3, 2)), "lobes.center[1]");
-  expect_named(complaint(set("lobes.center", 0, nan)), "lobes.center[0]");
-  expect_named(complaint(set("lobes.bandwidth", 2, 0)), "lobes.bandwidth[2]");
-  expect_named(complaint(set("lobes.bandwidth", 2, infinity)), "lobes.bandwidth[2]");
-  expect_named(complaint(set("lobes.bandwidth", 1, 1), Kernel::abel_poisson), "lobes.bandwidth[1]");
-  expect_named(complaint(set("lobes.coefficient", 4, -1e-6f)), "lobes.coefficient[1]");
-  expect_named(complaint(set("lobes.coefficient", 4, nan)), "lobes.coefficient[1]");
-  expect_named(complaint(set("views.diffuse", 7, -1)), "views.diffuse[2]");
-  expect_named(complaint(set("views.direction", 2, -1)), "views.direction[0]");
-  expect_named(complaint(set("views.lobe_count", 1, 2)), "views.lobe_count");
-  expect_named(complaint(set("views.lobe_count", 1, 0.5f)), "views.lobe_count[1]");
-  expect_named(complaint(set("views.lobe_count", 1, -1)), "views.lobe_count[1]");
-  expect_named(complaint(set("views.lobe_count", 1, 1e9f)), "views.lobe_count[1]");
+  expect_named(complaint(set_value("lobes.center", 3, 2)), "lobes.center[1]");
+  expect_named(complaint(set_value("lobes.center", 0, nan)), "lobes.center[0]");
+  expect_named(complaint(set_value("lobes.bandwidth", 2, 0)), "lobes.bandwidth[2]");
+  expect_named(complaint(set_value("lobes.bandwidth", 2, infinity)), "lobes.bandwidth[2]");
+  expect_named(complaint(set_value("lobes.bandwidth", 1, 1), Kernel::abel_poisson), "lobes.bandwidth[1]");
+  expect_named(complaint(set_value("lobes.coefficient", 4, -1e-6f)), "lobes.coefficient[1]");
+  expect_named(complaint(set_value("lobes.coefficient", 4, nan)), "lobes.coefficient[1]");
+  expect_named(complaint(set_value("views.diffuse", 7, -1)), "views.diffuse[2]");
+  expect_named(complaint(set_value("views.direction", 2, -1)), "views.direction[0]");
+  expect_named(complaint(set_value("views.lobe_count", 1, 2)), "views.lobe_count");
+  expect_named(complaint(set_value("views.lobe_count", 1, 0.5f)), "views.lobe_count[1]");
+  expect_named(complaint(set_value("views.lobe_count", 1, -1)), "views.lobe_count[1]");
+  expect_named(complaint(set_value("views.lobe_count", 1, 1e9f)), "views.lobe_count[1]");
 }
 
 TEST(HostileModel, ViewsMustLieOnTheMeridianInOrder) {
@@ -90,9 +90,9 @@ TEST(HostileModel, AttributesAreChecked) {
 
 TEST(HostileModel, ParametricValuesOutOfRangeAreNamed) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
-  expect_named(parametric_complaint(set("lobes.space", 2, 2)), "lobes.space[2]");
-  expect_named(parametric_complaint(set("lobes.space", 2, 0.5f)), "lobes.space[2]");
-  expect_named(parametric_complaint(set("lobes.space", 2, nan)), "lobes.space[2]");
+  expect_named(parametric_complaint(set_value("lobes.space", 2, 2)), "lobes.space[2]");
+  expect_named(parametric_complaint(set_value("lobes.space", 2, 0.5f)), "lobes.space[2]");
+  expect_named(parametric_complaint(set_value("lobes.space", 2, nan)), "lobes.space[2]");
   // [node][parameter][lobe], five lobes: the second of each parameter.
   const auto first = [](int parameter) { return static_cast<size_t>(5 * parameter + 1); };
   const std::pair<int, float> hostile[] = {
@@ -102,10 +102,10 @@ TEST(HostileModel, ParametricValuesOutOfRangeAreNamed) {
       {ParametricBrdf::kTiltX, -infinity},    {ParametricBrdf::kStretchA, -6.01f},
       {ParametricBrdf::kStretchA, nan},       {ParametricBrdf::kLogBandwidth, infinity}};
   for (const auto& [parameter, value] : hostile) {
-    const std::string said = parametric_complaint(set("lobes.control", first(parameter), value));
+    const std::string said = parametric_complaint(set_value("lobes.control", first(parameter), value));
     expect_named(said, "lobes.control[" + std::to_string(first(parameter)) + "]");
   }
-  expect_named(parametric_complaint(set("lobes.control", first(ParametricBrdf::kTiltX), 4)), "tilt in radians");
+  expect_named(parametric_complaint(set_value("lobes.control", first(ParametricBrdf::kTiltX), 4)), "tilt in radians");
 }
 
 TEST(HostileModel, ParametricPartsAndAttributesAreChecked) {
@@ -133,7 +133,9 @@ TEST(HostileModel, ParametricPartsAndAttributesAreChecked) {
 }
 
 TEST(HostileModel, ViewsOfReducedModelsAreChecked) {
-  const auto complaint_of_reduced = [](const Change& change) { return complaint_of(test::example_reduced(), change); };
+  const auto complaint_of_reduced = [](const FileChange& change) {
+    return complaint_of(test::example_reduced(), change);
+  };
   EXPECT_EQ(complaint_of_reduced([](TensorFile&) {}), "");
   expect_named(complaint_of_reduced(attribute("velour.first_view", "-1")), "velour.first_view");
   expect_named(complaint_of_reduced(attribute("velour.last_view", "30")), "velour.last_view");

@@ -12,6 +12,8 @@
 
 namespace velour::test {
 
+inline Model after_a_round_trip(const Model& model) { return decode_model(encode_model(model), "test.velour"); }
+
 using FileChange = std::function<void(TensorFile&)>;
 
 /// The sentence that refuses the file of `model`, named metal.velour, after `change`; "" where it is accepted.

@@ -20,7 +20,7 @@ Model model_with_shell() {
   return model;
 }
 
-test::FileChange attribute(const std::string& from, const std::string& to) {
+test::FileChange shell_attribute(const std::string& from, const std::string& to) {
   return [=](TensorFile& file) {
     std::string& text = file.attributes.at("velour.shell");
     const size_t at = text.find(from);
@@ -77,10 +77,10 @@ TEST(ShellFile, WhatIsWrongIsNamed) {
   expect_named(refusal_of(model, [](TensorFile& f) { f.attributes.at("velour.shell") = "{"; }), "velour.shell");
   for (const char* key : {"bottom", "top", "reference", "aspect", "reach", "closed", "tile_width", "source"}) {
     const std::string quoted = std::string(1, '"') + key + '"';
-    expect_named(refusal_of(model, attribute(quoted, std::string(1, '"') + "x" + '"')), key);
+    expect_named(refusal_of(model, shell_attribute(quoted, std::string(1, '"') + "x" + '"')), key);
   }
   const std::string top = std::string(1, '"') + "top" + '"' + ":";
-  expect_named(refusal_of(model, attribute(top, top + "-1e3," + std::string(1, '"') + "y" + '"' + ":")), "top");
+  expect_named(refusal_of(model, shell_attribute(top, top + "-1e3," + std::string(1, '"') + "y" + '"' + ":")), "top");
 }
 
 }  // namespace

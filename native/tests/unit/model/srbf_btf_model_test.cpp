@@ -8,15 +8,16 @@
 namespace velour {
 namespace {
 
-Model after_a_round_trip(const Model& model) { return decode_model(encode_model(model), "test.velour"); }
-
-const auto set = test::set_value;
+using test::after_a_round_trip;
+using test::set_value;
 
 /// What is said to a model of two sides after `change`.
-std::string refusal(const test::FileChange& change) { return test::refusal_of(test::example_srbf_model(true), change); }
+std::string srbf_refusal(const test::FileChange& change) {
+  return test::refusal_of(test::example_srbf_model(true), change);
+}
 
-void expect_refused(const test::FileChange& change, const std::string& field) {
-  test::expect_named(refusal(change), field);
+void expect_srbf_refused(const test::FileChange& change, const std::string& field) {
+  test::expect_named(srbf_refusal(change), field);
 }
 
 TEST(SrbfBtfModel, SurvivesItsFile) {
@@ -76,10 +77,10 @@ TEST(SrbfBtfModel, SharedSidesNameSidesThatAreThere) {
   const auto shared = [](std::vector<float> row) {
     return [row](TensorFile& f) { f.tensors["btf.shared"] = {{row.size() / 3, 3}, row}; };
   };
-  expect_refused(shared({1, 0, 2}), "btf.shared[2]");  // of two
-  expect_refused(shared({1, 0, 0.5f}), "btf.shared[2]");
-  expect_refused(shared({2, 0, 0}), "btf.shared[0]");
-  expect_refused(shared(std::vector<float>(12, 0.0f)), "btf.shared");
+  expect_srbf_refused(shared({1, 0, 2}), "btf.shared[2]");  // of two
+  expect_srbf_refused(shared({1, 0, 0.5f}), "btf.shared[2]");
+  expect_srbf_refused(shared({2, 0, 0}), "btf.shared[0]");
+  expect_srbf_refused(shared(std::vector<float>(12, 0.0f)), "btf.shared");
 }
 
 TEST(SrbfBtfModel, OfOneBlackLobeSurvives) {
@@ -99,47 +100,49 @@ TEST(SrbfBtfModel, OfOneBlackLobeSurvives) {
 TEST(SrbfBtfModel, MissingOrMisshapenPartsAreNamed) {
   for (const char* part : {"btf.sides", "btf.axes", "btf.side.0.lobes", "btf.side.0.frames", "btf.side.0.coefficients",
                            "btf.side.0.scales", "btf.side.1.relief.0", "btf.side.1.bytes.2"}) {
-    expect_refused([part](TensorFile& f) { f.tensors.erase(part); }, part);
-    expect_refused([part](TensorFile& f) { f.tensors[part] = {{3, 5}, std::vector<float>(15, 0.0f)}; }, part);
+    expect_srbf_refused([part](TensorFile& f) { f.tensors.erase(part); }, part);
+    expect_srbf_refused([part](TensorFile& f) { f.tensors[part] = {{3, 5}, std::vector<float>(15, 0.0f)}; }, part);
   }
   for (const char* key : {"velour.btf.index", "velour.companding", "velour.btf.record"}) {
-    expect_refused([key](TensorFile& f) { f.attributes.erase(key); }, key);
-    expect_refused([key](TensorFile& f) { f.attributes[key] = "nonsense"; }, key);
+    expect_srbf_refused([key](TensorFile& f) { f.attributes.erase(key); }, key);
+    expect_srbf_refused([key](TensorFile& f) { f.attributes[key] = "nonsense"; }, key);
   }
 }
 
 TEST(SrbfBtfModel, LevelsHaveTheShapeOfTheTile) {
-  expect_refused([](TensorFile& f) { std::swap(f.tensors["btf.side.0.relief.0"], f.tensors["btf.side.0.relief.1"]); },
-                 "btf.side.0.relief.0");
-  expect_refused([](TensorFile& f) { std::swap(f.tensors["btf.side.0.bytes.0"], f.tensors["btf.side.0.bytes.1"]); },
-                 "btf.side.0.bytes.0");
+  expect_srbf_refused(
+      [](TensorFile& f) { std::swap(f.tensors["btf.side.0.relief.0"], f.tensors["btf.side.0.relief.1"]); },
+      "btf.side.0.relief.0");
+  expect_srbf_refused(
+      [](TensorFile& f) { std::swap(f.tensors["btf.side.0.bytes.0"], f.tensors["btf.side.0.bytes.1"]); },
+      "btf.side.0.bytes.0");
 }
 
 TEST(SrbfBtfModel, ValuesThatAreNoNumbersAreNamed) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   for (const float bad : {nan, infinity}) {
-    expect_refused(set("btf.side.0.lobes", 10, bad), "btf.side.0.lobes[10]");
-    expect_refused(set("btf.side.0.frames", 2, bad), "btf.side.0.frames[2]");
-    expect_refused(set("btf.side.0.coefficients", 3, bad), "btf.side.0.coefficients[3]");
-    expect_refused(set("btf.side.1.relief.0", 7, bad), "btf.side.1.relief.0[7]");
-    expect_refused(set("btf.side.1.scales", 4, bad), "btf.side.1.scales[4]");
-    expect_refused(set("btf.side.1.scales", 5, bad), "btf.side.1.scales[5]");
-    expect_refused(set("btf.side.1.bytes.1", 9, bad), "btf.side.1.bytes.1[9]");
-    expect_refused(set("btf.sides", 1, bad), "btf.sides[1]");
-    expect_refused(set("btf.axes", 4, bad), "btf.axes[4]");
+    expect_srbf_refused(set_value("btf.side.0.lobes", 10, bad), "btf.side.0.lobes[10]");
+    expect_srbf_refused(set_value("btf.side.0.frames", 2, bad), "btf.side.0.frames[2]");
+    expect_srbf_refused(set_value("btf.side.0.coefficients", 3, bad), "btf.side.0.coefficients[3]");
+    expect_srbf_refused(set_value("btf.side.1.relief.0", 7, bad), "btf.side.1.relief.0[7]");
+    expect_srbf_refused(set_value("btf.side.1.scales", 4, bad), "btf.side.1.scales[4]");
+    expect_srbf_refused(set_value("btf.side.1.scales", 5, bad), "btf.side.1.scales[5]");
+    expect_srbf_refused(set_value("btf.side.1.bytes.1", 9, bad), "btf.side.1.bytes.1[9]");
+    expect_srbf_refused(set_value("btf.sides", 1, bad), "btf.sides[1]");
+    expect_srbf_refused(set_value("btf.axes", 4, bad), "btf.axes[4]");
   }
-  expect_refused(set("btf.side.0.lobes", 10, 2e6f), "btf.side.0.lobes[10]");
+  expect_srbf_refused(set_value("btf.side.0.lobes", 10, 2e6f), "btf.side.0.lobes[10]");
 }
 
 TEST(SrbfBtfModel, FiniteValuesThatNoHalfFloatHoldsAreNamed) {
-  expect_refused(set("btf.side.0.relief.0", 3, 1e6f), "btf.side.0.relief.0[3]");
-  expect_refused(set("btf.side.0.scales", 2, -1e6f), "btf.side.0.scales[2]");
-  expect_refused(set("btf.side.0.scales", 3, -1e-3f), "btf.side.0.scales[3]");
+  expect_srbf_refused(set_value("btf.side.0.relief.0", 3, 1e6f), "btf.side.0.relief.0[3]");
+  expect_srbf_refused(set_value("btf.side.0.scales", 2, -1e6f), "btf.side.0.scales[2]");
+  expect_srbf_refused(set_value("btf.side.0.scales", 3, -1e-3f), "btf.side.0.scales[3]");
 }
 
 TEST(SrbfBtfModel, ValuesThatAreNoBytesAreNamed) {
   for (const float bad : {-1.0f / 256, 1.0f, 0.5f / 256}) {
-    expect_refused(set("btf.side.1.bytes.0", 5, bad), "btf.side.1.bytes.0[5]");
+    expect_srbf_refused(set_value("btf.side.1.bytes.0", 5, bad), "btf.side.1.bytes.0[5]");
   }
 }
 
@@ -211,29 +214,33 @@ TEST(SrbfBtfModel, OfTheVersionBeforeNamesValuesThatAreNoNumbers) {
 }
 
 TEST(SrbfBtfModel, FramesAreThoseOfTheTileFirst) {
-  expect_refused(set("btf.side.0.frames", 1, 0.5f), "btf.side.0.frames[1]");
-  expect_refused(set("btf.side.0.frames", 0, 1), "btf.side.0.frames[1]");
-  expect_refused(set("btf.side.0.frames", 4, 0), "btf.side.0.frames[4]");
+  expect_srbf_refused(set_value("btf.side.0.frames", 1, 0.5f), "btf.side.0.frames[1]");
+  expect_srbf_refused(set_value("btf.side.0.frames", 0, 1), "btf.side.0.frames[1]");
+  expect_srbf_refused(set_value("btf.side.0.frames", 4, 0), "btf.side.0.frames[4]");
 }
 
 /// Rows of (axis, lobe): five of axis 0, two of axis 1, one of axis 2.
 TEST(SrbfBtfModel, CoefficientsNameAxesAndLobes) {
   const char part[] = "btf.side.0.coefficients";
-  expect_refused(set(part, 12, 3), "btf.side.0.coefficients[12]");
-  expect_refused(set(part, 12, -1), "btf.side.0.coefficients[12]");
-  expect_refused(set(part, 12, 1.5f), "btf.side.0.coefficients[12]");
-  expect_refused(set(part, 12, 0), "btf.side.0.coefficients[12]");  // falls back
-  expect_refused(set(part, 11, 5), "btf.side.0.coefficients[11]");  // there are five lobes
-  expect_refused(set(part, 11, -1), "btf.side.0.coefficients[11]");
-  expect_refused(set(part, 11, 0.5f), "btf.side.0.coefficients[11]");
-  expect_refused(set(part, 3, 0), "btf.side.0.coefficients[3]");  // axis 0 has all lobes in order
-  expect_refused(set(part, 8, 1), "btf.side.0.coefficients");     // the last lobe of axis 0 is gone
+  expect_srbf_refused(set_value(part, 12, 3), "btf.side.0.coefficients[12]");
+  expect_srbf_refused(set_value(part, 12, -1), "btf.side.0.coefficients[12]");
+  expect_srbf_refused(set_value(part, 12, 1.5f), "btf.side.0.coefficients[12]");
+  expect_srbf_refused(set_value(part, 12, 0), "btf.side.0.coefficients[12]");  // falls back
+  expect_srbf_refused(set_value(part, 11, 5), "btf.side.0.coefficients[11]");  // there are five lobes
+  expect_srbf_refused(set_value(part, 11, -1), "btf.side.0.coefficients[11]");
+  expect_srbf_refused(set_value(part, 11, 0.5f), "btf.side.0.coefficients[11]");
+  expect_srbf_refused(set_value(part, 3, 0), "btf.side.0.coefficients[3]");  // axis 0 has all lobes in order
+  expect_srbf_refused(set_value(part, 8, 1), "btf.side.0.coefficients");     // the last lobe of axis 0 is gone
 }
 
 TEST(SrbfBtfModel, SidesAreAtMostFourOfTwoBits) {
-  expect_refused(set("btf.sides", 3, 2), "btf.sides[3]");
-  expect_refused([](TensorFile& f) { f.tensors["btf.sides"] = {{5, 2}, std::vector<float>(10, 0.0f)}; }, "btf.sides");
-  expect_refused([](TensorFile& f) { f.tensors["btf.sides"] = {{3, 2}, {0, 0, 0, 1, 1, 0}}; }, "btf.side.2");
+  expect_srbf_refused(set_value("btf.sides", 3, 2), "btf.sides[3]");
+  expect_srbf_refused(
+      [](TensorFile& f) {
+        f.tensors["btf.sides"] = {{5, 2}, std::vector<float>(10, 0.0f)};
+      },
+      "btf.sides");
+  expect_srbf_refused([](TensorFile& f) { f.tensors["btf.sides"] = {{3, 2}, {0, 0, 0, 1, 1, 0}}; }, "btf.side.2");
 }
 
 TEST(SrbfBtfModel, OfVersionsBeforeTheNextHasLobesWithoutAPhase) {
@@ -259,7 +266,7 @@ TEST(SrbfBtfModel, OfVersionsBeforeTheNextHasLobesWithoutAPhase) {
 }
 
 TEST(SrbfBtfModel, LobesAreAtMostTheirLimit) {
-  expect_refused(
+  expect_srbf_refused(
       [](TensorFile& f) {
         f.tensors["btf.side.0.lobes"] = {{257, 9}, std::vector<float>(257 * 9)};
       },
@@ -267,8 +274,8 @@ TEST(SrbfBtfModel, LobesAreAtMostTheirLimit) {
 }
 
 TEST(SrbfBtfModel, NothingOutsideTheTableMatters) {
-  EXPECT_EQ(refusal([](TensorFile& f) { f.tensors["btf.side.7.lobes"] = {{1}, {1}}; }), "");
-  EXPECT_EQ(refusal([](TensorFile&) {}), "");
+  EXPECT_EQ(srbf_refusal([](TensorFile& f) { f.tensors["btf.side.7.lobes"] = {{1}, {1}}; }), "");
+  EXPECT_EQ(srbf_refusal([](TensorFile&) {}), "");
 }
 
 }  // namespace

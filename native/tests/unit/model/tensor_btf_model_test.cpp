@@ -9,16 +9,15 @@
 namespace velour {
 namespace {
 
-const auto set = test::set_value;
+using test::after_a_round_trip;
+using test::set_value;
 
-Model after_a_round_trip(const Model& model) { return decode_model(encode_model(model), "test.velour"); }
-
-std::string refusal(const test::FileChange& change) {
+std::string tensor_refusal(const test::FileChange& change) {
   return test::refusal_of(test::example_tensor_model(true), change);
 }
 
-void expect_refused(const test::FileChange& change, const std::string& field) {
-  test::expect_named(refusal(change), field);
+void expect_tensor_refused(const test::FileChange& change, const std::string& field) {
+  test::expect_named(tensor_refusal(change), field);
 }
 
 void expect_same(const TensorBtfCluster& a, const TensorBtfCluster& b) {
@@ -101,10 +100,10 @@ TEST(TensorBtfModel, OfOneClusterOfRankOneSurvives) {
 TEST(TensorBtfModel, MissingOrMisshapenPartsAreNamed) {
   for (const char* part : {"btf.sides", "btf.axes", "btf.side.0.view", "btf.side.0.light", "btf.side.0.color",
                            "btf.side.0.core", "btf.side.0.scales", "btf.side.0.members.0", "btf.side.1.bytes.2"}) {
-    expect_refused([part](TensorFile& f) { f.tensors.erase(part); }, part);
-    expect_refused([part](TensorFile& f) { f.tensors[part] = {{3, 5}, std::vector<float>(15, 0.0f)}; }, part);
+    expect_tensor_refused([part](TensorFile& f) { f.tensors.erase(part); }, part);
+    expect_tensor_refused([part](TensorFile& f) { f.tensors[part] = {{3, 5}, std::vector<float>(15, 0.0f)}; }, part);
   }
-  expect_refused(
+  expect_tensor_refused(
       [](TensorFile& f) {
         f.tensors["btf.side.0.relief.0"] = {{3, 5}, std::vector<float>(15, 0.0f)};
       },
@@ -112,13 +111,13 @@ TEST(TensorBtfModel, MissingOrMisshapenPartsAreNamed) {
 }
 
 TEST(TensorBtfModel, ALevelWithoutReliefIsAPlane) {
-  EXPECT_EQ(refusal([](TensorFile& f) { f.tensors.erase("btf.side.0.relief.1"); }), "");
+  EXPECT_EQ(tensor_refusal([](TensorFile& f) { f.tensors.erase("btf.side.0.relief.1"); }), "");
 }
 
 TEST(TensorBtfModel, LevelsHaveTheShapeOfTheTile) {
   for (const std::string part : {"relief", "members", "bytes"}) {
     const std::string name = "btf.side.0." + part + ".";
-    expect_refused([&](TensorFile& f) { std::swap(f.tensors[name + "0"], f.tensors[name + "1"]); }, name + "0");
+    expect_tensor_refused([&](TensorFile& f) { std::swap(f.tensors[name + "0"], f.tensors[name + "1"]); }, name + "0");
   }
 }
 
@@ -127,26 +126,27 @@ TEST(TensorBtfModel, ValuesThatAreNoNumbersAreNamed) {
   for (const float bad : {nan, infinity, -infinity}) {
     for (const char* part : {"view", "light", "color", "core", "scales", "members.0", "bytes.1", "relief.0"}) {
       const std::string name = std::string("btf.side.0.") + part;
-      expect_refused(set(name, 3, bad), name + "[3]");
+      expect_tensor_refused(set_value(name, 3, bad), name + "[3]");
     }
   }
-  expect_refused(set("btf.side.0.core", 5, 1e6f), "btf.side.0.core[5]");
-  expect_refused(set("btf.side.0.scales", 3, -1e-3f), "btf.side.0.scales[3]");
-  expect_refused(set("btf.side.1.bytes.0", 5, 0.5f / 256), "btf.side.1.bytes.0[5]");
+  expect_tensor_refused(set_value("btf.side.0.core", 5, 1e6f), "btf.side.0.core[5]");
+  expect_tensor_refused(set_value("btf.side.0.scales", 3, -1e-3f), "btf.side.0.scales[3]");
+  expect_tensor_refused(set_value("btf.side.1.bytes.0", 5, 0.5f / 256), "btf.side.1.bytes.0[5]");
 }
 
 TEST(TensorBtfModel, MembersAreClustersAndDiffer) {
-  expect_refused(set("btf.side.0.members.0", 7, 3.0f / 256), "btf.side.0.members.0[7]");  // there are three
-  expect_refused(set("btf.side.0.members.0", 7, 255.0f / 256), "btf.side.0.members.0[7]");
+  expect_tensor_refused(set_value("btf.side.0.members.0", 7, 3.0f / 256),
+                        "btf.side.0.members.0[7]");  // there are three
+  expect_tensor_refused(set_value("btf.side.0.members.0", 7, 255.0f / 256), "btf.side.0.members.0[7]");
   const auto same = [](TensorFile& f) {
     std::vector<float>& member = f.tensors.at("btf.side.0.members.0").data;
     member[24 + 5] = member[5];  // 24 texels
   };
-  expect_refused(same, "btf.side.0.members.0[29]");
+  expect_tensor_refused(same, "btf.side.0.members.0[29]");
 }
 
 TEST(TensorBtfModel, MembersAreAtMostTheClusters) {
-  expect_refused(
+  expect_tensor_refused(
       [](TensorFile& f) {
         f.tensors["btf.side.0.members.0"] = {{4, 4, 6}, std::vector<float>(96)};
       },
@@ -159,10 +159,10 @@ TEST(TensorBtfModel, RanksHaveLimits) {
       f.tensors["btf.side.0.core"] = {{clusters, rank, 1}, std::vector<float>(clusters * rank)};
     };
   };
-  expect_refused(core(257, 1), "257 entries along dimension 0");
-  expect_refused(core(1, 257), "257 entries along dimension 1");
-  expect_refused(core(200, 17), "200 clusters of rank 17");
-  expect_refused(
+  expect_tensor_refused(core(257, 1), "257 entries along dimension 0");
+  expect_tensor_refused(core(1, 257), "257 entries along dimension 1");
+  expect_tensor_refused(core(200, 17), "200 clusters of rank 17");
+  expect_tensor_refused(
       [](TensorFile& f) {
         f.tensors["btf.side.0.color"] = {{3, 3, 4}, std::vector<float>(36)};
       },
@@ -171,14 +171,14 @@ TEST(TensorBtfModel, RanksHaveLimits) {
 
 TEST(TensorBtfModel, SidesAreWhereDirectionsAre) {
   const Model one = test::example_tensor_model(false);
-  test::expect_named(test::refusal_of(one, set("btf.sides", 0, 1)), "btf.sides");
-  test::expect_named(test::refusal_of(one, set("btf.sides", 1, 1)), "btf.sides");
-  expect_refused([](TensorFile& f) { f.tensors["btf.sides"] = {{3, 2}, {0, 0, 0, 1, 1, 0}}; }, "btf.side.2");
+  test::expect_named(test::refusal_of(one, set_value("btf.sides", 0, 1)), "btf.sides");
+  test::expect_named(test::refusal_of(one, set_value("btf.sides", 1, 1)), "btf.sides");
+  expect_tensor_refused([](TensorFile& f) { f.tensors["btf.sides"] = {{3, 2}, {0, 0, 0, 1, 1, 0}}; }, "btf.side.2");
 }
 
 TEST(TensorBtfModel, NothingOutsideTheTableMatters) {
-  EXPECT_EQ(refusal([](TensorFile& f) { f.tensors["btf.side.7.core"] = {{1}, {1}}; }), "");
-  EXPECT_EQ(refusal([](TensorFile&) {}), "");
+  EXPECT_EQ(tensor_refusal([](TensorFile& f) { f.tensors["btf.side.7.core"] = {{1}, {1}}; }), "");
+  EXPECT_EQ(tensor_refusal([](TensorFile&) {}), "");
 }
 
 }  // namespace
