@@ -161,6 +161,8 @@ def run_orders_in_window():
         nonlocal folder
         if folder and not (folder / report.FILE).exists():
             return TURN
+        if bpy.app.is_job_running("RENDER"):  # of the tests: Blender does not survive a new file beside it
+            return TURN
         if folder:
             orders.done()
         if order := orders.next():
