@@ -22,9 +22,9 @@ usage_if_asked() {
   done
 }
 
-# with_progress STAGE COUNTER LOG PROGRAM...: runs a program with its output in LOG and tells how far it is: on a terminal in
-# one line that changes, elsewhere in a line every ten seconds. `COUNTER LOG` prints "DONE TOTAL", or nothing while that is not
-# known. When the program fails, shows what LOG says about it, and dies. Ctrl-C and SIGTERM end the program as well.
+# with_progress STAGE COUNTER LOG PROGRAM...: runs a program with its output in LOG and prints its progress: on a
+# terminal one line that changes, elsewhere a line every ten seconds. `COUNTER LOG` prints "DONE TOTAL", or nothing while
+# that is unknown. If the program fails, shows the errors in LOG and dies. Ctrl-C and SIGTERM end the program as well.
 with_progress() {
   if ! try_with_progress "$@"; then
     show_failure "$3"
@@ -32,19 +32,20 @@ with_progress() {
   fi
 }
 
-# quietly LOG STAGE PROGRAM...: the same for what has nothing to count.
+# quietly LOG STAGE PROGRAM...: the same for a program whose progress cannot be counted.
 quietly() { with_progress "$2" count_nothing "$1" "${@:3}"; }
 
-# try_with_progress STAGE COUNTER LOG PROGRAM...: the same, but a failure is the caller's: the program's exit status.
+# try_with_progress STAGE COUNTER LOG PROGRAM...: the same, but returns the program's exit status and shows no errors.
 try_with_progress() {
   local stage=$1 counter=$2 log=$3 begin=$SECONDS status=0 stopped=0 reporting reporter program traps
   shift 3
   mkdir -p "$(dirname "$log")"
   : >"$log"
-  # The reporter ends when this file is closed, whatever becomes of this shell.
+  # The reporter ends when this file is closed, even if this shell is killed.
   exec {reporting}> >(report_progress "$stage" "$counter" "$log")
   reporter=$!
-  # In the background, because only `wait` lets a trap act at once; and env because a shell makes its background deaf to Ctrl-C.
+  # In the background, because only `wait` lets a trap run at once. Programs in the background of a shell ignore Ctrl-C,
+  # which env undoes.
   env --default-signal=INT,QUIT "$@" >"$log" 2>&1 {reporting}>&- &
   program=$!
   traps=$(trap -p INT TERM HUP)
@@ -52,7 +53,7 @@ try_with_progress() {
   trap 'stop_program TERM 143' TERM
   trap 'stop_program HUP 129' HUP
   wait "$program" || status=$?
-  # A trap ends the wait before the program has ended; waiting for what the shell has reaped may never end.
+  # A trap ends `wait` before the program has ended. Bash may wait forever for a program that it has reaped already.
   while ((stopped)) && [[ -e /proc/$program ]]; do wait "$program" || true; done
   trap - INT TERM HUP
   eval "$traps"
@@ -62,11 +63,13 @@ try_with_progress() {
     printf '%s: stopped while %s\n' "$(basename "$0")" "$stage" >&2
     exit "$stopped"
   fi
-  if ((status == 0 && SECONDS - begin >= progress_interval)); then say "$stage: done after $(duration $((SECONDS - begin)))"; fi
+  if ((status == 0 && SECONDS - begin >= progress_interval)); then
+    say "$stage: done after $(duration $((SECONDS - begin)))"
+  fi
   return "$status"
 }
 
-# Of try_with_progress. Ctrl-C has reached the program already; a signal for this shell alone has not.
+# Used by the traps of try_with_progress. Ctrl-C reaches the program by itself, a signal to this shell alone does not.
 stop_program() {
   stopped=$2
   kill -s "$1" "$program" 2>/dev/null || true
@@ -76,13 +79,13 @@ show_failure() {
   { grep -aE -A 5 '(error|Error|FAILED|^E:)' "$1" || tail -n 40 "$1"; } | sed -n 1,40p >&2
 }
 
-# Seconds between two lines of progress; a line that changes does so each second.
+# Seconds between two lines of progress. On a terminal the line changes every second.
 progress_interval=10
 
-# report_progress STAGE COUNTER LOG: tells the progress until its input is closed.
+# report_progress STAGE COUNTER LOG: prints the progress until its input is closed.
 report_progress() {
   local interval=$progress_interval begin=$SECONDS before='' after='\n'
-  trap '' INT # there is something to clear away afterwards
+  trap '' INT # it has its line to clear first
   if [[ -t 1 ]]; then interval=1 before='\r\e[K' after=''; fi
   while read -rt "$interval" || (($? > 128)); do
     printf "$before%s$after" "$(progress_line "$1" $((SECONDS - begin)) $("$2" "$3"))"
@@ -92,19 +95,19 @@ report_progress() {
 
 # progress_line STAGE SECONDS [DONE TOTAL]
 progress_line() {
-  local stage=$1 seconds=$2 done=${3:-0} total=${4:-0} left=''
-  if ((done)); then left=", about $(duration $((seconds * (total - done) / done))) left"; fi
-  if ((total)); then printf '[%3d/%d] ' "$done" "$total"; fi
+  local stage=$1 seconds=$2 finished=${3:-0} total=${4:-0} left=''
+  if ((finished)); then left=", about $(duration $((seconds * (total - finished) / finished))) left"; fi
+  if ((total)); then printf '[%3d/%d] ' "$finished" "$total"; fi
   printf '%s: %d s%s' "$stage" "$seconds" "$left"
 }
 
-# duration SECONDS: as scripts/lib/progress.py says it.
+# duration SECONDS: in the words of scripts/lib/progress.py.
 duration() { if (($1 < 600)); then printf '%d s' "$1"; else printf '%d min' $((($1 + 30) / 60)); fi; }
 
 # Counters for with_progress.
 count_nothing() { :; }
 count_ninja() { grep -aoE '^\[[0-9]+/[0-9]+\]' "$1" | tail -n 1 | tr '[/]' ' '; }
-count_apt() { # a package is fetched, unless it was before; unpacked; and set up
+count_apt() { # each package is fetched, unless it is in the cache; unpacked; and set up
   awk '/^Get:/ { fetched++ }
     /^(Unpacking|Setting up) / { installed++ }
     / newly installed, / { packages = $1 + $3 }

@@ -1,4 +1,4 @@
-"""What a demonstration makes is kept, and made again only when something that it is made from has changed."""
+"""Keeps the results of a demonstration, and makes again only those whose inputs have changed."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ class Parts:
     def make(
         self, part: Part, folder: Path, inputs: Mapping[str, Path], run: Callable[[Steps], dict]
     ) -> dict:
-        """The report of `run`, which makes the files of the part, and "kept": whether an earlier run with the
-        same inputs, options, scripts, add-on, library and machine did that."""
+        """Returns the report of `run`, which makes the files of the part. "kept" in it says whether
+        report and files are from an earlier run with the same inputs, scripts, add-on, library and machine."""
         record = folder / f"{part.name}.kept.json"
         key = renders.key({**inputs, "part": part, "code": _code()})
         if not self.fresh and (report := _report(record, key)) is not None:
@@ -59,7 +59,7 @@ class Parts:
 
 
 def _report(record: Path, key: str) -> dict | None:
-    """None where there is no record of that key, or its files are gone or others."""
+    """The recorded report; None if the record has another key, or files are missing or have changed."""
     if not record.is_file():
         return None
     said = json.loads(record.read_text(encoding="utf-8"))
@@ -70,7 +70,7 @@ def _report(record: Path, key: str) -> dict | None:
 
 
 def _hash(path: Path) -> str | None:
-    """Of a file, or of the names and contents of a folder's files; None where there is neither."""
+    """The hash of a file, or of the names and contents of a folder's files; None if there is neither."""
     if path.is_dir():
         contents = [[file.name, files.sha256(file)] for file in sorted(path.iterdir())]
         return hashlib.sha256(json.dumps(contents).encode()).hexdigest()
@@ -79,6 +79,6 @@ def _hash(path: Path) -> str | None:
 
 @functools.cache
 def _code() -> str:
-    """Of the scripts and of the add-on; renders.key() knows the library."""
+    """The hash of all scripts and of the add-on. renders.key() adds that of the library."""
     sources = [*sorted(_SCRIPTS.glob("*.py")), *sorted(_ADDON.rglob("*.py"))]
     return hashlib.sha256("".join(map(files.sha256, sources)).encode()).hexdigest()

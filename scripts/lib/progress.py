@@ -1,7 +1,7 @@
-"""Tells how much of a script's work is done, how long it took, and about how long the rest will take.
+"""Prints how much of a script's work is done, how long it took, and about how long the rest will take.
 
-Finished work has a line of its own. Unfinished work is told every ten seconds, on a terminal each second in a
-line that changes, as with_progress in common.sh does.
+Finished work gets a line of its own. Work in progress gets a line every ten seconds, or on a terminal one
+line that changes every second, as with_progress in common.sh prints it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _CLEAR_LINE = "\r\x1b[K"
 class Progress:
     """Work is announced with a cost in any unit; the time left follows from what the finished work took.
 
-    `rate`: seconds a unit of cost takes, to begin with.
+    `rate`: first estimate of the seconds that a unit of cost takes.
     """
 
     def __init__(self, rate: float | None = None):
@@ -31,14 +31,14 @@ class Progress:
         self._cost_left += cost * count
 
     def skip(self, label: str, cost: float, count: int = 1) -> None:
-        """It was there already. `cost`: of all `count`."""
+        """Counts work that an earlier run has done. `cost` is that of all `count` items."""
         self._finish(cost, count)
         self._say(f"{label}: kept")
 
     @contextmanager
     def work(self, label: str, cost: float):
         start = time.monotonic()
-        with self._telling(label, start):
+        with self._reporting(label, start):
             yield
         seconds = time.monotonic() - start
         self._cost_paid += cost
@@ -48,17 +48,17 @@ class Progress:
         self._say(f"{label}: {seconds:.1f} s{self._left()}")
 
     @contextmanager
-    def _telling(self, label: str, start: float):
-        """Meanwhile another thread tells that the work goes on."""
+    def _reporting(self, label: str, start: float):
+        """Prints the progress from another thread."""
         ended = threading.Event()
         interval = 1.0 if sys.stdout.isatty() else _LINE_SECONDS
 
-        def tell() -> None:
+        def report() -> None:
             while not ended.wait(interval):
                 seconds = time.monotonic() - start
-                self._say(f"{label}: {seconds:.0f} s{self._left(seconds)}", goes_on=True)
+                self._say(f"{label}: {seconds:.0f} s{self._left(seconds)}", in_progress=True)
 
-        thread = threading.Thread(target=tell, daemon=True)
+        thread = threading.Thread(target=report, daemon=True)
         thread.start()
         try:
             yield
@@ -72,16 +72,16 @@ class Progress:
         self._cost_left = max(self._cost_left - cost, 0.0)
 
     def _left(self, seconds: float = 0.0) -> str:
-        """`seconds`: what the work that goes on has taken already."""
+        """`seconds`: time that the current work has taken so far."""
         if self._rate is None:
             return ""
         left = self._cost_left * self._rate - seconds
         return f", about {duration(left)} left" if left > 0 else ""
 
-    def _say(self, text: str, goes_on: bool = False) -> None:
+    def _say(self, text: str, in_progress: bool = False) -> None:
         line = f"[{self._count:3d}/{self._expected}] {text}"
         if sys.stdout.isatty():
-            print(f"{_CLEAR_LINE}{line}", end="" if goes_on else "\n", flush=True)
+            print(f"{_CLEAR_LINE}{line}", end="" if in_progress else "\n", flush=True)
         else:
             print(line, flush=True)
 

@@ -1,4 +1,4 @@
-"""Steps of a longer work, each told as it begins: by this process, or by a line that another one prints."""
+"""Progress of work in steps. Each step is announced when it begins: by a call or by a printed line."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _MARK = "step: "
 
 
 def print_step(name: str) -> None:
-    """For the process whose lines hear() gets."""
+    """Announces a step to the process that passes the printed lines to hear()."""
     print(f"{_MARK}{name}", flush=True)
 
 
 class Steps:
-    """A context manager; the work of a step ends when the next one begins, the last when the context ends."""
+    """A context manager. A step ends when the next one begins, the last one with the context."""
 
     def __init__(self, progress: Progress, costs: Mapping[str, float]):
         self._progress, self._costs = progress, costs

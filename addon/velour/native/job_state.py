@@ -1,4 +1,4 @@
-"""How far a job is. Apart from jobs, which need numpy."""
+"""Progress of a job. Apart from job.py, because that needs numpy."""
 
 from __future__ import annotations
 

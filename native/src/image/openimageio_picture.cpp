@@ -1,4 +1,4 @@
-// Pictures of all formats but OpenEXR's, by the module that links OpenImageIO.
+// Pictures in other formats than OpenEXR, read and written by the module that links OpenImageIO.
 #include "file/private_library.h"
 #include "image/open_picture.h"
 #include "image/openimageio_module.h"
@@ -8,14 +8,14 @@ namespace velour {
 namespace {
 
 const OpenImageIoModule& open_module() {
-  // Never closed: unloading 260 libraries at exit takes time, and OpenImageIO has threads.
+  // Never closed: unloading 260 libraries at exit takes time, and threads of OpenImageIO may still be running.
   static const auto& library =
       *new PrivateLibrary("libvelour_openimageio.so",
                           "run scripts/setup and scripts/build again, or use an OpenEXR file, which needs neither.");
   return library.function<decltype(velour_openimageio_1)>("velour_openimageio_1")();
 }
 
-/// Opened by the first call; one that fails is followed by another attempt.
+/// The first call opens the module. After a failure the next call tries again.
 const OpenImageIoModule& module_for(const std::string& path) {
   try {
     static const OpenImageIoModule& module = open_module();

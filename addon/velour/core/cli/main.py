@@ -68,7 +68,7 @@ def _sentence(error: Exception) -> str:
 
 
 def _parser(arguments: list[str]) -> argparse.ArgumentParser:
-    """Knows the options of the verb that `arguments` name; the others' modules take time to import."""
+    """Adds only the options of the verb in `arguments`: importing the modules of all verbs takes time."""
     parser = argparse.ArgumentParser(
         prog="velour", description="Measured materials: fit, judge and render.", allow_abbrev=False
     )
