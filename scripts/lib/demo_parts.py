@@ -42,8 +42,8 @@ class Parts:
     def make(
         self, part: Part, folder: Path, inputs: Mapping[str, Path], run: Callable[[Steps], dict]
     ) -> dict:
-        """Returns the report of `run`, which makes the files of the part. "kept" in it says whether
-        report and files are from an earlier run with the same inputs, scripts, add-on, library and machine."""
+        """Returns the report of `run`, which makes the files of the part. "kept" in it says whether the
+        files are from an earlier run with the same inputs, scripts, add-on, library and machine."""
         record = folder / f"{part.name}.kept.json"
         key = renders.key({**inputs, "part": part, "code": _code()})
         if not self.fresh and (report := _report(record, key)) is not None:
