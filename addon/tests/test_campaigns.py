@@ -23,7 +23,7 @@ from mitsuba_runs import Mitsuba
 
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory, measurement_file):
-    """Of the data, and of what is kept: the scripts have fits in common."""
+    """The folders of the data and of kept results: the scripts share fits."""
     folder = tmp_path_factory.mktemp("campaigns")
     return made_up_data(folder / "data", measurement_file), folder / "work"
 

@@ -90,7 +90,7 @@ class Session:
             variables |= self._screen.variables
             command += ["--window-geometry", "0", "0", *_SCREEN.split("x")]
         else:
-            # What is typed and waited for in a window goes before.
+            # Windows go first: their tests type and wait.
             command = ["nice", "-n", "15", *command, "-b"]
         command += ["--python-exit-code", "1", "--python", str(_HARNESS), "--", "--orders"]
         with (folder / "start.txt").open("wb") as errors:
