@@ -191,7 +191,9 @@ class PersistentData(BlenderTest):
 
         def watched(name):
             method = getattr(kind, name)
-            return mock.patch.object(kind, name, lambda *given: (read.append(name), method(*given))[1])
+            return mock.patch.object(
+                kind, name, lambda *given, **more: (read.append(name), method(*given, **more))[1]
+            )
 
         with watched("set_world_file"), watched("set_world_pixels"):
             kept, _ = self._pictures(True)

@@ -11,6 +11,8 @@ import numpy as np
 from support import blender, scenes
 from support.blender import BlenderTest
 
+LONG = "captures a BTF of 6561 pairs; test_compress_btf captures and places smaller ones"
+
 CAPTURE = {"texels": 32, "views": 81, "lights": 81, "samples": 4, "bounces": 0}
 TASK = {"tile": "WEAVE", "options": {"resolution": 8}, "capture": CAPTURE, "megabytes": 0.2, "side": 96}
 SHOTS = ["captured", "cylinder"]

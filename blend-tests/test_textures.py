@@ -103,6 +103,45 @@ class Textures(BlenderTest):
                 self._plane(loaded)
                 np.testing.assert_allclose(self._rendered(), _colours()[..., :3], atol=3e-3)
 
+    def test_channels_in_small_letters_and_further_ones(self):
+        """Blender itself shows the first file black and the second not at all; Cycles shows both."""
+        native, colors = inputs.native(), _colours()
+        small = self.folder / "small.exr"
+        native.images.write(small, colors[..., :3].copy())
+        data = small.read_bytes()
+        begin = data.index(b"chlist\0")
+        end = data.index(b"compression\0")
+        head = data[begin:end]
+        for name in (b"R", b"G", b"B"):
+            head = head.replace(name + b"\0\2", name.lower() + b"\0\2")  # a float's
+        small.write_bytes(data[:begin] + head + data[end:])
+        self.assertEqual(native.images.header(small)["channels"], ["b", "g", "r"])
+        more = self.folder / "more.exr"
+        native.images.write(more, np.concatenate([colors, colors[..., :1]], axis=2))
+        for path, notes in ((small, 0), (more, 1)):
+            with self.subTest(path.name):
+                self._plane(bpy.data.images.load(str(path)))
+                found = self._notes()
+                self.assertEqual(len(found), notes, found)
+                self.assertTrue(all("channel004" in note and "more.exr" in note for note in found), found)
+                np.testing.assert_allclose(self._rendered(), colors[..., :3], atol=3e-3)
+
+    def test_a_header_that_says_otherwise_is_told(self):
+        """Cycles shows the rows of a Radiance file as they are stored, and so does Velour, aloud."""
+        path = self.folder / "turned.hdr"
+        top = bytes((128, 64, 32, 128)) * SIDE * (SIDE // 2)
+        path.write_bytes(
+            b"#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n+Y %d +X %d\n" % (SIDE, SIDE)
+            + top
+            + bytes((32, 64, 128, 128)) * SIDE * (SIDE // 2)
+        )
+        self._plane(bpy.data.images.load(str(path)))
+        found = self._notes()
+        self.assertEqual(len(found), 2, found)
+        self.assertTrue("upside down" in found[0] and "exposure" in found[1], found)
+        np.testing.assert_allclose(self._rendered()[-1, 0], (0.5, 0.25, 0.125), atol=3e-3)
+        np.testing.assert_allclose(self._rendered()[0, 0], (0.125, 0.25, 0.5), atol=3e-3)
+
     def test_mapping(self):
         self._plane(_image("mapped", _colours()))
         mapping = self._mapping(

@@ -51,12 +51,7 @@ def _show(path):
     with window.override():
         bpy.ops.ed.undo_push(message="a library")
     yield from window.show_properties("MATERIAL")
-    _scroll()
-
-
-def _scroll():
-    for _ in range(5):
-        window.scroll_down(600)
+    window.scroll_to_end()
 
 
 def _redraw():
@@ -72,7 +67,7 @@ def _rest():
     for _ in range(1500):
         yield 0.1
         if browser.is_at_rest() and browser._pictures:
-            _scroll()
+            window.scroll_to_end()
             yield 0.3
             return
     raise AssertionError("the pictures are never there")

@@ -30,6 +30,7 @@ def override(folder):
     layer = bpy.context.view_layer
     with _open(bpy.types.VELOUR_VIEWLAYER_PT_override):
         yield from window.show_properties("VIEW_LAYER")
+        window.scroll_to_end()
         before = window.screenshot(folder, "samples-0")
         layer.samples = 1234
         yield 0.5

@@ -72,6 +72,11 @@ def _rest():
     raise AssertionError("it goes on")
 
 
+def _reading():
+    """Turns until panels say that a file is read."""
+    yield from window.until(lambda: _state().running and _state().stage == "reading", "a file is read")
+
+
 def _changed(folder, name, size):
     """A material whose model's file has changed since it was chosen: the image, and the new SHA-256."""
     image = shown(large_file(folder, name, size))
@@ -231,8 +236,7 @@ def outline_beside_the_window(folder):
     """Its beginning takes the structure from Blender; if it read the model, too, it would wait for ever."""
     with _Timed(_class("add_votf.VELOUR_OT_add_votf"), "_step") as timed:
         image, held = _begin_outline(folder, "outlined.velour", LARGE)
-        yield 0.3
-        assert _state().stage == "reading", _state().stage
+        yield from _reading()
         held.release()
         yield from _rest()
     node = scenes.velour_node(bpy.data.materials["Paint"])
@@ -292,8 +296,7 @@ def scene_beside_the_window(folder):
     operator = _class("fit_for_scene.VELOUR_OT_fit_for_scene")
     with _Timed(fit, "__init__", "take", "fit") as timed, _Timed(operator, "_begin", "_start") as begun:
         image, held = _begin_scene_fit(folder, "full.velour", LARGE)
-        yield 0.3
-        assert (_state().running, _state().stage) == (True, "reading")
+        yield from _reading()
         window.screenshot(folder, "scene-reading")
         held.release()
         yield from _rest()

@@ -86,6 +86,14 @@ def override():
     return in_context(window=window, screen=window.screen)
 
 
+def until(holds, what, seconds=30):
+    """The turns until `holds()`: how long that takes depends on what else the machine does."""
+    end = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < end, f"after {seconds} s still not: {what}"
+        yield 0.05
+
+
 def show_properties(tab):
     """A large Properties editor in place of the 3D viewport."""
     scenes.use_engine()
@@ -134,6 +142,12 @@ def scroll_down(pixels):
     region = next(region for region in area.regions if region.type == "WINDOW")
     with in_context(window=first(), area=area, region=region):
         bpy.ops.view2d.scroll_down(deltay=pixels)
+
+
+def scroll_to_end():
+    """In steps: Blender does not scroll beyond what is drawn."""
+    for _ in range(5):
+        scroll_down(600)
 
 
 def screenshot(folder, name):

@@ -11,6 +11,7 @@ from pathlib import Path
 from velour_cli import ROOT
 
 _EXPANDED = ROOT / "build/merl"
+_SMOOTH = ROOT / "build/meshes"
 
 
 class NoDataError(RuntimeError):
@@ -49,7 +50,14 @@ def materials(data: Path) -> list[tuple[str, Path]]:
 
 
 def mesh(data: Path, name: str) -> Path:
-    return data / f"mesh/{name}.obj"
+    """One smooth surface; as they are, meshes of the data are flat: no normals, no smoothing groups."""
+    source, path = data / f"mesh/{name}.obj", _SMOOTH / f"{name}.obj"
+    if not path.is_file() or path.stat().st_mtime < source.stat().st_mtime:
+        _SMOOTH.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=_SMOOTH, prefix="partial-", delete=False) as file:
+            file.write(b"s 1\n" + source.read_bytes())
+        os.replace(file.name, path)
+    return path
 
 
 def world(data: Path, name: str) -> Path:

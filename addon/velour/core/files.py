@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import secrets
+import stat
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -78,7 +79,13 @@ def read_bytes(path: str | os.PathLike) -> bytes:
 
 
 def _blocks(path: str | os.PathLike) -> Iterator[bytes]:
-    with open(path, "rb") as file:
+    """Raises OSError unless it is a regular file: pipes wait for a writer, devices may never end."""
+    # Opening does not wait either.
+    with open(
+        path, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
+    ) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "it is no regular file", str(path))
         while block := file.read(_BLOCK):
             check()
             yield block

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .color import bytes_to_working, is_data
+from .picture_files import file_pixels, note_header, with_alpha
 
 
 def working_pixels(image, notes, beside_alpha=False):
@@ -11,22 +12,31 @@ def working_pixels(image, notes, beside_alpha=False):
     Colours are multiplied by alpha, as in Cycles, unless the image's alpha is none of theirs (a mask in a
     channel, or data); `beside_alpha`: of an image whose alpha is looked at too they are not.
     """
+    note_header(image, notes)
+    of_file = file_pixels(image)
+    values = _blender_pixels(image) if of_file is None else of_file
+    if values is None:
+        return None
+    is_float = of_file is not None or image.is_float
+    space = image.colorspace_settings.name
+    if image.alpha_mode == "NONE":
+        values[..., 3] = 1
+    elif image.alpha_mode != "CHANNEL_PACKED" and not is_data(space):
+        _apply_alpha(values, is_float, beside_alpha)
+    if not is_float:
+        values, known = bytes_to_working(values, space)
+        if not known:
+            notes.add(f"Image '{image.name}': its colour space '{space}' is read as sRGB.")
+    return values
+
+
+def _blender_pixels(image):
     width, height = image.size
     if width == 0 or height == 0:
         return None
     values = np.empty(width * height * image.channels, np.float32)
     image.pixels.foreach_get(values)
-    values = _four_channels(values.reshape(height, width, image.channels))
-    space = image.colorspace_settings.name
-    if image.alpha_mode == "NONE":
-        values[..., 3] = 1
-    elif image.alpha_mode != "CHANNEL_PACKED" and not is_data(space):
-        _apply_alpha(values, image.is_float, beside_alpha)
-    if not image.is_float:
-        values, known = bytes_to_working(values, space)
-        if not known:
-            notes.add(f"Image '{image.name}': its colour space '{space}' is read as sRGB.")
-    return values
+    return with_alpha(values.reshape(height, width, image.channels))
 
 
 def _apply_alpha(values, is_float, beside_alpha):
@@ -39,15 +49,3 @@ def _apply_alpha(values, is_float, beside_alpha):
         np.divide(color, alpha, out=color, where=alpha != 0)
     elif not is_float and not beside_alpha:
         color[:] = np.floor(np.rint(255 * color) * np.rint(255 * alpha) / 255) / 255
-
-
-def _four_channels(values):
-    """Grey thrice, with an alpha of 1 where there is none."""
-    channels = values.shape[2]
-    if channels == 4:
-        return values
-    opaque = np.ones((*values.shape[:2], 4), np.float32)
-    opaque[..., :3] = values[..., :3] if channels == 3 else values[..., :1]
-    if channels == 2:
-        opaque[..., 3] = values[..., 1]
-    return opaque

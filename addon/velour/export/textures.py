@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..native import Texture, TextureSlot
+from ..native import Texture, TextureSlot, VelourError
 from .color import luminance_weights
 from .files import FIND, absolute_path
 from .pixels import working_pixels
@@ -32,7 +32,11 @@ class TextureTable:
         return TextureSlot(self._textures[color_set])
 
     def _read(self, picture, is_color, owner):
-        pixels = working_pixels(picture.image, self._notes, picture.beside_alpha)
+        try:
+            pixels = working_pixels(picture.image, self._notes, picture.beside_alpha)
+        except VelourError as error:
+            self._notes.add(f"{owner}: the value below image '{picture.image.name}' is used: {error}")
+            return None
         if pixels is None:
             path = absolute_path(picture.image) or "no file"
             self._notes.add(

@@ -10,6 +10,7 @@ from .color import is_linear_rec709
 from .files import absolute_path
 from .nodes import active_output, output, source
 from .notes import ExportError
+from .picture_files import linear_file
 from .pixels import working_pixels
 from .sequences import sequence_file, sequence_number
 from .unused_settings import note_emitter
@@ -100,16 +101,10 @@ def _add_environment(light, owner, node, strength, frame, notes):
     path = absolute_path(image)
     if image.source in _MOVING:
         light.set_file(_file_of_frame(owner, node, path, frame), strength, rotation)
-    elif _can_read_file(image, path):
+    elif linear_file(image):
         light.set_file(path, strength, rotation)
     else:
         light.set_image(image, path, lambda: _pixels(owner, image, path, notes), strength, rotation)
-
-
-def _can_read_file(image, path):
-    """The library reads the file itself where its numbers are the working space's: no copy here."""
-    plain = image.source == "FILE" and image.packed_file is None and os.path.isfile(path)
-    return plain and _is_linear(image, path)
 
 
 def _is_linear(image, path):

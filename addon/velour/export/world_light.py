@@ -14,10 +14,14 @@ class WorldLight:
         self._picture = None
         self._scene.set_world_color(color)
 
-    def set_file(self, path, strength, rotation):
-        """`rotation` [3 x 3] from world directions to the picture's, or None."""
+    def set_file(self, path, strength, rotation, layer=""):
+        """`rotation` [3 x 3] from world directions to the picture's, or None; `layer` of an OpenEXR file."""
+        stamp = file_stamp(path)
         self._show(
-            file_stamp(path), strength, rotation, lambda *placed: self._scene.set_world_file(path, *placed)
+            stamp and (stamp, layer),
+            strength,
+            rotation,
+            lambda *placed: self._scene.set_world_file(path, *placed, layer=layer, as_stored=True),
         )
 
     def set_image(self, image, path, pixels, strength, rotation):

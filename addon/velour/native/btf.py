@@ -24,12 +24,15 @@ class Btf(Handle):
     def load(cls, path: str | os.PathLike, **options) -> Btf:
         """Opens a folder of Velour's own, a folder of pictures named for their angles (UBO2003), a CSV index
         of pictures, or a .btf file of Bonn (UBO2014). Options: values (table.BTF_VALUES), colors
-        (table.BTF_COLORS), gamma (0: the sRGB curve), tile_metres (x, y)."""
+        (table.BTF_COLORS), gamma (0: the sRGB curve), tile_metres (x, y), layer (of
+        OpenEXR pictures)."""
         raw = structs.BtfOptions()
         library.load().vlr_btf_options_init(ctypes.byref(raw))
         for name, names in (("values", table.BTF_VALUES), ("colors", table.BTF_COLORS)):
             if name in options:
                 options[name] = choice(name, options[name], names)
+        if "layer" in options:
+            options["layer"] = options["layer"].encode()
         if "tile_metres" in options:
             options["tile_metres"] = small("tile_metres", options["tile_metres"], 2)
         set_fields(raw, options)

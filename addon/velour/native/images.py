@@ -58,11 +58,36 @@ def size(path: str | os.PathLike) -> tuple[int, int, int]:
 
 
 def read(path: str | os.PathLike) -> np.ndarray:
+    """All channels of a file that Velour wrote, as they are stored; for others see read_picture()."""
     width, height, channels = size(path)
     pixels = np.empty((height, width, channels), np.float32)
     again = byref(c_uint32()), byref(c_uint32()), byref(c_uint32())
     library.load().vlr_image_read(path_bytes(path), *again, pointer(pixels), pixels.size)
     return pixels
+
+
+def read_picture(path: str | os.PathLike, layer: str = "", as_stored: bool = False) -> np.ndarray:
+    """The picture of a file that any program wrote (OpenEXR, Radiance HDR, PNG, JPEG, TIFF, BMP): 1 to 4
+    channels, upright, linear Rec. 709. `layer`: of an OpenEXR file. `as_stored`: what the header says of
+    orientation, exposure, primaries and windows is not followed, as in Blender.
+    """
+    width, height, channels = c_uint32(), c_uint32(), c_uint32()
+    places = byref(width), byref(height), byref(channels)
+    options = picture_options(layer, as_stored)
+    library.load().vlr_picture_read(path_bytes(path), byref(options), *places, None, 0)
+    pixels = np.empty((height.value, width.value, channels.value), np.float32)
+    library.load().vlr_picture_read(path_bytes(path), byref(options), *places, pointer(pixels), pixels.size)
+    return pixels
+
+
+def picture_notes(path: str | os.PathLike, layer: str = "", as_stored: bool = False) -> list[str]:
+    """Sentences: what read_picture() leaves out, and what the header says that is not followed."""
+    options = picture_options(layer, as_stored)
+    return library.json_of(library.load().vlr_picture_notes_json, path_bytes(path), byref(options))
+
+
+def picture_options(layer: str, as_stored: bool) -> structs.PictureOptions:
+    return structs.PictureOptions(as_stored=int(as_stored), layer=layer.encode())
 
 
 def compare(pixels: np.ndarray, reference: np.ndarray) -> tuple[float, float]:

@@ -17,6 +17,7 @@ from .arrays import address, affine, checked, pointer, small
 from .btf import Btf
 from .errors import refuse
 from .handle import Handle, choice, path_bytes, set_fields
+from .images import picture_options
 from .measurement import Measurement
 from .mesh_descs import checked_mesh, mesh_descs
 from .model import Model
@@ -220,9 +221,22 @@ class Scene(Handle):
             self.pointer, width, height, channels, pointer(pixels), strength, _rotation(world_to_image)
         )
 
-    def set_world_file(self, path: str | os.PathLike, strength: float = 1.0, world_to_image=None) -> None:
-        """As set_world_pixels, from an image file (HDR, EXR)."""
-        self._lib.vlr_scene_load_world(self.pointer, path_bytes(path), strength, _rotation(world_to_image))
+    def set_world_file(
+        self,
+        path: str | os.PathLike,
+        strength: float = 1.0,
+        world_to_image=None,
+        layer: str = "",
+        as_stored: bool = False,
+    ) -> None:
+        """Like set_world_pixels, from an image file; `layer` and `as_stored` as in images.read_picture()."""
+        self._lib.vlr_scene_load_world_picture(
+            self.pointer,
+            path_bytes(path),
+            byref(picture_options(layer, as_stored)),
+            strength,
+            _rotation(world_to_image),
+        )
 
     def place_world(self, strength: float, world_to_image=None) -> None:
         """The picture that is there, lit and turned anew."""

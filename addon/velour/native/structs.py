@@ -61,6 +61,15 @@ class BtfOptions(Struct):
         ("colors", c_int32),
         ("gamma", c_float),
         ("tile_metres", c_float * 2),
+        ("layer", c_char_p),
+    ]
+
+
+class PictureOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("as_stored", c_int32),
+        ("layer", c_char_p),
     ]
 
 
@@ -413,4 +422,5 @@ STRUCTS = {
     "vlr_observe_options": ObserveOptions,
     "vlr_plot_style": PlotStyle,
     "vlr_image_frame": ImageFrame,
+    "vlr_picture_options": PictureOptions,
 }

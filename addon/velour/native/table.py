@@ -156,6 +156,13 @@ STATUS_CALLS = {
     "vlr_scene_set_world_color": [_handle, _floats],
     "vlr_scene_set_world_pixels": [_handle, c_uint32, c_uint32, c_uint32, _floats, c_float, _floats],
     "vlr_scene_load_world": [_handle, c_char_p, c_float, _floats],
+    "vlr_scene_load_world_picture": [
+        _handle,
+        c_char_p,
+        POINTER(structs.PictureOptions),
+        c_float,
+        _floats,
+    ],
     "vlr_scene_place_world": [_handle, c_float, _floats],
     "vlr_scene_set_camera": [_handle, POINTER(structs.CameraDesc)],
     "vlr_scene_look_at": [_handle, _floats, _floats, c_float, c_float],
@@ -208,6 +215,16 @@ STATUS_CALLS = {
         c_uint32,
     ],
     "vlr_image_header_json": [c_char_p, _json],
+    "vlr_picture_read": [
+        c_char_p,
+        POINTER(structs.PictureOptions),
+        _number,
+        _number,
+        _number,
+        _floats,
+        c_uint64,
+    ],
+    "vlr_picture_notes_json": [c_char_p, POINTER(structs.PictureOptions), _json],
     "vlr_image_compare": [c_uint64, c_uint32, _floats, _floats, POINTER(c_double), POINTER(c_double)],
 }
 
@@ -234,6 +251,7 @@ PLAIN_CALLS = {
     "vlr_votf_options_init": (None, [POINTER(structs.VotfOptions)]),
     "vlr_tile_options_init": (None, [POINTER(structs.TileOptions)]),
     "vlr_principled_desc_init": (None, [POINTER(structs.PrincipledDesc)]),
+    "vlr_picture_options_init": (None, [POINTER(structs.PictureOptions)]),
     "vlr_texture_options_init": (None, [POINTER(structs.TextureOptions)]),
     "vlr_principled_textures_init": (None, [POINTER(structs.PrincipledTextures)]),
     "vlr_layer_desc_init": (None, [POINTER(structs.LayerDesc)]),

@@ -228,10 +228,10 @@ class RealtimeScene(Scene):
         super().set_world_pixels(pixels, strength, world_to_image)
         self._note_world(("pixels", digest(pixels), pixels.shape), strength, world_to_image)
 
-    def set_world_file(self, path, strength=1.0, world_to_image=None):
+    def set_world_file(self, path, strength=1.0, world_to_image=None, **options):
         stamp = _stamp(path)  # of before it is read
-        super().set_world_file(path, strength, world_to_image)
-        self._note_world(("file", path, stamp), strength, world_to_image)
+        super().set_world_file(path, strength, world_to_image, **options)
+        self._note_world(("file", path, stamp, *options.values()), strength, world_to_image)
 
     def place_world(self, strength, world_to_image=None):
         super().place_world(strength, world_to_image)

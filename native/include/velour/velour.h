@@ -146,6 +146,7 @@ typedef struct vlr_btf_options {
   int32_t colors;       /* of pictures: VLR_BTF_REC709 or VLR_BTF_XYZ */
   float gamma;          /* of pictures of whole numbers: linear = stored^gamma; 0: the sRGB curve */
   float tile_metres[2]; /* size of the tile along x and y; 0 0: what the source says, if it says anything */
+  const char* layer;    /* of OpenEXR pictures, as in vlr_picture_options; NULL or "": the picture itself */
 } vlr_btf_options;
 VLR_API void vlr_btf_options_init(vlr_btf_options* options);
 
@@ -476,6 +477,16 @@ VLR_API void vlr_light_desc_init(vlr_light_desc* desc);
 VLR_API vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc);
 VLR_API vlr_status vlr_scene_clear_lights(vlr_scene* scene);
 
+/* How a picture file is read (vlr_picture_read). */
+typedef struct vlr_picture_options {
+  uint32_t struct_size;
+  int32_t
+      as_stored; /* 1: pixels as Blender shows them, without the header's orientation, exposure, primaries, windows */
+  const char*
+      layer; /* of an OpenEXR file: name of a layer, of a part or of one channel; NULL or "": the picture itself */
+} vlr_picture_options;
+VLR_API void vlr_picture_options_init(vlr_picture_options* options);
+
 /* The world is +z up. Image: equirectangular, row 0 at the top (+z), in the convention of Blender: the middle column
  * looks along +x; u = 1/2 - atan2(y, x) / (2 pi) from the left, v = 1/2 + asin(z) / pi from the bottom.
  * world_to_image [9, row-major] turns a world direction before that look-up (NULL: identity). */
@@ -484,6 +495,10 @@ VLR_API vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, 
                                               const float* pixels, float strength, const float* world_to_image);
 VLR_API vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, float strength,
                                         const float* world_to_image);
+/* The same with options (vlr_picture_read). What was left out of the file or replaced is among the warnings of
+ * vlr_scene_info_json. */
+VLR_API vlr_status vlr_scene_load_world_picture(vlr_scene* scene, const char* path, const vlr_picture_options* options,
+                                                float strength, const float* world_to_image);
 /* The image that is there, lit and turned anew: it is not read again. Refused where the world is a colour. */
 VLR_API vlr_status vlr_scene_place_world(vlr_scene* scene, float strength, const float* world_to_image);
 
@@ -530,8 +545,8 @@ typedef struct vlr_texture_options {
 } vlr_texture_options;
 VLR_API void vlr_texture_options_init(vlr_texture_options* options);
 /* Texture coordinates (0, 0) are the lower left corner of the picture, (1, 1) the upper right. `pixels` [height x width
- * x channels], row 0 at the bottom: linear, colours in the working space; they are copied, and what is not finite
- * counts as 0. */
+ * x channels], row 0 at the bottom: linear, colors in the working space; they are copied. NaN counts as 0, infinity as
+ * the largest finite value. */
 VLR_API vlr_status vlr_texture_create(uint32_t width, uint32_t height, uint32_t channels, const float* pixels,
                                       const vlr_texture_options* options, vlr_texture** out);
 /* From an image file, whose colours are taken as they are, whatever the working space. */
@@ -975,9 +990,19 @@ VLR_API vlr_status vlr_plot_save(const vlr_plot* plot, const vlr_plot_style* sty
  * .exr keeps floats, .png gets the sRGB curve and 8 bits. */
 VLR_API vlr_status vlr_image_write(const char* path, uint32_t width, uint32_t height, uint32_t channels,
                                    const float* pixels);
-/* First reads the size (pixels NULL), then the pixels, row 0 at the bottom, linear. */
+/* First reads the size (pixels NULL), then the pixels, row 0 at the bottom: all channels of the first part of an
+ * OpenEXR file as they are stored, colors first; of other files what vlr_picture_read reads. For files that Velour
+ * wrote. */
 VLR_API vlr_status vlr_image_read(const char* path, uint32_t* width, uint32_t* height, uint32_t* channels,
                                   float* pixels, uint64_t count);
+/* The picture of an OpenEXR, Radiance HDR, PNG, JPEG, TIFF or BMP file that any program wrote, recognized by its
+ * content: 1 to 4 channels (gray, gray and alpha, RGB, RGBA), upright, linear Rec. 709, row 0 at the bottom. First
+ * reads the size (pixels NULL), then the pixels. +infinity becomes the largest finite value, NaN 0. */
+VLR_API vlr_status vlr_picture_read(const char* path, const vlr_picture_options* options, uint32_t* width,
+                                    uint32_t* height, uint32_t* channels, float* pixels, uint64_t count);
+/* JSON list of sentences: what of the file is left out, and what its header says that is not followed. The text is this
+ * thread's until its next call. */
+VLR_API vlr_status vlr_picture_notes_json(const char* path, const vlr_picture_options* options, const char** json);
 /* Where the pixels of an OpenEXR file lie in a larger picture (its data window in its display window). */
 typedef struct vlr_image_frame {
   uint32_t struct_size;

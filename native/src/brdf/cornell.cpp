@@ -18,12 +18,15 @@ namespace {
 /// Fine enough that the table adds less than the interpolation's own error; docs/formats.md has the numbers.
 constexpr BrdfTableLayout kCornellLayout{.theta_h = 90, .phi_h = 1, .theta_d = 60, .phi_d = 60};
 constexpr double kMaxWavelengths = 10000;
+constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
 
 /// The numbers of a text, one after the other; comments are skipped.
 class NumberReader {
  public:
   explicit NumberReader(std::span<const uint8_t> text)
-      : at_(reinterpret_cast<const char*>(text.data())), end_(at_ + text.size()) {}
+      : at_(reinterpret_cast<const char*>(text.data())), end_(at_ + text.size()) {
+    if (std::string_view(at_, end_).starts_with(kUtf8Mark)) at_ += kUtf8Mark.size();
+  }
 
   enum class Result { number, end, not_a_number };
 
@@ -48,7 +51,7 @@ class NumberReader {
   void skip_to_token() {
     while (at_ != end_ && (is_space(*at_) || *at_ == '#')) {
       if (*at_ == '#')
-        at_ = std::find(at_, end_, '\n');
+        at_ = std::find_if(at_, end_, [](char c) { return c == '\n' || c == '\r'; });
       else
         ++at_;
     }
@@ -195,6 +198,7 @@ TableMeasurement::Details describe(const CornellText& text) {
 std::string opening_comment(std::span<const uint8_t> bytes) {
   constexpr size_t kLimit = 1000;
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.starts_with(kUtf8Mark)) text.remove_prefix(kUtf8Mark.size());
   std::string comment;
   while (true) {
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));

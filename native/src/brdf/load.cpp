@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <filesystem>
+#include <string_view>
 
 #include "brdf/brdf_table.h"
 #include "brdf/cornell.h"
@@ -6,6 +8,7 @@
 #include "brdf/merl.h"
 #include "brdf/rgl.h"
 #include "file/file.h"
+#include "file/random_access_file.h"
 #include "image/exr_tensors.h"
 #include "job/error.h"
 
@@ -15,33 +18,93 @@ namespace {
 using Reader = std::shared_ptr<const Measurement> (*)(std::span<const uint8_t>, Provenance);
 
 struct Format {
-  bool (*recognise)(std::span<const uint8_t> head);
+  bool (*recognize)(std::span<const uint8_t> head);
   Reader read;
 };
 
-/// Asked in order; each recognises its own first bytes.
-constexpr Format kFormats[] = {{looks_like_merl, read_merl},
-                               {looks_like_rgl, read_rgl},
-                               {looks_like_exr, read_brdf_table},
-                               {looks_like_cornell, read_cornell}};
-
-/// Enough for the comments that open a Cornell file.
+/// Asked in order; each recognizes its own first bytes.
+constexpr Format kFormats[] = {
+    {looks_like_merl, read_merl}, {looks_like_rgl, read_rgl}, {looks_like_exr, read_brdf_table}};
 constexpr size_t kHeadBytes = 4096;
 
-Reader reader_of(std::span<const uint8_t> head) {
+/// The first bytes of a text behind a UTF-8 mark and comments, which may be as long as a laboratory's protocol.
+std::vector<uint8_t> head_after_comments(const std::string& path) {
+  constexpr uint64_t kBlock = 1 << 16;
+  const RandomAccessFile file(path);
+  std::vector<uint8_t> block;
+  bool in_comment = false;
+  for (uint64_t at = 0; at < file.size(); at += block.size()) {
+    block.resize(std::min(kBlock, file.size() - at));
+    file.read(at, block);
+    const bool has_mark = at == 0 && block.size() >= 3 && block[0] == 0xef && block[1] == 0xbb && block[2] == 0xbf;
+    for (size_t i = has_mark ? 3 : 0; i < block.size(); ++i) {
+      const uint8_t c = block[i];
+      if (c == '#') in_comment = true;
+      if (c == '\n' || c == '\r') in_comment = false;
+      if (in_comment || c == ' ' || (c >= '\t' && c <= '\r')) continue;
+      std::vector<uint8_t> head(std::min<uint64_t>(kHeadBytes, file.size() - at - i));
+      file.read(at + i, head);
+      return head;
+    }
+  }
+  return {};
+}
+
+Reader reader_of(const std::string& path) {
+  const std::vector<uint8_t> head = read_file_head(path, kHeadBytes);
   for (const Format& format : kFormats)
-    if (format.recognise(head)) return format.read;
-  return nullptr;
+    if (format.recognize(head)) return format.read;
+  return looks_like_cornell(head_after_comments(path)) ? read_cornell : nullptr;
+}
+
+/// What people who have measured materials may bring, and what they can do with it.
+struct OtherFormat {
+  std::string_view begin;   // of the file
+  std::string_view inside;  // its first bytes hold this, too
+  const char* sentence;
+};
+
+constexpr OtherFormat kOtherFormats[] = {
+    {"\x89HDF\r\n\x1a\n", "",
+     "is an HDF5 file, as X-Rite's AxF is. Velour does not read AxF, which needs X-Rite's own library; export a table "
+     "of "
+     "BRDF values (MERL or CSV) or pictures by view and light from the software that made it."},
+    {"7z\xbc\xaf\x27\x1c", "",
+     "is an archive, as Substance's .sbsar is: a procedural material, not a measurement. Export its textures, and use "
+     "them in a Principled BSDF."},
+    {"PK\x03\x04", "",
+     "is a ZIP archive, as Chaos's .vrscan and packages of measurements are. Velour does not read VRscans, which only "
+     "Chaos's own library decodes; unpack other archives and give the file inside."},
+    {"", "<materialx",
+     "is a MaterialX document: parameters of a material, not a measurement. Import it in Blender, or use its values in "
+     "a "
+     "Principled BSDF."},
+    {"", "<WindowElement",
+     "is a BSDF of Radiance or WINDOW (XML, Klems or tensor tree), which Velour does not read yet; convert it to a "
+     "list "
+     "of directions and values (Cornell's format, docs/formats.md)."},
+    {"", "ASTM",
+     "looks like an ASTM E1392 file, which Velour does not read; convert it to a list of directions and values "
+     "(Cornell's format, docs/formats.md)."},
+};
+
+[[noreturn]] void refuse_file(const std::string& path) {
+  const std::vector<uint8_t> head = read_file_head(path, kHeadBytes);
+  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+  for (const OtherFormat& other : kOtherFormats) {
+    if (text.starts_with(other.begin) && text.find(other.inside) != std::string_view::npos)
+      throw Error(Status::unsupported, path + ": " + other.sentence);
+  }
+  throw Error(Status::unsupported, path +
+                                       ": is no measurement that Velour reads; use MERL .binary, RGL .bsdf, "
+                                       "Cornell .brdf or a Velour table.");
 }
 
 }  // namespace
 
 std::shared_ptr<const Measurement> load_measurement(const std::string& path) {
-  const Reader read = reader_of(read_file_head(path, kHeadBytes));
-  if (!read)
-    throw Error(Status::unsupported, path +
-                                         ": is no measurement that Velour reads; use MERL .binary, RGL .bsdf, "
-                                         "Cornell .brdf or a Velour table.");
+  const Reader read = reader_of(path);
+  if (!read) refuse_file(path);
   const auto bytes = read_file(path);
   Provenance provenance;
   provenance.path = path;
@@ -51,6 +114,6 @@ std::shared_ptr<const Measurement> load_measurement(const std::string& path) {
   return read(bytes, std::move(provenance));
 }
 
-bool is_measurement_file(const std::string& path) { return reader_of(read_file_head(path, kHeadBytes)) != nullptr; }
+bool is_measurement_file(const std::string& path) { return reader_of(path) != nullptr; }
 
 }  // namespace velour

@@ -1,7 +1,5 @@
 #include "brdf/scattered_interpolant.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "brdf/half_diff.h"
 #include "job/error.h"
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -132,8 +131,9 @@ std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolan
                                           const Progress& progress) {
   const HorizonTest horizon(layout);
   std::vector<TableNode> nodes(layout.size());
-  tbb::parallel_for(0, layout.theta_h, [&](int i) {
+  parallel_fill(static_cast<size_t>(layout.theta_h), [&](size_t row) {
     progress.check();
+    const int i = static_cast<int>(row);
     for (int k = 0; k < layout.theta_d; ++k)
       for (int l = 0; l <= layout.phi_d / 2; ++l) {
         if (!horizon.above(i, k, l)) continue;

@@ -92,12 +92,6 @@ std::optional<Vec2> tile_of(const BtfLoadOptions& options, const std::string& pi
   return read && is_tile_size(tile) ? std::optional(tile) : std::nullopt;
 }
 
-/// CIE XYZ, D65 white of luminance 1, to linear Rec. 709 (IEC 61966-2-1).
-Rgb rgb_of_xyz(const Rgb& c) {
-  return {3.2406f * c.r - 1.5372f * c.g - 0.4986f * c.b, -0.9689f * c.r + 1.8758f * c.g + 0.0415f * c.b,
-          0.0557f * c.r - 0.2040f * c.g + 1.0570f * c.b};
-}
-
 std::string curve_text(const TransferCurve& curve) {
   return curve.gamma ? "stored^" + std::to_string(*curve.gamma) : std::string("sRGB");
 }
@@ -112,7 +106,7 @@ class ImageSet : public BtfMeasurement {
     check_sizes();
     grid_.tile_metres = tile_of(options, paths_[0]);
     name_source(source);
-    has_alpha_ = has_alpha(read_picture_header(paths_[0]));
+    has_alpha_ = has_alpha(read_picture_header(paths_[0], picture_options()));
   }
 
   void read_pairs(uint64_t first, uint64_t count, std::span<HalfBits> values) const override {
@@ -125,7 +119,7 @@ class ImageSet : public BtfMeasurement {
   std::optional<std::vector<float>> read_coverage(uint32_t view) const override {
     const uint64_t first = layout().first(view);
     if (!has_alpha_ || first == layout().first(view + 1)) return std::nullopt;
-    const Picture picture = read_picture(paths_[first], options_.curve);
+    const Picture picture = read_picture(paths_[first], picture_options());
     check_size(picture, first);
     if (!has_alpha(picture)) {
       throw Error(Status::bad_data, paths_[first] + ": has no alpha, which " + paths_[0] + " has.");
@@ -147,6 +141,12 @@ class ImageSet : public BtfMeasurement {
   }
 
  private:
+  PictureOptions picture_options() const {
+    PictureOptions options{.curve = options_.curve, .layer = options_.layer, .keeps_not_finite = true};
+    if (options_.colors == BtfColors::xyz) options.primaries = kCieXyz;
+    return options;
+  }
+
   std::string colors_text() const {
     return options_.colors == BtfColors::xyz ? "CIE XYZ, made linear Rec. 709" : "linear Rec. 709";
   }
@@ -154,12 +154,13 @@ class ImageSet : public BtfMeasurement {
   static bool has_alpha(const Picture& picture) { return picture.channels == 2 || picture.channels == 4; }
 
   void check_sizes() {
-    const Picture first = read_picture_header(paths_[0]);
+    const Picture first = read_picture_header(paths_[0], picture_options());
     if (first.width > static_cast<int>(kMaxTexelsAlong) || first.height > static_cast<int>(kMaxTexelsAlong)) {
       throw Error(Status::bad_data, paths_[0] + ": has more than 16384 pixels along a side.");
     }
     grid_ = {static_cast<uint32_t>(first.width), static_cast<uint32_t>(first.height)};
-    tbb::parallel_for(size_t{1}, paths_.size(), [&](size_t i) { check_size(read_picture_header(paths_[i]), i); });
+    tbb::parallel_for(size_t{1}, paths_.size(),
+                      [&](size_t i) { check_size(read_picture_header(paths_[i], picture_options()), i); });
   }
 
   void check_size(const Picture& picture, uint64_t pair) const {
@@ -192,15 +193,14 @@ class ImageSet : public BtfMeasurement {
   }
 
   void read_picture_of(uint64_t pair, std::span<HalfBits> values) const {
-    const Picture picture = read_picture(paths_[pair], options_.curve);
+    const Picture picture = read_picture(paths_[pair], picture_options());
     check_size(picture, pair);  // it may have been replaced
     const float scale = scale_.of(layout().lights()[layout().light_of(pair)]);
     std::vector<float> floats(values.size());
     const auto channels = static_cast<size_t>(picture.channels);
     for (uint64_t t = 0; t < grid_.texels(); ++t) {
       const float* pixel = picture.pixels.data() + t * channels;
-      Rgb c = channels >= 3 ? Rgb(pixel[0], pixel[1], pixel[2]) : Rgb(pixel[0]);
-      if (options_.colors == BtfColors::xyz) c = rgb_of_xyz(c);
+      const Rgb c = channels >= 3 ? Rgb(pixel[0], pixel[1], pixel[2]) : Rgb(pixel[0]);
       for (int k = 0; k < 3; ++k) floats[3 * t + static_cast<size_t>(k)] = c[k] * scale;
     }
     floats_to_halves(floats, values);

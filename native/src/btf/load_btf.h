@@ -25,6 +25,7 @@ struct BtfLoadOptions {
   BtfValues values = BtfValues::automatic;
   BtfColors colors = BtfColors::rec709;
   TransferCurve curve;                             // of pictures of whole numbers
+  std::string layer = {};                          // of OpenEXR pictures (PictureOptions)
   std::optional<Vec2> tile_metres = std::nullopt;  // in place of what the source says, if it says anything
 };
 

@@ -25,6 +25,7 @@ BtfLoadOptions converted(const vlr_btf_options& given) {
   if (given.gamma != 0) options.curve.gamma = given.gamma;
   const Vec2 tile(given.tile_metres[0], given.tile_metres[1]);
   if (tile != Vec2(0)) options.tile_metres = tile;
+  if (given.layer) options.layer = given.layer;
   return options;
 }
 

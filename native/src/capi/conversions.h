@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include "capi/guard.h"
+#include "image/picture.h"
 #include "job/error.h"
 #include "scene/affine.h"
 #include "sphere/vec.h"
@@ -33,6 +35,13 @@ inline Affine affine_from(const float* m) {
   Affine map;
   std::copy(m, m + 12, map.m);
   return map;
+}
+
+/// NULL: the defaults.
+inline PictureOptions converted(const vlr_picture_options* given) {
+  const auto options = read_options(given, vlr_picture_options_init, "vlr_picture_options");
+  require_choice(options.as_stored, 1, "vlr_picture_options.as_stored");
+  return {.layer = options.layer ? options.layer : "", .as_stored = options.as_stored != 0};
 }
 
 }  // namespace velour::capi

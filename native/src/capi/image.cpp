@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "capi/conversions.h"
 #include "capi/guard.h"
 #include "capi/json_text.h"
 #include "image/exr_part.h"
@@ -33,6 +34,24 @@ PictureFrame converted(const vlr_image_frame& given, const Picture& part) {
   return {static_cast<int>(frame.width), static_cast<int>(frame.height), frame.x, frame.y};
 }
 
+struct PictureOutput {
+  uint32_t *width, *height, *channels;
+  float* pixels;  // null: only the size is asked for
+  uint64_t count;
+};
+
+void hand_out(const Picture& picture, const PictureOutput& to) {
+  *to.width = static_cast<uint32_t>(picture.width);
+  *to.height = static_cast<uint32_t>(picture.height);
+  *to.channels = static_cast<uint32_t>(picture.channels);
+  if (!to.pixels) return;
+  if (to.count != picture.pixels.size()) {
+    throw Error(Status::invalid_argument, "count is " + std::to_string(to.count) + ", the picture has " +
+                                              std::to_string(picture.pixels.size()) + " values.");
+  }
+  std::copy(picture.pixels.begin(), picture.pixels.end(), to.pixels);
+}
+
 }  // namespace
 
 vlr_status vlr_image_write(const char* path, uint32_t width, uint32_t height, uint32_t channels, const float* pixels) {
@@ -52,16 +71,36 @@ vlr_status vlr_image_read(const char* path, uint32_t* width, uint32_t* height, u
     require(width, "width");
     require(height, "height");
     require(channels, "channels");
-    const Picture picture = pixels ? read_picture(path) : read_picture_header(path);
-    *width = static_cast<uint32_t>(picture.width);
-    *height = static_cast<uint32_t>(picture.height);
-    *channels = static_cast<uint32_t>(picture.channels);
-    if (!pixels) return;
-    if (count != picture.pixels.size()) {
-      throw Error(Status::invalid_argument, "count is " + std::to_string(count) + ", the picture has " +
-                                                std::to_string(picture.pixels.size()) + " values.");
-    }
-    std::copy(picture.pixels.begin(), picture.pixels.end(), pixels);
+    hand_out(pixels ? read_picture_channels(path) : read_picture_channels_header(path),
+             {width, height, channels, pixels, count});
+  });
+}
+
+void vlr_picture_options_init(vlr_picture_options* options) {
+  *options = {};
+  options->struct_size = sizeof(vlr_picture_options);
+}
+
+vlr_status vlr_picture_read(const char* path, const vlr_picture_options* options, uint32_t* width, uint32_t* height,
+                            uint32_t* channels, float* pixels, uint64_t count) {
+  return guard([&] {
+    require(path, "path");
+    require(width, "width");
+    require(height, "height");
+    require(channels, "channels");
+    const PictureOptions given = converted(options);
+    hand_out(pixels ? read_picture(path, given) : read_picture_header(path, given),
+             {width, height, channels, pixels, count});
+  });
+}
+
+vlr_status vlr_picture_notes_json(const char* path, const vlr_picture_options* options, const char** json) {
+  return guard([&] {
+    require(path, "path");
+    require(json, "json");
+    thread_local std::string said;
+    said = text(read_picture_header(path, converted(options)).notes);
+    *json = said.c_str();
   });
 }
 

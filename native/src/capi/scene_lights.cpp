@@ -100,9 +100,15 @@ vlr_status vlr_scene_place_world(vlr_scene* scene, float strength, const float* 
 }
 
 vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, float strength, const float* world_to_image) {
+  return vlr_scene_load_world_picture(scene, path, nullptr, strength, world_to_image);
+}
+
+vlr_status vlr_scene_load_world_picture(vlr_scene* scene, const char* path, const vlr_picture_options* options,
+                                        float strength, const float* world_to_image) {
   return guard([&] {
     require(scene, "scene");
     require(path, "path");
-    scene->scene->set_environment(Environment::load(path, strength, matrix_from_rows(world_to_image)));
+    scene->scene->set_environment(
+        Environment::load(path, converted(options), strength, matrix_from_rows(world_to_image)));
   });
 }

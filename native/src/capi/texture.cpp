@@ -95,7 +95,7 @@ vlr_status vlr_texture_load(const char* path, const vlr_texture_options* options
     require(path, "path");
     require(out, "out");
     const auto given = read_options(options, vlr_texture_options_init, "vlr_texture_options");
-    const Picture picture = read_picture(path, given.raw != 0 ? TransferCurve{1.0f} : TransferCurve{});
+    const Picture picture = read_picture(path, {.curve = given.raw != 0 ? TransferCurve{1.0f} : TransferCurve{}});
     *out = texture_of({picture.width, picture.height, picture.channels, picture.pixels.data()}, given);
   });
 }

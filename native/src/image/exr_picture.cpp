@@ -1,8 +1,11 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVersion.h>
@@ -10,9 +13,11 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <filesystem>
 #include <tuple>
 
 #include "file/file.h"
+#include "image/exr_colors.h"
 #include "image/exr_errors.h"
 #include "image/exr_output.h"
 #include "image/open_picture.h"
@@ -21,120 +26,319 @@
 namespace velour {
 namespace {
 
-/// OpenEXR makes tables for all rows that a header claims when it opens a file, before anyone can ask how many.
-void check_rows(const std::string& path) {
-  constexpr size_t kMostHeader = 65536, kBegin = 8;
-  const auto head = read_file_head(path, kMostHeader);
-  const std::string text(head.begin(), head.end());
-  for (size_t at = kBegin; at < text.size() && text[at] != 0;) {  // name, type, size, value
-    const std::string name = text.c_str() + at;
-    at += name.size() + 1;
-    at = text.find('\0', at);
-    uint32_t size = 0;
-    if (at == std::string::npos || text.size() - at < 1 + sizeof size) return;
-    std::memcpy(&size, text.data() + at + 1, sizeof size);
-    at += 1 + sizeof size;
-    if (size > std::filesystem::file_size(path) - at) throw Error(Status::bad_data, path + ": its header is damaged.");
-    if (size > text.size() - at) return;
-    std::array<int32_t, 4> window{};  // least x, y, most x, y
-    if (name == "dataWindow" && size == sizeof window) {
-      std::memcpy(window.data(), text.data() + at, sizeof window);
-      const int64_t rows = int64_t{window[3]} - window[1] + 1;
-      if (rows > static_cast<int64_t>(kMaxValuesPerByte * std::filesystem::file_size(path))) {
-        throw Error(Status::bad_data,
-                    path + ": the header says " + std::to_string(rows) + " rows, more than the file can hold.");
-      }
-    }
-    at += size;
-  }
-}
+/// OpenEXR makes tables for all rows and chunks that headers claim when it opens a file, before anyone can ask how
+/// many.
+class HeaderCheck {
+ public:
+  explicit HeaderCheck(const std::string& path)
+      : path_(path), head_(read_file_head(path, kMaxHeader)), file_bytes_(std::filesystem::file_size(path)) {}
 
-/// The layer, whether the channel is no colour, its place among colours, its name: what channels are sorted by.
+  void run() {
+    const auto version = number<uint32_t>(4);
+    if (!version) return;
+    size_t at = 8;
+    do {
+      at = check_part(at);
+    } while (at != kEnd && (*version & kSeveralParts) != 0 && at < head_.size() && head_[at] != 0);
+  }
+
+ private:
+  static constexpr size_t kMaxHeader = size_t{1} << 20, kEnd = SIZE_MAX;
+  static constexpr uint32_t kSeveralParts = 0x1000;  // a bit of the version field
+
+  [[noreturn]] void fail(const std::string& what) const { throw Error(Status::bad_data, path_ + ": " + what); }
+
+  template <typename T>
+  std::optional<T> number(size_t at) const {
+    T value;
+    if (at > head_.size() || sizeof value > head_.size() - at) return std::nullopt;
+    std::memcpy(&value, head_.data() + at, sizeof value);
+    return value;
+  }
+
+  std::optional<std::string> text(size_t& at) const {
+    const auto begin = head_.begin() + static_cast<std::ptrdiff_t>(std::min(at, head_.size()));
+    const auto end = std::find(begin, head_.end(), 0);
+    if (end == head_.end()) return std::nullopt;
+    at = static_cast<size_t>(end - head_.begin()) + 1;
+    return std::string(begin, end);
+  }
+
+  /// The attributes of the part that begins at `at`: name, type, size, value. Returns where the next one begins; kEnd:
+  /// the header ends early or is longer than was read, and OpenEXR itself will say so.
+  size_t check_part(size_t at) const {
+    while (at < head_.size() && head_[at] != 0) {
+      const auto name = text(at), type = text(at);
+      const auto size = number<uint32_t>(at);
+      if (!name || !type || !size) return kEnd;
+      at += sizeof *size;
+      if (*size > file_bytes_ - at) fail("its header is damaged.");
+      if (*size > head_.size() - at) fail("its header has more than a megabyte, which Velour does not read.");
+      check_attribute(*name, *size, at);
+      at += *size;
+    }
+    return at < head_.size() ? at + 1 : kEnd;
+  }
+
+  void check_attribute(const std::string& name, uint32_t size, size_t at) const {
+    if (name == "dataWindow" && size == 16) {
+      const int64_t rows = int64_t{*number<int32_t>(at + 12)} - *number<int32_t>(at + 4) + 1;
+      if (rows > static_cast<int64_t>(kMaxValuesPerByte * file_bytes_))
+        fail("the header says " + std::to_string(rows) + " rows, more than the file can hold.");
+    }
+    if (name == "chunkCount" && size == 4) {
+      const int64_t chunks = *number<int32_t>(at);
+      if (chunks < 0 || static_cast<uint64_t>(chunks) > file_bytes_ / sizeof(uint64_t))
+        fail("the header says " + std::to_string(chunks) + " chunks, more than the file can hold.");
+    }
+  }
+
+  std::string path_;
+  std::vector<uint8_t> head_;  // read first: it says plainly what is wrong with the path
+  uint64_t file_bytes_;
+};
+
+/// The layer, whether the channel is no color, its place among colors, its name: what channels are sorted by.
 auto order_of(const std::string& channel) {
-  constexpr std::string_view kColours = "RYGBA";
+  constexpr std::string_view kColors = "RYGBA";
   const size_t dot = channel.rfind('.');
   const std::string layer = dot == std::string::npos ? "" : channel.substr(0, dot);
   const std::string last = dot == std::string::npos ? channel : channel.substr(dot + 1);
-  const size_t colour = last.size() == 1 ? kColours.find(last[0]) : std::string_view::npos;
-  return std::tuple(layer, colour == std::string_view::npos, colour, channel);
+  const size_t color = last.size() == 1 ? kColors.find(last[0]) : std::string_view::npos;
+  return std::tuple(layer, color == std::string_view::npos, color, channel);
 }
 
 auto input_error_of(const std::string& path) {
   return [&path](const char* why) { return input_error(path, why); };
 }
 
+std::vector<std::string> channels_of(const Imf::Header& header) {
+  std::vector<std::string> names;
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+    names.emplace_back(channel.name());
+  return names;
+}
+
+int side(int first, int last) { return static_cast<int>(int64_t{last} - first + 1); }
+
+PictureFrame frame_of(const Imf::Header& header) {
+  const Imath::Box2i &data = header.dataWindow(), &whole = header.displayWindow();
+  return {side(whole.min.x, whole.max.x), side(whole.min.y, whole.max.y),
+          static_cast<int>(int64_t{data.min.x} - whole.min.x), static_cast<int>(int64_t{whole.max.y} - data.max.y)};
+}
+
+ColorPrimaries primaries_of(const Imf::Chromaticities& c) {
+  const auto xy = [](const Imath::V2f& v) { return std::array<double, 2>{v.x, v.y}; };
+  return {xy(c.red), xy(c.green), xy(c.blue), xy(c.white)};
+}
+
+/// A file that is checked before OpenEXR sees it, and one of its parts.
 class OpenExr : public OpenPicture {
  public:
-  explicit OpenExr(const std::string& path) : path_(path), file_(path.c_str(), 0) {
-    for (auto channel = channels().begin(); channel != channels().end(); ++channel) {
-      names_.emplace_back(channel.name());
-      if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
-        throw Error(Status::unsupported, path + ": channel " + names_.back() +
-                                             " has fewer pixels than the picture; write all channels at its size.");
-      }
-    }
-    std::ranges::sort(names_, {}, order_of);
-  }
-
-  Format format() const override {
-    const Imath::Box2i& window = file_.header().dataWindow();
-    const auto alpha = std::ranges::find(names_, "A");
-    return {.width = window.max.x - window.min.x + 1,
-            .height = window.max.y - window.min.y + 1,
-            .channels = static_cast<int>(names_.size()),
-            .alpha_channel = alpha == names_.end() ? -1 : static_cast<int>(alpha - names_.begin())};
-  }
+  const PictureHeader& header() const override { return header_; }
 
   std::optional<std::string> text(const std::string& name) const override {
-    const auto* found = file_.header().findTypedAttribute<Imf::StringAttribute>(name);
+    const auto* found = exr_header().findTypedAttribute<Imf::StringAttribute>(name);
     return found != nullptr ? std::optional(found->value()) : std::nullopt;
   }
 
-  ExrHeader header() const {
-    const Imath::Box2i &data = file_.header().dataWindow(), &whole = file_.header().displayWindow();
-    const auto side = [](int first, int last) { return static_cast<int>(int64_t{last} - first + 1); };
-    ExrHeader header;
-    header.width = side(data.min.x, data.max.x);
-    header.height = side(data.min.y, data.max.y);
-    header.channels = names_;
-    header.multi_part = Imf::isMultiPart(file_.version());
-    header.frame = {side(whole.min.x, whole.max.x), side(whole.min.y, whole.max.y),
-                    static_cast<int>(int64_t{data.min.x} - whole.min.x),
-                    static_cast<int>(int64_t{whole.max.y} - data.max.y)};
-    for (auto attribute = file_.header().begin(); attribute != file_.header().end(); ++attribute) {
-      const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
-      if (text != nullptr) header.texts[attribute.name()] = text->value();
-    }
-    return header;
+ protected:
+  explicit OpenExr(const std::string& path) : path_(path) {
+    HeaderCheck(path).run();
+    file_.emplace(path.c_str(), 0);
   }
 
-  void read(std::span<float> values) override {
-    const size_t pixel = names_.size() * sizeof(float);
-    const Imath::Box2i& window = file_.header().dataWindow();
+  Imf::MultiPartInputFile& file() const { return *file_; }
+  int part_count() const { return file_->parts(); }
+  const Imf::Header& exr_header() const { return file_->header(part_); }
+
+  int part() const { return part_; }
+  void set_part(int part) {
+    part_ = part;
+    const Imath::Box2i& window = exr_header().dataWindow();
+    header_.width = side(window.min.x, window.max.x);
+    header_.height = side(window.min.y, window.max.y);
+  }
+
+  /// Reads `names` into as many channels; an empty one becomes 0.
+  void read_channels(std::span<const std::string> names, std::span<float> values) {
+    const size_t pixel = names.size() * sizeof(float);
+    const Imath::Box2i& window = exr_header().dataWindow();
     Imf::FrameBuffer buffer;
-    for (size_t c = 0; c < names_.size(); ++c) {
-      buffer.insert(names_[c], Imf::Slice::Make(Imf::FLOAT, values.data() + c, window, pixel,
-                                                pixel * static_cast<size_t>(format().width)));
+    for (size_t c = 0; c < names.size(); ++c) {
+      if (names[c].empty()) {
+        for (size_t i = c; i < values.size(); i += names.size()) values[i] = 0;
+        continue;
+      }
+      buffer.insert(names[c], Imf::Slice::Make(Imf::FLOAT, values.data() + c, window, pixel,
+                                               pixel * static_cast<size_t>(header_.width)));
     }
     with_exr_errors(Status::bad_data, input_error_of(path_), [&] {
-      file_.setFrameBuffer(buffer);
-      file_.readPixels(window.min.y, window.max.y);
+      Imf::InputPart part(*file_, part_);
+      part.setFrameBuffer(buffer);
+      part.readPixels(window.min.y, window.max.y);
     });
   }
 
- private:
-  const Imf::ChannelList& channels() const { return file_.header().channels(); }
+  void check_sampling(std::span<const std::string> names) const {
+    for (const std::string& name : names) {
+      const Imf::Channel* channel = exr_header().channels().findChannel(name.c_str());
+      if (channel != nullptr && (channel->xSampling != 1 || channel->ySampling != 1)) {
+        throw Error(Status::unsupported, path_ + ": channel " + name +
+                                             " has fewer pixels than the picture; write all channels at its size.");
+      }
+    }
+  }
 
   std::string path_;
-  Imf::InputFile file_;
+  PictureHeader header_;
+
+ private:
+  mutable std::optional<Imf::MultiPartInputFile> file_;
+  int part_ = 0;
+};
+
+/// All channels of the first part.
+class AllChannels : public OpenExr {
+ public:
+  explicit AllChannels(const std::string& path) : OpenExr(path) {
+    set_part(0);
+    names_ = channels_of(exr_header());
+    std::ranges::sort(names_, {}, order_of);
+    check_sampling(names_);
+    header_.channels = static_cast<int>(names_.size());
+  }
+
+  void read(std::span<float> values) override { read_channels(names_, values); }
+
+  ExrHeader description() const {
+    ExrHeader result{
+        header_.width, header_.height, names_, frame_of(exr_header()), {}, Imf::isMultiPart(file().version())};
+    for (auto attribute = exr_header().begin(); attribute != exr_header().end(); ++attribute) {
+      const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
+      const std::string_view name = attribute.name();
+      const bool is_openexrs = name == "name" || name == "type" || name == "view";
+      if (text != nullptr && !is_openexrs) result.texts[attribute.name()] = text->value();
+    }
+    return result;
+  }
+
+ private:
   std::vector<std::string> names_;
+};
+
+/// The picture of a file: colors of one layer of one part.
+class ExrPicture : public OpenExr {
+ public:
+  ExrPicture(const std::string& path, const std::string& layer) : OpenExr(path) {
+    choose(layer);
+    check_not_a_cube();
+    if (colors_.kind != ExrColors::Kind::luminance_chroma) {
+      check_sampling(names_);
+    } else if (part() != 0) {
+      throw Error(Status::unsupported, path_ + ": luminance and chroma are read from the first part only.");
+    }
+    header_.channels = static_cast<int>(names_.size());
+    if (!colors_.alpha.empty()) header_.alpha_channel = header_.channels - 1;
+    if (Imf::hasChromaticities(exr_header())) {
+      const ColorPrimaries primaries = primaries_of(Imf::chromaticities(exr_header()));
+      if (is_stated(primaries)) header_.primaries = primaries;
+    }
+    const PictureFrame frame = frame_of(exr_header());
+    if (frame != PictureFrame{header_.width, header_.height, 0, 0}) header_.frame = frame;
+    add_notes();
+  }
+
+  void read(std::span<float> values) override {
+    if (colors_.kind == ExrColors::Kind::luminance_chroma) return read_luminance_chroma(values);
+    read_channels(names_, values);
+  }
+
+ private:
+  /// The first part whose channels can be chosen from; `layer` may name a part, too.
+  void choose(const std::string& layer) {
+    std::string refusal;
+    int flat = 0;
+    for (int part = 0; part < part_count(); ++part) {
+      const Imf::Header& header = file().header(part);
+      if (header.hasType() && Imf::isDeepData(header.type())) continue;
+      ++flat;
+      const bool is_part = header.hasName() && !layer.empty() && header.name() == layer;
+      try {
+        colors_ = choose_exr_colors(channels_of(header), is_part ? "" : layer, path_);
+        set_part(part);
+        return set_names();
+      } catch (const Error& error) {
+        if (is_part || refusal.empty()) refusal = error.what();
+        if (is_part) break;
+      }
+    }
+    if (flat == 0) {
+      throw Error(Status::unsupported,
+                  path_ + ": is a deep picture; flatten it (oiiotool --flatten, or in your compositor).");
+    }
+    throw Error(Status::unsupported, refusal);
+  }
+
+  void set_names() {
+    const bool grey = colors_.kind == ExrColors::Kind::grey;
+    names_.assign(colors_.names.begin(), grey ? colors_.names.begin() + 1 : colors_.names.end());
+    if (!colors_.alpha.empty()) names_.push_back(colors_.alpha);
+  }
+
+  void check_not_a_cube() const {
+    if (Imf::hasEnvmap(exr_header()) && Imf::envmap(exr_header()) == Imf::ENVMAP_CUBE) {
+      throw Error(Status::unsupported, path_ + ": is a cube map; convert it to latitude and longitude (exrenvmap -l).");
+    }
+  }
+
+  void add_notes() {
+    const auto list = [](const std::vector<std::string>& names) {
+      constexpr size_t kShown = 6;
+      std::string text;
+      for (size_t i = 0; i < std::min(names.size(), kShown); ++i) text += (i > 0 ? ", " : "") + names[i];
+      return names.size() > kShown ? text + " and " + std::to_string(names.size() - kShown) + " more" : text;
+    };
+    if (!colors_.left_out.empty()) {
+      const std::string chosen = colors_.layer.empty() ? "" : " of layer '" + colors_.layer + "'";
+      header_.notes.push_back("the picture" + chosen +
+                              " is read; its other channels are left out: " + list(colors_.left_out) + ".");
+    }
+    if (part_count() > 1) {
+      const std::string name = exr_header().hasName() ? " '" + exr_header().name() + "'" : "";
+      header_.notes.push_back("part" + name + " of " + std::to_string(part_count()) + " is read.");
+    }
+    if (colors_.kind == ExrColors::Kind::rgb && std::ranges::count(colors_.names, "") > 0)
+      header_.notes.push_back("it lacks one of the channels R, G, B, which is read as 0.");
+  }
+
+  /// By OpenEXR's own reconstruction, which works in half floats.
+  void read_luminance_chroma(std::span<float> values) {
+    with_exr_errors(Status::bad_data, input_error_of(path_), [&] {
+      Imf::RgbaInputFile input(path_.c_str(), colors_.layer, 0);
+      const Imath::Box2i& window = input.dataWindow();
+      const auto width = static_cast<size_t>(header_.width);
+      std::vector<Imf::Rgba> pixels(width * static_cast<size_t>(header_.height));
+      const auto origin = static_cast<std::ptrdiff_t>(window.min.y) * static_cast<std::ptrdiff_t>(width) + window.min.x;
+      input.setFrameBuffer(pixels.data() - origin, 1, width);
+      input.readPixels(window.min.y, window.max.y);
+      float* out = values.data();
+      for (const Imf::Rgba& pixel : pixels) {
+        for (const float v : {float{pixel.r}, float{pixel.g}, float{pixel.b}}) *out++ = v;
+        if (!colors_.alpha.empty()) *out++ = float{pixel.a};
+      }
+    });
+  }
+
+  ExrColors colors_;
+  std::vector<std::string> names_;  // of the channels that are read, as they are interleaved
 };
 
 /// Names whose order in the alphabet is that of the channels, for that is how they are read.
 std::string channel_name(int channel, int channels) {
-  constexpr std::array kColours{"R", "G", "B", "A"};
-  if (channels == 1) return "Y";
-  if (channel < 4) return kColours[static_cast<size_t>(channel)];
+  constexpr std::array kColors{"R", "G", "B", "A"};
+  if (channels <= 2) return channel == 0 ? "Y" : "A";
+  if (channel < 4) return kColors[static_cast<size_t>(channel)];
   const std::string digits = std::to_string(channel);
   return "channel" + std::string(3 - std::min<size_t>(digits.size(), 3), '0') + digits;
 }
@@ -156,14 +360,17 @@ void add_texts(Imf::Header& header, const PictureTexts& texts) {
 
 }  // namespace
 
-std::unique_ptr<OpenPicture> open_exr(const std::string& path) {
-  check_rows(path);
-  return with_exr_errors(Status::bad_data, input_error_of(path), [&] { return std::make_unique<OpenExr>(path); });
+std::unique_ptr<OpenPicture> open_exr(const std::string& path, const std::string& layer) {
+  return with_exr_errors(Status::bad_data, input_error_of(path),
+                         [&] { return std::make_unique<ExrPicture>(path, layer); });
+}
+
+std::unique_ptr<OpenPicture> open_exr_channels(const std::string& path) {
+  return with_exr_errors(Status::bad_data, input_error_of(path), [&] { return std::make_unique<AllChannels>(path); });
 }
 
 ExrHeader read_exr_header(const std::string& path) {
-  check_rows(path);
-  return with_exr_errors(Status::bad_data, input_error_of(path), [&] { return OpenExr(path).header(); });
+  return with_exr_errors(Status::bad_data, input_error_of(path), [&] { return AllChannels(path).description(); });
 }
 
 void write_exr(const std::string& path, const Picture& top_first, const PictureFrame& frame,

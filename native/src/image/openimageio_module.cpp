@@ -13,13 +13,17 @@ namespace {
 
 using File = OpenImageIoModule::File;
 
-File* open(const std::string& path, std::string& error) {
-  OIIO::ImageSpec request;
-  // Channels as stored: no product with alpha before the sRGB curve.
-  request.attribute("oiio:UnassociatedAlpha", 1);
-  auto input = OIIO::ImageInput::open(path, &request);
+File* open(const std::string& path, const char* reader, std::string& error) {
+  auto input = OIIO::ImageInput::create(reader);
   if (!input) {
     error = OIIO::geterror();
+    return nullptr;
+  }
+  OIIO::ImageSpec request, spec;
+  // Channels as stored: no product with alpha before the sRGB curve.
+  request.attribute("oiio:UnassociatedAlpha", 1);
+  if (!input->open(path, spec, request)) {
+    error = input->geterror();
     return nullptr;
   }
   return new File{std::move(input)};
@@ -27,9 +31,16 @@ File* open(const std::string& path, std::string& error) {
 
 void close(File* file) { delete file; }
 
-OpenPicture::Format format(const File& file) {
+PictureHeader header(const File& file) {
   const OIIO::ImageSpec& spec = file.input->spec();
-  return {spec.width, spec.height, spec.depth, spec.nchannels, !spec.format.is_floating_point(), spec.alpha_channel};
+  PictureHeader header;
+  header.width = spec.width;
+  header.height = spec.height;
+  header.depth = spec.depth;
+  header.channels = spec.nchannels;
+  header.integers = !spec.format.is_floating_point();
+  header.alpha_channel = spec.alpha_channel;
+  return header;
 }
 
 std::optional<std::string> text(const File& file, const std::string& name) {
@@ -70,8 +81,8 @@ std::vector<uint8_t> encode_png(int width, int height, int channels, std::span<c
 }  // namespace
 }  // namespace velour
 
-extern "C" __attribute__((visibility("default"))) const velour::OpenImageIoModule& velour_openimageio_1() {
-  static constexpr velour::OpenImageIoModule kModule{velour::open, velour::close, velour::format,
+extern "C" __attribute__((visibility("default"))) const velour::OpenImageIoModule& velour_openimageio_2() {
+  static constexpr velour::OpenImageIoModule kModule{velour::open, velour::close, velour::header,
                                                      velour::text, velour::read,  velour::encode_png};
   return kModule;
 }

@@ -10,10 +10,10 @@ namespace velour {
 /// returned as texts.
 struct OpenImageIoModule {
   struct File;
-  /// Returns null and sets `error` for a file that OpenImageIO cannot read.
-  File* (*open)(const std::string& path, std::string& error);
+  /// By the reader of that name ("png") and no other. Returns null and sets `error` for a file that it cannot read.
+  File* (*open)(const std::string& path, const char* reader, std::string& error);
   void (*close)(File* file);
-  OpenPicture::Format (*format)(const File& file);
+  PictureHeader (*header)(const File& file);
   std::optional<std::string> (*text)(const File& file, const std::string& name);
   /// Like OpenPicture::read. Returns false and sets `error` for a file that ends early.
   bool (*read)(File& file, std::span<float> values, std::string& error);
@@ -26,4 +26,4 @@ struct OpenImageIoModule {
 
 /// The only symbol that the module exports. Raise its number with every change of the struct: a program that is running
 /// while Velour is rebuilt opens the new module.
-extern "C" const velour::OpenImageIoModule& velour_openimageio_1();
+extern "C" const velour::OpenImageIoModule& velour_openimageio_2();

@@ -1,5 +1,6 @@
 // Pictures in other formats than OpenEXR, read and written by the module that links OpenImageIO.
 #include "file/private_library.h"
+#include "image/exif_orientation.h"
 #include "image/open_picture.h"
 #include "image/openimageio_module.h"
 #include "job/error.h"
@@ -12,7 +13,7 @@ const OpenImageIoModule& open_module() {
   static const auto& library =
       *new PrivateLibrary("libvelour_openimageio.so",
                           "run scripts/setup and scripts/build again, or use an OpenEXR file, which needs neither.");
-  return library.function<decltype(velour_openimageio_1)>("velour_openimageio_1")();
+  return library.function<decltype(velour_openimageio_2)>("velour_openimageio_2")();
 }
 
 /// The first call opens the module. After a failure the next call tries again.
@@ -25,18 +26,37 @@ const OpenImageIoModule& module_for(const std::string& path) {
   }
 }
 
+const char* reader_of(PictureFormat format) {
+  switch (format) {
+    case PictureFormat::png:
+      return "png";
+    case PictureFormat::jpeg:
+      return "jpeg";
+    case PictureFormat::tiff:
+      return "tiff";
+    case PictureFormat::bmp:
+      return "bmp";
+    case PictureFormat::exr:
+    case PictureFormat::radiance:
+      break;
+  }
+  throw Error(Status::invalid_argument, "OpenImageIO is not asked for this format.");
+}
+
 class ByOpenImageIo : public OpenPicture {
  public:
-  explicit ByOpenImageIo(const std::string& path) : path_(path), module_(module_for(path)) {
+  ByOpenImageIo(const std::string& path, PictureFormat format) : path_(path), module_(module_for(path)) {
     std::string error;
-    file_ = module_.open(path, error);
+    file_ = module_.open(path, reader_of(format), error);
     if (file_ == nullptr) throw Error(Status::bad_data, input_error(path, error));
+    header_ = module_.header(*file_);
+    header_.orientation = exif_orientation(format, path);
   }
   ~ByOpenImageIo() override { module_.close(file_); }
   ByOpenImageIo(const ByOpenImageIo&) = delete;
   ByOpenImageIo& operator=(const ByOpenImageIo&) = delete;
 
-  Format format() const override { return module_.format(*file_); }
+  const PictureHeader& header() const override { return header_; }
   std::optional<std::string> text(const std::string& name) const override { return module_.text(*file_, name); }
   void read(std::span<float> values) override {
     std::string error;
@@ -47,12 +67,13 @@ class ByOpenImageIo : public OpenPicture {
   std::string path_;
   const OpenImageIoModule& module_;
   OpenImageIoModule::File* file_;
+  PictureHeader header_;
 };
 
 }  // namespace
 
-std::unique_ptr<OpenPicture> open_other_format(const std::string& path) {
-  return std::make_unique<ByOpenImageIo>(path);
+std::unique_ptr<OpenPicture> open_integers(const std::string& path, PictureFormat format) {
+  return std::make_unique<ByOpenImageIo>(path, format);
 }
 
 std::vector<uint8_t> png_of(const std::string& path, int width, int height, int channels,

@@ -9,6 +9,7 @@
 #include "file/file.h"
 #include "image/open_picture.h"
 #include "image/srgb.h"
+#include "image/value_faults.h"
 #include "job/error.h"
 
 namespace velour {
@@ -16,7 +17,6 @@ namespace {
 
 constexpr uint64_t kMaxValues = uint64_t{1} << 30;
 constexpr int kMaxChannels = 64;
-constexpr std::array<uint8_t, 4> kExrMagic{0x76, 0x2f, 0x31, 0x01};
 
 /// Nearest 8-bit code; not a number and negative values give 0.
 uint8_t srgb_byte(float linear) {
@@ -24,28 +24,100 @@ uint8_t srgb_byte(float linear) {
   return static_cast<uint8_t>(std::lround(v * 255.0f));
 }
 
+std::string size_text(int width, int height, int channels) {
+  return std::to_string(width) + " x " + std::to_string(height) + " x " + std::to_string(channels) + " channels";
+}
+
 /// The limits of OpenEXR and OpenImageIO are the process's (Blender shares them) and stay as they are, so sizes are
 /// checked here.
-void check_size(const std::string& path, const OpenPicture::Format& format) {
-  const std::string size = std::to_string(format.width) + " x " + std::to_string(format.height) + " x " +
-                           std::to_string(format.channels) + " channels";
-  if (format.width <= 0 || format.height <= 0 || format.depth > 1 || format.channels <= 0 ||
-      format.channels > kMaxChannels)
+void check_size(const std::string& path, const PictureHeader& header) {
+  const std::string size = size_text(header.width, header.height, header.channels);
+  if (header.width <= 0 || header.height <= 0 || header.depth > 1 || header.channels <= 0 ||
+      header.channels > kMaxChannels)
     throw Error(Status::bad_data, path + ": the header says " + size + ", which is no flat picture.");
-  const uint64_t pixels = static_cast<uint64_t>(format.width) * static_cast<uint64_t>(format.height);
+  const uint64_t pixels = static_cast<uint64_t>(header.width) * static_cast<uint64_t>(header.height);
   const uint64_t bound = std::min(kMaxValues, kMaxValuesPerByte * std::filesystem::file_size(path));
-  if (pixels > bound / static_cast<uint64_t>(format.channels))
+  if (pixels > bound / static_cast<uint64_t>(header.channels))
     throw Error(Status::bad_data, path + ": the header says " + size + ", more than the file can hold.");
 }
 
-std::unique_ptr<OpenPicture> open_picture(const std::string& path) {
-  const auto head = read_file_head(path, kExrMagic.size());  // says plainly what is wrong with the path
-  auto input = std::ranges::equal(head, kExrMagic) ? open_exr(path) : open_other_format(path);
-  check_size(path, input->format());
+/// A small part of a large picture may be all that a file holds, but not of one that is larger by any measure.
+void check_frame(const std::string& path, const PictureHeader& header) {
+  constexpr uint64_t kAlwaysAllowed = uint64_t{1} << 26, kTimesStored = 64;
+  if (!header.frame) return;
+  const int width = header.frame->width, height = header.frame->height;
+  const uint64_t stored = static_cast<uint64_t>(header.width) * static_cast<uint64_t>(header.height);
+  const uint64_t whole = static_cast<uint64_t>(std::max(width, 0)) * static_cast<uint64_t>(std::max(height, 0));
+  const uint64_t bound =
+      std::min(kMaxValues / static_cast<uint64_t>(header.channels), std::max(kAlwaysAllowed, kTimesStored * stored));
+  if (width <= 0 || height <= 0 || whole > bound)
+    throw Error(Status::bad_data, path + ": its display window is " + std::to_string(width) + " x " +
+                                      std::to_string(height) + " pixels, its data window " +
+                                      std::to_string(header.width) + " x " + std::to_string(header.height) +
+                                      "; the file is damaged.");
+}
+
+PictureFormat format_of(const std::string& path) {
+  return picture_format_of(read_file_head(path, kPictureHeadBytes), path);  // says plainly what is wrong with the path
+}
+
+std::unique_ptr<OpenPicture> checked(const std::string& path, std::unique_ptr<OpenPicture> input) {
+  check_size(path, input->header());
+  check_frame(path, input->header());
   return input;
 }
 
-Picture picture_of(const OpenPicture::Format& format) { return {format.width, format.height, format.channels, {}}; }
+std::unique_ptr<OpenPicture> open_picture(const std::string& path, const std::string& layer) {
+  const PictureFormat format = format_of(path);
+  if (format == PictureFormat::exr) return checked(path, open_exr(path, layer));
+  if (!layer.empty()) {
+    throw Error(Status::unsupported,
+                path + ": has no layer '" + layer + "'; only OpenEXR files have layers, leave it out.");
+  }
+  return checked(path, format == PictureFormat::radiance ? open_radiance(path) : open_integers(path, format));
+}
+
+std::unique_ptr<OpenPicture> open_channels(const std::string& path) {
+  return format_of(path) == PictureFormat::exr ? checked(path, open_exr_channels(path)) : open_picture(path, "");
+}
+
+bool is_scaled(const PictureHeader& header) { return header.scale != std::array<float, 3>{1, 1, 1}; }
+
+const std::optional<ColorPrimaries>& primaries_of(const PictureHeader& header, const PictureOptions& options) {
+  return header.primaries ? header.primaries : options.primaries;
+}
+
+/// Header notes, and what Blender shows otherwise than the header says.
+std::vector<std::string> notes_of(const std::string& path, const PictureHeader& header, const PictureOptions& options) {
+  std::vector<std::string> notes;
+  for (const std::string& note : header.notes) notes.push_back(path + ": " + note);
+  if (!options.as_stored) return notes;
+  const auto ignored = [&](const std::string& what) {
+    notes.push_back(path + ": its header says that " + what +
+                    ". Blender does not follow that, and neither does Velour within Blender; save the picture as it "
+                    "should look.");
+  };
+  if (header.orientation != Orientation::normal) ignored("it is stored " + name_of(header.orientation));
+  if (is_scaled(header)) ignored("its values are to be divided by an exposure");
+  if (header.primaries && !is_rec709(*header.primaries)) ignored("its colors are not of Rec. 709");
+  if (header.frame) {
+    ignored("its pixels lie in a picture of " + std::to_string(header.frame->width) + " x " +
+            std::to_string(header.frame->height) + " pixels");
+  }
+  return notes;
+}
+
+/// The picture without its pixels.
+Picture picture_of(const std::string& path, const PictureHeader& header, const PictureOptions& options) {
+  Picture picture{header.width, header.height, header.channels, {}, notes_of(path, header, options)};
+  if (options.as_stored) return picture;
+  if (header.frame) {
+    picture.width = header.frame->width;
+    picture.height = header.frame->height;
+  }
+  if (swaps_sides(header.orientation)) std::swap(picture.width, picture.height);
+  return picture;
+}
 
 /// Files store the top row first.
 void flip_rows(Picture& picture) {
@@ -60,6 +132,59 @@ void make_linear(Picture& picture, int alpha_channel, const TransferCurve& curve
   for (size_t i = 0; i < picture.pixels.size(); ++i)
     if (static_cast<int>(i % static_cast<size_t>(picture.channels)) != alpha_channel)
       picture.pixels[i] = linear(picture.pixels[i]);
+}
+
+/// Negative values stay: of a difference, or of a color outside of the gamut.
+void replace_not_finite(Picture& picture, const std::string& path) {
+  ValueFaults faults = find_value_faults(picture.pixels);
+  if (faults.infinite + faults.no_number == 0) return;
+  std::ranges::transform(picture.pixels, picture.pixels.begin(), [&](float v) { return faults.finite(v); });
+  faults.negative = 0;
+  picture.notes = fault_sentences(faults, path);
+}
+
+void scale_colors(Picture& picture, const std::array<float, 3>& scale) {
+  const auto channels = static_cast<size_t>(picture.channels);
+  for (size_t i = 0; i < picture.pixels.size(); i += channels)
+    for (size_t c = 0; c < 3; ++c) picture.pixels[i + c] *= scale[c];
+}
+
+void apply_primaries(Picture& picture, const ColorPrimaries& primaries, const std::string& path) {
+  if (picture.channels < 3 || is_rec709(primaries)) return;
+  const auto matrix = to_rec709(primaries);
+  if (!matrix) {
+    throw Error(Status::bad_data, path + ": its chromaticities are no primaries of colors; correct or remove them.");
+  }
+  transform_colors(*matrix, static_cast<size_t>(picture.channels), picture.pixels);
+}
+
+/// `part`, row 0 at the bottom, in the picture that it belongs to; black where the file holds nothing.
+Picture placed(const Picture& part, const PictureFrame& frame) {
+  Picture whole{frame.width, frame.height, part.channels, {}};
+  const auto channels = static_cast<size_t>(part.channels);
+  whole.pixels.assign(static_cast<size_t>(frame.width) * static_cast<size_t>(frame.height) * channels, 0.0f);
+  const int64_t left = std::max<int64_t>(frame.x, 0);
+  const int64_t right = std::min<int64_t>(int64_t{frame.x} + part.width, frame.width);
+  const int64_t bottom = std::max<int64_t>(frame.y, 0);
+  const int64_t top = std::min<int64_t>(int64_t{frame.y} + part.height, frame.height);
+  for (int64_t y = bottom; y < top && left < right; ++y) {
+    const float* from = part.pixel(static_cast<int>(left - frame.x), static_cast<int>(y - frame.y));
+    const size_t to =
+        (static_cast<size_t>(y) * static_cast<size_t>(frame.width) + static_cast<size_t>(left)) * channels;
+    std::copy_n(from, static_cast<size_t>(right - left) * channels,
+                whole.pixels.begin() + static_cast<std::ptrdiff_t>(to));
+  }
+  return whole;
+}
+
+/// Pixels as stored, the top row first.
+Picture stored_pixels(OpenPicture& input) {
+  const PictureHeader& header = input.header();
+  Picture picture{header.width, header.height, header.channels, {}};
+  picture.pixels.resize(static_cast<size_t>(header.width) * static_cast<size_t>(header.height) *
+                        static_cast<size_t>(header.channels));
+  input.read(picture.pixels);
+  return picture;
 }
 
 void write_png(const std::string& path, const Picture& picture) {
@@ -93,21 +218,41 @@ std::string input_error(const std::string& path, std::string detail) {
   return path + ": cannot be read as a picture" + (detail.empty() ? "." : ": " + detail);
 }
 
-Picture read_picture_header(const std::string& path) { return picture_of(open_picture(path)->format()); }
-
-std::optional<std::string> read_picture_text(const std::string& path, const std::string& name) {
-  return open_picture(path)->text(name);
+Picture read_picture_header(const std::string& path, const PictureOptions& options) {
+  return picture_of(path, open_picture(path, options.layer)->header(), options);
 }
 
-Picture read_picture(const std::string& path, const TransferCurve& curve) {
-  const auto input = open_picture(path);
-  const OpenPicture::Format format = input->format();
-  Picture picture = picture_of(format);
-  picture.pixels.resize(static_cast<size_t>(format.width) * static_cast<size_t>(format.height) *
-                        static_cast<size_t>(format.channels));
-  input->read(picture.pixels);
+Picture read_picture_channels_header(const std::string& path) {
+  return picture_of(path, open_channels(path)->header(), {});
+}
+
+std::optional<std::string> read_picture_text(const std::string& path, const std::string& name) {
+  return open_channels(path)->text(name);
+}
+
+Picture read_picture(const std::string& path, const PictureOptions& options) {
+  const auto input = open_picture(path, options.layer);
+  const PictureHeader& header = input->header();
+  Picture picture = stored_pixels(*input);
+  if (header.integers) make_linear(picture, header.alpha_channel, options.curve);
+  if (!options.keeps_not_finite) replace_not_finite(picture, path);
+  std::vector<std::string> notes = notes_of(path, header, options);
+  notes.insert(notes.end(), picture.notes.begin(), picture.notes.end());
+  if (!options.as_stored) {
+    if (is_scaled(header)) scale_colors(picture, header.scale);
+    if (const auto& primaries = primaries_of(header, options)) apply_primaries(picture, *primaries, path);
+    picture = upright(std::move(picture), header.orientation);
+  }
   flip_rows(picture);
-  if (format.integers) make_linear(picture, format.alpha_channel, curve);
+  if (header.frame && !options.as_stored) picture = placed(picture, *header.frame);
+  picture.notes = std::move(notes);
+  return picture;
+}
+
+Picture read_picture_channels(const std::string& path) {
+  if (format_of(path) != PictureFormat::exr) return read_picture(path);
+  Picture picture = stored_pixels(*open_channels(path));
+  flip_rows(picture);
   return picture;
 }
 

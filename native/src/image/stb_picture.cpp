@@ -1,9 +1,10 @@
-// Pictures of the formats that a library without OpenImageIO knows beside OpenEXR's, by stb_image: PNG, JPEG, BMP,
-// Radiance HDR. For libraries that must carry all they need with them.
+// Pictures of 8 and 16 bits in a library without OpenImageIO, by stb_image: PNG, JPEG, BMP. For libraries that must
+// carry all they need with them.
 #include <algorithm>
 #include <cstring>
 
 #include "file/file.h"
+#include "image/exif_orientation.h"
 #include "image/open_picture.h"
 #include "job/error.h"
 
@@ -13,7 +14,6 @@
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_BMP
-#define STBI_ONLY_HDR
 #include <stb/stb_image.h>
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -61,24 +61,21 @@ using Values = std::unique_ptr<T, Free<T>>;
 
 class ByStb : public OpenPicture {
  public:
-  explicit ByStb(const std::string& path) : path_(path), bytes_(read_file(path)) {
+  ByStb(const std::string& path, PictureFormat format) : path_(path), bytes_(read_file(path)) {
     const auto* data = bytes_.data();
     const int size = static_cast<int>(std::min<size_t>(bytes_.size(), INT32_MAX));
-    if (stbi_info_from_memory(data, size, &format_.width, &format_.height, &format_.channels) == 0) {
-      throw Error(
-          Status::bad_data,
-          input_error(path, "this library reads EXR, PNG, JPEG, BMP and Radiance HDR files; is it one, and whole?"));
-    }
-    format_.integers = stbi_is_hdr_from_memory(data, size) == 0;
+    if (stbi_info_from_memory(data, size, &header_.width, &header_.height, &header_.channels) == 0)
+      throw Error(Status::bad_data, input_error(path, stbi_failure_reason()));
+    header_.integers = true;
+    header_.orientation = exif_orientation(format, path);
     sixteen_bits_ = stbi_is_16_bit_from_memory(data, size) != 0;
-    if (format_.integers && format_.channels % 2 == 0) format_.alpha_channel = format_.channels - 1;
+    if (header_.channels % 2 == 0) header_.alpha_channel = header_.channels - 1;
   }
 
-  Format format() const override { return format_; }
+  const PictureHeader& header() const override { return header_; }
   std::optional<std::string> text(const std::string&) const override { return std::nullopt; }
 
   void read(std::span<float> values) override {
-    if (!format_.integers) return copy(load<float>(stbi_loadf_from_callbacks), 1.0f, values);
     if (sixteen_bits_) return copy(load<stbi_us>(stbi_load_16_from_callbacks), 65535.0f, values);
     copy(load<stbi_uc>(stbi_load_from_callbacks), 255.0f, values);
   }
@@ -88,9 +85,9 @@ class ByStb : public OpenPicture {
   Values<T> load(Load* function) const {
     Source source{bytes_};
     int width = 0, height = 0, channels = 0;
-    Values<T> values(function(&Source::kCallbacks, &source, &width, &height, &channels, format_.channels));
+    Values<T> values(function(&Source::kCallbacks, &source, &width, &height, &channels, header_.channels));
     if (!values) throw Error(Status::bad_data, input_error(path_, stbi_failure_reason()));
-    if (source.ended_early || width != format_.width || height != format_.height)
+    if (source.ended_early || width != header_.width || height != header_.height)
       throw Error(Status::bad_data, input_error(path_, "it ends early."));
     return values;
   }
@@ -102,7 +99,7 @@ class ByStb : public OpenPicture {
 
   std::string path_;
   std::vector<uint8_t> bytes_;
-  Format format_;
+  PictureHeader header_;
   bool sixteen_bits_ = false;
 };
 
@@ -114,7 +111,9 @@ void append(void* to, void* data, int size) {
 
 }  // namespace
 
-std::unique_ptr<OpenPicture> open_other_format(const std::string& path) { return std::make_unique<ByStb>(path); }
+std::unique_ptr<OpenPicture> open_integers(const std::string& path, PictureFormat format) {
+  return std::make_unique<ByStb>(path, format);
+}
 
 std::vector<uint8_t> png_of(const std::string& path, int width, int height, int channels,
                             std::span<const uint8_t> values) {

@@ -20,6 +20,15 @@ void in_one_arena(int threads, const Work& work) {
   oneapi::tbb::task_arena(arena_concurrency(threads)).execute(work);
 }
 
+/// Calls `work(i)` for i in [0, count) on the threads of the caller's arena. For tables that are made where they are
+/// needed, which may be inside of another loop: all pieces are done or an exception comes out, even if the loop around
+/// it is cancelled, and the waiting thread takes no task from outside, so that the caller may hold a lock.
+template <class Work>
+void parallel_fill(size_t count, const Work& work) {
+  oneapi::tbb::task_group_context context(oneapi::tbb::task_group_context::isolated);
+  oneapi::tbb::this_task_arena::isolate([&] { oneapi::tbb::parallel_for(size_t{0}, count, work, context); });
+}
+
 /// Calls `work(i)` for i in [0, count) on `threads` threads (0: all), and stops at a cancel. An exception of any piece
 /// ends the others and comes out of here. Pieces may have pieces of their own: all share the same threads, and a thread
 /// that waits for its own may do any other in the meantime, so a piece that has some must hold no lock.

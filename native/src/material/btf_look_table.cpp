@@ -1,11 +1,10 @@
 #include "material/btf_look_table.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
+
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -75,13 +74,7 @@ BtfLookTable::BtfLookTable(const Vec2& texels, const Ask& ask) {
   };
   for (uint32_t level = 0; level < levels; ++level) {
     const uint32_t cells = cells_ >> level;
-    // Isolated: while it waits, the thread takes no task that might hold what this one's caller does; and a render
-    // around it that is cancelled leaves no cell out.
-    tbb::task_group_context context(tbb::task_group_context::isolated);
-    tbb::this_task_arena::isolate([&] {
-      tbb::parallel_for(
-          size_t{0}, size_t{cells} * cells, [&](size_t cell) { fill(level, cells, cell); }, context);
-    });
+    parallel_fill(size_t{cells} * cells, [&](size_t cell) { fill(level, cells, cell); });
   }
 }
 

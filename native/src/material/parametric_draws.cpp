@@ -46,10 +46,10 @@ void add_draws_simd(const float* table, const NodeWeights& nodes, WarpedMixture&
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
+#include "job/parallel.h"
 #include "material/draw_fit.h"
 #include "material/idle_lobes.h"
 #include "sphere/frame.h"
@@ -125,7 +125,7 @@ ParametricDraws::ParametricDraws(const ParametricValues& values)
       rows_(static_cast<size_t>(nodes_.count() * kColumns * padded_)),
       proposals_(static_cast<size_t>(nodes_.count())),
       matter_(static_cast<size_t>(nodes_.count())) {
-  tbb::parallel_for(0, nodes_.count(), [&](int node) { fill_node(values, node); });
+  parallel_fill(proposals_.size(), [&](size_t node) { fill_node(values, static_cast<int>(node)); });
 }
 
 void ParametricDraws::fill_node(const ParametricValues& values, int node) {

@@ -1,12 +1,11 @@
 #include "material/principled_table.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
 #include <mutex>
+
+#include "job/parallel.h"
 
 namespace velour {
 namespace {
@@ -32,10 +31,7 @@ PrincipledTable::PrincipledTable(const PrincipledParameters& parameters) : nodes
     p.roughness = roughness_at(static_cast<float>(i));
     nodes_[i] = first.with(p);
   };
-  // Isolated: while it waits, the thread takes no task that might ask for a table, too; and a render around it that is
-  // cancelled leaves no node out.
-  tbb::task_group_context context(tbb::task_group_context::isolated);
-  tbb::this_task_arena::isolate([&] { tbb::parallel_for(size_t{0}, nodes_.size(), make, context); });
+  parallel_fill(nodes_.size(), make);
 }
 
 std::shared_ptr<const PrincipledTable> PrincipledTable::shared(const PrincipledParameters& p) {

@@ -1,11 +1,10 @@
 #include "material/table_sampler.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <vector>
 
 #include "brdf/fast_atan2.h"
+#include "job/parallel.h"
 #include "material/defensive_share.h"
 #include "material/half_vector_table.h"
 #include "sphere/discrete_choice.h"
@@ -91,10 +90,11 @@ struct TableSampler::Tables {
 TableSampler::TableSampler(const Material& material) {
   auto tables = std::make_unique<Tables>();
   tables->isotropic = material.isotropic();
-  const int turns = tables->azimuth_views(), count = tables->polar_views() * turns;
-  tables->views.resize(static_cast<size_t>(count));
-  tbb::parallel_for(0, count, [&](int i) {
-    tables->views[static_cast<size_t>(i)].tabulate(material, tables->view(i / turns, i % turns));
+  const int turns = tables->azimuth_views();
+  tables->views.resize(static_cast<size_t>(tables->polar_views() * turns));
+  parallel_fill(tables->views.size(), [&](size_t i) {
+    const int view = static_cast<int>(i);
+    tables->views[i].tabulate(material, tables->view(view / turns, view % turns));
   });
   tables_ = std::move(tables);
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "image/half_image.h"
+#include "image/value_faults.h"
 #include "job/error.h"
 #include "material/footprint_taps.h"
 
@@ -18,8 +19,12 @@ int floor_of(float v) {
   return whole - (v < static_cast<float>(whole) ? 1 : 0);
 }
 
-bool finite(float v) { return std::isfinite(v); }
-bool finite(const Rgb& v) { return std::isfinite(v.r + v.g + v.b); }
+float usable(float v, const ValueFaults& faults) { return faults.finite(v); }
+/// A color with a channel that is no number is none.
+Rgb usable(const Rgb& c, const ValueFaults& faults) {
+  if (std::isnan(c.r + c.g + c.b)) return Rgb(0.0f);
+  return {faults.finite(c.r), faults.finite(c.g), faults.finite(c.b)};
+}
 
 }  // namespace
 
@@ -29,9 +34,9 @@ Texture<T>::Texture(int width, int height, std::vector<T> texels, const TextureO
     throw Error(Status::invalid_argument, "A texture of " + std::to_string(width) + " x " + std::to_string(height) +
                                               " has " + std::to_string(texels.size()) + " texels.");
   }
-  for (T& t : texels) {
-    if (!finite(t)) t = T(0.0f);
-  }
+  const std::span<float> values(reinterpret_cast<float*>(texels.data()), texels.size() * sizeof(T) / sizeof(float));
+  const ValueFaults faults = find_value_faults(values);
+  for (T& t : texels) t = usable(t, faults);
   levels_.push_back({width, height, std::move(texels)});
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half(levels_.back()));
 }

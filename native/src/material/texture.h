@@ -25,7 +25,7 @@ struct TextureOptions {
 template <class T>
 class Texture {
  public:
-  /// `texels`: width x height, row 0 at the bottom; values that are not finite count as 0. Throws
+  /// `texels`: width x height, row 0 at the bottom; NaN counts as 0, infinity as the largest finite value. Throws
   /// Error(invalid_argument) when there are none, or not that many.
   Texture(int width, int height, std::vector<T> texels, const TextureOptions& options);
 

@@ -1,10 +1,9 @@
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "brdf/parametric_limits.h"
 #include "image/tensor.h"
+#include "job/parallel.h"
 #include "model/roughened_model.h"
 #include "srbf/lobe_light.h"
 #include "srbf/widened_lobe.h"
@@ -87,7 +86,7 @@ double log_of(double light) { return std::log(std::max(light, kMinLight)); }
 void keep_light_of_lobes(const ParametricBrdf& brdf, ParametricBrdf& rougher) {
   const ViewSpline spline = brdf.spline();
   std::vector<std::vector<double>> change(static_cast<size_t>(spline.node_count()));
-  tbb::parallel_for(size_t{0}, change.size(), [&](size_t node) {
+  parallel_fill(change.size(), [&](size_t node) {
     const Vec3d wv = direction_of(spline.view_of(static_cast<int>(node)));
     const auto before = lights_of(brdf, wv), after = lights_of(rougher, wv);
     for (size_t j = 0; j < before.size(); ++j) change[node].push_back(log_of(before[j].x) - log_of(after[j].x));
@@ -128,7 +127,7 @@ std::vector<Vec3d> claimed_views(const ParametricBrdf& brdf) {
 std::vector<Claim> claims_of(const ParametricBrdf& brdf, const ParametricBrdf& rougher) {
   const std::vector<Vec3d> views = claimed_views(brdf);
   std::vector<Claim> claims(views.size());
-  tbb::parallel_for(size_t{0}, views.size(), [&](size_t i) {
+  parallel_fill(views.size(), [&](size_t i) {
     Vec3d before(0), after(0);
     for (const Vec3d& light : lights_of(brdf, views[i])) before += light;
     for (const Vec3d& light : lights_of(rougher, views[i])) after += light;

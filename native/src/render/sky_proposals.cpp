@@ -1,10 +1,9 @@
 #include "render/sky_proposals.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "job/parallel.h"
 #include "sphere/octahedral.h"
 #include "srbf/kernel.h"
 
@@ -45,7 +44,7 @@ SkyProposals::SkyProposals(const SkyMixture& sky, double misfit) : blurs_edges_(
   set_sun(lobes);
   const LobeTree tree(lobes);
   if (tree.empty()) return;
-  tbb::parallel_for(size_t{0}, kLists, [&](size_t list) { fill_list(list, tree); });
+  parallel_fill(kLists, [&](size_t list) { fill_list(list, tree); });
 }
 
 /// Takes it out of `sky`, but never the last lobe: something must be left to propose.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "image/picture.h"
 #include "job/error.h"
 #include "scene/equirectangular.h"
 #include "sphere/warp.h"
@@ -17,7 +16,7 @@ constexpr float kUniformPdf = 0.25f / kPi;
 void check(const EquirectangularPixels& p) {
   if (p.width <= 0 || p.height <= 0) fail("The world's image has no pixels.");
   if (p.width > 65535 || p.height > 65535) fail("The world's image is more than 65535 pixels wide or high.");
-  if (p.channels != 1 && p.channels != 3 && p.channels != 4) fail("The world's image needs 1, 3 or 4 channels.");
+  if (p.channels < 1 || p.channels > 4) fail("The world's image needs 1 to 4 channels.");
   const size_t count = static_cast<size_t>(p.width) * static_cast<size_t>(p.height) * static_cast<size_t>(p.channels);
   if (p.values.size() != count) fail("The world's image has another number of pixels than its size says.");
 }
@@ -64,9 +63,22 @@ Environment Environment::placed(float strength, const Mat3& world_to_image) cons
   return e;
 }
 
-Environment Environment::load(const std::string& path, float strength, const Mat3& world_to_image) {
-  const Picture picture = read_picture(path);
-  return image({picture.width, picture.height, picture.channels, picture.pixels, true}, strength, world_to_image);
+Environment Environment::load(const std::string& path, const PictureOptions& options, float strength,
+                              const Mat3& world_to_image) {
+  const Picture picture = read_picture(path, options);
+  Environment e =
+      image({picture.width, picture.height, picture.channels, picture.pixels, true}, strength, world_to_image);
+  e.notes_ = picture.notes;
+  return e;
+}
+
+std::vector<std::string> Environment::notes() const {
+  std::vector<std::string> notes = notes_;
+  if (image_) {
+    const auto replaced = fault_sentences(image_->faults(), "The world's image");
+    notes.insert(notes.end(), replaced.begin(), replaced.end());
+  }
+  return notes;
 }
 
 void Environment::look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const {

@@ -4,14 +4,16 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "image/picture.h"
 #include "sphere/direction_batch.h"
 
 namespace velour {
 
 class EquirectangularImage;
 
-/// Borrowed pixels, 3 or 4 channels interleaved (the 4th is not used) or 1 (grey).
+/// Borrowed pixels: 3 or 4 channels interleaved (the 4th is not used), or 1 or 2 (gray; the 2nd is not used).
 struct EquirectangularPixels {
   int width = 0, height = 0, channels = 0;
   std::span<const float> values;
@@ -35,10 +37,12 @@ class Environment {
   Environment() = default;
   /// Negative and non-finite channels count as 0.
   static Environment constant(const Rgb& radiance);
-  /// Throws Error(bad_data) on an empty image, or a placement that is none. Negative and non-finite pixels count as 0.
+  /// Throws Error(bad_data) on an empty image, or a placement that is none. Negative values and NaN count as 0,
+  /// infinity as the largest finite value (ValueFaults).
   static Environment image(const EquirectangularPixels& pixels, float strength, const Mat3& world_to_image);
-  /// The same from a file that `image/` reads.
-  static Environment load(const std::string& path, float strength, const Mat3& world_to_image);
+  /// The same from a file that read_picture() reads.
+  static Environment load(const std::string& path, const PictureOptions& options, float strength,
+                          const Mat3& world_to_image);
   /// The same image, which is shared, placed otherwise: costs nothing. Throws Error(invalid_argument) where there is
   /// none.
   Environment placed(float strength, const Mat3& world_to_image) const;
@@ -55,6 +59,8 @@ class Environment {
   /// Over the sphere.
   float mean_luminance() const { return mean_luminance_; }
   uint64_t bytes() const;
+  /// Sentences: what of the image was left out or replaced.
+  std::vector<std::string> notes() const;
   /// Null for a constant. As it is by itself, not as it is placed.
   const EquirectangularImage* equirectangular() const { return image_.get(); }
   const EnvironmentPlacement& placement() const { return placement_; }
@@ -64,6 +70,7 @@ class Environment {
   EnvironmentPlacement placement_;
   Rgb constant_{0.0f};
   float mean_luminance_ = 0.0f;
+  std::vector<std::string> notes_;  // of the file
 };
 
 }  // namespace velour

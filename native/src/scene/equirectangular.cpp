@@ -7,14 +7,12 @@
 #include "scene/equirectangular_draws.h"
 
 namespace velour {
-namespace {
-
-float clean(float value) { return std::isfinite(value) ? std::max(value, 0.0f) : 0.0f; }
-
-}  // namespace
 
 EquirectangularImage::EquirectangularImage(const EquirectangularPixels& pixels)
-    : width_(pixels.width), height_(pixels.height), stride_(static_cast<size_t>(pixels.width) + 2) {
+    : width_(pixels.width),
+      height_(pixels.height),
+      stride_(static_cast<size_t>(pixels.width) + 2),
+      faults_(find_value_faults(pixels.values, static_cast<size_t>(pixels.channels), pixels.channels >= 3 ? 3 : 1)) {
   const size_t w = static_cast<size_t>(width_), h = static_cast<size_t>(height_);
   texels_.resize(stride_ * h);
   row_cdf_.resize(h * (w + 1));
@@ -35,7 +33,8 @@ void EquirectangularImage::store_row(const EquirectangularPixels& pixels, int y)
   EnvironmentTexel* out = &texels_[static_cast<size_t>(y) * stride_];
   const float sin_theta = static_cast<float>(std::sin(kPiD * (y + 0.5) / height_));
   for (int x = 0; x < width_; ++x, in += pixels.channels) {
-    const Rgb c(clean(in[0]), clean(in[g]), clean(in[b]));
+    const auto light = [&](float v) { return std::max(faults_.finite(v), 0.0f); };
+    const Rgb c(light(in[0]), light(in[g]), light(in[b]));
     out[x + 1] = {c.r, c.g, c.b, luminance(c) * sin_theta};
   }
   out[0] = out[width_];

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "image/value_faults.h"
 #include "scene/environment.h"
 #include "scene/piecewise_linear.h"
 
@@ -28,6 +29,8 @@ class EquirectangularImage {
   void sample(const EnvironmentPlacement& placement, std::span<const Vec2> u, DirectionBatch& world) const;
   float mean_luminance() const { return mean_luminance_; }
   uint64_t bytes() const;
+  /// Of the pixels that were given.
+  const ValueFaults& faults() const { return faults_; }
 
   // What the SIMD kernels read.
   int width() const { return width_; }
@@ -44,6 +47,7 @@ class EquirectangularImage {
 
   int width_, height_;
   size_t stride_;  // texels a stored row: W + 2, the last and the first column repeated on the other side
+  ValueFaults faults_;
   std::vector<EnvironmentTexel> texels_;
   float mean_luminance_ = 0;
   float density_scale_ = 0;  // pdf = node * density_scale_ / sin(theta)

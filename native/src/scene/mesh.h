@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/border_edges.h"
@@ -84,6 +86,9 @@ class Mesh {
   /// has_tangents(). Turned as normals are, they turn what the map says.
   Mat3 relief(uint32_t triangle, const Vec2& uv) const;
   uint64_t bytes() const;
+  /// Sentences with the file's name: what of it was left out or replaced.
+  const std::vector<std::string>& notes() const { return notes_; }
+  void add_note(std::string sentence) { notes_.push_back(std::move(sentence)); }
 
  private:
   /// Copies what belongs to triangles [begin, end) of this mesh; `kept`: their numbers in `arrays`.
@@ -110,6 +115,7 @@ class Mesh {
   std::vector<CornerTangent> tangents_;  // 3 a triangle, or none
   std::vector<BorderEdge> sides_;        // of triangles of the top
   uint32_t dropped_ = 0;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace velour

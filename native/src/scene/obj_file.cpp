@@ -1,83 +1,302 @@
+// Read here and not by tinyobjloader, which names no line of a fault, reads "1,5" as 1, knows no continued lines, and
+// cuts polygons into other triangles where the origin is elsewhere.
 #include "scene/obj_file.h"
 
-#include <fstream>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
 
-#define TINYOBJLOADER_IMPLEMENTATION
-#include <tiny_obj_loader.h>
-
+#include "file/file.h"
 #include "job/error.h"
+#include "scene/polygon_triangles.h"
 
 namespace velour {
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  throw Error(Status::bad_data, path + ": " + why);
-}
+constexpr uint32_t kNone = UINT32_MAX;
 
-/// The file's index `index` of `field`, checked against what the file holds.
-size_t checked(const std::string& path, int index, size_t count, const char* field) {
-  if (index < 0 || static_cast<size_t>(index) >= count) {
-    refuse(path, "a face names " + std::string(field) + " " + std::to_string(static_cast<long long>(index) + 1) +
-                     " of " + std::to_string(count) + ".");
-  }
-  return static_cast<size_t>(index);
-}
-
-struct Corners {
-  std::vector<Vec3> positions, normals;
-  std::vector<Vec2> uvs;
-  std::vector<glm::uvec3> triangles;
+/// A corner of a face: places in the file's lists, from 0; kNone: not named.
+struct ObjCorner {
+  uint32_t position, uv, normal;
 };
 
-void add_corner(const std::string& path, const tinyobj::attrib_t& file, const tinyobj::index_t& index, Corners& out) {
-  if (index.normal_index >= 0) {
-    const size_t n = 3 * checked(path, index.normal_index, file.normals.size() / 3, "normal");
-    out.normals.push_back({file.normals[n], file.normals[n + 1], file.normals[n + 2]});
-  }
-  if (index.texcoord_index >= 0) {
-    const size_t t = 2 * checked(path, index.texcoord_index, file.texcoords.size() / 2, "texture coordinate");
-    out.uvs.push_back({file.texcoords[t], file.texcoords[t + 1]});
-  }
-}
+struct ObjContent {
+  std::vector<Vec3> positions, normals;
+  std::vector<Vec2> uvs;
+  std::vector<ObjCorner> corners;
+  struct Face {
+    uint32_t first, count;  // of `corners`
+    bool smooth;
+  };
+  std::vector<Face> faces;
+  size_t too_small = 0;  // faces of fewer than three corners
+};
 
-Corners gather(const std::string& path, const tinyobj::attrib_t& file, const std::vector<tinyobj::shape_t>& shapes) {
-  Corners out;
-  for (size_t i = 0; i + 2 < file.vertices.size(); i += 3) {
-    out.positions.push_back({file.vertices[i], file.vertices[i + 1], file.vertices[i + 2]});
+/// Goes through the lines of a file, with backslashes, comments and any kind of line end.
+class ObjReader {
+ public:
+  ObjReader(std::span<const uint8_t> bytes, const std::string& path)
+      : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()), path_(path) {
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    if (text_.starts_with(kMark)) at_ = kMark.size();
   }
-  for (const tinyobj::shape_t& shape : shapes) {
-    const auto& indices = shape.mesh.indices;
-    for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-      glm::uvec3 triangle;
-      for (size_t k = 0; k < 3; ++k) {
-        const size_t vertex = checked(path, indices[i + k].vertex_index, out.positions.size(), "vertex");
-        triangle[static_cast<int>(k)] = static_cast<uint32_t>(vertex);
-        add_corner(path, file, indices[i + k], out);
+
+  ObjContent read() {
+    while (at_ < text_.size()) {
+      next_line();
+      const std::string_view keyword = word();
+      if (keyword == "v")
+        content_.positions.push_back(vector("v"));
+      else if (keyword == "vn")
+        content_.normals.push_back(vector("vn"));
+      else if (keyword == "vt")
+        read_uv();
+      else if (keyword == "f")
+        read_face();
+      else if (keyword == "s")
+        read_smoothing();
+    }
+    check_indices();
+    return std::move(content_);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw Error(Status::bad_data, path_ + ": line " + std::to_string(line_number_) + ": " + why);
+  }
+
+  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+  static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+
+  /// Steps over a line end of one or two characters.
+  void skip_line_end() {
+    if (at_ < text_.size() && text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n') ++at_;
+    if (at_ < text_.size()) ++at_;
+    ++lines_read_;
+  }
+
+  /// Sets `line_` to the next line; lines that end in a backslash go on in the one after.
+  void next_line() {
+    line_number_ = lines_read_ + 1;
+    const size_t begin = at_;
+    while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
+    line_ = text_.substr(begin, at_ - begin);
+    if (!continues(line_)) return end_line();
+    joined_.assign(line_.substr(0, line_.size() - 1));
+    bool goes_on = true;
+    while (goes_on && at_ < text_.size()) {
+      skip_line_end();
+      const size_t more = at_;
+      while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
+      const std::string_view part = text_.substr(more, at_ - more);
+      goes_on = continues(part);
+      joined_ += ' ';
+      joined_ += goes_on ? part.substr(0, part.size() - 1) : part;
+    }
+    line_ = joined_;
+    end_line();
+  }
+
+  /// A comment may end in the backslash of a folder's name.
+  static bool continues(std::string_view line) {
+    return line.ends_with('\\') && line.find('#') == std::string_view::npos;
+  }
+
+  void end_line() {
+    skip_line_end();
+    line_ = line_.substr(0, line_.find('#'));
+  }
+
+  /// The next word of the line, which is consumed; empty: there is none.
+  std::string_view word() {
+    size_t begin = 0;
+    while (begin < line_.size() && is_space(line_[begin])) ++begin;
+    size_t end = begin;
+    while (end < line_.size() && !is_space(line_[end])) ++end;
+    const std::string_view found = line_.substr(begin, end - begin);
+    line_.remove_prefix(end);
+    return found;
+  }
+
+  float number(const char* keyword) {
+    const std::string_view found = word();
+    if (found.empty()) refuse("'" + std::string(keyword) + "' has too few numbers.");
+    const std::string_view digits = found.starts_with('+') ? found.substr(1) : found;
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error == std::errc::result_out_of_range) return static_cast<float>(value);
+    if (error != std::errc() || end != digits.data() + digits.size()) {
+      const bool comma = found.find(',') != std::string_view::npos;
+      refuse("'" + std::string(found.substr(0, 40)) + "' is not a number" +
+             (comma ? "; write decimals with a point." : "."));
+    }
+    return static_cast<float>(value);
+  }
+
+  Vec3 vector(const char* keyword) {
+    const float x = number(keyword), y = number(keyword), z = number(keyword);
+    return {x, y, z};
+  }
+
+  void read_uv() {
+    const float u = number("vt");
+    const std::string_view before = line_;
+    const bool has_v = !word().empty();
+    line_ = before;
+    content_.uvs.push_back({u, has_v ? number("vt") : 0.0f});
+  }
+
+  void read_smoothing() {
+    const std::string_view group = word();
+    smooth_ = !group.empty() && group != "off" && group != "0";
+  }
+
+  /// A place in a list of `count` so far, from an index of the file: from 1, or from the end if negative.
+  uint32_t place(std::string_view text, size_t count, const char* what) const {
+    int64_t index = 0;
+    const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+    if (error != std::errc() || end != digits.data() + digits.size() || index == 0 || index > INT32_MAX)
+      refuse("'" + std::string(text.substr(0, 40)) + "' is no index of a " + what + ".");
+    if (index > 0) return static_cast<uint32_t>(index - 1);
+    if (-index > static_cast<int64_t>(count))
+      refuse("a face names " + std::string(what) + " " + std::to_string(index) + ", but there are " +
+             std::to_string(count) + " so far.");
+    return static_cast<uint32_t>(static_cast<int64_t>(count) + index);
+  }
+
+  ObjCorner corner(std::string_view text) const {
+    const size_t first = std::min(text.find('/'), text.size()),
+                 second = std::min(text.find('/', first + 1), text.size());
+    const auto part = [&](size_t begin, size_t end) {
+      return begin < end ? text.substr(begin, end - begin) : std::string_view();
+    };
+    const std::string_view uv = part(first + 1, second), normal = part(second + 1, text.size());
+    return {place(text.substr(0, first), content_.positions.size(), "vertex"),
+            uv.empty() ? kNone : place(uv, content_.uvs.size(), "texture coordinate"),
+            normal.empty() ? kNone : place(normal, content_.normals.size(), "normal")};
+  }
+
+  void read_face() {
+    const auto first = static_cast<uint32_t>(content_.corners.size());
+    for (std::string_view text = word(); !text.empty(); text = word()) content_.corners.push_back(corner(text));
+    const size_t count = content_.corners.size() - first;
+    if (count > PolygonTriangles::kMaxCorners)
+      refuse("a face has " + std::to_string(count) + " corners, more than " +
+             std::to_string(PolygonTriangles::kMaxCorners) + "; cut it into smaller ones.");
+    if (count < 3) {
+      ++content_.too_small;
+      content_.corners.resize(first);
+      return;
+    }
+    face_lines_.push_back(line_number_);
+    content_.faces.push_back({first, static_cast<uint32_t>(count), smooth_});
+  }
+
+  /// Faces may name what comes later in the file.
+  void check_indices() {
+    const auto check = [&](uint32_t place, size_t count, const char* what) {
+      if (place != kNone && place >= count)
+        refuse("a face names " + std::string(what) + " " + std::to_string(uint64_t{place} + 1) + " of " +
+               std::to_string(count) + ".");
+    };
+    for (size_t f = 0; f < content_.faces.size(); ++f) {
+      line_number_ = face_lines_[f];
+      const ObjContent::Face& face = content_.faces[f];
+      for (const ObjCorner& c : std::span(content_.corners).subspan(face.first, face.count)) {
+        check(c.position, content_.positions.size(), "vertex");
+        check(c.uv, content_.uvs.size(), "texture coordinate");
+        check(c.normal, content_.normals.size(), "normal");
       }
-      out.triangles.push_back(triangle);
     }
   }
-  // All corners or none: a file that names only some normals gets smooth ones.
-  if (out.normals.size() != 3 * out.triangles.size()) out.normals.clear();
-  if (out.uvs.size() != 3 * out.triangles.size()) out.uvs.clear();
-  return out;
+
+  std::string_view text_, line_;
+  std::string joined_;  // a line of several, which `line_` is a part of
+  const std::string& path_;
+  size_t at_ = 0;
+  uint64_t lines_read_ = 0, line_number_ = 0;
+  bool smooth_ = false;  // smoothing groups are off unless named (Wavefront, "Object Files", B1)
+  ObjContent content_;
+  std::vector<uint64_t> face_lines_;
+};
+
+/// What a Mesh is built from, beside the positions.
+struct ObjArrays {
+  std::vector<glm::uvec3> triangles;  // of corners
+  std::vector<uint32_t> corner_vertices;
+  std::vector<Vec3> corner_normals;
+  std::vector<Vec2> corner_uvs;
+  std::vector<uint8_t> smooth;
+  size_t without_normals = 0, without_uvs = 0;  // faces
+
+  explicit ObjArrays(const ObjContent& content) {
+    for (const ObjCorner& corner : content.corners) corner_vertices.push_back(corner.position);
+    for (const ObjContent::Face& face : content.faces) {
+      cut(content, face);
+      add_attributes(content, std::span(content.corners).subspan(face.first, face.count));
+    }
+    if (without_normals == content.faces.size()) corner_normals.clear();
+    if (without_uvs == content.faces.size()) corner_uvs.clear();
+  }
+
+ private:
+  void cut(const ObjContent& content, const ObjContent::Face& face) {
+    polygon_.clear();
+    for (uint32_t i = 0; i < face.count; ++i) polygon_.push_back(content.positions[corner_vertices[face.first + i]]);
+    for (const glm::uvec3& triangle : cutter_.cut(polygon_)) {
+      triangles.push_back(triangle + glm::uvec3(face.first));
+      smooth.push_back(face.smooth);
+    }
+  }
+
+  /// A face that does not name all of them has none: zero normals stand for the triangle's own.
+  void add_attributes(const ObjContent& content, std::span<const ObjCorner> face) {
+    const bool normals = std::ranges::none_of(face, [](const ObjCorner& c) { return c.normal == kNone; });
+    const bool uvs = std::ranges::none_of(face, [](const ObjCorner& c) { return c.uv == kNone; });
+    without_normals += !normals;
+    without_uvs += !uvs;
+    for (const ObjCorner& corner : face) {
+      corner_normals.push_back(normals ? content.normals[corner.normal] : Vec3(0.0f));
+      corner_uvs.push_back(uvs ? content.uvs[corner.uv] : Vec2(0.0f));
+    }
+  }
+
+  PolygonTriangles cutter_;
+  std::vector<Vec3> polygon_;
+};
+
+void add_notes(const ObjContent& content, const ObjArrays& arrays, const std::string& path, Mesh& mesh) {
+  const size_t faces = content.faces.size();
+  const auto note = [&](size_t count, const std::string& what) {
+    if (count > 0 && count < faces) {
+      mesh.add_note(path + ": " + std::to_string(count) + " of " + std::to_string(faces) + " faces have " + what + ".");
+    }
+  };
+  note(arrays.without_normals, "no normals and are flat");
+  note(arrays.without_uvs, "no texture coordinates; (0, 0) is used there");
+  if (content.too_small > 0)
+    mesh.add_note(path + ": " + std::to_string(content.too_small) +
+                  " faces have fewer than 3 corners and are left out.");
 }
 
 }  // namespace
 
 Mesh read_obj(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) throw Error(Status::io, path + ": cannot be opened.");
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, problem;
-  const bool parsed =
-      tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &problem, &stream, nullptr, true, false);
-  if (!parsed) refuse(path, problem.empty() ? "is not a Wavefront OBJ file." : problem);
-  const Corners corners = gather(path, attributes, shapes);
-  if (corners.triangles.empty()) refuse(path, "holds no faces.");
-  return Mesh({corners.positions, corners.triangles, corners.normals, corners.uvs, {}, {}});
+  const std::vector<uint8_t> bytes = read_file(path);
+  const ObjContent content = ObjReader(bytes, path).read();
+  if (content.faces.empty()) throw Error(Status::bad_data, path + ": holds no faces.");
+  const ObjArrays arrays(content);
+  Mesh mesh({.positions = content.positions,
+             .triangles = arrays.triangles,
+             .corner_normals = arrays.corner_normals,
+             .corner_uvs = arrays.corner_uvs,
+             .smooth = arrays.smooth,
+             .corner_vertices = arrays.corner_vertices});
+  add_notes(content, arrays, path, mesh);
+  return mesh;
 }
 
 }  // namespace velour

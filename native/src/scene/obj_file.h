@@ -7,8 +7,10 @@
 
 namespace velour {
 
-/// All shapes of the file as one mesh; polygons are cut into triangles, material libraries are not read.
-/// Throws Error with the file's name.
+/// All shapes of the file as one mesh. Polygons are cut into triangles; each face keeps the normals and texture
+/// coordinates that it names. A face without normals is smooth in a smoothing group of a file that has no normals, else
+/// flat, as in Blender's importer. Materials, curves and points are not read. Notes: faces that lack what others have.
+/// Throws Error(io, bad_data) with the file's name and the line at fault.
 Mesh read_obj(const std::string& path);
 
 }  // namespace velour

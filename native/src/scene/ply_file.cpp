@@ -10,6 +10,7 @@
 
 #include "file/file.h"
 #include "job/error.h"
+#include "scene/polygon_triangles.h"
 
 namespace velour {
 namespace {
@@ -58,13 +59,14 @@ class Reader {
 
   [[noreturn]] void refuse(const std::string& why) const { throw Error(Status::bad_data, path_ + ": " + why); }
 
-  /// A line of the header, without its end.
+  /// A line of the header, without its end: "\n", "\r\n" or "\r", of all lines that of the first.
   std::string line() {
     const auto rest = bytes_.subspan(at_);
-    const auto end = std::find(rest.begin(), rest.begin() + std::min<std::ptrdiff_t>(kLongestLine, std::ssize(rest)),
-                               static_cast<uint8_t>('\n'));
-    if (end == rest.end() || *end != '\n') refuse("the header of the PLY file does not end.");
-    std::string text(rest.begin(), end);
+    const auto longest = rest.first(std::min<size_t>(kMaxLine, rest.size()));
+    if (at_ == 0) find_line_end(longest);
+    const auto end = std::find(longest.begin(), longest.end(), line_end_);
+    if (end == longest.end()) refuse("the header of the PLY file does not end.");
+    std::string text(longest.begin(), end);
     at_ += text.size() + 1;
     if (!text.empty() && text.back() == '\r') text.pop_back();
     return text;
@@ -80,7 +82,14 @@ class Reader {
   }
 
  private:
-  static constexpr std::ptrdiff_t kLongestLine = 4096;
+  static constexpr size_t kMaxLine = 4096;
+
+  /// Binary numbers may begin with the byte of "\n", so that of a file with "\r" it is not part of a line end.
+  void find_line_end(std::span<const uint8_t> head) {
+    const auto found = std::ranges::find_if(head, [](uint8_t c) { return c == '\n' || c == '\r'; });
+    const bool lone = found != head.end() && *found == '\r' && (found + 1 == head.end() || found[1] != '\n');
+    line_end_ = lone ? '\r' : '\n';
+  }
 
   static bool is_space(uint8_t c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
@@ -90,7 +99,7 @@ class Reader {
     const auto* end = reinterpret_cast<const char*>(bytes_.data()) + bytes_.size();
     if (begin == end) refuse("the PLY file ends before its last number.");
     double value = 0;
-    const auto [next, problem] = std::from_chars(begin, end, value);
+    const auto [next, problem] = std::from_chars(*begin == '+' ? begin + 1 : begin, end, value);
     if (problem == std::errc::invalid_argument || (next != end && !is_space(static_cast<uint8_t>(*next)))) {
       refuse("there is no number at byte " + std::to_string(at_) + " of the PLY file.");
     }
@@ -138,6 +147,7 @@ class Reader {
   std::span<const uint8_t> bytes_;
   const std::string& path_;
   size_t at_ = 0;
+  uint8_t line_end_ = '\n';
 };
 
 Property read_property(std::istringstream& words, const Reader& reader) {
@@ -195,8 +205,10 @@ std::vector<Element> read_header(Reader& reader) {
 
 struct Content {
   std::vector<Vec3> positions, normals;
-  std::vector<Vec2> uvs;
-  std::vector<glm::uvec3> triangles;
+  std::vector<Vec2> uvs;          // of vertices
+  std::vector<uint32_t> corners;  // vertices of the faces, one after the other; checked at the end
+  std::vector<uint32_t> face_sizes;
+  std::vector<Vec2> corner_uvs;  // as MeshLab writes them; empty: of no face, else of all corners
 };
 
 /// Bytes that one of `element` takes at the least.
@@ -249,40 +261,77 @@ void read_vertices(Reader& reader, const Element& element, Content& content) {
   }
 }
 
-void read_polygon(Reader& reader, const Property& property, std::vector<uint32_t>& corners, Content& content) {
-  corners.clear();
+void read_polygon(Reader& reader, const Property& property, Content& content) {
   const uint64_t count = read_count(reader, property);
   reader.expect(count, reader.format == Format::ascii ? 2 : bytes_of(property.type), "corners of a face");
+  if (count > PolygonTriangles::kMaxCorners) {
+    reader.refuse("a face has " + std::to_string(count) + " corners, more than " +
+                  std::to_string(PolygonTriangles::kMaxCorners) + "; cut it into smaller ones.");
+  }
   for (uint64_t i = 0; i < count; ++i) {
     const double vertex = reader.number(property.type);
-    if (!(vertex >= 0) || vertex >= static_cast<double>(content.positions.size())) {
-      reader.refuse("a face names a vertex that is not among its " + std::to_string(content.positions.size()) + ".");
-    }
-    corners.push_back(static_cast<uint32_t>(vertex));
+    if (!(vertex >= 0) || vertex > UINT32_MAX) reader.refuse("a face names a vertex by a number that is no index.");
+    content.corners.push_back(static_cast<uint32_t>(vertex));
   }
-  for (size_t i = 2; i < corners.size(); ++i) content.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+  content.face_sizes.push_back(static_cast<uint32_t>(count));
+}
+
+/// Two numbers for each corner of the face that was read last or is read next; others leave it without.
+void read_corner_uvs(Reader& reader, const Property& property, std::vector<Vec2>& uvs) {
+  const uint64_t count = read_count(reader, property);
+  reader.expect(count, reader.format == Format::ascii ? 2 : bytes_of(property.type), "texture coordinates of a face");
+  uvs.clear();
+  for (uint64_t i = 0; i + 1 < count; i += 2) {
+    const auto u = static_cast<float>(reader.number(property.type));
+    uvs.push_back({u, static_cast<float>(reader.number(property.type))});
+  }
+  if (count % 2 == 1) reader.number(property.type);
 }
 
 void read_faces(Reader& reader, const Element& element, Content& content) {
-  std::vector<uint32_t> corners;
+  const bool has_uvs =
+      std::ranges::any_of(element.properties, [](const Property& p) { return p.count && p.name == "texcoord"; });
+  std::vector<Vec2> uvs;
   for (uint64_t i = 0; i < element.count; ++i) {
+    const size_t first = content.corners.size();
     for (const Property& p : element.properties) {
       if (p.count && (p.name == "vertex_indices" || p.name == "vertex_index")) {
-        read_polygon(reader, p, corners, content);
+        read_polygon(reader, p, content);
+      } else if (p.count && p.name == "texcoord") {
+        read_corner_uvs(reader, p, uvs);
       } else {
         skip(reader, p);
       }
     }
+    if (!has_uvs) continue;
+    uvs.resize(content.corners.size() - first, Vec2(0.0f));
+    content.corner_uvs.insert(content.corner_uvs.end(), uvs.begin(), uvs.end());
   }
 }
 
+/// Triangles of the faces' corners.
+std::vector<glm::uvec3> cut_faces(const Content& content) {
+  PolygonTriangles cutter;
+  std::vector<glm::uvec3> triangles;
+  std::vector<Vec3> polygon;
+  uint32_t first = 0;
+  for (const uint32_t count : content.face_sizes) {
+    if (count >= 3) {
+      polygon.clear();
+      for (uint32_t i = 0; i < count; ++i) polygon.push_back(content.positions[content.corners[first + i]]);
+      for (const glm::uvec3& triangle : cutter.cut(polygon)) triangles.push_back(triangle + glm::uvec3(first));
+    }
+    first += count;
+  }
+  return triangles;
+}
+
 template <typename T>
-std::vector<T> at_corners(const std::vector<T>& of_vertices, const std::vector<glm::uvec3>& triangles) {
+std::vector<T> at_corners(const std::vector<T>& of_vertices, const std::vector<uint32_t>& vertices) {
   std::vector<T> corners;
   if (of_vertices.empty()) return corners;
-  for (const glm::uvec3& t : triangles) {
-    for (int k = 0; k < 3; ++k) corners.push_back(of_vertices[t[k]]);
-  }
+  corners.reserve(vertices.size());
+  for (const uint32_t vertex : vertices) corners.push_back(of_vertices[vertex]);
   return corners;
 }
 
@@ -305,11 +354,21 @@ Mesh read_ply(const std::string& path) {
       }
     }
   }
-  if (content.triangles.empty()) reader.refuse("holds no faces.");
-  const std::vector<Vec3> normals = at_corners(content.normals, content.triangles);
-  const std::vector<Vec2> uvs = at_corners(content.uvs, content.triangles);
-  return Mesh(
-      {.positions = content.positions, .triangles = content.triangles, .corner_normals = normals, .corner_uvs = uvs});
+  const size_t vertices = content.positions.size();
+  for (const uint32_t vertex : content.corners) {
+    if (vertex >= vertices) {
+      reader.refuse("a face names vertex " + std::to_string(vertex) + " (from 0) of " + std::to_string(vertices) + ".");
+    }
+  }
+  const std::vector<glm::uvec3> triangles = cut_faces(content);
+  if (triangles.empty()) reader.refuse("holds no faces.");
+  const std::vector<Vec3> normals = at_corners(content.normals, content.corners);
+  const std::vector<Vec2> uvs = at_corners(content.uvs, content.corners);
+  return Mesh({.positions = content.positions,
+               .triangles = triangles,
+               .corner_normals = normals,
+               .corner_uvs = content.corner_uvs.empty() ? uvs : content.corner_uvs,
+               .corner_vertices = content.corners});
 }
 
 }  // namespace velour

@@ -253,6 +253,8 @@ SceneInfo Scene::count() const {
                             "their surface; they are shown without it.");
   }
   info.warnings.insert(info.warnings.end(), shell_warnings_.begin(), shell_warnings_.end());
+  for (const Mesh& mesh : meshes_) info.warnings.insert(info.warnings.end(), mesh.notes().begin(), mesh.notes().end());
+  for (const std::string& note : environment_.notes()) info.warnings.push_back(note);
   if (environment_.black() && lights_.empty()) info.warnings.emplace_back(kNoLightWarning);
   return info;
 }

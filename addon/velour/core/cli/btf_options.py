@@ -21,7 +21,7 @@ def tile_size(text: str) -> tuple[float, ...]:
     return numbers.reals(2, 1e-9, 1e9)(text)
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: argparse.ArgumentParser, layer_option: str = "--layer") -> None:
     group = parser.add_argument_group("measured BTFs")
     group.add_argument(
         "--values", choices=table.BTF_VALUES, help="what numbers mean; as they say, or radiance (.btf: brdf)"
@@ -31,6 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--colors", choices=table.BTF_COLORS, help="of pictures; rec709")
     group.add_argument(
+        layer_option, dest="btf_layer", metavar="NAME", help="layer or channel of OpenEXR pictures"
+    )
+    group.add_argument(
         "--tile-size", type=tile_size, metavar="X,Y", help="metres, where the set does not say"
     )
 
@@ -38,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def given(args: argparse.Namespace) -> dict:
     """The options that the user gave, as Btf.load() takes them."""
     names = {"values": args.values, "gamma": args.gamma, "colors": args.colors, "tile_metres": args.tile_size}
+    names["layer"] = args.btf_layer
     return {name: value for name, value in names.items() if value is not None}
 
 

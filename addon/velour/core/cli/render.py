@@ -149,9 +149,13 @@ def _read_reference(args: argparse.Namespace) -> np.ndarray | None:
     """Linear RGB of --reference; refused before the render, not after it, when the size is another."""
     if not args.reference:
         return None
-    pixels = images.read(args.reference)
-    height, width, channels = pixels.shape
+    pixels = images.read_picture(args.reference)
+    for note in images.picture_notes(args.reference):
+        output.log.warning("%s", note)
     needed = render_part.size(args)
+    if pixels.shape[1::-1] != needed:  # a part, to be compared with the same part
+        pixels = images.read_picture(args.reference, as_stored=True)
+    height, width, channels = pixels.shape
     if (width, height) != needed or channels < 3:
         raise refuse(
             f"The reference {args.reference} is {width}x{height} with {channels} channels; "

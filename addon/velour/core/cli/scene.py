@@ -31,6 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--neighbors", type=numbers.whole(0, 16), default=0, metavar="K", help="views mixed; 0: auto"
     )
     parser.add_argument("--world", metavar="HDR", required=True, help="equirectangular picture")
+    parser.add_argument("--layer", default="", metavar="NAME", help="layer or channel of an OpenEXR world")
     parser.add_argument(
         "--world-rotation", type=numbers.real(), default=0.0, metavar="DEG",
         help="turns the world about +z, counter-clockwise seen from above",
@@ -39,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--camera", type=numbers.camera, metavar="EYE,TARGET,FOV",
         help="x,y,z,x,y,z,degrees in the z-up world; default: frames the mesh",
     )  # fmt: skip
-    btf_options.add_arguments(parser)
+    btf_options.add_arguments(parser, "--btf-layer")
     parser.add_argument(
         "--memory", type=numbers.size_in_bytes, metavar="SIZE",
         help="bytes, or K, M, G, T, that a render may take (what the system gives), and a BTF itself (4G)",
@@ -57,7 +58,7 @@ def fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) 
     scene.add_instance(mesh, _UP[args.up], [material], texture_options.placements(args))
     turn = math.radians(-args.world_rotation)
     c, s = math.cos(turn), math.sin(turn)
-    scene.set_world_file(args.world, 1.0, ((c, -s, 0), (s, c, 0), (0, 0, 1)))
+    scene.set_world_file(args.world, 1.0, ((c, -s, 0), (s, c, 0), (0, 0, 1)), args.layer)
     aspect = args.size[0] / args.size[1]
     if args.camera:
         scene.look_at(args.camera.eye, args.camera.target, args.camera.fov, aspect)

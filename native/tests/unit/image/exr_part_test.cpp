@@ -33,7 +33,7 @@ TEST(ExrPart, KeepsPlaceTextsAndPixels) {
   EXPECT_EQ(header.height, 2);
   EXPECT_EQ(header.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
   EXPECT_FALSE(header.multi_part);
-  EXPECT_EQ(read_picture(path).pixels, part.pixels);
+  EXPECT_EQ(read_picture_channels(path).pixels, part.pixels);
   EXPECT_EQ(read_picture_text(path, "velour.samples"), "0:8");
 }
 

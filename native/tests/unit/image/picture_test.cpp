@@ -47,7 +47,10 @@ TEST(Picture, ExrKeepsTheOrderOfChannels) {
   const std::string path = test::scratch_folder() / "a.exr";
   for (int channels = 1; channels <= 6; ++channels) {
     write_picture(path, gradient(4, 3, channels));
-    EXPECT_EQ(read_picture(path).pixels, gradient(4, 3, channels).pixels) << channels;
+    EXPECT_EQ(read_picture_channels(path).pixels, gradient(4, 3, channels).pixels) << channels;
+    if (channels <= 4) {
+      EXPECT_EQ(read_picture(path).pixels, gradient(4, 3, channels).pixels) << channels;
+    }
   }
 }
 
@@ -156,7 +159,7 @@ const std::vector<uint8_t> kJpeg = [] {
 TEST(Picture, ReadsJpeg) {
   const std::string path = test::scratch_folder() / "a.jpg";
   write_file(path, kJpeg);
-  const Picture picture = read_picture(path, {1.0f});
+  const Picture picture = read_picture(path, {.curve = {1.0f}});
   ASSERT_EQ(picture.channels, 1);
   ASSERT_EQ(picture.pixels.size(), 128u);
   EXPECT_NEAR(picture.pixel(3, 7)[0], 200.0f / 255.0f, 1.5f / 255.0f);

@@ -48,7 +48,9 @@ TEST_P(Pieces, AnErrorWithinComesOut) {
       Error);
 }
 
-TEST_P(Pieces, AnErrorBesideLeavesNoneOut) {
+/// Whether pieces that `within` shares out are left out where a piece of the loop around them fails.
+template <class Within>
+bool leaves_pieces_out(int threads, const Within& within) {
   constexpr size_t kInner = 300;
   std::atomic<bool> left_out{false};
   const auto work = [&](size_t i) {
@@ -57,14 +59,23 @@ TEST_P(Pieces, AnErrorBesideLeavesNoneOut) {
       throw Error(Status::bad_data, "no");
     }
     std::atomic<size_t> done{0};
-    parallel_pieces(kInner, GetParam(), progress_, [&](size_t) {
+    within(kInner, [&](size_t) {
       std::this_thread::sleep_for(std::chrono::microseconds(20));
       ++done;
     });
     if (done != kInner) left_out = true;
   };
-  EXPECT_THROW(parallel_pieces(6, GetParam(), progress_, work), Error);
-  EXPECT_FALSE(left_out);
+  EXPECT_THROW(parallel_pieces(6, threads, Progress(), work), Error);
+  return left_out;
+}
+
+TEST_P(Pieces, AnErrorBesideLeavesNoneOut) {
+  EXPECT_FALSE(leaves_pieces_out(
+      GetParam(), [&](size_t count, const auto& work) { parallel_pieces(count, GetParam(), progress_, work); }));
+}
+
+TEST_P(Pieces, AnErrorBesideLeavesNoneOutOfATable) {
+  EXPECT_FALSE(leaves_pieces_out(GetParam(), [](size_t count, const auto& work) { parallel_fill(count, work); }));
 }
 
 }  // namespace

@@ -1,13 +1,11 @@
-// Meshes, cameras, the scene's book-keeping, OBJ files.
+// Meshes, cameras and the bookkeeping of the scene.
 #include "scene/mesh.h"
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <limits>
 
 #include "job/error.h"
-#include "scene/obj_file.h"
 #include "scene/scene.h"
 #include "sphere/random.h"
 #include "support/test_data.h"
@@ -75,43 +73,6 @@ TEST(Mesh, RefusesWrongLengthsAndIndices) {
   const std::vector<Vec3> two(2);
   EXPECT_THROW(Mesh({.positions = kQuad, .triangles = outside}), Error);
   EXPECT_THROW(Mesh({.positions = kQuad, .triangles = t, .corner_normals = two}), Error);
-}
-
-std::string write_text(const std::string& text) {
-  const std::string path = (test::scratch_folder() / "mesh.obj").string();
-  std::ofstream(path) << text;
-  return path;
-}
-
-TEST(ObjFile, ReadsPolygonsNormalsAndTextureCoordinates) {
-  const Mesh mesh =
-      read_obj(write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-                          "f 1/1/1 2/2/1 3/3/1 4/4/1\n"));
-  EXPECT_EQ(mesh.triangles().size(), 2u);
-  EXPECT_EQ(mesh.shading_normal(0, {0.2f, 0.2f}), Vec3(0, 1, 0));
-  EXPECT_TRUE(mesh.has_uvs());
-  EXPECT_NEAR(mesh.tangent(0).x, 1, 1e-6f);
-}
-
-TEST(ObjFile, RefusesWhatLies) {
-  for (const char* text : {"", "v 0 0 0\nf 1 2 3\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2000000000\n",
-                           "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -9 -8 -7\n", "f f f\nv v v\n", "\x7f\x45LF\x02\x01\x01"}) {
-    const std::string path = write_text(text);
-    try {
-      read_obj(path);
-      ADD_FAILURE() << text;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.status(), Status::bad_data);
-      EXPECT_NE(std::string(error.what()).find(path), std::string::npos);
-    }
-  }
-  EXPECT_THROW(read_obj("/no/such/file.obj"), Error);
-}
-
-TEST(ObjFile, ReadsTheBunny) {
-  VELOUR_NEED_DATA(path, "mesh/bunny.obj");
-  const Mesh mesh = read_obj(path.string());
-  EXPECT_EQ(mesh.triangles().size() + mesh.dropped(), 69451u);
 }
 
 TEST(Camera, LookAtPutsTheTargetInTheMiddleAndUpAbove) {

@@ -96,6 +96,34 @@ TEST(PlyFile, RefusesLies) {
   EXPECT_THROW(read_ply("/nowhere/at_all.ply"), Error);
 }
 
+TEST(PlyFile, ElementsInAnyOrderLineEndsAndSigns) {
+  const std::string faces_first =
+      "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
+      "property float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n+0 0 0\n+1.0 0 0\n0 1 0\n";
+  EXPECT_EQ(read_ply(written(faces_first)).position(0, {1, 0}), Vec3(1, 0, 0));
+  for (const std::string& end : {std::string("\r"), std::string("\r\n")}) {
+    std::string bytes;
+    for (const char c : faces_first) bytes += c == '\n' ? end : std::string(1, c);
+    EXPECT_EQ(read_ply(written(bytes)).triangles().size(), 1u);
+  }
+}
+
+TEST(PlyFile, ConcaveQuadsAndCoordinatesOfCorners) {
+  const std::string bytes =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
+      "0 0 0\n2 1 0\n0 2 0\n0.5 1 0\n4 0 1 2 3 8 0 0 1 0.5 0 1 0.25 0.5\n3 0 1 2 0\n";
+  const Mesh mesh = read_ply(written(bytes));
+  ASSERT_EQ(mesh.triangles().size(), 3u);
+  for (uint32_t t = 0; t < 2; ++t) {
+    const glm::uvec3 corner = mesh.triangles()[t];
+    EXPECT_TRUE(corner[0] == 3 || corner[1] == 3 || corner[2] == 3);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_EQ(mesh.corner_uvs(t)[static_cast<size_t>(k)].x, mesh.positions()[corner[k]].x / 2);
+  }
+  EXPECT_EQ(mesh.corner_uvs(2)[1], Vec2(0));
+}
+
 // The corners of a second list would look for normals and uvs that only the first has.
 TEST(PlyFile, RefusesTwoElementsOfOneName) {
   const std::string more_vertices = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";

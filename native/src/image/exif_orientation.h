@@ -1,0 +1,15 @@
+// The orientation that cameras and editors write beside the pixels (EXIF 2.3, tag 274).
+#pragma once
+
+#include <string>
+
+#include "image/orientation.h"
+#include "image/picture_format.h"
+
+namespace velour {
+
+/// From a JPEG (APP1 segment), a PNG (eXIf chunk) or a TIFF (first directory); normal where the file says nothing, or
+/// nothing that makes sense. Reads a few bytes of the file.
+Orientation exif_orientation(PictureFormat format, const std::string& path);
+
+}  // namespace velour

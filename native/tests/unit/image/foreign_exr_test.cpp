@@ -1,0 +1,283 @@
+// OpenEXR pictures as other programs write them: channel names, windows, parts, tiles, primaries, cube maps, deep data.
+#include <gtest/gtest.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfDeepFrameBuffer.h>
+#include <OpenEXR/ImfDeepScanLineOutputFile.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfRgbaFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "image/picture.h"
+#include "job/error.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+constexpr int kWidth = 6, kHeight = 4;
+using Channels = std::vector<std::pair<std::string, float>>;  // name, value of all of its pixels
+
+/// Each channel has one value, but the pixel at the upper left has a tenth of it.
+class Planes {
+ public:
+  explicit Planes(const Channels& channels, const Imath::Box2i& window) : window_(window) {
+    const auto count = static_cast<size_t>((window.max.x - window.min.x + 1) * (window.max.y - window.min.y + 1));
+    for (const auto& [name, value] : channels) {
+      auto& plane = planes_[name];
+      plane.assign(count, value);
+      plane[0] = value / 10;
+    }
+  }
+
+  Imf::FrameBuffer buffer() {
+    const int width = window_.max.x - window_.min.x + 1;
+    Imf::FrameBuffer result;
+    for (auto& [name, plane] : planes_) {
+      result.insert(name, Imf::Slice::Make(Imf::FLOAT, plane.data(), window_, sizeof(float),
+                                           sizeof(float) * static_cast<size_t>(width)));
+    }
+    return result;
+  }
+
+ private:
+  Imath::Box2i window_;
+  std::map<std::string, std::vector<float>> planes_;
+};
+
+Imf::Header header_of(const Channels& channels, const Imath::Box2i& display, const Imath::Box2i& data) {
+  Imf::Header header(display, data);
+  for (const auto& [name, value] : channels) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  return header;
+}
+
+const Imath::Box2i kWindow({0, 0}, {kWidth - 1, kHeight - 1});
+
+void write(const std::string& path, const Channels& channels, Imf::Header header) {
+  Planes planes(channels, header.dataWindow());
+  Imf::OutputFile file(path.c_str(), header);
+  file.setFrameBuffer(planes.buffer());
+  file.writePixels(header.dataWindow().max.y - header.dataWindow().min.y + 1);
+}
+
+void write(const std::string& path, const Channels& channels) {
+  write(path, channels, header_of(channels, kWindow, kWindow));
+}
+
+std::vector<float> pixel_of(const Picture& picture, int x, int y) {
+  const float* first = picture.pixel(x, y);
+  return {first, first + picture.channels};
+}
+
+std::string refusal(const std::string& path, const PictureOptions& options = {}) {
+  try {
+    read_picture(path, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+class ForeignExr : public testing::Test {
+ protected:
+  std::string path_ = test::scratch_folder() / "picture.exr";
+};
+
+TEST_F(ForeignExr, SmallLettersAreColors) {
+  write(path_, {{"b", 3}, {"g", 2}, {"r", 1}});
+  const Picture picture = read_picture(path_);
+  EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(pixel_of(picture, 0, kHeight - 1), (std::vector<float>{0.1f, 0.2f, 0.3f}));
+  EXPECT_TRUE(picture.notes.empty());
+}
+
+TEST_F(ForeignExr, PassesAreLeftOutAloud) {
+  write(path_, {{"AO.R", 9}, {"B", 3}, {"G", 2}, {"R", 1}, {"depth.Z", 8}});
+  const Picture picture = read_picture(path_);
+  EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
+  ASSERT_EQ(picture.notes.size(), 1u);
+  EXPECT_NE(picture.notes[0].find("AO.R, depth.Z"), std::string::npos);
+  EXPECT_TRUE(picture.notes[0].starts_with(path_));
+  EXPECT_EQ(pixel_of(read_picture(path_, {.layer = "depth"}), 1, 1), std::vector<float>{8});
+}
+
+TEST_F(ForeignExr, GrayKeepsItsAlpha) {
+  write(path_, {{"A", 0.5f}, {"Y", 4}});
+  EXPECT_EQ(pixel_of(read_picture(path_), 1, 1), (std::vector<float>{4, 0.5f}));
+}
+
+TEST_F(ForeignExr, LuminanceAndChroma) {
+  constexpr int kSide = 16;
+  {
+    Imf::RgbaOutputFile file(path_.c_str(), kSide, kSide, Imf::WRITE_YC);
+    const std::vector<Imf::Rgba> pixels(kSide * kSide, Imf::Rgba(1.0f, 2.0f, 0.5f));
+    file.setFrameBuffer(pixels.data(), 1, kSide);
+    file.writePixels(kSide);
+  }
+  const Picture picture = read_picture(path_);
+  ASSERT_EQ(picture.channels, 3);
+  const std::vector<float> expected{1.0f, 2.0f, 0.5f};
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(picture.pixel(7, 7)[c], expected[c], 0.01f);
+}
+
+TEST_F(ForeignExr, PixelsLieInTheDisplayWindow) {
+  // Data one column left of the display and two rows short of its bottom.
+  const Imath::Box2i display({10, 20}, {10 + kWidth - 1, 20 + kHeight - 1}), data({9, 20}, {12, 21});
+  const Channels channels{{"B", 3}, {"G", 2}, {"R", 1}};
+  write(path_, channels, header_of(channels, display, data));
+  const Picture picture = read_picture(path_);
+  ASSERT_EQ(picture.width, kWidth);
+  ASSERT_EQ(picture.height, kHeight);
+  EXPECT_EQ(pixel_of(picture, 0, kHeight - 1), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(pixel_of(picture, 2, kHeight - 2), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(pixel_of(picture, 3, kHeight - 1), (std::vector<float>{0, 0, 0}));
+  EXPECT_EQ(pixel_of(picture, 0, kHeight - 3), (std::vector<float>{0, 0, 0}));
+  const Picture stored = read_picture(path_, {.as_stored = true});
+  EXPECT_EQ(stored.width, 4);
+  EXPECT_EQ(stored.height, 2);
+  ASSERT_EQ(stored.notes.size(), 1u);
+  EXPECT_NE(stored.notes[0].find("6 x 4 pixels"), std::string::npos) << stored.notes[0];
+}
+
+TEST_F(ForeignExr, AnEmptyDisplayWindowIsNotAllocated) {
+  const Channels channels{{"Y", 1}};
+  write(path_, channels, header_of(channels, {{0, 0}, {60000, 60000}}, kWindow));
+  EXPECT_NE(refusal(path_).find("60001 x 60001"), std::string::npos) << refusal(path_);
+}
+
+TEST_F(ForeignExr, Tiles) {
+  const Channels channels{{"B", 3}, {"G", 2}, {"R", 1}};
+  Imf::Header header = header_of(channels, kWindow, kWindow);
+  header.setTileDescription(Imf::TileDescription(4, 4, Imf::MIPMAP_LEVELS));
+  {
+    Planes planes(channels, kWindow);
+    Imf::TiledOutputFile file(path_.c_str(), header);
+    file.setFrameBuffer(planes.buffer());
+    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1, 0);
+  }
+  EXPECT_EQ(pixel_of(read_picture(path_), 5, 0), (std::vector<float>{1, 2, 3}));
+}
+
+TEST_F(ForeignExr, TheFirstPartWithColors) {
+  const Channels color{{"B", 3}, {"G", 2}, {"R", 1}}, other{{"B", 6}, {"G", 5}, {"R", 4}};
+  std::vector<Imf::Header> headers;
+  for (const auto& [name, channels] : std::vector<std::pair<std::string, Channels>>{
+           {"depth", {{"u", 0}, {"v", 0}}}, {"beauty", color}, {"other", other}}) {
+    headers.push_back(header_of(channels, kWindow, kWindow));
+    headers.back().setName(name);
+    headers.back().setType(Imf::SCANLINEIMAGE);
+  }
+  {
+    Imf::MultiPartOutputFile file(path_.c_str(), headers.data(), static_cast<int>(headers.size()));
+    const std::vector<Channels> all{{{"u", 0}, {"v", 0}}, color, other};
+    for (int i = 0; i < 3; ++i) {
+      Planes planes(all[static_cast<size_t>(i)], kWindow);
+      Imf::OutputPart part(file, i);
+      part.setFrameBuffer(planes.buffer());
+      part.writePixels(kHeight);
+    }
+  }
+  const Picture picture = read_picture(path_);
+  EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
+  ASSERT_EQ(picture.notes.size(), 1u);
+  EXPECT_NE(picture.notes[0].find("part 'beauty' of 3"), std::string::npos);
+  EXPECT_EQ(pixel_of(read_picture(path_, {.layer = "other"}), 1, 1), (std::vector<float>{4, 5, 6}));
+}
+
+/// The same light in other primaries is the same picture.
+TEST_F(ForeignExr, PrimariesAreConverted) {
+  const std::vector<float> rgb{0.2f, 0.5f, 0.7f};
+  const Imf::Chromaticities rec709;
+  const std::vector<Imf::Chromaticities> spaces{
+      {{1, 0}, {0, 1}, {0, 0}, {1.0f / 3, 1.0f / 3}},                              // CIE XYZ
+      {{0.708f, 0.292f}, {0.170f, 0.797f}, {0.131f, 0.046f}, {0.3127f, 0.3290f}},  // Rec. 2020
+      rec709,
+  };
+  for (const Imf::Chromaticities& space : spaces) {
+    const Imath::M44f to = Imf::RGBtoXYZ(rec709, 1) * Imf::XYZtoRGB(space, 1);
+    Imath::V3f there;
+    to.multVecMatrix(Imath::V3f(rgb[0], rgb[1], rgb[2]), there);
+    const Channels channels{{"B", there.z}, {"G", there.y}, {"R", there.x}};
+    Imf::Header header = header_of(channels, kWindow, kWindow);
+    Imf::addChromaticities(header, space);
+    write(path_, channels, header);
+    const Picture picture = read_picture(path_);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.pixel(2, 2)[c], rgb[static_cast<size_t>(c)], 2e-4) << space.red.x;
+    const Picture stored = read_picture(path_, {.as_stored = true});
+    EXPECT_FLOAT_EQ(stored.pixel(2, 2)[0], there.x);
+    EXPECT_EQ(stored.notes.size(), space.red.x == rec709.red.x ? 0u : 1u);
+  }
+}
+
+/// ACES: its white is not D65, and what is neutral there is neutral here.
+TEST_F(ForeignExr, NeutralStaysNeutral) {
+  const Channels channels{{"B", 0.5f}, {"G", 0.5f}, {"R", 0.5f}};
+  Imf::Header header = header_of(channels, kWindow, kWindow);
+  Imf::addChromaticities(header, {{0.7347f, 0.2653f}, {0, 1}, {0.0001f, -0.0770f}, {0.32168f, 0.33767f}});
+  write(path_, channels, header);
+  const Picture picture = read_picture(path_);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.pixel(2, 2)[c], 0.5f, 1e-5);
+}
+
+TEST_F(ForeignExr, PrimariesThatAreNoneAreRefused) {
+  const Channels channels{{"B", 1}, {"G", 1}, {"R", 1}};
+  for (const float x : {0.3f, std::numeric_limits<float>::quiet_NaN()}) {
+    Imf::Header header = header_of(channels, kWindow, kWindow);
+    Imf::addChromaticities(header, {{x, 0.3f}, {0.3f, 0.3f}, {0.3f, 0.3f}, {0.3f, 0.3f}});
+    write(path_, channels, header);
+    EXPECT_NE(refusal(path_).find("chromaticities"), std::string::npos);
+  }
+}
+
+TEST_F(ForeignExr, InfiniteSunsStayBright) {
+  const float inf = std::numeric_limits<float>::infinity();
+  write(path_, {{"B", inf}, {"G", 2}, {"R", std::numeric_limits<float>::quiet_NaN()}});
+  const Picture picture = read_picture(path_);
+  EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{0, 2, 65504}));
+  ASSERT_EQ(picture.notes.size(), 2u);
+  EXPECT_NE(picture.notes[0].find("24 values are infinite and count as 65504"), std::string::npos) << picture.notes[0];
+  EXPECT_NE(picture.notes[1].find("24 values are not numbers and count as 0"), std::string::npos) << picture.notes[1];
+}
+
+TEST_F(ForeignExr, CubeMapsAreRefused) {
+  const Channels channels{{"B", 1}, {"G", 1}, {"R", 1}};
+  Imf::Header header = header_of(channels, {{0, 0}, {3, 23}}, {{0, 0}, {3, 23}});
+  Imf::addEnvmap(header, Imf::ENVMAP_CUBE);
+  write(path_, channels, header);
+  EXPECT_NE(refusal(path_).find("is a cube map"), std::string::npos);
+}
+
+TEST_F(ForeignExr, DeepPicturesAreRefused) {
+  Imf::Header header(kWidth, kHeight);
+  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  header.setType(Imf::DEEPSCANLINE);
+  header.compression() = Imf::ZIPS_COMPRESSION;
+  {
+    std::vector<unsigned int> counts(kWidth * kHeight, 1);
+    std::vector<float> values(kWidth * kHeight, 2.0f);
+    std::vector<float*> pointers;
+    for (float& value : values) pointers.push_back(&value);
+    Imf::DeepFrameBuffer buffer;
+    buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned int),
+                                             sizeof(unsigned int) * kWidth));
+    buffer.insert("Z", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(pointers.data()), sizeof(float*),
+                                      sizeof(float*) * kWidth, sizeof(float)));
+    Imf::DeepScanLineOutputFile file(path_.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(kHeight);
+  }
+  EXPECT_NE(refusal(path_).find("is a deep picture"), std::string::npos) << refusal(path_);
+}
+
+}  // namespace
+}  // namespace velour

@@ -1,0 +1,135 @@
+// EXIF orientation of PNG, JPEG and TIFF pictures, and formats that are not read.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "file/file.h"
+#include "image/exif_orientation.h"
+#include "image/picture.h"
+#include "image/picture_format.h"
+#include "job/error.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+void append(Bytes& to, uint64_t value, size_t count, bool big_endian) {
+  for (size_t i = 0; i < count; ++i)
+    to.push_back(static_cast<uint8_t>(value >> (8 * (big_endian ? count - 1 - i : i))));
+}
+
+/// A directory of two entries, the second of which is the orientation.
+Bytes exif_of(int orientation, bool big) {
+  Bytes bytes;
+  for (const char c : {big ? 'M' : 'I', big ? 'M' : 'I'}) bytes.push_back(static_cast<uint8_t>(c));
+  append(bytes, 42, 2, big);
+  append(bytes, 8, 4, big);  // place of the directory
+  append(bytes, 2, 2, big);
+  for (const auto& [tag, value] : {std::pair(271, 7), std::pair(274, orientation)}) {
+    append(bytes, static_cast<uint64_t>(tag), 2, big);
+    append(bytes, 3, 2, big);
+    append(bytes, 1, 4, big);
+    append(bytes, static_cast<uint64_t>(value), 2, big);
+    append(bytes, 0, 2, big);
+  }
+  append(bytes, 0, 4, big);
+  return bytes;
+}
+
+uint32_t crc_of(std::span<const uint8_t> bytes) {
+  uint32_t crc = ~0u;
+  for (const uint8_t byte : bytes) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320u : 0);
+  }
+  return ~crc;
+}
+
+/// `png` with a chunk of EXIF data after its header.
+Bytes with_exif(const Bytes& png, const Bytes& exif) {
+  constexpr std::ptrdiff_t kHeaderEnd = 8 + 12 + 13;
+  Bytes chunk{'e', 'X', 'I', 'f'}, result(png.begin(), png.begin() + kHeaderEnd);
+  chunk.insert(chunk.end(), exif.begin(), exif.end());
+  append(result, exif.size(), 4, true);
+  result.insert(result.end(), chunk.begin(), chunk.end());
+  append(result, crc_of(chunk), 4, true);
+  result.insert(result.end(), png.begin() + kHeaderEnd, png.end());
+  return result;
+}
+
+/// Pixel (0, 0) of the stored rows is where the orientation says (EXIF 2.3, 4.6.4 A), one is beside it along the row.
+TEST(PictureOrientation, FollowsExif) {
+  struct Ends {
+    int orientation, first_x, first_y, step_x, step_y;  // of a picture seen, y from the top
+  };
+  constexpr int kWidth = 5, kHeight = 3;
+  const Ends all[] = {{1, 0, 0, 1, 0}, {2, 4, 0, -1, 0}, {3, 4, 2, -1, 0}, {4, 0, 2, 1, 0},
+                      {5, 0, 0, 0, 1}, {6, 2, 0, 0, 1},  {7, 2, 4, 0, -1}, {8, 0, 4, 0, -1}};
+  const auto folder = test::scratch_folder();
+  Picture picture{kWidth, kHeight, 1, std::vector<float>(kWidth * kHeight, 0.0f)};
+  const std::string plain = folder / "plain.png", turned = folder / "turned.png";
+  picture.pixels[kWidth * (kHeight - 1)] = 1.0f;            // the upper left one
+  picture.pixels[kWidth * (kHeight - 1) + 1] = 0.2140411f;  // beside it
+  write_picture(plain, picture);
+  for (const Ends& ends : all) {
+    SCOPED_TRACE(ends.orientation);
+    write_file(turned, with_exif(read_file(plain), exif_of(ends.orientation, ends.orientation % 2 == 0)));
+    const Picture found = read_picture(turned), header = read_picture_header(turned);
+    const bool swapped = ends.orientation > 4;
+    ASSERT_EQ(found.width, swapped ? kHeight : kWidth);
+    ASSERT_EQ(found.height, swapped ? kWidth : kHeight);
+    EXPECT_EQ(header.width, found.width);
+    const auto seen = [&](int x, int y) { return found.pixel(x, found.height - 1 - y)[0]; };
+    EXPECT_EQ(seen(ends.first_x, ends.first_y), 1.0f);
+    EXPECT_NEAR(seen(ends.first_x + ends.step_x, ends.first_y + ends.step_y), 0.2140411f, 0.003f);
+    const Picture stored = read_picture(turned, {.as_stored = true});
+    EXPECT_EQ(stored.width, kWidth);
+    EXPECT_EQ(stored.notes.size(), ends.orientation == 1 ? 0u : 1u);
+  }
+}
+
+TEST(PictureOrientation, OfJpegAndTiff) {
+  const auto folder = test::scratch_folder();
+  Bytes jpeg{0xff, 0xd8, 0xff, 0xe0, 0, 4, 9, 9, 0xff, 0xff, 0xe1};  // a segment, a fill byte, EXIF
+  const Bytes exif = exif_of(6, true);
+  append(jpeg, exif.size() + 8, 2, true);
+  for (const char c : std::string("Exif\0\0", 6)) jpeg.push_back(static_cast<uint8_t>(c));
+  jpeg.insert(jpeg.end(), exif.begin(), exif.end());
+  write_file(folder / "a.jpg", jpeg);
+  EXPECT_EQ(exif_orientation(PictureFormat::jpeg, folder / "a.jpg"), Orientation::turned_cw);
+  write_file(folder / "a.tif", exif_of(3, false));
+  EXPECT_EQ(exif_orientation(PictureFormat::tiff, folder / "a.tif"), Orientation::turned_180);
+  for (const Bytes& whole : {jpeg, exif_of(3, false)}) {
+    const PictureFormat format = whole == jpeg ? PictureFormat::jpeg : PictureFormat::tiff;
+    for (size_t size = 0; size < whole.size() - 16; ++size) {
+      write_file(folder / "cut", std::span(whole).first(size));
+      EXPECT_EQ(exif_orientation(format, folder / "cut"), Orientation::normal) << size;
+    }
+  }
+  write_file(folder / "odd.tif", exif_of(9, false));
+  EXPECT_EQ(exif_orientation(PictureFormat::tiff, folder / "odd.tif"), Orientation::normal);
+}
+
+TEST(PictureFormats, OthersAreRefusedByName) {
+  const std::string path = test::scratch_folder() / "a.png";
+  const std::pair<std::string, std::string> others[] = {
+      {"FOR4", "IFF"},   {"SDPX", "DPX"},          {"XPDS", "DPX"}, {"8BPS", "Photoshop"},
+      {"GIF89a", "GIF"}, {"RIFF1234WEBP", "WebP"}, {"P6\n", "PPM"}, {"nothing at all", "none of the formats"},
+      {"", "empty file"}};
+  for (const auto& [head, name] : others) {
+    const std::string text = head.empty() ? head : head + std::string(600, '\0');
+    write_file(path, Bytes(text.begin(), text.end()));
+    try {
+      read_picture(path);
+      ADD_FAILURE() << head;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("OpenEXR, Radiance HDR, PNG, JPEG, TIFF and BMP"), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace velour

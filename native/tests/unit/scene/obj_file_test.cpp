@@ -1,0 +1,214 @@
+// Wavefront OBJ as other programs write it, and polygons cut into triangles.
+#include "scene/obj_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "job/error.h"
+#include "scene/polygon_triangles.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+std::string write_text(const std::string& text) {
+  const std::string path = (test::scratch_folder() / "mesh.obj").string();
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(ObjFile, ReadsPolygonsNormalsAndTextureCoordinates) {
+  const Mesh mesh =
+      read_obj(write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                          "f 1/1/1 2/2/1 3/3/1 4/4/1\n"));
+  EXPECT_EQ(mesh.triangles().size(), 2u);
+  EXPECT_EQ(mesh.shading_normal(0, {0.2f, 0.2f}), Vec3(0, 1, 0));
+  EXPECT_TRUE(mesh.has_uvs());
+  EXPECT_NEAR(mesh.tangent(0).x, 1, 1e-6f);
+}
+
+TEST(ObjFile, RefusesWhatLies) {
+  for (const char* text : {"", "v 0 0 0\nf 1 2 3\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2000000000\n",
+                           "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -9 -8 -7\n", "f f f\nv v v\n", "\x7f\x45LF\x02\x01\x01"}) {
+    const std::string path = write_text(text);
+    try {
+      read_obj(path);
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.status(), Status::bad_data);
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos);
+    }
+  }
+  EXPECT_THROW(read_obj("/no/such/file.obj"), Error);
+}
+
+TEST(ObjFile, ReadsTheBunny) {
+  VELOUR_NEED_DATA(path, "mesh/bunny.obj");
+  const Mesh mesh = read_obj(path.string());
+  EXPECT_EQ(mesh.triangles().size() + mesh.dropped(), 69451u);
+}
+
+double area_of(const Mesh& mesh) {
+  double area = 0;
+  for (const glm::uvec3& t : mesh.triangles()) {
+    const Vec3d a(mesh.positions()[t[0]]), b(mesh.positions()[t[1]]), c(mesh.positions()[t[2]]);
+    area += glm::length(glm::cross(b - a, c - a)) / 2;
+  }
+  return area;
+}
+
+/// Whether the point lies in one of the triangles, seen along z.
+bool covers(const Mesh& mesh, double x, double y) {
+  for (const glm::uvec3& t : mesh.triangles()) {
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d a(mesh.positions()[t[k]]), b(mesh.positions()[t[(k + 1) % 3]]);
+      inside = inside && (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x) >= 0;
+    }
+    if (inside) return true;
+  }
+  return false;
+}
+
+/// An L whose notch is the upper right, from each of its corners on, near the origin and far from it.
+TEST(ObjFile, ConcavePolygonsKeepTheirNotch) {
+  const double corners[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  for (const double far : {0.0, 3000.0})
+    for (int first = 0; first < 6; ++first) {
+      std::string text, face = "f";
+      for (int i = 0; i < 6; ++i) {
+        const double* c = corners[(first + i) % 6];
+        text += "v " + std::to_string(c[0] + far) + " " + std::to_string(c[1] - far) + " 5\n";
+        face += " " + std::to_string(i + 1);
+      }
+      const Mesh mesh = read_obj(write_text(text + face + "\n"));
+      EXPECT_EQ(mesh.triangles().size(), 4u);
+      EXPECT_NEAR(area_of(mesh), 3.0, 1e-9);
+      EXPECT_FALSE(covers(mesh, far + 1.5, 1.5 - far)) << first;
+      EXPECT_TRUE(covers(mesh, far + 0.5, 1.5 - far)) << first;
+    }
+}
+
+TEST(ObjFile, ConcaveQuads) {
+  for (int first = 0; first < 4; ++first) {
+    const double dart[4][2] = {{0, 0}, {2, 1}, {0, 2}, {0.5, 1}};
+    std::string text;
+    for (int i = 0; i < 4; ++i)
+      text += "v " + std::to_string(dart[(first + i) % 4][0]) + " " + std::to_string(dart[(first + i) % 4][1]) + " 0\n";
+    const Mesh mesh = read_obj(write_text(text + "f 1 2 3 4\n"));
+    EXPECT_NEAR(area_of(mesh), 1.5, 1e-9) << first;
+    EXPECT_FALSE(covers(mesh, 0.2, 1)) << first;
+  }
+}
+
+/// Stars of many corners in any plane: the areas of the triangles add up to the polygon's.
+TEST(PolygonTriangles, CoverStars) {
+  PolygonTriangles cutter;
+  for (const int corners : {5, 14, 101, 1000}) {
+    for (const Vec3d& axis : {Vec3d(0, 0, 1), Vec3d(1, 0, 0), Vec3d(-1, 2, 0.3)}) {
+      const Vec3d n = glm::normalize(axis), u = glm::normalize(glm::cross(n, Vec3d(0.3, 0.2, 0.9))),
+                  v = glm::cross(n, u);
+      std::vector<Vec3> polygon;
+      double expected = 0;
+      const auto radius = [&](int i) { return i % 2 == 0 ? 1.0 : 0.4; };
+      for (int i = 0; i < 2 * corners; ++i) {
+        const double angle = kPiD * i / corners;
+        polygon.push_back(Vec3(100.0 * n + radius(i) * (std::cos(angle) * u + std::sin(angle) * v)));
+        expected += radius(i) * radius(i + 1) * std::sin(kPiD / corners) / 2;
+      }
+      const auto triangles = cutter.cut(polygon);
+      ASSERT_EQ(triangles.size(), polygon.size() - 2);
+      double signed_area = 0, area = 0;
+      for (const glm::uvec3& t : triangles) {
+        const Vec3d a(polygon[t[0]]), normal = glm::cross(Vec3d(polygon[t[1]]) - a, Vec3d(polygon[t[2]]) - a);
+        signed_area += glm::dot(normal, n) / 2;
+        area += glm::length(normal) / 2;
+      }
+      EXPECT_NEAR(signed_area, expected, 1e-4 * expected) << corners;
+      EXPECT_NEAR(area, expected, 1e-4 * expected) << corners;
+    }
+  }
+}
+
+TEST(PolygonTriangles, EndForPolygonsThatAreNone) {
+  PolygonTriangles cutter;
+  const std::vector<Vec3> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1.5f, 0, 0}, {0.5f, 0, 0}};
+  const std::vector<Vec3> eight{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0.5f, 0}};
+  const std::vector<Vec3> point(7, Vec3(3, 3, 3));
+  for (const auto& polygon : {line, eight, point}) EXPECT_EQ(cutter.cut(polygon).size(), polygon.size() - 2);
+}
+
+const std::string kTwoSquares = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n";
+
+TEST(ObjFile, FacesKeepWhatTheyName) {
+  const std::string mixed = kTwoSquares + "vn 0 1 0\nvt 0.25 0.5\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf 2 5 6 3\n";
+  const Mesh mesh = read_obj(write_text(mixed));
+  ASSERT_EQ(mesh.triangles().size(), 4u);
+  EXPECT_EQ(mesh.shading_normal(0, {0.2f, 0.2f}), Vec3(0, 1, 0));
+  EXPECT_EQ(mesh.shading_normal(2, {0.2f, 0.2f}), Vec3(0, 0, 1));
+  EXPECT_EQ(mesh.corner_uvs(0)[0], Vec2(0.25f, 0.5f));
+  EXPECT_EQ(mesh.corner_uvs(2)[0], Vec2(0));
+  ASSERT_EQ(mesh.notes().size(), 2u);
+  EXPECT_NE(mesh.notes()[0].find("1 of 2 faces have no normals"), std::string::npos) << mesh.notes()[0];
+  EXPECT_NE(mesh.notes()[1].find("1 of 2 faces have no texture coordinates"), std::string::npos);
+}
+
+TEST(ObjFile, AllWaysToNameACorner) {
+  const std::string lists = kTwoSquares + "vt 0.5 0.5 0\nvn 0 0 -1\n";
+  for (const char* face : {"f 1// 2// 3//", "f 1/1 2/1 3/1", "f 1//1 2//1 3//1", "f -6/-1/-1 -5/-1/-1 -4/-1/-1",
+                           "f 1/1/ 2/1/ 3/1/", "f +1 +2 +3", "f 1 2 3 # 4", "f 1 \\\n 2 \\\r\n 3"}) {
+    const Mesh mesh = read_obj(write_text(lists + face + "\n"));
+    ASSERT_EQ(mesh.triangles().size(), 1u) << face;
+    EXPECT_EQ(mesh.triangles()[0], glm::uvec3(0, 1, 2)) << face;
+  }
+  // Of what comes later in the file.
+  EXPECT_EQ(read_obj(write_text("f 1 2 3\n" + kTwoSquares)).triangles().size(), 1u);
+}
+
+/// Two squares of a roof: flat without a smoothing group, smooth in one, and flat again behind "s off".
+TEST(ObjFile, SmoothingGroups) {
+  const std::string roof = "v 0 0 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\nv 2 0 0\nv 2 1 0\n";
+  const std::string faces = "f 1 3 4 2\nf 3 5 6 4\n";
+  const auto bends = [](const Mesh& mesh) {
+    return glm::length(mesh.shading_normal(0, {0.9f, 0.05f}) - mesh.shading_normal(0, {0.05f, 0.05f})) > 0.1f;
+  };
+  EXPECT_FALSE(bends(read_obj(write_text(roof + faces))));
+  EXPECT_FALSE(bends(read_obj(write_text(roof + "s off\n" + faces))));
+  EXPECT_FALSE(bends(read_obj(write_text(roof + "s 0\n" + faces))));
+  EXPECT_TRUE(bends(read_obj(write_text(roof + "s 1\n" + faces))));
+  EXPECT_FALSE(bends(read_obj(write_text(roof + "s 1\ns off\n" + faces))));
+}
+
+TEST(ObjFile, LineEndsMarksAndSigns) {
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    std::string text = "\xef\xbb\xbf# from C:\\models\\";
+    for (const char* line :
+         {"", "v +0 0. 0e0", "v +1.0 0 0 1", "v\t0  1 0 0.5 0.5 0.5", "g a b", "usemtl \\x", "f 1 2 3"})
+      text += std::string(line) + end;
+    EXPECT_EQ(read_obj(write_text(text)).position(0, {1, 0}), Vec3(1, 0, 0)) << int(end[0]);
+  }
+}
+
+TEST(ObjFile, NamesTheLineOfAFault) {
+  const std::pair<const char*, const char*> faults[] = {
+      {"v 0 0 0\nv 1,5 0 0\n", "line 2: '1,5' is not a number"},
+      {"v 0 0\n", "line 1: 'v' has too few"},
+      {"v 0 0 0\n\nf 1 0 1\n", "line 3: '0' is no index"},
+      {"v 0 0 0\nf 1 1.5 1\n", "line 2: '1.5' is no index"},
+      {"v 0 0 0\r\nf 1 2 1\r\n", "line 2: a face names vertex 2 of 1"},
+      {"v 0 0 0\nf 1 -2 1\n", "line 2: a face names vertex -2"},
+      {"v 0 0 0\nf 1/1 1/1 1/1\n", "line 2: a face names texture"}};
+  for (const auto& [text, sentence] : faults) {
+    try {
+      read_obj(write_text(text));
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace velour
