@@ -77,9 +77,9 @@ class Pictures(Placed):
         native = inputs.native()
         given, add = [], native.Scene.add_instance
 
-        def recorded(scene, mesh, matrix, materials, placements=None, hidden=()):
+        def recorded(scene, mesh, matrix, materials, placements=None, *rest):
             given.append(np.array(placements))
-            add(scene, mesh, matrix, materials, placements, hidden)
+            add(scene, mesh, matrix, materials, placements, *rest)
 
         with unittest.mock.patch.object(native.Scene, "add_instance", recorded):
             scenes.render(self.folder)

@@ -90,4 +90,4 @@ def test_without_the_module_openexr_files_are_read(without_module):
 def test_the_module_exports_one_symbol():
     """Blender has an OpenImageIO of its own in the process."""
     done = subprocess.run(["nm", "-D", "--defined-only", MODULE], check=True, capture_output=True, text=True)
-    assert [line.split()[-1] for line in done.stdout.splitlines()] == ["velour_openimageio_1"]
+    assert [line.split()[-1] for line in done.stdout.splitlines()] == ["velour_openimageio_2"]

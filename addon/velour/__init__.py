@@ -1,5 +1,7 @@
 """Velour: measured materials for Blender. Only names the add-on and hands over to `registration`."""
 
+import importlib.util
+
 # Read as text by Blender and by a test: literal values only, the version of CMakeLists.txt and the manifest.
 bl_info = {
     "name": "Velour",
@@ -12,17 +14,32 @@ bl_info = {
     "support": "COMMUNITY",
 }
 
+_NO_NUMPY = (
+    "Velour: Blender's Python has no numpy, which Velour needs. A Blender of a distribution takes"
+    " the Python of an active virtual environment or pyenv: start it outside of that, or install numpy there."
+)
+_is_registered = False
+
 
 def register():
+    global _is_registered
+    if importlib.util.find_spec("numpy") is None:
+        print(_NO_NUMPY, flush=True)
+        return
     from . import registration
 
     registration.register()
+    _is_registered = True
 
 
 def unregister():
+    global _is_registered
+    if not _is_registered:
+        return
     from . import registration
 
     registration.unregister()
+    _is_registered = False
 
 
 class glTF2ExportUserExtension:

@@ -78,6 +78,14 @@ def camera(location=(5, -7, 5), rotation=(1.05, 0, 0.61), lens=50.0):
     return obj
 
 
+def shear(obj, scale, rotation=(0, 0, 0)):
+    """By an unevenly scaled parent: axes of what is turned within it are no longer perpendicular."""
+    parent = link(bpy.data.objects.new("Rig", None))
+    parent.scale, parent.rotation_euler = scale, rotation
+    obj.parent = parent
+    return obj
+
+
 def lamp(kind, energy, location=(0, 0, 3), rotation=(0, 0, 0), **settings):
     data = bpy.data.lights.new("Lamp", kind)
     data.energy = energy

@@ -32,6 +32,16 @@ class AreaLights(BoxTest):
         stage.lamp("AREA", 100, (0, 0, 3), shape="DISK", size=1.5, spread=math.radians(25))
         self.assert_parity("Area: spread 25 degrees", samples=4, seen=12)  # few blocks have its light
 
+    def test_sheared_square(self):
+        lamp = stage.lamp("AREA", 100, (0, 0, 2), (0, math.radians(45), 0), shape="SQUARE", size=1.0)
+        stage.shear(lamp, (1, 1, 2))
+        self.assert_parity("Area: sheared by an unevenly scaled parent")
+
+    def test_sheared_ellipse(self):
+        lamp = stage.lamp("AREA", 100, (0, 0, 3), (0.3, 0.2, 0.4), shape="ELLIPSE", size=1.0, size_y=0.6)
+        stage.shear(lamp, (1, 2, 0.5), (0.3, 0.2, 0.5))
+        self.assert_parity("Area: ellipse, sheared")
+
     def test_mirrored_area(self):
         lamp = stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=1.0)
         lamp.scale = (-1, 1, 1)

@@ -72,6 +72,17 @@ class Lights(BoxTest):
         spot.scale = (2, 1, 1)
         self.assert_parity("Spot: scale of its object")
 
+    def test_sheared_spot(self):
+        spot = stage.lamp(
+            "SPOT", 300, (0, 0, 4), (0.5, 0.2, 0), shadow_soft_size=0.0, spot_size=0.9, spot_blend=0.5
+        )
+        stage.shear(spot, (1, 2, 0.8), (0.1, 0, 0.3))
+        self.assert_parity("Spot: sheared by an unevenly scaled parent")
+
+    def test_sheared_sun(self):
+        stage.shear(stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=0.1), (1, 2, 0.5), (0.3, 0.2, 0.5))
+        self.assert_parity("Sun: sheared by an unevenly scaled parent")
+
     def test_no_shadow(self):
         lamp = stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=0.2)
         if hasattr(lamp.data.cycles, "cast_shadow"):

@@ -161,7 +161,8 @@ def run_orders_in_window():
         nonlocal folder
         if folder and not (folder / report.FILE).exists():
             return TURN
-        if bpy.app.is_job_running("RENDER"):  # of the tests: Blender does not survive a new file beside it
+        # Blender does not survive a new file beside a render of the tests, or of a preview.
+        if any(map(bpy.app.is_job_running, ("RENDER", "RENDER_PREVIEW"))):
             return TURN
         if folder:
             orders.done()

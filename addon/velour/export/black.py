@@ -45,7 +45,7 @@ def may_be_meant(depsgraph):
 def _compositor(scene):
     if hasattr(scene, "compositing_node_group"):  # 5.0 and newer
         return scene.compositing_node_group is not None
-    return scene.use_nodes
+    return getattr(scene, "use_nodes", False)
 
 
 def is_animated(block):

@@ -6,6 +6,7 @@ import numpy as np
 
 from .aperture import aperture
 from .axes import unscaled
+from .newer import UNKNOWN
 from .notes import ExportError
 
 
@@ -45,7 +46,10 @@ def final_view(depsgraph, notes, whole=False):
         )
     lens = camera.data
     if lens.type not in _WINDOWS:
-        raise ExportError(f"Camera '{camera.name}': {lens.type.lower()} cameras are not supported.")
+        kind = f"{lens.type.lower()} cameras are" if lens.type else f"its type is {UNKNOWN}, which is"
+        raise ExportError(
+            f"Camera '{camera.name}': {kind} not supported; choose Perspective or Orthographic."
+        )
     size = _full_size(scene.render)
     window = _WINDOWS[lens.type](_projection(camera, depsgraph, scene.render, size))
     if not whole:

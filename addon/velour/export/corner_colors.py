@@ -6,6 +6,7 @@ import numpy as np
 
 from .color import luminance_weights
 from .image_nodes import UnsupportedError
+from .newer import UNKNOWN
 
 MOST_SETS = 4  # VLR_MOST_COLOR_SETS
 # Types that Cycles reads: the property of an element, and how many numbers it has.
@@ -35,8 +36,9 @@ def corner_colors_of(plug, is_number):
     if node.bl_idname == "ShaderNodeVertexColor":
         return CornerColors(node.layer_name or None, part, is_number)
     if node.attribute_type != "GEOMETRY":
-        kind = node.bl_rna.properties["attribute_type"].enum_items[node.attribute_type].name
-        raise UnsupportedError(f"'{node.name}' shows an attribute of type '{kind}'")
+        known = node.bl_rna.properties["attribute_type"].enum_items.get(node.attribute_type)
+        kind = f"type '{known.name}'" if known else f"a type that is {UNKNOWN}"
+        raise UnsupportedError(f"'{node.name}' shows an attribute of {kind}")
     otherwise = 1.0 if part == "Alpha" else 0.0
     return CornerColors(node.attribute_name, "Fac" if part == "Factor" else part, is_number, otherwise)
 

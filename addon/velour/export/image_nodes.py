@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from mathutils import Euler, Matrix
 
+from .newer import UNKNOWN, choice
 from .plugs import fed_by
 
 _WRAPS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
@@ -27,7 +28,7 @@ class UnsupportedError(Exception):
     """Why a node cannot be rendered, as the end of a sentence."""
 
 
-def picture_of(plug):
+def picture_of(plug, owner, notes):
     """The Picture at a node's output; raises UnsupportedError of any node but Image Texture."""
     node = plug.node
     if node.bl_idname != "ShaderNodeTexImage":
@@ -39,7 +40,7 @@ def picture_of(plug):
         node.image,
         plug.socket.name == "Alpha",
         node.outputs["Alpha"].is_linked,
-        _WRAPS[node.extension],
+        choice(_WRAPS, node.extension, "REPEAT", f"{owner}: node '{node.name}'", "extension", notes),
         "closest" if node.interpolation == "Closest" else "linear",
         *_uv_map(plug.input("Vector")),
     )
@@ -90,6 +91,7 @@ def _mapping_matrix(plug):
         "VECTOR": lambda: rotation @ scale,
     }
     if node.vector_type not in kinds:
-        raise UnsupportedError(f"'{node.name}' maps normals")
+        kind = "normals" if node.vector_type == "NORMAL" else f"by a type that is {UNKNOWN}"
+        raise UnsupportedError(f"'{node.name}' maps {kind}")
     matrix = np.array(kinds[node.vector_type](), np.float32)
     return np.ascontiguousarray(matrix[:2][:, (0, 1, 3)])  # texture coordinates have no z

@@ -16,7 +16,7 @@ class InstanceGroups:
         self._groups = {}
 
     def add(self, mesh, look, matrix, owner):
-        """`mesh`: its place in a MeshQueue; `look`: (materials, hidden), as of Scene.add_instances.
+        """`mesh`: its place in a MeshQueue; `look`: (materials, hidden, terminator) of Scene.add_instances.
 
         `owner`: the object's Owner.
         """
@@ -35,7 +35,7 @@ class InstanceGroups:
         """
         all_owners = []
         numbers = np.array([_NOTHING if number is None else number for number in numbers], np.uint32)
-        for (materials, hidden), (places, rows, owners) in self._groups.items():
+        for look, (places, rows, owners) in self._groups.items():
             meshes = numbers[np.frombuffer(places, np.uint32)]
             matrices = np.frombuffer(rows, np.float32).reshape(-1, 3, 4)
             self._note_endless(matrices, owners)
@@ -43,7 +43,7 @@ class InstanceGroups:
             if not shown.all():
                 meshes, matrices = meshes[shown], matrices[shown]
                 owners = [owners[i] for i in np.flatnonzero(shown)]
-            self._scene.add_instances(meshes, matrices, materials, hidden)
+            self._scene.add_instances(meshes, matrices, *look)
             all_owners += owners
         self._groups = {}
         return all_owners

@@ -1,5 +1,6 @@
 """What the shader nodes of a lamp say beside its own settings."""
 
+from .newer import has_nodes
 from .nodes import active_output
 from .notes import Notes
 from .plugs import Plug, fed_by
@@ -11,7 +12,7 @@ _AS_IT_IS = (1.0, 1.0, 1.0)
 def emission_factor(lamp):
     """The colour that a lamp's light is multiplied by, as in Cycles; None: its nodes are more than one
     Emission of constant colour and strength."""
-    if not (lamp.use_nodes and lamp.node_tree):
+    if not has_nodes(lamp):
         return _AS_IT_IS
     output = active_output(lamp.node_tree, "ShaderNodeOutputLight")
     plug = fed_by(Plug(output.inputs["Surface"])) if output else None

@@ -7,6 +7,7 @@ import bpy
 from ..native import VelourError
 from .axes import column_lengths, unscaled
 from .light_nodes import emission_factor
+from .newer import choice
 from .notes import ExportError
 from .unused_settings import note_emitter
 
@@ -35,7 +36,7 @@ def add_light(scene, obj, matrix, notes):
     if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):
         notes.add(f"{owner}: its diffuse, specular and volume factors are ignored.")
     note_emitter(owner, getattr(lamp, "cycles", None), notes)
-    kind, factor, values = _DESCRIBE[lamp.type](lamp, matrix)
+    kind, factor, values = choice(_DESCRIBE, lamp.type, "POINT", owner, "type", notes)(lamp, matrix)
     watts = power(lamp, matrix) * factor
     color = tuple(watts * c * e for c, e in zip(tinted(lamp), emission, strict=True))
     _note_shape(lamp, matrix, owner, notes)

@@ -15,6 +15,7 @@ from .uv_maps import maps_of_slots, missing_map
 from .visibility import Visibility, note_light_visibility
 
 _FLAT = 1e-36  # determinants of instances that the library leaves out, and does not count
+_TERMINATOR = 0.1  # Cycles' default, without its add-on
 _PENCIL = "Grease Pencil strokes"
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
@@ -159,7 +160,8 @@ class ObjectExport:
         if "camera" not in hidden:
             self._seen.append(mesh.place)
         owner = Owner(obj.name, _asset(obj), obj.pass_index, mesh.uv_set)
-        return _Shown(owner, mesh.place, slots.materials, (slots.numbers, hidden), slots.is_placed)
+        look = (slots.numbers, hidden, _terminator(obj))
+        return _Shown(owner, mesh.place, slots.materials, look, slots.is_placed)
 
     def _add_instance(self, instance, shown, metres):
         matrix = instance.matrix_world.copy()  # which asks Blender once
@@ -174,9 +176,9 @@ class ObjectExport:
         if placements is None:
             self._groups.add(shown.mesh, shown.look, matrix, shown.owner)
         else:
-            numbers, hidden = shown.look
+            numbers, hidden, terminator = shown.look
             mesh = self._queue.numbers()[shown.mesh]
-            self._scene.add_instance(mesh, affine(matrix), numbers, placements, hidden)
+            self._scene.add_instance(mesh, affine(matrix), numbers, placements, hidden, terminator)
             self.owners.append(shown.owner)
 
     def _mesh(self, obj, kind, data, materials):
@@ -296,3 +298,10 @@ def slots_of(obj, arrays, material):
         return ()
     shown = _shown_materials(all_materials(obj), arrays.slot_count)
     return tuple(slot for slot, other in enumerate(shown) if other and other.original == material.original)
+
+
+def _terminator(obj):
+    """The geometry offset of the shadow terminator; before Blender 5.0 a setting of Cycles."""
+    name = "shadow_terminator_geometry_offset"
+    found = getattr(obj, name, None)
+    return getattr(getattr(obj, "cycles", None), name, _TERMINATOR) if found is None else found

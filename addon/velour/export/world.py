@@ -8,6 +8,7 @@ from mathutils import Matrix
 
 from .color import is_linear_rec709
 from .files import absolute_path
+from .newer import has_nodes
 from .nodes import active_output, output, source
 from .notes import ExportError
 from .picture_files import linear_file
@@ -32,7 +33,7 @@ def shown_world(depsgraph):
 
 def has_moving_picture(world):
     """Whether it shows another one in each frame, of which Blender tells nobody."""
-    tree = world.node_tree if world and world.use_nodes else None
+    tree = world.node_tree if world and has_nodes(world) else None
     images = [getattr(node, "image", None) for node in tree.nodes] if tree else []
     return any(image and image.source in _MOVING for image in images)
 
@@ -42,7 +43,7 @@ def add_world(light, world, frame, notes):
     _note_visibility(world, notes)
     if world is None:
         return _add_color(light, (0.0, 0.0, 0.0))
-    if not world.use_nodes or world.node_tree is None:
+    if not has_nodes(world):
         return _add_color(light, tuple(world.color))
     return _add_nodes(light, world, frame, notes)
 

@@ -14,6 +14,8 @@ from .handle import Handle, choice, path_bytes, set_fields
 from .job import Job
 from .model import Model
 
+_CHOICES = (("values", table.BTF_VALUES), ("colors", table.BTF_COLORS), ("angles", table.BTF_ANGLES))
+
 
 class Btf(Handle):
     """Pictures over pairs of directions, read when asked for. Immutable; threads may share it."""
@@ -24,11 +26,11 @@ class Btf(Handle):
     def load(cls, path: str | os.PathLike, **options) -> Btf:
         """Opens a folder of Velour's own, a folder of pictures named for their angles (UBO2003), a CSV index
         of pictures, or a .btf file of Bonn (UBO2014). Options: values (table.BTF_VALUES), colors
-        (table.BTF_COLORS), gamma (0: the sRGB curve), tile_metres (x, y), layer (of
-        OpenEXR pictures)."""
+        (table.BTF_COLORS), angles (table.BTF_ANGLES), gamma (0: the sRGB curve), tile_metres (x, y), layer
+        (of OpenEXR pictures)."""
         raw = structs.BtfOptions()
         library.load().vlr_btf_options_init(ctypes.byref(raw))
-        for name, names in (("values", table.BTF_VALUES), ("colors", table.BTF_COLORS)):
+        for name, names in _CHOICES:
             if name in options:
                 options[name] = choice(name, options[name], names)
         if "layer" in options:

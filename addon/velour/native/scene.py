@@ -83,33 +83,41 @@ class Scene(Handle):
         """Reads a Wavefront OBJ file; the mesh's number."""
         return self._numbered("vlr_scene_load_mesh", path_bytes(path))
 
-    def add_instance(self, mesh: int, object_to_world, materials, placements=None, hidden=()) -> None:
+    def add_instance(
+        self, mesh: int, object_to_world, materials, placements=None, hidden=(), terminator: float = 0.0
+    ) -> None:
         """`materials`: the material's number of each slot of the mesh.
 
         placements: of each slot a map [2 x 3] that takes (u, v, 1) of the mesh to the texture coordinates
         that its material is shown with, footprints and tangents included; None: they are the mesh's own.
         hidden: of "camera", "bounces", "shadows": rays that pass through it; "holdout": the camera sees
-        nothing of it, and nothing behind it.
+        nothing of it, and nothing behind it. terminator: geometry offset of the shadow terminator, 0 to 1.
         """
-        self._lib.vlr_scene_hide_instances(self.pointer, sum(table.HIDDEN[name] for name in set(hidden)))
+        self._set_looks(hidden, terminator)
         numbers = (c_uint32 * len(materials))(*materials)
         matrix = affine("object_to_world", object_to_world)
         if placements is not None:
             placements = small("placements", placements, 6 * len(materials))
         self._lib.vlr_scene_add_placed_instance(self.pointer, mesh, matrix, numbers, placements, len(numbers))
 
-    def add_instances(self, meshes: np.ndarray, object_to_world: np.ndarray, materials, hidden=()) -> None:
+    def add_instances(
+        self, meshes: np.ndarray, object_to_world: np.ndarray, materials, hidden=(), terminator: float = 0.0
+    ) -> None:
         """Many that differ in nothing but meshes and matrices, uint32 [n], float32 [n x 3 x 4].
 
         Else as add_instance.
         """
         matrices = checked("object_to_world", object_to_world, (None, 3, 4))
         meshes = checked("meshes", meshes, (len(matrices),), np.uint32)
-        self._lib.vlr_scene_hide_instances(self.pointer, sum(table.HIDDEN[name] for name in set(hidden)))
+        self._set_looks(hidden, terminator)
         numbers = (c_uint32 * len(materials))(*materials)
         self._lib.vlr_scene_add_instances(
             self.pointer, address(meshes), address(matrices), len(matrices), numbers, len(numbers)
         )
+
+    def _set_looks(self, hidden, terminator: float) -> None:
+        self._lib.vlr_scene_hide_instances(self.pointer, sum(table.HIDDEN[name] for name in set(hidden)))
+        self._lib.vlr_scene_soften_terminator(self.pointer, terminator)
 
     def clear_instances(self) -> None:
         """Meshes and materials stay."""

@@ -62,6 +62,7 @@ class BtfOptions(Struct):
         ("gamma", c_float),
         ("tile_metres", c_float * 2),
         ("layer", c_char_p),
+        ("angles", c_int32),
     ]
 
 

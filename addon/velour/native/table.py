@@ -29,6 +29,7 @@ COMPRESS_METHODS = ("svd", "srbf", "tucker", "cta", "kcta", "svd-view")  # by nu
 COMPANDINGS = ("none", "root")  # by number
 BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
 BTF_COLORS = ("rec709", "xyz")
+BTF_ANGLES = ("automatic", "degrees", "radians")
 PEERS = ("ggx", "principled", "plain_principled")
 PLOTS = ("lobes", "order", "view-error", "albedo", "outline")
 LIGHTS = ("sun", "point", "rectangle", "disk", "spot")
@@ -150,6 +151,7 @@ STATUS_CALLS = {
     "vlr_scene_add_placed_instance": [_handle, c_uint32, _floats, _number, _floats, c_uint32],
     "vlr_scene_add_instances": [_handle, c_void_p, c_void_p, c_uint64, _number, c_uint32],
     "vlr_scene_clear_instances": [_handle],
+    "vlr_scene_soften_terminator": [_handle, c_float],
     "vlr_scene_hide_instances": [_handle, c_uint32],
     "vlr_scene_add_light": [_handle, POINTER(structs.LightDesc)],
     "vlr_scene_clear_lights": [_handle],

@@ -65,7 +65,8 @@ def refuse_linked(material):
 def new_material(name):
     """A material with a measured node beside the group that approximates it, ready for a model."""
     material = bpy.data.materials.new(name)
-    material.use_nodes = True
+    if material.node_tree is None:
+        material.use_nodes = True
     material.node_tree.nodes.clear()
     approximation_group.put(material)
     ensure_node(material)

@@ -92,14 +92,14 @@ class RealtimeScene(Scene):
     def remove_mesh(self, mesh):
         self.meshes[mesh] = None
 
-    def add_instance(self, mesh, object_to_world, materials, placements=None, hidden=()):
+    def add_instance(self, mesh, object_to_world, materials, placements=None, hidden=(), terminator=0.0):
         matrix = np.asarray(object_to_world, np.float32).reshape(1, 3, 4)
         maps = [_UNPLACED] if placements is None else np.asarray(placements, np.float32).reshape(-1, 2, 3)
         for slot, placed in enumerate(maps):
             only = None if placements is None else slot
             self._add_group(mesh, matrix, materials, placed, hidden, only)
 
-    def add_instances(self, meshes, object_to_world, materials, hidden=()):
+    def add_instances(self, meshes, object_to_world, materials, hidden=(), terminator=0.0):
         for mesh in np.unique(meshes):
             self._add_group(int(mesh), object_to_world[meshes == mesh], materials, _UNPLACED, hidden)
 

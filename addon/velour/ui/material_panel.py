@@ -5,6 +5,7 @@ import bpy
 from ..core.model_warnings import gain_warning, roughness_reason, tolerance_words
 from ..engine.engine import VelourRenderEngine
 from ..export.measured_materials import gain
+from ..export.newer import has_nodes
 from ..export.nodes import active_output, velour_node
 from ..export.notes import Notes
 from ..export.shaders import surface_layers
@@ -140,7 +141,9 @@ class VELOUR_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
         layout, material = self.layout, context.material
         if velour_node(material) is not None:
             layout.label(text="Approximation for Material Preview and other engines", icon="INFO")
-        output = active_output(material.node_tree, "ShaderNodeOutputMaterial") if material.use_nodes else None
+        output = (
+            active_output(material.node_tree, "ShaderNodeOutputMaterial") if has_nodes(material) else None
+        )
         if output is None:
             layout.prop(material, "use_nodes", icon="NODETREE")
             return

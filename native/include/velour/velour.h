@@ -139,6 +139,8 @@ enum {
   VLR_BTF_RADIANCE = 3     /* pi cos(theta_l) times it */
 };
 enum { VLR_BTF_REC709 = 0, VLR_BTF_XYZ = 1 };
+/* Automatic: degrees, and refused where they look like radians. */
+enum { VLR_BTF_ANGLES_AUTOMATIC = 0, VLR_BTF_DEGREES = 1, VLR_BTF_RADIANS = 2 };
 
 typedef struct vlr_btf_options {
   uint32_t struct_size;
@@ -147,6 +149,7 @@ typedef struct vlr_btf_options {
   float gamma;          /* of pictures of whole numbers: linear = stored^gamma; 0: the sRGB curve */
   float tile_metres[2]; /* size of the tile along x and y; 0 0: what the source says, if it says anything */
   const char* layer;    /* of OpenEXR pictures, as in vlr_picture_options; NULL or "": the picture itself */
+  int32_t angles;       /* of a CSV index: VLR_BTF_ANGLES_AUTOMATIC ... */
 } vlr_btf_options;
 VLR_API void vlr_btf_options_init(vlr_btf_options* options);
 
@@ -456,6 +459,10 @@ VLR_API vlr_status vlr_scene_clear_instances(vlr_scene* scene);
 enum { VLR_HIDDEN_FROM_CAMERA = 1, VLR_HIDDEN_FROM_BOUNCES = 2, VLR_HIDDEN_FROM_SHADOWS = 4, VLR_HOLDOUT = 8 };
 /* Of all instances that are added from here on; 0, as at first: of none. */
 VLR_API vlr_status vlr_scene_hide_instances(vlr_scene* scene, uint32_t hidden_from);
+/* Shadow terminator of all instances that are added from here on: where light comes in at a cosine below `offset` (0 to
+ * 1), shadow rays begin on the smooth surface that the shading normals belong to, so that coarse meshes show no steps.
+ * Cycles' default is 0.1; 0, as at first: they begin on the mesh. */
+VLR_API vlr_status vlr_scene_soften_terminator(vlr_scene* scene, float offset);
 
 enum { VLR_LIGHT_SUN = 0, VLR_LIGHT_POINT = 1, VLR_LIGHT_RECTANGLE = 2, VLR_LIGHT_DISK = 3, VLR_LIGHT_SPOT = 4 };
 typedef struct vlr_light_desc {

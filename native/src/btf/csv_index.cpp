@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <tuple>
@@ -143,12 +144,35 @@ class CsvIndex {
   bool numbered_ = false;
 };
 
+/// No angle of a whole turn in radians, more than one, and not all of them whole: nobody measures within six degrees.
+bool look_like_radians(const std::vector<PairPicture>& pictures) {
+  constexpr double kTurn = 6.3;
+  bool any = false;
+  for (const PairPicture& p : pictures) {
+    for (const double angle : {p.view.theta, p.view.phi, p.light.theta, p.light.phi}) {
+      if (!(std::abs(angle) < kTurn)) return false;
+      any = any || angle != std::round(angle);
+    }
+  }
+  return any;
+}
+
 std::string text_of(const std::vector<uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
 
 }  // namespace
 
-std::vector<PairPicture> read_csv_index(const std::string& path) {
-  return CsvIndex(path, text_of(read_file(path, kMostBytes))).pictures();
+std::vector<PairPicture> read_csv_index(const std::string& path, BtfAngles angles) {
+  std::vector<PairPicture> pictures = CsvIndex(path, text_of(read_file(path, kMostBytes))).pictures();
+  if (angles == BtfAngles::automatic && look_like_radians(pictures)) {
+    throw Error(Status::bad_data, path +
+                                      ": all angles are below 6.3, as radians are; say which they are: --angles "
+                                      "degrees or --angles radians.");
+  }
+  if (angles == BtfAngles::radians) {
+    for (PairPicture& p : pictures)
+      for (double* angle : {&p.view.theta, &p.view.phi, &p.light.theta, &p.light.phi}) *angle *= 180 / kPiD;
+  }
+  return pictures;
 }
 
 bool is_csv_index(const std::string& path) {

@@ -38,7 +38,7 @@ void check(const BtfLoadOptions& options) {
 }
 
 std::shared_ptr<const BtfMeasurement> load_csv(const std::string& path, const BtfLoadOptions& options) {
-  return load_image_set({path, "csv", read_csv_index(path)}, options);
+  return load_image_set({path, "csv", read_csv_index(path, options.angles)}, options);
 }
 
 std::shared_ptr<const BtfMeasurement> load_folder(const std::string& path, const BtfLoadOptions& options) {

@@ -18,13 +18,17 @@ enum class BtfValues {
   radiance,     // pi cos(theta_l) times it: white is the cosine of the light, as a camera sees it under a distant lamp
 };
 
+/// The unit of angles in a CSV index. Automatic: degrees, and refused where they look like radians.
+enum class BtfAngles { automatic, degrees, radians };
+
 /// What the three channels of pictures are.
 enum class BtfColors { rec709, xyz };
 
 struct BtfLoadOptions {
   BtfValues values = BtfValues::automatic;
   BtfColors colors = BtfColors::rec709;
-  TransferCurve curve;                             // of pictures of whole numbers
+  TransferCurve curve;  // of pictures of whole numbers
+  BtfAngles angles = BtfAngles::automatic;
   std::string layer = {};                          // of OpenEXR pictures (PictureOptions)
   std::optional<Vec2> tile_metres = std::nullopt;  // in place of what the source says, if it says anything
 };

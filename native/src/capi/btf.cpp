@@ -26,6 +26,8 @@ BtfLoadOptions converted(const vlr_btf_options& given) {
   const Vec2 tile(given.tile_metres[0], given.tile_metres[1]);
   if (tile != Vec2(0)) options.tile_metres = tile;
   if (given.layer) options.layer = given.layer;
+  require_enum("angles", given.angles, VLR_BTF_RADIANS);
+  options.angles = static_cast<BtfAngles>(given.angles);
   return options;
 }
 

@@ -53,6 +53,7 @@ struct vlr_scene {
   std::shared_ptr<velour::Scene> scene;
   std::string info;
   uint8_t hidden_from = 0;  // of instances to come
+  float terminator = 0;     // the same
 };
 
 /// One of them.

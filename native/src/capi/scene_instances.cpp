@@ -21,7 +21,7 @@ vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const 
     std::vector<TextureMap> maps;
     for (uint32_t i = 0; placements != nullptr && i < count; ++i) maps.push_back(map_from(placements + 6 * i));
     scene->scene->add_instance(mesh, affine_from(object_to_world), {materials, materials + count}, std::move(maps),
-                               scene->hidden_from);
+                               scene->hidden_from, scene->terminator);
   });
 }
 
@@ -34,7 +34,7 @@ vlr_status vlr_scene_add_instances(vlr_scene* scene, const uint32_t* meshes, con
     require(materials, "materials");
     for (uint64_t i = 0; i < instances; ++i) {
       scene->scene->add_instance(meshes[i], affine_from(object_to_world + 12 * i), {materials, materials + count}, {},
-                                 scene->hidden_from);
+                                 scene->hidden_from, scene->terminator);
     }
   });
 }
@@ -44,6 +44,17 @@ vlr_status vlr_scene_hide_instances(vlr_scene* scene, uint32_t hidden_from) {
     require(scene, "scene");
     require_hidden(hidden_from, kRays | VLR_HOLDOUT);
     scene->hidden_from = static_cast<uint8_t>(hidden_from);
+  });
+}
+
+vlr_status vlr_scene_soften_terminator(vlr_scene* scene, float offset) {
+  return guard([&] {
+    require(scene, "scene");
+    if (!(offset >= 0.0f && offset <= 1.0f)) {
+      throw Error(Status::invalid_argument,
+                  "The offset of the shadow terminator is " + std::to_string(offset) + "; it must be 0 to 1.");
+    }
+    scene->terminator = offset;
   });
 }
 

@@ -1,9 +1,15 @@
 #include "file/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 
 #include <cerrno>
+#include <ctime>
+#include <mutex>
 #include <random>
+#include <set>
+#include <string_view>
 #include <system_error>
 
 #include "job/error.h"
@@ -24,24 +30,58 @@ std::filesystem::path write_target(const std::string& path) {
   return target;
 }
 
+/// What the names of temporary files have behind the target's.
+constexpr std::string_view kMark = ".velour-partial-";
+
+/// Whether nobody writes it: it is not locked, and not so new that its writer may be about to lock it.
+bool is_left_over(const std::filesystem::path& file) {
+  constexpr time_t kNew = 10;  // seconds
+  const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
+  struct stat info {};
+  return fd.get() >= 0 && ::fstat(fd.get(), &info) == 0 && S_ISREG(info.st_mode) &&
+         ::time(nullptr) - info.st_mtime > kNew && ::flock(fd.get(), LOCK_EX | LOCK_NB) == 0;
+}
+
+/// Removes what killed writers have left in a folder, when this process first writes there: some folders hold ten
+/// thousands of files. Where the file system has no locks, everything stays.
+void remove_left_over(const std::filesystem::path& folder) {
+  static std::mutex mutex;
+  static std::set<std::filesystem::path> seen;
+  const std::lock_guard lock(mutex);
+  if (!seen.insert(folder).second) return;
+  std::error_code ignored;
+  for (std::filesystem::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+       entry.increment(ignored)) {
+    const bool has_mark = entry->path().filename().string().find(kMark) != std::string::npos;
+    if (has_mark && is_left_over(entry->path())) ::unlink(entry->path().c_str());
+  }
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& target) {
+  return target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+}
+
 /// A new file beside the target, because renames are atomic within one folder only, and its name. The name is random:
-/// processes of other machines and containers, whose ids may be equal, write to the same folder, and what a killed one
-/// has left stays. Over a network a new file may be said to exist already: then another name.
+/// processes of other machines and containers, whose ids may be equal, write to the same folder. Over a network a new
+/// file may be said to exist already: then another name.
 int create_beside(const std::filesystem::path& target, const std::string& path, std::string& name) {
   constexpr int kAttempts = 16;
+  remove_left_over(folder_of(target));
   std::random_device random;
   for (int attempt = 1;; ++attempt) {
-    name = target.string() + ".velour-" + std::to_string(random()) + "-" + std::to_string(random());
+    name = target.string() + std::string(kMark) + std::to_string(random()) + "-" + std::to_string(random());
     const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (fd >= 0) return fd;
+    if (fd >= 0) {
+      ::flock(fd, LOCK_EX | LOCK_NB);  // where there are locks: else nobody removes it
+      return fd;
+    }
     if (errno != EEXIST || attempt == kAttempts) fail_with_code(path, "write", errno);
   }
 }
 
 /// Makes the rename itself survive a power cut; a file system that cannot is no reason to fail.
 void sync_folder(const std::filesystem::path& target) {
-  const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
-  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const Descriptor fd(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (fd.get() >= 0) ::fsync(fd.get());
 }
 
@@ -59,8 +99,8 @@ void AtomicFile::write_through(std::span<const uint8_t> bytes) {
     const ssize_t put = ::write(fd_.get(), bytes.data(), bytes.size());
     if (put < 0 && errno == EINTR) continue;
     if (put < 0) {
-      failed_ = true;
-      fail_with_code(path_, "write", errno);
+      failure_ = errno;
+      fail_with_code(path_, "write", failure_);
     }
     bytes = bytes.subspan(static_cast<size_t>(put));
     start_ += static_cast<uint64_t>(put);
@@ -84,14 +124,14 @@ void AtomicFile::write(std::span<const uint8_t> bytes) {
 void AtomicFile::seek(uint64_t position) {
   flush();
   if (::lseek(fd_.get(), static_cast<off_t>(position), SEEK_SET) < 0) {
-    failed_ = true;
-    fail_with_code(path_, "write", errno);
+    failure_ = errno;
+    fail_with_code(path_, "write", failure_);
   }
   start_ = position;
 }
 
 void AtomicFile::commit() {
-  if (failed_) throw Error(Status::io, path_ + ": cannot write: an earlier part of it could not be written.");
+  if (failure_ != 0) fail_with_code(path_, "write", failure_);
   flush();
   if (::fsync(fd_.get()) != 0 || fd_.close() != 0) fail_with_code(path_, "write", errno);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail_with_code(path_, "write", errno);

@@ -12,8 +12,9 @@
 namespace velour {
 
 /// Written beside its path under a temporary name, flushed and renamed by commit(): a killed process leaves the old
-/// file or the new one. Without a commit nothing remains. A failed write stays failed, so that commit() throws even
-/// where a caller in between has swallowed the first error.
+/// file or the new one. Without a commit nothing remains, and what a killed process has left is removed by the next
+/// that writes the same file: a temporary file is locked as long as its writer lives. A failed write stays failed, so
+/// that commit() throws its reason even where a caller in between has swallowed it.
 class AtomicFile {
  public:
   /// Throws Error(io).
@@ -37,7 +38,8 @@ class AtomicFile {
   Descriptor fd_;
   std::vector<uint8_t> buffer_;
   uint64_t start_ = 0;  // where the buffer belongs
-  bool failed_ = false, committed_ = false;
+  int failure_ = 0;     // errno of the first write that failed
+  bool committed_ = false;
 };
 
 }  // namespace velour

@@ -91,7 +91,7 @@ void DirectLight::draw_towards_products(std::span<const Receiver> receivers) {
 
 /// A direction that brings nothing costs nothing further: n counts it, the batch does not hold it.
 void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer, uint8_t aim) {
-  if (!vertex.receives(wl, wl_world)) return;
+  if (!vertex.receives_light(wl, wl_world)) return;
   drawer_[world_.count] = drawer;
   aim_[world_.count] = aim;
   local_.push(wl);
@@ -183,7 +183,8 @@ void DirectLight::settle_glow(std::span<const Receiver> receivers, Output output
   Ray rays[DirectionBatch::kCapacity];
   const int count = terms_.world.count;
   for (int i = 0; i < count; ++i) {
-    rays[i] = receivers[terms_.receiver[i]].vertex.ray(terms_.world.get(i), std::numeric_limits<float>::infinity());
+    rays[i] =
+        receivers[terms_.receiver[i]].vertex.shadow_ray(terms_.world.get(i), std::numeric_limits<float>::infinity());
   }
   terms_.look_up_glow(lighting_, aims_, {rays, static_cast<size_t>(count)});
   for (const LightTerms::Glow& g : terms_.glow) {
@@ -209,7 +210,7 @@ void DirectLight::queue(const Receiver& receiver, const Vec3& wl_world, const Rg
     output.samples[receiver.sample].radiance += light;
     return;
   }
-  output.shadows.add(receiver.vertex.ray(wl_world, far), light, receiver.sample);
+  output.shadows.add(receiver.vertex.shadow_ray(wl_world, far), light, receiver.sample);
 }
 
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {

@@ -70,7 +70,7 @@ void HitLightEstimator::draw(const Vertex& vertex, Counts counts, PathNumbers& n
 
 void HitLightEstimator::keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer,
                                          const Hit& aim) {
-  if (!vertex.receives(wl, wl_world)) return;
+  if (!vertex.receives_light(wl, wl_world)) return;
   drawer_[local_.count] = drawer;
   aims_[local_.count] = aim;
   local_.push(wl);
@@ -100,7 +100,7 @@ void HitLightEstimator::weigh(const Vertex& vertex, Counts counts) {
 
 void HitLightEstimator::trace(const Vertex& vertex) {
   const auto count = static_cast<size_t>(world_.count);
-  for (size_t i = 0; i < count; ++i) rays_[i] = vertex.ray(world_.get(static_cast<int>(i)), kInfinity);
+  for (size_t i = 0; i < count; ++i) rays_[i] = vertex.shadow_ray(world_.get(static_cast<int>(i)), kInfinity);
   visible_.intersect({rays_, count}, hits_, hidden::kFromBounces, passed_);
 }
 
@@ -121,7 +121,7 @@ Rgb HitLightEstimator::passed_from(const Vertex& vertex, const LampHit& lamp) co
   if (!visible_.dims()) return Rgb(hit.instance != kNoHit && hit.distance < lamp.distance ? 0.0f : 1.0f);
   // What the direction met or passed on its way was drawn, and may stand behind the lamp.
   Rgb passed;
-  return visible_.occluded(vertex.ray(world_.get(lamp.direction), lamp.distance), &passed) ? Rgb(0.0f) : passed;
+  return visible_.occluded(vertex.shadow_ray(world_.get(lamp.direction), lamp.distance), &passed) ? Rgb(0.0f) : passed;
 }
 
 /// As LightTerms has it: what the lights draw brings the light of a surface only where it was aimed at it.
@@ -164,7 +164,7 @@ void HitLightEstimator::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
   for (int i = 0; i < count; ++i) {
     const SharpLight& s = sharp[i];
     Rgb passed(1.0f);
-    if (s.lamp->casts_shadow() && visible_.occluded(vertex.ray(s.wl_world, s.distance), &passed)) continue;
+    if (s.lamp->casts_shadow() && visible_.occluded(vertex.shadow_ray(s.wl_world, s.distance), &passed)) continue;
     const Rgb light = std::abs(s.wl.z) * passed * s.irradiance;
     note_density(kInfinity, light);
     add_term(s.wl, light);

@@ -92,9 +92,19 @@ void Lamp::set_spot(const Light& light) {
   axis_ = -glm::normalize(light.light_to_world.column(2));
   cos_cone_ = std::cos(0.5f * std::clamp(light.angle, 0.0f, 2.0f * kPi));
   cosine_ = light.cosine;
-  if (light.cone_scale != Vec2(1.0f)) {
-    narrow_x_ = light.light_to_world.column(0) / light.cone_scale.x;
-    narrow_y_ = light.light_to_world.column(1) / light.cone_scale.y;
+  const Affine& map = light.light_to_world;
+  const Mat3 axes(map.column(0), map.column(1), map.column(2));
+  const Mat3 products = glm::transpose(axes) * axes;
+  constexpr float kPerpendicular = 1e-5f;
+  const bool sheared =
+      std::max({std::abs(products[0][1]), std::abs(products[0][2]), std::abs(products[1][2])}) > kPerpendicular;
+  // Before Blender 3.5, whose spots also fall with the cosine, the cone was round whatever became of its axes.
+  const bool turns_with_axes = sheared && !cosine_ && std::abs(glm::determinant(axes)) > kPerpendicular;
+  if (light.cone_scale != Vec2(1.0f) || turns_with_axes) {
+    const Mat3 rows = turns_with_axes ? glm::transpose(glm::inverse(axes)) : axes;
+    narrow_x_ = rows[0] / light.cone_scale.x;
+    narrow_y_ = rows[1] / light.cone_scale.y;
+    narrow_z_ = -rows[2];
   }
   fade_ = std::clamp(light.blend, 0.0f, 1.0f) * (1.0f - cos_cone_);
 }
@@ -110,8 +120,13 @@ void Lamp::set_area(const Light& light) {
   if (!(area_ > 0.0f)) return;  // without extent it emits nothing: power stays 0
   axis_ = normal / quarter;
   if (glm::dot(axis_, map.column(2)) > 0.0f) axis_ = -axis_;
+  constexpr float kStraight = 1e-6f;  // 1 - cosine
+  const float length = glm::length(map.column(2));
+  shine_ = length > 0.0f ? -map.column(2) / length : axis_;
+  if (drop_between(shine_, axis_) < kStraight) shine_ = axis_;
   power_ = luminance(light.color);
   radiance_ = light.color / (kPi * area_);
+  if (type_ == Light::Type::rectangle) radiance_ *= quarter / (glm::length(half_x_) * glm::length(half_y_));
   set_spread(light.spread);
 }
 
@@ -125,21 +140,32 @@ void Lamp::set_spread(float spread) {
 }
 
 float Lamp::cone_cosine(const Vec3& direction) const {
-  const float cosine = -glm::dot(direction, axis_);
-  if (narrow_x_ == Vec3(0.0f)) return cosine;
+  if (narrow_z_ == Vec3(0.0f)) return -glm::dot(direction, axis_);
+  const float cosine = -glm::dot(direction, narrow_z_);
   return cosine / glm::length(Vec3(glm::dot(direction, narrow_x_), glm::dot(direction, narrow_y_), cosine));
 }
 
-float Lamp::falloff(const Vec3& direction) const {
-  const float cosine = type_ == Light::Type::spot ? cone_cosine(direction) : -glm::dot(direction, axis_);
-  if (type_ == Light::Type::spot) {
-    if (cosine <= cos_cone_) return 0.0f;
-    const float t = cosine - cos_cone_;
-    return (t < fade_ ? smooth_step(t / fade_) : 1.0f) * (cosine_ ? cosine : 1.0f);
-  }
-  if (cot_spread_ == 0.0f) return 1.0f;
+/// Sheared lamps are lit as in Cycles, whose samples of a disk count with the cosine to the lamp's own axis, not to the
+/// normal of its plane; those of a rectangle are drawn by solid angle.
+float Lamp::area_falloff(const Vec3& direction) const {
+  constexpr float kMaxRatio = 1e4f;  // seen along the plane
+  const float cosine = -glm::dot(direction, shine_);
+  if (!(cosine > 0.0f)) return cot_spread_ == 0.0f && type_ == Light::Type::rectangle ? 1.0f : 0.0f;
+  const float lean = std::abs(glm::dot(direction, axis_));
+  const bool leans = shine_ != axis_ && type_ == Light::Type::disk;
+  const float ratio = !leans ? 1.0f : (cosine < kMaxRatio * lean ? cosine / lean : kMaxRatio);
+  if (cot_spread_ == 0.0f) return ratio;
   const float tangent = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
-  return focus_ * std::max(0.0f, 1.0f - cot_spread_ * tangent);
+  return ratio * focus_ * std::max(0.0f, 1.0f - cot_spread_ * tangent);
+}
+
+float Lamp::falloff(const Vec3& direction) const {
+  if (type_ == Light::Type::rectangle || type_ == Light::Type::disk) return area_falloff(direction);
+  if (type_ != Light::Type::spot) return 1.0f;
+  const float cosine = cone_cosine(direction);
+  if (cosine <= cos_cone_) return 0.0f;
+  const float t = cosine - cos_cone_;
+  return (t < fade_ ? smooth_step(t / fade_) : 1.0f) * (cosine_ ? cosine : 1.0f);
 }
 
 float Lamp::cone(const Vec3& position, Vec3& axis) const {
@@ -192,11 +218,17 @@ Lamp::Part Lamp::part_seen(const Vec3& position) const {
   if (cot_spread_ == 0.0f) return {Vec2(-1.0f), Vec2(1.0f), area_};
   const Vec3 place = position - center_;
   const float quarter = glm::length(glm::cross(half_x_, half_y_));
+  if (shine_ != axis_) return {Vec2(-1.0f), Vec2(1.0f), 4.0f * quarter};
   const float radius = std::max(0.0f, glm::dot(place, axis_)) / cot_spread_;  // of the circle that shines here
   const Vec2 middle = coordinates(place), extent = radius / quarter * Vec2(glm::length(half_y_), glm::length(half_x_));
   const Vec2 low = glm::max(middle - extent, Vec2(-1.0f)), high = glm::min(middle + extent, Vec2(1.0f));
   const Vec2 size = glm::max(high - low, Vec2(0.0f));
   return {low, high, quarter * size.x * size.y};
+}
+
+bool Lamp::shines_on(const Vec3& position, const Vec3& direction) const {
+  if (!(glm::dot(position - center_, shine_) > 0.0f)) return false;
+  return type_ == Light::Type::rectangle || glm::dot(direction, shine_) < 0.0f;
 }
 
 Vec3 Lamp::sample_area(const Vec3& position, const Vec2& u) const {
@@ -206,19 +238,19 @@ Vec3 Lamp::sample_area(const Vec3& position, const Vec2& u) const {
   const Vec2 place = disk && cot_spread_ == 0.0f ? sample_uniform_disk(u) : glm::mix(part.low, part.high, u);
   if (disk && glm::dot(place, place) > 1.0f) return Vec3(0.0f);
   const Vec3 to_lamp = center_ + place.x * half_x_ + place.y * half_y_ - position;
-  return glm::dot(to_lamp, axis_) < 0.0f ? glm::normalize(to_lamp) : Vec3(0.0f);
+  return shines_on(position, to_lamp) ? glm::normalize(to_lamp) : Vec3(0.0f);
 }
 
 Lamp::Sight Lamp::hit_area(const Vec3& position, const Vec3& direction) const {
   const float facing = -glm::dot(direction, axis_);
   const float height = glm::dot(position - center_, axis_);
-  if (!(facing > 0.0f) || !(height > 0.0f)) return {};
   const float distance = height / facing;
+  if (!shines_on(position, direction) || !(distance > 0.0f) || !std::isfinite(distance)) return {};
   const Vec2 place = coordinates(position + distance * direction - center_);
   const Part part = part_seen(position);
   const bool inside = glm::all(glm::lessThanEqual(part.low, place)) && glm::all(glm::lessThanEqual(place, part.high));
   if (!inside || (type_ == Light::Type::disk && glm::dot(place, place) > 1.0f) || !(part.area > 0.0f)) return {};
-  return {distance, distance * distance / (facing * part.area)};
+  return {distance, distance * distance / (std::abs(facing) * part.area)};
 }
 
 Lamp::Irradiance Lamp::irradiance(const Vec3& position) const {

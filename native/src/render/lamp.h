@@ -50,6 +50,8 @@ class Lamp {
   Part part_seen(const Vec3& position) const;
   /// Of where the line through `place` (from the middle) along the normal meets the lamp.
   Vec2 coordinates(const Vec3& place) const;
+  /// Whether an area lamp lights `position` along `direction` (to the lamp): from the middle of the lamp on.
+  bool shines_on(const Vec3& position, const Vec3& direction) const;
   Vec3 sample_area(const Vec3& position, const Vec2& u) const;
   Sight hit_area(const Vec3& position, const Vec3& direction) const;
   /// Seen as a round cone from wherever.
@@ -58,6 +60,7 @@ class Lamp {
   float cone_cosine(const Vec3& direction) const;
   /// How much of radiance and intensity goes against `direction`.
   float falloff(const Vec3& direction) const;
+  float area_falloff(const Vec3& direction) const;
   /// Cone that holds the lamp, seen from `position`: its axis and 1 - cos of its half angle; 0: not seen.
   float cone(const Vec3& position, Vec3& axis) const;
 
@@ -67,11 +70,13 @@ class Lamp {
   Rgb radiance_{0.0f};   // with extent, less falloff
   Rgb intensity_{0.0f};  // sharp: irradiance of a sun, W/sr of a point
   Vec3 center_{0.0f};    // but for a sun
-  Vec3 axis_{0.0f};      // sun: towards it; spot, rectangle, disk: where it shines
+  Vec3 axis_{0.0f};      // sun: towards it; spot: where it shines; rectangle, disk: unit normal on that side
+  Vec3 shine_{0.0f};     // rectangle, disk: where it shines; another direction than axis_ where it is sheared
   Vec3 half_x_{0.0f}, half_y_{0.0f};
-  Vec3 narrow_x_{0.0f}, narrow_y_{0.0f};  // spot: axes over the scale of its cone, where that is not 1
-  float one_minus_cos_ = 0;               // sun
-  float radius_ = 0;                      // point, spot
+  // Spot: rows of the map from world directions to those in which its cone is round, where that is not about axis_.
+  Vec3 narrow_x_{0.0f}, narrow_y_{0.0f}, narrow_z_{0.0f};
+  float one_minus_cos_ = 0;  // sun
+  float radius_ = 0;         // point, spot
   float area_ = 0;
   float cos_cone_ = -1, fade_ = 0;    // spot: cosine where its cone ends, width of the rim in cosines
   float cot_spread_ = 0, focus_ = 1;  // rectangle, disk: cotangent of half the spread, radiance along the normal

@@ -25,6 +25,8 @@ Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world)
       // Twice the bound: one for this point, one for where the ray tracer puts the triangle.
       offset(4.0f * point.error),
       through_offset(offset),
+      rounding(point.rounding),
+      terminator(glm::dot(point.geometric_normal, wv_world) < 0.0f ? 0.0f : point.terminator),
       surface(nullptr),
       table(nullptr) {
   Vec3 normal = facing(point.shading_normal, geometric_normal);

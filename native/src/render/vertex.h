@@ -1,6 +1,8 @@
 // A point of a path, ready to be shaded.
 #pragma once
 
+#include <algorithm>
+
 #include "render/footprint.h"
 #include "scene/scene.h"
 #include "sphere/frame.h"
@@ -28,6 +30,8 @@ struct Vertex {
   Vec3 wv;                // local
   float offset;           // a ray starts this far off the surface, along the geometric normal
   float through_offset;   // and one to the other side this far against it
+  Vec3 rounding;          // as of SurfacePoint; none seen from behind
+  float terminator;
   const SurfaceMaterial* surface;
   const TableSampler* table;  // null unless the strategy needs it
   const GgxSampler* ggx;      // the same
@@ -52,6 +56,12 @@ struct Vertex {
     return (wl.z > 0.0f && above > 0.0f) || (transmits && wl.z < 0.0f && above < 0.0f);
   }
 
+  /// The same of light whose shadow ray is shadow_ray(): where the mesh stands for a smooth surface, that surface
+  /// counts.
+  bool receives_light(const Vec3& wl, const Vec3& wl_world) const {
+    return receives(wl, wl_world) || (terminator > 0.0f && wl.z > 0.0f);
+  }
+
   /// Radiance that the surface itself sends to the viewer, in the working space.
   Rgb emission() const;
 
@@ -61,7 +71,21 @@ struct Vertex {
     return {position + (through ? -through_offset : offset) * geometric_normal, 0.0f, direction_world, far};
   }
 
+  /// A ray towards light. Directions close to the horizon begin on the smooth surface: coarse meshes with smooth
+  /// normals show no steps. Which ones, and the transition, is Cycles' (kernel/light/sample.h, shadow_ray_offset).
+  Ray shadow_ray(const Vec3& direction_world, float far) const {
+    Ray result = ray(direction_world, far);
+    if (terminator > 0.0f) result.origin += lift(direction_world) * rounding;
+    return result;
+  }
+
  private:
+  float lift(const Vec3& direction_world) const {
+    const float smooth = glm::dot(direction_world, frame.z), flat = glm::dot(direction_world, geometric_normal);
+    if (smooth <= 0.0f) return 0.0f;
+    return std::clamp(smooth < terminator ? 2.0f - (flat + smooth) / terminator : 1.0f - flat / terminator, 0.0f, 1.0f);
+  }
+
   /// `crossing`: null, or what `point`, on the top of a shell, stands for.
   Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossing* crossing, const Ray& ray, const Hit& hit,
          const RayCone& cone_at_origin, const PixelFootprint* pixel);

@@ -134,7 +134,7 @@ void Scene::set_drawn_to(uint32_t material, bool drawn) {
 }
 
 void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
-                         std::vector<TextureMap> placements, uint8_t hidden_from) {
+                         std::vector<TextureMap> placements, uint8_t hidden_from, float terminator) {
   if (mesh >= meshes_.size()) refuse("There is no mesh " + std::to_string(mesh) + " to instance.");
   require_finite(object_to_world, "an instance");
   if (materials.empty()) refuse("An instance needs at least one material.");
@@ -147,8 +147,8 @@ void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vect
     ++flat_instances_;
     return;
   }
-  instances_.push_back(
-      {mesh, object_to_world, object_to_world.normal_map(), std::move(materials), std::move(placements), hidden_from});
+  instances_.push_back({mesh, object_to_world, object_to_world.normal_map(), std::move(materials),
+                        std::move(placements), hidden_from, std::clamp(terminator, 0.0f, 1.0f)});
 }
 
 uint32_t Scene::add_light(const Light& light) {
@@ -333,7 +333,29 @@ SurfacePoint Scene::surface(const Hit& hit) const {
   point.tangent = map.vector(tangent(hit));
   point.error = position_error(map, mesh.position_magnitude(hit.triangle, uv));
   point.material = material(hit);
+  if (instance.terminator > 0.0f) {
+    point.rounding = rounding(instance, hit);
+    if (point.rounding != Vec3(0.0f)) point.terminator = instance.terminator;
+  }
   return point;
+}
+
+/// A parabola over the triangle through its corners, from their normals, as Cycles has it (shadow_ray_offset; after
+/// Hanika 2021, "Hacking the Shadow Terminator"). Nothing where the surface is hollow: rays must not begin below it.
+Vec3 Scene::rounding(const Instance& instance, const Hit& hit) const {
+  const Mesh& mesh = traced_mesh(instance);
+  const glm::uvec3 corners = mesh.triangles()[hit.triangle];
+  Vec3 p[3], n[3];
+  for (int k = 0; k < 3; ++k) {
+    p[k] = instance.object_to_world.point(mesh.positions()[corners[k]]);
+    n[k] = glm::normalize(instance.normal_to_world * mesh.corner_normals(hit.triangle)[static_cast<size_t>(k)]);
+  }
+  const float u = 1.0f - hit.u - hit.v, v = hit.u;  // weights of corners 0 and 1
+  const float a = glm::dot(n[2] - n[0], p[0] - p[2]), b = glm::dot(n[2] - n[1], p[1] - p[2]);
+  const float c = glm::dot(n[1] - n[0], p[1] - p[0]);
+  const float height = a * u * (u - 1) + (a + b + c) * u * v + b * v * (v - 1);
+  if (!(height > 0.0f) || !std::isfinite(height)) return Vec3(0.0f);
+  return height * (u * n[0] + v * n[1] + hit.v * n[2]);
 }
 
 }  // namespace velour

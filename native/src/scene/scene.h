@@ -65,6 +65,10 @@ struct SurfacePoint {
   Vec3 tangent;           // along the first texture coordinate as placed, not normalised; zero when there is none
   float error;            // bound of |position - exact|, per coordinate
   uint32_t material;
+  /// Of an instance whose shadow terminator is softened: from `position` to the smooth surface that the shading normals
+  /// belong to, on the mesh's front, and the cosine below which rays begin there; 0: nowhere.
+  Vec3 rounding{0.0f};
+  float terminator = 0;
 };
 
 /// Of a scene that is rendered; those that are only traced need none.
@@ -128,9 +132,10 @@ class Scene {
   /// `materials[s]` serves slot s of the mesh; slots beyond the list use its last entry. An instance without volume (a
   /// zero scale) is left out and counted in the warnings. `placements[s]` takes the mesh's texture coordinates to those
   /// that slot s is shown with, and with them its footprints and its tangents; none: they are the same.
-  /// `hidden_from`: bits of `hidden`.
+  /// `hidden_from`: bits of `hidden`. `terminator`: cosine, 0 to 1, below which shadow rays begin on the smooth surface
+  /// that the mesh stands for (Vertex::shadow_ray); 0: always on the mesh.
   void add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
-                    std::vector<TextureMap> placements = {}, uint8_t hidden_from = 0);
+                    std::vector<TextureMap> placements = {}, uint8_t hidden_from = 0, float terminator = 0);
   void clear_instances();
   uint32_t add_light(const Light& light);
   void clear_lights();
@@ -155,6 +160,7 @@ class Scene {
     std::vector<uint32_t> materials;
     std::vector<TextureMap> placements;  // as many, or none
     uint8_t hidden;
+    float terminator = 0;  // as of SurfacePoint
     /// Set by commit(): what rays meet in the place of the mesh, where a material has a shell; what of both the
     /// hierarchy has, by its number there; and how wide a tile of each slot's shell is, in metres.
     const ShellTop* top = nullptr;
@@ -233,6 +239,7 @@ class Scene {
   /// Null where texture coordinates are the mesh's own.
   const TextureMap* placement(const Hit& hit) const;
   TexturePoint texture_of_mesh(const Hit& hit, size_t set) const;
+  Vec3 rounding(const Instance& instance, const Hit& hit) const;
   /// SurfacePoint::tangent in the object's space.
   Vec3 tangent(const Hit& hit) const;
   Bounds bounds_of_instances() const;

@@ -48,7 +48,7 @@ def make(given: argparse.Namespace) -> job.Job:
 
 def _check_path(output: Path) -> None:
     """Raises JobError: Slurm's scripts and the paths of Blender 5 read these signs otherwise."""
-    signs = sorted(set(str(output)) & set('"\\{}\n'))
+    signs = sorted({sign for sign in str(output) if sign in '"\\{}' or not sign.isprintable()})
     if signs:
         raise job.JobError(f"{output}: a path with {' '.join(map(repr, signs))} in it cannot be an --output.")
 

@@ -31,6 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser, layer_option: str = "--layer"
     )
     group.add_argument("--colors", choices=table.BTF_COLORS, help="of pictures; rec709")
     group.add_argument(
+        "--angles", choices=table.BTF_ANGLES, help="of a CSV index; degrees, unless they look like radians"
+    )
+    group.add_argument(
         layer_option, dest="btf_layer", metavar="NAME", help="layer or channel of OpenEXR pictures"
     )
     group.add_argument(
@@ -41,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser, layer_option: str = "--layer"
 def given(args: argparse.Namespace) -> dict:
     """The options that the user gave, as Btf.load() takes them."""
     names = {"values": args.values, "gamma": args.gamma, "colors": args.colors, "tile_metres": args.tile_size}
-    names["layer"] = args.btf_layer
+    names |= {"layer": args.btf_layer, "angles": args.angles}
     return {name: value for name, value in names.items() if value is not None}
 
 

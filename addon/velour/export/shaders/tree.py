@@ -1,5 +1,6 @@
 """From the active output of a material to the layers of its surface."""
 
+from ..newer import has_nodes
 from ..nodes import active_output
 from ..plugs import Plug, fed_by
 from .layer import Factor, Layer, black, grey, simplified, split
@@ -13,7 +14,7 @@ def surface_layers(material, notes):
     """The Layers of a material that is not measured; what is left out of it is said in `notes`."""
     if material is None:
         return [grey()]
-    if not material.use_nodes or material.node_tree is None:
+    if not has_nodes(material):
         return [Layer("principled", _without_nodes(material), {})]
     owner = f"Material '{material.name}'"
     output = active_output(material.node_tree, "ShaderNodeOutputMaterial")

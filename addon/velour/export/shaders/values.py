@@ -23,7 +23,7 @@ class Reader:
         if fed.node.bl_idname in ("ShaderNodeValue", "ShaderNodeRGB"):
             return own_value(fed.socket, plug.socket), None
         try:
-            return own_value(plug.socket), _source_of(fed, plug.socket)
+            return own_value(plug.socket), self._source_of(fed, plug.socket)
         except UnsupportedError as reason:
             self.note_link(plug, f" ({reason})")
             return own_value(plug.socket), None
@@ -35,18 +35,17 @@ class Reader:
             self.note_link(plug)
         return value
 
+    def _source_of(self, fed, asked):
+        """The Picture or CornerColors at an output that feeds the socket `asked`; raises UnsupportedError."""
+        if fed.node.bl_idname in ("ShaderNodeVertexColor", "ShaderNodeAttribute"):
+            return corner_colors_of(fed, isinstance(asked.default_value, (int, float)))
+        return picture_of(fed, self.owner, self.notes)
+
     def note(self, plug, sentence):
         self.notes.add(f"{self.owner}: node '{plug.node.name}': {sentence}")
 
     def note_link(self, plug, reason=""):
         self.note(plug, f"the link to '{plug.socket.name}' is ignored; its own value is used{reason}.")
-
-
-def _source_of(fed, asked):
-    """The Picture or CornerColors at an output that feeds the socket `asked`; raises UnsupportedError."""
-    if fed.node.bl_idname in ("ShaderNodeVertexColor", "ShaderNodeAttribute"):
-        return corner_colors_of(fed, isinstance(asked.default_value, (int, float)))
-    return picture_of(fed)
 
 
 def own_value(socket, asked=None):

@@ -3,6 +3,7 @@
 #include "brdf/measurement.h"
 #include "file/file.h"
 #include "measurement_support.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -45,6 +46,52 @@ TEST(Load, MissingFileIsAnIoError) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.status(), Status::io);
+  }
+}
+
+std::string text_of_cornell(const std::string& comment, const std::string& end) {
+  std::string text = comment + "1 550" + end;
+  for (int i = 0; i < 60; ++i)
+    text += "0." + std::to_string(100 + 7 * i) + " 0 0." + std::to_string(120 + 11 * i) + " " + std::to_string(i % 3) +
+            " 0.25" + end;
+  return text;
+}
+
+TEST(Load, CornellBehindCommentsOfAnyLength) {
+  test::record_input("Cornell .brdf", "comments of any length, UTF-8 mark, LF, CRLF, CR", "read");
+  const std::string path = test::scratch_folder() / "a.brdf";
+  const std::string protocol = [] {
+    std::string lines;
+    for (int i = 0; i < 3000; ++i) lines += "# line " + std::to_string(i) + " of the laboratory's protocol\n";
+    return lines;
+  }();
+  for (const std::string& begin : {std::string(), protocol, "\xef\xbb\xbf" + protocol, std::string("\xef\xbb\xbf")}) {
+    for (const char* end : {"\n", "\r\n", "\r"}) {
+      std::string text;
+      for (const char c : text_of_cornell(begin, "\n")) text += c == '\n' ? end : std::string(1, c);
+      write_file(path, std::vector<uint8_t>(text.begin(), text.end()));
+      EXPECT_TRUE(is_measurement_file(path));
+      EXPECT_EQ(load_measurement(path)->samples().size(), 60u) << begin.size() << ' ' << int{end[0]};
+    }
+  }
+}
+
+TEST(Load, NamesOtherFormatsAndWhatToDo) {
+  const std::pair<std::string, const char*> others[] = {
+      {"\x89HDF\r\n\x1a\n....", "AxF"},
+      {"7z\xbc\xaf\x27\x1c....", ".sbsar"},
+      {"PK\x03\x04....", "VRscans"},
+      {"<?xml version='1.0'?>\n<materialx version='1.38'>", "MaterialX"},
+      {"<?xml version='1.0'?>\n<WindowElement>", "Radiance"},
+      {"# ASTM E1392\nVARS theta_i", "ASTM"},
+      {"nothing that is known", "no measurement"}};
+  const std::string path = test::scratch_folder() / "a.bin";
+  for (const auto& [head, words] : others) {
+    if (std::string(words) != "no measurement") test::record_input(words, "any", "refused by name, with what to do");
+    write_file(path, std::vector<uint8_t>(head.begin(), head.end()));
+    EXPECT_NE(test::refusal([&] { load_measurement(path); }).find(words), std::string::npos)
+        << test::refusal([&] { load_measurement(path); });
+    EXPECT_FALSE(is_measurement_file(path));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "btf_support.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -45,6 +46,14 @@ TEST_F(CsvIndexTest, NumbersSetTheOrder) {
   EXPECT_EQ(pictures[0].view_number, 7u);
   EXPECT_EQ(pictures[1].light_number, 2u);
   EXPECT_EQ(pictures[1].path, "/b.png");
+}
+
+TEST_F(CsvIndexTest, RadiansAreAskedFor) {
+  test::record_input("CSV index of a BTF", "angles in radians", "asked for (--angles)");
+  const std::string text = "file,theta_l,phi_l,theta_v,phi_v\na.png,0.7853981633974483,3.14159,0,0\nb.png,0.5,0,0,0\n";
+  EXPECT_NE(refusal(text).find("--angles degrees or --angles radians"), std::string::npos) << refusal(text);
+  EXPECT_NEAR(read_csv_index(path_, BtfAngles::radians)[0].light.theta, 45, 1e-12);
+  EXPECT_EQ(read_csv_index(path_, BtfAngles::degrees)[1].light.theta, 0.5);
 }
 
 TEST_F(CsvIndexTest, WhatIsWrongIsOneSentenceWithItsLine) {

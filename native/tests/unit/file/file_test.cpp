@@ -1,8 +1,14 @@
 #include "file/file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <fstream>
 
 #include "file/atomic_file.h"
@@ -12,6 +18,7 @@
 #include "support/test_data.h"
 
 namespace velour {
+namespace fs = std::filesystem;
 namespace {
 
 std::vector<uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
@@ -139,6 +146,66 @@ TEST(AtomicFile, DoesNotStumbleOverWhatAKilledProcessHasLeft) {
   write_file(path, bytes_of("new"));
   EXPECT_EQ(read_file(path), bytes_of("new"));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 65);
+}
+
+/// What is old and locked by nobody goes; what a living process writes, or the user calls nearly so, stays.
+TEST(AtomicFile, RemovesWhatAKilledProcessHasLeft) {
+  const auto folder = test::scratch_folder();
+  const auto make = [&](const std::string& name, int seconds_old) {
+    std::ofstream(folder / name) << "left";
+    fs::last_write_time(folder / name, fs::file_time_type::clock::now() - std::chrono::seconds(seconds_old));
+  };
+  make("other.bin.velour-partial-1-2", 3600);
+  make("written.velour-partial-3-4", 3600);
+  make("begun.velour-partial-5-6", 0);
+  make("mine.velour-20261127-1", 3600);
+  const int writer = ::open((folder / "written.velour-partial-3-4").c_str(), O_RDONLY);
+  ASSERT_EQ(::flock(writer, LOCK_EX | LOCK_NB), 0);
+  write_file(folder / "a.bin", bytes_of("new"));
+  ::close(writer);
+  EXPECT_FALSE(fs::exists(folder / "other.bin.velour-partial-1-2"));
+  for (const char* kept : {"written.velour-partial-3-4", "begun.velour-partial-5-6", "mine.velour-20261127-1", "a.bin"})
+    EXPECT_TRUE(fs::exists(folder / kept)) << kept;
+}
+
+/// As on a full disk: the reason is told, by commit() as well.
+TEST(AtomicFile, TellsWhyAWriteFailed) {
+  const auto folder = test::scratch_folder();
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+  const struct rlimit small { 1000000, before.rlim_max };
+  std::string first, second;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  {
+    AtomicFile file(folder / "a.bin");
+    const auto sentence = [](const auto& call) {
+      try {
+        call();
+      } catch (const Error& error) {
+        return std::string(error.what());
+      }
+      return std::string();
+    };
+    first = sentence([&] { file.write(std::vector<uint8_t>(3'000'000, 7)); });
+    second = sentence([&] { file.commit(); });
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, ignored);
+  EXPECT_NE(first.find("File too large"), std::string::npos) << first;
+  EXPECT_EQ(second, first);
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+
+/// A pipe without a writer and a device: refused at once.
+TEST(ReadFile, RefusesWhatIsNoRegularFile) {
+  const std::string pipe = test::scratch_folder() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("/tmp")}) {
+    EXPECT_EQ(status_of([&] { read_file(path); }), Status::io) << path;
+    EXPECT_EQ(status_of([&] { read_file_head(path, 4); }), Status::io) << path;
+    EXPECT_EQ(status_of([&] { RandomAccessFile{path}; }), Status::io) << path;
+  }
 }
 
 TEST(RandomAccessFile, ReadsPartsAndNoMore) {

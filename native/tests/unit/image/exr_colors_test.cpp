@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "job/error.h"
+#include "support/inputs.h"
 
 namespace velour {
 namespace {
@@ -77,6 +78,9 @@ std::string refusal(const Names& channels, const std::string& layer) {
 }
 
 TEST(ChosenColors, RefuseWhatIsNotClear) {
+  test::record_input("OpenEXR", "several layers with colors, none of them Combined, RGB or Beauty",
+                     "refused; --layer chooses");
+  test::record_input("OpenEXR", "channels whose names mean no color", "refused; --layer chooses");
   const std::string several = refusal({"day.B", "day.G", "day.R", "night.B", "night.G", "night.R"}, "");
   EXPECT_NE(several.find("a.exr: has several layers with colors (day, night)"), std::string::npos) << several;
   EXPECT_NE(several.find("--layer"), std::string::npos) << several;

@@ -20,6 +20,7 @@
 
 #include "image/picture.h"
 #include "job/error.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -94,6 +95,7 @@ class ForeignExr : public testing::Test {
 };
 
 TEST_F(ForeignExr, SmallLettersAreColors) {
+  test::record_input("OpenEXR", "channels r, g, b", "read");
   write(path_, {{"b", 3}, {"g", 2}, {"r", 1}});
   const Picture picture = read_picture(path_);
   EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
@@ -102,6 +104,8 @@ TEST_F(ForeignExr, SmallLettersAreColors) {
 }
 
 TEST_F(ForeignExr, PassesAreLeftOutAloud) {
+  test::record_input("OpenEXR", "R, G, B with passes beside them", "read; passes are left out and named");
+  test::record_input("OpenEXR", "one layer or channel (--layer)", "read");
   write(path_, {{"AO.R", 9}, {"B", 3}, {"G", 2}, {"R", 1}, {"depth.Z", 8}});
   const Picture picture = read_picture(path_);
   EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
@@ -112,11 +116,13 @@ TEST_F(ForeignExr, PassesAreLeftOutAloud) {
 }
 
 TEST_F(ForeignExr, GrayKeepsItsAlpha) {
+  test::record_input("OpenEXR", "Y and A", "read");
   write(path_, {{"A", 0.5f}, {"Y", 4}});
   EXPECT_EQ(pixel_of(read_picture(path_), 1, 1), (std::vector<float>{4, 0.5f}));
 }
 
 TEST_F(ForeignExr, LuminanceAndChroma) {
+  test::record_input("OpenEXR", "Y, RY, BY", "converted to RGB");
   constexpr int kSide = 16;
   {
     Imf::RgbaOutputFile file(path_.c_str(), kSide, kSide, Imf::WRITE_YC);
@@ -131,6 +137,8 @@ TEST_F(ForeignExr, LuminanceAndChroma) {
 }
 
 TEST_F(ForeignExr, PixelsLieInTheDisplayWindow) {
+  test::record_input("OpenEXR", "data window inside of, or beyond, the display window",
+                     "placed in the display window, black outside");
   // Data one column left of the display and two rows short of its bottom.
   const Imath::Box2i display({10, 20}, {10 + kWidth - 1, 20 + kHeight - 1}), data({9, 20}, {12, 21});
   const Channels channels{{"B", 3}, {"G", 2}, {"R", 1}};
@@ -150,12 +158,14 @@ TEST_F(ForeignExr, PixelsLieInTheDisplayWindow) {
 }
 
 TEST_F(ForeignExr, AnEmptyDisplayWindowIsNotAllocated) {
+  test::record_input("OpenEXR", "a huge display window around a few pixels", "refused");
   const Channels channels{{"Y", 1}};
   write(path_, channels, header_of(channels, {{0, 0}, {60000, 60000}}, kWindow));
   EXPECT_NE(refusal(path_).find("60001 x 60001"), std::string::npos) << refusal(path_);
 }
 
 TEST_F(ForeignExr, Tiles) {
+  test::record_input("OpenEXR", "tiles, mipmaps", "read");
   const Channels channels{{"B", 3}, {"G", 2}, {"R", 1}};
   Imf::Header header = header_of(channels, kWindow, kWindow);
   header.setTileDescription(Imf::TileDescription(4, 4, Imf::MIPMAP_LEVELS));
@@ -169,6 +179,7 @@ TEST_F(ForeignExr, Tiles) {
 }
 
 TEST_F(ForeignExr, TheFirstPartWithColors) {
+  test::record_input("OpenEXR", "several parts", "the first one with colors, said");
   const Channels color{{"B", 3}, {"G", 2}, {"R", 1}}, other{{"B", 6}, {"G", 5}, {"R", 4}};
   std::vector<Imf::Header> headers;
   for (const auto& [name, channels] : std::vector<std::pair<std::string, Channels>>{
@@ -196,6 +207,7 @@ TEST_F(ForeignExr, TheFirstPartWithColors) {
 
 /// The same light in other primaries is the same picture.
 TEST_F(ForeignExr, PrimariesAreConverted) {
+  test::record_input("OpenEXR", "chromaticities of CIE XYZ or Rec. 2020", "converted to Rec. 709");
   const std::vector<float> rgb{0.2f, 0.5f, 0.7f};
   const Imf::Chromaticities rec709;
   const std::vector<Imf::Chromaticities> spaces{
@@ -221,6 +233,8 @@ TEST_F(ForeignExr, PrimariesAreConverted) {
 
 /// ACES: its white is not D65, and what is neutral there is neutral here.
 TEST_F(ForeignExr, NeutralStaysNeutral) {
+  test::record_input("OpenEXR", "chromaticities with another white (ACES)",
+                     "converted, neutral stays neutral (Bradford)");
   const Channels channels{{"B", 0.5f}, {"G", 0.5f}, {"R", 0.5f}};
   Imf::Header header = header_of(channels, kWindow, kWindow);
   Imf::addChromaticities(header, {{0.7347f, 0.2653f}, {0, 1}, {0.0001f, -0.0770f}, {0.32168f, 0.33767f}});
@@ -230,6 +244,7 @@ TEST_F(ForeignExr, NeutralStaysNeutral) {
 }
 
 TEST_F(ForeignExr, PrimariesThatAreNoneAreRefused) {
+  test::record_input("OpenEXR", "chromaticities that are no basis of colors", "refused");
   const Channels channels{{"B", 1}, {"G", 1}, {"R", 1}};
   for (const float x : {0.3f, std::numeric_limits<float>::quiet_NaN()}) {
     Imf::Header header = header_of(channels, kWindow, kWindow);
@@ -240,6 +255,7 @@ TEST_F(ForeignExr, PrimariesThatAreNoneAreRefused) {
 }
 
 TEST_F(ForeignExr, InfiniteSunsStayBright) {
+  test::record_input("OpenEXR", "infinite texels, NaN", "the largest finite value, 0; counted");
   const float inf = std::numeric_limits<float>::infinity();
   write(path_, {{"B", inf}, {"G", 2}, {"R", std::numeric_limits<float>::quiet_NaN()}});
   const Picture picture = read_picture(path_);
@@ -250,6 +266,7 @@ TEST_F(ForeignExr, InfiniteSunsStayBright) {
 }
 
 TEST_F(ForeignExr, CubeMapsAreRefused) {
+  test::record_input("OpenEXR", "cube map", "refused");
   const Channels channels{{"B", 1}, {"G", 1}, {"R", 1}};
   Imf::Header header = header_of(channels, {{0, 0}, {3, 23}}, {{0, 0}, {3, 23}});
   Imf::addEnvmap(header, Imf::ENVMAP_CUBE);
@@ -258,6 +275,7 @@ TEST_F(ForeignExr, CubeMapsAreRefused) {
 }
 
 TEST_F(ForeignExr, DeepPicturesAreRefused) {
+  test::record_input("OpenEXR", "deep picture", "refused");
   Imf::Header header(kWidth, kHeight);
   header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
   header.setType(Imf::DEEPSCANLINE);

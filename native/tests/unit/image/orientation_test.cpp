@@ -8,6 +8,7 @@
 #include "image/picture.h"
 #include "image/picture_format.h"
 #include "job/error.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -61,6 +62,7 @@ Bytes with_exif(const Bytes& png, const Bytes& exif) {
 
 /// Pixel (0, 0) of the stored rows is where the orientation says (EXIF 2.3, 4.6.4 A), one is beside it along the row.
 TEST(PictureOrientation, FollowsExif) {
+  test::record_input("PNG", "EXIF orientation", "turned upright");
   struct Ends {
     int orientation, first_x, first_y, step_x, step_y;  // of a picture seen, y from the top
   };
@@ -91,6 +93,8 @@ TEST(PictureOrientation, FollowsExif) {
 }
 
 TEST(PictureOrientation, OfJpegAndTiff) {
+  test::record_input("JPEG", "EXIF orientation", "turned upright");
+  test::record_input("TIFF", "orientation", "turned upright");
   const auto folder = test::scratch_folder();
   Bytes jpeg{0xff, 0xd8, 0xff, 0xe0, 0, 4, 9, 9, 0xff, 0xff, 0xe1};  // a segment, a fill byte, EXIF
   const Bytes exif = exif_of(6, true);
@@ -113,6 +117,7 @@ TEST(PictureOrientation, OfJpegAndTiff) {
 }
 
 TEST(PictureFormats, OthersAreRefusedByName) {
+  test::record_input("DPX, Cineon, IFF, Photoshop, GIF, WebP, PPM and others", "any", "refused by name");
   const std::string path = test::scratch_folder() / "a.png";
   const std::pair<std::string, std::string> others[] = {
       {"FOR4", "IFF"},   {"SDPX", "DPX"},          {"XPDS", "DPX"}, {"8BPS", "Photoshop"},

@@ -7,6 +7,7 @@
 #include "file/file.h"
 #include "image/picture.h"
 #include "job/error.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -81,6 +82,7 @@ class RadiancePicture : public testing::Test {
 };
 
 TEST_F(RadiancePicture, AllEightOrientations) {
+  test::record_input("Radiance HDR", "all eight orders of pixels", "turned upright");
   for (const char* x : {"+X 12", "-X 12"})
     for (const char* y : {"-Y 9", "+Y 9"})
       for (const bool x_first : {false, true}) {
@@ -94,11 +96,13 @@ TEST_F(RadiancePicture, AllEightOrientations) {
 }
 
 TEST_F(RadiancePicture, ScanLinesOfRuns) {
+  test::record_input("Radiance HDR", "run lengths", "read");
   write_file(path_, file_of("FORMAT=32-bit_rle_rgbe\n", "-Y 9 +X 12", Lines::runs));
   expect_the_picture(read_picture(path_));
 }
 
 TEST_F(RadiancePicture, OldRuns) {
+  test::record_input("Radiance HDR", "old run lengths, across scan lines", "read");
   const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 10 +X 30\n";
   std::vector<uint8_t> bytes(head.begin(), head.end());
   // One pixel, 0x12b = 299 times more: the low digit, then the high one.
@@ -110,6 +114,7 @@ TEST_F(RadiancePicture, OldRuns) {
 }
 
 TEST_F(RadiancePicture, ExposuresAreUndone) {
+  test::record_input("Radiance HDR", "EXPOSURE, COLORCORR", "divided out");
   write_file(path_, file_of("EXPOSURE=2\nEXPOSURE= 0.5e1\nFORMAT=32-bit_rle_rgbe\n", "-Y 9 +X 12"));
   expect_the_picture(read_picture(path_), 0.1f);
   const Picture stored = read_picture(path_, {.as_stored = true});
@@ -122,12 +127,14 @@ TEST_F(RadiancePicture, ExposuresAreUndone) {
 }
 
 TEST_F(RadiancePicture, NeedsNoFormatAndAnyLengthOfComments) {
+  test::record_input("Radiance HDR", "no FORMAT line, long comments", "read");
   write_file(path_, file_of("# " + std::string(5000, 'x') + "\nVIEW= -vtv\n", "-Y 9 +X 12"));
   expect_the_picture(read_picture(path_));
 }
 
 /// D65 white of luminance 1 in CIE XYZ is white.
 TEST_F(RadiancePicture, Xyze) {
+  test::record_input("Radiance HDR", "XYZE", "converted to Rec. 709");
   const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n";
   std::vector<uint8_t> bytes(head.begin(), head.end());
   bytes.insert(bytes.end(), {122, 128, 139, 129});  // 0.9505 1 1.089 within a 256th
@@ -137,6 +144,7 @@ TEST_F(RadiancePicture, Xyze) {
 }
 
 TEST_F(RadiancePicture, PrimariesAreConverted) {
+  test::record_input("Radiance HDR", "PRIMARIES", "converted to Rec. 709");
   const std::string rec2020 = "PRIMARIES= .708 .292 .170 .797 .131 .046 .3127 .3290\nFORMAT=32-bit_rle_rgbe\n";
   const std::string head = "#?RADIANCE\n" + rec2020 + "\n-Y 1 +X 2\n";
   std::vector<uint8_t> bytes(head.begin(), head.end());
@@ -151,11 +159,13 @@ TEST_F(RadiancePicture, PrimariesAreConverted) {
 }
 
 TEST_F(RadiancePicture, PrimariesOfZerosSayNothing) {
+  test::record_input("Radiance HDR", "PRIMARIES of zeros (Photoshop)", "taken as Rec. 709");
   write_file(path_, file_of("GAMMA=1\nPRIMARIES=0 0 0 0 0 0 0 0\nFORMAT=32-bit_rle_rgbe\n", "-Y 9 +X 12"));
   expect_the_picture(read_picture(path_));
 }
 
 TEST_F(RadiancePicture, RefusesDamage) {
+  test::record_input("Radiance HDR", "cut or damaged", "refused");
   const auto whole = file_of("FORMAT=32-bit_rle_rgbe\n", "-Y 9 +X 12", Lines::runs);
   for (size_t size = 0; size < whole.size(); size += 7) {
     write_file(path_, std::span(whole).first(size));

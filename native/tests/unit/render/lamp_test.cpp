@@ -33,7 +33,15 @@ std::vector<Light> extended_lamps() {
   facing.sphere = false;
   Light focused = sheared;
   focused.spread = 0.8f;
-  return {lamp_above(Light::Type::sun, {}),
+  Light leaning = lamp_above(Light::Type::disk, {2, 1});
+  leaning.light_to_world.m[2] = 0.5f;  // z axis not along the normal
+  leaning.light_to_world.m[6] = -0.3f;
+  Light leaning_focused = leaning;
+  leaning_focused.type = Light::Type::rectangle;
+  leaning_focused.spread = 1.2f;
+  return {leaning,
+          leaning_focused,
+          lamp_above(Light::Type::sun, {}),
           lamp_above(Light::Type::point, {0.7f, 0}),
           lamp_above(Light::Type::rectangle, {2, 1}),
           lamp_above(Light::Type::disk, {2, 1}),
@@ -110,6 +118,23 @@ TEST(Lamp, SunGivesItsIrradianceWhateverItsSize) {
     } else {
       EXPECT_NEAR(irradiance_by_samples(lamp), 1, 2e-3) << angle;
     }
+  }
+}
+
+/// As in Cycles: a disk by the cosine to its own axis, a rectangle by the area that is seen; both over the product of
+/// the sides' lengths.
+TEST(Lamp, ShearedAreasShineAsInCycles) {
+  for (const Light::Type type : {Light::Type::rectangle, Light::Type::disk}) {
+    Light light;
+    light.type = type;
+    light.color = Rgb(7.0f);
+    light.size = {0.01f, 0.02f};
+    light.light_to_world = test::shift({0, 0, 3});
+    light.light_to_world.m[2] = 0.8f;  // the z axis
+    light.light_to_world.m[4] = 0.5f;  // the x axis
+    const double leaning = 1 / std::sqrt(1 + 0.8 * 0.8), seen = 1 / std::sqrt(1 + 0.5 * 0.5);
+    const double share = type == Light::Type::disk ? leaning : seen;
+    EXPECT_NEAR(irradiance_by_samples(Lamp(light, 1)), share * 7 / (kPiD * 9), 1e-2 * 7 / (kPiD * 9));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "job/error.h"
 #include "scene/polygon_triangles.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -74,6 +75,7 @@ bool covers(const Mesh& mesh, double x, double y) {
 
 /// An L whose notch is the upper right, from each of its corners on, near the origin and far from it.
 TEST(ObjFile, ConcavePolygonsKeepTheirNotch) {
+  test::record_input("OBJ", "concave polygons, from any corner on, anywhere", "read");
   const double corners[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
   for (const double far : {0.0, 3000.0})
     for (int first = 0; first < 6; ++first) {
@@ -143,6 +145,7 @@ TEST(PolygonTriangles, EndForPolygonsThatAreNone) {
 const std::string kTwoSquares = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n";
 
 TEST(ObjFile, FacesKeepWhatTheyName) {
+  test::record_input("OBJ", "faces with and without normals or texture coordinates", "each keeps its own; counted");
   const std::string mixed = kTwoSquares + "vn 0 1 0\nvt 0.25 0.5\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf 2 5 6 3\n";
   const Mesh mesh = read_obj(write_text(mixed));
   ASSERT_EQ(mesh.triangles().size(), 4u);
@@ -156,6 +159,8 @@ TEST(ObjFile, FacesKeepWhatTheyName) {
 }
 
 TEST(ObjFile, AllWaysToNameACorner) {
+  test::record_input("OBJ", "1//, 1/1, 1//1, 1/1/, negative and signed indices, continued lines, faces before vertices",
+                     "read");
   const std::string lists = kTwoSquares + "vt 0.5 0.5 0\nvn 0 0 -1\n";
   for (const char* face : {"f 1// 2// 3//", "f 1/1 2/1 3/1", "f 1//1 2//1 3//1", "f -6/-1/-1 -5/-1/-1 -4/-1/-1",
                            "f 1/1/ 2/1/ 3/1/", "f +1 +2 +3", "f 1 2 3 # 4", "f 1 \\\n 2 \\\r\n 3"}) {
@@ -169,6 +174,7 @@ TEST(ObjFile, AllWaysToNameACorner) {
 
 /// Two squares of a roof: flat without a smoothing group, smooth in one, and flat again behind "s off".
 TEST(ObjFile, SmoothingGroups) {
+  test::record_input("OBJ", "smoothing groups without normals", "smooth in a group, else flat");
   const std::string roof = "v 0 0 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\nv 2 0 0\nv 2 1 0\n";
   const std::string faces = "f 1 3 4 2\nf 3 5 6 4\n";
   const auto bends = [](const Mesh& mesh) {
@@ -182,6 +188,7 @@ TEST(ObjFile, SmoothingGroups) {
 }
 
 TEST(ObjFile, LineEndsMarksAndSigns) {
+  test::record_input("OBJ", "LF, CRLF, CR; UTF-8 mark; +1.0; vertex colors", "read");
   for (const char* end : {"\n", "\r\n", "\r"}) {
     std::string text = "\xef\xbb\xbf# from C:\\models\\";
     for (const char* line :
@@ -192,6 +199,7 @@ TEST(ObjFile, LineEndsMarksAndSigns) {
 }
 
 TEST(ObjFile, NamesTheLineOfAFault) {
+  test::record_input("OBJ", "decimal commas, indices of nothing", "refused with the line");
   const std::pair<const char*, const char*> faults[] = {
       {"v 0 0 0\nv 1,5 0 0\n", "line 2: '1,5' is not a number"},
       {"v 0 0\n", "line 1: 'v' has too few"},

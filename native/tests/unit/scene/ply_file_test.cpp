@@ -10,6 +10,7 @@
 
 #include "job/error.h"
 #include "scene/mesh_file.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -50,6 +51,7 @@ std::string binary(bool big) {
 }
 
 TEST(PlyFile, ReadsAllFormatsAlike) {
+  test::record_input("PLY", "ascii, both byte orders", "read");
   for (const std::string& bytes : {kAscii, binary(false), binary(true)}) {
     const Mesh mesh = read_mesh(written(bytes));
     ASSERT_EQ(mesh.triangles().size(), 2u);
@@ -97,6 +99,7 @@ TEST(PlyFile, RefusesLies) {
 }
 
 TEST(PlyFile, ElementsInAnyOrderLineEndsAndSigns) {
+  test::record_input("PLY", "faces before vertices; LF, CRLF, CR; +1.0", "read");
   const std::string faces_first =
       "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
       "property float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n+0 0 0\n+1.0 0 0\n0 1 0\n";
@@ -109,6 +112,7 @@ TEST(PlyFile, ElementsInAnyOrderLineEndsAndSigns) {
 }
 
 TEST(PlyFile, ConcaveQuadsAndCoordinatesOfCorners) {
+  test::record_input("PLY", "concave quads, texcoord lists of corners", "read");
   const std::string bytes =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
