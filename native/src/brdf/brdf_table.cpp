@@ -123,7 +123,7 @@ void write_brdf_table(const std::string& path, const BrdfTable& table) {
 
 std::shared_ptr<const Measurement> read_brdf_table(std::span<const uint8_t> bytes, Provenance provenance) {
   const std::string path = provenance.path;
-  const TensorFile file = decode_tensors(bytes, path);
+  const TensorFile file = decode_tensors(bytes, path, {{"f"}, usual_max_bytes(bytes.size())});
   check_kind(file, path);
   const Tensor& tensor = table_tensor(file, path);
   const BrdfTableLayout layout = layout_of(file, tensor, path);

@@ -257,12 +257,45 @@ Tensor read_tensor(Imf::MultiPartInputFile& in, int index, const ExrPart& part, 
   return {std::move(shape), read_pixels<float>(in, index, Imf::FLOAT, part, where), precision};
 }
 
-TensorFile read_pack(Imf::MultiPartInputFile& in, int index, const ExrPart& part, const std::string& where) {
+/// What is left of the limits while parts are read.
+class Budget {
+ public:
+  Budget(const TensorLimits& limits, uint64_t file_bytes)
+      : known_(limits.known), left_(limits.max_bytes), file_bytes_(file_bytes) {}
+
+  bool takes(const std::string& tensor) const {
+    return known_.empty() ||
+           std::ranges::any_of(known_, [&](std::string_view begin) { return tensor.starts_with(begin); });
+  }
+  uint64_t left() const { return left_; }
+  void take(uint64_t bytes, const std::string& where) {
+    if (bytes > left_) {
+      throw Error(Status::bad_data, where + "it would take " + std::to_string(bytes >> 20) +
+                                        " MiB, too much for a file of " + std::to_string(file_bytes_ >> 10) +
+                                        " KiB; it is damaged or made to fill memory.");
+    }
+    left_ -= bytes;
+  }
+  /// A pack is compressed in itself: what it shrinks by in the file is next to nothing.
+  void check_pack(uint64_t bytes, const std::string& where) const {
+    constexpr uint64_t kTimes = 4, kAlways = 1 << 20;
+    if (bytes > kAlways + kTimes * file_bytes_)
+      throw Error(Status::bad_data, where + "is damaged or made to fill memory.");
+  }
+
+ private:
+  const std::vector<std::string_view>& known_;
+  uint64_t left_, file_bytes_;
+};
+
+TensorFile read_pack(Imf::MultiPartInputFile& in, int index, const ExrPart& part, const std::string& where,
+                     const Budget& budget) {
   if (!part.integers || part.channels.size() != 1)
     throw Error(Status::bad_data, where + "has no integers of one channel.");
+  budget.check_pack(part.value_count() * sizeof(uint32_t), where);
   const auto words = read_pixels<uint32_t>(in, index, Imf::UINT, part, where);
   return decode_pack({reinterpret_cast<const uint8_t*>(words.data()), words.size() * sizeof(uint32_t)},
-                     where + "its pack");
+                     where + "its pack", {[&](const std::string& name) { return budget.takes(name); }, budget.left()});
 }
 
 void merge(TensorFile from, TensorFile& file) {
@@ -270,7 +303,8 @@ void merge(TensorFile from, TensorFile& file) {
   file.tensors.merge(from.tensors);
 }
 
-TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrPart>& parts, const std::string& name) {
+TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrPart>& parts, const std::string& name,
+                          Budget budget) {
   MemoryInput stream(bytes, name);
   // No threads of OpenEXR's own: its pool is global to the process. No repair of chunk tables: a damaged file is
   // refused.
@@ -280,9 +314,12 @@ TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrP
     const ExrPart& part = parts[static_cast<size_t>(i)];
     read_attributes(in.header(i), file.attributes);
     const std::string where = name + ": part '" + part.name + "': ";
-    if (!part.shape.empty()) file.tensors[part.name] = read_tensor(in, i, part, where);
+    if (!part.shape.empty() && budget.takes(part.name)) {
+      budget.take(part.value_count() * sizeof(float), where);
+      file.tensors[part.name] = read_tensor(in, i, part, where);
+    }
     if (part.coding == kPack) {
-      merge(read_pack(in, i, part, where), file);
+      merge(read_pack(in, i, part, where, budget), file);
       file.packed = true;
     }
   }
@@ -299,10 +336,11 @@ std::vector<uint8_t> encode_tensors(const TensorFile& file) {
   return parts.encoded();
 }
 
-TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& name) {
+TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& name, const TensorLimits& limits) {
   const auto parts = scan_exr(bytes, name);
   const auto sentence = [&](const char* why) { return name + ": OpenEXR refuses the file: " + why; };
-  return with_exr_errors(Status::bad_data, sentence, [&] { return decode_scanned(bytes, parts, name); });
+  return with_exr_errors(Status::bad_data, sentence,
+                         [&] { return decode_scanned(bytes, parts, name, Budget(limits, bytes.size())); });
 }
 
 bool looks_like_exr(std::span<const uint8_t> head) {

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/tensor.h"
@@ -21,8 +22,24 @@ namespace velour {
 /// The bytes of the file; deterministic: the same content gives the same bytes.
 std::vector<uint8_t> encode_tensors(const TensorFile& file);
 
-/// Checks every shape against the part's data window and the byte count before allocating. `name` appears in errors.
-TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& name);
+/// What a reader takes of a file that anybody may have made.
+struct TensorLimits {
+  /// How the names of the tensors begin that it knows; others are skipped unread. Empty: all are taken.
+  std::vector<std::string_view> known = {};
+  /// Of all tensors together, in memory. DEFLATE expands a byte to 1032, and a pack twice.
+  uint64_t max_bytes = UINT64_MAX;
+};
+
+/// As many bytes as a file of `file_bytes` may be worth: measured data are compressed tenfold at the most, and small
+/// files of constant values are let through.
+inline uint64_t usual_max_bytes(uint64_t file_bytes) {
+  constexpr uint64_t kAlways = uint64_t{256} << 20, kTimes = 200;
+  return kAlways + kTimes * file_bytes;
+}
+
+/// Checks every shape against the part's data window, the byte count and the limits before allocating. `name` appears
+/// in errors.
+TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& name, const TensorLimits& limits = {});
 
 /// True for bytes that begin like an OpenEXR file.
 bool looks_like_exr(std::span<const uint8_t> head);

@@ -99,8 +99,12 @@ Precision precision_in(const JsonFields& fields) {
 /// Reads the list of a stream, then the values that it lists.
 class PackReader {
  public:
-  PackReader(std::span<const uint8_t> bytes, const std::string& where)
-      : source_{where, "the file is damaged, make it anew."}, inflater_(bytes), left_(kMostInflated * bytes.size()) {}
+  PackReader(std::span<const uint8_t> bytes, const std::string& where, const PackLimits& limits)
+      : source_{where, "the file is damaged, make it anew."},
+        limits_(limits),
+        inflater_(bytes),
+        left_(std::min(kMostInflated * bytes.size(), limits.max_bytes)),
+        memory_left_(limits.max_bytes) {}
 
   TensorFile read() {
     const Json list = parse_json(read_list());
@@ -144,23 +148,44 @@ class PackReader {
     for (const Json& json : tensors) {
       if (!json.is_object()) fields.fail("tensors", "an array of objects");
       const JsonFields tensor(json, source_, "tensors.");
-      file.tensors[tensor.text("name")] = read_tensor(tensor);
+      const std::string name = tensor.text("name");
+      if (limits_.takes && !limits_.takes(name)) {
+        skip(count_of(tensor) * value_bytes(precision_in(tensor)));
+      } else {
+        file.tensors[name] = read_tensor(tensor);
+      }
     }
+  }
+
+  void skip(uint64_t count) {
+    constexpr uint64_t kBlock = 1 << 16;
+    for (; count > 0; count -= std::min(count, kBlock)) take(std::min(count, kBlock));
+  }
+
+  uint64_t count_of(const JsonFields& fields) const {
+    const std::vector<uint64_t> shape = shape_in(fields);
+    const uint64_t count = element_count(shape);
+    const bool is_maps = precision_in(fields) == Precision::bytes;
+    if (count == 0 || (is_maps && shape.size() < 2)) fields.fail("shape", "one of such a tensor");
+    return count;
   }
 
   Tensor read_tensor(const JsonFields& fields) {
     Tensor tensor{shape_in(fields), {}, precision_in(fields)};
-    const uint64_t count = element_count(tensor.shape);
+    const uint64_t count = count_of(fields);
     const bool is_maps = tensor.precision == Precision::bytes;
-    if (count == 0 || (is_maps && tensor.shape.size() < 2)) fields.fail("shape", "one of such a tensor");
+    if (count > memory_left_ / sizeof(float)) damaged();
+    memory_left_ -= count * sizeof(float);
     std::vector<uint8_t> bytes = take(count * value_bytes(tensor.precision));
     tensor.data = is_maps ? values_of_rests(std::move(bytes), tensor.shape) : values_of(bytes, tensor.precision);
     return tensor;
   }
 
   JsonSource source_;
+  const PackLimits& limits_;
   Inflater inflater_;
-  uint64_t left_;  // bytes that may still come out of the stream
+  uint64_t left_;         // bytes that may still come out of the stream
+  uint64_t memory_left_;  // that tensors may still take
 };
 
 }  // namespace
@@ -182,8 +207,8 @@ std::vector<uint8_t> encode_pack(const TensorFile& file) {
   return deflater.take();
 }
 
-TensorFile decode_pack(std::span<const uint8_t> bytes, const std::string& where) {
-  return PackReader(bytes, where).read();
+TensorFile decode_pack(std::span<const uint8_t> bytes, const std::string& where, const PackLimits& limits) {
+  return PackReader(bytes, where, limits).read();
 }
 
 }  // namespace velour

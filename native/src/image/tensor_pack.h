@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,7 +20,13 @@ constexpr size_t kLongestOpenText = 256;
 /// the next lower ones. Tensors as check_tensor wants them. Throws Error(invalid_argument) beyond 4 GiB.
 std::vector<uint8_t> encode_pack(const TensorFile& file);
 
-/// Throws Error(bad_data) that begins with `where`, before it takes memory for what the bytes cannot stand for.
-TensorFile decode_pack(std::span<const uint8_t> bytes, const std::string& where);
+struct PackLimits {
+  std::function<bool(const std::string& tensor)> takes = {};  // others are skipped; empty: all are taken
+  uint64_t max_bytes = UINT64_MAX;                            // of all tensors, in memory
+};
+
+/// Throws Error(bad_data) that begins with `where`, before it takes memory for what the bytes cannot stand for, or for
+/// more than the limits.
+TensorFile decode_pack(std::span<const uint8_t> bytes, const std::string& where, const PackLimits& limits = {});
 
 }  // namespace velour

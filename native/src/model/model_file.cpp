@@ -108,7 +108,8 @@ Model decode_model(std::span<const uint8_t> bytes, const std::string& name) {
   if (!looks_like_exr(bytes)) {
     throw Error(Status::bad_data, name + " is not a Velour model (it does not begin like an OpenEXR file).");
   }
-  const ModelFields fields(decode_tensors(bytes, name), name);
+  const TensorLimits limits{{"btf.", "lobes.", "views.", "shell."}, usual_max_bytes(bytes.size())};
+  const ModelFields fields(decode_tensors(bytes, name, limits), name);
   if (fields.attribute("velour.kind") != kKind) {
     fields.fail("velour.kind is '" + fields.attribute("velour.kind") + "', not a model.");
   }

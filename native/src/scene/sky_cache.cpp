@@ -74,7 +74,7 @@ std::string sky_cache_path(const std::string& folder, const EquirectangularImage
 
 std::optional<SkyMixture> read_sky(const std::string& path) {
   try {
-    return mixture_of(decode_tensors(read_file(path, kMostBytes), path));
+    return mixture_of(decode_tensors(read_file(path, kMostBytes), path, {{"lobes.", "fit."}, kMostBytes}));
   } catch (const Error&) {  // missing, truncated, another format: all the same to a cache
     return std::nullopt;
   }

@@ -393,5 +393,32 @@ TEST(ExrTensors, DamagedPixelsAreRefusedOrRead) {
   }
 }
 
+/// Zeros, which DEFLATE makes a thousandth of, and a packed file twice.
+TEST(ExrTensors, WhatNobodyAsksForIsSkippedAndTheRestIsBounded) {
+  for (const bool packed : {false, true}) {
+    TensorFile file;
+    file.packed = packed;
+    file.attributes["velour.kind"] = "x";
+    file.tensors["known.a"] = {{2, 3}, {1, 2, 3, 4, 5, 6}};
+    file.tensors["known.zeros"] = {{200, 1000}, std::vector<float>(200000, 0.0f)};
+    file.tensors["other.zeros"] = {{2000, 1000}, std::vector<float>(2000000, 0.0f)};
+    const std::vector<uint8_t> bytes = encode_tensors(file);
+    ASSERT_LT(bytes.size(), 40000u);
+    const TensorFile found = decode_tensors(bytes, "test", {{"known."}, 9000000});
+    EXPECT_EQ(found.tensors.size(), 2u);
+    EXPECT_EQ(found.tensors.at("known.a").data, file.tensors.at("known.a").data);
+    EXPECT_EQ(found.tensors.at("known.zeros").data.size(), 200000u);
+    for (const TensorLimits& limits : {TensorLimits{{"known."}, 700000}, TensorLimits{{}, 8000000}}) {
+      try {
+        decode_tensors(bytes, "test", limits);
+        ADD_FAILURE() << packed;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.status(), Status::bad_data);
+        EXPECT_TRUE(std::string(error.what()).starts_with("test")) << error.what();
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace velour
