@@ -40,7 +40,7 @@ void describe(const Arguments& a, Scene& scene) {
   const Affine up{{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0}};
   const uint32_t mesh = scene.add_mesh(read_obj(a["mesh"]));
   scene.add_instance(mesh, up, {scene.add_material({.material = material_of(a)})});
-  scene.set_environment(Environment::load(a["world"], 1, Mat3(1)));
+  scene.set_environment(Environment::load(a["world"], {}, 1, Mat3(1)));
   scene.frame_camera(static_cast<float>(a.width()) / static_cast<float>(a.height()), 2);
   scene.commit();
 }
