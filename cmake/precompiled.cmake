@@ -15,9 +15,9 @@ if(NOT CCACHE)
   target_link_libraries(velour_precompiled PRIVATE velour_options)
   target_precompile_headers(velour_precompiled PRIVATE ${velour_common_headers})
   # GCC 12 forgets that such headers are the system's, and finds overruns in std::string where there are none.
-  target_compile_options(velour_options INTERFACE -Wno-array-bounds -Wno-stringop-overread)
+  target_compile_options(velour_options INTERFACE -Wno-array-bounds $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>)
   # GCC would mark the whole of the precompiled headers at each garbage collection. In KiB: none below a gigabyte.
-  target_compile_options(velour_options INTERFACE --param=ggc-min-heapsize=1048576)
+  target_compile_options(velour_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>)
 endif()
 
 # share_precompiled(TARGET WITH): uses the headers that WITH has precompiled.

@@ -344,8 +344,8 @@ TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& nam
 }
 
 bool looks_like_exr(std::span<const uint8_t> head) {
-  constexpr uint8_t kMagic[] = {0x76, 0x2f, 0x31, 0x01};
-  return head.size() >= 4 && std::memcmp(head.data(), kMagic, 4) == 0;
+  constexpr uint8_t kBegin[] = {0x76, 0x2f, 0x31, 0x01};
+  return head.size() >= 4 && std::memcmp(head.data(), kBegin, 4) == 0;
 }
 
 }  // namespace velour

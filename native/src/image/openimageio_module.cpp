@@ -81,8 +81,8 @@ std::vector<uint8_t> encode_png(int width, int height, int channels, std::span<c
 }  // namespace
 }  // namespace velour
 
-extern "C" __attribute__((visibility("default"))) const velour::OpenImageIoModule& velour_openimageio_2() {
+extern "C" __attribute__((visibility("default"))) const velour::OpenImageIoModule* velour_openimageio_2() {
   static constexpr velour::OpenImageIoModule kModule{velour::open, velour::close, velour::header,
                                                      velour::text, velour::read,  velour::encode_png};
-  return kModule;
+  return &kModule;
 }

@@ -26,4 +26,4 @@ struct OpenImageIoModule {
 
 /// The only symbol that the module exports. Raise its number with every change of the struct: a program that is running
 /// while Velour is rebuilt opens the new module.
-extern "C" const velour::OpenImageIoModule& velour_openimageio_2();
+extern "C" const velour::OpenImageIoModule* velour_openimageio_2();

@@ -13,7 +13,7 @@ const OpenImageIoModule& open_module() {
   static const auto& library =
       *new PrivateLibrary("libvelour_openimageio.so",
                           "run scripts/setup and scripts/build again, or use an OpenEXR file, which needs neither.");
-  return library.function<decltype(velour_openimageio_2)>("velour_openimageio_2")();
+  return *library.function<decltype(velour_openimageio_2)>("velour_openimageio_2")();
 }
 
 /// The first call opens the module. After a failure the next call tries again.

@@ -132,7 +132,7 @@ class PackReader {
 
   std::vector<uint8_t> read_list() {
     const std::vector<uint8_t> count = take(4);
-    return take(count[0] | count[1] << 8 | count[2] << 16 | uint64_t{count[3]} << 24);
+    return take(count[0] | uint64_t{count[1]} << 8 | uint64_t{count[2]} << 16 | uint64_t{count[3]} << 24);
   }
 
   void read_texts(const JsonFields& fields, TensorFile& file) const {

@@ -30,6 +30,8 @@ template <typename... Makes>
 struct Either : Makes... {
   using Makes::operator()...;
 };
+template <typename... Makes>
+Either(Makes...) -> Either<Makes...>;
 
 /// Of light from one side.
 std::shared_ptr<const Material> lit_from(BtfLight light, const std::shared_ptr<const Model>& model, int neighbors) {

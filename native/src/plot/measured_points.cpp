@@ -20,7 +20,7 @@ std::vector<double> table_angles(double view_degrees) {
   }
   std::erase_if(angles, [](double a) { return std::abs(a) > kLastPoint; });
   std::ranges::sort(angles);
-  angles.erase(std::ranges::unique(angles).begin(), angles.end());
+  angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
   return angles;
 }
 

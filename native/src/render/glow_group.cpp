@@ -85,7 +85,7 @@ GlowGroup::GlowGroup(const Scene& scene, const Scene::Instance& instance, const 
     const TextureMap* placed = instance.placements.empty() ? nullptr : &instance.placements[slot];
     const float power = 0.5f * glm::length(double_area(mesh, t, {})) * mean_glow(material, mesh, t, placed);
     if (!(power > 0.0f) || !std::isfinite(power)) continue;
-    LightTree::Light& light = lights.emplace_back(Bounds{}, power);
+    LightTree::Light& light = lights.emplace_back(LightTree::Light{Bounds{}, power});
     for (int k = 0; k < 3; ++k) light.box.add(mesh.positions()[mesh.triangles()[t][k]]);
     light_[t] = static_cast<uint32_t>(triangle_.size());
     triangle_.push_back(t);

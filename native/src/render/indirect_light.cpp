@@ -32,8 +32,8 @@ void IndirectLight::meet_surfaces() {
     const Vertex vertex = Vertex::seen(scene_, flight_.rays[i], flight_.hits[i], path.cone, nullptr);
     if (!flight_.light.counts_glow(flight_.hits[i]))
       flight_.samples[path.sample].radiance += path.throughput * vertex.emission();
-    flight_.receivers.emplace_back(vertex, &path.numbers, path.throughput, path.sample, kIndirectDirections,
-                                   kIndirectDirections);
+    flight_.receivers.push_back(
+        {vertex, &path.numbers, path.throughput, path.sample, kIndirectDirections, kIndirectDirections});
   }
 }
 

@@ -142,8 +142,8 @@ void TileRenderer::follow(size_t index, int depth) {
   }
   if (depth == 0 || !flight_.light.counts_glow(hit)) sample.radiance += path.throughput * vertex.emission();
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);
-  flight_.receivers.emplace_back(vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most),
-                                 most);
+  flight_.receivers.push_back(
+      {vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most), most});
 }
 
 void TileRenderer::add_background() {

@@ -5,6 +5,10 @@
 
 #include "srbf/simd_dispatch.h"
 
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
 namespace hwy {
 namespace {
 
@@ -12,13 +16,21 @@ namespace {
 /// Asks the processor, and whether the operating system keeps the registers.
 #define VELOUR_HAS(feature) (__builtin_cpu_supports(feature) != 0)
 
+/// A bit of register ecx of the instruction cpuid: for what clang 14 does not know by name.
+bool has_bit(unsigned leaf, unsigned bit) {
+  unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
+  return __get_cpuid(leaf, &eax, &ebx, &ecx, &edx) != 0 && (ecx >> bit & 1) != 0;
+}
+bool has_lzcnt() { return has_bit(0x80000001, 5); }
+bool has_f16c() { return has_bit(1, 29); }
+
 bool has_ssse3() { return VELOUR_HAS("ssse3"); }
 bool has_sse4() {
   return has_ssse3() && VELOUR_HAS("sse4.1") && VELOUR_HAS("sse4.2") && VELOUR_HAS("pclmul") && VELOUR_HAS("aes");
 }
 bool has_avx2() {
-  return has_sse4() && VELOUR_HAS("avx") && VELOUR_HAS("avx2") && VELOUR_HAS("lzcnt") && VELOUR_HAS("bmi") &&
-         VELOUR_HAS("bmi2") && VELOUR_HAS("fma") && VELOUR_HAS("f16c");
+  return has_sse4() && VELOUR_HAS("avx") && VELOUR_HAS("avx2") && has_lzcnt() && VELOUR_HAS("bmi") &&
+         VELOUR_HAS("bmi2") && VELOUR_HAS("fma") && has_f16c();
 }
 bool has_avx3() {
   return has_avx2() && VELOUR_HAS("avx512f") && VELOUR_HAS("avx512vl") && VELOUR_HAS("avx512dq") &&
