@@ -62,6 +62,9 @@ using Values = std::unique_ptr<T, Free<T>>;
 class ByStb : public OpenPicture {
  public:
   ByStb(const std::string& path, PictureFormat format) : path_(path), bytes_(read_file(path)) {
+    if (format == PictureFormat::tiff)
+      throw Error(Status::unsupported,
+                  path + ": is a TIFF file, which this library does not read; convert it to EXR or PNG.");
     const auto* data = bytes_.data();
     const int size = static_cast<int>(std::min<size_t>(bytes_.size(), INT32_MAX));
     if (stbi_info_from_memory(data, size, &header_.width, &header_.height, &header_.channels) == 0)
