@@ -257,7 +257,7 @@ Tensor read_tensor(Imf::MultiPartInputFile& in, int index, const ExrPart& part, 
   return {std::move(shape), read_pixels<float>(in, index, Imf::FLOAT, part, where), precision};
 }
 
-/// What is left of the limits while parts are read.
+/// Keeps the remaining bytes of the limits while parts are read.
 class Budget {
  public:
   Budget(const TensorLimits& limits, uint64_t file_bytes)

@@ -26,12 +26,12 @@ std::vector<uint8_t> encode_tensors(const TensorFile& file);
 struct TensorLimits {
   /// How the names of the tensors begin that it knows; others are skipped unread. Empty: all are taken.
   std::vector<std::string_view> known = {};
-  /// Of all tensors together, in memory. DEFLATE expands a byte to 1032, and a pack twice.
+  /// Upper bound on the memory of all tensors together. DEFLATE expands a byte to 1032, and a pack twice.
   uint64_t max_bytes = UINT64_MAX;
 };
 
-/// As many bytes as a file of `file_bytes` may be worth: measured data are compressed tenfold at the most, and small
-/// files of constant values are let through.
+/// Usual bound on the decoded bytes of a file of `file_bytes`: measured data are compressed tenfold at the most, and
+/// small files of constant values are let through.
 inline uint64_t usual_max_bytes(uint64_t file_bytes) {
   constexpr uint64_t kAlways = uint64_t{256} << 20, kTimes = 200;
   return kAlways + kTimes * file_bytes;

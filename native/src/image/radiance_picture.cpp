@@ -193,7 +193,7 @@ class Radiance : public OpenPicture {
   std::vector<uint8_t> bytes_;
   size_t at_ = 0;
   bool is_xyz_ = false;
-  // Of old run lengths.
+  // State of old run lengths.
   std::optional<Rgbe> repeated_;
   size_t repeats_ = 0;  // of it, still to come
   int digit_ = 0;       // of the next count

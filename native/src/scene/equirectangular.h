@@ -29,7 +29,7 @@ class EquirectangularImage {
   void sample(const EnvironmentPlacement& placement, std::span<const Vec2> u, DirectionBatch& world) const;
   float mean_luminance() const { return mean_luminance_; }
   uint64_t bytes() const;
-  /// Of the pixels that were given.
+  /// Counts of the given pixels that no light can have.
   const ValueFaults& faults() const { return faults_; }
 
   // What the SIMD kernels read.

@@ -65,10 +65,10 @@ struct SurfacePoint {
   Vec3 tangent;           // along the first texture coordinate as placed, not normalised; zero when there is none
   float error;            // bound of |position - exact|, per coordinate
   uint32_t material;
-  /// Of an instance whose shadow terminator is softened: from `position` to the smooth surface that the shading normals
-  /// belong to, on the mesh's front, and the cosine below which rays begin there; 0: nowhere.
+  /// Vector from `position` to the smooth surface that the shading normals belong to, on the mesh's front; zero unless
+  /// the instance softens its shadow terminator.
   Vec3 rounding{0.0f};
-  float terminator = 0;
+  float terminator = 0;  // cosine below which shadow rays begin on that surface; 0: nowhere
 };
 
 /// Of a scene that is rendered; those that are only traced need none.

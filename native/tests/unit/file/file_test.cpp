@@ -148,7 +148,7 @@ TEST(AtomicFile, DoesNotStumbleOverWhatAKilledProcessHasLeft) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 65);
 }
 
-/// What is old and locked by nobody goes; what a living process writes, or the user calls nearly so, stays.
+/// Old files that nobody has locked go. Files of living processes, and files of the user with similar names, stay.
 TEST(AtomicFile, RemovesWhatAKilledProcessHasLeft) {
   const auto folder = test::scratch_folder();
   const auto make = [&](const std::string& name, int seconds_old) {

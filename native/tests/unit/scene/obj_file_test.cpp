@@ -168,7 +168,7 @@ TEST(ObjFile, AllWaysToNameACorner) {
     ASSERT_EQ(mesh.triangles().size(), 1u) << face;
     EXPECT_EQ(mesh.triangles()[0], glm::uvec3(0, 1, 2)) << face;
   }
-  // Of what comes later in the file.
+  // Vertices may come later in the file.
   EXPECT_EQ(read_obj(write_text("f 1 2 3\n" + kTwoSquares)).triangles().size(), 1u);
 }
 
