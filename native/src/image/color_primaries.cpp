@@ -77,8 +77,6 @@ bool is_rec709(const ColorPrimaries& p) {
          close(p.white, own.white, kWritten);
 }
 
-ColorMatrix rec709_of_xyz() { return rows_of(rgb_of_xyz()); }
-
 void transform_colors(const ColorMatrix& matrix, size_t stride, std::span<float> values) {
   for (size_t i = 0; i + 3 <= values.size(); i += stride) {
     const std::array<double, 3> in{values[i], values[i + 1], values[i + 2]};

@@ -28,9 +28,6 @@ bool is_stated(const ColorPrimaries& primaries);
 /// Whether they are Rec. 709's, to the digits that files write.
 bool is_rec709(const ColorPrimaries& primaries);
 
-/// CIE XYZ (D65 white of luminance 1) to linear Rec. 709.
-ColorMatrix rec709_of_xyz();
-
 /// Multiplies the first three of every `stride` values.
 void transform_colors(const ColorMatrix& matrix, size_t stride, std::span<float> values);
 

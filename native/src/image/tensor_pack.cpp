@@ -100,7 +100,7 @@ Precision precision_in(const JsonFields& fields) {
 class PackReader {
  public:
   PackReader(std::span<const uint8_t> bytes, const std::string& where, const PackLimits& limits)
-      : source_{where, "the file is damaged, make it anew."},
+      : source_{where, "the file is damaged; write it again."},
         limits_(limits),
         inflater_(bytes),
         left_(std::min(kMostInflated * bytes.size(), limits.max_bytes)),
