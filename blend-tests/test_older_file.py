@@ -7,10 +7,10 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from support import judge, older_file, scenes
+from support import judge, older_file, principled, scenes
 from support.blender import BlenderTest
 
-REFERENCE = Path(__file__).parent / "scenes/references/older_file.exr"
+REFERENCES = Path(__file__).parent / "scenes/references"
 SEEDS = range(1, 5)
 
 
@@ -33,7 +33,7 @@ class OlderFile(BlenderTest):
         from regression import reference
 
         ours = judge.estimate(renders)
-        return judge.judge(ours, reference.read(REFERENCE, ours))
+        return judge.judge(ours, reference.read(_reference(), ours))
 
     def _refused_without(self, change, *arguments):
         older_file.open_with_old_index()
@@ -69,6 +69,11 @@ class OlderFile(BlenderTest):
         self._refused_without(_without_power, "POINT")
         for name in ("Paint", "Metal", "Coat", "Sheen", "Glow", "Checkers", "Drum"):
             self._refused_without(_plain, name)
+
+
+def _reference():
+    meaning = principled.meaning()
+    return REFERENCES / f"older_file{'.' + meaning if meaning else ''}.exr"
 
 
 def _without_rims():

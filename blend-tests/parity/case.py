@@ -97,14 +97,11 @@ class BoxTest(ParityTest):
 
 
 def record(feature, verdict, word):
+    record_row(feature, word, percent=verdict.percent, z=verdict.z, sees=verdict.sees)
+
+
+def record_row(feature, word, **numbers):
     """A line for the table of docs/blender_support.md."""
-    row = {
-        "feature": feature,
-        "verdict": word,
-        "percent": verdict.percent,
-        "z": verdict.z,
-        "sees": verdict.sees,
-    }
-    row["blender"] = bpy.app.version_string
+    row = {"feature": feature, "verdict": word, **numbers, "blender": bpy.app.version_string}
     with (blender.folder() / "rows.jsonl").open("a") as file:
         file.write(json.dumps(row) + "\n")

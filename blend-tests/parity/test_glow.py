@@ -61,7 +61,8 @@ class Glow(ParityTest):
         """Drawing rays, older Cycles is up to a tenth off from closed forms of the texels' light."""
         self._glow(self.tree.picture(image(6, 4)), self.tree.picture(image(8, 4, low=0, high=12)))
         self._square(scale=0.9).visible_camera = False
-        self.assert_approximate("Glowing surface: image", 3, exact=((4, 0), NEVER))
+        samples = 2 if bpy.app.version >= (4, 0, 0) else 1
+        self.assert_approximate("Glowing surface: image", 3, samples, exact=((4, 0), NEVER))
         ours = self.pictures("VELOUR", 2)
         self._leave_to_bounces()
         verdict = judge_renders(ours, self.pictures("CYCLES", 8))

@@ -77,6 +77,9 @@ class Lights(BoxTest):
             "SPOT", 300, (0, 0, 4), (0.5, 0.2, 0), shadow_soft_size=0.0, spot_size=0.9, spot_blend=0.5
         )
         stage.shear(spot, (1, 2, 0.8), (0.1, 0, 0.3))
+        # The light tree of 3.5 and newer takes some of what a sheared spot lights for dark.
+        if hasattr(self.scene.cycles, "use_light_tree"):
+            self.scene.cycles.use_light_tree = False
         self.assert_parity("Spot: sheared by an unevenly scaled parent")
 
     def test_sheared_sun(self):

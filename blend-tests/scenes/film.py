@@ -1,6 +1,13 @@
 """What stands before nothing."""
 
 QUANTITY = "alpha of a transparent film: edges, a half transparent pane, a holdout, and the shadow inside"
+MEANINGS = ("", "layered")  # of the Principled BSDF, where Velour follows Blender
+
+
+def meaning():
+    from support import principled
+
+    return principled.meaning()
 
 
 def build(folder):

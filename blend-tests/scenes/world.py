@@ -1,15 +1,18 @@
 """A picture all around, another one on the ground."""
 
 QUANTITY = "a turned environment picture as light and background, an image texture and a normal map"
-MEANINGS = ("", "shadowed")  # of steep normals, where Velour follows Cycles
+# Of the Principled BSDF and of steep normals, where Velour follows Blender.
+MEANINGS = ("", "layered", "shadowed")
 
 
 def meaning():
     import bpy
 
+    from support import principled
+
     # Nothing tells of normals themselves: this came with them.
     is_newer = "shadow_terminator_geometry_offset" in bpy.types.Object.bl_rna.properties
-    return "shadowed" if is_newer else ""
+    return "shadowed" if is_newer else principled.meaning()
 
 
 def build(folder):

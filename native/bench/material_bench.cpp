@@ -2,7 +2,6 @@
 #include <benchmark/benchmark.h>
 
 #include "material/principled_material.h"
-#include "material/principled_textures.h"
 #include "material/scattered_material.h"
 #include "material/table_sampler.h"
 #include "sphere/directions.h"
@@ -47,7 +46,7 @@ TextureSlot<T> noise() {
 std::shared_ptr<const Material> make(int64_t choice) {
   if (choice == kPrincipled) return make_principled_material({.metallic = 0.5f, .roughness = 0.4f});
   if (choice == kTextured) {
-    return make_textured_material({}, {noise<Rgb>(), noise<float>(), noise<float>(), {}}, 1);
+    return make_principled_material({}, {noise<Rgb>(), noise<float>(), noise<float>(), {}}, 1);
   }
   return make_scattered_material(std::make_shared<ScatteredBrdf>(make_brdf(choice == kMeridian)), 0);
 }

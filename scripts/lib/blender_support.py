@@ -60,7 +60,10 @@ def _conditions(rows: list[dict]) -> str:
     return f"{sentence} Blender and Cycles {rows[0]['blender']}."
 
 
-def _errors(z: float) -> str:
+def _errors(z: float | None) -> str:
+    """`z`: None of pictures without noise."""
+    if z is None:
+        return "-"
     return f"{z:.1f}" if z < 100 else f"{z:.0f}"
 
 

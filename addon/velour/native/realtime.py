@@ -8,10 +8,10 @@ from __future__ import annotations
 import ctypes
 
 from . import library, structs
-from .arrays import small
-from .handle import path_bytes, set_fields
+from .handle import path_bytes
 from .job import Job
 from .model import Model
+from .shader import fill_principled
 
 
 def light_map_job(scene, cache_folder=None, threads=0) -> Job:
@@ -36,8 +36,8 @@ def shell_maps_job(model: Model) -> Job:
 
 
 def principled_rows_job(base_color, threads=0, **values) -> Job:
-    """As lobe_rows_job, of a Principled material: base_color [3], metallic, roughness, specular."""
+    """As lobe_rows_job, of a Principled material: values of Scene.add_principled_material."""
     desc = structs.PrincipledDesc()
     library.load().vlr_principled_desc_init(ctypes.byref(desc))
-    set_fields(desc, {"base_color": small("base_color", base_color, 3), **values})
+    fill_principled(desc, {"base_color": base_color, **values})
     return Job._create("vlr_principled_rows_create_job", ctypes.byref(desc), threads)

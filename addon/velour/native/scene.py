@@ -178,6 +178,8 @@ class Scene(Handle):
         index of 1.5.
 
         emission [3]: radiance; alpha: 0..1, the share of the surface that is there; rays pass the rest.
+        formula: layered, as Blender since 4.0, or disney, as before. lobe: whole (light between facets is
+        kept), single, or separable (facets shadow both directions independently: before Blender 3.5).
         """
         return self.add_textured_material({}, **values)
 

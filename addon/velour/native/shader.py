@@ -10,6 +10,7 @@ from .handle import Handle, choice, set_fields
 from .texture import IDENTITY, Texture, TextureSlot
 
 _COLORS = {"base_color": 3, "emission": 3}
+_CHOICES = {"formula": table.FORMULAS, "lobe": table.LOBES}
 
 
 class Shader(Handle):
@@ -33,11 +34,11 @@ class Shader(Handle):
     ) -> None:
         """`kind`: principled, diffuse, glossy, transparent, emission; the weight is 1.
 
-        textures and values: as of Scene.add_textured_material, without alpha and emission. diffuse and glossy
-        look at base_color and roughness; base_color of transparent is what light that goes straight on is
-        multiplied with, of emission the radiance. normal: a normal map, colours, of what reflects.
-        normal_correction: turned, faded, shadowed, as-it-is: what becomes of steep normals. interreflection:
-        a rough diffuse layer keeps its energy.
+        textures and values: as of Scene.add_textured_material, without alpha and emission. diffuse looks at
+        base_color and roughness, glossy at lobe, too; base_color of transparent is what light that goes
+        straight on is multiplied with, of emission the radiance. normal: a normal map, colours, of what
+        reflects. normal_correction: turned, faded, shadowed, as-it-is: what becomes of steep normals.
+        interreflection: a rough diffuse layer keeps its energy.
         """
         desc = structs.LayerDesc()
         self._lib.vlr_layer_desc_init(byref(desc))
@@ -67,12 +68,22 @@ class Shader(Handle):
         self._lib.vlr_shader_weigh_layer(self.pointer, byref(desc))
 
 
+def fill_principled(desc: structs.PrincipledDesc, values: dict) -> None:
+    """By names of numbers, colours and choices: those of Scene.add_principled_material."""
+    for name, value in values.items():
+        if name in _COLORS:
+            value = small(name, value, _COLORS[name])
+        elif name in _CHOICES:
+            value = choice(name, value, _CHOICES[name])
+        set_fields(desc, {name: value})
+
+
 def described(lib, textures: dict[str, TextureSlot], values: dict):
     """PrincipledDesc and PrincipledTextures of these; they borrow the textures."""
     desc, pictures = structs.PrincipledDesc(), structs.PrincipledTextures()
     lib.vlr_principled_desc_init(byref(desc))
     lib.vlr_principled_textures_init(byref(pictures))
-    set_fields(desc, {n: small(n, v, _COLORS[n]) if n in _COLORS else v for n, v in values.items()})
+    fill_principled(desc, values)
     for name, slot in textures.items():
         uv_map = small("uv_map", slot.uv_map, 6)
         set_fields(pictures, {name: slot.texture.pointer, f"{name}_map": uv_map, f"{name}_set": slot.uv_set})

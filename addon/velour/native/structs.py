@@ -198,6 +198,8 @@ class PrincipledDesc(Struct):
         ("specular", c_float),
         ("emission", c_float * 3),
         ("alpha", c_float),
+        ("formula", c_int32),
+        ("lobe", c_int32),
     ]
 
 

@@ -279,7 +279,8 @@ def _stamp(path):
 def _principled(values):
     """Of numbers of a material those that its rows are made of, as principled_rows_job takes them."""
     known = {name: values[name] for name in ("metallic", "roughness", "specular") if name in values}
+    choices = {name: values[name] for name in ("formula", "lobe") if name in values}
     color = tuple(min(max(c, 0.0), 1.0) for c in values.get("base_color", (0.8, 0.8, 0.8)))
     most = {"specular": _MOST_SPECULAR}
     numbers = {n: min(max(v, 0.0), most.get(n, 1.0)) if math.isfinite(v) else 0.5 for n, v in known.items()}
-    return {"base_color": color, **numbers}
+    return {"base_color": color, **numbers, **choices}

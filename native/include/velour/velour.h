@@ -424,6 +424,15 @@ VLR_API vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vl
  * 4 GiB) or pairs are missing. Texture coordinates count tiles. Samples are drawn by the cosine. */
 VLR_API vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint64_t most_bytes,
                                               uint32_t* material);
+/* Whose Principled BSDF: that of Blender 4.0 and newer, layers that give on what they do not reflect; or Disney's, of
+ * Blender before 4.0. The equations are in docs/equations.md. */
+enum { VLR_PRINCIPLED_LAYERED = 0, VLR_PRINCIPLED_DISNEY = 1 };
+/* How GGX's facets shadow each other. */
+enum {
+  VLR_GGX_WHOLE = 0,    /* height-correlated, and light between facets is kept: Blender's Multiscatter GGX since 4.0 */
+  VLR_GGX_SINGLE = 1,   /* height-correlated: GGX since Blender 3.5 */
+  VLR_GGX_SEPARABLE = 2 /* both directions as if by themselves: GGX before Blender 3.5 */
+};
 typedef struct vlr_principled_desc {
   uint32_t struct_size;
   float base_color[3]; /* working space */
@@ -432,6 +441,8 @@ typedef struct vlr_principled_desc {
   float specular;      /* 0..11.25: reflectance at normal incidence / 0.08; 0.5 = index 1.5 */
   float emission[3];   /* radiance, working space */
   float alpha;         /* 0..1: the share of the surface that is there; rays pass the rest */
+  int32_t formula;     /* VLR_PRINCIPLED_* */
+  int32_t lobe;        /* VLR_GGX_* */
 } vlr_principled_desc;
 VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
 VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,
@@ -591,7 +602,7 @@ VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_p
 enum {
   VLR_LAYER_PRINCIPLED = 0,
   VLR_LAYER_DIFFUSE = 1,     /* base_color and roughness: Oren and Nayar's; 0 is Lambert's */
-  VLR_LAYER_GLOSSY = 2,      /* base_color and roughness: GGX that reflects it at every angle */
+  VLR_LAYER_GLOSSY = 2,      /* base_color, roughness and lobe: GGX that reflects it at every angle */
   VLR_LAYER_TRANSPARENT = 3, /* base_color: what light that goes straight on is multiplied with */
   VLR_LAYER_EMISSION = 4     /* base_color: radiance */
 };

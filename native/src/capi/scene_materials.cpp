@@ -5,7 +5,7 @@
 #include "fit/scattered_fit.h"
 #include "material/holed_btf_material.h"
 #include "material/measured_btf_material.h"
-#include "material/principled_lobes.h"
+#include "material/principled_point.h"
 #include "material/through_material.h"
 #include "model/model_material.h"
 
@@ -99,6 +99,8 @@ void vlr_principled_desc_init(vlr_principled_desc* desc) {
   desc->metallic = defaults.metallic;
   desc->roughness = defaults.roughness;
   desc->specular = defaults.specular;
+  desc->formula = static_cast<int32_t>(defaults.formula);
+  desc->lobe = static_cast<int32_t>(defaults.lobe);
   desc->alpha = 1.0f;
 }
 

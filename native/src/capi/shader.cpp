@@ -14,33 +14,47 @@ namespace {
 
 Rgb base_color(const vlr_principled_desc& d) { return {d.base_color[0], d.base_color[1], d.base_color[2]}; }
 
-std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, vlr_principled_desc desc,
-                                           PrincipledTextures textures) {
-  if (layer.kind == VLR_LAYER_GLOSSY) {
-    return make_glossy_material({base_color(desc), desc.roughness, textures.base_color, textures.roughness});
-  }
-  if (layer.kind == VLR_LAYER_DIFFUSE) {
-    return make_rough_diffuse_material(
-        {base_color(desc), desc.roughness, layer.interreflection != 0, textures.base_color, textures.roughness});
-  }
-  desc.alpha = 1.0f;
-  textures.alpha = {};
-  return material_of(desc, textures);
-}
-
 TextureSlot<Rgb> normal_slot(const vlr_layer_desc& layer) {
   return color_slot(layer.normal, layer.normal_map, layer.normal_set, "vlr_layer_desc.normal");
 }
 
-std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const vlr_layer_desc& layer) {
+std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const vlr_layer_desc& layer,
+                                             bool is_diffuse) {
   if (layer.normal == nullptr) return material;
-  const DiffusePart diffuse = layer.kind == VLR_LAYER_GLOSSY    ? DiffusePart::none
-                              : layer.kind == VLR_LAYER_DIFFUSE ? DiffusePart::all
-                                                                : DiffusePart::base_of_principled;
   return make_normal_mapped(std::move(material),
                             {normal_slot(layer), std::max(layer.normal_strength, 0.0f),
                              static_cast<ReliefCorrection>(layer.normal_correction)},
-                            diffuse);
+                            is_diffuse);
+}
+
+/// Of which steep normals do not do the same to base and lobes.
+std::shared_ptr<const Material> principled(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
+                                           PrincipledTextures textures) {
+  PrincipledParameters parameters = parameters_of(desc);
+  textures.alpha = {};
+  if (layer.normal == nullptr) return make_principled_material(parameters, textures);
+  ShaderLayers parts;
+  for (const PrincipledPart part : {PrincipledPart::base, PrincipledPart::specular}) {
+    parameters.part = part;
+    parts.reflecting.push_back(
+        {with_normals(make_principled_material(parameters, textures), layer, part == PrincipledPart::base)});
+  }
+  return make_layered_material(std::move(parts));
+}
+
+std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
+                                           const PrincipledTextures& textures) {
+  if (layer.kind == VLR_LAYER_GLOSSY) {
+    const GlossyParameters glossy{base_color(desc), desc.roughness, lobe_of(desc), textures.base_color,
+                                  textures.roughness};
+    return with_normals(make_glossy_material(glossy), layer, false);
+  }
+  if (layer.kind == VLR_LAYER_DIFFUSE) {
+    const RoughDiffuseParameters diffuse{base_color(desc), desc.roughness, layer.interreflection != 0,
+                                         textures.base_color, textures.roughness};
+    return with_normals(make_rough_diffuse_material(diffuse), layer, true);
+  }
+  return principled(layer, desc, textures);
 }
 
 PrincipledTextures textures_of(const vlr_layer_desc& layer) {
@@ -57,7 +71,7 @@ LayerWeight& add_layer(ShaderLayers& layers, MeshSets& sets, const vlr_layer_des
     to.push_back({base_color(desc), textures.base_color});
     return to.back().weight;
   }
-  layers.reflecting.push_back({with_normals(reflecting(layer, desc, textures), layer)});
+  layers.reflecting.push_back({reflecting(layer, desc, textures)});
   return layers.reflecting.back().weight;
 }
 

@@ -52,16 +52,27 @@ PrincipledTextures converted_textures(const vlr_principled_textures& t) {
           number_slot(t.alpha, t.alpha_map, t.alpha_set, "vlr_principled_textures.alpha")};
 }
 
+static_assert(VLR_PRINCIPLED_DISNEY == static_cast<int>(PrincipledFormula::disney));
+static_assert(VLR_GGX_SINGLE == static_cast<int>(GgxLobe::single));
+static_assert(VLR_GGX_SEPARABLE == static_cast<int>(GgxLobe::separable));
+
+GgxLobe lobe_of(const vlr_principled_desc& desc) {
+  require_choice(desc.lobe, VLR_GGX_SEPARABLE, "vlr_principled_desc.lobe");
+  return static_cast<GgxLobe>(desc.lobe);
+}
+
 PrincipledParameters parameters_of(const vlr_principled_desc& desc) {
+  require_choice(desc.formula, VLR_PRINCIPLED_DISNEY, "vlr_principled_desc.formula");
   return {.base_color = {desc.base_color[0], desc.base_color[1], desc.base_color[2]},
           .metallic = desc.metallic,
           .roughness = desc.roughness,
-          .specular = desc.specular};
+          .specular = desc.specular,
+          .formula = static_cast<PrincipledFormula>(desc.formula),
+          .lobe = lobe_of(desc)};
 }
 
 std::shared_ptr<const Material> material_of(const vlr_principled_desc& desc, const PrincipledTextures& textures) {
-  if (!textures.any() && desc.alpha >= 1.0f) return make_principled_material(parameters_of(desc));
-  return make_textured_material(parameters_of(desc), textures, desc.alpha);
+  return make_principled_material(parameters_of(desc), textures, desc.alpha);
 }
 
 }  // namespace velour::capi

@@ -3,7 +3,7 @@
 
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "material/principled_textures.h"
+#include "material/principled_material.h"
 
 namespace velour::capi {
 
@@ -14,8 +14,9 @@ TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uin
 PrincipledTextures converted_textures(const vlr_principled_textures& textures);
 MeshSets sets_of(const PrincipledTextures& textures);
 
+/// These throw Error(invalid_argument) for choices that there are not.
+GgxLobe lobe_of(const vlr_principled_desc& desc);
 PrincipledParameters parameters_of(const vlr_principled_desc& desc);
-/// A uniform material knows its albedos more cheaply.
 std::shared_ptr<const Material> material_of(const vlr_principled_desc& desc, const PrincipledTextures& textures);
 
 }  // namespace velour::capi

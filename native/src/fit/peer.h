@@ -9,7 +9,7 @@
 #include "job/progress.h"
 #include "material/ggx_sampler.h"
 #include "material/material.h"
-#include "material/principled_lobes.h"
+#include "material/principled_point.h"
 
 namespace velour {
 

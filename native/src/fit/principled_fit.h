@@ -3,7 +3,7 @@
 
 #include "brdf/measurement.h"
 #include "job/progress.h"
-#include "material/principled_lobes.h"
+#include "material/principled_point.h"
 
 namespace velour {
 

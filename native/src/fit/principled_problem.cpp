@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "material/principled_material.h"
+
 namespace velour {
 namespace {
 
@@ -11,57 +13,71 @@ constexpr Eigen::Index kTint = 3, kFirstShape = 6;  // places among the unknowns
 
 Eigen::Index place(size_t shape) { return kFirstShape + static_cast<Eigen::Index>(shape); }
 
+float& unknown(PrincipledParameters& p, Eigen::Index k) {
+  if (k < kTint) return p.base_color[static_cast<int>(k)];
+  if (k < kFirstShape) return p.specular_tint[static_cast<int>(k - kTint)];
+  return p.*kShape[static_cast<size_t>(k - kFirstShape)];
+}
+
 float least(float PrincipledParameters::*which) {
   const bool rough = which == &PrincipledParameters::roughness || which == &PrincipledParameters::coat_roughness;
   return rough ? kMinRoughness : 0;
 }
 
 /// What a derivative at `value` in [0, 1] looks ahead, away from the nearer end: well above the rounding of f.
-float difference_of(float value) { return value > 0.5f ? -1e-3f : 1e-3f; }
+float difference_of(float value) { return value > 0.5f ? -3e-4f : 3e-4f; }
 
 }  // namespace
 
 PrincipledProblem::PrincipledProblem(PairSamples samples, PrincipledSet set)
     : samples_(std::move(samples.samples)), floor_(samples.floor), set_(set) {
-  for (const PairSample& s : samples_) h_.push_back(glm::normalize(s.w.wl + s.w.wv));
+  for (size_t i = 0; i < samples_.size(); ++i) {  // samples come a view at a time
+    const DirectionPair& w = samples_[i].w;
+    const bool begins = batches_.empty() || batches_.back().wv != w.wv;
+    if (begins || batches_.back().wl.count == DirectionBatch::kCapacity) batches_.push_back({w.wv, i, {}});
+    batches_.back().wl.push(w.wl);
+  }
+  for (Batch& batch : batches_) batch.wl.pad();
 }
 
-std::vector<PrincipledProblem::Parts> PrincipledProblem::parts(const PrincipledLobes& lobes) const {
-  std::vector<Parts> out;
-  out.reserve(samples_.size());
-  PrincipledLobes::View view{};
-  for (size_t i = 0; i < samples_.size(); ++i) {
-    const DirectionPair& w = samples_[i].w;
-    if (view.wv != w.wv) view = lobes.view(w.wv);  // samples come a view at a time
-    out.push_back(lobes.parts(view, w.wl, h_[i]));
+std::vector<Rgb> PrincipledProblem::values(const PrincipledParameters& p) const {
+  std::vector<Rgb> out(samples_.size());
+  RgbBatch f;
+  ScalarBatch pdf;
+  PrincipledPoint point;
+  Vec3 wv(0);
+  for (const Batch& batch : batches_) {
+    if (batch.wv != wv) point = PrincipledPoint(p, wv = batch.wv);
+    eval_principled(point, wv, batch.wl, f, pdf);
+    for (int i = 0; i < batch.wl.count; ++i) out[batch.first + static_cast<size_t>(i)] = f.get(i) * batch.wl.z[i];
   }
   return out;
 }
 
 double PrincipledProblem::cost(const PrincipledParameters& p) const {
-  const PrincipledLobes lobes(p);
-  const std::vector<Parts> f = parts(lobes);
+  const std::vector<Rgb> f_cos = values(p);
   double sum = 0;
-  for (size_t i = 0; i < f.size(); ++i) {
+  for (size_t i = 0; i < f_cos.size(); ++i) {
     const PairSample& s = samples_[i];
-    const Rgb difference = glm::sqrt(lobes.value(f[i]) * s.w.wl.z + floor_) - glm::sqrt(s.f_cos + floor_);
+    const Rgb difference = glm::sqrt(f_cos[i] + floor_) - glm::sqrt(s.f_cos + floor_);
     sum += s.weight * glm::dot(difference, difference);
   }
   return sum;
 }
 
 PrincipledParameters PrincipledProblem::completed(const PrincipledParameters& start) const {
-  const std::vector<Parts> f = parts(PrincipledLobes(start));
   PrincipledParameters p = start;
+  p.base_color = Rgb(0);
+  const std::vector<Rgb> black = values(p);
+  p.base_color = Rgb(1);
+  const std::vector<Rgb> white = values(p);
   for (int c = 0; c < 3; ++c) {
     double top = 0, bottom = 0;
-    for (size_t i = 0; i < f.size(); ++i) {
+    for (size_t i = 0; i < black.size(); ++i) {
       const PairSample& s = samples_[i];
-      // Linear in the base colour but where a strong tint has been clamped.
-      const float black = PrincipledLobes::value(f[i], 0, p.specular_tint[c]);
-      const double tinted = (PrincipledLobes::value(f[i], 1, p.specular_tint[c]) - black) * s.w.wl.z;
+      const double tinted = white[i][c] - black[i][c];
       const double weight = s.weight / (s.f_cos[c] + floor_);  // g'(y)^2 but for a factor
-      top += weight * tinted * (s.f_cos[c] - black * s.w.wl.z);
+      top += weight * tinted * (s.f_cos[c] - black[i][c]);
       bottom += weight * tinted * tinted;
     }
     p.base_color[c] = bottom > 0 ? std::clamp(static_cast<float>(top / bottom), 0.0f, 1.0f) : 0.5f;
@@ -69,43 +85,42 @@ PrincipledParameters PrincipledProblem::completed(const PrincipledParameters& st
   return p;
 }
 
-std::array<std::vector<PrincipledProblem::Parts>, kShape.size()> PrincipledProblem::parts_beside(
-    const PrincipledParameters& p, const PrincipledLobes& lobes) const {
-  std::array<std::vector<Parts>, kShape.size()> beside;
-  for (size_t k = 0; k < kShape.size(); ++k) {
-    PrincipledParameters other = p;
-    other.*kShape[k] += difference_of(p.*kShape[k]);
-    beside[k] = parts(lobes.with(other));
-  }
-  return beside;
-}
-
 PrincipledProblem::Normal PrincipledProblem::normal(const PrincipledParameters& p) const {
-  const PrincipledLobes lobes(p);
-  const std::vector<Parts> f = parts(lobes);
-  const auto beside = parts_beside(p, lobes);
+  const std::vector<Rgb> f_cos = values(p);
+  std::vector<Rgb> slopes(f_cos.size() * kSize, Rgb(0));  // of an unknown after the other
+  for (int k = 0; k < kSize; ++k) {
+    if (is_fixed(k)) continue;
+    PrincipledParameters other = p;
+    float& moved = unknown(other, k);
+    const float difference = difference_of(moved);
+    moved += difference;
+    const std::vector<Rgb> beside = values(other);
+    for (size_t i = 0; i < f_cos.size(); ++i) slopes[kSize * i + k] = (beside[i] - f_cos[i]) / difference;
+  }
   Normal n(kSize);
-  for (size_t i = 0; i < f.size(); ++i) {
+  for (size_t i = 0; i < f_cos.size(); ++i) {
     const PairSample& s = samples_[i];
     for (int c = 0; c < 3; ++c) {
-      const float base = p.base_color[c], tint = p.specular_tint[c], value = PrincipledLobes::value(f[i], base, tint);
-      const auto slope = [value](float other, float at) { return (other - value) / difference_of(at); };
-      Eigen::Matrix<double, kSize, 1> row = Eigen::Matrix<double, kSize, 1>::Zero();
-      row[c] = slope(PrincipledLobes::value(f[i], base + difference_of(base), tint), base);
-      row[kTint + c] = slope(PrincipledLobes::value(f[i], base, tint + difference_of(tint)), tint);
-      for (size_t k = 0; k < kShape.size(); ++k) {
-        row[place(k)] = slope(PrincipledLobes::value(beside[k][i], base, tint), p.*kShape[k]);
-      }
-      const float root = std::sqrt(value * s.w.wl.z + floor_);
+      const float root = std::sqrt(f_cos[i][c] + floor_);
       const double residual = static_cast<double>(root) - std::sqrt(s.f_cos[c] + floor_);
-      row *= 0.5 * s.w.wl.z / root;
+      Eigen::Matrix<double, kSize, 1> row;
+      for (int k = 0; k < kSize; ++k) row[k] = 0.5 * slopes[kSize * i + k][c] / root;
       n.curvature.noalias() += s.weight * row * row.transpose();
       n.slope.noalias() += s.weight * residual * row;
     }
   }
   freeze_at_bounds(p, n);
-  freeze_others(n);
+  for (int k = 0; k < kSize; ++k) {
+    if (is_fixed(k)) n.freeze(k);
+  }
   return n;
+}
+
+bool PrincipledProblem::is_fixed(Eigen::Index k) const {
+  if (set_ == PrincipledSet::all || k < kTint) return false;
+  if (k < kFirstShape) return true;
+  const auto which = kShape[static_cast<size_t>(k - kFirstShape)];
+  return which == &PrincipledParameters::coat || which == &PrincipledParameters::coat_roughness;
 }
 
 void PrincipledProblem::freeze_at_bounds(const PrincipledParameters& p, Normal& n) const {
@@ -117,16 +132,6 @@ void PrincipledProblem::freeze_at_bounds(const PrincipledParameters& p, Normal& 
     check(kTint + c, p.specular_tint[c], 0);
   }
   for (size_t k = 0; k < kShape.size(); ++k) check(place(k), p.*kShape[k], least(kShape[k]));
-}
-
-void PrincipledProblem::freeze_others(Normal& n) const {
-  if (set_ == PrincipledSet::all) return;
-  for (int c = 0; c < 3; ++c) n.freeze(kTint + c);
-  for (size_t k = 0; k < kShape.size(); ++k) {
-    if (kShape[k] == &PrincipledParameters::coat || kShape[k] == &PrincipledParameters::coat_roughness) {
-      n.freeze(place(k));
-    }
-  }
 }
 
 PrincipledParameters PrincipledProblem::moved(const PrincipledParameters& p,

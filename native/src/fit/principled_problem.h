@@ -7,7 +7,8 @@
 #include "fit/levenberg_marquardt.h"
 #include "fit/pair_samples.h"
 #include "fit/principled_fit.h"
-#include "material/principled_lobes.h"
+#include "material/principled_point.h"
+#include "sphere/direction_batch.h"
 
 namespace velour {
 
@@ -17,7 +18,6 @@ class PrincipledProblem {
   /// Unknowns: base colour, specular tint, then those of kShape.
   static constexpr int kSize = 11;
   using Normal = NormalEquations<kSize>;
-  /// What f depends on through tables of albedos: derivatives by differences.
   static constexpr std::array<float PrincipledParameters::*, 5> kShape{
       &PrincipledParameters::metallic, &PrincipledParameters::roughness, &PrincipledParameters::specular,
       &PrincipledParameters::coat, &PrincipledParameters::coat_roughness};
@@ -25,24 +25,28 @@ class PrincipledProblem {
   explicit PrincipledProblem(PairSamples samples, PrincipledSet set = PrincipledSet::all);
 
   double cost(const PrincipledParameters& p) const;
+  /// Derivatives are differences.
   Normal normal(const PrincipledParameters& p) const;
   PrincipledParameters moved(const PrincipledParameters& p, const decltype(Normal::slope)& step) const;
-  /// With the base colour that suits the rest: least squares of the problem linearised at the data.
+  /// With the base colour that suits the rest: least squares of the problem linearised at the data, f taken for linear
+  /// in the colour.
   PrincipledParameters completed(const PrincipledParameters& start) const;
 
  private:
-  using Parts = PrincipledLobes::Parts;
-  /// Of f at each sample.
-  std::vector<Parts> parts(const PrincipledLobes& lobes) const;
-  /// The parts beside `p` by difference_of each of kShape.
-  std::array<std::vector<Parts>, kShape.size()> parts_beside(const PrincipledParameters& p,
-                                                             const PrincipledLobes& lobes) const;
+  /// Samples of one view.
+  struct Batch {
+    Vec3 wv;
+    size_t first;  // of samples_
+    DirectionBatch wl;
+  };
+  /// f cos at each sample.
+  std::vector<Rgb> values(const PrincipledParameters& p) const;
+  /// Whether the set leaves an unknown where it is.
+  bool is_fixed(Eigen::Index unknown) const;
   void freeze_at_bounds(const PrincipledParameters& p, Normal& n) const;
-  /// What is not in the set.
-  void freeze_others(Normal& n) const;
 
   std::vector<PairSample> samples_;
-  std::vector<Vec3> h_;
+  std::vector<Batch> batches_;
   float floor_;
   PrincipledSet set_;
 };

@@ -13,6 +13,13 @@ namespace velour {
 /// A mirror's density is no function; below this a lobe is as sharp as any light we have.
 inline constexpr float kMinGgxAlpha = 1e-3f;
 
+/// How facets of GGX shadow each other, and what becomes of light that they send to each other.
+enum class GgxLobe {
+  whole,      // height-correlated; what single scattering loses is given back by scaling it: Multiscatter GGX of 4.0
+  single,     // height-correlated: GGX of Blender 3.5 and newer
+  separable,  // both directions shadowed independently: GGX of Blender 3.4 and older
+};
+
 // Here of one number; sources that Highway compiles include the same for several.
 #include "material/ggx_formulas-inl.h"
 

@@ -32,6 +32,13 @@ inline auto ggx_brdf_without_fresnel(const Vec3& wv, const W& wl, const W& h, co
   return 0.5f * ggx_distribution(h, alpha) / bottom;
 }
 
+/// The same as if both directions were shadowed independently, G1 G1 in the place of G2 [WMLT07, Eq. 23].
+template <class W = Vec3>
+inline auto ggx_brdf_of_independent_shadows(const Vec3& wv, const W& wl, const W& h, const Vec2& alpha) {
+  return ggx_distribution(h, alpha) /
+         ((wv.z + ggx_projected_length(wv, alpha)) * (wl.z + ggx_projected_length(wl, alpha)));
+}
+
 /// Of unit directions; 0 for opposed ones: no facet mirrors them.
 template <class W = Vec3>
 inline W half_vector(const Vec3& wv, const W& wl) {
@@ -80,12 +87,9 @@ inline T tinted_metal_fresnel(float f0, float tint, T cosine) {
   return larger(0.0f, f0 + (1 - f0) * share - cosine * share * (1.0f - cosine) * depth);
 }
 
-/// A table of albedos at the cosine: linear in its square root between entries, of which entry i of `table` is at
-/// (i / (size - 1))^2.
-template <class Table, class T>
-inline T albedo_at(const Table& table, T cosine) {
-  const auto last = static_cast<float>(table.size() - 1);
-  const T place = square_root(smaller(larger(cosine, 0.0f), 1.0f)) * last;
-  const T low = smaller(truncated(place), last - 1), share = place - low;
-  return (1.0f - share) * entry(table.data(), low) + share * entry(table.data() + 1, low);
+/// Its mean over a hemisphere of light, 2 int F mu dmu, as the polynomial that it is.
+inline float mean_tinted_metal_fresnel(float f0, float tint) {
+  constexpr float kShare = 0.46266436f, kBottom = 0.056652779f;  // as above
+  const float depth = (1 - tint) / kBottom * (f0 + (1 - f0) * kShare);
+  return larger(0.0f, f0 + (1 - f0) * (1 / 21.0f) - depth * (1 / 126.0f));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "material/ggx.h"
+#include "material/interreflection.h"
 
 namespace velour {
 namespace {
@@ -17,7 +18,8 @@ class GlossyMaterial final : public Material {
     const Rgb color = glm::clamp(p_.color_texture.at(site, p_.color), Rgb(0.0f), Rgb(1.0f));
     const float roughness = std::clamp(p_.roughness_texture.at(site, p_.roughness), kMinRoughness, 1.0f);
     point.wv = wv;
-    for (int c = 0; c < 3; ++c) point.parameter[kRed + c] = color[c];
+    const Rgb scaled = color * Interreflection(p_.lobe, roughness, wv.z).gain(color);
+    for (int c = 0; c < 3; ++c) point.parameter[kRed + c] = scaled[c];
     point.parameter[kAlpha] = roughness * roughness;
   }
 
@@ -26,7 +28,7 @@ class GlossyMaterial final : public Material {
     const Vec2 alpha(point.parameter[kAlpha]);
     for (int i = 0; i < wl.count; ++i) {
       const Vec3 l = wl.get(i), h = half_vector(point.wv, l);
-      f.set(i, l.z > 0 ? color * ggx_brdf_without_fresnel(point.wv, l, h, alpha) : Rgb(0.0f));
+      f.set(i, l.z > 0 ? color * lobe(point.wv, l, h, alpha) : Rgb(0.0f));
       pdf.v[i] = pdf_ggx_reflection(point.wv, h, alpha);
     }
   }
@@ -43,6 +45,11 @@ class GlossyMaterial final : public Material {
   bool isotropic() const override { return true; }
 
  private:
+  float lobe(const Vec3& wv, const Vec3& wl, const Vec3& h, const Vec2& alpha) const {
+    return p_.lobe == GgxLobe::separable ? ggx_brdf_of_independent_shadows(wv, wl, h, alpha)
+                                         : ggx_brdf_without_fresnel(wv, wl, h, alpha);
+  }
+
   const GlossyParameters p_;
 };
 

@@ -10,7 +10,7 @@
 #include "material/btf_table_point.h"
 #include "material/factored_point.h"
 #include "material/ggx_sampler.h"
-#include "material/principled_lobes.h"
+#include "material/principled_point.h"
 #include "material/surface_site.h"
 #include "sphere/direction_batch.h"
 #include "sphere/frame.h"
@@ -38,7 +38,7 @@ struct PreparedBrdf {
   WarpedMixture warped;                  // parametric models: value and density
   float parameter[8];                    // analytic materials: what they derive from wv
   GgxPoint ggx;                          // of the fitted GGX lobe, where one is the material or draws its samples
-  PrincipledLobes principled;            // textured Principled materials: those of the site
+  PrincipledPoint principled;            // Principled materials: those of the site and the view
   FactoredPoint factored;                // BTFs as sums of products: those of the site and the view
   SrbfPoint srbf;                        // BTFs of multivariate SRBFs: the same
   TensorPoint tensor;                    // BTFs of clustered tensors: the same

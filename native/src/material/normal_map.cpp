@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "material/principled_sampling.h"
-
 namespace velour {
 namespace {
 
@@ -13,13 +11,8 @@ constexpr float kLeastViewCosine = 1e-3f;  // of a viewer with the mapped normal
 
 class NormalMappedMaterial final : public Material {
  public:
-  NormalMappedMaterial(std::shared_ptr<const Material> material, const NormalMap& map, DiffusePart diffuse)
-      : material_(std::move(material)),
-        principled_(diffuse == DiffusePart::base_of_principled
-                        ? dynamic_cast<const PrincipledSampling*>(material_.get())
-                        : nullptr),
-        map_(map),
-        diffuse_(diffuse) {}
+  NormalMappedMaterial(std::shared_ptr<const Material> material, const NormalMap& map, bool is_diffuse)
+      : material_(std::move(material)), map_(map), is_diffuse_(is_diffuse) {}
 
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
     const Frame frame = Frame::about(normal_at(wv, site));
@@ -34,10 +27,10 @@ class NormalMappedMaterial final : public Material {
     for (int i = 0; i < wl.count; ++i) turned.push(point.relief.to_local(wl.get(i)));
     turned.pad();
     material_->eval(point, turned, f, pdf);
-    soften(point, wl, turned, f);
     for (int i = 0; i < wl.count; ++i) {
+      const float share = kept(wl.z[i], turned.z[i], point.relief.z.z);
       const bool above = wl.z[i] > 0 && turned.z[i] > 0;
-      f.set(i, above ? f.get(i) * (turned.z[i] / std::max(wl.z[i], kMinNormalCosine)) : Rgb(0.0f));
+      f.set(i, above ? f.get(i) * (share * turned.z[i] / std::max(wl.z[i], kMinNormalCosine)) : Rgb(0.0f));
     }
   }
 
@@ -50,24 +43,15 @@ class NormalMappedMaterial final : public Material {
   bool isotropic() const override { return false; }
 
  private:
-  void soften(const PreparedBrdf& point, const DirectionBatch& wl, const DirectionBatch& turned, RgbBatch& f) const {
-    if (diffuse_ == DiffusePart::none || map_.correction == ReliefCorrection::none) return;
-    RgbBatch specular;
-    if (principled_ != nullptr) principled_->eval_specular(point, turned, specular);
-    for (int i = 0; i < wl.count; ++i) {
-      const Rgb rest = principled_ != nullptr ? specular.get(i) : Rgb(0.0f);
-      f.set(i, rest + (f.get(i) - rest) * kept(wl.z[i], turned.z[i], point.relief.z.z));
-    }
-  }
-
   float kept(float own, float mapped, float tilt) const {
+    if (!is_diffuse_ || map_.correction == ReliefCorrection::none) return 1;
     return map_.correction == ReliefCorrection::shadowed ? relief_shadowing(own, tilt)
                                                          : terminator_softening(own, mapped, tilt);
   }
 
   bool keeps_mirrors_above() const {
     if (map_.correction == ReliefCorrection::turned) return true;
-    return map_.correction != ReliefCorrection::none && diffuse_ != DiffusePart::all;
+    return map_.correction != ReliefCorrection::none && !is_diffuse_;
   }
 
   Vec3 normal_at(const Vec3& wv, const SurfaceSite& site) const {
@@ -81,9 +65,8 @@ class NormalMappedMaterial final : public Material {
   }
 
   const std::shared_ptr<const Material> material_;
-  const PrincipledSampling* const principled_;  // the material, where its base alone is softened
   const NormalMap map_;
-  const DiffusePart diffuse_;
+  const bool is_diffuse_;
 };
 
 }  // namespace
@@ -117,8 +100,8 @@ float relief_shadowing(float own, float tilt) {
 }
 
 std::shared_ptr<const Material> make_normal_mapped(std::shared_ptr<const Material> material, const NormalMap& map,
-                                                   DiffusePart diffuse) {
-  return std::make_shared<NormalMappedMaterial>(std::move(material), map, diffuse);
+                                                   bool is_diffuse) {
+  return std::make_shared<NormalMappedMaterial>(std::move(material), map, is_diffuse);
 }
 
 }  // namespace velour

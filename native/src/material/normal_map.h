@@ -26,17 +26,14 @@ struct NormalMap {
   ReliefCorrection correction = ReliefCorrection::turned;
 };
 
-/// What of f is diffuse: there the light fades out softly before the surface's own horizon, where it would end in a
-/// hard line.
-enum class DiffusePart { none, all, base_of_principled };
-
 /// `material`, uniform or textured, about the mapped normal: its f times the ratio of the cosines with the mapped and
 /// with the surface's own normal, 0 where the light is behind either; a viewer behind the mapped one sees what is seen
 /// at its horizon. So that what a mirror would reflect comes from above the geometric surface, the normal is turned
-/// towards that one as far as it needs, unless the correction leaves it. Where the surface has no relief the material
+/// towards that one as far as it needs, unless the correction leaves it. What is diffuse fades out softly before the
+/// surface's own horizon, where it would end in a hard line. Where the surface has no relief the material
 /// is as it is.
 std::shared_ptr<const Material> make_normal_mapped(std::shared_ptr<const Material> material, const NormalMap& map,
-                                                   DiffusePart diffuse);
+                                                   bool is_diffuse);
 
 /// What the light keeps of a diffuse f about a normal whose cosine with the surface's own is `tilt`: `own` and `mapped`
 /// are the light's cosines with both. [CLB19], Eq. 3 and the smoothing after it.

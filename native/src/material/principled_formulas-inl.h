@@ -1,34 +1,55 @@
-// Principled materials as a formula. Included inside a namespace, after ggx_formulas-inl.h and as that is: by
-// principled_lobes.cpp for one direction, by principled_sampling.cpp for several side by side.
+// Principled materials as a formula. Included inside a namespace, after ggx_formulas-inl.h: by sources that Highway
+// compiles, for several directions side by side.
 
-/// By metal and dielectric with their `lobe`, G2 D / (4 cos cos).
-template <class T>
-inline PrincipledParts<T> principled_reflected(const PrincipledLobes::Layers& layers, T lobe, T cosine) {
-  const T rise = (dielectric_fresnel(cosine, layers.eta) - layers.f0) * (1 / (1 - layers.f0));
-  const T dielectric = (1 - layers.metallic) * lobe;
-  return {dielectric * rise, dielectric * layers.f0 * (1.0f - rise), 0.0f, layers.metallic * lobe, cosine};
+/// What multiplies point.diffuse: 1 but in Disney's formula [Bur12, Sec. 5.3].
+template <class W>
+inline auto principled_base(const PrincipledPoint& point, const Vec3& wv, const W& wl) {
+  using T = decltype(dot(wv, wl));
+  if (point.formula != PrincipledFormula::disney) return T(1.0f);
+  const T light_rise = schlick_share(smaller(larger(wl.z, 0.0f), 1.0f));
+  const T retro = point.roughness * (dot(wv, wl) + 1.0f);  // 2 roughness cos^2 of half the angle between both
+  return (1 - 0.5f * point.view_rise) * (1.0f - 0.5f * light_rise) +
+         retro * (light_rise + point.view_rise + light_rise * point.view_rise * (retro - 1.0f));
 }
+
+/// What the facets' reflectances share, at the cosine between wv and h.
+template <class T>
+inline T principled_rise(const PrincipledPoint& point, T cosine) {
+  return (dielectric_fresnel(cosine, point.eta) - point.f0) * (1 / (1 - point.f0));
+}
+
+/// The facets' reflectance, one channel, with all weights: what multiplies the lobe.
+template <class T>
+inline T principled_reflectance(const PrincipledPoint& point, T cosine, T rise, int c) {
+  const T dielectric = point.at_normal[c] + point.rise[c] * rise;
+  if (!(point.metal[c] > 0)) return dielectric;
+  return dielectric + point.metal[c] * tinted_metal_fresnel(point.base_color[c], point.specular_tint[c], cosine);
+}
+
+/// What all channels of f share at a direction.
+template <class T>
+struct PrincipledParts {
+  T base, lobe, rise, coat, cosine;
+};
 
 template <class W>
-inline auto principled_parts(const PrincipledLobes::Layers& layers, const PrincipledLobes::View& view, const W& wl,
-                             const W& h) {
-  using T = decltype(dot(view.wv, h));
-  const T cosine = smaller(larger(dot(view.wv, h), 0.0f), 1.0f);
-  T lobe = ggx_brdf_without_fresnel(view.wv, wl, h, layers.alpha), coat = 0.0f;
-  if (layers.coat > 0) {
-    lobe = lobe * smaller(view.through, 1.0f - layers.coat * albedo_at(*layers.coat_albedo, wl.z));
-    coat = layers.coat * ggx_brdf_without_fresnel(view.wv, wl, h, layers.coat_alpha) *
-           dielectric_fresnel(cosine, kCoatIndex);
+inline auto principled_parts(const PrincipledPoint& point, const Vec3& wv, const W& wl, const W& h) {
+  using T = decltype(dot(wv, h));
+  PrincipledParts<T> parts{principled_base(point, wv, wl), T(0.0f), T(0.0f), T(0.0f),
+                           smaller(larger(dot(wv, h), 0.0f), 1.0f)};
+  parts.lobe = point.lobe == GgxLobe::separable ? ggx_brdf_of_independent_shadows(wv, wl, h, point.alpha)
+                                                : ggx_brdf_without_fresnel(wv, wl, h, point.alpha);
+  parts.rise = principled_rise(point, parts.cosine);
+  if (point.coat > 0) {
+    parts.coat = point.coat * ggx_brdf_without_fresnel(wv, wl, h, point.coat_alpha) *
+                 dielectric_fresnel(parts.cosine, kCoatIndex);
   }
-  PrincipledParts<T> out = principled_reflected(layers, lobe, cosine);
-  out.fixed = out.fixed + coat;
-  out.diffuse = view.diffuse_scale * (1.0f - albedo_at(*layers.top_albedo, wl.z));
-  return out;
+  return parts;
 }
 
-/// f of one colour.
+/// f of one channel.
 template <class T>
-inline T principled_value(const PrincipledParts<T>& p, float base_color, float specular_tint) {
-  return p.fixed + p.dielectric * specular_tint + p.diffuse * base_color +
-         p.metal * tinted_metal_fresnel(base_color, specular_tint, p.cosine);
+inline T principled_value(const PrincipledPoint& point, const PrincipledParts<T>& parts, int c) {
+  return point.diffuse[c] * parts.base + parts.lobe * principled_reflectance(point, parts.cosine, parts.rise, c) +
+         parts.coat;
 }

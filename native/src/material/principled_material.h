@@ -1,13 +1,50 @@
-// The analytic material of the scene's other objects, from the Principled parameters.
+// The material of a scene's other objects: Blender's Principled BSDF, uniform or by pictures.
 #pragma once
 
 #include <memory>
 
 #include "material/material.h"
-#include "material/principled_lobes.h"
+#include "material/principled_point.h"
+#include "material/texture_slot.h"
 
 namespace velour {
 
-std::shared_ptr<const Material> make_principled_material(const PrincipledParameters& parameters);
+struct PrincipledTextures {
+  TextureSlot<Rgb> base_color{};
+  TextureSlot<float> metallic{}, roughness{}, alpha{};
+
+  bool varies() const { return base_color.given() || metallic.given() || roughness.given(); }
+  bool any() const { return varies() || alpha.given(); }
+};
+
+/// Samples the cosine, the visible normals of the lobe or those of the coat, in proportion to their albedos. Isotropic.
+class PrincipledMaterial final : public Material {
+ public:
+  /// Parameters are averaged over the footprint, each by itself: exact for the base colour of what is far away, while
+  /// the mean of rough and smooth is shown as one roughness between them. `alpha` holds where it has no texture.
+  explicit PrincipledMaterial(const PrincipledParameters& parameters, const PrincipledTextures& textures = {},
+                              float alpha = 1);
+
+  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override;
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override;
+  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override;
+
+  bool isotropic() const override { return true; }
+  bool varies() const override { return textures_.any(); }
+  bool opaque() const override { return !textures_.alpha.given() && alpha_ >= 1; }
+  float alpha(const SurfaceSite& site) const override;
+
+ private:
+  const PrincipledParameters parameters_;
+  const PrincipledTextures textures_;
+  const float alpha_;
+};
+
+/// f and the density of the samples of `point`, of each direction; the batch is padded. Run-time dispatched SIMD.
+void eval_principled(const PrincipledPoint& point, const Vec3& wv, const DirectionBatch& wl, RgbBatch& f,
+                     ScalarBatch& pdf);
+
+std::shared_ptr<const Material> make_principled_material(const PrincipledParameters& parameters,
+                                                         const PrincipledTextures& textures = {}, float alpha = 1);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// Directional albedo of a specular lobe as a table over the cosine, and its cosine-weighted mean.
+// Directional albedo of a specular lobe as a table over the cosine.
 #pragma once
 
 #include <array>
@@ -17,25 +17,11 @@ class SpecularAlbedo {
   SpecularAlbedo() = default;
   /// Albedo of the GGX lobe of roughness `alpha` by quadrature, for views along x.
   SpecularAlbedo(const Vec2& alpha, const Fresnel& fresnel);
-  /// Of `below` under a layer `above` that is there with `weight` in [0, 1]: all but what both let through.
-  static SpecularAlbedo layered(const SpecularAlbedo& above, float weight, const SpecularAlbedo& below);
-
-  /// (1 - share) a + share b, its mean with it.
-  static SpecularAlbedo between(const SpecularAlbedo& a, const SpecularAlbedo& b, float share);
-
   float at(float cosine) const;
-  /// For albedo_at().
-  static constexpr int kEntries = 64;
-  using Table = std::array<float, kEntries>;
-  const Table& table() const { return albedo_; }
-  /// 2 int albedo(mu) mu dmu of this interpolant.
-  float mean() const { return mean_; }
 
  private:
-  float integrated() const;
-
-  Table albedo_{};
-  float mean_ = 0;
+  static constexpr int kEntries = 64;
+  std::array<float, kEntries> albedo_{};
 };
 
 }  // namespace velour

@@ -1,11 +1,9 @@
 // The highlight of a Principled material as lobes of half vectors.
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include "material/material.h"
-#include "material/principled_lobes.h"
+#include "material/principled_material.h"
 #include "srbf/warped_lobe.h"
 
 namespace velour {
@@ -26,12 +24,11 @@ class GgxLobes {
   Vec3d f(const Vec3d& wl, const Vec3d& wv) const;
 
  private:
-  Vec3d fresnel(double cosine) const;
   double masking(double first, double second) const;  // by cosines to the normal [H14]
 
+  PrincipledParameters parameters_;
   double alpha_;
-  Vec3d at_normal_;                               // reflectance
-  std::shared_ptr<const Material> whole_, base_;  // null: there is none
+  PrincipledMaterial whole_, base_;
 };
 
 }  // namespace velour

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "job/progress.h"
-#include "material/principled_lobes.h"
+#include "material/principled_point.h"
 #include "model/model.h"
 #include "realtime/table_pixels.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "brdf/parametric_brdf.h"
-#include "material/principled_lobes.h"
+#include "material/principled_point.h"
 #include "realtime/light_gaussians.h"
 
 namespace velour {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "material/principled_lobes.h"
+#include "material/principled_point.h"
 #include "sphere/vec.h"
 
 namespace velour {

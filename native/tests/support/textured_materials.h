@@ -1,7 +1,7 @@
 // Principled materials that get their parameters from textures.
 #pragma once
 
-#include "material/principled_textures.h"
+#include "material/principled_material.h"
 
 namespace velour::test {
 
@@ -16,7 +16,7 @@ inline std::shared_ptr<const Material> textured(const PrincipledParameters& p) {
   other.base_color = Rgb(0.123f);
   other.metallic = 0.77f;
   other.roughness = 0.66f;
-  return make_textured_material(other, {one_texel(p.base_color), one_texel(p.metallic), one_texel(p.roughness), {}}, 1);
+  return make_principled_material(other, {one_texel(p.base_color), one_texel(p.metallic), one_texel(p.roughness), {}});
 }
 
 }  // namespace velour::test

@@ -2,8 +2,11 @@
 
 from typing import NamedTuple
 
-DEFAULT = {"base_color": (0.8, 0.8, 0.8), "metallic": 0.0, "roughness": 0.5, "specular": 0.5}
+import bpy
+
 BLACK = {"base_color": (0.0, 0.0, 0.0), "metallic": 0.0, "roughness": 1.0, "specular": 0.0}
+# What has no material is diffuse in Cycles before 5.0, and a Principled BSDF since; no property tells.
+_USUAL = {} if bpy.app.version >= (5, 0) else {**BLACK, "base_color": (0.8, 0.8, 0.8)}
 
 
 class Factor(NamedTuple):
@@ -38,7 +41,12 @@ class Layer(NamedTuple):
 
 
 def grey():
-    return Layer("principled", dict(DEFAULT), {})
+    """Of what has no material, or none that is known."""
+    return Layer("principled", dict(_USUAL), {})
+
+
+def diffuse(color):
+    return Layer("principled", {**BLACK, "base_color": color}, {})
 
 
 def black():

@@ -3,7 +3,7 @@
 import bpy
 
 from ..plugs import fed_by
-from .layer import BLACK, Factor, Layer
+from .layer import Factor, Layer, diffuse
 from .relief import read_relief
 
 # Our parameter: Blender's input, which a picture may give.
@@ -29,6 +29,8 @@ _IGNORED = {
     "Diffuse Roughness": 0.0,
     "Thin Film Thickness": 0.0,
 }
+# No property tells how facets shadow each other.
+_SEPARABLE_SHADOWS = bpy.app.version < (3, 5)
 # No property tells: rough diffuse surfaces keep their energy since Principled has a roughness of its base.
 _INTERREFLECTION = bpy.app.version >= (4, 3)
 _LINK_ONLY = ("Clearcoat Normal", "Coat Normal", "Tangent")
@@ -40,9 +42,27 @@ def _read_principled(plug, reader):
         values[name], picture = reader.number(plug.input(socket))
         pictures |= {name: picture} if picture else {}
     values["specular"] = _specular(plug, reader)
+    values |= {"formula": "layered" if _is_layered(plug) else "disney", "lobe": _lobe(plug, reader)}
     glow = _glow(plug.input("Emission Color", "Emission"), plug.input("Emission Strength"), reader)
     _note_ignored(plug, reader)
     return [Layer("principled", values, pictures, relief=read_relief(plug, reader), glow=glow)]
+
+
+def _is_layered(plug):
+    """Whether it is the Principled BSDF of Blender 4.0 and newer."""
+    return plug.input("Coat Weight") is not None
+
+
+def _lobe(plug, reader):
+    """How GGX's facets shadow each other, of a Principled or Glossy BSDF; says so of other distributions."""
+    distribution = plug.node.distribution
+    # Before 4.0 it is a random walk between facets, and Principled had no coat's weight then.
+    keeps_light = "MULTI_GGX" if bpy.app.version >= (4, 0) else None
+    if distribution == keeps_light:
+        return "whole"
+    if distribution not in ("GGX", "SHARP"):
+        reader.note(plug, f"its distribution '{_label(plug.node, 'distribution')}' is shown as GGX.")
+    return "separable" if _SEPARABLE_SHADOWS else "single"
 
 
 def _specular(plug, reader):
@@ -63,7 +83,7 @@ def _read_diffuse(plug, reader):
     relief = read_relief(plug, reader)
     pictures = {"base_color": picture} if picture else {}
     if rough is None and roughness <= 0.0 and relief is None:
-        return [Layer("principled", {**BLACK, "base_color": color}, pictures)]
+        return [diffuse(color)._replace(pictures=pictures)]
     pictures |= {"roughness": rough} if rough else {}
     values = {"base_color": color, "roughness": roughness, "interreflection": _INTERREFLECTION}
     return [Layer("diffuse", values, pictures, relief=relief)]
@@ -74,12 +94,10 @@ def _read_glossy(plug, reader):
     roughness, rough = reader.number(plug.input("Roughness"))
     if plug.node.distribution == "SHARP":
         roughness, rough = 0.0, None
-    elif plug.node.distribution != "GGX":
-        reader.note(plug, f"its distribution '{_label(plug.node, 'distribution')}' is shown as GGX.")
     _note_anisotropy(plug, reader)
     note_linked(plug, reader, "Tangent")
     found = {"base_color": picture, "roughness": rough}
-    values = {"base_color": color, "roughness": roughness}
+    values = {"base_color": color, "roughness": roughness, "lobe": _lobe(plug, reader)}
     pictures = {name: p for name, p in found.items() if p}
     return [Layer("glossy", values, pictures, relief=read_relief(plug, reader))]
 

@@ -3,7 +3,7 @@
 from ..newer import has_nodes
 from ..nodes import active_output
 from ..plugs import Plug, fed_by
-from .layer import Factor, Layer, black, grey, simplified, split
+from .layer import Factor, black, diffuse, grey, simplified, split
 from .readers import READERS
 from .values import Reader
 
@@ -15,7 +15,7 @@ def surface_layers(material, notes):
     if material is None:
         return [grey()]
     if not has_nodes(material):
-        return [Layer("principled", _without_nodes(material), {})]
+        return [diffuse(tuple(material.diffuse_color[:3]))]  # the viewport's colour, as Cycles does
     owner = f"Material '{material.name}'"
     output = active_output(material.node_tree, "ShaderNodeOutputMaterial")
     plug = fed_by(Plug(output.inputs["Surface"])) if output else None
@@ -41,15 +41,6 @@ def _shadows_are_clear(material):
     """Kept with Cycles before Blender 4.2."""
     of_cycles = getattr(getattr(material, "cycles", None), "use_transparent_shadow", True)
     return getattr(material, "use_transparent_shadow", of_cycles)
-
-
-def _without_nodes(material):
-    return {
-        "base_color": tuple(material.diffuse_color[:3]),
-        "metallic": material.metallic,
-        "roughness": material.roughness,
-        "specular": material.specular_intensity,
-    }
 
 
 def _read(plug, reader):

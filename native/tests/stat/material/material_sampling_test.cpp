@@ -115,7 +115,9 @@ std::vector<PrincipledCase> principled_cases() {
       {"rough metal", {.metallic = 1, .roughness = 1}},
       {"metal", {.base_color = {0.9f, 0.6f, 0.3f}, .metallic = 1, .roughness = 0.35f}},
       {"mirror", {.metallic = 1, .roughness = 0.03f}},
-      {"coated metal", {.metallic = 1, .roughness = 0.95f, .coat = 0.8f, .coat_roughness = 0.56f}}};
+      {"coated metal", {.metallic = 1, .roughness = 0.95f, .coat = 0.8f, .coat_roughness = 0.56f}},
+      {"before Blender 4",
+       {.metallic = 0.3f, .roughness = 0.6f, .formula = PrincipledFormula::disney, .lobe = GgxLobe::separable}}};
   std::vector<PrincipledCase> cases;
   for (const auto& [name, parameters] : kinds) {
     for (const float degrees : test::kViewAngles) cases.push_back({name, parameters, degrees});

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "material/principled_textures.h"
+#include "material/principled_material.h"
 #include "support/captured.h"
 
 namespace velour {
@@ -19,7 +19,7 @@ using test::tile_of;
 std::shared_ptr<const Material> painted(const Rgb& left, const Rgb& right) {
   const auto picture = std::make_shared<Texture<Rgb>>(2, 1, std::vector<Rgb>{left, right},
                                                       TextureOptions{.filter = TextureFilter::closest});
-  return make_textured_material({.roughness = 1, .specular = 0}, {.base_color = {picture}}, 1);
+  return make_principled_material({.roughness = 1, .specular = 0}, {.base_color = {picture}}, 1);
 }
 
 /// The unit square; its texture coordinates are its x and y.

@@ -132,15 +132,27 @@ double sampled_albedo(const Material& material, float theta_v) {
 TEST(GlossyMaterial, SamplesBringItsAlbedo) {
   double last = 1;
   for (const float roughness : {0.6f, 0.8f, 1.0f}) {
-    const auto white = make_glossy_material({.color = Rgb(1), .roughness = roughness});
+    const auto of = [&](float color) {
+      return make_glossy_material({.color = Rgb(color), .roughness = roughness, .lobe = GgxLobe::single});
+    };
+    const auto white = of(1);
     for (const float theta_v : {0.0f, 0.8f, 1.4f}) {
       const double exact = albedo(*white, theta_v);
       EXPECT_NEAR(sampled_albedo(*white, theta_v), exact, 4e-3) << roughness << ' ' << theta_v;
-      EXPECT_NEAR(albedo(*make_glossy_material({.color = Rgb(0.5f), .roughness = roughness}), theta_v), 0.5 * exact,
-                  1e-4);
+      EXPECT_NEAR(albedo(*of(0.5f), theta_v), 0.5 * exact, 1e-4);
     }
     EXPECT_LT(albedo(*white, 0), last);
     last = albedo(*white, 0);
+  }
+}
+
+TEST(GlossyMaterial, FacetsKeepTheLightThatTheySendToEachOther) {
+  for (const float roughness : {0.6f, 1.0f}) {
+    const auto of = [&](float color) { return make_glossy_material({.color = Rgb(color), .roughness = roughness}); };
+    const double white = albedo(*of(1), 0.8f), grey = albedo(*of(0.5f), 0.8f);
+    EXPECT_NEAR(white, 1, 5e-3) << roughness;
+    EXPECT_LT(grey, 0.49);  // what has met two facets is darker
+    EXPECT_GT(grey, albedo(*make_glossy_material({Rgb(0.5f), roughness, GgxLobe::single}), 0.8f) + 0.005);
   }
 }
 

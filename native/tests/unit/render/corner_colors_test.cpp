@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "job/error.h"
-#include "material/principled_textures.h"
+#include "material/principled_material.h"
 #include "material/shader_layers.h"
 #include "render/footprint.h"
 #include "render/glow_group.h"
@@ -35,7 +35,7 @@ SurfaceMaterial with_base(const TextureSlot<Rgb>& base, const Rgb& otherwise = R
   textures.base_color = base;
   MeshSets sets;
   sets.add(base);
-  return {.material = make_textured_material({.base_color = otherwise}, textures, 1),
+  return {.material = make_principled_material({.base_color = otherwise}, textures, 1),
           .rec709_colors = false,
           .uv_sets = sets.uvs,
           .color_sets = sets.colors};
@@ -114,7 +114,7 @@ TEST(CornerColors, MustBeWholeSets) {
 TEST(CornerColors, AreNumbersByTheirFirstChannel) {
   PrincipledTextures holes;
   holes.alpha = TextureSlot<float>::colors_of_corners(0);
-  const SurfaceMaterial cut_out{.material = make_textured_material({.base_color = kColor}, holes, 1),
+  const SurfaceMaterial cut_out{.material = make_principled_material({.base_color = kColor}, holes, 1),
                                 .rec709_colors = false,
                                 .uv_sets = 0,
                                 .color_sets = 1};

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "job/error.h"
-#include "material/principled_textures.h"
+#include "material/principled_material.h"
 #include "render/cryptomatte_id.h"
 #include "render/id_slots.h"
 #include "support/textured_scenes.h"
@@ -55,7 +55,7 @@ RenderOptions options_of(int spp) {
 }
 
 SurfaceMaterial matte(float albedo, float alpha = 1) {
-  return {make_textured_material({.base_color = Rgb(albedo), .specular = 0}, {}, alpha), Rgb(0.0f), false};
+  return {make_principled_material({.base_color = Rgb(albedo), .specular = 0}, {}, alpha), Rgb(0.0f), false};
 }
 
 /// A square, placed so, over a larger one at z = 0. Pixels are 0.2 wide at z = 1.

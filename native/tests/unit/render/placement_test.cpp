@@ -7,7 +7,7 @@
 
 #include "job/error.h"
 #include "material/factored_material.h"
-#include "material/principled_textures.h"
+#include "material/principled_material.h"
 #include "render/vertex.h"
 #include "support/example_btf.h"
 #include "support/textured_scenes.h"
@@ -83,7 +83,7 @@ std::shared_ptr<const Material> btf() {
 std::shared_ptr<const Material> cut_out() {
   const std::vector<Rgb> colors{{0.9f, 0.5f, 0.2f}, Rgb(0.1f), Rgb(0.8f), {0.2f, 0.4f, 0.9f}};
   const std::vector<float> alphas{1, 0, 1, 1};
-  return make_textured_material(
+  return make_principled_material(
       {},
       {.base_color = {std::make_shared<const Texture<Rgb>>(2, 2, colors, TextureOptions{}), {}},
        .alpha = {std::make_shared<const Texture<float>>(2, 2, alphas, TextureOptions{}), {}}},
@@ -175,7 +175,7 @@ TEST(Placement, ScalesTheFootprint) {
 /// Few camera rays, thousands of tiles: only a footprint that scales finds the mean.
 TEST(Placement, ManyTilesAreTheirMean) {
   const std::vector<Rgb> checker{Rgb(1), Rgb(0), Rgb(0), Rgb(1)};
-  const auto matte = make_textured_material(
+  const auto matte = make_principled_material(
       {.specular = 0}, {.base_color = {std::make_shared<const Texture<Rgb>>(2, 2, checker, TextureOptions{}), {}}}, 1);
   Scene scene;
   scene.add_instance(scene.add_mesh(test::repeating_square(4, 1)), {}, {scene.add_material({matte, Rgb(0.0f), false})},

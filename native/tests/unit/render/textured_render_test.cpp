@@ -1,7 +1,7 @@
 // Pictures of textured planes, whose pixels are known.
 #include <gtest/gtest.h>
 
-#include "material/principled_textures.h"
+#include "material/principled_material.h"
 #include "sphere/random.h"
 #include "support/textured_scenes.h"
 
@@ -34,7 +34,7 @@ std::vector<float> picture(std::shared_ptr<const Material> material, Mesh mesh, 
 std::shared_ptr<const Material> matte(int width, int height, std::vector<Rgb> texels,
                                       const TextureOptions& options = {}) {
   const auto texture = std::make_shared<const Texture<Rgb>>(width, height, std::move(texels), options);
-  return make_textured_material({.specular = 0}, {.base_color = {texture, {}}}, 1);
+  return make_principled_material({.specular = 0}, {.base_color = {texture, {}}}, 1);
 }
 
 std::vector<Rgb> colours() {
@@ -154,7 +154,7 @@ Scene patchwork() {
   Scene scene;
   scene.add_instance(scene.add_mesh(test::repeating_square(1, 2)), {},
                      {scene.add_material(
-                         {make_textured_material(
+                         {make_principled_material(
                               {},
                               {.base_color = {std::make_shared<const Texture<Rgb>>(2, 2, colors, TextureOptions{}), {}},
                                .metallic = numbers({0, 1, 1, 0}),

@@ -1,7 +1,7 @@
 // Surfaces that are there in part: means of camera, shadow and bounce rays that are known.
 #include <gtest/gtest.h>
 
-#include "material/principled_textures.h"
+#include "material/principled_material.h"
 #include "material/shader_layers.h"
 #include "support/textured_scenes.h"
 
@@ -17,7 +17,7 @@ SurfaceMaterial matte(float albedo, const std::vector<float>& alpha) {
     textures.alpha.texture =
         std::make_shared<const Texture<float>>(2, 2, alpha, TextureOptions{.filter = TextureFilter::closest});
   }
-  return {make_textured_material({.base_color = Rgb(albedo), .specular = 0}, textures, alpha[0]), Rgb(0.0f), false};
+  return {make_principled_material({.base_color = Rgb(albedo), .specular = 0}, textures, alpha[0]), Rgb(0.0f), false};
 }
 
 void add(Scene& scene, Mesh mesh, const Affine& place, SurfaceMaterial material) {
@@ -218,7 +218,7 @@ TEST(Transparency, BouncesPass) {
 SurfaceMaterial pane(const Rgb& color) {
   const LayerWeight half{{{LayerFactor::Kind::share, 0.5f}}};
   return {.material = make_layered_material(
-              {.reflecting = {{make_textured_material({.base_color = Rgb(0), .specular = 0}, {}, 1), half}},
+              {.reflecting = {{make_principled_material({.base_color = Rgb(0), .specular = 0}, {}, 1), half}},
                .transparent = {{color, {}, half}}}),
           .rec709_colors = false};
 }

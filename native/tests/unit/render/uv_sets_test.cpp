@@ -7,7 +7,6 @@
 #include "job/error.h"
 #include "material/normal_map.h"
 #include "material/principled_material.h"
-#include "material/principled_textures.h"
 #include "support/textured_scenes.h"
 
 namespace velour {
@@ -58,7 +57,7 @@ std::vector<float> picture(Mesh mesh, SurfaceMaterial material) {
 SurfaceMaterial colored(size_t set, uint8_t sets) {
   PrincipledTextures textures;
   textures.base_color = {colors(), {}, set};
-  return {.material = make_textured_material({}, textures, 1), .rec709_colors = false, .uv_sets = sets};
+  return {.material = make_principled_material({}, textures, 1), .rec709_colors = false, .uv_sets = sets};
 }
 
 /// Shading frames follow the first set, so that results round differently.
@@ -81,7 +80,7 @@ SurfaceMaterial cut_out(size_t set, uint8_t sets) {
   const std::vector<float> holes = {1, 0, 0, 1};
   PrincipledTextures textures;
   textures.alpha = {std::make_shared<const Texture<float>>(2, 2, holes, TextureOptions{}), {}, set};
-  return {.material = make_textured_material({.base_color = Rgb(0.8f)}, textures, 1),
+  return {.material = make_principled_material({.base_color = Rgb(0.8f)}, textures, 1),
           .rec709_colors = false,
           .uv_sets = sets};
 }
@@ -100,10 +99,10 @@ TEST(UvSets, OneThatIsNotThereIsTheFirst) {
 TEST(UvSets, ReliefFollowsItsOwn) {
   const std::vector<Rgb> tilt = {0.5f + 0.5f * glm::normalize(Vec3(0.5f, 0.3f, 1))};
   const auto map = std::make_shared<const Texture<Rgb>>(1, 1, tilt, TextureOptions{});
-  const SurfaceMaterial bumpy{.material = make_normal_mapped(make_principled_material({.base_color = Rgb(1)}),
-                                                             {{map, {}}, 1}, DiffusePart::none),
-                              .rec709_colors = false,
-                              .relief = true};
+  const SurfaceMaterial bumpy{
+      .material = make_normal_mapped(make_principled_material({.base_color = Rgb(1)}), {{map, {}}, 1}, false),
+      .rec709_colors = false,
+      .relief = true};
   const auto alone = picture(square_with(kSecond, {}), bumpy);
   EXPECT_LT(largest_difference(picture(square_with(kFirst, {}, &kSecond), bumpy), alone), kRounding);
   EXPECT_GT(largest_difference(picture(square_with(kFirst, {}), bumpy), alone), kSeen);

@@ -1,0 +1,129 @@
+"""Principled and Glossy BSDFs at all angles of view and light."""
+
+import math
+
+import bpy
+import numpy as np
+
+from parity import engines, stage
+from parity.case import ParityTest, record_row
+from parity.shaders import Tree
+
+_VIEWS = (2, 15, 30, 45, 60, 75, 83, 88)  # degrees from the normal: a column each
+_ROWS = 6  # turns of the normal about the view
+_SUNS = (8, 65, 115)  # degrees between camera and sun, so that light comes in from 0 to 90 degrees
+_MOST = 0.5  # per cent of a plate; dark ones count as a hundredth of the mean
+_ROUGH = (0.2, 0.55, 1.0)
+_GOLD = (0.9, 0.6, 0.3, 1)
+
+
+class Plates(ParityTest):
+    """Plates that fill the squares of a picture, each at an angle of its own to the camera and to the sun."""
+
+    effort = engines.Effort(1, 1, 96, 72)  # a plate has one colour, without noise
+
+    def setUp(self):
+        super().setUp()
+        stage.world((0, 0, 0))
+        self.material = bpy.data.materials.new("Plates")
+        self.tree = Tree(self.material)
+        turns = 2 * math.pi * (np.arange(_ROWS) + 0.3) / _ROWS
+        normals = [_direction(math.radians(theta), turn) for turn in turns for theta in _VIEWS]
+        stage.mesh(*_plates(normals), self.material, "Plates").visible_shadow = False
+        camera = stage.camera((0, 0, 50), (0, 0, 0)).data
+        camera.type, camera.ortho_scale, camera.clip_end = "ORTHO", len(_VIEWS), 1000
+        self.sun = stage.sharp_sun()
+
+    def assert_angles(self, feature, shader, most=_MOST):
+        """`shader` makes the nodes."""
+        self.tree.nodes.clear()
+        self.tree.end(shader())
+        theirs, ours = self._colors("CYCLES"), self._colors("VELOUR")
+        error = (ours - theirs) / np.maximum(theirs, 0.01 * theirs.mean())
+        worst = 100 * float(np.abs(error).max())
+        record_row(f"{feature}, at all angles", "honoured", percent=worst, z=None)
+        lit = (theirs > 0.01 * theirs.mean()).mean()
+        self.assertGreater(lit, 0.15, f"{feature}: few plates show anything.")
+        self.assertLess(worst, most, f"{feature}: per cent off by sun, row and column:\n{_rounded(error)}")
+
+    def _colors(self, engine):
+        """[suns x rows x columns x 3]: the middle of each plate."""
+        return np.stack([self._colors_under(engine, degrees) for degrees in _SUNS])
+
+    def _colors_under(self, engine, degrees):
+        self.sun.rotation_euler = (0, math.radians(degrees), 0.4)
+        picture = self.pictures(engine)[0, ..., :3]
+        side = self.effort.width // len(_VIEWS)
+        cells = picture.reshape(_ROWS, side, len(_VIEWS), side, 3)
+        return cells[:, 3:-3, :, 3:-3].mean(axis=(1, 3))
+
+
+def _direction(theta, phi):
+    return np.array([math.sin(theta) * math.cos(phi), math.sin(theta) * math.sin(phi), math.cos(theta)])
+
+
+def _plates(normals):
+    """Corners and faces; a plate's corners lie in its plane, however deep that is."""
+    corners, faces = [], []
+    for i, normal in enumerate(normals):
+        x, y = i % len(_VIEWS) - len(_VIEWS) / 2, _ROWS / 2 - 1 - i // len(_VIEWS)
+        faces.append(tuple(range(len(corners), len(corners) + 4)))
+        for dx, dy in ((0, 0), (1, 0), (1, 1), (0, 1)):
+            depth = -(normal[0] * (dx - 0.5) + normal[1] * (dy - 0.5)) / normal[2]
+            corners.append((x + dx, y + dy, depth))
+    return corners, faces
+
+
+def _rounded(error):
+    return np.array2string(100 * error.max(axis=-1), precision=2, suppress_small=True)
+
+
+class Principled(Plates):
+    def _assert_angles(self, feature, distribution=None, **inputs):
+        settings = {"distribution": distribution} if distribution else {}
+        self.assert_angles(
+            f"Principled BSDF: {feature}",
+            lambda: self.tree.node("ShaderNodeBsdfPrincipled", settings=settings, **inputs),
+        )
+
+    def test_default(self):
+        self._assert_angles("as it comes")
+
+    def test_dielectrics(self):
+        for specular in (0.0, 0.5, 1.0):
+            for roughness in _ROUGH:
+                feature = f"specular {specular:g}, roughness {roughness:g}"
+                self._assert_angles(feature, Base_Color=_GOLD, Specular=specular, Roughness=roughness)
+
+    def test_metals(self):
+        for metallic in (0.4, 1.0):
+            for roughness in _ROUGH:
+                feature = f"metallic {metallic:g}, roughness {roughness:g}"
+                self._assert_angles(feature, Base_Color=_GOLD, Metallic=metallic, Roughness=roughness)
+
+    def test_single_scattering(self):
+        self._assert_angles("GGX, roughness 0.8", "GGX", Base_Color=_GOLD, Metallic=0.5, Roughness=0.8)
+
+    def test_index_of_refraction(self):
+        if bpy.app.version < (4, 0, 0):
+            self.skipTest("before 4.0 it is of transmission alone")
+        for index, level in ((1.25, 0.5), (2.4, 0.5), (2.0, 0.8)):
+            for roughness in (0.3, 0.8):
+                feature = f"IOR {index:g}, level {level:g}, roughness {roughness:g}"
+                self._assert_angles(feature, IOR=index, Specular=level, Roughness=roughness)
+
+
+class Glossy(Plates):
+    def _assert_angles(self, roughness, distribution):
+        feature = f"Glossy BSDF: {distribution}, roughness {roughness:g}"
+        self.assert_angles(feature, lambda: self.tree.glossy(roughness, distribution=distribution))
+
+    def test_single_scattering(self):
+        for roughness in _ROUGH:
+            self._assert_angles(roughness, "GGX")
+
+    def test_multiple_scattering(self):
+        if bpy.app.version < (4, 0, 0):
+            self.skipTest("before 4.0 it is a random walk, shown as GGX")
+        for roughness in _ROUGH:
+            self._assert_angles(roughness, "MULTI_GGX")

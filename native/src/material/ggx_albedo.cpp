@@ -1,0 +1,132 @@
+#include "material/ggx_albedo.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+
+#include "job/parallel.h"
+#include "material/ggx.h"
+#include "material/visible_facets.h"
+#include "sphere/quadrature.h"
+
+namespace velour {
+namespace {
+
+constexpr size_t kEntries = 32;      // of albedos, along roughness and along cosine
+constexpr size_t kRiseEntries = 16;  // of reflectances, along these and along the index
+constexpr float kLeast = 1e-4f;      // at the first entries: of a mirror, and of a view along the surface
+
+float at(size_t entry, size_t entries) {
+  return std::max(static_cast<float>(entry) / static_cast<float>(entries - 1), kLeast);
+}
+
+Vec3 view_of(float cosine) { return {std::sqrt(1 - cosine * cosine), 0, cosine}; }
+
+float white_albedo(float roughness, float cosine) {
+  double sum = 0;
+  for_visible_facets(view_of(cosine), Vec2(roughness * roughness),
+                     [&](double weight, float /*cosine*/, float masking) { sum += weight * masking; });
+  return std::min(static_cast<float>(sum), 1.0f);
+}
+
+/// Of a table's `size` entries, linear between them.
+template <size_t size>
+struct Place {
+  size_t low, high;
+  float share;  // of the high one
+
+  explicit Place(float x) {
+    const float place = std::clamp(x, 0.0f, 1.0f) * (size - 1);
+    low = std::min(static_cast<size_t>(place), size - 2);
+    high = low + 1;
+    share = place - static_cast<float>(low);
+  }
+  float between(float a, float b) const { return (1 - share) * a + share * b; }
+};
+
+/// Entry [cosine][roughness].
+template <size_t size>
+using Table = std::array<std::array<float, size>, size>;
+
+template <size_t size>
+float read(const Table<size>& table, const Place<size>& roughness, const Place<size>& cosine) {
+  const auto row = [&](size_t i) { return roughness.between(table[i][roughness.low], table[i][roughness.high]); };
+  return cosine.between(row(cosine.low), row(cosine.high));
+}
+
+struct White {
+  Table<kEntries> albedo;
+  std::array<float, kEntries> mean;
+
+  White() {
+    const Quadrature cosines = gauss_legendre(32, 0, 1);
+    parallel_fill(kEntries, [&](size_t i) {
+      const float roughness = at(i, kEntries);
+      for (size_t k = 0; k < kEntries; ++k) albedo[k][i] = white_albedo(roughness, at(k, kEntries));
+      double sum = 0;
+      for (size_t k = 0; k < cosines.node.size(); ++k) {
+        const double mu = cosines.node[k];
+        sum += 2 * mu * cosines.weight[k] * static_cast<double>(white_albedo(roughness, static_cast<float>(mu)));
+      }
+      mean[i] = static_cast<float>(sum);
+    });
+  }
+};
+
+const White& white() {
+  static const White table;
+  return table;
+}
+
+/// Of one index of refraction.
+using Rises = Table<kRiseEntries>;
+
+/// The fourth root of the reflectance at normal incidence: all indices from 1 to infinity, the usual ones finely.
+float place_of_index(float eta) { return std::sqrt(std::abs(eta - 1) / (eta + 1)); }
+
+float index_at(size_t entry) {
+  const float root = std::min(at(entry, kRiseEntries), 0.99f), sine = root * root;
+  return (1 + sine) / (1 - sine);
+}
+
+float rise_at(float roughness, float cosine, float eta) {
+  const float f0 = dielectric_fresnel(1.0f, eta);
+  double sum = 0;
+  for_visible_facets(view_of(cosine), Vec2(roughness * roughness), [&](double weight, float facet, float masking) {
+    if (masking > 0) sum += weight * (dielectric_fresnel(facet, eta) - f0) / (1 - f0);
+  });
+  return std::clamp(static_cast<float>(sum), 0.0f, 1.0f);
+}
+
+const Rises& rises(size_t entry) {
+  static std::array<std::once_flag, kRiseEntries> made;
+  static std::array<Rises, kRiseEntries> tables;
+  std::call_once(made[entry], [&] {
+    const float eta = index_at(entry);
+    parallel_fill(kRiseEntries, [&](size_t i) {
+      for (size_t k = 0; k < kRiseEntries; ++k) {
+        tables[entry][k][i] = rise_at(at(i, kRiseEntries), at(k, kRiseEntries), eta);
+      }
+    });
+  });
+  return tables[entry];
+}
+
+}  // namespace
+
+float ggx_albedo::of_white(float roughness, float cosine) {
+  return read(white().albedo, Place<kEntries>(roughness), Place<kEntries>(cosine));
+}
+
+float ggx_albedo::mean_of_white(float roughness) {
+  const Place<kEntries> place(roughness);
+  return place.between(white().mean[place.low], white().mean[place.high]);
+}
+
+float ggx_albedo::mean_rise(float roughness, float cosine, float eta) {
+  const Place<kRiseEntries> x(roughness), y(cosine), z(place_of_index(eta));
+  return z.between(read(rises(z.low), x, y), read(rises(z.high), x, y));
+}
+
+}  // namespace velour
