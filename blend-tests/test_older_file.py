@@ -38,7 +38,7 @@ class OlderFile(BlenderTest):
     def _refused_without(self, change, *arguments):
         older_file.open_with_old_index()
         change(*arguments)
-        bpy.context.scene.velour.samples = 16  # are enough for what is that far off
+        bpy.context.scene.velour.samples = 32  # are enough for what is that far off
         self.assertFalse(self._verdict(self._renders()).agrees, (change.__name__, *arguments))
 
     def test_its_picture_is_the_same(self):

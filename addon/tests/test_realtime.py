@@ -80,12 +80,14 @@ def test_rows_of_a_white_diffuse_material_reflect_nearly_all_light():
     np.testing.assert_allclose(albedo, 1, atol=0.03)
 
 
+# Light between facets makes rough coloured metals a little darker than their colour.
+@pytest.mark.parametrize("lobe, off", [("single", 2e-5), ("separable", 2e-5), ("whole", 0.008)])
 @pytest.mark.parametrize("metallic", [0.0, 0.4, 1.0])
-def test_rows_go_in_step_with_the_base_color(metallic):
+def test_rows_go_in_step_with_the_base_color(metallic, lobe, off):
     """That is how pictures of it are drawn: between the rows of black and those of white."""
 
     def rows(color):
-        with principled_rows_job(color, metallic=metallic, roughness=0.4) as job:
+        with principled_rows_job(color, metallic=metallic, roughness=0.4, lobe=lobe) as job:
             job.run()
             return job.result_table()
 
@@ -93,7 +95,7 @@ def test_rows_go_in_step_with_the_base_color(metallic):
     black, white, found = rows((0, 0, 0)), rows((1, 1, 1)), rows(color)
     np.testing.assert_allclose(found[:, ::2], black[:, ::2], atol=1e-5)
     between = black[:, 1::2, :3] + (white - black)[:, 1::2, :3] * color
-    np.testing.assert_allclose(found[:, 1::2, :3], between, atol=2e-5)
+    np.testing.assert_allclose(found[:, 1::2, :3], between, atol=off)
     assert np.abs(white - black)[:, 1::2].max() > 0.1
 
 

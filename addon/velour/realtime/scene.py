@@ -167,6 +167,8 @@ class RealtimeScene(Scene):
         if not is_drawn:
             return self._add_look(Look((self._rows(values, PrincipledTables),), emission, is_simpler))
         picture = Picture(slot)
+        # Light between facets of rough metals is no even share of white's: dark colours are drawn too bright.
+        is_simpler = is_simpler or (values.get("metallic", 0.0) > 0.0 and values.get("lobe") == "whole")
         black = self._rows({**values, "base_color": (0.0, 0.0, 0.0)}, BlackTables)
         white = self._rows({**values, "base_color": (1.0, 1.0, 1.0)}, WhiteTables, picture)
         return self._add_look(Look((black, white), emission, is_simpler))

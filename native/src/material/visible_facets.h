@@ -5,7 +5,7 @@
 
 namespace velour {
 
-/// A rule for the mean over GGX's visible normals [Hei18] of what is the same on both sides of the plane of x and z, in
+/// A rule for the mean over GGX's visible normals [H18] of what is the same on both sides of the plane of x and z, in
 /// which the view lies: the integrand is smooth whatever the roughness. As arrays: compilers compute several at once.
 struct VisibleFacets {
   static constexpr int kCount = 24 * 24;
