@@ -18,6 +18,7 @@ _HELD_SECONDS = 0.05  # of the processor that a draw or a turn may take from the
 def start(folder):
     """Called by the harness once the window is there."""
     os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
+    _module("core.thumbnails")._SAMPLES = 8  # a pixel: how many there are is tested, not what they look like
     panel = _module("ui.browser_panel").VELOUR_MATERIAL_PT_browser
     bpy.utils.unregister_class(panel)
     panel.bl_options = set()  # open, to be looked at

@@ -10,6 +10,7 @@ import numpy as np
 from support import scenes, viewport, window
 
 _SKY = "/studiolights/world/courtyard.exr"
+SCREEN = "700x460"
 
 
 def start(folder):

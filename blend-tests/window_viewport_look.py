@@ -10,6 +10,7 @@ from support import scenes, viewport, window
 
 _STUDIO_LIGHT = "courtyard.exr"
 _SKY = "/studiolights/world/" + _STUDIO_LIGHT
+SCREEN = "700x460"
 
 
 def start(folder):

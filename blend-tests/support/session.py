@@ -11,18 +11,19 @@ from pathlib import Path
 from . import process
 
 _HARNESS = Path(__file__).resolve().parent / "harness.py"
-_SCREEN = "1400x720"  # wide enough for sentences in the viewport; each pixel costs time to draw
+USUAL_SCREEN = "1400x720"  # wide enough for sentences in the viewport; each pixel costs time to draw
 _START_SECONDS = 60
 
 
 class Screen:
-    """An X server that nobody sees; it takes the first display that is free."""
+    """An X server that nobody sees; it takes the first display that is free. `size`: WIDTHxHEIGHT."""
 
-    def __init__(self):
+    def __init__(self, size):
+        self.size = size
         self._folder = tempfile.TemporaryDirectory(prefix="velour-screen-")
         receiving, sending = os.pipe()
         # It writes the number of its display as soon as it takes clients.
-        options = ["-displayfd", str(sending), "-screen", "0", f"{_SCREEN}x24", "-fbdir", self._folder.name]
+        options = ["-displayfd", str(sending), "-screen", "0", f"{size}x24", "-fbdir", self._folder.name]
         self._server = process.start(
             ["Xvfb", *options, "-nolisten", "tcp"],
             dict(os.environ),
@@ -45,17 +46,20 @@ class Screen:
 
 
 class Session:
-    """One Blender, started for the first file, and again after a file that needs a process of its own, dies
-    or takes too long. With a Screen it has a window."""
+    """One Blender, started for the first file, and again for another screen and after a file that needs a
+    process of its own, dies or takes too long."""
 
-    def __init__(self, blender, stage, screen=None):
-        self._blender, self._stage, self._screen = blender, stage, screen
-        self._process = None
+    def __init__(self, blender, stage):
+        self._blender, self._stage = blender, stage
+        self._screen = self._process = None
 
-    def run(self, path, folder, seconds, alone):
-        """Runs a file of tests. None, or what went wrong with the process itself."""
-        if alone:
+    def run(self, path, folder, seconds, alone=False, screen=None):
+        """Runs a file of tests. None, or what went wrong with the process itself. `screen`: its size; None:
+        there is no window."""
+        if alone or screen != (self._screen and self._screen.size):
             self.close()
+        if screen and self._screen is None:
+            self._screen = Screen(screen)
         if self._process is None:
             self._start(folder)
         try:
@@ -70,8 +74,13 @@ class Session:
 
     def close(self, wait=True):
         """Lets it leave by itself, or not."""
-        if self._process is None:
-            return
+        if self._process is not None:
+            self._end(wait)
+        if self._screen is not None:
+            self._screen.close()
+            self._screen = None
+
+    def _end(self, wait):
         running, self._process = self._process, None
         try:
             running.stdin.close()
@@ -88,7 +97,7 @@ class Session:
         command = [self._blender, "--factory-startup"]
         if self._screen:
             variables |= self._screen.variables
-            command += ["--window-geometry", "0", "0", *_SCREEN.split("x")]
+            command += ["--window-geometry", "0", "0", *self._screen.size.split("x")]
         else:
             # Windows go first: their tests type and wait.
             command = ["nice", "-n", "15", *command, "-b"]
