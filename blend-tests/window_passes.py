@@ -8,6 +8,7 @@ import numpy as np
 from support import scenes, window
 
 _RIGHT_OF_ICONS = 200  # pixels; Blender draws that of a changed material anew, at the left
+SCREEN = "1400x720"
 
 
 def start(folder):

@@ -8,6 +8,8 @@ import numpy as np
 
 from support import plots, scenes, window
 
+SCREEN = "1400x720"
+
 
 def start(folder):
     """Called by the harness once the window is there."""

@@ -8,6 +8,7 @@ import numpy as np
 from support import realtime, scenes, viewport, window
 
 _DATA = Path(__file__).parent / "scenes/data"
+SCREEN = "1400x720"
 
 
 def start(folder):

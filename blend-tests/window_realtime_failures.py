@@ -7,6 +7,8 @@ import numpy as np
 
 from support import inputs, scenes, viewport, window
 
+SCREEN = "1400x720"
+
 
 def start(folder):
     """Called by the harness once the window is there."""

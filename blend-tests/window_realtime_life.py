@@ -10,6 +10,7 @@ from support import realtime, scenes, viewport, window
 _DATA = Path(__file__).parent / "scenes/data"
 
 LONG = "many pictures in real time, drawn without a graphics card"
+SCREEN = "1400x720"
 
 
 def start(folder):

@@ -9,6 +9,7 @@ from support import realtime, scenes, viewport, window
 _PLANES = ((False, 0, 1), (False, np.pi, 1), (False, 0, -1), (False, np.pi, -1), (True, np.pi, -1))
 
 LONG = "many pictures in real time, drawn without a graphics card"
+SCREEN = "1400x720"
 
 
 def start(folder):

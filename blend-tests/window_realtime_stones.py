@@ -7,6 +7,7 @@ from support import outlines, realtime, scenes, window
 _DATA = Path(__file__).parent / "scenes/data"
 
 LONG = "many pictures in real time, drawn without a graphics card"
+SCREEN = "1400x720"
 
 
 def start(folder):

@@ -11,6 +11,7 @@ _DATA = Path(__file__).parent / "scenes/data"
 _JOBS = ("lobe_rows_job", "principled_rows_job", "btf_maps_job", "shell_maps_job")
 
 LONG = "many pictures in real time, drawn without a graphics card"
+SCREEN = "1400x720"
 
 
 def start(folder):

@@ -15,6 +15,7 @@ _TEXT = (
 )
 _SLACK = 4  # pixels that glyphs leave free at the ends of a line
 _shown = {"text": "", "icon": "NONE", "active": True}
+SCREEN = "1400x720"
 
 
 class _Engine(bpy.types.RenderEngine):

@@ -8,7 +8,6 @@ import numpy as np
 from support import scenes, window
 
 _TURNS = 300  # of 0.1 s that a capture may take
-SCREEN = "1000x600"
 
 
 def start(folder):

@@ -7,8 +7,6 @@ import numpy as np
 
 from support import scenes, viewport, window
 
-SCREEN = "1000x600"
-
 
 def start(folder):
     """Called by the harness once the window is there."""

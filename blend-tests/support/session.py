@@ -11,7 +11,7 @@ from pathlib import Path
 from . import process
 
 _HARNESS = Path(__file__).resolve().parent / "harness.py"
-USUAL_SCREEN = "1400x720"  # wide enough for sentences in the viewport; each pixel costs time to draw
+USUAL_SCREEN = "1000x600"  # each pixel costs time to draw
 _START_SECONDS = 60
 
 
