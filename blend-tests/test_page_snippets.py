@@ -27,6 +27,7 @@ NOT_RUN = {
     ): "needs Slurm and a site's folder; test_farm_nodes has such a folder",
     ("farm.md", "curl"): "needs a Flamenco manager; addon/tests/test_farm_jobs.py runs its script",
     ("farm.md", "#!/bin/bash"): "needs Slurm; test_farm_slurm submits it",
+    ("regression.md", "scripts/parity"): "test_parity_page runs it",
     ("packaging.md", "scripts/package"): "builds; scripts/test and addon/tests/test_package.py run it",
 }
 SMALL = """#!/bin/sh

@@ -18,6 +18,10 @@ target_compile_options(velour_options INTERFACE
   -fno-semantic-interposition
   # One rounding a written operation, so that inlining cannot change results between builds of one instruction set.
   -ffp-contract=off)
+if(VELOUR_FUZZ)
+  target_compile_options(velour_options INTERFACE -fsanitize=fuzzer-no-link)
+  target_link_options(velour_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 if(VELOUR_SANITIZE)
   target_compile_options(velour_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
                                                   -fno-omit-frame-pointer)

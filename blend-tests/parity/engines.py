@@ -26,7 +26,7 @@ def set_up(bounces=0, effort=USUAL):
     scene = bpy.context.scene
     set_size(effort)
     scene.view_settings.view_transform = "Standard"
-    _set_up_cycles(scene.cycles, bounces)
+    set_up_cycles(scene.cycles, bounces)
     velour = scene.velour
     velour.bounces, velour.split = bounces, 1  # every direction has its own place in the pixel
     return scene
@@ -37,7 +37,8 @@ def set_size(effort):
     render.resolution_x, render.resolution_y, render.resolution_percentage = effort.width, effort.height, 100
 
 
-def _set_up_cycles(cycles, bounces):
+def set_up_cycles(cycles, bounces):
+    """Without what is biased, and with a filter of one pixel."""
     cycles.use_denoising = cycles.use_adaptive_sampling = False
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
@@ -58,7 +59,7 @@ def _keep_pixels_independent(cycles):
         cycles.sampling_pattern = "TABULATED_SOBOL"
 
 
-def _set_cycles_samples(cycles, count):
+def set_cycles_samples(cycles, count):
     """Without the first, which is in the middle of the pixel whatever the seed: edges are off by 1 / 2n."""
     cycles.samples, cycles.sample_offset = count, 1
     if hasattr(cycles, "use_sample_subset"):  # where the offset is one into the samples, not beyond them
@@ -70,7 +71,7 @@ def pictures(engine, folder, samples=1, first_seed=0, effort=USUAL):
     scene = bpy.context.scene
     scene.render.engine = engine
     scene.velour.samples = int(effort.samples * samples)
-    _set_cycles_samples(scene.cycles, int(effort.samples * samples))
+    set_cycles_samples(scene.cycles, int(effort.samples * samples))
     found = []
     for seed in range(first_seed, first_seed + effort.seeds):
         scene.cycles.seed = scene.velour.seed = seed

@@ -36,8 +36,9 @@ img { image-rendering: pixelated; max-width: 100%; background: #000 }
 class Page:
     """Takes outcomes one by one, so that pictures need not be held; `finish` writes the rest."""
 
-    def __init__(self, folder: Path, title: str):
-        self._folder, self._title = folder, title
+    def __init__(self, folder: Path, title: str, names: dict[str, str] | None = None):
+        """`names`: of "reference" and "new" on this page."""
+        self._folder, self._title, self._names = folder, title, _TITLES | (names or {})
         self._rows: list[str] = []
         self._sections: list[str] = []
         self._records: list[dict] = []
@@ -92,7 +93,7 @@ class Page:
         for name, view in made.items():
             path = f"pictures/{stem}-{name}.png"
             images.write(self._folder / path, np.ascontiguousarray(view, np.float32))
-            text += _tag("figure", f'<img src="{path}" alt="{name}">', _tag("figcaption", _TITLES[name]))
+            text += _tag("figure", f'<img src="{path}" alt="{name}">', _tag("figcaption", self._names[name]))
         return text
 
 

@@ -89,6 +89,8 @@ def main() -> int:
         _step(name, kept, total, built or not needs_build, lambda name=name: GROUPS[name](run))
     for version in arguments.blender:
         _step(f"blender {version}", kept, total, built, lambda v=version: groups.other_blender(run, v))
+    if arguments.all:
+        _step("fuzz", kept, total, built, lambda: groups.fuzz(run))
     seconds, processor = clock.read()
     say(f"{seconds / 60:.1f} minutes in all, {processor / 60:.1f} of processor time")
     say(total.last_line())

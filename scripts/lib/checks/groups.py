@@ -156,6 +156,16 @@ def other_blender(run: Run, version: str) -> list[Case]:
     ]
 
 
+def fuzz(run: Run) -> list[Case]:
+    """Every reader under libFuzzer."""
+    log, start = run.results / "fuzz.log", time.monotonic()
+    status = running.run([ROOT / "scripts/fuzz"], log, running.matches(r": \d+ minutes$", "readers"))
+    if status in _NOT_HERE:
+        return [skipped("fuzz", "clang cannot be installed here")]
+    found = [Case("fuzz", FAILED if status else PASSED, time.monotonic() - start)]
+    return _judged("fuzz", status, found, log)
+
+
 def _judged(name: str, status: int, found: list[Case], log: Path, leave_out: str | None = None) -> list[Case]:
     """A run that failed without a failed test counts as one."""
     if status == 0:

@@ -1,0 +1,84 @@
+"""Opening files and rendering them, for the scripts that run inside Blender."""
+
+import json
+import sys
+from pathlib import Path
+
+import addon_utils
+import bpy
+
+
+def run(main):
+    """Calls `main(task)` with the task that the command line ends with; its error goes into the report."""
+    task = json.loads(sys.argv[sys.argv.index("--") + 1])
+    report = {"error": None}
+    try:
+        main(task)
+    except Exception as error:
+        report["error"] = sentence(error)
+    Path(task["report"]).write_text(json.dumps(report))
+
+
+def open_file(blend, scripts):
+    try:
+        bpy.ops.wm.open_mainfile(filepath=blend, load_ui=False, use_scripts=scripts)
+    except RuntimeError as error:
+        remedy = "save it again with this version of Blender, or take it away"
+        raise RuntimeError(f"it cannot be opened ({sentence(error).rstrip('.')}); {remedy}.") from error
+
+
+def enable_velour(scene):
+    if hasattr(scene, "velour"):
+        return
+    for module in addon_utils.modules(refresh=False):
+        name = module.__name__
+        if name == "velour" or name.endswith(".velour"):
+            addon_utils.enable(name, default_set=False, handle_error=_raise)
+            return
+    raise RuntimeError("this Blender has no Velour; install the add-on, or name a staged one.")
+
+
+def _raise(error):
+    raise error
+
+
+def show_renders(scene):
+    """Pictures as the renderer makes them, before compositor, sequencer and display."""
+    render = scene.render
+    render.use_compositing = render.use_sequencer = render.use_placeholder = False
+    render.use_overwrite = render.use_file_extension = True
+    settings = render.image_settings
+    if hasattr(settings, "media_type"):  # 5.0 and newer
+        settings.media_type = "IMAGE"
+    settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGBA", "32"
+
+
+def stop_animation(scene, paths):
+    """Of settings by their paths: an animated seed would be the same in all renders of a frame."""
+    for path in paths:
+        scene.driver_remove(path)
+    action = scene.animation_data.action if scene.animation_data else None
+    for curves in _curve_lists(action):
+        for curve in [c for c in curves if c.data_path in paths]:
+            curves.remove(curve)
+
+
+def _curve_lists(action):
+    if action is None:
+        return []
+    if hasattr(action, "fcurves"):  # before 5.0
+        return [action.fcurves]
+    return [bag.fcurves for layer in action.layers for strip in layer.strips for bag in strip.channelbags]
+
+
+def render(scene, path):
+    scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    if not path.is_file():
+        raise RuntimeError(f"Blender rendered but wrote no picture to {path}.")
+
+
+def sentence(error):
+    """What an operator reports, without its "Error:", on one line."""
+    text = " ".join(str(error).split()) or type(error).__name__
+    return text.removeprefix("Error: ")

@@ -1,0 +1,55 @@
+"""scripts/parity: a page of where Velour and Cycles differ in anybody's files."""
+
+import bpy
+
+from support import process, scenes
+from support.check_folder import ROOT, CheckFolderTest
+
+
+class ParityPage(CheckFolderTest):
+    def test_what_is_alike_and_what_is_not(self):
+        self.save("alike")
+        self._mix_glass()
+        inside = self.shots / "more"
+        inside.mkdir()
+        self.save("more/glass")
+        bpy.data.objects.remove(self.scene.camera)
+        self.save("blind")
+        status, said, outcomes = self.check(
+            *("--samples", 32, "--width", 48, "--output", self.shots / "velour-check")
+        )
+        self.assertEqual(status, 1, said)
+        self.assertEqual(
+            {name: o["passed"] for name, o in outcomes.items()},
+            {
+                "alike, direct light": True,
+                "alike, 4 bounces": True,
+                "more/glass, direct light": False,
+                "more/glass, 4 bounces": False,
+                "blind": False,
+            },
+            said,
+        )
+        self.assertEqual(next(iter(outcomes)), "blind")  # what was not even rendered
+        self.assertIn("Cycles: it has no camera; give its scene one.", outcomes["blind"]["sentence"])
+        page = (self.shots / "velour-check/index.html").read_text()
+        self.assertIn("(Glass BSDF) is not supported; rendered grey.", page)
+        self.assertIn("<figcaption>Cycles</figcaption>", page)
+
+    def command(self, *arguments):
+        return [ROOT / "scripts/parity", self.shots, "--blender", bpy.app.binary_path, *map(str, arguments)]
+
+    def test_no_files(self):
+        done = process.run(self.command("--output", self.shots))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("holds no .blend file; name a folder that does.", done.stdout + (done.stderr or ""))
+
+    def _mix_glass(self):
+        material = scenes.diffuse_material(name="Glass")
+        tree = material.node_tree
+        glass = tree.nodes.new("ShaderNodeBsdfGlass")
+        tree.links.new(glass.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        for obj in self.scene.objects:
+            if obj.type == "MESH":
+                obj.data.materials.clear()
+                obj.data.materials.append(material)

@@ -1,0 +1,97 @@
+// libFuzzer's entry: gives bytes as a file to the reader that the environment variable VELOUR_FUZZ names. A reader may
+// refuse them with an Error and nothing else.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "brdf/measurement.h"
+#include "btf/csv_index.h"
+#include "btf/load_btf.h"
+#include "domain/observation_file.h"
+#include "image/picture.h"
+#include "job/error.h"
+#include "model/model_file.h"
+#include "scene/obj_file.h"
+#include "scene/ply_file.h"
+
+namespace velour {
+namespace {
+
+void read_btf(const std::string& path) {
+  const auto btf = load_btf(path);
+  std::vector<HalfBits> values(btf->grid().texels() * 3);
+  btf->read_pairs(0, 1, values);
+}
+
+using Reader = void (*)(const std::string& path);
+struct Named {
+  const char* name;
+  const char* extension;  // where that decides who reads it
+  Reader read;
+};
+
+constexpr Named kReaders[] = {
+    {"picture", "", [](const std::string& path) { read_picture(path); }},
+    {"channels", ".exr", [](const std::string& path) { read_picture_channels(path); }},
+    {"measurement", "", [](const std::string& path) { load_measurement(path); }},
+    {"btf", ".btf", read_btf},
+    {"csv", ".csv", [](const std::string& path) { read_csv_index(path); }},
+    {"observation", "", [](const std::string& path) { load_observation(path); }},
+    {"model", "", [](const std::string& path) { load_model(path); }},
+    {"obj", ".obj", [](const std::string& path) { read_obj(path); }},
+    {"ply", ".ply", [](const std::string& path) { read_ply(path); }},
+};
+
+const Named& chosen() {
+  const char* name = std::getenv("VELOUR_FUZZ");
+  for (const Named& reader : kReaders) {
+    if (name != nullptr && std::strcmp(name, reader.name) == 0) return reader;
+  }
+  std::fputs("VELOUR_FUZZ names no reader; there are:", stderr);
+  for (const Named& reader : kReaders) std::fprintf(stderr, " %s", reader.name);
+  std::fputc('\n', stderr);
+  std::exit(2);
+}
+
+/// In memory; the path stays the same.
+class File {
+ public:
+  explicit File(const char* extension)
+      : path_("/dev/shm/velour-fuzz-" + std::to_string(getpid()) + extension),
+        file_(open(path_.c_str(), O_CREAT | O_TRUNC | O_RDWR | O_CLOEXEC, 0600)) {
+    if (file_ < 0) std::abort();
+  }
+  ~File() {
+    close(file_);
+    unlink(path_.c_str());
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  const std::string& with(const uint8_t* bytes, size_t count) {
+    if (ftruncate(file_, 0) != 0 || pwrite(file_, bytes, count, 0) != static_cast<ssize_t>(count)) std::abort();
+    return path_;
+  }
+
+ private:
+  const std::string path_;
+  const int file_;
+};
+
+}  // namespace
+}  // namespace velour
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t count) {
+  static const velour::Named& reader = velour::chosen();
+  static velour::File file(reader.extension);
+  try {
+    reader.read(file.with(bytes, count));
+  } catch (const velour::Error&) {  // a sentence: what it is for
+  }
+  return 0;
+}
