@@ -81,7 +81,7 @@ def test_rows_of_a_white_diffuse_material_reflect_nearly_all_light():
 
 
 # Light between facets makes rough coloured metals a little darker than their colour.
-@pytest.mark.parametrize("lobe, off", [("single", 2e-5), ("separable", 2e-5), ("whole", 0.008)])
+@pytest.mark.parametrize(("lobe", "off"), [("single", 2e-5), ("separable", 2e-5), ("whole", 0.008)])
 @pytest.mark.parametrize("metallic", [0.0, 0.4, 1.0])
 def test_rows_go_in_step_with_the_base_color(metallic, lobe, off):
     """That is how pictures of it are drawn: between the rows of black and those of white."""

@@ -124,6 +124,6 @@ class Glossy(Plates):
 
     def test_multiple_scattering(self):
         if bpy.app.version < (4, 0, 0):
-            self.skipTest("before 4.0 it is a random walk, shown as GGX")
+            self.skipTest("before 4.0 it is a random walk, whose values are random numbers")
         for roughness in _ROUGH:
             self._assert_angles(roughness, "MULTI_GGX")

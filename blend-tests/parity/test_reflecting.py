@@ -1,5 +1,6 @@
 """What a single shader reflects, and its relief."""
 
+import bpy
 import numpy as np
 
 from parity import stage
@@ -124,6 +125,15 @@ class Reflecting(ShaderTest):
     def test_beckmann(self):
         self.tree.end(self.tree.glossy(0.5, distribution="BECKMANN"))
         self.assert_approximate("Glossy BSDF: Beckmann", 20)
+
+    def test_multiple_scattering(self):
+        """Before 4.0 it is a random walk between facets, of which only the brightness is met."""
+        if bpy.app.version >= (4, 0, 0):
+            self.skipTest("test_principled.py has it at all angles")
+        for roughness in (0.5, 1.0):
+            self.tree.nodes.clear()
+            self.tree.end(self.tree.glossy(roughness, distribution="MULTI_GGX"))
+            self.assert_approximate(f"Glossy BSDF: Multiscatter GGX, roughness {roughness:g}", 6)
 
     def test_rough_diffuse(self):
         self.tree.end(self.tree.diffuse(Roughness=1.0))

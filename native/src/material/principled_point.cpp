@@ -22,9 +22,6 @@ float rough_enough(float roughness) { return std::clamp(roughness, kMinRoughness
 
 Rgb within_one(const Rgb& color) { return glm::clamp(color, Rgb(0), Rgb(1)); }
 
-/// A fit to 2 int F(mu, eta) mu dmu [KC17].
-float mean_dielectric_fresnel(float eta) { return (eta - 1) / (4.08567f + 1.00071f * eta); }
-
 }  // namespace
 
 PrincipledPoint::PrincipledPoint(const PrincipledParameters& p, const Vec3& wv)
@@ -59,6 +56,12 @@ Rgb PrincipledPoint::reflectance(float cosine) const {
   return out;
 }
 
+/// By a fit to 2 int F(mu, eta) mu dmu [KC17].
+float PrincipledPoint::mean_rise() const {
+  const float mean = (eta - 1) / (4.08567f + 1.00071f * eta);
+  return std::clamp((mean - f0) / (1 - f0), 0.0f, 1.0f);
+}
+
 void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine) {
   const auto under = [&](float weight, float roughness_above, float index) {
     if (!(weight > 0)) return 1.0f;
@@ -76,8 +79,7 @@ void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine) {
   float passing = 1;
   if (eta > 1 && rest > 0) {
     const Rgb normal = f0 * specular_tint;
-    const float mean_rise = std::clamp((mean_dielectric_fresnel(eta) - f0) / (1 - f0), 0.0f, 1.0f);
-    const Rgb mean = glm::mix(normal, Rgb(1), mean_rise), weight = rest * facets.gain(mean);
+    const Rgb mean = glm::mix(normal, Rgb(1), mean_rise()), weight = rest * facets.gain(mean);
     at_normal = weight * normal;
     rise = weight * (1.0f - normal);
     const Rgb albedo =
@@ -87,13 +89,15 @@ void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine) {
   diffuse = base_color * (rest * passing / kPi);
 }
 
-void PrincipledPoint::set_disney(const PrincipledParameters& p, float /*cosine*/) {
+void PrincipledPoint::set_disney(const PrincipledParameters& p, float cosine) {
   const float metallic = std::clamp(p.metallic, 0.0f, 1.0f);
   coat = 0;
   metal = Rgb(0);
   const float normal = 0.08f * std::max(p.specular, 0.0f);
-  at_normal = within_one(glm::mix(normal * specular_tint, base_color, metallic));
-  rise = 1.0f - at_normal;
+  const Rgb color = within_one(glm::mix(normal * specular_tint, base_color, metallic));
+  const Rgb gain = Interreflection(lobe, roughness, cosine).gain(glm::mix(color, Rgb(1), mean_rise()));
+  at_normal = gain * color;
+  rise = gain * (1.0f - color);
   diffuse = base_color * ((1 - metallic) / kPi);
 }
 

@@ -69,6 +69,8 @@ struct PrincipledPoint {
   void set_layered(const PrincipledParameters& p, float cosine);
   void set_disney(const PrincipledParameters& p, float cosine);
   void set_shares(float cosine);
+  /// How far the dielectric's reflectance is from f0 towards 1, in the mean over a hemisphere of light.
+  float mean_rise() const;
 };
 
 }  // namespace velour

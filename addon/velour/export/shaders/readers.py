@@ -33,6 +33,8 @@ _IGNORED = {
 _SEPARABLE_SHADOWS = bpy.app.version < (3, 5)
 # No property tells: rough diffuse surfaces keep their energy since Principled has a roughness of its base.
 _INTERREFLECTION = bpy.app.version >= (4, 3)
+# No property tells what it is: a random walk between facets before, a factor of one bounce since.
+_RANDOM_WALK = "its distribution 'Multiscatter GGX' is shown as Blender 4's; it differs by a few per cent."
 _LINK_ONLY = ("Clearcoat Normal", "Coat Normal", "Tangent")
 
 
@@ -56,9 +58,9 @@ def _is_layered(plug):
 def _lobe(plug, reader):
     """How GGX's facets shadow each other, of a Principled or Glossy BSDF; says so of other distributions."""
     distribution = plug.node.distribution
-    # Before 4.0 it is a random walk between facets, and Principled had no coat's weight then.
-    keeps_light = "MULTI_GGX" if bpy.app.version >= (4, 0) else None
-    if distribution == keeps_light:
+    if distribution == "MULTI_GGX":
+        if bpy.app.version < (4, 0):
+            reader.note(plug, _RANDOM_WALK)
         return "whole"
     if distribution not in ("GGX", "SHARP"):
         reader.note(plug, f"its distribution '{_label(plug.node, 'distribution')}' is shown as GGX.")
