@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "file/random_access_file.h"
+#include "job/error.h"
 
 namespace velour {
 namespace {
@@ -93,6 +94,22 @@ Orientation of_png(const Part& png) {
 }
 
 }  // namespace
+
+void check_png_chunks(const std::string& path) {
+  constexpr uint64_t kSignature = 8, kBesideData = 12;
+  const RandomAccessFile file(path);
+  const Part png(file);
+  uint64_t at = kSignature;
+  for (int i = 0; i < kMaxSegments && at + kBesideData <= png.size() && !png.holds(at + 4, "IDAT"sv); ++i) {
+    const uint64_t length = *png.number(at, 4, true);
+    if (length > png.size() - at - kBesideData) {
+      throw Error(Status::bad_data, path + ": is damaged: the chunk at byte " + std::to_string(at) +
+                                        " says that it holds " + std::to_string(length) +
+                                        " bytes, more than the file has; save it again.");
+    }
+    at += kBesideData + length;
+  }
+}
 
 Orientation exif_orientation(PictureFormat format, const std::string& path) {
   const auto found_by = [&](auto&& find) {

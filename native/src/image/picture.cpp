@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "file/file.h"
+#include "image/exif_orientation.h"
 #include "image/open_picture.h"
 #include "image/srgb.h"
 #include "image/value_faults.h"
@@ -74,6 +75,7 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, const std::st
     throw Error(Status::unsupported,
                 path + ": has no layer '" + layer + "'; only OpenEXR files have layers, leave it out.");
   }
+  if (format == PictureFormat::png) check_png_chunks(path);
   return checked(path, format == PictureFormat::radiance ? open_radiance(path) : open_integers(path, format));
 }
 

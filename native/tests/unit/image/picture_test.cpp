@@ -1,5 +1,7 @@
 #include "image/picture.h"
 
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -192,6 +194,23 @@ TEST(PictureDifference, KnownValues) {
   const auto same = compare_pictures(a, a, 1, 4);
   EXPECT_EQ(same.rmse, 0.0);
   EXPECT_EQ(same.relmse, 0.0);
+}
+
+TEST(Picture, APngThatPromisesMoreThanItHasIsRefused) {
+  const std::string path = test::scratch_folder() / "a.png";
+  write_picture(path, gradient(4, 3, 3));
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(8 + 12 + 13);  // the length of the chunk after the header
+  file.write("\x6f\0\0\0tEXt", 8);
+  file.close();
+  try {
+    read_picture(path);
+    FAIL() << "it is read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("the chunk at byte 33 says that it holds 1862270976 bytes"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace
