@@ -54,7 +54,7 @@ def show_renders(scene):
 
 
 def stop_animation(scene, paths):
-    """Of settings by their paths: an animated seed would be the same in all renders of a frame."""
+    """Removes the animation of these settings: a keyed seed would be the same in all renders of a frame."""
     for path in paths:
         scene.driver_remove(path)
     action = scene.animation_data.action if scene.animation_data else None

@@ -1,7 +1,7 @@
 """A picture all around, another one on the ground."""
 
 QUANTITY = "a turned environment picture as light and background, an image texture and a normal map"
-# Of the Principled BSDF and of steep normals, where Velour follows Blender.
+# Velour follows Blender in the Principled BSDF and in steep normals, so their references differ.
 MEANINGS = ("", "layered", "shadowed")
 
 

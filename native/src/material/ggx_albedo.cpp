@@ -30,7 +30,7 @@ float white_albedo(float roughness, float cosine) {
   return std::min(static_cast<float>(sum), 1.0f);
 }
 
-/// Of a table's `size` entries, linear between them.
+/// Where an argument falls among a table's `size` entries, to interpolate linearly.
 template <size_t size>
 struct Place {
   size_t low, high;
@@ -79,7 +79,7 @@ const White& white() {
   return table;
 }
 
-/// Of one index of refraction.
+/// The mean rises of one index of refraction.
 using Rises = Table<kRiseEntries>;
 
 /// The fourth root of the reflectance at normal incidence: all indices from 1 to infinity, the usual ones finely.

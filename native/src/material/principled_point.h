@@ -20,7 +20,7 @@ enum class PrincipledFormula {
   disney,
 };
 
-/// What of the material f is.
+/// The part of the material that f is.
 enum class PrincipledPart { whole, base, specular };
 
 /// Names and meanings of Blender's Principled BSDF; colours linear Rec. 709, all in [0, 1].

@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 #include "material/ggx_formulas-inl.h"
 #include "material/principled_formulas-inl.h"
 
-/// Of PrincipledMaterial::sample. `wl` may lie below the horizon.
+/// The density of PrincipledMaterial::sample. `wl` may lie below the horizon.
 HWY_INLINE Lanes density(const PrincipledPoint& point, const Vec3& wv, const LanesVec3& wl, const LanesVec3& h) {
   const float coat = 1 - point.specular_end;
   Lanes sum = point.diffuse_end / kPi * larger(wl.z, 0.0f) +

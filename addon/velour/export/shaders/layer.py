@@ -41,7 +41,7 @@ class Layer(NamedTuple):
 
 
 def grey():
-    """Of what has no material, or none that is known."""
+    """The layer of a surface that has no material, or an unknown one."""
     return Layer("principled", dict(_USUAL), {})
 
 
