@@ -34,7 +34,7 @@ class Plates(ParityTest):
         camera.type, camera.ortho_scale, camera.clip_end = "ORTHO", len(_VIEWS), 1000
         self.sun = stage.sharp_sun()
 
-    def assert_angles(self, feature, shader, most=_MOST):
+    def assert_angles(self, feature, shader):
         """`shader` makes the nodes."""
         self.tree.nodes.clear()
         self.tree.end(shader())
@@ -44,7 +44,7 @@ class Plates(ParityTest):
         record_row(f"{feature}, at all angles", "honoured", percent=worst, z=None)
         lit = (theirs > 0.01 * theirs.mean()).mean()
         self.assertGreater(lit, 0.15, f"{feature}: few plates show anything.")
-        self.assertLess(worst, most, f"{feature}: per cent off by sun, row and column:\n{_rounded(error)}")
+        self.assertLess(worst, _MOST, f"{feature}: per cent off by sun, row and column:\n{_rounded(error)}")
 
     def _colors(self, engine):
         """[suns x rows x columns x 3]: the middle of each plate."""
