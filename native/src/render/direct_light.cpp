@@ -43,7 +43,7 @@ Shares DirectLight::shares_at(const Vertex& vertex, Work& work) {
   if (options_.strategy != Strategy::product || sky_ == nullptr) return shares(options_, 0.0f);
   ProposalLobes lobes;
   const bool proposed = vertex.surface->material->proposal_lobes(work.prepared, lobes) &&
-                        sky_->propose(lobes, vertex.frame, products_, work.product);
+                        sky_->proposals.propose(lobes, vertex.frame, products_, work.product);
   if (!proposed) return shares(options_, 0.0f);
   const float both = kProductShare * lighting_.environment_share(), lights = lights_part(vertex) * both;
   return shares(options_, both - lights, lights);

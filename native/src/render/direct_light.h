@@ -8,9 +8,9 @@
 #include "render/light_terms.h"
 #include "render/onward.h"
 #include "render/path_numbers.h"
+#include "render/scene_samplers.h"
 #include "render/shadow_queue.h"
 #include "render/sharp_lamps.h"
-#include "render/sky_proposals.h"
 #include "srbf/lobe_draws.h"
 
 namespace velour {
@@ -29,17 +29,15 @@ struct Receiver {
 /// of directions: memory and vectors serve all of them, while their lobes stay in the cache.
 class DirectLight {
  public:
-  /// `sky` and `lights_part` (by material, lights_part.h) serve `product`; null and empty for the others.
-  DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkyProposals* sky,
-              std::span<const float> lights_part)
+  /// `sky` serves `product`; null for the others.
+  DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkySampler* sky)
       : working_space_(scene.rec709_to_working()),
         materials_(scene.materials()),
         lighting_(lighting),
         options_(options),
         sampling_(surface_sampling(options.strategy)),
         meets_surfaces_(shares(options, 0.0f).surface > 0.0f),
-        sky_(sky),
-        lights_part_(lights_part) {}
+        sky_(sky) {}
 
   /// How many vertices of up to `directions` each gather() takes.
   static size_t receivers_of(int directions) {
@@ -100,7 +98,7 @@ class DirectLight {
   /// Makes the products of the vertex, if it has any.
   Shares shares_at(const Vertex& vertex, Work& work);
   float lights_part(const Vertex& vertex) const {
-    return lights_part_[static_cast<size_t>(vertex.surface - materials_.data())];
+    return sky_->lights_part[static_cast<size_t>(vertex.surface - materials_.data())];
   }
   void draw_towards_lights(std::span<const Receiver> receivers);
   void draw_towards_products(std::span<const Receiver> receivers);
@@ -123,8 +121,7 @@ class DirectLight {
   const RenderOptions& options_;
   const SurfaceSampling sampling_;
   const bool meets_surfaces_;  // whether any directions come from the surface side
-  const SkyProposals* sky_;
-  const std::span<const float> lights_part_;
+  const SkySampler* sky_;
 
   Work work_[kReceivers];
   // Of all vertices.

@@ -13,7 +13,7 @@ namespace velour {
 class IndirectLight {
  public:
   IndirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options)
-      : scene_(scene), flight_(scene, lighting, options, nullptr, {}) {}
+      : scene_(scene), flight_(scene, lighting, options, nullptr) {}
 
   void clear();
   /// A ray that met a surface, `cone` at its origin; its radiance will be number `radiance().size()` so far. `numbers`:

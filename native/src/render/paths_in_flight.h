@@ -22,10 +22,9 @@ struct Path {
 
 /// Whoever has them makes `receivers` of the hits, in turns with trace() and gather(), and counts what surfaces emit.
 struct PathsInFlight {
-  /// `sky` and `lights_part` as of DirectLight.
-  PathsInFlight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkyProposals* sky,
-                std::span<const float> lights_part)
-      : visible(scene), light(scene, lighting, options, sky, lights_part) {}
+  /// `sky` as of DirectLight.
+  PathsInFlight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkySampler* sky)
+      : visible(scene), light(scene, lighting, options, sky) {}
 
   /// Where the rays end, and what of their light comes through on the way. `kind`: a bit of `hidden`.
   void trace(uint8_t kind);

@@ -3,35 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "fit/ggx_fit.h"
-#include "render/lights_part.h"
-#include "scene/sky_misfit.h"
-
 namespace velour {
 namespace {
-
-void prepare_tables(RenderContext& context, tbb::task_arena& arena, Progress& progress) {
-  const auto& materials = context.scene.materials();
-  context.tables.resize(materials.size());
-  for (size_t m = 0; m < materials.size(); ++m) {
-    progress.check();
-    arena.execute([&] { context.tables[m] = std::make_unique<const TableSampler>(*materials[m].material); });
-  }
-}
-
-void fit_ggx_lobes(RenderContext& context, Progress& progress) {
-  for (const SurfaceMaterial& m : context.scene.materials()) {
-    context.ggx.push_back(std::make_unique<const GgxSampler>(fit_ggx(*m.material, context.options.threads, progress)));
-  }
-}
-
-void prepare_sky(RenderContext& context, Progress& progress) {
-  const Environment& environment = context.scene.environment();
-  const SkyMixture sky = sky_mixture(environment, {}, context.options.cache_folder, progress);
-  context.sky = std::make_unique<const SkyProposals>(sky, sky_misfit(environment, sky));
-  context.lights_part = lights_parts(context.scene, *context.sky);
-  context.sky_report = {sky.size(), sky.relative_l2, sky.seconds, sky.cached};
-}
 
 /// options.samples, its end in numbers.
 SampleRange checked_samples(const RenderOptions& options) {
@@ -106,12 +79,16 @@ void prepare(RenderContext& context, tbb::task_arena& arena, Progress& progress,
   const auto stage = [&](const char* name, const auto& work) {
     run_stage(progress, stages, name, 0.0, kPreparation, work);
   };
-  if (strategy == Strategy::table) stage("tables", [&] { prepare_tables(context, arena, progress); });
-  if (surface_sampling(strategy) == SurfaceSampling::ggx) {
-    stage("ggx fit", [&] { fit_ggx_lobes(context, progress); });
+  const Scene& scene = context.scene;
+  if (strategy == Strategy::table) {
+    stage("tables", [&] { arena.execute([&] { context.tables = table_samplers(scene, progress); }); });
   }
-  if (strategy == Strategy::product && !context.scene.environment().black()) {
-    stage("sky", [&] { arena.execute([&] { prepare_sky(context, progress); }); });
+  if (surface_sampling(strategy) == SurfaceSampling::ggx) {
+    stage("ggx fit", [&] { context.ggx = ggx_samplers(scene, context.options.threads, progress); });
+  }
+  if (strategy == Strategy::product && !scene.environment().black()) {
+    const std::string& folder = context.options.cache_folder;
+    stage("sky", [&] { arena.execute([&] { context.sky = sky_sampler(scene, folder, progress); }); });
   }
 }
 

@@ -52,7 +52,7 @@ class Renderer {
     if (!options_.onto_film) film_.clear();
     before_ = film_.directions();
     prepare(context_, arena_, progress_, report_.stages);
-    if (context_.sky) report_.sky = context_.sky_report;
+    if (context_.sky) report_.sky = context_.sky->report;
     render_passes();
     if (options_.measure_ray_share && !stopped()) measure_ray_share();  // a stop is in a hurry
     return report();

@@ -16,7 +16,7 @@ float covered(const Rgb& throughput) { return 1.0f - (throughput.r + throughput.
 TileRenderer::TileRenderer(const RenderContext& context)
     : context_(context),
       pixel_(context.scene, context.options.width, context.options.height, context.camera_rays()),
-      flight_(context.scene, context.lighting, context.options, context.sky.get(), context.lights_part),
+      flight_(context.scene, context.lighting, context.options, context.sky.get()),
       recorder_(context.scene) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
@@ -130,8 +130,8 @@ void TileRenderer::follow(size_t index, int depth) {
   }
   Vertex vertex = Vertex::seen(context_.scene, flight_.rays[index], hit, path.cone, depth == 0 ? &pixel_ : nullptr);
   const auto material = static_cast<size_t>(vertex.surface - context_.scene.materials().data());
-  if (!context_.tables.empty()) vertex.table = context_.tables[material].get();
-  if (!context_.ggx.empty()) vertex.ggx = context_.ggx[material].get();
+  if (context_.tables) vertex.table = (*context_.tables)[material].get();
+  if (context_.ggx) vertex.ggx = (*context_.ggx)[material].get();
   if (depth == 0) {
     sample.alpha = 1.0f;
     sample.normal = vertex.frame.z;

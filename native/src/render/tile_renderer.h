@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "job/progress.h"
-#include "material/ggx_sampler.h"
-#include "material/table_sampler.h"
 #include "render/film.h"
 #include "render/paths_in_flight.h"
 #include "render/report.h"
+#include "render/scene_samplers.h"
 #include "render/surface_recorder.h"
 
 namespace velour {
@@ -23,12 +22,10 @@ struct RenderContext {
   const Scene& scene;
   const RenderOptions& options;  // split <= spp, samples.end > 0
   Lighting lighting;
-  // By material; empty unless the strategy needs them.
-  std::vector<std::unique_ptr<const TableSampler>> tables;
-  std::vector<std::unique_ptr<const GgxSampler>> ggx;
-  std::unique_ptr<const SkyProposals> sky;  // null unless the strategy needs it
-  std::vector<float> lights_part;           // by material, with `sky`
-  RenderReport::Sky sky_report{};           // with `sky`
+  // Null unless the strategy needs them.
+  std::shared_ptr<const TableSamplers> tables;
+  std::shared_ptr<const GgxSamplers> ggx;
+  std::shared_ptr<const SkySampler> sky;
 
   /// A pixel of the whole picture.
   int camera_rays() const { return rays_of(options.spp); }

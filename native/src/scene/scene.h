@@ -13,6 +13,7 @@
 #include "scene/environment.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
+#include "scene/scene_keep.h"
 #include "scene/shell_top.h"
 #include "votf/shell_field.h"
 
@@ -152,6 +153,11 @@ class Scene {
   bool committed() const { return committed_; }
   /// Another number after every change but that of the camera alone.
   uint64_t revision() const { return revision_; }
+  /// The T that all who ask share until the revision is another: what is worked out from the scene is worked out once.
+  template <typename T>
+  std::shared_ptr<T> kept() const {
+    return keep_->of<T>(revision_);
+  }
 
   struct Instance {
     uint32_t mesh;
@@ -258,6 +264,7 @@ class Scene {
   std::vector<std::string> shell_warnings_;
   bool committed_ = false, geometry_changed_ = true;
   uint64_t revision_ = 0;
+  std::unique_ptr<SceneKeep> keep_ = std::make_unique<SceneKeep>();
   std::unique_ptr<EmbreeScene> rays_;
   std::vector<uint32_t> mesh_rays_;     // numbers of the meshes in rays_; kNoHit: it does not have them
   std::vector<uint32_t> free_rays_;     // numbers there of nothing

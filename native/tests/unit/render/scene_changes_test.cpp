@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "job/error.h"
+#include "render/scene_samplers.h"
 #include "support/example_shell.h"
 #include "support/test_scene.h"
 
@@ -278,6 +279,44 @@ TEST(SceneChanges, RefusesToRemoveWhatIsThere) {
   EXPECT_THROW(scene.remove_mesh(7), Error);
   EXPECT_THROW(scene.replace_material(1), Error);
   EXPECT_THROW(scene.replace_material(9), Error);
+}
+
+TEST(SceneChanges, SamplersAreSharedUntilAnythingButTheCameraChanges) {
+  Scene scene;
+  begin(scene);
+  add_ground_and_ball(scene, {0, 0, 1});
+  scene.commit(2);
+  Progress progress;
+  const auto tables = table_samplers(scene, progress);
+  const auto lobes = ggx_samplers(scene, 2, progress);
+  const auto sky = sky_sampler(scene, "", progress);
+  scene.set_camera(test::camera_above(3));
+  EXPECT_EQ(table_samplers(scene, progress), tables);
+  EXPECT_EQ(ggx_samplers(scene, 2, progress), lobes);
+  EXPECT_EQ(sky_sampler(scene, "", progress), sky);
+  scene.set_material(0, {grey(0.9f), Rgb(0.0f), false});
+  EXPECT_NE(table_samplers(scene, progress), tables);
+  EXPECT_NE(ggx_samplers(scene, 2, progress), lobes);
+  EXPECT_NE(sky_sampler(scene, "", progress), sky);
+}
+
+/// What an earlier render has left must not be drawn from after a change.
+TEST(SceneChanges, SamplersOfAnEarlierRenderAreNotUsedAgain) {
+  for (const Strategy strategy : {Strategy::table, Strategy::ggx, Strategy::product}) {
+    Scene changed, fresh;
+    begin(changed), begin(fresh);
+    add_ground_and_ball(changed, {0, 0, 1}), add_ground_and_ball(fresh, {0, 0, 1});
+    const RenderOptions options = small_options(strategy, 16);
+    changed.commit(2);
+    (void)rendered(changed, options);
+    for (Scene* scene : {&changed, &fresh}) {
+      scene->set_material(0, {std::make_shared<test::ThinLambert>(0.3f, 0.5f), Rgb(0.0f), false});
+      scene->add_material({grey(0.7f), Rgb(0.0f), false});
+      scene->set_environment(Environment::constant(Rgb(0.5f)));
+      scene->commit(2);
+    }
+    EXPECT_EQ(rendered(changed, options), rendered(fresh, options));
+  }
 }
 
 }  // namespace

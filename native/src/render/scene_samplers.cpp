@@ -1,0 +1,69 @@
+#include "render/scene_samplers.h"
+
+#include <mutex>
+
+#include "fit/ggx_fit.h"
+#include "render/lights_part.h"
+#include "scene/sky_misfit.h"
+
+namespace velour {
+namespace {
+
+struct SceneSamplers {
+  std::mutex mutex;
+  std::shared_ptr<const TableSamplers> tables;
+  std::shared_ptr<const GgxSamplers> ggx;
+  std::shared_ptr<const SkySampler> sky;
+};
+
+/// What the scene keeps at `place`, or else what `make` gives. Renders that begin together may both make it, so that
+/// each can be cancelled; they get the same.
+template <typename T, typename Make>
+std::shared_ptr<const T> kept(const Scene& scene, std::shared_ptr<const T> SceneSamplers::*place, const Make& make) {
+  const std::shared_ptr<SceneSamplers> samplers = scene.kept<SceneSamplers>();
+  std::shared_ptr<const T>& known = (*samplers).*place;
+  {
+    const std::lock_guard lock(samplers->mutex);
+    if (known) return known;
+  }
+  auto made = std::make_shared<const T>(make());
+  const std::lock_guard lock(samplers->mutex);
+  if (!known) known = std::move(made);
+  return known;
+}
+
+}  // namespace
+
+std::shared_ptr<const TableSamplers> table_samplers(const Scene& scene, const Progress& progress) {
+  return kept(scene, &SceneSamplers::tables, [&] {
+    TableSamplers tables;
+    for (const SurfaceMaterial& m : scene.materials()) {
+      progress.check();
+      tables.push_back(std::make_unique<const TableSampler>(*m.material));
+    }
+    return tables;
+  });
+}
+
+std::shared_ptr<const GgxSamplers> ggx_samplers(const Scene& scene, int threads, Progress& progress) {
+  return kept(scene, &SceneSamplers::ggx, [&] {
+    GgxSamplers lobes;
+    for (const SurfaceMaterial& m : scene.materials()) {
+      lobes.push_back(std::make_unique<const GgxSampler>(fit_ggx(*m.material, threads, progress)));
+    }
+    return lobes;
+  });
+}
+
+std::shared_ptr<const SkySampler> sky_sampler(const Scene& scene, const std::string& cache_folder, Progress& progress) {
+  return kept(scene, &SceneSamplers::sky, [&] {
+    const Environment& environment = scene.environment();
+    const SkyMixture sky = sky_mixture(environment, {}, cache_folder, progress);
+    SkySampler sampler{
+        SkyProposals(sky, sky_misfit(environment, sky)), {}, {sky.size(), sky.relative_l2, sky.seconds, sky.cached}};
+    sampler.lights_part = lights_parts(scene, sampler.proposals);
+    return sampler;
+  });
+}
+
+}  // namespace velour
