@@ -22,6 +22,15 @@ class Notes(NotesTest):
         scenes.add_sphere(material)
         self.assertEqual(self.notes(), [])
 
+    def test_shading_offset_of_the_shadow_terminator(self):
+        ball = scenes.add_sphere(bpy.data.materials.new("Plain"))
+        name = "shadow_terminator_shading_offset"
+        if hasattr(ball, name):
+            setattr(ball, name, 0.3)
+        else:  # before Blender 5.0
+            ball.cycles.shadow_terminator_offset = 0.3
+        self.assert_said(f"Object '{ball.name}'", "shading offset", "0.3")
+
     def test_unsupported_shader(self):
         self._material("ShaderNodeBsdfGlass")
         self.assert_said("Material 'Glass'", "Glass BSDF", "rendered grey")

@@ -15,7 +15,7 @@ from .uv_maps import maps_of_slots, missing_map
 from .visibility import Visibility, note_light_visibility
 
 _FLAT = 1e-36  # determinants of instances that the library leaves out, and does not count
-_TERMINATOR = 0.1  # Cycles' default, without its add-on
+_TERMINATOR = {"geometry": 0.1, "shading": 0.0}  # Cycles' defaults, without its add-on
 _PENCIL = "Grease Pencil strokes"
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _UNSUPPORTED = {
@@ -160,8 +160,18 @@ class ObjectExport:
         if "camera" not in hidden:
             self._seen.append(mesh.place)
         owner = Owner(obj.name, _asset(obj), obj.pass_index, mesh.uv_set)
-        look = (slots.numbers, hidden, _terminator(obj))
+        look = (slots.numbers, hidden, self._terminator(obj))
         return _Shown(owner, mesh.place, slots.materials, look, slots.is_placed)
+
+    def _terminator(self, obj):
+        """The geometry offset of its shadow terminator; the other is told of."""
+        shading = _terminator(obj, "shading", "shadow_terminator_offset")
+        if shading:
+            self._notes.add(
+                f"Object '{obj.name}': the shading offset of its shadow terminator is {shading:.2g}, which Velour "
+                "does not follow; the geometry offset is followed."
+            )
+        return _terminator(obj, "geometry", "shadow_terminator_geometry_offset")
 
     def _add_instance(self, instance, shown, metres):
         matrix = instance.matrix_world.copy()  # which asks Blender once
@@ -300,8 +310,7 @@ def slots_of(obj, arrays, material):
     return tuple(slot for slot, other in enumerate(shown) if other and other.original == material.original)
 
 
-def _terminator(obj):
-    """The geometry offset of the shadow terminator; before Blender 5.0 a setting of Cycles."""
-    name = "shadow_terminator_geometry_offset"
-    found = getattr(obj, name, None)
-    return getattr(getattr(obj, "cycles", None), name, _TERMINATOR) if found is None else found
+def _terminator(obj, offset, older):
+    """An offset of the shadow terminator by its name; before Blender 5.0 a setting of Cycles, with a name of its own."""
+    found = getattr(obj, f"shadow_terminator_{offset}_offset", None)
+    return getattr(getattr(obj, "cycles", None), older, _TERMINATOR[offset]) if found is None else found

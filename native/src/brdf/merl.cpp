@@ -1,5 +1,8 @@
 #include "brdf/merl.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -14,46 +17,96 @@ namespace {
 constexpr BrdfTableLayout kMerlLayout{
     .theta_h = MerlGrid::theta_h, .phi_h = 1, .theta_d = MerlGrid::theta_d, .phi_d = MerlGrid::phi_d};
 constexpr size_t kHeaderBytes = 3 * sizeof(int32_t);
-constexpr size_t kPlaneBytes = MerlGrid::size * sizeof(double);
+constexpr int32_t kMostNodes = 4096;  // along an axis; what is beyond is no header of a table
 /// Stored value x scale = f in 1/sr; the camera's exposures, fixed by the format.
 constexpr double kScale[3] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
-void check_header(ByteReader& in) {
-  constexpr std::pair<const char*, int32_t> kFields[] = {{"theta_half", 90}, {"theta_diff", 90}, {"phi_diff", 180}};
-  for (const auto& [field, expected] : kFields) {
-    const auto found = in.number<int32_t>(field);
-    if (found != expected)
-      throw Error(Status::bad_data, in.name() + ": MERL dimension " + field + " is " + std::to_string(found) +
-                                        " where every MERL file has " + std::to_string(expected) + ".");
-  }
-  if (in.remaining() != 3 * kPlaneBytes)
-    throw Error(Status::bad_data, in.name() + ": holds " + std::to_string(kHeaderBytes + in.remaining()) +
-                                      " bytes where a MERL file has " + std::to_string(kHeaderBytes + 3 * kPlaneBytes) +
-                                      "; download it again.");
+using Dimensions = std::array<int32_t, 3>;
+
+template <typename T>
+T stored_number(const uint8_t* at, bool is_big_endian) {
+  std::array<uint8_t, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), at, sizeof(T));
+  if (is_big_endian) std::reverse(bytes.begin(), bytes.end());
+  return std::bit_cast<T>(bytes);
 }
 
-/// The planes are doubles at an odd multiple of four bytes: read by copying.
+Dimensions stored_dimensions(std::span<const uint8_t> header, bool is_big_endian) {
+  Dimensions found;
+  for (size_t i = 0; i < 3; ++i) {
+    found[i] = stored_number<int32_t>(header.data() + i * sizeof(int32_t), is_big_endian);
+  }
+  return found;
+}
+
+bool are_plausible(const Dimensions& dimensions) {
+  return std::ranges::all_of(dimensions, [](int32_t count) { return count >= 2 && count <= kMostNodes; });
+}
+
+/// How a file stores its table. Programs write tables of other sizes than the database's, float32, and the byte order
+/// of their machine; header and length together say which.
+struct MerlStorage {
+  BrdfTableLayout layout;
+  bool is_big_endian;
+  size_t number_bytes;  // of a float64 or float32
+};
+
+MerlStorage storage_of(ByteReader& in) {
+  const auto header = in.take(kHeaderBytes, "header");
+  const bool is_big_endian =
+      !are_plausible(stored_dimensions(header, false)) && are_plausible(stored_dimensions(header, true));
+  const Dimensions counts = stored_dimensions(header, is_big_endian);
+  constexpr const char* kFields[] = {"theta_half", "theta_diff", "phi_diff"};
+  std::string names;
+  for (size_t i = 0; i < 3; ++i) {
+    const std::string field = std::string(kFields[i]) + " is " + std::to_string(counts[i]);
+    if (counts[i] < 2 || counts[i] > kMostNodes)
+      throw Error(Status::bad_data, in.name() + ": MERL dimension " + field + "; it must be 2 to " +
+                                        std::to_string(kMostNodes) + ", 90, 90 and 180 in the database's own files.");
+    names += (i == 0 ? "" : ", ") + field;
+  }
+  const BrdfTableLayout layout{.theta_h = counts[0], .phi_h = 1, .theta_d = counts[1], .phi_d = counts[2]};
+  for (const size_t number_bytes : {sizeof(double), sizeof(float)}) {
+    if (in.remaining() != 3 * number_bytes * layout.size()) continue;
+    if (layout.phi_d > MerlGrid::phi_d)
+      throw Error(Status::bad_data, in.name() + ": MERL dimension phi_diff is " + std::to_string(layout.phi_d) +
+                                        ", and whether that covers half a turn, as MERL's 180 do, or a whole one, no "
+                                        "header says. Write half a turn in at most 180 steps.");
+    return {layout, is_big_endian, number_bytes};
+  }
+  const size_t of_float64 = kHeaderBytes + 3 * sizeof(double) * layout.size();
+  const size_t of_float32 = kHeaderBytes + 3 * sizeof(float) * layout.size();
+  throw Error(Status::bad_data, in.name() + ": holds " + std::to_string(kHeaderBytes + in.remaining()) +
+                                    " bytes where a MERL table whose " + names + " has " + std::to_string(of_float64) +
+                                    " (float64) or " + std::to_string(of_float32) +
+                                    " (float32); download it or write it again.");
+}
+
+/// The planes of doubles are at an odd multiple of four bytes: read by copying.
 class StoredPlanes {
  public:
-  explicit StoredPlanes(const uint8_t* data) : data_(data) {}
+  StoredPlanes(const MerlStorage& storage, const uint8_t* data) : storage_(storage), data_(data) {}
   Rgb f(size_t index) const { return {channel(0, index), channel(1, index), channel(2, index)}; }
 
  private:
   float channel(size_t c, size_t index) const {
-    double stored;
-    std::memcpy(&stored, data_ + c * kPlaneBytes + index * sizeof(double), sizeof stored);
+    const uint8_t* at = data_ + (c * storage_.layout.size() + index) * storage_.number_bytes;
+    const bool swap = storage_.is_big_endian;
+    const double stored = storage_.number_bytes == sizeof(double) ? stored_number<double>(at, swap)
+                                                                  : double{stored_number<float>(at, swap)};
     return static_cast<float>(stored * kScale[c]);
   }
+  const MerlStorage& storage_;
   const uint8_t* data_;
 };
 
-std::vector<TableNode> read_nodes(const StoredPlanes& planes, EntryCounts& counts) {
-  const HorizonTest horizon(kMerlLayout);
-  std::vector<TableNode> nodes(MerlGrid::size);
-  for (int i = 0; i < MerlGrid::theta_h; ++i)
-    for (int j = 0; j < MerlGrid::theta_d; ++j)
-      for (int k = 0; k < MerlGrid::phi_d; ++k) {
-        const size_t index = MerlGrid::index(i, j, k);
+std::vector<TableNode> read_nodes(const BrdfTableLayout& layout, const StoredPlanes& planes, EntryCounts& counts) {
+  const HorizonTest horizon(layout);
+  std::vector<TableNode> nodes(layout.size());
+  for (int i = 0; i < layout.theta_h; ++i)
+    for (int j = 0; j < layout.theta_d; ++j)
+      for (int k = 0; k < layout.phi_d; ++k) {
+        const size_t index = layout.index(i, 0, j, k);
         if (!horizon.above(i, j, k)) {
           count_below_horizon(counts);
           continue;
@@ -64,12 +117,17 @@ std::vector<TableNode> read_nodes(const StoredPlanes& planes, EntryCounts& count
   return nodes;
 }
 
-TableMeasurement::Details describe() {
-  return {{"table", "90 theta_half x 90 theta_diff x 180 phi_diff, 3 channels of float64"},
+TableMeasurement::Details describe(const MerlStorage& storage) {
+  const BrdfTableLayout& layout = storage.layout;
+  const std::string theta_h = std::to_string(layout.theta_h);
+  return {{"table", theta_h + " theta_half x " + std::to_string(layout.theta_d) + " theta_diff x " +
+                        std::to_string(layout.phi_d) + " phi_diff, 3 channels of " +
+                        (storage.number_bytes == sizeof(double) ? "float64" : "float32") +
+                        (storage.is_big_endian ? ", big-endian" : "")},
           {"holds", "f without cosine, stored value x scale, 1/sr"},
           {"scales", "1/1500, 1.15/1500, 1.66/1500"},
           {"invalid", "a node with any channel negative"},
-          {"interpolation", "trilinear over valid nodes, node i of theta_half at i^2/90 degrees"}};
+          {"interpolation", "trilinear over valid nodes, node i of theta_half at 90 (i/" + theta_h + ")^2 degrees"}};
 }
 
 }  // namespace
@@ -77,18 +135,19 @@ TableMeasurement::Details describe() {
 DirectionPair MerlGrid::pair(int i, int j, int k) { return kMerlLayout.pair(i, 0, j, k); }
 
 bool looks_like_merl(std::span<const uint8_t> head) {
-  constexpr int32_t kDimensions[] = {90, 90, 180};
-  return head.size() >= kHeaderBytes && std::memcmp(head.data(), kDimensions, kHeaderBytes) == 0;
+  return head.size() >= kHeaderBytes &&
+         (are_plausible(stored_dimensions(head, false)) || are_plausible(stored_dimensions(head, true)));
 }
 
 std::shared_ptr<const Measurement> read_merl(std::span<const uint8_t> bytes, Provenance provenance) {
   ByteReader in(bytes, provenance.path);
-  check_header(in);
+  const MerlStorage storage = storage_of(in);
   EntryCounts counts;
-  auto nodes = read_nodes(StoredPlanes(in.take(3 * kPlaneBytes, "table").data()), counts);
+  const StoredPlanes planes(storage, in.take(in.remaining(), "table").data());
+  auto nodes = read_nodes(storage.layout, planes, counts);
   provenance.format = "merl";
-  return std::make_shared<TableMeasurement>(HalfDiffTable(kMerlLayout, std::move(nodes)), std::move(provenance), counts,
-                                            describe());
+  return std::make_shared<TableMeasurement>(HalfDiffTable(storage.layout, std::move(nodes)), std::move(provenance),
+                                            counts, describe(storage));
 }
 
 void write_merl(const std::string& path, std::span<const double> planes) {
@@ -108,9 +167,9 @@ void write_merl(const std::string& path, std::span<const double> planes) {
       stored[c * MerlGrid::size + index] = planes[c * MerlGrid::size + index] / kScale[c];
   }
   constexpr int32_t kDimensions[] = {90, 90, 180};
-  std::vector<uint8_t> bytes(kHeaderBytes + 3 * kPlaneBytes);
+  std::vector<uint8_t> bytes(kHeaderBytes + 3 * MerlGrid::size * sizeof(double));
   std::memcpy(bytes.data(), kDimensions, kHeaderBytes);
-  std::memcpy(bytes.data() + kHeaderBytes, stored.data(), 3 * kPlaneBytes);
+  std::memcpy(bytes.data() + kHeaderBytes, stored.data(), stored.size() * sizeof(double));
   write_file(path, bytes);
 }
 

@@ -73,6 +73,8 @@ class BtfMeasurement {
 
   /// Whatever else the source knows, as (key, value) pairs for `info`.
   virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
+  /// Sentences for whoever fits or looks at it.
+  virtual std::vector<std::string> warnings() const { return {}; }
 
   const PairLayout& layout() const { return *layout_; }
   const TexelGrid& grid() const { return grid_; }

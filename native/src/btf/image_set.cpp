@@ -96,9 +96,27 @@ std::string curve_text(const TransferCurve& curve) {
   return curve.gamma ? "stored^" + std::to_string(*curve.gamma) : std::string("sRGB");
 }
 
+bool is_outside(const std::string& picture, const fs::path& folder) {
+  const fs::path from_folder = fs::absolute(picture).lexically_normal().lexically_relative(folder);
+  return from_folder.empty() || *from_folder.begin() == "..";
+}
+
+/// An index from elsewhere may name any file of this machine, and its pixels would go into the model.
+std::string pictures_elsewhere(const ImageSetSource& source) {
+  const fs::path given = fs::absolute(source.path).lexically_normal();
+  const fs::path folder = fs::is_directory(given) ? given : given.parent_path();
+  const auto outside = [&](const PairPicture& p) { return is_outside(p.path, folder); };
+  const auto first = std::ranges::find_if(source.pictures, outside);
+  if (first == source.pictures.end()) return {};
+  return source.path + ": " + std::to_string(std::ranges::count_if(source.pictures, outside)) + " of " +
+         std::to_string(source.pictures.size()) + " pictures lie outside the folder of the index, the first " +
+         first->path + "; make sure that they are meant.";
+}
+
 class ImageSet : public BtfMeasurement {
  public:
-  ImageSet(const ImageSetSource& source, const BtfLoadOptions& options) : options_(options) {
+  ImageSet(const ImageSetSource& source, const BtfLoadOptions& options)
+      : options_(options), elsewhere_(pictures_elsewhere(source)) {
     OrderedPictures pictures = ordered(source);
     layout_ = std::move(pictures.layout);
     paths_ = std::move(pictures.paths);
@@ -134,10 +152,17 @@ class ImageSet : public BtfMeasurement {
   bool has_coverage() const override { return has_alpha_; }
 
   std::vector<std::pair<std::string, std::string>> details() const override {
-    return {{"values", scale_.text()},
-            {"curve", curve_text(options_.curve) + " for pictures of whole numbers, none for floats"},
-            {"colors", colors_text()},
-            {"first_picture", paths_[0]}};
+    std::vector<std::pair<std::string, std::string>> details = {
+        {"values", scale_.text()},
+        {"curve", curve_text(options_.curve) + " for pictures of whole numbers, none for floats"},
+        {"colors", colors_text()},
+        {"first_picture", paths_[0]}};
+    if (!elsewhere_.empty()) details.emplace_back("warning", elsewhere_);
+    return details;
+  }
+
+  std::vector<std::string> warnings() const override {
+    return elsewhere_.empty() ? std::vector<std::string>{} : std::vector{elsewhere_};
   }
 
  private:
@@ -207,6 +232,7 @@ class ImageSet : public BtfMeasurement {
   }
 
   BtfLoadOptions options_;
+  std::string elsewhere_;  // a warning; mostly empty
   ValueScale scale_;
   std::vector<std::string> paths_;
   bool has_alpha_ = false;  // of the first picture

@@ -108,6 +108,7 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
   }
   const std::string repeated = repeated_directions(measurement.layout());
   if (!repeated.empty()) record.warnings.push_back(repeated);
+  for (const std::string& warning : measurement.warnings()) record.warnings.push_back(warning);
   for (const std::string& warning : fitter->warnings()) record.warnings.push_back(warning);
   for (const std::string& warning : checkpoint.warnings()) record.warnings.push_back(warning);
   if (!found.shortfall.empty()) record.warnings.push_back(found.shortfall);

@@ -1,9 +1,11 @@
 #include "fit/measurement_warnings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "brdf/azimuth_spread.h"
 #include "brdf/held_out.h"
 #include "fit/fit_report.h"
 
@@ -13,6 +15,7 @@ namespace {
 constexpr double kManyInvalid = 0.1;  // of the entries above the horizon
 constexpr double kFewLights = 0.9;    // of the hemisphere
 constexpr size_t kFewSamples = 500;   // some 60 of them held out, a dozen for each reported view
+constexpr double kBrushed = 0.1;      // log of a factor
 constexpr double kDarkest = 0.001;    // albedo; black velvet and soot are above
 constexpr double kBrokenReciprocity = 0.1;
 
@@ -38,6 +41,17 @@ void warn_of_few_samples(size_t samples, bool all_data, std::vector<std::string>
   warnings.push_back("the measurement has " + std::to_string(samples) +
                      " samples: what lies between them is a guess, and the errors rest on " + std::to_string(judges) +
                      (all_data ? " that the fit has seen" : " that were held out"));
+}
+
+void warn_of_azimuth(std::span<const ScatteredSample> samples, std::vector<std::string>& warnings) {
+  const std::optional<AzimuthSpread> spread = azimuth_spread(samples);
+  if (!spread || spread->turned < kBrushed || spread->turned < 2 * spread->alike) return;
+  warnings.push_back("the surface is anisotropic: " + std::to_string(spread->turned_pairs) +
+                     " pairs of samples that differ in azimuth alone differ by a factor of " +
+                     three_digits(std::exp(spread->turned)) + " (median), those of one azimuth by " +
+                     three_digits(std::exp(spread->alike)) +
+                     "; scattered samples are fitted as isotropic, so the model is a mean over azimuths. A table with "
+                     "azimuths (docs/formats.md, velour-table) keeps them");
 }
 
 /// The view whose noise is furthest above its tolerance speaks for all.
@@ -138,6 +152,7 @@ void warn_of_reciprocity(const FitRecord& record, std::vector<std::string>& warn
 void warn_of_measurement(const Measurement& measurement, const Comparison& errors, FitRecord& record) {
   warn_of_entries(measurement, record.warnings);
   warn_of_few_samples(measurement.samples().size(), record.all_data, record.warnings);
+  warn_of_azimuth(measurement.samples(), record.warnings);
   // Reciprocal pairs of such a measurement tell nothing of its noise.
   if (!is_not_reciprocal(record)) warn_of_noise(errors, record.tolerance, record.warnings);
   warn_of_narrow_views(errors, record.warnings);

@@ -1,18 +1,16 @@
-// Pictures of 8 and 16 bits in a library without OpenImageIO, by stb_image: PNG, JPEG, BMP. For libraries that must
-// carry all they need with them.
+// PNG and BMP files in a library without OpenImageIO.
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 
 #include "file/file.h"
-#include "image/exif_orientation.h"
-#include "image/open_picture.h"
+#include "image/portable_picture.h"
 #include "job/error.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_STDIO
 #define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
 #define STBI_ONLY_BMP
 #include <stb/stb_image.h>
 #define STB_IMAGE_WRITE_STATIC
@@ -59,18 +57,27 @@ struct Free {
 template <typename T>
 using Values = std::unique_ptr<T, Free<T>>;
 
+/// A color of a PNG file that is clear, of which stb_image says nothing before it decodes.
+bool has_clear_color(std::span<const uint8_t> png) {
+  constexpr size_t kSignature = 8, kBesideData = 12;
+  for (uint64_t at = kSignature; at + kBesideData <= png.size();) {
+    const uint64_t length = uint64_t{png[at]} << 24 | png[at + 1] << 16 | png[at + 2] << 8 | png[at + 3];
+    const std::string_view type(reinterpret_cast<const char*>(&png[at + 4]), 4);
+    if (type == "tRNS" || type == "IDAT") return type == "tRNS";
+    at += kBesideData + length;
+  }
+  return false;
+}
+
 class ByStb : public OpenPicture {
  public:
   ByStb(const std::string& path, PictureFormat format) : path_(path), bytes_(read_file(path)) {
-    if (format == PictureFormat::tiff)
-      throw Error(Status::unsupported,
-                  path + ": is a TIFF file, which this library does not read; convert it to EXR or PNG.");
     const auto* data = bytes_.data();
     const int size = static_cast<int>(std::min<size_t>(bytes_.size(), INT32_MAX));
     if (stbi_info_from_memory(data, size, &header_.width, &header_.height, &header_.channels) == 0)
       throw Error(Status::bad_data, input_error(path, stbi_failure_reason()));
     header_.integers = true;
-    header_.orientation = exif_orientation(format, path);
+    if (format == PictureFormat::png && header_.channels % 2 == 1 && has_clear_color(bytes_)) ++header_.channels;
     sixteen_bits_ = stbi_is_16_bit_from_memory(data, size) != 0;
     if (header_.channels % 2 == 0) header_.alpha_channel = header_.channels - 1;
   }
@@ -114,7 +121,7 @@ void append(void* to, void* data, int size) {
 
 }  // namespace
 
-std::unique_ptr<OpenPicture> open_integers(const std::string& path, PictureFormat format) {
+std::unique_ptr<OpenPicture> open_by_stb(const std::string& path, PictureFormat format) {
   return std::make_unique<ByStb>(path, format);
 }
 

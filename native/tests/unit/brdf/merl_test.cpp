@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
+#include "brdf/brdf_table.h"
 #include "brdf/half_diff.h"
 #include "file/file.h"
 #include "measurement_support.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -155,6 +160,60 @@ TEST_F(Merl, RefusesTruncatedOversizedAndLyingFiles) {
     std::memcpy(&lying[4], &dimension, 4);
     EXPECT_NE(test::refusal([&] { read(lying); }).find("theta_diff"), std::string::npos) << dimension;
   }
+}
+
+/// A table as a program of another machine writes it: numbers of T, of `counts` nodes.
+template <typename T>
+std::vector<uint8_t> table_of(const std::array<int32_t, 3>& counts, bool is_big_endian) {
+  std::vector<uint8_t> bytes;
+  const auto append = [&](auto number) {
+    auto raw = std::bit_cast<std::array<uint8_t, sizeof number>>(number);
+    if (is_big_endian) std::ranges::reverse(raw);
+    bytes.insert(bytes.end(), raw.begin(), raw.end());
+  };
+  for (const int32_t count : counts) append(count);
+  const BrdfTableLayout layout{.theta_h = counts[0], .phi_h = 1, .theta_d = counts[1], .phi_d = counts[2]};
+  constexpr double kScale[] = {1500, 1500 / 1.15, 1500 / 1.66};
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < counts[0]; ++i)
+      for (int j = 0; j < counts[1]; ++j)
+        for (int k = 0; k < counts[2]; ++k) {
+          const DirectionPair pair = layout.pair(i, 0, j, k);
+          const bool is_above = pair.wl.z > 0.0f && pair.wv.z > 0.0f;
+          append(static_cast<T>(is_above ? double{test::glossy(pair.wl, pair.wv)[c]} * kScale[c] : -1.0));
+        }
+  return bytes;
+}
+
+TEST_F(Merl, TablesOfOtherProgramsAreTheSameBrdf) {
+  constexpr std::array<int32_t, 3> kCounts = {60, 40, 45};
+  const auto table = read(table_of<double>(kCounts, false));
+  double error = 0, total = 0;
+  for (const auto& [wl, wv] : test::random_pairs(3000, 5, 0.1f)) {
+    const Rgb truth = test::glossy(wl, wv), d = test::eval_one(*table, wl, wv).f - truth;
+    error += double{glm::dot(d, d)};
+    total += double{glm::dot(truth, truth)};
+  }
+  EXPECT_LT(std::sqrt(error / total), 4e-3);
+  const std::pair<const char*, std::vector<uint8_t>> kOthers[] = {
+      {"big-endian", table_of<double>(kCounts, true)},
+      {"float32", table_of<float>(kCounts, false)},
+      {"big-endian float32", table_of<float>(kCounts, true)}};
+  for (const auto& [name, bytes] : kOthers) {
+    EXPECT_TRUE(looks_like_merl(std::span(bytes).first(12))) << name;
+    const auto other = read(bytes);
+    for (const auto& [wl, wv] : test::random_pairs(300, 6)) {
+      const Rgb expected = test::eval_one(*table, wl, wv).f;
+      EXPECT_LE(glm::length(test::eval_one(*other, wl, wv).f - expected), 1e-6f * glm::length(expected)) << name;
+    }
+  }
+  test::record_input("MERL .binary", "other numbers of nodes, float32, big-endian", "read");
+}
+
+TEST_F(Merl, AWholeTurnIsNotGuessed) {
+  const auto bytes = table_of<float>({4, 4, 360}, false);
+  EXPECT_NE(test::refusal([&] { read(bytes); }).find("phi_diff is 360"), std::string::npos);
+  test::record_input("MERL .binary", "more than 180 nodes of phi_diff", "refused: half a turn or a whole one");
 }
 
 TEST_F(Merl, WriterRefusesAWrongSize) {

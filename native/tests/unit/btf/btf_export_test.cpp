@@ -7,6 +7,7 @@
 
 #include "btf/load_btf.h"
 #include "btf_support.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -65,6 +66,26 @@ TEST(BtfExport, OtherAnglesAreListedAndComeBackBitForBit) {
                                                      : fs::path(t.read->provenance().path)))
     bytes += file.file_size();
   EXPECT_EQ(t.report.bytes, bytes);
+}
+
+TEST(BtfExport, PicturesOutsideTheFolderOfTheirIndexAreToldOf) {
+  const Trip t = trip({PairLayout(even_directions(5), even_directions(4)), {3, 3}}, 2);
+  EXPECT_TRUE(t.read->warnings().empty());
+  const fs::path folder = fs::path(t.read->provenance().path).parent_path(),
+                 elsewhere = folder.parent_path() / "elsewhere";
+  fs::create_directories(elsewhere);
+  std::ifstream index(folder / "btf.csv");
+  std::ofstream moved(elsewhere / "btf.csv");
+  for (std::string line; std::getline(index, line);) {
+    const bool is_picture = !line.starts_with('#') && !line.starts_with("file");
+    moved << (is_picture ? "../pictures/" : "") << line << '\n';
+  }
+  moved.close();
+  const auto read = load_btf(elsewhere);
+  ASSERT_EQ(read->warnings().size(), 1u);
+  EXPECT_NE(read->warnings()[0].find("20 of 20 pictures lie outside"), std::string::npos) << read->warnings()[0];
+  EXPECT_EQ(read->details().back().second, read->warnings()[0]);
+  test::record_input("CSV index of a BTF", "pictures outside its folder", "read, with a warning");
 }
 
 TEST(BtfExport, IncompleteSetsKeepTheirOrder) {

@@ -1,0 +1,381 @@
+// The zip's picture libraries against OpenImageIO: every kind of file gives the same values, or both refuse it.
+#include <cstdio>  // jpeglib.h needs it
+
+#include <jpeglib.h>
+
+#include <png.h>
+#include <tiffio.h>
+#include <csetjmp>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "file/file.h"
+#include "file/private_library.h"
+#include "image/open_picture.h"
+#include "image/openimageio_module.h"
+#include "job/error.h"
+#include "sphere/random.h"
+#include "support/inputs.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+constexpr int kStripRows = 8;
+constexpr int kWidth = 45, kHeight = 37;  // no multiple of a tile, a strip or a block of JPEG
+
+struct Decoded {
+  int width = 0, height = 0, channels = 0, alpha = -1;
+  bool integers = false;
+  std::vector<float> values;
+  std::string error;
+};
+
+Decoded allocated(const PictureHeader& header) {
+  return {header.width,
+          header.height,
+          header.channels,
+          header.alpha_channel,
+          header.integers,
+          std::vector<float>(static_cast<size_t>(header.width * header.height * header.channels)),
+          ""};
+}
+
+Decoded refused(const std::string& error) {
+  Decoded decoded;
+  decoded.error = error;
+  return decoded;
+}
+
+Decoded by_portable(const std::string& path) {
+  try {
+    const auto picture = open_integers(path, picture_format_of(read_file_head(path, kPictureHeadBytes), path));
+    Decoded decoded = allocated(picture->header());
+    picture->read(decoded.values);
+    return decoded;
+  } catch (const Error& error) {
+    return refused(error.what());
+  }
+}
+
+Decoded by_openimageio(const std::string& path, const char* reader) {
+  static const auto& library = *new PrivateLibrary("libvelour_openimageio.so", "build all.");
+  const OpenImageIoModule& module = *library.function<decltype(velour_openimageio_2)>("velour_openimageio_2")();
+  std::string error;
+  OpenImageIoModule::File* file = module.open(path, reader, error);
+  if (file == nullptr) return refused(error);
+  Decoded decoded = allocated(module.header(*file));
+  if (!module.read(*file, decoded.values, error)) decoded.error = error.empty() ? "?" : error;
+  module.close(file);
+  return decoded;
+}
+
+void expect_same(const std::string& path, const char* reader, const std::string& what) {
+  const Decoded portable = by_portable(path), expected = by_openimageio(path, reader);
+  ASSERT_EQ(expected.error, "") << what;
+  ASSERT_EQ(portable.error, "") << what;
+  EXPECT_EQ(portable.width, expected.width) << what;
+  EXPECT_EQ(portable.height, expected.height) << what;
+  ASSERT_EQ(portable.channels, expected.channels) << what;
+  EXPECT_EQ(portable.alpha, expected.alpha) << what;
+  EXPECT_EQ(portable.integers, expected.integers) << what;
+  size_t differ = 0;
+  float most = 0;
+  for (size_t i = 0; i < expected.values.size(); ++i) {
+    const float difference = std::abs(portable.values[i] - expected.values[i]);
+    differ += difference > 2e-7f * std::max(1.0f, std::abs(expected.values[i]));
+    most = std::max(most, difference);
+  }
+  EXPECT_EQ(differ, 0u) << what << ": " << most;
+}
+
+std::vector<uint8_t> random_bytes(size_t count, uint64_t seed) {
+  std::vector<uint8_t> bytes(count);
+  RandomStream random(seed, 0, 0);
+  for (uint8_t& byte : bytes) byte = static_cast<uint8_t>(random.next() * 256.0f);
+  return bytes;
+}
+
+/// A smooth picture of 8 bits, as photographs are.
+std::vector<uint8_t> gradient(int channels) {
+  std::vector<uint8_t> values;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (int c = 0; c < channels; ++c)
+        values.push_back(static_cast<uint8_t>((x * (5 - c) + y * (c + 1) * 2 + (x * y * (c + 1)) / 40) % 256));
+  return values;
+}
+
+struct TiffCase {
+  TiffCase(const char* named, uint16_t meant, uint16_t in_a_pixel, uint16_t wide)
+      : name(named), photometric(meant), samples(in_a_pixel), bits(wide) {}
+  const char* name;
+  uint16_t photometric, samples, bits;
+  uint16_t format = SAMPLEFORMAT_UINT, compression = COMPRESSION_NONE, planar = PLANARCONFIG_CONTIG;
+  std::optional<uint16_t> extra = std::nullopt;
+  bool is_tiled = false, is_big = false;
+
+  TiffCase numbers(uint16_t is) const {
+    return with([&](TiffCase& c) { c.format = is; });
+  }
+  TiffCase packed(uint16_t by) const {
+    return with([&](TiffCase& c) { c.compression = by; });
+  }
+  TiffCase with_extra(uint16_t meaning) const {
+    return with([&](TiffCase& c) { c.extra = meaning; });
+  }
+  TiffCase in_planes() const {
+    return with([](TiffCase& c) { c.planar = PLANARCONFIG_SEPARATE; });
+  }
+  TiffCase in_tiles() const {
+    return with([](TiffCase& c) { c.is_tiled = true; });
+  }
+  TiffCase big_endian() const {
+    return with([](TiffCase& c) { c.is_big = true; });
+  }
+
+ private:
+  TiffCase with(const auto& change) const {
+    TiffCase changed = *this;
+    change(changed);
+    return changed;
+  }
+};
+
+void set_tags(TIFF* tiff, const TiffCase& c) {
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, kWidth);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, kHeight);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, c.samples);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, c.bits);
+  TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, c.format);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, c.photometric);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, c.compression);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, c.planar);
+  if (c.extra) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &*c.extra);
+  if (c.photometric == PHOTOMETRIC_SEPARATED) TIFFSetField(tiff, TIFFTAG_INKSET, INKSET_CMYK);
+  if (c.photometric == PHOTOMETRIC_PALETTE) {
+    std::vector<uint16_t> map;
+    for (int i = 0; i < 3 << c.bits; ++i) map.push_back(static_cast<uint16_t>(i * 7919));
+    const size_t entries = size_t{1} << c.bits;
+    TIFFSetField(tiff, TIFFTAG_COLORMAP, map.data(), map.data() + entries, map.data() + 2 * entries);
+  }
+  if (c.is_tiled) {
+    TIFFSetField(tiff, TIFFTAG_TILEWIDTH, 16);
+    TIFFSetField(tiff, TIFFTAG_TILELENGTH, 32);
+  } else {
+    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, kStripRows);
+  }
+}
+
+/// Bytes of any pixels, but floats that are finite and of use.
+std::vector<uint8_t> pixels_of(const TiffCase& c, size_t count, uint64_t seed) {
+  if (c.format != SAMPLEFORMAT_IEEEFP)
+    return c.compression == COMPRESSION_JPEG ? std::vector<uint8_t>(count, 90) : random_bytes(count, seed);
+  std::vector<uint8_t> bytes(count);
+  for (size_t i = 0; i < count; i += c.bits / 8u) {
+    const double value = static_cast<double>((i * 31 + seed) % 977) / 64.0 - 3.0;
+    const auto single = static_cast<float>(value);
+    if (c.bits == 16) {
+      const uint16_t half_bits = static_cast<uint16_t>(0x3000 + (i * 37 + seed) % 0x1800);
+      std::memcpy(&bytes[i], &half_bits, 2);
+    } else {
+      std::memcpy(&bytes[i], c.bits == 32 ? static_cast<const void*>(&single) : &value, c.bits / 8u);
+    }
+  }
+  return bytes;
+}
+
+std::string written(const TiffCase& c) {
+  const std::string path = test::scratch_folder() / (std::string(c.name) + ".tif");
+  TIFF* tiff = TIFFOpen(path.c_str(), c.is_big ? "wb" : "wl");
+  set_tags(tiff, c);
+  const uint32_t pieces = c.is_tiled ? TIFFNumberOfTiles(tiff) : TIFFNumberOfStrips(tiff);
+  const uint32_t strips = (kHeight + kStripRows - 1) / kStripRows;  // of a plane
+  for (uint32_t piece = 0; piece < pieces; ++piece) {
+    const bool is_last = piece % strips == strips - 1;
+    const tmsize_t size =
+        c.is_tiled ? TIFFTileSize(tiff) : TIFFVStripSize(tiff, is_last ? kHeight % kStripRows : kStripRows);
+    std::vector<uint8_t> pixels = pixels_of(c, static_cast<size_t>(size), piece + 1);
+    c.is_tiled ? TIFFWriteEncodedTile(tiff, piece, pixels.data(), size)
+               : TIFFWriteEncodedStrip(tiff, piece, pixels.data(), size);
+  }
+  TIFFClose(tiff);
+  return path;
+}
+
+TEST(PortablePicture, TiffIsThatOfOpenImageIo) {
+  constexpr uint16_t kGrey = PHOTOMETRIC_MINISBLACK, kRgb = PHOTOMETRIC_RGB;
+  const TiffCase kRgb8("rgb 8", kRgb, 3, 8), kRgb16("rgb 16", kRgb, 3, 16), kGrey2("grey and more", kGrey, 2, 8);
+  const std::vector<TiffCase> cases = {
+      {"grey 1", kGrey, 1, 1},
+      {"grey 4", kGrey, 1, 4},
+      {"grey 8", kGrey, 1, 8},
+      {"grey 12", kGrey, 1, 12},
+      {"grey 16", kGrey, 1, 16},
+      {"grey 32", kGrey, 1, 32},
+      TiffCase("grey signed 16", kGrey, 1, 16).numbers(SAMPLEFORMAT_INT),
+      kGrey2.with_extra(EXTRASAMPLE_UNASSALPHA),
+      kGrey2.with_extra(EXTRASAMPLE_UNSPECIFIED),
+      {"white is zero 1", PHOTOMETRIC_MINISWHITE, 1, 1},
+      {"white is zero 8", PHOTOMETRIC_MINISWHITE, 1, 8},
+      {"white is zero 16", PHOTOMETRIC_MINISWHITE, 1, 16},
+      {"palette 1", PHOTOMETRIC_PALETTE, 1, 1},
+      {"palette 4", PHOTOMETRIC_PALETTE, 1, 4},
+      {"palette 8", PHOTOMETRIC_PALETTE, 1, 8},
+      kRgb8,
+      kRgb8.packed(COMPRESSION_LZW),
+      kRgb8.packed(COMPRESSION_PACKBITS),
+      kRgb8.packed(COMPRESSION_ZSTD),
+      kRgb8.packed(COMPRESSION_LZMA),
+      kRgb8.packed(COMPRESSION_JPEG),
+      kRgb8.in_tiles(),
+      kRgb16.big_endian(),
+      kRgb16.in_planes(),
+      kRgb16.in_planes().in_tiles().packed(COMPRESSION_ADOBE_DEFLATE),
+      TiffCase("rgb half", kRgb, 3, 16).numbers(SAMPLEFORMAT_IEEEFP),
+      TiffCase("rgb float", kRgb, 3, 32).numbers(SAMPLEFORMAT_IEEEFP).packed(COMPRESSION_ADOBE_DEFLATE),
+      TiffCase("rgb double", kRgb, 3, 64).numbers(SAMPLEFORMAT_IEEEFP),
+      TiffCase("rgba straight", kRgb, 4, 8).with_extra(EXTRASAMPLE_UNASSALPHA),
+      TiffCase("rgba premultiplied", kRgb, 4, 16).with_extra(EXTRASAMPLE_ASSOCALPHA),
+      {"cmyk 8", PHOTOMETRIC_SEPARATED, 4, 8},
+      {"cmyk 16", PHOTOMETRIC_SEPARATED, 4, 16},
+      {"ycbcr", PHOTOMETRIC_YCBCR, 3, 8},
+      {"lab", PHOTOMETRIC_CIELAB, 3, 8},
+  };
+  for (const TiffCase& c : cases) {
+    expect_same(written(c), "tiff", std::string(c.name) + ", compression " + std::to_string(c.compression));
+  }
+  test::record_input("TIFF",
+                     "grey, RGB, palette, CMYK, YCbCr, Lab; 1 to 32 bits, half, float, double; strips, tiles, "
+                     "planes; both byte orders; LZW, DEFLATE, PackBits, Zstandard, LZMA, JPEG",
+                     "read, by both builds alike");
+}
+
+struct JpegCase {
+  const char* name;
+  int channels;
+  J_COLOR_SPACE from, stored;
+  int sampling = 1;  // of the first component along both sides
+  bool is_progressive = false;
+  unsigned restart = 0;
+};
+
+std::string written(const JpegCase& c) {
+  jpeg_compress_struct info{};
+  jpeg_error_mgr errors{};
+  info.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&info);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&info, &bytes, &size);
+  info.image_width = kWidth;
+  info.image_height = kHeight;
+  info.input_components = c.channels;
+  info.in_color_space = c.from;
+  jpeg_set_defaults(&info);
+  jpeg_set_colorspace(&info, c.stored);
+  jpeg_set_quality(&info, 85, TRUE);
+  info.comp_info[0].h_samp_factor = info.comp_info[0].v_samp_factor = c.sampling;
+  info.restart_interval = c.restart;
+  if (c.is_progressive) jpeg_simple_progression(&info);
+  jpeg_start_compress(&info, TRUE);
+  std::vector<uint8_t> pixels = gradient(c.channels);
+  for (int y = 0; y < kHeight; ++y) {
+    JSAMPROW row = &pixels[static_cast<size_t>(y * kWidth * c.channels)];
+    jpeg_write_scanlines(&info, &row, 1);
+  }
+  jpeg_finish_compress(&info);
+  jpeg_destroy_compress(&info);
+  const std::string path = test::scratch_folder() / (std::string(c.name) + ".jpg");
+  write_file(path, std::span(bytes, size));
+  std::free(bytes);
+  return path;
+}
+
+TEST(PortablePicture, JpegIsThatOfOpenImageIo) {
+  const JpegCase kCases[] = {
+      {"grey", 1, JCS_GRAYSCALE, JCS_GRAYSCALE},
+      {"444", 3, JCS_RGB, JCS_YCbCr},
+      {"420", 3, JCS_RGB, JCS_YCbCr, 2},
+      {"420 progressive", 3, JCS_RGB, JCS_YCbCr, 2, true},
+      {"restarts", 3, JCS_RGB, JCS_YCbCr, 2, false, 3},
+      {"rgb", 3, JCS_RGB, JCS_RGB},
+      {"cmyk", 4, JCS_CMYK, JCS_CMYK},
+      {"ycck", 4, JCS_CMYK, JCS_YCCK, 2},
+  };
+  for (const JpegCase& c : kCases) expect_same(written(c), "jpeg", c.name);
+  test::record_input("JPEG", "grey, YCbCr, RGB, CMYK, YCCK; subsampled, progressive, with restarts",
+                     "read, by both builds alike");
+}
+
+struct PngCase {
+  int color_type, bits;
+  bool is_interlaced = false, has_transparency = false;
+};
+
+std::string written(const PngCase& c, size_t number) {
+  const std::string path = test::scratch_folder() / (std::to_string(number) + ".png");
+  FILE* file = std::fopen(path.c_str(), "wb");
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, file);
+  png_set_IHDR(png, info, kWidth, kHeight, c.bits, c.color_type,
+               c.is_interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  std::vector<png_color> palette;
+  for (int i = 0; i < 1 << std::min(c.bits, 8); ++i) {
+    palette.push_back({static_cast<png_byte>(i * 37), static_cast<png_byte>(i * 91), static_cast<png_byte>(255 - i)});
+  }
+  const bool is_palette = c.color_type == PNG_COLOR_TYPE_PALETTE;
+  if (is_palette) png_set_PLTE(png, info, palette.data(), static_cast<int>(palette.size()));
+  png_byte alphas[] = {0, 128};
+  png_color_16 clear{};
+  if (c.has_transparency) png_set_tRNS(png, info, alphas, is_palette ? 2 : 0, is_palette ? nullptr : &clear);
+  png_write_info(png, info);
+  std::vector<uint8_t> pixels = random_bytes(png_get_rowbytes(png, info) * kHeight, number);
+  std::vector<png_bytep> rows;
+  for (int y = 0; y < kHeight; ++y) rows.push_back(&pixels[static_cast<size_t>(y) * png_get_rowbytes(png, info)]);
+  png_write_image(png, rows.data());
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  std::fclose(file);
+  return path;
+}
+
+TEST(PortablePicture, PngIsThatOfOpenImageIo) {
+  std::vector<PngCase> cases;
+  const std::pair<int, std::vector<int>> kTypes[] = {{PNG_COLOR_TYPE_GRAY, {1, 2, 4, 8, 16}},
+                                                     {PNG_COLOR_TYPE_GRAY_ALPHA, {8, 16}},
+                                                     {PNG_COLOR_TYPE_PALETTE, {1, 2, 4, 8}},
+                                                     {PNG_COLOR_TYPE_RGB, {8, 16}},
+                                                     {PNG_COLOR_TYPE_RGB_ALPHA, {8, 16}}};
+  for (const auto& [type, all_bits] : kTypes) {
+    for (const int bits : all_bits) {
+      cases.push_back({type, bits});
+      cases.push_back({type, bits, true});
+      if ((type & PNG_COLOR_MASK_ALPHA) == 0) cases.push_back({type, bits, false, true});
+    }
+  }
+  for (size_t i = 0; i < cases.size(); ++i) {
+    const PngCase& c = cases[i];
+    expect_same(written(c, i), "png",
+                "type " + std::to_string(c.color_type) + ", " + std::to_string(c.bits) + " bits" +
+                    (c.is_interlaced ? ", interlaced" : "") + (c.has_transparency ? ", tRNS" : ""));
+  }
+  test::record_input("PNG", "grey, palette, RGB, with alpha or tRNS; 1 to 16 bits, interlaced",
+                     "read, by both builds alike");
+}
+
+TEST(PortablePicture, DamagedTiffIsRefused) {
+  const std::string path = written(TiffCase("whole", PHOTOMETRIC_RGB, 3, 16).packed(COMPRESSION_LZW));
+  const std::vector<uint8_t> whole = read_file(path);
+  for (size_t size = 0; size < whole.size(); size += std::max<size_t>(1, whole.size() / 50)) {
+    write_file(path, std::span(whole).first(size));
+    EXPECT_NE(by_portable(path).error, "") << size;
+  }
+}
+
+}  // namespace
+}  // namespace velour
