@@ -168,8 +168,8 @@ class ObjectExport:
         shading = _terminator(obj, "shading", "shadow_terminator_offset")
         if shading:
             self._notes.add(
-                f"Object '{obj.name}': the shading offset of its shadow terminator is {shading:.2g}, which Velour "
-                "does not follow; the geometry offset is followed."
+                f"Object '{obj.name}': the shading offset of its shadow terminator is {shading:.2g}, which "
+                "Velour does not follow; the geometry offset is followed."
             )
         return _terminator(obj, "geometry", "shadow_terminator_geometry_offset")
 
@@ -311,6 +311,6 @@ def slots_of(obj, arrays, material):
 
 
 def _terminator(obj, offset, older):
-    """An offset of the shadow terminator by its name; before Blender 5.0 a setting of Cycles, with a name of its own."""
+    """An offset of the shadow terminator by its name; before Blender 5.0 a setting of Cycles, `older`."""
     found = getattr(obj, f"shadow_terminator_{offset}_offset", None)
     return getattr(getattr(obj, "cycles", None), older, _TERMINATOR[offset]) if found is None else found
