@@ -12,28 +12,13 @@ from dataclasses import dataclass
 from ..native import images, library
 from ..native.errors import Status, VelourError
 from .memory_limit import Limit
+from .mesh_memory import mesh_memory
 from .sizes import limit_size
 
 MIB = 1 << 20
 
 _STARTING = 16 * MIB  # whatever the scene
 _THREAD = 2 * MIB
-_MESH = 6.5  # a byte of a mesh as text: its numbers, corners, the hierarchy
-# A binary PLY file, beside its bytes: positions as read and kept; for each corner its vertex, and its normal
-# and texture coordinates where there are any; for a triangle its corners twice, three normals, the hierarchy.
-_PLY_VERTEX, _PLY_CORNER, _PLY_TRIANGLE = 24, 4, 132
-_PLY_HEAD = 1 << 16
-_PLY_TYPES = {"char": 1, "uchar": 1, "short": 2, "ushort": 2, "int": 4, "uint": 4, "float": 4, "double": 8}
-_PLY_TYPES |= {
-    "int8": 1,
-    "uint8": 1,
-    "int16": 2,
-    "uint16": 2,
-    "int32": 4,
-    "uint32": 4,
-    "float32": 4,
-    "float64": 8,
-}
 _MODEL = 4  # a byte of a model: halves become floats, tables over the view
 _BTF_MODEL = 10  # of a BTF's, which are packed; up to 7 measured, of singular values
 _MEASUREMENT = 3  # a byte of a table: the table, its proposal
@@ -98,7 +83,7 @@ def estimate(
     width, height, channels = images.size(world)
     parts = {
         "program": resident() + _STARTING + _THREAD * threads,
-        "mesh": _mesh(mesh),
+        "mesh": mesh_memory(mesh),
         "material": of_material + (_MODEL * os.path.getsize(proposal) if proposal else 0),
         "world": width * height * (_WORLD_PIXEL + _WORLD_VALUE * channels),
         "picture": window[0] * window[1] * (_PIXEL + (_MERGED_PIXEL if goes_on else 0)),
@@ -133,39 +118,3 @@ def _status(field: str) -> int:
         return int(lines[field].split()[0]) * 1024
     except (OSError, KeyError, ValueError):
         return 0
-
-
-def _mesh(path: str) -> int:
-    size = os.path.getsize(path)
-    with open(path, "rb") as file:
-        head, found, _ = file.read(_PLY_HEAD).partition(b"end_header")
-    try:
-        if found and head.startswith(b"ply") and b"format binary" in head:
-            return _binary_ply(head.decode("latin-1"), size)
-    except (ValueError, KeyError, IndexError):
-        pass  # the reader will say what is wrong with it
-    return round(_MESH * size)
-
-
-def _binary_ply(head: str, size: int) -> int:
-    elements: dict[str, tuple[int, list[list[str]]]] = {}
-    for words in map(str.split, head.splitlines()):
-        if words[:1] == ["element"]:
-            properties: list[list[str]] = []
-            elements[words[1]] = int(words[2]), properties
-        elif words[:1] == ["property"]:
-            properties.append(words[1:])
-    (vertices, of_vertex), (faces, of_face) = elements["vertex"], elements["face"]
-    lists = [words for words in of_face if words[0] == "list"]
-    count, index = _PLY_TYPES[lists[0][1]], _PLY_TYPES[lists[0][2]]
-    in_faces = size - len(head) - vertices * sum(_PLY_TYPES[words[0]] for words in of_vertex)
-    corners = max(0, in_faces - faces * count) // index
-    names = {words[-1] for words in of_vertex + of_face}
-    more = 12 * ("nx" in names) + 8 * bool(names & {"s", "u", "texture_u", "texcoord"})
-    triangles = max(0, corners - 2 * faces)
-    return (
-        size
-        + vertices * (_PLY_VERTEX + more)
-        + corners * (_PLY_CORNER + more)
-        + triangles * (_PLY_TRIANGLE + 24 * (more % 12 == 8))
-    )

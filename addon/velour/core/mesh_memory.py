@@ -1,0 +1,121 @@
+"""What reading a file of a mesh, and tracing it, will take: told from counts, before the mesh is read.
+
+The factors are those of measured peaks. What cannot be counted is left to the reader, which says why.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import BinaryIO
+
+# Bytes: positions as read and kept; for each corner its vertex, and its normal and texture coordinates where
+# there are any; for a triangle its corners twice, three normals, the hierarchy.
+_VERTEX, _CORNER, _TRIANGLE = 24, 4, 132
+_NORMAL, _TEXCOORD = 12, 8
+_SECOND_NORMALS = 24  # of a triangle without normals that has texture coordinates
+_TEXT_CORNER = 24  # more: numbers of vertex, texture coordinates and normal
+_SMOOTH_CORNER = 20  # more, where smoothing groups make normals
+_TEXT = 6.5  # a byte of a text that was not counted
+
+_HEAD, _BLOCK = 1 << 16, 1 << 24
+_SIZES = {"char": 1, "uchar": 1, "short": 2, "ushort": 2, "int": 4, "uint": 4, "float": 4, "double": 8}
+_SIZES |= {"int8": 1, "uint8": 1, "int16": 2, "uint16": 2}
+_SIZES |= {"int32": 4, "uint32": 4, "float32": 4, "float64": 8}
+_BLANKS = (b" ", b"\t")
+
+
+@dataclass(frozen=True)
+class _Counts:
+    vertices: int
+    faces: int
+    corners: int
+    has_normals: bool = False
+    has_texcoords: bool = False
+    is_text: bool = False
+    is_smooth: bool = False
+
+    @property
+    def bytes(self) -> int:
+        of_normal = _NORMAL * self.has_normals
+        more = of_normal + _TEXCOORD * self.has_texcoords
+        corner = _CORNER + more + _TEXT_CORNER * self.is_text + _SMOOTH_CORNER * self.is_smooth
+        triangle = _TRIANGLE + _SECOND_NORMALS * (self.has_texcoords and not self.has_normals)
+        triangles = max(0, self.corners - 2 * self.faces)
+        return self.vertices * (_VERTEX + more) + self.corners * corner + triangles * triangle
+
+
+def mesh_memory(path: str) -> int:
+    """Bytes at the peak, beside what the process had before."""
+    size = os.path.getsize(path)
+    with open(path, "rb") as file:
+        head = file.read(_HEAD)
+        count = _ply if head.startswith(b"ply") else _obj
+        try:
+            return size + count(file, head, size).bytes
+        except (ValueError, KeyError, IndexError, StopIteration):
+            return round(_TEXT * size)
+
+
+def _obj(file: BinaryIO, head: bytes, _size: int) -> _Counts:
+    """Corners are the blanks that vertices and what else stands in lines of numbers do not need."""
+    first = next(re.finditer(rb"^v[ \t].*$", head.replace(b"\r", b"\n"), re.MULTILINE)).group()
+    of_vertex = len(first.split()) - 1  # colors may follow
+    starts = (b"\nv ", b"\nv\t", b"\nvt", b"\nvn", b"\nf", b"\ns")
+    spaced, tabbed, texcoords, normals, faces, groups, *blanks = _totals(file, 0, (*starts, *_BLANKS))
+    vertices = spaced + tabbed
+    corners = sum(blanks) - vertices * of_vertex - 2 * texcoords - 3 * normals
+    corners = max(corners, 3 * faces)
+    return _Counts(vertices, faces, corners, normals > 0, texcoords > 0, is_text=True, is_smooth=groups > 0)
+
+
+def _ply(file: BinaryIO, head: bytes, size: int) -> _Counts:
+    text, found, _ = head.partition(b"end_header")
+    if not found:
+        raise ValueError
+    elements = _ply_elements(text.decode("latin-1"))
+    (vertices, of_vertex), (faces, of_face) = elements["vertex"], elements["face"]
+    lists = [words for words in of_face if words[0] == "list"]
+    begin = len(text) + len(found)
+    if b"format ascii" in text:
+        values = sum(_totals(file, begin, (*_BLANKS, b"\n")))
+        corners = values - vertices * len(of_vertex) - faces * len(of_face)
+    else:
+        count, index = _SIZES[lists[0][1]], _SIZES[lists[0][2]]
+        in_faces = size - begin - vertices * sum(_SIZES[words[0]] for words in of_vertex)
+        corners = (in_faces - faces * count) // index
+    names = {words[-1] for words in of_vertex + of_face}
+    has_texcoords = bool(names & {"s", "u", "texture_u", "texcoord"})
+    return _Counts(vertices, faces, max(corners, 0), "nx" in names, has_texcoords, b"format ascii" in text)
+
+
+def _ply_elements(head: str) -> dict[str, tuple[int, list[list[str]]]]:
+    """{name: (how many, words of its properties)}"""
+    elements: dict[str, tuple[int, list[list[str]]]] = {}
+    for words in map(str.split, head.splitlines()):
+        if words[:1] == ["element"]:
+            properties: list[list[str]] = []
+            elements[words[1]] = int(words[2]), properties
+        elif words[:1] == ["property"]:
+            properties.append(words[1:])
+    return elements
+
+
+def _totals(file: BinaryIO, begin: int, needles: tuple[bytes, ...]) -> list[int]:
+    """How often each of `needles` stands in a text from `begin` on; ends of lines are \\n."""
+    longest = max(map(len, needles))
+    totals, last = [0] * len(needles), b"\n"
+    for block in _blocks(file, begin):
+        whole = last + block.replace(b"\r", b"\n")
+        for i, needle in enumerate(needles):
+            totals[i] += whole.count(needle) - last.count(needle)
+        last = whole[-(longest - 1) :]
+    return totals
+
+
+def _blocks(file: BinaryIO, begin: int) -> Iterator[bytes]:
+    file.seek(begin)
+    while block := file.read(_BLOCK):
+        yield block
