@@ -10,9 +10,9 @@
 namespace velour {
 namespace {
 
-const float kCell = radians_from(3.0f);
-const float kAlike = radians_from(15.0f), kTurned = radians_from(30.0f);
-const float kUpright = radians_from(5.0f);  // of a half vector whose azimuth says something
+constexpr float kCell = radians_from(3.0f);
+constexpr float kAlike = radians_from(15.0f), kTurned = radians_from(30.0f);
+constexpr float kUpright = radians_from(5.0f);  // of a half vector whose azimuth says something
 constexpr size_t kFewest = 100;
 constexpr size_t kMostInCell = 64;  // pairs grow with the square
 

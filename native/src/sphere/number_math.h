@@ -12,9 +12,5 @@ inline float larger(float a, float b) { return std::max(a, b); }
 inline float smaller(float a, float b) { return std::min(a, b); }
 /// Both are computed.
 inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
-/// Towards zero.
-inline float truncated(float x) { return static_cast<float>(static_cast<int>(x)); }
-/// table[place], of a whole number.
-inline float entry(const float* table, float place) { return table[static_cast<int>(place)]; }
 
 }  // namespace velour

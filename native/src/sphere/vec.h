@@ -21,8 +21,8 @@ inline constexpr double kPiD = 3.14159265358979323846;
 /// Rec. 709 luminance of linear `c`.
 inline float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
 
-inline float radians_from(float degrees) { return degrees * (kPi / 180.0f); }
-inline double radians_from(double degrees) { return degrees * (kPiD / 180.0); }
+constexpr float radians_from(float degrees) { return degrees * (kPi / 180.0f); }
+constexpr double radians_from(double degrees) { return degrees * (kPiD / 180.0); }
 
 /// Unit direction of polar angle `theta` and azimuth `phi` (radians) in the local frame.
 inline Vec3 direction(float theta, float phi) {

@@ -19,12 +19,10 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using velour::entry;
 using velour::larger;
 using velour::select;
 using velour::smaller;
 using velour::square_root;
-using velour::truncated;
 
 #if HWY_HAVE_SCALABLE
 // Vectors whose size the compiler does not know cannot be members: one number at a time.
@@ -56,10 +54,6 @@ HWY_INLINE Lanes larger(Lanes a, Lanes b) { return Lanes(hn::Max(a.v, b.v)); }
 HWY_INLINE Lanes smaller(Lanes a, Lanes b) { return Lanes(hn::Min(a.v, b.v)); }
 HWY_INLINE Lanes select(LanesMask condition, Lanes yes, Lanes no) {
   return Lanes(hn::IfThenElse(condition.v, yes.v, no.v));
-}
-HWY_INLINE Lanes truncated(Lanes x) { return Lanes(hn::Trunc(x.v)); }
-HWY_INLINE Lanes entry(const float* table, Lanes place) {
-  return Lanes(hn::GatherIndex(LanesTag(), table, hn::ConvertTo(hn::RebindToSigned<LanesTag>(), place.v)));
 }
 HWY_INLINE Lanes load_lanes(const float* from) { return Lanes(hn::Load(LanesTag(), from)); }
 HWY_INLINE void store_lanes(Lanes lanes, float* to) { hn::Store(lanes.v, LanesTag(), to); }

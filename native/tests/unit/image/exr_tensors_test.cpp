@@ -230,12 +230,12 @@ TEST(ExrTensors, OnlyPartsWithinTheFirstOneAreForViewers) {
   const auto bytes = encode_tensors(file);
   std::map<std::string, std::vector<std::string>> channels;
   for (const ExrPart& part : scan_exr(bytes, "test")) channels[part.name] = part.channels;
-  using Names = std::vector<std::string>;
-  for (const char* shown : {"cube", "one", "small"}) EXPECT_EQ(channels.at(shown), Names{"Y"}) << shown;
-  EXPECT_EQ(channels.at("small.colour"), (Names{"B", "G", "R"}));
-  for (const char* hidden : {"tall", "wide"}) EXPECT_EQ(channels.at(hidden), Names{"value"}) << hidden;
+  using Texts = std::vector<std::string>;
+  for (const char* shown : {"cube", "one", "small"}) EXPECT_EQ(channels.at(shown), Texts{"Y"}) << shown;
+  EXPECT_EQ(channels.at("small.colour"), (Texts{"B", "G", "R"}));
+  for (const char* hidden : {"tall", "wide"}) EXPECT_EQ(channels.at(hidden), Texts{"value"}) << hidden;
   for (const char* hidden : {"lobes.center", "rows.of.colour"}) {
-    EXPECT_EQ(channels.at(hidden), (Names{"value_x", "value_y", "value_z"})) << hidden;
+    EXPECT_EQ(channels.at(hidden), (Texts{"value_x", "value_y", "value_z"})) << hidden;
   }
 }
 

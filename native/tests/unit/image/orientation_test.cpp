@@ -66,28 +66,28 @@ TEST(PictureOrientation, FollowsExif) {
   struct Ends {
     int orientation, first_x, first_y, step_x, step_y;  // of a picture seen, y from the top
   };
-  constexpr int kWidth = 5, kHeight = 3;
+  constexpr int kStoredWidth = 5, kStoredHeight = 3;
   const Ends all[] = {{1, 0, 0, 1, 0}, {2, 4, 0, -1, 0}, {3, 4, 2, -1, 0}, {4, 0, 2, 1, 0},
                       {5, 0, 0, 0, 1}, {6, 2, 0, 0, 1},  {7, 2, 4, 0, -1}, {8, 0, 4, 0, -1}};
   const auto folder = test::scratch_folder();
-  Picture picture{kWidth, kHeight, 1, std::vector<float>(kWidth * kHeight, 0.0f)};
+  Picture picture{kStoredWidth, kStoredHeight, 1, std::vector<float>(kStoredWidth * kStoredHeight, 0.0f)};
   const std::string plain = folder / "plain.png", turned = folder / "turned.png";
-  picture.pixels[kWidth * (kHeight - 1)] = 1.0f;            // the upper left one
-  picture.pixels[kWidth * (kHeight - 1) + 1] = 0.2140411f;  // beside it
+  picture.pixels[kStoredWidth * (kStoredHeight - 1)] = 1.0f;            // the upper left one
+  picture.pixels[kStoredWidth * (kStoredHeight - 1) + 1] = 0.2140411f;  // beside it
   write_picture(plain, picture);
   for (const Ends& ends : all) {
     SCOPED_TRACE(ends.orientation);
     write_file(turned, with_exif(read_file(plain), exif_of(ends.orientation, ends.orientation % 2 == 0)));
     const Picture found = read_picture(turned), header = read_picture_header(turned);
     const bool swapped = ends.orientation > 4;
-    ASSERT_EQ(found.width, swapped ? kHeight : kWidth);
-    ASSERT_EQ(found.height, swapped ? kWidth : kHeight);
+    ASSERT_EQ(found.width, swapped ? kStoredHeight : kStoredWidth);
+    ASSERT_EQ(found.height, swapped ? kStoredWidth : kStoredHeight);
     EXPECT_EQ(header.width, found.width);
     const auto seen = [&](int x, int y) { return found.pixel(x, found.height - 1 - y)[0]; };
     EXPECT_EQ(seen(ends.first_x, ends.first_y), 1.0f);
     EXPECT_NEAR(seen(ends.first_x + ends.step_x, ends.first_y + ends.step_y), 0.2140411f, 0.003f);
     const Picture stored = read_picture(turned, {.as_stored = true});
-    EXPECT_EQ(stored.width, kWidth);
+    EXPECT_EQ(stored.width, kStoredWidth);
     EXPECT_EQ(stored.notes.size(), ends.orientation == 1 ? 0u : 1u);
   }
 }

@@ -13,7 +13,7 @@
 namespace velour {
 namespace {
 
-constexpr int kWidth = 12, kHeight = 9;
+constexpr int kHdrWidth = 12, kHdrHeight = 9;
 using Rgbe = std::array<uint8_t, 4>;
 
 /// A picture with another color at each pixel, counted from the upper left.
@@ -31,12 +31,12 @@ std::vector<uint8_t> file_of(const std::string& variables, const std::string& re
   const size_t second = resolution.find(' ', 3) + 1;
   const char x_sign = columns ? resolution[0] : resolution[second],
              y_sign = columns ? resolution[second] : resolution[0];
-  const int line_count = columns ? kWidth : kHeight, length = columns ? kHeight : kWidth;
+  const int line_count = columns ? kHdrWidth : kHdrHeight, length = columns ? kHdrHeight : kHdrWidth;
   for (int line = 0; line < line_count; ++line) {
     std::vector<Rgbe> pixels;
     for (int i = 0; i < length; ++i) {
       const int x = columns ? line : i, y = columns ? i : line;
-      pixels.push_back(color_at(x_sign == '+' ? x : kWidth - 1 - x, y_sign == '-' ? y : kHeight - 1 - y));
+      pixels.push_back(color_at(x_sign == '+' ? x : kHdrWidth - 1 - x, y_sign == '-' ? y : kHdrHeight - 1 - y));
     }
     if (lines == Lines::runs) {
       bytes.insert(bytes.end(), {2, 2, 0, static_cast<uint8_t>(length)});
@@ -56,14 +56,14 @@ std::vector<uint8_t> file_of(const std::string& variables, const std::string& re
 }
 
 void expect_the_picture(const Picture& picture, float scale = 1) {
-  ASSERT_EQ(picture.width, kWidth);
-  ASSERT_EQ(picture.height, kHeight);
+  ASSERT_EQ(picture.width, kHdrWidth);
+  ASSERT_EQ(picture.height, kHdrHeight);
   ASSERT_EQ(picture.channels, 3);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kHdrHeight; ++y)
+    for (int x = 0; x < kHdrWidth; ++x) {
       const Rgbe color = color_at(x, y);
       for (size_t c = 0; c < 3; ++c)
-        ASSERT_FLOAT_EQ(picture.pixel(x, kHeight - 1 - y)[c], scale * value_of(color[c])) << x << ' ' << y;
+        ASSERT_FLOAT_EQ(picture.pixel(x, kHdrHeight - 1 - y)[c], scale * value_of(color[c])) << x << ' ' << y;
     }
 }
 
