@@ -6,6 +6,7 @@
 
 #include "btf/bilinear_texels.h"
 #include "btf/byte_rows.h"
+#include "btf/seen_levels.h"
 #include "sphere/random.h"
 #include "srbf/aligned_array.h"
 #include "support/simd_targets.h"
@@ -39,6 +40,27 @@ TEST(BilinearTexels, AreInsideAndWeighOne) {
         sum += texels.weight[c];
       }
       EXPECT_NEAR(sum, 1.0f, 1e-5f);
+    }
+  }
+}
+
+/// A level without relief: a view meets it where it looks.
+struct FlatLevel {
+  Vec2 size;
+  Vec2 texels() const { return size; }
+  Vec2 seen_texel(const Vec2& place, const Vec3& /*wv*/) const { return place * size - 0.5f; }
+};
+
+TEST(SeenLevels, ShowTheSamePlace) {
+  const std::vector<FlatLevel> levels = {{{8, 6}}, {{4, 3}}, {{2, 1}}};
+  const Vec3 wv(0, 0, 1);
+  for (const Vec2 place : {Vec2(0.5f, 0.25f), Vec2(0.01f, 0.99f), Vec2(0.3f, 0.7f)}) {
+    for (const size_t fine : {0u, 1u}) {
+      const SeenLevels seen = seen_levels(levels, place + Vec2(3, -2), static_cast<float>(fine) + 0.25f, wv);
+      EXPECT_EQ(seen.fine, fine);
+      EXPECT_EQ(seen.part, 0.25f);
+      EXPECT_LT(glm::length(seen.texel - levels[fine].seen_texel(place, wv)), 1e-5f);
+      EXPECT_LT(glm::length(seen.coarse - levels[fine + 1].seen_texel(place, wv)), 1e-5f);
     }
   }
 }
