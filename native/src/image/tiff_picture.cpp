@@ -149,7 +149,7 @@ class Samples {
     return code;
   }
 
-  /// Of the integers that they are made.
+  /// The largest integer that a sample is made into.
   uint64_t largest() const { return bits_ <= 8 ? 0xff : bits_ <= 16 ? 0xffff : 0xffffffff; }
 
  private:

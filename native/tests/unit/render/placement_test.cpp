@@ -15,7 +15,7 @@
 namespace velour {
 namespace {
 
-constexpr int kPixels = 24;
+constexpr int kPlacedPixels = 24;
 
 Mat2 turned(float angle, const Vec2& scale) {
   const float c = std::cos(angle), s = std::sin(angle);
@@ -61,7 +61,7 @@ Scene lit(const Mesh& mesh, std::shared_ptr<const Material> material, const Affi
 
 std::vector<float> picture(const Scene& scene, int spp = 64) {
   RenderOptions options = test::small_options(Strategy::mis, spp);
-  options.width = options.height = kPixels;
+  options.width = options.height = kPlacedPixels;
   return test::rendered(scene, options);
 }
 
@@ -91,13 +91,13 @@ std::shared_ptr<const Material> cut_out() {
 }
 
 /// Vertices of a grid of camera rays; nothing where they miss.
-std::vector<std::optional<Vertex>> vertices(const Scene& scene) {
+std::vector<std::optional<Vertex>> placed_vertices(const Scene& scene) {
   std::vector<std::optional<Vertex>> all;
-  const PixelFootprint pixel(scene, kPixels, kPixels, 1);
-  for (int i = 0; i < kPixels * kPixels; ++i) {
-    const Ray ray = scene.camera().ray(Vec2(static_cast<float>(i % kPixels) + 0.5f,  //
-                                            static_cast<float>(i / kPixels) + 0.5f) /
-                                       static_cast<float>(kPixels));
+  const PixelFootprint pixel(scene, kPlacedPixels, kPlacedPixels, 1);
+  for (int i = 0; i < kPlacedPixels * kPlacedPixels; ++i) {
+    const Ray ray = scene.camera().ray(Vec2(static_cast<float>(i % kPlacedPixels) + 0.5f,  //
+                                            static_cast<float>(i / kPlacedPixels) + 0.5f) /
+                                       static_cast<float>(kPlacedPixels));
     Hit hit;
     scene.rays().intersect(ray, hit);
     if (hit.instance == kNoHit) {
@@ -112,8 +112,8 @@ std::vector<std::optional<Vertex>> vertices(const Scene& scene) {
 TEST(Placement, IsTheMeshWithMovedCoordinates) {
   const Mesh mesh = test::textured_sphere(12);
   for (const TextureMap& map : kPlacements) {
-    const auto placed = vertices(lit(mesh, btf(), bent(), {map}));
-    const auto expected = vertices(lit(moved(mesh, map), btf(), bent(), {}));
+    const auto placed = placed_vertices(lit(mesh, btf(), bent(), {map}));
+    const auto expected = placed_vertices(lit(moved(mesh, map), btf(), bent(), {}));
     int met = 0;
     for (size_t i = 0; i < placed.size(); ++i) {
       ASSERT_EQ(placed[i].has_value(), expected[i].has_value());
@@ -161,8 +161,8 @@ TEST(Placement, TurnsAnAnisotropicBtfAsIfTheSurfaceWereTurned) {
 
 TEST(Placement, ScalesTheFootprint) {
   const Mesh mesh = test::repeating_square(1, 1);
-  const auto plain = vertices(lit(mesh, btf(), {}, {}));
-  const auto repeated = vertices(lit(mesh, btf(), {}, {{turned(0.6f, {4, 4}), {0, 0}}}));
+  const auto plain = placed_vertices(lit(mesh, btf(), {}, {}));
+  const auto repeated = placed_vertices(lit(mesh, btf(), {}, {{turned(0.6f, {4, 4}), {0, 0}}}));
   for (size_t i = 0; i < plain.size(); ++i) {
     if (!plain[i]) continue;
     for (int side = 0; side < 2; ++side) {
