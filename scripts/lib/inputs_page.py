@@ -15,7 +15,13 @@ from velour.core import files
 from velour_cli import ROOT
 
 _PAGE = ROOT / "docs/inputs.md"
-_PROGRAMS = ("image/test_image", "scene/test_mesh", "brdf/test_brdf", "btf/test_btf")
+_PROGRAMS = (
+    "image/test_image",
+    "image/test_portable_picture",
+    "scene/test_mesh",
+    "brdf/test_brdf",
+    "btf/test_btf",
+)
 _MARK = "input|"
 _HEAD = """# Files of other programs
 
