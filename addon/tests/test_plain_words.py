@@ -100,6 +100,10 @@ SAMPLES = (
         "farther away",
     ),
     (
+        "the surface is anisotropic: 40 pairs of samples differ by a factor of 1.8 (median)",
+        "a factor of 1.8",
+    ),
+    (
         "12 entries of the BTF are not finite; the mean of their image stands in for them.",
         "12 values",
     ),

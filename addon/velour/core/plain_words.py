@@ -41,6 +41,14 @@ _SENTENCES = (
         ),
     ),
     (
+        rf"the surface is anisotropic: .* differ by a factor of {_NUMBER} \(median\)",
+        lambda factor: (
+            f"The surface is brushed or woven: turned in its plane it changes by a factor of {factor}. The"
+            " model is the same from all sides, a mean of them. A measurement as a table with azimuths keeps"
+            " the difference."
+        ),
+    ),
+    (
         r"the measurement's own noise exceeds the tolerance",
         lambda: (
             "The measurement is noisier than Tolerance asks for: a smaller error would say nothing. A"
