@@ -47,7 +47,7 @@ class Part {
   uint64_t begin_, size_;
 };
 
-/// From the first directory of a TIFF file, which is what EXIF data are.
+/// From the first directory of EXIF data, which are a TIFF file.
 Orientation of_tiff(const Part& tiff) {
   constexpr uint64_t kEntryBytes = 12, kOrientationTag = 274, kShort = 3;
   const bool big = tiff.holds(0, "MM\0\x2a"sv);
@@ -122,7 +122,6 @@ Orientation exif_orientation(PictureFormat format, const std::string& path) {
     case PictureFormat::png:
       return found_by(of_png);
     case PictureFormat::tiff:
-      return found_by(of_tiff);
     case PictureFormat::exr:
     case PictureFormat::radiance:
     case PictureFormat::bmp:

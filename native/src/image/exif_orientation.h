@@ -8,7 +8,7 @@
 
 namespace velour {
 
-/// From a JPEG (APP1 segment), a PNG (eXIf chunk) or a TIFF (first directory); normal where the file says nothing, or
+/// From a JPEG (APP1 segment) or a PNG (eXIf chunk); normal where the file says nothing, or
 /// nothing that makes sense. Reads a few bytes of the file.
 Orientation exif_orientation(PictureFormat format, const std::string& path);
 

@@ -50,7 +50,10 @@ std::unique_ptr<OpenPicture> open_exr(const std::string& path, const std::string
 /// By OpenEXR: all channels of the first part, colors first, in the order R, G, B, A.
 std::unique_ptr<OpenPicture> open_exr_channels(const std::string& path);
 std::unique_ptr<OpenPicture> open_radiance(const std::string& path);
-/// The other formats: by OpenImageIO, or in a library without it by those that it would use.
+/// By libtiff, and not by OpenImageIO, which refuses tiles of YCbCr, inverts 16 bits whose 0 is white, and turns what
+/// it converts (2.4): the first picture of the file. Palettes and CMYK become RGB, other color spaces 8 bits of RGB.
+std::unique_ptr<OpenPicture> open_tiff(const std::string& path);
+/// PNG, JPEG and BMP: by OpenImageIO, or in a library without it by those that it would use.
 std::unique_ptr<OpenPicture> open_integers(const std::string& path, PictureFormat format);
 
 /// Bytes of a PNG file of 8 bits; top row first.

@@ -3,8 +3,6 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
-
 namespace velour {
 
 struct OpenImageIoModule::File {
@@ -50,21 +48,11 @@ std::optional<std::string> text(const File& file, const std::string& name) {
   return found ? std::optional(found->get_string()) : std::nullopt;
 }
 
-/// OpenImageIO turns only those of 8 bits.
-bool has_white_zero(const OIIO::ImageSpec& spec) {
-  constexpr int kMinIsWhite = 0;  // of TIFF's PhotometricInterpretation
-  return spec.get_int_attribute("tiff:PhotometricInterpretation", -1) == kMinIsWhite &&
-         !spec.format.is_floating_point() && spec.format != OIIO::TypeDesc::UINT8;
-}
-
 bool read(File& file, std::span<float> values, std::string& error) {
   OIIO::ImageInput& input = *file.input;
   const bool complete = input.read_image(0, 0, 0, input.spec().nchannels, OIIO::TypeDesc::FLOAT, values.data());
-  // A JPEG or TIFF that ends early is read with success, and with an error.
-  if (complete && !input.has_error()) {
-    if (has_white_zero(input.spec())) std::ranges::transform(values, values.begin(), [](float v) { return 1.0f - v; });
-    return true;
-  }
+  // A JPEG that ends early is read with success, and with an error.
+  if (complete && !input.has_error()) return true;
   error = input.geterror();
   return false;
 }

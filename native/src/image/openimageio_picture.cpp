@@ -32,10 +32,9 @@ const char* reader_of(PictureFormat format) {
       return "png";
     case PictureFormat::jpeg:
       return "jpeg";
-    case PictureFormat::tiff:
-      return "tiff";
     case PictureFormat::bmp:
       return "bmp";
+    case PictureFormat::tiff:
     case PictureFormat::exr:
     case PictureFormat::radiance:
       break;

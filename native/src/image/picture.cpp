@@ -76,7 +76,9 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, const std::st
                 path + ": has no layer '" + layer + "'; only OpenEXR files have layers, leave it out.");
   }
   if (format == PictureFormat::png) check_png_chunks(path);
-  return checked(path, format == PictureFormat::radiance ? open_radiance(path) : open_integers(path, format));
+  return checked(path, format == PictureFormat::radiance ? open_radiance(path)
+                       : format == PictureFormat::tiff   ? open_tiff(path)
+                                                         : open_integers(path, format));
 }
 
 std::unique_ptr<OpenPicture> open_channels(const std::string& path) {

@@ -30,7 +30,6 @@ std::unique_ptr<OpenPicture> open_format(const std::string& path, PictureFormat 
     case PictureFormat::jpeg:
       return open_jpeg(path);
     case PictureFormat::tiff:
-      return open_tiff(path);
     case PictureFormat::exr:
     case PictureFormat::radiance:
       break;

@@ -13,7 +13,5 @@ namespace velour {
 std::unique_ptr<OpenPicture> open_by_stb(const std::string& path, PictureFormat format);
 /// By libjpeg; CMYK becomes RGB.
 std::unique_ptr<OpenPicture> open_jpeg(const std::string& path);
-/// By libtiff: the first picture of the file. Palettes and CMYK become RGB, other color spaces 8 bits of RGB.
-std::unique_ptr<OpenPicture> open_tiff(const std::string& path);
 
 }  // namespace velour

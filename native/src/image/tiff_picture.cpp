@@ -1,4 +1,4 @@
-// TIFF files in a library without OpenImageIO.
+// TIFF files, by libtiff.
 #include <Imath/half.h>
 #include <tiffio.h>
 
@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "file/file.h"
-#include "image/portable_picture.h"
+#include "image/open_picture.h"
 #include "job/error.h"
 
 namespace velour {
@@ -230,12 +230,15 @@ class ByLibtiff : public OpenPicture {
     if (storage_.by_rgba) header_.channels = std::min<int>(header_.channels, 4);
     header_.integers = storage_.by_rgba || !Samples(storage_).is_float();
     header_.alpha_channel = alpha_of(tiff_.get(), storage_, header_.channels);
+    const auto orientation = tag<uint16_t>(tiff_.get(), TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
+    if (orientation >= 1 && orientation <= 8) header_.orientation = static_cast<Orientation>(orientation);
   }
 
   void read_rgba(std::span<float> values) {
     std::vector<uint32_t> pixels(size_t{storage_.width} * storage_.height);
-    if (TIFFReadRGBAImageOriented(tiff_.get(), storage_.width, storage_.height, pixels.data(), ORIENTATION_TOPLEFT,
-                                  1) == 0) {
+    // Asked for the orientation that the file has, libtiff leaves the rows as they are.
+    const int as_stored = static_cast<int>(header_.orientation);
+    if (TIFFReadRGBAImageOriented(tiff_.get(), storage_.width, storage_.height, pixels.data(), as_stored, 1) == 0) {
       refuse();
     }
     const auto channels = static_cast<size_t>(header_.channels);

@@ -1,4 +1,4 @@
-// EXIF orientation of PNG, JPEG and TIFF pictures, and formats that are not read.
+// EXIF orientation of PNG and JPEG pictures, and formats that are not read.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,28 +92,27 @@ TEST(PictureOrientation, FollowsExif) {
   }
 }
 
-TEST(PictureOrientation, OfJpegAndTiff) {
+TEST(PictureOrientation, OfJpeg) {
   test::record_input("JPEG", "EXIF orientation", "turned upright");
-  test::record_input("TIFF", "orientation", "turned upright");
   const auto folder = test::scratch_folder();
-  Bytes jpeg{0xff, 0xd8, 0xff, 0xe0, 0, 4, 9, 9, 0xff, 0xff, 0xe1};  // a segment, a fill byte, EXIF
-  const Bytes exif = exif_of(6, true);
-  append(jpeg, exif.size() + 8, 2, true);
-  for (const char c : std::string("Exif\0\0", 6)) jpeg.push_back(static_cast<uint8_t>(c));
-  jpeg.insert(jpeg.end(), exif.begin(), exif.end());
-  write_file(folder / "a.jpg", jpeg);
+  const auto written = [&](const Bytes& exif) {
+    Bytes jpeg{0xff, 0xd8, 0xff, 0xe0, 0, 4, 9, 9, 0xff, 0xff, 0xe1};  // a segment, a fill byte, EXIF
+    append(jpeg, exif.size() + 8, 2, true);
+    for (const char c : std::string("Exif\0\0", 6)) jpeg.push_back(static_cast<uint8_t>(c));
+    jpeg.insert(jpeg.end(), exif.begin(), exif.end());
+    write_file(folder / "a.jpg", jpeg);
+    return jpeg;
+  };
+  written(exif_of(9, false));
+  EXPECT_EQ(exif_orientation(PictureFormat::jpeg, folder / "a.jpg"), Orientation::normal);
+  written(exif_of(3, false));
+  EXPECT_EQ(exif_orientation(PictureFormat::jpeg, folder / "a.jpg"), Orientation::turned_180);
+  const Bytes whole = written(exif_of(6, true));
   EXPECT_EQ(exif_orientation(PictureFormat::jpeg, folder / "a.jpg"), Orientation::turned_cw);
-  write_file(folder / "a.tif", exif_of(3, false));
-  EXPECT_EQ(exif_orientation(PictureFormat::tiff, folder / "a.tif"), Orientation::turned_180);
-  for (const Bytes& whole : {jpeg, exif_of(3, false)}) {
-    const PictureFormat format = whole == jpeg ? PictureFormat::jpeg : PictureFormat::tiff;
-    for (size_t size = 0; size < whole.size() - 16; ++size) {
-      write_file(folder / "cut", std::span(whole).first(size));
-      EXPECT_EQ(exif_orientation(format, folder / "cut"), Orientation::normal) << size;
-    }
+  for (size_t size = 0; size < whole.size() - 16; ++size) {
+    write_file(folder / "cut", std::span(whole).first(size));
+    EXPECT_EQ(exif_orientation(PictureFormat::jpeg, folder / "cut"), Orientation::normal) << size;
   }
-  write_file(folder / "odd.tif", exif_of(9, false));
-  EXPECT_EQ(exif_orientation(PictureFormat::tiff, folder / "odd.tif"), Orientation::normal);
 }
 
 TEST(PictureFormats, OthersAreRefusedByName) {
