@@ -104,6 +104,26 @@ class Principled(Plates):
     def test_single_scattering(self):
         self._assert_angles("GGX, roughness 0.8", "GGX", Base_Color=_GOLD, Metallic=0.5, Roughness=0.8)
 
+    def test_specular_tint(self):
+        tint = 0.7 if bpy.app.version < (4, 0, 0) else (0.9, 0.3, 0.5, 1)
+        for metallic in (0.0, 0.6):
+            feature = f"specular tint, metallic {metallic:g}"
+            self._assert_angles(
+                feature, Base_Color=_GOLD, Metallic=metallic, Specular=1.0, Specular_Tint=tint
+            )
+
+    def test_coats(self):
+        if bpy.app.version < (4, 0, 0):
+            self.skipTest("before 4.0 a coat has another formula")
+        tint = (0.9, 0.5, 0.2, 1)
+        for weight, roughness, index in ((1.0, 0.2, 1.5), (0.4, 0.6, 1.5), (1.0, 0.4, 2.5)):
+            for metallic in (0.0, 1.0):
+                coat = {"Coat_Weight": weight, "Coat_Roughness": roughness, "Coat_IOR": index}
+                feature = f"coat {weight:g}, roughness {roughness:g}, IOR {index:g}, metallic {metallic:g}"
+                self._assert_angles(
+                    feature, Base_Color=_GOLD, Metallic=metallic, Roughness=0.6, Coat_Tint=tint, **coat
+                )
+
     def test_index_of_refraction(self):
         if bpy.app.version < (4, 0, 0):
             self.skipTest("before 4.0 it is of transmission alone")

@@ -40,6 +40,27 @@ class NormalMaps(ShaderTest):
         tree.end(tree.mix(tree.picture(leaf, "Alpha"), tree.transparent(), principled))
         self.assert_parity("Principled BSDF: cut-out, base colour and normal map by images")
 
+    def test_principled(self):
+        """How much of the light the base keeps is a matter of the lobe's normal."""
+        normal = self._map(low=0.35, high=0.65)
+        inputs = {"Base_Color": (0.8, 0.3, 0.1, 1), "Roughness": 0.3, "Normal": normal}
+        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", **inputs))
+        self.assert_parity("Principled BSDF: normal map, roughness 0.3")
+
+    def test_coat(self):
+        """The coat itself is flat."""
+        if bpy.app.version < (4, 0, 0):
+            self.skipTest("before 4.0 a coat has another formula")
+        inputs = {
+            "Base_Color": (0.8, 0.3, 0.1, 1),
+            "Coat_Weight": 1.0,
+            "Coat_Roughness": 0.3,
+            "Roughness": 0.6,
+        }
+        normal = self._map(low=0.35, high=0.65)
+        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", Normal=normal, **inputs))
+        self.assert_parity("Principled BSDF: coat over a normal map")
+
     def test_uncorrected(self):
         if not hasattr(self.material.cycles, "use_bump_map_correction"):
             self.skipTest("Bump Map Correction is a choice since Blender 4.2")

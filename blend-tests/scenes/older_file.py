@@ -3,13 +3,16 @@
 QUANTITY = (
     "a file of Blender 3.4: paint, metal, coat, sheen, glow, texture, auto smooth, area and point lamps"
 )
-MEANINGS = ("", "layered")  # of the Principled BSDF, where Velour follows Blender
+# Of the Principled BSDF, where Velour follows Blender: coats keep their energy since 4.5.
+MEANINGS = ("", "layered", "coats")
 
 
 def meaning():
+    import bpy
+
     from support import principled
 
-    return principled.meaning()
+    return "coats" if bpy.app.version >= (4, 5) else principled.meaning()
 
 
 def build(_folder):

@@ -180,6 +180,9 @@ class Scene(Handle):
         emission [3]: radiance; alpha: 0..1, the share of the surface that is there; rays pass the rest.
         formula: layered, as Blender since 4.0, or disney, as before. lobe: whole (light between facets is
         kept), single, or separable (facets shadow both directions independently: before Blender 3.5).
+        specular_tint [3]: of dielectrics at normal incidence, not negative; of metals near 82 degrees, 0..1.
+        Of layered: coat: 0..1, the weight of a dielectric layer on top; coat_roughness, coat_index (at least
+        1), coat_tint [3]; coat_lobe: whole, as since Blender 4.5, or single.
         """
         return self.add_textured_material({}, **values)
 

@@ -9,8 +9,8 @@ from .arrays import small
 from .handle import Handle, choice, set_fields
 from .texture import IDENTITY, Texture, TextureSlot
 
-_COLORS = {"base_color": 3, "emission": 3}
-_CHOICES = {"formula": table.FORMULAS, "lobe": table.LOBES}
+_COLORS = {"base_color": 3, "emission": 3, "specular_tint": 3, "coat_tint": 3}
+_CHOICES = {"formula": table.FORMULAS, "lobe": table.LOBES, "coat_lobe": table.LOBES}
 
 
 class Shader(Handle):

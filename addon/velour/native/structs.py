@@ -200,6 +200,12 @@ class PrincipledDesc(Struct):
         ("alpha", c_float),
         ("formula", c_int32),
         ("lobe", c_int32),
+        ("specular_tint", c_float * 3),
+        ("coat", c_float),
+        ("coat_roughness", c_float),
+        ("coat_index", c_float),
+        ("coat_tint", c_float * 3),
+        ("coat_lobe", c_int32),
     ]
 
 

@@ -28,7 +28,9 @@ from .tables import (
 
 _MOST_DRAWS = 20_000  # of instances: more are slower than rays
 _MOST_LAMPS = 8  # on BTFs: with as many narrow lobes of the world all that btf.frag.glsl has room for
-_MOST_SPECULAR = 11.25  # where the library ends: nine tenths at normal incidence
+# Of numbers of a material that may exceed 1. The library's own end: nine tenths at normal incidence.
+_MOST = {"specular": 11.25, "coat_index": 38.0}
+_NUMBERS = ("metallic", "roughness", "specular", "coat", "coat_roughness", "coat_index")
 _UNPLACED = np.array(((1, 0, 0), (0, 1, 0)), np.float32)
 
 
@@ -163,7 +165,7 @@ class RealtimeScene(Scene):
         emission = tuple(values.pop("emission", (0.0, 0.0, 0.0)))
         slot = textures.get("base_color")
         is_drawn = slot is not None and Picture.can_be(slot)
-        is_simpler = len(textures) > is_drawn or values.pop("alpha", 1.0) < 1.0
+        is_simpler = len(textures) > is_drawn or values.pop("alpha", 1.0) < 1.0 or "coat" in values
         if not is_drawn:
             return self._add_look(Look((self._rows(values, PrincipledTables),), emission, is_simpler))
         picture = Picture(slot)
@@ -280,9 +282,9 @@ def _stamp(path):
 
 def _principled(values):
     """Of numbers of a material those that its rows are made of, as principled_rows_job takes them."""
-    known = {name: values[name] for name in ("metallic", "roughness", "specular") if name in values}
-    choices = {name: values[name] for name in ("formula", "lobe") if name in values}
+    known = {name: values[name] for name in _NUMBERS if name in values}
+    choices = {name: values[name] for name in ("formula", "lobe", "coat_lobe") if name in values}
     color = tuple(min(max(c, 0.0), 1.0) for c in values.get("base_color", (0.8, 0.8, 0.8)))
-    most = {"specular": _MOST_SPECULAR}
-    numbers = {n: min(max(v, 0.0), most.get(n, 1.0)) if math.isfinite(v) else 0.5 for n, v in known.items()}
-    return {"base_color": color, **numbers, **choices}
+    tints = {name: tuple(values[name]) for name in ("specular_tint", "coat_tint") if name in values}
+    numbers = {n: min(max(v, 0.0), _MOST.get(n, 1.0)) if math.isfinite(v) else 0.5 for n, v in known.items()}
+    return {"base_color": color, **tints, **numbers, **choices}

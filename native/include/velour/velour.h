@@ -34,7 +34,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 8
+#define VLR_ABI_VERSION 9
 
 typedef int32_t vlr_status;
 enum {
@@ -443,6 +443,16 @@ typedef struct vlr_principled_desc {
   float alpha;         /* 0..1: the share of the surface that is there; rays pass the rest */
   int32_t formula;     /* VLR_PRINCIPLED_* */
   int32_t lobe;        /* VLR_GGX_* */
+  /* Of dielectrics at normal incidence, not negative; of metals near 82 degrees, 0..1 (VLR_PRINCIPLED_LAYERED). White.
+   */
+  float specular_tint[3];
+  /* A dielectric layer on top, which a normal map does not turn (VLR_PRINCIPLED_LAYERED). */
+  float coat;           /* 0..1: its weight */
+  float coat_roughness; /* 0..1: 0.03 */
+  float coat_index;     /* at least 1: 1.5 */
+  float coat_tint[3];   /* not negative: what it lets through straight down and back; white */
+  int32_t coat_lobe;    /* VLR_GGX_WHOLE since Blender 4.5; VLR_GGX_SINGLE: 4.0 to 4.4, which dim what is below as a
+                           smooth coat does */
 } vlr_principled_desc;
 VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
 VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,

@@ -102,6 +102,12 @@ void vlr_principled_desc_init(vlr_principled_desc* desc) {
   desc->formula = static_cast<int32_t>(defaults.formula);
   desc->lobe = static_cast<int32_t>(defaults.lobe);
   desc->alpha = 1.0f;
+  for (int i = 0; i < 3; ++i) desc->specular_tint[i] = defaults.specular_tint[i];
+  desc->coat = defaults.coat;
+  desc->coat_roughness = defaults.coat_roughness;
+  desc->coat_index = defaults.coat_index;
+  for (int i = 0; i < 3; ++i) desc->coat_tint[i] = defaults.coat_tint[i];
+  desc->coat_lobe = static_cast<int32_t>(defaults.coat_lobe);
 }
 
 vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc, uint32_t* material) {

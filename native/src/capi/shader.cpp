@@ -19,26 +19,30 @@ TextureSlot<Rgb> normal_slot(const vlr_layer_desc& layer) {
 }
 
 std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const vlr_layer_desc& layer,
-                                             bool is_diffuse) {
+                                             ReliefPart part) {
   if (layer.normal == nullptr) return material;
   return make_normal_mapped(std::move(material),
                             {normal_slot(layer), std::max(layer.normal_strength, 0.0f),
                              static_cast<ReliefCorrection>(layer.normal_correction)},
-                            is_diffuse);
+                            part);
 }
 
-/// Steep normals do not do the same to base and lobes, so each is a layer of its own.
+/// Steep normals do not do the same to base and lobes, so each is a layer of its own, as is the coat, which stays flat.
 std::shared_ptr<const Material> principled(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
                                            PrincipledTextures textures) {
   PrincipledParameters parameters = parameters_of(desc);
   textures.alpha = {};
   if (layer.normal == nullptr) return make_principled_material(parameters, textures);
   ShaderLayers parts;
-  for (const PrincipledPart part : {PrincipledPart::base, PrincipledPart::specular}) {
-    parameters.part = part;
-    parts.reflecting.push_back(
-        {with_normals(make_principled_material(parameters, textures), layer, part == PrincipledPart::base)});
-  }
+  const auto part = [&](PrincipledPart which) {
+    parameters.part = which;
+    return make_principled_material(parameters, textures);
+  };
+  const PrincipledParameters coated = parameters;
+  if (coated.coat > 0) parts.reflecting.push_back({part(PrincipledPart::coat)});
+  parameters.coat = 0;
+  parts.reflecting.push_back({with_normals(part(PrincipledPart::base), layer, ReliefPart::base), {}, coated});
+  parts.reflecting.push_back({with_normals(part(PrincipledPart::specular), layer, ReliefPart::lobe), {}, coated});
   return make_layered_material(std::move(parts));
 }
 
@@ -47,12 +51,12 @@ std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, const vl
   if (layer.kind == VLR_LAYER_GLOSSY) {
     const GlossyParameters glossy{base_color(desc), desc.roughness, lobe_of(desc), textures.base_color,
                                   textures.roughness};
-    return with_normals(make_glossy_material(glossy), layer, false);
+    return with_normals(make_glossy_material(glossy), layer, ReliefPart::lobe);
   }
   if (layer.kind == VLR_LAYER_DIFFUSE) {
     const RoughDiffuseParameters diffuse{base_color(desc), desc.roughness, layer.interreflection != 0,
                                          textures.base_color, textures.roughness};
-    return with_normals(make_rough_diffuse_material(diffuse), layer, true);
+    return with_normals(make_rough_diffuse_material(diffuse), layer, ReliefPart::diffuse);
   }
   return principled(layer, desc, textures);
 }

@@ -63,12 +63,20 @@ GgxLobe lobe_of(const vlr_principled_desc& desc) {
 
 PrincipledParameters parameters_of(const vlr_principled_desc& desc) {
   require_choice(desc.formula, VLR_PRINCIPLED_DISNEY, "vlr_principled_desc.formula");
-  return {.base_color = {desc.base_color[0], desc.base_color[1], desc.base_color[2]},
+  require_choice(desc.coat_lobe, VLR_GGX_SINGLE, "vlr_principled_desc.coat_lobe");
+  const auto color = [](const float* c) { return Rgb(c[0], c[1], c[2]); };
+  return {.base_color = color(desc.base_color),
           .metallic = desc.metallic,
           .roughness = desc.roughness,
           .specular = desc.specular,
+          .specular_tint = color(desc.specular_tint),
+          .coat = desc.coat,
+          .coat_roughness = desc.coat_roughness,
+          .coat_index = desc.coat_index,
+          .coat_tint = color(desc.coat_tint),
           .formula = static_cast<PrincipledFormula>(desc.formula),
-          .lobe = lobe_of(desc)};
+          .lobe = lobe_of(desc),
+          .coat_lobe = static_cast<GgxLobe>(desc.coat_lobe)};
 }
 
 std::shared_ptr<const Material> material_of(const vlr_principled_desc& desc, const PrincipledTextures& textures) {

@@ -25,8 +25,10 @@ struct PreparedBrdf;
 /// One of the layers that a material is mixed of, at a point.
 struct PreparedLayer {
   std::unique_ptr<PreparedBrdf> point;
-  float weight = 0;  // of its f; 0: it is not there, and `point` is not set up
+  Rgb weight{0.0f};  // of its f; black: it is not there, and `point` is not set up
   float share = 0;   // of samples that are drawn from it; all add up to 1
+
+  bool is_there() const { return weight != Rgb(0.0f); }
 };
 
 /// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it

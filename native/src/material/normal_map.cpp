@@ -11,15 +11,15 @@ constexpr float kLeastViewCosine = 1e-3f;  // of a viewer with the mapped normal
 
 class NormalMappedMaterial final : public Material {
  public:
-  NormalMappedMaterial(std::shared_ptr<const Material> material, const NormalMap& map, bool is_diffuse)
-      : material_(std::move(material)), map_(map), is_diffuse_(is_diffuse) {}
+  NormalMappedMaterial(std::shared_ptr<const Material> material, const NormalMap& map, ReliefPart part)
+      : material_(std::move(material)), map_(map), part_(part) {}
 
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    const Frame frame = Frame::about(normal_at(wv, site));
-    Vec3 local = frame.to_local(wv);
+    const Frame seen = frame_of(part_ != ReliefPart::diffuse, wv, site);
+    Vec3 local = seen.to_local(wv);
     if (local.z < kLeastViewCosine) local = glm::normalize(Vec3(local.x, local.y, kLeastViewCosine));
     material_->prepare(local, site, point);
-    point.relief = frame;
+    point.relief = part_ == ReliefPart::base ? frame_of(false, wv, site) : seen;
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
@@ -44,29 +44,30 @@ class NormalMappedMaterial final : public Material {
 
  private:
   float kept(float own, float mapped, float tilt) const {
-    if (!is_diffuse_ || map_.correction == ReliefCorrection::none) return 1;
+    if (part_ == ReliefPart::lobe || map_.correction == ReliefCorrection::none) return 1;
     return map_.correction == ReliefCorrection::shadowed ? relief_shadowing(own, tilt)
                                                          : terminator_softening(own, mapped, tilt);
   }
 
-  bool keeps_mirrors_above() const {
+  bool keeps_mirrors_above(bool is_lobe) const {
     if (map_.correction == ReliefCorrection::turned) return true;
-    return map_.correction != ReliefCorrection::none && !is_diffuse_;
+    return map_.correction != ReliefCorrection::none && is_lobe;
   }
 
-  Vec3 normal_at(const Vec3& wv, const SurfaceSite& site) const {
-    constexpr Vec3 kOwn(0, 0, 1);
+  /// About the normal of a lobe, or of what is diffuse.
+  Frame frame_of(bool is_lobe, const Vec3& wv, const SurfaceSite& site) const {
     Vec3 map = 2.0f * map_.texture.at(site, Rgb(0.5f, 0.5f, 1.0f)) - 1.0f;
     map = {map_.strength * map.x, map_.strength * map.y, 1 + (map.z - 1) * std::clamp(map_.strength, 0.0f, 1.0f)};
     const Vec3 normal = site.relief * map;
     const float length = glm::length(normal);
-    if (!(length > 0) || !std::isfinite(length)) return kOwn;
-    return keeps_mirrors_above() ? with_mirror_above(normal / length, site.ground, wv) : normal / length;
+    if (!(length > 0) || !std::isfinite(length)) return Frame::about(Vec3(0, 0, 1));
+    return Frame::about(keeps_mirrors_above(is_lobe) ? with_mirror_above(normal / length, site.ground, wv)
+                                                     : normal / length);
   }
 
   const std::shared_ptr<const Material> material_;
   const NormalMap map_;
-  const bool is_diffuse_;
+  const ReliefPart part_;
 };
 
 }  // namespace
@@ -100,8 +101,8 @@ float relief_shadowing(float own, float tilt) {
 }
 
 std::shared_ptr<const Material> make_normal_mapped(std::shared_ptr<const Material> material, const NormalMap& map,
-                                                   bool is_diffuse) {
-  return std::make_shared<NormalMappedMaterial>(std::move(material), map, is_diffuse);
+                                                   ReliefPart part) {
+  return std::make_shared<NormalMappedMaterial>(std::move(material), map, part);
 }
 
 }  // namespace velour

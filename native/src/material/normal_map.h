@@ -17,6 +17,13 @@ enum class ReliefCorrection {
   none       // normals and light stay
 };
 
+/// What a relief does not do the same to.
+enum class ReliefPart {
+  lobe,
+  diffuse,
+  base  // Lambertian: of the view it needs no more than how much the lobe above it, about that one's normal, leaves it
+};
+
 /// Colours from 0 to 1 are components from -1 to 1 along tangent, bitangent and normal of the surface
 /// (SurfaceSite::relief).
 struct NormalMap {
@@ -33,7 +40,7 @@ struct NormalMap {
 /// surface's own horizon, where it would end in a hard line. Where the surface has no relief the material
 /// is as it is.
 std::shared_ptr<const Material> make_normal_mapped(std::shared_ptr<const Material> material, const NormalMap& map,
-                                                   bool is_diffuse);
+                                                   ReliefPart part);
 
 /// What the light keeps of a diffuse f about a normal whose cosine with the surface's own is `tilt`: `own` and `mapped`
 /// are the light's cosines with both. [CLB19], Eq. 3 and the smoothing after it.

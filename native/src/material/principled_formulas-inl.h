@@ -23,7 +23,7 @@ template <class T>
 inline T principled_reflectance(const PrincipledPoint& point, T cosine, T rise, int c) {
   const T dielectric = point.at_normal[c] + point.rise[c] * rise;
   if (!(point.metal[c] > 0)) return dielectric;
-  return dielectric + point.metal[c] * tinted_metal_fresnel(point.base_color[c], point.specular_tint[c], cosine);
+  return dielectric + point.metal[c] * tinted_metal_fresnel(point.base_color[c], point.metal_tint(c), cosine);
 }
 
 /// What all channels of f share at a direction.
@@ -42,7 +42,7 @@ inline auto principled_parts(const PrincipledPoint& point, const Vec3& wv, const
   parts.rise = principled_rise(point, parts.cosine);
   if (point.coat > 0) {
     parts.coat = point.coat * ggx_brdf_without_fresnel(wv, wl, h, point.coat_alpha) *
-                 dielectric_fresnel(parts.cosine, kCoatIndex);
+                 dielectric_fresnel(parts.cosine, point.coat_eta);
   }
   return parts;
 }

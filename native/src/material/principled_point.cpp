@@ -18,21 +18,55 @@ float index_of(float specular) {
   return (1 + root) / (1 - root);
 }
 
+/// 2 int F(mu, eta) mu dmu, by a fit [KC17].
+float mean_fresnel(float eta) { return (eta - 1) / (4.08567f + 1.00071f * eta); }
+
 float rough_enough(float roughness) { return std::clamp(roughness, kMinRoughness, 1.0f); }
 
 Rgb within_one(const Rgb& color) { return glm::clamp(color, Rgb(0), Rgb(1)); }
 
+Interreflection facets_of_coat(const PrincipledParameters& p, float cosine) {
+  return {p.coat_lobe, rough_enough(p.coat_roughness), cosine};
+}
+
+float index_of_coat(const PrincipledParameters& p) { return std::max(p.coat_index, 1.0f); }
+
+/// Of its lobe.
+float weight_of_coat(const PrincipledParameters& p, float cosine) {
+  const float eta = index_of_coat(p);
+  if (!(p.coat > 0) || eta <= 1) return 0;
+  return std::min(p.coat, 1.0f) * facets_of_coat(p, cosine).gain(Rgb(mean_fresnel(eta))).r;
+}
+
+/// Share of the light.
+float albedo_of_coat(const PrincipledParameters& p, float cosine) {
+  const float eta = index_of_coat(p), normal = dielectric_fresnel(1.0f, eta);
+  if (eta <= 1) return 0;
+  if (p.coat_lobe != GgxLobe::whole) return dielectric_fresnel(cosine, eta);
+  const float risen = ggx_albedo::mean_rise(rough_enough(p.coat_roughness), cosine, eta);
+  return facets_of_coat(p, cosine).gain_of_whole(Rgb(mean_fresnel(eta))).r * glm::mix(normal, 1.0f, risen);
+}
+
 }  // namespace
+
+Rgb through_coat(const PrincipledParameters& p, float cosine) {
+  if (!(p.coat > 0)) return Rgb(1);
+  const float weight = std::min(p.coat, 1.0f), eta = index_of_coat(p);
+  const float depth = 1 / std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
+  const Rgb tint = glm::pow(glm::max(p.coat_tint, Rgb(0)), Rgb(depth));
+  return (1 - weight * albedo_of_coat(p, cosine)) * glm::mix(Rgb(1), tint, weight);
+}
 
 PrincipledPoint::PrincipledPoint(const PrincipledParameters& p, const Vec3& wv)
     : base_color(within_one(p.base_color)),
-      specular_tint(within_one(p.specular_tint)),
+      specular_tint(glm::max(p.specular_tint, Rgb(0))),
       roughness(rough_enough(p.roughness)),
       formula(p.formula),
       lobe(p.lobe) {
   const float cosine = std::min(wv.z, 1.0f), coat_roughness = rough_enough(p.coat_roughness);
   alpha = Vec2(roughness * roughness);
   coat_alpha = Vec2(coat_roughness * coat_roughness);
+  coat_eta = index_of_coat(p);
   eta = index_of(p.specular);
   f0 = dielectric_fresnel(1.0f, eta);
   view_rise = schlick_share(cosine);
@@ -41,12 +75,10 @@ PrincipledPoint::PrincipledPoint(const PrincipledParameters& p, const Vec3& wv)
   } else {
     set_layered(p, cosine);
   }
-  if (p.part == PrincipledPart::base) {
-    at_normal = rise = metal = Rgb(0);
-    coat = 0;
-  } else if (p.part == PrincipledPart::specular) {
-    diffuse = Rgb(0);
-  }
+  const auto is_part = [&](PrincipledPart part) { return p.part == PrincipledPart::whole || p.part == part; };
+  if (!is_part(PrincipledPart::base)) diffuse = Rgb(0);
+  if (!is_part(PrincipledPart::specular)) at_normal = rise = metal = Rgb(0);
+  if (!is_part(PrincipledPart::coat)) coat = 0;
   set_shares(cosine);
 }
 
@@ -56,28 +88,19 @@ Rgb PrincipledPoint::reflectance(float cosine) const {
   return out;
 }
 
-/// By a fit to 2 int F(mu, eta) mu dmu [KC17].
-float PrincipledPoint::mean_rise() const {
-  const float mean = (eta - 1) / (4.08567f + 1.00071f * eta);
-  return std::clamp((mean - f0) / (1 - f0), 0.0f, 1.0f);
-}
+float PrincipledPoint::mean_rise() const { return std::clamp((mean_fresnel(eta) - f0) / (1 - f0), 0.0f, 1.0f); }
 
 void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine) {
-  const auto under = [&](float weight, float roughness_above, float index) {
-    if (!(weight > 0)) return 1.0f;
-    const float normal = dielectric_fresnel(1.0f, index);
-    return 1 - weight * (normal + (1 - normal) * ggx_albedo::mean_rise(roughness_above, cosine, index));
-  };
-  coat = std::clamp(p.coat, 0.0f, 1.0f);
   const float metallic = std::clamp(p.metallic, 0.0f, 1.0f);
-  const float through = under(coat, rough_enough(p.coat_roughness), kCoatIndex), rest = through * (1 - metallic);
+  coat = weight_of_coat(p, cosine);
+  const Rgb through = through_coat(p, cosine), rest = through * (1 - metallic);
   const Interreflection facets(lobe, roughness, cosine);
   Rgb mean_metal;
-  for (int c = 0; c < 3; ++c) mean_metal[c] = mean_tinted_metal_fresnel(base_color[c], specular_tint[c]);
+  for (int c = 0; c < 3; ++c) mean_metal[c] = mean_tinted_metal_fresnel(base_color[c], metal_tint(c));
   metal = metallic > 0 ? through * metallic * facets.gain(mean_metal) : Rgb(0);
   at_normal = rise = Rgb(0);
   float passing = 1;
-  if (eta > 1 && rest > 0) {
+  if (eta > 1 && metallic < 1) {
     const Rgb normal = f0 * specular_tint;
     const Rgb mean = glm::mix(normal, Rgb(1), mean_rise()), weight = rest * facets.gain(mean);
     at_normal = weight * normal;
@@ -107,7 +130,7 @@ void PrincipledPoint::set_shares(float cosine) {
   const float gained = eta > 1 ? ggx_albedo::mean_rise(roughness, cosine, eta) : 0.0f;
   const Rgb reflectance = at_normal + rise * gained + metal * schlick_fresnel(base_color, cosine);
   const float of_base = kPi * luminance(diffuse), of_lobe = albedo * luminance(reflectance);
-  const float of_coat = coat > 0 ? coat * dielectric_fresnel(cosine, kCoatIndex) : 0.0f;
+  const float of_coat = coat > 0 ? coat * dielectric_fresnel(cosine, coat_eta) : 0.0f;
   const float total = of_base + of_lobe + of_coat;
   if (!(total > 0)) return;
   diffuse_end = of_base / total;

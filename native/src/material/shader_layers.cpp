@@ -41,11 +41,13 @@ class LayeredMaterial final : public Material {
     float sum = 0;
     for (size_t i = 0; i < albedo_.size(); ++i) {
       PreparedLayer& layer = point.layers[i];
-      layer.weight = brighter * layers_.reflecting[i].weight.at(site);
-      sum += layer.share = layer.weight * albedo_[i];
-      if (layer.weight <= 0) continue;
+      const ReflectingLayer& from = layers_.reflecting[i];
+      layer.weight = Rgb(brighter * from.weight.at(site));
+      if (from.coated) layer.weight *= through_coat(*from.coated, wv.z);
+      sum += layer.share = luminance(layer.weight) * albedo_[i];
+      if (!layer.is_there()) continue;
       if (!layer.point) layer.point = std::make_unique<PreparedBrdf>();
-      layers_.reflecting[i].material->prepare(wv, site, *layer.point);
+      from.material->prepare(wv, site, *layer.point);
     }
     for (size_t i = 0; i < albedo_.size() && sum > 0; ++i) point.layers[i].share /= sum;
   }
@@ -56,7 +58,7 @@ class LayeredMaterial final : public Material {
     bool first = true;
     for (size_t i = 0; i < albedo_.size(); ++i) {
       const PreparedLayer& layer = point.layers[i];
-      if (layer.weight <= 0) continue;
+      if (!layer.is_there()) continue;
       layers_.reflecting[i].material->eval(*layer.point, wl, one, one_pdf);
       for (int k = 0; k < wl.count; ++k) {
         f.set(k, (first ? Rgb(0.0f) : f.get(k)) + layer.weight * one.get(k));
@@ -72,10 +74,10 @@ class LayeredMaterial final : public Material {
     bool drawn = false;
     float begin = 0;
     for (size_t i = 0; i < albedo_.size(); ++i) {
-      if (point.layers[i].weight <= 0) continue;
+      if (!point.layers[i].is_there()) continue;
       const bool last = std::none_of(point.layers.begin() + static_cast<ptrdiff_t>(i) + 1,
                                      point.layers.begin() + static_cast<ptrdiff_t>(albedo_.size()),
-                                     [](const PreparedLayer& l) { return l.weight > 0; });
+                                     [](const PreparedLayer& l) { return l.is_there(); });
       const float end = last ? 1.0f : begin + point.layers[i].share;
       sample_layer(point, i, {begin, end}, u, wl);
       begin = end;

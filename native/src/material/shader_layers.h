@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "material/material.h"
+#include "material/principled_point.h"
 #include "material/texture_slot.h"
 
 namespace velour {
@@ -32,6 +34,9 @@ struct LayerWeight {
 struct ReflectingLayer {
   std::shared_ptr<const Material> material;
   LayerWeight weight{};
+  /// Below the coat of these parameters, which dims it as seen from the surface's own normal, however a normal map
+  /// turns the material.
+  std::optional<PrincipledParameters> coated{};
 };
 
 /// What lets light through with a colour, or glows with a radiance.

@@ -14,28 +14,29 @@ _PRINCIPLED = {
     "alpha": "Alpha",
 }
 _USUAL_F0 = 0.04  # of an index of 1.5
-# Inputs that Velour does not render, and the value at which that makes no difference.
-_IGNORED = {
-    "Subsurface": 0.0,
-    "Subsurface Weight": 0.0,
-    "Specular Tint": 0.0,
-    "Anisotropic": 0.0,
-    "Sheen": 0.0,
-    "Sheen Weight": 0.0,
-    "Clearcoat": 0.0,
-    "Coat Weight": 0.0,
-    "Transmission": 0.0,
-    "Transmission Weight": 0.0,
-    "Diffuse Roughness": 0.0,
-    "Thin Film Thickness": 0.0,
-}
+_GRAY = (0.3, 0.6, 0.1)  # as those Blenders have it
+# Inputs that Velour does not render; 0 makes no difference.
+_IGNORED = (
+    "Subsurface",
+    "Subsurface Weight",
+    "Anisotropic",
+    "Sheen",
+    "Sheen Weight",
+    "Clearcoat",
+    "Transmission",
+    "Transmission Weight",
+    "Diffuse Roughness",
+    "Thin Film Thickness",
+)
 # No property tells how facets shadow each other.
 _SEPARABLE_SHADOWS = bpy.app.version < (3, 5)
+# No property tells: coats keep their energy, and dim what is below accordingly.
+_COAT_LOBE = "whole" if bpy.app.version >= (4, 5) else "single"
 # No property tells: rough diffuse surfaces keep their energy since Principled has a roughness of its base.
 _INTERREFLECTION = bpy.app.version >= (4, 3)
 # No property tells what it is: a random walk between facets before, a factor of one bounce since.
 _RANDOM_WALK = "its distribution 'Multiscatter GGX' is shown as Blender 4's; it differs by a few per cent."
-_LINK_ONLY = ("Clearcoat Normal", "Coat Normal", "Tangent")
+_LINK_ONLY = ("Clearcoat Normal", "Tangent")
 
 
 def _read_principled(plug, reader):
@@ -44,8 +45,11 @@ def _read_principled(plug, reader):
         values[name], picture = reader.number(plug.input(socket))
         pictures |= {name: picture} if picture else {}
     values["specular"] = _specular(plug, reader)
-    values |= {"formula": "layered" if _is_layered(plug) else "disney", "lobe": _lobe(plug, reader)}
+    values["lobe"] = _lobe(plug, reader)
+    values |= _layered(plug, reader) if _is_layered(plug) else _disney(plug, reader, values, pictures)
     glow = _glow(plug.input("Emission Color", "Emission"), plug.input("Emission Strength"), reader)
+    if glow and "coat" in values:
+        reader.note(plug, "its coat does not dim what it emits.")
     _note_ignored(plug, reader)
     return [Layer("principled", values, pictures, relief=read_relief(plug, reader), glow=glow)]
 
@@ -53,6 +57,39 @@ def _read_principled(plug, reader):
 def _is_layered(plug):
     """Whether it is the Principled BSDF of Blender 4.0 and newer."""
     return plug.input("Coat Weight") is not None
+
+
+def _disney(plug, reader, values, pictures):
+    """What is peculiar to Principled before 4.0: its tint is the share of the base colour's hue in what
+    dielectrics reflect [Bur12]."""
+    share = min(max(reader.value(plug.input("Specular Tint")), 0.0), 1.0)
+    gray = sum(w * c for w, c in zip(_GRAY, values["base_color"], strict=True))
+    if share == 0.0 or gray <= 0.0:
+        return {"formula": "disney"}
+    if "base_color" in pictures:
+        reader.note(
+            plug, "'Specular Tint' of a base colour that is no single colour is not supported; ignored."
+        )
+        return {"formula": "disney"}
+    tint = tuple(1.0 - share + share * c / gray for c in values["base_color"])
+    return {"formula": "disney", "specular_tint": tint}
+
+
+def _layered(plug, reader):
+    """What is peculiar to the Principled BSDF of 4.0 and newer, where it makes a difference."""
+    values = {"formula": "layered"}
+    tint = reader.value(plug.input("Specular Tint"))
+    if min(tint) != 1.0 or max(tint) != 1.0:
+        values["specular_tint"] = tint
+    coat = min(reader.value(plug.input("Coat Weight")), 1.0)
+    if coat > 0.0:
+        values["coat"] = coat
+        values["coat_roughness"] = reader.value(plug.input("Coat Roughness"))
+        values["coat_index"] = max(reader.value(plug.input("Coat IOR")), 1.0)
+        values["coat_tint"] = reader.value(plug.input("Coat Tint"))
+        values["coat_lobe"] = _COAT_LOBE
+        note_linked(plug, reader, "Coat Normal")
+    return values
 
 
 def _lobe(plug, reader):
@@ -153,14 +190,9 @@ def note_linked(plug, reader, name):
 
 
 def _note_ignored(plug, reader):
-    for name, harmless in _IGNORED.items():
+    for name in _IGNORED:
         socket = plug.input(name)
-        if socket is None:
-            continue
-        value = socket.socket.default_value
-        # Newer tints are colours, of which white makes no difference.
-        off = abs(value - harmless) if isinstance(value, float) else max(abs(c - 1.0) for c in value[:3])
-        if off > 1e-6 or fed_by(socket):
+        if socket and (abs(socket.socket.default_value) > 1e-6 or fed_by(socket)):
             reader.note(plug, f"'{name}' is not supported; ignored.")
     for name in _LINK_ONLY:
         note_linked(plug, reader, name)

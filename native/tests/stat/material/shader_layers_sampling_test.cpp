@@ -28,7 +28,7 @@ std::shared_ptr<const Material> mixed(float share) {
 /// A glossy surface with a normal map, at a place whose relief is turned and tilted.
 std::shared_ptr<const Material> tilted() {
   return make_normal_mapped(make_glossy_material({.roughness = 0.6f}), {test::one_texel(Rgb(0.8f, 0.4f, 0.8f)), 1},
-                            false);
+                            ReliefPart::lobe);
 }
 
 const SurfaceSite kSite{.relief = Mat3({0.9f, 0.3f, 0.1f}, {-0.3f, 0.9f, 0.2f}, {0, 0, 1})};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "material/glossy_material.h"
 #include "material/principled_material.h"
 #include "sphere/random.h"
 #include "sphere/warp.h"
@@ -14,7 +15,7 @@ namespace {
 std::shared_ptr<const Material> white() { return make_principled_material({.base_color = Rgb(1), .specular = 0}); }
 
 std::shared_ptr<const Material> mapped(const Vec3& normal, float strength = 1) {
-  return make_normal_mapped(white(), {test::one_texel(0.5f + 0.5f * normal), strength}, false);
+  return make_normal_mapped(white(), {test::one_texel(0.5f + 0.5f * normal), strength}, ReliefPart::lobe);
 }
 
 float f_of(const Material& material, const Vec3& wv, const Vec3& wl, const Mat3& relief = Mat3(1.0f)) {
@@ -66,13 +67,13 @@ TEST(NormalMap, DiffuseLightFadesOutBeforeTheHorizon) {
   EXPECT_NEAR(terminator_softening(0.2f, 0.5f, 0.8f), 0.5f + 0.25f - 0.125f, 1e-6f);
   const Vec3 normal = direction(0.9f, 0), low = direction(1.5f, 0);
   const NormalMap map{test::one_texel(0.5f + 0.5f * normal), 1};
-  const auto value = [&](std::shared_ptr<const Material> material, bool is_diffuse) {
-    return f_of(*make_normal_mapped(std::move(material), map, is_diffuse), direction(0.6f, 0), low) * low.z;
+  const auto value = [&](std::shared_ptr<const Material> material, ReliefPart part) {
+    return f_of(*make_normal_mapped(std::move(material), map, part), direction(0.6f, 0), low) * low.z;
   };
   const float hard = glm::dot(normal, low), kept = terminator_softening(low.z, hard, normal.z);
   EXPECT_LT(kept, 0.3f);
-  EXPECT_NEAR(value(white(), false), hard, 1e-5f);
-  EXPECT_NEAR(value(white(), true), kept * hard, 1e-5f);
+  EXPECT_NEAR(value(white(), ReliefPart::lobe), hard, 1e-5f);
+  EXPECT_NEAR(value(white(), ReliefPart::diffuse), kept * hard, 1e-5f);
 }
 
 TEST(NormalMap, ReliefShadowsAsItsTiltIsSteep) {
@@ -85,15 +86,45 @@ TEST(NormalMap, ReliefShadowsAsItsTiltIsSteep) {
   EXPECT_NEAR(relief_shadowing(0.5f, 0), 2 / (1 + std::sqrt(1 + 3.0f)), 1e-6f);
 }
 
+TEST(NormalMap, AViewerBehindTheMappedNormalSeesItsHorizon) {
+  const Vec3 normal = direction(0.7f, 0), wl = direction(0.5f, 0.4f), wv = direction(1.3f, kPi);
+  const NormalMap map{test::one_texel(0.5f + 0.5f * normal), 1, ReliefCorrection::none};
+  const auto glossy = make_glossy_material({.roughness = 0.6f});
+  const Frame frame = Frame::about(normal);
+  Vec3 horizon = frame.to_local(wv);
+  ASSERT_LT(horizon.z, -0.3f);
+  horizon = glm::normalize(Vec3(horizon.x, horizon.y, 1e-3f));
+  const float expected = f_of(*glossy, horizon, frame.to_local(wl)) * glm::dot(normal, wl);
+  EXPECT_GT(expected, 0);
+  EXPECT_NEAR(f_of(*make_normal_mapped(glossy, map, ReliefPart::lobe), wv, wl) * wl.z / expected, 1, 1e-4f);
+}
+
+/// What a smooth dielectric leaves to the base below it depends on the view alone, about the lobe's own normal.
+TEST(NormalMap, ABaseIsDimmedAboutTheNormalOfTheLobe) {
+  const Vec3 normal = direction(0.7f, 0), wl = direction(0.5f, 0.4f), wv = direction(1.3f, kPi);
+  const NormalMap map{test::one_texel(0.5f + 0.5f * normal), 1, ReliefCorrection::shadowed};
+  const auto base = make_principled_material({.roughness = 0.2f, .part = PrincipledPart::base});
+  PreparedBrdf point;
+  const auto material = make_normal_mapped(base, map, ReliefPart::base);
+  material->prepare(wv, {.relief = Mat3(1.0f), .ground = {0, 0, 1}}, point);
+  const Vec3 turned = with_mirror_above(normal, {0, 0, 1}, wv);
+  const float expected = f_of(*base, direction(std::acos(glm::dot(turned, wv)), 0), {0, 0, 1}) * glm::dot(normal, wl) *
+                         relief_shadowing(wl.z, normal.z);
+  EXPECT_NEAR(kPi * test::eval_one(*material, point, wl).f.g * wl.z, expected, 1e-4f);
+  const float cosine_of_mapped = std::max(glm::dot(normal, wv), 1e-3f);
+  const float unturned = f_of(*base, direction(std::acos(cosine_of_mapped), 0), {0, 0, 1});
+  EXPECT_GT(std::abs(unturned / f_of(*base, direction(std::acos(glm::dot(turned, wv)), 0), {0, 0, 1}) - 1), 0.05f);
+}
+
 /// Of light that is low, and of a view whose mirror image would be below the ground.
 TEST(NormalMap, CorrectionsDiffer) {
   const Vec3 normal = direction(0.9f, 0), low = direction(1.5f, 0), wv = direction(1.2f, kPi);
   ASSERT_GT(glm::dot(with_mirror_above(normal, {0, 0, 1}, wv), {0, 0, 1}), normal.z + 0.1f);
   ASSERT_LT(glm::dot(normal, wv), 0);  // and it is behind the mapped normal
-  const auto value = [&](ReliefCorrection correction, bool is_diffuse) {
+  const auto value = [&](ReliefCorrection correction, ReliefPart part) {
     const NormalMap map{test::one_texel(0.5f + 0.5f * normal), 1, correction};
     PreparedBrdf point;
-    const auto material = make_normal_mapped(white(), map, is_diffuse);
+    const auto material = make_normal_mapped(white(), map, part);
     material->prepare(wv, {.relief = Mat3(1.0f), .ground = {0, 0, 1}}, point);
     return kPi * test::eval_one(*material, point, low).f.g * low.z;
   };
@@ -101,16 +132,16 @@ TEST(NormalMap, CorrectionsDiffer) {
   const float faded = terminator_softening(low.z, hard, normal.z);
   EXPECT_LT(shadowed, 0.5f);
   EXPECT_GT(std::abs(shadowed - faded), 0.05f);
-  EXPECT_NEAR(value(ReliefCorrection::none, true), hard, 1e-4f);
-  EXPECT_NEAR(value(ReliefCorrection::shadowed, true), shadowed * hard, 1e-4f);
+  EXPECT_NEAR(value(ReliefCorrection::none, ReliefPart::diffuse), hard, 1e-4f);
+  EXPECT_NEAR(value(ReliefCorrection::shadowed, ReliefPart::diffuse), shadowed * hard, 1e-4f);
   const float turned = glm::dot(with_mirror_above(normal, {0, 0, 1}, wv), low);
   EXPECT_LT(turned, hard - 0.05f);
-  EXPECT_NEAR(value(ReliefCorrection::faded, true), faded * hard, 1e-4f);
+  EXPECT_NEAR(value(ReliefCorrection::faded, ReliefPart::diffuse), faded * hard, 1e-4f);
   for (const auto correction : {ReliefCorrection::turned, ReliefCorrection::faded, ReliefCorrection::shadowed}) {
-    EXPECT_NEAR(value(correction, false), turned, 1e-4f);
+    EXPECT_NEAR(value(correction, ReliefPart::lobe), turned, 1e-4f);
   }
-  EXPECT_LT(value(ReliefCorrection::turned, true), turned);
-  EXPECT_NEAR(value(ReliefCorrection::none, false), hard, 1e-4f);
+  EXPECT_LT(value(ReliefCorrection::turned, ReliefPart::diffuse), turned);
+  EXPECT_NEAR(value(ReliefCorrection::none, ReliefPart::lobe), hard, 1e-4f);
 }
 
 /// Over random normals, grounds and views: what the view's mirror image needs, and no more.

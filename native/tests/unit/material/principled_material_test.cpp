@@ -162,7 +162,8 @@ TEST(PrincipledMaterial, IsTheSumOfItsParts) {
         return eval_one(*make_principled_material(p), {.wl = wl, .wv = direction(0.9f, 0)}).f;
       };
       const Rgb whole = value(PrincipledPart::whole), base = value(PrincipledPart::base);
-      EXPECT_LT(glm::distance(whole, base + value(PrincipledPart::specular)), 1e-6f * (1 + whole.r));
+      const Rgb lobes = value(PrincipledPart::specular) + value(PrincipledPart::coat);
+      EXPECT_LT(glm::distance(whole, base + lobes), 1e-6f * (1 + whole.r));
       EXPECT_GT(base.r, 0.1f);
     }
   }

@@ -15,7 +15,7 @@ SurfaceMaterial white(const std::vector<Vec3>& normals, int side) {
   const auto texture =
       std::make_shared<const Texture<Rgb>>(side, side, texels, TextureOptions{.filter = TextureFilter::closest});
   return {.material = make_normal_mapped(make_principled_material({.base_color = Rgb(1), .specular = 0}),
-                                         {{texture, {}}, 1}, false),
+                                         {{texture, {}}, 1}, ReliefPart::lobe),
           .rec709_colors = false,
           .relief = true};
 }

@@ -99,10 +99,10 @@ TEST(UvSets, OneThatIsNotThereIsTheFirst) {
 TEST(UvSets, ReliefFollowsItsOwn) {
   const std::vector<Rgb> tilt = {0.5f + 0.5f * glm::normalize(Vec3(0.5f, 0.3f, 1))};
   const auto map = std::make_shared<const Texture<Rgb>>(1, 1, tilt, TextureOptions{});
-  const SurfaceMaterial bumpy{
-      .material = make_normal_mapped(make_principled_material({.base_color = Rgb(1)}), {{map, {}}, 1}, false),
-      .rec709_colors = false,
-      .relief = true};
+  const SurfaceMaterial bumpy{.material = make_normal_mapped(make_principled_material({.base_color = Rgb(1)}),
+                                                             {{map, {}}, 1}, ReliefPart::lobe),
+                              .rec709_colors = false,
+                              .relief = true};
   const auto alone = picture(square_with(kSecond, {}), bumpy);
   EXPECT_LT(largest_difference(picture(square_with(kFirst, {}, &kSecond), bumpy), alone), kRounding);
   EXPECT_GT(largest_difference(picture(square_with(kFirst, {}), bumpy), alone), kSeen);
