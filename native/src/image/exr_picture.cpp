@@ -12,91 +12,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <filesystem>
 #include <tuple>
 
 #include "file/file.h"
 #include "image/exr_colors.h"
 #include "image/exr_errors.h"
+#include "image/exr_header_check.h"
 #include "image/exr_output.h"
 #include "image/open_picture.h"
 #include "job/error.h"
 
 namespace velour {
 namespace {
-
-/// OpenEXR makes tables for all rows and chunks that headers claim when it opens a file, before anyone can ask how
-/// many.
-class HeaderCheck {
- public:
-  explicit HeaderCheck(const std::string& path)
-      : path_(path), head_(read_file_head(path, kMaxHeader)), file_bytes_(std::filesystem::file_size(path)) {}
-
-  void run() {
-    const auto version = number<uint32_t>(4);
-    if (!version) return;
-    size_t at = 8;
-    do {
-      at = check_part(at);
-    } while (at != kEnd && (*version & kSeveralParts) != 0 && at < head_.size() && head_[at] != 0);
-  }
-
- private:
-  static constexpr size_t kMaxHeader = size_t{1} << 20, kEnd = SIZE_MAX;
-  static constexpr uint32_t kSeveralParts = 0x1000;  // a bit of the version field
-
-  [[noreturn]] void fail(const std::string& what) const { throw Error(Status::bad_data, path_ + ": " + what); }
-
-  template <typename T>
-  std::optional<T> number(size_t at) const {
-    T value;
-    if (at > head_.size() || sizeof value > head_.size() - at) return std::nullopt;
-    std::memcpy(&value, head_.data() + at, sizeof value);
-    return value;
-  }
-
-  std::optional<std::string> text(size_t& at) const {
-    const auto begin = head_.begin() + static_cast<std::ptrdiff_t>(std::min(at, head_.size()));
-    const auto end = std::find(begin, head_.end(), 0);
-    if (end == head_.end()) return std::nullopt;
-    at = static_cast<size_t>(end - head_.begin()) + 1;
-    return std::string(begin, end);
-  }
-
-  /// The attributes of the part that begins at `at`: name, type, size, value. Returns where the next one begins; kEnd:
-  /// the header ends early or is longer than was read, and OpenEXR itself will say so.
-  size_t check_part(size_t at) const {
-    while (at < head_.size() && head_[at] != 0) {
-      const auto name = text(at), type = text(at);
-      const auto size = number<uint32_t>(at);
-      if (!name || !type || !size) return kEnd;
-      at += sizeof *size;
-      if (*size > file_bytes_ - at) fail("its header is damaged.");
-      if (*size > head_.size() - at) fail("its header has more than a megabyte, which Velour does not read.");
-      check_attribute(*name, *size, at);
-      at += *size;
-    }
-    return at < head_.size() ? at + 1 : kEnd;
-  }
-
-  void check_attribute(const std::string& name, uint32_t size, size_t at) const {
-    if (name == "dataWindow" && size == 16) {
-      const int64_t rows = int64_t{*number<int32_t>(at + 12)} - *number<int32_t>(at + 4) + 1;
-      if (rows > static_cast<int64_t>(kMaxValuesPerByte * file_bytes_))
-        fail("the header says " + std::to_string(rows) + " rows, more than the file can hold.");
-    }
-    if (name == "chunkCount" && size == 4) {
-      const int64_t chunks = *number<int32_t>(at);
-      if (chunks < 0 || static_cast<uint64_t>(chunks) > file_bytes_ / sizeof(uint64_t))
-        fail("the header says " + std::to_string(chunks) + " chunks, more than the file can hold.");
-    }
-  }
-
-  std::string path_;
-  std::vector<uint8_t> head_;  // read first: it says plainly what is wrong with the path
-  uint64_t file_bytes_;
-};
 
 /// The layer, whether the channel is no color, its place among colors, its name: what channels are sorted by.
 auto order_of(const std::string& channel) {
@@ -144,7 +71,7 @@ class OpenExr : public OpenPicture {
 
  protected:
   explicit OpenExr(const std::string& path) : path_(path) {
-    HeaderCheck(path).run();
+    check_exr_header(path);
     file_.emplace(path.c_str(), 0);
   }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
-#include <utility>
 
 #include "file/byte_reader.h"
+#include "image/exr_header_check.h"
 
 namespace velour {
 namespace {
@@ -31,32 +31,22 @@ struct PartLayout {
   throw Error(Status::bad_data, in.name() + ": part '" + part.name + "': " + what);
 }
 
-/// Attribute types of a fixed size; with strings and channel lists the only ones let through, because the readers of
-/// the others take counts from their values.
-constexpr std::pair<std::string_view, int32_t> kFixedTypes[] = {{"int", 4},         {"float", 4},
-                                                                {"double", 8},      {"v2i", 8},
-                                                                {"v2f", 8},         {"v3i", 12},
-                                                                {"v3f", 12},        {"v2d", 16},
-                                                                {"v3d", 24},        {"box2i", 16},
-                                                                {"box2f", 16},      {"m33f", 36},
-                                                                {"m44f", 64},       {"chromaticities", 32},
-                                                                {"compression", 1}, {"lineOrder", 1},
-                                                                {"rational", 8},    {"timecode", 8},
-                                                                {"keycode", 28},    {"envmap", 1}};
-
+/// Values of a fixed size, strings and channel lists are the only ones let through: the readers of others take counts
+/// from their values.
 void check_type(const ByteReader& in, const ExrPart& part, const std::string& field, const std::string& type,
                 int32_t size) {
   if (size < 0) fail(in, part, "attribute " + field + " has size " + std::to_string(size) + "; the file is damaged.");
   if (type == "string" || type == "chlist") return;
-  for (const auto& [known, bytes] : kFixedTypes) {
-    if (type != known) continue;
-    if (size == bytes) return;
+  const auto fixed = fixed_exr_bytes(type);
+  if (!fixed) {
+    throw Error(Status::unsupported, in.name() + ": part '" + part.name + "': attribute " + field + " has type '" +
+                                         type + "', which Velour's files do not use.");
+  }
+  if (static_cast<uint32_t>(size) != *fixed) {
     fail(in, part,
          "attribute " + field + " of type " + type + " has size " + std::to_string(size) + ", not " +
-             std::to_string(bytes) + "; the file is damaged.");
+             std::to_string(*fixed) + "; the file is damaged.");
   }
-  throw Error(Status::unsupported, in.name() + ": part '" + part.name + "': attribute " + field + " has type '" + type +
-                                       "', which Velour's files do not use.");
 }
 
 void read_channels(ByteReader value, ExrPart& part) {

@@ -61,7 +61,8 @@ using Values = std::unique_ptr<T, Free<T>>;
 bool has_clear_color(std::span<const uint8_t> png) {
   constexpr size_t kSignature = 8, kBesideData = 12;
   for (uint64_t at = kSignature; at + kBesideData <= png.size();) {
-    const uint64_t length = uint64_t{png[at]} << 24 | png[at + 1] << 16 | png[at + 2] << 8 | png[at + 3];
+    const auto byte = [&](uint64_t i) { return uint64_t{png[at + i]}; };
+    const uint64_t length = byte(0) << 24 | byte(1) << 16 | byte(2) << 8 | byte(3);
     const std::string_view type(reinterpret_cast<const char*>(&png[at + 4]), 4);
     if (type == "tRNS" || type == "IDAT") return type == "tRNS";
     at += kBesideData + length;

@@ -10,14 +10,18 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfPreviewImage.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringVectorAttribute.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
+#include "file/file.h"
 #include "image/picture.h"
 #include "job/error.h"
 #include "support/inputs.h"
@@ -295,6 +299,27 @@ TEST_F(ForeignExr, DeepPicturesAreRefused) {
     file.writePixels(kHeight);
   }
   EXPECT_NE(refusal(path_).find("is a deep picture"), std::string::npos) << refusal(path_);
+}
+
+/// OpenEXR reads values by their types and takes what follows for the next attribute, whose size it then allocates.
+TEST_F(ForeignExr, AttributesWhoseSizesAreNotTheirContentsAreRefused) {
+  Imf::Header header = header_of({{"R", 1}, {"G", 2}, {"B", 3}}, kWindow, kWindow);
+  header.insert("views", Imf::StringVectorAttribute({"left", "right"}));
+  header.setPreviewImage(Imf::PreviewImage(3, 2));
+  header.insert("place", Imf::Box2iAttribute(kWindow));
+  write(path_, {{"R", 1}, {"G", 2}, {"B", 3}}, header);
+  EXPECT_EQ(read_picture(path_).channels, 3);
+  const std::vector<uint8_t> whole = read_file(path_);
+  for (const std::string name : {"views", "preview", "place", "channels"}) {
+    std::vector<uint8_t> bytes = whole;
+    const std::string field = name + std::string(1, '\0');
+    auto at = std::ranges::search(bytes, field).begin() + static_cast<std::ptrdiff_t>(field.size());
+    at = std::find(at, bytes.end(), 0) + 1;  // after the type
+    ++*at;                                   // the size
+    write_file(path_, bytes);
+    const std::string said = refusal(path_);
+    EXPECT_NE(said.find("attribute " + name), std::string::npos) << said;
+  }
 }
 
 }  // namespace

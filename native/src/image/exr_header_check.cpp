@@ -1,0 +1,146 @@
+#include "image/exr_header_check.h"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "file/file.h"
+#include "image/open_picture.h"
+#include "job/error.h"
+
+namespace velour {
+namespace {
+
+constexpr std::pair<std::string_view, uint32_t> kFixedTypes[] = {
+    {"int", 4},         {"float", 4},     {"double", 8},   {"v2i", 8},
+    {"v2f", 8},         {"v3i", 12},      {"v3f", 12},     {"v2d", 16},
+    {"v3d", 24},        {"box2i", 16},    {"box2f", 16},   {"m33f", 36},
+    {"m33d", 72},       {"m44f", 64},     {"m44d", 128},   {"chromaticities", 32},
+    {"compression", 1}, {"lineOrder", 1}, {"rational", 8}, {"timecode", 8},
+    {"keycode", 28},    {"envmap", 1},    {"tiledesc", 9}, {"deepImageState", 1}};
+
+class HeaderCheck {
+ public:
+  explicit HeaderCheck(const std::string& path)
+      : path_(path), head_(read_file_head(path, kMaxHeader)), file_bytes_(std::filesystem::file_size(path)) {}
+
+  void run() {
+    const auto version = number<uint32_t>(4);
+    if (!version) return;
+    size_t at = 8;
+    do {
+      at = check_part(at);
+    } while (at != kEnd && (*version & kSeveralParts) != 0 && at < head_.size() && head_[at] != 0);
+  }
+
+ private:
+  static constexpr size_t kMaxHeader = size_t{1} << 20, kEnd = SIZE_MAX;
+  static constexpr uint32_t kSeveralParts = 0x1000;  // a bit of the version field
+
+  [[noreturn]] void fail(const std::string& what) const { throw Error(Status::bad_data, path_ + ": " + what); }
+
+  template <typename T>
+  std::optional<T> number(size_t at) const {
+    T value;
+    if (at > head_.size() || sizeof value > head_.size() - at) return std::nullopt;
+    std::memcpy(&value, head_.data() + at, sizeof value);
+    return value;
+  }
+
+  std::optional<std::string> text(size_t& at) const {
+    const auto begin = head_.begin() + static_cast<std::ptrdiff_t>(std::min(at, head_.size()));
+    const auto end = std::find(begin, head_.end(), 0);
+    if (end == head_.end()) return std::nullopt;
+    at = static_cast<size_t>(end - head_.begin()) + 1;
+    return std::string(begin, end);
+  }
+
+  /// The attributes of the part that begins at `at`: name, type, size, value. Returns where the next one begins; kEnd:
+  /// the header ends early or is longer than was read, and OpenEXR itself will say so.
+  size_t check_part(size_t at) const {
+    while (at < head_.size() && head_[at] != 0) {
+      const auto name = text(at), type = text(at);
+      const auto size = number<uint32_t>(at);
+      if (!name || !type || !size) return kEnd;
+      at += sizeof *size;
+      if (*size > file_bytes_ - at) fail("its header is damaged.");
+      if (*size > head_.size() - at) fail("its header has more than a megabyte, which Velour does not read.");
+      check_value(*name, *type, *size, at);
+      check_claims(*name, *size, at);
+      at += *size;
+    }
+    return at < head_.size() ? at + 1 : kEnd;
+  }
+
+  /// OpenEXR reads values by their types, whatever the size: what it takes for the next attribute would be another.
+  void check_value(const std::string& name, const std::string& type, uint32_t size, size_t at) const {
+    const auto fixed = fixed_exr_bytes(type);
+    const bool is_whole = fixed                    ? size == *fixed
+                          : type == "chlist"       ? is_channel_list(size, at)
+                          : type == "preview"      ? is_preview(size, at)
+                          : type == "stringvector" ? are_texts(size, at)
+                                                   : true;
+    if (!is_whole) {
+      fail("its header is damaged: attribute " + name + " of type " + type + " has a size of " + std::to_string(size) +
+           " bytes, which is not that of its content.");
+    }
+  }
+
+  /// Name, type, a flag, steps; the end is an empty name.
+  bool is_channel_list(uint32_t size, size_t at) const {
+    constexpr size_t kBesideName = 16;
+    const size_t end = at + size;
+    while (at < end) {
+      const auto name = text(at);
+      if (!name || at > end) return false;
+      if (name->empty()) return at == end;
+      at += kBesideName;
+    }
+    return false;
+  }
+
+  bool is_preview(uint32_t size, size_t at) const {
+    const auto width = number<uint32_t>(at), height = number<uint32_t>(at + 4);
+    return size >= 8 && width && height && uint64_t{*width} * *height * 4 == size - 8 && *width <= size;
+  }
+
+  bool are_texts(uint32_t size, size_t at) const {
+    const size_t end = at + size;
+    while (at < end) {
+      const auto length = number<uint32_t>(at);
+      if (!length || end - at < sizeof *length || *length > end - at - sizeof *length) return false;
+      at += sizeof *length + *length;
+    }
+    return true;
+  }
+
+  void check_claims(const std::string& name, uint32_t size, size_t at) const {
+    if (name == "dataWindow" && size == 16) {
+      const int64_t rows = int64_t{*number<int32_t>(at + 12)} - *number<int32_t>(at + 4) + 1;
+      if (rows > static_cast<int64_t>(kMaxValuesPerByte * file_bytes_))
+        fail("the header says " + std::to_string(rows) + " rows, more than the file can hold.");
+    }
+    if (name == "chunkCount" && size == 4) {
+      const int64_t chunks = *number<int32_t>(at);
+      if (chunks < 0 || static_cast<uint64_t>(chunks) > file_bytes_ / sizeof(uint64_t))
+        fail("the header says " + std::to_string(chunks) + " chunks, more than the file can hold.");
+    }
+  }
+
+  std::string path_;
+  std::vector<uint8_t> head_;  // read first: it says plainly what is wrong with the path
+  uint64_t file_bytes_;
+};
+
+}  // namespace
+
+void check_exr_header(const std::string& path) { HeaderCheck(path).run(); }
+
+std::optional<uint32_t> fixed_exr_bytes(std::string_view type) {
+  const auto found = std::ranges::find(kFixedTypes, type, &std::pair<std::string_view, uint32_t>::first);
+  return found != std::end(kFixedTypes) ? std::optional(found->second) : std::nullopt;
+}
+
+}  // namespace velour
