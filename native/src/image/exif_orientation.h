@@ -12,8 +12,8 @@ namespace velour {
 /// nothing that makes sense. Reads a few bytes of the file.
 Orientation exif_orientation(PictureFormat format, const std::string& path);
 
-/// Throws Error(bad_data) for a PNG file with a chunk before its pixels that does not lie within the file: libraries
-/// take memory for what a chunk says that it holds before they read it.
+/// Throws Error(bad_data) for a PNG file with a chunk that does not lie within the file: libraries take memory for what
+/// a chunk says that it holds before they read it.
 void check_png_chunks(const std::string& path);
 
 }  // namespace velour
