@@ -21,6 +21,27 @@ constexpr std::pair<std::string_view, uint32_t> kFixedTypes[] = {
     {"compression", 1}, {"lineOrder", 1}, {"rational", 8}, {"timecode", 8},
     {"keycode", 28},    {"envmap", 1},    {"tiledesc", 9}, {"deepImageState", 1}};
 
+/// How OpenEXR stores rows.
+struct Packing {
+  double rows;        // of a block, which has that many in memory whatever the picture has
+  double most_ratio;  // of decoded bytes to those in the file
+};
+
+constexpr double kDeflate = 1032;
+/// By the number of the compression: none, runs, rows by DEFLATE, blocks by DEFLATE, wavelets (10 bits for 257 values
+/// of 16), 24 of 32 bits, blocks of 4 x 4 (3 bytes for 32), and of 8 x 8 of which DEFLATE packs the means.
+constexpr Packing kPackings[] = {{1, 1},     {1, 128}, {1, kDeflate}, {16, kDeflate},       {32, 412},
+                                 {16, 1376}, {32, 11}, {32, 11},      {32, kDeflate * 128}, {256, kDeflate * 128}};
+
+/// What a header says of a part.
+struct Claims {
+  int64_t width = 0, height = 0;
+  double pixel_bytes = 0;
+  uint8_t compression = 0;
+  uint32_t tile_width = 0, tile_height = 0;
+  bool is_deep = false;  // any number of values a pixel
+};
+
 class HeaderCheck {
  public:
   explicit HeaderCheck(const std::string& path)
@@ -37,6 +58,7 @@ class HeaderCheck {
 
  private:
   static constexpr size_t kMaxHeader = size_t{1} << 20, kEnd = SIZE_MAX;
+  static constexpr size_t kBesideChannelName = 16;   // type, a flag, steps along x and y
   static constexpr uint32_t kSeveralParts = 0x1000;  // a bit of the version field
 
   [[noreturn]] void fail(const std::string& what) const { throw Error(Status::bad_data, path_ + ": " + what); }
@@ -60,6 +82,7 @@ class HeaderCheck {
   /// The attributes of the part that begins at `at`: name, type, size, value. Returns where the next one begins; kEnd:
   /// the header ends early or is longer than was read, and OpenEXR itself will say so.
   size_t check_part(size_t at) const {
+    Claims claims;
     while (at < head_.size() && head_[at] != 0) {
       const auto name = text(at), type = text(at);
       const auto size = number<uint32_t>(at);
@@ -68,9 +91,10 @@ class HeaderCheck {
       if (*size > file_bytes_ - at) fail("its header is damaged.");
       if (*size > head_.size() - at) fail("its header has more than a megabyte, which Velour does not read.");
       check_value(*name, *type, *size, at);
-      check_claims(*name, *size, at);
+      take_claim(*name, *type, *size, at, claims);
       at += *size;
     }
+    check_claims(claims);
     return at < head_.size() ? at + 1 : kEnd;
   }
 
@@ -88,15 +112,14 @@ class HeaderCheck {
     }
   }
 
-  /// Name, type, a flag, steps; the end is an empty name.
+  /// The end is an empty name.
   bool is_channel_list(uint32_t size, size_t at) const {
-    constexpr size_t kBesideName = 16;
     const size_t end = at + size;
     while (at < end) {
       const auto name = text(at);
       if (!name || at > end) return false;
       if (name->empty()) return at == end;
-      at += kBesideName;
+      at += kBesideChannelName;
     }
     return false;
   }
@@ -116,17 +139,56 @@ class HeaderCheck {
     return true;
   }
 
-  void check_claims(const std::string& name, uint32_t size, size_t at) const {
+  void take_claim(const std::string& name, const std::string& type, uint32_t size, size_t at, Claims& claims) const {
+    const auto value = [&](size_t offset) { return int64_t{*number<int32_t>(at + offset)}; };
     if (name == "dataWindow" && size == 16) {
-      const int64_t rows = int64_t{*number<int32_t>(at + 12)} - *number<int32_t>(at + 4) + 1;
-      if (rows > static_cast<int64_t>(kMaxValuesPerByte * file_bytes_))
-        fail("the header says " + std::to_string(rows) + " rows, more than the file can hold.");
+      claims.width = value(8) - value(0) + 1;
+      claims.height = value(12) - value(4) + 1;
+    } else if (name == "chunkCount" && size == 4) {
+      if (value(0) < 0 || static_cast<uint64_t>(value(0)) > file_bytes_ / sizeof(uint64_t))
+        fail("the header says " + std::to_string(value(0)) + " chunks, more than the file can hold.");
+    } else if (name == "compression" && size == 1) {
+      claims.compression = head_[at];
+    } else if (name == "tiles" && size == 9) {
+      claims.tile_width = *number<uint32_t>(at);
+      claims.tile_height = *number<uint32_t>(at + 4);
+    } else if (name == "type" && type == "string") {
+      constexpr std::string_view kDeep = "deep";
+      claims.is_deep = std::string_view(reinterpret_cast<const char*>(&head_[at]), size).starts_with(kDeep);
+    } else if (name == "channels" && type == "chlist") {
+      claims.pixel_bytes = bytes_of_channels(size, at);
     }
-    if (name == "chunkCount" && size == 4) {
-      const int64_t chunks = *number<int32_t>(at);
-      if (chunks < 0 || static_cast<uint64_t>(chunks) > file_bytes_ / sizeof(uint64_t))
-        fail("the header says " + std::to_string(chunks) + " chunks, more than the file can hold.");
+  }
+
+  /// Of a pixel; those of fewer pixels count their share.
+  double bytes_of_channels(uint32_t size, size_t at) const {
+    constexpr int32_t kHalf = 1;
+    const size_t end = at + size;
+    double bytes = 0;
+    while (at < end && !text(at)->empty()) {
+      const double steps = std::max(1.0, static_cast<double>(*number<int32_t>(at + 8)) * *number<int32_t>(at + 12));
+      bytes += (*number<int32_t>(at) == kHalf ? 2 : 4) / steps;
+      at += kBesideChannelName;
     }
+    return bytes;
+  }
+
+  void check_claims(const Claims& claims) const {
+    constexpr double kAlwaysAllowed = 64 << 20, kTimesDecoded = 4;
+    if (claims.width <= 0 || claims.height <= 0) return;  // OpenEXR says so
+    const Packing& packing = kPackings[std::min<size_t>(claims.compression, std::size(kPackings) - 1)];
+    const double row = static_cast<double>(claims.width) * claims.pixel_bytes;
+    const double decoded = row * static_cast<double>(claims.height);
+    const std::string said =
+        "the header says " + std::to_string(claims.width) + " x " + std::to_string(claims.height) + " pixels";
+    const double most_rows = static_cast<double>(kMaxValuesPerByte) * static_cast<double>(file_bytes_);
+    if ((!claims.is_deep && decoded > packing.most_ratio * static_cast<double>(file_bytes_)) ||
+        static_cast<double>(claims.height) > most_rows) {
+      fail(said + ", more than the file can hold.");
+    }
+    const double tile = static_cast<double>(claims.tile_width) * claims.tile_height * claims.pixel_bytes;
+    if (std::max(tile, packing.rows * row) > kAlwaysAllowed + kTimesDecoded * decoded)
+      fail(said + " in blocks that are many times as large; save it without compression.");
   }
 
   std::string path_;

@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 
@@ -320,6 +321,23 @@ TEST_F(ForeignExr, AttributesWhoseSizesAreNotTheirContentsAreRefused) {
     const std::string said = refusal(path_);
     EXPECT_NE(said.find("attribute " + name), std::string::npos) << said;
   }
+}
+
+/// OpenEXR unpacks sixteen rows at once, whether the picture has them or not.
+TEST_F(ForeignExr, BlocksManyTimesAsLargeAsThePictureAreRefused) {
+  Imf::Header header = header_of({{"R", 1}, {"G", 2}, {"B", 3}}, kWindow, kWindow);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  write(path_, {{"R", 1}, {"G", 2}, {"B", 3}}, header);
+  std::vector<uint8_t> bytes = read_file(path_);
+  const std::string name = std::string("dataWindow\0box2i\0", 17);
+  const auto window = std::ranges::search(bytes, name).begin() + static_cast<std::ptrdiff_t>(name.size() + 4);
+  const int32_t wide[] = {0, 0, 2'299'999, 0};
+  std::memcpy(&*window, wide, sizeof wide);
+  write_file(path_, bytes);
+  EXPECT_NE(refusal(path_).find("2300000 x 1 pixels, more than the file can hold"), std::string::npos);
+  bytes.resize(40'000);
+  write_file(path_, bytes);
+  EXPECT_NE(refusal(path_).find("in blocks that are many times as large"), std::string::npos) << refusal(path_);
 }
 
 }  // namespace
