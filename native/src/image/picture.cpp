@@ -44,7 +44,7 @@ void check_size(const std::string& path, const PictureHeader& header) {
 
 /// A small part of a large picture may be all that a file holds, but not of one that is larger by any measure.
 void check_frame(const std::string& path, const PictureHeader& header) {
-  constexpr uint64_t kAlwaysAllowed = uint64_t{1} << 26, kTimesStored = 64;
+  constexpr uint64_t kAlwaysAllowed = uint64_t{1} << 24, kTimesStored = 64;
   if (!header.frame) return;
   const int width = header.frame->width, height = header.frame->height;
   const uint64_t stored = static_cast<uint64_t>(header.width) * static_cast<uint64_t>(header.height);
@@ -55,7 +55,7 @@ void check_frame(const std::string& path, const PictureHeader& header) {
     throw Error(Status::bad_data, path + ": its display window is " + std::to_string(width) + " x " +
                                       std::to_string(height) + " pixels, its data window " +
                                       std::to_string(header.width) + " x " + std::to_string(header.height) +
-                                      "; the file is damaged.");
+                                      ", a small part of it; save it without the crop, or it is damaged.");
 }
 
 PictureFormat format_of(const std::string& path) {
