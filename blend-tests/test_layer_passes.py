@@ -189,6 +189,9 @@ class Compositor(PassesTest):
         many = scenes.middle(self.shown("Error")).mean()
         self.assertGreater(few, 0)
         self.assert_close(many / few, 0.25, 0.05)
+        bpy.ops.preferences.addon_enable(module="cycles")
+        self.scene.cycles.film_exposure = 3
+        self.assert_close(scenes.middle(self.shown("Error")).mean() / many, 3, 1e-3)
 
     def test_denoise_node(self):
         """With its two passes it comes nearer to what many samples show."""

@@ -155,6 +155,17 @@ class Panels(BlenderTest):
         (self.folder / "gone.velour").write_bytes(inputs.model_bytes(inputs.lambert_measurement()))
         self.assertEqual(self._read_and_offered(context, panel), ["velour.accept_file"])
 
+    def test_numbers_of_a_model(self):
+        info = {"source": {"name": "paint"}, "model": "scattered", "lobes": 7, "views": 9, "bytes": 1000}
+        info |= {"relative_l2": 0.125, "albedo_max": 0.75, "reciprocity": 0.0625, "by_view_angle": {}}
+        layout = Layout()
+        model_panel._draw_numbers(layout, info)
+        rows = dict(zip(layout.labels[::2], layout.labels[1::2], strict=False))
+        shown = {
+            name: rows[name] for name in ("Source", "Relative error", "Largest albedo", "Reciprocity error")
+        }
+        self.assertEqual(list(shown.values()), ["paint", "0.125", "0.75", "0.0625"])
+
     def _read_and_offered(self, context, panel=VELOUR_MATERIAL_PT_measured):
         """What the panel offers once the files are read."""
         self._offered(panel, context)

@@ -87,6 +87,12 @@ class AddMesostructure(BlenderTest):
         bpy.ops.ed.undo()
         self.assertEqual(len(bpy.data.objects), 0)
 
+    def test_is_offered_in_object_mode_alone(self):
+        bpy.context.view_layer.objects.active = _add(type="NET")
+        self.assertTrue(bpy.ops.velour.add_mesostructure.poll())
+        bpy.ops.object.mode_set(mode="EDIT")
+        self.assertFalse(bpy.ops.velour.add_mesostructure.poll())
+
     def test_period_is_saved(self):
         _add(type="NET", size=0.5)
         path = self.folder / "net.blend"

@@ -146,6 +146,16 @@ def shared(task):
     return task
 
 
+def test_a_picture_of_some_samples_is_no_frame(task, good, tmp_path):
+    from velour.native import images
+
+    part = tmp_path / "part.exr"
+    stamps = {**_STAMPS, "velour.samples": "0:64"}
+    images.write_part(part, np.ones((4, 6, 4), np.float32), images.Frame(6, 4), stamps)
+    assert frame.problem(task, good) == ""
+    assert "it has the samples 0:64 alone" in frame.problem(task, part)
+
+
 def test_two_make_the_picture(shared, good):
     """The other one was first: it named its picture, and cleared away what there was of the frame."""
     taken = f"mv '{good}' '{shared.picture(1)}'; rm -r '{shared.film(1)}'"

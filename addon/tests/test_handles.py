@@ -33,6 +33,15 @@ def test_closing_twice_is_fine_and_use_after_it_is_refused(measurement_file):
     assert caught.value.status == Status.INVALID_STATE
 
 
+def test_closing_frees_once(measurement_file):
+    measurement, freed = Measurement.load(measurement_file), []
+    free, pointer = measurement._free, measurement.pointer.value
+    measurement._free = lambda handle: (freed.append(handle.value), free(handle))
+    measurement.close()
+    measurement.close()
+    assert freed == [pointer]
+
+
 def test_handles_may_go_in_any_order(measurement_file):
     measurement = Measurement.load(measurement_file)
     job = fit_job(measurement, max_lobes=1)

@@ -33,6 +33,7 @@ def test_all_faults_can_be_planted_in_this_tree(capsys):
 
 def test_a_tree_with_a_fault_is_not_checked(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(mutants, "FAULTS", tmp_path)  # has none
+    monkeypatch.delenv(mutant_tree.PLANTED, raising=False)  # this may be such a tree
     assert mutants.main(["--check"]) == mutants.FAILED
     monkeypatch.setenv(mutant_tree.PLANTED, "wrong-number")
     assert mutants.main(["--check"]) == mutants.DONE

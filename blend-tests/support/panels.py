@@ -45,10 +45,10 @@ _BESIDES = (
 
 
 class Layout:
-    """A layout, and the panel or menu with it: remembers which settings and nodes are put there."""
+    """A layout, and the panel or menu with it: remembers which settings, nodes and texts are put there."""
 
     def __init__(self, cls=None):
-        self._cls, self.layout, self.props, self.operators = cls, self, [], []
+        self._cls, self.layout, self.props, self.operators, self.labels = cls, self, [], [], []
 
     def __getattr__(self, name):
         if hasattr(self._cls, name):
@@ -59,6 +59,9 @@ class Layout:
 
     def prop(self, _owner, name, **_keywords):
         self.props.append(name)
+
+    def label(self, *, text="", **_keywords):
+        self.labels.append(text)
 
     def operator(self, name, **_keywords):
         self.operators.append(SimpleNamespace(name=name))

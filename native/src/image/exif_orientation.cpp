@@ -97,14 +97,15 @@ Orientation of_png(const Part& png) {
 
 void check_png_chunks(const std::string& path) {
   constexpr uint64_t kSignature = 8, kBesideData = 12;
+  constexpr uint64_t kLengthAndType = 8;
   constexpr int kMaxChunks = 1 << 20;
   const RandomAccessFile file(path);
   const Part png(file);
   uint64_t at = kSignature;
-  for (int i = 0; at + kBesideData <= png.size() && !png.holds(at + 4, "IEND"sv); ++i) {
+  for (int i = 0; at + kLengthAndType <= png.size() && !png.holds(at + 4, "IEND"sv); ++i) {
     if (i == kMaxChunks) throw Error(Status::bad_data, path + ": has more than a million chunks; save it again.");
     const uint64_t length = *png.number(at, 4, true);
-    if (length > png.size() - at - kBesideData) {
+    if (at + kBesideData + length > png.size()) {
       throw Error(Status::bad_data, path + ": is damaged: the chunk at byte " + std::to_string(at) +
                                         " says that it holds " + std::to_string(length) +
                                         " bytes, more than the file has; save it again.");

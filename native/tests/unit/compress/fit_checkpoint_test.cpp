@@ -84,11 +84,11 @@ TEST_F(Checkpoint, WhereNothingCanBeWrittenSaysSoOnce) {
 /// Cancels at a fraction of the progress, always at the same place: reads are counted.
 class CountingBtf final : public BtfMeasurement {
  public:
-  CountingBtf(const BtfMeasurement& of, Progress& progress, uint64_t stop_at)
+  CountingBtf(const BtfMeasurement& of, const std::string& sha256, Progress& progress, uint64_t stop_at)
       : of_(of), progress_(progress), stop_at_(stop_at) {
     layout_ = of.layout();
     grid_ = of.grid();
-    provenance_.sha256 = "0123";
+    provenance_.sha256 = sha256;
   }
   void read_pairs(uint64_t first, uint64_t count, std::span<HalfBits> values) const override {
     if (count > 1 && ++reads_ == stop_at_) progress_.cancel();
@@ -108,9 +108,10 @@ struct Outcome {
   uint64_t reads;
 };
 
-Outcome compress(const BtfMeasurement& btf, const CompressOptions& options, uint64_t stop_at) {
+Outcome compress(const BtfMeasurement& btf, const CompressOptions& options, uint64_t stop_at,
+                 const std::string& sha256 = "0123") {
   Progress progress;
-  const CountingBtf counting(btf, progress, stop_at);
+  const CountingBtf counting(btf, sha256, progress, stop_at);
   try {
     return {compress_btf(counting, options, progress), counting.reads()};
   } catch (const Error& error) {
@@ -190,6 +191,19 @@ TEST_P(Resumed, HasTheBitsOfAFitThatWasNotStopped) {
     EXPECT_LT(rest.reads, whole.reads);
     EXPECT_FALSE(std::filesystem::exists(path));  // after a success
   }
+}
+
+TEST(ResumedFit, OfAnotherBtfOfTheSameSizeBeginsAnew) {
+  const std::string path = testing::TempDir() + "velour-resumed-another";
+  std::filesystem::remove(path);
+  const test::MemoryBtf btf = test::striped_btf({6, 4}, false);
+  CompressOptions options = options_of(CompressMethod::svd);
+  options.checkpoint = path;
+  options.resume = true;
+  const uint64_t reads = compress(btf, options, 0).reads;
+  EXPECT_FALSE(compress(btf, options, reads / 2).model);
+  EXPECT_TRUE(std::filesystem::exists(path));
+  EXPECT_EQ(compress(btf, options, 0, "4567").reads, reads);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Resumed,

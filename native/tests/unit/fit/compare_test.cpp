@@ -63,6 +63,21 @@ TEST(Compare, AModelTenPercentTooBrightIsTenPercentOff) {
   EXPECT_GT(c.log_rms, 0.05);
 }
 
+/// Of a model whose error grows towards grazing views.
+TEST(Compare, TheMeanWeighsViewsByTheirCosines) {
+  Progress progress;
+  const auto off = [](const DirectionPair& p) { return (2 - p.wv.z) * test::lambert(p); };
+  const Comparison c = compare(AnalyticMeasurement(test::lambert), FormulaMaterial(off), progress);
+  double sum = 0, weights = 0;
+  for (const auto& [view, error] : c.by_view_angle) {
+    const double weight = std::cos(radians_from(std::stod(view)));
+    EXPECT_NEAR(error.value(), 1 - weight, 1e-3) << view;
+    sum += weight * *error;
+    weights += weight;
+  }
+  EXPECT_NEAR(c.relative_l2, sum / weights, 1e-9);
+}
+
 TEST(Compare, UncoveredViewsAreNullAndDoNotCount) {
   AnalyticMeasurement half(test::lambert);
   half.set_coverage([](const DirectionPair& p) { return p.wv.z > std::cos(radians_from(70.0f)); });

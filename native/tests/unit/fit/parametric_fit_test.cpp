@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "brdf/held_out.h"
 #include "fit/evaluate.h"
 #include "material/parametric_material.h"
 #include "support/analytic_measurement.h"
@@ -164,6 +165,22 @@ TEST(TrackedGrowth, FitsThatShareTheirGrowthAreThoseOfTheirOwn) {
     EXPECT_EQ(shared.brdf.control, own.brdf.control);
     EXPECT_EQ(shared.order, own.order);
   }
+}
+
+TEST(SliceSampling, LeavesOutTheLightsThatJudge) {
+  Progress progress;
+  const SliceGrid grid{.rings = 16, .spokes = 16};
+  const AnalyticMeasurement measurement(test::lambert);
+  const auto all = sample_slices(measurement, grid, false, 1, progress).slices;
+  const auto fitted = sample_slices(measurement, grid, true, 1, progress).slices;
+  ASSERT_EQ(fitted.size(), all.size());
+  std::vector<Vec3> expected;
+  for (size_t i = 0; i < all[0].samples.size(); ++i) {
+    if (!held_out_light(i)) expected.push_back(all[0].samples[i].wl);
+  }
+  ASSERT_LT(expected.size(), all[0].samples.size());
+  ASSERT_EQ(fitted[0].samples.size(), expected.size());
+  for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(fitted[0].samples[i].wl, expected[i]);
 }
 
 }  // namespace

@@ -204,9 +204,11 @@ TEST(Picture, APngThatPromisesMoreThanItHasIsRefused) {
     const uint8_t length[] = {0x6f, 0, 0, 0};
     const auto after_header = std::ranges::copy(length, bytes.begin() + 8 + 12 + 13).out;
     std::copy_n(chunk, 4, after_header);
-    write_file(path, bytes);
-    const std::string said = refusal([&] { read_picture(path); });
-    EXPECT_NE(said.find("the chunk at byte 33 says that it holds 1862270976 bytes"), std::string::npos) << said;
+    for (const size_t left : {bytes.size(), size_t{33 + 8}}) {  // the file may end within the chunk's head
+      write_file(path, std::span(bytes).first(left));
+      const std::string said = refusal([&] { read_picture(path); });
+      EXPECT_NE(said.find("the chunk at byte 33 says that it holds 1862270976 bytes"), std::string::npos) << said;
+    }
   }
 }
 

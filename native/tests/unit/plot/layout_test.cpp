@@ -105,6 +105,20 @@ TEST(PlotLayout, PointsLieWhereTheTicksSay) {
   EXPECT_NEAR(pixels[4 * (row * 400 + column)], PlotColors().measured.r, 1e-3);
 }
 
+/// As the caption says: the viewer on the left, what it mirrors on the right.
+TEST(PlotLayout, PositiveAnglesLieOnTheRightOfAHalfDisc) {
+  Plot plot = polar_plot(0.01, 1);
+  plot.series = {{"measured", PlotRole::measured, PlotMark::dots, {{-60, 1}, {30, 1}}}};
+  std::vector<Dot> dots;
+  for (const auto& mark : lay_out(plot, {.side = 400}).marks) {
+    if (const auto* dot = std::get_if<Dot>(&mark)) dots.push_back(*dot);
+  }
+  ASSERT_GE(dots.size(), 2u);
+  EXPECT_LT(dots[0].center.x, 200 - 50);
+  EXPECT_GT(dots[1].center.x, 200 + 25);
+  EXPECT_LT(dots[1].center.y, dots[0].center.y);  // the normal is up
+}
+
 TEST(PlotLayout, SidesOutOfRangeAreRefused) {
   for (const int side : {0, 63, 8193}) EXPECT_THROW(lay_out(cartesian_plot(0.1, 1), {.side = side}), Error);
   EXPECT_THROW(lay_out(cartesian_plot(0.1, 1), {.side = 100, .text = -1}), Error);
