@@ -1,34 +1,35 @@
-"""The zip of scripts/package: complete, and the same from the same build."""
+"""The zip of scripts/package: complete, and the same from the same files."""
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import zipfile
 
 import pytest
 from conftest import ROOT
+from package import write_zip
 
 OF_THE_SYSTEM = re.compile(r"(ld-linux-x86-64|libc|libm|libstdc\+\+|libgcc_s)\.so\.\d+")
 
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
-    """Two runs: their folders, and what the second said."""
-    folders = [tmp_path_factory.mktemp("package") for _ in range(2)]
-    for folder in folders:
-        done = subprocess.run(
-            [ROOT / "scripts/package", "--output", folder], capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stderr
-    return folders, done.stdout
+    """The zip, and what the script said."""
+    folder = tmp_path_factory.mktemp("package")
+    done = subprocess.run(
+        [ROOT / "scripts/package", "--output", folder], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    (path,) = folder.glob("velour-*-linux-x64.zip")
+    return path, done.stdout
 
 
 @pytest.fixture(scope="module")
 def unpacked(package, tmp_path_factory):
     folder = tmp_path_factory.mktemp("unpacked")
-    (path,) = package[0][0].glob("velour-*-linux-x64.zip")
-    with zipfile.ZipFile(path) as file:
+    with zipfile.ZipFile(package[0]) as file:
         file.extractall(folder)
     return folder / "velour"
 
@@ -37,9 +38,19 @@ def _dynamic(file):
     return subprocess.run(["readelf", "-dW", file], check=True, capture_output=True, text=True).stdout
 
 
-def test_the_same_build_makes_the_same_bytes(package):
-    first, second = ([*folder.glob("*.zip")] for folder in package[0])
-    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
+def test_the_same_files_make_the_same_bytes(tmp_path):
+    """Whatever their dates, permissions and order in the folder are."""
+    zips = []
+    for number, names in enumerate((("b.py", "a.so"), ("a.so", "b.py"))):
+        folder = tmp_path / str(number) / "velour"
+        folder.mkdir(parents=True)
+        for place, name in enumerate(names):
+            (folder / name).write_bytes(name.encode() * 100)
+            os.utime(folder / name, (10**9 + number, 10**9 + place))
+            (folder / name).chmod(0o600 + 0o155 * number)
+        zips.append(tmp_path / f"{number}.zip")
+        write_zip(zips[-1], folder)
+    assert zips[0].read_bytes() == zips[1].read_bytes()
 
 
 def test_is_one_folder_that_older_and_newer_blenders_take(package, unpacked):
@@ -51,8 +62,7 @@ def test_is_one_folder_that_older_and_newer_blenders_take(package, unpacked):
 
 def test_names_its_folder(package):
     """What Blender's Install removes before it extracts; else it writes over a library that is in use."""
-    (path,) = package[0][0].glob("*.zip")
-    with zipfile.ZipFile(path) as file:
+    with zipfile.ZipFile(package[0]) as file:
         assert [name for name in file.namelist() if name.endswith("/")] == ["velour/"]
 
 
