@@ -36,7 +36,7 @@ struct PartLayout {
 void check_type(const ByteReader& in, const ExrPart& part, const std::string& field, const std::string& type,
                 int32_t size) {
   if (size < 0) fail(in, part, "attribute " + field + " has size " + std::to_string(size) + "; the file is damaged.");
-  if (type == "string" || type == "chlist") return;
+  if (type == "string" || (type == "chlist" && field == "channels")) return;
   const auto fixed = fixed_exr_bytes(type);
   if (!fixed) {
     throw Error(Status::unsupported, in.name() + ": part '" + part.name + "': attribute " + field + " has type '" +
@@ -68,6 +68,8 @@ void read_channels(ByteReader value, ExrPart& part) {
     part.integers = integers;
     part.channels.push_back(channel);
   }
+  // OpenEXR takes the rest for the next attribute.
+  if (value.remaining() != 0) fail(value, part, "attribute channels is longer than its list; the file is damaged.");
 }
 
 void read_window(ByteReader value, ExrPart& part, PartLayout& layout) {

@@ -320,6 +320,15 @@ TEST(ExrTensors, LyingDataWindow) {
     }
 }
 
+/// OpenEXR would take what follows the list for the next attribute, and its size for memory.
+TEST(ExrTensors, AListOfChannelsFillsItsAttribute) {
+  auto bytes = encode_tensors(sample_file());
+  const size_t second = value_of(bytes, "channels", "chlist") + 2 + 16;  // after a name of one letter, and the rest
+  ASSERT_NE(bytes[second], 0);
+  bytes[second] = 0;
+  EXPECT_NE(refusal(bytes).find("channels is longer than its list"), std::string::npos) << refusal(bytes);
+}
+
 TEST(ExrTensors, LyingShapeNamesTheField) {
   const auto good = encode_tensors(sample_file());
   const size_t shape = value_of(good, "velour.shape", "string");
