@@ -7,10 +7,11 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
-# Never .exr: those are pictures to everyone else.
+# Never .exr and .xml: those are pictures and anything to everyone else.
 MODELS = (".velour",)
 MEASUREMENTS = (".binary", ".bsdf", ".brdf", ".btf")
 SUFFIXES = (*MODELS, *MEASUREMENTS)
+_OFTEN_OTHERS = (".exr", ".xml")  # tables, and BSDFs of Radiance and WINDOW
 INDICES = ("btf.json", "btf.csv")  # each makes its folder one BTF; the first that is there counts
 MOST_ENTRIES = 100_000  # looked at: a folder may be the root of a file server
 _MOST_DEPTH = 8
@@ -18,7 +19,7 @@ _MOST_DEPTH = 8
 
 def file_filter(without: str = "") -> str:
     """For a file browser: all that a material can be made of, but for a suffix."""
-    suffixes = (suffix for suffix in (*SUFFIXES, ".exr") if suffix != without)
+    suffixes = (suffix for suffix in (*SUFFIXES, *_OFTEN_OTHERS) if suffix != without)
     return ";".join((*(f"*{suffix}" for suffix in suffixes), *INDICES))
 
 

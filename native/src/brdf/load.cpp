@@ -7,6 +7,7 @@
 #include "brdf/measurement.h"
 #include "brdf/merl.h"
 #include "brdf/rgl.h"
+#include "brdf/window_bsdf.h"
 #include "file/file.h"
 #include "file/random_access_file.h"
 #include "image/exr_tensors.h"
@@ -23,8 +24,10 @@ struct Format {
 };
 
 /// Asked in order; each recognizes its own first bytes.
-constexpr Format kFormats[] = {
-    {looks_like_merl, read_merl}, {looks_like_rgl, read_rgl}, {looks_like_exr, read_brdf_table}};
+constexpr Format kFormats[] = {{looks_like_merl, read_merl},
+                               {looks_like_rgl, read_rgl},
+                               {looks_like_exr, read_brdf_table},
+                               {looks_like_window_bsdf, read_window_bsdf}};
 constexpr size_t kHeadBytes = 4096;
 
 /// The first bytes of a text behind a UTF-8 mark and comments, which may be as long as a laboratory's protocol.
@@ -79,10 +82,6 @@ constexpr OtherFormat kOtherFormats[] = {
      "is a MaterialX document: parameters of a material, not a measurement. Import it in Blender, or use its values in "
      "a "
      "Principled BSDF."},
-    {"", "<WindowElement",
-     "is a BSDF of Radiance or WINDOW (XML, Klems or tensor tree), which Velour does not read yet; convert it to a "
-     "list "
-     "of directions and values (Cornell's format, docs/formats.md)."},
     {"", "ASTM",
      "looks like an ASTM E1392 file, which Velour does not read; convert it to a list of directions and values "
      "(Cornell's format, docs/formats.md)."},
@@ -97,7 +96,7 @@ constexpr OtherFormat kOtherFormats[] = {
   }
   throw Error(Status::unsupported, path +
                                        ": is no measurement that Velour reads; use MERL .binary, RGL .bsdf, "
-                                       "Cornell .brdf or a Velour table.");
+                                       "Cornell .brdf, BSDF .xml or a Velour table.");
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace velour {
 struct Provenance {
   std::string path;         // as given by the caller
   std::string name;         // file name without folder and extension
-  std::string format;       // "merl", "rgl", "cornell", "velour-table"
+  std::string format;       // "merl", "rgl", "cornell", "window-bsdf", "velour-table"
   std::string description;  // what the file says of itself; may be empty
   std::string sha256;       // of the file's bytes, lower-case hex
   uint64_t file_bytes = 0;

@@ -57,6 +57,11 @@ std::vector<Vec3d> rec709_weights(std::span<const double> wavelengths) {
   return weights;
 }
 
+Rgb rec709_of_xyz(const Vec3d& xyz) {
+  static const Mat3d kToRec709 = rec709_from_equal_energy();
+  return Rgb(kToRec709 * xyz);
+}
+
 Rgb rec709_of(std::span<const Vec3d> weights, std::span<const float> samples) {
   Vec3d sum(0.0);
   for (size_t i = 0; i < weights.size(); ++i) sum += weights[i] * static_cast<double>(samples[i]);

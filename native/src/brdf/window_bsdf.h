@@ -1,0 +1,18 @@
+// BSDFs of Radiance and LBNL WINDOW as XML (schema windows.lbl.gov/BSDF-v1.4): matrices over Klems's patches.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "brdf/measurement.h"
+
+namespace velour {
+
+/// True for XML whose first element, as far as `head` holds it, is a WindowElement.
+bool looks_like_window_bsdf(std::span<const uint8_t> head);
+
+/// The reflection of the front, or of the back where there is no other. `provenance` has path, name, sha256 and size
+/// already. Throws Error(bad_data, unsupported), for tensor trees, too.
+std::shared_ptr<const Measurement> read_window_bsdf(std::span<const uint8_t> bytes, Provenance provenance);
+
+}  // namespace velour
