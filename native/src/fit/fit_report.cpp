@@ -47,14 +47,18 @@ void warn_of_errors(const FitRecord& record, std::vector<std::string>& warnings)
 /// One sentence for all fitted views beyond the tolerance, so that a hard material does not bury the rest.
 void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOptions& options, bool isotropic,
                           std::vector<std::string>& warnings) {
+  constexpr size_t kMostNamed = 12;
   std::string names;
+  size_t missed = 0;
   const FittedView* worst = nullptr;
   for (const FittedView& v : fitted) {
     if (v.relative_l2 <= tolerance_at(options.tolerance, std::acos(std::min(v.wv.z, 1.0f)))) continue;
-    names += (names.empty() ? "" : ", ") + view_name(v.wv, isotropic);
+    if (++missed <= kMostNamed) names += (names.empty() ? "" : ", ") + view_name(v.wv, isotropic);
     if (!worst || v.relative_l2 > worst->relative_l2) worst = &v;
   }
   if (!worst) return;
+  if (missed > kMostNamed)
+    names += " and " + std::to_string(missed - kMostNamed) + " more of " + std::to_string(fitted.size());
   warnings.push_back("fitted views that miss the tolerance with at most " + std::to_string(options.max_lobes) +
                      " lobes (degrees): " + names + "; the worst is " + view_name(worst->wv, isotropic) +
                      " with relative L2 " + number(worst->relative_l2));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <chrono>
 #include <thread>
 
@@ -181,6 +183,20 @@ TEST(ScatteredFitRules, ViewsThatMissTheToleranceAreNamed) {
   ASSERT_FALSE(model.fit.warnings.empty());
   EXPECT_EQ(model.fit.warnings[0].find("view 5 degrees: relative L2 "), 0u);
   EXPECT_NE(model.fit.warnings[4].find("exceeds 0.002"), std::string::npos);
+}
+
+TEST(ScatteredFitRules, OfManyViewsThatMissTheToleranceTwelveAreNamed) {
+  FitOptions options;
+  options.max_lobes = 1;
+  options.tolerance = 0.001;
+  Progress progress;
+  const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
+  const auto& warnings = model.fit.warnings;
+  const auto found = std::ranges::find_if(warnings, [](auto& w) { return w.starts_with("fitted views that miss"); });
+  ASSERT_NE(found, warnings.end());
+  const std::string names = found->substr(0, found->find(';'));
+  EXPECT_EQ(std::ranges::count(names, ','), 11) << names;
+  EXPECT_NE(names.find(" more of "), std::string::npos) << names;
 }
 
 TEST(ScatteredFitRules, TheBoundInBytesHolds) {
