@@ -15,7 +15,7 @@ namespace velour {
 /// equal-energy illuminant, and adapted to Rec. 709's white (Bradford): a flat reflectance of 1 is exactly (1, 1, 1).
 std::vector<Vec3d> rec709_weights(std::span<const double> wavelengths);
 
-/// Of XYZ whose white is (1, 1, 1), in the same way.
+/// Linear Rec. 709 of XYZ values whose white is (1, 1, 1), adapted in the same way.
 Rgb rec709_of_xyz(const Vec3d& xyz);
 
 /// The weighted sum; NaN where a sample is.

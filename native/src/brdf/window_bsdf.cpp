@@ -173,6 +173,10 @@ class Document {
         rings.push_back({expected, most, count});
       }
       if (rings.empty()) continue;  // one that everybody knows
+      if (rings.back().most_theta < 89.999) {
+        fail("AngleBasis '" + text(basis.child("AngleBasisName")) + "' ends at " +
+             std::to_string(rings.back().most_theta) + " degrees; its rings have to go on to 90.");
+      }
       bases_.emplace(text(basis.child("AngleBasisName")), KlemsBasis(rings));
     }
   }

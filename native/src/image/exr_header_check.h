@@ -12,7 +12,7 @@ namespace velour {
 /// their types. A header that ends early is left to OpenEXR, which says so.
 void check_exr_header(const std::string& path);
 
-/// Of a value of an attribute's type, where all have one size.
+/// The size of an attribute of this type; nothing where sizes vary.
 std::optional<uint32_t> fixed_exr_bytes(std::string_view type);
 
 }  // namespace velour

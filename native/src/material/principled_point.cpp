@@ -31,7 +31,7 @@ Interreflection facets_of_coat(const PrincipledParameters& p, float cosine) {
 
 float index_of_coat(const PrincipledParameters& p) { return std::max(p.coat_index, 1.0f); }
 
-/// Of its lobe.
+/// The weight of the coat's lobe.
 float weight_of_coat(const PrincipledParameters& p, float cosine) {
   const float eta = index_of_coat(p);
   if (!(p.coat > 0) || eta <= 1) return 0;
