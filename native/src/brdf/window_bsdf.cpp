@@ -1,22 +1,18 @@
 #include "brdf/window_bsdf.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <map>
 #include <optional>
-#include <pugixml.hpp>
 #include <string_view>
 
+#include "brdf/bsdf_xml.h"
 #include "brdf/entries.h"
-#include "brdf/klems_basis.h"
 #include "brdf/spectrum.h"
-#include "job/error.h"
+#include "brdf/tensor_tree.h"
 
 namespace velour {
 namespace {
 
-constexpr uint32_t kMostPatches = 4096;  // of a basis; Klems's have 145
+constexpr float kBelowHalf = 0x1.fffffep-2f;
 constexpr const char* kSides[] = {"Reflection Front", "Reflection Back"};
 
 /// f of a light's patch and a viewer's, light by light within each viewer's.
@@ -73,124 +69,76 @@ class KlemsMeasurement final : public Measurement {
   const std::string side_;
 };
 
-class Document {
+/// f of the four coordinates that trees have: the light's two (or its angle alone) and the viewer's two.
+class TreeMeasurement final : public Measurement {
  public:
-  Document(std::span<const uint8_t> bytes, const std::string& path) : path_(path) {
-    const pugi::xml_parse_result parsed = xml_.load_buffer(bytes.data(), bytes.size());
-    if (!parsed) {
-      fail("is no whole XML document: " + std::string(parsed.description()) + " at byte " +
-           std::to_string(parsed.offset) + ".");
-    }
-    layer_ = xml_.child("WindowElement").child("Optical").child("Layer");
-    if (!layer_) fail("has no WindowElement/Optical/Layer; it is no BSDF.");
-    read_bases();
+  struct Trees {
+    TensorTree y;
+    std::optional<TensorTree> u, v;  // CIE 1976 chromaticities
+  };
+
+  TreeMeasurement(Trees trees, Provenance provenance, const EntryCounts& counts, std::string side)
+      : trees_(std::move(trees)), side_(std::move(side)) {
+    provenance_ = std::move(provenance);
+    counts_ = counts;
   }
 
-  bool has_rows_of_light() const {
-    const std::string structure = text(definition().child("IncidentDataStructure"));
-    if (structure == "Rows") return true;
-    if (structure == "Columns") return false;
-    if (structure.starts_with("TensorTree")) {
-      throw Error(Status::unsupported, path_ + ": is a BSDF as a tensor tree (" + structure +
-                                           "), of which Velour reads matrices alone; convert it with Radiance's "
-                                           "bsdf2klems, or to a list of directions and values (docs/formats.md).");
-    }
-    fail("has the IncidentDataStructure '" + structure + "', neither Columns nor Rows.");
-  }
-
-  /// The block of a wavelength ("Visible") and a side; none: empty.
-  pugi::xml_node block(std::string_view wavelength, std::string_view side) const {
-    for (const pugi::xml_node data : layer_.children("WavelengthData")) {
-      if (text(data.child("Wavelength")) != wavelength) continue;
-      for (const pugi::xml_node block : data.children("WavelengthDataBlock")) {
-        if (text(block.child("WavelengthDataDirection")) == side) return block;
+  void eval(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> valid) const override {
+    const Vec2 viewer = square_of_disk(Vec2(wv));
+    for (size_t i = 0; i < wl.size(); ++i) {
+      f[i] = Rgb(0);
+      valid[i] = 0;
+      if (!(wv.z > 0 && wl[i].z > 0)) continue;
+      // Incident directions are numbered by where the light goes: what a mirror reflects has one number.
+      const Vec2 light(-wl[i].x, -wl[i].y);
+      if (isotropic()) {
+        const float sine = glm::length(light);
+        const Vec2 x = sine > 0 ? light / sine : Vec2(1, 0);
+        const Vec2 turned = square_of_disk({x.x * wv.x + x.y * wv.y, x.x * wv.y - x.y * wv.x});
+        // From 0 at the horizon to 0.5 at the normal: the cube's other half is not used.
+        const float place[] = {std::clamp(0.5f - 0.5f * sine, 0.0f, kBelowHalf), turned.x, turned.y};
+        valid[i] = value(place, f[i]);
+      } else {
+        const Vec2 square = square_of_disk(light);
+        const float place[] = {square.x, square.y, viewer.x, viewer.y};
+        valid[i] = value(place, f[i]);
       }
     }
-    return {};
   }
 
-  const KlemsBasis& basis(const pugi::xml_node& block, const char* field) const {
-    const std::string name = text(block.child(field));
-    const auto own = bases_.find(name);
-    if (own != bases_.end()) return own->second;
-    const KlemsBasis* known = KlemsBasis::standard(name);
-    if (known == nullptr) fail(std::string(field) + " '" + name + "' is not defined in it.");
-    return *known;
+  bool isotropic() const override { return trees_.y.dimensions() == 3; }
+  bool covers_view(float /*theta_v*/) const override { return true; }
+
+  std::vector<std::pair<std::string, std::string>> details() const override {
+    return {{"table", "a tree of " + std::to_string(trees_.y.values().size()) + " cells, the smallest 1/" +
+                          std::to_string(1 << trees_.y.finest_level()) + " of the hemisphere's square wide"},
+            {"holds", "f without cosine, 1/sr, " + side_},
+            {"invalid", "a cell that is not finite or negative"},
+            {"interpolation", "none: constant within a cell, as in Radiance"}};
   }
-
-  std::vector<float> numbers(const pugi::xml_node& block, size_t count) const {
-    const std::string_view all = block.child("ScatteringData").text().get();
-    std::vector<float> values;
-    values.reserve(std::min(count, all.size() / 2 + 1));
-    const char* at = all.data();
-    const char* const end = at + all.size();
-    while (true) {
-      while (at != end && (*at == ',' || *at == ' ' || (*at >= '\t' && *at <= '\r'))) ++at;
-      if (at == end) break;
-      float value = 0;
-      const auto [stop, error] = std::from_chars(at, end, value);
-      if (stop == at)
-        fail("ScatteringData has '" + std::string(at, std::min(end, at + 12)) + "' where a number is due.");
-      values.push_back(error == std::errc() ? value : NAN);
-      at = stop;
-    }
-    if (values.size() != count) {
-      fail("ScatteringData has " + std::to_string(values.size()) + " values, its angle bases make " +
-           std::to_string(count) + ".");
-    }
-    return values;
-  }
-
-  std::string name() const { return text(layer_.child("Material").child("Name")); }
-
-  [[noreturn]] void fail(const std::string& what) const { throw Error(Status::bad_data, path_ + ": " + what); }
 
  private:
-  static std::string text(const pugi::xml_node& node) {
-    const std::string_view all = node.text().get();
-    const size_t first = all.find_first_not_of(" \t\r\n"), last = all.find_last_not_of(" \t\r\n");
-    return first == std::string_view::npos ? "" : std::string(all.substr(first, last - first + 1));
-  }
-
-  pugi::xml_node definition() const { return layer_.child("DataDefinition"); }
-
-  void read_bases() {
-    for (const pugi::xml_node basis : definition().children("AngleBasis")) {
-      std::vector<KlemsBasis::Ring> rings;
-      uint64_t patches = 0;
-      for (const pugi::xml_node block : basis.children("AngleBasisBlock")) {
-        const pugi::xml_node bounds = block.child("ThetaBounds");
-        const double least = bounds.child("LowerTheta").text().as_double(NAN);
-        const double most = bounds.child("UpperTheta").text().as_double(NAN);
-        const uint32_t count = block.child("nPhis").text().as_uint();
-        const double expected = rings.empty() ? 0 : rings.back().most_theta;
-        if (!(std::abs(least - expected) < 1e-3 && most > least && most < 90.001) || count == 0 ||
-            (patches += count) > kMostPatches) {
-          fail("AngleBasis '" + text(basis.child("AngleBasisName")) + "': ring " + std::to_string(rings.size() + 1) +
-               " is from " + std::to_string(least) + " to " + std::to_string(most) + " degrees with " +
-               std::to_string(count) + " patches; rings follow each other to 90, with 4096 patches at most.");
-        }
-        rings.push_back({expected, most, count});
-      }
-      if (rings.empty()) continue;  // one that everybody knows
-      if (rings.back().most_theta < 89.999) {
-        fail("AngleBasis '" + text(basis.child("AngleBasisName")) + "' ends at " +
-             std::to_string(rings.back().most_theta) + " degrees; its rings have to go on to 90.");
-      }
-      bases_.emplace(text(basis.child("AngleBasisName")), KlemsBasis(rings));
+  bool value(std::span<const float> place, Rgb& f) const {
+    const float y = trees_.y.at(place);
+    Rgb found(y);
+    if (trees_.u && trees_.v) {
+      const double u = trees_.u->at(place), v = trees_.v->at(place);
+      found = rec709_of_xyz(static_cast<double>(y) * Vec3d(9 * u / (4 * v), 1, (12 - 3 * u - 20 * v) / (4 * v)));
     }
+    EntryCounts ignored;
+    if (!count_entry(found, NegativeRule::luminance, ignored)) return false;
+    f = found;
+    return true;
   }
 
-  std::string path_;
-  pugi::xml_document xml_;
-  pugi::xml_node layer_;
-  std::map<std::string, KlemsBasis> bases_;
+  const Trees trees_;
+  const std::string side_;
 };
 
 /// By the viewer's patch, then the light's.
-std::vector<float> matrix(const Document& in, const pugi::xml_node& block, size_t lights, size_t views) {
+std::vector<float> matrix(const BsdfXml& in, const pugi::xml_node& block, size_t lights, size_t views) {
   std::vector<float> values = in.numbers(block, lights * views);
-  if (!in.has_rows_of_light()) return values;
+  if (in.structure() == BsdfXml::Structure::columns) return values;
   std::vector<float> turned(values.size());
   for (size_t light = 0; light < lights; ++light) {
     for (size_t view = 0; view < views; ++view) turned[view * lights + light] = values[light * views + view];
@@ -198,20 +146,13 @@ std::vector<float> matrix(const Document& in, const pugi::xml_node& block, size_
   return turned;
 }
 
-}  // namespace
-
-bool looks_like_window_bsdf(std::span<const uint8_t> head) {
-  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
-  const size_t element = text.find("<WindowElement");
-  return element != std::string_view::npos && text.find_first_not_of(" \t\r\n\xef\xbb\xbf") == text.find('<');
+std::string said(const char* side, bool in_color) {
+  return std::string(side == kSides[0] ? "of the front" : "of the back") +
+         (in_color ? ", in colour" : ", of visible light: grey");
 }
 
-std::shared_ptr<const Measurement> read_window_bsdf(std::span<const uint8_t> bytes, Provenance provenance) {
-  const Document in(bytes, provenance.path);
-  static_cast<void>(in.has_rows_of_light());  // says first what cannot be read
-  const char* side = in.block("Visible", kSides[0]) ? kSides[0] : kSides[1];
+std::shared_ptr<const Measurement> read_matrix(const BsdfXml& in, const char* side, Provenance provenance) {
   const pugi::xml_node visible = in.block("Visible", side);
-  if (!visible) in.fail("has no reflection of visible light; what lets light through alone is no BRDF.");
   const KlemsBasis &light = in.basis(visible, "ColumnAngleBasis"), &view = in.basis(visible, "RowAngleBasis");
   const size_t lights = light.patches(), views = view.patches();
   const std::vector<float> y = matrix(in, visible, lights, views);
@@ -226,12 +167,42 @@ std::shared_ptr<const Measurement> read_window_bsdf(std::span<const uint8_t> byt
   EntryCounts counts;
   std::vector<uint8_t> valid(f.size());
   for (size_t i = 0; i < f.size(); ++i) valid[i] = count_entry(f[i], NegativeRule::luminance, counts);
+  return std::make_shared<KlemsMeasurement>(light, view, std::move(f), std::move(valid), std::move(provenance), counts,
+                                            said(side, x_block && z_block));
+}
+
+std::shared_ptr<const Measurement> read_tree(const BsdfXml& in, const char* side, Provenance provenance) {
+  const int dimensions = in.structure() == BsdfXml::Structure::tree3 ? 3 : 4;
+  const auto tree = [&](const char* wavelength) -> std::optional<TensorTree> {
+    const pugi::xml_node block = in.block(wavelength, side);
+    if (!block) return std::nullopt;
+    return TensorTree(in.tree(block), dimensions,
+                      provenance.path + ": ScatteringData of " + side + ", " + wavelength + ",");
+  };
+  TreeMeasurement::Trees trees{*tree("Visible"), tree("CIE-u"), tree("CIE-v")};
+  EntryCounts counts;
+  for (const float y : trees.y.values()) count_entry(Rgb(y), NegativeRule::luminance, counts);
+  const std::string words = said(side, trees.u && trees.v);
+  return std::make_shared<TreeMeasurement>(std::move(trees), std::move(provenance), counts, words);
+}
+
+}  // namespace
+
+bool looks_like_window_bsdf(std::span<const uint8_t> head) {
+  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+  const size_t element = text.find("<WindowElement");
+  return element != std::string_view::npos && text.find_first_not_of(" \t\r\n\xef\xbb\xbf") == text.find('<');
+}
+
+std::shared_ptr<const Measurement> read_window_bsdf(std::span<const uint8_t> bytes, Provenance provenance) {
+  const BsdfXml in(bytes, provenance.path);
+  const char* side = in.block("Visible", kSides[0]) ? kSides[0] : kSides[1];
+  if (!in.block("Visible", side)) in.fail("has no reflection of visible light; what lets light through alone is no BRDF.");
   provenance.format = "window-bsdf";
   provenance.description = in.name();
-  const std::string said = std::string(side == kSides[0] ? "of the front" : "of the back") +
-                           (x_block && z_block ? ", in colour" : ", of visible light: grey");
-  return std::make_shared<KlemsMeasurement>(light, view, std::move(f), std::move(valid), std::move(provenance), counts,
-                                            said);
+  using enum BsdfXml::Structure;
+  if (in.structure() == columns || in.structure() == rows) return read_matrix(in, side, std::move(provenance));
+  return read_tree(in, side, std::move(provenance));
 }
 
 }  // namespace velour

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "brdf/klems_basis.h"
+#include "brdf/spectrum.h"
 #include "file/file.h"
 #include "measurement_support.h"
 #include "sphere/directions.h"
@@ -54,6 +56,18 @@ std::string document(const std::string& blocks, const std::string& structure = "
          "<Material><Name>Linen</Name></Material><DataDefinition><IncidentDataStructure>" +
          structure + "</IncidentDataStructure>" + own_basis() + "</DataDefinition>" + blocks +
          "</Layer></Optical></WindowElement>";
+}
+
+std::string tree_block(const std::string& tree, const std::string& wavelength, const std::string& basis) {
+  return "<WavelengthData><Wavelength>" + wavelength +
+         "</Wavelength><WavelengthDataBlock><WavelengthDataDirection>Reflection Front</WavelengthDataDirection>"
+         "<AngleBasis>" +
+         basis + "</AngleBasis><ScatteringData>\n" + tree +
+         "</ScatteringData></WavelengthDataBlock></WavelengthData>";
+}
+
+std::string tree_document(const std::string& tree, int dimensions, const std::string& basis = "LBNL/Shirley-Chiu") {
+  return document(tree_block(tree, "Visible", basis), "TensorTree" + std::to_string(dimensions));
 }
 
 std::string written(const std::string& text) {
@@ -172,8 +186,118 @@ TEST(WindowBsdf, NegativeEntriesAreLeftOut) {
   EXPECT_NEAR(value_of(*measurement, center(2, 1), center(2, 4)).g, 0.5f, 1e-5f);
 }
 
+/// A node of 2^level cells a side whose values are `value` of its cells' lower corners: as branches above `grid_level`.
+std::string tree_text(int dimensions, int level, int grid_level, const std::function<double(std::span<const double>)>& value,
+                      std::vector<double> corner = {}, double width = 1) {
+  corner.resize(static_cast<size_t>(dimensions));
+  std::string text = "{";
+  if (level > grid_level) {
+    for (int branch = 0; branch < 1 << dimensions; ++branch) {
+      std::vector<double> lower = corner;
+      for (int i = 0; i < dimensions; ++i) lower[static_cast<size_t>(i)] += (branch >> i & 1) * width / 2;
+      text += tree_text(dimensions, level - 1, grid_level, value, lower, width / 2) + "\n";
+    }
+  } else {
+    const int cells = 1 << level;
+    for (int cell = 0; cell < 1 << level * dimensions; ++cell) {
+      std::vector<double> lower = corner;
+      for (int i = 0; i < dimensions; ++i) {  // the last dimension goes fastest
+        lower[static_cast<size_t>(i)] += (cell >> level * (dimensions - 1 - i)) % cells * width / cells;
+      }
+      text += std::to_string(value(lower)) + (cell % 2 ? " " : ", ");
+    }
+  }
+  return text + "}";
+}
+
+/// [SC97], by sectors of azimuth as in the paper.
+Vec2 paper_square(double x, double y) {
+  const double r = std::hypot(x, y), quarter = kPi / 4;
+  double phi = std::atan2(y, x);
+  if (phi < -quarter) phi += 2 * kPi;
+  double a = 0, b = 0;
+  if (phi < quarter) {
+    a = r, b = phi * a / quarter;
+  } else if (phi < 3 * quarter) {
+    b = r, a = -(phi - 2 * quarter) * b / quarter;
+  } else if (phi < 5 * quarter) {
+    a = -r, b = (phi - 4 * quarter) * a / quarter;
+  } else {
+    b = -r, a = -(phi - 6 * quarter) * b / quarter;
+  }
+  return {static_cast<float>((a + 1) / 2), static_cast<float>((b + 1) / 2)};
+}
+
+/// The cell's lower corner at a place, in cells of 1/8.
+double corner_of(float place) { return std::floor(place * 8.0f) / 8; }
+bool near_an_edge(float place) { return std::abs(place * 8 - std::round(place * 8)) < 1e-3f; }
+
+TEST(WindowBsdf, TreesOfFourDimensionsAreReadAtTheSquaresOfLightAndViewer) {
+  test::record_input("BSDF XML of Radiance and WINDOW", "tensor trees of three and four dimensions", "read");
+  const auto number = [](std::span<const double> c) { return 0.1 + c[0] + 0.3 * c[1] + 0.05 * c[2] + 0.01 * c[3]; };
+  for (const int grid_level : {0, 1, 3}) {
+    const auto measurement = load_measurement(written(tree_document(tree_text(4, 3, grid_level, number), 4)));
+    EXPECT_EQ(measurement->counts().valid, 4096u);
+    EXPECT_FALSE(measurement->isotropic());
+    int compared = 0;
+    for (const Vec3& wv : hemisphere_fibonacci(23)) {
+      for (const Vec3& wl : hemisphere_fibonacci(31)) {
+        const Vec2 light = paper_square(-wl.x, -wl.y), viewer = paper_square(wv.x, wv.y);
+        const float all[] = {light.x, light.y, viewer.x, viewer.y};
+        if (std::ranges::any_of(all, near_an_edge)) continue;
+        const double corner[] = {corner_of(light.x), corner_of(light.y), corner_of(viewer.x), corner_of(viewer.y)};
+        EXPECT_NEAR(value_of(*measurement, wv, wl).g, number(corner), 2e-6) << grid_level;
+        ++compared;
+      }
+    }
+    EXPECT_GT(compared, 500);
+  }
+}
+
+TEST(WindowBsdf, TreesOfThreeDimensionsTurnTheViewerWithTheLight) {
+  const auto number = [](std::span<const double> c) { return 0.1 + c[0] + 0.3 * c[1] + 0.05 * c[2]; };
+  const auto measurement = load_measurement(written(tree_document(tree_text(3, 3, 1, number), 3)));
+  EXPECT_TRUE(measurement->isotropic());
+  int compared = 0;
+  for (const Vec3& wv : hemisphere_fibonacci(23)) {
+    for (const Vec3& wl : hemisphere_fibonacci(31)) {
+      const double sine = std::hypot(wl.x, wl.y), turn = std::atan2(-wl.y, -wl.x);
+      const double x = std::cos(turn) * wv.x + std::sin(turn) * wv.y, y = std::cos(turn) * wv.y - std::sin(turn) * wv.x;
+      const Vec2 viewer = paper_square(x, y);
+      const float angle = static_cast<float>(0.5 - 0.5 * sine);
+      const float all[] = {angle, viewer.x, viewer.y};
+      if (std::ranges::any_of(all, near_an_edge)) continue;
+      const double corner[] = {corner_of(angle), corner_of(viewer.x), corner_of(viewer.y)};
+      EXPECT_NEAR(value_of(*measurement, wv, wl).g, number(corner), 2e-6);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 500);
+  // At the normal the first coordinate is just below a half.
+  EXPECT_NEAR(value_of(*measurement, {0.1f, 0.2f, 0.97f}, {0, 0, 1}).g, 0.1 + 3.0 / 8 + 0.3 * 0.5 + 0.05 * 0.5, 0.05);
+}
+
+/// u' and v' have trees of their own shape.
+TEST(WindowBsdf, ColoursOfTreesAreThoseOfTheirChromaticities) {
+  const double x = 0.3, y = 0.4, divisor = -2 * x + 12 * y + 3;
+  const std::string basis = "LBNL/Shirley-Chiu", u = "{" + std::to_string(4 * x / divisor) + "}",
+                    v = tree_text(3, 1, 0, [&](auto) { return 9 * y / divisor; });
+  const std::string blocks =
+      tree_block("{0.2}", "Visible", basis) + tree_block(u, "CIE-u", basis) + tree_block(v, "CIE-v", basis);
+  const Rgb found = value_of(*load_measurement(written(document(blocks, "TensorTree3"))), {0, 0, 1}, {0, 0, 1});
+  const Rgb expected = rec709_of_xyz(0.2 * Vec3d(x / y, 1, (1 - x - y) / y));
+  EXPECT_LT(glm::distance(found, expected), 1e-5f);
+}
+
+TEST(WindowBsdf, NumbersBeyondAFloatAreZeroOrNotFinite) {
+  const auto measurement = load_measurement(written(tree_document("{1e-60 1e-400 1e60 1e400 -1 1 1 1}", 3)));
+  EXPECT_EQ(measurement->counts().not_finite, 2u);
+  EXPECT_EQ(measurement->counts().negative, 1u);
+  EXPECT_EQ(measurement->counts().valid, 5u);
+}
+
 TEST(WindowBsdf, WhatCannotBeReadIsNamed) {
-  test::record_input("BSDF XML of Radiance and WINDOW", "tensor trees, transmission alone, damaged files",
+  test::record_input("BSDF XML of Radiance and WINDOW", "transmission alone, damaged files",
                      "refused with a sentence");
   const std::string good = document(block_of({}, mixed, false));
   const auto without = [&](const std::string& words, const std::string& instead) {
@@ -182,7 +306,15 @@ TEST(WindowBsdf, WhatCannotBeReadIsNamed) {
     return text;
   };
   const std::pair<std::string, const char*> files[] = {
-      {document("", "TensorTree4"), "bsdf2klems"},
+      {tree_document("{1", 4), "lacks a '}'"},
+      {tree_document("{1}}", 4), "goes on after the tree's last brace at '}'"},
+      {tree_document("{1 2}", 4), "a cell of 2 values, where 1, 16, 256"},
+      {tree_document("{}", 3), "a cell of 0 values"},
+      {tree_document("{{1}{2}}", 3), "lacks a '{' at '}'"},
+      {tree_document("{1 x}", 3), "lacks a '}' at 'x}'"},
+      {tree_document("", 3), "lacks a '{' at its end"},
+      {tree_document(std::string(1000, '{'), 3), "deeper than 16 levels"},
+      {tree_document("{1}", 3, "Own"), "AngleBasis 'Own'"},
       {document("", "Spirals"), "IncidentDataStructure 'Spirals'"},
       {without("Reflection Front", "Transmission Front"), "no reflection"},
       {without("<ColumnAngleBasis>Own", "<ColumnAngleBasis>Other"), "'Other' is not defined"},

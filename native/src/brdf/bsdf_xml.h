@@ -1,0 +1,50 @@
+// The parts of a BSDF XML document (schema windows.lbl.gov/BSDF-v1.4).
+#pragma once
+
+#include <map>
+#include <pugixml.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "brdf/klems_basis.h"
+
+namespace velour {
+
+/// Every fault throws Error(bad_data, unsupported) with the path and the field.
+class BsdfXml {
+ public:
+  enum class Structure { columns, rows, tree3, tree4 };
+
+  BsdfXml(std::span<const uint8_t> bytes, const std::string& path);
+
+  /// How the incident directions of ScatteringData are kept.
+  Structure structure() const { return structure_; }
+  std::string name() const;
+
+  /// The block of a wavelength ("Visible") and a side ("Reflection Front"); none: empty.
+  pugi::xml_node block(std::string_view wavelength, std::string_view side) const;
+
+  /// Of a matrix's block: what `field` (ColumnAngleBasis, RowAngleBasis) names.
+  const KlemsBasis& basis(const pugi::xml_node& block, const char* field) const;
+  /// ScatteringData of a matrix's block.
+  std::vector<float> numbers(const pugi::xml_node& block, size_t count) const;
+  /// ScatteringData of a tree's block.
+  std::string_view tree(const pugi::xml_node& block) const;
+
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  void read_structure();
+  void read_bases();
+  pugi::xml_node definition() const { return layer_.child("DataDefinition"); }
+
+  std::string path_;
+  pugi::xml_document xml_;
+  pugi::xml_node layer_;
+  Structure structure_ = Structure::columns;
+  std::map<std::string, KlemsBasis> bases_;
+};
+
+}  // namespace velour
