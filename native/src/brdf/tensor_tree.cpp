@@ -48,11 +48,10 @@ class TensorTree::Reader {
     const size_t first = tree_.values_.size();
     while (const auto value = next_number(rest_)) tree_.values_.push_back(*value);
     const size_t count = tree_.values_.size() - first;
-    const int bits = std::bit_width(count) - 1;
+    const int bits = static_cast<int>(std::bit_width(count)) - 1;
     if (!std::has_single_bit(count) || bits % tree_.dimensions_ != 0) {
-      fail("has a cell of " + std::to_string(count) + " values, where 1, " +
-           std::to_string(1 << tree_.dimensions_) + ", " + std::to_string(1 << 2 * tree_.dimensions_) +
-           " and so on are due");
+      fail("has a cell of " + std::to_string(count) + " values, where 1, " + std::to_string(1 << tree_.dimensions_) +
+           ", " + std::to_string(1 << 2 * tree_.dimensions_) + " and so on are due");
     }
     const int own = bits / tree_.dimensions_;
     tree_.finest_level_ = std::max(tree_.finest_level_, level + own);

@@ -197,7 +197,8 @@ bool looks_like_window_bsdf(std::span<const uint8_t> head) {
 std::shared_ptr<const Measurement> read_window_bsdf(std::span<const uint8_t> bytes, Provenance provenance) {
   const BsdfXml in(bytes, provenance.path);
   const char* side = in.block("Visible", kSides[0]) ? kSides[0] : kSides[1];
-  if (!in.block("Visible", side)) in.fail("has no reflection of visible light; what lets light through alone is no BRDF.");
+  if (!in.block("Visible", side))
+    in.fail("has no reflection of visible light; what lets light through alone is no BRDF.");
   provenance.format = "window-bsdf";
   provenance.description = in.name();
   using enum BsdfXml::Structure;

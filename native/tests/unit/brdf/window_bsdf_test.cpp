@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <functional>
 
 #include "brdf/klems_basis.h"
@@ -62,16 +63,19 @@ std::string tree_block(const std::string& tree, const std::string& wavelength, c
   return "<WavelengthData><Wavelength>" + wavelength +
          "</Wavelength><WavelengthDataBlock><WavelengthDataDirection>Reflection Front</WavelengthDataDirection>"
          "<AngleBasis>" +
-         basis + "</AngleBasis><ScatteringData>\n" + tree +
-         "</ScatteringData></WavelengthDataBlock></WavelengthData>";
+         basis + "</AngleBasis><ScatteringData>\n" + tree + "</ScatteringData></WavelengthDataBlock></WavelengthData>";
 }
 
 std::string tree_document(const std::string& tree, int dimensions, const std::string& basis = "LBNL/Shirley-Chiu") {
   return document(tree_block(tree, "Visible", basis), "TensorTree" + std::to_string(dimensions));
 }
 
+/// Each in a folder of its own: scripts/fuzz begins with them.
 std::string written(const std::string& text) {
-  const std::string path = test::scratch_folder() / "linen.xml";
+  static int count = 0;
+  const std::filesystem::path folder = test::scratch_root() / "bsdf_xml" / std::to_string(++count);
+  std::filesystem::create_directories(folder);
+  const std::string path = folder / "linen.xml";
   write_file(path, std::vector<uint8_t>(text.begin(), text.end()));
   return path;
 }
@@ -187,8 +191,9 @@ TEST(WindowBsdf, NegativeEntriesAreLeftOut) {
 }
 
 /// A node of 2^level cells a side whose values are `value` of its cells' lower corners: as branches above `grid_level`.
-std::string tree_text(int dimensions, int level, int grid_level, const std::function<double(std::span<const double>)>& value,
-                      std::vector<double> corner = {}, double width = 1) {
+std::string tree_text(int dimensions, int level, int grid_level,
+                      const std::function<double(std::span<const double>)>& value, std::vector<double> corner = {},
+                      double width = 1) {
   corner.resize(static_cast<size_t>(dimensions));
   std::string text = "{";
   if (level > grid_level) {
@@ -297,8 +302,7 @@ TEST(WindowBsdf, NumbersBeyondAFloatAreZeroOrNotFinite) {
 }
 
 TEST(WindowBsdf, WhatCannotBeReadIsNamed) {
-  test::record_input("BSDF XML of Radiance and WINDOW", "transmission alone, damaged files",
-                     "refused with a sentence");
+  test::record_input("BSDF XML of Radiance and WINDOW", "transmission alone, damaged files", "refused with a sentence");
   const std::string good = document(block_of({}, mixed, false));
   const auto without = [&](const std::string& words, const std::string& instead) {
     std::string text = good;
