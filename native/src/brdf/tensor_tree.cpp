@@ -83,21 +83,22 @@ TensorTree::TensorTree(std::string_view text, int dimensions, const std::string&
 float TensorTree::at(std::span<const float> place) const {
   std::array<float, 4> p{};
   std::copy(place.begin(), place.end(), p.begin());
+  const auto dimensions = static_cast<size_t>(dimensions_);
   int32_t node = root_;
   while (node >= 0) {
-    int32_t branch = 0;
-    for (int i = 0; i < dimensions_; ++i) {
+    size_t branch = 0;
+    for (size_t i = 0; i < dimensions; ++i) {
       p[i] *= 2;
       const bool upper = p[i] >= 1;
-      branch |= static_cast<int32_t>(upper) << i;
+      branch |= static_cast<size_t>(upper) << i;
       p[i] -= static_cast<float>(upper);
     }
-    node = branches_[node + branch];
+    node = branches_[static_cast<size_t>(node) + branch];
   }
-  const Grid& grid = grids_[~node];
+  const Grid& grid = grids_[static_cast<size_t>(~node)];
   const int cells = 1 << grid.level;
   size_t cell = 0;
-  for (int i = 0; i < dimensions_; ++i) {
+  for (size_t i = 0; i < dimensions; ++i) {
     const int along = std::clamp(static_cast<int>(p[i] * static_cast<float>(cells)), 0, cells - 1);
     cell = cell << grid.level | static_cast<size_t>(along);
   }
