@@ -40,7 +40,8 @@ class AreaLights(BoxTest):
     def test_sheared_ellipse(self):
         lamp = stage.lamp("AREA", 100, (0, 0, 3), (0.3, 0.2, 0.4), shape="ELLIPSE", size=1.0, size_y=0.6)
         stage.shear(lamp, (1, 2, 0.5), (0.3, 0.2, 0.5))
-        self.assert_parity("Area: ellipse, sheared")
+        # Cycles' rays from surfaces meet a disk that faces along its axis, not the sheared one that it draws rays to.
+        self.assert_approximate("Area: ellipse, sheared", 20)
 
     def test_mirrored_area(self):
         lamp = stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=1.0)

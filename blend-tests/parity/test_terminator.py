@@ -25,7 +25,7 @@ class Terminator(ParityTest):
 
     def test_coarse(self):
         self._ball(12)
-        self.assert_parity("Shadow terminator: ball of 12 segments")
+        self.assert_parity("Shadow terminator: ball of 12 segments", up_to=0.3)
 
     def test_fine(self):
         self._ball(24)
@@ -33,7 +33,7 @@ class Terminator(ParityTest):
 
     def test_wide(self):
         self._ball(16, 0.4)
-        self.assert_parity("Shadow terminator: offset 0.4")
+        self.assert_parity("Shadow terminator: offset 0.4", up_to=0.3)
 
     def test_scaled(self):
         """Cycles takes the height over the triangle from the unscaled object."""
