@@ -45,9 +45,9 @@ class ParityTest(blender.BlenderTest):
         engines.set_size(self.effort)
 
     def assert_parity(self, feature, samples=1, seen=SEEN, up_to=0.0):
-        """Both engines render the scene as it is; no block may differ by more than chance, or by `up_to` per cent
-        of the mean, which many samples tell. `seen`: per cent that half of the blocks may be off by at most
-        without being seen."""
+        """Both engines render the scene as it is; no block may differ by more than chance, or by
+        `up_to` per cent of the mean, which many samples tell. `seen`: per cent that half of the blocks may be
+        off by at most without being seen."""
         verdict = self.verdict(samples)
         record(feature, verdict, "honoured")
         self.assertTrue(verdict.agrees or verdict.percent <= up_to, f"{feature}: {verdict}")

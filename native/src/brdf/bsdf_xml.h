@@ -26,11 +26,11 @@ class BsdfXml {
   /// The block of a wavelength ("Visible") and a side ("Reflection Front"); none: empty.
   pugi::xml_node block(std::string_view wavelength, std::string_view side) const;
 
-  /// Of a matrix's block: what `field` (ColumnAngleBasis, RowAngleBasis) names.
+  /// The basis that `field` (ColumnAngleBasis, RowAngleBasis) of a matrix's block names.
   const KlemsBasis& basis(const pugi::xml_node& block, const char* field) const;
-  /// ScatteringData of a matrix's block.
+  /// The values of a matrix's block.
   std::vector<float> numbers(const pugi::xml_node& block, size_t count) const;
-  /// ScatteringData of a tree's block.
+  /// The text of a tree's block.
   std::string_view tree(const pugi::xml_node& block) const;
 
   [[noreturn]] void fail(const std::string& what) const;

@@ -25,7 +25,7 @@ class TensorTree {
   float at(std::span<const float> place) const;
 
   int dimensions() const { return dimensions_; }
-  /// Of all cells, in the order of the file.
+  /// The values of all cells, in the order of the file.
   std::span<const float> values() const { return values_; }
   /// The smallest cells are 2^-this wide.
   int finest_level() const { return finest_level_; }
