@@ -40,7 +40,7 @@ class AreaLights(BoxTest):
     def test_sheared_ellipse(self):
         lamp = stage.lamp("AREA", 100, (0, 0, 3), (0.3, 0.2, 0.4), shape="ELLIPSE", size=1.0, size_y=0.6)
         stage.shear(lamp, (1, 2, 0.5), (0.3, 0.2, 0.5))
-        # Cycles draws rays to the sheared disk, and its rays from surfaces meet one that faces along its axis.
+        # Cycles draws rays to the sheared disk; its rays from surfaces meet one that faces along its axis.
         self.assert_approximate("Area: ellipse, sheared", 20)
 
     def test_mirrored_area(self):
