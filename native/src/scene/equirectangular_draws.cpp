@@ -60,15 +60,22 @@ void draw_rows_simd(const MarginalTable& table, EquirectangularDraws& draws, int
   const V zero = hn::Zero(d), half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
   const V height = hn::Set(d, static_cast<float>(table.height));
   for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
-    // A band between two rows, the place in it, then one of the two rows in proportion to its share there: together the
-    // bilinear density, each part inverted in closed form.
+    // A band between two rows, one of the two in proportion to their nodes, and the place in the band by the row's share
+    // there, which falls linearly to 0 at the other row: together the bilinear density. All three come from v, so that
+    // neighbours in u remain neighbours in azimuth.
     const V v = hn::Load(d, draws.v + at);
     const auto guided =
         hn::Min(hn::ConvertTo(di, hn::Mul(v, hn::Set(d, static_cast<float>(bands)))), hn::Set(di, bands - 1));
     const auto band = find_cells(di, table.cdf, hn::GatherIndex(di, table.guide, guided), bands, v);
     const V low = hn::GatherIndex(d, table.cdf, band), high = hn::GatherIndex(d, table.cdf + 1, band);
     const V above = hn::GatherIndex(d, table.node, band), below = hn::GatherIndex(d, table.node + 1, band);
-    const V t = invert_linear(d, above, below, place_between(d, v, low, high));
+    const V in_band = hn::Min(place_between(d, v, low, high), hn::Set(d, 0x1.fffffep-1f));
+    const V split = hn::Div(above, hn::Max(hn::Add(above, below), hn::Set(d, 1e-30f)));
+    const auto lower = hn::Ge(in_band, split);
+    const V rest = hn::IfThenElse(lower, hn::Div(hn::Sub(in_band, split), hn::Sub(one, split)),
+                                  hn::Sub(one, hn::Div(in_band, split)));
+    const V root = hn::Sqrt(hn::Min(hn::Max(rest, zero), one));
+    const V t = hn::IfThenElse(lower, root, hn::Sub(one, root));
     // The bands at the poles are half as high.
     const V number = hn::ConvertTo(d, band);
     const V inside = hn::Add(hn::Sub(number, half), t);
@@ -76,14 +83,7 @@ void draw_rows_simd(const MarginalTable& table, EquirectangularDraws& draws, int
     const V line =
         hn::IfThenElse(hn::Eq(number, zero), hn::Mul(half, t), hn::IfThenElse(hn::Eq(number, height), bottom, inside));
     hn::Store(hn::Div(line, height), d, draws.v + at);
-    // The share of u below `split`, or above it, goes back to [0, 1): one number chooses twice.
-    const V share_above = hn::Mul(hn::Sub(one, t), above), share_below = hn::Mul(t, below);
-    const V split = hn::Div(share_above, hn::Max(hn::Add(share_above, share_below), hn::Set(d, 1e-30f)));
-    const V u = hn::Load(d, draws.u + at);
-    const auto lower = hn::Ge(u, split);
-    const V rest = hn::IfThenElse(lower, hn::Div(hn::Sub(u, split), hn::Sub(one, split)), hn::Div(u, split));
-    hn::Store(hn::Min(rest, hn::Set(d, 0x1.fffffep-1f)), d, draws.u + at);
-    const auto row = hn::Sub(band, hn::IfThenElseZero(hn::RebindMask(di, hn::Lt(u, split)), hn::Set(di, 1)));
+    const auto row = hn::Sub(band, hn::IfThenElse(hn::RebindMask(di, lower), hn::Zero(di), hn::Set(di, 1)));
     hn::Store(hn::Min(hn::Max(row, hn::Zero(di)), hn::Set(di, table.height - 1)), di, draws.row + at);
   }
 }

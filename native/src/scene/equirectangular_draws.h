@@ -24,7 +24,7 @@ struct alignas(64) EquirectangularDraws {
   float cell[kCapacity], low[kCapacity], high[kCapacity], left[kCapacity], right[kCapacity];
 };
 
-/// From (u, v) to `row`, what is left of u, and the place v.
+/// From v to `row` and the place v.
 void draw_rows(const MarginalTable& table, EquirectangularDraws& draws, int count);
 /// From u and the cell's numbers to the place u.
 void draw_columns(int width, EquirectangularDraws& draws, int count);

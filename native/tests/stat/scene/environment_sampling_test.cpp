@@ -2,6 +2,7 @@
 #include "scene/environment.h"
 #include "sphere/directions.h"
 #include "sphere/random.h"
+#include "sphere/sobol.h"
 #include "support/sampler_proof.h"
 
 namespace velour {
@@ -72,6 +73,39 @@ TEST(EnvironmentSamplingControl, AnotherSunIsSeen) {
 
 TEST(EnvironmentSamplingControl, AnotherTurnIsSeen) {
   EXPECT_LT(test::p_value(sampler_of(kSkies[3], 0), sampler_of(kSkies[4], 0)), 1e-9);
+}
+
+/// Variance of the mean over 64 points of an irradiance, over that of 64 independent ones.
+double variance_ratio(const Environment& sky, bool even_azimuth) {
+  constexpr int kPoints = 64, kTrials = 400;
+  const Vec3 normal = glm::normalize(Vec3(0.3f, -0.5f, 0.8f));
+  const auto value = [&](const Vec2& u) {
+    const Vec3 w = sky.sample(u);
+    return static_cast<double>(luminance(sky.radiance(w)) / sky.pdf(w) * std::max(glm::dot(w, normal), 0.0f));
+  };
+  double mean = 0, square = 0, of_means = 0;
+  for (uint64_t trial = 0; trial < kTrials; ++trial) {
+    Vec2 points[kPoints];
+    sobol_points(trial, 0, points);
+    RandomStream random(trial, 1, 2);
+    double sum = 0;
+    for (Vec2& u : points) {
+      if (!even_azimuth) u.x = random.next();
+      const double v = value(u);
+      sum += v / kPoints;
+      square += v * v / (kPoints * kTrials);
+    }
+    mean += sum / kTrials;
+    of_means += sum * sum / kTrials;
+  }
+  return (of_means - mean * mean) * kPoints / (square - mean * mean);
+}
+
+TEST(EnvironmentSamplingEvenness, PointsThatAreEvenGiveEvenDirections) {
+  for (const Sky& sky : {kSkies[3], kSkies[5]}) {
+    EXPECT_LT(variance_ratio(environment(sky, 0), true), 0.15) << sky.name;
+    EXPECT_GT(variance_ratio(environment(sky, 0), false), 0.3) << sky.name;
+  }
 }
 
 TEST(EnvironmentSamplingConstant, FollowsItsDensity) {

@@ -22,7 +22,8 @@ double invert(double a, double b, double u) {
 
 struct Place {
   size_t cell;
-  double t;
+  double share;  // of the cell's mass
+  double t;      // where the linear density has reached it
 };
 
 /// The cell of `mass` that holds the share `u` of all, and the place in it.
@@ -31,7 +32,8 @@ Place find(const std::vector<double>& mass, const std::vector<double>& node, dou
   for (double m : mass) total += m;
   size_t cell = 0;
   while (cell + 1 < mass.size() && (below + mass[cell]) / total <= u) below += mass[cell++];
-  return {cell, invert(node[cell], node[cell + 1], (u * total - below) / mass[cell])};
+  const double share = (u * total - below) / mass[cell];
+  return {cell, share, invert(node[cell], node[cell + 1], share)};
 }
 
 /// The documented density (environment.h), drawn from one step after the other.
@@ -57,12 +59,14 @@ class Reference {
       mass.push_back((pole ? 0.25 : 0.5) * (node[i] + node[i + 1]));
     }
     const Place band = find(mass, node, static_cast<double>(u.y));
-    const double above = (1 - band.t) * node[band.cell], below = band.t * node[band.cell + 1];
-    const double split = above / (above + below), x = static_cast<double>(u.x);
-    const size_t row = x < split ? band.cell - 1 : band.cell;
-    const Place column = find(columns(rows_[row]), rows_[row], x < split ? x / split : (x - split) / (1 - split));
+    // Of the band's share, the upper row's part of its mass, then the lower one's.
+    const double split = node[band.cell] / (node[band.cell] + node[band.cell + 1]);
+    const bool lower = band.share >= split;
+    const double t = lower ? std::sqrt((band.share - split) / (1 - split)) : 1 - std::sqrt(1 - band.share / split);
+    const size_t row = lower ? band.cell : band.cell - 1;
+    const Place column = find(columns(rows_[row]), rows_[row], static_cast<double>(u.x));
     const double h = height_, at = static_cast<double>(band.cell);
-    const double line = band.cell == 0 ? 0.5 * band.t : (at == h ? h - 0.5 + 0.5 * band.t : at - 0.5 + band.t);
+    const double line = band.cell == 0 ? 0.5 * t : (at == h ? h - 0.5 + 0.5 * t : at - 0.5 + t);
     const double theta = kPiD * line / h;
     const double phi = 2 * kPiD * (0.5 - (static_cast<double>(column.cell) - 0.5 + column.t) / width_);
     return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
