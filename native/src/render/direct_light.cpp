@@ -15,7 +15,10 @@ bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shadows,
                          std::vector<CameraSample>& samples) {
   const Output output{shadows, samples};
-  for (size_t k = 0; k < receivers.size(); ++k) prepare(receivers[k], work_[k]);
+  for (size_t k = 0; k < receivers.size(); ++k) {
+    if (lighting_.has_extended()) views_[k] = lighting_.view(receivers[k].vertex.light_place());
+    prepare(receivers[k], work_[k], views_[k]);
+  }
   make_points(receivers);
   draw_towards_lights(receivers);
   draw_towards_products(receivers);
@@ -25,11 +28,11 @@ void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shado
   if (!lighting_.glow().empty()) settle_glow(receivers, output);
 }
 
-void DirectLight::prepare(const Receiver& receiver, Work& work) {
+void DirectLight::prepare(const Receiver& receiver, Work& work, const LightView& view) {
   const Vertex& vertex = receiver.vertex;
   vertex.surface->material->prepare(vertex.wv, vertex.site, work.prepared);
   prepare_surface(sampling_, vertex, work.prepared);
-  work.shares = shares_at(vertex, work);
+  work.shares = shares_at(vertex, view, work);
   PathNumbers& numbers = *receiver.numbers;
   const auto all = numbers.all(lighting_.has_extended() ? receiver.directions : 0, receiver.full);
   const auto [rest, product] = numbers.deal(all, work.shares.product, Purpose::product_side);
@@ -39,13 +42,13 @@ void DirectLight::prepare(const Receiver& receiver, Work& work) {
   work.from_lights = lights;
 }
 
-Shares DirectLight::shares_at(const Vertex& vertex, Work& work) {
+Shares DirectLight::shares_at(const Vertex& vertex, const LightView& view, Work& work) {
   if (options_.strategy != Strategy::product || sky_ == nullptr) return shares(options_, 0.0f);
   ProposalLobes lobes;
   const bool proposed = vertex.surface->material->proposal_lobes(work.prepared, lobes) &&
                         sky_->proposals.propose(lobes, vertex.frame, products_, work.product);
   if (!proposed) return shares(options_, 0.0f);
-  const float both = kProductShare * lighting_.environment_share(), lights = lights_part(vertex) * both;
+  const float both = kProductShare * view.environment, lights = lights_part(vertex) * both;
   return shares(options_, both - lights, lights);
 }
 
@@ -67,14 +70,14 @@ void DirectLight::make_points(std::span<const Receiver> receivers) {
 }
 
 void DirectLight::draw_towards_lights(std::span<const Receiver> receivers) {
-  Vec3 position[DirectionBatch::kCapacity];
+  uint8_t view_of[DirectionBatch::kCapacity];
   int count = 0;
   for (size_t k = 0; k < receivers.size(); ++k) {
-    std::fill_n(position + count, work_[k].from_lights.count, receivers[k].vertex.position);
+    std::fill_n(view_of + count, work_[k].from_lights.count, static_cast<uint8_t>(k));
     count += work_[k].from_lights.count;
   }
   if (count == 0) return;
-  lighting_.sample({position, static_cast<size_t>(count)}, points_.points(0, count), towards_lights_,
+  lighting_.sample(views_, {view_of, static_cast<size_t>(count)}, points_.points(0, count), towards_lights_,
                    {aims_, lighting_.glow().empty() ? 0 : static_cast<size_t>(count)});
 }
 
@@ -156,7 +159,6 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
     terms_.product.v[to] = has_product ? work.shares.product * product_pdf_.v[i] : 0.0f;
     terms_.surface.v[to] = work.shares.surface * surface_pdf_.v[i];
     terms_.light_share.v[to] = work.shares.lights;
-    terms_.position[to] = receiver.vertex.position;
     terms_.drawer[to] = drawer_[i];
     terms_.receiver[to] = place;
     terms_.aim[to] = aim_[i];
@@ -164,7 +166,7 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
 }
 
 void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
-  terms_.look_up(lighting_, options_.heuristic);
+  terms_.look_up(lighting_, views_, options_.heuristic);
   const auto add = [&](int i, const Rgb& weighed, float far, bool casts_shadow) {
     queue(receivers[terms_.receiver[i]], terms_.world.get(i), weighed * terms_.reflected.get(i), far, casts_shadow,
           output);
@@ -186,7 +188,7 @@ void DirectLight::settle_glow(std::span<const Receiver> receivers, Output output
     rays[i] =
         receivers[terms_.receiver[i]].vertex.shadow_ray(terms_.world.get(i), std::numeric_limits<float>::infinity());
   }
-  terms_.look_up_glow(lighting_, aims_, {rays, static_cast<size_t>(count)});
+  terms_.look_up_glow(lighting_, views_, aims_, {rays, static_cast<size_t>(count)});
   for (const LightTerms::Glow& g : terms_.glow) {
     const Receiver& receiver = receivers[terms_.receiver[g.direction]];
     const auto [radiance, far] = lighting_.glow().light(rays[g.direction], g.hit, receiver.vertex.cone);

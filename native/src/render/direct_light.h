@@ -92,11 +92,11 @@ class DirectLight {
     std::vector<CameraSample>& samples;
   };
 
-  void prepare(const Receiver& receiver, Work& work);
+  void prepare(const Receiver& receiver, Work& work, const LightView& view);
   /// Asks for the points of all vertices, those of the lights in a row at the front.
   void make_points(std::span<const Receiver> receivers);
   /// Makes the products of the vertex, if it has any.
-  Shares shares_at(const Vertex& vertex, Work& work);
+  Shares shares_at(const Vertex& vertex, const LightView& view, Work& work);
   float lights_part(const Vertex& vertex) const {
     return sky_->lights_part[static_cast<size_t>(vertex.surface - materials_.data())];
   }
@@ -124,6 +124,7 @@ class DirectLight {
   const SkySampler* sky_;
 
   Work work_[kReceivers];
+  LightView views_[kReceivers];
   // Of all vertices.
   PointBatch points_;
   LobeDraws product_draws_;

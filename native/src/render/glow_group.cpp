@@ -95,12 +95,12 @@ GlowGroup::GlowGroup(const Scene& scene, const Scene::Instance& instance, const 
 
 double GlowGroup::power(const Mesh& mesh, const Affine& object_to_world) const {
   double scale;
-  if (is_similarity(object_to_world, scale)) return scale * static_cast<double>(tree_.power());
+  if (is_similarity(object_to_world, scale)) return scale * static_cast<double>(tree_.intensity());
   double sum = 0;
   for (uint32_t i = 0; i < triangle_.size(); ++i) {
     const auto stretch = glm::length(double_area(mesh, triangle_[i], object_to_world)) /
                          glm::length(double_area(mesh, triangle_[i], {}));
-    sum += static_cast<double>(tree_.power(i)) * static_cast<double>(stretch);
+    sum += static_cast<double>(tree_.intensity(i)) * static_cast<double>(stretch);
   }
   return sum;
 }

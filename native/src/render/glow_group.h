@@ -21,7 +21,7 @@ class GlowGroup {
   /// Throws Error(cancelled).
   GlowGroup(const Scene& scene, const Scene::Instance& instance, const Progress& progress);
 
-  /// Triangles that rays are drawn to; the power of one is its luminance times its area in the object.
+  /// Triangles that rays are drawn to; the intensity of one is its luminance times its area in the object.
   const LightTree& tree() const { return tree_; }
   uint32_t triangle(uint32_t light) const { return triangle_[light]; }
   /// Its number in the tree; kNone: no rays are drawn to it.

@@ -14,6 +14,8 @@ namespace {
 
 constexpr uint32_t kNone = GlowGroup::kNone;
 constexpr size_t kRayBatch = 64;
+/// Between that of a plane that is faced, 1, and that of a ball, whose area is four times what is seen.
+constexpr float kMeanCosine = 0.5f;
 
 /// Uniform in a triangle, without the fold of a square root [Hei19]: weights of its second and third corner.
 Vec2 in_triangle(float x, float y) { return y > x ? Vec2(0.5f * x, y - 0.5f * x) : Vec2(x - 0.5f * y, 0.5f * y); }
@@ -39,7 +41,7 @@ GlowingSurfaces::GlowingSurfaces(const Scene& scene, const Progress& progress) :
   if (std::ranges::find(glows_, 1) == glows_.end()) return;
   find_places(progress);
   if (places_.empty()) return;
-  build_tree(progress);
+  find_lights(progress);
   rays_ = std::make_unique<EmbreeScene>();
   rays_->share_meshes(scene.rays());
   for (const Place& place : places_) {
@@ -63,8 +65,7 @@ void GlowingSurfaces::find_places(const Progress& progress) {
   }
 }
 
-void GlowingSurfaces::build_tree(const Progress& progress) {
-  std::vector<LightTree::Light> lights;
+void GlowingSurfaces::find_lights(const Progress& progress) {
   for (uint32_t p = 0; p < places_.size(); ++p) {
     progress.check();
     Place& place = places_[p];
@@ -72,11 +73,10 @@ void GlowingSurfaces::build_tree(const Progress& progress) {
     const Scene::Instance& i = scene_.instances()[place.instance];
     const auto power = static_cast<float>(group(place).power(scene_.traced_mesh(i), i.object_to_world));
     if (!(power > 0.0f) || !std::isfinite(power)) continue;
-    place.light = static_cast<uint32_t>(lights.size());
+    place.light = static_cast<uint32_t>(lights_.size());
     lit_.push_back(p);
-    lights.push_back({box_around(group(place).tree().bounds(), i.object_to_world), power});
+    lights_.push_back({box_around(group(place).tree().bounds(), i.object_to_world), kMeanCosine * power});
   }
-  tree_ = LightTree(lights, progress);
 }
 
 bool GlowingSurfaces::holds(const Hit& hit) const {
@@ -89,12 +89,12 @@ bool GlowingSurfaces::draws(const Hit& hit) const {
   return at.light != kNone && group(at).light(hit.triangle) != kNone;
 }
 
-Hit GlowingSurfaces::sample(const Vec3& position, double x, float y, Vec3& direction) const {
-  const Place& chosen = places_[lit_[tree_.choose(position, x)]];
+Hit GlowingSurfaces::sample(uint32_t light, const Vec3& position, double x, float y, Vec3& direction) const {
+  const Place& chosen = places_[lit_[light]];
   const Scene::Instance& instance = scene_.instances()[chosen.instance];
   const Mesh& mesh = scene_.traced_mesh(instance);
   const GlowGroup& of = group(chosen);
-  const uint32_t triangle = of.triangle(of.tree().choose(chosen.to_object.point(position), x));
+  const uint32_t triangle = of.triangle(of.tree().choose({chosen.to_object.point(position)}, x));
   const Vec2 weights = in_triangle(static_cast<float>(x), y);
   const Vec3 to_point = instance.object_to_world.point(mesh.position(triangle, weights)) - position;
   const float distance = glm::length(to_point);
@@ -103,18 +103,17 @@ Hit GlowingSurfaces::sample(const Vec3& position, double x, float y, Vec3& direc
           chosen.instance};
 }
 
-float GlowingSurfaces::pdf(const Vec3& position, const Vec3& direction, const Hit& hit) const {
-  if (!draws(hit)) return 0.0f;
+double GlowingSurfaces::pdf(const Vec3& position, const Vec3& direction, const Hit& hit, uint32_t& light) const {
+  if (!draws(hit)) return 0;
   const Place& at = *place(hit.instance);
   const Scene::Instance& instance = scene_.instances()[hit.instance];
   const GlowGroup& of = group(at);
   const Vec3 twice = double_area(scene_.traced_mesh(instance), hit.triangle, instance.object_to_world);
   const auto facing = static_cast<double>(0.5f * std::abs(glm::dot(direction, twice)));
-  const double chosen = tree_.probability(position, at.light) *
-                        of.tree().probability(at.to_object.point(position), of.light(hit.triangle));
   const double distance = static_cast<double>(hit.distance);
-  const double pdf = chosen * distance * distance / facing;
-  return pdf < 1e30 ? static_cast<float>(pdf) : 0.0f;
+  const double chosen = of.tree().probability({at.to_object.point(position)}, of.light(hit.triangle));
+  light = at.light;
+  return facing > 0 ? chosen * distance * distance / facing : 0;
 }
 
 bool GlowingSurfaces::stops(const Hit& hit) const {

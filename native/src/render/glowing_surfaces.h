@@ -23,20 +23,20 @@ class GlowingSurfaces {
   GlowingSurfaces(const Scene& scene, const Progress& progress);
 
   bool empty() const { return places_.empty(); }
-  /// Luminance of the power that surfaces send from both sides, of those that rays are drawn to.
-  float power() const { return 2 * kPi * tree_.power(); }
+  /// Those that rays are drawn to, for choosing between them; a light is an instance.
+  std::span<const LightTree::Light> lights() const { return lights_; }
 
   /// Whether what was hit, by a ray of the scene's, is one of these surfaces.
   bool holds(const Hit& hit) const;
   /// Whether rays are drawn to it.
   bool draws(const Hit& hit) const;
 
-  /// A point of a surface: a triangle by its importance to `position`, then uniform in its area [Hei19]. `direction`:
-  /// unit, from there to the point, or zero where they are one. `x` and `y` are uniform in [0, 1). Only with power().
-  Hit sample(const Vec3& position, double x, float y, Vec3& direction) const;
-  /// The density of that per solid angle, at what the ray from `position` along `direction` has hit; 0 where no rays
-  /// are drawn to it.
-  float pdf(const Vec3& position, const Vec3& direction, const Hit& hit) const;
+  /// A point of a light: a triangle by its importance to `position`, then uniform in its area [Hei19]. `direction`:
+  /// unit, from there to the point, or zero where they are one. `x` and `y` are uniform in [0, 1).
+  Hit sample(uint32_t light, const Vec3& position, double x, float y, Vec3& direction) const;
+  /// The density of that per solid angle, at what the ray from `position` along `direction` has hit, and of which
+  /// `light`; 0 where no rays are drawn to it.
+  double pdf(const Vec3& position, const Vec3& direction, const Hit& hit, uint32_t& light) const;
 
   /// Appends what the rays, at most 64, meet of these surfaces, up to the first of them that lets nothing through.
   void meet(std::span<const Ray> rays, std::vector<GlowHit>& found) const;
@@ -53,7 +53,7 @@ class GlowingSurfaces {
     uint32_t instance;  // of the scene
     uint32_t group;
     Affine to_object;
-    uint32_t light;  // of tree_, or GlowGroup::kNone
+    uint32_t light;  // of lights_, or GlowGroup::kNone
   };
   bool stops(const Hit& hit) const;
   const GlowGroup& group(const Place& place) const { return groups_[place.group]; }
@@ -61,15 +61,15 @@ class GlowingSurfaces {
     return place_of_[instance] == GlowGroup::kNone ? nullptr : &places_[place_of_[instance]];
   }
   void find_places(const Progress& progress);
-  void build_tree(const Progress& progress);
+  void find_lights(const Progress& progress);
 
   const Scene& scene_;
   std::vector<uint8_t> glows_;  // by material
   std::vector<GlowGroup> groups_;
   std::vector<Place> places_;       // by instance of rays_
   std::vector<uint32_t> place_of_;  // by instance of the scene, or GlowGroup::kNone; empty where nothing glows
-  std::vector<uint32_t> lit_;       // by light of tree_: its place
-  LightTree tree_;
+  std::vector<LightTree::Light> lights_;
+  std::vector<uint32_t> lit_;  // by light: its place
   std::unique_ptr<EmbreeScene> rays_;
 };
 

@@ -19,6 +19,7 @@ HitLight HitLightEstimator::estimate(const Vertex& vertex, int bounces, uint64_t
   concentrations_.clear();
   irradiance_ = 0;
   vertex.surface->material->prepare(vertex.wv, vertex.site, prepared_);
+  if (lighting_.has_extended()) view_ = lighting_.view(vertex.light_place());
   estimate_half(vertex, bounces, key, 0);
   result_.middle = static_cast<uint32_t>(result_.wl.size());
   estimate_half(vertex, bounces, key, 1);
@@ -54,8 +55,7 @@ void HitLightEstimator::draw(const Vertex& vertex, Counts counts, PathNumbers& n
   if (counts.lights > 0) {
     const std::span<Vec2> points(u, static_cast<size_t>(counts.lights));
     numbers.points(Purpose::light, 0, points);
-    std::fill_n(position_, counts.lights, vertex.position);
-    lighting_.sample({position_, points.size()}, points, drawn, {aims, points.size()});
+    lighting_.sample({&view_, 1}, {view_of_, points.size()}, points, drawn, {aims, points.size()});
     for (int i = 0; i < drawn.count; ++i) {
       keep_if_received(vertex, vertex.frame.to_local(drawn.get(i)), drawn.get(i), Drawer::lights, aims[i]);
     }
@@ -86,9 +86,9 @@ void HitLightEstimator::weigh(const Vertex& vertex, Counts counts) {
   std::fill_n(environment_.g, world_.count, 0.0f);
   std::fill_n(environment_.b, world_.count, 0.0f);
   std::fill_n(light_pdf_.v, world_.count, 0.0f);
-  std::fill_n(position_, world_.count, vertex.position);
   if (lighting_.has_extended() && world_.count > 0) {
-    lighting_.look_up({position_, static_cast<size_t>(world_.count)}, world_, environment_, light_pdf_, lamp_hits_);
+    lighting_.look_up({&view_, 1}, {view_of_, static_cast<size_t>(world_.count)}, world_, environment_, light_pdf_,
+                      lamp_hits_);
   }
   vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
   for (int i = 0; i < world_.count; ++i) {
@@ -131,7 +131,7 @@ void HitLightEstimator::add_glow(const Vertex& vertex, Counts counts) {
     const Hit& hit = hits_[i];
     if (hit.instance == kNoHit || !lighting_.glow().holds(hit)) continue;
     if (drawer_[i] == Drawer::lights && !same_crossing(hit, aims_[i])) continue;
-    const float pdf = lighting_.glow_pdf(vertex.position, world_.get(i), hit);
+    const float pdf = lighting_.glow_pdf(view_, world_.get(i), hit);
     const float density =
         static_cast<float>(counts.lights) * pdf + static_cast<float>(counts.surface) * material_pdf_.v[i];
     if (!(density > 0.0f)) continue;

@@ -76,7 +76,8 @@ class HitLightEstimator {
   Rgb passed_[DirectionBatch::kCapacity];  // on the way there
   Rgb radiance_[DirectionBatch::kCapacity];
   Rgb glow_[DirectionBatch::kCapacity];  // light of surfaces that glow, weighed
-  Vec3 position_[DirectionBatch::kCapacity];
+  LightView view_;
+  uint8_t view_of_[DirectionBatch::kCapacity] = {};  // all of the one
 
   // Of both halves.
   struct Concentration {

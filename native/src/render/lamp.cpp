@@ -42,11 +42,11 @@ float smooth_step(float t) { return t * t * (3.0f - 2.0f * t); }
 
 }  // namespace
 
-Lamp::Lamp(const Light& light, float scene_radius)
+Lamp::Lamp(const Light& light)
     : type_(light.type), casts_shadow_(light.casts_shadow), sphere_(light.sphere) {
   switch (type_) {
     case Light::Type::sun:
-      set_sun(light, scene_radius);
+      set_sun(light);
       break;
     case Light::Type::point:
       set_point(light);
@@ -62,9 +62,9 @@ Lamp::Lamp(const Light& light, float scene_radius)
   }
 }
 
-void Lamp::set_sun(const Light& light, float scene_radius) {
+void Lamp::set_sun(const Light& light) {
   axis_ = glm::normalize(light.light_to_world.column(2));
-  power_ = luminance(light.color) * kPi * scene_radius * scene_radius;
+  power_ = luminance(light.color);
   const float sine = std::sin(0.5f * std::clamp(light.angle, 0.0f, kPi));
   sharp_ = !(sine > 1e-5f);  // two arc seconds: below what float32 directions resolve
   if (sharp_) {
@@ -137,6 +137,33 @@ void Lamp::set_spread(float spread) {
   if (half == 0.5f * kPi) return;
   cot_spread_ = 1.0f / std::tan(half);
   focus_ = 1.0f / (1.0f - half * cot_spread_);
+}
+
+Bounds Lamp::bounds() const {
+  const Vec3 extent = is_round() ? Vec3(radius_) : glm::abs(half_x_) + glm::abs(half_y_);
+  return {center_ - extent, center_ + extent};
+}
+
+LightCone Lamp::cone_of_light() const {
+  switch (type_) {
+    case Light::Type::sun:
+    case Light::Type::point:
+      break;
+    case Light::Type::spot:
+      // What a scaled cone holds is not told.
+      if (narrow_z_ == Vec3(0.0f)) return {axis_, cos_cone_, std::cos(0.1f)};
+      break;
+    case Light::Type::rectangle:
+    case Light::Type::disk:
+      return {shine_, std::clamp(glm::dot(shine_, axis_), -1.0f, 1.0f),
+              cot_spread_ > 0.0f ? cot_spread_ / std::sqrt(1.0f + cot_spread_ * cot_spread_) : 0.0f};
+  }
+  return {};
+}
+
+float Lamp::intensity() const {
+  if (distant()) return power_;
+  return power_ / (is_round() ? 4.0f * kPi : kPi) * focus_;
 }
 
 float Lamp::cone_cosine(const Vec3& direction) const {

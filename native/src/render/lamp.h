@@ -1,21 +1,28 @@
 // One lamp of the scene, ready to be sampled, hit and measured. World space.
 #pragma once
 
+#include "render/light_tree.h"
 #include "scene/light.h"
 
 namespace velour {
 
 class Lamp {
  public:
-  /// `scene_radius`: of the sphere that a distant lamp must light; for its power.
-  Lamp(const Light& light, float scene_radius);
+  explicit Lamp(const Light& light);
 
   /// No extent: no sampled direction can meet it, so it is always lit by name (irradiance()).
   bool sharp() const { return sharp_; }
-  bool black() const { return !(power_ > 0.0f); }
+  bool black() const { return !(intensity() > 0.0f); }
   bool casts_shadow() const { return casts_shadow_; }
-  /// Luminance of the power that reaches the scene, for choosing between lights.
-  float power() const { return power_; }
+
+  /// For choosing between lamps that are not suns (light_tree.h).
+  bool distant() const { return type_ == Light::Type::sun; }
+  Bounds bounds() const;
+  LightCone cone_of_light() const;
+  /// Luminance along the cone's axis, W/sr; of a sun the irradiance on a plane that faces it.
+  float intensity() const;
+  /// Of a sun: towards it.
+  const Vec3& axis() const { return axis_; }
 
   /// A lamp with extent: direction from `position` to a random point of it, a zero vector where it cannot be seen.
   Vec3 sample(const Vec3& position, const Vec2& u) const;
@@ -36,7 +43,7 @@ class Lamp {
   Irradiance irradiance(const Vec3& position) const;
 
  private:
-  void set_sun(const Light& light, float scene_radius);
+  void set_sun(const Light& light);
   void set_point(const Light& light);
   void set_spot(const Light& light);
   void set_area(const Light& light);
@@ -66,7 +73,7 @@ class Lamp {
 
   Light::Type type_;
   bool sharp_ = false, casts_shadow_ = true, sphere_ = true, cosine_ = false;
-  float power_ = 0;
+  float power_ = 0;      // luminance; of a sun per square metre
   Rgb radiance_{0.0f};   // with extent, less falloff
   Rgb intensity_{0.0f};  // sharp: irradiance of a sun, W/sr of a point
   Vec3 center_{0.0f};    // but for a sun

@@ -9,12 +9,12 @@ float LightTerms::weighed(Heuristic heuristic, int direction, float light_pdf) c
   return density == 0.0f ? 0.0f : 1.0f / density;
 }
 
-void LightTerms::look_up(const Lighting& lighting, Heuristic heuristic) {
+void LightTerms::look_up(const Lighting& lighting, std::span<const LightView> views, Heuristic heuristic) {
   const int count = world.count;
   if (count == 0) return;
   world.pad();
   ScalarBatch light_pdf;
-  lighting.look_up({position, static_cast<size_t>(count)}, world, environment, light_pdf, lamp_hits);
+  lighting.look_up(views, {receiver, static_cast<size_t>(count)}, world, environment, light_pdf, lamp_hits);
   for (int i = 0; i < count; ++i) weight.v[i] = aim[i] != 0 ? 0.0f : weighed(heuristic, i, light_pdf.v[i]);
   for (const LampHit& hit : lamp_hits) {
     const int i = hit.direction;
@@ -22,11 +22,12 @@ void LightTerms::look_up(const Lighting& lighting, Heuristic heuristic) {
   }
 }
 
-void LightTerms::look_up_glow(const Lighting& lighting, std::span<const Hit> aims, std::span<const Ray> rays) {
+void LightTerms::look_up_glow(const Lighting& lighting, std::span<const LightView> views, std::span<const Hit> aims,
+                              std::span<const Ray> rays) {
   find_glow(lighting.glow(), aims, rays);
   for (Glow& g : glow) {
     const int i = g.direction;
-    const float pdf = light_share.v[i] > 0.0f ? lighting.glow_pdf(position[i], world.get(i), g.hit) : 0.0f;
+    const float pdf = light_share.v[i] > 0.0f ? lighting.glow_pdf(views[receiver[i]], world.get(i), g.hit) : 0.0f;
     g.weight = weighed(kLampHeuristic, i, pdf);
   }
 }

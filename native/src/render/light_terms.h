@@ -20,7 +20,6 @@ struct alignas(64) LightTerms {
   RgbBatch reflected;            // throughput f cos / n of n directions
   ScalarBatch product, surface;  // share of a drawer times its density
   ScalarBatch light_share;
-  Vec3 position[DirectionBatch::kCapacity];     // of the vertex
   Drawer drawer[DirectionBatch::kCapacity];     // who drew it
   uint8_t receiver[DirectionBatch::kCapacity];  // number of the vertex in the batch
   uint8_t aim[DirectionBatch::kCapacity];       // 0: none; else 1 + its number among the aims (Lighting::sample)
@@ -41,9 +40,11 @@ struct alignas(64) LightTerms {
     lamp_hits.clear();
     glow.clear();
   }
-  void look_up(const Lighting& lighting, Heuristic heuristic);
+  /// `views`: by number of the vertex.
+  void look_up(const Lighting& lighting, std::span<const LightView> views, Heuristic heuristic);
   /// `rays`: along the directions, as they leave their vertices.
-  void look_up_glow(const Lighting& lighting, std::span<const Hit> aims, std::span<const Ray> rays);
+  void look_up_glow(const Lighting& lighting, std::span<const LightView> views, std::span<const Hit> aims,
+                    std::span<const Ray> rays);
 
  private:
   /// 1 / d, with the density of whoever draws towards the light.

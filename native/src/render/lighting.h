@@ -1,5 +1,5 @@
-// All light of a scene: the environment and lamps with extent as one density over directions, surfaces that glow as
-// another beside it, sharp lamps by name.
+// All light of a scene: the environment, and lamps with extent, as one density over directions at a place; surfaces that
+// glow as another beside it; sharp lamps by name.
 #pragma once
 
 #include <span>
@@ -8,6 +8,7 @@
 #include "render/glowing_surfaces.h"
 #include "render/lamp.h"
 #include "scene/scene.h"
+#include "scene/sky_irradiance.h"
 
 namespace velour {
 
@@ -18,52 +19,68 @@ struct LampHit {
   float distance;
 };
 
+/// A place and the probabilities of the lights there.
+struct LightView {
+  LightPlace place;
+  float environment = 0, suns = 0, near = 0;  // of the environment, of all suns, of the tree's lights; 1 in all
+  double suns_total = 0;                      // of their irradiances
+  LightTree::Cut cut;
+};
+
 class Lighting {
  public:
   /// Throws Error(cancelled).
   Lighting(const Scene& scene, const Progress& progress);
 
   const Environment& environment() const { return environment_; }
-  /// Of the power of all that a sampled direction can meet, the environment's; the probability of `sample` choosing it.
-  float environment_share() const { return environment_probability_; }
   /// True when there is anything that a sampled direction can meet.
-  bool has_extended() const { return !lamps_.empty() || !environment_.black() || !glow_.empty(); }
+  bool has_extended() const { return !environment_.black() || !suns_.empty() || !lamps_.empty() || !glow_.empty(); }
 
-  /// Directions towards light, one for each `u` from its `position`: first a light with probability proportional to its
-  /// power, then a direction of it. A zero vector where the chosen lamp shows its dark side. Needs has_extended().
+  /// Of all but sharp lamps: environment, suns and near lights are chosen by the irradiance that each would bring if nothing stood before it
+  /// (of near lights, estimated by LightTree), and at least three tenths of an equal part: what stands before one
+  /// is not known. Needs has_extended().
+  LightView view(const LightPlace& place) const;
+
+  /// Directions towards light, one for each `u` from its view: first a light, then a direction of it. A zero vector
+  /// where the chosen lamp shows its dark side.
   ///
   /// One that is aimed at a point of a surface that glows brings the light of that point and nothing else, so that only
   /// that point's density need be known: `aims`, as many or none, gets the point, and of the others no instance.
-  void sample(std::span<const Vec3> position, std::span<const Vec2> u, DirectionBatch& world,
-              std::span<Hit> aims = {}) const;
-  /// For each direction of `world` from its `position`: radiance of the environment, density of `sample`, less what it
-  /// aims at surfaces, and lamps met (appended to `hits`). The batch is padded.
-  void look_up(std::span<const Vec3> position, const DirectionBatch& world, RgbBatch& environment, ScalarBatch& pdf,
-               std::vector<LampHit>& hits) const;
+  void sample(std::span<const LightView> views, std::span<const uint8_t> view_of, std::span<const Vec2> u,
+              DirectionBatch& world, std::span<Hit> aims = {}) const;
+  /// For each direction of `world` from its view: radiance of the environment, density of `sample`, less what it aims at
+  /// surfaces, and lamps met (appended to `hits`). The batch is padded.
+  void look_up(std::span<const LightView> views, std::span<const uint8_t> view_of, const DirectionBatch& world,
+               RgbBatch& environment, ScalarBatch& pdf, std::vector<LampHit>& hits) const;
 
   const GlowingSurfaces& glow() const { return glow_; }
   /// Density of `sample` aiming at what a ray has hit.
-  float glow_pdf(const Vec3& position, const Vec3& direction, const Hit& hit) const {
-    return (1.0f - glow_begin_) * glow_.pdf(position, direction, hit);
-  }
+  float glow_pdf(const LightView& view, const Vec3& direction, const Hit& hit) const;
 
   std::span<const Lamp> sharp() const { return sharp_; }
-  /// Index of a sharp lamp with probability proportional to its power, which goes to `probability`.
-  size_t choose_sharp(float u, float& probability) const;
+  /// The same of sharp lamps.
+  LightView sharp_view(const LightPlace& place) const;
+  /// Index of a sharp lamp, and the probability with which it was chosen.
+  size_t choose_sharp(const LightView& view, float u, float& probability) const;
 
  private:
-  bool choose_environment(Vec2& u) const;
-  Vec3 sample_lamp(const Vec3& position, const Vec2& u) const;
-  Vec3 sample_glow(const Vec3& position, const Vec2& u, Hit* aim) const;
-  void set_probabilities(float environment_power);
+  struct Chosen {
+    size_t lamp;
+    double probability, rest;  // of the number that chose it
+  };
+  static LightView view_of_all(const LightPlace& place, double sky, std::span<const Lamp> suns, const LightTree& near);
+  static Chosen choose_sun(const LightView& view, std::span<const Lamp> suns, double x);
+  Vec3 sample_sun(const LightView& view, double x, float y) const;
+  Vec3 sample_near(const LightView& view, const Vec2& u, Hit* aim) const;
 
   const Environment& environment_;
-  std::vector<Lamp> lamps_, sharp_;
-  std::vector<float> probability_;  // of lamps_
-  float environment_probability_ = 0;
+  const SkyIrradiance sky_;
+  std::vector<Lamp> suns_, lamps_;  // with extent
   const GlowingSurfaces glow_;
-  float glow_begin_ = 1;  // from this number on a random one chooses a surface
-  std::vector<float> sharp_cdf_;
+  LightTree near_;           // of lamps_, then of the glow's lights
+  std::vector<Lamp> sharp_;  // suns first
+  size_t sharp_suns_ = 0;
+  LightTree sharp_near_;  // of the others
 };
 
 }  // namespace velour

@@ -11,11 +11,13 @@ int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers
   const bool all = lamps.size() <= room;
   const size_t count = all ? lamps.size() : room;
   Vec2 u[kMostSharpLamps];
+  LightView view;
+  if (!all) view = lighting.sharp_view(vertex.light_place());
   if (!all) numbers.points(Purpose::sharp, numbers.ray() * static_cast<uint32_t>(room), {u, room});
   int lit = 0;
   for (size_t i = 0; i < count; ++i) {
     float probability = 1.0f;
-    const size_t chosen = all ? i : lighting.choose_sharp(u[i].x, probability);
+    const size_t chosen = all ? i : lighting.choose_sharp(view, u[i].x, probability);
     const Lamp::Irradiance light = lamps[chosen].irradiance(vertex.position);
     const Vec3 wl = vertex.frame.to_local(light.direction);
     if (!vertex.receives_light(wl, light.direction)) continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "render/footprint.h"
+#include "render/light_tree.h"
 #include "scene/scene.h"
 #include "sphere/frame.h"
 
@@ -49,6 +50,8 @@ struct Vertex {
   /// The same of a hit of the scene's own; where the surface has a shell, at what the ray meets there.
   static Vertex seen(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
                      const PixelFootprint* pixel);
+
+  LightPlace light_place() const { return {position, frame.z, transmits}; }
 
   /// Whether light from there can reach the viewer; `wl`: the same in the frame.
   bool receives(const Vec3& wl, const Vec3& wl_world) const {

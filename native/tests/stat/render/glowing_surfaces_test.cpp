@@ -220,9 +220,11 @@ TEST(GlowingSurfaces, RaysAreDrawnByTheirDensity) {
   const Scene scene = thin_lights();
   const Lighting lighting(scene, Progress());
   const Vec3 origin(0.0f);
+  const LightView view = lighting.view({origin, {0, 0.6f, 0.8f}});
+  const uint8_t only = 0;
   const auto draw = [&](const Vec2& u) {
     DirectionBatch world;
-    lighting.sample({&origin, 1}, {&u, 1}, world);
+    lighting.sample({&view, 1}, {&only, 1}, {&u, 1}, world);
     return world.get(0);
   };
   const auto density = [&](const Vec3& w) {
@@ -230,7 +232,7 @@ TEST(GlowingSurfaces, RaysAreDrawnByTheirDensity) {
     std::vector<GlowHit> found;
     lighting.glow().meet({&ray, 1}, found);
     double sum = 0;
-    for (const GlowHit& f : found) sum += static_cast<double>(lighting.glow_pdf(origin, w, f.hit));
+    for (const GlowHit& f : found) sum += static_cast<double>(lighting.glow_pdf(view, w, f.hit));
     return sum;
   };
   test::Sampler sampler{draw, density};

@@ -40,7 +40,7 @@ Light light_of(const LampCase& c, float scale) {
 
 /// Seen from the origin, in cells about the lamp's middle.
 Sampler sampler_of(const LampCase& c, float scale) {
-  const Lamp lamp(light_of(c, scale), 1);
+  const Lamp lamp(light_of(c, scale));
   const bool is_sun = c.type == Light::Type::sun;
   Sampler sampler{[lamp](const Vec2& u) { return lamp.sample(Vec3(0.0f), u); },
                   [lamp](const Vec3& w) { return static_cast<double>(lamp.hit(Vec3(0.0f), w).pdf); }};
@@ -86,8 +86,8 @@ TEST(LampSamplingControl, ALampFivePercentWiderIsSeen) {
   }
 }
 
-/// A sky and a lamp of every kind.
-Scene lit() {
+/// A sky, a lamp of every kind, and `more` small ones.
+Scene lit(int more) {
   Scene scene;
   scene.add_mesh(test::square(2));
   scene.add_material({std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), false});
@@ -101,44 +101,61 @@ Scene lit() {
     if (c.type != kSun) light.color = Rgb(30.0f);
     scene.add_light(light);
   }
+  for (int i = 0; i < more; ++i) {
+    Light light;
+    light.type = i % 2 == 0 ? kSphere : kRectangle;
+    light.size = {0.2f, 0.3f};
+    light.color = Rgb(random.next());
+    light.light_to_world = test::shift({4 * random.next() - 2, 4 * random.next() - 2, 2 + random.next()});
+    scene.add_light(light);
+  }
   scene.commit(1);
   return scene;
 }
 
-Vec3 draw(const Lighting& lighting, const Vec2& u) {
-  DirectionBatch world;
-  const Vec3 origin(0.0f);
-  lighting.sample({&origin, 1}, {&u, 1}, world);
-  return world.get(0);
-}
+/// All light of a scene at one place.
+struct LightAtPlace {
+  const Lighting& lighting;
+  LightView view;
+  uint8_t only = 0;
 
-double density(const Lighting& lighting, const Vec3& w) {
-  DirectionBatch world;
-  world.push(w);
-  world.pad();
-  RgbBatch environment;
-  ScalarBatch pdf;
-  std::vector<LampHit> hits;
-  const Vec3 origin(0.0f);
-  lighting.look_up({&origin, 1}, world, environment, pdf, hits);
-  return static_cast<double>(pdf.v[0]);
-}
+  Vec3 draw(const Vec2& u) const {
+    DirectionBatch world;
+    lighting.sample({&view, 1}, {&only, 1}, {&u, 1}, world);
+    return world.get(0);
+  }
+  double density(const Vec3& w) const {
+    DirectionBatch world;
+    world.push(w);
+    world.pad();
+    RgbBatch environment;
+    ScalarBatch pdf;
+    std::vector<LampHit> hits;
+    lighting.look_up({&view, 1}, {&only, 1}, world, environment, pdf, hits);
+    return static_cast<double>(pdf.v[0]);
+  }
+};
 
 TEST(LightingSampling, AllLightOfASceneFollowsItsDensity) {
-  const Scene scene = lit();
-  const Lighting lighting(scene, Progress());
-  EXPECT_GT(lighting.environment_share(), 0.1f);
-  EXPECT_LT(lighting.environment_share(), 0.9f);
-  Sampler sampler{[&](const Vec2& u) { return draw(lighting, u); },
-                  [&](const Vec3& w) { return density(lighting, w); }};
-  sampler.axis = glm::normalize(kLamps[11].place);
-  sampler.concentration = 1e6;
-  sampler.refinements = {2, 6};
-  test::expect_proven(sampler, "all light");
-  // Control: five per cent more on one side, less on the other.
-  Sampler uneven = sampler;
-  uneven.pdf = [&](const Vec3& w) { return density(lighting, w) * (w.x > 0 ? 1.05 : 0.95); };
-  EXPECT_LT(test::p_value(sampler, uneven), 1e-6);
+  for (const int more : {0, 40}) {
+    const Scene scene = lit(more);
+    const Lighting lighting(scene, Progress());
+    for (const LightPlace& place : {LightPlace{Vec3(0.0f), {0, 0, 1}}, LightPlace{Vec3(0.0f), {0.6f, 0, -0.8f}, true}}) {
+      const LightAtPlace light{lighting, lighting.view(place)};
+      EXPECT_GE(light.view.environment, 0.1f);
+      EXPECT_GE(light.view.suns, 0.1f);
+      EXPECT_GE(light.view.near, 0.1f);
+      Sampler sampler{[&](const Vec2& u) { return light.draw(u); }, [&](const Vec3& w) { return light.density(w); }};
+      sampler.axis = glm::normalize(kLamps[11].place);
+      sampler.concentration = more > 0 ? 1 : 1e6;
+      sampler.refinements = {2, 6};
+      test::expect_proven(sampler, more > 0 ? "many lamps" : "all light");
+      // Control: five per cent more on one side, less on the other.
+      Sampler uneven = sampler;
+      uneven.pdf = [&](const Vec3& w) { return light.density(w) * (w.x > 0 ? 1.05 : 0.95); };
+      EXPECT_LT(test::p_value(sampler, uneven), 1e-6);
+    }
+  }
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ double irradiance_by_samples(const Lamp& lamp) {
 
 TEST(Lamp, SamplesFollowTheDensityOfHits) {
   for (const Light& light : extended_lamps()) {
-    const Lamp lamp(light, 1);
+    const Lamp lamp(light);
     const Moments samples = moments_by_samples(lamp), hits = moments_by_hits(lamp);
     for (size_t k = 0; k < kMoments; ++k) {
       EXPECT_NEAR(samples[k], hits[k], 0.005 * hits[0]) << static_cast<int>(light.type) << " moment " << k;
@@ -110,7 +110,7 @@ TEST(Lamp, SunGivesItsIrradianceWhateverItsSize) {
   Light sun;
   for (float angle : {0.0f, 1e-3f, 0.01f, 0.5f}) {
     sun.angle = angle;
-    const Lamp lamp(sun, 1);
+    const Lamp lamp(sun);
     if (lamp.sharp()) {
       EXPECT_EQ(angle, 0.0f);
       EXPECT_FLOAT_EQ(lamp.irradiance(Vec3(0.0f)).perpendicular.r, 1);
@@ -134,7 +134,7 @@ TEST(Lamp, ShearedAreasShineAsInCycles) {
     light.light_to_world.m[4] = 0.5f;  // the x axis
     const double leaning = 1 / std::sqrt(1 + 0.8 * 0.8), seen = 1 / std::sqrt(1 + 0.5 * 0.5);
     const double share = type == Light::Type::disk ? leaning : seen;
-    EXPECT_NEAR(irradiance_by_samples(Lamp(light, 1)), share * 7 / (kPiD * 9), 1e-2 * 7 / (kPiD * 9));
+    EXPECT_NEAR(irradiance_by_samples(Lamp(light)), share * 7 / (kPiD * 9), 1e-2 * 7 / (kPiD * 9));
   }
 }
 
@@ -142,12 +142,12 @@ TEST(Lamp, SphereLightsLikeAPointFromOutside) {
   Light light;
   light.type = Light::Type::point;
   light.light_to_world = test::shift({0, 0, 3});
-  const Lamp point(light, 1);
+  const Lamp point(light);
   ASSERT_TRUE(point.sharp());
   const float expected = 1 / (4 * kPi * 9);
   EXPECT_NEAR(point.irradiance(Vec3(0.0f)).perpendicular.r / expected, 1, 1e-5f);
   light.size.x = 1;
-  EXPECT_NEAR(irradiance_by_samples(Lamp(light, 1)) / static_cast<double>(expected), 1, 5e-3);
+  EXPECT_NEAR(irradiance_by_samples(Lamp(light)) / static_cast<double>(expected), 1, 5e-3);
 }
 
 /// Narrower than float directions resolve: what sample() rounds away from the rim still counts.
@@ -155,31 +155,31 @@ TEST(Lamp, SmallBallsKeepTheirLightFromAfar) {
   Light light;
   light.type = Light::Type::point;
   light.light_to_world = test::shift({600, -700, 400});
-  const double expected = static_cast<double>(Lamp(light, 1).irradiance(Vec3(0.0f)).perpendicular.r) * 400 /
+  const double expected = static_cast<double>(Lamp(light).irradiance(Vec3(0.0f)).perpendicular.r) * 400 /
                           std::sqrt(600.0 * 600 + 700 * 700 + 400 * 400);
   for (const float radius : {1.0f, 0.01f, 3e-3f, 1e-3f, 3e-4f, 1e-4f, 1e-6f}) {
     for (const bool sphere : {true, false}) {
       light.size.x = radius;
       light.sphere = sphere;
-      EXPECT_NEAR(irradiance_by_samples(Lamp(light, 1)) / expected, 1, 1.5e-3) << radius;
+      EXPECT_NEAR(irradiance_by_samples(Lamp(light)) / expected, 1, 1.5e-3) << radius;
     }
   }
 }
 
 TEST(Lamp, PowerOfAreaLampsIsWhatTheyEmit) {
   // One side, Lambertian: pi A L.
-  const Lamp rectangle(lamp_above(Light::Type::rectangle, {2, 3}), 1);
+  const Lamp rectangle(lamp_above(Light::Type::rectangle, {2, 3}));
   EXPECT_NEAR(rectangle.radiance(kUp).r * kPi * 6, 1, 1e-5f);
-  const Lamp disk(lamp_above(Light::Type::disk, {2, 2}), 1);
+  const Lamp disk(lamp_above(Light::Type::disk, {2, 2}));
   EXPECT_NEAR(disk.radiance(kUp).r * kPi * kPi, 1, 1e-5f);
 }
 
 TEST(Lamp, SpreadKeepsThePowerAndEndsAtItsAngle) {
   for (const float spread : {0.2f, 1.0f, 2.0f, 3.0f}) {
     Light light = lamp_above(Light::Type::rectangle, {2, 3});
-    const double even = static_cast<double>(Lamp(light, 1).radiance(kUp).g);
+    const double even = static_cast<double>(Lamp(light).radiance(kUp).g);
     light.spread = spread;
-    const Lamp lamp(light, 1);
+    const Lamp lamp(light);
     const auto radiance = [&](double theta) {
       return static_cast<double>(lamp.radiance(direction(static_cast<float>(theta), 0.3f)).g);
     };
@@ -203,7 +203,7 @@ TEST(Lamp, SpotFadesOverItsBlend) {
   const float rim = std::cos(0.5f), inner = rim + 0.5f * (1 - rim);
   const auto share = [&](float cosine) {
     const Vec3 at = Vec3(0.3f, -0.2f, 2) - direction(std::acos(cosine), 1.0f);
-    return Lamp(light, 1).irradiance(at).perpendicular.g * 4 * kPi;
+    return Lamp(light).irradiance(at).perpendicular.g * 4 * kPi;
   };
   EXPECT_NEAR(share(1), 1, 1e-5f);
   EXPECT_NEAR(share(inner + 0.001f), 1, 1e-5f);
@@ -219,7 +219,7 @@ TEST(Lamp, SpotsOfScaledObjectsHaveEllipticCones) {
   light.blend = 0.5f;
   light.light_to_world = {{0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 2}};  // x points along the world's y
   const auto share = [&](const Vec3& along) {
-    return Lamp(light, 1).irradiance(Vec3(0, 0, 2) + glm::normalize(along)).perpendicular.g * 4 * kPi;
+    return Lamp(light).irradiance(Vec3(0, 0, 2) + glm::normalize(along)).perpendicular.g * 4 * kPi;
   };
   float circular[2];
   for (const int axis : {0, 1}) circular[axis] = share({axis == 0 ? 0.45f : 0, axis == 1 ? 0.45f : 0, -1});
@@ -238,7 +238,7 @@ TEST(Lamp, DiskThatFacesIsSeenUnderItsTangent) {
   light.light_to_world = test::shift({0, 0, 3});
   light.size.x = 1;
   light.sphere = false;
-  const Lamp disk(light, 1);
+  const Lamp disk(light);
   const auto meets = [&](float tangent) { return disk.hit(Vec3(0.0f), glm::normalize(Vec3(tangent, 0, 1))); };
   EXPECT_EQ(meets(1.01f / 3).pdf, 0);
   ASSERT_GT(meets(0.99f / 3).pdf, 0);
@@ -249,35 +249,90 @@ TEST(Lamp, DiskThatFacesIsSeenUnderItsTangent) {
 }
 
 TEST(Lamp, DarkSideInsideAndDegenerate) {
-  const Lamp rectangle(lamp_above(Light::Type::rectangle, {2, 3}), 1);
+  const Lamp rectangle(lamp_above(Light::Type::rectangle, {2, 3}));
   EXPECT_EQ(rectangle.sample({0, 0, 4}, {0.5f, 0.5f}), Vec3(0.0f));
   EXPECT_EQ(rectangle.hit({0.3f, -0.2f, 4}, {0, 0, -1}).pdf, 0);
-  const Lamp sphere(lamp_above(Light::Type::point, {1, 0}), 1);
+  const Lamp sphere(lamp_above(Light::Type::point, {1, 0}));
   EXPECT_EQ(sphere.sample({0.3f, -0.2f, 2.5f}, {0.5f, 0.5f}), Vec3(0.0f));
-  EXPECT_TRUE(Lamp(lamp_above(Light::Type::rectangle, {0, 3}), 1).black());
+  EXPECT_TRUE(Lamp(lamp_above(Light::Type::rectangle, {0, 3})).black());
   Light off = lamp_above(Light::Type::point, {1, 0});
   off.color = Rgb(0.0f);
-  EXPECT_TRUE(Lamp(off, 1).black());
+  EXPECT_TRUE(Lamp(off).black());
 }
 
-TEST(Lighting, SharpLampsAreChosenByPower) {
+/// Points side by side above the plane, one below it, and a sun.
+TEST(Lighting, SharpLampsAreChosenByTheirIrradiance) {
   Scene scene;
   Light light;
   light.type = Light::Type::point;
+  light.light_to_world = test::shift({0, 0, 3});
   for (float power : {1.0f, 0.0f, 3.0f, 6.0f}) {
     light.color = Rgb(power);
     scene.add_light(light);
   }
+  light.light_to_world = test::shift({0, 0, -3});
+  scene.add_light(light);
+  scene.commit(1);
+  const LightPlace floor{Vec3(0.0f), {0, 0, 1}};
+  // By lamp, from numbers side by side; each says its probability.
+  const auto shares = [&](const Lighting& lighting) {
+    const LightView view = lighting.sharp_view(floor);
+    std::vector<float> share(lighting.sharp().size());
+    constexpr int kNumbers = 4096;
+    for (int i = 0; i < kNumbers; ++i) {
+      float probability;
+      const size_t lamp = lighting.choose_sharp(view, (static_cast<float>(i) + 0.5f) / kNumbers, probability);
+      share[lamp] += 1.0f / kNumbers;
+      if (lamp < 3) {
+        const float brought = lighting.sharp()[lamp].irradiance(floor.position).perpendicular.r;
+        EXPECT_NEAR(brought / probability, 10 / (36 * kPi), 2e-3f);
+      }
+    }
+    return share;
+  };
+  {
+    const Lighting lighting(scene, Progress());
+    ASSERT_EQ(lighting.sharp().size(), 4u);  // the dark one is gone
+    EXPECT_FALSE(lighting.has_extended());
+    const auto share = shares(lighting);
+    EXPECT_NEAR(share[0], 0.1f, 2e-3f);
+    EXPECT_NEAR(share[1], 0.3f, 2e-3f);
+    EXPECT_NEAR(share[2], 0.6f, 2e-3f);
+    EXPECT_LT(share[3], 2e-3f);
+  }
+  Light sun;
+  sun.color = Rgb(10 / (36 * kPi));  // as much as the points together
+  scene.add_light(sun);
   scene.commit(1);
   const Lighting lighting(scene, Progress());
-  ASSERT_EQ(lighting.sharp().size(), 3u);  // the dark one is gone
-  EXPECT_FALSE(lighting.has_extended());
+  const LightView view = lighting.sharp_view(floor);
+  EXPECT_NEAR(view.suns, 0.5f, 1e-3f);
   float probability;
-  EXPECT_EQ(lighting.choose_sharp(0.05f, probability), 0u);
-  EXPECT_NEAR(probability, 0.1f, 1e-6f);
-  EXPECT_EQ(lighting.choose_sharp(0.39f, probability), 1u);
-  EXPECT_EQ(lighting.choose_sharp(0.999999f, probability), 2u);
-  EXPECT_NEAR(probability, 0.6f, 1e-6f);
+  EXPECT_EQ(lighting.choose_sharp(view, 0.2f, probability), 0u);  // suns come first
+  EXPECT_NEAR(probability, 0.5f, 1e-3f);
+}
+
+/// What a light brings to a plane is what it is chosen by, at least three tenths of an equal part.
+TEST(Lighting, SkyAndLampAreChosenByWhatTheyBringToThePlane) {
+  Scene scene;
+  scene.add_mesh(test::square(100));  // its size is of no account
+  scene.add_material({std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), false});
+  scene.add_instance(0, {}, {0});
+  scene.set_environment(Environment::constant(Rgb(1 / kPi)));
+  Light lamp;
+  lamp.type = Light::Type::disk;
+  lamp.size = {0.1f, 0.1f};
+  lamp.color = Rgb(12 * kPi);  // 3 W/m2 from two metres
+  lamp.light_to_world = test::shift({0, 0, 2});
+  scene.add_light(lamp);
+  scene.commit(1);
+  const Lighting lighting(scene, Progress());
+  const auto share = [&](const Vec3& position, const Vec3& normal) {
+    return lighting.view({position, normal}).environment;
+  };
+  EXPECT_NEAR(share(Vec3(0), {0, 0, 1}), 0.15f + 0.7f * 0.25f, 0.01f);
+  EXPECT_NEAR(share({100, 0, 0}, {0, 0, 1}), 0.85f, 0.01f);
+  EXPECT_NEAR(share(Vec3(0), {0, 0, -1}), 0.85f, 0.01f);
 }
 
 }  // namespace
