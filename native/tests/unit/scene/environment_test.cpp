@@ -184,14 +184,27 @@ TEST(Environment, OneTexelSunIsAlwaysHit) {
   EXPECT_NEAR(total / 20000 / (4 * kPiD * e.mean_luminance()), 1, 0.01);
 }
 
+/// What is even in (u, v) remains even in directions: u goes round once, v down, but for a row's height.
 TEST(Environment, SampleIsMonotoneInItsNumbers) {
-  const Environment e = noise(32, 16).environment();
-  float before = 2;
+  constexpr int kHeight = 16;
+  const Environment e = noise(2 * kHeight, kHeight).environment();
+  const auto angle = [&](float u, float v) {
+    const Vec3 w = e.sample({u, v});
+    return Vec2(std::atan2(w.y, w.x), std::acos(std::clamp(w.z, -1.0f, 1.0f)));
+  };
+  float down = 0, azimuth = angle(0, 0.3f).x, turned = 0;
   for (int i = 0; i < 1000; ++i) {
-    const float z = e.sample({0.25f, static_cast<float>(i) * 0.001f}).z;
-    EXPECT_LE(z, before + 1e-5f);
-    before = z;
+    const float share = static_cast<float>(i) * 0.001f;
+    const float theta = angle(0.25f, share).y, phi = angle(share, 0.3f).x;
+    EXPECT_GE(theta, down - kPi / kHeight - 1e-3f);
+    down = std::max(down, theta);
+    const float step = std::remainder(phi - azimuth, 2 * kPi);
+    EXPECT_LE(step, 1e-4f);
+    turned += step;
+    azimuth = phi;
   }
+  EXPECT_GT(down, 0.9f * kPi);
+  EXPECT_NEAR(turned, -2 * kPi, 0.1f);
 }
 
 TEST(Environment, BlackConstantAndHostileImages) {
