@@ -54,7 +54,7 @@ class DirectLight {
   /// shadow rays pass.
   ///
   /// Sharp lamps, which no drawn direction can meet, are added under every strategy: each once when there are at most
-  /// kSharpLamps, else that many drawn in proportion to power.
+  /// kSharpLamps, else that many drawn by what they bring (Lighting::sharp_view).
   void gather(std::span<const Receiver> receivers, ShadowQueue& shadows, std::vector<CameraSample>& samples);
 
   /// Whether gather() has in its terms what the surface emits that a ray from its vertex has hit. Where it has not,

@@ -42,8 +42,7 @@ float smooth_step(float t) { return t * t * (3.0f - 2.0f * t); }
 
 }  // namespace
 
-Lamp::Lamp(const Light& light)
-    : type_(light.type), casts_shadow_(light.casts_shadow), sphere_(light.sphere) {
+Lamp::Lamp(const Light& light) : type_(light.type), casts_shadow_(light.casts_shadow), sphere_(light.sphere) {
   switch (type_) {
     case Light::Type::sun:
       set_sun(light);

@@ -18,8 +18,8 @@ struct LightPlace {
   bool both_sides = false;  // light from below counts as well
 };
 
-/// Directions of emission: within `cos_normals` of the axis all intensity, from there on less by the cosine of the angle
-/// beyond, and none from `cos_end` on.
+/// Directions of emission: within `cos_normals` of the axis all intensity, from there on less by the cosine of the
+/// angle beyond, and none from `cos_end` on.
 struct LightCone {
   Vec3 axis{0.0f, 0.0f, 1.0f};
   float cos_normals = -1.0f;  // -1: alike to all sides
@@ -54,8 +54,9 @@ class LightTree {
   /// That choose() gives `light`.
   double probability(const LightPlace& place, uint32_t light) const;
 
-  /// Importances at one place of up to kCut nodes that hold all lights: their sum is nearer to the irradiance there than
-  /// the root's importance, and the choice from them nearer to it than one from the root. Few lights are all told apart.
+  /// Importances at one place of up to kCut nodes that hold all lights: their sum is nearer to the irradiance there
+  /// than the root's importance, and the choice from them nearer to it than one from the root. Few lights are all told
+  /// apart.
   static constexpr size_t kCut = 16;
   struct Cut {
     std::array<double, kCut> sum{};  // of the importances up to and with each

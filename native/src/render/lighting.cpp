@@ -163,9 +163,7 @@ void Lighting::look_up(std::span<const LightView> views, std::span<const uint8_t
       hits.push_back({i, &lamp, sight.distance});
     };
     for (const Lamp& sun : suns_) {
-      meet(sun, [&] {
-        return static_cast<double>(view.suns) * sun_irradiance(sun, view.place) / view.suns_total;
-      });
+      meet(sun, [&] { return static_cast<double>(view.suns) * sun_irradiance(sun, view.place) / view.suns_total; });
     }
     const auto meet_near = [&](uint32_t k) {
       meet(lamps_[k], [&] { return static_cast<double>(view.near) * near_.probability(view.cut, view.place, k); });

@@ -1,5 +1,5 @@
-// All light of a scene: the environment, and lamps with extent, as one density over directions at a place; surfaces that
-// glow as another beside it; sharp lamps by name.
+// All light of a scene: the environment, and lamps with extent, as one density over directions at a place; surfaces
+// that glow as another beside it; sharp lamps by name.
 #pragma once
 
 #include <span>
@@ -36,9 +36,9 @@ class Lighting {
   /// True when there is anything that a sampled direction can meet.
   bool has_extended() const { return !environment_.black() || !suns_.empty() || !lamps_.empty() || !glow_.empty(); }
 
-  /// Of all but sharp lamps: environment, suns and near lights are chosen by the irradiance that each would bring if nothing stood before it
-  /// (of near lights, estimated by LightTree), and at least three tenths of an equal part: what stands before one
-  /// is not known. Needs has_extended().
+  /// Of all but sharp lamps: environment, suns and near lights are chosen by the irradiance that each would bring if
+  /// nothing stood before it (of near lights, estimated by LightTree), and at least three tenths of an equal part: what
+  /// stands before one is not known. Needs has_extended().
   LightView view(const LightPlace& place) const;
 
   /// Directions towards light, one for each `u` from its view: first a light, then a direction of it. A zero vector
@@ -48,8 +48,8 @@ class Lighting {
   /// that point's density need be known: `aims`, as many or none, gets the point, and of the others no instance.
   void sample(std::span<const LightView> views, std::span<const uint8_t> view_of, std::span<const Vec2> u,
               DirectionBatch& world, std::span<Hit> aims = {}) const;
-  /// For each direction of `world` from its view: radiance of the environment, density of `sample`, less what it aims at
-  /// surfaces, and lamps met (appended to `hits`). The batch is padded.
+  /// For each direction of `world` from its view: radiance of the environment, density of `sample`, less what it aims
+  /// at surfaces, and lamps met (appended to `hits`). The batch is padded.
   void look_up(std::span<const LightView> views, std::span<const uint8_t> view_of, const DirectionBatch& world,
                RgbBatch& environment, ScalarBatch& pdf, std::vector<LampHit>& hits) const;
 

@@ -30,7 +30,7 @@ void check_observer(const Scene& scene, uint32_t material, const ObserverOptions
 /// Each half of a kept hit's light holds kObservedDirections directions, half drawn towards light (Lighting), half from
 /// the material's sampler, weighted by the balance heuristic [VG95]; environment, lamps and surfaces that glow count
 /// where nothing blocks them, and, with bounces left, the radiance that a path traced onwards brings back. Sharp lamps
-/// come by name: all of up to 64, else 64 drawn by power.
+/// come by name: all of up to 64, else 64 drawn by what they bring.
 ///
 /// The light density of a hit is the largest density d (Lighting, 1/sr) such that terms of density d or more make at
 /// least kNoticeableLight of the hit's irradiance luminance, light of surfaces included there and never concentrated;

@@ -18,7 +18,7 @@ struct SharpLight {
 inline constexpr size_t kMostSharpLamps = 64;
 
 /// Each sharp lamp once when `found` has room for all (up to kMostSharpLamps), else as many as it has room for, drawn
-/// in proportion to power. Returns how many of them shine on the vertex and are in `found`.
+/// by what they bring (Lighting::sharp_view). Returns how many of them shine on the vertex and are in `found`.
 int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers& numbers, std::span<SharpLight> found);
 
 }  // namespace velour

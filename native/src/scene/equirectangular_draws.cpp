@@ -60,9 +60,9 @@ void draw_rows_simd(const MarginalTable& table, EquirectangularDraws& draws, int
   const V zero = hn::Zero(d), half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
   const V height = hn::Set(d, static_cast<float>(table.height));
   for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
-    // A band between two rows, one of the two in proportion to their nodes, and the place in the band by the row's share
-    // there, which falls linearly to 0 at the other row: together the bilinear density. All three come from v, so that
-    // neighbours in u remain neighbours in azimuth.
+    // A band between two rows, one of the two in proportion to their nodes, and the place in the band by the row's
+    // share there, which falls linearly to 0 at the other row: together the bilinear density. All three come from v, so
+    // that neighbours in u remain neighbours in azimuth.
     const V v = hn::Load(d, draws.v + at);
     const auto guided =
         hn::Min(hn::ConvertTo(di, hn::Mul(v, hn::Set(d, static_cast<float>(bands)))), hn::Set(di, bands - 1));

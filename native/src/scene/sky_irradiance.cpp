@@ -23,8 +23,7 @@ std::array<float, 9> harmonics(const Vec3& w) {
 }
 
 /// Of the clipped cosine, by the harmonic's degree.
-constexpr float kCosine[9] = {kPi,      2 * kPi / 3, 2 * kPi / 3, 2 * kPi / 3, kPi / 4,
-                              kPi / 4,  kPi / 4,     kPi / 4,     kPi / 4};
+constexpr float kCosine[9] = {kPi, 2 * kPi / 3, 2 * kPi / 3, 2 * kPi / 3, kPi / 4, kPi / 4, kPi / 4, kPi / 4, kPi / 4};
 
 }  // namespace
 

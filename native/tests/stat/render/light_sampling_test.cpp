@@ -140,7 +140,8 @@ TEST(LightingSampling, AllLightOfASceneFollowsItsDensity) {
   for (const int more : {0, 40}) {
     const Scene scene = lit(more);
     const Lighting lighting(scene, Progress());
-    for (const LightPlace& place : {LightPlace{Vec3(0.0f), {0, 0, 1}}, LightPlace{Vec3(0.0f), {0.6f, 0, -0.8f}, true}}) {
+    for (const LightPlace& place :
+         {LightPlace{Vec3(0.0f), {0, 0, 1}}, LightPlace{Vec3(0.0f), {0.6f, 0, -0.8f}, true}}) {
       const LightAtPlace light{lighting, lighting.view(place)};
       EXPECT_GE(light.view.environment, 0.1f);
       EXPECT_GE(light.view.suns, 0.1f);
