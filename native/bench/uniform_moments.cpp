@@ -52,16 +52,17 @@ class Directions {
 
   void add(const Vertex& vertex, RandomStream& random, Moments& moments) {
     for (Vec2& u : u_) u = random.next2();
-    draw(vertex);
+    const LightView view = lighting_.view(vertex.light_place());
+    draw(vertex, view);
     if (local_.count == 0) return;
     local_.pad();
     world_.pad();
     RgbBatch f, radiance;
     ScalarBatch surface, lights;
     std::vector<LampHit> none;
-    const std::vector<Vec3> position(static_cast<size_t>(world_.count), vertex.position);
+    const uint8_t of_view[DirectionBatch::kCapacity] = {};
     vertex.surface->material->eval(point_, local_, f, surface);
-    lighting_.look_up(position, world_, radiance, lights, none);
+    lighting_.look_up({&view, 1}, of_view, world_, radiance, lights, none);
     for (int i = 0; i < world_.count; ++i) {
       const auto reflected = static_cast<double>(luminance(f.get(i) * radiance.get(i)) * local_.z[i]);
       const double density = 0.5 * (static_cast<double>(surface.v[i]) + static_cast<double>(lights.v[i]));
@@ -71,15 +72,15 @@ class Directions {
   }
 
  private:
-  void draw(const Vertex& vertex) {
+  void draw(const Vertex& vertex, const LightView& view) {
     const auto half = std::span<const Vec2>(u_).first(u_.size() / 2),
                rest = std::span<const Vec2>(u_).last(half.size());
-    const std::vector<Vec3> position(half.size(), vertex.position);
+    const std::vector<uint8_t> of_view(rest.size(), 0);
     local_.count = world_.count = 0;
     vertex.surface->material->prepare(vertex.wv, point_);
     vertex.surface->material->sample(point_, half, drawn_);
     for (int i = 0; i < drawn_.count; ++i) keep(vertex, drawn_.get(i), vertex.frame.to_world(drawn_.get(i)));
-    lighting_.sample(position, rest, drawn_);
+    lighting_.sample({&view, 1}, of_view, rest, drawn_);
     for (int i = 0; i < drawn_.count; ++i) keep(vertex, vertex.frame.to_local(drawn_.get(i)), drawn_.get(i));
   }
 

@@ -151,8 +151,8 @@ TEST(CornerColors, TellHowMuchTrianglesGlow) {
   EXPECT_NE(half.light(0), GlowGroup::kNone);
   EXPECT_EQ(half.light(1), GlowGroup::kNone);
   const GlowGroup both = group_of({Rgb(4), Rgb(4), Rgb(4), Rgb(0), Rgb(0), Rgb(3)});
-  EXPECT_FLOAT_EQ(both.tree().power(both.light(0)), 2 * 4);  // area times luminance
-  EXPECT_FLOAT_EQ(both.tree().power(both.light(1)), 2 * 1);
+  EXPECT_FLOAT_EQ(both.tree().intensity(both.light(0)), 2 * 4);  // area times luminance
+  EXPECT_FLOAT_EQ(both.tree().intensity(both.light(1)), 2 * 1);
   const GlowGroup below = group_of({Rgb(-9), Rgb(1), Rgb(1), Rgb(1), Rgb(1), Rgb(1)});
   EXPECT_NE(below.light(0), GlowGroup::kNone);  // its mean is below zero, two of its corners shine
 }
