@@ -57,6 +57,8 @@ class Site(FarmTest):
     """The add-on lies where nobody may write, and the home cannot be written to."""
 
     def setUp(self):
+        if "VELOUR_BPY" in os.environ:
+            self.skipTest("the module bpy lies where nobody may not read")
         super().setUp()
         # Where nobody can go, whatever folder these tests are in.
         self.site = Path(tempfile.mkdtemp(prefix="velour-site-"))

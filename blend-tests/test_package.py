@@ -104,7 +104,8 @@ class Package(BlenderTest):
 
     def _foreign(self, mapped):
         """Bundled libraries of which a file is mapped that neither Velour nor Blender without it has."""
-        _said, of_blender = self._render("--factory-startup")
+        # Python's own module of that name may map the system's library.
+        _said, of_blender = self._render("--factory-startup", "--python-expr", "import lzma")
         return {
             name
             for name, files in self._bundled(mapped).items()

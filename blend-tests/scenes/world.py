@@ -10,9 +10,7 @@ def meaning():
 
     from support import principled
 
-    # Nothing tells of normals themselves: this came with them.
-    is_newer = "shadow_terminator_geometry_offset" in bpy.types.Object.bl_rna.properties
-    return "shadowed" if is_newer else principled.meaning()
+    return "shadowed" if bpy.app.version >= (4, 5) else principled.meaning()
 
 
 def build(folder):

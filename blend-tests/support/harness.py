@@ -20,6 +20,7 @@ from support import blender, report
 
 ORDERS = "--orders"
 TURN = 0.05  # seconds
+IN_SCRIPTS = {file.stem for file in (Path(__file__).resolve().parents[2] / "scripts/lib").glob("*.py")}
 
 
 class Result(unittest.TextTestResult):
@@ -101,13 +102,19 @@ def begin(path, folder):
         report.write(folder, [report.Test(path.stem, report.FAILED)])
 
 
+def _is_of_a_file(name):
+    """Whether no other file may find this module: a file of tests, or what scripts/lib has a name for:
+    `scenes` is a module there and a package here."""
+    return name.startswith(("test_", "window_")) or name.partition(".")[0] in IN_SCRIPTS
+
+
 class Orders:
     """Orders on stdin, answers on stdout; for what is run they are /dev/null and the log of its folder."""
 
     def __init__(self):
         self._orders, self._answers = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w")
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-        self._environment = dict(os.environ)
+        self._environment, self._path = dict(os.environ), list(sys.path)
 
     def next(self):
         """File and folder of the next order, for which Blender is as new; None after the last."""
@@ -127,7 +134,8 @@ class Orders:
     def _reset(self):
         os.environ.clear()
         os.environ.update(self._environment)
-        for name in [name for name in sys.modules if name.startswith(("test_", "window_"))]:
+        sys.path[:] = self._path
+        for name in [name for name in sys.modules if _is_of_a_file(name)]:
             del sys.modules[name]
         bpy.ops.wm.read_factory_settings(use_empty=False)
 

@@ -8,8 +8,8 @@
 
 namespace velour {
 
-/// What keeps steep normals from showing what cannot be there: in Cycles of Blender 3 the first, of Blender 4 the
-/// second, since Blender 5 the third; from 4.2 on a material may ask for the last.
+/// What keeps steep normals from showing what cannot be there: in Cycles of Blender 3 the first, of Blender 4.0 to
+/// 4.4 the second, since 4.5 the third; from 4.2 on a material may ask for the last.
 enum class ReliefCorrection {
   turned,    // mirror images stay above the ground; diffuse light fades out by terminator_softening()
   faded,     // the same, but normals of what is diffuse stay

@@ -6,8 +6,8 @@ from ..corner_colors import CornerColors
 from ..plugs import fed_by
 from .layer import Relief
 
-# What Cycles does to steep normals changed between 3.4 and 4.3, and again until 5.2; no property tells.
-_CORRECTION = ("turned", "faded", "shadowed")[min(max(bpy.app.version[0] - 3, 0), 2)]
+# What Cycles does to steep normals changed with these versions; no property tells.
+_CORRECTION = "turned" if bpy.app.version < (4, 0) else "faded" if bpy.app.version < (4, 5) else "shadowed"
 
 
 def correction(material):
