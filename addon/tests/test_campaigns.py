@@ -93,7 +93,7 @@ def test_chart(campaign, monkeypatch, capsys):
         assert f"({table.with_suffix('.png').name})" in page
         assert table.with_suffix(".png").stat().st_size > 5000
         curves = {row["curve"] for row in campaign.rows(table.name)}
-        assert curves >= {"uniform", "mis", "mis, random", "mis-ggx", "product"}
+        assert curves >= {"uniform", "mis", "mis-dissertation", "mis-ggx", "product"}
     targets = campaign.rows("targets.csv")
     assert {row["met"] for row in targets} <= {"True", "False", ""}
     assert any("uniform" in row["target"] for row in targets)

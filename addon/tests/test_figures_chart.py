@@ -101,7 +101,7 @@ def test_every_scene_has_its_picture_and_csv(chart):
         assert f"({table.with_suffix('.png').name})" in page
         assert table.with_suffix(".png").stat().st_size > 5000
         curves = {row["curve"] for row in _rows(table)}
-        assert {"uniform", "mis", "mis, random", "mis-ggx", "product"} <= curves
+        assert {"uniform", "mis", "mis-dissertation", "mis-ggx", "product"} <= curves
 
 
 def test_the_page_has_its_tables_and_the_targets(chart):

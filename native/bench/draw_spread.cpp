@@ -1,6 +1,6 @@
-// How well models' densities fit a measurement: relative variance of f cos(theta_l) / pdf of a sample, by view angle,
-// one JSON object a line. Of parametric models also with the lobes of f as they are for density, which shows what the
-// lobes of f cos gain. Arguments: a measurement, then models.
+// How well models' densities fit a measurement and themselves: relative variance of f cos(theta_l) / pdf of a sample,
+// with f of either, by view angle, one JSON object a line. Of scattered models also with the dissertation's density.
+// Arguments: a measurement, then models.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -9,7 +9,6 @@
 #include "model/model_file.h"
 #include "model/model_material.h"
 #include "sphere/random.h"
-#include "support/plain_lobes.h"
 
 namespace {
 
@@ -22,7 +21,8 @@ struct Spread {
   double variance, below;  // relative; share of draws that brought nothing
 };
 
-Spread spread(const Measurement& measurement, const Material& material, const PreparedBrdf& point, const Vec3& wv) {
+/// `measurement` null: f is the material's.
+Spread spread(const Measurement* measurement, const Material& material, const PreparedBrdf& point, const Vec3& wv) {
   double sum = 0, sum_sq = 0;
   int below = 0;
   for (uint64_t i = 0; i < kSamples; ++i) {
@@ -32,12 +32,12 @@ Spread spread(const Measurement& measurement, const Material& material, const Pr
     const Vec3 w = wl.get(0);
     below += w.z <= 0;
     if (w.z <= 0) continue;
-    RgbBatch unused;
+    RgbBatch own;
     ScalarBatch pdf;
-    material.eval(point, wl, unused, pdf);
-    Rgb f(0);
-    uint8_t valid = 0;
-    measurement.eval(wv, {&w, 1}, {&f, 1}, {&valid, 1});
+    material.eval(point, wl, own, pdf);
+    Rgb f = own.get(0);
+    uint8_t valid = 1;
+    if (measurement != nullptr) measurement->eval(wv, {&w, 1}, {&f, 1}, {&valid, 1});
     const double x = valid ? static_cast<double>(std::max(luminance(f), 0.0f) * w.z / pdf.v[0]) : 0.0;
     sum += x;
     sum_sq += x * x;
@@ -46,13 +46,17 @@ Spread spread(const Measurement& measurement, const Material& material, const Pr
   return {sum_sq * n / (sum * sum) - 1, below / n};
 }
 
-void report(const char* name, const Measurement& measurement, const Material& material, bool plain) {
-  std::printf("{\"density\": \"%s%s\"", name, plain ? ", lobes of f" : "");
+enum class Draws { own, interpolated };
+constexpr const char* kDraws[] = {"", ", interpolated views"};
+
+void report(const char* name, const Measurement* measurement, const Material& material, Draws draws) {
+  std::printf("{\"density\": \"%s%s\", \"f\": \"%s\"", name, kDraws[static_cast<int>(draws)],
+              measurement != nullptr ? "measurement" : "model");
   for (const float degrees : kAngles) {
     const Vec3 wv = direction(radians_from(degrees), 0.3f);
     PreparedBrdf point;
+    point.interpolated_draws = draws == Draws::interpolated;
     material.prepare(wv, point);
-    if (plain) test::draw_plain_lobes(point.warped);
     const Spread s = spread(measurement, material, point, wv);
     std::printf(", \"%g\": [%.3f, %.3f]", static_cast<double>(degrees), s.variance, s.below);
   }
@@ -65,12 +69,16 @@ int main(int argc, char** argv) try {
   if (argc < 2) return 2;
   const auto measurement = load_measurement(argv[1]);
   Progress progress;
-  report("ggx", *measurement, *make_ggx_material(fit_ggx(*measurement, 0, progress)), false);
+  report("ggx", measurement.get(), *make_ggx_material(fit_ggx(*measurement, 0, progress)), Draws::own);
   for (int i = 2; i < argc; ++i) {
     const auto model = std::make_shared<const Model>(load_model(argv[i]));
     const auto material = make_material(model, 0);
-    report(argv[i], *measurement, *material, false);
-    if (std::holds_alternative<ParametricBrdf>(model->body)) report(argv[i], *measurement, *material, true);
+    const bool scattered = std::holds_alternative<ScatteredBrdf>(model->body);
+    for (const Measurement* f :
+         {static_cast<const Measurement*>(measurement.get()), static_cast<const Measurement*>(nullptr)}) {
+      report(argv[i], f, *material, Draws::own);
+      if (scattered) report(argv[i], f, *material, Draws::interpolated);
+    }
   }
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

@@ -125,21 +125,31 @@ void table_build(benchmark::State& state) {
 }
 BENCHMARK(table_build)->Arg(kMeridian)->Arg(kHemisphere)->Unit(benchmark::kMillisecond);
 
-void table_sample(benchmark::State& state) {
+void table_sample_16(benchmark::State& state) {
   const TableSampler table(*make(state.range(0)));
   RandomStream random(1, 2, 3);
-  for (auto _ : state) benchmark::DoNotOptimize(table.sample(direction(0.7f, 1), random.next2()));
+  TablePoint point;
+  DirectionBatch wl;
+  for (auto _ : state) {
+    table.prepare(direction(0.7f, 1), point);
+    Vec2 u[16];
+    for (Vec2& v : u) v = random.next2();
+    TableSampler::sample(point, u, wl);
+    benchmark::DoNotOptimize(wl);
+  }
   label(state);
 }
-BENCHMARK(table_sample)->Arg(kMeridian)->Arg(kHemisphere);
+BENCHMARK(table_sample_16)->Arg(kMeridian)->Arg(kHemisphere);
 
 void table_pdf_16(benchmark::State& state) {
   const TableSampler table(*make(state.range(0)));
   DirectionBatch wl;
   for (const Vec3& w : hemisphere_fibonacci(16)) wl.push(w);
   ScalarBatch pdf;
+  TablePoint point;
+  table.prepare(direction(0.7f, 1), point);
   for (auto _ : state) {
-    table.pdf(direction(0.7f, 1), wl, pdf);
+    TableSampler::pdf(point, wl, pdf);
     benchmark::DoNotOptimize(pdf);
   }
   label(state);

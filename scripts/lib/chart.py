@@ -14,19 +14,17 @@ import peer_cycles
 import peer_mitsuba
 import product_bound
 import script
-from chart_result import DISSERTATION, Contender, Result, point_of
+from chart_result import DEFAULT, DISSERTATION, Contender, Result, point_of
 from reference import Reference
 from renders import Renders, Settings
 from velour.native.table import STRATEGIES
 from velour_cli import ROOT
 
-# Every strategy of the command line, and the dissertation's with its own independent numbers.
-CURVES = {name: Contender(name, "sobol") for name in STRATEGIES} | {
-    f"{DISSERTATION}, random": Contender(DISSERTATION, "random")
-}
+# The dissertation's have numbers of their own.
+CURVES = {name: Contender(name, "sobol") for name in STRATEGIES}
 # Curves that targets compare closely: more seeds. Those that no target names end a step earlier.
-COMPARED = (DISSERTATION, "mis-ggx", "product")
-LONG = (*COMPARED, "uniform", f"{DISSERTATION}, random")
+COMPARED = (DEFAULT, "mis-ggx", "product")
+LONG = (*COMPARED, "uniform", DISSERTATION)
 BEST = {"strategy": "product"}
 
 
@@ -38,7 +36,7 @@ class Extent:
     worlds: tuple[str, ...] = (chart_scenes.STUDIO, chart_scenes.SUNSET)
     skipped: tuple[str, ...] = ()  # curves
     spp: tuple[int, ...] = (16, 64, 256, 1024)
-    level_spp: int = 800  # of the dissertation's strategy: its error is the level of the equal-error table
+    level_spp: int = 800  # of the default: its error is the level of the equal-error table
     equal_spp: int = 256  # of these, where targets compare equal samples
     seeds: int = 3  # of compared curves; others have one
     reference_spp: int = 2048  # of each of
@@ -54,7 +52,7 @@ class Extent:
 QUICK = Extent(
     size=(48, 36),
     worlds=(chart_scenes.SUNSET,),
-    skipped=("cosine", "table", "srbf", "ggx", "light"),
+    skipped=("cosine", "table", "srbf", "ggx", "light", "dissertation"),
     spp=(8, 32),
     level_spp=16,
     equal_spp=32,
@@ -102,7 +100,7 @@ def _curves(extent: Extent) -> dict[str, Contender]:
 def _ladder(name: str, extent: Extent) -> list[tuple[int, int]]:
     """spp and seeds of a curve."""
     seeds = extent.seeds if name in COMPARED else 1
-    steps = {*extent.spp, extent.level_spp} if name == DISSERTATION else {*extent.spp}
+    steps = {*extent.spp, extent.level_spp} if name == DEFAULT else {*extent.spp}
     return [(spp, seeds) for spp in sorted(steps) if name in LONG or spp < max(steps)]
 
 

@@ -11,7 +11,7 @@ from curve import Curve, Reading, ratio
 from reference import Reference
 from renders import Picture
 
-DISSERTATION = "mis"
+DEFAULT, DISSERTATION = "mis", "mis-dissertation"
 
 
 @dataclass(frozen=True)
@@ -72,12 +72,12 @@ class Result:
 
     @property
     def level(self) -> float:
-        """The relmse that the dissertation's strategy has at its 800 samples."""
-        return self._mean(DISSERTATION, self.level_spp)[1]
+        """The relmse that the default has at its 800 samples."""
+        return self._mean(DEFAULT, self.level_spp)[1]
 
     @property
     def level_seconds(self) -> float:
-        return self._mean(DISSERTATION, self.level_spp)[0]
+        return self._mean(DEFAULT, self.level_spp)[0]
 
     def seconds_to_level(self, name: str) -> Reading | None:
         return self.curves[name].seconds_at(self.level)
@@ -101,7 +101,7 @@ class Result:
         return Gain(float(value), float(abs(value) * relative**0.5))
 
     def share_of_bound(self) -> float | None:
-        """Of the variance that exact product sampling would save over the dissertation's strategy."""
+        """Of the variance that exact product sampling would save over the default."""
         if not self.bound:
             return None
         mis, product, exact = (self.bound[name] for name in ("mis", "product", "exact"))

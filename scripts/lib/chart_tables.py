@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from chart_result import DISSERTATION, Result
+from chart_result import DEFAULT, DISSERTATION, Result
 from curve import shown
 from markdown_table import error, small, table
 from peer_mitsuba import STRATEGIES, Comparison
@@ -24,7 +24,7 @@ def equal_error(results: list[Result]) -> str:
     header = ["scene", "relmse", *names, "`uniform` / `mis`"]
     rows = []
     for result in results:
-        gain = result.time_ratio("uniform", DISSERTATION)
+        gain = result.time_ratio("uniform", DEFAULT)
         seconds = [shown(result.seconds_to_level(name)) for name in names]
         rows.append([result.scene.scene.name, small(result.level), *seconds, shown(gain)])
     return f"""## Equal error
@@ -41,7 +41,7 @@ def equal_time(results: list[Result]) -> str:
     rows = []
     for result in results:
         errors = [shown(result.error_at_equal_time(name)) for name in names]
-        gain = result.error_ratio("uniform", DISSERTATION)
+        gain = result.error_ratio("uniform", DEFAULT)
         rows.append([result.scene.scene.name, f"{result.level_seconds:.2f}", *errors, shown(gain)])
     return f"""## Equal time
 
@@ -52,21 +52,19 @@ relmse in the seconds that `mis` takes for {results[0].level_spp} light directio
 
 def equal_samples(results: list[Result], extent) -> str:
     bounded = all(result.bound for result in results)
-    header = ["scene", *(f"{spp} spp" for spp in extent.spp), "`mis` against `random` numbers"]
+    header = ["scene", *(f"{spp} spp" for spp in extent.spp), "`mis` / `mis-dissertation`"]
     header += (
         ["exact / `mis`, variance", "`product` / `mis`, variance", "share of the gain"] if bounded else []
     )
     rows = []
     for result in results:
-        gains = [str(result.gain("product", DISSERTATION, spp)) for spp in extent.spp]
-        sequence = result.gain(DISSERTATION, f"{DISSERTATION}, random", extent.equal_spp)
-        rows.append(
-            [result.scene.scene.name, *gains, f"{sequence.value:.2f}", *_bound_cells(result, bounded)]
-        )
+        gains = [str(result.gain("product", DEFAULT, spp)) for spp in extent.spp]
+        gained = result.gain(DEFAULT, DISSERTATION, extent.equal_spp)
+        rows.append([result.scene.scene.name, *gains, f"{gained.value:.2f}", *_bound_cells(result, bounded)])
     return f"""## Equal samples
 
-relmse of `product` / `mis`, with the standard error that the seeds tell; `mis` with Sobol numbers / with
-independent ones at {extent.equal_spp} spp. {_bound_words(bounded, extent)}
+relmse of `product` / `mis`, with the standard error that the seeds tell; `mis` / `mis-dissertation` at
+{extent.equal_spp} spp. {_bound_words(bounded, extent)}
 
 {table(header, rows)}"""
 
@@ -90,8 +88,8 @@ def ggx(results: list[Result]) -> str:
     header = ["scene", "GGX's relative L2", "`mis`", "`mis-ggx`", "`mis` / `mis-ggx`"]
     rows = []
     for result in results:
-        seconds = [shown(result.seconds_to_level(name)) for name in (DISSERTATION, "mis-ggx")]
-        compared = shown(result.time_ratio(DISSERTATION, "mis-ggx"))
+        seconds = [shown(result.seconds_to_level(name)) for name in (DEFAULT, "mis-ggx")]
+        compared = shown(result.time_ratio(DEFAULT, "mis-ggx"))
         rows.append([result.scene.scene.name, error(result.ggx["relative_l2"]), *seconds, compared])
     return f"""## Fitted lobes against a fitted GGX
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from chart_result import DISSERTATION, Result
+from chart_result import DEFAULT, Result
 from chart_scenes import SKY, STUDIO, SUNSET
 from curve import Reading, shown
 from peer_mitsuba import Comparison
 from synthetic_sky import SUN_SHARE, SunLobes
 
-# relmse of `product` over that of the dissertation's strategy at equal samples.
+# relmse of `product` over that of the default at equal samples.
 _EQUAL_SAMPLES = {
     ("nickel", SUNSET): 0.6,
     ("blue-metallic-paint", SUNSET): 0.4,
@@ -49,13 +49,13 @@ def _at_equal_samples(figures: list[Result], spp: int) -> Iterator[Verdict]:
     for result in figures:
         most = _EQUAL_SAMPLES.get((result.scene.material, result.scene.world))
         if most is not None:
-            gain = result.gain("product", DISSERTATION, spp)
+            gain = result.gain("product", DEFAULT, spp)
             target = f"relmse of `product` / `mis` at {spp} spp at most {most}"
             yield Verdict(target, result.scene.scene.name, str(gain), gain.value <= most)
 
 
 def _at_equal_time(figures: list[Result]) -> Iterator[Verdict]:
-    ratios = {result.scene.scene.name: result.error_ratio("product", DISSERTATION) for result in figures}
+    ratios = {result.scene.scene.name: result.error_ratio("product", DEFAULT) for result in figures}
     for name, found in ratios.items():
         yield _limit("relmse of `product` / `mis` at equal time at most 1.2", name, found, 1.2)
     better = sum(found is not None and found.value < 1 for found in ratios.values())
@@ -67,7 +67,7 @@ def _against_uniform(figures: list[Result]) -> Iterator[Verdict]:
     for result in figures:
         part = 100 if result.scene.material == "nickel" else 5
         target = f"seconds of `mis` to equal error at most 1/{part} of `uniform`"
-        found = result.time_ratio(DISSERTATION, "uniform")
+        found = result.time_ratio(DEFAULT, "uniform")
         yield _limit(target, result.scene.scene.name, found, 1 / part)
 
 
@@ -76,7 +76,7 @@ def _against_ggx(figures: list[Result]) -> Iterator[Verdict]:
         sharp = result.ggx["relative_l2"] > _MOST_GGX_ERROR
         most, words = (2 / 3, "2/3 of") if sharp else (1.0, "those of")
         target = f"seconds of `mis` to equal error at most {words} `mis-ggx`"
-        found = result.time_ratio(DISSERTATION, "mis-ggx")
+        found = result.time_ratio(DEFAULT, "mis-ggx")
         yield _limit(target, result.scene.scene.name, found, most)
 
 

@@ -23,8 +23,9 @@ from scenes import Scene
 from velour_cli import ROOT
 
 WORLD = "venice_sunset"
-SEQUENCES = ("random", "sobol")  # the dissertation's and ours
-STRATEGY = {"strategy": "mis", "heuristic": "balance", "share": 0.5}
+# Half of the directions from the environment; the dissertation's densities and numbers, and those of today.
+HALF = {"heuristic": "balance", "share": 0.5}
+SAMPLERS = {"dissertation": HALF | {"strategy": "mis-dissertation"}, "default": HALF | {"strategy": "mis"}}
 BEST = {"strategy": "product"}
 # How far below the smallest error of the dissertation's strategy the reference's own must be.
 MARGIN = 10.0
@@ -79,11 +80,11 @@ class Figure:
         """rmse, relmse of the fit alone."""
         return fit_error(self.differences, self.reference.mean())
 
-    def smallest(self, sequence: str) -> float:
-        return _smallest(self.errors, sequence)
+    def smallest(self, sampler: str) -> float:
+        return _smallest(self.errors, sampler)
 
-    def margin(self, sequence: str) -> float:
-        return self.smallest(sequence) / self.reference.noise()[0]
+    def margin(self, sampler: str) -> float:
+        return self.smallest(sampler) / self.reference.noise()[0]
 
 
 def main() -> int:
@@ -125,7 +126,7 @@ def _make_checks(subjects: list, run: script.Run, output: Path, extent: Extent) 
 
 def _announce(renders: Renders, extent: Extent) -> None:
     for spp in extent.spp:
-        renders.expect(spp, count=len(SEQUENCES))
+        renders.expect(spp, count=len(SAMPLERS))
     renders.expect(extent.batch_spp, count=extent.batches[0])
     renders.expect(extent.floor_spp, count=2 * extent.floor_renders)
 
@@ -133,8 +134,8 @@ def _announce(renders: Renders, extent: Extent) -> None:
 def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, extent: Extent) -> Figure:
     measured = scene.measured(subject.measurement)
     pictures = {
-        (sequence, spp): renders.render(scene, spp, **STRATEGY, sequence=sequence)
-        for sequence in SEQUENCES
+        (sampler, spp): renders.render(scene, spp, **options)
+        for sampler, options in SAMPLERS.items()
         for spp in extent.spp
     }
     reference = Reference(renders, measured, extent.batch_spp, **BEST).add(extent.batches[0])
@@ -158,7 +159,7 @@ def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str
     while True:
         mean = reference.mean()
         errors = {name: picture.errors(mean) for name, picture in pictures.items()}
-        margin = _smallest(errors, SEQUENCES[0]) / reference.noise()[0]
+        margin = _smallest(errors, "dissertation") / reference.noise()[0]
         print(
             f"    reference of {reference.spp} spp: the smallest error is {margin:.1f} times its own",
             flush=True,
@@ -168,8 +169,8 @@ def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str
         reference.add()
 
 
-def _smallest(errors: dict[tuple[str, int], tuple[float, float]], sequence: str) -> float:
-    return min(rmse for (of, _), (rmse, _) in errors.items() if of == sequence)
+def _smallest(errors: dict[tuple[str, int], tuple[float, float]], sampler: str) -> float:
+    return min(rmse for (of, _), (rmse, _) in errors.items() if of == sampler)
 
 
 if __name__ == "__main__":

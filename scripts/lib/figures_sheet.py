@@ -25,10 +25,10 @@ def draw(path: Path, figures: list, spp: tuple[int, ...]) -> None:
 def _draw_figure(above, below, figure, spp: tuple[int, ...]) -> None:
     mean = figure.reference.mean()
     for column, count in enumerate(spp):
-        picture = figure.pictures["random", count]
-        relmse = {sequence: figure.errors[sequence, count][1] for sequence in ("random", "sobol")}
+        picture = figure.pictures["dissertation", count]
+        relmse = {sampler: figure.errors[sampler, count][1] for sampler in ("dissertation", "default")}
         _show(above[column], picture.pixels, f"{figure.subject.name}, {count} spp")
-        caption = f"relmse {small(relmse['random'])}; sobol {small(relmse['sobol'])}"
+        caption = f"relmse {small(relmse['dissertation'])}; default {small(relmse['default'])}"
         _show_error(below[column], picture.pixels, mean, caption)
     _show(above[-1], mean, f"measured, {figure.reference.spp} spp")
     modelled = mean + figure.differences.mean(axis=0)

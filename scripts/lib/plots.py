@@ -20,6 +20,8 @@ COLORS = {
     "ggx": "#f0e442",
     "mis-ggx": "#0072b2",
     "product": "#000000",
+    "dissertation": "#a6761d",
+    "mis-dissertation": "#882255",
     "scattered": "#d55e00",
     "parametric": "#0072b2",
     "principled": "#009e73",

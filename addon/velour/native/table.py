@@ -50,7 +50,7 @@ PASSES = {  # VLR_PASS_*
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
 SIDES = ("automatic", "one", "two")
-SEQUENCES = ("random", "sobol")
+SEQUENCES = ("random", "sobol", "independent")
 WRAPS = ("repeat", "extend", "clip", "mirror")
 FILTERS = ("closest", "linear")
 LAYERS = ("principled", "diffuse", "glossy", "transparent", "emission")
@@ -58,7 +58,10 @@ FORMULAS = ("layered", "disney")
 LOBES = ("whole", "single", "separable")
 FACTORS = ("share", "rest", "gain")
 RELIEF_CORRECTIONS = ("turned", "faded", "shadowed", "as-it-is")
-STRATEGIES = ("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product")
+STRATEGIES = (
+    *("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product"),
+    *("dissertation", "mis-dissertation"),
+)
 MOST_SPLIT = 48  # of vlr_render_options.split
 
 _handle = c_void_p

@@ -777,11 +777,15 @@ enum {
   VLR_STRATEGY_MIS = 5,
   VLR_STRATEGY_GGX = 6,     /* a GGX lobe over a diffuse base, fitted to each material when the render starts */
   VLR_STRATEGY_MIS_GGX = 7, /* half from that lobe, half from the lights */
-  VLR_STRATEGY_PRODUCT = 8  /* lobes of the material times lobes of the environment, beside both */
+  VLR_STRATEGY_PRODUCT = 8, /* lobes of the material times lobes of the environment, beside both */
+  /* The dissertation's: of scattered models the interpolated densities of the nearest views (`neighbors`, or 4), of
+   * others as SRBF; independent numbers, whatever `sequence` says. MIS: half of the directions from the lights. */
+  VLR_STRATEGY_DISSERTATION = 9,
+  VLR_STRATEGY_MIS_DISSERTATION = 10
 };
 
 enum { VLR_HEURISTIC_BALANCE = 0, VLR_HEURISTIC_POWER = 1 };
-enum { VLR_SEQUENCE_RANDOM = 0, VLR_SEQUENCE_SOBOL = 1 };
+enum { VLR_SEQUENCE_RANDOM = 0, VLR_SEQUENCE_SOBOL = 1, VLR_SEQUENCE_INDEPENDENT = 2 };
 
 /* Bits: passes beyond "Combined", "Depth", "Normal" and "Sample Count", which every picture has. */
 enum {

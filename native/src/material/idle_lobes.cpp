@@ -5,9 +5,6 @@
 #include <numeric>
 #include <vector>
 
-#include "material/light_points.h"
-#include "srbf/kernel.h"
-
 namespace velour {
 
 namespace {
@@ -30,8 +27,7 @@ Loss loss_of(const WarpedLobe& lobe, size_t j, const LightPoints& points) {
   double mass = 0, albedo = 0, norm_sq = 0, lost_sq = 0, most = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     if (!(points.weight(i) > 0)) continue;
-    const double kernel = kernel_value(Kernel::gaussian, lobe.bandwidth, one_minus_dot(points.psi(i, j), lobe.center));
-    const double part = largest_channel(lobe.coefficient) * kernel / points.value(i);
+    const double part = largest_channel(lobe.coefficient) * points.kernel(i, j) / points.value(i);
     const double f_cos = points.weight(i) * points.value(i) * points.light(i).z;
     mass += points.weight(i);
     albedo += part * points.weight(i);
@@ -45,8 +41,7 @@ Loss loss_of(const WarpedLobe& lobe, size_t j, const LightPoints& points) {
 
 }  // namespace
 
-uint32_t lobes_that_matter(std::span<const WarpedLobe> lobes, const Vec3d& wv) {
-  const LightPoints points(lobes, drawn_as_they_are(lobes), wv);
+uint32_t lobes_that_matter(std::span<const WarpedLobe> lobes, const LightPoints& points) {
   std::vector<Loss> loss;
   for (size_t j = 0; j < lobes.size(); ++j) loss.push_back(loss_of(lobes[j], j, points));
   std::vector<size_t> order(lobes.size());

@@ -27,15 +27,19 @@ std::vector<double> zeniths(double bandwidth) {
   return d;
 }
 
-/// Draws of `drawn`, in the parameterisation of `lobe`.
-void add_draws(const WarpedLobe& lobe, const DrawnLobe& drawn, const Vec3d& wv, std::vector<Vec3d>& lights) {
-  const Frame frame = Frame::about(Vec3(drawn.center));
-  for (const double d : zeniths(drawn.bandwidth)) {
+/// Within what draws may have.
+double drawn_bandwidth(const WarpedLobe& lobe) {
+  return std::clamp(lobe.bandwidth, kMinMeanBandwidth, kMaxMeanBandwidth);
+}
+
+void add_draws(const WarpedLobe& lobe, const Vec3d& wv, std::vector<Vec3d>& lights) {
+  const Frame frame = Frame::about(Vec3(lobe.center));
+  for (const double d : zeniths(drawn_bandwidth(lobe))) {
     const double sine = std::sqrt(d * (2 - d));
     for (int k = 0; k < kAzimuths; ++k) {
       const double phi = 2 * kPiD * (k + 0.5) / kAzimuths;
       const Vec3d across = std::cos(phi) * Vec3d(frame.x) + std::sin(phi) * Vec3d(frame.y);
-      const auto wl = unwarped(lobe, glm::normalize(sine * across + (1 - d) * drawn.center), wv);
+      const auto wl = unwarped(lobe, glm::normalize(sine * across + (1 - d) * lobe.center), wv);
       if (wl && wl->z > 1e-6) lights.push_back(*wl);
     }
   }
@@ -52,20 +56,17 @@ void add_cosine_draws(std::vector<Vec3d>& lights) {
 
 }  // namespace
 
-LightPoints::LightPoints(std::span<const WarpedLobe> lobes, std::span<const DrawnLobe> drawn, const Vec3d& wv)
-    : lobes_(lobes.size()) {
-  for (size_t j = 0; j < lobes.size(); ++j) add_draws(lobes[j], drawn[j], wv, light_);
+LightPoints::LightPoints(std::span<const WarpedLobe> lobes, const Vec3d& wv) : lobes_(lobes.size()) {
+  for (const WarpedLobe& lobe : lobes) add_draws(lobe, wv, light_);
   add_cosine_draws(light_);
   for (const Vec3d& wl : light_) {
     double f = 0, density = wl.z / kPiD;
-    for (size_t j = 0; j < lobes.size(); ++j) {
-      const Vec3d& psi = psi_.emplace_back(warped(lobes[j], wl, wv));
-      const double jacobian = jacobian_.emplace_back(warp_jacobian(lobes[j], wl, wv));
-      const auto kernel = [&](const auto& lobe) {
-        return kernel_value(Kernel::gaussian, lobe.bandwidth, one_minus_dot(psi, lobe.center));
-      };
-      f += luminance_of(lobes[j].coefficient) * kernel(lobes[j]);
-      density += jacobian * kernel(drawn[j]) / kernel_integral(Kernel::gaussian, drawn[j].bandwidth);
+    for (const WarpedLobe& lobe : lobes) {
+      const double d = one_minus_dot(warped(lobe, wl, wv), lobe.center), drawn = drawn_bandwidth(lobe);
+      const double kernel = kernel_.emplace_back(kernel_value(Kernel::gaussian, lobe.bandwidth, d));
+      const double drawn_kernel = drawn == lobe.bandwidth ? kernel : kernel_value(Kernel::gaussian, drawn, d);
+      f += luminance_of(lobe.coefficient) * kernel;
+      density += warp_jacobian(lobe, wl, wv) * drawn_kernel / kernel_integral(Kernel::gaussian, drawn);
     }
     value_.push_back(f);
     // Each component drew as many points: their joint density is the sum of theirs.
@@ -74,14 +75,5 @@ LightPoints::LightPoints(std::span<const WarpedLobe> lobes, std::span<const Draw
 }
 
 double LightPoints::mass() const { return std::accumulate(weight_.begin(), weight_.end(), 0.0); }
-
-std::vector<DrawnLobe> drawn_as_they_are(std::span<const WarpedLobe> lobes) {
-  std::vector<DrawnLobe> drawn;
-  for (const WarpedLobe& lobe : lobes) {
-    const double bandwidth = std::clamp(lobe.bandwidth, kMinMeanBandwidth, kMaxMeanBandwidth);
-    drawn.push_back({0, lobe.center, bandwidth, {0, 0, 1}, 1});
-  }
-  return drawn;
-}
 
 }  // namespace velour

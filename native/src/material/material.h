@@ -12,6 +12,7 @@
 #include "material/ggx_sampler.h"
 #include "material/principled_point.h"
 #include "material/surface_site.h"
+#include "material/table_point.h"
 #include "sphere/direction_batch.h"
 #include "sphere/frame.h"
 #include "srbf/lobe_mixture.h"
@@ -21,6 +22,7 @@
 namespace velour {
 
 struct PreparedBrdf;
+class TableSampler;
 
 /// One of the layers that a material is mixed of, at a point.
 struct PreparedLayer {
@@ -36,7 +38,8 @@ struct PreparedLayer {
 struct PreparedBrdf {
   Vec3 wv;                               // local, unit, wv.z > 0
   LobeMixture lobes;                     // SRBF materials: the value
-  LobeMixture draws;                     // materials that sample lobes: what they draw from, and its density
+  TablePoint table;                      // where samples are drawn from tables: those of the view
+  LobeMixture draws;                     // where `interpolated_draws`: what is drawn from, and its density
   WarpedMixture warped;                  // parametric models: value and density
   float parameter[8];                    // analytic materials: what they derive from wv
   GgxPoint ggx;                          // of the fitted GGX lobe, where one is the material or draws its samples
@@ -46,6 +49,7 @@ struct PreparedBrdf {
   TensorPoint tensor;                    // BTFs of clustered tensors: the same
   std::unique_ptr<PreparedBrdf> beyond;  // BTFs of open structure: the same beyond its outline, where `folded`
   bool value_only = false;               // set before prepare(): nothing is drawn, and densities are 0
+  bool interpolated_draws = false;       // set before prepare(): scattered models draw as the dissertation does
   bool folded = false;
   BtfTablePoint btf_table;                // BTFs themselves: what is blended at the site for the view
   std::unique_ptr<PreparedBrdf> through;  // where light comes through: the same for light from the other side
@@ -120,6 +124,9 @@ class Material {
   /// They steer sampling alone, so lobes of another space may be given as the nearest Gaussians here. False: the
   /// material has none.
   virtual bool proposal_lobes(const PreparedBrdf& /*point*/, ProposalLobes& /*lobes*/) const { return false; }
+
+  /// Tables that the material draws from itself; null: none, and `table` makes them.
+  virtual std::shared_ptr<const TableSampler> tables() const { return nullptr; }
 
   /// True when f depends on the azimuth difference alone (tables of it need one meridian of views).
   virtual bool isotropic() const = 0;

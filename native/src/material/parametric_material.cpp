@@ -1,7 +1,14 @@
 #include "material/parametric_material.h"
 
+#include <algorithm>
+
+#include "material/defensive_share.h"
 #include "material/measured_values.h"
 #include "material/parametric_table.h"
+#include "material/table_sampler.h"
+#include "sphere/directions.h"
+#include "srbf/kernel.h"
+#include "srbf/plain_draws.h"
 
 namespace velour {
 
@@ -9,108 +16,184 @@ namespace {
 
 class ParametricMaterial : public Material {
  public:
-  explicit ParametricMaterial(const ParametricBrdf& brdf) : values_(brdf), draws_(values_), table_(values_, draws_) {}
+  explicit ParametricMaterial(const ParametricBrdf& brdf) : values_(brdf), nodes_(values_), table_(values_, nodes_) {}
+
+  /// Once, before it is used.
+  void tabulate_draws() {
+    const auto tables = std::make_shared<const TableSampler>(isotropic(), [this](const Vec3& wv, auto wl, auto f_cos) {
+      WarpedMixture mixture;
+      evaluate(wv, mixture);
+      RgbBatch f;
+      for (size_t k = 0; k < wl.size(); ++k) {
+        value(wv, mixture, wl[k], f);
+        for (int i = 0; i < wl[k].count; ++i) f_cos[k].v[i] = luminance(f.get(i)) * std::max(wl[k].z[i], 0.0f);
+      }
+    });
+    if (serves(*tables)) tables_ = tables;
+  }
 
   void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
     point.wv = wv;
     evaluate(wv, point.warped);
+    if (tables_ == nullptr) return draw_plain_lobes(point.warped, kDefensiveShare);
+    tables_->prepare(wv, point.table);
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    eval_warped(point.warped, wl, f, pdf);
+    if (tables_ == nullptr) eval_warped(point.warped, wl, f, pdf);
+    value(point.wv, point.warped, wl, f);
+    if (tables_ != nullptr) TableSampler::pdf(point.table, wl, pdf);
   }
 
   Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
-    Reflection result;
-    eval_warped(point.warped, wl, result.f, result.pdf);
+    Reflection result{value(point.wv, point.warped, wl), 0};
+    Rgb unused;
+    if (tables_ == nullptr) eval_warped(point.warped, wl, unused, result.pdf);
+    if (tables_ != nullptr) result.pdf = TableSampler::pdf(point.table, wl);
     return result;
   }
 
   void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    sample_warped(point.warped, u, wl);
+    if (tables_ == nullptr) return sample_warped(point.warped, u, wl);
+    TableSampler::sample(point.table, u, wl);
   }
 
-  Vec3 sample_one(const PreparedBrdf& point, const Vec2& u) const override { return sample_warped(point.warped, u); }
-
   bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
-    draws_.propose(point.warped, lobes);
+    nodes_.propose(point.wv, lobes);
     return true;
   }
 
+  std::shared_ptr<const TableSampler> tables() const override { return tables_; }
   bool isotropic() const override { return values_.isotropic(); }
 
  protected:
   void evaluate(const Vec3& wv, WarpedMixture& mixture) const {
     if (table_.covers(wv)) return table_.evaluate(wv, mixture);
-    const ViewPlace place(wv);
-    values_.evaluate(wv, place, mixture);
-    draws_.add_to(place, mixture);
+    values_.evaluate(wv, ViewPlace(wv), mixture);
+  }
+
+  /// f, by the lobes at `wv`.
+  virtual void value(const Vec3& /*wv*/, const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f) const {
+    eval_warped(mixture, wl, f);
+  }
+  virtual Rgb value(const Vec3& /*wv*/, const WarpedMixture& mixture, const Vec3& wl) const {
+    return eval_warped(mixture, wl);
   }
 
  private:
+  /// At views between those of the tables. Lobes narrower than a table's cells are rare but for models made by hand,
+  /// and drawn from as they are.
+  bool serves(const TableSampler& tables) const {
+    constexpr int kViews = 24, kTurns = 8;
+    for (int i = 0; i < kViews; ++i) {
+      for (int k = 0; k < (isotropic() ? 1 : kTurns); ++k) {
+        const float theta = 0.5f * kPi * (static_cast<float>(i) + 0.4f) / kViews;
+        const Vec3 wv = direction(theta, 2 * kPi * (static_cast<float>(k) + 0.3f) / kTurns);
+        WarpedMixture mixture;
+        evaluate(wv, mixture);
+        if (!tables.resolve(wv, peaks_of(wv, mixture))) return false;
+      }
+    }
+    return true;
+  }
+
+  std::vector<TableSampler::Peak> peaks_of(const Vec3& wv, const WarpedMixture& mixture) const {
+    std::vector<TableSampler::Peak> peaks;
+    const Vec3d own_wv(mixture.wv);
+    for (const WarpedLobe& lobe : lobes_of(mixture)) {
+      const auto at = unwarped(lobe, lobe.center, own_wv);
+      if (!at || !(at->z > 1e-6)) continue;
+      const float c = mixture.turn_cos, s = mixture.turn_sin;
+      const Vec3 own(*at), wl(c * own.x - s * own.y, s * own.x + c * own.y, own.z);
+      const auto brightness = static_cast<double>(luminance(Rgb(lobe.coefficient)));
+      const double integral = kernel_integral(Kernel::gaussian, lobe.bandwidth) / warp_jacobian(lobe, *at, own_wv);
+      peaks.push_back(
+          {brightness * integral * at->z, wl, static_cast<double>(luminance(value(wv, mixture, wl)) * wl.z)});
+    }
+    return peaks;
+  }
+
   ParametricValues values_;
-  ParametricDraws draws_;
+  ParametricNodes nodes_;
   ParametricTable table_;
+  std::shared_ptr<const TableSampler> tables_;
 };
 
-/// f is the mean of both orders of a pair; samples are those of the lobes.
+/// f is the mean of both orders of a pair.
 class SymmetricMaterial final : public ParametricMaterial {
  public:
   using ParametricMaterial::ParametricMaterial;
 
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    ParametricMaterial::eval(point, wl, f, pdf);
-    for (int i = 0; i < wl.count; ++i) f.set(i, mean(point, wl.get(i), f.get(i)));
+ protected:
+  void value(const Vec3& wv, const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f) const override {
+    eval_warped(mixture, wl, f);
+    for (int i = 0; i < wl.count; ++i) f.set(i, mean(wv, wl.get(i), f.get(i)));
   }
-
-  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
-    Reflection result = ParametricMaterial::eval_one(point, wl);
-    result.f = mean(point, wl, result.f);
-    return result;
+  Rgb value(const Vec3& wv, const WarpedMixture& mixture, const Vec3& wl) const override {
+    return mean(wv, wl, eval_warped(mixture, wl));
   }
 
  private:
-  Rgb mean(const PreparedBrdf& point, const Vec3& wl, const Rgb& f) const {
+  Rgb mean(const Vec3& wv, const Vec3& wl, const Rgb& f) const {
     if (!(wl.z > 0)) return Rgb(0);
     WarpedMixture exchanged;
     evaluate(wl, exchanged);
-    Rgb other;
-    float unused;
-    eval_warped(exchanged, point.wv, other, unused);
-    return 0.5f * (f + other);
+    return 0.5f * (f + eval_warped(exchanged, wv));
   }
 };
 
-class MeasuredParametricMaterial final : public ParametricMaterial {
+/// f of a measurement, samples of a model.
+class MeasuredParametricMaterial final : public Material {
  public:
-  MeasuredParametricMaterial(std::shared_ptr<const Measurement> measurement, const ParametricBrdf& proposal)
-      : ParametricMaterial(proposal), measurement_(std::move(measurement)) {}
+  MeasuredParametricMaterial(std::shared_ptr<const Measurement> measurement, std::shared_ptr<const Material> proposal)
+      : measurement_(std::move(measurement)), proposal_(std::move(proposal)), tables_(proposal_->tables()) {}
+
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
+    if (tables_ == nullptr) return proposal_->prepare(wv, point);
+    point.wv = wv;
+    tables_->prepare(wv, point.table);
+  }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    ParametricMaterial::eval(point, wl, f, pdf);  // its value, the model's, is overwritten
+    if (tables_ == nullptr) proposal_->eval(point, wl, f, pdf);  // its value is overwritten
+    if (tables_ != nullptr) TableSampler::pdf(point.table, wl, pdf);
     measured_values(*measurement_, point.wv, wl, f);
   }
 
-  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
-    return Material::eval_one(point, wl);
+  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    proposal_->sample(point, u, wl);
   }
 
+  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
+    return proposal_->proposal_lobes(point, lobes);
+  }
+
+  std::shared_ptr<const TableSampler> tables() const override { return tables_; }
   bool isotropic() const override { return measurement_->isotropic(); }
 
  private:
   std::shared_ptr<const Measurement> measurement_;
+  std::shared_ptr<const Material> proposal_;
+  std::shared_ptr<const TableSampler> tables_;
 };
+
+template <class M>
+std::shared_ptr<const Material> with_draws(const ParametricBrdf& brdf) {
+  const auto material = std::make_shared<M>(brdf);
+  material->tabulate_draws();
+  return material;
+}
 
 }  // namespace
 
 std::shared_ptr<const Material> make_parametric_material(const std::shared_ptr<const ParametricBrdf>& brdf) {
-  if (brdf->symmetric) return std::make_shared<SymmetricMaterial>(*brdf);
-  return std::make_shared<ParametricMaterial>(*brdf);
+  return brdf->symmetric ? with_draws<SymmetricMaterial>(*brdf) : with_draws<ParametricMaterial>(*brdf);
 }
 
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
                                                        const std::shared_ptr<const ParametricBrdf>& proposal) {
-  return std::make_shared<MeasuredParametricMaterial>(std::move(measurement), *proposal);
+  return std::make_shared<MeasuredParametricMaterial>(std::move(measurement),
+                                                      with_draws<ParametricMaterial>(*proposal));
 }
 
 }  // namespace velour

@@ -10,7 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "material/store_draws-inl.h"
+#include "srbf/draw_math-inl.h"
 #include "srbf/simd_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -48,8 +48,6 @@ HWY_INLINE void mix_rows(const TableRows& rows, const ViewTapsOf<float>& taps, W
     hn::Store(column(T::kRed), d, m.r + at);
     hn::Store(column(T::kGreen), d, m.g + at);
     hn::Store(column(T::kBlue), d, m.b + at);
-    store_draws(d, {sum(T::kDrawX, odd), zero, column(T::kDrawZ)}, column(T::kDrawBandwidth), column(T::kBelow),
-                column(T::kUpTo), at, m);
   }
 }
 
@@ -101,29 +99,25 @@ using M = WarpedMixture;
 constexpr Source kValues[] = {
     {T::kX, &M::x, true}, {T::kZ, &M::z},     {T::kSxx, &M::s_xx}, {T::kSyy, &M::s_yy},
     {T::kRed, &M::r},     {T::kGreen, &M::g}, {T::kBlue, &M::b},   {T::kBandwidth, &M::bandwidth}};
-/// Any density is right as long as it is that of the draws: these need not pass through their values.
-constexpr Source kDraws[] = {
-    {T::kDrawX, &M::draw_x, true}, {T::kDrawZ, &M::draw_z}, {T::kDrawBandwidth, &M::draw_bandwidth}};
 
 }  // namespace
 
-ParametricTable::ParametricTable(const ParametricValues& values, const ParametricDraws& draws)
+ParametricTable::ParametricTable(const ParametricValues& values, const ParametricNodes& nodes)
     : count_(values.count()), padded_(values.padded_count()), most_z_(-1), spline_(values.spline()) {
   if (!values.isotropic()) return;
   half_ = values.half();
   most_z_ = static_cast<float>(std::cos(kFadeEnd));
   spline_ = spline_.refined((kIntervals + spline_.cells() - 1) / spline_.cells());
-  fill(values, draws);
-  leave_out_idle(draws);
+  fill(values);
+  leave_out_idle(nodes);
 }
 
-void ParametricTable::fill(const ParametricValues& values, const ParametricDraws& draws) {
+void ParametricTable::fill(const ParametricValues& values) {
   const auto sites = spline_.sites();
   std::vector<WarpedMixture> mixtures(sites.size());
   for (size_t i = 0; i < sites.size(); ++i) {
     const Vec3 wv = view_of(sites[i]);
     values.evaluate(wv, ViewPlace(wv), mixtures[i]);
-    draws.add_to(ViewPlace(wv), mixtures[i]);
   }
   rows_.assign(sites.size() * kColumns * static_cast<size_t>(padded_), 0.0f);
   std::vector<double> control(sites.size());
@@ -135,15 +129,10 @@ void ParametricTable::fill(const ParametricValues& values, const ParametricDraws
       // Where coefficients fall steeply an interpolation may swing below 0.
       for (size_t i = 0; i < sites.size(); ++i) at(i, column, j) = static_cast<float>(std::max(control[i], least));
     }
-    for (size_t i = 0; i < sites.size(); ++i) {
-      for (const auto& draw : kDraws) at(i, draw.column, j) = (mixtures[i].*draw.array)[j];
-      at(i, kBelow, j) = mixtures[i].sums[M::kSums - 1 + j];
-      at(i, kUpTo, j) = mixtures[i].sums[M::kSums + j];
-    }
   }
 }
 
-void ParametricTable::leave_out_idle(const ParametricDraws& draws) {
+void ParametricTable::leave_out_idle(const ParametricNodes& nodes) {
   const auto sites = spline_.sites();
   const double step = sites[2] - sites[1];
   const auto place = [](double theta) { return ViewPlace(view_of(std::clamp(theta, 0.0, kPiD / 2))); };
@@ -151,7 +140,7 @@ void ParametricTable::leave_out_idle(const ParametricDraws& draws) {
   for (const double site : sites) {
     // Where the table ends, beside the normal, it has all lobes, as the model has them beyond.
     const bool at_the_end = site < kFadeEnd + 2 * step;
-    matter.push_back(at_the_end ? ~0u : draws.matter_between(place(site - 1.5 * step), place(site + 1.5 * step)));
+    matter.push_back(at_the_end ? ~0u : nodes.matter_between(place(site - 1.5 * step), place(site + 1.5 * step)));
   }
   for (size_t i = 0; i < sites.size(); ++i) {
     for (int j = 0; j < count_; ++j) {

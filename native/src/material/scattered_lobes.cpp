@@ -5,14 +5,13 @@
 #include "job/error.h"
 #include "material/defensive_share.h"
 #include "sphere/frame.h"
-#include "srbf/few_lobes.h"
+#include "srbf/lobe_tree.h"
 
 namespace velour {
 
 namespace {
 
-/// Relative L2 that the few lobes which samples are drawn from may err by; docs/rendering.md has what others cost.
-constexpr double kDrawsTolerance = 0.3;
+constexpr int kDissertationNeighbors = 4;
 
 Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 
@@ -80,6 +79,11 @@ int checked_neighbors(const ScatteredBrdf& brdf, int neighbors) {
   return count;
 }
 
+int nearest_views(const ScatteredBrdf& brdf, int neighbors) {
+  if (neighbors != 0) return neighbors;
+  return std::clamp(LobeMixture::kCapacity / std::max(brdf.max_lobes_per_view(), 1), 1, kDissertationNeighbors);
+}
+
 }  // namespace
 
 ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
@@ -88,25 +92,20 @@ ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
       neighbors_(checked_neighbors(brdf, neighbors)),
       views_(brdf.views),
       search_(brdf.views, neighbors_),
-      lobes_(brdf.kernel),
-      draws_(Kernel::gaussian) {
+      nearest_(brdf.views, nearest_views(brdf, neighbors)),
+      lobes_(brdf.kernel) {
   for (size_t view = 0; view < views_.size(); ++view) add_view(brdf, view);
 }
 
 void ScatteredLobes::add_view(const ScatteredBrdf& brdf, size_t view) {
   const Rgb diffuse = brdf.diffuse.empty() ? Rgb(0) : brdf.diffuse[view];
   const float cosine = std::max(luminance(diffuse), 0.0f);
-  const GaussianLobes gaussians = gaussians_of(brdf, view);
   theta_.push_back(Meridian(views_[view]).theta());
   for (size_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {
     lobes_.add(brdf.center[j], brdf.bandwidth[j], brdf.coefficient[j]);
   }
   lobes_.end_view(diffuse);
-  for (const GaussianLobe& lobe : few_lobes(gaussians, kDrawsTolerance, ProposalLobes::kCapacity)) {
-    draws_.add(lobe.center, lobe.bandwidth, Rgb(lobe.amplitude));
-  }
-  draws_.end_view(Rgb(cosine));
-  proposals_.push_back(proposal_of(gaussians, cosine));
+  proposals_.push_back(proposal_of(gaussians_of(brdf, view), cosine));
 }
 
 void ScatteredLobes::gather(const Placement& placed, LobeMixture& mixture) const {
@@ -118,15 +117,6 @@ void ScatteredLobes::gather(const Placement& placed, LobeMixture& mixture) const
   mixture.finish(kDefensiveShare);
 }
 
-void ScatteredLobes::gather_draws(const Placement& placed, LobeMixture& mixture) const {
-  mixture.clear(draws_.kernel());
-  if (placed.views.count > 0) {
-    const size_t nearest = nearest_of(placed.views);
-    draws_.append_to(mixture, static_cast<size_t>(placed.views.index[nearest]), placed.rotation[nearest], 1);
-  }
-  mixture.finish(kDefensiveShare);
-}
-
 void ScatteredLobes::propose(const Placement& placed, ProposalLobes& lobes) const {
   const size_t nearest = nearest_of(placed.views);
   lobes = proposals_[static_cast<size_t>(placed.views.index[nearest])];
@@ -134,26 +124,26 @@ void ScatteredLobes::propose(const Placement& placed, ProposalLobes& lobes) cons
 }
 
 ScatteredLobes::Placement ScatteredLobes::place(const Vec3& wv) const {
-  return isotropic_ ? place_on_meridian(wv) : place_on_hemisphere(wv);
+  if (!isotropic_) return turned(search_.nearest(wv), wv);
+  const Meridian meridian(wv);
+  return turned(neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : search_.nearest(meridian.view()), wv);
 }
 
-ScatteredLobes::Placement ScatteredLobes::place_on_meridian(const Vec3& wv) const {
+ScatteredLobes::Placement ScatteredLobes::place_nearest(const Vec3& wv) const {
+  return turned(nearest_.nearest(isotropic_ ? Meridian(wv).view() : wv), wv);
+}
+
+ScatteredLobes::Placement ScatteredLobes::turned(const ViewNeighbors& views, const Vec3& wv) const {
   const Meridian meridian(wv);
   Placement placed;
-  placed.views = neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : search_.nearest(meridian.view());
-  for (int i = 0; i < placed.views.count; ++i) {
-    const Vec3& view = views_[static_cast<size_t>(placed.views.index[i])];
-    placed.rotation[i] = meridian.rotation_from(view, align_views_);
-  }
-  return placed;
-}
-
-ScatteredLobes::Placement ScatteredLobes::place_on_hemisphere(const Vec3& wv) const {
-  Placement placed;
-  placed.views = search_.nearest(wv);
-  for (int i = 0; i < placed.views.count; ++i) {
-    const Vec3& view = views_[static_cast<size_t>(placed.views.index[i])];
-    placed.rotation[i] = align_views_ ? rotation_between(mirror(view), mirror(wv)) : Mat3(1);
+  placed.views = views;
+  for (int i = 0; i < views.count; ++i) {
+    const Vec3& view = views_[static_cast<size_t>(views.index[i])];
+    if (isotropic_) {
+      placed.rotation[i] = meridian.rotation_from(view, align_views_);
+    } else {
+      placed.rotation[i] = align_views_ ? rotation_between(mirror(view), mirror(wv)) : Mat3(1);
+    }
   }
   return placed;
 }

@@ -26,25 +26,25 @@ class ScatteredLobes {
     Mat3 rotation[kMaxNeighbors];
   };
   Placement place(const Vec3& wv) const;
+  /// The same of the dissertation's K nearest views [T09 7.3]: `neighbors`, or four as far as their lobes fit a
+  /// mixture.
+  Placement place_nearest(const Vec3& wv) const;
 
   /// The mixture of f cos, with a cosine share that keeps its density positive wherever f may be.
   void gather(const Placement& placed, LobeMixture& mixture) const;
-  /// What samples are drawn from: the nearest view's f cos in few lobes, its density as positive.
-  void gather_draws(const Placement& placed, LobeMixture& mixture) const;
   /// The nearest view's f cos in as many lobes as a proposal holds.
   void propose(const Placement& placed, ProposalLobes& lobes) const;
 
  private:
-  Placement place_on_meridian(const Vec3& wv) const;
-  Placement place_on_hemisphere(const Vec3& wv) const;
+  Placement turned(const ViewNeighbors& views, const Vec3& wv) const;
   void add_view(const ScatteredBrdf& brdf, size_t view);
 
   bool isotropic_, align_views_;
   int neighbors_;
   std::vector<Vec3> views_;
-  ViewSearch search_;
-  std::vector<float> theta_;  // of the views, radians
-  ViewLobes lobes_, draws_;
+  ViewSearch search_, nearest_;  // of the model's neighbours, and of the dissertation's
+  std::vector<float> theta_;     // of the views, radians
+  ViewLobes lobes_;
   std::vector<ProposalLobes> proposals_;  // of each view
 };
 

@@ -47,6 +47,7 @@ class LayeredMaterial final : public Material {
       sum += layer.share = luminance(layer.weight) * albedo_[i];
       if (!layer.is_there()) continue;
       if (!layer.point) layer.point = std::make_unique<PreparedBrdf>();
+      layer.point->interpolated_draws = point.interpolated_draws;
       from.material->prepare(wv, site, *layer.point);
     }
     for (size_t i = 0; i < albedo_.size() && sum > 0; ++i) point.layers[i].share /= sum;

@@ -42,6 +42,7 @@ void ThroughMaterial::prepare(const Vec3& wv, const SurfaceSite& site, PreparedB
   if (!point.through) point.through = std::make_unique<PreparedBrdf>();
   reflected_->prepare(wv, site, point);
   point.through->value_only = point.value_only;
+  point.through->interpolated_draws = point.interpolated_draws;
   through_->prepare(wv, site, *point.through);
   point.through_share = share_[site.back];
 }

@@ -30,6 +30,7 @@ void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shado
 
 void DirectLight::prepare(const Receiver& receiver, Work& work, const LightView& view) {
   const Vertex& vertex = receiver.vertex;
+  work.prepared.interpolated_draws = is_dissertations(options_.strategy);
   vertex.surface->material->prepare(vertex.wv, vertex.site, work.prepared);
   prepare_surface(sampling_, vertex, work.prepared);
   work.shares = shares_at(vertex, view, work);

@@ -22,6 +22,8 @@ SurfaceSampling surface_sampling(Strategy strategy) {
     case Strategy::light:
     case Strategy::mis:
     case Strategy::product:
+    case Strategy::dissertation:
+    case Strategy::mis_dissertation:
       break;
   }
   return SurfaceSampling::material;
@@ -29,6 +31,7 @@ SurfaceSampling surface_sampling(Strategy strategy) {
 
 void prepare_surface(SurfaceSampling sampling, const Vertex& vertex, PreparedBrdf& prepared) {
   if (sampling == SurfaceSampling::ggx) vertex.ggx->prepare(vertex.wv, prepared.ggx);
+  if (sampling == SurfaceSampling::table) vertex.table->prepare(vertex.wv, prepared.table);
 }
 
 namespace {
@@ -43,7 +46,7 @@ void sample_one_side(SurfaceSampling sampling, const Vertex& vertex, const Prepa
     case SurfaceSampling::cosine:
       return wl.fill(u, sample_cosine_hemisphere);
     case SurfaceSampling::table:
-      return wl.fill(u, [&](const Vec2& v) { return vertex.table->sample(vertex.wv, v); });
+      return TableSampler::sample(prepared.table, u, wl);
     case SurfaceSampling::ggx:
       return wl.fill(u, [&](const Vec2& v) { return vertex.ggx->sample(prepared.ggx, v); });
     case SurfaceSampling::material:
@@ -61,8 +64,7 @@ void pdf_of_one_side(SurfaceSampling sampling, const Vertex& vertex, const Prepa
       for (int i = 0; i < wl.count; ++i) pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
       return;
     case SurfaceSampling::table:
-      vertex.table->pdf(vertex.wv, wl, pdf);
-      return;
+      return TableSampler::pdf(prepared.table, wl, pdf);
     case SurfaceSampling::ggx:
       vertex.ggx->pdf(prepared.ggx, wl, pdf);
       return;

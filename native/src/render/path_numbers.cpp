@@ -10,6 +10,10 @@ namespace velour {
 void PathNumbers::points(Purpose purpose, uint32_t first, std::span<Vec2> u) {
   if (u.empty()) return;
   if (sequence_ == Sequence::sobol) return sobol_points(key(purpose), first, u);
+  if (sequence_ == Sequence::independent) {
+    for (Vec2& point : u) point = random_.next2();
+    return;
+  }
   const Vec2 shift = random_.next2();
   const int n = static_cast<int>(u.size());
   for (int i = 0; i < n; ++i) u[static_cast<size_t>(i)] = lattice_point(i, n, shift);
@@ -27,13 +31,13 @@ Vec2 PathNumbers::point(Purpose purpose) {
 }
 
 RayDecisions PathNumbers::decisions() {
-  if (sequence_ == Sequence::random) return {random_.next_bits(), 0};
+  if (sequence_ != Sequence::sobol) return {random_.next_bits(), 0};
   return {mix64(~key(Purpose::camera)), ray_};
 }
 
 PathNumbers::Deal PathNumbers::deal(Run run, float share, Purpose purpose) {
   const double part = static_cast<double>(share);
-  if (sequence_ == Sequence::random) {
+  if (sequence_ != Sequence::sobol) {
     const double exact = run.count * part, whole = std::floor(exact);
     const bool one_more = whole < exact && static_cast<double>(random_.next()) < exact - whole;
     const int dealt = static_cast<int>(whole) + (one_more ? 1 : 0);

@@ -21,11 +21,13 @@ enum class Purpose : uint64_t { camera, side, surface, light, sharp, onward, pro
 /// they are one sequence, which errs less.
 ///
 /// `Sequence::random`: independent numbers, with a lattice for the directions of one vertex; kept as the judge.
+///
+/// `Sequence::independent`: without the lattice, as in the dissertation.
 class PathNumbers {
  public:
   /// Uses seed, sequence and noise of `options`.
   PathNumbers(const RenderOptions& options, uint64_t pixel, uint32_t camera_ray)
-      : sequence_(options.sequence),
+      : sequence_(options.numbers()),
         random_(options.seed, pixel, sequence_ == Sequence::sobol ? camera_ray % halves(options) : camera_ray),
         ray_(camera_ray / halves(options)) {
     if (sequence_ == Sequence::sobol) key_ = random_.next_bits();

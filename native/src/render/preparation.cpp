@@ -56,7 +56,7 @@ RenderOptions checked(RenderOptions options) {
   require_range("Render", "strategy", static_cast<int>(options.strategy), 0, static_cast<int>(kLastStrategy));
   require_range("Render", "camera_rays_per_pass", options.camera_rays_per_pass, 0, kMost);
   require_range("Render", "heuristic", static_cast<int>(options.heuristic), 0, static_cast<int>(Heuristic::power));
-  require_range("Render", "sequence", static_cast<int>(options.sequence), 0, static_cast<int>(Sequence::sobol));
+  require_range("Render", "sequence", static_cast<int>(options.sequence), 0, static_cast<int>(kLastSequence));
   if (!(options.light_share >= 0.0f && options.light_share <= 1.0f)) {
     throw Error(Status::invalid_argument,
                 "Render option share is " + std::to_string(options.light_share) + "; it must lie between 0 and 1.");

@@ -39,7 +39,8 @@ std::shared_ptr<const TableSamplers> table_samplers(const Scene& scene, const Pr
     TableSamplers tables;
     for (const SurfaceMaterial& m : scene.materials()) {
       progress.check();
-      tables.push_back(std::make_unique<const TableSampler>(*m.material));
+      auto own = m.material->tables();
+      tables.push_back(own ? std::move(own) : std::make_shared<const TableSampler>(*m.material));
     }
     return tables;
   });

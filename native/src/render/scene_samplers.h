@@ -15,7 +15,7 @@
 namespace velour {
 
 // By material.
-using TableSamplers = std::vector<std::unique_ptr<const TableSampler>>;
+using TableSamplers = std::vector<std::shared_ptr<const TableSampler>>;
 using GgxSamplers = std::vector<std::unique_ptr<const GgxSampler>>;
 
 struct SkySampler {

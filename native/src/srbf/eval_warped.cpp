@@ -84,7 +84,7 @@ HWY_INLINE V gaussian(D d, const Vector<V>& psi, V x, V y, V z, V bandwidth) {
   return exp2_nonpositive(d, hn::Mul(hn::Mul(bandwidth, hn::Set(d, -0.72134752f)), distance_sq));  // -log2(e) / 2
 }
 
-template <class Load, class D, class V = hn::Vec<D>>
+template <bool kDensity, class Load, class D, class V = hn::Vec<D>>
 HWY_INLINE void add_lobe(D d, const Load& load, const WarpedMixture& m, int j, const Light<V>& light, Sums<V>& sum) {
   const V half = load(d, m.half + j);
   // The sum first: wl and wv nearly opposed cancel exactly.
@@ -101,6 +101,7 @@ HWY_INLINE void add_lobe(D d, const Load& load, const WarpedMixture& m, int j, c
   sum.r = hn::MulAdd(load(d, m.r + j), value, sum.r);
   sum.g = hn::MulAdd(load(d, m.g + j), value, sum.g);
   sum.b = hn::MulAdd(load(d, m.b + j), value, sum.b);
+  if constexpr (!kDensity) return;
 
   const V drawn = gaussian(d, psi, load(d, m.draw_x + j), load(d, m.draw_y + j), load(d, m.draw_z + j),
                            load(d, m.draw_bandwidth + j));
@@ -109,48 +110,63 @@ HWY_INLINE void add_lobe(D d, const Load& load, const WarpedMixture& m, int j, c
   sum.density = hn::MulAdd(hn::Mul(load(d, m.density + j), drawn), jacobian, sum.density);
 }
 
-template <class D, class V = hn::Vec<D>>
+/// `pdf` null: the value alone.
+template <bool kDensity, class D, class V = hn::Vec<D>>
 HWY_INLINE void eval_directions(D d, const WarpedMixture& m, const DirectionBatch& w, int at, RgbBatch& f,
-                                ScalarBatch& pdf) {
+                                ScalarBatch* pdf) {
   const V z = hn::Load(d, w.z + at), zero = hn::Zero(d);
   const Light<V> light = light_of(d, m, hn::Load(d, w.x + at), hn::Load(d, w.y + at), z);
   Sums<V> sum = no_sums(d);
-  for (int k = 0; k < m.listed_count; ++k) add_lobe(d, SameLobe(), m, m.listed[k], light, sum);
+  for (int k = 0; k < m.listed_count; ++k) add_lobe<kDensity>(d, SameLobe(), m, m.listed[k], light, sum);
   const auto above = hn::Gt(z, zero);
   hn::Store(hn::IfThenElseZero(above, sum.r), d, f.r + at);
   hn::Store(hn::IfThenElseZero(above, sum.g), d, f.g + at);
   hn::Store(hn::IfThenElseZero(above, sum.b), d, f.b + at);
-  hn::Store(hn::MulAdd(hn::Set(d, m.cosine() / kPi), hn::Max(z, zero), sum.density), d, pdf.v + at);
+  if constexpr (kDensity) {
+    hn::Store(hn::MulAdd(hn::Set(d, m.cosine() / kPi), hn::Max(z, zero), sum.density), d, pdf->v + at);
+  }
 }
 
-template <class D>
-HWY_INLINE void eval_lobes(D d, const WarpedMixture& m, const Vec3& wl, Rgb& f, float& pdf) {
+template <bool kDensity, class D>
+HWY_INLINE void eval_lobes(D d, const WarpedMixture& m, const Vec3& wl, Rgb& f, float* pdf) {
   using V = hn::Vec<D>;
   const Light<V> light = light_of(d, m, hn::Set(d, wl.x), hn::Set(d, wl.y), hn::Set(d, wl.z));
   Sums<V> sum = no_sums(d);
-  for (int j = 0; j < m.padded; j += static_cast<int>(hn::Lanes(d))) add_lobe(d, LobeALane(), m, j, light, sum);
+  for (int j = 0; j < m.padded; j += static_cast<int>(hn::Lanes(d))) {
+    add_lobe<kDensity>(d, LobeALane(), m, j, light, sum);
+  }
   float total[4];
   sum_lanes(d, sum, total);
   f = wl.z > 0 ? Rgb(total[0], total[1], total[2]) : Rgb(0);
-  pdf = m.cosine() / kPi * std::max(wl.z, 0.0f) + total[3];
+  if constexpr (kDensity) *pdf = m.cosine() / kPi * std::max(wl.z, 0.0f) + total[3];
 }
 
-void eval_one_simd(const WarpedMixture& m, const Vec3& wl, Rgb& f, float& pdf) {
-  if (m.padded % 16 == 0) return eval_lobes(hn::CappedTag<float, 16>(), m, wl, f, pdf);
-  return eval_lobes(hn::CappedTag<float, 8>(), m, wl, f, pdf);
+template <bool kDensity>
+HWY_INLINE void eval_one(const WarpedMixture& m, const Vec3& wl, Rgb& f, float* pdf) {
+  if (m.padded % 16 == 0) return eval_lobes<kDensity>(hn::CappedTag<float, 16>(), m, wl, f, pdf);
+  return eval_lobes<kDensity>(hn::CappedTag<float, 8>(), m, wl, f, pdf);
 }
 
-void eval_batch_simd(const WarpedMixture& m, const DirectionBatch& w, RgbBatch& f, ScalarBatch& pdf) {
+template <bool kDensity>
+HWY_INLINE void eval_batch(const WarpedMixture& m, const DirectionBatch& w, RgbBatch& f, ScalarBatch* pdf) {
   if (w.count <= 2) {
     for (int i = 0; i < w.count; ++i) {
       Rgb value;
-      eval_one_simd(m, w.get(i), value, pdf.v[i]);
+      eval_one<kDensity>(m, w.get(i), value, kDensity ? pdf->v + i : nullptr);
       f.set(i, value);
     }
     return;
   }
   const hn::CappedTag<float, 16> d;
-  for (int at = 0; at < w.count; at += static_cast<int>(hn::Lanes(d))) eval_directions(d, m, w, at, f, pdf);
+  for (int at = 0; at < w.count; at += static_cast<int>(hn::Lanes(d))) eval_directions<kDensity>(d, m, w, at, f, pdf);
+}
+
+void eval_one_simd(const WarpedMixture& m, const Vec3& wl, Rgb& f, float* pdf) {
+  return pdf != nullptr ? eval_one<true>(m, wl, f, pdf) : eval_one<false>(m, wl, f, pdf);
+}
+
+void eval_batch_simd(const WarpedMixture& m, const DirectionBatch& w, RgbBatch& f, ScalarBatch* pdf) {
+  return pdf != nullptr ? eval_batch<true>(m, w, f, pdf) : eval_batch<false>(m, w, f, pdf);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -181,11 +197,21 @@ void WarpedMixture::list_all() {
 }
 
 void eval_warped(const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
-  VELOUR_SIMD_DISPATCH(eval_batch_simd)(mixture, wl, f, pdf);
+  VELOUR_SIMD_DISPATCH(eval_batch_simd)(mixture, wl, f, &pdf);
 }
 
 void eval_warped(const WarpedMixture& mixture, const Vec3& wl, Rgb& f, float& pdf) {
-  VELOUR_SIMD_DISPATCH(eval_one_simd)(mixture, wl, f, pdf);
+  VELOUR_SIMD_DISPATCH(eval_one_simd)(mixture, wl, f, &pdf);
+}
+
+void eval_warped(const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f) {
+  VELOUR_SIMD_DISPATCH(eval_batch_simd)(mixture, wl, f, nullptr);
+}
+
+Rgb eval_warped(const WarpedMixture& mixture, const Vec3& wl) {
+  Rgb f;
+  VELOUR_SIMD_DISPATCH(eval_one_simd)(mixture, wl, f, nullptr);
+  return f;
 }
 
 }  // namespace velour

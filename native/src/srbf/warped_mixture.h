@@ -1,7 +1,7 @@
 // The lobes of a parametric model at one view: value and density of many directions, and samples.
 //
-// Each lobe has a parameterisation of its own (warped_lobe.h) and, in the same parameterisation, a second Gaussian for
-// the density: that of f cos instead of f, so that what lies below the horizon or at grazing angles is seldom drawn.
+// Each lobe has a parameterisation of its own (warped_lobe.h) and, where there is a density, a second Gaussian for it
+// in the same parameterisation.
 #pragma once
 
 #include <cstdint>
@@ -60,6 +60,9 @@ struct alignas(64) WarpedMixture {
 void eval_warped(const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf);
 /// The same of one direction.
 void eval_warped(const WarpedMixture& mixture, const Vec3& wl, Rgb& f, float& pdf);
+/// The value alone, of mixtures without a density.
+void eval_warped(const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f);
+Rgb eval_warped(const WarpedMixture& mixture, const Vec3& wl);
 
 /// Draws a direction for each of up to 64 `u`: `u.x` picks lobe and zenith about its centre, `u.y` the azimuth. Half
 /// vectors that face away from the viewer have no light direction: the draw is then -z, which counts as a draw that

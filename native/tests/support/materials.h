@@ -73,8 +73,18 @@ inline float pdf_one(const TableSampler& table, const DirectionPair& w) {
   batch.push(w.wl);
   batch.pad();
   ScalarBatch pdf;
-  table.pdf(w.wv, batch, pdf);
+  TablePoint point;
+  table.prepare(w.wv, point);
+  TableSampler::pdf(point, batch, pdf);
   return pdf.v[0];
+}
+
+inline Vec3 sample_one(const TableSampler& table, const Vec3& wv, const Vec2& u) {
+  TablePoint point;
+  table.prepare(wv, point);
+  DirectionBatch wl;
+  TableSampler::sample(point, {&u, 1}, wl);
+  return wl.get(0);
 }
 
 inline Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }

@@ -8,10 +8,11 @@
 
 namespace velour::test {
 
-/// The material's sampler for one view.
+/// The material's sampler for one view; `interpolated`: as PreparedBrdf::interpolated_draws.
 inline Sampler material_sampler(std::shared_ptr<const Material> material, const Vec3& wv,
-                                const SurfaceSite& site = SurfaceSite::everywhere()) {
+                                const SurfaceSite& site = SurfaceSite::everywhere(), bool interpolated = false) {
   auto point = std::make_shared<PreparedBrdf>();
+  point->interpolated_draws = interpolated;
   material->prepare(wv, site, *point);
   return {[material, point](const Vec2& u) { return material->sample_one(*point, u); },
           [material, point](const Vec3& wl) { return static_cast<double>(eval_one(*material, *point, wl).pdf); }};

@@ -29,6 +29,8 @@ inline std::vector<NamedStrategy> all_strategies() {
           {"mis power share 0.8", Strategy::mis, Heuristic::power, 0.8f},
           {"mis-ggx", Strategy::mis_ggx},
           {"product", Strategy::product},
+          {"dissertation", Strategy::dissertation},
+          {"mis-dissertation", Strategy::mis_dissertation},
           {"product power share 0.3", Strategy::product, Heuristic::power, 0.3f}};
 }
 

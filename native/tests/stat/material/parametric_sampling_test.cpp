@@ -1,9 +1,11 @@
 // The sampler of parametric models against the density that it claims: all angles of the view, all widths of the
-// highlight. Draws whose half vector faces away from the viewer have no direction; they are a cell of their own.
+// highlight.
 #include "material/parametric_material.h"
+#include "material/parametric_values.h"
 #include "sphere/random.h"
+#include "srbf/plain_draws.h"
 #include "support/parametric_models.h"
-#include "support/plain_lobes.h"
+#include "support/statistics.h"
 #include "support/warped_sampler.h"
 
 namespace velour {
@@ -46,6 +48,17 @@ TEST_P(ParametricSampling, FollowsItsDensity) {
 
 INSTANTIATE_TEST_SUITE_P(All, ParametricSampling, ::testing::ValuesIn(sampling_cases()));
 
+// Whose f is that of neither order.
+TEST(ParametricSamplingSymmetric, FollowsItsDensity) {
+  for (const float bandwidth : {3.0f, 1e3f}) {
+    auto brdf = test::parametric_model(true, test::highlight_recipe(bandwidth));
+    brdf.symmetric = true;
+    for (const float degrees : {20.0f, 75.0f}) {
+      test::expect_proven(sampler_of(brdf, test::view_at(degrees)), "symmetric");
+    }
+  }
+}
+
 // Where lobes fade and are left out.
 TEST(ParametricSamplingIdle, FollowsItsDensityWithoutIdleLobes) {
   const auto brdf = test::parametric_model(true, test::fading_recipe(30));
@@ -61,7 +74,7 @@ ParametricBrdf lone(LobeSpace space, float bandwidth) {
 
 TEST(ParametricSamplingControl, ABandwidthOffByFivePercentIsSeen) {
   for (const LobeSpace space : {LobeSpace::light, LobeSpace::half}) {
-    for (const float bandwidth : {10.0f, 1e3f, 1e6f}) {
+    for (const float bandwidth : {10.0f, 1e3f, 1e4f}) {  // beyond, the tables' rows are what shows
       const Vec3 wv = test::view_at(50);
       const auto sampler = [&](float b) { return sampler_of(lone(space, b), wv); };
       EXPECT_GT(test::p_value(sampler(bandwidth), sampler(bandwidth)), 1e-4) << bandwidth;
@@ -70,9 +83,29 @@ TEST(ParametricSamplingControl, ABandwidthOffByFivePercentIsSeen) {
   }
 }
 
+/// The lobes of a model as they are, drawn from in closed form: draws whose half vector faces away have no direction.
+Sampler plain_lobes_of(const ParametricBrdf& brdf, const Vec3& wv) {
+  const auto mixture = std::make_shared<WarpedMixture>();
+  ParametricValues(brdf).evaluate(wv, ViewPlace(wv), *mixture);
+  draw_plain_lobes(*mixture, 0.05f);
+  Sampler sampler;
+  sampler.sample = [mixture](const Vec2& u) {
+    const Vec3 wl = sample_warped(*mixture, u);
+    return wl == Vec3(0, 0, -1) ? Vec3(0) : wl;
+  };
+  sampler.pdf = [mixture](const Vec3& wl) {
+    Rgb unused;
+    float pdf;
+    eval_warped(*mixture, wl, unused, pdf);
+    return static_cast<double>(pdf);
+  };
+  sampler.may_fail = true;
+  return sampler;
+}
+
 // A lobe of half vectors, seen from the side: many of its draws face away.
-TEST(ParametricSamplingControl, DrawsWithoutDirectionAreCounted) {
-  Sampler sampler = sampler_of(lone(LobeSpace::half, 20), test::view_at(89));
+TEST(WarpedSamplingControl, DrawsWithoutDirectionAreCounted) {
+  Sampler sampler = plain_lobes_of(lone(LobeSpace::half, 20), test::view_at(70));
   auto result = test::chi_square(sampler.sample, sampler.pdf, test::proof_options(sampler));
   EXPECT_GT(result.failed, 0.02 * static_cast<double>(result.options.samples));
   EXPECT_TRUE(test::follows_density(result, 1e-4, "broad"));
@@ -80,32 +113,42 @@ TEST(ParametricSamplingControl, DrawsWithoutDirectionAreCounted) {
   EXPECT_LT(test::p_value(sampler, sampler), 1e-6);
 }
 
-/// Relative variance of f cos / pdf over draws from `point`.
-double spread(const Material& material, const PreparedBrdf& point) {
+/// Relative variance of f cos / pdf over draws.
+double spread(const Material& material, const PreparedBrdf& point, const Sampler& sampler) {
   constexpr uint64_t kSamples = 20'000;
-  double sum = 0, sum_sq = 0;
+  test::RunningMean mean;
   for (uint64_t i = 0; i < kSamples; ++i) {
-    const Vec3 wl = material.sample_one(point, RandomStream(3, 0, i).next2());
-    if (wl.z <= 0) continue;
-    const auto e = test::eval_one(material, point, wl);
-    const double x = static_cast<double>(luminance(e.f) * wl.z / e.pdf);
-    sum += x;
-    sum_sq += x * x;
+    const Vec3 wl = sampler.sample(RandomStream(3, 0, i).next2());
+    mean.add(wl.z > 0 ? static_cast<double>(luminance(test::eval_one(material, point, wl).f) * wl.z) / sampler.pdf(wl)
+                      : 0.0);
   }
-  return sum_sq * static_cast<double>(kSamples) / (sum * sum) - 1;
+  return mean.variance() / (mean.mean() * mean.mean());
 }
 
-// What the fit of the density is for: near the horizon most draws of the lobes of f would be wasted.
-TEST(ParametricDensity, LobesOfFCosWasteLessThanLobesOfF) {
-  const auto material = make_parametric_material(test::parametric_highlight(120, true));
+// What the tables of f cos are for: near the horizon most draws of the lobes of f would be wasted.
+TEST(ParametricDensity, TablesOfFCosWasteLessThanLobesOfF) {
+  const auto brdf = test::parametric_highlight(120, true);
+  const auto material = make_parametric_material(brdf);
   for (const float degrees : {60.0f, 75.0f, 85.0f, 89.0f}) {
+    const Vec3 wv = test::view_at(degrees);
     PreparedBrdf point;
-    material->prepare(test::view_at(degrees), point);
-    const double fitted = spread(*material, point);
-    test::draw_plain_lobes(point.warped);
-    const double plain = spread(*material, point);
-    EXPECT_LT(fitted, 0.4 * plain) << degrees;
-    EXPECT_LT(fitted, 0.5) << degrees;
+    material->prepare(wv, point);
+    const double tables = spread(*material, point, test::material_sampler(material, wv));
+    EXPECT_LT(tables, 0.4 * spread(*material, point, plain_lobes_of(*brdf, wv))) << degrees;
+    EXPECT_LT(tables, 0.1) << degrees;
+  }
+}
+
+// A lobe that no cell of a table would see is drawn from as it is.
+TEST(ParametricDensity, NarrowLobesAsideAreDrawn) {
+  for (const float bandwidth : {1e4f, 1e6f}) {
+    const auto material = make_parametric_material(std::make_shared<ParametricBrdf>(lone(LobeSpace::light, bandwidth)));
+    for (const float degrees : {5.0f, 33.0f, 61.0f}) {
+      const Vec3 wv = test::view_at(degrees);
+      PreparedBrdf point;
+      material->prepare(wv, point);
+      EXPECT_LT(spread(*material, point, test::material_sampler(material, wv)), 1) << bandwidth << ' ' << degrees;
+    }
   }
 }
 

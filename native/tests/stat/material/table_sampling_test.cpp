@@ -22,7 +22,7 @@ std::shared_ptr<const Material> table_material(int kind) {
 
 Sampler sampler_of(std::shared_ptr<const TableSampler> table, const Vec3& wv) {
   Sampler sampler{
-      [table, wv](const Vec2& u) { return table->sample(wv, u); },
+      [table, wv](const Vec2& u) { return test::sample_one(*table, wv, u); },
       [table, wv](const Vec3& wl) { return static_cast<double>(test::pdf_one(*table, {.wl = wl, .wv = wv})); }};
   return sampler;
 }
@@ -71,7 +71,7 @@ TEST(TableSamplingGain, BeatsTheCosineOnAHighlight) {
   test::RunningMean by_table, by_cosine;
   for (uint64_t i = 0; i < 20'000; ++i) {
     const Vec2 u = RandomStream(3, 0, i).next2();
-    const Vec3 a = table.sample(wv, u), b = sample_cosine_hemisphere(u);
+    const Vec3 a = test::sample_one(table, wv, u), b = sample_cosine_hemisphere(u);
     by_table.add(a.z > 0 ? test::eval_one(*material, point, a).f.g * a.z / test::pdf_one(table, {.wl = a, .wv = wv})
                          : 0);
     by_cosine.add(test::eval_one(*material, point, b).f.g * kPiD);

@@ -17,8 +17,10 @@ void expect_mean(const Scene& scene, const RenderOptions& options, double expect
   tests.add(name, test::independent_renders(scene, options, 8, 1).whole(), test::closed_form(expected));
 }
 
-constexpr Strategy kAll[] = {Strategy::uniform, Strategy::cosine, Strategy::table,   Strategy::srbf,   Strategy::light,
-                             Strategy::mis,     Strategy::ggx,    Strategy::mis_ggx, Strategy::product};
+constexpr Strategy kAll[] = {Strategy::uniform,      Strategy::cosine,          Strategy::table,
+                             Strategy::srbf,         Strategy::light,           Strategy::mis,
+                             Strategy::ggx,          Strategy::mis_ggx,         Strategy::product,
+                             Strategy::dissertation, Strategy::mis_dissertation};
 
 /// A large Lambertian square of albedo 0.6 seen from above; the picture lies well inside it.
 Scene plane() {

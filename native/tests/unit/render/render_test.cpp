@@ -246,7 +246,8 @@ TEST(Render, RefusesWrongOptionsByName) {
   refused([](RenderOptions& o) { o.bounces = -1; }, "bounces");
   refused([](RenderOptions& o) { o.width = 9; }, "size");
   refused([](RenderOptions& o) { o.time_limit = -1; }, "time_limit");
-  refused([](RenderOptions& o) { o.strategy = static_cast<Strategy>(9); }, "strategy");
+  refused([](RenderOptions& o) { o.strategy = static_cast<Strategy>(static_cast<int>(kLastStrategy) + 1); },
+          "strategy");
   Scene uncommitted;
   EXPECT_THROW(render(uncommitted, small_options(Strategy::mis), film, progress), Error);
 }
