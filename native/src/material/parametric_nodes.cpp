@@ -16,8 +16,8 @@ constexpr int kRadiusCells = 64, kSquareCells = 16;
 
 double luminance(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
-/// Of each lobe's part of f cos the Gaussian of the same mass and mean direction; together no more than a proposal
-/// holds.
+/// Each lobe's part of f cos becomes the Gaussian of the same mass and mean direction; these are joined until a
+/// proposal holds them.
 ProposalLobes few_lobes(std::span<const WarpedLobe> lobes, const LightPoints& points) {
   GaussianLobes gaussians;
   for (size_t j = 0; j < lobes.size(); ++j) {

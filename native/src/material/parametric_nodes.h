@@ -1,4 +1,4 @@
-// What is known of a parametric model at even views: which of its lobes matter, and few Gaussians of f cos.
+// A parametric model at evenly spread views: which of its lobes matter, and a few Gaussians that resemble f cos.
 #pragma once
 
 #include <cstdint>

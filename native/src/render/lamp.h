@@ -21,7 +21,7 @@ class Lamp {
   LightCone cone_of_light() const;
   /// Luminance along the cone's axis, W/sr; of a sun the irradiance on a plane that faces it.
   float intensity() const;
-  /// Of a sun: towards it.
+  /// The direction towards a sun.
   const Vec3& axis() const { return axis_; }
 
   /// A lamp with extent: direction from `position` to a random point of it, a zero vector where it cannot be seen.

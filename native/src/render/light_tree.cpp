@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDoubleBelowOne = 0x1.fffffffffffffp-1;
 constexpr uint32_t kNoParent = 0xffffffffu;
-/// Of its importance without cosines: what no bound of them, rounded, can take from a light.
+/// The least factor that the bounds of both cosines leave a light: they are rounded, and no light may have none.
 constexpr float kLeastCosines = 1e-3f;
 
 int widest_axis(const Bounds& bounds) {

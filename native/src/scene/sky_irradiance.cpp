@@ -22,7 +22,7 @@ std::array<float, 9> harmonics(const Vec3& w) {
           0.546274f * (w.x * w.x - w.y * w.y)};
 }
 
-/// Of the clipped cosine, by the harmonic's degree.
+/// Coefficients of the clipped cosine, one for each degree of the harmonics.
 constexpr float kCosine[9] = {kPi, 2 * kPi / 3, 2 * kPi / 3, 2 * kPi / 3, kPi / 4, kPi / 4, kPi / 4, kPi / 4, kPi / 4};
 
 }  // namespace

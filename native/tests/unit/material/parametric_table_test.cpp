@@ -117,7 +117,7 @@ TEST(ParametricTable, LobesThatCannotMatterAreLeftOut) {
   EXPECT_GT(most, 0.1 * kIdleAlbedo);
 }
 
-// What is left out has no value, so batches, which leave it out, agree with single directions.
+// Lobes that are left out have no value, so batches, which skip them, agree with single directions.
 TEST(ParametricTable, LeftOutLobesBringNothing) {
   const Both both(test::parametric_model(true, test::fading_recipe(30)));
   for (float degrees = 11.6f; degrees < 90; degrees += 1.3f) {

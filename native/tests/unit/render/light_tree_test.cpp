@@ -97,7 +97,7 @@ TEST(LightTree, LightsBelowThePlaneAndThoseThatShineElsewhereAreUnlikely) {
   EXPECT_GT(tree.probability(tree.cut(both), both, 2), 0.4);
 }
 
-/// Of few lights the cut tells each apart; its total is then the irradiance of small ones.
+/// A cut tells every one of a few lights apart; if they are small, its total is their irradiance.
 TEST(LightTree, TheCutOfFewLightsIsTheirIrradiance) {
   const std::vector<LightTree::Light> lights = {{{Vec3(0, 0, 2), Vec3(0.01f, 0.01f, 2)}, 3, {{0, 0, -1}, 1, 0}},
                                                 {{Vec3(3, 0, 4), Vec3(3.01f, 0, 4)}, 5}};

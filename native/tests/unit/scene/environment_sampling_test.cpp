@@ -59,7 +59,7 @@ class Reference {
       mass.push_back((pole ? 0.25 : 0.5) * (node[i] + node[i + 1]));
     }
     const Place band = find(mass, node, static_cast<double>(u.y));
-    // Of the band's share, the upper row's part of its mass, then the lower one's.
+    // The upper row has the first part of the band's share, in proportion to its mass; the lower row has the rest.
     const double split = node[band.cell] / (node[band.cell] + node[band.cell + 1]);
     const bool lower = band.share >= split;
     const double t = lower ? std::sqrt((band.share - split) / (1 - split)) : 1 - std::sqrt(1 - band.share / split);
