@@ -261,6 +261,12 @@ class Film(BlenderTest):
                 self.assert_close(after.mean(), before.mean(), 0.01)
                 before = after
 
+    def test_light_paths_reach_the_library(self):
+        settings = bpy.context.scene.velour
+        settings.clamp_direct = 0.1
+        self.assertLess(scenes.render(self.folder).mean(), 0.5)
+        self.assertIn(b"velour.biased_by", (self.folder / "render.exr").read_bytes())
+
     def test_noise_threshold(self):
         """The empty corner is left alone after the fewest samples, whatever else takes."""
         scene, layer = bpy.context.scene, bpy.context.view_layer

@@ -37,9 +37,10 @@ class Settings(NotesTest):
     def test_scene(self):
         for words, values in (
             ("Open Shading Language", {"shading_system": True}),
-            ("caustics switched off", {"caustics_reflective": False}),
-            ("Filter Glossy", {"blur_glossy": 0.5}),
-            ("Clamping", {"sample_clamp_direct": 3.0, "sample_clamp_indirect": 2.0}),
+            ("Reflective Caustics of Cycles: not copied", {"caustics_reflective": False}),
+            ("Filter Glossy of Cycles: not copied", {"blur_glossy": 0.5}),
+            ("Clamp Direct of Cycles: not copied", {"sample_clamp_direct": 3.0}),
+            ("Clamp Indirect of Cycles: not copied", {"sample_clamp_indirect": 2.0}),
             ("Fast GI Approximation", {"use_fast_gi": True}),
             ("Pixel Filter", {"filter_width": 3.0, "pixel_filter_type": "GAUSSIAN"}),
         ):
@@ -47,8 +48,16 @@ class Settings(NotesTest):
 
     def test_what_velour_does_anyway(self):
         cycles = self.scene.cycles
-        cycles.blur_glossy = cycles.sample_clamp_indirect = 0.0
+        cycles.blur_glossy = cycles.sample_clamp_indirect = 0.0  # as Velour's own
         cycles.pixel_filter_type, cycles.filter_width = "BOX", 3.0  # a box is one pixel wide
+        self.assertEqual(self.notes(), [])
+
+    def test_copied_settings(self):
+        cycles = self.scene.cycles
+        cycles.sample_clamp_direct, cycles.blur_glossy, cycles.caustics_reflective = 3.0, 0.5, False
+        (note,) = self.notes()
+        self.assertIn("Clamp Direct, Filter Glossy and Reflective Caustics of Cycles: not copied", note)
+        bpy.ops.velour.copy_cycles_settings()
         self.assertEqual(self.notes(), [])
 
     def test_several_settings_make_one_sentence(self):

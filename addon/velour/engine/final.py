@@ -13,7 +13,7 @@ from ..export.camera import final_view
 from ..export.film import film_exposure
 from ..export.layer_passes import COMBINED, layer_passes, note_missing_passes
 from ..export.unused_settings import note_strokes
-from ..native import render_job
+from ..native import biases, render_job
 from . import memory
 from .arguments import arguments
 from .frame_parts import film, frame_parts
@@ -77,7 +77,7 @@ def render_final(engine, depsgraph):
         report = _render_layer(engine, depsgraph, view, shown, surroundings, make_film)
         result = engine.get_result()
         part = _some_samples(parts, options, report)
-        engine.stamps.add(result, depsgraph, materials.models, stamps, part)
+        engine.stamps.add(result, depsgraph, materials.models, stamps, part, biases(options))
         if passes:
             stamp_cryptomattes(result, depsgraph.view_layer_eval, passes.names)
 

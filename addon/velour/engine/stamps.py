@@ -14,12 +14,13 @@ class Stamps:
         self._frame = None
         self._models = {}  # {view layer: {material: hashes}}
 
-    def add(self, result, depsgraph, models, notes_of_models, part=None):
+    def add(self, result, depsgraph, models, notes_of_models, part=None, biased_by=()):
         """Writes the fields once a view layer is rendered.
 
         Of this layer are `models`, {material: hashes of the files it is rendered from}, and
         `notes_of_models`, {material: what to say of its model for the scene}; `part`: of the samples of
-        each pixel the range that the picture has, where it has not all.
+        each pixel the range that the picture has, where it has not all; `biased_by`: names of the options
+        that bias the picture.
         """
         layer, frame = depsgraph.view_layer_eval.name, depsgraph.scene_eval.frame_current
         if frame != self._frame:
@@ -31,5 +32,7 @@ class Stamps:
         result.stamp_data_add_field("velour.models", json.dumps(in_all, sort_keys=True))
         if part:
             result.stamp_data_add_field("velour.samples", f"{part[0]}:{part[1]}")
+        if biased_by:
+            result.stamp_data_add_field("velour.biased_by", ", ".join(biased_by))
         for name, text in notes_of_models.items():
             result.stamp_data_add_field(f"velour.{layer}.{name}", text)

@@ -18,6 +18,11 @@ def note_scene(scene, notes):
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
         return
+    other = [words for words, names in COPIED.items() if _is_not_copied(scene, cycles, *names)]
+    if other:
+        notes.add(
+            f"{owner}: {listed(other)} of Cycles: not copied to Velour's in Render > Light Paths; ignored."
+        )
     asked = [words for words, is_asked in _OF_CYCLES.items() if is_asked(cycles)]
     if scene.render.use_simplify:
         asked += [words for words, is_asked in _OF_SIMPLIFY.items() if is_asked(cycles)]
@@ -25,11 +30,23 @@ def note_scene(scene, notes):
         notes.add(f"{owner}: {listed(asked)} of Cycles: not supported; ignored.")
 
 
+# Cycles' name and Velour's.
+COPIED = {
+    "Clamp Direct": ("sample_clamp_direct", "clamp_direct"),
+    "Clamp Indirect": ("sample_clamp_indirect", "clamp_indirect"),
+    "Filter Glossy": ("blur_glossy", "filter_glossy"),
+    "Reflective Caustics": ("caustics_reflective", "use_reflective_caustics"),
+}
+
+
+def _is_not_copied(scene, cycles, theirs, ours):
+    """Where a new scene has Cycles' value, or both have the same, nobody misses it."""
+    value = getattr(cycles, theirs)
+    return value not in (getattr(scene.velour, ours), cycles.bl_rna.properties[theirs].default)
+
+
 _OF_CYCLES = {
     "Open Shading Language": lambda cycles: cycles.shading_system,
-    "caustics switched off": lambda cycles: not cycles.caustics_reflective,
-    "Filter Glossy": lambda cycles: cycles.blur_glossy not in (0.0, 1.0),
-    "Clamping": lambda cycles: cycles.sample_clamp_direct or cycles.sample_clamp_indirect not in (0.0, 10.0),
     "Fast GI Approximation": lambda cycles: cycles.use_fast_gi,
     "Pixel Filter": lambda cycles: not _is_usual_filter(cycles),
 }

@@ -12,6 +12,7 @@ _MODULES = {
     "errors": ("LibraryError", "Status", "VelourError"),
     "job": (
         "Job",
+        "biases",
         "compare_job",
         "compare_peer_job",
         "fit_job",

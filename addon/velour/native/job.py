@@ -214,7 +214,8 @@ def render_job(scene, passes: Passes | None = None, **options) -> Job:
     """`passes`: beyond those that every picture has. Options: width, height, spp, split, bounces, strategy
     (table.STRATEGIES), threads, seed, time_limit (seconds), transparent, measure_ray_share, heuristic
     (table.HEURISTICS), sequence (table.SEQUENCES), share, noise, cache_folder (keeps fits of the environment;
-    none: nowhere). Of parts: samples_begin, samples_end, crop_x0, crop_y0, crop_x1, crop_y1
+    none: nowhere), clamp_direct, clamp_indirect, filter_glossy, reflective_caustics. Of parts:
+    samples_begin, samples_end, crop_x0, crop_y0, crop_x1, crop_y1
     (vlr_render_options). `scene` is committed."""
     raw = render_options(options)
     if passes:
@@ -231,6 +232,13 @@ def render_options(options: dict) -> structs.RenderOptions:
         chosen["cache_folder"] = path_bytes(options["cache_folder"])
     set_fields(raw, {**options, **chosen})
     return raw
+
+
+def biases(options: dict) -> list[str]:
+    """The options of render_job() that bias its picture, by name: a render's noise does not tell of that."""
+    raw = render_options(options)
+    names = [name for name in ("clamp_direct", "clamp_indirect", "filter_glossy") if getattr(raw, name) > 0]
+    return names if raw.reflective_caustics else [*names, "reflective_caustics"]
 
 
 def observe_job(scene, material: int, **options) -> Job:

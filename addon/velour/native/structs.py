@@ -354,6 +354,10 @@ class RenderOptions(Struct):
         ("crop_y0", c_uint32),
         ("crop_x1", c_uint32),
         ("crop_y1", c_uint32),
+        ("clamp_direct", c_float),
+        ("clamp_indirect", c_float),
+        ("filter_glossy", c_float),
+        ("reflective_caustics", c_int32),
         ("pad", c_uint32),
         ("passes", POINTER(PassOptions)),
     ]

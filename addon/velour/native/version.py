@@ -1,7 +1,7 @@
 """The version that this package belongs to. A test holds it to CMakeLists.txt, bl_info and the manifest."""
 
 VERSION = (0, 1, 0)
-ABI_VERSION = 9
+ABI_VERSION = 10
 
 
 def packed(version: tuple[int, int, int] = VERSION) -> int:

@@ -19,6 +19,7 @@ from .capture_btf import VELOUR_OT_capture_btf
 from .check_scene import VELOUR_OT_check_scene
 from .compare import VELOUR_OT_compare
 from .compress_btf import VELOUR_OT_compress_btf
+from .copy_cycles_settings import VELOUR_OT_copy_cycles_settings
 from .estimate_capture import VELOUR_OT_estimate_capture
 from .estimate_fit import VELOUR_OT_estimate_fit
 from .estimate_votf import VELOUR_OT_estimate_votf
@@ -64,6 +65,7 @@ CLASSES = (
     VELOUR_OT_describe_placement,
     VELOUR_OT_keep_uv_density,
     VELOUR_OT_check_scene,
+    VELOUR_OT_copy_cycles_settings,
 )
 
 

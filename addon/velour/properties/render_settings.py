@@ -156,6 +156,42 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
         max=64,
         override=_OVERRIDE,
     )
+    clamp_direct: FloatProperty(
+        name="Direct Light",
+        description=(
+            "Largest value of a sample of direct light. Lower values remove fireflies and darken highlights."
+            " 0: no clamping"
+        ),
+        default=0.0,
+        min=0.0,
+        soft_max=100.0,
+        override=_OVERRIDE,
+    )
+    clamp_indirect: FloatProperty(
+        name="Indirect Light",
+        description=(
+            "Largest value of a sample of indirect light. Lower values remove fireflies and darken bounced"
+            " light. 0: no clamping"
+        ),
+        default=0.0,
+        min=0.0,
+        soft_max=100.0,
+        override=_OVERRIDE,
+    )
+    filter_glossy: FloatProperty(
+        name="Filter Glossy",
+        description="Blur glossy reflections behind blurry bounces, to reduce noise. 0: off",
+        default=0.0,
+        min=0.0,
+        max=10.0,
+        override=_OVERRIDE,
+    )
+    use_reflective_caustics: BoolProperty(
+        name="Reflective Caustics",
+        description="Render light that glossy surfaces cast on diffuse ones. Off removes it and its noise",
+        default=True,
+        override=_OVERRIDE,
+    )
     seed: IntProperty(
         name="Seed",
         description="The same seed gives the same picture, bit by bit. Animate it to vary the noise",

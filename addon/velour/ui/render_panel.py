@@ -5,6 +5,7 @@ import bpy
 from ..engine.engine import VelourRenderEngine
 from ..handlers.saved_files import newer_sentence
 from ..operators.check_scene import VELOUR_OT_check_scene
+from ..operators.copy_cycles_settings import VELOUR_OT_copy_cycles_settings
 from . import library_state
 from .text import draw_sentence
 
@@ -85,6 +86,23 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         layout.prop(settings, "bounces")
         layout.prop(settings, "seed")
         layout.prop(settings, "time_limit")
+
+
+class VELOUR_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):
+    bl_label = "Light Paths"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.velour
+        layout.use_property_split = True
+        layout.use_property_decorate = True
+        column = layout.column(align=True)
+        column.prop(settings, "clamp_direct", text="Clamp Direct")
+        column.prop(settings, "clamp_indirect", text="Indirect")
+        layout.prop(settings, "filter_glossy")
+        layout.prop(settings, "use_reflective_caustics")
+        if hasattr(context.scene, "cycles"):
+            layout.operator(VELOUR_OT_copy_cycles_settings.bl_idname, icon="DUPLICATE")
 
 
 class VELOUR_RENDER_PT_simplify(_RenderPanel, bpy.types.Panel):

@@ -34,7 +34,7 @@ extern "C" {
 #endif
 
 /* Rises whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 9
+#define VLR_ABI_VERSION 10
 
 typedef int32_t vlr_status;
 enum {
@@ -858,6 +858,12 @@ typedef struct vlr_render_options {
   /* Pixels [x0, x1) x [y0, y1), row 0 at the bottom, of width x height; all 0: all. They have the bits that they have
    * in the whole picture, and passes hold them alone. */
   uint32_t crop_x0, crop_y0, crop_x1, crop_y1;
+  /* Cycles' settings against fireflies, with its meaning. Each biases the picture, which neither noise nor block_noise
+   * tells of. The largest mean of the channels of what one sample brings, of light that comes straight from emitters to
+   * the first surface or the camera, and of all other; 0: none. */
+  float clamp_direct, clamp_indirect;
+  float filter_glossy;         /* roughens lobes that paths come to by directions of a density below it; 0: none */
+  int32_t reflective_caustics; /* 0: no lobes of microfacets behind diffuse bounces; 1 */
   uint32_t pad;
   const vlr_pass_options* passes; /* copied; NULL: none beyond those that every picture has */
 } vlr_render_options;

@@ -23,6 +23,10 @@ void vlr_render_options_init(vlr_render_options* options) {
   options->heuristic = static_cast<int32_t>(defaults.heuristic);
   options->sequence = static_cast<int32_t>(defaults.sequence);
   options->share = static_cast<double>(defaults.light_share);
+  options->clamp_direct = defaults.light_paths.clamp_direct;
+  options->clamp_indirect = defaults.light_paths.clamp_indirect;
+  options->filter_glossy = defaults.light_paths.filter_glossy;
+  options->reflective_caustics = defaults.light_paths.reflective_caustics ? 1 : 0;
 }
 
 namespace {
@@ -54,6 +58,7 @@ RenderOptions converted(const vlr_render_options& given) {
   options.heuristic = static_cast<Heuristic>(given.heuristic);
   options.sequence = static_cast<Sequence>(given.sequence);
   options.light_share = static_cast<float>(given.share);
+  options.light_paths = {given.clamp_direct, given.clamp_indirect, given.filter_glossy, given.reflective_caustics != 0};
   options.noise = given.noise;
   options.samples = {static_cast<int>(given.samples_begin), static_cast<int>(given.samples_end)};
   options.crop = {static_cast<int>(given.crop_x0), static_cast<int>(given.crop_y0), static_cast<int>(given.crop_x1),

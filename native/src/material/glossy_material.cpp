@@ -15,12 +15,13 @@ class GlossyMaterial final : public Material {
   explicit GlossyMaterial(const GlossyParameters& p) : p_(p) {}
 
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    const Rgb color = glm::clamp(p_.color_texture.at(site, p_.color), Rgb(0.0f), Rgb(1.0f));
+    const Rgb given = glm::clamp(p_.color_texture.at(site, p_.color), Rgb(0.0f), Rgb(1.0f));
+    const Rgb color = point.filter.diffuse_only ? Rgb(0.0f) : given;
     const float roughness = std::clamp(p_.roughness_texture.at(site, p_.roughness), kMinRoughness, 1.0f);
     point.wv = wv;
     const Rgb scaled = color * Interreflection(p_.lobe, roughness, wv.z).gain(color);
     for (int c = 0; c < 3; ++c) point.parameter[kRed + c] = scaled[c];
-    point.parameter[kAlpha] = roughness * roughness;
+    point.parameter[kAlpha] = std::max(roughness * roughness, point.filter.min_alpha);
   }
 
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
@@ -40,6 +41,8 @@ class GlossyMaterial final : public Material {
       return 2 * glm::dot(point.wv, h) * h - point.wv;
     });
   }
+
+  float diffuse_share(const PreparedBrdf& /*point*/, const Vec3& /*wl*/, float /*pdf*/) const override { return 0; }
 
   bool varies() const override { return p_.color_texture.given() || p_.roughness_texture.given(); }
   bool isotropic() const override { return true; }

@@ -1,6 +1,8 @@
 // The run-time evaluator. On a prepared point: eval and sample, one virtual call a batch of directions.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "material/btf_table_point.h"
 #include "material/factored_point.h"
 #include "material/ggx_sampler.h"
+#include "material/lobe_filter.h"
 #include "material/principled_point.h"
 #include "material/surface_site.h"
 #include "material/table_point.h"
@@ -50,6 +53,7 @@ struct PreparedBrdf {
   std::unique_ptr<PreparedBrdf> beyond;  // BTFs of open structure: the same beyond its outline, where `folded`
   bool value_only = false;               // set before prepare(): nothing is drawn, and densities are 0
   bool interpolated_draws = false;       // set before prepare(): scattered models draw as the dissertation does
+  LobeFilter filter;                     // set before prepare()
   bool folded = false;
   BtfTablePoint btf_table;                // BTFs themselves: what is blended at the site for the view
   std::unique_ptr<PreparedBrdf> through;  // where light comes through: the same for light from the other side
@@ -118,6 +122,12 @@ class Material {
     DirectionBatch wl;
     sample(point, {&u, 1}, wl);
     return wl.get(0);
+  }
+
+  /// The probability that `wl`, drawn with density `pdf`, is diffuse light, which Cycles calls what a lobe of no
+  /// microfacets has drawn. Here the share of the density that a cosine would have, for materials without such lobes.
+  virtual float diffuse_share(const PreparedBrdf& /*point*/, const Vec3& wl, float pdf) const {
+    return std::min(std::abs(wl.z) / (kPi * pdf), 1.0f);
   }
 
   /// Few Gaussians in light space that resemble f cos at the prepared `point`: what `product` multiplies with the sky.

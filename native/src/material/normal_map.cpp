@@ -39,6 +39,10 @@ class NormalMappedMaterial final : public Material {
     for (int i = 0; i < wl.count; ++i) wl.set(i, point.relief.to_world(wl.get(i)));
   }
 
+  float diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const override {
+    return material_->diffuse_share(point, point.relief.to_local(wl), pdf);
+  }
+
   bool varies() const override { return true; }
   bool isotropic() const override { return false; }
 

@@ -27,14 +27,14 @@ PrincipledMaterial::PrincipledMaterial(const PrincipledParameters& parameters, c
 void PrincipledMaterial::prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const {
   point.wv = wv;
   if (!textures_.varies()) {
-    point.principled = PrincipledPoint(parameters_, wv);
+    point.principled = PrincipledPoint(parameters_, wv, point.filter);
     return;
   }
   PrincipledParameters p = parameters_;
   p.base_color = textures_.base_color.at(site, p.base_color);
   p.metallic = textures_.metallic.at(site, p.metallic);
   p.roughness = textures_.roughness.at(site, p.roughness);
-  point.principled = PrincipledPoint(p, wv);
+  point.principled = PrincipledPoint(p, wv, point.filter);
 }
 
 void PrincipledMaterial::eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f,
@@ -44,6 +44,10 @@ void PrincipledMaterial::eval(const PreparedBrdf& point, const DirectionBatch& w
 
 void PrincipledMaterial::sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const {
   wl.fill(u, [&](const Vec2& v) { return draw(point.principled, point.wv, v); });
+}
+
+float PrincipledMaterial::diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const {
+  return std::clamp(point.principled.diffuse_end * wl.z / (kPi * pdf), 0.0f, 1.0f);
 }
 
 float PrincipledMaterial::alpha(const SurfaceSite& site) const {

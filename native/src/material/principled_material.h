@@ -28,6 +28,7 @@ class PrincipledMaterial final : public Material {
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override;
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override;
   void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override;
+  float diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const override;
 
   bool isotropic() const override { return true; }
   bool varies() const override { return textures_.any(); }

@@ -49,36 +49,37 @@ float albedo_of_coat(const PrincipledParameters& p, float cosine) {
 
 }  // namespace
 
-Rgb through_coat(const PrincipledParameters& p, float cosine) {
+Rgb through_coat(const PrincipledParameters& p, float cosine, const LobeFilter& filter) {
   if (!(p.coat > 0)) return Rgb(1);
   const float weight = std::min(p.coat, 1.0f), eta = index_of_coat(p);
   const float depth = 1 / std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
   const Rgb tint = glm::pow(glm::max(p.coat_tint, Rgb(0)), Rgb(depth));
-  return (1 - weight * albedo_of_coat(p, cosine)) * glm::mix(Rgb(1), tint, weight);
+  const float passing = filter.diffuse_only ? 1 : 1 - weight * albedo_of_coat(p, cosine);
+  return passing * glm::mix(Rgb(1), tint, weight);
 }
 
-PrincipledPoint::PrincipledPoint(const PrincipledParameters& p, const Vec3& wv)
+PrincipledPoint::PrincipledPoint(const PrincipledParameters& p, const Vec3& wv, const LobeFilter& filter)
     : base_color(within_one(p.base_color)),
       specular_tint(glm::max(p.specular_tint, Rgb(0))),
       roughness(rough_enough(p.roughness)),
       formula(p.formula),
       lobe(p.lobe) {
   const float cosine = std::min(wv.z, 1.0f), coat_roughness = rough_enough(p.coat_roughness);
-  alpha = Vec2(roughness * roughness);
-  coat_alpha = Vec2(coat_roughness * coat_roughness);
+  alpha = Vec2(std::max(roughness * roughness, filter.min_alpha));
+  coat_alpha = Vec2(std::max(coat_roughness * coat_roughness, filter.min_alpha));
   coat_eta = index_of_coat(p);
   eta = index_of(p.specular);
   f0 = dielectric_fresnel(1.0f, eta);
   view_rise = schlick_share(cosine);
   if (formula == PrincipledFormula::disney) {
-    set_disney(p, cosine);
+    set_disney(p, cosine, filter);
   } else {
-    set_layered(p, cosine);
+    set_layered(p, cosine, filter);
   }
   const auto is_part = [&](PrincipledPart part) { return p.part == PrincipledPart::whole || p.part == part; };
   if (!is_part(PrincipledPart::base)) diffuse = Rgb(0);
-  if (!is_part(PrincipledPart::specular)) at_normal = rise = metal = Rgb(0);
-  if (!is_part(PrincipledPart::coat)) coat = 0;
+  if (!is_part(PrincipledPart::specular) || filter.diffuse_only) at_normal = rise = metal = Rgb(0);
+  if (!is_part(PrincipledPart::coat) || filter.diffuse_only) coat = 0;
   set_shares(cosine);
 }
 
@@ -90,10 +91,10 @@ Rgb PrincipledPoint::reflectance(float cosine) const {
 
 float PrincipledPoint::mean_rise() const { return std::clamp((mean_fresnel(eta) - f0) / (1 - f0), 0.0f, 1.0f); }
 
-void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine) {
+void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine, const LobeFilter& filter) {
   const float metallic = std::clamp(p.metallic, 0.0f, 1.0f);
   coat = weight_of_coat(p, cosine);
-  const Rgb through = through_coat(p, cosine), rest = through * (1 - metallic);
+  const Rgb through = through_coat(p, cosine, filter), rest = through * (1 - metallic);
   const Interreflection facets(lobe, roughness, cosine);
   Rgb mean_metal;
   for (int c = 0; c < 3; ++c) mean_metal[c] = mean_tinted_metal_fresnel(base_color[c], metal_tint(c));
@@ -107,18 +108,20 @@ void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine) {
     rise = weight * (1.0f - normal);
     const Rgb albedo =
         facets.gain_of_whole(mean) * glm::mix(normal, Rgb(1), ggx_albedo::mean_rise(roughness, cosine, eta));
-    passing = std::clamp(1 - std::max({albedo.r, albedo.g, albedo.b}), 0.0f, 1.0f);
+    if (!filter.diffuse_only) passing = std::clamp(1 - std::max({albedo.r, albedo.g, albedo.b}), 0.0f, 1.0f);
   }
   diffuse = base_color * (rest * passing / kPi);
 }
 
-void PrincipledPoint::set_disney(const PrincipledParameters& p, float cosine) {
+void PrincipledPoint::set_disney(const PrincipledParameters& p, float cosine, const LobeFilter& filter) {
   const float metallic = std::clamp(p.metallic, 0.0f, 1.0f);
   coat = 0;
   metal = Rgb(0);
   const float normal = 0.08f * std::max(p.specular, 0.0f);
   const Rgb color = within_one(glm::mix(normal * specular_tint, base_color, metallic));
-  const Rgb gain = Interreflection(lobe, roughness, cosine).gain(glm::mix(color, Rgb(1), mean_rise()));
+  // Cycles' random walk between the facets takes place on the rougher surface.
+  const float walked = std::max(roughness, std::sqrt(filter.min_alpha));
+  const Rgb gain = Interreflection(lobe, walked, cosine).gain(glm::mix(color, Rgb(1), mean_rise()));
   at_normal = gain * color;
   rise = gain * (1.0f - color);
   diffuse = base_color * ((1 - metallic) / kPi);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "material/ggx.h"
+#include "material/lobe_filter.h"
 #include "sphere/vec.h"
 
 namespace velour {
@@ -48,7 +49,8 @@ inline constexpr float kMinRoughness = 0.0316227766f;
 
 /// What the coat leaves to the layers below it, seen at a cosine with the normal: Beer's law along the refracted ray
 /// for the tint, and the share that it does not reflect. Blender's, since 4.0.
-Rgb through_coat(const PrincipledParameters& parameters, float cosine);
+/// Without its lobe, where only diffuse light is asked for, the coat is but tinted.
+Rgb through_coat(const PrincipledParameters& parameters, float cosine, const LobeFilter& filter = {});
 
 /// What the parameters and a view decide, all that depends on tables with it:
 /// f = diffuse D + lobe (at_normal + rise r + metal F) + coat coat_lobe F_coat, with D, r and F of the formulas.
@@ -69,7 +71,7 @@ struct PrincipledPoint {
 
   PrincipledPoint() = default;
   /// `wv.z > 0`. Takes parameters beyond their ranges for those at the ends.
-  PrincipledPoint(const PrincipledParameters& parameters, const Vec3& wv);
+  PrincipledPoint(const PrincipledParameters& parameters, const Vec3& wv, const LobeFilter& filter = {});
 
   /// Of a metal, which a tint does not brighten.
   float metal_tint(int channel) const { return std::min(specular_tint[channel], 1.0f); }
@@ -78,8 +80,8 @@ struct PrincipledPoint {
   Rgb reflectance(float cosine) const;
 
  private:
-  void set_layered(const PrincipledParameters& p, float cosine);
-  void set_disney(const PrincipledParameters& p, float cosine);
+  void set_layered(const PrincipledParameters& p, float cosine, const LobeFilter& filter);
+  void set_disney(const PrincipledParameters& p, float cosine, const LobeFilter& filter);
   void set_shares(float cosine);
   /// How far the dielectric's reflectance is from f0 towards 1, in the mean over a hemisphere of light.
   float mean_rise() const;

@@ -43,11 +43,12 @@ class LayeredMaterial final : public Material {
       PreparedLayer& layer = point.layers[i];
       const ReflectingLayer& from = layers_.reflecting[i];
       layer.weight = Rgb(brighter * from.weight.at(site));
-      if (from.coated) layer.weight *= through_coat(*from.coated, wv.z);
+      if (from.coated) layer.weight *= through_coat(*from.coated, wv.z, point.filter);
       sum += layer.share = luminance(layer.weight) * albedo_[i];
       if (!layer.is_there()) continue;
       if (!layer.point) layer.point = std::make_unique<PreparedBrdf>();
       layer.point->interpolated_draws = point.interpolated_draws;
+      layer.point->filter = point.filter;
       from.material->prepare(wv, site, *layer.point);
     }
     for (size_t i = 0; i < albedo_.size() && sum > 0; ++i) point.layers[i].share /= sum;
@@ -85,6 +86,18 @@ class LayeredMaterial final : public Material {
       drawn = true;
     }
     if (!drawn) wl.fill(u, sample_cosine_hemisphere);
+  }
+
+  float diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const override {
+    float density = 0;
+    for (size_t i = 0; i < albedo_.size(); ++i) {
+      const PreparedLayer& layer = point.layers[i];
+      if (!layer.is_there()) continue;
+      const Material& material = *layers_.reflecting[i].material;
+      const float own = material.eval_one(*layer.point, wl).pdf;
+      if (own > 0) density += layer.share * own * material.diffuse_share(*layer.point, wl, own);
+    }
+    return std::min(density / pdf, 1.0f);
   }
 
   bool varies() const override {

@@ -43,6 +43,7 @@ void ThroughMaterial::prepare(const Vec3& wv, const SurfaceSite& site, PreparedB
   reflected_->prepare(wv, site, point);
   point.through->value_only = point.value_only;
   point.through->interpolated_draws = point.interpolated_draws;
+  point.through->filter = point.filter;
   through_->prepare(wv, site, *point.through);
   point.through_share = share_[site.back];
 }
@@ -64,6 +65,11 @@ void ThroughMaterial::eval(const PreparedBrdf& point, const DirectionBatch& wl, 
 Material::Reflection ThroughMaterial::eval_one(const PreparedBrdf& point, const Vec3& wl) const {
   const Reflection of = reflected_->eval_one(point, wl), through = through_->eval_one(*point.through, mirrored(wl));
   return {of.f + through.f, (1 - point.through_share) * of.pdf + point.through_share * through.pdf};
+}
+
+float ThroughMaterial::diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const {
+  if (wl.z < 0) return through_->diffuse_share(*point.through, mirrored(wl), pdf / point.through_share);
+  return reflected_->diffuse_share(point, wl, pdf / (1 - point.through_share));
 }
 
 void ThroughMaterial::sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const {

@@ -20,6 +20,7 @@ class ThroughMaterial final : public Material {
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override;
   Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override;
   void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override;
+  float diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const override;
 
   bool transmits() const override { return true; }
   bool varies() const override { return true; }

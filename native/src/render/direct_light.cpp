@@ -31,6 +31,7 @@ void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shado
 void DirectLight::prepare(const Receiver& receiver, Work& work, const LightView& view) {
   const Vertex& vertex = receiver.vertex;
   work.prepared.interpolated_draws = is_dissertations(options_.strategy);
+  work.prepared.filter = lobe_filter(options_.light_paths, receiver.past);
   vertex.surface->material->prepare(vertex.wv, vertex.site, work.prepared);
   prepare_surface(sampling_, vertex, work.prepared);
   work.shares = shares_at(vertex, view, work);
@@ -143,7 +144,9 @@ void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) 
     const int i = world_.count + k;
     const Rgb reflected = receiver.throughput * reflectance(vertex, i) * std::abs(local_.z[i]);
     const SharpLight& sharp = sharp_[k];
-    queue(receiver, sharp.wl_world, reflected * sharp.irradiance, sharp.distance, sharp.lamp->casts_shadow(), output);
+    queue(receiver,
+          {sharp.wl_world, reflected * sharp.irradiance, receiver.limit, sharp.distance, sharp.lamp->casts_shadow()},
+          output);
   }
 }
 
@@ -169,8 +172,9 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
 void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
   terms_.look_up(lighting_, views_, options_.heuristic);
   const auto add = [&](int i, const Rgb& weighed, float far, bool casts_shadow) {
-    queue(receivers[terms_.receiver[i]], terms_.world.get(i), weighed * terms_.reflected.get(i), far, casts_shadow,
-          output);
+    const Receiver& receiver = receivers[terms_.receiver[i]];
+    const Rgb light = weighed * terms_.reflected.get(i);
+    queue(receiver, {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow}, output);
   };
   for (int i = 0; i < terms_.world.count; ++i) {
     add(i, terms_.weight.v[i] * terms_.environment.get(i), std::numeric_limits<float>::infinity(), true);
@@ -194,7 +198,7 @@ void DirectLight::settle_glow(std::span<const Receiver> receivers, Output output
     const Receiver& receiver = receivers[terms_.receiver[g.direction]];
     const auto [radiance, far] = lighting_.glow().light(rays[g.direction], g.hit, receiver.vertex.cone);
     const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
-    queue(receiver, terms_.world.get(g.direction), light, far, true, output);
+    queue(receiver, {terms_.world.get(g.direction), light, limit_of_term(receiver), far, true}, output);
   }
 }
 
@@ -202,18 +206,17 @@ Rgb DirectLight::reflectance(const Vertex& vertex, int direction) const {
   return in_working_space(working_space_, vertex, f_.get(direction));
 }
 
-void DirectLight::queue(const Receiver& receiver, const Vec3& wl_world, const Rgb& light, float far, bool casts_shadow,
-                        Output output) {
-  if (zero(light)) return;
-  if (!finite(light)) {
+void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output output) {
+  if (zero(c.light)) return;
+  if (!finite(c.light)) {
     ++nan_samples_;
     return;
   }
-  if (!casts_shadow) {
-    output.samples[receiver.sample].radiance += light;
+  if (!c.casts_shadow) {
+    output.samples[receiver.sample].radiance += clamped(c.light, c.limit);
     return;
   }
-  output.shadows.add(receiver.vertex.shadow_ray(wl_world, far), light, receiver.sample);
+  output.shadows.add(receiver.vertex.shadow_ray(c.wl_world, c.far), c.light, receiver.sample, c.limit);
 }
 
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
@@ -223,6 +226,15 @@ std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t
   if (!onward || finite(onward->throughput)) return onward;
   ++nan_samples_;
   return std::nullopt;
+}
+
+PathPast DirectLight::past_after(const Receiver& receiver, size_t place, const Continuation& onward) const {
+  PathPast past{std::min(receiver.past.least_density, onward.density), false};
+  if (options_.light_paths.reflective_caustics) return past;
+  const Material& material = *receiver.vertex.surface->material;
+  past.was_diffuse =
+      receiver.numbers->label() < material.diffuse_share(work_[place].prepared, onward.wl, onward.density);
+  return past;
 }
 
 }  // namespace velour

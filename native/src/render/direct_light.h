@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -23,6 +24,8 @@ struct Receiver {
   uint32_t sample;  // number of the camera sample
   int directions;   // how many to draw
   int full;         // how many a camera ray draws that is not the last of its pixel
+  PathPast past{};
+  float limit = std::numeric_limits<float>::infinity();  // LightPathOptions::limit
 };
 
 /// One a thread: owns the scratch memory of the vertices in work. They go through together, in as many as fit a batch
@@ -55,6 +58,9 @@ class DirectLight {
   ///
   /// Sharp lamps, which no drawn direction can meet, are added under every strategy: each once when there are at most
   /// kSharpLamps, else that many drawn by what they bring (Lighting::sharp_view).
+  ///
+  /// Contributions are clamped as those of Cycles' samples, each of which has one direction from the lights and one
+  /// from the surface; where the strategy does not mix, one direction is a sample, and a sharp lamp is one, too.
   void gather(std::span<const Receiver> receivers, ShadowQueue& shadows, std::vector<CameraSample>& samples);
 
   /// Whether gather() has in its terms what the surface emits that a ray from its vertex has hit. Where it has not,
@@ -69,6 +75,9 @@ class DirectLight {
   /// surfaces reflect was in no term of gather(), and what it meets beyond them (lamps, environment) was in all, so
   /// only surfaces may be counted at its end.
   std::optional<Continuation> extend(const Receiver& receiver, size_t place);
+
+  /// The past of a path that goes on from that vertex with the ray of extend().
+  PathPast past_after(const Receiver& receiver, size_t place, const Continuation& onward) const;
 
   /// Directions left out so far because their term was not finite.
   uint64_t nan_samples() const { return nan_samples_; }
@@ -111,8 +120,18 @@ class DirectLight {
   void add_terms(const Receiver& receiver, uint8_t place);
   void settle(std::span<const Receiver> receivers, Output output);
   void settle_glow(std::span<const Receiver> receivers, Output output);
-  void queue(const Receiver& receiver, const Vec3& wl_world, const Rgb& light, float far, bool casts_shadow,
-             Output output);
+  struct Contribution {
+    Vec3 wl_world;
+    Rgb light;
+    float limit;  // of the sum of its channels
+    float far;    // where it comes from
+    bool casts_shadow;
+  };
+  void queue(const Receiver& receiver, const Contribution& contribution, Output output);
+  /// Of the contribution of one direction.
+  float limit_of_term(const Receiver& receiver) const {
+    return receiver.limit * (is_mixed(options_.strategy) ? 2.0f : 1.0f) / static_cast<float>(receiver.directions);
+  }
   Rgb reflectance(const Vertex& vertex, int direction) const;
 
   const std::optional<Mat3>& working_space_;

@@ -20,7 +20,7 @@ std::optional<Continuation> draw_onward(const Vertex& vertex, const PreparedBrdf
   const Rgb reflected = in_working_space(rec709_to_working, vertex, f.get(0));
   if (reflected == Rgb(0.0f)) return std::nullopt;
   return Continuation{vertex.ray(wl_world, std::numeric_limits<float>::infinity()),
-                      throughput * reflected * (std::abs(wl.z[0]) / pdf.v[0])};
+                      throughput * reflected * (std::abs(wl.z[0]) / pdf.v[0]), wl.get(0), pdf.v[0]};
 }
 
 }  // namespace velour

@@ -10,6 +10,8 @@ namespace velour {
 struct Continuation {
   Ray ray;
   Rgb throughput;
+  Vec3 wl;        // local
+  float density;  // with which it was drawn, per solid angle
 };
 
 /// f of the vertex's material in the scene's space, with its gain.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "render/light_paths.h"
 #include "render/pixel_rect.h"
 
 namespace velour {
@@ -81,6 +82,7 @@ struct RenderOptions {
   float light_share = 0.5f;  // of the directions of mixed strategies (less products), how many the lights draw; 0..1
   Heuristic heuristic = Heuristic::balance;
   Sequence sequence = Sequence::sobol;  // not of the dissertation's strategies: numbers()
+  LightPathOptions light_paths;
   double noise = 0;  // relative error of a block of pixels at which it is done (noise_target.h); 0: all of spp
   /// Parts of a picture, for several machines: what is rendered of it has the bits that the whole has there. Neither
   /// goes with a noise target, which looks at the whole.

@@ -35,6 +35,13 @@ RayDecisions PathNumbers::decisions() {
   return {mix64(~key(Purpose::camera)), ray_};
 }
 
+float PathNumbers::label() {
+  if (sequence_ != Sequence::sobol) return random_.next();
+  Vec2 u;
+  sobol_points(mix64(~key(Purpose::onward)), ray_, {&u, 1});
+  return u.x;
+}
+
 PathNumbers::Deal PathNumbers::deal(Run run, float share, Purpose purpose) {
   const double part = static_cast<double>(share);
   if (sequence_ != Sequence::sobol) {

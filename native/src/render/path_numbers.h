@@ -61,6 +61,9 @@ class PathNumbers {
   /// Of the ray that goes on from this vertex, before it has come to the next.
   RayDecisions decisions();
 
+  /// Uniform over [0, 1): which lobe the ray that goes on from this vertex is said to come from.
+  float label();
+
   /// How many camera rays of the half came before this one.
   uint32_t ray() const { return ray_; }
 

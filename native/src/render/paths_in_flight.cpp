@@ -32,8 +32,9 @@ size_t PathsInFlight::gather(bool go_on, RayLog* log) {
 void PathsInFlight::extend(const Receiver& receiver, size_t place) {
   const auto onward = light.extend(receiver, place);
   if (!onward) return;
+  const PathPast past = light.past_after(receiver, place, *onward);
   receiver.numbers->next_vertex();
-  next_.push_back({*receiver.numbers, onward->throughput, receiver.sample, receiver.vertex.cone});
+  next_.push_back({*receiver.numbers, onward->throughput, receiver.sample, receiver.vertex.cone, past});
   next_rays_.push_back(onward->ray);
 }
 

@@ -18,6 +18,7 @@ struct Path {
   Rgb throughput;
   uint32_t sample;
   RayCone cone;  // at the origin of its ray
+  PathPast past{};
 };
 
 /// Whoever has them makes `receivers` of the hits, in turns with trace() and gather(), and counts what surfaces emit.

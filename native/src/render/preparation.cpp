@@ -1,6 +1,7 @@
 #include "render/preparation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace velour {
@@ -21,6 +22,12 @@ SampleRange checked_samples(const RenderOptions& options) {
                                               std::to_string(options.split) + ", which share a camera ray (split).");
   }
   return range;
+}
+
+void require_limit(const char* name, float value) {
+  if (value >= 0.0f && std::isfinite(value)) return;
+  throw Error(Status::invalid_argument, std::string("Render option ") + name + " is " + std::to_string(value) +
+                                            "; it must be a number of at least 0, which switches it off.");
 }
 
 }  // namespace
@@ -61,6 +68,10 @@ RenderOptions checked(RenderOptions options) {
     throw Error(Status::invalid_argument,
                 "Render option share is " + std::to_string(options.light_share) + "; it must lie between 0 and 1.");
   }
+  const LightPathOptions& paths = options.light_paths;
+  require_limit("clamp_direct", paths.clamp_direct);
+  require_limit("clamp_indirect", paths.clamp_indirect);
+  require_limit("filter_glossy", paths.filter_glossy);
   if (!(options.noise >= 0.0)) throw Error(Status::invalid_argument, "Render option noise is negative.");
   if (!(options.time_limit >= 0.0)) throw Error(Status::invalid_argument, "Render option time_limit is negative.");
   options.split = std::min(options.split, options.spp);

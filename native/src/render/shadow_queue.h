@@ -12,11 +12,12 @@ class RayLog;
 
 class ShadowQueue {
  public:
-  /// `light` goes to sample number `sample` unless something blocks `ray`.
-  void add(const Ray& ray, const Rgb& light, uint32_t sample) {
+  /// `light` goes to sample number `sample` unless something blocks `ray`, clamped to the sum `limit` of its channels.
+  void add(const Ray& ray, const Rgb& light, uint32_t sample, float limit) {
     rays_.push_back(ray);
     light_.push_back(light);
     sample_.push_back(sample);
+    limit_.push_back(limit);
   }
   /// Traces all and adds what arrives to `samples`, in the order of add(); then forgets them. Returns how many.
   /// `log` may be null.
@@ -26,6 +27,7 @@ class ShadowQueue {
   std::vector<Ray> rays_;
   std::vector<Rgb> light_;
   std::vector<uint32_t> sample_;
+  std::vector<float> limit_;
   std::vector<uint8_t> blocked_;
   std::vector<Rgb> passed_;  // where rays may pass what they come to
 };

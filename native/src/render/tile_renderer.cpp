@@ -140,10 +140,13 @@ void TileRenderer::follow(size_t index, int depth) {
       surfaces_[path.sample] = recorder_.record(film_->options(), vertex, hit, path.throughput, path.numbers);
     }
   }
-  if (depth == 0 || !flight_.light.counts_glow(hit)) sample.radiance += path.throughput * vertex.emission();
+  const LightPathOptions& light_paths = context_.options.light_paths;
+  if (depth == 0 || !flight_.light.counts_glow(hit)) {
+    sample.radiance += clamped(path.throughput * vertex.emission(), light_paths.limit(depth - 1));
+  }
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);
-  flight_.receivers.push_back(
-      {vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most), most});
+  flight_.receivers.push_back({vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most),
+                               most, path.past, light_paths.limit(depth)});
 }
 
 void TileRenderer::add_background() {
@@ -160,7 +163,8 @@ void TileRenderer::add_background() {
     context_.scene.environment().look_up(batch, radiance, unused);
     for (size_t i = start; i < end; ++i) {
       CameraSample& sample = flight_.samples[missed_[i].sample];
-      sample.radiance = missed_[i].throughput * radiance.get(static_cast<int>(i - start));
+      sample.radiance =
+          clamped(missed_[i].throughput * radiance.get(static_cast<int>(i - start)), o.light_paths.limit(0));
       sample.alpha = 1.0f;
       if (!surfaces_.empty()) surfaces_[missed_[i].sample].shine = sample.radiance;
     }

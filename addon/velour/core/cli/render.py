@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...native import Model, Scene, images, library, observe_job, render_job, table
+from ...native import Model, Scene, biases, images, library, observe_job, render_job, table
 from ...native.errors import refuse
 from .. import domain
 from ..cache import user_cache_folder
@@ -29,6 +29,7 @@ KEYS = (
     "spp_mean",
     "block_noise",
     "blocks_unfinished",
+    "biased_by",
     "sky",
     "out_of_domain",
     "samples",
@@ -60,6 +61,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--noise", type=numbers.real(1e-6, 1e6), metavar="E", help="relative error of each block of pixels"
     )
+    light_paths = parser.add_argument_group("against fireflies, as in Cycles; each biases the picture")
+    light_paths.add_argument(
+        "--clamp-direct", type=numbers.real(0, 1e9), metavar="L", help="largest value of a direct sample"
+    )
+    light_paths.add_argument(
+        "--clamp-indirect", type=numbers.real(0, 1e9), metavar="L", help="largest value of an indirect sample"
+    )
+    light_paths.add_argument(
+        "--filter-glossy",
+        type=numbers.real(0, 1e6),
+        metavar="G",
+        help="blurs glossy surfaces behind blurry bounces",
+    )
+    light_paths.add_argument(
+        "--no-reflective-caustics", dest="reflective_caustics", action="store_const", const=0,
+        help="no glossy reflections behind diffuse bounces",
+    )  # fmt: skip
     parser.add_argument(
         "--cache",
         metavar="FOLDER",
@@ -102,6 +120,7 @@ def run(args: argparse.Namespace) -> dict:
             whole = unfinished.deliver(part, before, new, report)
         written = time.perf_counter()
         info = described.info()
+    report["biased_by"] = biases(options)
     _tell(args, report, info)
     bvh = info["bvh_seconds"]
     stages = {"load": loaded - start - bvh, "bvh": bvh, **report["stages"], "write": written - rendered}
@@ -167,6 +186,7 @@ def _read_reference(args: argparse.Namespace) -> np.ndarray | None:
 def _options(args: argparse.Namespace) -> dict:
     names = ("spp", "split", "bounces", "strategy", "share", "heuristic", "sequence")
     names += ("threads", "seed", "noise", "time_limit")
+    names += ("clamp_direct", "clamp_indirect", "filter_glossy", "reflective_caustics")
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
     if args.noise is not None:
         options.setdefault("spp", _MOST_SPP)
@@ -190,6 +210,10 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
             "%d blocks of pixels are above the noise target of %g; the worst has %.3g.",
             report["blocks_unfinished"], args.noise, report["block_noise"],
         )  # fmt: skip
+    if report["biased_by"]:
+        output.log.info(
+            "The picture is biased by %s; its noise does not tell of that.", ", ".join(report["biased_by"])
+        )
     if report["sky"]:
         output.log.info("%(lobes)d lobes for the world, relative L2 %(relative_l2).3f.", report["sky"])
     output.log.info("%d passes, %d light directions a pixel.", report["passes"], report["spp"])

@@ -17,6 +17,7 @@ from . import numbers
 
 _FILES = ("mesh", "proposal", "world", "full_model")  # told apart by what is in them
 _NUMBERS = ("spp", "bounces", "share", "seed", "noise")
+_NUMBERS += ("clamp_direct", "clamp_indirect", "filter_glossy", "reflective_caustics")
 _NAMES = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence": table.SEQUENCES}
 # What says nothing of the whole picture. All other options do, also those that are still to come.
 _ELSEWHERE = {

@@ -1,0 +1,102 @@
+"""Clamping, Filter Glossy and Reflective Caustics, as Velour copies them from Cycles."""
+
+import bpy
+import numpy as np
+
+from parity import stage
+from parity.case import BoxTest
+from parity.shaders import Tree
+from support.judge import judge_renders
+
+
+class LightPaths(BoxTest):
+    """Samples of lamps without extent bring the same: what is clamped of them is no matter of chance."""
+
+    bounces = 2
+
+    def setUp(self):
+        super().setUp()
+        self.material = bpy.data.materials.new("Beside")
+        self.tree = Tree(self.material)
+
+    def _copy(self, **values):
+        """Sets them for Cycles, and has Velour copy them."""
+        for name, value in values.items():
+            setattr(self.scene.cycles, name, value)
+        bpy.ops.velour.copy_cycles_settings()
+
+    def _beside(self):
+        """A wall of the material that shines on the ground."""
+        corners = [(1.2, -2, 0), (1.2, 2, 0), (2.2, 2, 2), (2.2, -2, 2)]
+        stage.mesh(corners, [(0, 1, 2, 3)], self.material, "Wall")
+
+    def _assert_seen(self, feature, **kwargs):
+        """Parity, and a picture that the settings change: the control."""
+        self.assert_parity(feature, **kwargs)
+        ours = self.pictures("VELOUR")
+        settings = self.scene.velour
+        settings.clamp_direct = settings.clamp_indirect = settings.filter_glossy = 0
+        settings.use_reflective_caustics = True
+        verdict = judge_renders(self.pictures("VELOUR"), ours)
+        self.assertFalse(verdict.agrees, f"{feature} makes no difference here. {verdict}")
+
+    def test_clamp_direct(self):
+        stage.lamp("POINT", 300, (0.8, 0.6, 2.2), shadow_soft_size=0.0, color=(1, 0.6, 0.3))
+        self._copy(sample_clamp_direct=0.8)
+        self._assert_seen("Clamp Direct: point lamp")
+
+    def test_clamp_direct_of_soft_light(self):
+        """How bright a single sample is depends on how lights are sampled, which is not the same."""
+        stage.lamp("AREA", 60, (0.8, 0.6, 2.2), size=0.6)
+        self._copy(sample_clamp_direct=1.0)
+        self._assert_seen("Clamp Direct: area lamp")
+
+    def test_clamp_indirect(self):
+        self.tree.end(self.tree.diffuse((0.9, 0.5, 0.2)))
+        self._beside()
+        stage.sharp_sun(6.0)
+        self._copy(sample_clamp_indirect=0.3)
+        self._assert_seen("Clamp Indirect")
+
+    def test_world(self):
+        stage.world((1.0, 0.8, 0.6), 3.0)
+        self._copy(sample_clamp_direct=2.0)
+        self._assert_seen("Clamp Direct: world")
+
+    def test_filter_glossy(self):
+        """A smooth wall, seen by what the ground scatters."""
+        self.tree.end(self.tree.glossy(0.15, color=(0.9, 0.9, 0.9)))
+        self._beside()
+        stage.lamp("AREA", 100, (0.8, 0.6, 2.2), size=0.5)
+        self._copy(blur_glossy=5.0)
+        self._assert_seen("Filter Glossy", samples=4)
+
+    def test_caustics(self):
+        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", Metallic=1.0, Roughness=0.5))
+        self._beside()
+        stage.sharp_sun(6.0)
+        self._copy(caustics_reflective=False)
+        self._assert_seen("Reflective Caustics: off", samples=4)
+
+    def test_caustics_of_layers(self):
+        """The first surface is diffuse and glossy at once, and so is the second."""
+        color = (0.8, 0.3, 0.1, 1)
+        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", Base_Color=color, Roughness=0.4))
+        self._beside()
+        ground = bpy.data.objects["Ground"]
+        ground.data.materials.clear()
+        ground.data.materials.append(self.material)
+        stage.sharp_sun(6.0)
+        self._copy(caustics_reflective=False)
+        self._assert_seen("Reflective Caustics: off, Principled BSDF", samples=4)
+
+
+class Copied(BoxTest):
+    def test_all_settings(self):
+        cycles, settings = self.scene.cycles, self.scene.velour
+        cycles.sample_clamp_direct, cycles.sample_clamp_indirect = 3.0, 7.0
+        cycles.blur_glossy, cycles.caustics_reflective = 2.0, False
+        bpy.ops.velour.copy_cycles_settings()
+        copied = (settings.clamp_direct, settings.clamp_indirect, settings.filter_glossy)
+        np.testing.assert_array_equal(copied, (3.0, 7.0, 2.0))
+        self.assertFalse(settings.use_reflective_caustics)
