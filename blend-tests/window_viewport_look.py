@@ -20,6 +20,7 @@ def start(folder):
         no_studio_light,
         object_types,
         exposure,
+        denoised,
         sequence,
         unrelated,
         resized,
@@ -124,6 +125,23 @@ def exposure(folder):
         values = 255 * viewport.middle(window.screenshot(folder, f"exposure-{value}"))
         assert np.abs(values - byte).max() <= 1, (value, values.min(), values.max())
     assert viewport.job().picture().version == rendered
+
+
+def denoised(folder):
+    """Of few samples, beside many."""
+    if viewport.addon("engine.denoising").missing():
+        return
+    viewport.colored_scene()
+    pictures = {}
+    for name, samples, denoise in (("many", 1024, False), ("noisy", 8, False), ("denoised", 8, True)):
+        viewport.show(samples)
+        bpy.context.scene.velour.use_viewport_denoising = denoise
+        yield 0.3
+        yield from viewport.finished()
+        pictures[name] = viewport.pixels().astype(np.float64)
+        window.screenshot(folder, name)
+    errors = {name: np.square(pictures[name] - pictures["many"]).mean() for name in ("noisy", "denoised")}
+    assert errors["denoised"] < 0.5 * errors["noisy"], errors
 
 
 def sequence(folder):

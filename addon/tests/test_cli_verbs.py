@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 from command_line import program, velour
-from velour.native import Model, images, table
+from velour.native import Model, VelourError, images, library, table
 
 FIT_KEYS = [
     "lobes",
@@ -38,6 +38,8 @@ RENDER_KEYS = [
     "spp_mean",
     "block_noise",
     "blocks_unfinished",
+    "biased_by",
+    "denoised",
     "sky",
     "out_of_domain",
     "samples",
@@ -269,6 +271,49 @@ def test_a_noise_target_ends_the_render(render_arguments):
     result = velour(*arguments, "--noise", 0.0001, "--spp", 128)
     assert result.json["blocks_unfinished"] > 0
     assert "above the noise target" in result.err
+
+
+@pytest.fixture
+def denoiser():
+    try:
+        library.denoiser()
+    except VelourError as error:
+        pytest.skip(str(error))
+
+
+def test_a_denoised_picture_is_closer_to_the_truth_and_says_how_close(render_arguments, tmp_path, denoiser):
+    reference, noisy = tmp_path / "reference.exr", tmp_path / "noisy.exr"
+    at = render_arguments.index("--spp")
+    arguments = [*render_arguments[:at], *render_arguments[at + 2 :], "--split", 1]
+    assert velour(*arguments, "--spp", 4096, "--seed", 9, "-o", reference).status == 0
+    few = (*arguments, "--spp", 8, "--reference", reference)
+    result = velour(*few, "--denoise", "--noisy-image", noisy, "--log-level", "info")
+    denoised = result.json["denoised"]
+    assert result.json["relmse"] < 0.5 * images.compare(images.read(noisy), images.read(reference))[1]
+    assert denoised["relmse"] < denoised["relmse_bound"]
+    assert result.json["relmse"] < denoised["relmse_bound"]
+    assert "at most" in result.err
+    assert result.json["samples"] == []  # such pictures are not merged
+
+
+def test_a_noise_target_is_that_of_the_denoised_picture(render_arguments, denoiser):
+    at = render_arguments.index("--spp")
+    arguments = render_arguments[:at] + render_arguments[at + 2 :]
+    plain, denoised = (velour(*arguments, "--noise", 0.05, *more).json for more in ((), ("--denoise",)))
+    assert denoised["denoised"]["relmse_bound"] <= 0.05**2
+    assert denoised["spp_mean"] < plain["spp_mean"]
+
+
+def test_a_part_of_a_picture_is_not_denoised(render_arguments):
+    result = velour(*render_arguments, "--denoise", "--crop", "0:4,0:4")
+    assert result.status != 0
+    assert "leave --samples and --crop out, or --denoise" in result.err
+
+
+def test_a_noisy_image_needs_a_denoised_one(render_arguments, tmp_path):
+    result = velour(*render_arguments, "--noisy-image", tmp_path / "noisy.exr")
+    assert result.status != 0
+    assert "--denoise" in result.err
 
 
 def test_the_fitted_lobe_is_made_when_the_render_starts(render_arguments):

@@ -44,7 +44,7 @@ def colored_scene():
 def show(samples=64):
     """Switches the viewport on; overlays and widgets off, so that pixels are the picture's."""
     scene = scenes.use_engine(samples)
-    scene.velour.viewport_samples = samples
+    scene.velour.viewport_samples, scene.velour.use_viewport_denoising = samples, False
     view = space()
     view.overlay.show_overlays = view.show_gizmo = False
     view.shading.type = "RENDERED"

@@ -2,6 +2,11 @@
 set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
 
+# What scripts/setup --denoise has installed; libvelour opens it.
+for oidn in "$root"/build/tools/lib/python3*/site-packages/pyoidn/oidn/lib/libOpenImageDenoise.so.2; do
+  if [[ -e $oidn ]]; then export VELOUR_OIDN=${VELOUR_OIDN:-$oidn}; fi
+done
+
 say() { printf '%s\n' "$*"; }
 
 die() {

@@ -11,10 +11,10 @@ from ..export import ExportError
 from ..export.black import refuse_dark_inside
 from ..export.camera import final_view
 from ..export.film import film_exposure
-from ..export.layer_passes import COMBINED, layer_passes, note_missing_passes
+from ..export.layer_passes import COMBINED, as_rendered, layer_passes, note_missing_passes
 from ..export.unused_settings import note_strokes
 from ..native import biases, render_job
-from . import memory
+from . import denoising, memory
 from .arguments import arguments
 from .frame_parts import film, frame_parts
 from .options import final_options
@@ -65,6 +65,8 @@ def render_final(engine, depsgraph):
             stamps = choose_models(native_scene, materials.reduced, view, depsgraph, notes, check_break)
             _say(notes)
         options = final_options(depsgraph, view, engine.is_preview)
+        if options["denoise"]:
+            denoising.prepare(scene)
         parts = None
         if not engine.is_preview:
             parts = frame_parts(given, depsgraph, view, options, materials.models, shown)
@@ -74,54 +76,59 @@ def render_final(engine, depsgraph):
             engine.update_stats("Velour", limit.check(estimate))
         make_job = functools.partial(render_job, native_scene, passes and passes.passes)
         make_film = functools.partial(film, depsgraph, make_job, options, parts)
-        report = _render_layer(engine, depsgraph, view, shown, surroundings, make_film)
+        denoise = (
+            functools.partial(_denoise, engine, scene, options["threads"]) if options["denoise"] else None
+        )
+        if denoise and parts and not parts.is_whole:
+            denoise, shown = None, as_rendered(shown)
+        report, denoised = _render_layer(engine, depsgraph, view, shown, surroundings, make_film, denoise)
         result = engine.get_result()
-        part = _some_samples(parts, options, report)
-        engine.stamps.add(result, depsgraph, materials.models, stamps, part, biases(options))
+        fields = {"samples": _some_samples(parts, options, report), "denoised": denoised}
+        fields["biased_by"] = ", ".join(biases(options))
+        engine.stamps.add(result, depsgraph, materials.models, stamps, fields)
         if passes:
             stamp_cryptomattes(result, depsgraph.view_layer_eval, passes.names)
 
 
-def _render_layer(engine, depsgraph, view, shown, surroundings, film):
-    """What the job reports; None: all samples were there. `film(follow)` is that of frame_parts, which has
-    follow(job, begin, end) wait for these samples."""
+def _render_layer(engine, depsgraph, view, shown, surroundings, film, denoise):
+    """What the job reports; None: all samples were there; and what `denoise(job)` says of the picture, empty
+    without. `film(follow)` is that of frame_parts, which has follow(job, begin, end) wait for these samples.
+    """
     layer = depsgraph.view_layer_eval
     add_passes(engine, layer, shown)
     result = engine.begin_result(0, 0, view.width, view.height, layer=layer.name)
     delivery = Delivery(result, view, film_exposure(depsgraph.scene_eval))
-    complete = False
+    complete, denoised = False, ""
     try:
         with film(functools.partial(_follow, engine, delivery)) as job:
             refuse_dark_inside(
                 depsgraph, job.read_pass("Combined"), "" if engine.is_preview else surroundings
             )
-            delivery.write(job, shown)
             report = None if job.poll().state == "ready" else job.report()
-            _say_report(engine, report)
+            denoised = denoise(job) if denoise else ""
+            delivery.write(job, shown)
+            _say_report(engine, report, denoised)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)
-    return report
+    return report, denoised
 
 
 def _some_samples(parts, options, report):
-    """The range of samples that the picture has alone: it is a part, or the time limit ended it. None: it has
-    all, or, with a noise threshold, another number in each pixel."""
+    """The range of samples that the picture has alone: it is a part, or the time limit ended it. Empty: it
+    has all, or, with a noise threshold, another number in each pixel."""
     if parts:
-        return None if parts.is_whole else parts.asked
+        return "" if parts.is_whole else "{}:{}".format(*parts.asked)
     if options["noise"] or report["spp"] == options["spp"]:
-        return None
-    return 0, report["spp"]
+        return ""
+    return f"0:{report['spp']}"
 
 
 def _follow(engine, delivery, job, begin, end):
     """Until the job ends: Esc, progress, statistics, and with a window pictures in between."""
     statistics = _Clock(_STATISTICS_SECONDS)
     pictures = _Clock(_FIRST_PICTURE_SECONDS, growth=_PICTURE_GROWTH)
-    while not job.wait(timeout=_POLL_SECONDS):
-        if engine.test_break():
-            raise RenderCancelledError  # closing the job cancels it and waits
-        state = job.poll()
+    for state in _states(engine, job):
         engine.update_progress(state.fraction)
         if statistics.rings():
             engine.update_stats("Velour", _statistics(state, begin, end))
@@ -130,6 +137,25 @@ def _follow(engine, delivery, job, begin, end):
             delivery.write(job, [COMBINED])
             engine.update_result(delivery.result)
     _tell_memory(engine, job.poll())
+
+
+def _states(engine, job):
+    """Of the job, until it ends or Blender is asked to."""
+    while not job.wait(timeout=_POLL_SECONDS):
+        if engine.test_break():
+            raise RenderCancelledError  # closing the job cancels it and waits
+        yield job.poll()
+
+
+def _denoise(engine, scene, threads, job):
+    """Denoises the picture of the job. Returns what is known of its error."""
+
+    def wait(denoising_job):
+        for _state in _states(engine, denoising_job):
+            pass
+
+    engine.update_stats("Velour", "Denoising")
+    return denoising.denoise(job, scene, threads, wait)
 
 
 def _tell_memory(engine, state):
@@ -169,13 +195,15 @@ def _say(notes):
         print(f"Velour: {note}", flush=True)
 
 
-def _say_report(engine, report):
+def _say_report(engine, report, denoised):
     if not report:
         engine.update_stats("Velour", "All samples were there")
         return
     line = f"{report['spp_mean']:.0f} samples | {report['samples_per_second'] / 1e6:.1f} M samples/s"
     if report["blocks_unfinished"] is not None:
         line += f" | {report['blocks_unfinished']} blocks above the noise threshold"
+    if denoised:
+        line += f" | Denoised: {denoised}"
     if report["nan_samples"]:
         line += f" | {report['nan_samples']} samples without a finite value left out"
     engine.update_stats("Velour", line)

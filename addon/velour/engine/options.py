@@ -3,6 +3,7 @@
 from ..export.caches import cache_folder
 from ..export.film import hides_world
 from ..export.world import layer_world
+from .denoising import missing
 
 _WITHOUT_END = 1 << 24  # light directions a pixel: more than anybody waits for
 
@@ -14,6 +15,7 @@ def final_options(depsgraph, view, is_preview):
         **_common(scene, layer, view),
         "spp": settings.preview_samples if is_preview else layer.samples or settings.samples,
         "threads": scene.render.threads,
+        "denoise": int(settings.use_denoising and not is_preview),
         "noise": 0.0 if is_preview or not settings.use_noise_target else settings.noise_target,
         "time_limit": settings.time_limit,
     }
@@ -24,6 +26,7 @@ def viewport_options(depsgraph, view):
     return {
         **_common(scene, depsgraph.view_layer_eval, view),
         "spp": scene.velour.viewport_samples or _WITHOUT_END,
+        "denoise": int(scene.velour.use_viewport_denoising and not missing()),
         "threads": viewport_threads(scene),
     }
 

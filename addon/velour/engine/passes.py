@@ -10,7 +10,7 @@ from ..export.camera import View
 from ..export.layer_passes import COMBINED, CRYPTOMATTES, layer_passes
 from ..native import cryptomatte_id
 
-_OF_LIGHT = ("Combined", "Error")
+_OF_LIGHT = ("Combined", "Noisy Image", "Error")
 _ALONG_CAMERA = ("Denoising Normal",)  # as Cycles has it; Normal itself is along the world's axes
 
 
@@ -23,7 +23,7 @@ def register_passes(engine, scene, layer):
 def add_passes(engine, layer, shown):
     """Before begin_result: what Blender does not make by itself; it leaves out what is there."""
     for each in shown:
-        if each is not COMBINED:
+        if each.name != COMBINED.name:
             engine.add_pass(each.name, each.channels, each.letters, layer=layer.name)
 
 

@@ -14,13 +14,13 @@ class Stamps:
         self._frame = None
         self._models = {}  # {view layer: {material: hashes}}
 
-    def add(self, result, depsgraph, models, notes_of_models, part=None, biased_by=()):
+    def add(self, result, depsgraph, models, notes_of_models, fields):
         """Writes the fields once a view layer is rendered.
 
         Of this layer are `models`, {material: hashes of the files it is rendered from}, and
-        `notes_of_models`, {material: what to say of its model for the scene}; `part`: of the samples of
-        each pixel the range that the picture has, where it has not all; `biased_by`: names of the options
-        that bias the picture.
+        `notes_of_models`, {material: what to say of its model for the scene}; `fields`, of the picture:
+        samples (the range of each pixel's that it has, where it has not all), denoised (what is known of its
+        error), biased_by (names of options); empty ones are left out.
         """
         layer, frame = depsgraph.view_layer_eval.name, depsgraph.scene_eval.frame_current
         if frame != self._frame:
@@ -30,9 +30,8 @@ class Stamps:
         result.stamp_data_add_field("velour.version", version_text())
         result.stamp_data_add_field("velour.blender", ".".join(map(str, bpy.app.version)))
         result.stamp_data_add_field("velour.models", json.dumps(in_all, sort_keys=True))
-        if part:
-            result.stamp_data_add_field("velour.samples", f"{part[0]}:{part[1]}")
-        if biased_by:
-            result.stamp_data_add_field("velour.biased_by", ", ".join(biased_by))
+        for name, text in fields.items():
+            if text:
+                result.stamp_data_add_field(f"velour.{name}", text)
         for name, text in notes_of_models.items():
             result.stamp_data_add_field(f"velour.{layer}.{name}", text)

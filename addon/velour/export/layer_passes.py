@@ -57,11 +57,13 @@ CRYPTOMATTES = {"object": "CryptoObject", "material": "CryptoMaterial", "asset":
 _IDS = "rgba"
 
 COMBINED = LayerPass("Combined", "RGBA", "COLOR", "Combined")
+_DENOISED = LayerPass("Combined", "RGBA", "COLOR", "Denoised", "halves")
+_NOISY = LayerPass("Noisy Image", "RGBA", "COLOR", "Combined")
 
 
 def layer_passes(layer):
     """The LayerPasses of a view layer."""
-    found = [COMBINED]
+    found = [_DENOISED, _NOISY] if layer.id_data.velour.use_denoising else [COMBINED]
     for owner, switches in ((layer, _SWITCHES), (layer.velour, _OWN_SWITCHES)):
         found += [each for switch, passes in switches if getattr(owner, switch) for each in passes]
     for kind, name in CRYPTOMATTES.items():
@@ -69,6 +71,11 @@ def layer_passes(layer):
             names = (f"{name}{level:02d}" for level in range((layer.pass_cryptomatte_depth + 1) // 2))
             found += [LayerPass(each, _IDS, "COLOR", each, f"crypto_{kind}") for each in names]
     return found
+
+
+def as_rendered(shown):
+    """The same LayerPasses where the picture is not denoised, as it is but a part."""
+    return [COMBINED if each is _DENOISED else each for each in shown]
 
 
 def note_missing_passes(layer, notes):
@@ -102,4 +109,4 @@ def _asked_passes(owner, known=()):
 
 def shows_more_than_light(layer):
     """Whether it has passes that tell of the scene where no light falls; nearly every layer has depth."""
-    return any(each.name not in ("Combined", "Depth") for each in layer_passes(layer))
+    return any(each.name not in ("Combined", "Depth", "Noisy Image") for each in layer_passes(layer))

@@ -15,6 +15,7 @@ _MODULES = {
         "biases",
         "compare_job",
         "compare_peer_job",
+        "denoise_job",
         "fit_job",
         "measurement_job",
         "microsurface_job",

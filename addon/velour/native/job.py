@@ -214,7 +214,7 @@ def render_job(scene, passes: Passes | None = None, **options) -> Job:
     """`passes`: beyond those that every picture has. Options: width, height, spp, split, bounces, strategy
     (table.STRATEGIES), threads, seed, time_limit (seconds), transparent, measure_ray_share, heuristic
     (table.HEURISTICS), sequence (table.SEQUENCES), share, noise, cache_folder (keeps fits of the environment;
-    none: nowhere), clamp_direct, clamp_indirect, filter_glossy, reflective_caustics. Of parts:
+    none: nowhere), clamp_direct, clamp_indirect, filter_glossy, reflective_caustics, denoise. Of parts:
     samples_begin, samples_end, crop_x0, crop_y0, crop_x1, crop_y1
     (vlr_render_options). `scene` is committed."""
     raw = render_options(options)
@@ -232,6 +232,12 @@ def render_options(options: dict) -> structs.RenderOptions:
         chosen["cache_folder"] = path_bytes(options["cache_folder"])
     set_fields(raw, {**options, **chosen})
     return raw
+
+
+def denoise_job(render: Job, threads: int = 0) -> Job:
+    """Takes the noise out of the picture of a render_job() with the option `denoise`, which has ended: its
+    pass "Denoised". The report: relmse and relmse_bound of that (None: unknown), noisy_share, path."""
+    return Job._create("vlr_denoise_create_job", render.pointer, threads)
 
 
 def biases(options: dict) -> list[str]:

@@ -54,6 +54,16 @@ def select_simd(name: str) -> None:
     load().vlr_select_simd(name.encode())
 
 
+def denoiser() -> dict:
+    """version and path of Open Image Denoise, which it opens; VelourError where that is missing."""
+    return json_of(load().vlr_denoiser_json)
+
+
+def set_denoiser(path: str | os.PathLike) -> None:
+    """The file of Open Image Denoise to try first; VELOUR_OIDN goes before. Once one is open, it stays."""
+    load().vlr_set_denoiser_file(os.fsencode(os.environ.get("VELOUR_OIDN") or path))
+
+
 def json_of(function, *arguments) -> dict:
     """Calls `function(*arguments, &text)` and parses the text."""
     text = ctypes.c_char_p()
@@ -80,6 +90,7 @@ def _open(path: Path) -> ctypes.CDLL:
         table.bind(library)
     except AttributeError as error:
         raise LibraryError(f"The Velour library {where} lacks a function ({error}); {remedy}.") from error
+    library.vlr_set_denoiser_file(os.fsencode(os.environ.get("VELOUR_OIDN", "")))
     try:
         library.vlr_self_test()
     except VelourError as error:

@@ -26,6 +26,8 @@ _CHANNELS = {
     "Albedo": 3,
     "Error": 3,
     "Denoising Albedo": 3,
+    "Halves": 18,
+    "Denoised": 4,
 }
 # Passes come in levels of two ids: CryptoObject00, CryptoObject01, ...
 _CRYPTOMATTES = ("CryptoObject", "CryptoMaterial", "CryptoAsset")
@@ -78,7 +80,7 @@ def channels_of(name: str) -> int:
 
 _SUMS = 12  # of every film: light, alpha, normal, depth, halves, numbers of rays
 _VALUES = {"position": 3, "uv": 3, "object_index": 1, "material_index": 1, "mist": 1, "albedo": 3, "error": 3}
-_VALUES |= {"denoising_albedo": 3}
+_VALUES |= {"denoising_albedo": 3, "halves": 12}
 _SPARE_IDS = 2  # beyond those that are shown
 
 

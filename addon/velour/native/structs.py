@@ -358,7 +358,7 @@ class RenderOptions(Struct):
         ("clamp_indirect", c_float),
         ("filter_glossy", c_float),
         ("reflective_caustics", c_int32),
-        ("pad", c_uint32),
+        ("denoise", c_int32),
         ("passes", POINTER(PassOptions)),
     ]
 

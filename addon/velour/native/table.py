@@ -46,6 +46,7 @@ PASSES = {  # VLR_PASS_*
     "crypto_material": 256,
     "crypto_asset": 512,
     "denoising_albedo": 1024,
+    "halves": 2048,
 }
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
@@ -74,6 +75,8 @@ ProgressFunction = ctypes.CFUNCTYPE(c_int32, c_void_p, c_double, c_char_p)
 # Calls that return vlr_status: argument types.
 STATUS_CALLS = {
     "vlr_self_test": [],
+    "vlr_denoiser_json": [_json],
+    "vlr_set_denoiser_file": [c_char_p],
     "vlr_system_json": [_json],
     "vlr_select_simd": [c_char_p],
     "vlr_measurement_load": [c_char_p, _out_handle],
@@ -183,6 +186,7 @@ STATUS_CALLS = {
     "vlr_tile_info_json": [_handle, _json],
     "vlr_cryptomatte_id": [c_char_p, _number, POINTER(c_float)],
     "vlr_render_create_job": [_handle, POINTER(structs.RenderOptions), _out_handle],
+    "vlr_denoise_create_job": [_handle, c_uint32, _out_handle],
     "vlr_progressive_create_job": [_handle, POINTER(structs.RenderOptions), _out_handle],
     "vlr_progressive_restart": [_handle],
     "vlr_progressive_read": [_handle, _floats, c_uint64, POINTER(structs.ProgressivePicture)],

@@ -156,6 +156,22 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
         max=64,
         override=_OVERRIDE,
     )
+    use_denoising: BoolProperty(
+        name="Denoise Render",
+        description=(
+            "Remove noise from final renders with Open Image Denoise. The Noise Threshold then is the error"
+            " of the denoised picture"
+        ),
+        default=False,
+        override=_OVERRIDE,
+    )
+    use_viewport_denoising: BoolProperty(
+        name="Denoise Viewport",
+        description="Remove noise from the rendered viewport with Open Image Denoise",
+        default=True,
+        override=_OVERRIDE,
+        update=_redraw_viewports,
+    )
     clamp_direct: FloatProperty(
         name="Direct Light",
         description=(

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..engine import denoising
 from ..engine.engine import VelourRenderEngine
 from ..handlers.saved_files import newer_sentence
 from ..operators.check_scene import VELOUR_OT_check_scene
@@ -86,6 +87,21 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         layout.prop(settings, "bounces")
         layout.prop(settings, "seed")
         layout.prop(settings, "time_limit")
+
+
+class VELOUR_RENDER_PT_denoise(_RenderPanel, bpy.types.Panel):
+    bl_label = "Denoise"
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.velour
+        layout.use_property_split = True
+        column = layout.column(heading="Denoise")
+        column.prop(settings, "use_denoising", text="Render")
+        column.prop(settings, "use_viewport_denoising", text="Viewport")
+        if reason := denoising.missing():
+            draw_sentence(context, layout, reason, icon="ERROR")
+        elif error := denoising.last_errors.get(context.scene.name):
+            draw_sentence(context, layout, error, icon="INFO")
 
 
 class VELOUR_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):

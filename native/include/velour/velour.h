@@ -801,7 +801,9 @@ enum {
   VLR_PASS_CRYPTO_MATERIAL = 256, /* "CryptoMaterial00", ...: the same */
   VLR_PASS_CRYPTO_ASSET = 512,    /* "CryptoAsset00", ...: the same */
   VLR_PASS_DENOISING_ALBEDO =
-      1024 /* "Denoising Albedo" 3: albedo, and what surfaces and the sky shine by themselves; above 1 where they do */
+      1024, /* "Denoising Albedo" 3: albedo, and what surfaces and the sky shine by themselves; above 1 where they do */
+  VLR_PASS_HALVES = 2048 /* "Halves" 18: of the even camera rays color, denoising albedo and normal, 3 each; of the odd
+                            ones the same; means */
 };
 
 typedef struct vlr_instance_label {
@@ -864,7 +866,8 @@ typedef struct vlr_render_options {
   float clamp_direct, clamp_indirect;
   float filter_glossy;         /* roughens lobes that paths come to by directions of a density below it; 0: none */
   int32_t reflective_caustics; /* 0: no lobes of microfacets behind diffuse bounces; 1 */
-  uint32_t pad;
+  int32_t denoise; /* 1: the picture can be denoised (vlr_denoise_create_job), and `noise` is the error of the denoised
+                      one, of the whole picture: the bound's root (relmse_bound there). The film has VLR_PASS_HALVES */
   const vlr_pass_options* passes; /* copied; NULL: none beyond those that every picture has */
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);
@@ -887,6 +890,19 @@ VLR_API vlr_status vlr_job_read_sums(const vlr_job* job, float* sums, uint64_t c
  * those that come after, once it is done. Not while it runs. Once it has both such sums and camera rays of its own,
  * which a new run would count twice, vlr_job_start refuses with VLR_INVALID_STATE. */
 VLR_API vlr_status vlr_job_add_sums(vlr_job* job, const float* sums, uint64_t count);
+
+/* Takes the noise out of the picture of a render whose options said `denoise`, and which does not run: then
+ * vlr_job_read_pass of that render has "Denoised" 4 (RGBA, premultiplied; the alpha of "Combined"), until it gets more
+ * samples. `threads` 0: all. JSON: relmse, relmse_bound (estimate of the denoised picture's error, and a bound that the
+ * true one stays below in 97 of 100 pictures; null where a pixel has less than two camera rays: docs/rendering.md),
+ * noisy_share (0..1, of the noisy picture in it), path of Open Image Denoise. VLR_UNSUPPORTED where that is
+ * missing. */
+VLR_API vlr_status vlr_denoise_create_job(vlr_job* render, uint32_t threads, vlr_job** out);
+/* JSON: version and path of Open Image Denoise; opens it. VLR_UNSUPPORTED, with what was tried, where it is missing. */
+VLR_API vlr_status vlr_denoiser_json(const char** json);
+/* The file of Open Image Denoise 2 that is tried before libOpenImageDenoise.so.2 beside this library and on the
+ * system's path; NULL or "": none. Without effect once one is open. */
+VLR_API vlr_status vlr_set_denoiser_file(const char* path);
 
 /* Asks a render to end at a whole pass, soon, with what it has: then it is done, and its report's spp says how many
  * light directions every pixel has. From any thread; a job that starts again does not know of it any more. */

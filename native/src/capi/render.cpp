@@ -60,6 +60,7 @@ RenderOptions converted(const vlr_render_options& given) {
   options.light_share = static_cast<float>(given.share);
   options.light_paths = {given.clamp_direct, given.clamp_indirect, given.filter_glossy, given.reflective_caustics != 0};
   options.noise = given.noise;
+  options.denoise = given.denoise != 0;
   options.samples = {static_cast<int>(given.samples_begin), static_cast<int>(given.samples_end)};
   options.crop = {static_cast<int>(given.crop_x0), static_cast<int>(given.crop_y0), static_cast<int>(given.crop_x1),
                   static_cast<int>(given.crop_y1)};
@@ -79,7 +80,9 @@ vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_option
     const vlr_render_options given = read_options(options, vlr_render_options_init, "vlr_render_options");
     const RenderOptions asked = converted(given);
     check_crop(asked);
-    auto film = std::make_shared<Film>(asked.window(), passes_of(given.passes));
+    PassOptions passes = passes_of(given.passes);
+    if (asked.denoise) passes.asked |= pass::kHalves;
+    auto film = std::make_shared<Film>(asked.window(), std::move(passes));
     auto output = std::make_shared<JobOutput>();
     output->film = film;
     const auto task = [output, film, asked, source = std::shared_ptr<const Scene>(scene->scene)](Progress& progress) {

@@ -17,8 +17,9 @@ std::filesystem::path own_folder() {
   return std::filesystem::absolute(info.dli_fname, ignored).parent_path();
 }
 
-std::vector<std::string> candidates(const std::string& file_name) {
+std::vector<std::string> candidates(const std::string& file_name, const std::string& first) {
   std::vector<std::string> paths;
+  if (!first.empty()) paths.push_back(first);
   const std::filesystem::path folder = own_folder();
   std::error_code ignored;
   for (const char* neighbour : {".", "lib", "../lib"}) {
@@ -37,9 +38,9 @@ std::string path_of(void* handle, const std::string& otherwise) {
 
 }  // namespace
 
-PrivateLibrary::PrivateLibrary(const std::string& file_name, const std::string& remedy) {
+PrivateLibrary::PrivateLibrary(const std::string& file_name, const std::string& remedy, const std::string& first) {
   std::string reasons;
-  for (const std::string& path : candidates(file_name)) {
+  for (const std::string& path : candidates(file_name, first)) {
     handle_ = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle_ != nullptr) {
       path_ = path_of(handle_, path);

@@ -12,9 +12,9 @@ namespace velour {
 /// `environ` of the host.
 class PrivateLibrary {
  public:
-  /// Looks beside our own shared object, in its `lib` neighbours, then on the system's library path. Throws
-  /// Error(unsupported) naming what was tried and `remedy`.
-  PrivateLibrary(const std::string& file_name, const std::string& remedy);
+  /// Looks at the file `first`, if one is given, beside our own shared object, in its `lib` neighbours, then on the
+  /// system's library path. Throws Error(unsupported) naming what was tried and `remedy`.
+  PrivateLibrary(const std::string& file_name, const std::string& remedy, const std::string& first = {});
   ~PrivateLibrary();
   PrivateLibrary(const PrivateLibrary&) = delete;
   PrivateLibrary& operator=(const PrivateLibrary&) = delete;

@@ -37,6 +37,8 @@ constexpr Pass kPasses[] = {{"Combined", 4, write_combined},
                             {"Normal", 3, write_normal},
                             {"Sample Count", 1, write_count}};
 
+constexpr std::string_view kDenoised = "Denoised";
+
 /// Null: it is none of those that every film has.
 const Pass* find_pass(std::string_view name) {
   const auto* found = std::ranges::find(kPasses, name, &Pass::name);
@@ -65,6 +67,7 @@ void Film::clear() {
   const std::lock_guard lock(mutex_);
   std::ranges::fill(pixels_, PixelSum{});
   std::ranges::fill(values_, 0.0f);
+  denoised_.clear();
 }
 
 namespace {
@@ -96,20 +99,40 @@ void Film::store(const PixelRect& rect, std::span<const PixelSum> pixels, std::s
     std::copy_n(pixels.begin() + from, rect.width(), pixels_.begin() + to);
     std::copy_n(values.begin() + size * from, size * rect.width(), values_.begin() + size * to);
   });
+  denoised_.clear();
+}
+
+void Film::keep_denoised(std::vector<float> colors, std::optional<DenoisedError> error) {
+  const std::lock_guard lock(mutex_);
+  check_size(kDenoised, 3 * pixels_.size(), colors.size());
+  denoised_ = std::move(colors);
+  denoised_error_ = error;
+}
+
+bool Film::is_denoised() const {
+  const std::lock_guard lock(mutex_);
+  return !denoised_.empty();
+}
+
+std::optional<DenoisedError> Film::denoised_error() const {
+  const std::lock_guard lock(mutex_);
+  return denoised_.empty() ? std::nullopt : denoised_error_;
 }
 
 int Film::channels(std::string_view name) {
   if (const Pass* pass = find_pass(name)) return pass->channels;
+  if (name == kDenoised) return 4;
   if (const int count = PassLayout::channels(name)) return count;
   throw Error(Status::invalid_argument,
               "There is no pass \"" + std::string(name) +
-                  "\": Combined, Depth, Normal, Sample Count, Position, UV, IndexOB, IndexMA, Mist, Albedo, Error, "
-                  "Denoising Albedo, CryptoObject00, CryptoMaterial00 and CryptoAsset00 are.");
+                  "\": Combined, Depth, Normal, Sample Count, Denoised, Position, UV, IndexOB, IndexMA, Mist, "
+                  "Albedo, Error, Denoising Albedo, Halves, CryptoObject00, CryptoMaterial00 and CryptoAsset00 are.");
 }
 
 void Film::read_pass(std::string_view name, std::span<float> pixels) const {
   const std::lock_guard lock(mutex_);
   check_size(name, pixels_.size() * static_cast<size_t>(channels(name)), pixels.size());
+  if (name == kDenoised) return read_denoised(pixels);
   const Pass* pass = find_pass(name);
   if (pass == nullptr) return read_layout(name, pixels);
   float* out = pixels.data();
@@ -125,6 +148,14 @@ void Film::read_layout(std::string_view name, std::span<float> pixels) const {
                                               "\" was not asked for when the render was made (vlr_pass_options).");
   }
   layout_.write(name, pixels_, values_, pixels.data());
+}
+
+void Film::read_denoised(std::span<float> pixels) const {
+  if (denoised_.empty()) throw Error(Status::invalid_state, "The picture has not been denoised since it changed.");
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    std::copy_n(&denoised_[3 * i], 3, &pixels[4 * i]);
+    pixels[4 * i + 3] = pixels_[i].alpha * pixels_[i].weight();
+  }
 }
 
 void Film::read_over(const Film* coarser, std::span<float> pixels) const {

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "denoise/halves.h"
 #include "render/camera_sample.h"
 #include "render/pass_layout.h"
 #include "render/pixel_rect.h"
@@ -33,11 +35,18 @@ class Film {
   void load(const PixelRect& rect, std::span<PixelSum> pixels, std::span<float> values = {}) const;
   void store(const PixelRect& rect, std::span<const PixelSum> pixels, std::span<const float> values = {});
 
+  /// Keeps the colors of a picture that was made of what the film has, 3 a pixel: the pass "Denoised", until the film
+  /// has more.
+  void keep_denoised(std::vector<float> colors, std::optional<DenoisedError> error);
+  bool is_denoised() const;
+  /// That of the pass "Denoised"; nothing: it is unknown, or there is none.
+  std::optional<DenoisedError> denoised_error() const;
+
   /// Channels of a pass: "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1 (light
-  /// directions), and those of PassLayout. Throws Error(invalid_argument) on another name.
+  /// directions), "Denoised" 4, and those of PassLayout. Throws Error(invalid_argument) on another name.
   static int channels(std::string_view pass);
   /// `pixels` holds width x height x channels(pass). Pixels without samples are 0; depth is 1e10 where nothing was hit.
-  /// Throws Error(invalid_argument) for a pass that was not asked for.
+  /// Throws Error(invalid_argument) for a pass that was not asked for, Error(invalid_state) where there is none yet.
   void read_pass(std::string_view pass, std::span<float> pixels) const;
   /// "Combined", but pixels without samples are those of a `coarser` film of the same view; null: they are 0.
   void read_over(const Film* coarser, std::span<float> pixels) const;
@@ -50,13 +59,16 @@ class Film {
 
  private:
   void read_layout(std::string_view pass, std::span<float> pixels) const;
+  void read_denoised(std::span<float> pixels) const;
 
   const PixelRect window_;
   const PassOptions options_;
   const PassLayout layout_;
   mutable std::mutex mutex_;
   std::vector<PixelSum> pixels_;
-  std::vector<float> values_;  // layout_.size() of each pixel
+  std::vector<float> values_;    // layout_.size() of each pixel
+  std::vector<float> denoised_;  // colors; empty: there are none
+  std::optional<DenoisedError> denoised_error_;
 };
 
 }  // namespace velour

@@ -83,6 +83,8 @@ struct RenderOptions {
   Heuristic heuristic = Heuristic::balance;
   Sequence sequence = Sequence::sobol;  // not of the dissertation's strategies: numbers()
   LightPathOptions light_paths;
+  bool denoise =
+      false;         // the film keeps independent halves (pass::kHalves), and `noise` is that of the denoised picture
   double noise = 0;  // relative error of a block of pixels at which it is done (noise_target.h); 0: all of spp
   /// Parts of a picture, for several machines: what is rendered of it has the bits that the whole has there. Neither
   /// goes with a noise target, which looks at the whole.

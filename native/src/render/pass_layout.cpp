@@ -1,6 +1,7 @@
 #include "render/pass_layout.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -73,11 +74,11 @@ void join_sums(const Runs& /*runs*/, float* v, const float* later) {
   for (int c = 0; c < channels; ++c) v[c] += later[c];
 }
 
-/// A pass of `channels` values, of which a pixel keeps as many.
+/// A pass of `channels` values, for which a pixel keeps `floats`.
 struct ValuePass {
   uint32_t bit;
   std::string_view name;
-  int channels;
+  int channels, floats;
   void (*add)(const CameraRay& ray, float* values);
   void (*join)(const Runs& runs, float* values, const float* later);
   void (*write)(const float* values, const PixelSum& sum, float* out);
@@ -88,31 +89,71 @@ void write_as_is(const float* v, const PixelSum& /*sum*/, float* out) {
   std::copy_n(v, channels, out);
 }
 
+// Of the halves: sums over the even camera rays of color, denoising albedo and normal, and of the albedo over all.
+constexpr int kFloatsOfHalves = 12;
+using HalfSum = std::array<Vec3, 3>;
+
+HalfSum first_half(const float* v) { return {Vec3{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}}; }
+HalfSum second_half(const float* v, const PixelSum& sum) {
+  HalfSum half = first_half(v);
+  const HalfSum all = {sum.radiance, Vec3(v[9], v[10], v[11]), sum.normal};
+  for (size_t i = 0; i < half.size(); ++i) half[i] = all[i] - half[i];
+  return half;
+}
+
+void add_halves(const CameraRay& ray, float* v) {
+  const Rgb albedo = ray.surface.albedo + ray.surface.shine;
+  increase(v + 9, albedo);
+  if (ray.before.camera_rays % 2 != 0) return;
+  increase(v, ray.sample.radiance);
+  increase(v + 3, albedo);
+  increase(v + 6, ray.sample.normal);
+}
+
+/// After an odd number of rays the next one belongs to the second half.
+void join_halves(const Runs& runs, float* v, const float* later) {
+  const bool in_turn = runs.before.camera_rays % 2 == 0;
+  const HalfSum more = in_turn ? first_half(later) : second_half(later, runs.later);
+  for (size_t i = 0; i < more.size(); ++i) increase(v + 3 * i, more[i]);
+  increase(v + 9, {later[9], later[10], later[11]});
+}
+
+void write_halves(const float* v, const PixelSum& sum, float* out) {
+  const uint32_t odd = sum.camera_rays / 2, even = sum.camera_rays - odd;
+  const auto write = [&](const HalfSum& half, uint32_t rays) {
+    for (const Vec3& mean : half) {
+      for (int c = 0; c < 3; ++c) *out++ = rays > 0 ? mean[c] / static_cast<float>(rays) : 0.0f;
+    }
+  };
+  write(first_half(v), even);
+  write(second_half(v, sum), odd);
+}
+
 constexpr ValuePass kValues[] = {
-    {pass::kPosition, "Position", 3,
+    {pass::kPosition, "Position", 3, 3,
      [](const CameraRay& ray, float* v) {
        if (is_first(ray)) set(v, ray.surface.position);
      },
      join_first<3>, write_as_is<3>},
-    {pass::kUv, "UV", 3, [](const CameraRay& ray, float* v) { increase(v, ray.surface.uv); }, join_sums<3>,
+    {pass::kUv, "UV", 3, 3, [](const CameraRay& ray, float* v) { increase(v, ray.surface.uv); }, join_sums<3>,
      [](const float* v, const PixelSum& sum, float* out) {
        for (int c = 0; c < 3; ++c) out[c] = v[c] * sum.weight();
      }},
-    {pass::kObjectIndex, "IndexOB", 1,
+    {pass::kObjectIndex, "IndexOB", 1, 1,
      [](const CameraRay& ray, float* v) {
        if (is_first(ray)) *v = ray.surface.object_index;
      },
      join_first<1>, write_as_is<1>},
-    {pass::kMaterialIndex, "IndexMA", 1,
+    {pass::kMaterialIndex, "IndexMA", 1, 1,
      [](const CameraRay& ray, float* v) {
        if (is_first(ray)) *v = ray.surface.material_index;
      },
      join_first<1>, write_as_is<1>},
-    {pass::kMist, "Mist", 1, [](const CameraRay& ray, float* v) { *v += ray.surface.clear; }, join_sums<1>,
+    {pass::kMist, "Mist", 1, 1, [](const CameraRay& ray, float* v) { *v += ray.surface.clear; }, join_sums<1>,
      [](const float* v, const PixelSum& sum, float* out) {
        *out = sum.camera_rays > 0 ? std::clamp(1.0f - *v * sum.weight(), 0.0f, 1.0f) : 0.0f;
      }},
-    {pass::kAlbedo, "Albedo", 3,
+    {pass::kAlbedo, "Albedo", 3, 3,
      [](const CameraRay& ray, float* v) {
        for (int c = 0; c < 3; ++c) v[c] += ray.surface.albedo[c];
      },
@@ -120,9 +161,9 @@ constexpr ValuePass kValues[] = {
      [](const float* v, const PixelSum& sum, float* out) {
        for (int c = 0; c < 3; ++c) out[c] = std::clamp(v[c] * sum.weight(), 0.0f, 1.0f);
      }},
-    {pass::kError, "Error", 3, add_error, join_error, write_error},
+    {pass::kError, "Error", 3, 3, add_error, join_error, write_error},
     // As Cycles has it, so that a denoiser sees the edges of what shines; it may be above 1.
-    {pass::kDenoisingAlbedo, "Denoising Albedo", 3,
+    {pass::kDenoisingAlbedo, "Denoising Albedo", 3, 3,
      [](const CameraRay& ray, float* v) {
        for (int c = 0; c < 3; ++c) v[c] += ray.surface.albedo[c] + ray.surface.shine[c];
      },
@@ -130,6 +171,7 @@ constexpr ValuePass kValues[] = {
      [](const float* v, const PixelSum& sum, float* out) {
        for (int c = 0; c < 3; ++c) out[c] = v[c] * sum.weight();
      }},
+    {pass::kHalves, "Halves", 18, kFloatsOfHalves, add_halves, join_halves, write_halves},
 };
 
 struct IdPass {
@@ -180,7 +222,7 @@ PassLayout::PassLayout(const PassOptions& options) : asked_(options.asked), rank
 size_t PassLayout::floats(uint32_t bit) const {
   if ((asked_ & bit) == 0) return 0;
   const auto* value = std::ranges::find(kValues, bit, &ValuePass::bit);
-  return static_cast<size_t>(value != std::end(kValues) ? value->channels : floats_of_ids(ranks_));
+  return static_cast<size_t>(value != std::end(kValues) ? value->floats : floats_of_ids(ranks_));
 }
 
 /// Where its floats begin: values come before ids, each in the order of their tables.
@@ -214,7 +256,7 @@ void PassLayout::add(const SurfaceSample& surface, const CameraSample& sample, c
   for (const ValuePass& value : kValues) {
     if ((asked_ & value.bit) == 0) continue;
     value.add(ray, values);
-    values += value.channels;
+    values += value.floats;
   }
   const auto ids_a_pixel = static_cast<size_t>(floats_of_ids(ranks_));
   for (const IdPass& ids : kIds) {
@@ -231,7 +273,7 @@ void PassLayout::join(const PixelSum& before, std::span<float> values, const Pix
   for (const ValuePass& value : kValues) {
     if ((asked_ & value.bit) == 0) continue;
     value.join(runs, &values[at], &later_values[at]);
-    at += static_cast<size_t>(value.channels);
+    at += static_cast<size_t>(value.floats);
   }
   const auto ids_a_pixel = static_cast<size_t>(floats_of_ids(ranks_));
   for (const IdPass& ids : kIds) {

@@ -20,7 +20,8 @@ class PassLayout {
 
   /// Channels of a pass, asked for or not; 0: there is none of that name. "Position" 3 (world, of the first camera
   /// ray), "UV" 3 (mean; the last: share with texture coordinates), "IndexOB" 1, "IndexMA" 1 (of the first camera ray),
-  /// "Mist" 1, "Albedo" 3, "Error" 3, "Denoising Albedo" 3; "CryptoObject00", "CryptoObject01", ...,
+  /// "Mist" 1, "Albedo" 3, "Error" 3, "Denoising Albedo" 3, "Halves" 18 (of the even camera rays color, denoising
+  /// albedo and normal, 3 each; of the odd ones the same); "CryptoObject00", "CryptoObject01", ...,
   /// "CryptoMaterial..", "CryptoAsset.." 4: two ids, each followed by its coverage.
   static int channels(std::string_view pass);
   bool has(std::string_view pass) const;

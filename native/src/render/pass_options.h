@@ -10,8 +10,8 @@ namespace velour {
 namespace pass {
 inline constexpr uint32_t kPosition = 1, kUv = 2, kObjectIndex = 4, kMaterialIndex = 8, kMist = 16, kAlbedo = 32,
                           kError = 64, kCryptoObject = 128, kCryptoMaterial = 256, kCryptoAsset = 512,
-                          kDenoisingAlbedo = 1024;
-inline constexpr uint32_t kAll = 2047;
+                          kDenoisingAlbedo = 1024, kHalves = 2048;
+inline constexpr uint32_t kAll = 4095;
 /// Those that need to know what a camera ray meets.
 inline constexpr uint32_t kOfSurfaces = kAll & ~kError;
 }  // namespace pass

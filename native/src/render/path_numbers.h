@@ -16,16 +16,16 @@ namespace velour {
 enum class Purpose : uint64_t { camera, side, surface, light, sharp, onward, product_side, product, lens };
 
 /// `Sequence::sobol`: for every (seed, pixel, half, vertex of the path, purpose) one scrambled sequence. The camera
-/// rays of a pixel, and the directions of each, take successive points of it. With a noise target even and odd camera
-/// rays are two halves, independent of each other, so that their difference tells the error (PixelSum); without one
-/// they are one sequence, which errs less.
+/// rays of a pixel, and the directions of each, take successive points of it. With a noise target or to denoise even
+/// and odd camera rays are two halves, independent of each other, so that their difference tells the error (PixelSum);
+/// without one they are one sequence, which errs less.
 ///
 /// `Sequence::random`: independent numbers, with a lattice for the directions of one vertex; kept as the judge.
 ///
 /// `Sequence::independent`: without the lattice, as in the dissertation.
 class PathNumbers {
  public:
-  /// Uses seed, sequence and noise of `options`.
+  /// Uses seed, sequence, noise and denoise of `options`.
   PathNumbers(const RenderOptions& options, uint64_t pixel, uint32_t camera_ray)
       : sequence_(options.numbers()),
         random_(options.seed, pixel, sequence_ == Sequence::sobol ? camera_ray % halves(options) : camera_ray),
@@ -68,7 +68,7 @@ class PathNumbers {
   uint32_t ray() const { return ray_; }
 
  private:
-  static uint32_t halves(const RenderOptions& options) { return options.noise > 0.0 ? 2 : 1; }
+  static uint32_t halves(const RenderOptions& options) { return options.noise > 0.0 || options.denoise ? 2 : 1; }
   uint64_t key(Purpose purpose) const {
     return mix64(key_ + (vertex_ * 8 + static_cast<uint64_t>(purpose)) * 0x9e3779b97f4a7c15ULL);
   }

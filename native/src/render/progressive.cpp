@@ -4,9 +4,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include "job/threads.h"
+#include "render/denoise_film.h"
 #include "render/noise_target.h"
 #include "render/preparation.h"
 
@@ -18,8 +20,8 @@ constexpr int kCoarseDirections = 4;
 
 }  // namespace
 
-ProgressiveRender::Level::Level(int width, int height)
-    : film(width, height), tiles(blocks_of(film.window())), done(tiles.size()) {}
+ProgressiveRender::Level::Level(int width, int height, const PassOptions& passes)
+    : film({0, 0, width, height}, passes), tiles(blocks_of(film.window())), done(tiles.size()) {}
 
 ProgressiveRender::ProgressiveRender(std::shared_ptr<Scene> scene, const RenderOptions& options)
     : scene_(std::move(scene)),
@@ -40,6 +42,7 @@ void ProgressiveRender::restart() {
   is_unseen_ = true;
   const std::lock_guard lock(mutex_);
   shown_ = beneath_ = nullptr;
+  denoised_.clear();
   samples_ = 0;
 }
 
@@ -88,7 +91,9 @@ void ProgressiveRender::render_level(Progress& progress) {
   std::unique_ptr<Level>& made = levels_[static_cast<size_t>(level_)];
   if (!made) {
     const int divisor = first_.divisor(level_);
-    made = std::make_unique<Level>(divided(asked_.width, divisor), divided(asked_.height, divisor));
+    PassOptions passes;
+    if (is_last() && asked_.denoise) passes.asked = pass::kHalves;
+    made = std::make_unique<Level>(divided(asked_.width, divisor), divided(asked_.height, divisor), passes);
   }
   Level& level = *made;
   set_options(level);
@@ -98,7 +103,11 @@ void ProgressiveRender::render_level(Progress& progress) {
     const int target = std::min(level.least + std::clamp(level.least, 1, kMaxPass), total);
     render_pass(level, target, progress);
     level.least = target;
-    show();
+    if (is_last() && asked_.denoise && (std::has_single_bit(static_cast<unsigned>(target)) || target == total)) {
+      show(denoised(level.film, progress));
+    } else {
+      show();
+    }
     measure_first(true);
     if (is_last()) progress.update(static_cast<double>(target) / total);
   }
@@ -117,9 +126,20 @@ void ProgressiveRender::render_pass(Level& level, int target, Progress& progress
   });
 }
 
-/// Of the first level nothing but the whole: there is nothing beneath it.
-void ProgressiveRender::show() {
+/// RGBA.
+std::vector<float> ProgressiveRender::denoised(const Film& film, const Progress& progress) const {
+  const std::vector<float> colors = denoised_colors(film, asked_.threads, progress);
+  std::vector<float> pixels(4 * (colors.size() / 3));
+  film.read_pass("Combined", pixels);
+  for (size_t i = 0; i < colors.size() / 3; ++i) std::copy_n(&colors[3 * i], 3, &pixels[4 * i]);
+  return pixels;
+}
+
+/// Of the first level nothing but the whole: there is nothing beneath it. A denoised picture stays until the next one.
+void ProgressiveRender::show(std::vector<float> denoised) {
   const std::lock_guard lock(mutex_);
+  if (denoised.empty() && !denoised_.empty()) return;
+  denoised_ = std::move(denoised);
   const auto level = static_cast<size_t>(level_);
   shown_ = levels_[level].get();
   beneath_ = shown_->least == 0 && level_ > begin_ ? levels_[level - 1].get() : nullptr;
@@ -141,6 +161,10 @@ ProgressiveRender::Picture ProgressiveRender::read(std::span<float> pixels) cons
   if (pixels.size() < count) {
     throw Error(Status::invalid_argument, "The picture has " + std::to_string(count) + " values, more than the " +
                                               std::to_string(pixels.size()) + " that there is room for.");
+  }
+  if (!denoised_.empty()) {
+    std::ranges::copy(denoised_, pixels.begin());
+    return {film.width(), film.height(), samples_, version_};
   }
   film.read_over(beneath_ != nullptr ? &beneath_->film : nullptr, pixels.first(count));
   return {film.width(), film.height(), samples_, version_};

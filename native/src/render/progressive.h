@@ -27,7 +27,9 @@ class ProgressiveRender {
   };
 
   /// `scene` may change between runs: then restart() goes before the next one. Of `options`, noise, time_limit,
-  /// samples, crop and stop are not used. Throws what render() throws of options.
+  /// samples, crop and stop are not used. With `denoise` the picture is denoised from the first pass of full size on,
+  /// each time that it has twice the camera rays, and what is shown has no noise from then on. Throws what render()
+  /// throws of options.
   ProgressiveRender(std::shared_ptr<Scene> scene, const RenderOptions& options);
 
   /// The next run begins anew. Not while one runs.
@@ -44,7 +46,7 @@ class ProgressiveRender {
 
  private:
   struct Level {
-    Level(int width, int height);
+    Level(int width, int height, const PassOptions& passes);
     Film film;
     std::vector<PixelRect> tiles;
     std::vector<int> done;  // camera rays a pixel, by tile
@@ -55,7 +57,8 @@ class ProgressiveRender {
   void set_options(const Level& level);
   void render_level(Progress& progress);
   void render_pass(Level& level, int target, Progress& progress);
-  void show();
+  void show(std::vector<float> denoised = {});
+  std::vector<float> denoised(const Film& film, const Progress& progress) const;
   void measure_first(bool is_whole);
 
   const std::shared_ptr<Scene> scene_;
@@ -74,6 +77,7 @@ class ProgressiveRender {
   mutable std::mutex mutex_;        // of what follows
   const Level* shown_ = nullptr;    // null: nothing yet
   const Level* beneath_ = nullptr;  // the level before, where `shown_` has holes
+  std::vector<float> denoised_;     // RGBA, of full size: shown in the place of `shown_`; empty: nothing
   uint32_t samples_ = 0;
   std::atomic<uint64_t> version_{0};
 };

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "job/threads.h"
+#include "render/denoised_target.h"
 #include "render/noise_target.h"
 #include "render/preparation.h"
 #include "render/ray_share.h"
@@ -24,6 +26,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 RenderOptions checked_for(const Scene& scene, const RenderOptions& options, const Film& film) {
   if (film.window() != options.window()) {
     throw Error(Status::invalid_argument, "The film has another size or place than the render options ask for.");
+  }
+  if (options.denoise && !film.options().has(pass::kHalves)) {
+    throw Error(Status::invalid_argument, "The film has no pass \"Halves\", which the render option denoise needs.");
   }
   if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is rendered.");
   return checked(options);
@@ -45,8 +50,10 @@ class Renderer {
         progress_(progress),
         arena_(arena_concurrency(options_.threads)),
         context_(scene, options_, progress),
-        target_(options_.noise, blocks_of(options_.window())),
-        next_(context_.first_camera_ray()) {}
+        target_(options_.denoise ? 0.0 : options_.noise, blocks_of(options_.window())),
+        next_(context_.first_camera_ray()) {
+    if (options_.denoise && options_.noise > 0.0) denoised_.emplace(options_.noise, options_.threads);
+  }
 
   RenderReport run() {
     if (!options_.onto_film) film_.clear();
@@ -63,15 +70,25 @@ class Renderer {
     const int first = context_.first_camera_ray(), end = context_.end_camera_ray();
     run_stage(progress_, report_.stages, "render", report_.stages.empty() ? 0.0 : kPreparation, 1.0, [&] {
       const auto start = Clock::now();
-      while (next_ < end && !target_.active().empty() && !stopped()) {
+      while (next_ < end && !is_done() && !stopped()) {
         const int size = pass_size(options_, next_ - first, end - next_);
-        const int count = std::min(size, target_.next_decision() - next_);
+        const int count = std::min(size, next_decision() - next_);
         if (report_.passes > 0 && out_of_time(seconds_since(start), count)) break;
         render_pass(count, end - first);
-        if (next_ == target_.next_decision()) target_.decide(film_);
+        if (next_ == next_decision()) decide();
       }
     });
     report_.seconds = report_.stages.back().seconds;
+  }
+
+  bool is_done() const { return denoised_ ? denoised_->done() : target_.active().empty(); }
+  int next_decision() const { return denoised_ ? denoised_->next_decision() : target_.next_decision(); }
+  void decide() {
+    if (denoised_) {
+      denoised_->decide(film_, progress_);
+    } else {
+      target_.decide(film_);
+    }
   }
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
@@ -131,6 +148,7 @@ class Renderer {
   tbb::task_arena arena_;
   RenderContext context_;
   NoiseTarget target_;
+  std::optional<DenoisedTarget> denoised_;  // in its place
   tbb::enumerable_thread_specific<TileRenderer> renderers_{[this] { return TileRenderer(context_); }};
   RayShare share_{options_.measure_ray_share, options_.split};
   RenderReport report_;

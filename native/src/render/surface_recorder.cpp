@@ -27,8 +27,9 @@ SurfaceSample SurfaceRecorder::record(const PassOptions& options, const Vertex& 
   s.material_id = of_material.id;
   if (options.has(pass::kUv)) s.uv = uv(hit, of_instance.uv_set);
   if (options.has(pass::kMist)) s.clear = (1.0f - options.mist.at(distance(vertex.position))) * s.seen;
-  if (options.has(pass::kAlbedo | pass::kDenoisingAlbedo)) s.albedo = throughput * albedo_.estimate(vertex, numbers);
-  if (options.has(pass::kDenoisingAlbedo)) s.shine = throughput * vertex.emission();
+  if (options.has(pass::kAlbedo | pass::kDenoisingAlbedo | pass::kHalves))
+    s.albedo = throughput * albedo_.estimate(vertex, numbers);
+  if (options.has(pass::kDenoisingAlbedo | pass::kHalves)) s.shine = throughput * vertex.emission();
   return s;
 }
 

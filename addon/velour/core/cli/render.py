@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...native import Model, Scene, biases, images, library, observe_job, render_job, table
+from ...native import Job, Model, Scene, biases, denoise_job, images, library, observe_job, render_job, table
 from ...native.errors import refuse
 from .. import domain
 from ..cache import user_cache_folder
@@ -30,6 +30,7 @@ KEYS = (
     "block_noise",
     "blocks_unfinished",
     "biased_by",
+    "denoised",
     "sky",
     "out_of_domain",
     "samples",
@@ -61,6 +62,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--noise", type=numbers.real(1e-6, 1e6), metavar="E", help="relative error of each block of pixels"
     )
+    parser.add_argument(
+        "--denoise",
+        action="store_true",
+        help="by Open Image Denoise; with --noise, E is the error of the denoised picture",
+    )
+    parser.add_argument("--noisy-image", metavar="FILE", help="keeps the picture without --denoise, too")
     light_paths = parser.add_argument_group("against fireflies, as in Cycles; each biases the picture")
     light_paths.add_argument(
         "--clamp-direct", type=numbers.real(0, 1e9), metavar="L", help="largest value of a direct sample"
@@ -98,6 +105,12 @@ def run(args: argparse.Namespace) -> dict:
     options = _options(args)
     render_part.check(args, options)
     output.check_writable(args.output)
+    if args.noisy_image:
+        if not args.denoise:
+            raise refuse("--noisy-image keeps what --denoise takes the noise out of; give that, too.")
+        output.check_writable(args.noisy_image)
+    if args.denoise:
+        library.denoiser()  # refused before the render, not after it
     estimate = memory.check(args)
     with contextlib.ExitStack() as handles:
         reference = _read_reference(args)
@@ -113,8 +126,12 @@ def run(args: argparse.Namespace) -> dict:
         with stopping(job.start()):
             output.log.info("Rendering the samples %d:%d.", *left.ranges[0])
             job.wait(output.progress_of(args))
-            report = job.report()
+            report = job.report() | {"denoised": None}
             picture = job.read_pass("Combined")
+            if args.denoise and report["passes"]:
+                if args.noisy_image:
+                    images.write(args.noisy_image, picture)
+                picture, report["denoised"], report["stages"]["denoise"] = _denoised(job, args)
             rendered = time.perf_counter()
             new = replace(left, ranges=render_part.rendered(left, report), read=lambda: picture)
             whole = unfinished.deliver(part, before, new, report)
@@ -130,6 +147,15 @@ def run(args: argparse.Namespace) -> dict:
     report |= {"stages": stages, "rmse": rmse, "relmse": relmse, "out_of_domain": outside}
     report |= {"samples": whole.ranges, "memory": memory.report(estimate)}
     return {key: report[key] for key in KEYS}
+
+
+def _denoised(job: Job, args: argparse.Namespace) -> tuple[np.ndarray, dict, float]:
+    """The picture, what is known of its error, and seconds."""
+    start = time.perf_counter()
+    with denoise_job(job, args.threads or 0) as denoising:
+        denoising.run()
+        report = denoising.report()
+    return job.read_pass("Denoised"), report, time.perf_counter() - start
 
 
 def _choose_model(
@@ -196,6 +222,7 @@ def _options(args: argparse.Namespace) -> dict:
         "height": args.size[1],
         "measure_ray_share": 1,
         "cache_folder": cache_folder,
+        "denoise": int(args.denoise),
         **options,
     }
 
@@ -205,6 +232,13 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
         output.log.warning("%s", warning)
     if report["nan_samples"]:
         output.log.warning("%d samples were not finite and were left out.", report["nan_samples"])
+    if report["denoised"] and report["denoised"]["relmse_bound"] is not None:
+        bound = report["denoised"]["relmse_bound"]
+        output.log.info("The relmse of the denoised picture is at most %.3g, with 97 %% certainty.", bound)
+        if args.noise and not render_part.meets_noise(args.noise, report):
+            output.log.warning(
+                "That is above the noise target of %g, a relmse of %.3g.", args.noise, args.noise**2
+            )
     if report["blocks_unfinished"]:
         output.log.warning(
             "%d blocks of pixels are above the noise target of %g; the worst has %.3g.",

@@ -17,11 +17,11 @@ from . import numbers
 
 _FILES = ("mesh", "proposal", "world", "full_model")  # told apart by what is in them
 _NUMBERS = ("spp", "bounces", "share", "seed", "noise")
-_NUMBERS += ("clamp_direct", "clamp_indirect", "filter_glossy", "reflective_caustics")
+_NUMBERS += ("clamp_direct", "clamp_indirect", "filter_glossy", "reflective_caustics", "denoise")
 _NAMES = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence": table.SEQUENCES}
 # What says nothing of the whole picture. All other options do, also those that are still to come.
 _ELSEWHERE = {
-    "output", "samples", "crop", "threads", "time_limit", "memory", "cache", "reference",
+    "output", "noisy_image", "samples", "crop", "threads", "time_limit", "memory", "cache", "reference",
     "json", "json_file", "quiet", "log_level", "simd", "run",
 }  # fmt: skip
 
@@ -44,6 +44,8 @@ def check(args: argparse.Namespace, options: dict) -> None:
         raise refuse(
             f"{args.output}: parts of pictures are written as .exr, which says what they are parts of."
         )
+    if args.denoise:
+        raise refuse("--denoise takes a whole picture; leave --samples and --crop out, or --denoise.")
     if args.noise is not None:
         raise refuse("--noise looks at a whole picture; leave --samples and --crop out, or --noise.")
     if args.crop:
@@ -87,7 +89,7 @@ def asked(args: argparse.Namespace, options: dict) -> Part:
 
 def options_of(part: Part) -> dict:
     """As render_job() takes them."""
-    if part.made["noise"]:  # which goes with no part
+    if part.made["noise"] or part.made["denoise"]:  # which go with no part
         return {}
     (begin, end), (rows, columns) = part.ranges[0], part.window
     return {
@@ -101,18 +103,29 @@ def options_of(part: Part) -> dict:
 
 
 def rendered(part: Part, report: dict) -> tuple[Range, ...]:
-    """The samples that each pixel has; with a noise target pixels have their own numbers of them: none."""
-    if part.made["noise"]:
+    """The samples that each pixel has, for merge; none with a noise target, where pixels have their own
+    numbers of them, and none of denoised pictures."""
+    if part.made["noise"] or part.made["denoise"]:
         return ()
     begin = part.ranges[0][0]
     return ((begin, begin + report["spp"]),)
 
 
 def is_complete(asked: Part, whole: Part, report: dict) -> bool:
-    """Whether `whole` has all that was asked for; with a noise target `report` tells."""
-    if asked.made["noise"]:
-        return report["blocks_unfinished"] == 0 or report["spp"] == asked.made["spp"]
+    """Whether `whole` has all that was asked for; with a noise target or --denoise `report` tells."""
+    if asked.made["noise"] and meets_noise(asked.made["noise"], report):
+        return True
+    if asked.made["noise"] or asked.made["denoise"]:
+        return report["spp"] == asked.made["spp"]
     return whole.ranges == asked.ranges
+
+
+def meets_noise(noise: float, report: dict) -> bool:
+    """Whether the picture's error is at most the target: of each block, or denoised of the whole."""
+    if not report["denoised"]:
+        return report["blocks_unfinished"] == 0
+    bound = report["denoised"]["relmse_bound"]
+    return bound is not None and bound <= noise**2
 
 
 def _made(args: argparse.Namespace, options: dict) -> dict:

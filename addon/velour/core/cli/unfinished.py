@@ -20,7 +20,7 @@ def side_file(path: str) -> Path:
 def kept(asked: Part) -> Part | None:
     """What earlier runs of the same render left. Raises a sentence where it is another render's."""
     path = side_file(asked.name)
-    if asked.made["noise"] or not path.exists():
+    if not _goes_on(asked) or not path.exists():
         return None
     part = picture_parts.open_part(path)
     remedy = "remove the former to begin anew, or name another output"
@@ -32,6 +32,11 @@ def kept(asked: Part) -> Part | None:
         raise refuse(f"{path} is not of this render: it has other pixels or samples; {remedy}.")
     output.log.info("Goes on from the samples %d:%d in %s.", first, last, path)
     return part
+
+
+def _goes_on(asked: Part) -> bool:
+    """Whether means of all samples so far suffice for a run to go on from."""
+    return not (asked.made["noise"] or asked.made["denoise"])
 
 
 def left(asked: Part, before: Part | None) -> Part:
@@ -50,9 +55,9 @@ def deliver(asked: Part, before: Part | None, rendered: Part, report: dict) -> P
         path.unlink(missing_ok=True)
         return whole
     picture_parts.write(path, whole)
-    if asked.made["noise"]:
+    if not _goes_on(asked):
         raise UnfinishedError(
-            f"Stopped; {path} has the picture so far; with --noise the next run begins anew."
+            f"Stopped; {path} has the picture so far; with --noise or --denoise the next run begins anew."
         )
     raise UnfinishedError(f"Stopped; {_known(whole, path)}")
 

@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kWidth = 37, kHeight = 21;
 constexpr const char* kFirst[] = {"Depth", "Position", "IndexOB", "IndexMA"};  // of the first camera ray
-constexpr const char* kMeans[] = {"Combined",       "Normal",          "Sample Count", "UV",
-                                  "Mist",           "Albedo",          "Error",        "Denoising Albedo",
-                                  "CryptoObject00", "CryptoMaterial00"};
+constexpr const char* kMeans[] = {"Combined",       "Normal",           "Sample Count", "UV",
+                                  "Mist",           "Albedo",           "Error",        "Denoising Albedo",
+                                  "CryptoObject00", "CryptoMaterial00", "Halves"};
 
 Scene uneven_scene() {
   Scene scene = test::busy_scene();

@@ -21,7 +21,8 @@ constexpr const char* kNames[] = {"Position",       "UV",
                                   "Mist",           "Albedo",
                                   "Error",          "CryptoObject00",
                                   "CryptoObject01", "CryptoMaterial00",
-                                  "CryptoAsset02",  "Denoising Albedo"};
+                                  "CryptoAsset02",  "Denoising Albedo",
+                                  "Halves"};
 
 /// Everything, with labels for two instances and two materials.
 PassOptions all_passes() {

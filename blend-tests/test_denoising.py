@@ -1,0 +1,82 @@
+"""Denoised renders: the picture, its passes and stamps, and what is said where nothing can denoise."""
+
+import importlib
+from unittest import mock
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+denoising = importlib.import_module(f"{inputs.ADDON}.engine.denoising")
+
+
+class Denoising(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        if reason := denoising.missing():
+            self.skipTest(reason)
+        self.scene = scenes.use_engine(samples=16)
+        self.scene.velour.split = 1
+        scenes.add_camera(ortho_scale=4)
+        scenes.set_world()
+        scenes.add_sphere(scenes.diffuse_material())
+        scenes.add_plane(scenes.diffuse_material((0.8, 0.4, 0.2)), size=8).location.z = -1
+
+    def _error(self, picture, truth):
+        return float(np.square(picture[..., :3] - truth[..., :3]).mean())
+
+    def test_picture_and_passes(self):
+        settings = self.scene.velour
+        settings.samples = 4096
+        truth = scenes.render(self.folder, "truth")
+        settings.samples = 16
+        before = scenes.render(self.folder, "before")
+        settings.use_denoising = True
+        bpy.context.view_layer.update_render_passes()
+        denoised = scenes.render(self.folder, "denoised")
+        self.assertLess(self._error(denoised, truth), 0.4 * self._error(before, truth))
+        np.testing.assert_array_equal(denoised[..., 3], before[..., 3])
+        stamp = (self.folder / "denoised.exr").read_bytes()
+        self.assertIn(b"velour.denoised", stamp)
+        self.assertIn("at most", denoising.last_errors[self.scene.name])
+        settings.use_denoising = False
+        np.testing.assert_array_equal(scenes.render(self.folder, "after"), before)
+        settings.use_denoising = True
+        bpy.context.view_layer.update_render_passes()
+        scenes.composite(self.scene)("Noisy Image")
+        noisy = scenes.render(self.folder, "noisy")
+        self.assertGreater(self._error(noisy, truth), 2 * self._error(denoised, truth))
+
+    def test_noise_threshold_is_that_of_the_denoised_picture(self):
+        settings = self.scene.velour
+        settings.samples, settings.use_noise_target, settings.noise_target = 4096, True, 0.02
+        bpy.context.view_layer.velour.use_pass_sample_count = True
+        show = scenes.composite(self.scene)
+        counts = []
+        for denoise in (False, True):
+            settings.use_denoising = denoise
+            bpy.context.view_layer.update_render_passes()
+            show("Sample Count")
+            counts.append(scenes.render(self.folder, f"counts{denoise}")[..., 0].mean())
+        self.assertLess(counts[1], counts[0])
+
+    def test_several_layers(self):
+        """Each has its own."""
+        self.scene.velour.use_denoising = True
+        self.scene.view_layers.new("Second")
+        bpy.context.view_layer.update_render_passes()
+        scenes.render(self.folder)
+
+
+class Missing(BlenderTest):
+    def test_render_is_refused_and_the_viewport_is_not(self):
+        scene = scenes.use_engine(samples=4)
+        scenes.add_camera()
+        scene.velour.use_denoising = True
+        missing = mock.patch.object(denoising, "missing", return_value="it is not there.")
+        with missing, self.assertRaisesRegex(RuntimeError, "is to be denoised, but it is not there"):
+            bpy.ops.render.render()
+        scene.velour.use_denoising = False
+        bpy.ops.render.render()

@@ -1,0 +1,105 @@
+#include "denoise/denoiser.h"
+
+#include <tbb/info.h>
+
+#include <vector>
+
+namespace velour {
+namespace {
+
+// Of oidn.h.
+constexpr int kCpu = 1, kFloat3 = 3, kBalanced = 5, kNoError = 0, kCancelled = 6;
+
+/// Many versions do not know how far they are; all of them ask whether to go on.
+bool goes_on(void* progress, double /*fraction*/) { return !static_cast<const Progress*>(progress)->cancelled(); }
+
+}  // namespace
+
+class Denoiser::Filter {
+ public:
+  Filter(const Denoiser& denoiser, const NoisyPicture& picture)
+      : oidn_(denoiser.oidn_), picture_(picture), filter_(oidn_.NewFilter(denoiser.device_, "RT")) {
+    // High quality takes twice the time for 5 % less error: more samples are worth more.
+    oidn_.SetFilterInt(filter_, "quality", kBalanced);
+  }
+  ~Filter() { oidn_.ReleaseFilter(filter_); }
+  Filter(const Filter&) = delete;
+  Filter& operator=(const Filter&) = delete;
+
+  void input(const char* name, std::span<const float> pixels) {
+    output(name, {const_cast<float*>(pixels.data()), pixels.size()});  // which it does not write to
+  }
+  void output(const char* name, std::span<float> pixels) {
+    const auto width = static_cast<size_t>(picture_.width), height = static_cast<size_t>(picture_.height);
+    if (pixels.size() != 3 * width * height) {
+      throw Error(Status::invalid_argument,
+                  std::string("The picture to denoise has another size than its ") + name + ".");
+    }
+    oidn_.SetSharedFilterImage(filter_, name, pixels.data(), kFloat3, width, height, 0, 0, 0);
+  }
+  void set(const char* name) { oidn_.SetFilterBool(filter_, name, true); }
+
+  void run(const Progress& progress) {
+    oidn_.SetFilterProgressMonitorFunction(filter_, goes_on, const_cast<Progress*>(&progress));
+    oidn_.CommitFilter(filter_);
+    oidn_.ExecuteFilter(filter_);
+  }
+
+ private:
+  const OpenImageDenoise& oidn_;
+  const NoisyPicture& picture_;
+  OpenImageDenoise::Filter filter_;
+};
+
+Denoiser::Denoiser(int threads) : oidn_(open_image_denoise()), device_(oidn_.NewDevice(kCpu)) {
+  if (device_ == nullptr) throw Error(Status::unsupported, path() + " does not run on this processor.");
+  oidn_.SetDeviceInt(device_, "numThreads", threads > 0 ? threads : tbb::info::default_concurrency());
+  oidn_.SetDeviceBool(device_, "setAffinity", false);  // the threads are not ours alone
+  oidn_.CommitDevice(device_);
+  try {
+    check(Progress{});
+  } catch (...) {
+    oidn_.ReleaseDevice(device_);
+    throw;
+  }
+}
+
+Denoiser::~Denoiser() { oidn_.ReleaseDevice(device_); }
+
+void Denoiser::check(const Progress& progress) const {
+  const char* message = nullptr;
+  const int error = oidn_.GetDeviceError(device_, &message);
+  if (error == kCancelled) progress.check();
+  if (error == kNoError || error == kCancelled) return;
+  throw Error(Status::unsupported,
+              path() + " cannot denoise: " + (message != nullptr ? message : "it does not say why"));
+}
+
+void Denoiser::run(const NoisyPicture& picture, std::span<float> denoised, const Progress& progress) {
+  std::vector<float> albedo(picture.albedo.size()), normal(picture.normal.size());
+  const auto prefilter = [&](const char* name, std::span<const float> noisy, std::span<float> clean) {
+    Filter filter(*this, picture);
+    filter.input(name, noisy);
+    filter.output("output", clean);
+    filter.run(progress);
+    check(progress);
+  };
+  prefilter("albedo", picture.albedo, albedo);
+  prefilter("normal", picture.normal, normal);
+  Filter filter(*this, picture);
+  filter.input("color", picture.color);
+  filter.input("albedo", albedo);
+  filter.input("normal", normal);
+  filter.output("output", denoised);
+  filter.set("hdr");
+  filter.set("cleanAux");
+  filter.run(progress);
+  check(progress);
+}
+
+std::string Denoiser::version() const {
+  const int number = oidn_.GetDeviceInt(device_, "version");
+  return std::to_string(number / 10000) + "." + std::to_string(number / 100 % 100) + "." + std::to_string(number % 100);
+}
+
+}  // namespace velour

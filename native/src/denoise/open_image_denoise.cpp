@@ -1,0 +1,33 @@
+#include "denoise/open_image_denoise.h"
+
+#include <memory>
+#include <mutex>
+
+namespace velour {
+namespace {
+
+constexpr const char* kRemedy =
+    "Blender's own builds since 4.0 bring it; elsewhere scripts/setup --denoise installs it, and VELOUR_OIDN names its "
+    "file.";
+
+std::mutex mutex;
+std::string file;
+
+}  // namespace
+
+OpenImageDenoise::OpenImageDenoise(const std::string& first) : library("libOpenImageDenoise.so.2", kRemedy, first) {}
+
+void set_open_image_denoise_file(const std::string& name) {
+  const std::lock_guard lock(mutex);
+  file = name;
+}
+
+const OpenImageDenoise& open_image_denoise() {
+  // Never closed: its threads may outlive whatever would close it.
+  static OpenImageDenoise* opened = nullptr;
+  const std::lock_guard lock(mutex);
+  if (opened == nullptr) opened = new OpenImageDenoise(file);
+  return *opened;
+}
+
+}  // namespace velour

@@ -1,0 +1,49 @@
+// Intel's Open Image Denoise 2: its C interface, bound at run time. Neither building nor running needs it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "file/private_library.h"
+
+namespace velour {
+
+/// Table of the functions that are used, as oidn.h 2.0 declares them. Values of its enumerations stand where they are
+/// used.
+struct OpenImageDenoise {
+  using Device = struct OpaqueDevice*;
+  using Filter = struct OpaqueFilter*;
+  using Monitor = bool(void* user, double fraction);  // false: cancel
+
+  /// `file`: looked at before all else; empty: none.
+  explicit OpenImageDenoise(const std::string& file);
+
+  PrivateLibrary library;
+#define VELOUR_OIDN(type, name, ...) type (*const name)(__VA_ARGS__) = library.function<type(__VA_ARGS__)>("oidn" #name)
+  VELOUR_OIDN(Device, NewDevice, int type);
+  VELOUR_OIDN(void, SetDeviceInt, Device, const char* name, int value);
+  VELOUR_OIDN(void, SetDeviceBool, Device, const char* name, bool value);
+  VELOUR_OIDN(int, GetDeviceInt, Device, const char* name);
+  VELOUR_OIDN(void, CommitDevice, Device);
+  VELOUR_OIDN(int, GetDeviceError, Device, const char** message);
+  VELOUR_OIDN(void, ReleaseDevice, Device);
+  VELOUR_OIDN(Filter, NewFilter, Device, const char* type);
+  VELOUR_OIDN(void, SetSharedFilterImage, Filter, const char* name, void* pixels, int format, size_t width,
+              size_t height, size_t byte_offset, size_t pixel_stride, size_t row_stride);
+  VELOUR_OIDN(void, SetFilterBool, Filter, const char* name, bool value);
+  VELOUR_OIDN(void, SetFilterInt, Filter, const char* name, int value);
+  VELOUR_OIDN(void, SetFilterProgressMonitorFunction, Filter, Monitor* monitor, void* user);
+  VELOUR_OIDN(void, CommitFilter, Filter);
+  VELOUR_OIDN(void, ExecuteFilter, Filter);
+  VELOUR_OIDN(void, ReleaseFilter, Filter);
+#undef VELOUR_OIDN
+};
+
+/// Names the file that open_image_denoise() opens; empty: libOpenImageDenoise.so.2 beside our own library or on the
+/// system's path. Once it is open, nothing changes any more. Thread-safe.
+void set_open_image_denoise_file(const std::string& file);
+
+/// Opened with the first call, and kept. Throws Error(unsupported) with what was tried and what to do.
+const OpenImageDenoise& open_image_denoise();
+
+}  // namespace velour
