@@ -60,7 +60,7 @@ PeriodicTile::PeriodicTile(HeightField field, std::vector<uint8_t> base_cells)
   const auto triangles = padded_triangles(field_.cells);
   scene_.add_instance(scene_.add_mesh(padded_positions(field_), triangles), {});
   // One thread: tiles are built side by side, and the hierarchy must not depend on the number of threads.
-  scene_.commit(1);
+  scene_.commit(1, nullptr, EmbreeScene::Levels::one);
 }
 
 Vec2 PeriodicTile::slope(int facet) const {

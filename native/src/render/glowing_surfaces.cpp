@@ -48,7 +48,7 @@ GlowingSurfaces::GlowingSurfaces(const Scene& scene, const Progress& progress) :
     const Scene::Instance& i = scene.instances()[place.instance];
     rays_->add_instance(i.traced, i.object_to_world);
   }
-  rays_->commit(1);
+  rays_->commit(1, nullptr, scene.rays().levels());
 }
 
 void GlowingSurfaces::find_places(const Progress& progress) {

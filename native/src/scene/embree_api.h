@@ -34,6 +34,8 @@ struct EmbreeApi {
   VELOUR_EMBREE(rtcAttachGeometryByID);
   VELOUR_EMBREE(rtcGetGeometry);
   VELOUR_EMBREE(rtcSetNewGeometryBuffer);
+  VELOUR_EMBREE(rtcSetSharedGeometryBuffer);
+  VELOUR_EMBREE(rtcGetGeometryBufferData);
   VELOUR_EMBREE(rtcSetGeometryInstancedScene);
   VELOUR_EMBREE(rtcSetGeometryTransform);
 #if VELOUR_EMBREE_MAJOR >= 4

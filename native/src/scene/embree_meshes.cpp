@@ -124,6 +124,7 @@ EmbreeMeshes::~EmbreeMeshes() {
 
 uint32_t EmbreeMeshes::add(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
   scenes_.push_back(scene_of(positions, triangles));
+  sizes_.push_back({positions.size(), triangles.size()});
   unbuilt_.push_back(static_cast<uint32_t>(scenes_.size() - 1));
   return unbuilt_.back();
 }
@@ -131,23 +132,45 @@ uint32_t EmbreeMeshes::add(std::span<const Vec3> positions, std::span<const glm:
 void EmbreeMeshes::set(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
   RTCScene fresh = scene_of(positions, triangles);
   api_.rtcReleaseScene(std::exchange(scenes_.at(number), fresh));
+  sizes_[number] = {positions.size(), triangles.size()};
   if (std::ranges::find(unbuilt_, number) == unbuilt_.end()) unbuilt_.push_back(number);
 }
 
-void EmbreeMeshes::build(int threads, const Progress* progress) {
+void EmbreeMeshes::build(std::span<const uint32_t> numbers, int threads, const Progress* progress) {
   if (build_) {
-    build_->keep(unbuilt_scenes());
+    build_->keep(unbuilt_scenes(numbers));
     await(progress);
   }
-  if (unbuilt_.empty()) return;
-  build_ = std::make_unique<Build>(device_, unbuilt_scenes(), threads);
+  const std::vector<RTCScene> scenes = unbuilt_scenes(numbers);
+  if (scenes.empty()) return;
+  build_ = std::make_unique<Build>(device_, scenes, threads);
   await(progress);
 }
 
-std::vector<RTCScene> EmbreeMeshes::unbuilt_scenes() const {
+std::vector<RTCScene> EmbreeMeshes::unbuilt_scenes(std::span<const uint32_t> numbers) const {
+  std::vector<bool> wanted(scenes_.size());
+  for (const uint32_t number : numbers) wanted.at(number) = true;
   std::vector<RTCScene> scenes;
-  for (uint32_t number : unbuilt_) scenes.push_back(scenes_[number]);
+  for (const uint32_t number : unbuilt_) {
+    if (wanted[number]) scenes.push_back(scenes_[number]);
+  }
   return scenes;
+}
+
+RTCGeometry EmbreeMeshes::placed(uint32_t number, const Affine& place) const {
+  RTCGeometry mesh = api_.rtcGetGeometry(scenes_.at(number), 0);
+  RTCGeometry geometry = api_.rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const auto [vertices, triangles] = sizes_[number];
+  if (triangles == 0) return geometry;
+  auto* to = static_cast<Vec3*>(
+      api_.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), vertices));
+  check(api_.rtcGetDeviceError(device_));
+  const auto* from = static_cast<const Vec3*>(api_.rtcGetGeometryBufferData(mesh, RTC_BUFFER_TYPE_VERTEX, 0));
+  std::transform(from, from + vertices, to, [&](const Vec3& p) { return place.point(p); });
+  api_.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                  api_.rtcGetGeometryBufferData(mesh, RTC_BUFFER_TYPE_INDEX, 0), 0, sizeof(glm::uvec3),
+                                  triangles);
+  return geometry;
 }
 
 void EmbreeMeshes::await(const Progress* progress) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "job/progress.h"
+#include "scene/affine.h"
 #include "scene/embree_api.h"
 #include "sphere/vec.h"
 
@@ -24,9 +25,12 @@ class EmbreeMeshes {
   /// As of EmbreeScene.
   uint32_t add(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
   void set(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
-  /// Builds what is new. A cancel ends the waiting, not the building: that goes on, for the next call to wait for,
-  /// unless its mesh gives way to another.
-  void build(int threads, const Progress* progress);
+  /// Builds those of `numbers` that are new. A cancel ends the waiting, not the building: that goes on, for the next
+  /// call to wait for, unless its mesh gives way to another.
+  void build(std::span<const uint32_t> numbers, int threads, const Progress* progress);
+  /// The triangles of a mesh in another place, not committed; the caller releases them, before the mesh gives way.
+  RTCGeometry placed(uint32_t number, const Affine& place) const;
+  uint64_t triangles(uint32_t number) const { return sizes_.at(number).triangles; }
 
   RTCScene new_scene() const;
   /// Throws what stands for an error of Embree.
@@ -39,8 +43,12 @@ class EmbreeMeshes {
 
  private:
   class Build;
+  struct Size {
+    size_t vertices, triangles;
+  };
   RTCScene scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) const;
-  std::vector<RTCScene> unbuilt_scenes() const;
+  /// Of `numbers`.
+  std::vector<RTCScene> unbuilt_scenes(std::span<const uint32_t> numbers) const;
   /// Until the build has ended, whose meshes are no longer unbuilt then.
   void await(const Progress* progress);
   void renew(RTCScene& scene) const;
@@ -49,6 +57,7 @@ class EmbreeMeshes {
   std::atomic<int64_t> bytes_{0};
   RTCDevice device_ = nullptr;
   std::vector<RTCScene> scenes_;
+  std::vector<Size> sizes_;
   std::vector<uint32_t> unbuilt_;  // of them, by number
   std::unique_ptr<Build> build_;   // that goes on, or whose end nobody has seen
 };

@@ -37,13 +37,14 @@ struct EmbreeScene::Impl {
     uint32_t mesh;
     Affine object_to_world;
     Mat3 normal_to_world;
+    float front;  // -1: mirrored, so that corners in the world turn the other way
   };
 
   const EmbreeApi& api = embree();
   std::shared_ptr<EmbreeMeshes> meshes = std::make_shared<EmbreeMeshes>();
   std::vector<Instance> instances;
-  RTCScene top = nullptr;     // instances; stays null when `traced` is the only mesh itself
-  RTCScene traced = nullptr;  // null until committed
+  RTCScene top = nullptr;  // null until committed
+  Levels levels = Levels::two;
 
   Impl() = default;
   ~Impl() { release_top(); }
@@ -53,15 +54,25 @@ struct EmbreeScene::Impl {
   void release_top() {
     if (top != nullptr) api.rtcReleaseScene(top);
     top = nullptr;
-    traced = nullptr;
+  }
+
+  bool repeats_much() const {
+    std::vector<bool> used(meshes->size());
+    uint64_t all = 0, once = 0;
+    for (const Instance& instance : instances) {
+      const uint64_t triangles = meshes->triangles(instance.mesh);
+      all += triangles;
+      if (!used[instance.mesh]) once += triangles;
+      used[instance.mesh] = true;
+    }
+    return static_cast<double>(all) > kMostRepeated * static_cast<double>(once);
   }
 
   RTCScene build_top() const {
     RTCScene scene = meshes->new_scene();
     for (uint32_t i = 0; i < instances.size(); ++i) {
-      RTCGeometry geometry = api.rtcNewGeometry(meshes->device(), RTC_GEOMETRY_TYPE_INSTANCE);
-      api.rtcSetGeometryInstancedScene(geometry, meshes->scene(instances[i].mesh));
-      api.rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, instances[i].object_to_world.m);
+      RTCGeometry geometry = levels == Levels::one ? meshes->placed(instances[i].mesh, instances[i].object_to_world)
+                                                   : instance(instances[i]);
       api.rtcCommitGeometry(geometry);
       api.rtcAttachGeometryByID(scene, geometry, i);
       api.rtcReleaseGeometry(geometry);
@@ -69,13 +80,27 @@ struct EmbreeScene::Impl {
     return scene;
   }
 
-  void commit_top(int threads) const {
+  RTCGeometry instance(const Instance& of) const {
+    RTCGeometry geometry = api.rtcNewGeometry(meshes->device(), RTC_GEOMETRY_TYPE_INSTANCE);
+    api.rtcSetGeometryInstancedScene(geometry, meshes->scene(of.mesh));
+    api.rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, of.object_to_world.m);
+    return geometry;
+  }
+
+  static bool goes_on(void* progress, double /*fraction*/) {
+    return !static_cast<const Progress*>(progress)->cancelled();
+  }
+
+  void commit_top(int threads, const Progress* progress) const {
     RTCError error = RTC_ERROR_NONE;
     tbb::task_arena arena(arena_concurrency(threads));
+    if (progress != nullptr) api.rtcSetSceneProgressMonitorFunction(top, goes_on, const_cast<Progress*>(progress));
     arena.execute([&] {  // another thread may do it, and has its own errors
       api.rtcJoinCommitScene(top);
       error = api.rtcGetDeviceError(meshes->device());
     });
+    api.rtcSetSceneProgressMonitorFunction(top, nullptr, nullptr);
+    if (progress != nullptr) progress->check();
     EmbreeMeshes::check(error);
   }
 
@@ -84,14 +109,15 @@ struct EmbreeScene::Impl {
       hit.instance = kNoHit;
       return;
     }
-    hit.instance = top == nullptr ? 0 : from.hit.instID[0];
+    hit.instance = levels == Levels::one ? from.hit.geomID : from.hit.instID[0];
     hit.distance = from.ray.tfar;
     hit.u = from.hit.u;
     hit.v = from.hit.v;
     hit.triangle = from.hit.primID;
     hit.shell_s = std::numeric_limits<float>::quiet_NaN();
-    hit.geometric_normal = {from.hit.Ng_x, from.hit.Ng_y, from.hit.Ng_z};
-    if (top != nullptr) hit.geometric_normal = instances[hit.instance].normal_to_world * hit.geometric_normal;
+    const Vec3 normal(from.hit.Ng_x, from.hit.Ng_y, from.hit.Ng_z);
+    const Instance& of = instances[hit.instance];
+    hit.geometric_normal = levels == Levels::one ? of.front * normal : of.normal_to_world * normal;
   }
 };
 
@@ -112,23 +138,33 @@ uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world)
   if (mesh >= impl_->meshes->size()) {
     throw Error(Status::invalid_argument, "There is no mesh " + std::to_string(mesh) + " to instance.");
   }
-  impl_->instances.push_back({mesh, object_to_world, object_to_world.normal_map()});
+  const Vec3 z = glm::cross(object_to_world.column(0), object_to_world.column(1));
+  const float front = glm::dot(z, object_to_world.column(2)) < 0.0f ? -1.0f : 1.0f;
+  impl_->instances.push_back({mesh, object_to_world, object_to_world.normal_map(), front});
   return static_cast<uint32_t>(impl_->instances.size() - 1);
 }
 
 void EmbreeScene::clear_instances() { impl_->instances.clear(); }
 
-void EmbreeScene::commit(int threads, const Progress* progress) {
+void EmbreeScene::commit(int threads, const Progress* progress, Levels levels) {
   Impl& s = *impl_;
   s.release_top();
-  s.meshes->build(threads, progress);
-  const bool direct = s.instances.size() == 1 && s.instances[0].object_to_world == Affine{};
-  if (!direct) {
-    s.top = s.build_top();
-    s.commit_top(threads);
+  s.levels = s.repeats_much() ? Levels::two : levels;
+  std::vector<uint32_t> built;  // by themselves
+  if (s.levels == Levels::two) {
+    for (const Impl::Instance& instance : s.instances) built.push_back(instance.mesh);
   }
-  s.traced = direct ? s.meshes->scene(s.instances[0].mesh) : s.top;
+  s.meshes->build(built, threads, progress);
+  s.top = s.build_top();
+  try {
+    s.commit_top(threads, progress);
+  } catch (...) {
+    s.release_top();
+    throw;
+  }
 }
+
+EmbreeScene::Levels EmbreeScene::levels() const { return impl_->levels; }
 
 void EmbreeScene::intersect(const Ray& ray, Hit& hit) const { intersect({&ray, 1}, &hit); }
 
@@ -156,12 +192,12 @@ void occluded_by_batches(std::span<const Ray> rays, uint8_t* blocked, const Trac
 
 void EmbreeScene::occluded(std::span<const Ray> rays, uint8_t* blocked) const {
   occluded_by_batches(rays, blocked,
-                      [&](RTCRay* query, unsigned count) { impl_->api.occluded(impl_->traced, query, count); });
+                      [&](RTCRay* query, unsigned count) { impl_->api.occluded(impl_->top, query, count); });
 }
 
 void EmbreeScene::occluded_coherent(std::span<const Ray> rays, uint8_t* blocked) const {
-  occluded_by_batches(
-      rays, blocked, [&](RTCRay* query, unsigned count) { impl_->api.occluded_coherent(impl_->traced, query, count); });
+  occluded_by_batches(rays, blocked,
+                      [&](RTCRay* query, unsigned count) { impl_->api.occluded_coherent(impl_->top, query, count); });
 }
 
 void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits) const {
@@ -172,7 +208,7 @@ void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits) const {
       to_embree(rays[done + i], query[i].ray);
       query[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
     }
-    impl_->api.intersect(impl_->traced, query, static_cast<unsigned>(count));
+    impl_->api.intersect(impl_->top, query, static_cast<unsigned>(count));
     for (size_t i = 0; i < count; ++i) impl_->read_hit(query[i], hits[done + i]);
   }
 }

@@ -42,7 +42,7 @@ void Scene::build_sides(int threads) {
     if (known == numbers.end()) known = numbers.emplace(instance.traced, add_sides(mesh, *sides_)).first;
     instance.sides = sides_->add_instance(known->second, instance.object_to_world);
   }
-  if (sides_) sides_->commit(threads);
+  if (sides_) sides_->commit(threads, nullptr, rays_->levels());
 }
 
 Scene::ShellFoot Scene::shell_foot(const Hit& hit) const {

@@ -88,6 +88,49 @@ TEST(EmbreeScene, BatchesAgreeWithSingleRays) {
   EXPECT_GT(scene.bytes(), 30u * 36u);
 }
 
+/// Meshes that are turned, mirrored and shared, in one level and in two.
+TEST(EmbreeScene, OneLevelMeetsWhatTwoDo) {
+  RandomStream random(4, 5, 6);
+  EmbreeScene one, two;
+  const auto add = [&](const Affine& place, bool is_new) {
+    for (EmbreeScene* scene : {&one, &two}) {
+      scene->add_instance(is_new ? scene->add_mesh(kCorners, kTriangle) : 0, place);
+    }
+  };
+  for (int i = 0; i < 40; ++i) {
+    const float side = i % 3 == 0 ? -1.0f : 1.0f;
+    Affine place = scaled({side * (0.2f + random.next()), 1, 1}, {random.next(), random.next(), random.next()});
+    for (float& m : place.m) m += 0.2f * random.next();
+    add(place, i % 8 != 7);
+  }
+  one.commit(1, nullptr, EmbreeScene::Levels::one);
+  two.commit(1);
+  ASSERT_EQ(one.levels(), EmbreeScene::Levels::one);
+  ASSERT_EQ(two.levels(), EmbreeScene::Levels::two);
+  int met = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Ray ray{{1.5f, 1.5f, 1.5f}, 0, sample_uniform_sphere(random.next2())};
+    Hit a, b;
+    one.intersect(ray, a);
+    two.intersect(ray, b);
+    ASSERT_EQ(a.instance, b.instance);
+    if (a.instance == kNoHit) continue;
+    ++met;
+    EXPECT_NEAR(a.distance, b.distance, 1e-5f);
+    EXPECT_NEAR(a.u, b.u, 1e-4f);
+    EXPECT_LT(glm::distance(glm::normalize(a.geometric_normal), glm::normalize(b.geometric_normal)), 1e-5f);
+  }
+  EXPECT_GT(met, 50);
+}
+
+TEST(EmbreeScene, TakesTwoLevelsWhereMeshesRepeat) {
+  EmbreeScene scene;
+  const uint32_t mesh = scene.add_mesh(kCorners, kTriangle);
+  for (int i = 0; i < 3; ++i) scene.add_instance(mesh, scaled(Vec3(1), {0, 0, static_cast<float>(i)}));
+  scene.commit(1, nullptr, EmbreeScene::Levels::one);
+  EXPECT_EQ(scene.levels(), EmbreeScene::Levels::two);
+}
+
 TEST(EmbreeScene, CoherentBatchesAgreeWithSingleRays) {
   EmbreeScene scene;
   const uint32_t mesh = scene.add_mesh(kCorners, kTriangle);
