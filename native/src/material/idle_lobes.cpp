@@ -21,14 +21,16 @@ struct Loss {
   }
 };
 
-double largest_channel(const Vec3d& c) { return std::max({c.x, c.y, c.z}); }
+double largest_channel(const WarpedMixture& m, int j) {
+  return static_cast<double>(std::max({m.r[j], m.g[j], m.b[j]}));
+}
 
-Loss loss_of(const WarpedLobe& lobe, size_t j, const LightPoints& points) {
+Loss loss_of(const WarpedMixture& lobes, int j, const LightPoints& points) {
   double mass = 0, albedo = 0, norm_sq = 0, lost_sq = 0, most = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     if (!(points.weight(i) > 0)) continue;
-    const double part = largest_channel(lobe.coefficient) * points.kernel(i, j) / points.value(i);
-    const double f_cos = points.weight(i) * points.value(i) * points.light(i).z;
+    const double part = largest_channel(lobes, j) * points.kernel(i, j) / points.value(i);
+    const double f_cos = points.weight(i) * points.value(i) * static_cast<double>(points.light(i).z);
     mass += points.weight(i);
     albedo += part * points.weight(i);
     norm_sq += f_cos;
@@ -41,10 +43,10 @@ Loss loss_of(const WarpedLobe& lobe, size_t j, const LightPoints& points) {
 
 }  // namespace
 
-uint32_t lobes_that_matter(std::span<const WarpedLobe> lobes, const LightPoints& points) {
+uint32_t lobes_that_matter(const WarpedMixture& lobes, const LightPoints& points) {
   std::vector<Loss> loss;
-  for (size_t j = 0; j < lobes.size(); ++j) loss.push_back(loss_of(lobes[j], j, points));
-  std::vector<size_t> order(lobes.size());
+  for (int j = 0; j < lobes.count; ++j) loss.push_back(loss_of(lobes, j, points));
+  std::vector<size_t> order(loss.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return loss[a].most() < loss[b].most(); });
   uint32_t matter = 0;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "material/light_points.h"
 
@@ -15,6 +14,6 @@ inline constexpr double kIdleAlbedo = 1e-3, kIdleNorm = 1e-3, kIdleValue = 1e-2;
 /// A bit for each of up to 32 lobes that has to stay, by their own `points` at the view. The least go first, each
 /// counted by its largest channel against the luminance of all, until one more would take what is left out beyond these
 /// bounds.
-uint32_t lobes_that_matter(std::span<const WarpedLobe> lobes, const LightPoints& points);
+uint32_t lobes_that_matter(const WarpedMixture& lobes, const LightPoints& points);
 
 }  // namespace velour

@@ -1,76 +1,82 @@
 #include "material/light_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
-#include "sphere/frame.h"
-#include "sphere/warp.h"
 #include "srbf/kernel.h"
+#include "srbf/plain_draws.h"
 
 namespace velour {
 
 namespace {
 
 constexpr int kZeniths = 8, kAzimuths = 8;
+static_assert(kZeniths * kAzimuths == DirectionBatch::kCapacity);
 
-double luminance_of(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
-
-/// Zeniths of equal probability, as 1 - cos, with the mean of the Gaussian itself.
-std::vector<double> zeniths(double bandwidth) {
-  std::vector<double> d;
-  double sum = 0;
-  for (int i = 0; i < kZeniths; ++i)
-    sum += d.emplace_back(kernel_sample(Kernel::gaussian, bandwidth, (i + 0.5) / kZeniths));
-  const double scale = kZeniths * gaussian_one_minus_mean(bandwidth) / sum;
-  for (double& x : d) x = std::min(scale * x, 2.0);
-  return d;
-}
-
-/// Within what draws may have.
-double drawn_bandwidth(const WarpedLobe& lobe) {
-  return std::clamp(lobe.bandwidth, kMinMeanBandwidth, kMaxMeanBandwidth);
-}
-
-void add_draws(const WarpedLobe& lobe, const Vec3d& wv, std::vector<Vec3d>& lights) {
-  const Frame frame = Frame::about(Vec3(lobe.center));
-  for (const double d : zeniths(drawn_bandwidth(lobe))) {
-    const double sine = std::sqrt(d * (2 - d));
-    for (int k = 0; k < kAzimuths; ++k) {
-      const double phi = 2 * kPiD * (k + 0.5) / kAzimuths;
-      const Vec3d across = std::cos(phi) * Vec3d(frame.x) + std::sin(phi) * Vec3d(frame.y);
-      const auto wl = unwarped(lobe, glm::normalize(sine * across + (1 - d) * lobe.center), wv);
-      if (wl && wl->z > 1e-6) lights.push_back(*wl);
-    }
+/// The same lobes in their own frame, from each of which, and from the cosine, come as many samples.
+WarpedMixture evenly_sampled(const WarpedMixture& mixture) {
+  WarpedMixture even = mixture;
+  even.turn_cos = 1;
+  even.turn_sin = 0;
+  for (int j = 0; j < even.count; ++j) {
+    const double bandwidth = std::max(static_cast<double>(even.bandwidth[j]), kMinMeanBandwidth);
+    even.r[j] = even.g[j] = even.b[j] = static_cast<float>(1 / kernel_integral(Kernel::gaussian, bandwidth));
   }
-}
-
-void add_cosine_draws(std::vector<Vec3d>& lights) {
-  for (int i = 0; i < kZeniths; ++i) {
-    for (int k = 0; k < kAzimuths; ++k) {
-      const Vec2 u((static_cast<float>(i) + 0.5f) / kZeniths, (static_cast<float>(k) + 0.5f) / kAzimuths);
-      lights.emplace_back(sample_cosine_hemisphere(u));
-    }
-  }
+  draw_plain_lobes(even, 1 / static_cast<float>(even.count + 1));
+  even.list_all();
+  for (int j = 0; j < even.count; ++j) even.r[j] = even.g[j] = even.b[j] = 1;
+  return even;
 }
 
 }  // namespace
 
-LightPoints::LightPoints(std::span<const WarpedLobe> lobes, const Vec3d& wv) : lobes_(lobes.size()) {
-  for (const WarpedLobe& lobe : lobes) add_draws(lobe, wv, light_);
-  add_cosine_draws(light_);
-  for (const Vec3d& wl : light_) {
-    double f = 0, density = wl.z / kPiD;
-    for (const WarpedLobe& lobe : lobes) {
-      const double d = one_minus_dot(warped(lobe, wl, wv), lobe.center), drawn = drawn_bandwidth(lobe);
-      const double kernel = kernel_.emplace_back(kernel_value(Kernel::gaussian, lobe.bandwidth, d));
-      const double drawn_kernel = drawn == lobe.bandwidth ? kernel : kernel_value(Kernel::gaussian, drawn, d);
-      f += luminance_of(lobe.coefficient) * kernel;
-      density += warp_jacobian(lobe, wl, wv) * drawn_kernel / kernel_integral(Kernel::gaussian, drawn);
+LightPoints::LightPoints(const WarpedMixture& mixture) {
+  const WarpedMixture even = evenly_sampled(mixture);
+  const auto components = static_cast<float>(even.count + 1);
+  for (int component = 0; component <= even.count; ++component) {
+    Vec2 u[DirectionBatch::kCapacity];
+    for (int i = 0; i < kZeniths; ++i) {
+      for (int k = 0; k < kAzimuths; ++k) {
+        const float zenith = (static_cast<float>(i) + 0.5f) / kZeniths,
+                    azimuth = (static_cast<float>(k) + 0.5f) / kAzimuths;
+        u[i * kAzimuths + k] = {(static_cast<float>(component) + zenith) / components, azimuth};
+      }
+    }
+    DirectionBatch samples, above;
+    sample_warped(even, u, samples);
+    for (int i = 0; i < samples.count; ++i) {
+      if (samples.z[i] > 1e-6f) above.push(samples.get(i));
+    }
+    if (above.count > 0) add(even, above);
+  }
+  for (size_t i = 0; i < size(); ++i) {
+    double f = 0;
+    for (int j = 0; j < mixture.count; ++j) {
+      f += static_cast<double>(luminance({mixture.r[j], mixture.g[j], mixture.b[j]})) * kernel(i, j);
     }
     value_.push_back(f);
-    // Each component drew as many points: their joint density is the sum of theirs.
-    weight_.push_back(f * wl.z / (density * kZeniths * kAzimuths));
+    weight_[i] *= f * static_cast<double>(light_[i].z);
+  }
+}
+
+void LightPoints::add(const WarpedMixture& even, const DirectionBatch& wl) {
+  DirectionBatch padded = wl;
+  while (padded.count <= 2) padded.push(wl.get(0));  // so few would be asked of all lobes, listed or not
+  padded.pad();
+  RgbBatch f;
+  ScalarBatch density;
+  eval_warped(even, padded, f, density);
+  for (int i = 0; i < wl.count; ++i) {
+    light_.push_back(wl.get(i));
+    const double samples = static_cast<double>(even.count + 1) * kZeniths * kAzimuths;
+    weight_.push_back(1 / (samples * static_cast<double>(density.v[i])));
+  }
+  WarpedMixture one = even;
+  one.listed_count = 1;
+  for (uint8_t j = 0; j < even.count; ++j) {
+    one.listed = &j;
+    eval_warped(one, padded, f);
+    for (int i = 0; i < wl.count; ++i) kernel_[j].push_back(f.r[i]);
   }
 }
 

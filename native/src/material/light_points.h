@@ -4,27 +4,31 @@
 #include <span>
 #include <vector>
 
-#include "srbf/warped_lobe.h"
+#include "srbf/warped_mixture.h"
 
 namespace velour {
 
-/// Evenly spread draws of every lobe and of the cosine, and what each lobe sees of them. Good to a few per cent.
+/// Evenly spread samples of every lobe and of the cosine, in the lobes' frame, and what each lobe sees of them. Good to
+/// a few per cent.
 class LightPoints {
  public:
-  LightPoints(std::span<const WarpedLobe> lobes, const Vec3d& wv);
+  /// The value of `mixture` alone is used.
+  explicit LightPoints(const WarpedMixture& mixture);
 
   size_t size() const { return light_.size(); }
   /// The integral of the luminance of f cos over the hemisphere.
   double mass() const;
-  const Vec3d& light(size_t i) const { return light_[i]; }
+  const Vec3& light(size_t i) const { return light_[i]; }
   double value(size_t i) const { return value_[i]; }    // luminance of f
   double weight(size_t i) const { return weight_[i]; }  // part of the mass
-  double kernel(size_t i, size_t lobe) const { return kernel_[i * lobes_ + lobe]; }
+  double kernel(size_t i, int lobe) const { return static_cast<double>(kernel_[lobe][i]); }
 
  private:
-  size_t lobes_;
-  std::vector<Vec3d> light_;
-  std::vector<double> value_, weight_, kernel_;
+  void add(const WarpedMixture& even, const DirectionBatch& wl);
+
+  std::vector<Vec3> light_;
+  std::vector<double> value_, weight_;
+  std::vector<float> kernel_[WarpedMixture::kCapacity];  // peak 1
 };
 
 }  // namespace velour

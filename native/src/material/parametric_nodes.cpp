@@ -14,20 +14,19 @@ namespace {
 
 constexpr int kRadiusCells = 64, kSquareCells = 16;
 
-double luminance(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
-
 /// Each lobe's part of f cos becomes the Gaussian of the same mass and mean direction; these are joined until a
 /// proposal holds them.
-ProposalLobes few_lobes(std::span<const WarpedLobe> lobes, const LightPoints& points) {
+ProposalLobes few_lobes(const WarpedMixture& lobes, const LightPoints& points) {
   GaussianLobes gaussians;
-  for (size_t j = 0; j < lobes.size(); ++j) {
+  for (int j = 0; j < lobes.count; ++j) {
+    const auto brightness = static_cast<double>(luminance({lobes.r[j], lobes.g[j], lobes.b[j]}));
     double mass = 0;
     Vec3d sum(0);
     for (size_t i = 0; i < points.size(); ++i) {
       if (!(points.weight(i) > 0)) continue;
-      const double part = points.weight(i) * luminance(lobes[j].coefficient) * points.kernel(i, j) / points.value(i);
+      const double part = points.weight(i) * brightness * points.kernel(i, j) / points.value(i);
       mass += part;
-      sum += part * points.light(i);
+      sum += part * Vec3d(points.light(i));
     }
     if (!(mass > 1e-9 * points.mass())) continue;
     const double bandwidth = gaussian_bandwidth_of_mean(1 - glm::length(sum) / mass);
@@ -70,10 +69,9 @@ void ParametricNodes::fill_node(const ParametricValues& values, int node) {
   WarpedMixture m;
   const Vec3 wv = nodes_.view(node);
   values.evaluate(wv, ViewPlace(wv), m);
-  const std::vector<WarpedLobe> lobes = lobes_of(m);
-  const LightPoints points(lobes, Vec3d(m.wv));
-  matter_[static_cast<size_t>(node)] = lobes_that_matter(lobes, points);
-  proposals_[static_cast<size_t>(node)] = few_lobes(lobes, points);
+  const LightPoints points(m);
+  matter_[static_cast<size_t>(node)] = lobes_that_matter(m, points);
+  proposals_[static_cast<size_t>(node)] = few_lobes(m, points);
 }
 
 uint32_t ParametricNodes::matter_between(const ViewPlace& first, const ViewPlace& last) const {

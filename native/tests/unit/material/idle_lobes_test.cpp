@@ -4,16 +4,41 @@
 
 #include <cmath>
 
+#include "srbf/warped_lobe.h"
+
 namespace velour {
 namespace {
 
 const Vec3d kView(std::sin(0.7), 0, std::cos(0.7));
 
+/// In the order of their arrays.
+WarpedMixture mixture(const std::vector<WarpedLobe>& lobes) {
+  WarpedMixture m;
+  m.count = static_cast<int>(lobes.size());
+  m.padded = WarpedMixture::padded_of(m.count);
+  for (int j = 0; j < m.padded; ++j) {
+    const WarpedLobe l = j < m.count ? lobes[static_cast<size_t>(j)] : WarpedLobe{};
+    m.half[j] = l.space == LobeSpace::half ? 1.0f : 0.0f;
+    m.s_xx[j] = m.s_yy[j] = 1;
+    m.s_xy[j] = m.x[j] = m.y[j] = 0;
+    m.z[j] = 1;
+    m.bandwidth[j] = static_cast<float>(l.bandwidth);
+    m.r[j] = static_cast<float>(l.coefficient.x);
+    m.g[j] = static_cast<float>(l.coefficient.y);
+    m.b[j] = static_cast<float>(l.coefficient.z);
+  }
+  m.wv = Vec3(kView);
+  return m;
+}
+
 WarpedLobe lobe(double bandwidth, double coefficient, LobeSpace space = LobeSpace::light) {
   return {space, {}, {0, 0, 1}, bandwidth, Vec3d(coefficient)};
 }
 
-uint32_t matter(const std::vector<WarpedLobe>& lobes) { return lobes_that_matter(lobes, LightPoints(lobes, kView)); }
+uint32_t matter(const std::vector<WarpedLobe>& lobes) {
+  const WarpedMixture m = mixture(lobes);
+  return lobes_that_matter(m, LightPoints(m));
+}
 
 TEST(IdleLobes, ALobeThatHardlyShowsIsLeftOut) {
   EXPECT_EQ(matter({lobe(1, 0.3), lobe(2, 1e-4)}), 0b01u);
