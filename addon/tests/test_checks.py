@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 
 import pytest
 import test_times
-from checks import campaign, cases, groups, running
+from checks import campaign, cases, groups, measured_pages, running
 from checks.cases import FAILED, PASSED, SKIPPED, Case
 
 
@@ -100,3 +101,32 @@ def test_the_table_of_times_has_groups_their_sum_and_the_slowest():
         "| native | Lobe.Integrates | 30.0 |",
     ):
         assert line in page
+
+
+def _commit(root, name, text):
+    path = root / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    settings = ["-c", "user.name=Test", "-c", "user.email=test@example.com"]
+    for command in (["add", "."], [*settings, "commit", "-q", "-m", name]):
+        subprocess.run(["git", "-C", root, *command], check=True)
+    return subprocess.run(
+        ["git", "-C", root, "rev-parse", "--short=12", "HEAD"], check=True, capture_output=True, text=True
+    ).stdout.strip()
+
+
+def test_pages_are_old_when_what_they_measure_has_changed(tmp_path):
+    assert "no git history" in measured_pages.told(tmp_path)[0]
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    measured = _commit(tmp_path, "native/src/brdf/load.cpp", "1")
+    page = "docs/measurements.md"
+    _commit(tmp_path, page, f"All numbers come from one run: 2026-11-20, commit {measured},\n")
+    assert measured_pages.told(tmp_path) == []
+    _commit(tmp_path, "native/src/render/render.cpp", "2")
+    assert measured_pages.told(tmp_path) == []
+    _commit(tmp_path, "native/src/brdf/load.cpp", "3")
+    (sentence,) = measured_pages.told(tmp_path)
+    assert page in sentence
+    assert "1 commits" in sentence
+    _commit(tmp_path, page, "All numbers come from one run: 2026-11-20, commit 0123456789ab,\n")
+    assert "not known" in measured_pages.told(tmp_path)[0]

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from checks import campaign, cases, groups
+from checks import campaign, cases, groups, measured_pages
 from checks.cases import FAILED, PASSED, SKIPPED, Case
 from checks.groups import GROUPS, ROOT, Run
 from checks.running import say
@@ -91,6 +91,8 @@ def main() -> int:
         _step(f"blender {version}", kept, total, built, lambda v=version: groups.other_blender(run, v))
     if arguments.all:
         _step("fuzz", kept, total, built, lambda: groups.fuzz(run))
+        for sentence in measured_pages.told(ROOT):
+            say(sentence)
     seconds, processor = clock.read()
     say(f"{seconds / 60:.1f} minutes in all, {processor / 60:.1f} of processor time")
     say(total.last_line())

@@ -1,0 +1,57 @@
+"""Pages of measurements whose sources have changed since the commit that they name: to be told, never to fail."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+_COMMIT = re.compile(r"(?:one run|this page): [0-9-]+,\s+commit\s+([0-9a-f]{7,40})")
+_FITS = ("brdf", "fit", "model", "srbf", "sphere")
+_PICTURES = ("material", "render", "scene", "srbf", "sphere")
+_BTFS = ("btf", "capture", "compress", "tensor", "tile")
+# What each page's script measures: folders of native/src.
+PAGES = {
+    "docs/chart/README.md": _FITS + _PICTURES,
+    "docs/chart_btf.md": _BTFS,
+    "docs/equal_noise.md": _PICTURES,
+    "docs/figures/README.md": _FITS + _PICTURES,
+    "docs/figures/check.md": _FITS + _PICTURES,
+    "docs/fit.md": _FITS,
+    "docs/for_scene.md": (*_FITS, *_PICTURES, "domain"),
+    "docs/ggx.md": _FITS,
+    "docs/measurements.md": ("brdf",),
+    "docs/models.md": _FITS,
+    "docs/perceptual.md": _FITS + _PICTURES,
+    "docs/performance.md": _PICTURES,
+    "docs/principled.md": _FITS,
+    "docs/viewport.md": _PICTURES,
+    "docs/votf_numbers.md": (*_BTFS, *_PICTURES, "votf"),
+    "docs/votf_tables.md": ("votf", "tile"),
+}
+
+
+def told(root: Path) -> list[str]:
+    """A sentence for each page that may be old; one alone where git knows nothing of these sources."""
+    if _git(root, "rev-parse", "HEAD") is None:
+        return ["Whether pages of measurements are old is not known: these sources have no git history."]
+    sentences = []
+    for page, folders in PAGES.items():
+        if not (root / page).exists():
+            continue
+        found = _COMMIT.search((root / page).read_text(encoding="utf-8"))
+        sources = [f"native/src/{folder}" for folder in dict.fromkeys(folders)]
+        count = found and _git(root, "rev-list", "--count", f"{found[1]}..HEAD", "--", *sources)
+        if count is None:
+            sentences.append(f"{page}: it names no commit of this history, so its age is not known.")
+        elif count != "0":
+            sentences.append(
+                f"{page}: measured at {found[1]}; {count} commits since then changed what it measures."
+            )
+    return sentences
+
+
+def _git(root: Path, *arguments: str) -> str | None:
+    """None where it fails."""
+    done = subprocess.run(["git", "-C", root, *arguments], capture_output=True, text=True)
+    return done.stdout.strip() if done.returncode == 0 else None
