@@ -174,9 +174,9 @@ RTCGeometry EmbreeMeshes::placed(uint32_t number, const Affine& place) const {
 }
 
 void EmbreeMeshes::await(const Progress* progress) {
-  while (!build_->ends_within(kTurn)) {
-    if (progress != nullptr) progress->check();
-  }
+  do {
+    if (progress != nullptr) progress->check();  // first: a build may end within the turn
+  } while (!build_->ends_within(kTurn));
   build_->join();
   const RTCError error = build_->error();
   std::erase_if(unbuilt_, [&](uint32_t number) { return build_->has_built(scenes_[number]); });

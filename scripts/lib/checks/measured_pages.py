@@ -1,4 +1,4 @@
-"""Pages of measurements whose sources have changed since the commit that they name: to be told, never to fail."""
+"""Pages of measurements whose sources have changed since the commit that they name: told, never a failure."""
 
 from __future__ import annotations
 
