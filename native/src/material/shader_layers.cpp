@@ -19,10 +19,16 @@ float mean_albedo(const Material& material) {
   for (uint32_t i = 0; i < kAlbedoViews; ++i) {
     RandomStream random(1, i, 0);
     material.prepare(sample_cosine_hemisphere(random.next2()), *point);
-    for (uint32_t k = 0; k < kAlbedoDraws; ++k) {
-      const Vec3 wl = material.sample_one(*point, random.next2());
-      const Material::Reflection of = material.eval_one(*point, wl);
-      if (of.pdf > 0) sum += static_cast<double>(luminance(of.f) * std::abs(wl.z) / of.pdf);
+    Vec2 u[kAlbedoDraws];
+    for (Vec2& point_of_square : u) point_of_square = random.next2();
+    DirectionBatch wl;
+    material.sample(*point, u, wl);
+    wl.pad();
+    RgbBatch f;
+    ScalarBatch pdf;
+    material.eval(*point, wl, f, pdf);
+    for (int k = 0; k < wl.count; ++k) {
+      if (pdf.v[k] > 0) sum += static_cast<double>(luminance(f.get(k)) * std::abs(wl.z[k]) / pdf.v[k]);
     }
   }
   return static_cast<float>(sum / (kAlbedoViews * kAlbedoDraws));
