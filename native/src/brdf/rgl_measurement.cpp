@@ -107,31 +107,24 @@ SliceMix RglMeasurement::mix_of(float phi, float theta) const {
 
 RglMeasurement::View RglMeasurement::prepare(const Vec3& wv) const {
   View view;
+  RglView& frame = view.frame;
   if (!isotropic() && sectors_ >= 2) {
     // Measured sectors lie at phi <= 0: two by half a turn, four by mirrors in x and y.
     const float by_y = wv.y > 0.0f ? -1.0f : 1.0f, by_x = wv.x > 0.0f ? -1.0f : 1.0f;
-    view.flip = {sectors_ == 4 ? by_x : by_y, by_y};
+    frame.flip = {sectors_ == 4 ? by_x : by_y, by_y};
   }
-  view.wv = {wv.x * view.flip.x, wv.y * view.flip.y, wv.z};
-  const float theta = theta_of(wv), phi = fast_atan2(view.wv.y, view.wv.x);
+  frame.wv = {wv.x * frame.flip.x, wv.y * frame.flip.y, wv.z};
+  const float theta = theta_of(wv), phi = fast_atan2(frame.wv.y, frame.wv.x);
   const float side = std::sqrt(wv.x * wv.x + wv.y * wv.y);
   if (isotropic() && side > 0.0f) {
-    view.cos_phi = wv.x / side;
-    view.sin_phi = wv.y / side;
+    frame.cos_phi = wv.x / side;
+    frame.sin_phi = wv.y / side;
   }
   view.mix = mix_of(phi, theta);
   const float area = tables_.projected_area.at({u_of_theta(theta), isotropic() ? 0.5f : u_of_phi(phi)});
   view.scale = tables_.microfacet_scale ? 0.25f / area : 1.0f;
   view.covered = wv.z > 0.0f && theta <= tables_.theta_v.back() + 1e-5f && area > 0.0f;
   return view;
-}
-
-Vec2 RglMeasurement::half_vector_at(const View& view, Vec3 wl) const {
-  wl.x *= view.flip.x;
-  wl.y *= view.flip.y;
-  const Vec3 sum = wl + view.wv;
-  const float x = sum.x * view.cos_phi + sum.y * view.sin_phi, y = sum.y * view.cos_phi - sum.x * view.sin_phi;
-  return {u_of_theta(theta_of(sum)), u_of_phi(fast_atan2(y, x))};
 }
 
 /// `u`: where the warp takes `position`.
@@ -156,15 +149,13 @@ bool RglMeasurement::lookup(const View& view, const Vec2& position, const Vec2& 
 void RglMeasurement::eval(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> valid) const {
   // Each of the three steps reads tables far from the core. One step for several directions, then the next, keeps many
   // reads on their way.
-  constexpr size_t kTogether = 16;
+  constexpr size_t kTogether = kRglPositions;
   const View view = prepare(wv);
   for (size_t first = 0; first < wl.size(); first += kTogether) {
     const size_t count = std::min(kTogether, wl.size() - first);
     Vec2 position[kTogether], u[kTogether];
-    for (size_t i = 0; i < count; ++i) {
-      valid[first + i] = view.covered && wl[first + i].z > 0.0f;
-      if (valid[first + i]) position[i] = half_vector_at(view, wl[first + i]);
-    }
+    half_vector_positions(view.frame, wl.subspan(first, count), position);
+    for (size_t i = 0; i < count; ++i) valid[first + i] = view.covered && wl[first + i].z > 0.0f;
     for (size_t i = 0; i < count; ++i) {
       if (valid[first + i]) valid[first + i] = warp_.invert(view.mix, position[i], u[i]);
     }

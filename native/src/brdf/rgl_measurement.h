@@ -4,6 +4,7 @@
 #include "brdf/bilinear_warp.h"
 #include "brdf/half_diff_table.h"
 #include "brdf/measurement.h"
+#include "brdf/rgl_positions.h"
 #include "brdf/view_coverage.h"
 
 namespace velour {
@@ -40,17 +41,13 @@ class RglMeasurement : public Measurement {
  private:
   /// What depends on the view alone.
   struct View {
-    Vec3 wv;                         // mirrored into the measured sector
-    Vec2 flip{1, 1};                 // of x and y, for wl too
-    float cos_phi = 1, sin_phi = 0;  // azimuths of half vectors are taken from here
+    RglView frame;
     SliceMix mix;
     float scale = 1;  // 1 / (4 sigma)
     bool covered = false;
   };
   View prepare(const Vec3& wv) const;
   SliceMix mix_of(float phi, float theta) const;
-  /// The half vector of a direction pair in the paper's units.
-  Vec2 half_vector_at(const View& view, Vec3 wl) const;
   bool lookup(const View& view, const Vec2& position, const Vec2& u, float cosine, Rgb& f) const;
   void build_nodes();
   bool texel_above_horizon(uint32_t slice, uint32_t y, uint32_t x) const;
