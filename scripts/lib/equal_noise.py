@@ -6,7 +6,7 @@ import argparse
 import json
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +35,7 @@ SCENES = (
 )  # of equal_noise_scenes.py
 THREADS = 2
 _CELL = 2.2  # inches a picture
+DENOISED_TO = 0.01  # relmse
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ class Side:
     seconds: float  # processor time of one render
     noise: float  # relmse of one render, from the spread of the seeds
     mean: np.ndarray  # of all seeds
+    denoised: float | None = None  # seconds to a denoised picture of DENOISED_TO; None: nothing can denoise
 
     @property
     def cost(self) -> float:
@@ -101,11 +103,13 @@ def _measure(name: str, effort: Effort, blender: str | None) -> tuple[tuple[Side
         "samples": {"CYCLES": effort.cycles, "VELOUR": effort.velour},
         "folder": str(folder),
         "report": str(report),
+        "relmse": DENOISED_TO,
     }
     _run(task, folder / "blender.log", blender)
     said = json.loads(report.read_text(encoding="utf-8"))
-    sides = tuple(_side(folder, engine, said["seconds"][engine]) for engine in ("CYCLES", "VELOUR"))
-    return sides, said["blender"]
+    cycles, velour = (_side(folder, engine, said["seconds"][engine]) for engine in ("CYCLES", "VELOUR"))
+    denoised = min(said["denoised"], default=None)
+    return (cycles, replace(velour, denoised=denoised)), said["blender"]
 
 
 def _run(task: dict, log: Path, blender: str | None) -> None:
@@ -183,7 +187,22 @@ render, from the spread of the seeds. *Time to equal noise* is Velour's seconds 
 *Mean light* is how much brighter Velour's picture is.
 
 {markdown_table.table(header, rows)}
-![Each scene by Cycles and by Velour](images/equal_noise.png)
+{_denoised(results)}![Each scene by Cycles and by Velour](images/equal_noise.png)
+"""
+
+
+def _denoised(results: dict) -> str:
+    header = ["scene", "s", "without: s", "times less"]
+    rows = []
+    for name, (_, velour) in results.items():
+        if velour.denoised is None:
+            return ""
+        without = velour.cost / DENOISED_TO
+        rows.append([name, f"{velour.denoised:.1f}", f"{without:.1f}", f"{without / velour.denoised:.1f}"])
+    return f"""Processor time until the denoised picture's relmse is certain to be at most {DENOISED_TO}
+(*Denoise* with a *Noise Threshold* of {DENOISED_TO**0.5:g}), and what the picture without it takes to that relmse:
+
+{markdown_table.table(header, rows)}
 """
 
 
