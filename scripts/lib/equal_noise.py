@@ -200,7 +200,7 @@ def _denoised(results: dict) -> str:
         without = velour.cost / DENOISED_TO
         rows.append([name, f"{velour.denoised:.1f}", f"{without:.1f}", f"{without / velour.denoised:.1f}"])
     return f"""Processor time until the denoised picture's relmse is certain to be at most {DENOISED_TO}
-(*Denoise* with a *Noise Threshold* of {DENOISED_TO**0.5:g}), and what the picture without it takes to that relmse:
+(*Denoise*, *Noise Threshold* {DENOISED_TO**0.5:g}), and what the picture without it takes to that relmse:
 
 {markdown_table.table(header, rows)}
 """

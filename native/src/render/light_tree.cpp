@@ -8,7 +8,6 @@
 namespace velour {
 namespace {
 
-constexpr double kDoubleBelowOne = 0x1.fffffffffffffp-1;
 constexpr uint32_t kNoParent = 0xffffffffu;
 /// The least factor that the bounds of both cosines leave a light: they are rounded, and no light may have none.
 constexpr float kLeastCosines = 1e-3f;

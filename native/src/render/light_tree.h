@@ -11,6 +11,8 @@
 
 namespace velour {
 
+inline constexpr double kDoubleBelowOne = 0x1.fffffffffffffp-1;
+
 /// Where light is gathered.
 struct LightPlace {
   Vec3 position{0.0f};

@@ -10,7 +10,6 @@ namespace velour {
 namespace {
 
 constexpr float kFloatBelowOne = 0x1.fffffep-1f;
-constexpr double kDoubleBelowOne = 0x1.fffffffffffffp-1;
 constexpr double kLeastShare = 0.3;
 constexpr float kLeastSun = 0.02f;  // of its irradiance: where the plane turns away, and rounding decides
 constexpr size_t kFewLamps = 4;     // that are not worth the way through the tree
