@@ -894,7 +894,7 @@ VLR_API vlr_status vlr_job_add_sums(vlr_job* job, const float* sums, uint64_t co
 /* Takes the noise out of the picture of a render whose options said `denoise`, and which does not run: then
  * vlr_job_read_pass of that render has "Denoised" 4 (RGBA, premultiplied; the alpha of "Combined"), until it gets more
  * samples. `threads` 0: all. JSON: relmse, relmse_bound (estimate of the denoised picture's error, and a bound that the
- * true one stays below in 97 of 100 pictures; null where a pixel has less than two camera rays: docs/rendering.md),
+ * true one stays below in 95 of 100 pictures; null where a pixel has less than two camera rays: docs/rendering.md),
  * noisy_share (0..1, of the noisy picture in it), path of Open Image Denoise. VLR_UNSUPPORTED where that is
  * missing. */
 VLR_API vlr_status vlr_denoise_create_job(vlr_job* render, uint32_t threads, vlr_job** out);

@@ -1,6 +1,7 @@
 // A picture through the C API: its values, its passes, its independence of threads.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <numeric>
 #include <string>
@@ -96,6 +97,40 @@ TEST(CScene, ZeroSizedFilmsAreRefused) {
   options.width = 16;
   options.strategy = 99;
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_render_create_job(scene.scene, &options, &job));
+}
+
+/// Where Open Image Denoise is installed, the picture too (VELOUR_OIDN, as scripts/test sets it).
+TEST(CScene, PicturesAreDenoisedWhoseRenderWasToldSo) {
+  const TestScene scene;
+  vlr_job *render = scene.render_job(8, 8), *denoise = nullptr;
+  EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_denoise_create_job(render, 1, &denoise));
+  vlr_job_free(render);
+  vlr_render_options options;
+  vlr_render_options_init(&options);
+  options.width = options.height = 16;
+  options.denoise = 1;
+  ASSERT_EQ(VLR_OK, vlr_render_create_job(scene.scene, &options, &render));
+  ASSERT_EQ(VLR_OK, vlr_job_start(render));
+  ASSERT_EQ(VLR_OK, vlr_job_wait(render, -1, nullptr, nullptr, nullptr));
+  std::vector<float> pixels(4 * 16 * 16);
+  EXPECT_EQ(VLR_INVALID_STATE, vlr_job_read_pass(render, "Denoised", pixels.data(), pixels.size()));
+  if (const char* file = std::getenv("VELOUR_OIDN")) {
+    EXPECT_EQ(VLR_OK, vlr_set_denoiser_file(file));
+  }
+  const char* json = nullptr;
+  if (vlr_denoiser_json(&json) == VLR_OK) {
+    ASSERT_EQ(VLR_OK, vlr_denoise_create_job(render, 1, &denoise));
+    ASSERT_EQ(VLR_OK, vlr_job_start(denoise));
+    ASSERT_EQ(VLR_OK, vlr_job_wait(denoise, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
+    EXPECT_EQ(VLR_OK, vlr_job_read_pass(render, "Denoised", pixels.data(), pixels.size()));
+    EXPECT_NEAR(pixels[4 * 100], 0.4f, 0.03f);  // the albedo of 0.8 under a world of 0.5
+    ASSERT_EQ(VLR_OK, vlr_job_report_json(denoise, &json));
+    EXPECT_NE(std::string(json).find("relmse_bound"), std::string::npos);
+    vlr_job_free(denoise);
+  } else {
+    EXPECT_NE(std::string(vlr_last_error()).find("libOpenImageDenoise"), std::string::npos);
+  }
+  vlr_job_free(render);
 }
 
 TEST(CScene, SamplingOptionsOutOfRangeFailWithASentence) {

@@ -234,7 +234,7 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
         output.log.warning("%d samples were not finite and were left out.", report["nan_samples"])
     if report["denoised"] and report["denoised"]["relmse_bound"] is not None:
         bound = report["denoised"]["relmse_bound"]
-        output.log.info("The relmse of the denoised picture is at most %.3g, with 97 %% certainty.", bound)
+        output.log.info("The relmse of the denoised picture is at most %.3g.", bound)
         if args.noise and not render_part.meets_noise(args.noise, report):
             output.log.warning(
                 "That is above the noise target of %g, a relmse of %.3g.", args.noise, args.noise**2

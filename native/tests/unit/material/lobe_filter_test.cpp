@@ -88,7 +88,7 @@ TEST(LobeFilter, DiffuseShareIsThatOfTheDiffuseLobesSamples) {
       squares += share * share;
     }
     const double mean = sum / kSamples;
-    return std::pair(mean, std::sqrt((squares / kSamples - mean * mean) / kSamples));
+    return std::pair(mean, std::sqrt(std::max(squares / kSamples - mean * mean, 0.0) / kSamples));
   };
   const auto judge = [&](const Material& material, const auto& expected) {
     const auto point = point_of(material);
