@@ -265,7 +265,7 @@ class Film(BlenderTest):
         settings = bpy.context.scene.velour
         settings.clamp_direct = 0.1
         self.assertLess(scenes.render(self.folder).mean(), 0.5)
-        self.assertIn(b"velour.biased_by", (self.folder / "render.exr").read_bytes())
+        self.assertIn(b"velour.biased_by", (self.folder / "picture.exr").read_bytes())
 
     def test_noise_threshold(self):
         """The empty corner is left alone after the fewest samples, whatever else takes."""

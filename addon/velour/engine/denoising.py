@@ -6,6 +6,7 @@ from pathlib import Path
 import bpy
 
 from ..native import VelourError, denoise_job, library
+from ..native.errors import refuse
 
 _FILES = "libOpenImageDenoise.so.2*"
 last_errors = {}  # {scene's name: sentence on the picture that was denoised last}
@@ -14,7 +15,7 @@ last_errors = {}  # {scene's name: sentence on the picture that was denoised las
 def prepare(scene):
     """Raises a sentence where there is no Open Image Denoise."""
     if reason := missing():
-        raise VelourError(
+        raise refuse(
             f"Scene '{scene.name}' is to be denoised, but {reason} Or switch off Render > Denoise > Render."
         )
 

@@ -51,7 +51,7 @@ def render_final(engine, depsgraph):
 
     limit.check_export()
     begin = time.monotonic()
-    shown = [COMBINED] if engine.is_preview else layer_passes(depsgraph.view_layer_eval)
+    shown = [COMBINED] if engine.is_preview else layer_passes(scene, depsgraph.view_layer_eval)
     asked = {each.asks for each in shown if each.asks}
     with engine.kept_scene.frame(depsgraph, not engine.is_preview, asked) as export:
         notes = export.notes

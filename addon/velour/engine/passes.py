@@ -16,7 +16,7 @@ _ALONG_CAMERA = ("Denoising Normal",)  # as Cycles has it; Normal itself is alon
 
 def register_passes(engine, scene, layer):
     """Tells the compositor which sockets to show."""
-    for each in layer_passes(layer):
+    for each in layer_passes(scene, layer):
         engine.register_pass(scene, layer, each.name, each.channels, each.letters, each.kind)
 
 

@@ -61,9 +61,13 @@ _DENOISED = LayerPass("Combined", "RGBA", "COLOR", "Denoised", "halves")
 _NOISY = LayerPass("Noisy Image", "RGBA", "COLOR", "Combined")
 
 
-def layer_passes(layer):
-    """The LayerPasses of a view layer."""
-    found = [_DENOISED, _NOISY] if layer.id_data.velour.use_denoising else [COMBINED]
+def layer_passes(scene, layer):
+    """The LayerPasses of a view layer of a scene."""
+    return [*([_DENOISED, _NOISY] if scene.velour.use_denoising else [COMBINED]), *_further_passes(layer)]
+
+
+def _further_passes(layer):
+    found = []
     for owner, switches in ((layer, _SWITCHES), (layer.velour, _OWN_SWITCHES)):
         found += [each for switch, passes in switches if getattr(owner, switch) for each in passes]
     for kind, name in CRYPTOMATTES.items():
@@ -109,4 +113,4 @@ def _asked_passes(owner, known=()):
 
 def shows_more_than_light(layer):
     """Whether it has passes that tell of the scene where no light falls; nearly every layer has depth."""
-    return any(each.name not in ("Combined", "Depth", "Noisy Image") for each in layer_passes(layer))
+    return any(each.name != "Depth" for each in _further_passes(layer))
