@@ -1,5 +1,6 @@
 """Final renders that several runs share out, or that are ended and gone on with; what a frame takes."""
 
+import importlib
 import re
 import resource
 import signal
@@ -112,6 +113,27 @@ class FrameParts(BlenderTest):
     @staticmethod
     def _first(channels):
         return next(pixels for name, pixels in channels.items() if name.endswith("Combined.R"))
+
+    def test_parts_are_denoised_once_they_are_together(self):
+        """A part shows its noise; the frame is denoised as one that was rendered at once."""
+        denoising = importlib.import_module(f"{inputs.ADDON}.engine.denoising")
+        if reason := denoising.missing():
+            self.skipTest(reason)
+        blend = self._save()
+        bpy.context.scene.velour.use_denoising = True
+        bpy.ops.wm.save_mainfile()
+        self._render(blend, "whole")
+        for number in (2, 1):
+            self._render(
+                blend, f"part{number}", "--velour-parts", self.parts, "--velour-samples", f"{number}/2"
+            )
+        self._render(blend, "merged", "--velour-parts", self.parts)
+        self._assert_same("merged", "whole", 1e-3)
+        texts = {
+            name: inputs.native().images.header(self._path(name))["texts"] for name in ("part1", "merged")
+        }
+        self.assertNotIn("velour.denoised", texts["part1"])
+        self.assertIn("at most", texts["merged"]["velour.denoised"])
 
     def test_what_is_missing_is_rendered(self):
         """Two gaps, of which the second goes on where a part ends."""

@@ -283,6 +283,10 @@ class Scene(Handle):
 
     # ---- end
 
+    def stay(self) -> None:
+        """Says before commit() that no geometry changes after it: rays take less time."""
+        self._lib.vlr_scene_stay(self.pointer)
+
     def commit(self) -> None:
         """Builds the acceleration structure; needed before a render job is made, after every change."""
         self._lib.vlr_scene_commit(self.pointer)

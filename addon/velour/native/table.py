@@ -178,6 +178,7 @@ STATUS_CALLS = {
     "vlr_scene_look_at": [_handle, _floats, _floats, c_float, c_float],
     "vlr_scene_frame_camera": [_handle, c_float, c_uint32],
     "vlr_scene_commit": [_handle],
+    "vlr_scene_stay": [_handle],
     "vlr_scene_info_json": [_handle, _json],
     "vlr_tile_kinds_json": [_json],
     "vlr_tile_create": [POINTER(structs.TileOptions), _out_handle],

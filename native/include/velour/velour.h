@@ -554,6 +554,9 @@ VLR_API vlr_status vlr_scene_frame_camera(vlr_scene* scene, float aspect, uint32
  * has not changed is not built again: a camera, a light, a world or a plain material costs next to nothing, an instance
  * the level of the instances, a mesh that mesh. */
 VLR_API vlr_status vlr_scene_commit(vlr_scene* scene);
+/* Says before the first commit that no mesh and no instance changes after it: rays take less time. The last bits of a
+ * picture differ from those of a scene that may change. */
+VLR_API vlr_status vlr_scene_stay(vlr_scene* scene);
 /* JSON: triangles, instances, lights, materials, untextured (instances of a mesh without texture coordinates whose
  * material varies over the surface: one place of it is shown everywhere), camera_inside (of a committed scene, the
  * number of the instance that the camera is inside of and sees nothing but; null), bytes, bvh_seconds, warnings. */

@@ -26,6 +26,13 @@ vlr_status vlr_scene_set_working_space(vlr_scene* scene, const float* rec709_to_
   });
 }
 
+vlr_status vlr_scene_stay(vlr_scene* scene) {
+  return guard([&] {
+    require(scene, "scene");
+    scene->scene->stay();
+  });
+}
+
 vlr_status vlr_scene_commit(vlr_scene* scene) {
   return guard([&] {
     require(scene, "scene");

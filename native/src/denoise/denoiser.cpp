@@ -8,7 +8,8 @@ namespace velour {
 namespace {
 
 // Of oidn.h.
-constexpr int kCpu = 1, kFloat3 = 3, kBalanced = 5, kNoError = 0, kCancelled = 6;
+constexpr int kCpu = 1, kFloat3 = 3, kFast = 4, kBalanced = 5, kNoError = 0, kCancelled = 6;
+constexpr int kFirstWithFast = 20300;  // 2.3
 
 /// Many versions do not know how far they are; all of them ask whether to go on.
 bool goes_on(void* progress, double /*fraction*/) { return !static_cast<const Progress*>(progress)->cancelled(); }
@@ -20,7 +21,8 @@ class Denoiser::Filter {
   Filter(const Denoiser& denoiser, const NoisyPicture& picture)
       : oidn_(denoiser.oidn_), picture_(picture), filter_(oidn_.NewFilter(denoiser.device_, "RT")) {
     // High quality takes twice the time for 5 % less error: more samples are worth more.
-    oidn_.SetFilterInt(filter_, "quality", kBalanced);
+    const bool fast = denoiser.effort_ == Effort::least && denoiser.number() >= kFirstWithFast;
+    oidn_.SetFilterInt(filter_, "quality", fast ? kFast : kBalanced);
   }
   ~Filter() { oidn_.ReleaseFilter(filter_); }
   Filter(const Filter&) = delete;
@@ -51,7 +53,8 @@ class Denoiser::Filter {
   OpenImageDenoise::Filter filter_;
 };
 
-Denoiser::Denoiser(int threads) : oidn_(open_image_denoise()), device_(oidn_.NewDevice(kCpu)) {
+Denoiser::Denoiser(int threads, Effort effort)
+    : oidn_(open_image_denoise()), effort_(effort), device_(oidn_.NewDevice(kCpu)) {
   if (device_ == nullptr) throw Error(Status::unsupported, path() + " does not run on this processor.");
   oidn_.SetDeviceInt(device_, "numThreads", threads > 0 ? threads : tbb::info::default_concurrency());
   oidn_.SetDeviceBool(device_, "setAffinity", false);  // the threads are not ours alone
@@ -75,31 +78,40 @@ void Denoiser::check(const Progress& progress) const {
               path() + " cannot denoise: " + (message != nullptr ? message : "it does not say why"));
 }
 
-void Denoiser::run(const NoisyPicture& picture, std::span<float> denoised, const Progress& progress) {
-  std::vector<float> albedo(picture.albedo.size()), normal(picture.normal.size());
-  const auto prefilter = [&](const char* name, std::span<const float> noisy, std::span<float> clean) {
-    Filter filter(*this, picture);
-    filter.input(name, noisy);
-    filter.output("output", clean);
-    filter.run(progress);
-    check(progress);
-  };
-  prefilter("albedo", picture.albedo, albedo);
-  prefilter("normal", picture.normal, normal);
+void Denoiser::prefilter(const NoisyPicture& picture, const char* name, std::span<const float> noisy,
+                         std::span<float> clean, const Progress& progress) const {
   Filter filter(*this, picture);
-  filter.input("color", picture.color);
-  filter.input("albedo", albedo);
-  filter.input("normal", normal);
+  filter.input(name, noisy);
+  filter.output("output", clean);
+  filter.run(progress);
+  check(progress);
+}
+
+void Denoiser::run(const NoisyPicture& picture, std::span<float> denoised, const Progress& progress) {
+  std::vector<float> albedo, normal;
+  NoisyPicture guided = picture;
+  if (effort_ == Effort::usual) {
+    albedo.resize(picture.albedo.size());
+    normal.resize(picture.normal.size());
+    prefilter(picture, "albedo", picture.albedo, albedo, progress);
+    prefilter(picture, "normal", picture.normal, normal, progress);
+    guided.albedo = albedo;
+    guided.normal = normal;
+  }
+  Filter filter(*this, picture);
+  filter.input("color", guided.color);
+  filter.input("albedo", guided.albedo);
+  filter.input("normal", guided.normal);
   filter.output("output", denoised);
   filter.set("hdr");
-  filter.set("cleanAux");
+  if (effort_ == Effort::usual) filter.set("cleanAux");
   filter.run(progress);
   check(progress);
 }
 
 std::string Denoiser::version() const {
-  const int number = oidn_.GetDeviceInt(device_, "version");
-  return std::to_string(number / 10000) + "." + std::to_string(number / 100 % 100) + "." + std::to_string(number % 100);
+  const int n = number();
+  return std::to_string(n / 10000) + "." + std::to_string(n / 100 % 100) + "." + std::to_string(n % 100);
 }
 
 }  // namespace velour

@@ -18,14 +18,18 @@ struct NoisyPicture {
 /// One a thread.
 class Denoiser {
  public:
+  enum class Effort {
+    usual,
+    least,  // a quarter of the time, for somebody who watches: a smaller net, and guides as they are
+  };
   /// Throws Error(unsupported) where Open Image Denoise is missing, or refuses the processor. `threads` 0: all.
-  explicit Denoiser(int threads);
+  explicit Denoiser(int threads, Effort effort = Effort::usual);
   ~Denoiser();
   Denoiser(const Denoiser&) = delete;
   Denoiser& operator=(const Denoiser&) = delete;
 
-  /// Albedo and normal are filtered first, each by itself: the noise of depth of field or of fine structure in them
-  /// does not reach the picture. Colors of `denoised`; `picture` has at least one pixel. Throws Error(cancelled).
+  /// Albedo and normal are filtered first, each by itself, so that the noise of depth of field or of fine structure in
+  /// them does not reach the picture. Colors of `denoised`; `picture` has at least one pixel. Throws Error(cancelled).
   void run(const NoisyPicture& picture, std::span<float> denoised, const Progress& progress);
 
   /// "2.5.1"
@@ -35,8 +39,12 @@ class Denoiser {
  private:
   class Filter;
   void check(const Progress& progress) const;
+  void prefilter(const NoisyPicture& picture, const char* name, std::span<const float> noisy, std::span<float> clean,
+                 const Progress& progress) const;
+  int number() const { return oidn_.GetDeviceInt(device_, "version"); }
 
   const OpenImageDenoise& oidn_;
+  const Effort effort_;
   OpenImageDenoise::Device device_;
 };
 

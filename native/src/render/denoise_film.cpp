@@ -65,7 +65,7 @@ std::vector<float> denoised(Denoiser& denoiser, const Film& film, const Pictures
 }  // namespace
 
 std::vector<float> denoised_colors(const Film& film, int threads, const Progress& progress) {
-  Denoiser denoiser(threads);
+  Denoiser denoiser(threads, Denoiser::Effort::least);
   return denoised(denoiser, film, Halves(film).whole(), progress);
 }
 

@@ -12,7 +12,7 @@ namespace velour {
 /// where there is no Open Image Denoise, Error(invalid_argument) where the film has no halves, Error(cancelled).
 void denoise(Film& film, int threads, const Progress& progress);
 
-/// The colors alone, of all camera rays at once, for somebody who watches: a third of the time.
+/// The colors alone, of all camera rays at once, for somebody who watches: a twentieth of the time.
 std::vector<float> denoised_colors(const Film& film, int threads, const Progress& progress);
 
 }  // namespace velour

@@ -30,9 +30,7 @@ ProgressiveRender::ProgressiveRender(std::shared_ptr<Scene> scene, const RenderO
       first_(asked_.width, asked_.height),
       levels_(static_cast<size_t>(first_.last()) + 1),
       begin_(first_.first()),
-      level_(begin_) {
-  scene_->expect_changes();
-}
+      level_(begin_) {}
 
 void ProgressiveRender::restart() {
   for (auto& level : levels_) {

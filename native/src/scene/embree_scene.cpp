@@ -155,6 +155,12 @@ void EmbreeScene::commit(int threads, const Progress* progress, Levels levels) {
     for (const Impl::Instance& instance : s.instances) built.push_back(instance.mesh);
   }
   s.meshes->build(built, threads, progress);
+  if (s.levels == Levels::two && s.instances.size() == 1 && s.instances[0].object_to_world == Affine{}) {
+    s.levels = Levels::one;
+    s.top = s.meshes->scene(s.instances[0].mesh);
+    s.api.rtcRetainScene(s.top);
+    return;
+  }
   s.top = s.build_top();
   try {
     s.commit_top(threads, progress);

@@ -57,9 +57,10 @@ class EmbreeScene {
   uint32_t add_instance(uint32_t mesh, const Affine& object_to_world);
   void clear_instances();
   enum class Levels { one, two };
-  /// Builds; uses at most `threads` threads (0: all). One level is made only where instances repeat little: where they
-  /// have more than kMostRepeated triangles for each of their meshes, there are two. Throws Error(cancelled) soon after
-  /// `progress` was: what is built of meshes for two levels goes on, and another commit() waits for it.
+  /// Builds; uses at most `threads` threads (0: all). A scene whose only instance has the identity map has one level in
+  /// any case; else one level is made only where instances repeat little: where they have more than kMostRepeated
+  /// triangles for each of their meshes, there are two. Throws Error(cancelled) soon after `progress` was: what is
+  /// built of meshes for two levels goes on, and another commit() waits for it.
   void commit(int threads, const Progress* progress = nullptr, Levels levels = Levels::two);
   static constexpr double kMostRepeated = 1.5;
 

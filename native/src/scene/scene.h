@@ -150,9 +150,9 @@ class Scene {
   /// Checks the scene and builds the hierarchy with at most `threads` threads (0: all); nothing, if it is committed.
   /// Throws Error(cancelled) soon after `progress` was; another commit() then goes on where that one ended.
   void commit(int threads = 0, const Progress* progress = nullptr);
-  /// Has commit() keep each mesh's hierarchy from the first time on: else it does from the second, as most scenes are
-  /// committed but once (EmbreeScene::Levels).
-  void expect_changes() { changes_ = true; }
+  /// Says before the first commit() that no geometry changes after it: rays take less time (EmbreeScene::Levels). Where
+  /// some does, it is built anew. The last bits of hits differ from those of a scene that may change.
+  void stay() { stays_ = true; }
   bool committed() const { return committed_; }
   /// Another number after every change but that of the camera alone.
   uint64_t revision() const { return revision_; }
@@ -267,7 +267,7 @@ class Scene {
   std::vector<std::string> shell_warnings_;
   bool committed_ = false, geometry_changed_ = true;
   uint64_t revision_ = 0;
-  bool changes_ = false;
+  bool stays_ = false;
   std::unique_ptr<SceneKeep> keep_ = std::make_unique<SceneKeep>();
   std::unique_ptr<EmbreeScene> rays_;
   std::vector<uint32_t> mesh_rays_;     // numbers of the meshes in rays_; kNoHit: it does not have them

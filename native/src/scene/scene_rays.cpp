@@ -31,8 +31,8 @@ void Scene::build_rays(int threads, const Progress* progress) {
     i.traced = i.top != nullptr ? i.top->number : mesh_rays_[i.mesh];
     rays_->add_instance(i.traced, i.object_to_world);
   }
-  rays_->commit(threads, progress, changes_ ? EmbreeScene::Levels::two : EmbreeScene::Levels::one);
-  changes_ = true;
+  rays_->commit(threads, progress, stays_ ? EmbreeScene::Levels::one : EmbreeScene::Levels::two);
+  stays_ = false;
   build_sides(threads);
   geometry_changed_ = false;
   bounds_ = bounds_of_instances();

@@ -116,6 +116,7 @@ def run(args: argparse.Namespace) -> dict:
         reference = _read_reference(args)
         start = time.perf_counter()
         described = handles.enter_context(Scene())
+        described.stay()
         material = scene.fill(described, args, handles)
         outside = _choose_model(described, material, args, handles)
         part = render_part.asked(args, options)

@@ -60,6 +60,12 @@ TEST_F(DenoiserTest, TakesNoiseAndKeepsTheMean) {
   EXPECT_NEAR(mean, 1.0, 0.05);
 }
 
+TEST_F(DenoiserTest, TakesNoiseWithLittleEffort) {
+  std::vector<float> out(kCount);
+  Denoiser(2, Denoiser::Effort::least).run(picture(), out, Progress{});
+  EXPECT_LT(spread(out), 0.3 * spread(noisy_));
+}
+
 TEST_F(DenoiserTest, HasTheSameBitsForAnyNumberOfThreads) { EXPECT_EQ(denoised(1), denoised(2)); }
 
 TEST_F(DenoiserTest, SaysWhatItIs) {
