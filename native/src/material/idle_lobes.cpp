@@ -26,10 +26,11 @@ double largest_channel(const WarpedMixture& m, int j) {
 }
 
 Loss loss_of(const WarpedMixture& lobes, int j, const LightPoints& points) {
+  const double channel = largest_channel(lobes, j);
   double mass = 0, albedo = 0, norm_sq = 0, lost_sq = 0, most = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     if (!(points.weight(i) > 0)) continue;
-    const double part = largest_channel(lobes, j) * points.kernel(i, j) / points.value(i);
+    const double part = channel * points.kernel(i, j) * points.per_value(i);
     const double f_cos = points.weight(i) * points.value(i) * static_cast<double>(points.light(i).z);
     mass += points.weight(i);
     albedo += part * points.weight(i);

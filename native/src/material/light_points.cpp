@@ -1,7 +1,6 @@
 #include "material/light_points.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "srbf/kernel.h"
 #include "srbf/plain_draws.h"
@@ -49,13 +48,15 @@ LightPoints::LightPoints(const WarpedMixture& mixture) {
     }
     if (above.count > 0) add(even, above);
   }
+  value_.resize(size());
+  for (int j = 0; j < mixture.count; ++j) {
+    const auto brightness = static_cast<double>(luminance({mixture.r[j], mixture.g[j], mixture.b[j]}));
+    for (size_t i = 0; i < size(); ++i) value_[i] += brightness * kernel(i, j);
+  }
   for (size_t i = 0; i < size(); ++i) {
-    double f = 0;
-    for (int j = 0; j < mixture.count; ++j) {
-      f += static_cast<double>(luminance({mixture.r[j], mixture.g[j], mixture.b[j]})) * kernel(i, j);
-    }
-    value_.push_back(f);
-    weight_[i] *= f * static_cast<double>(light_[i].z);
+    weight_[i] *= value_[i] * static_cast<double>(light_[i].z);
+    per_value_.push_back(value_[i] > 0 ? 1 / value_[i] : 0);
+    mass_ += weight_[i];
   }
 }
 
@@ -79,7 +80,5 @@ void LightPoints::add(const WarpedMixture& even, const DirectionBatch& wl) {
     for (int i = 0; i < wl.count; ++i) kernel_[j].push_back(f.r[i]);
   }
 }
-
-double LightPoints::mass() const { return std::accumulate(weight_.begin(), weight_.end(), 0.0); }
 
 }  // namespace velour

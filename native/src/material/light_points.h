@@ -17,17 +17,19 @@ class LightPoints {
 
   size_t size() const { return light_.size(); }
   /// The integral of the luminance of f cos over the hemisphere.
-  double mass() const;
+  double mass() const { return mass_; }
   const Vec3& light(size_t i) const { return light_[i]; }
-  double value(size_t i) const { return value_[i]; }    // luminance of f
-  double weight(size_t i) const { return weight_[i]; }  // part of the mass
+  double value(size_t i) const { return value_[i]; }          // luminance of f
+  double per_value(size_t i) const { return per_value_[i]; }  // 1 / value; 0 where that is 0
+  double weight(size_t i) const { return weight_[i]; }        // part of the mass
   double kernel(size_t i, int lobe) const { return static_cast<double>(kernel_[lobe][i]); }
 
  private:
   void add(const WarpedMixture& even, const DirectionBatch& wl);
 
   std::vector<Vec3> light_;
-  std::vector<double> value_, weight_;
+  std::vector<double> value_, per_value_, weight_;
+  double mass_ = 0;
   std::vector<float> kernel_[WarpedMixture::kCapacity];  // peak 1
 };
 

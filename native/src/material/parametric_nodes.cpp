@@ -24,7 +24,7 @@ ProposalLobes few_lobes(const WarpedMixture& lobes, const LightPoints& points) {
     Vec3d sum(0);
     for (size_t i = 0; i < points.size(); ++i) {
       if (!(points.weight(i) > 0)) continue;
-      const double part = points.weight(i) * brightness * points.kernel(i, j) / points.value(i);
+      const double part = points.weight(i) * brightness * points.kernel(i, j) * points.per_value(i);
       mass += part;
       sum += part * Vec3d(points.light(i));
     }
