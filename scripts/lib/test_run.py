@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import resource
 import subprocess
 import sys
@@ -80,6 +81,7 @@ def main() -> int:
     kept = campaign.Campaign(run.results / "all.json", campaign.sources()) if arguments.all else None
     if subprocess.run([ROOT / "scripts/setup", "--tests"]).returncode != 0:
         return 1
+    _name_denoiser()
     say(f"set-up took {clock.read()[0]:.0f} s")
     built = True
     if arguments.groups != ["style"] or arguments.blender:
@@ -97,6 +99,14 @@ def main() -> int:
     say(f"{seconds / 60:.1f} minutes in all, {processor / 60:.1f} of processor time")
     say(total.last_line())
     return 1 if total.failed else 0
+
+
+def _name_denoiser() -> None:
+    """What the set-up may just have installed, as common.sh names it for scripts that begin later."""
+    for file in (ROOT / "build/tools/lib").glob(
+        "python3*/site-packages/pyoidn/oidn/lib/libOpenImageDenoise.so.2"
+    ):
+        os.environ.setdefault("VELOUR_OIDN", str(file))
 
 
 def _arguments() -> argparse.Namespace:
