@@ -128,7 +128,7 @@ def exposure(folder):
 
 
 def denoised(folder):
-    """Of few samples, beside many."""
+    """A denoised viewport with few samples is closer to one with many than a noisy one is."""
     if viewport.addon("engine.denoising").missing():
         return
     viewport.colored_scene()

@@ -91,7 +91,7 @@ def test_pictures_with_a_noise_target_begin_anew(arguments, side, tmp_path):
     noisy = [*arguments, "--noise", 0.2]
     result = velour(*noisy, *AT_ONCE)
     assert result.status == UNFINISHED
-    assert "begins anew" in result.err
+    assert "starts over" in result.err
     assert SAMPLES not in images.header(side)["texts"]
     assert velour(*noisy, "--quiet").status == 0
     assert not side.exists()

@@ -140,7 +140,7 @@ def _follow(engine, delivery, job, begin, end):
 
 
 def _states(engine, job):
-    """Of the job, until it ends or Blender is asked to."""
+    """Yields the job's states until it ends. Raises RenderCancelledError when Blender is asked to stop."""
     while not job.wait(timeout=_POLL_SECONDS):
         if engine.test_break():
             raise RenderCancelledError  # closing the job cancels it and waits

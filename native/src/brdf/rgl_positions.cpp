@@ -26,7 +26,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// That of fast_atan2.h.
+/// atan2 with the polynomial of fast_atan2.h, over lanes.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V arc_tangent(D d, V y, V x) {
   constexpr float kTerms[] = {-0.0161657367f, 0.0429096138f, -0.0752896400f, 0.1065626393f,

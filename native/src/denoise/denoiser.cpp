@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-// Of oidn.h.
+// Enumerators of oidn.h.
 constexpr int kCpu = 1, kFloat3 = 3, kFast = 4, kBalanced = 5, kNoError = 0, kCancelled = 6;
 constexpr int kFirstWithFast = 20300;  // 2.3
 

@@ -8,7 +8,7 @@ namespace {
 
 double sq(double x) { return x * x; }
 
-/// Of one number of a pixel.
+/// The terms of the estimate for one channel of a pixel.
 struct Terms {
   double denoised, noisy;  // P, M
   double s, v, q;

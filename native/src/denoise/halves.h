@@ -6,8 +6,8 @@
 
 namespace velour {
 
-/// Of a picture whose samples are dealt out to two halves that know nothing of each other, the colors of both (3 floats
-/// a pixel, means), and what a denoiser makes of each by itself.
+/// The two independent halves of a picture's samples: mean colors of each (3 floats a pixel), and each half denoised by
+/// itself.
 struct DenoisedHalves {
   std::span<const float> noisy[2], denoised[2];
   std::span<const uint32_t> camera_rays;  // of the pixels; the first half has one more where they are odd; at least 2
@@ -18,8 +18,8 @@ struct DenoisedError {
   double standard_error = 0;  // of that estimate
   double noisy_share = 0;     // what the picture has of the noisy one, 0..1
 
-  /// What the error against the true picture (PictureDifference) stays below in at least 95 of 100 renders. The factor
-  /// stands for two things that no estimate here tells: errors count too little where the denoised picture is too
+  /// Upper bound of the error against the true picture (PictureDifference), held in at least 95 of 100 renders. The
+  /// factor covers two things that the estimate cannot see: errors count too little where the denoised picture is too
   /// bright, and light that no sample has found is missing in both halves. Rare light, as a caustic of the sun, may
   /// exceed it.
   double bound() const { return kSafety * (relmse + 3 * standard_error); }

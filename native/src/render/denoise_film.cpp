@@ -36,7 +36,7 @@ struct Halves {
     }
   }
 
-  /// Of all camera rays.
+  /// The pictures of all camera rays: both halves, weighted by their number of rays.
   Pictures whole() const {
     Pictures mean = half[0];
     const auto join = [&](std::vector<float>& first, const std::vector<float>& second) {

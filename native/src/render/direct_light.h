@@ -128,7 +128,7 @@ class DirectLight {
     bool casts_shadow;
   };
   void queue(const Receiver& receiver, const Contribution& contribution, Output output);
-  /// Of the contribution of one direction.
+  /// Clamping limit for the contribution of one direction.
   float limit_of_term(const Receiver& receiver) const {
     return receiver.limit * (is_mixed(options_.strategy) ? 2.0f : 1.0f) / static_cast<float>(receiver.directions);
   }

@@ -39,7 +39,7 @@ class Film {
   /// has more.
   void keep_denoised(std::vector<float> colors, std::optional<DenoisedError> error);
   bool is_denoised() const;
-  /// That of the pass "Denoised"; nothing: it is unknown, or there is none.
+  /// Error of the pass "Denoised"; empty when it is unknown or the film is not denoised.
   std::optional<DenoisedError> denoised_error() const;
 
   /// Channels of a pass: "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1 (light

@@ -23,7 +23,7 @@ struct LightPathOptions {
   }
 };
 
-/// What the bounces of a path leave behind for the surfaces to come.
+/// State that earlier bounces of a path leave for the surfaces it meets later.
 struct PathPast {
   float least_density = std::numeric_limits<float>::infinity();  // of the directions drawn so far, per solid angle
   bool was_diffuse = false;                                      // the last bounce

@@ -89,7 +89,8 @@ void write_as_is(const float* v, const PixelSum& /*sum*/, float* out) {
   std::copy_n(v, channels, out);
 }
 
-// Of the halves: sums over the even camera rays of color, denoising albedo and normal, and of the albedo over all.
+// Floats that a pixel keeps for its halves: sums over the even camera rays of color, denoising albedo and normal, and
+// of the albedo over all.
 constexpr int kFloatsOfHalves = 12;
 using HalfSum = std::array<Vec3, 3>;
 

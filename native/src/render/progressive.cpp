@@ -135,7 +135,8 @@ std::vector<float> ProgressiveRender::denoised(const Film& film, const Progress&
   return pixels;
 }
 
-/// Of the first level nothing but the whole: there is nothing beneath it. A denoised picture stays until the next one.
+/// The first level is shown only once it is complete, as there is nothing beneath it. A denoised picture stays until
+/// the next one.
 void ProgressiveRender::show(std::vector<float> denoised) {
   const std::lock_guard lock(mutex_);
   if (denoised.empty() && !denoised_.empty()) return;

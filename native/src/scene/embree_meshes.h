@@ -47,7 +47,7 @@ class EmbreeMeshes {
     size_t vertices, triangles;
   };
   RTCScene scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) const;
-  /// Of `numbers`.
+  /// The unbuilt scenes among `numbers`.
   std::vector<RTCScene> unbuilt_scenes(std::span<const uint32_t> numbers) const;
   /// Until the build has ended, whose meshes are no longer unbuilt then.
   void await(const Progress* progress);

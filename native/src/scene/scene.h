@@ -151,7 +151,7 @@ class Scene {
   /// Throws Error(cancelled) soon after `progress` was; another commit() then goes on where that one ended.
   void commit(int threads = 0, const Progress* progress = nullptr);
   /// Says before the first commit() that no geometry changes after it: rays take less time (EmbreeScene::Levels). Where
-  /// some does, it is built anew. The last bits of hits differ from those of a scene that may change.
+  /// some does, it is rebuilt. The last bits of hits differ from those of a scene that may change.
   void stay() { stays_ = true; }
   bool committed() const { return committed_; }
   /// Another number after every change but that of the camera alone.

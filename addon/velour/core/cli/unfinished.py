@@ -57,7 +57,7 @@ def deliver(asked: Part, before: Part | None, rendered: Part, report: dict) -> P
     picture_parts.write(path, whole)
     if not _goes_on(asked):
         raise UnfinishedError(
-            f"Stopped; {path} has the picture so far; with --noise or --denoise the next run begins anew."
+            f"Stopped; {path} has the picture so far; with --noise or --denoise the next run starts over."
         )
     raise UnfinishedError(f"Stopped; {_known(whole, path)}")
 
