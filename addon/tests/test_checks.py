@@ -74,14 +74,38 @@ def test_progress_is_read_from_the_log():
     assert running.matches(r": (ok|FAILED), ", "files")("a: ok, 3 passed\nb: FAILED, 1\nnoise\n") == "2 files"
 
 
-def test_a_stopped_campaign_goes_on(tmp_path):
+def test_a_campaign_repeats_only_what_a_change_may_break(tmp_path):
+    subprocess.run(["git", "init", "-q", tmp_path / "tree"], check=True)
+    for name in ("native/src/a.cpp", "addon/velour/a.py", "native/tests/a_test.cpp", "docs/a.md"):
+        (tmp_path / "tree" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "tree" / name).write_text("1")
     file = tmp_path / "all.json"
-    campaign.Campaign(file, "sources").keep("native", [Case("a", PASSED, 1.0)])
-    assert campaign.Campaign(file, "sources").kept("native") == [Case("a", PASSED, 1.0)]
-    assert campaign.Campaign(file, "sources").kept("python") is None
-    assert campaign.Campaign(file, "others").kept("native") is None
+    all_groups = {"native", "python", "blender", "blender 5.2", "fuzz"}
+    run = campaign.Campaign(file, tmp_path / "tree")
+    for name in all_groups:
+        assert run.kept(name) is None
+        run.keep(name, [Case(name, PASSED, 1.0)])
+
+    def repeated():
+        kept = campaign.Campaign(file, tmp_path / "tree")
+        return {name for name in all_groups if kept.kept(name) != [Case(name, PASSED, 1.0)]}
+
+    def after_a_change_of(name):
+        (tmp_path / "tree" / name).write_text("2")
+        found = repeated()
+        (tmp_path / "tree" / name).write_text("1")
+        return found
+
+    assert repeated() == set()
+    assert after_a_change_of("native/src/a.cpp") == all_groups
+    assert after_a_change_of("addon/velour/a.py") == all_groups - {"native", "fuzz"}
+    assert after_a_change_of("native/tests/a_test.cpp") == {"native", "python", "fuzz"}
+    assert after_a_change_of("docs/a.md") == {"python", "blender", "blender 5.2"}
+    assert after_a_change_of("docs/new.md") == {"python", "blender", "blender 5.2"}
+    (tmp_path / "tree/docs/new.md").unlink()
+    assert campaign.Campaign(file, tmp_path / "tree").kept("style") is None
     file.write_text("{")
-    assert campaign.Campaign(file, "sources").kept("native") is None
+    assert repeated() == all_groups
 
 
 def test_the_table_of_times_has_groups_their_sum_and_the_slowest():

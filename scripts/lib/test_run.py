@@ -78,7 +78,7 @@ def main() -> int:
     run = Run(arguments.preset, arguments.all, arguments.scene, arguments.update)
     run.results.mkdir(parents=True, exist_ok=True)
     total = Total(run.results / "times.json")
-    kept = campaign.Campaign(run.results / "all.json", campaign.sources()) if arguments.all else None
+    kept = campaign.Campaign(run.results / "all.json") if arguments.all else None
     if subprocess.run([ROOT / "scripts/setup", "--tests"]).returncode != 0:
         return 1
     _name_denoiser()

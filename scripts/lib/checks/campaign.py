@@ -1,7 +1,8 @@
-"""What scripts/test --all has run: a stopped run goes on from there while the sources are the same."""
+"""What scripts/test --all has run: the next run does not repeat groups whose sources are the same."""
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -11,38 +12,52 @@ from pathlib import Path
 from .cases import Case
 from .groups import ROOT
 
+# What no test of a group reads. Groups that are not named here may read everything.
+_UNREAD: dict[str, tuple[str, ...]] = {
+    "native": ("addon/", "blend-tests/", "docs/"),
+    "fuzz": ("addon/", "blend-tests/", "docs/"),
+    "scenes": ("addon/tests/", "native/tests/", "native/fuzz/"),
+    "blender": ("addon/tests/", "native/tests/", "native/fuzz/"),
+}
+
 
 class Campaign:
-    """Groups that ended without a failure, by name. Anything changed in the tree starts from nothing."""
+    """Groups that ended without a failure, by name, each with a hash of the sources that it was run on."""
 
-    def __init__(self, file: Path, sources: str):
-        self._file, self._sources = file, sources
-        self._ended: dict[str, list[Case]] = {}
-        try:
-            kept = json.loads(file.read_text())
-            if kept["sources"] == sources:
-                self._ended = {name: [Case(*case) for case in found] for name, found in kept["ended"].items()}
-        except (OSError, ValueError, KeyError, TypeError):
-            pass
+    def __init__(self, file: Path, root: Path = ROOT):
+        self._file, self._root = file, root
+        self._at_first: dict[str, str] = {}  # so that what changes while a group runs counts as a change
+        self._ended: dict[str, dict] = {}
+        with contextlib.suppress(OSError, ValueError, TypeError):
+            self._ended = dict(json.loads(file.read_text()))
 
     def kept(self, name: str) -> list[Case] | None:
-        return self._ended.get(name)
+        """What the group found, or None if it did not end or its sources have changed since."""
+        self._at_first[name] = self._sources(name)
+        try:
+            ended = self._ended[name]
+            return (
+                [Case(*case) for case in ended["cases"]] if ended["sources"] == self._at_first[name] else None
+            )
+        except (KeyError, TypeError):
+            return None
 
     def keep(self, name: str, found: list[Case]) -> None:
-        self._ended[name] = found
+        """After kept said None and the group ended without a failure."""
+        self._ended[name] = {"sources": self._at_first[name], "cases": found}
         self._file.parent.mkdir(parents=True, exist_ok=True)
         partial = self._file.with_suffix(".partial")
-        partial.write_text(json.dumps({"sources": self._sources, "ended": self._ended}))
+        partial.write_text(json.dumps(self._ended))
         os.replace(partial, self._file)
 
-
-def sources() -> str:
-    """A hash of the commit and of everything that differs from it."""
-
-    def git(*arguments: str) -> bytes:
-        return subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, check=True).stdout
-
-    digest = hashlib.sha256(git("rev-parse", "HEAD") + git("diff", "HEAD", "--binary"))
-    for name in git("ls-files", "--others", "--exclude-standard", "-z").split(b"\0")[:-1]:
-        digest.update(name + b"\0" + (ROOT / os.fsdecode(name)).read_bytes())
-    return digest.hexdigest()
+    def _sources(self, name: str) -> str:
+        """A hash of all files that git does not ignore, but those that no test of the group reads.
+        "blender 5.2" reads what "blender" does."""
+        unread = _UNREAD.get(name.split()[0], ())
+        listed = ["git", "-C", self._root, "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+        names = subprocess.run(listed, capture_output=True, check=True).stdout.split(b"\0")[:-1]
+        digest = hashlib.sha256()
+        for file in sorted(map(os.fsdecode, names)):
+            if not file.startswith(unread) and (path := self._root / file).is_file():
+                digest.update(os.fsencode(file) + b"\0" + hashlib.sha256(path.read_bytes()).digest())
+        return digest.hexdigest()
