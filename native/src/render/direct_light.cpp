@@ -12,12 +12,13 @@ bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 
 }  // namespace
 
-void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shadows,
+void DirectLight::gather(std::span<const Receiver> receivers, bool go_on, ShadowQueue& shadows,
                          std::vector<CameraSample>& samples) {
   const Output output{shadows, samples};
+  awaited_.clear();
   for (size_t k = 0; k < receivers.size(); ++k) {
     if (lighting_.has_extended()) views_[k] = lighting_.view(receivers[k].vertex.light_place());
-    prepare(receivers[k], work_[k], views_[k]);
+    prepare(receivers[k], go_on, work_[k], views_[k]);
   }
   make_points(receivers);
   draw_towards_lights(receivers);
@@ -28,7 +29,7 @@ void DirectLight::gather(std::span<const Receiver> receivers, ShadowQueue& shado
   if (!lighting_.glow().empty()) settle_glow(receivers, output);
 }
 
-void DirectLight::prepare(const Receiver& receiver, Work& work, const LightView& view) {
+void DirectLight::prepare(const Receiver& receiver, bool go_on, Work& work, const LightView& view) {
   const Vertex& vertex = receiver.vertex;
   work.prepared.interpolated_draws = is_dissertations(options_.strategy);
   work.prepared.filter = lobe_filter(options_.light_paths, receiver.past);
@@ -42,6 +43,10 @@ void DirectLight::prepare(const Receiver& receiver, Work& work, const LightView&
   work.from_product = product;
   work.from_surface = surface;
   work.from_lights = lights;
+  // One of several would be every n-th point of their sequence, and those are not even.
+  work.goes_on_drawn = go_on && surface.count == 1;
+  work.onward.reset();
+  work.shared_term = -1;
 }
 
 Shares DirectLight::shares_at(const Vertex& vertex, const LightView& view, Work& work) {
@@ -166,7 +171,16 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
     terms_.drawer[to] = drawer_[i];
     terms_.receiver[to] = place;
     terms_.aim[to] = aim_[i];
+    if (work.goes_on_drawn && drawer_[i] == Drawer::surface) go_on_along(receiver, i, to, work_[place]);
   }
+}
+
+void DirectLight::go_on_along(const Receiver& receiver, int i, int term, Work& work) {
+  const Vertex& vertex = receiver.vertex;
+  work.onward = onward_along(vertex, local_.get(i), world_.get(i), receiver.throughput * reflectance(vertex, i),
+                             surface_pdf_.v[i]);
+  const bool shares_ray = work.onward && finite(work.onward->throughput) && shares_rays_;
+  if (shares_ray && vertex.rays_agree(world_.get(i))) work.shared_term = term;
 }
 
 void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
@@ -174,7 +188,7 @@ void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
   const auto add = [&](int i, const Rgb& weighed, float far, bool casts_shadow) {
     const Receiver& receiver = receivers[terms_.receiver[i]];
     const Rgb light = weighed * terms_.reflected.get(i);
-    queue(receiver, {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow}, output);
+    settle_term(receivers, i, {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow}, output);
   };
   for (int i = 0; i < terms_.world.count; ++i) {
     add(i, terms_.weight.v[i] * terms_.environment.get(i), std::numeric_limits<float>::infinity(), true);
@@ -198,31 +212,41 @@ void DirectLight::settle_glow(std::span<const Receiver> receivers, Output output
     const Receiver& receiver = receivers[terms_.receiver[g.direction]];
     const auto [radiance, far] = lighting_.glow().light(rays[g.direction], g.hit, receiver.vertex.cone);
     const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
-    queue(receiver, {terms_.world.get(g.direction), light, limit_of_term(receiver), far, true}, output);
+    settle_term(receivers, g.direction, {terms_.world.get(g.direction), light, limit_of_term(receiver), far, true},
+                output);
   }
+}
+
+void DirectLight::settle_term(std::span<const Receiver> receivers, int term, const Contribution& c, Output output) {
+  const size_t place = terms_.receiver[term];
+  if (work_[place].shared_term != term) return queue(receivers[place], c, output);
+  if (waits(receivers[place], c, output)) awaited_.push_back({place, c.light, c.limit, c.far});
 }
 
 Rgb DirectLight::reflectance(const Vertex& vertex, int direction) const {
   return in_working_space(working_space_, vertex, f_.get(direction));
 }
 
-void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output output) {
-  if (zero(c.light)) return;
+bool DirectLight::waits(const Receiver& receiver, const Contribution& c, Output output) {
+  if (zero(c.light)) return false;
   if (!finite(c.light)) {
     ++nan_samples_;
-    return;
+    return false;
   }
-  if (!c.casts_shadow) {
-    output.samples[receiver.sample].radiance += clamped(c.light, c.limit);
-    return;
-  }
+  if (!c.casts_shadow) output.samples[receiver.sample].radiance += clamped(c.light, c.limit);
+  return c.casts_shadow;
+}
+
+void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output output) {
+  if (!waits(receiver, c, output)) return;
   output.shadows.add(receiver.vertex.shadow_ray(c.wl_world, c.far), c.light, receiver.sample, c.limit);
 }
 
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
-  const Vec2 u = receiver.numbers->point(Purpose::onward);
-  const auto onward =
-      draw_onward(receiver.vertex, work_[place].prepared, sampling_, working_space_, receiver.throughput, u);
+  const Work& work = work_[place];
+  const auto onward = work.goes_on_drawn ? work.onward
+                                         : draw_onward(receiver.vertex, work.prepared, sampling_, working_space_,
+                                                       receiver.throughput, receiver.numbers->point(Purpose::onward));
   if (!onward || finite(onward->throughput)) return onward;
   ++nan_samples_;
   return std::nullopt;

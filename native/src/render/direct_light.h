@@ -28,6 +28,14 @@ struct Receiver {
   float limit = std::numeric_limits<float>::infinity();  // LightPathOptions::limit
 };
 
+/// Light that arrives if the ray with which the path of a vertex goes on meets nothing nearer than `far`.
+struct AwaitedLight {
+  size_t place;  // of the vertex among the receivers; then of the path among those that go on
+  Rgb light;
+  float limit;  // of the sum of its channels
+  float far;
+};
+
 /// One a thread: owns the scratch memory of the vertices in work. They go through together, in as many as fit a batch
 /// of directions: memory and vectors serve all of them, while their lobes stay in the cache.
 class DirectLight {
@@ -40,6 +48,7 @@ class DirectLight {
         options_(options),
         sampling_(surface_sampling(options.strategy)),
         meets_surfaces_(shares(options, 0.0f).surface > 0.0f),
+        shares_rays_(VisibleRays(scene).plain()),
         sky_(sky) {}
 
   /// How many vertices of up to `directions` each gather() takes.
@@ -61,7 +70,14 @@ class DirectLight {
   ///
   /// Contributions are clamped as those of Cycles' samples, each of which has one direction from the lights and one
   /// from the surface; where the strategy does not mix, one direction is a sample, and a sharp lamp is one, too.
-  void gather(std::span<const Receiver> receivers, ShadowQueue& shadows, std::vector<CameraSample>& samples);
+  ///
+  /// Where paths `go_on` from the vertices, one that drew a single direction from the surface side goes on along it:
+  /// one ray, that of extend(), then serves as its shadow ray, too, and what it brings is in awaited().
+  void gather(std::span<const Receiver> receivers, bool go_on, ShadowQueue& shadows,
+              std::vector<CameraSample>& samples);
+
+  /// What the last gather() left to rays of extend().
+  std::span<const AwaitedLight> awaited() const { return awaited_; }
 
   /// Whether gather() has in its terms what the surface emits that a ray from its vertex has hit. Where it has not,
   /// the ray of extend() is who counts it: of surfaces that no rays are drawn to, under a strategy that draws none from
@@ -71,9 +87,9 @@ class DirectLight {
     return meets_surfaces_ ? glow.holds(hit) : glow.draws(hit);
   }
 
-  /// One more ray from the vertex that was number `place` of the last gather(), drawn from the surface side alone: what
-  /// surfaces reflect was in no term of gather(), and what it meets beyond them (lamps, environment) was in all, so
-  /// only surfaces may be counted at its end.
+  /// The ray with which the path goes on from the vertex that was number `place` of the last gather(), drawn from the
+  /// surface side alone: what surfaces reflect was in no term of gather(), and what it meets beyond them (lamps,
+  /// environment) was in all, so only surfaces may be counted at its end.
   std::optional<Continuation> extend(const Receiver& receiver, size_t place);
 
   /// The past of a path that goes on from that vertex with the ray of extend().
@@ -83,10 +99,9 @@ class DirectLight {
   uint64_t nan_samples() const { return nan_samples_; }
 
   static constexpr int kSharpLamps = 4;
+  static constexpr int kReceivers = 8;  // at most
 
  private:
-  static constexpr int kReceivers = 8;
-
   /// What is kept of a vertex until its batch is done.
   struct Work {
     PreparedBrdf prepared;
@@ -95,13 +110,16 @@ class DirectLight {
     PathNumbers::Run from_product, from_surface, from_lights;
     int product_point, surface_point, light_point;  // the first of each in points_
     int product_direction;                          // the first in towards_products_
+    bool goes_on_drawn;                             // along the one direction of the surface side
+    std::optional<Continuation> onward;             // along that
+    int shared_term;                                // of terms_, which waits for the ray of `onward`; -1: none
   };
   struct Output {
     ShadowQueue& shadows;
     std::vector<CameraSample>& samples;
   };
 
-  void prepare(const Receiver& receiver, Work& work, const LightView& view);
+  void prepare(const Receiver& receiver, bool go_on, Work& work, const LightView& view);
   /// Asks for the points of all vertices, those of the lights in a row at the front.
   void make_points(std::span<const Receiver> receivers);
   /// Makes the products of the vertex, if it has any.
@@ -118,6 +136,8 @@ class DirectLight {
   /// Draws and reflects at one vertex.
   void shade(const Receiver& receiver, uint8_t place, Output output);
   void add_terms(const Receiver& receiver, uint8_t place);
+  /// Has the path go on along direction `i` of the vertex, which is term number `term`.
+  void go_on_along(const Receiver& receiver, int i, int term, Work& work);
   void settle(std::span<const Receiver> receivers, Output output);
   void settle_glow(std::span<const Receiver> receivers, Output output);
   struct Contribution {
@@ -127,6 +147,10 @@ class DirectLight {
     float far;    // where it comes from
     bool casts_shadow;
   };
+  /// Of term number `term`.
+  void settle_term(std::span<const Receiver> receivers, int term, const Contribution& contribution, Output output);
+  /// Whether it is light to wait for; light that casts no shadow has arrived.
+  bool waits(const Receiver& receiver, const Contribution& contribution, Output output);
   void queue(const Receiver& receiver, const Contribution& contribution, Output output);
   /// Clamping limit for the contribution of one direction.
   float limit_of_term(const Receiver& receiver) const {
@@ -140,6 +164,7 @@ class DirectLight {
   const RenderOptions& options_;
   const SurfaceSampling sampling_;
   const bool meets_surfaces_;  // whether any directions come from the surface side
+  const bool shares_rays_;     // whether a shadow ray may be one with which a path goes on
   const SkySampler* sky_;
 
   Work work_[kReceivers];
@@ -150,6 +175,7 @@ class DirectLight {
   DirectionBatch towards_lights_, towards_products_;  // world
   Hit aims_[DirectionBatch::kCapacity];               // of towards_lights_, where anything glows
   LightTerms terms_;
+  std::vector<AwaitedLight> awaited_;
 
   // Of one vertex: those drawn directions that can bring light, above both the shading horizon and the surface itself.
   // local_ goes on with the directions of sharp lamps.

@@ -20,6 +20,11 @@ inline Rgb in_working_space(const std::optional<Mat3>& rec709_to_working, const 
   return surface.gain * (rec709_to_working && surface.rec709_colors ? *rec709_to_working * f : f);
 }
 
+/// The ray along a direction that was drawn by the surface side with density `pdf`; `reflected`: f, times the
+/// throughput so far. Nothing when it would go below the surface or carry nothing.
+std::optional<Continuation> onward_along(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world,
+                                         const Rgb& reflected, float pdf);
+
 /// One ray drawn with `u` by the surface side, and `throughput` f cos / pdf, which need not be finite. Nothing when it
 /// would go below the surface or carry nothing. `prepared` is the material's point.
 std::optional<Continuation> draw_onward(const Vertex& vertex, const PreparedBrdf& prepared, SurfaceSampling sampling,

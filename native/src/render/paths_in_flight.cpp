@@ -11,6 +11,16 @@ void PathsInFlight::trace(uint8_t kind) {
   for (size_t i = 0; i < passed_.size(); ++i) decisions_.push_back(paths[i].numbers.decisions());
   visible.intersect(rays, hits.data(), kind, visible.dims() ? passed_.data() : nullptr, decisions_);
   for (size_t i = 0; i < passed_.size(); ++i) paths[i].throughput *= passed_[i];
+  add_awaited();
+}
+
+void PathsInFlight::add_awaited() {
+  for (const AwaitedLight& a : awaited_) {
+    const Hit& hit = hits[a.place];
+    if (hit.instance != kNoHit && hit.distance <= a.far) continue;
+    samples[paths[a.place].sample].radiance += clamped(a.light, a.limit);
+  }
+  awaited_.clear();
 }
 
 size_t PathsInFlight::gather(bool go_on, RayLog* log) {
@@ -20,8 +30,8 @@ size_t PathsInFlight::gather(bool go_on, RayLog* log) {
   const size_t most = all.empty() ? 1 : DirectLight::receivers_of(all[0].full);
   for (size_t first = 0; first < all.size(); first += most) {
     const auto batch = all.subspan(first, std::min(most, all.size() - first));
-    light.gather(batch, shadows_, samples);
-    for (size_t k = 0; k < batch.size() && go_on; ++k) extend(batch[k], k);
+    light.gather(batch, go_on, shadows_, samples);
+    if (go_on) extend(batch);
   }
   const size_t shadow_rays = shadows_.resolve(visible, samples, log);
   paths.swap(next_);
@@ -29,13 +39,19 @@ size_t PathsInFlight::gather(bool go_on, RayLog* log) {
   return shadow_rays;
 }
 
-void PathsInFlight::extend(const Receiver& receiver, size_t place) {
-  const auto onward = light.extend(receiver, place);
-  if (!onward) return;
-  const PathPast past = light.past_after(receiver, place, *onward);
-  receiver.numbers->next_vertex();
-  next_.push_back({*receiver.numbers, onward->throughput, receiver.sample, receiver.vertex.cone, past});
-  next_rays_.push_back(onward->ray);
+void PathsInFlight::extend(std::span<const Receiver> batch) {
+  size_t path_of[DirectLight::kReceivers] = {};
+  for (size_t k = 0; k < batch.size(); ++k) {
+    const Receiver& receiver = batch[k];
+    const auto onward = light.extend(receiver, k);
+    if (!onward) continue;
+    const PathPast past = light.past_after(receiver, k, *onward);
+    receiver.numbers->next_vertex();
+    path_of[k] = next_.size();
+    next_.push_back({*receiver.numbers, onward->throughput, receiver.sample, receiver.vertex.cone, past});
+    next_rays_.push_back(onward->ray);
+  }
+  for (const AwaitedLight& a : light.awaited()) awaited_.push_back({path_of[a.place], a.light, a.limit, a.far});
 }
 
 }  // namespace velour

@@ -27,7 +27,8 @@ struct PathsInFlight {
   PathsInFlight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkySampler* sky)
       : visible(scene), light(scene, lighting, options, sky) {}
 
-  /// Where the rays end, and what of their light comes through on the way. `kind`: a bit of `hidden`.
+  /// Where the rays end, and what of their light comes through on the way. Light that waited for them is added to the
+  /// samples. `kind`: a bit of `hidden`.
   void trace(uint8_t kind);
   /// Adds the light at the receivers to the samples. The paths then are those that go on from them, if they `go_on`,
   /// else none. The number of shadow rays, which `log` (may be null) receives.
@@ -42,9 +43,12 @@ struct PathsInFlight {
   std::vector<CameraSample> samples;
 
  private:
-  void extend(const Receiver& receiver, size_t place);
+  /// Adds the paths that go on from the receivers of the last DirectLight::gather().
+  void extend(std::span<const Receiver> batch);
+  void add_awaited();
 
   ShadowQueue shadows_;
+  std::vector<AwaitedLight> awaited_;  // by number of the path
   std::vector<Path> next_;
   std::vector<Ray> next_rays_;
   // Of the rays, where they may pass what they come to.

@@ -82,6 +82,9 @@ struct Vertex {
     return result;
   }
 
+  /// Whether a ray towards light is the one with which a path goes on in that direction.
+  bool rays_agree(const Vec3& direction_world) const { return !(terminator > 0.0f) || lift(direction_world) == 0.0f; }
+
  private:
   float lift(const Vec3& direction_world) const {
     const float smooth = glm::dot(direction_world, frame.z), flat = glm::dot(direction_world, geometric_normal);

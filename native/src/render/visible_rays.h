@@ -28,6 +28,8 @@ class VisibleRays {
 
   /// Whether rays may pass what they come to: else `passed` is 1 of all, and there is nothing to decide.
   bool dims() const { return dims_; }
+  /// Whether shadow rays and those of bounces simply meet the nearest surface.
+  bool plain() const { return sees_all(hidden::kFromShadows | hidden::kFromBounces); }
 
  private:
   struct Pending;
