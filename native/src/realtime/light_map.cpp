@@ -98,24 +98,22 @@ class Lobes {
   Lobes(const SkyMixture& sky, float least, float bandwidth, const Vec3& center, float reach)
       : bandwidth_(bandwidth),
         amplitude_(1 / static_cast<float>(kernel_integral(Kernel::gaussian, static_cast<double>(bandwidth)))) {
+    GaussianLobes near;
     for (size_t k = 0; k < sky.size(); ++k) {
       const float angle = std::acos(std::clamp(glm::dot(center, sky.center[k]), -1.0f, 1.0f)) - reach;
       const float both = bandwidth * sky.bandwidth[k] / (bandwidth + sky.bandwidth[k]);
       const float least_exponent = angle > 0 ? both * (1 - std::cos(angle)) : 0;
       if (luminance(sky.coefficient[k]) * std::exp(-least_exponent) < least) continue;
-      lobes_.add({sky.center[k], sky.bandwidth[k], 1.0f});
+      near.add({sky.center[k], sky.bandwidth[k], 1.0f});
       coefficient_.push_back(sky.coefficient[k]);
     }
-    while (lobes_.size() % LobeProducts::kLanes != 0) {
-      lobes_.add({{0, 0, 1}, 1, 0});
-      coefficient_.emplace_back(0.0f);
-    }
+    lobes_ = in_blocks(near);
   }
 
   /// Their mean over a Gaussian density about `center`.
   Rgb mean(const Vec3& center, LobeProducts& products) const {
     products.count = 0;
-    multiply_lobes({center, bandwidth_, amplitude_}, lobes_, 0, static_cast<int>(lobes_.size()), nullptr, products);
+    multiply_lobes({center, bandwidth_, amplitude_}, lobes_, nullptr, products);
     Rgb sum(0.0f);
     for (size_t k = 0; k < coefficient_.size(); ++k) sum += products.mass[k] * coefficient_[k];
     return sum;
@@ -123,7 +121,7 @@ class Lobes {
 
  private:
   float bandwidth_, amplitude_;
-  GaussianLobes lobes_;
+  std::vector<LobeBlock> lobes_;
   std::vector<Rgb> coefficient_;
 };
 

@@ -36,10 +36,8 @@ GaussianLobes lobes_of(const SkyMixture& sky) {
 
 SkyProposals::SkyProposals(const SkyMixture& sky, double misfit) : blurs_edges_(misfit > kBlurred) {
   constexpr size_t kLists = static_cast<size_t>(kSide) * kSide * kLevels;
-  for (auto* values : {&lists_.x, &lists_.y, &lists_.z, &lists_.bandwidth, &lists_.amplitude}) {
-    values->assign(kLists * kListed, values == &lists_.z || values == &lists_.bandwidth ? 1.0f : 0.0f);
-  }
-  listed_.assign(kLists, 0);
+  lists_.resize(kLists * kBlocks);
+  blocks_.assign(kLists, 0);
   GaussianLobes lobes = lobes_of(sky);
   set_sun(lobes);
   const LobeTree tree(lobes);
@@ -59,8 +57,7 @@ void SkyProposals::set_sun(GaussianLobes& sky) {
   for (size_t k = 0; k < sky.size(); ++k) total += energy(k);
   for (size_t k = 0; k < sky.size(); ++k) {
     if (sky.bandwidth[k] < kNarrow || energy(k) < kSunEnergy * total) continue;
-    sun_.add({{sky.x[k], sky.y[k], sky.z[k]}, sky.bandwidth[k], sky.amplitude[k]});
-    while (sun_.size() < LobeProducts::kLanes) sun_.add({{0, 0, 1}, 1, 0});
+    sun_.emplace().set(0, {{sky.x[k], sky.y[k], sky.z[k]}, sky.bandwidth[k], sky.amplitude[k]});
     sky.amplitude[k] = 0;
     return;
   }
@@ -71,37 +68,48 @@ void SkyProposals::fill_list(size_t list, const LobeTree& tree) {
   constexpr float kCellVariance = 4 / (3.0f * kSide * kSide);
   const int cell = static_cast<int>(list / kLevels), level = static_cast<int>(list % kLevels);
   const float bandwidth = 1 / (std::exp2(-2.0f * static_cast<float>(level)) + kCellVariance);
-  size_t to = list * kListed;
+  size_t count = 0;
   for (const GaussianLobe& node : tree.cut({octahedral_cell_center(cell, kSide), bandwidth, 1}, kListed)) {
-    lists_.x[to] = node.center.x;
-    lists_.y[to] = node.center.y;
-    lists_.z[to] = node.center.z;
-    lists_.bandwidth[to] = node.bandwidth;
-    lists_.amplitude[to] = node.amplitude;
-    ++to;
+    lists_[list * kBlocks + count / LobeBlock::kSize].set(count % LobeBlock::kSize, node);
+    ++count;
   }
-  constexpr size_t kLanes = LobeProducts::kLanes;
-  listed_[list] = static_cast<uint8_t>((to - list * kListed + kLanes - 1) / kLanes * kLanes);
+  blocks_[list] = static_cast<uint8_t>((count + LobeBlock::kSize - 1) / LobeBlock::kSize);
 }
 
-void SkyProposals::multiply(const GaussianLobe& world, const Frame& frame, LobeProducts& products) const {
+size_t SkyProposals::list_of(const GaussianLobe& world) const {
   const int cell = octahedral_cell(world.center, kSide), level = level_of(world.bandwidth, kLevels);
-  const auto list = static_cast<size_t>(cell * kLevels + level);
-  multiply_lobes(world, lists_, list * kListed, listed_[list], &frame.z, products);
-  if (has_sun() && sun_.bandwidth[0] < kSunSharpness * world.bandwidth) {
-    multiply_lobes(world, sun_, 0, LobeProducts::kLanes, &frame.z, products);
+  return static_cast<size_t>(cell * kLevels + level);
+}
+
+void SkyProposals::multiply(const GaussianLobe& world, size_t list, const Vec3& normal, LobeProducts& products) const {
+  multiply_lobes(world, {&lists_[list * kBlocks], blocks_[list]}, &normal, products);
+  if (sun_ && sun_->bandwidth[0] < kSunSharpness * world.bandwidth) {
+    multiply_lobes(world, {&*sun_, 1}, &normal, products);
   }
 }
 
 bool SkyProposals::propose(const ProposalLobes& brdf, const Frame& frame, LobeProducts& scratch,
                            LobeMixture& density) const {
   static_assert((ProposalLobes::kCapacity + 1) * (kListed + LobeProducts::kLanes) <= LobeProducts::kCapacity);
-  scratch.count = 0;
-  if (brdf.cosine > 0) multiply({frame.z, kCosineBandwidth, kCosineAmplitude * brdf.cosine}, frame, scratch);
+  GaussianLobe lobe[ProposalLobes::kCapacity + 1];
+  size_t list[ProposalLobes::kCapacity + 1];
+  int count = 0;
+  const auto add = [&](const GaussianLobe& world) {
+    lobe[count] = world;
+    list[count] = list_of(world);
+    // All lists together are larger than a core's caches; they are fetched while the first are multiplied.
+    for (size_t line = 0; line < sizeof(LobeBlock) * blocks_[list[count]]; line += 64) {
+      __builtin_prefetch(reinterpret_cast<const char*>(&lists_[list[count] * kBlocks]) + line);
+    }
+    ++count;
+  };
+  if (brdf.cosine > 0) add({frame.z, kCosineBandwidth, kCosineAmplitude * brdf.cosine});
   for (int j = 0; j < brdf.count; ++j) {
-    const GaussianLobe& lobe = brdf.lobe[j];
-    multiply({frame.to_world(lobe.center), lobe.bandwidth, lobe.amplitude}, frame, scratch);
+    const GaussianLobe& local = brdf.lobe[j];
+    add({frame.to_world(local.center), local.bandwidth, local.amplitude});
   }
+  scratch.count = 0;
+  for (int j = 0; j < count; ++j) multiply(lobe[j], list[j], frame.z, scratch);
   return keep_products(scratch, kLeastProduct, density);
 }
 

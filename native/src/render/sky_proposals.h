@@ -1,6 +1,9 @@
 // Product sampling: the lobes of a prepared BRDF times the lobes of the sky, as one density [T08]; method 6.6.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "scene/sky_mixture.h"
 #include "sphere/frame.h"
 #include "srbf/lobe_products.h"
@@ -23,27 +26,30 @@ class SkyProposals {
  public:
   /// `misfit`: of the mixture to its sky (sky_misfit.h).
   explicit SkyProposals(const SkyMixture& sky, double misfit = 0);
-  static constexpr int kListed = 32;  // nodes of a cut
+  static constexpr int kListed = 32;  // nodes of a cut, at most
 
   /// The density, in the world frame, of the products of `brdf` (in `frame`) with the sky; its cosine part counts as
   /// the Gaussian that resembles it. False when there is none: below the horizon, or black.
   bool propose(const ProposalLobes& brdf, const Frame& frame, LobeProducts& scratch, LobeMixture& density) const;
 
-  bool has_sun() const { return sun_.size() > 0; }
+  bool has_sun() const { return sun_.has_value(); }
   /// Whether lamps have edges that the mixture has not.
   bool blurs_edges() const { return blurs_edges_; }
 
  private:
   void fill_list(size_t list, const LobeTree& tree);
-  void multiply(const GaussianLobe& world, const Frame& frame, LobeProducts& products) const;
+  size_t list_of(const GaussianLobe& world) const;
+  void multiply(const GaussianLobe& world, size_t list, const Vec3& normal, LobeProducts& products) const;
   void set_sun(GaussianLobes& sky);
   static constexpr int kSide = 32;   // cells of five degrees or so
   static constexpr int kLevels = 9;  // bandwidths 1, 4, ... 4^8
 
-  GaussianLobes lists_;  // kListed places a list, by cell, then level; of amplitude 0 where a list is shorter
-  GaussianLobes sun_;    // kLanes places, or none without a sun
+  static constexpr int kBlocks = kListed / LobeBlock::kSize;
+
+  std::vector<LobeBlock> lists_;  // kBlocks a list, by cell, then level
+  std::vector<uint8_t> blocks_;   // of each list, those that hold anything
+  std::optional<LobeBlock> sun_;
   const bool blurs_edges_;
-  std::vector<uint8_t> listed_;  // of each list, a multiple of LobeProducts::kLanes
 };
 
 }  // namespace velour

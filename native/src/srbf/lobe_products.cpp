@@ -24,25 +24,31 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// 1 - exp(-2R): what a lobe of bandwidth R > 0 holds of what it would on a plane. 1 in float from 9 on.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V share_of_ball(D d, V bandwidth) {
+  if (hn::AllTrue(d, hn::Gt(bandwidth, hn::Set(d, 9.0f)))) return hn::Set(d, 1.0f);
+  return hn::Neg(hn::Expm1(d, hn::Mul(hn::Set(d, -2.0f), bandwidth)));
+}
+
 /// Share of a lobe above a horizon whose normal it meets under cosine `c`: the normal distribution of c sqrt(bandwidth)
 /// (a narrow lobe is a Gaussian of that deviation), as the logistic function nearest to it.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V share_above(D d, V c, V bandwidth) {
   const V x = hn::Mul(hn::Mul(hn::Set(d, 1.702f), c), hn::Sqrt(bandwidth));
+  if (hn::AllTrue(d, hn::Gt(x, hn::Set(d, 17.0f)))) return hn::Set(d, 1.0f);
   const V e = exp_nonpositive(d, hn::Neg(hn::Abs(x)));
   const V top = hn::IfThenElse(hn::Lt(x, hn::Zero(d)), e, hn::Set(d, 1.0f));
   return hn::Div(top, hn::Add(hn::Set(d, 1.0f), e));
 }
 
-void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, size_t first, int count, const Vec3* normal,
-                   LobeProducts& out) {
+void multiply_simd(const GaussianLobe& a, const LobeBlock& others, const Vec3* normal, LobeProducts& out) {
   const hn::CappedTag<float, LobeProducts::kLanes> d;
   using V = hn::Vec<decltype(d)>;
   const V ax = hn::Set(d, a.center.x), ay = hn::Set(d, a.center.y), az = hn::Set(d, a.center.z);
   const V la = hn::Set(d, a.bandwidth), flat = hn::Set(d, 1e-2f);
-  for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
-    const size_t from = first + static_cast<size_t>(at);
-    const auto load = [&](const std::vector<float>& values) { return hn::LoadU(d, values.data() + from); };
+  for (size_t at = 0; at < LobeBlock::kSize; at += hn::Lanes(d)) {
+    const auto load = [&](const float* values) HWY_ATTR { return hn::Load(d, values + at); };
     const V bx = load(others.x), by = load(others.y), bz = load(others.z), lb = load(others.bandwidth);
     const V dx = hn::Sub(ax, bx), dy = hn::Sub(ay, by), dz = hn::Sub(az, bz);
     const V distance_sq = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
@@ -55,12 +61,17 @@ void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, size_t fi
     const auto no_axis = hn::Lt(exact, flat);
     const V r = hn::Max(exact, flat);
     const V exponent = hn::Div(hn::Mul(product, distance_sq), hn::Add(r, hn::Add(la, lb)));
+    const size_t to = static_cast<size_t>(out.count) + at;
+    // Most of a sky is far from a highlight: exp(-88) of it is nothing.
+    if (hn::AllTrue(d, hn::Gt(exponent, hn::Set(d, 88.0f)))) {
+      hn::StoreU(hn::Zero(d), d, out.mass + to);
+      continue;
+    }
     const V inverse = hn::Div(hn::Set(d, 1.0f), r);
     const V cx = hn::IfThenElse(no_axis, ax, hn::Mul(inverse, hn::MulAdd(la, ax, hn::Mul(lb, bx))));
     const V cy = hn::IfThenElse(no_axis, ay, hn::Mul(inverse, hn::MulAdd(la, ay, hn::Mul(lb, by))));
     const V cz = hn::IfThenElse(no_axis, az, hn::Mul(inverse, hn::MulAdd(la, az, hn::Mul(lb, bz))));
-    const V opposite = exp_nonpositive(d, hn::Mul(hn::Set(d, -2.0f), r));
-    const V integral = hn::Mul(hn::Set(d, 2 * kPi), hn::Mul(inverse, hn::Sub(hn::Set(d, 1.0f), opposite)));
+    const V integral = hn::Mul(hn::Mul(hn::Set(d, 2 * kPi), inverse), share_of_ball(d, r));
     V mass = hn::Mul(hn::Mul(hn::Set(d, a.amplitude), load(others.amplitude)),
                      hn::Mul(integral, exp_nonpositive(d, hn::Neg(exponent))));
     if (normal != nullptr) {
@@ -68,14 +79,13 @@ void multiply_simd(const GaussianLobe& a, const GaussianLobes& others, size_t fi
                              hn::MulAdd(hn::Set(d, normal->y), cy, hn::Mul(hn::Set(d, normal->z), cz)));
       mass = hn::Mul(mass, share_above(d, c, r));
     }
-    const int to = out.count + at;
     hn::StoreU(mass, d, out.mass + to);
     hn::StoreU(cx, d, out.x + to);
     hn::StoreU(cy, d, out.y + to);
     hn::StoreU(cz, d, out.z + to);
     hn::StoreU(r, d, out.bandwidth + to);
   }
-  out.count += count;
+  out.count += LobeProducts::kLanes;
 }
 
 float total_simd(const LobeProducts& products) {
@@ -115,7 +125,7 @@ void normalize_simd(float sum, LobeMixture& mixture) {
   for (int at = 0; at < mixture.count; at += static_cast<int>(hn::Lanes(d))) {
     const auto r = hn::Max(hn::LoadU(d, mixture.bandwidth + at), hn::Set(d, 1e-12f));
     // The integral of the kernel is 2 pi (1 - e^-2R) / R.
-    const auto whole = hn::Mul(hn::Set(d, -2 * kPi), hn::Expm1(d, hn::Mul(hn::Set(d, -2.0f), r)));
+    const auto whole = hn::Mul(hn::Set(d, 2 * kPi), share_of_ball(d, r));
     const auto mass = hn::LoadU(d, mixture.density + at);
     hn::StoreU(hn::Div(hn::Mul(mass, r), hn::Mul(total, whole)), d, mixture.density + at);
     // A quotient, not a product: the last one is then exactly 1.
@@ -143,10 +153,32 @@ void GaussianLobes::add(const GaussianLobe& lobe) {
   amplitude.push_back(lobe.amplitude);
 }
 
-void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, size_t first, int count, const Vec3* normal,
+LobeBlock::LobeBlock() {
+  for (size_t i = 0; i < kSize; ++i) set(i, {{0, 0, 1}, 1, 0});
+}
+
+void LobeBlock::set(size_t place, const GaussianLobe& lobe) {
+  x[place] = lobe.center.x;
+  y[place] = lobe.center.y;
+  z[place] = lobe.center.z;
+  bandwidth[place] = lobe.bandwidth;
+  amplitude[place] = lobe.amplitude;
+}
+
+std::vector<LobeBlock> in_blocks(const GaussianLobes& lobes) {
+  std::vector<LobeBlock> blocks((lobes.size() + LobeBlock::kSize - 1) / LobeBlock::kSize);
+  for (size_t k = 0; k < lobes.size(); ++k) {
+    blocks[k / LobeBlock::kSize].set(k % LobeBlock::kSize,
+                                     {{lobes.x[k], lobes.y[k], lobes.z[k]}, lobes.bandwidth[k], lobes.amplitude[k]});
+  }
+  return blocks;
+}
+
+void multiply_lobes(const GaussianLobe& lobe, std::span<const LobeBlock> others, const Vec3* normal,
                     LobeProducts& products) {
-  assert(count % LobeProducts::kLanes == 0 && products.count + count <= LobeProducts::kCapacity);
-  VELOUR_SIMD_DISPATCH(multiply_simd)(lobe, others, first, count, normal, products);
+  assert(products.count + static_cast<int>(others.size() * LobeBlock::kSize) <= LobeProducts::kCapacity);
+  const auto multiply = VELOUR_SIMD_DISPATCH(multiply_simd);
+  for (const LobeBlock& block : others) multiply(lobe, block, normal, products);
 }
 
 constexpr float kSmallest = std::numeric_limits<float>::min();  // lanes that fill up have no mass

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "srbf/lobe_mixture.h"
@@ -18,7 +19,7 @@ struct GaussianLobe {
   float amplitude;
 };
 
-/// Many Gaussians, structure of arrays, for the SIMD kernels.
+/// Many Gaussians, structure of arrays.
 struct GaussianLobes {
   std::vector<float> x, y, z, bandwidth, amplitude;
   size_t size() const { return x.size(); }
@@ -34,21 +35,34 @@ struct ProposalLobes {
   GaussianLobe lobe[kCapacity];
 };
 
+/// Lobes that are multiplied with one at once. They lie together, for what is looked up at a shading point comes from
+/// memory that no other needs.
+struct alignas(64) LobeBlock {
+  static constexpr size_t kSize = 16;
+  float x[kSize], y[kSize], z[kSize], bandwidth[kSize], amplitude[kSize];
+
+  /// Of amplitude 0.
+  LobeBlock();
+  void set(size_t place, const GaussianLobe& lobe);
+};
+
+/// All of `lobes`, in order; lobes of amplitude 0 fill the last block up.
+std::vector<LobeBlock> in_blocks(const GaussianLobes& lobes);
+
 /// The products of the lobes of a shading point, before the best are chosen. Scratch memory of a thread.
 struct alignas(64) LobeProducts {
-  static constexpr int kLanes = 16;
+  static constexpr int kLanes = LobeBlock::kSize;
   static constexpr int kCapacity = 432;
-  int count = 0;  // a multiple of kLanes; what fills up has mass 0
+  int count = 0;  // a multiple of kLanes
   /// Integral of the product over the sphere, times an estimate of its share above the horizon.
   float mass[kCapacity];
-  float x[kCapacity], y[kCapacity], z[kCapacity];  // centres, unit
+  float x[kCapacity], y[kCapacity], z[kCapacity];  // centres, unit; like bandwidths anything where there is no mass
   float bandwidth[kCapacity];
 };
 
-/// Appends the products of `lobe` with `count` of `others` from `first` on; count is a multiple of
-/// LobeProducts::kLanes (lobes of amplitude 0 fill up). With a `normal`, masses count what lies above its horizon, a
-/// logistic estimate: it steers the choice and normalises nothing. Callers keep to kCapacity.
-void multiply_lobes(const GaussianLobe& lobe, const GaussianLobes& others, size_t first, int count, const Vec3* normal,
+/// Appends the products of `lobe` with `others`. With a `normal`, masses count what lies above its horizon, a logistic
+/// estimate: it steers the choice and normalises nothing. Callers keep to kCapacity.
+void multiply_lobes(const GaussianLobe& lobe, std::span<const LobeBlock> others, const Vec3* normal,
                     LobeProducts& products);
 
 /// Makes `mixture` the density over all products that hold at least `least` of the whole mass (over the best one where

@@ -15,13 +15,12 @@ GaussianLobes sky() {
   for (size_t k = 0; k < centers.size(); ++k) {
     lobes.add({centers[k], 0.05f * std::pow(2e7f, static_cast<float>(k) / 46), 1 + static_cast<float>(k)});
   }
-  lobes.add({{0, 0, 1}, 1, 0});
   return lobes;
 }
 
 LobeProducts multiplied(const GaussianLobe& lobe, const GaussianLobes& others, const Vec3* normal = nullptr) {
   LobeProducts products;
-  multiply_lobes(lobe, others, 0, static_cast<int>(others.size()), normal, products);
+  multiply_lobes(lobe, in_blocks(others), normal, products);
   return products;
 }
 
@@ -40,6 +39,7 @@ TEST(LobeProducts, MatchTheScalarReferenceOnEveryTarget) {
             0.7 * static_cast<double>(others.amplitude[k]) * p.scale * kernel_integral(Kernel::gaussian, p.bandwidth);
         const double exponent = -std::log(std::max(p.scale, 1e-40));
         EXPECT_NEAR(products.mass[k], mass, mass * 1e-5 * (1 + exponent) + 1e-30) << bandwidth << ' ' << k;
+        if (products.mass[k] == 0) continue;
         EXPECT_NEAR(products.bandwidth[k], p.bandwidth, 1e-5 * p.bandwidth + 2e-4);
         if (p.bandwidth < 1e-2) continue;
         EXPECT_LT(glm::distance(Vec3d(products.x[k], products.y[k], products.z[k]), p.center), 2e-4) << k;
@@ -57,6 +57,7 @@ TEST(LobeProducts, ShareAboveTheHorizonMatchesTheScalarReferenceOnEveryTarget) {
       const GaussianLobe lobe{glm::normalize(Vec3(0.3f, -0.5f, 0.8f)), bandwidth, 0.7f};
       const LobeProducts free = multiplied(lobe, others), above = multiplied(lobe, others, &normal);
       for (size_t k = 0; k < others.size(); ++k) {
+        if (free.mass[k] == 0) continue;
         const double c = glm::dot(Vec3d(normal), Vec3d(free.x[k], free.y[k], free.z[k]));
         const double x = 1.702 * c * std::sqrt(static_cast<double>(free.bandwidth[k]));
         const double expected = static_cast<double>(free.mass[k]) / (1 + std::exp(-x));
@@ -105,7 +106,6 @@ TEST(LobeProducts, CentresOfBroadOpposedLobesAreUnit) {
   for (const float bandwidth : {0.0f, 1e-4f, 1e-2f, 0.3f}) {
     for (const float angle : {0.0f, 1e-3f, 1.6f, 3.0f, 3.1415926f}) others.add({direction(angle, 0.3f), bandwidth, 1});
   }
-  while (others.size() % LobeProducts::kLanes != 0) others.add({{0, 0, 1}, 1, 0});
   test::on_every_simd_target([&] {
     for (const float bandwidth : {0.0f, 1e-4f, 1e-2f, 0.3f}) {
       const LobeProducts products = multiplied({{0, 0, 1}, bandwidth, 1}, others);
@@ -122,7 +122,6 @@ TEST(LobeProducts, WhatLiesBelowTheHorizonWeighsNothing) {
   const Vec3 normal(0, 0, 1);
   GaussianLobes others;
   for (const Vec3& c : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -1)}) others.add({c, 100, 1});
-  while (others.size() < 16) others.add({{0, 0, 1}, 1, 0});
   for (size_t k = 0; k < 3; ++k) {
     const Vec3 center(others.x[k], others.y[k], others.z[k]);
     const LobeProducts free = multiplied({center, 100, 1}, others),
