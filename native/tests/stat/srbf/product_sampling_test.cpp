@@ -13,9 +13,8 @@ LobeMixture product_density(float a, float b, float angle, float error = 1) {
   GaussianLobes others;
   others.add({direction(0.4f + angle, 0.3f), b, 1});
   others.add({direction(0.4f + 1.5f * angle, 0.5f), 0.5f * std::min(b, 100.0f), 0.3f});
-  while (others.size() < LobeProducts::kLanes) others.add({{0, 0, 1}, 1, 0});
   LobeProducts products;
-  multiply_lobes({direction(0.4f, 0.3f), a * error, 1}, others, 0, LobeProducts::kLanes, nullptr, products);
+  multiply_lobes({direction(0.4f, 0.3f), a * error, 1}, in_blocks(others), nullptr, products);
   LobeMixture density;
   EXPECT_TRUE(keep_products(products, 0, density)) << a << ' ' << b << ' ' << angle;
   return density;
