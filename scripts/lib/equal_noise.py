@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
@@ -32,10 +33,13 @@ SCENES = (
     "metals",
     "corridor",
     "signs",
+    "copper",
+    "clamped copper",
 )  # of equal_noise_scenes.py
 THREADS = 2
 _CELL = 2.2  # inches a picture
 DENOISED_TO = 0.01  # relmse
+_FIREFLY = 0.25  # luminance above the median of 3 x 3 pixels
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,7 @@ class Side:
     seconds: float  # processor time of one render
     noise: float  # relmse of one render, from the spread of the seeds
     mean: np.ndarray  # of all seeds
+    fireflies: float  # of one render
     denoised: float | None = None  # seconds to a denoised picture of DENOISED_TO; None: nothing can denoise
 
     @property
@@ -142,7 +147,18 @@ def _side(folder: Path, engine: str, seconds: list[float]) -> Side:
     )
     mean, variance = pictures.mean(0), pictures.var(0, ddof=1)
     noise = (variance / (mean**2 + 0.01 * mean.mean() ** 2)).mean()
-    return Side(min(seconds), float(noise), mean)
+    return Side(min(seconds), float(noise), mean, _fireflies(pictures, mean))
+
+
+def _fireflies(pictures: np.ndarray, mean: np.ndarray) -> float:
+    """Pixels of one render that are far brighter than their neighbors, where the mean of all is not."""
+
+    def stand_out(picture: np.ndarray) -> np.ndarray:
+        luminance = picture @ np.array([0.2126, 0.7152, 0.0722])
+        return luminance - median_filter(luminance, 3) > _FIREFLY
+
+    own = stand_out(mean)
+    return float(np.mean([np.count_nonzero(stand_out(picture) & ~own) for picture in pictures]))
 
 
 def _ratio(cycles: Side, velour: Side) -> float:
@@ -160,6 +176,7 @@ def _line(name: str, cycles: Side, velour: Side) -> str:
 
 def _page(results: dict, version: str, effort: Effort, conditions: dict, load: float) -> str:
     header = ["scene", "Cycles: s", "relmse", "Velour: s", "relmse", "time to equal noise", "mean light"]
+    header += ["fireflies: Cycles", "Velour"]
     rows = [
         [
             name,
@@ -169,6 +186,8 @@ def _page(results: dict, version: str, effort: Effort, conditions: dict, load: f
             markdown_table.small(velour.noise),
             f"{_ratio(cycles, velour):.2f}",
             f"{100 * _apart(cycles, velour):+.1f} %",
+            f"{cycles.fireflies:.0f}",
+            f"{velour.fireflies:.0f}",
         ]
         for name, (cycles, velour) in results.items()
     ]
@@ -178,13 +197,15 @@ def _page(results: dict, version: str, effort: Effort, conditions: dict, load: f
 Written by `scripts/equal_noise`. {provenance.sentence(conditions)}
 Blender {version}; other programs kept {load:.2f} processors busy before.
 
-Eight scenes of Principled and diffuse materials, built by `scripts/lib/equal_noise_scenes.py`,
+Scenes of Principled and diffuse materials, built by `scripts/lib/equal_noise_scenes.py`,
 {width} x {height} pixels, four bounces, without clamping, adaptive sampling and denoising, with a filter
 of one pixel. Both engines render in the same Blender, {effort.seeds} seeds each: Cycles
 {effort.cycles} samples a pixel, Velour {effort.velour} light directions with its default settings.
 Seconds are processor time of the fastest render, with export and hierarchies; relmse is that of one
 render, from the spread of the seeds. *Time to equal noise* is Velour's seconds times relmse over Cycles'.
-*Mean light* is how much brighter Velour's picture is.
+*Mean light* is how much brighter Velour's picture is. *Fireflies*: pixels of one render more than
+{_FIREFLY} above the median of their 3 x 3 neighbors, where the mean of all seeds is not; *clamped*:
+indirect light, at 10.
 
 {markdown_table.table(header, rows)}
 {_denoised(results)}![Each scene by Cycles and by Velour](images/equal_noise.png)

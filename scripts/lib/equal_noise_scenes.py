@@ -25,9 +25,9 @@ def main(task):
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     addon_utils.enable("cycles")
     addon_utils.enable("velour")
-    build()
     scene = bpy.context.scene
     _set_up(scene, *task["size"])
+    build()
     seconds = {}
     for engine, samples in task["samples"].items():
         scene.render.engine = engine
@@ -252,6 +252,20 @@ def _glowing():
     _camera((0, -7, 2.6), (0, 0, 0.7))
 
 
+def _copper(clamp=0.0):
+    """Polished copper throws a small lamp's light on a wall. `clamp`: of indirect light, of both engines."""
+    _plane(8, _material("Floor", (0.3, 0.3, 0.3), Roughness=0.6))
+    _plane(8, _diffuse("Wall", (0.7, 0.7, 0.7)), (0, 2, 2), (math.pi / 2, 0, 0))
+    copper = _material("Copper", (0.95, 0.64, 0.54), Metallic=1.0, Roughness=0.12)
+    _plane(1.6, copper, (-0.7, 0.9, 0.05), (0.1, 0.05, 0.3))
+    _ball((0.9, 0.7, 0.6), 0.6, copper)
+    _world(strength=0.2, color=(0.6, 0.7, 0.9))
+    _lamp("AREA", 60, (-1.5, -1.5, 2.6), (-0.5, 1, 0), size=0.15)
+    _camera((0, -5, 1.8), (0, 0.8, 0.8), 45)
+    scene = bpy.context.scene
+    scene.cycles.sample_clamp_indirect = scene.velour.clamp_indirect = clamp
+
+
 SCENES = {
     "floor of 9 m": lambda: _floor(9),
     "floor of 20 m": lambda: _floor(20),
@@ -261,6 +275,8 @@ SCENES = {
     "metals": _metals,
     "corridor": _corridor,
     "signs": _glowing,
+    "copper": _copper,
+    "clamped copper": lambda: _copper(10),  # Cycles' default
 }
 
 
