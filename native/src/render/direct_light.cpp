@@ -45,7 +45,7 @@ void DirectLight::prepare(const Receiver& receiver, bool go_on, Work& work, cons
   work.from_lights = lights;
   // One of several would be every n-th point of their sequence, and those are not even.
   work.goes_on_drawn = go_on && surface.count == 1;
-  work.onward.reset();
+  work.continuation.reset();
   work.shared_term = -1;
 }
 
@@ -177,9 +177,9 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
 
 void DirectLight::go_on_along(const Receiver& receiver, int i, int term, Work& work) {
   const Vertex& vertex = receiver.vertex;
-  work.onward = onward_along(vertex, local_.get(i), world_.get(i), receiver.throughput * reflectance(vertex, i),
-                             surface_pdf_.v[i]);
-  const bool shares_ray = work.onward && finite(work.onward->throughput) && shares_rays_;
+  work.continuation = onward_along(vertex, local_.get(i), world_.get(i), receiver.throughput * reflectance(vertex, i),
+                                   surface_pdf_.v[i]);
+  const bool shares_ray = work.continuation && finite(work.continuation->throughput) && shares_rays_;
   if (shares_ray && vertex.rays_agree(world_.get(i))) work.shared_term = term;
 }
 
@@ -244,10 +244,11 @@ void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output 
 
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
   const Work& work = work_[place];
-  const auto onward = work.goes_on_drawn ? work.onward
-                                         : draw_onward(receiver.vertex, work.prepared, sampling_, working_space_,
-                                                       receiver.throughput, receiver.numbers->point(Purpose::onward));
-  if (!onward || finite(onward->throughput)) return onward;
+  const auto continuation = work.goes_on_drawn
+                                ? work.continuation
+                                : draw_onward(receiver.vertex, work.prepared, sampling_, working_space_,
+                                              receiver.throughput, receiver.numbers->point(Purpose::onward));
+  if (!continuation || finite(continuation->throughput)) return continuation;
   ++nan_samples_;
   return std::nullopt;
 }

@@ -111,8 +111,8 @@ class DirectLight {
     int product_point, surface_point, light_point;  // the first of each in points_
     int product_direction;                          // the first in towards_products_
     bool goes_on_drawn;                             // along the one direction of the surface side
-    std::optional<Continuation> onward;             // along that
-    int shared_term;                                // of terms_, which waits for the ray of `onward`; -1: none
+    std::optional<Continuation> continuation;       // along that
+    int shared_term;                                // of terms_, which waits for the ray of `continuation`; -1: none
   };
   struct Output {
     ShadowQueue& shadows;
@@ -147,7 +147,7 @@ class DirectLight {
     float far;    // where it comes from
     bool casts_shadow;
   };
-  /// Of term number `term`.
+  /// Queues what term number `term` brings, or has it wait for the ray of its path.
   void settle_term(std::span<const Receiver> receivers, int term, const Contribution& contribution, Output output);
   /// Whether it is light to wait for; light that casts no shadow has arrived.
   bool waits(const Receiver& receiver, const Contribution& contribution, Output output);

@@ -43,13 +43,13 @@ void PathsInFlight::extend(std::span<const Receiver> batch) {
   size_t path_of[DirectLight::kReceivers] = {};
   for (size_t k = 0; k < batch.size(); ++k) {
     const Receiver& receiver = batch[k];
-    const auto onward = light.extend(receiver, k);
-    if (!onward) continue;
-    const PathPast past = light.past_after(receiver, k, *onward);
+    const auto continuation = light.extend(receiver, k);
+    if (!continuation) continue;
+    const PathPast past = light.past_after(receiver, k, *continuation);
     receiver.numbers->next_vertex();
     path_of[k] = next_.size();
-    next_.push_back({*receiver.numbers, onward->throughput, receiver.sample, receiver.vertex.cone, past});
-    next_rays_.push_back(onward->ray);
+    next_.push_back({*receiver.numbers, continuation->throughput, receiver.sample, receiver.vertex.cone, past});
+    next_rays_.push_back(continuation->ray);
   }
   for (const AwaitedLight& a : light.awaited()) awaited_.push_back({path_of[a.place], a.light, a.limit, a.far});
 }

@@ -41,7 +41,7 @@ struct alignas(64) LobeBlock {
   static constexpr size_t kSize = 16;
   float x[kSize], y[kSize], z[kSize], bandwidth[kSize], amplitude[kSize];
 
-  /// Of amplitude 0.
+  /// All lobes have amplitude 0.
   LobeBlock();
   void set(size_t place, const GaussianLobe& lobe);
 };
