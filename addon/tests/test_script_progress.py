@@ -58,7 +58,7 @@ def test_tells_stage_done_total_and_seconds_left(tmp_path):
 
 
 def test_says_nothing_of_what_is_soon_done(tmp_path):
-    assert _run("quietly log nothing true", tmp_path) == ("", "", 0)
+    assert _run("progress_interval=30; quietly log nothing true", tmp_path) == ("", "", 0)
 
 
 def test_a_failure_shows_the_log_and_ends_the_script(tmp_path):
